@@ -1,0 +1,61 @@
+# One grammar for all modules:
+#   umov_module(NAME SOURCES a.cpp ... PUBLIC umov::core ... PRIVATE fmt::fmt ...)
+#   umov_tests(NAME SOURCES a_test.cpp ... LABEL unit LIBRARIES umov::optics ...)
+#   umov_embed(TARGET SYMBOL FILE): the bytes of FILE in the binary, read with umov/core/embedded.h
+
+option(UMOV_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
+option(UMOV_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
+
+add_library(umov_flags INTERFACE)
+target_compile_options(
+  umov_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+                       -Wno-restrict # false alarms of g++ 12 on std::string (GCC bug 105651)
+                       # Same results for every thread count and build: no silent contraction.
+                       -ffp-contract=off $<$<BOOL:${UMOV_WARNINGS_AS_ERRORS}>:-Werror>)
+if(UMOV_SANITIZE)
+  target_compile_options(umov_flags INTERFACE -fsanitize=address,undefined
+                                              -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(umov_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+function(umov_module name)
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(umov_${name} STATIC ${arg_SOURCES})
+  add_library(umov::${name} ALIAS umov_${name})
+  target_include_directories(umov_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include
+                             PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(umov_${name} PUBLIC ${arg_PUBLIC} PRIVATE umov_flags ${arg_PRIVATE})
+endfunction()
+
+function(umov_tests name)
+  if(NOT UMOV_BUILD_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "LABEL" "SOURCES;LIBRARIES" ${ARGN})
+  set(target umov_${name}_tests)
+  add_executable(${target} ${arg_SOURCES})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${target} PRIVATE umov_flags ${arg_LIBRARIES} GTest::gtest_main)
+  target_compile_definitions(${target} PRIVATE UMOV_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  include(GoogleTest)
+  gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS ${arg_LABEL})
+endfunction()
+
+function(umov_embed target symbol file)
+  get_filename_component(path ${file} ABSOLUTE)
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${symbol}.S)
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
+    .section .rodata
+    .global umov_embedded_@symbol@_begin
+    .global umov_embedded_@symbol@_end
+    .balign 16
+umov_embedded_@symbol@_begin:
+    .incbin "@path@"
+umov_embedded_@symbol@_end:
+    .byte 0
+    .section .note.GNU-stack,"",%progbits
+]])
+  set_property(SOURCE ${source} APPEND PROPERTY OBJECT_DEPENDS ${path})
+  target_sources(${target} PRIVATE ${source})
+endfunction()

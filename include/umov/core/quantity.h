@@ -1,0 +1,37 @@
+#pragma once
+// Named constructors for numbers that people mix up.
+
+#include <numbers>
+
+namespace umov {
+
+inline constexpr double pi = std::numbers::pi;
+
+/// Plane angle, held in radians.
+class Angle {
+public:
+  constexpr Angle() = default;
+  static constexpr Angle radians(double value) { return Angle(value); }
+  static constexpr Angle degrees(double value) { return Angle(value * (pi / 180)); }
+  [[nodiscard]] constexpr double radians() const { return value_; }
+  [[nodiscard]] constexpr double degrees() const { return value_ * (180 / pi); }
+
+private:
+  constexpr explicit Angle(double value) : value_(value) {}
+  double value_ = 0;
+};
+
+/// Wavelength in vacuum, held in metres.
+class Wavelength {
+public:
+  constexpr Wavelength() = default;
+  static constexpr Wavelength nm(double value) { return Wavelength(value * 1e-9); }
+  [[nodiscard]] constexpr double nm() const { return value_ * 1e9; }
+  [[nodiscard]] constexpr double metres() const { return value_; }
+
+private:
+  constexpr explicit Wavelength(double value) : value_(value) {}
+  double value_ = 0;
+};
+
+} // namespace umov

@@ -1,0 +1,31 @@
+#pragma once
+// Small text tools that messages and parsers share.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace umov {
+
+/// Finite decimal number that fills the whole of `text` (no hex, no "nan", no "inf", no overflow,
+/// an optional sign); empty otherwise. Independent of the locale.
+std::optional<double> parse_number(std::string_view text);
+
+/// Edit distance with insertion, deletion, substitution and neighbour swap.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The name nearest to `given` if near enough to be a slip (distance at most 2, or a third of its
+/// length), else empty.
+std::optional<std::string> nearest_name(std::string_view given, std::span<const std::string> known);
+
+/// Shortest text that reads back to the same double ("nan" for NaN); independent of the locale.
+std::string shortest(double value);
+
+/// `text` without blanks and tabs at both ends.
+std::string_view trimmed(std::string_view text);
+
+/// SHA-256 of `bytes`, 64 lower-case hexadecimal digits.
+std::string sha256_hex(std::string_view bytes);
+
+} // namespace umov

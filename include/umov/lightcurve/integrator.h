@@ -1,0 +1,59 @@
+#pragma once
+// The reference path: the light of one pose, by ray-tested points, with its numerical error.
+
+#include <cstdint>
+#include <memory>
+#include <umov/optics/stokes.h>
+#include <umov/scene/scene.h>
+#include <vector>
+
+namespace umov {
+
+/// Directions from the object, unit vectors in the body frame.
+struct Pose {
+  Vec3<Body> sun, observer;
+};
+
+struct IntegrationOptions {
+  double accuracy = 0.005;   ///< wanted relative 95 % half-width of I
+  std::uint64_t seed = 0;    ///< of the point sets; the result depends on it within the error only
+  double density = 1;        ///< multiplies the number of points everywhere (64: a denser run)
+  std::size_t max_points = 1u << 22; ///< per pose; past that the error is reported as it is
+};
+
+/// Result in one band.
+struct BandResult {
+  Stokes<ScatteringPlane> stokes;      ///< [m2/sr] per unit solar irradiance
+  Stokes<ScatteringPlane> half_width;  ///< numerical 95 % half-widths of I, Q, U, V
+};
+
+struct PoseResult {
+  std::vector<BandResult> bands;
+  bool is_dark = true;                 ///< nothing is both lit and seen: I = 0, q and u undefined
+  std::vector<double> group_intensity; ///< [group * band_count + band], share of I by mesh group
+  std::uint64_t rays = 0;              ///< 0 for a convex mesh
+  double glint_share = 0;              ///< share of I in band 0 from flats within their lobe's half width
+};
+
+/// Compiled scene. `evaluate` is pure and thread safe: the same pose gives the same bits whatever
+/// the thread and whatever was computed before.
+class Integrator {
+public:
+  explicit Integrator(const Scene &scene);
+  ~Integrator();
+  Integrator(Integrator &&) noexcept;
+  Integrator &operator=(Integrator &&) noexcept;
+
+  [[nodiscard]] PoseResult evaluate(const Pose &pose, const IntegrationOptions &options) const;
+  /// All poses, on up to `threads` threads; the same bytes for any number of them.
+  [[nodiscard]] std::vector<PoseResult> evaluate(const std::vector<Pose> &poses,
+                                                 const IntegrationOptions &options,
+                                                 unsigned threads) const;
+  [[nodiscard]] bool is_convex() const;
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace umov

@@ -1,0 +1,48 @@
+#pragma once
+// A light curve as rows: one per epoch, object and band (product columns).
+
+#include <string>
+#include <umov/attitude/attitude.h>
+#include <umov/lightcurve/integrator.h>
+#include <umov/optics/stokes.h>
+#include <umov/orbit/ephemeris.h>
+#include <vector>
+
+namespace umov {
+
+/// What all bands of one epoch share.
+struct LightCurveEpoch {
+  ObservingGeometry geometry;
+  Quaternion body_from_gcrs;
+  Pose pose;                 ///< Sun and observer in the body frame
+  double airmass = 0;        ///< Kasten & Young 1989; NaN below the horizon
+  std::string pass_id;       ///< "" outside a pass
+  double elset_age_days = 0; ///< time minus element epoch
+  bool has_glint = false;
+  bool is_dark = true;       ///< nothing lit and seen
+};
+
+/// One band at one epoch.
+struct LightCurveSample {
+  double irradiance = 0;     ///< I [W m-2 nm-1] at the observer above the atmosphere
+  double intensity = 0;      ///< [m2/sr]
+  Stokes<SkyNorth> sky;      ///< q, u, v as fractions in the chosen sky frame, i = 1; NaN if dark
+  Stokes<ScatteringPlane> scattering; ///< q_scat, u_scat, v as fractions; NaN if dark
+  double p = 0, dop = 0;     ///< NaN if dark
+  double pa_deg = 0;         ///< [0, 180), NaN if p is 0 or dark
+  double magnitude = 0;      ///< AB; NaN if dark or in the umbra
+  Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths [m2/sr]
+};
+
+struct LightCurve {
+  std::string object;
+  int norad_cat_id = 0;
+  std::vector<Band> bands;
+  std::vector<std::string> groups;      ///< mesh groups, for the contribution per material
+  std::vector<std::string> materials;   ///< material of each group
+  std::vector<LightCurveEpoch> epochs;
+  std::vector<LightCurveSample> samples;   ///< [epoch * bands.size() + band]
+  std::vector<double> group_intensity;     ///< [(epoch * groups + group) * bands + band]
+};
+
+} // namespace umov

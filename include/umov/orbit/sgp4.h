@@ -1,0 +1,43 @@
+#pragma once
+#include <memory>
+#include <umov/core/result.h>
+#include <umov/core/vec3.h>
+#include <umov/orbit/elements.h>
+
+namespace umov {
+
+struct TemeState {
+  Vec3<Teme> position_km;
+  Vec3<Teme> velocity_km_s;
+};
+
+/// Codes of the reference implementation (Vallado et al. 2006); 0 = fine.
+enum class Sgp4Code : int {
+  Ok = 0,
+  Eccentricity = 1,
+  MeanMotion = 2,
+  PerturbedEccentricity = 3,
+  SemiLatusRectum = 4,
+  SubOrbital = 5,
+  Decayed = 6,
+};
+/// One plain sentence per code.
+const char *to_text(Sgp4Code code);
+
+/// SGP4/SDP4 in double precision, WGS 72, improved mode (Hoots & Roehrich 1980; Vallado, Crawford,
+/// Hujsak & Kelso 2006). Immutable and thread safe; evaluation order does not matter.
+class Sgp4 {
+public:
+  /// Initialises; the code tells whether the elements can be propagated at all.
+  explicit Sgp4(const ElementSet &elements);
+  [[nodiscard]] Sgp4Code init_code() const;
+  /// State `minutes` after the epoch (UTC clock). On failure the state is zero.
+  Sgp4Code propagate(double minutes, TemeState &state) const;
+  [[nodiscard]] bool is_deep_space() const;
+
+private:
+  struct Model;
+  std::shared_ptr<const Model> model_;
+};
+
+} // namespace umov

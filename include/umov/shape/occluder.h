@@ -1,0 +1,34 @@
+#pragma once
+#include <memory>
+#include <span>
+#include <umov/shape/mesh.h>
+
+namespace umov {
+
+/// Ray tests against a mesh (both sides of every face stop a ray). Thread safe after construction.
+class Occluder {
+public:
+  explicit Occluder(const Mesh &mesh);
+  ~Occluder();
+  Occluder(Occluder &&) noexcept;
+  Occluder &operator=(Occluder &&) noexcept;
+
+  /// For each origin [m]: 1 if nothing lies in `direction` (unit), else 0. Origins are lifted by
+  /// the caller; rays are robust (watertight) and start at distance 0.
+  void is_free(std::span<const Vec3<Body>> origins, Vec3<Body> direction,
+               std::span<unsigned char> free) const;
+
+  /// Nearest hit of a ray: triangle index and barycentric u, v, or no_index.
+  struct Hit {
+    std::uint32_t triangle = no_index;
+    float u = 0, v = 0;
+    double distance_m = 0;
+  };
+  [[nodiscard]] Hit nearest(Vec3<Body> origin, Vec3<Body> direction) const;
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace umov

@@ -1,0 +1,34 @@
+#pragma once
+// Shapes that `umov mesh make` makes: closed, outward wound, with honest group names.
+
+#include <umov/shape/mesh.h>
+
+namespace umov {
+
+/// Sphere about the origin as a geodesic grid; at least `facets` triangles, exact vertex normals.
+Mesh make_sphere(double radius_m, std::size_t facets);
+/// Square or rectangular sheet in the plane z = 0, normal +z, groups "front" and "back" if
+/// `two_sided`, else one group "plate".
+Mesh make_plate(double width_m, double height_m, bool two_sided);
+/// Closed cylinder along z centred at the origin; groups "side" and "caps"; side normals radial.
+Mesh make_cylinder(double radius_m, double length_m, std::size_t sides);
+/// Cube with edge and corner chamfers; group "cube".
+Mesh make_chamfered_cube(double edge_m, double chamfer_m);
+/// Ellipsoid with semi-axes a, b, c along x, y, z, exact vertex normals; group "cigar".
+Mesh make_ellipsoid(double a_m, double b_m, double c_m, std::size_t facets);
+/// Hubble Space Telescope from published dimensions (see data/mesh/hst.md for each source).
+/// +z along the boresight, origin at the middle of the tube; array_angle: turn of both wings about
+/// their boom axis (the y axis), 0 = cells face +x... as documented there.
+struct HstOptions {
+  double array_angle_rad = 0;
+  double door_angle_rad = 0; ///< set by the maker's default: open
+  std::size_t sides = 48;
+};
+Mesh make_hst(const HstOptions &options = {});
+/// Agena D upper stage from published overall dimensions; +z forward, z = 0 the nozzle exit.
+struct AgenaOptions {
+  std::size_t sides = 48;
+};
+Mesh make_agena(const AgenaOptions &options = {});
+
+} // namespace umov

@@ -1,0 +1,46 @@
+#pragma once
+// What a mesh is like and what is wrong with it; mending what has one clear meaning.
+
+#include <cstdint>
+#include <string>
+#include <umov/core/diagnostics.h>
+#include <umov/core/result.h>
+#include <umov/shape/mesh.h>
+#include <vector>
+
+namespace umov {
+
+struct MeshReport {
+  Vec3<Body> lower{}, upper{};         ///< bounding box [m]
+  std::vector<double> group_area_m2;   ///< one-sided area of each group
+  std::vector<std::size_t> group_triangles;
+  double area_m2 = 0;
+  double volume_m3 = 0;                ///< signed, meaningful if closed
+  std::size_t vertices = 0, triangles = 0, parts = 0;
+  std::size_t degenerate = 0, duplicate = 0, opposite_pairs = 0;
+  std::size_t open_edges = 0, non_manifold_edges = 0, inconsistent_edges = 0;
+  std::size_t inward_parts = 0;        ///< closed parts wound inside out
+  bool is_closed = false;              ///< no open or non-manifold edge after welding
+  bool is_convex = false;              ///< closed, one part, outward, no vertex above any face plane
+};
+
+/// Looks at a mesh, vertices welded at 1e-6 of its size. Never changes it.
+MeshReport inspect(const Mesh &mesh);
+
+/// Drops zero-area triangles and exact duplicates, merges coincident faces of opposite winding into
+/// one two-sided face (front and back groups from the two); each with a counted warning.
+/// BadInput if a coordinate is not finite, an index is out of range or nothing is left.
+Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics);
+
+/// Vertex normals for `normals = "smooth"` where the mesh has none: area-weighted over the faces
+/// that meet at a vertex within `crease` of each other and belong to one group.
+Mesh with_vertex_normals(const Mesh &mesh, double crease_rad);
+
+/// True only if no point of the surface can hide another: `is_convex`, or a single flat sheet.
+bool is_proven_convex(const Mesh &mesh);
+
+/// Area projected along the unit direction, hidden parts not counted twice only if convex: half the
+/// sum of |n.d| A over both sides of a closed mesh, the sum over an open sheet's faces otherwise.
+double silhouette_upper_bound(const Mesh &mesh, Vec3<Body> direction);
+
+} // namespace umov

@@ -1,0 +1,38 @@
+#include <gtest/gtest.h>
+#include <umov/core/text.h>
+#include <vector>
+
+namespace umov {
+namespace {
+
+TEST(ParseNumber, TakesDecimalNumbersAndNothingElse) {
+  EXPECT_EQ(parse_number("1.5"), 1.5);
+  EXPECT_EQ(parse_number("+.5e2"), 50);
+  EXPECT_EQ(parse_number("-3."), -3);
+  EXPECT_EQ(parse_number("1e-999"), 0);
+  for (const char *bad : {"", "+", "-", "nan", "inf", "-inf", "0x10", "1,5", "1e999", "1.5x", "+-1",
+                          " 1", "1 ", "e5"})
+    EXPECT_FALSE(parse_number(bad)) << bad;
+}
+
+TEST(NearestName, FindsASlipAndKeepsQuietOtherwise) {
+  const std::vector<std::string> known{"interreflection", "distribution", "body"};
+  EXPECT_EQ(nearest_name("interreflecton", known), "interreflection");
+  EXPECT_EQ(nearest_name("bdoy", known), "body");
+  EXPECT_FALSE(nearest_name("wavelength", known));
+}
+
+TEST(Sha256, MatchesThePublishedVector) {
+  // FIPS 180-2, appendix B.1.
+  EXPECT_EQ(sha256_hex("abc"),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Shortest, ReadsBackToTheSameDouble) {
+  for (const double v : {0.1, 1.0 / 3, -2.5e-300, 1e22})
+    EXPECT_EQ(parse_number(shortest(v)), v);
+  EXPECT_EQ(shortest(std::numeric_limits<double>::quiet_NaN()), "nan");
+}
+
+} // namespace
+} // namespace umov

@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <umov/core/text.h>
+#include <vector>
+
+#include <openssl/evp.h>
+
+namespace umov {
+
+std::optional<double> parse_number(std::string_view text) {
+  if (!text.empty() && text.front() == '+') {
+    text.remove_prefix(1);
+    if (!text.empty() && (text.front() == '-' || text.front() == '+'))
+      return std::nullopt;
+  }
+  // from_chars also takes "nan" and "inf": only digits and a point may start a number here.
+  const std::size_t first = !text.empty() && text.front() == '-' ? 1 : 0;
+  if (text.size() <= first ||
+      !((text[first] >= '0' && text[first] <= '9') || text[first] == '.'))
+    return std::nullopt;
+  double value = 0;
+  const char *end = text.data() + text.size();
+  const auto [stop, status] = std::from_chars(text.data(), end, value);
+  if (stop != end || !std::isfinite(value))
+    return std::nullopt;
+  if (status == std::errc::result_out_of_range) { // too small is zero, too large is refused
+    const std::size_t exponent = text.find_first_of("eE");
+    const bool tiny = exponent != std::string_view::npos && exponent + 1 < text.size() &&
+                      text[exponent + 1] == '-';
+    return tiny ? std::optional<double>(0.0) : std::nullopt;
+  }
+  return status == std::errc() ? std::optional<double>(value) : std::nullopt;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), now(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j)
+    last[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    now[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t change = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      now[j] = std::min({last[j] + 1, now[j - 1] + 1, change});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        now[j] = std::min(now[j], before[j - 2] + 1);
+    }
+    std::swap(before, last);
+    std::swap(last, now);
+  }
+  return last[b.size()];
+}
+
+std::optional<std::string> nearest_name(std::string_view given,
+                                        std::span<const std::string> known) {
+  const std::size_t reach = std::max<std::size_t>(2, given.size() / 3);
+  std::optional<std::string> best;
+  std::size_t best_distance = reach + 1;
+  for (const std::string &name : known)
+    if (const std::size_t d = edit_distance(given, name); d < best_distance) {
+      best_distance = d;
+      best = name;
+    }
+  return best;
+}
+
+std::string shortest(double value) {
+  if (std::isnan(value))
+    return "nan"; // one spelling, whatever the sign bit
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos)
+    return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string sha256_hex(std::string_view bytes) {
+  std::array<unsigned char, 32> digest{};
+  unsigned length = 0;
+  EVP_Digest(bytes.data(), bytes.size(), digest.data(), &length, EVP_sha256(), nullptr);
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  for (const unsigned char byte : digest) {
+    out += digits[byte >> 4];
+    out += digits[byte & 15];
+  }
+  return out;
+}
+
+} // namespace umov
