@@ -1,0 +1,283 @@
+#include <umov/lightcurve/compute.h>
+
+#include "lightcurve/passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <umov/core/parallel.h>
+#include <umov/photometry/radiometry.h>
+
+namespace umov {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t max_epochs = 10'000'000;
+
+/// Epochs per work unit: also the grain of progress, cancelling and stopping.
+constexpr std::size_t block = 256;
+
+Error propagation_error(const LightCurveRequest &request, Epoch<Utc> time, Sgp4Code code) {
+  const double age = clock_days_between(time, request.elements.epoch);
+  return {ErrorCode::Physics,
+          fmt::format("{}: SGP4 fails at {} (code {}, {}); the set is {:.1f} d old. Shorten [time] "
+                      "or give newer elements.",
+                      request.elements.norad_cat_id, to_iso(time), static_cast<int>(code),
+                      to_text(code), age),
+          {}};
+}
+
+/// Position angle in [0, 180) deg of linear polarization, NaN where there is none.
+double position_angle_deg(double q, double u) {
+  if (!(q * q + u * u > 0))
+    return nan;
+  const double angle = 0.5 * std::atan2(u, q) * (180 / pi);
+  return angle < 0 ? (angle + 180 < 180 ? angle + 180 : 0) : angle;
+}
+
+LightCurveSample sample_from(const BandResult &band, const Band &colour, double solar,
+                             const ObservingGeometry &geometry, PolarizationFrame frame,
+                             bool is_dark) {
+  LightCurveSample out;
+  out.intensity = band.stokes.i;
+  out.half_width = band.half_width;
+  out.irradiance = irradiance_at_observer(band.stokes.i, solar, geometry.sun_distance_km,
+                                          geometry.sunlit, geometry.range_km);
+  out.magnitude = ab_magnitude(out.irradiance, colour.wavelength);
+  if (is_dark || !(band.stokes.i > 0)) {
+    out.sky = {nan, nan, nan, nan};
+    out.scattering = {nan, nan, nan, nan};
+    out.p = out.dop = out.pa_deg = nan;
+    return out;
+  }
+  out.scattering = band.stokes * (1 / band.stokes.i);
+  const Angle axis = frame == PolarizationFrame::Equatorial ? geometry.pa_scat_equatorial
+                     : frame == PolarizationFrame::AltAz    ? geometry.pa_scat_altaz
+                                                            : Angle();
+  out.sky = rotate_to<SkyNorth>(out.scattering, Angle::radians(-axis.radians()));
+  const auto &s = out.scattering;
+  out.p = std::sqrt(s.q * s.q + s.u * s.u);
+  out.dop = std::sqrt(s.q * s.q + s.u * s.u + s.v * s.v);
+  out.pa_deg = position_angle_deg(out.sky.q, out.sky.u);
+  return out;
+}
+
+AttitudeContext context_of(const ObservingGeometry &g) {
+  return {g.time, g.gcrs_km, g.gcrs_velocity_km_s, g.to_sun, g.to_observer};
+}
+
+/// The epochs of the span that pass the filter, in order, with their passes.
+struct Selection {
+  std::vector<EpochGeometry> grid;
+  std::vector<std::size_t> kept;      ///< into grid
+  std::vector<std::size_t> kept_pass; ///< per kept epoch, into passes
+  std::vector<Pass> passes;
+  std::size_t passes_seen = 0;
+  std::optional<Error> stopped;
+};
+
+Result<Selection> select_epochs(const Sgp4 &model, const LightCurveRequest &request,
+                                const std::atomic<bool> &cancel) {
+  UMOV_ASSIGN(times, time_grid(request.start, request.stop, request.step_s));
+  Selection out;
+  out.grid.resize(times.size());
+  const std::size_t blocks = (times.size() + block - 1) / block;
+  parallel_for(blocks, request.threads, [&](std::size_t b) {
+    if (cancel)
+      return;
+    for (std::size_t i = b * block; i < std::min((b + 1) * block, times.size()); ++i)
+      out.grid[i] = geometry_at(model, request, times[i]);
+  });
+  if (cancel)
+    return fail(ErrorCode::Interrupted, "stopped before the first row");
+  for (std::size_t i = 0; i < out.grid.size() && !out.stopped; ++i)
+    if (out.grid[i].code != Sgp4Code::Ok) {
+      out.stopped = propagation_error(request, times[i], out.grid[i].code);
+      out.grid.resize(i);
+    }
+  for (const GridPass &span : group_passes(out.grid, request.only)) {
+    ++out.passes_seen;
+    const std::size_t before = out.kept.size();
+    for (std::size_t i = span.first; i <= span.last; ++i)
+      if (is_kept(out.grid[i], request.only)) {
+        out.kept.push_back(i);
+        out.kept_pass.push_back(out.passes.size());
+      }
+    if (out.kept.size() == before)
+      continue;
+    out.passes.push_back(describe_pass(span, out.grid, model, request));
+    out.passes.back().rows = out.kept.size() - before;
+  }
+  return out;
+}
+
+} // namespace
+
+Result<std::vector<Epoch<Utc>>> time_grid(Epoch<Utc> start, Epoch<Utc> stop, double step_s) {
+  if (!(step_s > 0) || !std::isfinite(step_s))
+    return fail(ErrorCode::BadInput,
+                fmt::format("the step is {} s; a positive number was expected", step_s));
+  const double span = seconds_between(stop, start);
+  if (span < 0)
+    return fail(ErrorCode::BadInput, "stop " + to_iso(stop) + " is before start " + to_iso(start) +
+                                         "; exchange them");
+  // A microsecond of slack keeps `stop` in when the step divides the span.
+  const double steps = std::floor((span + 1e-6) / step_s);
+  if (steps >= static_cast<double>(max_epochs))
+    return fail(ErrorCode::BadInput,
+                fmt::format("{:.0f} epochs asked for; the limit is {}. Take a longer step or a "
+                            "shorter span.",
+                            steps + 1, max_epochs));
+  std::vector<Epoch<Utc>> out(static_cast<std::size_t>(steps) + 1);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] = plus_seconds(start, static_cast<double>(i) * step_s);
+  return out;
+}
+
+namespace {
+
+/// What the rows of all epochs share.
+struct RowMaker {
+  const LightCurveRequest &request;
+  const Scene &scene;
+  const Integrator &integrator;
+  const std::vector<double> &solar; ///< per band
+  AttitudeContext spin_start;
+
+  Result<void> make(const ObservingGeometry &geometry, const std::string &pass_id, std::size_t row,
+                    LightCurve &curve) const;
+};
+
+Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string &pass_id,
+                            std::size_t row, LightCurve &curve) const {
+  UMOV_ASSIGN(body_from_gcrs, attitude_at(request.attitude, context_of(geometry), spin_start));
+  LightCurveEpoch &epoch = curve.epochs[row];
+  epoch.geometry = geometry;
+  epoch.body_from_gcrs = quaternion_from(body_from_gcrs);
+  epoch.pose = {normalized(body_from_gcrs * geometry.to_sun),
+                normalized(body_from_gcrs * geometry.to_observer)};
+  epoch.airmass = airmass(geometry.altitude);
+  epoch.pass_id = pass_id;
+  epoch.elset_age_days = clock_days_between(geometry.time, request.elements.epoch);
+  const PoseResult light = integrator.evaluate(epoch.pose, request.integration);
+  epoch.is_dark = light.is_dark;
+  epoch.has_glint = light.glint_share > 0.5;
+  const std::size_t bands = scene.bands.size();
+  for (std::size_t b = 0; b < bands; ++b)
+    curve.samples[row * bands + b] = sample_from(light.bands[b], scene.bands[b], solar[b],
+                                                 geometry, request.frame, light.is_dark);
+  std::copy(light.group_intensity.begin(), light.group_intensity.end(),
+            curve.group_intensity.begin() +
+                static_cast<std::ptrdiff_t>(row * light.group_intensity.size()));
+  return {};
+}
+
+LightCurve empty_curve(const LightCurveRequest &request, const Scene &scene, std::size_t rows) {
+  LightCurve curve;
+  curve.object = request.object;
+  curve.norad_cat_id = request.elements.norad_cat_id;
+  curve.bands = scene.bands;
+  curve.groups = scene.mesh.groups;
+  for (const Surface &surface : scene.front)
+    curve.materials.push_back(surface.material().name);
+  curve.epochs.resize(rows);
+  curve.samples.resize(rows * scene.bands.size());
+  curve.group_intensity.resize(rows * scene.mesh.groups.size() * scene.bands.size());
+  return curve;
+}
+
+void truncate(LightCurve &curve, std::size_t rows) {
+  const std::size_t before = std::max<std::size_t>(1, curve.epochs.size());
+  curve.samples.resize(curve.samples.size() / before * rows);
+  curve.group_intensity.resize(curve.group_intensity.size() / before * rows);
+  curve.epochs.resize(rows);
+}
+
+/// Fills the rows in blocks so that a stop keeps every finished block; returns the rows kept.
+std::size_t fill_rows(const RowMaker &maker, const Selection &selection, LightCurve &curve,
+                      const Progress &progress, const std::atomic<bool> &cancel,
+                      std::optional<Error> &stopped) {
+  const std::size_t rows = selection.kept.size();
+  constexpr std::size_t grain = 32;
+  for (std::size_t begin = 0; begin < rows; begin += grain) {
+    const std::size_t count = std::min(grain, rows - begin);
+    std::vector<std::optional<Error>> failures(count);
+    parallel_for(count, maker.request.threads, [&](std::size_t k) {
+      const std::size_t row = begin + k;
+      const auto made = maker.make(selection.grid[selection.kept[row]].geometry,
+                                   selection.passes[selection.kept_pass[row]].id, row, curve);
+      if (!made)
+        failures[k] = made.error();
+    });
+    for (std::size_t k = 0; k < count; ++k)
+      if (failures[k]) {
+        stopped = failures[k];
+        return begin + k;
+      }
+    if (progress)
+      progress(begin + count, rows);
+    if (cancel) {
+      stopped = Error{ErrorCode::Interrupted,
+                      fmt::format("stopped after {} of {} epochs; they are saved", begin + count,
+                                  rows),
+                      {}};
+      return begin + count;
+    }
+  }
+  return rows;
+}
+
+} // namespace
+
+Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, const Scene &scene,
+                                              const Integrator &integrator,
+                                              const Progress &progress,
+                                              const std::atomic<bool> &cancel) {
+  const Sgp4 model(request.elements);
+  if (model.init_code() != Sgp4Code::Ok)
+    return tl::unexpected(propagation_error(request, request.elements.epoch, model.init_code()));
+  UMOV_ASSIGN(selection, select_epochs(model, request, cancel));
+  std::vector<double> solar;
+  for (const Band &band : scene.bands) {
+    UMOV_ASSIGN(value, solar_irradiance(band.wavelength));
+    solar.push_back(value);
+  }
+  AttitudeContext spin_start{};
+  if (const auto *spin = std::get_if<SpinLaw>(&request.attitude)) {
+    const EpochGeometry at = geometry_at(model, request, spin->epoch);
+    if (at.code != Sgp4Code::Ok)
+      return tl::unexpected(propagation_error(request, spin->epoch, at.code));
+    spin_start = context_of(at.geometry);
+  }
+  LightCurveOutcome out;
+  out.curve = empty_curve(request, scene, selection.kept.size());
+  out.passes = selection.passes;
+  out.passes_seen = selection.passes_seen;
+  out.stopped = selection.stopped;
+  const RowMaker maker{request, scene, integrator, solar, spin_start};
+  truncate(out.curve, fill_rows(maker, selection, out.curve, progress, cancel, out.stopped));
+  return out;
+}
+
+std::optional<NextPass> find_next_pass(const LightCurveRequest &request, double days) {
+  const Sgp4 model(request.elements);
+  if (model.init_code() != Sgp4Code::Ok)
+    return std::nullopt;
+  constexpr double step_s = 20; // shorter than any useful pass; the time is told to the minute
+  std::optional<NextPass> found;
+  for (double s = 0; s <= days * 86400; s += step_s) {
+    const EpochGeometry at = geometry_at(model, request, plus_seconds(request.stop, s));
+    if (at.code != Sgp4Code::Ok)
+      return found;
+    if (!found && is_kept(at, request.only))
+      found = NextPass{at.geometry.time, at.geometry.altitude};
+    else if (found && !is_above(at, request.only))
+      return found;
+    if (found && at.geometry.altitude.radians() > found->altitude_max.radians())
+      found->altitude_max = at.geometry.altitude;
+  }
+  return found;
+}
+
+} // namespace umov

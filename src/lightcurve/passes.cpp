@@ -1,0 +1,91 @@
+#include "lightcurve/passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace umov {
+namespace {
+
+/// "20180121T051155Z" of "2018-01-21T05:11:55.123Z".
+std::string compact(Epoch<Utc> time) {
+  std::string out;
+  for (const char c : to_iso(time).substr(0, 19))
+    if (c != '-' && c != ':')
+      out += c;
+  return out + "Z";
+}
+
+} // namespace
+
+EpochGeometry geometry_at(const Sgp4 &model, const LightCurveRequest &request, Epoch<Utc> time) {
+  TemeState state;
+  const double minutes = clock_days_between(time, request.elements.epoch) * 1440;
+  const Sgp4Code code = model.propagate(minutes, state);
+  if (code != Sgp4Code::Ok)
+    return {code, {}};
+  return {code, observe(state, time, request.site, request.shadow)};
+}
+
+bool is_above(const EpochGeometry &epoch, const EpochFilter &only) {
+  return epoch.code == Sgp4Code::Ok &&
+         epoch.geometry.altitude.radians() >= only.altitude_min.radians();
+}
+
+bool is_kept(const EpochGeometry &epoch, const EpochFilter &only) {
+  if (!is_above(epoch, only))
+    return false;
+  if (only.sun_altitude_max &&
+      epoch.geometry.sun_altitude.radians() > only.sun_altitude_max->radians())
+    return false;
+  return !only.sunlit || epoch.geometry.sunlit > 0;
+}
+
+std::vector<GridPass> group_passes(const std::vector<EpochGeometry> &grid,
+                                   const EpochFilter &only) {
+  std::vector<GridPass> passes;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (!is_above(grid[i], only))
+      continue;
+    if (i > 0 && is_above(grid[i - 1], only))
+      passes.back().last = i;
+    else
+      passes.push_back({i, i});
+  }
+  return passes;
+}
+
+Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
+                   const Sgp4 &model, const LightCurveRequest &request) {
+  std::size_t top = pass.first;
+  for (std::size_t i = pass.first; i <= pass.last; ++i)
+    if (grid[i].geometry.altitude.radians() > grid[top].geometry.altitude.radians())
+      top = i;
+  Pass out;
+  out.rise = grid[pass.first].geometry.time;
+  out.set = grid[pass.last].geometry.time;
+  out.is_open_at_start = pass.first == 0;
+  out.is_open_at_end = pass.last + 1 == grid.size();
+  // Golden section between the neighbours, so that the name of a pass does not depend on the step.
+  const Epoch<Utc> origin = grid[top > pass.first ? top - 1 : top].geometry.time;
+  double low = 0;
+  double high = seconds_between(grid[top < pass.last ? top + 1 : top].geometry.time, origin);
+  const auto altitude = [&](double seconds) {
+    const EpochGeometry at = geometry_at(model, request, plus_seconds(origin, seconds));
+    return at.code == Sgp4Code::Ok ? at.geometry.altitude.radians() : -pi;
+  };
+  const double golden = (std::sqrt(5.0) - 1) / 2;
+  while (high - low > 1e-3) {
+    const double a = high - golden * (high - low), b = low + golden * (high - low);
+    if (altitude(a) < altitude(b))
+      low = a;
+    else
+      high = b;
+  }
+  out.culmination = plus_seconds(origin, (low + high) / 2);
+  out.culmination_altitude = Angle::radians(altitude((low + high) / 2));
+  out.id = std::to_string(request.elements.norad_cat_id) + "-" + compact(out.culmination);
+  return out;
+}
+
+} // namespace umov

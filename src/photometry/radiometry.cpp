@@ -1,0 +1,32 @@
+#include <cmath>
+#include <limits>
+#include <umov/core/constants.h>
+#include <umov/photometry/radiometry.h>
+
+namespace umov {
+
+double irradiance_at_observer(double intensity, double solar_irradiance, double sun_distance_km,
+                              double sunlit, double range_km) {
+  const double au = constants::au_km / sun_distance_km;
+  const double range_m = range_km * 1000;
+  return solar_irradiance * au * au * sunlit * intensity / (range_m * range_m);
+}
+
+double ab_magnitude(double irradiance, Wavelength wavelength) {
+  if (!(irradiance > 0))
+    return std::numeric_limits<double>::quiet_NaN();
+  constexpr double zero_point = 3631e-26; // W m-2 Hz-1, Oke & Gunn 1983
+  const double lambda = wavelength.metres();
+  const double per_metre = irradiance * 1e9;
+  const double f_nu = per_metre * lambda * lambda / (constants::speed_of_light_km_s * 1000);
+  return -2.5 * std::log10(f_nu / zero_point);
+}
+
+double airmass(Angle altitude) {
+  const double h = altitude.degrees();
+  if (h < 0)
+    return std::numeric_limits<double>::quiet_NaN();
+  return 1 / (std::sin(altitude.radians()) + 0.50572 * std::pow(h + 6.07995, -1.6364));
+}
+
+} // namespace umov
