@@ -1,0 +1,110 @@
+#include "console.h"
+
+#include <csignal>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <iostream>
+#include <umov/core/files.h>
+#include <unistd.h>
+
+namespace umov::cli {
+namespace {
+
+std::atomic<bool> interrupt_flag{false};
+
+extern "C" void on_interrupt(int) {
+  if (interrupt_flag.exchange(true))
+    _exit(static_cast<int>(ErrorCode::Interrupted));
+}
+
+} // namespace
+
+void add_common(CLI::App &verb, Common &common, bool prints_table) {
+  verb.add_flag("-q,--quiet", common.quiet, "No log and no progress, only errors");
+  verb.add_flag("-v,--verbose", common.verbose, "Say more");
+  if (prints_table)
+    verb.add_flag("--json", common.json, "Print the table as JSON");
+}
+
+void add_threads(CLI::App &verb, Common &common) {
+  verb.add_option("--threads", common.threads, "Threads to use; 0 = all cores")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+}
+
+int report(const Error &error) {
+  const bool nothing = error.code == ErrorCode::Nothing;
+  const bool colour = may_colour(stderr);
+  const std::string word = nothing ? "no result" : "error";
+  fmt::print(stderr, "{}{}:{} {}\n", colour ? (nothing ? "\033[33m" : "\033[31m") : "", word,
+             colour ? "\033[0m" : "", error.text());
+  return static_cast<int>(error.code);
+}
+
+void report(const Diagnostics &diagnostics, const Common &common) {
+  if (common.quiet)
+    return;
+  const bool colour = may_colour(stderr);
+  for (const Warning &warning : diagnostics.warnings())
+    fmt::print(stderr, "{}warning:{} {}\n", colour ? "\033[33m" : "", colour ? "\033[0m" : "",
+               warning.text());
+}
+
+void note(const Common &common, const std::string &text) {
+  if (!common.quiet)
+    fmt::print(stderr, "{}\n", text);
+}
+
+Result<void> put(const std::string &path, const std::string &bytes) {
+  if (!path.empty() && path != "-")
+    return write_file_atomically(path, bytes);
+  std::cout.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
+  if (!std::cout)
+    return fail(ErrorCode::Device, "standard output cannot be written");
+  return {};
+}
+
+ProgressBar::ProgressBar(std::string what, const Common &common)
+    : what_(std::move(what)), is_terminal_(::isatty(STDERR_FILENO) != 0), is_on_(!common.quiet),
+      begin_(std::chrono::steady_clock::now()), last_(begin_) {}
+
+ProgressBar::~ProgressBar() {
+  if (is_terminal_ && has_drawn_)
+    fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::update(std::size_t done, std::size_t total) {
+  using namespace std::chrono;
+  const auto now = steady_clock::now();
+  const auto pause = is_terminal_ ? milliseconds(100) : milliseconds(5000);
+  if (!is_on_ || total == 0 || now - last_ < pause)
+    return;
+  last_ = now;
+  has_drawn_ = true;
+  const double share = static_cast<double>(done) / static_cast<double>(total);
+  const double spent = duration<double>(now - begin_).count();
+  const double left = share > 0 ? spent / share - spent : 0;
+  if (!is_terminal_) {
+    fmt::print(stderr, "{}: {} of {}, {:.0f} s left\n", what_, done, total, left);
+    return;
+  }
+  constexpr int width = 30;
+  const int full = static_cast<int>(share * width);
+  fmt::print(stderr, "\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} %  {:.0f} s left", what_, "", full, "",
+             width - full, 100 * share, left);
+  std::fflush(stderr);
+}
+
+const std::atomic<bool> &interrupted() { return interrupt_flag; }
+
+void watch_interrupts() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+bool may_colour(std::FILE *stream) {
+  const char *no_colour = std::getenv("NO_COLOR");
+  return (no_colour == nullptr || *no_colour == '\0') && ::isatty(fileno(stream)) != 0;
+}
+
+} // namespace umov::cli

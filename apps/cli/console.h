@@ -1,0 +1,58 @@
+#pragma once
+// What every verb shares: messages on stderr, data on stdout or in a file, progress, Ctrl-C.
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <umov/core/diagnostics.h>
+#include <umov/core/result.h>
+
+namespace umov::cli {
+
+/// Options that all verbs take.
+struct Common {
+  bool quiet = false;
+  bool verbose = false;
+  bool json = false;
+  int threads = 0; ///< 0: all cores
+  bool force = false;
+};
+
+/// Adds -q, -v and, where the verb prints a table, --json.
+void add_common(CLI::App &verb, Common &common, bool prints_table);
+void add_threads(CLI::App &verb, Common &common);
+
+/// "error: ..." on stderr; returns the exit code.
+int report(const Error &error);
+void report(const Diagnostics &diagnostics, const Common &common);
+/// A line of the log, unless -q.
+void note(const Common &common, const std::string &text);
+
+/// Writes to `path` atomically, or to stdout if it is empty or "-". An existing file is replaced
+/// only if `may_replace`.
+Result<void> put(const std::string &path, const std::string &bytes);
+
+/// Progress on stderr: a bar that redraws on a terminal, else one line every five seconds.
+class ProgressBar {
+public:
+  ProgressBar(std::string what, const Common &common);
+  ~ProgressBar();
+  void update(std::size_t done, std::size_t total);
+
+private:
+  std::string what_;
+  bool is_terminal_, is_on_, has_drawn_ = false;
+  std::chrono::steady_clock::time_point begin_, last_;
+};
+
+/// Set by the first Ctrl-C or termination signal; a second one ends the program at once.
+const std::atomic<bool> &interrupted();
+void watch_interrupts();
+
+/// True if stdout or stderr may be coloured (a terminal, NO_COLOR unset).
+bool may_colour(std::FILE *stream);
+
+} // namespace umov::cli

@@ -1,0 +1,85 @@
+#include "console.h"
+#include "verbs.h"
+
+#include <csignal>
+#include <exception>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+#include <umov/core/version.h>
+
+namespace {
+
+using namespace umov;
+
+/// Names of all options of a verb and the verbs below it, for "did you mean".
+void collect_names(const CLI::App &app, std::vector<std::string> &names) {
+  for (const CLI::Option *option : app.get_options())
+    for (const std::string &name : option->get_lnames())
+      names.push_back("--" + name);
+  for (const CLI::App *verb : app.get_subcommands([](const CLI::App *) { return true; }))
+    names.push_back(verb->get_name());
+}
+
+const CLI::App &deepest(const CLI::App &app) {
+  const auto used = app.get_subcommands();
+  return used.empty() ? app : deepest(*used.front());
+}
+
+int usage_error(const CLI::App &app, const CLI::ParseError &problem) {
+  const CLI::App &verb = deepest(app);
+  std::string text = problem.what();
+  if (const auto left = verb.remaining(); !left.empty()) {
+    std::vector<std::string> names;
+    collect_names(verb, names);
+    const std::string given = left.front().substr(0, left.front().find('='));
+    text = fmt::format("unknown {} {}", given.starts_with('-') ? "option" : "argument", given);
+    if (const auto near = nearest_name(given, names))
+      text += fmt::format(". Did you mean {}?", *near);
+  } else if (const std::size_t end = text.find('\n'); end != std::string::npos) {
+    text.resize(end);
+  }
+  std::string name = verb.get_name();
+  for (const CLI::App *up = verb.get_parent(); up != nullptr; up = up->get_parent())
+    name = up->get_name() + " " + name;
+  return cli::report(Error{ErrorCode::Usage, text + ". See " + name + " --help.", {}});
+}
+
+int run(int argc, char **argv) {
+  CLI::App app{"Polarized light curves of satellites and space debris", "umov"};
+  app.set_version_flag("--version", std::string("umov ") + version);
+  app.require_subcommand(1);
+  int code = 0;
+  const cli::Exit exit_with = [&code](int value) { code = value; };
+  cli::add_run(app, exit_with);
+  cli::add_signature(app, exit_with);
+  cli::add_brdf(app, exit_with);
+  cli::add_material(app, exit_with);
+  cli::add_mesh(app, exit_with);
+  cli::add_orbit(app, exit_with);
+  cli::add_schema(app, exit_with);
+  cli::add_doctor(app, exit_with);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success &done) { // --help, --version
+    return app.exit(done);
+  } catch (const CLI::ParseError &problem) {
+    return usage_error(app, problem);
+  }
+  return code;
+}
+
+} // namespace
+
+int main(int argc, char **argv) {
+  std::signal(SIGPIPE, SIG_DFL); // `umov ... | head` ends quietly
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc &) {
+    return cli::report(Error{ErrorCode::Device, "out of memory; ask for less at once", {}});
+  } catch (const std::exception &bug) {
+    return cli::report(Error{ErrorCode::Internal,
+                             std::string("this is a bug of umov: ") + bug.what() +
+                                 ". Please report it with the command line.",
+                             {}});
+  }
+}

@@ -1,0 +1,21 @@
+#pragma once
+// One function per verb: adds its options to the command line and, when called, does the job.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace umov::cli {
+
+/// Receives the exit code of the verb that ran.
+using Exit = std::function<void(int)>;
+
+void add_run(CLI::App &app, const Exit &exit_with);
+void add_signature(CLI::App &app, const Exit &exit_with);
+void add_brdf(CLI::App &app, const Exit &exit_with);
+void add_material(CLI::App &app, const Exit &exit_with);
+void add_mesh(CLI::App &app, const Exit &exit_with);
+void add_orbit(CLI::App &app, const Exit &exit_with);
+void add_schema(CLI::App &app, const Exit &exit_with);
+void add_doctor(CLI::App &app, const Exit &exit_with);
+
+} // namespace umov::cli
