@@ -1,0 +1,122 @@
+"""umov run: what it writes, and that the numbers hang together."""
+import filecmp
+import json
+import math
+
+import pytest
+from astropy.table import Table
+from astropy.time import Time
+
+from conftest import ROOT
+
+
+def files_of(folder, names):
+    return [(folder / name).read_bytes() for name in names]
+
+
+def test_the_folder_holds_what_the_guide_promises(umov, scenario, tmp_path):
+    done = umov("run", scenario())
+    assert done.code == 0, done.err
+    out = tmp_path / "out"
+    for name in ("lightcurve.ecsv", "lightcurve.csv", "passes.ecsv", "report.html",
+                 "manifest.json", "scenario.lock.toml", "log.txt"):
+        assert (out / name).stat().st_size > 0, name
+    manifest = json.loads((out / "manifest.json").read_text())
+    text = json.dumps(manifest)
+    for word in ("seed", "threads", "sha256", "cube.obj", "hst.tle"):
+        assert word in text, word
+
+
+def test_ecsv_opens_with_astropy_and_has_units_everywhere(umov, scenario, tmp_path):
+    assert umov("run", scenario()).code == 0
+    table = Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv")
+    assert len(table) == 3 * 13
+    for name in table.colnames:
+        assert table[name].unit is not None or table[name].dtype.kind in "USOb", name
+    assert str(table["intensity"].unit) == "m2 / sr"
+    assert table["I"].unit.is_equivalent("W / (m2 nm)")
+    for name in ("time_utc mjd_utc name norad_cat_id band lambda_eff pass_id sunlit az alt ra dec "
+                 "range range_rate phase_angle sun_alt airmass I intensity q u v p dop pa q_scat "
+                 "u_scat pa_scat mag mag_system glint qw qx qy qz elset_age intensity_err "
+                 "stokes_q_err stokes_u_err stokes_v_err").split():
+        assert name in table.colnames, name
+    # The two clocks of a row say the same (mjd has about 1e-11 d of rounding).
+    clock = Time([t.rstrip("Z") for t in table["time_utc"]], scale="utc")
+    assert max(abs(clock.mjd - table["mjd_utc"])) < 1e-8
+
+
+def test_polarization_columns_agree_with_each_other(umov, scenario, tmp_path):
+    assert umov("run", scenario()).code == 0
+    for row in Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv"):
+        if row["intensity"] == 0:
+            assert math.isnan(row["q"])
+            continue
+        # (q, u) in the sky is (q_scat, 0) turned by pa_scat: docs/conventions.md, 1e-12 rounding.
+        turn = math.radians(2 * row["pa_scat"])
+        assert row["q"] == pytest.approx(row["q_scat"] * math.cos(turn), abs=1e-12)
+        assert row["u"] == pytest.approx(row["q_scat"] * math.sin(turn), abs=1e-12)
+        assert row["p"] == pytest.approx(abs(row["q_scat"]), abs=1e-12)
+        # Q > 0 for one reflection: the electric vector stands along the normal of the plane.
+        assert abs((row["pa"] - row["pa_scat"] + 90) % 180 - 90) < 1e-6
+
+
+def test_same_bytes_for_any_number_of_threads(umov, scenario, tmp_path):
+    name = scenario()
+    results = []
+    for threads in (1, 2, 8):
+        assert umov("run", name, "--threads", threads, "--force").code == 0
+        results.append(files_of(tmp_path / "out", ("lightcurve.ecsv", "lightcurve.csv",
+                                                   "passes.ecsv", "report.html",
+                                                   "scenario.lock.toml")))
+    assert results[0] == results[1] == results[2]
+
+
+def test_the_locked_scenario_repeats_the_run(umov, scenario, tmp_path):
+    assert umov("run", scenario()).code == 0
+    lock = tmp_path / "again.toml"
+    lock.write_bytes((tmp_path / "out/scenario.lock.toml").read_bytes())
+    done = umov("run", lock.name, "--set", 'output.dir="second"')
+    assert done.code == 0, done.err
+    assert filecmp.cmp(tmp_path / "out/lightcurve.csv", tmp_path / "second/lightcurve.csv",
+                       shallow=False)
+
+
+def test_a_foreign_folder_is_not_touched(umov, scenario, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/thesis.tex").write_text("mine")
+    done = umov("run", scenario())
+    assert done.code in (3, 6)
+    assert "--force" in done.err
+    assert [p.name for p in (tmp_path / "out").iterdir()] == ["thesis.tex"]
+
+
+def test_no_pass_says_when_the_next_one_is(umov, scenario, tmp_path):
+    name = scenario(("2018-01-21T05:08:00Z", "2018-01-21T06:00:00Z"),
+                    ("2018-01-21T05:12:00Z", "2018-01-21T06:10:00Z"))
+    done = umov("run", name)
+    assert done.code == 5
+    assert "20580" in done.err and "The next one: 2018-01-2" in done.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_decayed_orbit_keeps_the_finished_rows(umov, scenario, tmp_path):
+    # An orbit low enough to decay soon after its epoch: HST's set with a huge drag term.
+    first, second = (ROOT / "data/tle/hst.tle").read_text().splitlines()[-2:]
+    first = first[:53] + " 99999+0" + first[61:]
+    digits = sum(int(c) if c.isdigit() else c == "-" for c in first[:68])
+    (tmp_path / "low.tle").write_text(first[:68] + str(digits % 10) + "\n" + second + "\n")
+    name = scenario((f"{ROOT}/data/tle/hst.tle", "low.tle"),
+                    ("2018-01-21T05:08:00Z", "2018-01-20T12:00:00Z"),
+                    ("2018-01-21T05:12:00Z", "2018-02-10T12:00:00Z"), ("step_s = 20", "step_s = 300"),
+                    ("alt_min_deg = 10, sun_alt_max_deg = -6, sunlit = true",
+                     "alt_min_deg = 0, sunlit = false"))
+    done = umov("run", name)
+    assert done.code == 4, done.err
+    assert "SGP4 fails at" in done.err and "Shorten [time] or give newer elements." in done.err
+    assert len(Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv")) > 0
+
+
+@pytest.mark.parametrize("example", ["hst_maui", "agena_maui"])
+def test_examples_are_well_formed(umov, example):
+    done = umov("run", ROOT / f"examples/{example}.toml", "--dry-run")
+    assert done.code == 0, done.err
