@@ -11,7 +11,8 @@ struct TemeState {
   Vec3<Teme> velocity_km_s;
 };
 
-/// Codes of the reference implementation (Vallado et al. 2006); 0 = fine.
+/// Codes of the reference implementation (Vallado et al. 2006); 0 = fine. SubOrbital is kept for
+/// its number alone: the reference retired it and it is never returned (Decayed covers the case).
 enum class Sgp4Code : int {
   Ok = 0,
   Eccentricity = 1,
@@ -20,6 +21,7 @@ enum class Sgp4Code : int {
   SemiLatusRectum = 4,
   SubOrbital = 5,
   Decayed = 6,
+  OutOfRange = 7, ///< not in the reference: time not finite or beyond 1e8 min from the epoch
 };
 /// One plain sentence per code.
 const char *to_text(Sgp4Code code);
