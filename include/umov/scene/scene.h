@@ -1,4 +1,6 @@
 #pragma once
+#include <cstdint>
+#include <umov/core/diagnostics.h>
 #include <umov/core/result.h>
 #include <umov/optics/band.h>
 #include <umov/shape/mesh.h>
@@ -17,5 +19,26 @@ struct Scene {
   std::vector<Surface> front; ///< per mesh group: seen when the group is the side faced
   std::vector<Surface> back;  ///< per mesh group: where the back of that group's faces is seen
 };
+
+/// Crease angle [rad] of the vertex normals that `make_scene` makes for a mesh without any: faces
+/// that meet at a larger angle keep their edge (a tube of 12 sides is still round).
+inline constexpr double default_crease_rad = 0.6;
+
+/// Cleans the mesh, makes vertex normals for `Smooth` where it has none and compiles each distinct
+/// material once. `front` and `back` name the material of each group of `mesh.groups`.
+/// BadInput if their number differs from that of the groups, or from the mesh or a material.
+Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector<Band> &bands,
+                         const std::vector<Material> &front, const std::vector<Material> &back,
+                         Diagnostics &diagnostics);
+
+/// Sides of a triangle that anything outside can see.
+struct VisibleSides {
+  bool front = true, back = true;
+};
+
+/// Per triangle: the inner side of a closed, consistently wound part (triangles joined by edges
+/// that exactly two of them share, in opposite directions) is hidden by the part itself. Vertices
+/// are joined if their coordinates agree within 1e-6 of the size. A part must not cut itself.
+std::vector<VisibleSides> visible_sides(const Mesh &mesh);
 
 } // namespace umov

@@ -1,0 +1,79 @@
+#include <umov/lightcurve/integrator.h>
+
+#include "lightcurve/visibility.h"
+
+#include <limits>
+#include <optional>
+#include <umov/core/parallel.h>
+#include <umov/shape/topology.h>
+
+namespace umov {
+namespace {
+
+/// Rounding of a sum of positive terms, in parts of the sum: some units in the last place.
+constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+
+} // namespace
+
+struct Integrator::State {
+  Scene scene;
+  bool is_convex = false;
+  Elements elements;
+  std::optional<Occluder> occluder; ///< none for a convex mesh
+};
+
+Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>()) {
+  state_->scene = scene;
+  state_->is_convex = is_proven_convex(scene.mesh);
+  state_->elements = make_elements(scene, visible_sides(scene.mesh));
+  if (!state_->is_convex)
+    state_->occluder.emplace(scene.mesh);
+}
+Integrator::~Integrator() = default;
+Integrator::Integrator(Integrator &&) noexcept = default;
+Integrator &Integrator::operator=(Integrator &&) noexcept = default;
+
+bool Integrator::is_convex() const { return state_->is_convex; }
+
+PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &options) const {
+  const Scene &scene = state_->scene;
+  const std::size_t bands = scene.bands.size(), groups = scene.mesh.groups.size();
+  const PoseGeometry geometry = geometry_of(pose);
+  const LitElements lit = light_elements(scene, state_->elements, geometry);
+  const VisibleSums sums = state_->is_convex
+                               ? sum_unhidden(scene, lit)
+                               : sum_visible(scene, state_->elements, *state_->occluder, geometry,
+                                             lit, options);
+  PoseResult out;
+  out.rays = sums.rays;
+  out.is_dark = !sums.is_any_seen;
+  out.bands.resize(bands);
+  out.group_intensity.assign(groups * bands, 0);
+  for (std::size_t b = 0; b < bands; ++b) {
+    BandResult &band = out.bands[b];
+    for (std::size_t slot = 0; slot < 2 * groups; ++slot) {
+      const FresnelFactors f = lit.fresnel[slot * bands + b];
+      const double i = f.a * sums.specular[slot] + sums.body[slot * bands + b];
+      band.stokes.i += i;
+      band.stokes.q += f.b * sums.specular[slot];
+      out.group_intensity[group_of_slot(static_cast<std::uint32_t>(slot)) * bands + b] += i;
+    }
+    const double floor = rounding * band.stokes.i;
+    band.half_width.i = sums.half_width_i[b] + lit.rule_error_i[b] + floor;
+    band.half_width.q = sums.half_width_q[b] + lit.rule_error_q[b] + floor;
+  }
+  if (bands > 0 && out.bands[0].stokes.i > 0)
+    out.glint_share = sums.glint / out.bands[0].stokes.i;
+  return out;
+}
+
+std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
+                                             const IntegrationOptions &options,
+                                             unsigned threads) const {
+  std::vector<PoseResult> out(poses.size());
+  parallel_for(poses.size(), threads,
+               [&](std::size_t i) { out[i] = evaluate(poses[i], options); });
+  return out;
+}
+
+} // namespace umov

@@ -1,0 +1,287 @@
+#include "lightcurve/visibility_sampler.h"
+
+#include "lightcurve/visibility_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <umov/core/random.h>
+
+namespace umov {
+namespace {
+
+/// Points traced together: enough for packets, little memory.
+constexpr std::size_t batch_points = 8192;
+
+/// A point's weight in the specular and in the body integral of its block.
+struct PointWeight {
+  double specular = 0, body = 0;
+};
+
+/// Two-sided variance bookkeeping of one kind of result in one band.
+struct Variance {
+  double sum = 0, squares = 0; ///< of the variances of the cells
+  double weight2 = 0;          ///< sum of the squared unhidden parts of the cells
+  void add(double v) {
+    sum += v;
+    squares += v * v;
+  }
+  /// One more cell than was found is taken to disagree: slivers that no point met leave a
+  /// half-width, and few disagreeing cells are not taken at their word (rule of succession).
+  [[nodiscard]] double half_width(double cells) const {
+    if (!(cells > 0))
+      return 0;
+    const double unseen = 0.25 * weight2 / cells;
+    const double total = sum + unseen;
+    const double all_squares = squares + unseen * unseen;
+    if (!(all_squares > 0))
+      return 0;
+    // Welch & Satterthwaite (1946): one degree of freedom for each pair of points.
+    return student_95(total * total / all_squares) * std::sqrt(total);
+  }
+};
+
+class Sampler {
+public:
+  Sampler(const Scene &scene, const Elements &elements, const Occluder &occluder,
+          const PoseGeometry &pose, const LitElements &lit, std::uint64_t seed,
+          std::uint32_t stream)
+      : scene_(scene), elements_(elements), occluder_(occluder), pose_(pose), lit_(lit),
+        seed_(seed), stream_(stream), bands_(scene.bands.size()), variance_i_(bands_),
+        variance_q_(bands_), block_body_(bands_) {
+    out_.sums.specular.assign(2 * scene.mesh.groups.size(), 0);
+    out_.sums.body.assign(2 * scene.mesh.groups.size() * bands_, 0);
+    out_.sums.intensity.assign(bands_, 0);
+  }
+
+  Measurement run(std::vector<Block> blocks) {
+    out_.blocks = std::move(blocks);
+    std::size_t first = 0;
+    for (std::size_t i = 0; i < out_.blocks.size(); ++i) {
+      draw(out_.blocks[i]);
+      if (origins_.size() >= batch_points || i + 1 == out_.blocks.size()) {
+        trace();
+        std::size_t at = 0;
+        for (; first <= i; ++first)
+          at = finish(out_.blocks[first], at);
+        out_.sums.points += origins_.size();
+        origins_.clear();
+        weights_.clear();
+      }
+    }
+    close();
+    return std::move(out_);
+  }
+
+private:
+  void draw(const Block &block) {
+    for (std::size_t cell = 0; cell < block.cells(); ++cell) {
+      const auto u = uniform4(seed_, stream_, 2 * pair_);
+      const auto choice = uniform4(seed_, stream_, 2 * pair_ + 1);
+      ++pair_;
+      for (std::size_t k = 0; k < 2; ++k) {
+        const LitElement &lit = lit_.list[pick(block, choice[k])];
+        const auto point = point_in_cell(std::max<std::size_t>(1, block.cuts), cell, u[2 * k],
+                                         u[2 * k + 1]);
+        origins_.push_back(ray_origin(scene_, elements_, lit, point));
+        weights_.push_back(weigh(lit, point));
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t pick(const Block &block, double choice) const {
+    if (block.last - block.first == 1)
+      return block.first;
+    double total = 0;
+    for (std::size_t i = block.first; i < block.last; ++i)
+      total += lit_.list[i].share;
+    double below = choice * total;
+    for (std::size_t i = block.first; i + 1 < block.last; ++i) {
+      below -= lit_.list[i].share;
+      if (below < 0)
+        return i;
+    }
+    return block.last - 1;
+  }
+
+  [[nodiscard]] PointWeight weigh(const LitElement &lit, std::array<double, 2> p) const {
+    const Element &e = elements_.list[lit.element];
+    if (e.is_flat)
+      return {lit.specular / lit.share, lit.projected / lit.share};
+    const Vec3<Body> n = shading_normal(e, 1 - p[0] - p[1], p[0], p[1]);
+    const double side = static_cast<double>(lit.side);
+    const double n_l = side * dot(n, pose_.sun), n_v = side * dot(n, pose_.observer);
+    if (!(n_l > 0 && n_v > 0))
+      return {};
+    const double scale = e.area_m2 / lit.share;
+    return {scale * surface_of_slot(scene_, lit.slot).specular(n_l, n_v, pose_.cos_phase),
+            scale * n_l * n_v};
+  }
+
+  /// free_[i]: both directions are free at the same point.
+  void trace() {
+    const std::size_t count = origins_.size();
+    free_.assign(count, 0);
+    occluder_.is_free(origins_, pose_.sun, free_);
+    lit_origins_.clear();
+    for (std::size_t i = 0; i < count; ++i)
+      if (free_[i] != 0)
+        lit_origins_.push_back(origins_[i]);
+    seen_.assign(lit_origins_.size(), 0);
+    occluder_.is_free(lit_origins_, pose_.observer, seen_);
+    out_.sums.rays += count + lit_origins_.size();
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      if (free_[i] != 0)
+        free_[i] = seen_[at++];
+  }
+
+  std::size_t finish(Block &block, std::size_t at) {
+    const std::size_t count = 2 * block.cells();
+    const std::size_t slot = sum_block(block);
+    double specular = 0, specular_all = 0, body = 0, body_all = 0, seen = 0;
+    for (std::size_t i = at; i < at + count; ++i) {
+      const double v = free_[i] != 0 ? 1 : 0;
+      seen += v;
+      specular += v * weights_[i].specular;
+      specular_all += weights_[i].specular;
+      body += v * weights_[i].body;
+      body_all += weights_[i].body;
+    }
+    const double plain = seen / static_cast<double>(count);
+    const double ratio_s = specular_all > 0 ? specular / specular_all : plain;
+    const double ratio_d = body_all > 0 ? body / body_all : plain;
+    out_.sums.is_any_seen = out_.sums.is_any_seen || seen > 0;
+    out_.sums.specular[slot] += ratio_s * block_specular_;
+    out_.sums.glint += ratio_s * block_glint_;
+    for (std::size_t b = 0; b < bands_; ++b) {
+      out_.sums.body[slot * bands_ + b] += ratio_d * block_body_[b];
+      const FresnelFactors f = lit_.fresnel[slot * bands_ + b];
+      const double all = f.a * block_specular_ + block_body_[b];
+      const double cells = static_cast<double>(block.cells());
+      out_.sums.intensity[b] += f.a * block_specular_ * ratio_s + block_body_[b] * ratio_d;
+      variance_i_[b].weight2 += all * all / cells;
+      variance_q_[b].weight2 += f.b * f.b * block_specular_ * block_specular_ / cells;
+      if (lit_.total[b] > 0)
+        block.weight2 += all * all / (cells * cells * lit_.total[b] * lit_.total[b] *
+                                      static_cast<double>(bands_));
+    }
+    cells_ += static_cast<double>(block.cells());
+    if (seen > 0 && seen < static_cast<double>(count))
+      add_variance(block, at, slot, {ratio_s, ratio_d}, {specular_all, body_all});
+    return at + count;
+  }
+
+  /// Adds the light of the block's elements up; returns their common slot.
+  std::size_t sum_block(const Block &block) {
+    block_specular_ = block_glint_ = 0;
+    std::fill(block_body_.begin(), block_body_.end(), 0.0);
+    const std::size_t slot = lit_.list[block.first].slot;
+    for (std::size_t i = block.first; i < block.last; ++i) {
+      const LitElement &lit = lit_.list[i];
+      block_specular_ += lit.specular;
+      if (lit.is_glint)
+        block_glint_ += lit_.fresnel[slot * bands_].a * lit.specular;
+      for (std::size_t b = 0; b < bands_; ++b)
+        block_body_[b] += lit_.body[lit.body_at + b];
+    }
+    return slot;
+  }
+
+  void add_variance(Block &block, std::size_t at, std::size_t slot, PointWeight ratio,
+                    PointWeight all) {
+    const auto residual = [](double w, double v, double r, double sum) {
+      return sum > 0 ? w * (v - r) / sum : 0.0;
+    };
+    for (std::size_t i = at; i < at + 2 * block.cells(); i += 2) {
+      std::array<double, 2> s{}, d{};
+      for (std::size_t k = 0; k < 2; ++k) {
+        const double v = free_[i + k] != 0 ? 1 : 0;
+        s[k] = residual(weights_[i + k].specular, v, ratio.specular, all.specular);
+        d[k] = residual(weights_[i + k].body, v, ratio.body, all.body);
+      }
+      for (std::size_t b = 0; b < bands_; ++b) {
+        const FresnelFactors f = lit_.fresnel[slot * bands_ + b];
+        const double ds = block_specular_ * (s[0] - s[1]);
+        const double di = f.a * ds + block_body_[b] * (d[0] - d[1]);
+        variance_i_[b].add(di * di);
+        variance_q_[b].add(f.b * f.b * ds * ds);
+        if (lit_.total[b] > 0)
+          block.spread += di * di / (lit_.total[b] * lit_.total[b] *
+                                     static_cast<double>(bands_ * block.cells()));
+      }
+    }
+  }
+
+  void close() {
+    for (std::size_t b = 0; b < bands_; ++b) {
+      out_.sums.half_width_i.push_back(variance_i_[b].half_width(cells_));
+      out_.sums.half_width_q.push_back(variance_q_[b].half_width(cells_));
+    }
+  }
+
+  const Scene &scene_;
+  const Elements &elements_;
+  const Occluder &occluder_;
+  const PoseGeometry &pose_;
+  const LitElements &lit_;
+  std::uint64_t seed_;
+  std::uint32_t stream_;
+  std::size_t bands_;
+  std::uint64_t pair_ = 0;
+  double cells_ = 0;
+  std::vector<Variance> variance_i_, variance_q_;
+  std::vector<Vec3<Body>> origins_, lit_origins_;
+  std::vector<PointWeight> weights_;
+  std::vector<unsigned char> free_, seen_;
+  double block_specular_ = 0, block_glint_ = 0;
+  std::vector<double> block_body_;
+  Measurement out_;
+};
+
+} // namespace
+
+double student_95(double freedom) {
+  constexpr double z = 1.959963984540054; // normal quantile at 0.975
+  const double n = std::max(freedom, 1.0), z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  if (n < 3) // exact for 1, 2 and 3; between them linear in 1/n
+    return n < 2 ? 4.302653 + (12.706205 - 4.302653) * (2 / n - 1)
+                 : 3.182446 + (4.302653 - 3.182446) * (6 / n - 2);
+  return z + (z3 + z) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z) / (96 * n * n) +
+         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n);
+}
+
+std::vector<Block> make_blocks(const LitElements &lit, const std::vector<double> &cells) {
+  std::vector<Block> out;
+  std::size_t chain = 0; // first element of the open chain
+  double filled = 0;
+  const auto close_chain = [&](std::size_t end) {
+    if (end > chain)
+      out.push_back({chain, end, 0});
+    chain = end;
+    filled = 0;
+  };
+  for (std::size_t i = 0; i < lit.list.size(); ++i) {
+    if (i > chain && lit.list[i].slot != lit.list[chain].slot)
+      close_chain(i);
+    if (cells[i] >= 1) {
+      close_chain(i);
+      const auto cuts = static_cast<std::size_t>(std::lround(std::sqrt(cells[i])));
+      out.push_back({i, i + 1, std::max<std::size_t>(1, cuts)});
+      chain = i + 1;
+      continue;
+    }
+    filled += cells[i];
+    if (filled >= 1)
+      close_chain(i + 1);
+  }
+  close_chain(lit.list.size());
+  return out;
+}
+
+Measurement measure(const Scene &scene, const Elements &elements, const Occluder &occluder,
+                    const PoseGeometry &pose, const LitElements &lit, std::vector<Block> blocks,
+                    std::uint64_t seed, std::uint32_t stream) {
+  return Sampler(scene, elements, occluder, pose, lit, seed, stream).run(std::move(blocks));
+}
+
+} // namespace umov

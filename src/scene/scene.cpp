@@ -1,0 +1,74 @@
+#include <umov/scene/scene.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/shape/topology.h>
+
+namespace umov {
+namespace {
+
+bool is_same(const Material &a, const Material &b) {
+  if (a.name != b.name || a.exponent != b.exponent || a.shadowing != b.shadowing ||
+      a.body.has_value() != b.body.has_value())
+    return false;
+  if (a.body && (a.body->wavelength_nm != b.body->wavelength_nm ||
+                 a.body->reflectance != b.body->reflectance))
+    return false;
+  return a.index.name == b.index.name && a.index.wavelength_nm == b.index.wavelength_nm &&
+         a.index.eta == b.index.eta;
+}
+
+/// Compiles each distinct material once; copies of a Surface share their tables.
+class SurfaceCache {
+public:
+  explicit SurfaceCache(const std::vector<Band> &bands) : bands_(bands) {}
+
+  Result<Surface> compile(const Material &material) {
+    for (const Surface &known : surfaces_)
+      if (is_same(known.material(), material))
+        return known;
+    UMOV_ASSIGN(surface, Surface::compile(material, bands_));
+    surfaces_.push_back(surface);
+    return surface;
+  }
+
+private:
+  const std::vector<Band> &bands_;
+  std::vector<Surface> surfaces_;
+};
+
+bool has_vertex_normals(const Mesh &mesh) {
+  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
+                     [](const Triangle &t) { return t.normal[0] != no_index; });
+}
+
+} // namespace
+
+Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector<Band> &bands,
+                         const std::vector<Material> &front, const std::vector<Material> &back,
+                         Diagnostics &diagnostics) {
+  if (front.size() != mesh.groups.size() || back.size() != mesh.groups.size())
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} front and {} back materials for a mesh with {} groups; give one of "
+                            "each per group",
+                            front.size(), back.size(), mesh.groups.size()));
+  if (bands.empty())
+    return fail(ErrorCode::BadInput, "the scene has no band; name at least one, such as nm:550");
+  UMOV_ASSIGN(cleaned, clean(mesh, diagnostics));
+  Scene scene;
+  scene.mesh = std::move(cleaned);
+  scene.normals = normals;
+  scene.bands = bands;
+  if (normals == NormalMode::Smooth && !has_vertex_normals(scene.mesh))
+    scene.mesh = with_vertex_normals(scene.mesh, default_crease_rad);
+  SurfaceCache cache(bands);
+  for (std::size_t g = 0; g < front.size(); ++g) {
+    UMOV_ASSIGN(front_surface, cache.compile(front[g]));
+    scene.front.push_back(front_surface);
+    UMOV_ASSIGN(back_surface, cache.compile(back[g]));
+    scene.back.push_back(back_surface);
+  }
+  return scene;
+}
+
+} // namespace umov
