@@ -14,9 +14,9 @@ namespace {
 /// Mean elements at a time with the semi-major axis [Earth radii].
 struct Drifted {
   MeanElements mean;
-  double axis_factor = 1;      ///< by drag, on the square root of the axis
+  double axis_factor = 1; ///< by drag, on the square root of the axis
   double eccentricity_loss = 0;
-  double longitude_gain = 0;   ///< by drag, over the mean motion
+  double longitude_gain = 0; ///< by drag, over the mean motion
 };
 
 /// Secular gravity and drag (H section 6, "secular effects").
@@ -51,8 +51,7 @@ Sgp4Code apply_drag(const Constants &c, Drifted &drifted, double &axis) {
   MeanElements &m = drifted.mean;
   if (!(m.motion > 0))
     return Sgp4Code::MeanMotion;
-  axis = std::pow(gravity_rate() / m.motion, 2.0 / 3.0) * drifted.axis_factor *
-         drifted.axis_factor;
+  axis = std::pow(gravity_rate() / m.motion, 2.0 / 3.0) * drifted.axis_factor * drifted.axis_factor;
   m.motion = gravity_rate() / std::pow(axis, 1.5);
   m.eccentricity -= drifted.eccentricity_loss;
   if (!(m.eccentricity < 1 && m.eccentricity >= -0.001))
@@ -72,15 +71,13 @@ struct Nonsingular {
   double longitude = 0;  ///< mean longitude from the node
 };
 
-Nonsingular long_period_periodics(const MeanElements &m, double axis,
-                                  const InclinationTerms &inc) {
+Nonsingular long_period_periodics(const MeanElements &m, double axis, const InclinationTerms &inc) {
   Nonsingular out;
   const double e = m.eccentricity;
   const double inverse_p = 1 / (axis * (1 - e * e));
   out.ex = e * std::cos(m.perigee);
   out.ey = e * std::sin(m.perigee) + inverse_p * inc.long_period_y;
-  out.longitude =
-      std::fmod(m.anomaly + m.perigee + inverse_p * inc.long_period_l * out.ex, two_pi);
+  out.longitude = std::fmod(m.anomaly + m.perigee + inverse_p * inc.long_period_l * out.ex, two_pi);
   return out;
 }
 
@@ -128,12 +125,10 @@ Sgp4Code short_periodics(const MeanElements &m, double axis, const Nonsingular &
   const double motion = m.motion / gravity_rate();
   out.radius = radius * (1 - 1.5 * j2_p2 * beta * inc.three_cos2_minus_1) +
                0.5 * j2_p * inc.one_minus_cos2 * cos_2u;
-  out.latitude_argument =
-      std::atan2(sin_u, cos_u) - 0.25 * j2_p2 * inc.seven_cos2_minus_1 * sin_2u;
+  out.latitude_argument = std::atan2(sin_u, cos_u) - 0.25 * j2_p2 * inc.seven_cos2_minus_1 * sin_2u;
   out.node = m.node + 1.5 * j2_p2 * inc.cosine * sin_2u;
   out.inclination = m.inclination + 1.5 * j2_p2 * inc.cosine * inc.sine * cos_2u;
-  out.radius_rate =
-      std::sqrt(axis) * e_sin / radius - motion * j2_p * inc.one_minus_cos2 * sin_2u;
+  out.radius_rate = std::sqrt(axis) * e_sin / radius - motion * j2_p * inc.one_minus_cos2 * sin_2u;
   out.transverse_rate =
       std::sqrt(p) / radius +
       motion * j2_p * (inc.one_minus_cos2 * cos_2u + 1.5 * inc.three_cos2_minus_1);
@@ -170,8 +165,7 @@ Sgp4Code state_at(const Constants &c, double minutes, TemeState &state) {
   }
   const Nonsingular orbit = long_period_periodics(m, axis, inc);
   Osculating osculating;
-  if (const Sgp4Code code =
-          short_periodics(m, axis, orbit, solve_kepler(orbit), inc, osculating);
+  if (const Sgp4Code code = short_periodics(m, axis, orbit, solve_kepler(orbit), inc, osculating);
       code != Sgp4Code::Ok)
     return code;
   if (!(osculating.radius >= 1))

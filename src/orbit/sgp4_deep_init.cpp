@@ -48,8 +48,8 @@ ThirdBody moon(double sin_node, double cos_node, double days_1900) {
   b.sin_inclination = std::sqrt(1 - b.cos_inclination * b.cos_inclination);
   const double sin_h = 0.089683511 * stem / b.sin_inclination;
   const double cos_h = std::sqrt(1 - sin_h * sin_h);
-  const double along = std::atan2(0.39785416 * stem / b.sin_inclination,
-                                  cos_h * ctem + 0.91744867 * sin_h * stem);
+  const double along =
+      std::atan2(0.39785416 * stem / b.sin_inclination, cos_h * ctem + 0.91744867 * sin_h * stem);
   const double perigee = longitude + along - ascending;
   b.cos_perigee = std::cos(perigee);
   b.sin_perigee = std::sin(perigee);
@@ -141,8 +141,8 @@ ThirdBodyPeriodics periodics(const ThirdBody &b, const BodyTerms &t, double ecce
   return p;
 }
 
-void add_rates(ThirdBodyRates &rates, const ThirdBody &b, const BodyTerms &t,
-               const MeanElements &m, const InclinationTerms &inc) {
+void add_rates(ThirdBodyRates &rates, const ThirdBody &b, const BodyTerms &t, const MeanElements &m,
+               const InclinationTerms &inc) {
   const double e2 = m.eccentricity * m.eccentricity;
   rates.eccentricity += t.s1 * b.rate * t.s5;
   rates.inclination += t.s2 * b.rate * (t.z11 + t.z13);
@@ -150,8 +150,7 @@ void add_rates(ThirdBodyRates &rates, const ThirdBody &b, const BodyTerms &t,
   rates.perigee += t.s4 * b.rate * (t.z31 + t.z33 - 6);
   // The node's rate divides by sin i: dropped within 3 deg of the equator (V).
   constexpr double three_degrees = 5.2359877e-2;
-  if (m.inclination < three_degrees || m.inclination > two_pi / 2 - three_degrees ||
-      inc.sine == 0)
+  if (m.inclination < three_degrees || m.inclination > two_pi / 2 - three_degrees || inc.sine == 0)
     return;
   const double node = -b.rate * t.s2 * (t.z21 + t.z23) / inc.sine;
   rates.node += node;

@@ -47,8 +47,8 @@ SecularRates secular_rates(const MeanElements &m, double axis, double cosine) {
               0.0625 * second * beta * (13 - 78 * c2 + 137 * c4);
   r.perigee = -0.5 * first * (1 - 5 * c2) + 0.0625 * second * (7 - 114 * c2 + 395 * c4) +
               fourth_zonal * (3 - 36 * c2 + 49 * c4);
-  r.node = -first * cosine +
-           (0.5 * second * (4 - 19 * c2) + 2 * fourth_zonal * (3 - 7 * c2)) * cosine;
+  r.node =
+      -first * cosine + (0.5 * second * (4 - 19 * c2) + 2 * fourth_zonal * (3 - 7 * c2)) * cosine;
   return r;
 }
 
@@ -69,9 +69,9 @@ DragCoefficients drag_coefficients(const MeanElements &m, double axis, const Atm
   const double zonal =
       -3 * inc.three_cos2_minus_1 * (1 - 2 * a.e_eta + a.eta2 * (1.5 - 0.5 * a.e_eta)) +
       0.75 * inc.one_minus_cos2 * (2 * a.eta2 - a.e_eta * (1 + a.eta2)) * std::cos(2 * m.perigee);
-  c.c4 = 2 * m.motion * a.coef1 * axis * beta2 *
-         (a.eta * (2 + 0.5 * a.eta2) + e * (0.5 + 2 * a.eta2) -
-          j2 * a.xi / (axis * a.psi2) * zonal);
+  c.c4 =
+      2 * m.motion * a.coef1 * axis * beta2 *
+      (a.eta * (2 + 0.5 * a.eta2) + e * (0.5 + 2 * a.eta2) - j2 * a.xi / (axis * a.psi2) * zonal);
   c.c5 = 2 * a.coef1 * axis * beta2 * (1 + 2.75 * (a.eta2 + a.e_eta) + a.e_eta * a.eta2);
   return c;
 }
@@ -148,28 +148,27 @@ double julian_date_of_year_day(int year, int day) {
 
 double greenwich_angle_1982(double jd) {
   const double t = (jd - 2451545.0) / 36525;
-  const double seconds = 67310.54841 + t * (876600.0 * 3600 + 8640184.812866 +
-                                            t * (0.093104 - t * 6.2e-6));
+  const double seconds =
+      67310.54841 + t * (876600.0 * 3600 + 8640184.812866 + t * (0.093104 - t * 6.2e-6));
   const double angle = std::fmod(seconds * (two_pi / 86400), two_pi);
   return angle < 0 ? angle + two_pi : angle;
 }
 
 double brouwer_mean_motion(double kozai, double eccentricity, double cos_inclination) {
   const double beta2 = 1 - eccentricity * eccentricity;
-  const double shift = 0.75 * j2 * (3 * cos_inclination * cos_inclination - 1) /
-                       (std::sqrt(beta2) * beta2);
+  const double shift =
+      0.75 * j2 * (3 * cos_inclination * cos_inclination - 1) / (std::sqrt(beta2) * beta2);
   const double a1 = std::pow(gravity_rate() / kozai, 2.0 / 3.0);
   const double delta1 = shift / (a1 * a1);
-  const double a0 =
-      a1 * (1 - delta1 * delta1 - delta1 * (1.0 / 3.0 + 134 * delta1 * delta1 / 81));
+  const double a0 = a1 * (1 - delta1 * delta1 - delta1 * (1.0 / 3.0 + 134 * delta1 * delta1 / 81));
   return kozai / (1 + shift / (a0 * a0));
 }
 
 Constants initialise(const ElementSet &elements) {
   Constants c;
   MeanElements &m = c.epoch;
-  m = {elements.mean_motion,         elements.eccentricity, elements.inclination, elements.raan,
-       elements.argument_of_perigee, elements.mean_anomaly};
+  m = {elements.mean_motion, elements.eccentricity,        elements.inclination,
+       elements.raan,        elements.argument_of_perigee, elements.mean_anomaly};
   if (!(m.eccentricity >= 0 && m.eccentricity < 1)) {
     c.code = Sgp4Code::Eccentricity;
     return c;

@@ -92,8 +92,8 @@ InclinationFunctions inclination_functions(double s, double c) {
 ResonanceModel half_day(const Constants &base, const ThirdBodyRates &third, double inverse_axis) {
   const MeanElements &m = base.epoch;
   const EccentricityFunctions g = eccentricity_functions(m.eccentricity);
-  const InclinationFunctions f = inclination_functions(base.inclination.sine,
-                                                       base.inclination.cosine);
+  const InclinationFunctions f =
+      inclination_functions(base.inclination.sine, base.inclination.cosine);
   const double degree2 = 3 * m.motion * m.motion * inverse_axis * inverse_axis;
   const double degree3 = degree2 * inverse_axis;
   const double degree4 = degree3 * inverse_axis;
@@ -112,8 +112,8 @@ ResonanceModel half_day(const Constants &base, const ThirdBodyRates &third, doub
               {2 * degree5 * root54 * f.f543 * g.g533, -1, 2, g54}}};
   r.term_count = 10;
   r.angle0 = std::fmod(m.anomaly + 2 * m.node - 2 * base.greenwich, two_pi);
-  r.rate0 = base.rates.anomaly + third.anomaly +
-            2 * (base.rates.node + third.node - earth_rate) - m.motion;
+  r.rate0 = base.rates.anomaly + third.anomaly + 2 * (base.rates.node + third.node - earth_rate) -
+            m.motion;
   return r;
 }
 
@@ -137,8 +137,8 @@ ResonanceModel one_day(const Constants &base, const ThirdBodyRates &third, doubl
   r.terms[2] = {3 * degree3 * f330 * g300 * q33, 0, 3, 3 * phase_33};
   r.term_count = 3;
   r.angle0 = std::fmod(m.anomaly + m.node + m.perigee - base.greenwich, two_pi);
-  r.rate0 = base.rates.anomaly + base.rates.perigee + base.rates.node - earth_rate +
-            third.anomaly + third.perigee + third.node - m.motion;
+  r.rate0 = base.rates.anomaly + base.rates.perigee + base.rates.node - earth_rate + third.anomaly +
+            third.perigee + third.node - m.motion;
   return r;
 }
 

@@ -123,8 +123,7 @@ Result<double> implied_decimal(const Line &line, const std::string &file, std::s
   if (!is_good)
     return field.refuse(expected, "Fetch the set again.");
   const std::string decimal = std::string(is_negative ? "-0." : "0.") +
-                              std::string(text.substr(0, 5)) + "e" +
-                              std::string(text.substr(5));
+                              std::string(text.substr(0, 5)) + "e" + std::string(text.substr(5));
   // parse_number takes "e-4" and "e+4" alike; the text above cannot be anything else.
   return parse_number(decimal).value_or(0);
 }
@@ -146,9 +145,8 @@ Result<double> angle(const Line &line, const std::string &file, std::size_t firs
   const std::string expected = "0 to " + shortest(limit) + " deg";
   UMOV_ASSIGN(degrees, field.number(expected));
   if (degrees < 0 || degrees > limit || std::signbit(degrees))
-    return field.refuse(expected, degrees < 0 && limit == 360
-                                      ? "Add 360 deg if the angle is meant."
-                                      : "Fetch the set again.");
+    return field.refuse(expected, degrees < 0 && limit == 360 ? "Add 360 deg if the angle is meant."
+                                                              : "Fetch the set again.");
   return Angle::degrees(limit == 360 && degrees == 360 ? 0.0 : degrees).radians();
 }
 

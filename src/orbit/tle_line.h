@@ -23,8 +23,8 @@ Kind kind_of(std::string_view text);
 /// Findings that do not stop the reading.
 struct LineNotes {
   bool lacks_checksum = false;
-  std::string bad_checksum;  ///< the message, if the checksum is wrong but allowed
-  std::string odd_epoch;     ///< the message, if day 366 of a common year is read as rollover
+  std::string bad_checksum; ///< the message, if the checksum is wrong but allowed
+  std::string odd_epoch;    ///< the message, if day 366 of a common year is read as rollover
 };
 
 /// Characters, layout, length and checksum of a line of either kind.

@@ -47,9 +47,15 @@ struct AttitudeContext {
 };
 
 /// Attitude at a time. For a spin `at_epoch` is the context at the law's epoch (else unused).
-/// Physics error if the two directions of a two-axis law are parallel within 1e-9 rad.
+/// Physics error if the two directions of a two-axis law are parallel within 1e-9 rad, or if a
+/// direction has no length (no velocity). A quaternion is normalised; `check` judges its length.
+/// Nadir is towards the Earth's centre; the orbit normal is position x velocity.
 Result<Rotation<Body, Gcrs>> attitude_at(const AttitudeLaw &law, const AttitudeContext &now,
                                          const AttitudeContext &at_epoch);
+
+/// Checks what a law says on its own: finite numbers, axes of a length, `point` and `then` not
+/// parallel within 1e-9 rad, unit quaternion within 1e-6, a finite spin rate. BadInput otherwise.
+Result<void> check(const AttitudeLaw &law);
 
 /// A quaternion as the user gave it: normalised if within 1e-6 of unit length, else BadInput.
 Result<Quaternion> unit_quaternion(Quaternion q);

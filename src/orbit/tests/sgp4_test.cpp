@@ -99,9 +99,9 @@ TEST(Sgp4, WholeCatalogueAgainstThePythonPackage) {
   double worst_km = 0;
   while (std::getline(in, line)) {
     int object = 0, day = 0, error = -1, used = 0;
-    ASSERT_EQ(std::sscanf(line.c_str(), "%d,2018-01-%dT00:00:00Z,%d,%n", &object, &day, &error,
-                          &used),
-              3);
+    ASSERT_EQ(
+        std::sscanf(line.c_str(), "%d,2018-01-%dT00:00:00Z,%d,%n", &object, &day, &error, &used),
+        3);
     const ElementSet &e = sets.at(object);
     const double days = day - e.epoch_day_of_year; // all epochs lie in January 2018
     TemeState state;

@@ -78,37 +78,63 @@ std::string without(std::string text, const std::string &what, const std::string
 INSTANTIATE_TEST_SUITE_P(
     Layout, TleRefused,
     testing::Values(
-        Refused{"short_line", set_of(first.substr(0, 60), second), "a.tle:1:61: ",
+        Refused{"short_line",
+                set_of(first.substr(0, 60), second),
+                "a.tle:1:61: ",
                 {"has 60 columns", "expected 69", "truncated"}},
-        Refused{"length_67", set_of(first, second.substr(0, 67)), "a.tle:2:68: ",
+        Refused{"length_67",
+                set_of(first, second.substr(0, 67)),
+                "a.tle:2:68: ",
                 {"has 67 columns", "expected 69"}},
-        Refused{"long_line", set_of(edited(first, 1, "1") + " 0.00 4320.0", second),
-                "a.tle:1:70: ", {"columns, expected 69", "remove what stands after column 69"}},
-        Refused{"wrong_checksum", set_of(edited(first, 1, "1"), [] {
-                  std::string line = edited(second, 1, "2");
-                  line[68] = line[68] == '9' ? '0' : static_cast<char>(line[68] + 1);
-                  return line;
-                }()),
+        Refused{"long_line",
+                set_of(edited(first, 1, "1") + " 0.00 4320.0", second),
+                "a.tle:1:70: ",
+                {"columns, expected 69", "remove what stands after column 69"}},
+        Refused{"wrong_checksum",
+                set_of(edited(first, 1, "1"),
+                       [] {
+                         std::string line = edited(second, 1, "2");
+                         line[68] = line[68] == '9' ? '0' : static_cast<char>(line[68] + 1);
+                         return line;
+                       }()),
                 "a.tle:2:69: ",
                 {"checksum is ", "computed ", "a character was probably changed",
                  "--allow-bad-checksum"}},
-        Refused{"checksum_letter", set_of(first.substr(0, 68) + "x", second), "a.tle:1:69: ",
+        Refused{"checksum_letter",
+                set_of(first.substr(0, 68) + "x", second),
+                "a.tle:1:69: ",
                 {"should be a digit", "'x'"}},
-        Refused{"line_number_3", set_of("3" + first.substr(1), second), "a.tle:1:1: ",
+        Refused{"line_number_3",
+                set_of("3" + first.substr(1), second),
+                "a.tle:1:1: ",
                 {"line number is 3", "expected 1"}},
-        Refused{"second_numbered_3", set_of(edited(first, 1, "1"), "3" + second.substr(1)),
-                "a.tle:2:1: ", {"line number is 3", "expected 2"}},
-        Refused{"swapped", set_of(second, first), "a.tle:1:1: ",
+        Refused{"second_numbered_3",
+                set_of(edited(first, 1, "1"), "3" + second.substr(1)),
+                "a.tle:2:1: ",
+                {"line number is 3", "expected 2"}},
+        Refused{"swapped",
+                set_of(second, first),
+                "a.tle:1:1: ",
                 {"line 2 stands without a line 1", "swapped"}},
-        Refused{"first_twice", set_of(edited(first, 1, "1"), edited(first, 1, "1")),
-                "a.tle:2:1: ", {"another line 1", "line 2 of the set that begins in line 1"}},
-        Refused{"name_inside", edited(first, 1, "1") + "\nHST\n" + second, "a.tle:2:1: ",
+        Refused{"first_twice",
+                set_of(edited(first, 1, "1"), edited(first, 1, "1")),
+                "a.tle:2:1: ",
+                {"another line 1", "line 2 of the set that begins in line 1"}},
+        Refused{"name_inside",
+                edited(first, 1, "1") + "\nHST\n" + second,
+                "a.tle:2:1: ",
                 {"no element line", "expected line 2"}},
-        Refused{"ends_early", "HST\n" + edited(first, 1, "1") + "\n", "a.tle:2:1: ",
+        Refused{"ends_early",
+                "HST\n" + edited(first, 1, "1") + "\n",
+                "a.tle:2:1: ",
                 {"ends after line 1", "expected its line 2", "truncated"}},
-        Refused{"only_a_name", good() + "ISS\n", "a.tle:3:1: ",
+        Refused{"only_a_name",
+                good() + "ISS\n",
+                "a.tle:3:1: ",
                 {"the text ends after what reads as the name \"ISS\"", "expected line 1"}},
-        Refused{"two_names", "Hello\nWorld\n" + good(), "a.tle:1:1: ",
+        Refused{"two_names",
+                "Hello\nWorld\n" + good(),
+                "a.tle:1:1: ",
                 {"the name \"Hello\"", "expected line 1", "'#'"}},
         Refused{"empty", "", "a.tle: ", {"no complete element set", "TLE file?"}},
         Refused{"only_comments", "# a\n\n  # b\n", "a.tle: ", {"no complete element set"}}),
@@ -118,55 +144,98 @@ INSTANTIATE_TEST_SUITE_P(
     Characters, TleRefused,
     testing::Values(
         // A blank lost before the mean motion's derivative moves what follows to the left.
-        Refused{"column_shift", set_of(without(first, "  .00000491", " .00000491"), second),
-                "a.tle:1:35: ", {"column 35 should be '.'", "found '0'", "shifted"}},
-        Refused{"collapsed_second", set_of(edited(first, 1, "1"),
-                                           without(second, "20580  28", "20580 28")),
-                "a.tle:2:12: ", {"column 12 should be '.'", "blank was probably lost"}},
-        Refused{"added_blank", set_of("1  " + first.substr(2), second), "a.tle:1:9: ",
+        Refused{"column_shift",
+                set_of(without(first, "  .00000491", " .00000491"), second),
+                "a.tle:1:35: ",
+                {"column 35 should be '.'", "found '0'", "shifted"}},
+        Refused{"collapsed_second",
+                set_of(edited(first, 1, "1"), without(second, "20580  28", "20580 28")),
+                "a.tle:2:12: ",
+                {"column 12 should be '.'", "blank was probably lost"}},
+        Refused{"added_blank",
+                set_of("1  " + first.substr(2), second),
+                "a.tle:1:9: ",
                 {"column 9 should be a blank", "shifted"}},
-        Refused{"leading_blank", set_of(" " + first, second), "a.tle:1:1: ",
+        Refused{"leading_blank",
+                set_of(" " + first, second),
+                "a.tle:1:1: ",
                 {"begins with a blank", "Remove"}},
-        Refused{"tab", set_of(without(first, "   18020", "\t18020"), second), "a.tle:1:16: ",
+        Refused{"tab",
+                set_of(without(first, "   18020", "\t18020"), second),
+                "a.tle:1:16: ",
                 {"a tab", "fixed columns"}},
-        Refused{"nbsp", set_of(without(first, "   18020", "  \xC2\xA0" "18020"), second),
-                "a.tle:1:18: ", {"non-breaking space (U+00A0)", "a plain blank", "web page"}},
-        Refused{"nbsp_after_number", set_of("1\xC2\xA0" + first.substr(2), second),
-                "a.tle:1:2: ", {"non-breaking space"}},
-        Refused{"unicode_minus", set_of(without(first, "00000-0", "00000\xE2\x88\x92" "0"), second),
-                "a.tle:1:51: ", {"Unicode minus (U+2212)", "a plain '-'"}},
-        Refused{"latin1_byte", set_of(without(first, "U 90", "\xB5 90"), second), "a.tle:1:8: ",
+        Refused{"nbsp",
+                set_of(without(first, "   18020",
+                               "  \xC2\xA0"
+                               "18020"),
+                       second),
+                "a.tle:1:18: ",
+                {"non-breaking space (U+00A0)", "a plain blank", "web page"}},
+        Refused{"nbsp_after_number",
+                set_of("1\xC2\xA0" + first.substr(2), second),
+                "a.tle:1:2: ",
+                {"non-breaking space"}},
+        Refused{"unicode_minus",
+                set_of(without(first, "00000-0",
+                               "00000\xE2\x88\x92"
+                               "0"),
+                       second),
+                "a.tle:1:51: ",
+                {"Unicode minus (U+2212)", "a plain '-'"}},
+        Refused{"latin1_byte",
+                set_of(without(first, "U 90", "\xB5 90"), second),
+                "a.tle:1:8: ",
                 {"not plain ASCII"}}),
     [](const auto &row) { return row.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Values, TleRefused,
     testing::Values(
-        Refused{"other_object", set_of(edited(first, 1, "1"), edited(second, 3, "20581")),
-                "a.tle:2:3: ", {"is 20581", "expected 20580", "two objects"}},
-        Refused{"letter_I", with_number("I0000"), "a.tle:1:3: ",
+        Refused{"other_object",
+                set_of(edited(first, 1, "1"), edited(second, 3, "20581")),
+                "a.tle:2:3: ",
+                {"is 20581", "expected 20580", "two objects"}},
+        Refused{"letter_I",
+                with_number("I0000"),
+                "a.tle:1:3: ",
                 {"\"I0000\"", "other than I and O", "Did you mean '1'"}},
         Refused{"letter_O", with_number("O1234"), "a.tle:1:3: ", {"Did you mean '0'"}},
-        Refused{"number_inside_blank", with_number("20 80"), "a.tle:1:3: ",
+        Refused{"number_inside_blank",
+                with_number("20 80"),
+                "a.tle:1:3: ",
                 {"catalogue number", "whole number"}},
-        Refused{"day_0", with_first(21, "000.5"), "a.tle:1:21: ",
+        Refused{"day_0",
+                with_first(21, "000.5"),
+                "a.tle:1:21: ",
                 {"day of year is \"000.53993022\"", "1.0 to below 366 in 2018"}},
         Refused{"day_367", with_first(21, "367.0"), "a.tle:1:21: ", {"\"367.0", "below 366"}},
-        Refused{"day_367_of_leap_year", with_first(19, "16367.0"), "a.tle:1:21: ",
+        Refused{"day_367_of_leap_year",
+                with_first(19, "16367.0"),
+                "a.tle:1:21: ",
                 {"below 367 in 2016"}},
-        Refused{"inclination", with_second(9, "180.0001"), "a.tle:2:9: ",
+        Refused{"inclination",
+                with_second(9, "180.0001"),
+                "a.tle:2:9: ",
                 {"inclination is \"180.0001\"", "0 to 180 deg"}},
-        Refused{"negative_angle", with_second(18, "-13.2018"), "a.tle:2:18: ",
+        Refused{"negative_angle",
+                with_second(18, "-13.2018"),
+                "a.tle:2:18: ",
                 {"\"-13.2018\"", "0 to 360 deg", "Add 360 deg"}},
         Refused{"angle_361", with_second(44, "361.0000"), "a.tle:2:44: ", {"mean anomaly"}},
         Refused{"comma", with_second(10, "28,4708"), "a.tle:2:12: ", {"','"}},
-        Refused{"blank_inclination", with_second(9, "   .    "), "a.tle:2:12: ",
+        Refused{"blank_inclination",
+                with_second(9, "   .    "),
+                "a.tle:2:12: ",
                 {"inclination", "0 to 180"}},
-        Refused{"blank_in_eccentricity", with_second(27, " 00282"), "a.tle:2:28: ",
-                {"seven digits"}},
-        Refused{"mean_motion_0", with_second(53, " 0.00000000"), "a.tle:2:54: ",
+        Refused{
+            "blank_in_eccentricity", with_second(27, " 00282"), "a.tle:2:28: ", {"seven digits"}},
+        Refused{"mean_motion_0",
+                with_second(53, " 0.00000000"),
+                "a.tle:2:54: ",
                 {"mean motion is \"0.00000000\"", "above 0"}},
-        Refused{"drag_letters", with_first(54, " 1728x-4"), "a.tle:1:55: ",
+        Refused{"drag_letters",
+                with_first(54, " 1728x-4"),
+                "a.tle:1:55: ",
                 {"drag term", "five digits", "0.13161e-4"}},
         Refused{"sgp4_xp", with_first(63, "4"), "a.tle:1:63: ", {"ephemeris type", "SGP4-XP"}},
         Refused{"type_9", with_first(63, "9"), "a.tle:1:63: ", {"\"9\"", "expected 0"}}),
@@ -188,8 +257,7 @@ TEST(TleLimits, AnEndlessNameIsNoName) {
 
 // --- accepted --------------------------------------------------------------------------------
 
-ElementSet only(const std::string &text, std::size_t warnings = 0,
-                const TleOptions &options = {}) {
+ElementSet only(const std::string &text, std::size_t warnings = 0, const TleOptions &options = {}) {
   Reading r = read(text, options);
   EXPECT_TRUE(r.sets.has_value()) << (r.sets ? "" : r.sets.error().text());
   EXPECT_EQ(r.diagnostics.warnings().size(), warnings);
@@ -303,9 +371,7 @@ TEST(TleAccepted, ImpliedDecimals) {
   EXPECT_DOUBLE_EQ(only(with_first(34, "+.1       ")).mean_motion_dot, 0.1);
 }
 
-TEST(TleAccepted, AngleOf360IsZero) {
-  EXPECT_EQ(only(with_second(18, "360.0000")).raan, 0);
-}
+TEST(TleAccepted, AngleOf360IsZero) { EXPECT_EQ(only(with_second(18, "360.0000")).raan, 0); }
 
 TEST(TleAccepted, ExtremeOrbitsAreLeftToSgp4) {
   EXPECT_NE(Sgp4(only(with_second(27, "9999999"))).init_code(), Sgp4Code::Ok);
@@ -337,9 +403,9 @@ TEST(TleMany, KeepGoingFindsTheNextSetAfterEachKindOfFault) {
   options.keep_going = true;
   for (const std::string &bad :
        {"X\n" + set_of(edited(first, 63, "4"), edited(second, 1, "2")), // fault in line 1
-        "X\n" + with_second(53, " 0.00000000"),                        // fault in line 2
-        "X\n" + edited(second, 1, "2") + "\n",                         // line 1 missing
-        "X\n" + edited(first, 1, "1") + "\n",                          // line 2 missing
+        "X\n" + with_second(53, " 0.00000000"),                         // fault in line 2
+        "X\n" + edited(second, 1, "2") + "\n",                          // line 1 missing
+        "X\n" + edited(first, 1, "1") + "\n",                           // line 2 missing
         "3" + good().substr(1), std::string("X\n")}) {
     const Reading r = read(good() + bad + "GOOD\n" + good(), options);
     ASSERT_TRUE(r.sets.has_value()) << bad;
