@@ -177,6 +177,10 @@ Constants initialise(const ElementSet &elements) {
     c.code = Sgp4Code::MeanMotion;
     return c;
   }
+  if (!(std::abs(elements.epoch_day_of_year) < 1000)) {
+    c.code = Sgp4Code::OutOfRange;
+    return c;
+  }
   c.inclination = inclination_terms(m.inclination);
   m.motion = brouwer_mean_motion(m.motion, m.eccentricity, c.inclination.cosine);
   if (!(m.motion > 0 && std::isfinite(m.motion))) {

@@ -179,6 +179,19 @@ TEST(Sgp4Codes, TimeOutOfRange) {
   EXPECT_EQ(code_at(e, -1e300), Sgp4Code::OutOfRange);
 }
 
+TEST(Sgp4Codes, ElementsThatAreNoNumbersGiveACodeAndNoState) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (double ElementSet::*field :
+       {&ElementSet::inclination, &ElementSet::raan, &ElementSet::eccentricity,
+        &ElementSet::argument_of_perigee, &ElementSet::mean_anomaly, &ElementSet::mean_motion,
+        &ElementSet::bstar, &ElementSet::epoch_day_of_year})
+    for (const int object : {5, 6251, 9880}) {
+      ElementSet e = verification_set(object);
+      e.*field = nan;
+      EXPECT_NE(code_at(e, 100), Sgp4Code::Ok) << object;
+    }
+}
+
 TEST(Sgp4Codes, EachHasItsSentence) {
   for (int i = 0; i <= 7; ++i)
     EXPECT_STRNE(to_text(static_cast<Sgp4Code>(i)), "unknown code");
