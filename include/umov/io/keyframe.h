@@ -1,0 +1,80 @@
+#pragma once
+// Pictures of the object as the observer sees it: parallel rays, celestial north up, east left.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <umov/core/result.h>
+#include <umov/io/report.h>
+#include <umov/lightcurve/light_curve.h>
+#include <umov/scene/scene.h>
+#include <umov/shape/occluder.h>
+#include <vector>
+
+namespace umov {
+
+/// Where the Sun and the observer stand, and what is up in the picture (any vector not along the
+/// line of sight; its part across the line of sight counts).
+struct KeyFrameView {
+  Pose pose;
+  Vec3<Body> up;
+};
+
+struct KeyFrameOptions {
+  std::uint32_t size = 320;   ///< pixels per side, 1..4096
+  std::uint32_t samples = 2;  ///< rays per pixel and axis, 1..8
+  std::size_t band = 0;       ///< into Scene::bands
+  double half_width_m = 0;    ///< half the picture's side; 0: 1.04 bounding radii of the mesh
+  unsigned threads = 0;       ///< the pixels do not depend on it
+};
+
+/// What one ray found.
+struct KeyFrameSample {
+  std::uint32_t material = no_index; ///< into KeyFrameRaster::materials; no_index: sky
+  bool is_lit = false;    ///< the Sun reaches the point
+  float radiance = 0;     ///< [1/sr] per unit solar irradiance, single bounce and body lobe
+  float p = 0;            ///< |Q|/I of that light; NaN where there is none
+  float facing = 0;       ///< cosine of the shown normal to the observer, 0..1
+};
+
+struct KeyFrameRaster {
+  std::uint32_t side = 0; ///< samples per side: size * samples
+  std::uint32_t samples = 1;
+  double half_width_m = 0;
+  std::vector<std::string> materials;  ///< names, in order of first use in the scene
+  std::vector<KeyFrameSample> points;  ///< [row * side + column], rows from the top
+};
+
+enum class KeyFrameShading { Intensity, Polarization, Material };
+
+/// Vector towards the celestial pole in the body frame, for KeyFrameView::up.
+Vec3<Body> celestial_north(const LightCurveEpoch &epoch);
+
+/// Names of all materials of a scene in order of first use (fronts, then backs).
+std::vector<std::string> material_names(const Scene &scene);
+
+/// Casts the rays of one picture. BadInput for sizes out of range, a band that is not there or an
+/// `up` along the line of sight.
+Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occluder,
+                                       const KeyFrameView &view, const KeyFrameOptions &options);
+
+/// The radiance shown as white: the 99th percentile over the lit points of all pictures, so that
+/// one exposure holds for a whole series and a glint does not hide the rest. 1 if nothing is lit.
+double common_exposure(std::span<const KeyFrameRaster> rasters);
+
+/// Colours of a raster, 3 size size bytes. Intensity: grey by asinh(L / (0.02 white)), so faint
+/// light stays visible; Polarization: the map of `polarization_scale`; Material: its colour, darker
+/// in shadow. What is seen but gives no light is slate blue, the sky is near black.
+std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading,
+                                double white);
+
+/// Epochs worth a picture: per pass the brightest one and others spread evenly in time, `count` per
+/// pass in all; fewer if the pass is shorter. In order of time; dark epochs are left out.
+std::vector<std::size_t> choose_key_epochs(const LightCurve &curve, std::size_t count);
+
+/// The pictures of the chosen epochs in all three shadings, ready for the report.
+Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const LightCurve &curve,
+                                                    std::span<const std::size_t> epochs,
+                                                    const KeyFrameOptions &options);
+
+} // namespace umov

@@ -1,0 +1,10 @@
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace umov {
+
+/// RFC 4648 section 4, with padding.
+std::string base64(std::string_view bytes);
+
+} // namespace umov

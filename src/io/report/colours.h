@@ -1,0 +1,18 @@
+#pragma once
+// Colours shared by the pictures and the page.
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace umov {
+
+using Rgb = std::array<double, 3>; ///< sRGB, 0..255
+
+std::string hex(Rgb colour);
+Rgb material_rgb(std::size_t index);
+/// The map of p, linear between its nine colours; p is clamped to 0..1.
+Rgb polarization_rgb(double p);
+Rgb mix(Rgb a, Rgb b, double share_of_b);
+
+} // namespace umov

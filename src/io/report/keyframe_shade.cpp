@@ -1,0 +1,73 @@
+#include <umov/io/keyframe.h>
+
+#include "io/report/colours.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umov {
+namespace {
+
+constexpr Rgb sky{10, 12, 18};
+constexpr Rgb unlit_far{26, 32, 48}, unlit_near{58, 70, 100}; // edge-on and face-on
+constexpr double knee = 0.02; // share of white where asinh turns from linear to logarithmic
+
+Rgb intensity_rgb(const KeyFrameSample &s, double white) {
+  const Rgb ground = mix(unlit_far, unlit_near, s.facing);
+  const double tone =
+      std::min(1., std::asinh(s.radiance / (knee * white)) / std::asinh(1 / knee));
+  // Hue tells light from no light: slate is unlit, warm grey is reflected sunlight.
+  return mix(ground, {255, 250, 240}, tone);
+}
+
+Rgb sample_rgb(const KeyFrameSample &s, KeyFrameShading shading, double white) {
+  if (s.material == no_index)
+    return sky;
+  switch (shading) {
+  case KeyFrameShading::Intensity:
+    return intensity_rgb(s, white);
+  case KeyFrameShading::Polarization:
+    return std::isnan(s.p) ? mix(unlit_far, unlit_near, s.facing) : polarization_rgb(s.p);
+  case KeyFrameShading::Material:
+    break;
+  }
+  const double shadow = s.is_lit ? 1 : 0.45;
+  return mix(sky, material_rgb(s.material), (0.5 + 0.5 * s.facing) * shadow);
+}
+
+} // namespace
+
+double common_exposure(std::span<const KeyFrameRaster> rasters) {
+  std::vector<float> lit;
+  for (const KeyFrameRaster &raster : rasters)
+    for (const KeyFrameSample &s : raster.points)
+      if (s.radiance > 0)
+        lit.push_back(s.radiance);
+  if (lit.empty())
+    return 1;
+  const std::size_t rank = std::min(lit.size() - 1, lit.size() * 99 / 100);
+  std::nth_element(lit.begin(), lit.begin() + static_cast<std::ptrdiff_t>(rank), lit.end());
+  return lit[rank];
+}
+
+std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading,
+                                double white) {
+  const std::size_t samples = raster.samples, size = raster.side / samples;
+  std::vector<std::uint8_t> out(3 * size * size);
+  for (std::size_t y = 0; y < size; ++y)
+    for (std::size_t x = 0; x < size; ++x) {
+      Rgb sum{};
+      for (std::size_t i = 0; i < samples * samples; ++i) {
+        const std::size_t row = y * samples + i / samples, column = x * samples + i % samples;
+        const Rgb c = sample_rgb(raster.points[row * raster.side + column], shading, white);
+        for (std::size_t k = 0; k < 3; ++k)
+          sum[k] += c[k];
+      }
+      for (std::size_t k = 0; k < 3; ++k)
+        out[3 * (y * size + x) + k] = static_cast<std::uint8_t>(
+            std::lround(sum[k] / static_cast<double>(samples * samples)));
+    }
+  return out;
+}
+
+} // namespace umov

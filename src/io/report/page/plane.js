@@ -1,0 +1,212 @@
+// Figures of one quantity against another: phase curves, q-u plane, colours in 3D, the sky.
+
+const dashes = ["solid", "dash", "dot", "dashdot", "longdash", "longdashdot"];
+const pureMaterials = [...new Set(report.pure_materials.map((curve) => curve.material))];
+
+/// Points and lines of one band over the shown passes; `x` and `y` take a row.
+function joined(x, y) {
+  const out = { x: [], y: [], row: [] };
+  shownPasses().forEach((pass) => pass.runs.forEach((run) => {
+    for (const row of run) {
+      out.x.push(x(row));
+      out.y.push(y(row));
+      out.row.push(row);
+    }
+    out.x.push(null);
+    out.y.push(null);
+    out.row.push(run[0]);
+  }));
+  return out;
+}
+
+/// Where the name of a pure-material curve stands: at its highest point.
+function pureLabel(curve) {
+  let best = 0;
+  curve.q_scat.forEach((value, i) => { if (value > curve.q_scat[best]) best = i; });
+  return { x: curve.phase[best], y: percent(curve.q_scat[best]) };
+}
+
+function pureTraces(data, plan, shownBand) {
+  const theme = themeColours();
+  report.pure_materials.forEach((curve) => {
+    if (shownBand !== "all" && curve.band !== shownBand) return;
+    const m = pureMaterials.indexOf(curve.material);
+    data.push({
+      type: "scatter", mode: "lines", x: curve.phase, y: curve.q_scat.map(percent), name: curve.material,
+      legendgroup: "pure " + curve.material, showlegend: false, opacity: 0.55,
+      line: { color: shownBand === "all" ? bands[curve.band].colour : theme.soft, dash: dashes[m % dashes.length], width: 1.2 },
+      hovertemplate: "%{y:.1f} % at %{x}°<extra>" + curve.material + " " + bands[curve.band].name + "</extra>",
+    });
+    if (shownBand !== "all" || curve.band === middleBand) {
+      const at = pureLabel(curve);
+      plan.annotations.push({ x: at.x, y: at.y, text: curve.material, showarrow: false, yshift: 7, font: { size: 10, color: theme.soft } });
+    }
+  });
+  if (shownBand === "all") // one grey line per material explains the dashes
+    pureMaterials.forEach((name, m) => data.push({
+      type: "scatter", mode: "lines", x: [null], y: [null], name, legendgroup: "pure " + name,
+      line: { color: theme.soft, dash: dashes[m % dashes.length], width: 1.2 }, hoverinfo: "skip",
+    }));
+}
+
+const phaseFigure = {
+  id: "q_phase", title: "Q against phase angle", height: () => isNarrow() ? 420 : 440,
+  controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].name])] }],
+  caption: "q_scat in percent, positive perpendicular to the scattering plane"
+    + (pureMaterials.length ? "; thin lines behind: a surface of one material alone, single bounce, without body light." : "."),
+  build: (state) => {
+    const data = [];
+    const plan = layout({ annotations: [], hovermode: "closest",
+      xaxis: axis({ title: "phase angle [°]", range: [0, 180], dtick: 30 }), yaxis: axis({ title: "q_scat [%]" }) });
+    pureTraces(data, plan, state.band);
+    byWavelength.filter((b) => state.band === "all" || state.band === b).forEach((b) => {
+      const line = joined((i) => epochs.phase[i], (i) => percent(bands[b].q_scat[i]));
+      data.push({
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, text: line.row.map((i) => epochs.time[i]), name: bands[b].name,
+        line: { color: bands[b].colour, width: 2 }, marker: { color: bands[b].colour, symbol: bands[b].symbol, size: 7, maxdisplayed: 40 },
+        hovertemplate: "%{y:.2f} % at %{x:.2f}°<br>%{text}<extra>" + bands[b].name + "</extra>",
+      });
+    });
+    return { data, layout: plan };
+  },
+  table: () => tidyTable([["q_scat", "", (b, i) => b.q_scat[i]], ["u_scat", "", (b, i) => b.u_scat[i]]]),
+};
+
+/// Limits of the phase colour map: the shown epochs.
+function phaseAxis(extra) {
+  const limits = range(shownRows().map((i) => epochs.phase[i])) || [0, 180];
+  return { colorscale: "Cividis", cmin: limits[0], cmax: limits[1], colorbar: colourBar("phase angle [°]", extra) };
+}
+
+const planeFigure = {
+  id: "qu_plane", title: "q-u plane", height: () => isNarrow() ? 430 : 480,
+  controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].name])] }],
+  caption: "Sky frame, percent; colour is phase angle, marker shape is the band. Distance from the origin is p, half the angle around it the position angle.",
+  build: (state) => {
+    const theme = themeColours();
+    const data = byWavelength.filter((b) => state.band === "all" || state.band === b).map((b) => {
+      const line = joined((i) => percent(bands[b].q[i]), (i) => percent(bands[b].u[i]));
+      return {
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: bands[b].name, text: line.row.map((i) => epochs.time[i]),
+        line: { color: bands[b].colour, width: 0.8 }, customdata: line.row.map((i) => epochs.phase[i]),
+        marker: { color: line.row.map((i) => epochs.phase[i]), coloraxis: "coloraxis", symbol: bands[b].symbol, size: 7, line: { width: 0.6, color: bands[b].colour } },
+        hovertemplate: "q %{x:.2f} %, u %{y:.2f} %<br>phase %{customdata:.2f}°<br>%{text}<extra>" + bands[b].name + "</extra>",
+      };
+    });
+    return { data, layout: layout({
+      hovermode: "closest", coloraxis: phaseAxis(), margin: { l: 50, r: 14, t: 8, b: 90 },
+      xaxis: axis({ title: "q [%]", zeroline: true, zerolinecolor: theme.soft }),
+      yaxis: axis({ title: "u [%]", scaleanchor: "x", zeroline: true, zerolinecolor: theme.soft }) }) };
+  },
+  table: () => tidyTable([["q", "", (b, i) => b.q[i]], ["u", "", (b, i) => b.u[i]]]),
+};
+
+function hasWebgl() {
+  try {
+    const canvas = document.createElement("canvas");
+    const context = canvas.getContext("webgl2") || canvas.getContext("webgl");
+    const works = !!context;
+    const loser = works && context.getExtension("WEBGL_lose_context");
+    if (loser) loser.loseContext();
+    return works;
+  } catch {
+    return false;
+  }
+}
+
+const rgbFigure = {
+  id: "q_rgb", title: "Q in three bands", height: () => isNarrow() ? 380 : 480,
+  caption: "q_scat of three bands in percent: drag to turn. Colour is phase angle"
+    + (pureMaterials.length ? "; lines are surfaces of one material alone, over the phase angles of this curve." : "."),
+  build: () => {
+    if (!hasWebgl())
+      throw new Error("This browser offers no WebGL, which the turning view needs (it may be switched off, or the graphics driver is blocked).");
+    const theme = themeColours();
+    const rows = shownRows().filter((i) => rgbBands.every((b) => bands[b].q_scat[i] !== null));
+    const limits = range(rows.map((i) => epochs.phase[i])) || [0, 180];
+    const data = [];
+    pureMaterials.forEach((name, m) => {
+      const parts = rgbBands.map((b) => report.pure_materials.find((c) => c.material === name && c.band === b));
+      if (parts.some((part) => !part)) return;
+      const at = parts[0].phase.map((phase, k) => ({ phase, q: parts.map((part) => percent(part.q_scat[k])) })).filter((e) => e.phase >= limits[0] - 1 && e.phase <= limits[1] + 1);
+      data.push({ type: "scatter3d", mode: "lines", name, x: at.map((e) => e.q[0]), y: at.map((e) => e.q[1]), z: at.map((e) => e.q[2]),
+        line: { color: (contributions.find((c) => c.material === name) || {}).colour || theme.soft, width: 3 }, hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %" });
+    });
+    data.push({
+      type: "scatter3d", mode: "markers", name: report.object || "object", text: rows.map((i) => epochs.time[i]),
+      x: rows.map((i) => percent(bands[rgbBands[0]].q_scat[i])), y: rows.map((i) => percent(bands[rgbBands[1]].q_scat[i])), z: rows.map((i) => percent(bands[rgbBands[2]].q_scat[i])),
+      marker: { size: 3.5, color: rows.map((i) => epochs.phase[i]), coloraxis: "coloraxis" },
+      hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %<br>%{text}",
+    });
+    const side = (b) => axis({ title: { text: bands[b].name + " [%]" }, backgroundcolor: theme.card });
+    return { data, layout: layout({
+      coloraxis: phaseAxis({ y: -0.02 }), margin: { l: 0, r: 0, t: 8, b: 60 }, dragmode: "turntable",
+      scene: { xaxis: side(rgbBands[0]), yaxis: side(rgbBands[1]), zaxis: side(rgbBands[2]), aspectmode: "cube", dragmode: "turntable", camera: { eye: { x: 1.5, y: 1.5, z: 0.9 } } } }) };
+  },
+  table: () => ({
+    columns: [{ name: "time_utc", unit: "" }, { name: "phase_angle", unit: "deg" }, ...rgbBands.map((b) => ({ name: "q_scat " + bands[b].name, unit: "" }))],
+    rows: shownRows().map((i) => [epochs.time[i], epochs.phase[i], ...rgbBands.map((b) => bands[b].q_scat[i])]),
+  }),
+};
+
+/// The sky track of a pass: whole passes if the run gave them, else the rows of the curve.
+function trackOf(pass) {
+  const track = report.sky_track;
+  const rows = track.time.map((_, i) => i).filter((i) => track.pass[i] === pass.id);
+  return rows.length ? { source: track, rows } : { source: epochs, rows: pass.rows };
+}
+
+const skyFigure = {
+  id: "sky", title: "Track in the sky", height: () => isNarrow() ? 440 : 480,
+  controls: [{ key: "colour", name: "Colour", options: [["phase", "phase angle"], ["pa", "position angle"]] }],
+  caption: "Looking up: north at the top, east at the left, the horizon outside. Grey: in the Earth's shadow (also where no light is computed).",
+  build: (state) => {
+    const theme = themeColours();
+    const data = [];
+    const isAngle = state.colour === "pa" && bands.length > 0;
+    const shadow = { r: [], theta: [] };
+    shownPasses().forEach((pass) => {
+      const track = trackOf(pass);
+      data.push({
+        type: "scatterpolar", mode: "lines", r: track.rows.map((i) => 90 - track.source.alt[i]), theta: track.rows.map((i) => track.source.az[i]),
+        line: { color: theme.line, width: 5 }, hoverinfo: "skip", showlegend: false,
+      });
+      for (const i of track.rows)
+        if (track.source.sunlit[i] <= 0) {
+          shadow.r.push(90 - track.source.alt[i]);
+          shadow.theta.push(track.source.az[i]);
+        }
+      data.push({
+        type: "scatterpolar", mode: "markers", r: pass.rows.map((i) => 90 - epochs.alt[i]), theta: pass.rows.map((i) => epochs.az[i]),
+        text: pass.rows.map((i) => epochs.time[i]), customdata: pass.rows.map((i) => [epochs.alt[i], epochs.phase[i]]), showlegend: false,
+        marker: { size: 6, color: pass.rows.map((i) => isAngle ? bands[middleBand].pa[i] : epochs.phase[i]), coloraxis: "coloraxis" },
+        hovertemplate: "%{text}<br>azimuth %{theta:.1f}°, altitude %{customdata[0]:.1f}°<br>phase %{customdata[1]:.1f}°<extra></extra>",
+      });
+      const ends = [track.rows[0], track.rows[track.rows.length - 1]];
+      data.push({
+        type: "scatterpolar", mode: "markers+text", r: ends.map((i) => 90 - track.source.alt[i]), theta: ends.map((i) => track.source.az[i]), cliponaxis: false,
+        text: ends.map((i) => track.source.time[i].slice(11, 19)), textposition: ["bottom right", "top right"], textfont: { size: 11 },
+        marker: { size: 8, symbol: ["circle-open", "x-thin-open"], color: theme.text, line: { width: 2 } }, hoverinfo: "skip", showlegend: false,
+      });
+    });
+    if (shadow.r.length)
+      data.push({ type: "scatterpolar", mode: "markers", ...shadow, name: "in the Earth's shadow", marker: { size: 6, symbol: "diamond", color: "#7f8794" }, hoverinfo: "skip", showlegend: true });
+    const colours = isAngle
+      ? { colorscale: cyclicScale, cmin: 0, cmax: 180, colorbar: colourBar("position angle, " + bands[middleBand].name + " [°]", { tickvals: [0, 45, 90, 135, 180], y: -0.1 }) }
+      : phaseAxis({ y: -0.1 });
+    return { data, layout: layout({
+      coloraxis: colours, margin: { l: 36, r: 36, t: 26, b: 84 }, dragmode: false,
+      polar: {
+        bgcolor: theme.card,
+        radialaxis: { range: [0, 90], tickvals: [0, 30, 60, 90], ticktext: ["90°", "60°", "30°", ""], angle: 45, tickangle: 0, gridcolor: theme.grid, linecolor: theme.line, tickfont: { color: theme.soft } },
+        angularaxis: { rotation: 90, direction: "counterclockwise", tickvals: [0, 45, 90, 135, 180, 225, 270, 315], ticktext: ["N", "NE", "E", "SE", "S", "SW", "W", "NW"], gridcolor: theme.grid, linecolor: theme.line },
+      } }) };
+  },
+  table: () => ({
+    columns: [["time_utc", ""], ["pass_id", ""], ["az", "deg"], ["alt", "deg"], ["sunlit", ""]].map(([name, unit]) => ({ name, unit })),
+    rows: shownPasses().flatMap((pass) => {
+      const { source, rows } = trackOf(pass);
+      return rows.map((i) => [source.time[i], pass.id, source.az[i], source.alt[i], source.sunlit[i]]);
+    }),
+  }),
+};

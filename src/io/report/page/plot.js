@@ -1,0 +1,124 @@
+// What all figures share: colours of the theme, axes, saving.
+
+const isNarrow = () => window.innerWidth < 620;
+const isTouch = window.matchMedia("(pointer: coarse)").matches;
+
+function themeColours() {
+  const style = getComputedStyle(document.documentElement);
+  const get = (name) => style.getPropertyValue(name).trim();
+  return { card: get("--card"), text: get("--text"), soft: get("--soft"), grid: get("--grid"), line: get("--line") };
+}
+
+function axis(extra) {
+  const theme = themeColours();
+  return {
+    gridcolor: theme.grid, zerolinecolor: theme.line, linecolor: theme.line, tickcolor: theme.line,
+    ticks: "outside", ticklen: 4, automargin: true, ...extra,
+    title: { standoff: 8, ...(typeof extra.title === "string" ? { text: extra.title } : extra.title) },
+  };
+}
+
+function layout(extra) {
+  const theme = themeColours();
+  return {
+    paper_bgcolor: theme.card, plot_bgcolor: theme.card,
+    font: { family: "system-ui, DejaVu Sans, sans-serif", size: isNarrow() ? 11 : 12, color: theme.text },
+    margin: { l: isNarrow() ? 44 : 60, r: isNarrow() ? 10 : 18, t: 8, b: 40 },
+    legend: { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", itemsizing: "constant" },
+    hoverlabel: { font: { size: 12 } },
+    // On a touch screen a drag scrolls the page.
+    dragmode: isTouch ? false : "zoom",
+    ...extra,
+  };
+}
+
+/// A horizontal colour bar under the plot takes no width from it.
+function colourBar(title, extra) {
+  return {
+    orientation: "h", x: 0.5, xanchor: "center", y: -0.16, yanchor: "top", thickness: 10, len: 0.9,
+    outlinewidth: 0, title: { text: title, side: "top", font: { size: 12 } }, ...extra,
+  };
+}
+
+// A cyclic map for angles that come back after 180 deg: twilight_shifted at 0, 1/12, ... 1
+// (Bechtold 2018, CC0). Its dark end stands for 0, so that 0 is seen on a white page.
+const cyclicScale = ["#301437", "#4e186f", "#5e45a6", "#6276ba", "#7ca2c2", "#b3c6ce", "#e2d9e2", "#d4bcac",
+  "#c6896c", "#b25652", "#8d2b50", "#581647", "#2f1436"].map((c, i) => [i / 12, c]);
+
+function download(name, text, type) {
+  const link = document.createElement("a");
+  const url = URL.createObjectURL(new Blob([text], { type }));
+  link.href = url;
+  link.download = name;
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+function element(tag, attributes, ...children) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes || {})) {
+    if (name === "onclick") node.addEventListener("click", value);
+    else if (value !== null && value !== undefined) node.setAttribute(name, value);
+  }
+  node.append(...children.filter((child) => child !== null && child !== undefined));
+  return node;
+}
+
+/// A row of buttons of which one is pressed.
+function choice(name, options, current, onChange) {
+  const box = element("span", { class: "choice", role: "group", "aria-label": name },
+    element("span", { class: "name" }, name));
+  for (const [value, label] of options) {
+    const button = element("button", { type: "button", "aria-pressed": String(value === current) }, label);
+    button.addEventListener("click", () => {
+      for (const other of box.querySelectorAll("button")) other.setAttribute("aria-pressed", "false");
+      button.setAttribute("aria-pressed", "true");
+      onChange(value);
+    });
+    box.append(button);
+  }
+  return box;
+}
+
+const fileStem = (report.object || "object").replace(/[^A-Za-z0-9_-]+/g, "_") + "_";
+
+/// A figure on its card: `figure` has id, title, caption, height, controls, build(state), table(state).
+class FigureCard {
+  constructor(figure, parent) {
+    this.figure = figure;
+    this.state = Object.fromEntries((figure.controls || []).map((c) => [c.key, c.options[0][0]]));
+    this.plot = element("div", { class: "plot", id: figure.id });
+    const save = (format) => Plotly.downloadImage(this.plot,
+      { format, filename: fileStem + figure.id, width: 1000, height: 640, scale: format === "png" ? 2 : 1 });
+    this.save = element("span", { class: "save" },
+      element("button", { type: "button", title: "Save as SVG", onclick: () => save("svg") }, "SVG"),
+      element("button", { type: "button", title: "Save as PNG", onclick: () => save("png") }, "PNG"),
+      element("button", { type: "button", title: "Save the numbers as CSV",
+        onclick: () => download(fileStem + figure.id + ".csv", csvText(figure.table(this.state)), "text/csv") }, "CSV"));
+    const controls = (figure.controls || []).filter((c) => c.options.length > 1).map((control) =>
+      choice(control.name, control.options, this.state[control.key], (value) => {
+        this.state[control.key] = value;
+        this.draw();
+      }));
+    parent.append(element("section", { class: "card" },
+      element("div", { class: "head" }, element("h2", {}, figure.title), this.save),
+      controls.length ? element("div", { class: "controls" }, ...controls) : null,
+      this.plot,
+      element("p", { class: "caption" }, figure.caption)));
+  }
+
+  draw() {
+    try {
+      const { data, layout: plan } = this.figure.build(this.state);
+      const height = typeof this.figure.height === "function" ? this.figure.height() : this.figure.height || 380;
+      Plotly.react(this.plot, data, { ...plan, height },
+        { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "toImage"] });
+    } catch (error) {
+      Plotly.purge(this.plot);
+      this.plot.replaceChildren(element("div", { class: "note" },
+        "This figure could not be drawn: " + error.message + " The numbers are still saved with CSV."));
+    }
+  }
+}

@@ -1,0 +1,201 @@
+// Figures against time: one panel per pass, bands on top of each other, marks for what has no light.
+
+const eventKinds = [
+  { name: "dark: nothing lit and seen", symbol: "square", colour: "#7f8794", at: (row) => epochs.dark[row] === 1 },
+  { name: "in the umbra", symbol: "diamond", colour: "#333e52", at: (row) => epochs.sunlit[row] <= 0 },
+  { name: "glint", symbol: "star", colour: "#e69f00", at: (row) => epochs.glint[row] === 1 },
+];
+
+/// Parts of the width for the shown passes, by duration, none narrower than a third of an equal share.
+function panelDomains(shown) {
+  const least = 0.33 / shown.length;
+  const spans = shown.map((pass) => Math.max(1, clock[pass.rows[pass.rows.length - 1]] - clock[pass.rows[0]]));
+  const total = spans.reduce((a, b) => a + b, 0);
+  const shares = spans.map((span) => Math.max(least, span / total));
+  const sum = shares.reduce((a, b) => a + b, 0);
+  const gap = shown.length > 1 ? 0.03 : 0;
+  let at = 0;
+  return shares.map((share) => {
+    const width = share / sum * (1 - gap * (shown.length - 1));
+    const domain = [at, Math.min(1, at + width)];
+    at += width + gap;
+    return domain;
+  });
+}
+
+function timeAxes(shown, plan) {
+  const domains = panelDomains(shown);
+  const theme = themeColours();
+  shown.forEach((pass, k) => {
+    const first = clock[pass.rows[0]], last = clock[pass.rows[pass.rows.length - 1]];
+    const pad = Math.max(500, 0.02 * (last - first));
+    const iso = (t) => new Date(t).toISOString().replace("T", " ").replace("Z", "");
+    plan["xaxis" + (k ? k + 1 : "")] = axis({
+      type: "date", domain: domains[k], anchor: "y", title: shown.length > 2 && isNarrow() ? pass.day.slice(5) : pass.day + " UTC",
+      range: [iso(first - pad), iso(last + pad)], tickformat: last - first < 180000 ? "%H:%M:%S" : "%H:%M",
+      hoverformat: "%H:%M:%S", nticks: Math.max(2, Math.round((isNarrow() ? 5 : 9) * (domains[k][1] - domains[k][0]))),
+      showline: true, tickangle: 0, zeroline: false,
+    });
+    if (k > 0) // a line between panels that are not next to each other in time
+      plan.shapes.push({ type: "line", xref: "paper", yref: "paper", x0: domains[k][0] - 0.015, x1: domains[k][0] - 0.015,
+        y0: 0, y1: 1, line: { color: theme.line, width: 1, dash: "dot" } });
+  });
+}
+
+/// Marks under the curves for dark, umbra and glint epochs; returns the height they take.
+function eventTraces(shown, data, plan) {
+  const present = eventKinds.filter((kind) => shown.some((pass) => pass.rows.some(kind.at)));
+  if (!present.length) return 0;
+  const height = 0.035 * present.length + 0.02;
+  present.forEach((kind, level) => shown.forEach((pass, k) => {
+    const rows = pass.rows.filter(kind.at);
+    data.push({
+      type: "scatter", mode: "markers", x: rows.map((row) => times[row]), y: rows.map(() => present.length - level),
+      xaxis: "x" + (k ? k + 1 : ""), yaxis: "y9", name: kind.name, legendgroup: kind.name,
+      showlegend: k === shown.findIndex((other) => other.rows.some(kind.at)),
+      marker: { symbol: kind.symbol, color: kind.colour, size: 7 }, hovertemplate: "%{x}<extra>" + kind.name + "</extra>",
+    });
+  }));
+  plan.yaxis9 = { domain: [0, height], range: [0.4, present.length + 0.6], visible: false, fixedrange: true };
+  return height;
+}
+
+/// Rows of panels from `rows`: {title, at(band, row), cyclic, type, reversed, range, dtick, digits, unit}.
+function timeFigure(rows) {
+  const shown = shownPasses();
+  const data = [];
+  const plan = layout({ hovermode: "x unified", shapes: [] });
+  timeAxes(shown, plan);
+  const floor = eventTraces(shown, data, plan);
+  const gap = 0.05;
+  const height = (1 - floor - (floor ? 0.02 : 0) - gap * (rows.length - 1)) / rows.length;
+  rows.forEach((row, r) => {
+    const top = 1 - r * (height + gap);
+    const key = r ? r + 1 : "";
+    plan["yaxis" + key] = axis({
+      title: row.title, domain: [Math.max(0, top - height), top], type: row.type || "linear",
+      autorange: row.range ? false : row.reversed ? "reversed" : true, ...(row.range ? { range: row.range } : {}),
+      ...(row.dtick ? { dtick: row.dtick } : {}), ...(row.type === "log" ? { exponentformat: "power" } : {}),
+    });
+    const curves = row.curves || bands.map((band) => ({ name: band.name, colour: band.colour, symbol: band.symbol, at: (i) => row.at(band, i) }));
+    shown.forEach((pass, k) => curves.forEach((curve) => {
+      const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
+      data.push({
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, customdata: line.row.map((i) => epochs.phase[i]),
+        xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: curve.name, legendgroup: curve.name,
+        showlegend: r === 0 && k === 0, connectgaps: false,
+        line: { color: curve.colour, width: 1.6 }, marker: { color: curve.colour, symbol: curve.symbol, size: 6, maxdisplayed: 24 },
+        hovertemplate: "%{y:." + row.digits + "} " + (row.unit || "") + " (phase %{customdata:.1f}°)",
+      });
+    }));
+  });
+  // The lowest row carries the time axis, under the marks if there are any.
+  for (let k = 0; k < shown.length; ++k)
+    plan["xaxis" + (k ? k + 1 : "")].anchor = floor ? "y9" : "y" + (rows.length > 1 ? rows.length : "");
+  return { data, layout: plan };
+}
+
+const brightnessRows = {
+  mag: { title: "AB magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag" },
+  irradiance: { title: "I [W m⁻² nm⁻¹]", at: (band, i) => positive(band.irradiance[i]), type: "log", digits: "3e" },
+  intensity: { title: "intensity [m² sr⁻¹]", at: (band, i) => positive(band.intensity[i]), type: "log", digits: "3e" },
+};
+
+const skyNorth = { equatorial: "celestial north", altaz: "the local zenith", scattering: "the normal of the scattering plane" }[report.frame];
+
+const timeFigures = [
+  {
+    id: "intensity", title: "Brightness against time", height: () => isNarrow() ? 340 : 400,
+    controls: [{ key: "scale", name: "Show", options: [["mag", "magnitude"], ["irradiance", "irradiance"], ["intensity", "intensity"]] }],
+    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Lines break between passes and where nothing is both lit and seen.",
+    build: (state) => timeFigure([brightnessRows[state.scale]]),
+    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
+      ["intensity", "m2 sr-1", (b, i) => b.intensity[i]]]),
+  },
+  {
+    id: "qu", title: "q and u against time", height: () => isNarrow() ? 400 : 400,
+    caption: "Fractions of I in percent, in the sky frame: +q towards " + skyNorth + ", +u 45° from it.",
+    build: () => timeFigure([
+      { title: "q [%]", at: (band, i) => percent(band.q[i]), digits: "2f", unit: "%" },
+      { title: "u [%]", at: (band, i) => percent(band.u[i]), digits: "2f", unit: "%" }]),
+    table: () => tidyTable([["q", "", (b, i) => b.q[i]], ["u", "", (b, i) => b.u[i]]]),
+  },
+  {
+    id: "p_pa", title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 400,
+    caption: "p in percent; position angle in [0°, 180°) from " + skyNorth + ". The angle is cyclic: no line joins 180° to 0°.",
+    build: () => timeFigure([
+      { title: "p [%]", at: (band, i) => percent(band.p[i]), digits: "2f", unit: "%" },
+      { title: "angle [°]", at: (band, i) => band.pa[i], cyclic: true, range: [0, 180], dtick: 45, digits: "1f", unit: "°" }]),
+    table: () => tidyTable([["p", "", (b, i) => b.p[i]], ["pa", "deg", (b, i) => b.pa[i]]]),
+  },
+];
+
+/// Differences of magnitude between neighbouring bands.
+const colourPairs = byWavelength.slice(1).map((long, k) => ({
+  name: bands[byWavelength[k]].name + " − " + bands[long].name, short: bands[byWavelength[k]], long: bands[long],
+  colour: manyBandColours[(2 * k) % 7], symbol: symbols[k % symbols.length],
+}));
+const colourIndex = (pair, i) => pair.short.mag[i] === null || pair.long.mag[i] === null ? null : pair.short.mag[i] - pair.long.mag[i];
+const colourFigure = {
+  id: "colour", title: "Colour index against time", height: () => isNarrow() ? 320 : 380,
+  caption: "Shorter minus longer wavelength, AB magnitudes: larger is redder.",
+  build: () => timeFigure([{ title: "colour [mag]", digits: "3f", unit: "mag",
+    curves: colourPairs.map((pair) => ({ name: pair.name, colour: pair.colour, symbol: pair.symbol, at: (i) => colourIndex(pair, i) })) }]),
+  table: () => ({
+    columns: [{ name: "time_utc", unit: "" }, { name: "pass_id", unit: "" }, ...colourPairs.map((pair) => ({ name: pair.name.replace("−", "minus"), unit: "mag" }))],
+    rows: shownRows().map((i) => [epochs.time[i], epochs.pass[i], ...colourPairs.map((pair) => colourIndex(pair, i))]),
+  }),
+};
+
+const contributions = report.contributions.filter((c) => c.intensity.length);
+
+/// Parts of a run where the object gives light in that band.
+function litRuns(pass, band) {
+  const out = [];
+  for (const run of pass.runs) {
+    let open = false;
+    for (const row of run) {
+      const lit = bands[band].intensity[row] > 0;
+      if (lit && !open) out.push([]);
+      if (lit) out[out.length - 1].push(row);
+      open = lit;
+    }
+  }
+  return out;
+}
+
+const contributionFigure = {
+  id: "contribution", title: "Contribution per material", height: () => isNarrow() ? 360 : 380,
+  controls: [
+    { key: "band", name: "Band", options: byWavelength.map((b) => [b, bands[b].name]) },
+    { key: "scale", name: "Show", options: [["share", "share"], ["intensity", "intensity"]] }],
+  caption: "Reflected light of each material, stacked; share of the intensity in percent or absolute.",
+  build: (state) => {
+    const shown = shownPasses();
+    const data = [];
+    const plan = layout({ hovermode: "x unified", shapes: [] });
+    timeAxes(shown, plan);
+    const floor = eventTraces(shown, data, plan);
+    const isShare = state.scale === "share";
+    plan.yaxis = axis({ title: isShare ? "share of I [%]" : "intensity [m² sr⁻¹]", domain: [floor ? floor + 0.02 : 0, 1], ...(isShare ? { range: [0, 100] } : { rangemode: "tozero" }) });
+    if (floor) shown.forEach((_, k) => { plan["xaxis" + (k ? k + 1 : "")].anchor = "y9"; });
+    let stack = 0;
+    shown.forEach((pass, k) => litRuns(pass, state.band).forEach((run) => {
+      ++stack; // every run is a stack of its own, so that no area spans a gap
+      contributions.forEach((part) => data.push({
+        type: "scatter", mode: run.length === 1 ? "markers" : "lines", stackgroup: "stack" + stack, x: run.map((i) => times[i]),
+        y: run.map((i) => part.intensity[state.band][i] * (isShare ? 100 / bands[state.band].intensity[i] : 1)),
+        xaxis: "x" + (k ? k + 1 : ""), yaxis: "y", name: part.material, legendgroup: part.material, showlegend: stack === 1,
+        line: { width: 0.5, color: part.colour }, fillcolor: part.colour,
+        hovertemplate: isShare ? "%{y:.1f} %" : "%{y:.3e}",
+      }));
+    }));
+    return { data, layout: plan };
+  },
+  table: () => {
+    const rows = [];
+    for (const i of shownRows())
+      bands.forEach((band, b) => contributions.forEach((part) => rows.push([epochs.time[i], epochs.pass[i], band.name, part.material, part.intensity[b][i]])));
+    return { columns: [["time_utc", ""], ["pass_id", ""], ["band", ""], ["material", ""], ["intensity", "m2 sr-1"]].map(([name, unit]) => ({ name, unit })), rows };
+  },
+};

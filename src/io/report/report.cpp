@@ -1,0 +1,122 @@
+#include <umov/io/report.h>
+
+#include "io/report/assemble.h"
+#include "io/report/report_data.h"
+
+#include <cmath>
+#include <umov/core/embedded.h>
+
+UMOV_EMBEDDED(report_template)
+UMOV_EMBEDDED(report_css)
+UMOV_EMBEDDED(report_js_model)
+UMOV_EMBEDDED(report_js_plot)
+UMOV_EMBEDDED(report_js_time)
+UMOV_EMBEDDED(report_js_plane)
+UMOV_EMBEDDED(report_js_boxes)
+UMOV_EMBEDDED(report_js_main)
+UMOV_EMBEDDED(report_plotly_licence)
+UMOV_EMBEDDED(report_plotly)
+
+namespace umov {
+namespace {
+
+std::string html_text(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+    case '&':
+      out += "&amp;";
+      break;
+    case '<':
+      out += "&lt;";
+      break;
+    case '>':
+      out += "&gt;";
+      break;
+    case '"':
+      out += "&quot;";
+      break;
+    case '\'':
+      out += "&#39;";
+      break;
+    default:
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string page_script() {
+  std::string out = "(() => {\n\"use strict\";\n";
+  for (const std::string_view part : {report_js_model(), report_js_plot(), report_js_time(),
+                                      report_js_plane(), report_js_boxes(), report_js_main()})
+    out += part;
+  return out + "})();\n";
+}
+
+struct Slot {
+  std::string_view name;
+  std::string text;
+};
+
+/// Fills "@@NAME@@" marks. One pass over the template, so a text that looks like a mark stays text.
+std::string fill(std::string_view page, std::span<const Slot> slots) {
+  std::string out;
+  while (true) {
+    const std::size_t start = page.find("@@");
+    const std::size_t end = start == page.npos ? page.npos : page.find("@@", start + 2);
+    if (end == page.npos)
+      return out.append(page);
+    out.append(page.substr(0, start));
+    const std::string_view name = page.substr(start + 2, end - start - 2);
+    for (const Slot &slot : slots)
+      if (slot.name == name)
+        out += slot.text;
+    page.remove_prefix(end + 2);
+  }
+}
+
+} // namespace
+
+Result<std::string> assemble_report(const ReportInput &input, std::string_view plotting_script) {
+  if (plotting_script.empty())
+    return fail(ErrorCode::Internal,
+                "this build has no plotting script, so it cannot write report.html. Install the "
+                "Python package plotly (pip install plotly) and configure again with "
+                "-DUMOV_PLOTLY_JS=.../plotly/package_data/plotly.min.js, or leave \"html\" out of "
+                "[output] formats.");
+  UMOV_ASSIGN(data, report_data(input));
+  const Slot slots[] = {
+      {"TITLE", html_text(input.title)},
+      {"CSS", std::string(report_css())},
+      {"DATA", std::move(data)},
+      {"PLOTLY", std::string(plotting_script)},
+      {"PLOTLY_LICENCE", html_text(report_plotly_licence())},
+      {"SCRIPT", page_script()},
+  };
+  return fill(report_template(), slots);
+}
+
+Result<std::string> make_report(const ReportInput &input) {
+  return assemble_report(input, report_plotly());
+}
+
+std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> surfaces) {
+  std::vector<PureMaterialCurve> out;
+  for (const Surface &surface : surfaces)
+    for (std::size_t band = 0; band < surface.band_count(); ++band) {
+      PureMaterialCurve curve{surface.material().name, band, {}, {}};
+      for (int deg = 0; deg <= 180; ++deg) {
+        const FresnelFactors f = surface.fresnel(band, std::cos(deg * (pi / 180)));
+        if (!(f.a > 0)) // an interface that reflects nothing (n = 1) has no q
+          continue;
+        curve.phase_deg.push_back(deg);
+        curve.q_scat.push_back(f.b / f.a);
+      }
+      if (!curve.phase_deg.empty())
+        out.push_back(std::move(curve));
+    }
+  return out;
+}
+
+} // namespace umov

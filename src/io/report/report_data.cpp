@@ -1,0 +1,266 @@
+#include "io/report/report_data.h"
+
+#include "io/report/base64.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace umov {
+namespace {
+
+using Json = nlohmann::ordered_json; // keeps the order of insertion: same bytes each run
+
+const char *frame_name(PolarizationFrame frame) {
+  switch (frame) {
+  case PolarizationFrame::Equatorial:
+    return "equatorial";
+  case PolarizationFrame::AltAz:
+    return "altaz";
+  case PolarizationFrame::Scattering:
+    break;
+  }
+  return "scattering";
+}
+
+const char *north_name(PolarizationFrame frame) {
+  switch (frame) {
+  case PolarizationFrame::Equatorial:
+    return "celestial north";
+  case PolarizationFrame::AltAz:
+    return "the local zenith";
+  case PolarizationFrame::Scattering:
+    break;
+  }
+  return "the normal of the scattering plane";
+}
+
+std::vector<std::string> standard_conventions(PolarizationFrame frame) {
+  return {
+      "Times are UTC at mid-exposure; phase angle is Sun-object-observer, 0 = full.",
+      "intensity is reflected intensity per unit solar irradiance [m2/sr], without distance, "
+      "eclipse or atmosphere; irradiance adds sunlit fraction, Sun distance and range, above the "
+      "atmosphere [W m-2 nm-1]. Magnitudes are AB.",
+      fmt::format("q and u are fractions of I, shown in percent: +q towards {}, +u 45 deg from it "
+                  "{}, position angle counted the same way in [0, 180) deg (IAU 1973).",
+                  north_name(frame),
+                  frame == PolarizationFrame::Scattering ? "counter-clockwise on the sky"
+                                                         : "through east"),
+      "q_scat is positive perpendicular to the scattering plane (Sun, object, observer).",
+      "p is the linear degree of polarization; where nothing is both lit and seen, intensity is 0 "
+      "and q, u, p and position angle are undefined and left out.",
+      "v > 0: the field turns counter-clockwise as seen by the observer (IAU 1973).",
+  };
+}
+
+template <class Value> Json column(std::size_t count, std::size_t stride, Value &&value) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < count; i += stride)
+    out.push_back(value(i));
+  return out;
+}
+
+/// Names of materials in the order that fixes their colours.
+std::vector<std::string> colour_order(const ReportInput &input) {
+  std::vector<std::string> names = input.key_frame_materials;
+  for (const std::string &name : input.curve.materials)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  return names;
+}
+
+Json epochs_json(const LightCurve &curve, std::size_t stride) {
+  const auto each = [&](auto &&value) {
+    return column(curve.epochs.size(), stride,
+                  [&](std::size_t i) { return value(curve.epochs[i]); });
+  };
+  using E = const LightCurveEpoch &;
+  return {{"time", each([](E e) { return to_iso(e.geometry.time); })},
+          {"pass", each([](E e) { return e.pass_id; })},
+          {"az", each([](E e) { return e.geometry.azimuth.degrees(); })},
+          {"alt", each([](E e) { return e.geometry.altitude.degrees(); })},
+          {"range", each([](E e) { return e.geometry.range_km; })},
+          {"phase", each([](E e) { return e.geometry.phase_angle.degrees(); })},
+          {"sunlit", each([](E e) { return e.geometry.sunlit; })},
+          {"sun_alt", each([](E e) { return e.geometry.sun_altitude.degrees(); })},
+          {"dark", each([](E e) { return e.is_dark ? 1 : 0; })},
+          {"glint", each([](E e) { return e.has_glint ? 1 : 0; })},
+          {"elset_age", each([](E e) { return e.elset_age_days; })}};
+}
+
+Json band_json(const LightCurve &curve, std::size_t band, std::size_t stride) {
+  const std::size_t bands = curve.bands.size();
+  const auto each = [&](auto &&value) {
+    return column(curve.epochs.size(), stride,
+                  [&](std::size_t i) { return value(curve.samples[i * bands + band]); });
+  };
+  using S = const LightCurveSample &;
+  return {{"name", curve.bands[band].name},
+          {"wavelength_nm", curve.bands[band].wavelength.nm()},
+          {"irradiance", each([](S s) { return s.irradiance; })},
+          {"intensity", each([](S s) { return s.intensity; })},
+          {"mag", each([](S s) { return s.magnitude; })},
+          {"q", each([](S s) { return s.sky.q; })},
+          {"u", each([](S s) { return s.sky.u; })},
+          {"p", each([](S s) { return s.p; })},
+          {"pa", each([](S s) { return s.pa_deg; })},
+          {"q_scat", each([](S s) { return s.scattering.q; })},
+          {"u_scat", each([](S s) { return s.scattering.u; })}};
+}
+
+/// Mesh groups of one material are added up.
+Json contributions_json(const ReportInput &input, std::size_t stride) {
+  const LightCurve &curve = input.curve;
+  Json out = Json::array();
+  const std::size_t bands = curve.bands.size(), groups = curve.groups.size();
+  const std::vector<std::string> names = colour_order(input);
+  for (std::size_t m = 0; m < names.size(); ++m) {
+    Json per_band = Json::array();
+    for (std::size_t b = 0; b < bands; ++b)
+      per_band.push_back(column(curve.epochs.size(), stride, [&](std::size_t i) {
+        double sum = 0;
+        for (std::size_t g = 0; g < groups; ++g)
+          if (curve.materials[g] == names[m])
+            sum += curve.group_intensity[(i * groups + g) * bands + b];
+        return sum;
+      }));
+    const bool is_used = std::find(curve.materials.begin(), curve.materials.end(), names[m]) !=
+                         curve.materials.end();
+    out.push_back({{"material", names[m]},
+                   {"colour", material_colour(m)},
+                   {"intensity", is_used ? std::move(per_band) : Json::array()}});
+  }
+  return out;
+}
+
+Json passes_json(const std::vector<Pass> &passes) {
+  Json out = Json::array();
+  for (const Pass &pass : passes)
+    out.push_back({{"id", pass.id},
+                   {"rise", to_iso(pass.rise)},
+                   {"culmination", to_iso(pass.culmination)},
+                   {"set", to_iso(pass.set)},
+                   {"altitude_max", pass.culmination_altitude.degrees()},
+                   {"open_start", pass.is_open_at_start},
+                   {"open_end", pass.is_open_at_end},
+                   {"rows", pass.rows}});
+  return out;
+}
+
+Json sky_track_json(const std::vector<SkyTrackPoint> &track) {
+  const auto each = [&](auto &&value) {
+    return column(track.size(), 1, [&](std::size_t i) { return value(track[i]); });
+  };
+  using P = const SkyTrackPoint &;
+  return {{"time", each([](P p) { return to_iso(p.time); })},
+          {"pass", each([](P p) { return p.pass_id; })},
+          {"az", each([](P p) { return p.azimuth.degrees(); })},
+          {"alt", each([](P p) { return p.altitude.degrees(); })},
+          {"sunlit", each([](P p) { return p.sunlit; })}};
+}
+
+Json pure_json(const std::vector<PureMaterialCurve> &curves) {
+  Json out = Json::array();
+  for (const PureMaterialCurve &curve : curves)
+    out.push_back({{"material", curve.material},
+                   {"band", curve.band},
+                   {"phase", curve.phase_deg},
+                   {"q_scat", curve.q_scat}});
+  return out;
+}
+
+Json key_frames_json(const std::vector<ReportKeyFrame> &frames) {
+  Json out = Json::array();
+  for (const ReportKeyFrame &frame : frames) {
+    Json pictures = Json::array();
+    for (const ReportPicture &picture : frame.pictures)
+      pictures.push_back(
+          {{"label", picture.label}, {"src", "data:image/png;base64," + base64(picture.png)}});
+    out.push_back({{"time", frame.time},
+                   {"caption", frame.caption},
+                   {"width_m", frame.width_m},
+                   {"sun", {frame.sun_right, frame.sun_up}},
+                   {"pictures", std::move(pictures)}});
+  }
+  return out;
+}
+
+Result<void> check(const ReportInput &input) {
+  const LightCurve &c = input.curve;
+  const std::size_t rows = c.epochs.size() * c.bands.size();
+  if (c.samples.size() != rows || c.materials.size() != c.groups.size() ||
+      c.group_intensity.size() != rows * c.groups.size())
+    return fail(ErrorCode::Internal,
+                fmt::format("report: {} epochs, {} bands and {} groups do not fit {} samples, {} "
+                            "materials and {} contributions",
+                            c.epochs.size(), c.bands.size(), c.groups.size(), c.samples.size(),
+                            c.materials.size(), c.group_intensity.size()));
+  for (const PureMaterialCurve &pure : input.pure_materials)
+    if (pure.band >= c.bands.size() || pure.phase_deg.size() != pure.q_scat.size())
+      return fail(ErrorCode::Internal,
+                  fmt::format("report: curve of material {} is for band {} of {} with {} angles "
+                              "and {} values",
+                              pure.material, pure.band, c.bands.size(), pure.phase_deg.size(),
+                              pure.q_scat.size()));
+  return {};
+}
+
+/// JSON that cannot end its <script> element nor start a comment: markup characters as \u escapes.
+std::string inert(const std::string &json) {
+  std::string out;
+  out.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<')
+      out += "\\u003c";
+    else if (c == '>')
+      out += "\\u003e";
+    else if (c == '&')
+      out += "\\u0026";
+    else
+      out += c;
+  }
+  return out;
+}
+
+} // namespace
+
+Result<std::string> report_data(const ReportInput &input) {
+  UMOV_TRY(check(input));
+  const LightCurve &curve = input.curve;
+  const std::size_t stride =
+      std::max<std::size_t>(1, (curve.epochs.size() + report_max_epochs - 1) / report_max_epochs);
+  Json bands = Json::array();
+  for (std::size_t b = 0; b < curve.bands.size(); ++b)
+    bands.push_back(band_json(curve, b, stride));
+  Json manifest = Json::array();
+  for (const auto &[key, value] : input.manifest)
+    manifest.push_back({key, value});
+  const Json data = {
+      {"title", input.title},
+      {"object", curve.object},
+      {"norad_cat_id", curve.norad_cat_id},
+      {"site",
+       {{"name", input.site.name},
+        {"lat", input.site.latitude.degrees()},
+        {"lon", input.site.longitude.degrees()},
+        {"alt_m", input.site.altitude_m}}},
+      {"frame", frame_name(input.frame)},
+      {"stride", stride},
+      {"passes", passes_json(input.passes)},
+      {"epochs", epochs_json(curve, stride)},
+      {"bands", std::move(bands)},
+      {"contributions", contributions_json(input, stride)},
+      {"sky_track", sky_track_json(input.sky_track)},
+      {"pure_materials", pure_json(input.pure_materials)},
+      {"key_frames", key_frames_json(input.key_frames)},
+      {"polarization_scale", polarization_scale()},
+      {"manifest", std::move(manifest)},
+      {"warnings", input.warnings},
+      {"conventions",
+       input.conventions.empty() ? standard_conventions(input.frame) : input.conventions},
+  };
+  // Bytes that are not UTF-8 (an old file name) become replacement characters, NaN becomes null.
+  return inert(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+} // namespace umov
