@@ -39,6 +39,10 @@ struct Material {
   std::optional<BodyLobe> body;               ///< absent: none
 };
 
+/// Checks numbers and lists: n > 0, k >= 0, 0 <= m <= 1e9, reflectance 0..1, wavelengths in nm,
+/// increasing. BadInput says what was found and expected.
+Result<void> check(const Material &material);
+
 /// Table 1 of the paper: paper_au, paper_al, paper_bk7, paper_asi, paper_spectralon, paper_mylar,
 /// with m = 200, ashikhmin shadowing and the paper's body lobe (product decisions).
 std::vector<std::string> builtin_material_names();

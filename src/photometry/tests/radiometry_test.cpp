@@ -7,7 +7,7 @@ namespace umov {
 namespace {
 
 TEST(Airmass, MatchesKastenAndYoung) {
-  // physics.md section 8, six digits after the point.
+  // physics page, section 8, six digits after the point.
   EXPECT_NEAR(airmass(Angle::degrees(30)), 1.994293, 5e-7);
   EXPECT_NEAR(airmass(Angle::degrees(10)), 5.586036, 5e-7);
   EXPECT_TRUE(std::isnan(airmass(Angle::degrees(-0.1))));
@@ -20,7 +20,7 @@ TEST(AbMagnitude, IsZeroAtItsZeroPoint) {
 }
 
 TEST(Irradiance, LambertSphereAgainstTheSunsOwnMagnitude) {
-  // physics.md section 7: R = 1 m, rho = .2, phase 90, 1000 km, Sun -26.76: magnitude 6.6705.
+  // physics page, section 7: R = 1 m, rho = .2, phase 90, 1000 km, Sun -26.76: magnitude 6.6705.
   // Intensity rho R^2 .212207; a magnitude difference needs no band.
   const double ratio =
       irradiance_at_observer(0.2 * 0.212207, 1.0, constants::au_km, 1.0, 1000.0);

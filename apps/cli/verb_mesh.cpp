@@ -1,0 +1,204 @@
+#include "console.h"
+#include "verbs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <map>
+#include <umov/core/files.h>
+#include <umov/io/obj.h>
+#include "tables.h"
+#include <umov/shape/primitives.h>
+#include <umov/shape/topology.h>
+
+namespace umov::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Sizes of the shapes; each shape uses those that its help line names.
+struct ShapeOptions {
+  std::string shape, output;
+  double radius = 1, length = 2, width = 1, height = 1, edge = 1, chamfer = 0.1;
+  std::vector<double> semi_axes{0.25, 0.25, 1};
+  int facets = 5000, sides = 48;
+  double array_angle_deg = 0;
+  bool two_sided = false;
+};
+
+using Maker = std::function<Mesh(const ShapeOptions &)>;
+
+const std::map<std::string, Maker> &makers() {
+  static const std::map<std::string, Maker> all{
+      {"sphere",
+       [](const auto &o) { return make_sphere(o.radius, static_cast<std::size_t>(o.facets)); }},
+      {"plate", [](const auto &o) { return make_plate(o.width, o.height, o.two_sided); }},
+      {"cylinder",
+       [](const auto &o) {
+         return make_cylinder(o.radius, o.length, static_cast<std::size_t>(o.sides));
+       }},
+      {"chamfered-cube", [](const auto &o) { return make_chamfered_cube(o.edge, o.chamfer); }},
+      {"cigar",
+       [](const auto &o) {
+         return make_ellipsoid(o.semi_axes[0], o.semi_axes[1], o.semi_axes[2],
+                               static_cast<std::size_t>(o.facets));
+       }},
+      {"hst",
+       [](const auto &o) {
+         HstOptions hst;
+         hst.sides = static_cast<std::size_t>(o.sides);
+         hst.array_angle_rad = o.array_angle_deg * pi / 180;
+         return make_hst(hst);
+       }},
+      {"agena",
+       [](const auto &o) { return make_agena({.sides = static_cast<std::size_t>(o.sides)}); }},
+  };
+  return all;
+}
+
+Result<void> make(const ShapeOptions &options) {
+  const Mesh mesh = makers().at(options.shape)(options);
+  if (options.output.empty() || options.output == "-")
+    return put("", write_obj(mesh, options.shape).obj);
+  const fs::path path = options.output;
+  if (path.extension() != ".obj")
+    return fail(ErrorCode::Usage, "-o " + options.output + ": a name that ends in .obj was expected");
+  const ObjText text = write_obj(mesh, path.stem().string());
+  UMOV_TRY(write_file_atomically(fs::path(path).replace_extension(".mtl"), text.mtl));
+  return write_file_atomically(path, text.obj);
+}
+
+void add_make(CLI::App &mesh, const Exit &exit_with) {
+  auto *verb = mesh.add_subcommand("make", "Make a shape as OBJ and MTL, in metres, +Z up");
+  auto options = std::make_shared<ShapeOptions>();
+  auto common = std::make_shared<Common>();
+  std::vector<std::string> names;
+  for (const auto &[name, maker] : makers())
+    names.push_back(name);
+  verb->add_option("shape", options->shape,
+                   "sphere (--radius --facets), plate (--width --height --two-sided), cylinder "
+                   "(--radius --length --sides), chamfered-cube (--edge --chamfer), cigar "
+                   "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides)")
+      ->required()
+      ->check(CLI::IsMember(names));
+  verb->add_option("-o,--output", options->output, "OBJ file; the MTL goes beside it");
+  const auto length = CLI::Range(1e-6, 1e6);
+  verb->add_option("--radius", options->radius, "[m]")->check(length)->capture_default_str();
+  verb->add_option("--length", options->length, "[m]")->check(length)->capture_default_str();
+  verb->add_option("--width", options->width, "[m]")->check(length)->capture_default_str();
+  verb->add_option("--height", options->height, "[m]")->check(length)->capture_default_str();
+  verb->add_option("--edge", options->edge, "[m]")->check(length)->capture_default_str();
+  verb->add_option("--chamfer", options->chamfer, "[m], below half the edge")
+      ->check(length)
+      ->capture_default_str();
+  verb->add_option("--semi-axes", options->semi_axes, "a b c [m]")
+      ->expected(3)
+      ->check(length)
+      ->capture_default_str();
+  verb->add_option("--facets", options->facets, "At least so many triangles")
+      ->check(CLI::Range(8, 5'000'000))
+      ->capture_default_str();
+  verb->add_option("--sides", options->sides, "Sides of round parts")
+      ->check(CLI::Range(8, 4096))
+      ->capture_default_str();
+  verb->add_option("--array-angle-deg", options->array_angle_deg,
+                   "Turn of the solar arrays about their boom")
+      ->capture_default_str();
+  verb->add_flag("--two-sided", options->two_sided, "Materials \"front\" and \"back\"");
+  add_common(*verb, *common, false);
+  verb->callback([options, exit_with] {
+    if (options->shape == "chamfered-cube" && 2 * options->chamfer >= options->edge) {
+      exit_with(report(Error{ErrorCode::Usage, "--chamfer must be below half of --edge", {}}));
+      return;
+    }
+    const auto done = make(*options);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+struct ReadOptions {
+  std::string file, output;
+  ObjOptions obj;
+  bool require_closed = false;
+};
+
+Table group_table(const Mesh &mesh, const MeshReport &found) {
+  Table table;
+  std::vector<std::string> names = mesh.groups;
+  std::vector<std::int64_t> triangles;
+  for (const std::size_t count : found.group_triangles)
+    triangles.push_back(static_cast<std::int64_t>(count));
+  table.add("material", "", "mesh material", std::move(names));
+  table.add("triangles", "", "number of triangles", std::move(triangles));
+  table.add("area", "m2", "area of one side", found.group_area_m2);
+  return table;
+}
+
+void describe(const MeshReport &m) {
+  fmt::print("bounding box  {:.6g} x {:.6g} x {:.6g} m\n", m.upper.x - m.lower.x,
+             m.upper.y - m.lower.y, m.upper.z - m.lower.z);
+  fmt::print("vertices      {}\ntriangles     {} in {} parts\narea          {:.6g} m2\n",
+             m.vertices, m.triangles, m.parts, m.area_m2);
+  if (m.is_closed)
+    fmt::print("volume        {:.6g} m3\n", m.volume_m3);
+  fmt::print("closed        {}\nconvex        {}\n", m.is_closed ? "yes" : "no",
+             m.is_convex ? "yes" : "no");
+  fmt::print("open edges {}, non-manifold edges {}, inconsistent edges {}, inward parts {}\n",
+             m.open_edges, m.non_manifold_edges, m.inconsistent_edges, m.inward_parts);
+  fmt::print("degenerate {}, duplicates {}, opposite pairs {}\n\n", m.degenerate, m.duplicate,
+             m.opposite_pairs);
+}
+
+Result<void> look(const ReadOptions &options, const Common &common, bool check) {
+  Diagnostics diagnostics;
+  UMOV_ASSIGN(read, read_obj(options.file, options.obj, diagnostics));
+  const MeshReport found = inspect(read.mesh);
+  const Table table = group_table(read.mesh, found);
+  if (common.json) {
+    UMOV_TRY(put(options.output, to_json(table)));
+  } else {
+    describe(found);
+    UMOV_TRY(put(options.output, to_text(table)));
+  }
+  if (check) {
+    UMOV_TRY(clean(read.mesh, diagnostics));
+  }
+  report(diagnostics, common);
+  if (options.require_closed && !found.is_closed)
+    return fail(ErrorCode::BadInput,
+                fmt::format("not closed: {} open and {} non-manifold edges. Mend the mesh or leave "
+                            "--require-closed out.",
+                            found.open_edges, found.non_manifold_edges),
+                {options.file});
+  return {};
+}
+
+void add_look(CLI::App &mesh, const Exit &exit_with, bool check) {
+  auto *verb = mesh.add_subcommand(check ? "check" : "info",
+                                   check ? "Say what is wrong with a mesh"
+                                         : "Bounding box, parts, area per material");
+  auto options = std::make_shared<ReadOptions>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("file", options->file, "OBJ file")->required();
+  verb->add_option("--unit", options->obj.unit, "Unit of the file: m, cm, mm, km, in, ft");
+  verb->add_option("--up", options->obj.up, "Axis of the file that becomes body +Z, such as +Y");
+  if (check)
+    verb->add_flag("--require-closed", options->require_closed, "Fail if the mesh is not closed");
+  add_common(*verb, *common, true);
+  verb->callback([options, common, exit_with, check] {
+    const auto done = look(*options, *common, check);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace
+
+void add_mesh(CLI::App &app, const Exit &exit_with) {
+  auto *mesh = app.add_subcommand("mesh", "Make, describe and check meshes");
+  mesh->require_subcommand(1);
+  add_make(*mesh, exit_with);
+  add_look(*mesh, exit_with, false);
+  add_look(*mesh, exit_with, true);
+}
+
+} // namespace umov::cli

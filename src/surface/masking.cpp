@@ -1,0 +1,69 @@
+#include "surface/masking.h"
+
+#include "surface/gauss.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace umov {
+namespace {
+
+constexpr std::size_t cells = 2048;
+/// Beyond 9 standard deviations of the slope no facet is turned away from k: P = 1 to the last bit.
+constexpr double reach = 9;
+constexpr double pi = std::numbers::pi;
+
+/// Integral over azimuth of max(a + b cos phi, 0); closed (physics of P, section 3).
+double azimuth_integral(double a, double b) {
+  if (a >= b)
+    return 2 * pi * a;
+  const double ratio = std::clamp(-a / b, -1.0, 1.0);
+  const double phi = std::acos(ratio);
+  return 2 * (a * phi + b * std::sqrt(1 - ratio * ratio));
+}
+
+} // namespace
+
+double Masking::integral(double n_k, double exponent) {
+  const double sine = std::sqrt(std::max(0.0, (1 - n_k) * (1 + n_k)));
+  const auto integrand = [&](double theta) {
+    const double c = std::cos(theta), s = std::sin(theta);
+    // D instead of rho: g/<n.h> directly.
+    const double d = (exponent + 2) / (2 * pi) * std::exp(exponent * std::log(std::max(c, 1e-300)));
+    return d * s * azimuth_integral(c * n_k, s * sine);
+  };
+  const double last = std::min(pi / 2, reach / std::sqrt(exponent + 2));
+  // Facets tilted by more than 90 deg - theta_k are cut by the horizon of k: a kink.
+  const double kink = std::min(last, std::asin(std::min(1.0, n_k)));
+  double sum = gauss_integral(0, kink, integrand);
+  // Just past the kink the integrand rises like a power 3/2: t^2 makes it smooth.
+  const double width = std::sqrt(last - kink);
+  sum += gauss_integral(0, width, [&](double t) { return 2 * t * integrand(kink + t * t); });
+  return sum;
+}
+
+Masking::Masking(double exponent)
+    : scale_(std::sqrt(exponent + 2)), limit_(std::min(1.0, reach / scale_)),
+      per_cell_(cells / limit_) {
+  for (std::size_t i = 0; i <= cells; ++i)
+    values_.push_back(integral(limit_ * static_cast<double>(i) / cells, exponent));
+}
+
+double Masking::operator()(double n_k) const {
+  if (n_k <= 0)
+    return 0;
+  if (n_k >= limit_)
+    return limit_ < 1 ? 1 : std::min(1.0, n_k / values_.back());
+  const double x = n_k * per_cell_;
+  const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(x), 1, cells - 2);
+  const double t = x - static_cast<double>(i);
+  // Lagrange's cubic through i-1, i, i+1, i+2.
+  const double *v = &values_[i - 1];
+  const double a = t + 1, b = t, c = t - 1, d = t - 2;
+  const double value = -v[0] * b * c * d / 6 + v[1] * a * c * d / 2 - v[2] * a * b * d / 2 +
+                       v[3] * a * b * c / 6;
+  return std::min(1.0, n_k / value);
+}
+
+} // namespace umov
