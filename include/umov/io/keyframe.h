@@ -21,28 +21,28 @@ struct KeyFrameView {
 };
 
 struct KeyFrameOptions {
-  std::uint32_t size = 320;   ///< pixels per side, 1..4096
-  std::uint32_t samples = 2;  ///< rays per pixel and axis, 1..8
-  std::size_t band = 0;       ///< into Scene::bands
-  double half_width_m = 0;    ///< half the picture's side; 0: 1.04 bounding radii of the mesh
-  unsigned threads = 0;       ///< the pixels do not depend on it
+  std::uint32_t size = 320;  ///< pixels per side, 1..4096
+  std::uint32_t samples = 2; ///< rays per pixel and axis, 1..8
+  std::size_t band = 0;      ///< into Scene::bands
+  double half_width_m = 0;   ///< half the picture's side; 0: 1.04 bounding radii of the mesh
+  unsigned threads = 0;      ///< the pixels do not depend on it
 };
 
 /// What one ray found.
 struct KeyFrameSample {
   std::uint32_t material = no_index; ///< into KeyFrameRaster::materials; no_index: sky
-  bool is_lit = false;    ///< the Sun reaches the point
-  float radiance = 0;     ///< [1/sr] per unit solar irradiance, single bounce and body lobe
-  float p = 0;            ///< |Q|/I of that light; NaN where there is none
-  float facing = 0;       ///< cosine of the shown normal to the observer, 0..1
+  bool is_lit = false;               ///< the Sun reaches the point
+  float radiance = 0; ///< [1/sr] per unit solar irradiance, single bounce and body lobe
+  float p = 0;        ///< |Q|/I of that light; NaN where there is none
+  float facing = 0;   ///< cosine of the shown normal to the observer, 0..1
 };
 
 struct KeyFrameRaster {
   std::uint32_t side = 0; ///< samples per side: size * samples
   std::uint32_t samples = 1;
   double half_width_m = 0;
-  std::vector<std::string> materials;  ///< names, in order of first use in the scene
-  std::vector<KeyFrameSample> points;  ///< [row * side + column], rows from the top
+  std::vector<std::string> materials; ///< names, in order of first use in the scene
+  std::vector<KeyFrameSample> points; ///< [row * side + column], rows from the top
 };
 
 enum class KeyFrameShading { Intensity, Polarization, Material };

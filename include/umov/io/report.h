@@ -25,9 +25,9 @@ struct ReportPicture {
 
 /// The object at one epoch.
 struct ReportKeyFrame {
-  std::string time;      ///< UTC
+  std::string time; ///< UTC
   std::string caption;
-  double width_m = 0;    ///< side of the pictures
+  double width_m = 0;               ///< side of the pictures
   double sun_right = 0, sun_up = 0; ///< unit vector to the Sun, its part in the picture plane
   std::vector<ReportPicture> pictures;
 };
@@ -46,13 +46,13 @@ struct ReportInput {
   Site site;
   PolarizationFrame frame = PolarizationFrame::Equatorial; ///< axes of q, u and pa
   std::vector<Pass> passes;
-  std::vector<SkyTrackPoint> sky_track = {};        ///< empty: the epochs of the curve alone
+  std::vector<SkyTrackPoint> sky_track = {}; ///< empty: the epochs of the curve alone
   std::vector<PureMaterialCurve> pure_materials = {};
   std::vector<ReportKeyFrame> key_frames = {};
   std::vector<std::string> key_frame_materials = {}; ///< material_names(scene): fixes the colours
   std::vector<std::pair<std::string, std::string>> manifest = {}; ///< shown as given, in order
   std::vector<std::string> warnings = {};
-  std::vector<std::string> conventions = {};        ///< one sentence each; empty: the standard ones
+  std::vector<std::string> conventions = {}; ///< one sentence each; empty: the standard ones
 };
 
 /// Most epochs that go into one page; a longer curve is thinned evenly and the page says so.

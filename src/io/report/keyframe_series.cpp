@@ -95,11 +95,10 @@ Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const Li
   std::vector<KeyFrameRaster> rasters;
   for (const std::size_t i : epochs) {
     if (i >= curve.epochs.size())
-      return fail(ErrorCode::Internal, fmt::format("key frame of epoch {}; the curve has {}", i,
-                                                   curve.epochs.size()));
+      return fail(ErrorCode::Internal,
+                  fmt::format("key frame of epoch {}; the curve has {}", i, curve.epochs.size()));
     const LightCurveEpoch &at = curve.epochs[i];
-    UMOV_ASSIGN(raster,
-                trace_key_frame(scene, occluder, {at.pose, celestial_north(at)}, options));
+    UMOV_ASSIGN(raster, trace_key_frame(scene, occluder, {at.pose, celestial_north(at)}, options));
     rasters.push_back(std::move(raster));
   }
   const double white = common_exposure(rasters);

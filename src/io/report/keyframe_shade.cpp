@@ -14,8 +14,7 @@ constexpr double knee = 0.02; // share of white where asinh turns from linear to
 
 Rgb intensity_rgb(const KeyFrameSample &s, double white) {
   const Rgb ground = mix(unlit_far, unlit_near, s.facing);
-  const double tone =
-      std::min(1., std::asinh(s.radiance / (knee * white)) / std::asinh(1 / knee));
+  const double tone = std::min(1., std::asinh(s.radiance / (knee * white)) / std::asinh(1 / knee));
   // Hue tells light from no light: slate is unlit, warm grey is reflected sunlight.
   return mix(ground, {255, 250, 240}, tone);
 }
@@ -64,8 +63,8 @@ std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading sh
           sum[k] += c[k];
       }
       for (std::size_t k = 0; k < 3; ++k)
-        out[3 * (y * size + x) + k] = static_cast<std::uint8_t>(
-            std::lround(sum[k] / static_cast<double>(samples * samples)));
+        out[3 * (y * size + x) + k] =
+            static_cast<std::uint8_t>(std::lround(sum[k] / static_cast<double>(samples * samples)));
     }
   return out;
 }

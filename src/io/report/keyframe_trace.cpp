@@ -160,11 +160,11 @@ Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occlu
   if (!(norm(across) > 1e-9 * norm(view.up)))
     return fail(ErrorCode::BadInput,
                 "key frame: `up` lies along the line of sight; give another direction");
-  Camera camera{scene, occluder, view, options.band, bounding_sphere(scene.mesh), {}, {}, 0, {}, {}};
+  Camera camera{scene, occluder, view, options.band, bounding_sphere(scene.mesh),
+                {},    {},       0,    {},           {}};
   camera.up = normalized(across);
   camera.right = cross(camera.up, v);
-  camera.half_width =
-      options.half_width_m > 0 ? options.half_width_m : 1.04 * camera.sphere.radius;
+  camera.half_width = options.half_width_m > 0 ? options.half_width_m : 1.04 * camera.sphere.radius;
   KeyFrameRaster out;
   out.side = options.size * options.samples;
   out.samples = options.samples;

@@ -8,9 +8,9 @@ namespace umov {
 Result<std::string> encode_png(std::uint32_t width, std::uint32_t height,
                                std::span<const std::uint8_t> rgb) {
   if (width == 0 || height == 0 || rgb.size() != std::size_t{3} * width * height)
-    return fail(ErrorCode::Internal, fmt::format("picture of {} x {} has {} bytes, expected {}",
-                                                 width, height, rgb.size(),
-                                                 std::size_t{3} * width * height));
+    return fail(ErrorCode::Internal,
+                fmt::format("picture of {} x {} has {} bytes, expected {}", width, height,
+                            rgb.size(), std::size_t{3} * width * height));
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = width;

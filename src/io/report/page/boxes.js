@@ -90,7 +90,7 @@ function svg(tag, attributes, text) {
 /// Compass and the side of the Sun, drawn over a picture.
 function overlay(frame) {
   const picture = svg("svg", { viewBox: "0 0 100 100", "aria-hidden": "true" });
-  const mark = { fill: "#cfd6e4", "font-size": "6", "font-family": "sans-serif", "text-anchor": "middle" };
+  const mark = { fill: "#cfd6e4", "font-size": "6", "font-family": "sans-serif", "text-anchor": "middle", stroke: "#0a0c12", "stroke-width": "1.6", "paint-order": "stroke" };
   picture.append(svg("path", { d: "M91 93 V82 M91 93 H80", stroke: "#cfd6e4", "stroke-width": "0.7", fill: "none" }),
     svg("text", { x: 91, y: 80, ...mark }, "N"), svg("text", { x: 77, y: 95, ...mark }, "E"));
   const [right, up] = frame.sun;
@@ -98,7 +98,7 @@ function overlay(frame) {
   if (length > 0.02) {
     const x = right / length, y = -up / length;
     const at = (r, side) => (50 + r * x - side * y).toFixed(2) + " " + (50 + r * y + side * x).toFixed(2);
-    picture.append(svg("path", { d: "M" + at(47, 0) + " L" + at(43.5, 2) + " L" + at(43.5, -2) + " Z", fill: "#f0c040" }),
+    picture.append(svg("path", { d: "M" + at(47, 0) + " L" + at(43.5, 2) + " L" + at(43.5, -2) + " Z", fill: "#f0c040", stroke: "#0a0c12", "stroke-width": "0.6" }),
       svg("text", { ...mark, fill: "#f0c040", x: 50 + 39 * x, y: 52 + 39 * y }, "Sun"));
   }
   return picture;

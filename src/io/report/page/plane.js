@@ -19,10 +19,12 @@ function joined(x, y) {
   return out;
 }
 
-/// Where the name of a pure-material curve stands: at its highest point.
-function pureLabel(curve) {
+/// Where the name of a pure-material curve stands: each material at its own phase angle, so that
+/// names of like curves do not cover each other.
+function pureLabel(curve, m) {
+  const wanted = 70 + 60 * (m + 0.5) / pureMaterials.length;
   let best = 0;
-  curve.q_scat.forEach((value, i) => { if (value > curve.q_scat[best]) best = i; });
+  curve.phase.forEach((value, i) => { if (Math.abs(value - wanted) < Math.abs(curve.phase[best] - wanted)) best = i; });
   return { x: curve.phase[best], y: percent(curve.q_scat[best]) };
 }
 
@@ -37,20 +39,20 @@ function pureTraces(data, plan, shownBand) {
       line: { color: shownBand === "all" ? bands[curve.band].colour : theme.soft, dash: dashes[m % dashes.length], width: 1.2 },
       hovertemplate: "%{y:.1f} % at %{x}°<extra>" + curve.material + " " + bands[curve.band].name + "</extra>",
     });
-    if (shownBand !== "all" || curve.band === middleBand) {
-      const at = pureLabel(curve);
-      plan.annotations.push({ x: at.x, y: at.y, text: curve.material, showarrow: false, yshift: 7, font: { size: 10, color: theme.soft } });
+    if (shownBand !== "all") {
+      const at = pureLabel(curve, m);
+      plan.annotations.push({ x: at.x, y: at.y, text: curve.material, showarrow: false, yshift: 8, font: { size: 10, color: theme.soft }, bgcolor: theme.card, opacity: 0.85, borderpad: 1 });
     }
   });
   if (shownBand === "all") // one grey line per material explains the dashes
     pureMaterials.forEach((name, m) => data.push({
-      type: "scatter", mode: "lines", x: [null], y: [null], name, legendgroup: "pure " + name,
+      type: "scatter", mode: "lines", x: [null], y: [null], name, legendgroup: "pure " + name, legendrank: 2000,
       line: { color: theme.soft, dash: dashes[m % dashes.length], width: 1.2 }, hoverinfo: "skip",
     }));
 }
 
 const phaseFigure = {
-  id: "q_phase", title: "Q against phase angle", height: () => isNarrow() ? 420 : 440,
+  id: "q_phase", title: "Q against phase angle", height: () => isNarrow() ? 420 : 460,
   controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].name])] }],
   caption: "q_scat in percent, positive perpendicular to the scattering plane"
     + (pureMaterials.length ? "; thin lines behind: a surface of one material alone, single bounce, without body light." : "."),
@@ -79,7 +81,7 @@ function phaseAxis(extra) {
 }
 
 const planeFigure = {
-  id: "qu_plane", title: "q-u plane", height: () => isNarrow() ? 430 : 480,
+  id: "qu_plane", title: "q-u plane", height: () => isNarrow() ? 430 : 460,
   controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].name])] }],
   caption: "Sky frame, percent; colour is phase angle, marker shape is the band. Distance from the origin is p, half the angle around it the position angle.",
   build: (state) => {
@@ -87,12 +89,16 @@ const planeFigure = {
     const data = byWavelength.filter((b) => state.band === "all" || state.band === b).map((b) => {
       const line = joined((i) => percent(bands[b].q[i]), (i) => percent(bands[b].u[i]));
       return {
-        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: bands[b].name, text: line.row.map((i) => epochs.time[i]),
-        line: { color: bands[b].colour, width: 0.8 }, customdata: line.row.map((i) => epochs.phase[i]),
-        marker: { color: line.row.map((i) => epochs.phase[i]), coloraxis: "coloraxis", symbol: bands[b].symbol, size: 7, line: { width: 0.6, color: bands[b].colour } },
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: bands[b].name, showlegend: false, text: line.row.map((i) => epochs.time[i]),
+        line: { color: theme.line, width: 0.8 }, customdata: line.row.map((i) => epochs.phase[i]),
+        marker: { color: line.row.map((i) => epochs.phase[i]), coloraxis: "coloraxis", symbol: bands[b].symbol, size: 7, line: { width: 0.5, color: theme.soft } },
         hovertemplate: "q %{x:.2f} %, u %{y:.2f} %<br>phase %{customdata:.2f}°<br>%{text}<extra>" + bands[b].name + "</extra>",
       };
     });
+    // The legend explains the shapes; a marker coloured by phase has no colour of its own.
+    byWavelength.filter((b) => state.band === "all" || state.band === b).forEach((b) => data.push({
+      type: "scatter", mode: "markers", x: [null], y: [null], name: bands[b].name, hoverinfo: "skip",
+      marker: { symbol: bands[b].symbol, size: 9, color: theme.soft } }));
     return { data, layout: layout({
       hovermode: "closest", coloraxis: phaseAxis(), margin: { l: 50, r: 14, t: 8, b: 90 },
       xaxis: axis({ title: "q [%]", zeroline: true, zerolinecolor: theme.soft }),
@@ -115,7 +121,7 @@ function hasWebgl() {
 }
 
 const rgbFigure = {
-  id: "q_rgb", title: "Q in three bands", height: () => isNarrow() ? 380 : 480,
+  id: "q_rgb", title: "Q in three bands", height: () => isNarrow() ? 380 : 460,
   caption: "q_scat of three bands in percent: drag to turn. Colour is phase angle"
     + (pureMaterials.length ? "; lines are surfaces of one material alone, over the phase angles of this curve." : "."),
   build: () => {
@@ -130,18 +136,23 @@ const rgbFigure = {
       if (parts.some((part) => !part)) return;
       const at = parts[0].phase.map((phase, k) => ({ phase, q: parts.map((part) => percent(part.q_scat[k])) })).filter((e) => e.phase >= limits[0] - 1 && e.phase <= limits[1] + 1);
       data.push({ type: "scatter3d", mode: "lines", name, x: at.map((e) => e.q[0]), y: at.map((e) => e.q[1]), z: at.map((e) => e.q[2]),
-        line: { color: (contributions.find((c) => c.material === name) || {}).colour || theme.soft, width: 3 }, hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %" });
+        line: { color: manyBandColours[m % 7], width: 4, dash: m >= 7 ? "dash" : "solid" }, hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %" });
     });
     data.push({
-      type: "scatter3d", mode: "markers", name: report.object || "object", text: rows.map((i) => epochs.time[i]),
+      type: "scatter3d", mode: "markers", name: report.object || "object", showlegend: false, text: rows.map((i) => epochs.time[i]),
       x: rows.map((i) => percent(bands[rgbBands[0]].q_scat[i])), y: rows.map((i) => percent(bands[rgbBands[1]].q_scat[i])), z: rows.map((i) => percent(bands[rgbBands[2]].q_scat[i])),
       marker: { size: 3.5, color: rows.map((i) => epochs.phase[i]), coloraxis: "coloraxis" },
       hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %<br>%{text}",
     });
-    const side = (b) => axis({ title: { text: bands[b].name + " [%]" }, backgroundcolor: theme.card });
+    // The axes follow the object; material curves that go beyond are cut.
+    const side = (b) => {
+      const [low, high] = range(rows.map((i) => percent(bands[b].q_scat[i]))) || [0, 1];
+      const pad = Math.max(0.5, 0.35 * (high - low));
+      return axis({ title: { text: bands[b].name + " [%]" }, backgroundcolor: theme.card, range: [low - pad, high + pad], nticks: 5 });
+    };
     return { data, layout: layout({
       coloraxis: phaseAxis({ y: -0.02 }), margin: { l: 0, r: 0, t: 8, b: 60 }, dragmode: "turntable",
-      scene: { xaxis: side(rgbBands[0]), yaxis: side(rgbBands[1]), zaxis: side(rgbBands[2]), aspectmode: "cube", dragmode: "turntable", camera: { eye: { x: 1.5, y: 1.5, z: 0.9 } } } }) };
+      scene: { xaxis: side(rgbBands[0]), yaxis: side(rgbBands[1]), zaxis: side(rgbBands[2]), aspectmode: "cube", dragmode: "turntable", camera: { eye: { x: 2.1, y: -1.25, z: 0.8 } } } }) };
   },
   table: () => ({
     columns: [{ name: "time_utc", unit: "" }, { name: "phase_angle", unit: "deg" }, ...rgbBands.map((b) => ({ name: "q_scat " + bands[b].name, unit: "" }))],
@@ -157,7 +168,7 @@ function trackOf(pass) {
 }
 
 const skyFigure = {
-  id: "sky", title: "Track in the sky", height: () => isNarrow() ? 440 : 480,
+  id: "sky", title: "Track in the sky", height: () => isNarrow() ? 440 : 460,
   controls: [{ key: "colour", name: "Colour", options: [["phase", "phase angle"], ["pa", "position angle"]] }],
   caption: "Looking up: north at the top, east at the left, the horizon outside. Grey: in the Earth's shadow (also where no light is computed).",
   build: (state) => {
@@ -185,7 +196,7 @@ const skyFigure = {
       const ends = [track.rows[0], track.rows[track.rows.length - 1]];
       data.push({
         type: "scatterpolar", mode: "markers+text", r: ends.map((i) => 90 - track.source.alt[i]), theta: ends.map((i) => track.source.az[i]), cliponaxis: false,
-        text: ends.map((i) => track.source.time[i].slice(11, 19)), textposition: ["bottom right", "top right"], textfont: { size: 11 },
+        text: ends.map((i) => track.source.time[i].slice(11, 19)), textposition: ends.map((i) => track.source.az[i] % 360 > 180 ? "middle right" : "middle left"), textfont: { size: isNarrow() ? 9 : 11 },
         marker: { size: 8, symbol: ["circle-open", "x-thin-open"], color: theme.text, line: { width: 2 } }, hoverinfo: "skip", showlegend: false,
       });
     });
@@ -195,7 +206,7 @@ const skyFigure = {
       ? { colorscale: cyclicScale, cmin: 0, cmax: 180, colorbar: colourBar("position angle, " + bands[middleBand].name + " [°]", { tickvals: [0, 45, 90, 135, 180], y: -0.1 }) }
       : phaseAxis({ y: -0.1 });
     return { data, layout: layout({
-      coloraxis: colours, margin: { l: 36, r: 36, t: 26, b: 84 }, dragmode: false,
+      coloraxis: colours, margin: isNarrow() ? { l: 46, r: 46, t: 26, b: 84 } : { l: 62, r: 62, t: 26, b: 84 }, dragmode: false,
       polar: {
         bgcolor: theme.card,
         radialaxis: { range: [0, 90], tickvals: [0, 30, 60, 90], ticktext: ["90°", "60°", "30°", ""], angle: 45, tickangle: 0, gridcolor: theme.grid, linecolor: theme.line, tickfont: { color: theme.soft } },

@@ -2,6 +2,7 @@
 
 const isNarrow = () => window.innerWidth < 620;
 const isTouch = window.matchMedia("(pointer: coarse)").matches;
+const hasHover = window.matchMedia("(hover: hover)").matches; // else the tool bar would cover the legend
 
 function themeColours() {
   const style = getComputedStyle(document.documentElement);
@@ -91,7 +92,8 @@ class FigureCard {
     this.state = Object.fromEntries((figure.controls || []).map((c) => [c.key, c.options[0][0]]));
     this.plot = element("div", { class: "plot", id: figure.id });
     const save = (format) => Plotly.downloadImage(this.plot,
-      { format, filename: fileStem + figure.id, width: 1000, height: 640, scale: format === "png" ? 2 : 1 });
+      { format, filename: fileStem + figure.id, width: 1000, height: 640, scale: format === "png" ? 2 : 1 })
+      .catch(() => {}); // a second press while the first is at work
     this.save = element("span", { class: "save" },
       element("button", { type: "button", title: "Save as SVG", onclick: () => save("svg") }, "SVG"),
       element("button", { type: "button", title: "Save as PNG", onclick: () => save("png") }, "PNG"),
@@ -107,6 +109,13 @@ class FigureCard {
       controls.length ? element("div", { class: "controls" }, ...controls) : null,
       this.plot,
       element("p", { class: "caption" }, figure.caption)));
+    // The width of a card changes with scroll bars and columns, not with the window alone.
+    this.width = 0;
+    new ResizeObserver(() => {
+      if (this.plot.clientWidth === this.width || !this.plot.layout) return;
+      this.width = this.plot.clientWidth;
+      Plotly.Plots.resize(this.plot);
+    }).observe(this.plot);
   }
 
   draw() {
@@ -114,7 +123,7 @@ class FigureCard {
       const { data, layout: plan } = this.figure.build(this.state);
       const height = typeof this.figure.height === "function" ? this.figure.height() : this.figure.height || 380;
       Plotly.react(this.plot, data, { ...plan, height },
-        { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["select2d", "lasso2d", "toImage"] });
+        { displaylogo: false, displayModeBar: hasHover ? "hover" : false, modeBarButtonsToRemove: ["select2d", "lasso2d", "toImage"] });
     } catch (error) {
       Plotly.purge(this.plot);
       this.plot.replaceChildren(element("div", { class: "note" },

@@ -1,8 +1,8 @@
 // Figures against time: one panel per pass, bands on top of each other, marks for what has no light.
 
 const eventKinds = [
-  { name: "dark: nothing lit and seen", symbol: "square", colour: "#7f8794", at: (row) => epochs.dark[row] === 1 },
-  { name: "in the umbra", symbol: "diamond", colour: "#333e52", at: (row) => epochs.sunlit[row] <= 0 },
+  { name: "dark", symbol: "square", colour: "#7f8794", at: (row) => epochs.dark[row] === 1 },
+  { name: "umbra", symbol: "diamond", colour: "#5b6fae", at: (row) => epochs.sunlit[row] <= 0 },
   { name: "glint", symbol: "star", colour: "#e69f00", at: (row) => epochs.glint[row] === 1 },
 ];
 
@@ -51,7 +51,7 @@ function eventTraces(shown, data, plan) {
     const rows = pass.rows.filter(kind.at);
     data.push({
       type: "scatter", mode: "markers", x: rows.map((row) => times[row]), y: rows.map(() => present.length - level),
-      xaxis: "x" + (k ? k + 1 : ""), yaxis: "y9", name: kind.name, legendgroup: kind.name,
+      xaxis: "x" + (k ? k + 1 : ""), yaxis: "y9", name: kind.name, legendgroup: kind.name, legendrank: 2000,
       showlegend: k === shown.findIndex((other) => other.rows.some(kind.at)),
       marker: { symbol: kind.symbol, color: kind.colour, size: 7 }, hovertemplate: "%{x}<extra>" + kind.name + "</extra>",
     });
@@ -105,15 +105,15 @@ const skyNorth = { equatorial: "celestial north", altaz: "the local zenith", sca
 
 const timeFigures = [
   {
-    id: "intensity", title: "Brightness against time", height: () => isNarrow() ? 340 : 400,
+    id: "intensity", title: "Brightness against time", height: () => isNarrow() ? 340 : 460,
     controls: [{ key: "scale", name: "Show", options: [["mag", "magnitude"], ["irradiance", "irradiance"], ["intensity", "intensity"]] }],
-    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Lines break between passes and where nothing is both lit and seen.",
+    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
     build: (state) => timeFigure([brightnessRows[state.scale]]),
     table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
       ["intensity", "m2 sr-1", (b, i) => b.intensity[i]]]),
   },
   {
-    id: "qu", title: "q and u against time", height: () => isNarrow() ? 400 : 400,
+    id: "qu", title: "q and u against time", height: () => isNarrow() ? 400 : 460,
     caption: "Fractions of I in percent, in the sky frame: +q towards " + skyNorth + ", +u 45° from it.",
     build: () => timeFigure([
       { title: "q [%]", at: (band, i) => percent(band.q[i]), digits: "2f", unit: "%" },
@@ -121,7 +121,7 @@ const timeFigures = [
     table: () => tidyTable([["q", "", (b, i) => b.q[i]], ["u", "", (b, i) => b.u[i]]]),
   },
   {
-    id: "p_pa", title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 400,
+    id: "p_pa", title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 460,
     caption: "p in percent; position angle in [0°, 180°) from " + skyNorth + ". The angle is cyclic: no line joins 180° to 0°.",
     build: () => timeFigure([
       { title: "p [%]", at: (band, i) => percent(band.p[i]), digits: "2f", unit: "%" },
@@ -137,7 +137,7 @@ const colourPairs = byWavelength.slice(1).map((long, k) => ({
 }));
 const colourIndex = (pair, i) => pair.short.mag[i] === null || pair.long.mag[i] === null ? null : pair.short.mag[i] - pair.long.mag[i];
 const colourFigure = {
-  id: "colour", title: "Colour index against time", height: () => isNarrow() ? 320 : 380,
+  id: "colour", title: "Colour index against time", height: () => isNarrow() ? 320 : 460,
   caption: "Shorter minus longer wavelength, AB magnitudes: larger is redder.",
   build: () => timeFigure([{ title: "colour [mag]", digits: "3f", unit: "mag",
     curves: colourPairs.map((pair) => ({ name: pair.name, colour: pair.colour, symbol: pair.symbol, at: (i) => colourIndex(pair, i) })) }]),
@@ -165,7 +165,7 @@ function litRuns(pass, band) {
 }
 
 const contributionFigure = {
-  id: "contribution", title: "Contribution per material", height: () => isNarrow() ? 360 : 380,
+  id: "contribution", title: "Contribution per material", height: () => isNarrow() ? 360 : 460,
   controls: [
     { key: "band", name: "Band", options: byWavelength.map((b) => [b, bands[b].name]) },
     { key: "scale", name: "Show", options: [["share", "share"], ["intensity", "intensity"]] }],

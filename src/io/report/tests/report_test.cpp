@@ -88,8 +88,8 @@ TEST(Report, GroupsOfOneMaterialAreAddedUp) {
   ASSERT_EQ(data["contributions"].size(), 2U);
   EXPECT_EQ(data["contributions"][1]["material"], "paper_al");
   const std::size_t row = 30, band = 2;
-  const double expected =
-      curve.group_intensity[(row * 3 + 1) * 3 + band] + curve.group_intensity[(row * 3 + 2) * 3 + band];
+  const double expected = curve.group_intensity[(row * 3 + 1) * 3 + band] +
+                          curve.group_intensity[(row * 3 + 2) * 3 + band];
   EXPECT_EQ(data["contributions"][1]["intensity"][band][row].get<double>(), expected);
 }
 
