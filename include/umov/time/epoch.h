@@ -48,4 +48,7 @@ struct EarthOrientation {
 };
 EarthOrientation earth_orientation(Epoch<Utc> time);
 
+/// Warns once if a span leaves the Earth orientation table, with the size of the error.
+void warn_if_outside_eop(Epoch<Utc> first, Epoch<Utc> last, Diagnostics &diagnostics);
+
 } // namespace umov

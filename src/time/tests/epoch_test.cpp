@@ -1,0 +1,76 @@
+#include <gtest/gtest.h>
+#include <umov/time/epoch.h>
+
+namespace umov {
+namespace {
+
+Epoch<Utc> at(const char *iso) { return *utc_from_iso(iso); }
+
+TEST(Epoch, ReadsAndWritesIso) {
+  EXPECT_EQ(to_iso(at("2018-01-21T04:00:00Z")), "2018-01-21T04:00:00.000Z");
+  EXPECT_EQ(to_iso(at("2018-01-21T04:00:00.1239Z")), "2018-01-21T04:00:00.124Z");
+  EXPECT_EQ(to_iso(at("2018-01-21T04:00-10:00")), "2018-01-21T14:00:00.000Z");
+  EXPECT_DOUBLE_EQ(mjd(at("2018-01-21T12:00:00Z")), 58139.5); // Julian date 2458140.0
+}
+
+TEST(Epoch, RefusesWhatIsNotATimeAndSaysWhy) {
+  const struct {
+    const char *text, *word;
+  } rows[] = {{"2018-01-21T04:00:00", "has no zone"},   {"2018-01-21", "is not a time"},
+              {"2018-13-21T04:00:00Z", "calendar"},     {"2018-02-30T04:00:00Z", "calendar"},
+              {"2018-01-21T25:00:00Z", "calendar"},     {"2018-01-21T04:00:60Z", "leap second"},
+              {"1971-12-31T00:00:00Z", "before 1972"},  {"", "is not a time"},
+              {"2018-01-21T04:00:00Zx", "is not a time"}};
+  for (const auto &row : rows) {
+    const auto result = utc_from_iso(row.text);
+    ASSERT_FALSE(result) << row.text;
+    EXPECT_NE(result.error().message.find(row.word), std::string::npos) << result.error().message;
+  }
+}
+
+TEST(Epoch, LeapSecondIsParsedOrderedAndRoundTripped) {
+  const auto before = at("2016-12-31T23:59:59Z"), leap = at("2016-12-31T23:59:60Z"),
+             after = at("2017-01-01T00:00:00Z");
+  EXPECT_EQ(to_iso(leap), "2016-12-31T23:59:60.000Z");
+  EXPECT_NEAR(seconds_between(leap, before), 1, 1e-6);
+  EXPECT_NEAR(seconds_between(after, before), 2, 1e-6);
+  EXPECT_EQ(to_iso(plus_seconds(before, 1.5)), "2016-12-31T23:59:60.500Z");
+}
+
+TEST(Epoch, SplitKeepsAMicrosecond) {
+  for (const char *iso : {"1972-01-01T00:00:00Z", "2018-06-30T23:59:59Z", "2056-12-31T12:00:00Z"})
+    for (const double s : {1e-6, 0.001, 86399.999999, 1e6 + 1e-6})
+      EXPECT_NEAR(seconds_between(plus_seconds(at(iso), s), at(iso)), s, 1e-6) << iso;
+}
+
+TEST(Epoch, ElementSetEpochs) {
+  // HST's set of 2018: day 20.4 is 20 January, 09:36.
+  EXPECT_EQ(to_iso(utc_from_year_day(2018, 20.4)), "2018-01-20T09:36:00.000Z");
+  EXPECT_NEAR(clock_days_between(at("2018-01-21T00:00:00Z"), utc_from_year_day(2018, 20.4)), 0.6,
+              1e-12);
+  // The clock does not count the leap second between these.
+  EXPECT_NEAR(clock_days_between(at("2017-01-01T12:00:00Z"), at("2016-12-31T12:00:00Z")), 1, 1e-12);
+}
+
+TEST(EarthOrientation, GivesTheIersTable) {
+  // finals2000A, MJD 60309 (2023-12-31): x .138971, y .201880 arcsec, UT1-UTC .0089604 s.
+  const EarthOrientation eo = earth_orientation(at("2023-12-31T00:00:00Z"));
+  EXPECT_TRUE(eo.is_covered);
+  EXPECT_NEAR(eo.dut1_s, .0089604, 1e-12);
+  EXPECT_NEAR(eo.x_p_rad * 206264.806247, .138971, 1e-9);
+  // Up to the leap second at the end of 2016 UT1-UTC stays near -.41; after it, near +.59.
+  EXPECT_LT(earth_orientation(at("2016-12-31T23:59:00Z")).dut1_s, -0.4);
+  EXPECT_GT(earth_orientation(at("2017-01-01T00:00:00Z")).dut1_s, 0.5);
+  EXPECT_FALSE(earth_orientation(at("2030-01-01T00:00:00Z")).is_covered);
+}
+
+TEST(LeapSeconds, WarnPastTheTable) {
+  Diagnostics quiet, warned;
+  warn_if_beyond_leap_seconds(at("2026-01-01T00:00:00Z"), quiet);
+  warn_if_beyond_leap_seconds(at("2040-01-01T00:00:00Z"), warned);
+  EXPECT_TRUE(quiet.empty());
+  EXPECT_EQ(warned.warnings().size(), 1u);
+}
+
+} // namespace
+} // namespace umov
