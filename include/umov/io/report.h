@@ -62,7 +62,8 @@ inline constexpr std::size_t report_max_epochs = 20'000;
 /// if the curve's arrays do not fit together or a pure-material curve names a band that is missing.
 Result<std::string> make_report(const ReportInput &input);
 
-/// B/A against phase angle, 0..180 deg in steps of 1 deg, for each material and band.
+/// B/A against phase angle, 0..180 deg in steps of 1 deg, for each band of each material (by name,
+/// the first of that name counts). Materials whose interface reflects nothing (n = 1) have none.
 std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> surfaces);
 
 /// "#rrggbb" of the i-th material in pictures and plots: Okabe & Ito (2008), lighter again after

@@ -32,13 +32,23 @@ void choose_from_pass(const LightCurve &curve, const std::vector<std::size_t> &l
   const auto light = [&](std::size_t i) {
     return curve.samples[i * curve.bands.size() + band].intensity;
   };
-  std::set<std::size_t> own{*std::max_element(
-      lit.begin(), lit.end(), [&](std::size_t a, std::size_t b) { return light(a) < light(b); })};
-  // Even in rank: the rows of a pass are even in time.
-  const std::size_t others = count - 1;
-  for (std::size_t k = 0; k < others; ++k)
-    own.insert(lit[others == 1 ? lit.size() / 2 : k * (lit.size() - 1) / (others - 1)]);
-  chosen.insert(own.begin(), own.end());
+  const auto brightest = static_cast<std::size_t>(
+      std::max_element(lit.begin(), lit.end(),
+                       [&](std::size_t a, std::size_t b) { return light(a) < light(b); }) -
+      lit.begin());
+  // Even in rank, which is even in time; the nearest one gives way to the brightest.
+  std::set<std::size_t> ranks;
+  for (std::size_t k = 0; k < count; ++k)
+    ranks.insert(count == 1 ? brightest : k * (lit.size() - 1) / (count - 1));
+  const auto distance = [&](std::size_t rank) {
+    return rank > brightest ? rank - brightest : brightest - rank;
+  };
+  ranks.erase(*std::min_element(ranks.begin(), ranks.end(), [&](std::size_t a, std::size_t b) {
+    return distance(a) < distance(b);
+  }));
+  ranks.insert(brightest);
+  for (const std::size_t rank : ranks)
+    chosen.insert(lit[rank]);
 }
 
 std::string caption_of(const LightCurve &curve, std::size_t epoch, std::size_t band) {

@@ -3,6 +3,7 @@
 #include "io/report/assemble.h"
 #include "io/report/report_data.h"
 
+#include <algorithm>
 #include <cmath>
 #include <umov/core/embedded.h>
 
@@ -103,9 +104,12 @@ Result<std::string> make_report(const ReportInput &input) {
 
 std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> surfaces) {
   std::vector<PureMaterialCurve> out;
-  for (const Surface &surface : surfaces)
+  for (const Surface &surface : surfaces) {
+    const std::string &name = surface.material().name;
+    if (std::any_of(out.begin(), out.end(), [&](const auto &c) { return c.material == name; }))
+      continue;
     for (std::size_t band = 0; band < surface.band_count(); ++band) {
-      PureMaterialCurve curve{surface.material().name, band, {}, {}};
+      PureMaterialCurve curve{name, band, {}, {}};
       for (int deg = 0; deg <= 180; ++deg) {
         const FresnelFactors f = surface.fresnel(band, std::cos(deg * (pi / 180)));
         if (!(f.a > 0)) // an interface that reflects nothing (n = 1) has no q
@@ -116,6 +120,7 @@ std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> sur
       if (!curve.phase_deg.empty())
         out.push_back(std::move(curve));
     }
+  }
   return out;
 }
 

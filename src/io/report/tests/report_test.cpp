@@ -182,6 +182,21 @@ TEST(Report, ArraysThatDoNotFitAreOurBug) {
   EXPECT_NE(assemble_report(input, stand_in).error().message.find("paper_al"), std::string::npos);
 }
 
+TEST(Report, PureMaterialCurvesAreFresnelRatios) {
+  const auto bands = bands_from({"paper_rgb"});
+  std::vector<Surface> surfaces;
+  for (const char *name : {"paper_al", "paper_spectralon", "paper_al"})
+    surfaces.push_back(*Surface::compile(*builtin_material(name), *bands));
+  const auto curves = pure_material_curves(surfaces);
+  ASSERT_EQ(curves.size(), 3U); // aluminium once; spectralon (n = 1) has no interface
+  ASSERT_EQ(curves[1].phase_deg.size(), 181U);
+  EXPECT_EQ(curves[1].material, "paper_al");
+  EXPECT_EQ(curves[1].phase_deg[140], 140);
+  // physics.md section 2, aluminium at 550 nm, phase 140: M01 / M00, six digits each.
+  EXPECT_NEAR(curves[1].q_scat[140], .087379 / .883108, 2e-6);
+  EXPECT_NEAR(curves[1].q_scat[0], 0, 1e-15); // normal incidence: no plane
+}
+
 TEST(Base64, MatchesRfc4648) { // RFC 4648 section 10
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
