@@ -31,7 +31,7 @@ function timeAxes(shown, plan) {
     const pad = Math.max(500, 0.02 * (last - first));
     const iso = (t) => new Date(t).toISOString().replace("T", " ").replace("Z", "");
     plan["xaxis" + (k ? k + 1 : "")] = axis({
-      type: "date", domain: domains[k], anchor: "y", title: shown.length > 2 && isNarrow() ? pass.day.slice(5) : pass.day + " UTC",
+      type: "date", domain: domains[k], anchor: "y", title: shown.length > 3 || (shown.length > 2 && isNarrow()) ? pass.day.slice(5) : pass.day + " UTC",
       range: [iso(first - pad), iso(last + pad)], tickformat: last - first < 180000 ? "%H:%M:%S" : "%H:%M",
       hoverformat: "%H:%M:%S", nticks: Math.max(2, Math.round((isNarrow() ? 5 : 9) * (domains[k][1] - domains[k][0]))),
       showline: true, tickangle: 0, zeroline: false,
@@ -140,7 +140,9 @@ const colourFigure = {
   id: "colour", title: "Colour index against time", height: () => isNarrow() ? 320 : 460,
   caption: "Shorter minus longer wavelength, AB magnitudes: larger is redder.",
   build: () => timeFigure([{ title: "colour [mag]", digits: "3f", unit: "mag",
-    curves: colourPairs.map((pair) => ({ name: pair.name, colour: pair.colour, symbol: pair.symbol, at: (i) => colourIndex(pair, i) })) }]),
+    // Rounding keeps a constant colour a straight line instead of a plot of the last bits.
+    curves: colourPairs.map((pair) => ({ name: pair.name, colour: pair.colour, symbol: pair.symbol,
+      at: (i) => colourIndex(pair, i) === null ? null : Math.round(colourIndex(pair, i) * 1e6) / 1e6 })) }]),
   table: () => ({
     columns: [{ name: "time_utc", unit: "" }, { name: "pass_id", unit: "" }, ...colourPairs.map((pair) => ({ name: pair.name.replace("−", "minus"), unit: "mag" }))],
     rows: shownRows().map((i) => [epochs.time[i], epochs.pass[i], ...colourPairs.map((pair) => colourIndex(pair, i))]),
