@@ -8,6 +8,7 @@
 #include <umov/lightcurve/compute.h>
 #include <umov/orbit/elements.h>
 #include <umov/orbit/ephemeris.h>
+#include <umov/orbit/select.h>
 
 namespace umov::cli {
 namespace {
@@ -121,7 +122,8 @@ int run_ephemeris(const OrbitOptions &o, const Common &common) {
     UMOV_ASSIGN(sets, read_sets(o, diagnostics));
     UMOV_ASSIGN(start, utc_from_iso(o.start));
     UMOV_ASSIGN(set, choose_elements(sets, o.norad, start, o.orbit));
-    UMOV_TRY(check_element_age(set, start, o.allow_old_elements, o.orbit, diagnostics));
+    UMOV_ASSIGN(stop, utc_from_iso(o.stop));
+    UMOV_TRY(check_element_age(set, start, stop, o.allow_old_elements, o.orbit, diagnostics));
     UMOV_ASSIGN(rows, compute_ephemeris(o, set, common));
     const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
     UMOV_TRY(put_table(o.output, ephemeris_table(rows.rows, shadow), common));

@@ -1,11 +1,10 @@
 #include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <umov/core/parallel.h>
-
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
+#include <vector>
 
 namespace umov {
 
@@ -16,21 +15,36 @@ unsigned resolve_threads(unsigned requested) {
 
 void parallel_for(std::size_t count, unsigned threads,
                   const std::function<void(std::size_t)> &body) {
-  const unsigned used = resolve_threads(threads);
-  if (used == 1 || count < 2) {
+  const auto used = static_cast<unsigned>(
+      std::min<std::size_t>(resolve_threads(threads), count));
+  if (used < 2) {
     for (std::size_t i = 0; i < count; ++i)
       body(i);
     return;
   }
-  // The control lets a user ask for more threads than there are cores (determinism tests do).
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, used);
-  tbb::task_arena arena(static_cast<int>(used));
-  arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1), [&](const auto &range) {
-      for (std::size_t i = range.begin(); i != range.end(); ++i)
+  // Plain threads that fetch the next index: the units are large (milliseconds), starting a thread
+  // costs microseconds, and a user may ask for more threads than there are cores.
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex failure_lock;
+  const auto work = [&] {
+    try {
+      for (std::size_t i = next++; i < count; i = next++)
         body(i);
-    });
-  });
+    } catch (...) {
+      const std::lock_guard lock(failure_lock);
+      failure = std::current_exception();
+      next = count;
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (unsigned t = 1; t < used; ++t)
+    helpers.emplace_back(work);
+  work();
+  for (std::thread &helper : helpers)
+    helper.join();
+  if (failure)
+    std::rethrow_exception(failure);
 }
 
 } // namespace umov

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <umov/core/random.h>
+#include <umov/core/rotation.h>
 #include <umov/lightcurve/poses.h>
 
 namespace umov {

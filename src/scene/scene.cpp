@@ -37,16 +37,11 @@ private:
   std::vector<Surface> surfaces_;
 };
 
-bool has_vertex_normals(const Mesh &mesh) {
-  return std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
-                     [](const Triangle &t) { return t.normal[0] != no_index; });
-}
-
 } // namespace
 
 Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector<Band> &bands,
                          const std::vector<Material> &front, const std::vector<Material> &back,
-                         Diagnostics &diagnostics) {
+                         Diagnostics &diagnostics, double crease_rad) {
   if (front.size() != mesh.groups.size() || back.size() != mesh.groups.size())
     return fail(ErrorCode::BadInput,
                 fmt::format("{} front and {} back materials for a mesh with {} groups; give one of "
@@ -59,8 +54,8 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
   scene.mesh = std::move(cleaned);
   scene.normals = normals;
   scene.bands = bands;
-  if (normals == NormalMode::Smooth && !has_vertex_normals(scene.mesh))
-    scene.mesh = with_vertex_normals(scene.mesh, default_crease_rad);
+  if (normals == NormalMode::Smooth) // where the mesh has none
+    scene.mesh = with_vertex_normals(scene.mesh, crease_rad);
   SurfaceCache cache(bands);
   for (std::size_t g = 0; g < front.size(); ++g) {
     UMOV_ASSIGN(front_surface, cache.compile(front[g]));

@@ -58,6 +58,9 @@ struct ReportInput {
 /// Most epochs that go into one page; a longer curve is thinned evenly and the page says so.
 inline constexpr std::size_t report_max_epochs = 20'000;
 
+/// True if this build has the plotting script.
+bool has_report();
+
 /// The page. The bytes depend on the input alone. Internal if this build has no plotting script,
 /// if the curve's arrays do not fit together or a pure-material curve names a band that is missing.
 Result<std::string> make_report(const ReportInput &input);

@@ -16,12 +16,12 @@ Mesh make_cylinder(double radius_m, double length_m, std::size_t sides);
 Mesh make_chamfered_cube(double edge_m, double chamfer_m);
 /// Ellipsoid with semi-axes a, b, c along x, y, z, exact vertex normals; group "cigar".
 Mesh make_ellipsoid(double a_m, double b_m, double c_m, std::size_t facets);
-/// Hubble Space Telescope from published dimensions (see data/mesh/hst.md for each source).
-/// +z along the boresight, origin at the middle of the tube; array_angle: turn of both wings about
-/// their boom axis (the y axis), 0 = cells face +x... as documented there.
+/// Hubble Space Telescope from published dimensions (data/mesh/README.md). +z along the boresight,
+/// origin at the middle of the tube, wings along x. Groups: light_shield, forward_shell, equipment,
+/// aft_shroud, door, array_front, array_back, array_frame, antenna, handrail.
 struct HstOptions {
-  double array_angle_rad = 0;
-  double door_angle_rad = 0; ///< set by the maker's default: open
+  double array_angle_rad = 0; ///< both wings about their boom (x); 0: cells face +z
+  double door_angle_rad = 105 * 3.14159265358979323846 / 180; ///< 0: closed
   std::size_t sides = 48;
 };
 Mesh make_hst(const HstOptions &options = {});

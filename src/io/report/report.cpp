@@ -98,6 +98,8 @@ Result<std::string> assemble_report(const ReportInput &input, std::string_view p
   return fill(report_template(), slots);
 }
 
+bool has_report() { return !report_plotly().empty(); }
+
 Result<std::string> make_report(const ReportInput &input) {
   return assemble_report(input, report_plotly());
 }

@@ -1,0 +1,127 @@
+#include "run_outputs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <umov/core/version.h>
+#include <umov/io/keyframe.h>
+#include <umov/io/report.h>
+#include <umov/orbit/sgp4.h>
+
+namespace umov::cli {
+namespace {
+
+/// The whole passage above the altitude limit, in the Earth's shadow too.
+std::vector<SkyTrackPoint> sky_track(const LightCurveRequest &request,
+                                     const std::vector<Pass> &passes) {
+  std::vector<SkyTrackPoint> out;
+  const Sgp4 model(request.elements);
+  constexpr double points_per_pass = 200;
+  for (const Pass &pass : passes) {
+    const double length = seconds_between(pass.set, pass.rise);
+    for (double k = 0; k <= points_per_pass; ++k) {
+      const Epoch<Utc> time = plus_seconds(pass.rise, length * k / points_per_pass);
+      TemeState state;
+      if (model.propagate(clock_days_between(time, request.elements.epoch) * 1440, state) !=
+          Sgp4Code::Ok)
+        continue;
+      const ObservingGeometry g = observe(state, time, request.site, request.shadow);
+      out.push_back({time, pass.id, g.azimuth, g.altitude, g.sunlit});
+    }
+  }
+  return out;
+}
+
+/// Only what does not depend on the machine: the page has the same bytes wherever it is made.
+std::vector<std::pair<std::string, std::string>> manifest_lines(const Scenario &scenario,
+                                                                const LoadedObject &object) {
+  std::vector<std::pair<std::string, std::string>> out{
+      {"umov", fmt::format("{} ({})", version, source_revision)},
+      {"seed", fmt::format("{}", scenario.seed)},
+      {"accuracy", fmt::format("{}", scenario.accuracy)}};
+  for (const InputFile &input : object.inputs)
+    out.emplace_back(std::filesystem::path(input.path).filename().string(), input.sha256);
+  return out;
+}
+
+struct PassNumbers {
+  double brightest = std::numeric_limits<double>::infinity(), faintest = -brightest;
+  double p_max = 0, phase_min = 180, phase_max = 0;
+};
+
+PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
+  PassNumbers out;
+  const std::size_t bands = curve.bands.size();
+  for (std::size_t i = 0; i < curve.epochs.size(); ++i) {
+    if (curve.epochs[i].pass_id != id)
+      continue;
+    const double phase = curve.epochs[i].geometry.phase_angle.degrees();
+    out.phase_min = std::min(out.phase_min, phase);
+    out.phase_max = std::max(out.phase_max, phase);
+    for (std::size_t b = 0; b < bands; ++b) {
+      const LightCurveSample &s = curve.samples[i * bands + b];
+      if (!std::isnan(s.magnitude)) {
+        out.brightest = std::min(out.brightest, s.magnitude);
+        out.faintest = std::max(out.faintest, s.magnitude);
+      }
+      if (!std::isnan(s.p))
+        out.p_max = std::max(out.p_max, s.p);
+    }
+  }
+  return out;
+}
+
+} // namespace
+
+Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject &object,
+                                    const LightCurveRequest &request,
+                                    const LightCurveOutcome &outcome,
+                                    const Diagnostics &diagnostics) {
+  ReportInput input{.curve = outcome.curve,
+                    .title = scenario.title.empty() ? scenario.object_name : scenario.title,
+                    .site = request.site,
+                    .frame = request.frame,
+                    .passes = outcome.passes};
+  input.sky_track = sky_track(request, outcome.passes);
+  input.pure_materials = pure_material_curves(object.scene.front);
+  // Few pictures of many passes: the page stays a page.
+  const std::size_t per_pass = outcome.passes.size() > 4 ? 1 : 4;
+  std::vector<std::size_t> epochs = choose_key_epochs(outcome.curve, per_pass);
+  if (epochs.size() > 12)
+    epochs.resize(12);
+  UMOV_ASSIGN(frames, make_key_frames(object.scene, outcome.curve, epochs,
+                                      {.band = object.scene.bands.size() / 2,
+                                       .threads = request.threads}));
+  input.key_frames = std::move(frames);
+  input.key_frame_materials = material_names(object.scene);
+  input.manifest = manifest_lines(scenario, object);
+  for (const Warning &warning : diagnostics.warnings())
+    input.warnings.push_back(warning.text());
+  return make_report(input);
+}
+
+std::string summarize(const LightCurveOutcome &outcome) {
+  const LightCurve &curve = outcome.curve;
+  std::string out = fmt::format("{} ({}): {} epochs x {} bands in {} pass{}\n",
+                                curve.object.empty() ? "object" : curve.object, curve.norad_cat_id,
+                                curve.epochs.size(), curve.bands.size(), outcome.passes.size(),
+                                outcome.passes.size() == 1 ? "" : "es");
+  for (const Pass &pass : outcome.passes) {
+    const PassNumbers n = numbers_of(curve, pass.id);
+    out += fmt::format("  {}  max alt {:.0f} deg  phase {:.0f}-{:.0f} deg", pass.id,
+                       pass.culmination_altitude.degrees(), n.phase_min, n.phase_max);
+    if (std::isfinite(n.brightest))
+      out += fmt::format("  mag {:.1f} to {:.1f} AB  p up to {:.0f} %", n.brightest, n.faintest,
+                         100 * n.p_max);
+    out += "\n";
+  }
+  const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),
+                                  [](const LightCurveEpoch &e) { return e.is_dark; });
+  if (dark > 0)
+    out += fmt::format("  {} epochs with nothing both lit and seen: intensity 0, q and u empty\n",
+                       dark);
+  return out;
+}
+
+} // namespace umov::cli

@@ -1,0 +1,211 @@
+#include "console.h"
+#include "run_outputs.h"
+#include "verbs.h"
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <mutex>
+#include <umov/core/parallel.h>
+#include <umov/io/run_folder.h>
+#include <umov/io/scenario.h>
+#include <umov/io/table.h>
+
+namespace umov::cli {
+namespace {
+
+struct RunOptions {
+  std::string scenario, device = "auto";
+  std::vector<std::string> overrides, command_line;
+  std::int64_t seed = -1;
+  double accuracy = 0;
+  bool dry_run = false, allow_bad_checksum = false, allow_old_elements = false;
+};
+
+Result<Scenario> read_with_options(const RunOptions &o) {
+  std::vector<std::string> overrides = o.overrides;
+  if (o.seed >= 0)
+    overrides.push_back(fmt::format("seed={}", o.seed));
+  if (o.accuracy > 0)
+    overrides.push_back(fmt::format("render.accuracy={:.17g}", o.accuracy));
+  UMOV_ASSIGN(scenario, read_scenario(o.scenario, overrides));
+  UMOV_TRY(check_complete_for_run(scenario));
+  return scenario;
+}
+
+LightCurveRequest request_of(const Scenario &scenario, const LoadedObject &object,
+                             const Common &common) {
+  LightCurveRequest request;
+  request.object = scenario.object_name.empty() ? object.elements->name : scenario.object_name;
+  request.elements = *object.elements;
+  request.site = *scenario.observer;
+  request.start = scenario.time->start;
+  request.stop = scenario.time->stop;
+  request.step_s = scenario.time->step_s;
+  request.only = scenario.time->only;
+  request.attitude = scenario.attitude;
+  request.frame = scenario.frame;
+  request.integration.accuracy = scenario.accuracy;
+  request.integration.seed = scenario.seed;
+  request.threads = static_cast<unsigned>(common.threads);
+  return request;
+}
+
+/// No row is a result of its own kind: it says when there will be one.
+Error nothing_found(const LightCurveRequest &request) {
+  std::string text = fmt::format(
+      "no {}pass of {} above {:g} deg{} from \"{}\" in that span.",
+      request.only.sunlit ? "sunlit " : "", request.elements.norad_cat_id,
+      request.only.altitude_min.degrees(),
+      request.only.sun_altitude_max
+          ? fmt::format(" with the Sun below {:g} deg", request.only.sun_altitude_max->degrees())
+          : "",
+      request.site.name);
+  constexpr double days = 14; // beyond it the elements say little
+  if (const auto next = find_next_pass(request, days))
+    text += fmt::format(" The next one: {}Z, max alt {:.0f}.", to_iso(next->first_row).substr(0, 16),
+                        next->altitude_max.degrees());
+  else
+    text += fmt::format(" None in the next {:.0f} days either.", days);
+  return {ErrorCode::Nothing, text, {}};
+}
+
+std::string log_of(const LightCurveOutcome &outcome, const Diagnostics &diagnostics) {
+  std::string out = summarize(outcome);
+  for (const Warning &warning : diagnostics.warnings())
+    out += "warning: " + warning.text() + "\n";
+  if (outcome.stopped)
+    out += "error: " + outcome.stopped->text() + "\n";
+  return out;
+}
+
+bool wants(const Scenario &scenario, const char *format) {
+  return std::find(scenario.formats.begin(), scenario.formats.end(), format) !=
+         scenario.formats.end();
+}
+
+/// Everything that a finished run knows.
+struct Finished {
+  const RunOptions &options;
+  const Common &common;
+  const Scenario &scenario;
+  const LoadedObject &object;
+  const LightCurveRequest &request;
+  const LightCurveOutcome &outcome;
+  const Diagnostics &diagnostics;
+  std::chrono::system_clock::time_point started;
+};
+
+Result<void> write_folder(const Finished &run, RunFolder &folder) {
+  const Table table = light_curve_table(run.outcome.curve, run.request.frame);
+  const Table passes = passes_table(run.outcome.passes, run.outcome.curve);
+  folder.add("passes.ecsv", to_ecsv(passes));
+  if (wants(run.scenario, "ecsv"))
+    folder.add("lightcurve.ecsv", to_ecsv(table));
+  if (wants(run.scenario, "csv"))
+    folder.add("lightcurve.csv", to_csv(table));
+  if (wants(run.scenario, "html")) {
+    UMOV_ASSIGN(page, make_run_report(run.scenario, run.object, run.request, run.outcome,
+                                      run.diagnostics));
+    folder.add("report.html", std::move(page));
+  }
+  folder.add("scenario.lock.toml", locked_scenario(run.scenario));
+  folder.add("log.txt", log_of(run.outcome, run.diagnostics));
+  using namespace std::chrono;
+  ManifestInput manifest;
+  for (const InputFile &input : run.object.inputs)
+    manifest.inputs.emplace_back(input.path, input.sha256);
+  manifest.seed = run.scenario.seed;
+  manifest.threads = resolve_threads(static_cast<unsigned>(run.common.threads));
+  manifest.command_line = run.options.command_line;
+  manifest.started_utc =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(system_clock::to_time_t(run.started)));
+  manifest.elapsed_s = duration<double>(system_clock::now() - run.started).count();
+  for (const Warning &warning : run.diagnostics.warnings())
+    manifest.warnings.push_back(warning.text());
+  folder.add("manifest.json", make_manifest(manifest));
+  return folder.commit();
+}
+
+Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnostics) {
+  const auto started = std::chrono::system_clock::now();
+  UMOV_ASSIGN(scenario, read_with_options(o));
+  UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
+  UMOV_ASSIGN(object, load_object(scenario, {o.allow_bad_checksum, o.allow_old_elements},
+                                  diagnostics));
+  warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);
+  warn_if_outside_eop(scenario.time->start, scenario.time->stop, diagnostics);
+  if (o.dry_run) {
+    note(common, fmt::format("{}: fine; {} triangles, {} bands", o.scenario,
+                             object.scene.mesh.triangles.size(), object.scene.bands.size()));
+    return {};
+  }
+  const LightCurveRequest request = request_of(scenario, object, common);
+  const Integrator integrator(object.scene);
+  std::optional<LightCurveOutcome> outcome;
+  {
+    ProgressBar bar("light curve", common);
+    std::mutex one_at_a_time;
+    auto result = compute_light_curve(
+        request, object.scene, integrator,
+        [&](std::size_t done, std::size_t total) {
+          const std::lock_guard lock(one_at_a_time);
+          bar.update(done, total);
+        },
+        interrupted());
+    if (!result)
+      return tl::unexpected(result.error());
+    outcome = std::move(*result);
+  }
+  if (outcome->curve.epochs.empty())
+    return tl::unexpected(outcome->stopped ? *outcome->stopped : nothing_found(request));
+  UMOV_TRY(write_folder({o, common, scenario, object, request, *outcome, diagnostics, started},
+                        folder));
+  if (!common.quiet)
+    fmt::print("{}written to {}\n", summarize(*outcome), folder.path().string());
+  if (outcome->stopped)
+    return tl::unexpected(*outcome->stopped);
+  return {};
+}
+
+} // namespace
+
+void add_run(CLI::App &app, const Exit &exit_with) {
+  auto *verb = app.add_subcommand("run", "Light curve of a scenario: tables, report, manifest");
+  auto o = std::make_shared<RunOptions>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("scenario", o->scenario, "Scenario file (TOML); see umov schema")->required();
+  verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
+  verb->add_option("--seed", o->seed, "Over the scenario's seed")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
+  verb->add_option("--accuracy", o->accuracy, "Relative 95 % half-width asked of I")
+      ->check(CLI::Range(1e-6, 1.0));
+  verb->add_option("--device", o->device, "cpu or auto")->capture_default_str();
+  verb->add_flag("--dry-run", o->dry_run, "Read and check everything, compute nothing");
+  verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
+  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum, "Read elements with a bad checksum");
+  verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
+  add_threads(*verb, *common);
+  add_common(*verb, *common, false);
+  verb->callback([o, common, exit_with] {
+    if (o->device != "cpu" && o->device != "auto") {
+      exit_with(report(Error{ErrorCode::Device,
+                             "--device " + o->device +
+                                 ": this build has no such device. Use --device cpu; see umov doctor.",
+                             {}}));
+      return;
+    }
+    o->command_line = {"umov", "run", o->scenario};
+    for (const std::string &one : o->overrides)
+      o->command_line.insert(o->command_line.end(), {"--set", one});
+    watch_interrupts();
+    Diagnostics diagnostics;
+    const auto done = run(*o, *common, diagnostics);
+    report(diagnostics, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace umov::cli

@@ -1,0 +1,185 @@
+#include "console.h"
+#include "tables.h"
+#include "verbs.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/core/files.h>
+#include <umov/core/parallel.h>
+#include <umov/io/scenario.h>
+#include <umov/io/table.h>
+#include <umov/lightcurve/poses.h>
+
+namespace umov::cli {
+namespace {
+
+struct SignatureOptions {
+  std::string scene, geometry, output;
+  std::vector<std::string> overrides;
+  std::vector<double> phases_deg;
+  std::size_t poses = 0;
+  std::uint64_t seed = 0;
+  bool has_seed = false;
+  double accuracy = 0;
+};
+
+Result<std::vector<Pose>> poses_from_table(const std::string &path) {
+  UMOV_ASSIGN(text, read_file(path));
+  UMOV_ASSIGN(table, read_csv(text, path,
+                              {"sun_x", "sun_y", "sun_z", "obs_x", "obs_y", "obs_z"}));
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    const Vec3<Body> sun{table.number("sun_x", i), table.number("sun_y", i),
+                         table.number("sun_z", i)};
+    const Vec3<Body> observer{table.number("obs_x", i), table.number("obs_y", i),
+                              table.number("obs_z", i)};
+    if (!(norm(sun) > 0) || !(norm(observer) > 0))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("row {}: a direction of length 0; any other length was expected",
+                              i + 1),
+                  {path});
+    poses.push_back({normalized(sun), normalized(observer)});
+  }
+  return poses;
+}
+
+Result<std::vector<Pose>> poses_of(const SignatureOptions &o, std::uint64_t seed) {
+  if (!o.geometry.empty())
+    return poses_from_table(o.geometry);
+  std::vector<Pose> poses;
+  for (const double phase : o.phases_deg) {
+    if (!(phase >= 0 && phase <= 180))
+      return fail(ErrorCode::Usage, fmt::format("--phase {}: 0 to 180 was expected", phase));
+    for (std::size_t i = 0; i < o.poses; ++i)
+      poses.push_back(random_pose(seed, poses.size(), Angle::degrees(phase)));
+  }
+  return poses;
+}
+
+/// Columns that grow by one row per pose and band.
+struct SignatureColumns {
+  std::vector<std::int64_t> pose;
+  std::vector<std::string> band;
+  std::vector<std::vector<double>> numbers{18};
+
+  void add(std::size_t index, const Pose &at, const Band &colour, const BandResult &result,
+           bool is_dark) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto &s = result.stokes;
+    const auto &e = result.half_width;
+    const double scale = is_dark || !(s.i > 0) ? nan : 1 / s.i;
+    const std::array<double, 18> row{angle_between(at.sun, at.observer) * 180 / pi,
+                                     s.i, s.q, s.u, s.v, s.q * scale, s.u * scale, s.v * scale,
+                                     e.i, e.q, e.u, e.v, at.sun.x, at.sun.y, at.sun.z,
+                                     at.observer.x, at.observer.y, at.observer.z};
+    pose.push_back(static_cast<std::int64_t>(index));
+    band.push_back(colour.name);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      numbers[i].push_back(row[i]);
+  }
+
+  Table table() && {
+    struct Head {
+      const char *name, *unit, *text;
+    };
+    constexpr std::array<Head, 18> heads{{{"phase_angle", "deg", "Sun-object-observer, 0 = full"},
+                                          {"intensity", "m2 / sr", "per unit solar irradiance"},
+                                          {"stokes_q", "m2 / sr", "scattering frame"},
+                                          {"stokes_u", "m2 / sr", "scattering frame"},
+                                          {"stokes_v", "m2 / sr", "scattering frame"},
+                                          {"q_scat", "", "Q/I, scattering frame"},
+                                          {"u_scat", "", "U/I, scattering frame"},
+                                          {"v", "", "V/I"},
+                                          {"intensity_err", "m2 / sr", "numerical 95 % half-width"},
+                                          {"stokes_q_err", "m2 / sr", "numerical 95 % half-width"},
+                                          {"stokes_u_err", "m2 / sr", "numerical 95 % half-width"},
+                                          {"stokes_v_err", "m2 / sr", "numerical 95 % half-width"},
+                                          {"sun_x", "", "direction of the Sun, body frame"},
+                                          {"sun_y", "", "direction of the Sun, body frame"},
+                                          {"sun_z", "", "direction of the Sun, body frame"},
+                                          {"obs_x", "", "direction of the observer, body frame"},
+                                          {"obs_y", "", "direction of the observer, body frame"},
+                                          {"obs_z", "", "direction of the observer, body frame"}}};
+    Table out;
+    out.add("pose", "", "number of the pose", std::move(pose));
+    out.add("band", "", "band as in the scene", std::move(band));
+    for (std::size_t i = 0; i < heads.size(); ++i)
+      out.add(heads[i].name, heads[i].unit, heads[i].text, std::move(numbers[i]));
+    note_conventions(out);
+    return out;
+  }
+};
+
+Result<void> run_signature(const SignatureOptions &o, const Common &common,
+                           Diagnostics &diagnostics) {
+  UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
+  const std::uint64_t seed = o.has_seed ? o.seed : scenario.seed;
+  UMOV_ASSIGN(poses, poses_of(o, seed));
+  UMOV_ASSIGN(object, load_object(scenario, {.allow_old_elements = true}, diagnostics));
+  const Integrator integrator(object.scene);
+  IntegrationOptions options;
+  options.accuracy = o.accuracy > 0 ? o.accuracy : scenario.accuracy;
+  options.seed = seed;
+  SignatureColumns columns;
+  ProgressBar bar("poses", common);
+  constexpr std::size_t block = 512; // the grain of progress and of Ctrl-C
+  std::size_t done = 0;
+  for (; done < poses.size() && !interrupted(); done += std::min(block, poses.size() - done)) {
+    const auto first = poses.begin() + static_cast<std::ptrdiff_t>(done);
+    const std::size_t count = std::min(block, poses.size() - done);
+    const std::vector<Pose> part(first, first + static_cast<std::ptrdiff_t>(count));
+    const auto results = integrator.evaluate(part, options, static_cast<unsigned>(common.threads));
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t b = 0; b < object.scene.bands.size(); ++b)
+        columns.add(done + i, part[i], object.scene.bands[b], results[i].bands[b],
+                    results[i].is_dark);
+    bar.update(done + count, poses.size());
+  }
+  UMOV_TRY(put_table(o.output, std::move(columns).table(), common));
+  if (done < poses.size())
+    return fail(ErrorCode::Interrupted,
+                fmt::format("stopped after {} of {} poses; they are saved", done, poses.size()));
+  return {};
+}
+
+} // namespace
+
+void add_signature(CLI::App &app, const Exit &exit_with) {
+  auto *verb = app.add_subcommand("signature", "Stokes of an object for directions, without an orbit");
+  auto o = std::make_shared<SignatureOptions>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("scene", o->scene, "Scenario file; orbit, time and observer are not used")
+      ->required();
+  auto *geometry = verb->add_option(
+      "--geometry", o->geometry, "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame");
+  auto *poses = verb->add_option("--poses", o->poses, "Random poses for each phase angle")
+                    ->check(CLI::Range(1, 10'000'000));
+  auto *phase = verb->add_option("--phase", o->phases_deg, "Phase angles [deg], separated by commas")
+                    ->delimiter(',');
+  geometry->excludes(poses)->excludes(phase);
+  poses->needs(phase);
+  phase->needs(poses);
+  auto *seed = verb->add_option("--seed", o->seed, "Of the random poses; default: the scenario's");
+  verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
+  verb->add_option("--accuracy", o->accuracy, "Relative 95 % half-width asked of I")
+      ->check(CLI::Range(1e-6, 1.0));
+  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv or .json by its suffix");
+  add_threads(*verb, *common);
+  add_common(*verb, *common, true);
+  verb->callback([o, common, exit_with, seed, geometry, poses] {
+    if (geometry->count() + poses->count() == 0) {
+      exit_with(report(Error{ErrorCode::Usage,
+                             "say for which directions: --geometry TABLE, or --poses N --phase DEG",
+                             {}}));
+      return;
+    }
+    o->has_seed = seed->count() > 0;
+    watch_interrupts();
+    Diagnostics diagnostics;
+    const auto done = run_signature(*o, *common, diagnostics);
+    report(diagnostics, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace umov::cli

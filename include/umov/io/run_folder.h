@@ -1,0 +1,46 @@
+#pragma once
+// The output folder of a run: complete or not there.
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <umov/core/result.h>
+#include <utility>
+#include <vector>
+
+namespace umov {
+
+/// Collects the files of a run and puts them in place at once. A folder that umov wrote (it has our
+/// manifest.json) is replaced as a whole when the new one is complete; a kill at any moment leaves the
+/// old or the new one. With `force` the files are put, one by one, into a folder of the user's.
+class RunFolder {
+public:
+  /// Refuses (Device) what it must not or cannot write to, before any work is done.
+  static Result<RunFolder> open(const std::filesystem::path &target, bool force);
+
+  void add(std::string name, std::string bytes) { files_[std::move(name)] = std::move(bytes); }
+  /// Writes everything. On failure the target is as it was.
+  Result<void> commit();
+  [[nodiscard]] const std::filesystem::path &path() const { return target_; }
+
+private:
+  std::filesystem::path target_;
+  bool is_foreign_ = false;
+  std::map<std::string, std::string> files_;
+};
+
+/// What manifest.json says besides versions and build.
+struct ManifestInput {
+  std::vector<std::pair<std::string, std::string>> inputs; ///< path, SHA-256
+  std::uint64_t seed = 0;
+  unsigned threads = 1;
+  std::vector<std::string> command_line;
+  std::string started_utc; ///< clock time given by the caller
+  double elapsed_s = 0;
+  std::vector<std::string> warnings;
+};
+
+/// JSON text; the key "program" marks the folder as ours.
+std::string make_manifest(const ManifestInput &input);
+
+} // namespace umov

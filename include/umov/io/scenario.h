@@ -1,0 +1,101 @@
+#pragma once
+// The scenario file: what a run is about.
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <umov/attitude/attitude.h>
+#include <umov/core/diagnostics.h>
+#include <umov/lightcurve/compute.h>
+#include <umov/orbit/elements.h>
+#include <umov/scene/scene.h>
+#include <vector>
+
+namespace umov {
+
+struct ScenarioTime {
+  Epoch<Utc> start{}, stop{};
+  double step_s = 1;
+  EpochFilter only;
+};
+
+struct ScenarioOrbit {
+  std::filesystem::path file;
+  int norad = 0; ///< 0: the only object of the file
+};
+
+struct ScenarioMesh {
+  std::filesystem::path file;
+  std::string unit, up;
+  NormalMode normals = NormalMode::Flat;
+  double crease_deg = 35; ///< for meshes without vertex normals
+};
+
+/// Names of the materials of both sides of a mesh group.
+struct MaterialNames {
+  std::string front, back;
+};
+
+/// A scenario with all defaults filled in. A scene (for `umov signature`) has no orbit, time and
+/// observer. Relative paths have been resolved against the folder of the scenario.
+struct Scenario {
+  std::string file, title;
+  std::uint64_t seed = 0;
+  std::optional<Site> observer;
+  std::optional<ScenarioTime> time;
+  std::string object_name;
+  std::optional<ScenarioOrbit> orbit;
+  ScenarioMesh mesh;
+  AttitudeLaw attitude = TwoAxisLaw{};
+  std::map<std::string, MaterialNames> materials; ///< mesh material, or "default"
+  std::map<std::string, Material> own_materials;  ///< the [material.NAME] tables
+  std::vector<std::string> band_set{"paper_rgb"};
+  std::vector<Band> bands;
+  double accuracy = 0.005;
+  std::filesystem::path output_dir{"out"}; ///< relative to the working folder
+  std::vector<std::string> formats{"ecsv", "html"};
+  PolarizationFrame frame = PolarizationFrame::Equatorial;
+  std::map<std::string, Where> places; ///< where keys stand ("object.materials.front")
+};
+
+/// Reads a scenario; each of `overrides` is "dotted.key=value" with a TOML value (a bare word counts
+/// as a string). BadInput names file, line and column, what was read, what was expected.
+Result<Scenario> read_scenario(const std::filesystem::path &path,
+                               const std::vector<std::string> &overrides);
+Result<Scenario> read_scenario_text(const std::string &text, const std::filesystem::path &path,
+                                    const std::vector<std::string> &overrides);
+
+/// BadInput that lists what a run still needs: observer, time, orbit.
+Result<void> check_complete_for_run(const Scenario &scenario);
+
+/// The scenario as TOML with every default written out and absolute paths; reading it gives the same
+/// scenario.
+std::string locked_scenario(const Scenario &scenario);
+
+/// JSON Schema (draft 2020-12) of the scenario, from the same table of keys that the reader checks.
+std::string scenario_schema_json();
+
+/// A material by built-in name, or from a TOML file with one [material.NAME] table.
+Result<Material> read_material(const std::string &name_or_path);
+
+/// An input file and the hash of what was read.
+struct InputFile {
+  std::string path, sha256;
+};
+
+struct LoadedObject {
+  std::optional<ElementSet> elements; ///< absent for a scene
+  Scene scene;
+  std::vector<InputFile> inputs;
+};
+
+struct LoadOptions {
+  bool allow_bad_checksum = false, allow_old_elements = false;
+};
+
+/// Reads the files that a scenario names and compiles the scene.
+Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &options,
+                                 Diagnostics &diagnostics);
+
+} // namespace umov

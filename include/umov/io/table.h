@@ -1,0 +1,78 @@
+#pragma once
+// A small table of named columns with units, and its forms in files.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <umov/core/result.h>
+#include <umov/lightcurve/compute.h>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace umov {
+
+/// Cells of one column; NaN means "not defined".
+using Cells = std::variant<std::vector<double>, std::vector<std::int64_t>,
+                           std::vector<std::string>, std::vector<bool>>;
+
+struct Column {
+  std::string name;
+  std::string unit;        ///< as astropy spells it ("W / (m2 nm)"); "" = dimensionless
+  std::string description; ///< one line
+  Cells cells;
+};
+
+/// Columns of one length, in order, and what is said about the whole in a file's header.
+class Table {
+public:
+  /// Adds a column, which must be as long as those before it (else it is cut or filled up with
+  /// NaN, 0, "" or false) and have a new name.
+  void add(std::string name, std::string unit, std::string description, Cells cells);
+  /// Adds one line of the header ("object" -> "HST").
+  void note(std::string key, std::string value);
+
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+  [[nodiscard]] const std::vector<Column> &columns() const { return columns_; }
+  [[nodiscard]] const std::vector<std::pair<std::string, std::string>> &notes() const {
+    return notes_;
+  }
+  /// The column of that name, or null.
+  [[nodiscard]] const Column *find(std::string_view name) const;
+  /// A cell as a number; NaN if there is no such column or row or it holds text.
+  [[nodiscard]] double number(std::string_view name, std::size_t row) const;
+  /// A cell as the CSV has it; "" if there is none.
+  [[nodiscard]] std::string text(std::string_view name, std::size_t row) const;
+
+private:
+  std::size_t rows_ = 0;
+  std::vector<Column> columns_;
+  std::vector<std::pair<std::string, std::string>> notes_;
+};
+
+/// Enhanced CSV 1.0 (Astropy APE 6): names, types, units and notes in the header, blank-separated
+/// rows, NaN as "nan". Every column but text and truth values carries a unit.
+std::string to_ecsv(const Table &table);
+/// RFC 4180 with LF; notes as "# key: value", then "# unit: ..." above the header; NaN is an empty
+/// cell.
+std::string to_csv(const Table &table);
+/// An array of objects; NaN is null.
+std::string to_json(const Table &table);
+/// Aligned columns for a terminal, numbers to six digits.
+std::string to_text(const Table &table);
+
+/// Reads the `required` numeric columns of a CSV text (and no others: unknown ones are ignored).
+/// Lines that start with '#' and blank ones are skipped; the first other line is the header.
+/// BadInput with line and column for a missing column, a ragged row or what is not a finite number.
+Result<Table> read_csv(std::string_view text, const std::string &file,
+                       const std::vector<std::string> &required);
+
+/// Puts what every output of the project says into the header: versions and conventions.
+void note_conventions(Table &table);
+
+/// The columns of a light curve, one row per epoch and band, and the 95 % half-widths.
+Table light_curve_table(const LightCurve &curve, PolarizationFrame frame);
+/// One row per pass: rise, culmination, set, number of epochs kept.
+Table passes_table(const std::vector<Pass> &passes, const LightCurve &curve);
+
+} // namespace umov

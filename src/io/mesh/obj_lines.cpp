@@ -1,0 +1,57 @@
+#include "io/mesh/obj_lines.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov::obj {
+
+Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
+  if (rest_.starts_with("\xEF\xBB\xBF"))
+    rest_.remove_prefix(3);
+}
+
+bool Lines::next(std::vector<Word> &words) {
+  words.clear();
+  while (!rest_.empty()) {
+    ++line_;
+    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    std::string_view line = rest_.substr(0, end);
+    const bool is_crlf = rest_.substr(end).starts_with("\r\n");
+    rest_.remove_prefix(std::min(rest_.size(), end + (is_crlf ? 2 : 1)));
+    line = line.substr(0, line.find('#'));
+    const std::size_t last = line.find_last_not_of(" \t");
+    const bool goes_on = last != std::string_view::npos && line[last] == '\\';
+    if (goes_on)
+      line = line.substr(0, last);
+    for (std::size_t at = line.find_first_not_of(" \t"); at != std::string_view::npos;) {
+      const std::size_t stop = std::min(line.find_first_of(" \t", at), line.size());
+      words.push_back({line.substr(at, stop - at), line_, at + 1});
+      at = line.find_first_not_of(" \t", stop);
+    }
+    if (!goes_on && !words.empty())
+      return true;
+  }
+  return !words.empty();
+}
+
+Result<double> number(const Lines &lines, const Word &word) {
+  if (word.text.size() <= 64) // longer than any double is printed: a broken file
+    if (const auto value = parse_number(word.text))
+      return *value;
+  const std::string shown(word.text.substr(0, 40));
+  const bool has_comma = word.text.find(',') != std::string_view::npos;
+  return fail(ErrorCode::BadInput,
+              fmt::format("\"{}\" is not a finite decimal number{}", shown,
+                          has_comma ? "; write a point instead of the comma" : ""),
+              lines.where(word));
+}
+
+std::string name_from(const std::vector<Word> &words, std::size_t first) {
+  std::string out;
+  for (std::size_t i = first; i < words.size(); ++i)
+    out += (out.empty() ? "" : " ") + std::string(words[i].text);
+  return out;
+}
+
+} // namespace umov::obj

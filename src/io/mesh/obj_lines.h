@@ -1,0 +1,39 @@
+#pragma once
+// Private: the lines of an OBJ or MTL text as words with columns.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <umov/core/result.h>
+#include <vector>
+
+namespace umov::obj {
+
+struct Word {
+  std::string_view text;
+  std::size_t line = 0, column = 0; ///< from 1
+};
+
+/// Walks a text line by line: LF, CR LF or CR ends; a byte order mark, comments and a backslash at
+/// the end of a line (continuation) are understood.
+class Lines {
+public:
+  Lines(std::string_view text, std::string file);
+  /// Words of the next line that has any; false at the end.
+  bool next(std::vector<Word> &words);
+  [[nodiscard]] Where where(const Word &word) const { return {file_, word.line, word.column}; }
+  [[nodiscard]] const std::string &file() const { return file_; }
+
+private:
+  std::string_view rest_;
+  std::string file_;
+  std::size_t line_ = 0;
+};
+
+/// A finite number; the message tells of commas, hexadecimal digits, NaN and overflow.
+Result<double> number(const Lines &lines, const Word &word);
+
+/// The rest of a line from word `first` on, as one name (names may hold blanks).
+std::string name_from(const std::vector<Word> &words, std::size_t first);
+
+} // namespace umov::obj

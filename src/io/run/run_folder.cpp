@@ -1,0 +1,133 @@
+#include <umov/io/run_folder.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <nlohmann/json.hpp>
+#include <stdio.h>
+#include <umov/core/files.h>
+#include <umov/core/version.h>
+#include <unistd.h>
+
+namespace umov {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr const char *program = "umov";
+
+tl::unexpected<Error> trouble(const fs::path &path, const std::string &text) {
+  return fail(ErrorCode::Device, text, {path.string()});
+}
+
+bool has_our_manifest(const fs::path &folder) {
+  const auto text = read_file(folder / "manifest.json");
+  if (!text)
+    return false;
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  return json.is_object() && json.value("program", "") == program;
+}
+
+/// Nearest folder above that exists: where a new one would be made.
+fs::path existing_parent(fs::path path) {
+  std::error_code code;
+  while (!path.empty() && !fs::exists(path, code) && path != path.parent_path())
+    path = path.parent_path();
+  return path.empty() ? fs::path(".") : path;
+}
+
+/// Removes a folder unless it was released.
+struct Temporary {
+  fs::path path;
+  ~Temporary() {
+    std::error_code code;
+    if (!path.empty())
+      fs::remove_all(path, code);
+  }
+};
+
+} // namespace
+
+Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
+  RunFolder out;
+  out.target_ = target;
+  if (out.target_.filename().empty()) // "out/" is "out"
+    out.target_ = out.target_.parent_path();
+  std::error_code code;
+  if (fs::exists(out.target_, code) && !fs::is_directory(out.target_, code))
+    return trouble(target, "is a file; the name of a folder was expected");
+  if (fs::is_directory(out.target_, code) && !fs::is_empty(out.target_, code) &&
+      !has_our_manifest(out.target_)) {
+    if (!force)
+      return trouble(target, "is not empty and was not written by umov. Choose another folder "
+                             "(output.dir) or pass --force to put the files into it.");
+    out.is_foreign_ = true;
+  }
+  const fs::path parent = existing_parent(fs::absolute(out.target_, code).parent_path());
+  if (::access(parent.c_str(), W_OK | X_OK) != 0)
+    return trouble(parent, std::string("cannot be written to: ") + std::strerror(errno) +
+                               ". Choose another folder (output.dir).");
+  return out;
+}
+
+Result<void> RunFolder::commit() {
+  std::error_code code;
+  if (is_foreign_) {
+    for (const auto &[name, bytes] : files_)
+      UMOV_TRY(write_file_atomically(target_ / name, bytes));
+    return {};
+  }
+  const fs::path full = fs::absolute(target_, code);
+  fs::create_directories(full.parent_path(), code);
+  Temporary fresh{full.parent_path() /
+                  ("." + full.filename().string() + ".part-" + std::to_string(::getpid()))};
+  fs::remove_all(fresh.path, code);
+  if (!fs::create_directory(fresh.path, code))
+    return trouble(full.parent_path(), "no folder can be made here: " + code.message());
+  for (const auto &[name, bytes] : files_)
+    UMOV_TRY(write_file_atomically(fresh.path / name, bytes));
+  if (!fs::exists(full, code)) {
+    fs::rename(fresh.path, full, code);
+    if (code)
+      return trouble(full, "cannot be put in place: " + code.message());
+    fresh.path.clear();
+  } else if (::renameat2(AT_FDCWD, fresh.path.c_str(), AT_FDCWD, full.c_str(), RENAME_EXCHANGE) !=
+             0) {
+    // A file system without exchange: the old folder steps aside first.
+    const fs::path old = fresh.path.string() + "-old";
+    fs::rename(full, old, code);
+    if (!code)
+      fs::rename(fresh.path, full, code);
+    if (code)
+      return trouble(full, "cannot be replaced: " + code.message());
+    fresh.path = old;
+  } // after an exchange the temporary name holds the old folder, which goes
+  if (const int fd = ::open(full.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      fd >= 0) {
+    ::fsync(fd);
+    ::close(fd);
+  }
+  return {};
+}
+
+std::string make_manifest(const ManifestInput &input) {
+  nlohmann::ordered_json out;
+  out["program"] = program;
+  out["version"] = version;
+  out["git"] = source_revision;
+  out["conventions_version"] = conventions_version;
+  out["compiler"] = "g++ " __VERSION__;
+  out["command_line"] = input.command_line;
+  out["started_utc"] = input.started_utc;
+  out["elapsed_s"] = input.elapsed_s;
+  out["seed"] = input.seed;
+  out["device"] = "cpu";
+  out["instruction_set"] = "scalar double";
+  out["threads"] = input.threads;
+  out["inputs"] = nlohmann::ordered_json::array();
+  for (const auto &[path, hash] : input.inputs)
+    out["inputs"].push_back({{"path", path}, {"sha256", hash}});
+  out["warnings"] = input.warnings;
+  return out.dump(2) + "\n";
+}
+
+} // namespace umov

@@ -1,0 +1,187 @@
+#include "io/scenario/keys.h"
+
+#include <nlohmann/json.hpp>
+#include <umov/io/scenario.h>
+
+namespace umov::scenario {
+
+const std::vector<Key> &keys() {
+  using enum Kind;
+  static const std::vector<Key> all{
+      {"", "umov", Integer, "", "version of the scenario's form: 1"},
+      {"", "title", String, "\"\"", "heading of the report"},
+      {"", "seed", Integer, "0", "of every random stream"},
+      {"", "observer", Table, "", "the site; absent in a scene"},
+      {"", "time", Table, "", "the span; absent in a scene"},
+      {"", "object", List, "", "[[object]]: one object"},
+      {"", "bands", Table, "", "wavelengths"},
+      {"", "render", Table, "", "how the light is computed"},
+      {"", "detector", Table, "", "what measures it"},
+      {"", "output", Table, "", "what is written"},
+      {"", "material", Table, "", "materials written in place: [material.NAME]"},
+      {"observer", "name", String, "\"\"", "name of the site"},
+      {"observer", "lat_deg", Number, "", "geodetic latitude [deg], north positive"},
+      {"observer", "lon_deg", Number, "", "longitude [deg], east positive"},
+      {"observer", "alt_m", Number, "", "height above the WGS 84 ellipsoid [m]"},
+      {"observer", "atmosphere", String, "\"none\"", "only \"none\" is built so far"},
+      {"time", "start", Time, "", "first epoch, with Z or an offset"},
+      {"time", "stop", Time, "", "last epoch, included"},
+      {"time", "step_s", Number, "1.0", "step [s]"},
+      {"time", "only", Table, "", "which epochs are kept"},
+      {"time.only", "alt_min_deg", Number, "0.0", "lowest altitude of the object [deg]"},
+      {"time.only", "sun_alt_max_deg", Number, "90.0", "highest altitude of the Sun [deg]"},
+      {"time.only", "sunlit", Boolean, "true", "only where some of the Sun is seen"},
+      {"object", "name", String, "\"\"", "name of the object"},
+      {"object", "orbit", Table, "", "elements; absent in a scene"},
+      {"object", "mesh", Table, "", "shape"},
+      {"object", "attitude", Table, "{ mode = \"nadir\" }", "which way it points"},
+      {"object", "materials", Table, "", "mesh material -> material, and \"default\""},
+      {"object.orbit", "file", String, "", "TLE or 3LE file"},
+      {"object.orbit", "norad", Integer, "0", "catalogue number, where the file holds several"},
+      {"object.mesh", "file", String, "", "OBJ file"},
+      {"object.mesh", "unit", String, "", "m, cm, mm, km, in or ft"},
+      {"object.mesh", "up", String, "", "axis of the file that becomes body +Z, such as \"+Y\""},
+      {"object.mesh", "normals", String, "\"flat\"", "flat or smooth"},
+      {"object.mesh", "crease_deg", Number, "35.0", "edges sharper than this stay sharp [deg]"},
+      {"object.attitude", "mode", String, "", "nadir, inertial or spin"},
+      {"object.attitude", "point", Any, "\"+Z\"", "body axis that points exactly"},
+      {"object.attitude", "at", Any, "\"nadir\"",
+       "nadir, zenith, velocity, orbit_normal, sun, observer or { ra_deg, dec_deg }"},
+      {"object.attitude", "then", Any, "\"+X\"", "second body axis, as near as may be"},
+      {"object.attitude", "toward", Any, "\"velocity\"", "where the second axis goes"},
+      {"object.attitude", "quaternion", List, "", "body_from_gcrs, [w, x, y, z]"},
+      {"object.attitude", "axis", Any, "\"+Z\"", "spin: body axis"},
+      {"object.attitude", "rate_deg_s", Number, "", "spin: rate [deg/s], right-handed"},
+      {"object.attitude", "period_s", Number, "", "spin: period [s] instead of the rate"},
+      {"object.attitude", "epoch", Time, "", "spin: when it has the attitude of `start`"},
+      {"object.attitude", "start", Table, "{ mode = \"nadir\" }", "spin: attitude at `epoch`"},
+      {"direction", "ra_deg", Number, "", "right ascension, GCRS [deg]"},
+      {"direction", "dec_deg", Number, "", "declination, GCRS [deg]"},
+      {"sides", "front", String, "", "material of the side that the winding faces"},
+      {"sides", "back", String, "", "material of the other side"},
+      {"bands", "set", Any, "\"paper_rgb\"", "\"paper_rgb\" or a list of \"nm:NUMBER\""},
+      {"render", "bounces", Integer, "1", "surfaces that the light touches; only 1 so far"},
+      {"render", "sun", String, "\"point\"", "only \"point\" is built so far"},
+      {"render", "accuracy", Number, "0.005", "relative 95 % half-width asked of I"},
+      {"detector", "model", String, "\"ideal\"", "only \"ideal\" is built so far"},
+      {"output", "dir", String, "\"out\"", "folder, relative to the working folder"},
+      {"output", "formats", List, "[\"ecsv\", \"html\"]", "ecsv, csv, html"},
+      {"output", "pol_frame", String, "\"equatorial\"", "equatorial, altaz or scattering"},
+      {"material", "index", Any, "", "name, { n, k } or { wavelength_nm, n, k }"},
+      {"material", "distribution", Table, "", "of microfacet normals"},
+      {"material", "shadowing", String, "\"ashikhmin\"",
+       "ashikhmin, smith, smith_directional or separable"},
+      {"material", "body", Table, "", "light scattered below the surface; absent: none"},
+      {"material", "interreflection", String, "\"none\"", "only \"none\" is built so far"},
+      {"material.index", "n", Any, "", "real part, a number or a list"},
+      {"material.index", "k", Any, "0.0", "imaginary part (n + ik, k >= 0 absorbs)"},
+      {"material.index", "wavelength_nm", List, "", "wavelengths of the lists [nm]"},
+      {"material.distribution", "model", String, "", "only \"blinn_phong\" is built so far"},
+      {"material.distribution", "m", Number, "", "exponent, 0 to 1e9"},
+      {"material.body", "reflectance", Any, "", "R_sub: a number or { wavelength_nm, reflectance }"},
+      {"material.body", "polarized", Boolean, "false", "only false is built so far"},
+      {"material.body.reflectance", "wavelength_nm", List, "", "[nm]"},
+      {"material.body.reflectance", "reflectance", List, "", "0 to 1"},
+  };
+  return all;
+}
+
+std::vector<std::string> names_in(std::string_view table) {
+  std::vector<std::string> out;
+  for (const Key &key : keys())
+    if (table == key.table)
+      out.emplace_back(key.name);
+  return out;
+}
+
+const Key *find_key(std::string_view table, std::string_view name) {
+  for (const Key &key : keys())
+    if (table == key.table && name == key.name)
+      return &key;
+  return nullptr;
+}
+
+const char *to_text(Kind kind) {
+  switch (kind) {
+  case Kind::String:
+    return "a string";
+  case Kind::Number:
+    return "a number";
+  case Kind::Integer:
+    return "a whole number";
+  case Kind::Boolean:
+    return "true or false";
+  case Kind::Time:
+    return "a time such as 2018-01-21T04:00:00Z";
+  case Kind::List:
+    return "a list";
+  case Kind::Table:
+    return "a table";
+  case Kind::Any:
+    break;
+  }
+  return "a value";
+}
+
+namespace {
+
+nlohmann::ordered_json schema_of(std::string_view table) {
+  nlohmann::ordered_json out{{"type", "object"}, {"additionalProperties", false}};
+  for (const Key &key : keys()) {
+    if (table != key.table)
+      continue;
+    nlohmann::ordered_json entry{{"description", key.text}};
+    const std::string below = std::string(table) + (table.empty() ? "" : ".") + key.name;
+    switch (key.kind) {
+    case Kind::Number:
+      entry["type"] = "number";
+      break;
+    case Kind::Integer:
+      entry["type"] = "integer";
+      break;
+    case Kind::Boolean:
+      entry["type"] = "boolean";
+      break;
+    case Kind::Time:
+      entry["type"] = "string";
+      entry["format"] = "date-time";
+      break;
+    case Kind::String:
+      entry["type"] = "string";
+      break;
+    case Kind::List:
+      entry["type"] = "array";
+      if (below == "object")
+        entry["items"] = schema_of("object");
+      break;
+    case Kind::Table:
+      if (below == "material")
+        entry["additionalProperties"] = schema_of("material");
+      else if (!names_in(below).empty())
+        entry.update(schema_of(below));
+      else
+        entry["type"] = "object";
+      break;
+    case Kind::Any:
+      break;
+    }
+    if (*key.fallback != '\0' && *key.fallback != '{')
+      entry["default"] = nlohmann::ordered_json::parse(key.fallback);
+    out["properties"][key.name] = std::move(entry);
+  }
+  return out;
+}
+
+} // namespace
+} // namespace umov::scenario
+
+namespace umov {
+
+std::string scenario_schema_json() {
+  nlohmann::ordered_json out{{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                             {"title", "umov scenario"}};
+  out.update(scenario::schema_of(""));
+  return out.dump(2) + "\n";
+}
+
+} // namespace umov

@@ -1,0 +1,100 @@
+#include "io/scenario/parts.h"
+
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov {
+
+namespace scenario {
+
+std::string quoted(const std::string &text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\')
+      out += std::string("\\") + c;
+    else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+    else
+      out += c;
+  }
+  return out + "\"";
+}
+
+} // namespace scenario
+
+namespace {
+
+using scenario::quoted;
+
+std::string list(const std::vector<std::string> &items) {
+  std::string out;
+  for (const std::string &item : items)
+    out += (out.empty() ? "" : ", ") + quoted(item);
+  return "[" + out + "]";
+}
+
+std::string absolute_path(const std::filesystem::path &path) {
+  std::error_code code;
+  const auto full = std::filesystem::absolute(path, code);
+  return quoted((code ? path : full).lexically_normal().string());
+}
+
+const char *frame_name(PolarizationFrame frame) {
+  return frame == PolarizationFrame::AltAz        ? "altaz"
+         : frame == PolarizationFrame::Scattering ? "scattering"
+                                                  : "equatorial";
+}
+
+std::string observer_and_time(const Scenario &s) {
+  std::string out;
+  if (s.observer)
+    out += fmt::format("\n[observer]\nname = {}\nlat_deg = {}\nlon_deg = {}\nalt_m = {}\n"
+                       "atmosphere = \"none\"\n",
+                       quoted(s.observer->name), shortest(s.observer->latitude.degrees()),
+                       shortest(s.observer->longitude.degrees()), shortest(s.observer->altitude_m));
+  if (s.time) {
+    const EpochFilter &only = s.time->only;
+    out += fmt::format("\n[time]\nstart = {}\nstop = {}\nstep_s = {}\nonly = {{ alt_min_deg = {}, "
+                       "sun_alt_max_deg = {}, sunlit = {} }}\n",
+                       to_iso(s.time->start), to_iso(s.time->stop), shortest(s.time->step_s),
+                       shortest(only.altitude_min.degrees()),
+                       shortest(only.sun_altitude_max ? only.sun_altitude_max->degrees() : 90),
+                       only.sunlit);
+  }
+  return out;
+}
+
+std::string object(const Scenario &s) {
+  std::string out = fmt::format("\n[[object]]\nname = {}\n", quoted(s.object_name));
+  if (s.orbit)
+    out += fmt::format("orbit = {{ file = {}, norad = {} }}\n", absolute_path(s.orbit->file),
+                       s.orbit->norad);
+  out += fmt::format("mesh = {{ file = {}, unit = {}, up = {}, normals = \"{}\", crease_deg = {} }}\n",
+                     absolute_path(s.mesh.file), quoted(s.mesh.unit), quoted(s.mesh.up),
+                     s.mesh.normals == NormalMode::Smooth ? "smooth" : "flat",
+                     shortest(s.mesh.crease_deg));
+  out += "attitude = " + scenario::attitude_toml(s.attitude) + "\n\n[object.materials]\n";
+  for (const auto &[name, sides] : s.materials)
+    out += fmt::format("{} = {{ front = {}, back = {} }}\n", quoted(name), quoted(sides.front),
+                       quoted(sides.back));
+  return out;
+}
+
+} // namespace
+
+std::string locked_scenario(const Scenario &s) {
+  std::string out = "# Every default filled in; running this file repeats the run.\n";
+  out += fmt::format("umov = 1\ntitle = {}\nseed = {}\n", quoted(s.title), s.seed);
+  out += observer_and_time(s) + object(s);
+  out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));
+  out += fmt::format("\n[render]\nbounces = 1\nsun = \"point\"\naccuracy = {}\n",
+                     shortest(s.accuracy));
+  out += "\n[detector]\nmodel = \"ideal\"\n";
+  out += fmt::format("\n[output]\ndir = {}\nformats = {}\npol_frame = \"{}\"\n",
+                     quoted(s.output_dir.string()), list(s.formats), frame_name(s.frame));
+  for (const auto &[name, material] : s.own_materials)
+    out += "\n" + scenario::material_toml(material);
+  return out;
+}
+
+} // namespace umov

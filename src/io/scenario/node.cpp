@@ -1,0 +1,221 @@
+#include "io/scenario/node.h"
+
+#include "io/scenario/keys.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov::scenario {
+namespace {
+
+bool is_of(const toml::node &node, Kind kind) {
+  switch (kind) {
+  case Kind::String:
+    return node.is_string();
+  case Kind::Number:
+    return node.is_number();
+  case Kind::Integer:
+    return node.is_integer();
+  case Kind::Boolean:
+    return node.is_boolean();
+  case Kind::Time:
+    return node.is_date_time() || node.is_string();
+  case Kind::List:
+    return node.is_array();
+  case Kind::Table:
+    return node.is_table();
+  case Kind::Any:
+    break;
+  }
+  return true;
+}
+
+const char *name_of(const toml::node &node) {
+  switch (node.type()) {
+  case toml::node_type::string:
+    return "a string";
+  case toml::node_type::integer:
+  case toml::node_type::floating_point:
+    return "a number";
+  case toml::node_type::boolean:
+    return "true or false";
+  case toml::node_type::array:
+    return "a list";
+  case toml::node_type::table:
+    return "a table";
+  default:
+    return "a date or time";
+  }
+}
+
+/// A TOML date-time as ISO text; without an offset if it has none.
+std::string iso_of(const toml::date_time &t) {
+  std::string out = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", t.date.year, t.date.month,
+                                t.date.day, t.time.hour, t.time.minute, t.time.second);
+  if (t.time.nanosecond > 0)
+    out += fmt::format(".{:09}", t.time.nanosecond);
+  if (!t.offset)
+    return out;
+  const int minutes = t.offset->minutes;
+  return out + (minutes == 0 ? std::string("Z")
+                             : fmt::format("{}{:02}:{:02}", minutes < 0 ? '-' : '+',
+                                           std::abs(minutes) / 60, std::abs(minutes) % 60));
+}
+
+} // namespace
+
+Where place_of(const toml::source_region &source, const std::string &file) {
+  const bool is_other = source.path && *source.path != file;
+  if (is_other)
+    return {*source.path};
+  return {file, source.begin.line, source.begin.column};
+}
+
+Result<void> Node::check() const {
+  const auto known = names_in(schema_);
+  for (const auto &[key, value] : *table_) {
+    const std::string name(key.str());
+    const Key *spec = find_key(schema_, name);
+    if (spec == nullptr) {
+      const auto near = nearest_name(name, known);
+      return fail(ErrorCode::BadInput,
+                  fmt::format("unknown key \"{}\"{}. {}", name,
+                              label_.empty() ? "" : " in [" + label_ + "]",
+                              near ? fmt::format("Did you mean \"{}\"?", *near)
+                                   : fmt::format("Known: {}", fmt::join(known, ", "))),
+                  place_of(key.source(), file_));
+    }
+    if (!is_of(value, spec->kind))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} is {}; {} was expected ({})", name, name_of(value),
+                              to_text(spec->kind), spec->text),
+                  place_of(value.source(), file_));
+    if (const auto number = value.value<double>();
+        number && spec->kind == Kind::Number && !std::isfinite(*number))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} is {}; a finite number was expected", name, *number),
+                  place_of(value.source(), file_));
+  }
+  return {};
+}
+
+Where Node::where(const char *name) const {
+  const auto found = table_->find(name);
+  return found == table_->end() ? where() : place_of(found->first.source(), file_);
+}
+
+Where Node::where() const { return place_of(table_->source(), file_); }
+
+std::string Node::text(const char *name, std::string fallback) const {
+  return (*table_)[name].value_or(std::move(fallback));
+}
+double Node::number(const char *name, double fallback) const {
+  return (*table_)[name].value_or(fallback);
+}
+std::int64_t Node::integer(const char *name, std::int64_t fallback) const {
+  return (*table_)[name].value_or(fallback);
+}
+bool Node::boolean(const char *name, bool fallback) const {
+  return (*table_)[name].value_or(fallback);
+}
+
+Result<Epoch<Utc>> Node::time(const char *name) const {
+  UMOV_TRY(require(name));
+  const toml::node &node = *table_->get(name);
+  const auto stamp = node.value<toml::date_time>();
+  auto time = utc_from_iso(stamp ? iso_of(*stamp) : node.value_or(std::string()));
+  if (!time)
+    return fail(ErrorCode::BadInput, fmt::format("{} = {}", name, time.error().message),
+                where(name));
+  return *time;
+}
+
+Result<std::vector<double>> Node::numbers(const char *name) const {
+  UMOV_TRY(require(name));
+  const toml::node &node = *table_->get(name);
+  std::vector<double> out;
+  const auto take = [&](const toml::node &item) {
+    const auto number = item.value<double>();
+    if (number && std::isfinite(*number) && item.is_number())
+      out.push_back(*number);
+    return number && std::isfinite(*number) && item.is_number();
+  };
+  bool fine = true;
+  if (const toml::array *list = node.as_array()) {
+    for (const toml::node &item : *list)
+      fine = fine && take(item);
+  } else {
+    fine = take(node);
+  }
+  if (!fine || out.empty())
+    return fail(ErrorCode::BadInput,
+                fmt::format("{}: a finite number or a list of them was expected", name),
+                where(name));
+  return out;
+}
+
+Result<std::vector<std::string>> Node::strings(const char *name) const {
+  UMOV_TRY(require(name));
+  const toml::node &node = *table_->get(name);
+  std::vector<std::string> out;
+  bool fine = true;
+  if (const toml::array *list = node.as_array()) {
+    for (const toml::node &item : *list) {
+      fine = fine && item.is_string();
+      out.push_back(item.value_or(std::string()));
+    }
+  } else {
+    fine = node.is_string();
+    out.push_back(node.value_or(std::string()));
+  }
+  if (!fine)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{}: a string or a list of strings was expected", name), where(name));
+  return out;
+}
+
+Result<Node> Node::child(const char *name, const char *schema) const {
+  UMOV_TRY(require(name));
+  const toml::table *below = table_->get_as<toml::table>(name);
+  if (below == nullptr)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} is {}; a table was expected", name, name_of(*table_->get(name))),
+                where(name));
+  Node out(*below, schema != nullptr ? schema : schema_ + (schema_.empty() ? "" : ".") + name,
+           label_ + (label_.empty() ? "" : ".") + name, file_);
+  UMOV_TRY(out.check());
+  return out;
+}
+
+Result<void> Node::require(const char *name) const {
+  if (has(name))
+    return {};
+  const Key *spec = find_key(schema_, name);
+  return fail(ErrorCode::BadInput,
+              fmt::format("[{}] has no \"{}\"{}. Add it.", label_, name,
+                          spec != nullptr ? fmt::format(" ({})", spec->text) : ""),
+              where());
+}
+
+Result<std::string> Node::choice(const char *name, const std::string &fallback,
+                                 const std::vector<std::string> &known,
+                                 const std::vector<std::string> &later) const {
+  const std::string given = text(name, fallback);
+  if (std::find(known.begin(), known.end(), given) != known.end())
+    return given;
+  if (std::find(later.begin(), later.end(), given) != later.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} = \"{}\" is not built yet; this version knows {}", name, given,
+                            fmt::join(known, ", ")),
+                where(name));
+  const auto near = nearest_name(given, known);
+  return fail(ErrorCode::BadInput,
+              fmt::format("{} = \"{}\" is unknown; {} was expected.{}", name, given,
+                          fmt::join(known, ", "),
+                          near ? fmt::format(" Did you mean \"{}\"?", *near) : ""),
+              where(name));
+}
+
+} // namespace umov::scenario

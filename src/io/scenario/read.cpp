@@ -1,0 +1,295 @@
+#include "io/scenario/parts.h"
+
+#include <fmt/format.h>
+#include <umov/core/files.h>
+#include <umov/core/text.h>
+
+namespace umov {
+namespace {
+
+using scenario::Node;
+namespace fs = std::filesystem;
+
+/// Puts one "dotted.key=value" into the document; "object.x" means its first object.
+Result<void> override_key(toml::table &document, const std::string &text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    return fail(ErrorCode::Usage, "--set " + text + ": KEY=VALUE was expected");
+  const std::string key = text.substr(0, equals), value = text.substr(equals + 1);
+  const std::string origin = "--set " + key;
+  toml::table parsed;
+  try {
+    parsed = toml::parse("x = " + value, origin);
+  } catch (const toml::parse_error &) { // a bare word
+    parsed = toml::parse("x = " + scenario::quoted(value), origin);
+  }
+  toml::table *at = &document;
+  std::size_t begin = 0;
+  for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', begin)) {
+    const std::string name = key.substr(begin, dot - begin);
+    begin = dot + 1;
+    if (!at->contains(name))
+      at->insert(name, toml::table{});
+    toml::node *next = at->get(name);
+    if (toml::array *list = next->as_array(); list != nullptr && !list->empty())
+      next = list->get(0);
+    at = next->as_table();
+    if (at == nullptr)
+      return fail(ErrorCode::BadInput, origin + ": " + name + " is not a table");
+  }
+  at->insert_or_assign(toml::key(key.substr(begin), toml::source_region(parsed.source())),
+                       *parsed.get("x"));
+  return {};
+}
+
+Result<void> read_observer(const Node &top, Scenario &out) {
+  if (!top.has("observer"))
+    return {};
+  UMOV_ASSIGN(node, top.child("observer"));
+  for (const char *name : {"lat_deg", "lon_deg", "alt_m"})
+    UMOV_TRY(node.require(name));
+  UMOV_TRY(node.choice("atmosphere", "none", {"none"}));
+  auto site = make_site(node.text("name", ""), node.number("lat_deg", 0), node.number("lon_deg", 0),
+                        node.number("alt_m", 0));
+  if (!site) // the message begins with the name of the key
+    return fail(ErrorCode::BadInput, site.error().message,
+                node.where(site.error().message.substr(0, site.error().message.find(' ')).c_str()));
+  out.observer = *site;
+  return {};
+}
+
+Result<void> read_time(const Node &top, Scenario &out) {
+  if (!top.has("time"))
+    return {};
+  UMOV_ASSIGN(node, top.child("time"));
+  ScenarioTime time;
+  UMOV_ASSIGN(start, node.time("start"));
+  UMOV_ASSIGN(stop, node.time("stop"));
+  time.start = start;
+  time.stop = stop;
+  time.step_s = node.number("step_s", 1);
+  if (!(time.step_s > 0))
+    return fail(ErrorCode::BadInput,
+                fmt::format("step_s = {}; a positive number was expected", time.step_s),
+                node.where("step_s"));
+  if (auto grid = time_grid(start, stop, time.step_s); !grid)
+    return fail(ErrorCode::BadInput, grid.error().message, node.where("stop"));
+  if (node.has("only")) {
+    UMOV_ASSIGN(only, node.child("only"));
+    const double lowest = only.number("alt_min_deg", 0), sun = only.number("sun_alt_max_deg", 90);
+    for (const auto &[name, value] : {std::pair{"alt_min_deg", lowest}, {"sun_alt_max_deg", sun}})
+      if (std::abs(value) > 90)
+        return fail(ErrorCode::BadInput, fmt::format("{} = {}; -90 to 90 was expected", name, value),
+                    only.where(name));
+    time.only.altitude_min = Angle::degrees(lowest);
+    if (only.has("sun_alt_max_deg"))
+      time.only.sun_altitude_max = Angle::degrees(sun);
+    time.only.sunlit = only.boolean("sunlit", true);
+  }
+  out.time = time;
+  return {};
+}
+
+Result<void> read_materials(const Node &object, Scenario &out) {
+  if (!object.has("materials"))
+    return {};
+  const toml::table *table = object.table().get_as<toml::table>("materials");
+  const Node node(*table, "", "object.materials", out.file);
+  for (const auto &[key, value] : *table) {
+    const std::string name(key.str());
+    MaterialNames sides;
+    if (value.is_string()) {
+      sides.front = sides.back = value.value_or(std::string());
+    } else if (value.is_table()) {
+      UMOV_ASSIGN(below, node.child(name.c_str(), "sides"));
+      UMOV_TRY(below.require("front"));
+      UMOV_TRY(below.require("back"));
+      sides = {below.text("front", ""), below.text("back", "")};
+    } else {
+      return fail(ErrorCode::BadInput,
+                  name + ": the name of a material or { front = ..., back = ... } was expected",
+                  scenario::place_of(value.source(), out.file));
+    }
+    const Where where = scenario::place_of(value.source(), out.file);
+    for (const std::string &side : {sides.front, sides.back})
+      if (auto found = scenario::find_material(side, out); !found)
+        return fail(found.error().code, found.error().text(), where);
+    out.places["object.materials." + name] = scenario::place_of(key.source(), out.file);
+    out.materials.emplace(name, sides);
+  }
+  return {};
+}
+
+Result<void> read_mesh(const Node &object, const fs::path &folder, Scenario &out) {
+  UMOV_ASSIGN(mesh, object.child("mesh"));
+  UMOV_TRY(mesh.require("file"));
+  UMOV_ASSIGN(normals, mesh.choice("normals", "flat", {"flat", "smooth"}));
+  out.mesh.file = (folder / mesh.text("file", "")).lexically_normal();
+  out.mesh.unit = mesh.text("unit", "");
+  out.mesh.up = mesh.text("up", "");
+  out.mesh.normals = normals == "smooth" ? NormalMode::Smooth : NormalMode::Flat;
+  out.mesh.crease_deg = mesh.number("crease_deg", 35);
+  if (!(out.mesh.crease_deg >= 0 && out.mesh.crease_deg <= 180))
+    return fail(ErrorCode::BadInput,
+                fmt::format("crease_deg = {}; 0 to 180 was expected", out.mesh.crease_deg),
+                mesh.where("crease_deg"));
+  out.places["object.mesh"] = object.where("mesh");
+  return {};
+}
+
+Result<void> read_object(const Node &top, const fs::path &folder, Scenario &out) {
+  UMOV_TRY(top.require("object"));
+  const toml::array *list = top.table().get_as<toml::array>("object");
+  if (list->empty() || !list->get(0)->is_table())
+    return fail(ErrorCode::BadInput, "object: a table [[object]] was expected", top.where("object"));
+  if (list->size() > 1)
+    return fail(ErrorCode::BadInput, "several objects are not built yet; keep one [[object]]",
+                scenario::place_of(list->get(1)->source(), out.file));
+  const Node object(*list->get(0)->as_table(), "object", "object", out.file);
+  UMOV_TRY(object.check());
+  out.object_name = object.text("name", "");
+  if (object.has("orbit")) {
+    UMOV_ASSIGN(orbit, object.child("orbit"));
+    UMOV_TRY(orbit.require("file"));
+    const auto norad = orbit.integer("norad", 0);
+    if (norad < 0 || norad > 999'999'999)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("norad = {}; a catalogue number was expected", norad),
+                  orbit.where("norad"));
+    out.orbit = ScenarioOrbit{(folder / orbit.text("file", "")).lexically_normal(),
+                              static_cast<int>(norad)};
+    out.places["object.orbit"] = object.where("orbit");
+  }
+  UMOV_TRY(read_mesh(object, folder, out));
+  if (object.has("attitude")) {
+    UMOV_ASSIGN(node, object.child("attitude"));
+    UMOV_ASSIGN(law, scenario::read_attitude(node));
+    out.attitude = law;
+  }
+  return read_materials(object, out);
+}
+
+Result<void> read_bands(const Node &top, Scenario &out) {
+  Where where = top.where("bands");
+  if (top.has("bands")) {
+    UMOV_ASSIGN(node, top.child("bands"));
+    if (node.has("set")) {
+      UMOV_ASSIGN(set, node.strings("set"));
+      out.band_set = set;
+      where = node.where("set");
+    }
+  }
+  auto bands = bands_from(out.band_set);
+  if (!bands)
+    return fail(ErrorCode::BadInput, bands.error().message, where);
+  out.bands = *bands;
+  return {};
+}
+
+Result<void> read_render(const Node &top, Scenario &out) {
+  if (top.has("render")) {
+    UMOV_ASSIGN(node, top.child("render"));
+    if (const auto bounces = node.integer("bounces", 1); bounces != 1)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("bounces = {} is not built yet; this version has 1 (direct light)",
+                              bounces),
+                  node.where("bounces"));
+    UMOV_TRY(node.choice("sun", "point", {"point"}, {"disk"}));
+    out.accuracy = node.number("accuracy", 0.005);
+    if (!(out.accuracy >= 1e-6 && out.accuracy <= 1))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("accuracy = {}; 1e-6 to 1 was expected", out.accuracy),
+                  node.where("accuracy"));
+  }
+  if (top.has("detector")) {
+    UMOV_ASSIGN(node, top.child("detector"));
+    UMOV_TRY(node.choice("model", "ideal", {"ideal"}, {"real"}));
+  }
+  return {};
+}
+
+Result<void> read_output(const Node &top, Scenario &out) {
+  if (!top.has("output"))
+    return {};
+  UMOV_ASSIGN(node, top.child("output"));
+  out.output_dir = node.text("dir", "out");
+  if (out.output_dir.empty())
+    return fail(ErrorCode::BadInput, "dir = \"\"; a folder was expected", node.where("dir"));
+  UMOV_ASSIGN(frame, node.choice("pol_frame", "equatorial", {"equatorial", "altaz", "scattering"}));
+  out.frame = frame == "altaz"        ? PolarizationFrame::AltAz
+              : frame == "scattering" ? PolarizationFrame::Scattering
+                                      : PolarizationFrame::Equatorial;
+  if (node.has("formats")) {
+    UMOV_ASSIGN(formats, node.strings("formats"));
+    for (const std::string &format : formats)
+      if (format != "ecsv" && format != "csv" && format != "html")
+        return fail(ErrorCode::BadInput,
+                    fmt::format("formats: \"{}\" is {}; ecsv, csv and html were expected", format,
+                                format == "fits" ? "not built yet" : "unknown"),
+                    node.where("formats"));
+    out.formats = formats;
+  }
+  return {};
+}
+
+Result<Scenario> read_document(toml::table &document, const fs::path &path) {
+  Scenario out;
+  out.file = path.string();
+  const Node top(document, "", "", out.file);
+  UMOV_TRY(top.check());
+  UMOV_TRY(top.require("umov"));
+  if (const auto form = top.integer("umov", 1); form != 1)
+    return fail(ErrorCode::BadInput, fmt::format("umov = {}; this version reads 1", form),
+                top.where("umov"));
+  const auto seed = top.integer("seed", 0);
+  if (seed < 0)
+    return fail(ErrorCode::BadInput, fmt::format("seed = {}; 0 or more was expected", seed),
+                top.where("seed"));
+  out.seed = static_cast<std::uint64_t>(seed);
+  out.title = top.text("title", "");
+  UMOV_TRY(read_observer(top, out));
+  UMOV_TRY(read_time(top, out));
+  UMOV_TRY(read_bands(top, out));
+  UMOV_TRY(read_render(top, out));
+  UMOV_TRY(read_output(top, out));
+  UMOV_ASSIGN(own, scenario::read_material_tables(top));
+  out.own_materials = own;
+  UMOV_TRY(read_object(top, path.parent_path(), out));
+  return out;
+}
+
+} // namespace
+
+Result<Scenario> read_scenario_text(const std::string &text, const fs::path &path,
+                                    const std::vector<std::string> &overrides) {
+  try {
+    toml::table document = toml::parse(text, path.string());
+    for (const std::string &one : overrides)
+      UMOV_TRY(override_key(document, one));
+    return read_document(document, path);
+  } catch (const toml::parse_error &problem) {
+    return fail(ErrorCode::BadInput, std::string(problem.description()),
+                scenario::place_of(problem.source(), path.string()));
+  }
+}
+
+Result<Scenario> read_scenario(const fs::path &path, const std::vector<std::string> &overrides) {
+  UMOV_ASSIGN(text, read_file(path, 16u << 20));
+  return read_scenario_text(text, path, overrides);
+}
+
+Result<void> check_complete_for_run(const Scenario &s) {
+  std::string missing;
+  for (const auto &[is_there, name] :
+       {std::pair{s.observer.has_value(), "[observer]"}, {s.time.has_value(), "[time]"},
+        {s.orbit.has_value(), "object.orbit"}})
+    if (!is_there)
+      missing += (missing.empty() ? "" : ", ") + std::string(name);
+  if (missing.empty())
+    return {};
+  return fail(ErrorCode::BadInput,
+              "umov run also needs " + missing + "; without them it is a scene for umov signature",
+              {s.file});
+}
+
+} // namespace umov

@@ -1,0 +1,135 @@
+#include <umov/io/table.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov {
+
+namespace {
+
+struct Cell {
+  std::string text;
+  std::size_t column = 1; ///< first character, counted from 1
+};
+
+/// Splits one line; quotes as in RFC 4180, no line break inside them. Empty if a quote stays open.
+std::optional<std::vector<Cell>> split(std::string_view line) {
+  std::vector<Cell> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back().text += line[i++];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (c == ',' && !quoted)
+      cells.push_back({"", i + 2});
+    else
+      cells.back().text += c;
+  }
+  if (quoted)
+    return std::nullopt;
+  for (Cell &cell : cells)
+    cell.text = std::string(trimmed(cell.text));
+  return cells;
+}
+
+class Reader {
+public:
+  Reader(std::string_view text, const std::string &file, const std::vector<std::string> &required)
+      : text_(text), file_(file), required_(required), values_(required.size()) {}
+
+  Result<Table> read() {
+    if (text_.substr(0, 3) == "\xEF\xBB\xBF")
+      text_.remove_prefix(3);
+    while (!text_.empty()) {
+      const std::size_t end = std::min(text_.find('\n'), text_.size());
+      std::string_view line = text_.substr(0, end);
+      text_.remove_prefix(std::min(end + 1, text_.size()));
+      ++line_;
+      const std::string_view content = trimmed(line.substr(0, line.find_last_not_of('\r') + 1));
+      if (content.empty() || content.front() == '#')
+        continue;
+      const auto cells = split(line.substr(0, line.find_last_not_of('\r') + 1));
+      if (!cells)
+        return fail(ErrorCode::BadInput, "a quote is not closed in this row; close it with \"",
+                    {file_, line_});
+      UMOV_TRY(header_.empty() ? header(*cells) : row(*cells));
+    }
+    return table();
+  }
+
+private:
+  std::string wanted() const { return fmt::format("{}", fmt::join(required_, ", ")); }
+
+  Result<void> header(const std::vector<Cell> &cells) {
+    for (const Cell &cell : cells)
+      header_.push_back(cell.text);
+    for (const std::string &name : required_) {
+      const auto found = std::find(header_.begin(), header_.end(), name);
+      if (found == header_.end())
+        return missing(name);
+      if (std::find(found + 1, header_.end(), name) != header_.end())
+        return fail(ErrorCode::BadInput, fmt::format("column \"{}\" stands twice in the header; keep one", name),
+                    {file_, line_});
+      place_.push_back(static_cast<std::size_t>(found - header_.begin()));
+    }
+    return {};
+  }
+
+  Result<void> missing(const std::string &name) const {
+    const auto near = nearest_name(name, header_);
+    return fail(ErrorCode::BadInput,
+                fmt::format("no column \"{}\"{}; the first line must name the columns {}", name,
+                            near ? fmt::format(" (there is \"{}\")", *near) : "", wanted()),
+                {file_, line_});
+  }
+
+  Result<void> row(const std::vector<Cell> &cells) {
+    if (cells.size() != header_.size())
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} cells in this row; the header has {}", cells.size(), header_.size()),
+                  {file_, line_});
+    for (std::size_t k = 0; k < required_.size(); ++k) {
+      const Cell &cell = cells[place_[k]];
+      const auto value = parse_number(cell.text);
+      if (!value)
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} is \"{}\"; a finite number was expected", required_[k], cell.text),
+                    {file_, line_, cell.column});
+      values_[k].push_back(*value);
+    }
+    return {};
+  }
+
+  Result<Table> table() {
+    if (header_.empty())
+      return fail(ErrorCode::BadInput, "no header; the first line must name the columns " + wanted(),
+                  {file_});
+    if (!values_.empty() && values_[0].empty())
+      return fail(ErrorCode::BadInput, "no rows below the header; at least one was expected",
+                  {file_});
+    Table out;
+    for (std::size_t k = 0; k < required_.size(); ++k)
+      out.add(required_[k], "", "", std::move(values_[k]));
+    return out;
+  }
+
+  std::string_view text_;
+  const std::string &file_;
+  const std::vector<std::string> &required_;
+  std::vector<std::string> header_;
+  std::vector<std::size_t> place_;
+  std::vector<std::vector<double>> values_;
+  std::size_t line_ = 0;
+};
+
+} // namespace
+
+Result<Table> read_csv(std::string_view text, const std::string &file,
+                       const std::vector<std::string> &required) {
+  return Reader(text, file, required).read();
+}
+
+} // namespace umov

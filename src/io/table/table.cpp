@@ -1,0 +1,87 @@
+#include <umov/io/table.h>
+
+#include <cmath>
+#include <limits>
+#include <umov/core/text.h>
+#include <umov/core/version.h>
+
+namespace umov {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+struct Resize {
+  std::size_t rows;
+  void operator()(std::vector<double> &cells) const { cells.resize(rows, nan); }
+  template <class T> void operator()(std::vector<T> &cells) const { cells.resize(rows); }
+};
+
+struct AsNumber {
+  std::size_t row;
+  double operator()(const std::vector<double> &cells) const { return cells[row]; }
+  double operator()(const std::vector<std::int64_t> &cells) const {
+    return static_cast<double>(cells[row]);
+  }
+  double operator()(const std::vector<std::string> &) const { return nan; }
+  double operator()(const std::vector<bool> &cells) const { return cells[row] ? 1 : 0; }
+};
+
+struct AsText {
+  std::size_t row;
+  std::string operator()(const std::vector<double> &cells) const {
+    return std::isnan(cells[row]) ? "" : shortest(cells[row]);
+  }
+  std::string operator()(const std::vector<std::int64_t> &cells) const {
+    return std::to_string(cells[row]);
+  }
+  std::string operator()(const std::vector<std::string> &cells) const { return cells[row]; }
+  std::string operator()(const std::vector<bool> &cells) const {
+    return cells[row] ? "True" : "False";
+  }
+};
+
+} // namespace
+
+void Table::add(std::string name, std::string unit, std::string description, Cells cells) {
+  if (columns_.empty())
+    rows_ = std::visit([](const auto &c) { return c.size(); }, cells);
+  std::visit(Resize{rows_}, cells);
+  columns_.push_back({std::move(name), std::move(unit), std::move(description), std::move(cells)});
+}
+
+void Table::note(std::string key, std::string value) {
+  notes_.emplace_back(std::move(key), std::move(value));
+}
+
+const Column *Table::find(std::string_view name) const {
+  for (const Column &column : columns_)
+    if (column.name == name)
+      return &column;
+  return nullptr;
+}
+
+double Table::number(std::string_view name, std::size_t row) const {
+  const Column *column = find(name);
+  return column && row < rows_ ? std::visit(AsNumber{row}, column->cells) : nan;
+}
+
+std::string Table::text(std::string_view name, std::size_t row) const {
+  const Column *column = find(name);
+  return column && row < rows_ ? std::visit(AsText{row}, column->cells) : "";
+}
+
+void note_conventions(Table &table) {
+  table.note("umov_version", version);
+  table.note("conventions_version", std::to_string(conventions_version));
+  table.note("POLCCONV", "IAU");
+  table.note("conventions",
+             "Time: UTC. I: irradiance at the observer above the atmosphere; intensity: without "
+             "distance and solar flux. q u v: fractions of I; sky frame: IAU, +Q north-south, +U "
+             "north-east to south-west, position angles from north through east, V > 0 "
+             "right-handed. q_scat u_scat: +Q perpendicular to the scattering plane; pa_scat: "
+             "position angle of its normal. phase_angle: Sun-object-observer, 0 = full. qw qx qy "
+             "qz: body_from_gcrs, scalar first. *_err: numerical 95 % half-widths.");
+}
+
+} // namespace umov

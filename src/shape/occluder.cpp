@@ -1,0 +1,139 @@
+#include <umov/shape/occluder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <embree3/rtcore.h>
+#include <limits>
+
+namespace umov {
+
+/// Coordinates are moved and scaled to a unit box, which spends the float mantissa on the shape.
+struct Occluder::State {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  Vec3<Body> centre{};
+  double scale = 1; ///< model units per metre
+
+  ~State() {
+    if (scene != nullptr)
+      rtcReleaseScene(scene);
+    if (device != nullptr)
+      rtcReleaseDevice(device);
+  }
+  [[nodiscard]] Vec3<Body> to_model(Vec3<Body> p) const { return (p - centre) * scale; }
+};
+
+namespace {
+
+bool is_finite(Vec3<Body> v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+struct Box {
+  Vec3<Body> centre{};
+  double half = 1;
+};
+
+Box bounds(const Mesh &mesh) {
+  if (mesh.triangles.empty())
+    return {};
+  Vec3<Body> low{INFINITY, INFINITY, INFINITY}, high = -1 * low;
+  for (const Triangle &t : mesh.triangles)
+    for (const std::uint32_t v : t.vertex) {
+      const Vec3<Body> p = mesh.positions[v];
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+  return {(low + high) / 2, std::max(norm(high - low) / 2, 1e-300)};
+}
+
+} // namespace
+
+Occluder::Occluder(const Mesh &mesh) : state_(std::make_unique<State>()) {
+  const Box box = bounds(mesh);
+  state_->centre = box.centre;
+  state_->scale = 1 / box.half;
+  state_->device = rtcNewDevice("threads=1"); // the same tree on every machine
+  state_->scene = rtcNewScene(state_->device);
+  rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_HIGH);
+  rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
+  if (!mesh.triangles.empty()) {
+    RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto *vertices = static_cast<float *>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+        mesh.positions.size()));
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      const Vec3<Body> p = state_->to_model(mesh.positions[i]);
+      vertices[3 * i] = static_cast<float>(p.x);
+      vertices[3 * i + 1] = static_cast<float>(p.y);
+      vertices[3 * i + 2] = static_cast<float>(p.z);
+    }
+    auto *indices = static_cast<unsigned *>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
+        mesh.triangles.size()));
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+      std::copy_n(mesh.triangles[i].vertex.begin(), 3, indices + 3 * i);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(state_->scene, geometry);
+    rtcReleaseGeometry(geometry);
+  }
+  rtcCommitScene(state_->scene);
+}
+
+Occluder::~Occluder() = default;
+Occluder::Occluder(Occluder &&) noexcept = default;
+Occluder &Occluder::operator=(Occluder &&) noexcept = default;
+
+void Occluder::is_free(std::span<const Vec3<Body>> origins, Vec3<Body> direction,
+                       std::span<unsigned char> free) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  const bool is_usable = is_finite(direction);
+  for (std::size_t begin = 0; begin < origins.size(); begin += 16) {
+    const std::size_t count = std::min<std::size_t>(16, origins.size() - begin);
+    alignas(64) RTCRay16 ray{};
+    alignas(64) int valid[16];
+    for (std::size_t i = 0; i < 16; ++i) {
+      const Vec3<Body> p = i < count ? state_->to_model(origins[begin + i]) : Vec3<Body>{};
+      valid[i] = i < count && is_usable && is_finite(p) ? -1 : 0;
+      ray.org_x[i] = static_cast<float>(p.x);
+      ray.org_y[i] = static_cast<float>(p.y);
+      ray.org_z[i] = static_cast<float>(p.z);
+      ray.dir_x[i] = static_cast<float>(direction.x);
+      ray.dir_y[i] = static_cast<float>(direction.y);
+      ray.dir_z[i] = static_cast<float>(direction.z);
+      ray.tnear[i] = 0;
+      ray.tfar[i] = std::numeric_limits<float>::infinity();
+      ray.mask[i] = ~0u;
+    }
+    rtcOccluded16(valid, state_->scene, &context, &ray);
+    for (std::size_t i = 0; i < count; ++i) // Embree sets tfar to -inf where something was hit
+      free[begin + i] = valid[i] != 0 && ray.tfar[i] > 0 ? 1 : 0;
+  }
+}
+
+Occluder::Hit Occluder::nearest(Vec3<Body> origin, Vec3<Body> direction) const {
+  if (!is_finite(origin) || !is_finite(direction))
+    return {};
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  const Vec3<Body> p = state_->to_model(origin);
+  RTCRayHit ray{};
+  ray.ray.org_x = static_cast<float>(p.x);
+  ray.ray.org_y = static_cast<float>(p.y);
+  ray.ray.org_z = static_cast<float>(p.z);
+  ray.ray.dir_x = static_cast<float>(direction.x);
+  ray.ray.dir_y = static_cast<float>(direction.y);
+  ray.ray.dir_z = static_cast<float>(direction.z);
+  ray.ray.tfar = std::numeric_limits<float>::infinity();
+  ray.ray.mask = ~0u;
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(state_->scene, &context, &ray);
+  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    return {};
+  return {ray.hit.primID, ray.hit.u, ray.hit.v,
+          static_cast<double>(ray.ray.tfar) / state_->scale};
+}
+
+} // namespace umov
