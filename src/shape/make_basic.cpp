@@ -4,42 +4,62 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <vector>
 
 namespace umov {
 namespace {
 
-/// Unit sphere: an octahedron whose faces are cut into n^2 triangles each, corners moved out to the
-/// sphere along great circles of equal steps, so that triangles stay of like size.
+/// Corners of the icosahedron and its 20 faces, wound outward.
+struct Icosahedron {
+  std::array<Vec3<Body>, 12> corner{};
+  std::vector<std::array<std::size_t, 3>> faces;
+
+  Icosahedron() {
+    // Two poles and two rings of five at the height 1/sqrt(5).
+    corner[0] = {0, 0, 1};
+    corner[11] = {0, 0, -1};
+    const double height = 1 / std::sqrt(5.0), radius = 2 * height;
+    for (std::size_t i = 0; i < 5; ++i) {
+      const double upper = 2 * pi * static_cast<double>(i) / 5, lower = upper + pi / 5;
+      corner[1 + i] = {radius * std::cos(upper), radius * std::sin(upper), height};
+      corner[6 + i] = {radius * std::cos(lower), radius * std::sin(lower), -height};
+    }
+    for (std::size_t i = 0; i < 5; ++i) {
+      const std::size_t j = (i + 1) % 5;
+      faces.push_back({0, 1 + i, 1 + j});
+      faces.push_back({1 + i, 6 + i, 1 + j});
+      faces.push_back({6 + i, 6 + j, 1 + j});
+      faces.push_back({11, 6 + j, 6 + i});
+    }
+  }
+};
+
+/// Unit sphere: an icosahedron whose faces are cut into n^2 triangles each. Corners divide the edges
+/// by equal angles (weights sin(t w), which on an edge is the great circle), so that the triangles
+/// stay of like size.
 Mesh unit_sphere(std::size_t facets, const std::string &group) {
   std::size_t n = 1;
-  while (8 * n * n < facets)
+  while (20 * n * n < facets)
     ++n;
   MeshBuilder builder;
   const std::uint32_t g = builder.group(group);
-  const std::array<Vec3<Body>, 6> tips{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0},
-                                        {0, 0, -1}}};
-  const auto corner = [&](Vec3<Body> a, Vec3<Body> b, Vec3<Body> c, std::size_t i, std::size_t j) {
-    const double u = static_cast<double>(i), v = static_cast<double>(j);
-    const double w = static_cast<double>(n) - u - v;
-    return normalized(a * std::sin(pi / 2 * w / static_cast<double>(n)) +
-                      b * std::sin(pi / 2 * u / static_cast<double>(n)) +
-                      c * std::sin(pi / 2 * v / static_cast<double>(n)));
-  };
-  const auto add = [&](Vec3<Body> p, Vec3<Body> q, Vec3<Body> r) {
-    builder.triangle(g, {p, q, r}, {p, q, r});
-  };
-  for (std::size_t octant = 0; octant < 8; ++octant) {
-    Vec3<Body> a = tips[octant & 1 ? 3 : 0], b = tips[octant & 2 ? 4 : 1],
-               c = tips[octant & 4 ? 5 : 2];
-    if (dot(cross(a, b), c) < 0)
-      std::swap(b, c);
+  const Icosahedron solid;
+  const double edge = std::acos(1 / std::sqrt(5.0)), step = edge / static_cast<double>(n);
+  for (const auto &face : solid.faces) {
+    const auto corner = [&](std::size_t i, std::size_t j) {
+      const double u = step * static_cast<double>(i), v = step * static_cast<double>(j);
+      return normalized(solid.corner[face[0]] * std::sin(edge - u - v) +
+                        solid.corner[face[1]] * std::sin(u) + solid.corner[face[2]] * std::sin(v));
+    };
+    const auto add = [&](Vec3<Body> p, Vec3<Body> q, Vec3<Body> r) {
+      builder.triangle(g, {p, q, r}, {p, q, r});
+    };
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; i + j < n; ++j) {
-        const Vec3<Body> p = corner(a, b, c, i, j), q = corner(a, b, c, i + 1, j),
-                         r = corner(a, b, c, i, j + 1);
-        add(p, q, r);
+        add(corner(i, j), corner(i + 1, j), corner(i, j + 1));
         if (i + j + 1 < n)
-          add(q, corner(a, b, c, i + 1, j + 1), r);
+          add(corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
       }
   }
   return builder.mesh;

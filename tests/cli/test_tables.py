@@ -33,7 +33,7 @@ def test_brdf_batch_gives_the_tables_of_the_physics(umov, tmp_path):
 
 
 def test_orbit_propagate_against_the_reference_program(umov, tmp_path):
-    done = umov("orbit", "propagate", "--orbit", ROOT / "tests/data/sgp4/mixed_979_2018-01-20.tle",
+    done = umov("orbit", "propagate", "--orbit", ROOT / "tests/data/tle/mixed_979_2018-01-20.tle",
                 "--at", "2018-01-21T00:00:00Z,2018-01-22T00:00:00Z,2018-01-28T00:00:00Z",
                 "-o", "out.csv")
     assert done.code == 0, done.err

@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <umov/io/scenario.h>
+
+namespace umov {
+namespace {
+
+const std::string good = R"(umov = 1
+title = "a \"quoted\" title"
+seed = 7
+[observer]
+name = "Maui"
+lat_deg = 20.7083
+lon_deg = -156.2578
+alt_m = 3058
+[time]
+start = 2018-01-21T05:00:00Z
+stop = "2018-01-21T05:10:00+00:00"
+step_s = 0.5
+only = { alt_min_deg = 10, sun_alt_max_deg = -6 }
+[[object]]
+name = "HST"
+orbit = { file = "hst.tle", norad = 20580 }
+mesh = { file = "hst.obj", unit = "m", up = "+Z", normals = "smooth" }
+attitude = { point = "+Z", at = { ra_deg = 83.8, dec_deg = -5.4 }, then = "+X", toward = "sun" }
+[object.materials]
+array = { front = "gold", back = "paper_al" }
+default = "paper_asi"
+[bands]
+set = ["nm:425", "nm:500"]
+[material.gold]
+index = { wavelength_nm = [400, 700], n = [1.6, 0.2], k = [1.9, 3.1] }
+distribution = { model = "blinn_phong", m = 50 }
+shadowing = "smith"
+body = { reflectance = { wavelength_nm = [400, 700], reflectance = [0.1, 0.2] } }
+)";
+
+std::string with(const std::string &from, const std::string &to) {
+  std::string text = good;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(Scenario, ReadsEveryPart) {
+  const auto s = read_scenario_text(good, "dir/s.toml", {});
+  ASSERT_TRUE(s) << s.error().text();
+  EXPECT_EQ(s->title, "a \"quoted\" title");
+  EXPECT_EQ(s->seed, 7u);
+  EXPECT_EQ(s->time->step_s, 0.5);
+  EXPECT_EQ(to_iso(s->time->stop), "2018-01-21T05:10:00.000Z");
+  EXPECT_TRUE(s->time->only.sunlit);
+  EXPECT_EQ(s->orbit->file, "dir/hst.tle");
+  EXPECT_EQ(s->mesh.normals, NormalMode::Smooth);
+  EXPECT_EQ(s->materials.at("array").back, "paper_al");
+  EXPECT_EQ(s->own_materials.at("gold").exponent, 50);
+  EXPECT_EQ(s->own_materials.at("gold").shadowing, Shadowing::Smith);
+  EXPECT_EQ(s->bands.size(), 2u);
+  EXPECT_TRUE(check_complete_for_run(*s));
+}
+
+TEST(Scenario, OverridesReplaceKeys) {
+  const auto s = read_scenario_text(good, "s.toml",
+                                    {"time.step_s=2", "output.dir=here", "object.name=\"X\""});
+  ASSERT_TRUE(s) << s.error().text();
+  EXPECT_EQ(s->time->step_s, 2);
+  EXPECT_EQ(s->output_dir, "here");
+  EXPECT_EQ(s->object_name, "X");
+  EXPECT_FALSE(read_scenario_text(good, "s.toml", {"time.step=2"}));
+  EXPECT_FALSE(read_scenario_text(good, "s.toml", {"seed"}));
+}
+
+TEST(Scenario, TheLockReadsBackToItself) {
+  const auto s = read_scenario_text(good, "/base/s.toml", {});
+  ASSERT_TRUE(s);
+  const std::string lock = locked_scenario(*s);
+  const auto again = read_scenario_text(lock, "/elsewhere/lock.toml", {});
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(locked_scenario(*again), lock);
+  EXPECT_EQ(again->orbit->file, "/base/hst.tle");
+}
+
+TEST(Scenario, ASceneNeedsNoOrbit) {
+  const auto s = read_scenario_text(
+      "umov = 1\n[[object]]\nmesh = { file = \"a.obj\", unit = \"m\", up = \"+Z\" }\n", "s.toml", {});
+  ASSERT_TRUE(s) << s.error().text();
+  const auto complete = check_complete_for_run(*s);
+  ASSERT_FALSE(complete);
+  EXPECT_NE(complete.error().message.find("[observer], [time], object.orbit"), std::string::npos);
+}
+
+struct Wrong {
+  const char *name, *from, *to;
+  std::size_t line;
+  const char *word;
+};
+class ScenarioRefused : public testing::TestWithParam<Wrong> {};
+
+TEST_P(ScenarioRefused, SaysWhereAndWhat) {
+  const Wrong &w = GetParam();
+  const auto s = read_scenario_text(with(w.from, w.to), "s.toml", {});
+  ASSERT_FALSE(s);
+  EXPECT_EQ(s.error().code, ErrorCode::BadInput);
+  EXPECT_EQ(s.error().where.line, w.line) << s.error().text();
+  EXPECT_NE(s.error().message.find(w.word), std::string::npos) << s.error().text();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, ScenarioRefused,
+    testing::Values(
+        Wrong{"typo", "shadowing =", "shadwing =", 27, "Did you mean \"shadowing\"?"},
+        Wrong{"type", "alt_m = 3058", "alt_m = \"7 km\"", 8, "a number was expected"},
+        Wrong{"nan", "alt_m = 3058", "alt_m = nan", 8, "finite"},
+        Wrong{"zone", "05:00:00Z", "05:00:00", 10, "has no zone"},
+        Wrong{"order", "2018-01-21T05:10", "2018-01-20T05:10", 11, "before start"},
+        Wrong{"repeated", "seed = 7", "seed = 7\nseed = 8", 4, "seed"},
+        Wrong{"latitude", "20.7083", "-90.5", 6, "-90 to 90"},
+        Wrong{"material", "\"paper_al\"", "\"paper_la\"", 20, "Did you mean \"paper_al\"?"},
+        Wrong{"target", "\"sun\"", "\"sum\"", 18, "Did you mean \"sun\"?"},
+        Wrong{"axis", "\"+X\"", "\"X\"", 18, "body axis"},
+        Wrong{"parallel", "then = \"+X\"", "then = \"-Z\"", 18, "parallel"},
+        Wrong{"no_distribution", "distribution", "#", 24, "distribution"},
+        Wrong{"later_model", "blinn_phong", "ggx", 26, "not built yet"},
+        Wrong{"unsorted", "[400, 700], n", "[700, 400], n", 24, "increasing"},
+        Wrong{"negative_k", "[1.9, 3.1]", "[1.9, -3.1]", 24, "k ="},
+        Wrong{"later_band", "nm:500", "Bessell.V", 23, "not built yet"}),
+    [](const auto &test) { return std::string(test.param.name); });
+
+TEST(Schema, IsJsonWithEveryTable) {
+  const auto schema = nlohmann::json::parse(scenario_schema_json());
+  EXPECT_EQ(schema["properties"]["render"]["properties"]["accuracy"]["default"], 0.005);
+  EXPECT_TRUE(schema["properties"]["object"]["items"]["properties"].contains("attitude"));
+  EXPECT_TRUE(schema["properties"]["material"]["additionalProperties"]["properties"].contains("body"));
+}
+
+} // namespace
+} // namespace umov

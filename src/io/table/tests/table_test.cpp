@@ -1,0 +1,63 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <umov/io/table.h>
+
+namespace umov {
+namespace {
+
+Table sample() {
+  Table table;
+  table.add("x", "m2 / sr", "an area", std::vector<double>{0.1, std::nan(""), 1e22});
+  table.add("n", "", "a count", std::vector<std::int64_t>{1, -2, 3});
+  table.add("name", "", "a text", std::vector<std::string>{"a", "b, \"c\"", ""});
+  table.add("flag", "", "yes or no", std::vector<bool>{true, false, true});
+  table.note("object", "HST");
+  return table;
+}
+
+TEST(Table, CsvCarriesUnitsAndLeavesUndefinedCellsEmpty) {
+  const std::string csv = to_csv(sample());
+  EXPECT_NE(csv.find("# unit: "), std::string::npos);
+  EXPECT_NE(csv.find("m2 / sr"), std::string::npos);
+  EXPECT_NE(csv.find("\"b, \"\"c\"\"\""), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\n,-2,"), std::string::npos) << csv;
+}
+
+TEST(Table, NumbersReadBackBitForBit) {
+  const auto back = read_csv(to_csv(sample()), "t.csv", {"n"});
+  ASSERT_TRUE(back) << back.error().text();
+  EXPECT_EQ(back->rows(), 3u);
+  EXPECT_EQ(back->number("n", 1), -2);
+  Table numbers;
+  numbers.add("x", "", "", std::vector<double>{1.0 / 3, 5e-324, -1.7976931348623157e308});
+  const auto again = read_csv(to_csv(numbers), "t.csv", {"x"});
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(again->number("x", 0), 1.0 / 3);
+  EXPECT_EQ(again->number("x", 2), -1.7976931348623157e308);
+}
+
+TEST(Table, JsonHasNullForUndefined) {
+  const auto json = nlohmann::json::parse(to_json(sample()));
+  ASSERT_EQ(json.size(), 3u);
+  EXPECT_TRUE(json[1]["x"].is_null());
+  EXPECT_EQ(json[0]["flag"], true);
+}
+
+TEST(ReadCsv, SaysWhatIsWrongWhere) {
+  const struct {
+    const char *text;
+    std::size_t line;
+  } rows[] = {{"a,b\n1,2\n", 1}, {"x,y\n1,2\n3\n", 3}, {"x,y\n1,zwei\n", 2}, {"x,y\n1,nan\n", 2}};
+  for (const auto &row : rows) {
+    const auto result = read_csv(row.text, "t.csv", {"x", "y"});
+    ASSERT_FALSE(result) << row.text;
+    EXPECT_EQ(result.error().where.line, row.line) << result.error().text();
+  }
+  EXPECT_FALSE(read_csv("", "t.csv", {"x"}));
+  EXPECT_TRUE(read_csv("# c\n\nz,x\nfoo,1\n", "t.csv", {"x"}));
+}
+
+} // namespace
+} // namespace umov
