@@ -81,6 +81,26 @@ std::string log_of(const LightCurveOutcome &outcome, const Diagnostics &diagnost
   return out;
 }
 
+/// Rows whose numerical error stayed above what was asked are told, not hidden.
+void warn_of_accuracy(const LightCurveOutcome &outcome, double accuracy, Diagnostics &diagnostics) {
+  const LightCurve &curve = outcome.curve;
+  const std::size_t bands = curve.bands.size();
+  std::size_t count = 0;
+  double worst = 0;
+  for (std::size_t i = 0; i < curve.epochs.size(); ++i) {
+    double error = 0;
+    for (std::size_t b = 0; b < bands; ++b)
+      if (const LightCurveSample &s = curve.samples[i * bands + b]; s.intensity > 0)
+        error = std::max(error, s.half_width.i / s.intensity);
+    count += error > 1.001 * accuracy ? 1u : 0u;
+    worst = std::max(worst, error);
+  }
+  if (count > 0)
+    diagnostics.warn(fmt::format("{} of {} epochs did not reach the accuracy {} asked of I (worst "
+                                 "{:.2g}); they are faint. See intensity_err.",
+                                 count, curve.epochs.size(), accuracy, worst));
+}
+
 bool wants(const Scenario &scenario, const char *format) {
   return std::find(scenario.formats.begin(), scenario.formats.end(), format) !=
          scenario.formats.end();
@@ -161,6 +181,7 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   }
   if (outcome->curve.epochs.empty())
     return tl::unexpected(outcome->stopped ? *outcome->stopped : nothing_found(request));
+  warn_of_accuracy(*outcome, scenario.accuracy, diagnostics);
   UMOV_TRY(write_folder({o, common, scenario, object, request, *outcome, diagnostics, started},
                         folder));
   if (!common.quiet)
