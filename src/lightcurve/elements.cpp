@@ -156,7 +156,8 @@ Elements make_elements(const Scene &scene, const std::vector<VisibleSides> &side
     std::array<Vec3<Body>, 3> normal{face, face, face};
     if (scene.normals == NormalMode::Smooth)
       normal = corner_normals(mesh, t, face);
-    Element e{normal, {{{0, 0}, {1, 0}, {0, 1}}}, 0.5 * length, static_cast<std::uint32_t>(i), true};
+    Element e{
+        normal, {{{0, 0}, {1, 0}, {0, 1}}}, 0.5 * length, static_cast<std::uint32_t>(i), true};
     constexpr double agree = 1e-9; // [rad]
     e.is_flat = norm(normal[0] - normal[1]) < agree && norm(normal[0] - normal[2]) < agree;
     if (e.is_flat) {

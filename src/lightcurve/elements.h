@@ -15,7 +15,7 @@ struct Element {
   std::array<std::array<double, 2>, 3> corner; ///< (u, v) of the corners
   double area_m2 = 0;                          ///< of the curved surface where normals are smooth
   std::uint32_t triangle = 0;
-  bool is_flat = true;                         ///< one normal all over
+  bool is_flat = true; ///< one normal all over
 };
 
 /// What each side of a triangle is: a slot is a mesh group with the front or back surface of it.

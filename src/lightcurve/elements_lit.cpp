@@ -143,8 +143,12 @@ private:
     if (is_known_[slot])
       return;
     is_known_[slot] = 1;
-    for (std::size_t b = 0; b < bands_; ++b)
-      out_.fresnel[slot * bands_ + b] = surface.fresnel(b, pose_.cos_phase);
+    for (std::size_t b = 0; b < bands_; ++b) {
+      FresnelFactors &factors = out_.fresnel[slot * bands_ + b];
+      factors = surface.fresnel(b, pose_.cos_phase);
+      if (!pose_.has_plane)
+        factors.b = 0;
+    }
   }
 
   [[nodiscard]] bool is_near_glint(const Element &e, double side, double exponent) const {
@@ -158,9 +162,9 @@ private:
     for (LitElement &lit : out_.list)
       for (std::size_t b = 0; b < bands_; ++b)
         if (out_.total[b] > 0)
-          lit.share += (out_.fresnel[lit.slot * bands_ + b].a * lit.specular +
-                        out_.body[lit.body_at + b]) /
-                       (out_.total[b] * static_cast<double>(bands_));
+          lit.share +=
+              (out_.fresnel[lit.slot * bands_ + b].a * lit.specular + out_.body[lit.body_at + b]) /
+              (out_.total[b] * static_cast<double>(bands_));
     std::erase_if(out_.list, [](const LitElement &lit) { return !(lit.share > negligible); });
     for (std::size_t b = 0; b < bands_; ++b) {
       out_.rule_error_i.push_back(std::sqrt(variance_i_[b]));
@@ -181,7 +185,10 @@ private:
 } // namespace
 
 PoseGeometry geometry_of(const Pose &pose) {
-  PoseGeometry out{pose.sun, pose.observer, {}, 0};
+  PoseGeometry out;
+  out.sun = pose.sun;
+  out.observer = pose.observer;
+  out.has_plane = !(pose.sun == pose.observer) && !(pose.sun == -pose.observer);
   out.cos_phase = std::clamp(dot(pose.sun, pose.observer), -1.0, 1.0);
   const Vec3<Body> sum = pose.sun + pose.observer;
   // Below this the half vector is rounding; nothing can face both directions there anyway.

@@ -10,8 +10,9 @@ namespace umov {
 /// Directions of a pose with what follows from them.
 struct PoseGeometry {
   Vec3<Body> sun, observer;
-  Vec3<Body> half;      ///< unit half vector; zero at phase 180
+  Vec3<Body> half; ///< unit half vector; zero at phase 180
   double cos_phase = 0;
+  bool has_plane = true; ///< false at phase 0 and 180: no scattering plane, Q = 0 by definition
 };
 PoseGeometry geometry_of(const Pose &pose);
 
@@ -27,10 +28,10 @@ struct LitElement {
 };
 
 struct LitElements {
-  std::vector<LitElement> list;        ///< by slot, then in the order of the mesh
-  std::vector<double> body;            ///< integral of the body lobe [m2/sr]
-  std::vector<FresnelFactors> fresnel; ///< [slot * bands + band]
-  std::vector<double> total;           ///< per band: I if nothing were hidden
+  std::vector<LitElement> list;                   ///< by slot, then in the order of the mesh
+  std::vector<double> body;                       ///< integral of the body lobe [m2/sr]
+  std::vector<FresnelFactors> fresnel;            ///< [slot * bands + band]
+  std::vector<double> total;                      ///< per band: I if nothing were hidden
   std::vector<double> rule_error_i, rule_error_q; ///< per band: error of the triangle rule
 };
 

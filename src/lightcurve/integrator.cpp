@@ -40,10 +40,10 @@ PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &opti
   const std::size_t bands = scene.bands.size(), groups = scene.mesh.groups.size();
   const PoseGeometry geometry = geometry_of(pose);
   const LitElements lit = light_elements(scene, state_->elements, geometry);
-  const VisibleSums sums = state_->is_convex
-                               ? sum_unhidden(scene, lit)
-                               : sum_visible(scene, state_->elements, *state_->occluder, geometry,
-                                             lit, options);
+  const VisibleSums sums =
+      state_->is_convex
+          ? sum_unhidden(scene, lit)
+          : sum_visible(scene, state_->elements, *state_->occluder, geometry, lit, options);
   PoseResult out;
   out.rays = sums.rays;
   out.is_dark = !sums.is_any_seen;
@@ -71,8 +71,7 @@ std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
                                              const IntegrationOptions &options,
                                              unsigned threads) const {
   std::vector<PoseResult> out(poses.size());
-  parallel_for(poses.size(), threads,
-               [&](std::size_t i) { out[i] = evaluate(poses[i], options); });
+  parallel_for(poses.size(), threads, [&](std::size_t i) { out[i] = evaluate(poses[i], options); });
   return out;
 }
 

@@ -22,15 +22,13 @@ struct TriangleRule {
   }};
   static constexpr double weight_outer = (155 - root15) / 1200;
   static constexpr double weight_inner = (155 + root15) / 1200;
-  static constexpr std::array<double, size> weight{9.0 / 40,     weight_outer, weight_outer,
-                                                   weight_outer, weight_inner, weight_inner,
-                                                   weight_inner};
+  static constexpr std::array<double, size> weight{
+      9.0 / 40, weight_outer, weight_outer, weight_outer, weight_inner, weight_inner, weight_inner};
   // Degree 2 asks for sum w = 1 and sum w b^2 = 1/6 over one barycentric coordinate b.
-  static constexpr double outer_squares =
-      (1 - 2 * outer) * (1 - 2 * outer) + 2 * outer * outer;
+  static constexpr double outer_squares = (1 - 2 * outer) * (1 - 2 * outer) + 2 * outer * outer;
   static constexpr double low_outer = (1.0 / 6 - 1.0 / 9) / (outer_squares - 1.0 / 3);
-  static constexpr std::array<double, size> low{1 - 3 * low_outer, low_outer, low_outer, low_outer,
-                                                0,                 0,         0};
+  static constexpr std::array<double, size> low{
+      1 - 3 * low_outer, low_outer, low_outer, low_outer, 0, 0, 0};
 };
 
 } // namespace umov

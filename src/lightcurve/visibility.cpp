@@ -28,9 +28,8 @@ double worst_relative(const VisibleSums &sums) {
   for (std::size_t b = 0; b < sums.intensity.size(); ++b) {
     if (sums.half_width_i[b] <= 0)
       continue;
-    worst = std::max(worst, sums.intensity[b] > 0
-                                ? sums.half_width_i[b] / sums.intensity[b]
-                                : std::numeric_limits<double>::infinity());
+    worst = std::max(worst, sums.intensity[b] > 0 ? sums.half_width_i[b] / sums.intensity[b]
+                                                  : std::numeric_limits<double>::infinity());
   }
   return worst;
 }
@@ -107,8 +106,8 @@ public:
       if (!refine(last, round == 0 ? 2 : 1))
         break;
       last = look(1);
-      const bool is_spent = static_cast<double>(last.sums.points) * 1.5 >
-                            static_cast<double>(options_.max_points);
+      const bool is_spent =
+          static_cast<double>(last.sums.points) * 1.5 > static_cast<double>(options_.max_points);
       const bool is_stuck = static_cast<double>(last.sums.points) / 2 <= cells_before * 1.01;
       if (worst_relative(last.sums) <= options_.accuracy || is_spent || is_stuck)
         break;
@@ -145,9 +144,9 @@ private:
       return false;
     for (std::size_t i = 0; i < last.blocks.size(); ++i)
       for (std::size_t e = last.blocks[i].first; e < last.blocks[i].last; ++e)
-        cells_[e] = growth.factor[i] * (last.blocks[i].cuts > 0
-                                            ? static_cast<double>(last.blocks[i].cells())
-                                            : cells_[e]);
+        cells_[e] =
+            growth.factor[i] *
+            (last.blocks[i].cuts > 0 ? static_cast<double>(last.blocks[i].cells()) : cells_[e]);
     return true;
   }
 

@@ -80,8 +80,8 @@ private:
       ++pair_;
       for (std::size_t k = 0; k < 2; ++k) {
         const LitElement &lit = lit_.list[pick(block, choice[k])];
-        const auto point = point_in_cell(std::max<std::size_t>(1, block.cuts), cell, u[2 * k],
-                                         u[2 * k + 1]);
+        const auto point =
+            point_in_cell(std::max<std::size_t>(1, block.cuts), cell, u[2 * k], u[2 * k + 1]);
         origins_.push_back(ray_origin(scene_, elements_, lit, point));
         weights_.push_back(weigh(lit, point));
       }
@@ -162,8 +162,9 @@ private:
       variance_i_[b].weight2 += all * all / cells;
       variance_q_[b].weight2 += f.b * f.b * block_specular_ * block_specular_ / cells;
       if (lit_.total[b] > 0)
-        block.weight2 += all * all / (cells * cells * lit_.total[b] * lit_.total[b] *
-                                      static_cast<double>(bands_));
+        block.weight2 +=
+            all * all /
+            (cells * cells * lit_.total[b] * lit_.total[b] * static_cast<double>(bands_));
     }
     cells_ += static_cast<double>(block.cells());
     if (seen > 0 && seen < static_cast<double>(count))
@@ -206,8 +207,9 @@ private:
         variance_i_[b].add(di * di);
         variance_q_[b].add(f.b * f.b * ds * ds);
         if (lit_.total[b] > 0)
-          block.spread += di * di / (lit_.total[b] * lit_.total[b] *
-                                     static_cast<double>(bands_ * block.cells()));
+          block.spread +=
+              di * di /
+              (lit_.total[b] * lit_.total[b] * static_cast<double>(bands_ * block.cells()));
       }
     }
   }

@@ -10,7 +10,7 @@ namespace umov {
 struct Block {
   std::size_t first = 0, last = 0;
   std::size_t cuts = 0;
-  double spread = 0; ///< sampling variance per cell, relative to the unhidden light, band mean
+  double spread = 0;  ///< sampling variance per cell, relative to the unhidden light, band mean
   double weight2 = 0; ///< square of one cell's part of the unhidden light
   [[nodiscard]] std::size_t cells() const { return cuts == 0 ? 1 : cuts * cuts; }
 };

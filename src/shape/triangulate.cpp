@@ -25,25 +25,38 @@ Triangulation fan(std::size_t count) {
   return out;
 }
 
-/// Clips one ear after the other; false if none is left although corners are.
+/// Clips one ear after the other; false if none is left although corners are, or if the work grows
+/// past what a sane outline needs (one that crosses itself all over).
 bool clip_ears(const std::vector<Point> &p, Triangulation &out) {
   std::vector<std::uint32_t> ring(p.size());
   for (std::uint32_t i = 0; i < p.size(); ++i)
     ring[i] = i;
-  std::size_t at = 0, tried = 0;
+  const auto reflex_now = [&](std::size_t k) {
+    const std::size_t n = ring.size();
+    return turn(p[ring[(k + n - 1) % n]], p[ring[k]], p[ring[(k + 1) % n]]) <= 0;
+  };
+  // Only a reflex corner can lie in an ear, and clipping never makes a convex corner reflex.
+  std::vector<bool> is_reflex(p.size());
+  std::vector<std::uint32_t> reflex;
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    if (reflex_now(k)) {
+      is_reflex[k] = true;
+      reflex.push_back(static_cast<std::uint32_t>(k));
+    }
+  std::size_t at = 0, tried = 0, work = 0;
+  const std::size_t limit = 40 * p.size() * std::max<std::size_t>(p.size(), 64);
   while (ring.size() > 3) {
     const std::size_t n = ring.size();
-    if (tried > n)
+    if (tried > n || work > limit)
       return false;
     const std::uint32_t a = ring[(at + n - 1) % n], b = ring[at % n], c = ring[(at + 1) % n];
     bool is_ear = turn(p[a], p[b], p[c]) > 0;
-    for (std::size_t k = 0; is_ear && k < n; ++k) {
-      const std::uint32_t v = ring[k];
-      // Only a reflex corner can lie in an ear.
-      if (v == a || v == b || v == c ||
-          turn(p[ring[(k + n - 1) % n]], p[v], p[ring[(k + 1) % n]]) > 0)
-        continue;
-      is_ear = !is_inside(p[v], p[a], p[b], p[c]);
+    for (std::size_t k = 0; is_ear && k < reflex.size(); ++k, ++work) {
+      const std::uint32_t v = reflex[k];
+      const auto same = [&](std::uint32_t w) { return p[v].x == p[w].x && p[v].y == p[w].y; };
+      // A corner repeated by a bridge to a hole touches the ear but does not lie in it.
+      if (is_reflex[v] && !same(a) && !same(b) && !same(c))
+        is_ear = !is_inside(p[v], p[a], p[b], p[c]);
     }
     if (!is_ear) {
       at = (at + 1) % n;
@@ -51,8 +64,12 @@ bool clip_ears(const std::vector<Point> &p, Triangulation &out) {
       continue;
     }
     out.triangles.push_back({a, b, c});
+    is_reflex[b] = false;
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(at % n));
     at = at % ring.size();
+    for (const std::size_t k : {at, (at + ring.size() - 1) % ring.size()})
+      if (is_reflex[ring[k]] && !reflex_now(k))
+        is_reflex[ring[k]] = false;
     tried = 0;
   }
   out.triangles.push_back({ring[0], ring[1], ring[2]});

@@ -15,7 +15,8 @@ struct Cell {
 struct CellHash {
   std::size_t operator()(const Cell &c) const {
     // Odd multipliers spread neighbouring cells (Teschner et al. 2003).
-    return static_cast<std::size_t>(c.x * 73856093 ^ c.y * 19349663 ^ c.z * 83492791);
+    const auto u = [](std::int64_t v) { return static_cast<std::uint64_t>(v); };
+    return static_cast<std::size_t>(u(c.x) * 73856093u ^ u(c.y) * 19349663u ^ u(c.z) * 83492791u);
   }
 };
 
@@ -38,7 +39,11 @@ std::vector<std::uint32_t> weld(const Mesh &mesh, double distance) {
   std::vector<std::uint32_t> out(mesh.positions.size());
   std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells;
   const double width = std::max(distance, 1e-300);
-  const auto index = [&](double v) { return static_cast<std::int64_t>(std::floor(v / width)); };
+  // Far cells share one number: vertices that no face uses may lie anywhere, and the distance test
+  // decides in the end.
+  const auto index = [&](double v) {
+    return static_cast<std::int64_t>(std::clamp(std::floor(v / width), -0x1p50, 0x1p50));
+  };
   for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
     const Vec3<Body> p = mesh.positions[i];
     const Cell home{index(p.x), index(p.y), index(p.z)};

@@ -110,9 +110,9 @@ FresnelFactors Surface::fresnel(std::size_t band, double l_v) const {
   const auto eta = tables_->eta[band];
   const auto f = kernel::reflection(
       kernel::fresnel(half_angle_cosine(l_v), kernel::Complex<double>{eta.real(), eta.imag()}));
-  // At phase 180 there is no scattering plane: no polarization by definition, and at phase 0 the
-  // two amplitudes are equal but for rounding.
-  const bool has_plane = l_v > -1 && l_v < 1;
+  // At phase 0 and 180 (within rounding of the cosine) there is no scattering plane: no polarization
+  // by definition.
+  const bool has_plane = std::abs(l_v) < 1 - 1e-15;
   return {f.a, has_plane ? f.b : 0};
 }
 

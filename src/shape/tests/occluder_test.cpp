@@ -1,0 +1,91 @@
+// After the list of Embree's own verification: what rays must survive.
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <umov/core/parallel.h>
+#include <umov/core/random.h>
+#include <umov/core/quantity.h>
+#include <umov/shape/occluder.h>
+#include <umov/shape/primitives.h>
+
+namespace umov {
+namespace {
+
+Vec3<Body> random_direction(std::uint64_t i) {
+  const auto u = uniform4(8, 1, i);
+  const double z = 2 * u[0] - 1, s = std::sqrt(1 - z * z);
+  return {s * std::cos(2 * pi * u[1]), s * std::sin(2 * pi * u[1]), z};
+}
+
+TEST(Occluder, NoRayLeavesAClosedBody) {
+  const Occluder occluder(make_sphere(1, 2000));
+  unsigned char free = 1;
+  for (std::uint64_t i = 0; i < 100000; ++i) {
+    const Vec3<Body> origin = 0.5 * random_direction(2 * i);
+    occluder.is_free({&origin, 1}, random_direction(2 * i + 1), {&free, 1});
+    ASSERT_EQ(free, 0) << i;
+  }
+}
+
+TEST(Occluder, TakesAnyNumberOfOriginsAndBothSidesStop) {
+  const Occluder occluder(make_plate(2, 2, false));
+  for (const std::size_t count : {0u, 1u, 15u, 16u, 17u, 100u})
+    for (const double side : {1.0, -1.0}) {
+      std::vector<Vec3<Body>> origins(count);
+      std::vector<unsigned char> free(count, 9);
+      for (std::size_t i = 0; i < count; ++i)
+        origins[i] = {i % 2 == 0 ? 0.1 : 5.0, 0, side};
+      occluder.is_free(origins, {0, 0, -side}, free);
+      for (std::size_t i = 0; i < count; ++i)
+        EXPECT_EQ(free[i], i % 2 == 0 ? 0 : 1);
+    }
+}
+
+TEST(Occluder, NonFiniteRaysAreNeverFree) {
+  const Occluder occluder(make_sphere(1, 100));
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = INFINITY;
+  for (const double bad : {nan, inf, -inf}) {
+    const std::vector<Vec3<Body>> origins{{bad, 0, 0}, {0, 5, 0}};
+    std::vector<unsigned char> free(2);
+    occluder.is_free(origins, {0, 1, 0}, free);
+    EXPECT_EQ(free[0], 0);
+    EXPECT_EQ(free[1], 1);
+    occluder.is_free(origins, {bad, 1, 0}, free);
+    EXPECT_EQ(free[1], 0);
+    EXPECT_EQ(occluder.nearest({0, 0, bad}, {0, 0, 1}).triangle, no_index);
+  }
+}
+
+TEST(Occluder, AnEmptyMeshHidesNothing) {
+  const Occluder occluder(Mesh{});
+  const Vec3<Body> origin{};
+  unsigned char free = 0;
+  occluder.is_free({&origin, 1}, {0, 0, 1}, {&free, 1});
+  EXPECT_EQ(free, 1);
+}
+
+TEST(Occluder, NearestGivesDistanceAndTriangle) {
+  const Mesh plate = make_plate(2000, 2000, false); // scaled inside: metres must come out
+  const auto hit = Occluder(plate).nearest({10, 20, 300}, {0, 0, -1});
+  EXPECT_NE(hit.triangle, no_index);
+  EXPECT_NEAR(hit.distance_m, 300, 1e-3);
+}
+
+TEST(Occluder, ManyBuildsAndTwoThreadsGiveTheSame) {
+  const Mesh mesh = make_sphere(1, 80);
+  std::vector<int> counts(200);
+  parallel_for(counts.size(), 2, [&](std::size_t k) {
+    const Occluder occluder(mesh);
+    for (std::uint64_t i = 0; i < 50; ++i) {
+      const Vec3<Body> origin = 2.0 * random_direction(i);
+      unsigned char free = 0;
+      occluder.is_free({&origin, 1}, random_direction(i + 1000), {&free, 1});
+      counts[k] += free;
+    }
+  });
+  EXPECT_EQ(counts, std::vector<int>(counts.size(), counts[0]));
+}
+
+} // namespace
+} // namespace umov
