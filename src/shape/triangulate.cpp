@@ -122,6 +122,7 @@ Triangulation triangulate(std::span<const Vec3<Body>> corners) {
     if (!out.is_simple)
       out.triangles = fan(count).triangles;
   }
+  out.is_convex = is_convex && out.is_simple;
   out.is_planar = height <= 1e-3 * size;
   return out;
 }

@@ -43,7 +43,7 @@ struct ObjText {
   std::string obj, mtl;
 };
 /// The mesh in metres, +Z up; `name` is the stem of the files. Two-sided faces become two opposite
-/// ones. Reading it again gives the same mesh, bit for bit.
+/// ones, which `clean` joins again. Reading it gives the same numbers, bit for bit.
 ObjText write_obj(const Mesh &mesh, const std::string &name);
 
 } // namespace umov

@@ -9,6 +9,7 @@ namespace umov {
 
 struct Triangulation {
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< corners as indices into the polygon
+  bool is_convex = true;
   bool is_simple = true; ///< false: the outline crosses itself; the triangles are a fan
   bool is_planar = true; ///< within 1e-3 of its size
 };

@@ -6,6 +6,18 @@
 
 namespace umov::obj {
 
+namespace {
+
+/// A comment begins at a '#' that starts a word; inside one it belongs to a name ("red#2").
+std::size_t comment_begin(std::string_view line) {
+  for (std::size_t at = line.find('#'); at != std::string_view::npos; at = line.find('#', at + 1))
+    if (at == 0 || line[at - 1] == ' ' || line[at - 1] == '\t')
+      return at;
+  return line.size();
+}
+
+} // namespace
+
 Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
   if (rest_.starts_with("\xEF\xBB\xBF"))
     rest_.remove_prefix(3);
@@ -19,7 +31,7 @@ bool Lines::next(std::vector<Word> &words) {
     std::string_view line = rest_.substr(0, end);
     const bool is_crlf = rest_.substr(end).starts_with("\r\n");
     rest_.remove_prefix(std::min(rest_.size(), end + (is_crlf ? 2 : 1)));
-    line = line.substr(0, line.find('#'));
+    line = line.substr(0, comment_begin(line));
     const std::size_t last = line.find_last_not_of(" \t");
     const bool goes_on = last != std::string_view::npos && line[last] == '\\';
     if (goes_on)

@@ -44,6 +44,13 @@ struct Corner {
   std::uint32_t vertex = no_index, normal = no_index;
 };
 
+/// True if a name could lead out of the folder of the mesh.
+bool leaves_folder(const std::string &name) {
+  const fs::path path(name);
+  return path.is_absolute() || name.find('\\') != std::string::npos ||
+         std::find(path.begin(), path.end(), fs::path("..")) != path.end();
+}
+
 class Reader {
 public:
   Reader(std::string_view text, const std::string &file, const ObjOptions &options,
@@ -60,6 +67,7 @@ private:
   Result<std::optional<std::uint32_t>> index(std::string_view text, const Word &word,
                                              std::size_t count, const char *what);
   Result<void> take_mtl(const std::vector<Word> &words);
+  Result<void> read_mtl(const std::string &name, const Word &statement);
   Result<void> finish();
   std::uint32_t group();
   [[nodiscard]] std::string box_text(const char *key) const;
@@ -72,7 +80,8 @@ private:
   std::map<std::string, std::uint32_t> group_index_;
   std::string material_, object_;
   bool has_material_ = false;
-  std::size_t texture_count_ = 0, skipped_ = 0, short_faces_ = 0, crossed_ = 0, bent_ = 0;
+  std::size_t texture_count_ = 0, skipped_ = 0, short_faces_ = 0, concave_ = 0,
+              crossed_ = 0, bent_ = 0;
 };
 
 Result<Vec3<Body>> Reader::vector(const std::vector<Word> &words, const char *what) {
@@ -163,6 +172,7 @@ Result<void> Reader::take_face(const std::vector<Word> &words) {
   const bool has_normals = std::all_of(corners.begin(), corners.end(),
                                        [](const Corner &c) { return c.normal != no_index; });
   const Triangulation split = triangulate(points);
+  concave_ += split.is_simple && !split.is_convex ? 1u : 0u;
   crossed_ += split.is_simple ? 0u : 1u;
   bent_ += split.is_planar ? 0u : 1u;
   for (const auto &t : split.triangles) {
@@ -178,29 +188,38 @@ Result<void> Reader::take_face(const std::vector<Word> &words) {
 }
 
 Result<void> Reader::take_mtl(const std::vector<Word> &words) {
-  for (std::size_t i = 1; i < words.size(); ++i) {
-    const std::string name(words[i].text);
-    const fs::path path(name);
-    const bool leaves = path.is_absolute() || name.find("..") != std::string::npos ||
-                        name.find('\\') != std::string::npos;
-    if (leaves)
+  // One name with blanks in it, or several names: the format leaves it open.
+  const std::string whole = obj::name_from(words, 1);
+  std::vector<std::string> names{whole};
+  if (words.size() > 2 && (leaves_folder(whole) || !load_mtl_(whole))) {
+    names.clear();
+    for (std::size_t i = 1; i < words.size(); ++i)
+      names.emplace_back(words[i].text);
+  }
+  for (const std::string &name : names) {
+    if (leaves_folder(name))
       return fail(ErrorCode::BadInput,
                   fmt::format("mtllib \"{}\" leaves the folder of the mesh; put the MTL file beside "
                               "the OBJ file",
                               name),
-                  lines_.where(words[i]));
-    const auto text = load_mtl_(name);
-    if (!text) {
-      out_.lacks_mtl = true;
-      diagnostics_.warn(fmt::format("mtllib \"{}\" cannot be read", name), lines_.where(words[i]));
-      continue;
-    }
-    out_.files.emplace_back(name);
-    Lines lines(*text, name);
-    for (std::vector<Word> mtl; lines.next(mtl);)
-      if (mtl[0].text == "newmtl")
-        out_.defined.push_back(obj::name_from(mtl, 1));
+                  lines_.where(words[1]));
+    UMOV_TRY(read_mtl(name, words[0]));
   }
+  return {};
+}
+
+Result<void> Reader::read_mtl(const std::string &name, const Word &statement) {
+  const auto text = load_mtl_(name);
+  if (!text) {
+    out_.lacks_mtl = true;
+    diagnostics_.warn(fmt::format("mtllib \"{}\" cannot be read", name), lines_.where(statement));
+    return {};
+  }
+  out_.files.emplace_back(name);
+  Lines lines(*text, name);
+  for (std::vector<Word> mtl; lines.next(mtl);)
+    if (mtl[0].text == "newmtl")
+      out_.defined.push_back(obj::name_from(mtl, 1));
   return {};
 }
 
@@ -289,6 +308,7 @@ Result<void> Reader::finish() {
   };
   warn(skipped_, "points or lines were skipped: they have no area");
   warn(short_faces_, "faces with fewer than three corners were skipped");
+  warn(concave_, "polygons are concave; they were split by cutting ears");
   warn(crossed_, "polygons cross themselves; they were split as fans");
   warn(bent_, "polygons are not flat; they were split as they lie");
   return {};

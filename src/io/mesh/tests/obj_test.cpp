@@ -100,6 +100,30 @@ TEST(ObjReader, WarnsOfWhatItSkips) {
   EXPECT_EQ(diagnostics.warnings().size(), 2u);
 }
 
+TEST(ObjReader, WarnsOfConcaveAndCrossingPolygons) {
+  const std::string points = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n";
+  Diagnostics concave, crossing;
+  ASSERT_TRUE(read(points + "f 1 2 3 4 5 6\n", concave));
+  EXPECT_EQ(concave.warnings().size(), 1u);
+  ASSERT_TRUE(read(points + "f 1 3 2 6\n", crossing));
+  EXPECT_EQ(crossing.warnings().size(), 1u);
+}
+
+TEST(ObjReader, NamesMayHoldBlanksAndHashes) {
+  Diagnostics diagnostics;
+  const MtlLoader loader = [](const std::string &name) -> Result<std::string> {
+    if (name == "my file.mtl")
+      return std::string("newmtl red#2\n");
+    return fail(ErrorCode::BadInput, "none");
+  };
+  const auto result = read_obj_text("mtllib my file.mtl\n" + square + "usemtl red#2 # a note\nf 1 2 3\n",
+                                    "a.obj", metres, loader, diagnostics);
+  ASSERT_TRUE(result) << result.error().text();
+  EXPECT_EQ(result->defined, (std::vector<std::string>{"red#2"}));
+  EXPECT_EQ(result->mesh.groups[0], "red#2");
+  EXPECT_TRUE(diagnostics.empty());
+}
+
 TEST(ObjReader, KeepsGroupsByMaterialElseByName) {
   Diagnostics diagnostics;
   const auto result = read(square + "o body\nf 1 2 3\nusemtl gold foil\nf 1 3 4\nusemtl b\nf 4 3 1\n"
