@@ -10,7 +10,7 @@ namespace {
 // Heights count from the aft end of the tube [m].
 constexpr double total_length = 13.2;
 constexpr double wide_radius = 4.27 / 2, narrow_radius = 3.05 / 2;
-constexpr double shroud_top = 3.5, equipment_top = 5.1, shell_top = 9.1;
+constexpr double shroud_top = 3.5, equipment_top = 5.02, shell_top = 8.98;
 constexpr double wall = 0.05;            ///< of the light shield
 constexpr double first_baffle = 9.6;     ///< floor of the hollow light shield
 constexpr double wing_height = 5.9;      ///< of the wings' axis
