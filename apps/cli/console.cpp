@@ -21,7 +21,6 @@ extern "C" void on_interrupt(int) {
 
 void add_common(CLI::App &verb, Common &common, bool prints_table) {
   verb.add_flag("-q,--quiet", common.quiet, "No log and no progress, only errors");
-  verb.add_flag("-v,--verbose", common.verbose, "Say more");
   if (prints_table)
     verb.add_flag("--json", common.json, "Print the table as JSON");
 }

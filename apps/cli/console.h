@@ -21,7 +21,7 @@ struct Common {
   bool force = false;
 };
 
-/// Adds -q, -v and, where the verb prints a table, --json.
+/// Adds -q and, where the verb prints a table, --json.
 void add_common(CLI::App &verb, Common &common, bool prints_table);
 void add_threads(CLI::App &verb, Common &common);
 

@@ -157,6 +157,9 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
                                   diagnostics));
   warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);
   warn_if_outside_eop(scenario.time->start, scenario.time->stop, diagnostics);
+  if (common.verbose)
+    for (const InputFile &input : object.inputs)
+      note(common, fmt::format("read {} (SHA-256 {})", input.path, input.sha256));
   if (o.dry_run) {
     note(common, fmt::format("{}: fine; {} triangles, {} bands", o.scenario,
                              object.scene.mesh.triangles.size(), object.scene.bands.size()));
@@ -186,6 +189,11 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
                         folder));
   if (!common.quiet)
     fmt::print("{}written to {}\n", summarize(*outcome), folder.path().string());
+  if (common.verbose)
+    note(common, fmt::format("{:.1f} s on {} threads",
+                             std::chrono::duration<double>(std::chrono::system_clock::now() - started)
+                                 .count(),
+                             resolve_threads(request.threads)));
   if (outcome->stopped)
     return tl::unexpected(*outcome->stopped);
   return {};
@@ -208,6 +216,7 @@ void add_run(CLI::App &app, const Exit &exit_with) {
   verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
   verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum, "Read elements with a bad checksum");
   verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
+  verb->add_flag("-v,--verbose", common->verbose, "Also say what was read and how long it took");
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
   verb->callback([o, common, exit_with] {

@@ -194,6 +194,15 @@ void truncate(LightCurve &curve, std::size_t rows) {
   curve.epochs.resize(rows);
 }
 
+/// After a stop some passes have fewer rows, or none and are not told of.
+void count_rows(LightCurveOutcome &out) {
+  for (Pass &pass : out.passes)
+    pass.rows = static_cast<std::size_t>(
+        std::count_if(out.curve.epochs.begin(), out.curve.epochs.end(),
+                      [&](const LightCurveEpoch &e) { return e.pass_id == pass.id; }));
+  std::erase_if(out.passes, [](const Pass &pass) { return pass.rows == 0; });
+}
+
 /// Fills the rows in blocks so that a stop keeps every finished block; returns the rows kept.
 std::size_t fill_rows(const RowMaker &maker, const Selection &selection, LightCurve &curve,
                       const Progress &progress, const std::atomic<bool> &cancel,
@@ -257,6 +266,7 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
   out.stopped = selection.stopped;
   const RowMaker maker{request, scene, integrator, solar, spin_start};
   truncate(out.curve, fill_rows(maker, selection, out.curve, progress, cancel, out.stopped));
+  count_rows(out);
   return out;
 }
 

@@ -99,6 +99,27 @@ def test_no_pass_says_when_the_next_one_is(umov, scenario, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_an_interrupt_keeps_what_is_done(scenario, tmp_path):
+    import signal
+    import subprocess
+    import time
+    from conftest import UMOV
+    # Ray-traced HST at 50 epochs a second: a minute of work.
+    name = scenario(("step_s = 20", "step_s = 0.02"), ("cube.obj", f"{ROOT}/data/mesh/hst.obj"))
+    process = subprocess.Popen([UMOV, "run", name, "--threads", "1"], cwd=tmp_path, text=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    time.sleep(2)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=120)
+    if process.returncode == 0:
+        pytest.fail("the run ended before the interrupt: give it more to do")
+    assert process.returncode == 130, err
+    assert "saved" in err or "before the first row" in err
+    if (tmp_path / "out").exists():
+        rows = len(Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv"))
+        assert 0 < rows < 3 * 12001
+
+
 def test_a_decayed_orbit_keeps_the_finished_rows(umov, scenario, tmp_path):
     # An orbit low enough to decay soon after its epoch: HST's set with a huge drag term.
     first, second = (ROOT / "data/tle/hst.tle").read_text().splitlines()[-2:]

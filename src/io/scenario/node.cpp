@@ -194,7 +194,8 @@ Result<void> Node::require(const char *name) const {
     return {};
   const Key *spec = find_key(schema_, name);
   return fail(ErrorCode::BadInput,
-              fmt::format("[{}] has no \"{}\"{}. Add it.", label_, name,
+              fmt::format("{} has no \"{}\"{}. Add it.",
+                          label_.empty() ? "the file" : "[" + label_ + "]", name,
                           spec != nullptr ? fmt::format(" ({})", spec->text) : ""),
               where());
 }
