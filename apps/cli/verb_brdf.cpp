@@ -40,11 +40,12 @@ Result<void> check_angles(const BrdfRow &row, std::size_t index, const BrdfOptio
   if (row.theta_i_deg >= 0 && row.theta_i_deg <= 90 && row.theta_o_deg >= 0 &&
       row.theta_o_deg <= 90)
     return {};
-  return fail(o.batch.empty() ? ErrorCode::Usage : ErrorCode::BadInput,
-              fmt::format("row {}: theta_i {} deg, theta_o {} deg; angles from the normal between 0 "
-                          "and 90 were expected",
-                          index + 1, row.theta_i_deg, row.theta_o_deg),
-              {o.batch});
+  return fail(
+      o.batch.empty() ? ErrorCode::Usage : ErrorCode::BadInput,
+      fmt::format("row {}: theta_i {} deg, theta_o {} deg; angles from the normal between 0 "
+                  "and 90 were expected",
+                  index + 1, row.theta_i_deg, row.theta_o_deg),
+      {o.batch});
 }
 
 /// One compiled surface per wavelength of the table.

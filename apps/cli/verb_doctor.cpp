@@ -38,10 +38,10 @@ std::vector<Finding> examine() {
   out.push_back({true, "materials", fmt::format("{}", builtin_material_names().size())});
   // Known answers through the whole of time and Earth orientation (IERS: UT1-UTC on 2018-01-21).
   const auto time = utc_from_iso("2018-01-21T00:00:00Z");
-  const bool clock = time && earth_orientation(*time).is_covered &&
-                     to_iso(*time) == "2018-01-21T00:00:00.000Z";
-  out.push_back({clock, "time tables", clock ? "leap seconds and Earth orientation are there"
-                                             : "broken: build again"});
+  const bool clock =
+      time && earth_orientation(*time).is_covered && to_iso(*time) == "2018-01-21T00:00:00.000Z";
+  out.push_back({clock, "time tables",
+                 clock ? "leap seconds and Earth orientation are there" : "broken: build again"});
   out.push_back({has_report(), "report",
                  has_report() ? "plotting script is built in"
                               : "no plotting script in this build: run tools/setup, build again"});

@@ -1,13 +1,13 @@
 #include "console.h"
 #include "verbs.h"
 
+#include "tables.h"
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
 #include <umov/core/files.h>
 #include <umov/io/obj.h>
-#include "tables.h"
 #include <umov/shape/primitives.h>
 #include <umov/shape/topology.h>
 
@@ -62,7 +62,8 @@ Result<void> make(const ShapeOptions &options) {
     return put("", write_obj(mesh, options.shape).obj);
   const fs::path path = options.output;
   if (path.extension() != ".obj")
-    return fail(ErrorCode::Usage, "-o " + options.output + ": a name that ends in .obj was expected");
+    return fail(ErrorCode::Usage,
+                "-o " + options.output + ": a name that ends in .obj was expected");
   const ObjText text = write_obj(mesh, path.stem().string());
   UMOV_TRY(write_file_atomically(fs::path(path).replace_extension(".mtl"), text.mtl));
   return write_file_atomically(path, text.obj);

@@ -1,10 +1,10 @@
 #include "console.h"
 #include "verbs.h"
 
+#include "tables.h"
 #include <fmt/format.h>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
-#include "tables.h"
 #include <umov/lightcurve/compute.h>
 #include <umov/orbit/elements.h>
 #include <umov/orbit/ephemeris.h>
@@ -94,7 +94,8 @@ Table ephemeris_table(const std::vector<ObservingGeometry> &rows, ShadowModel sh
   const auto add = [&](const char *name, const char *unit, const char *text, auto take) {
     add_numbers(t, rows, name, unit, text, take);
   };
-  add("az", "deg", "azimuth from north through east, geometric", [](G g) { return g.azimuth.degrees(); });
+  add("az", "deg", "azimuth from north through east, geometric",
+      [](G g) { return g.azimuth.degrees(); });
   add("alt", "deg", "altitude, geometric", [](G g) { return g.altitude.degrees(); });
   add("range", "km", "distance from the site", [](G g) { return g.range_km; });
   add("itrs_x", "km", "position, ITRS", [](G g) { return g.itrs_km.x; });
@@ -107,8 +108,10 @@ Table ephemeris_table(const std::vector<ObservingGeometry> &rows, ShadowModel sh
   add("teme_y", "km", "position, TEME", [](G g) { return g.teme.position_km.y; });
   add("teme_z", "km", "position, TEME", [](G g) { return g.teme.position_km.z; });
   add("sun_az", "deg", "azimuth of the Sun", [](G g) { return g.sun_azimuth.degrees(); });
-  add("sun_alt", "deg", "altitude of the Sun, airless", [](G g) { return g.sun_altitude.degrees(); });
-  add("phase_angle", "deg", "Sun-object-observer, 0 = full", [](G g) { return g.phase_angle.degrees(); });
+  add("sun_alt", "deg", "altitude of the Sun, airless",
+      [](G g) { return g.sun_altitude.degrees(); });
+  add("phase_angle", "deg", "Sun-object-observer, 0 = full",
+      [](G g) { return g.phase_angle.degrees(); });
   add("sunlit", "",
       shadow == ShadowModel::Sphere ? "visible part of the Sun's disk, spherical Earth"
                                     : "visible part of the Sun's disk, WGS 84 ellipsoid",

@@ -65,8 +65,8 @@ Error nothing_found(const LightCurveRequest &request) {
       request.site.name);
   constexpr double days = 14; // beyond it the elements say little
   if (const auto next = find_next_pass(request, days))
-    text += fmt::format(" The next one: {}Z, max alt {:.0f}.", to_iso(next->first_row).substr(0, 16),
-                        next->altitude_max.degrees());
+    text += fmt::format(" The next one: {}Z, max alt {:.0f}.",
+                        to_iso(next->first_row).substr(0, 16), next->altitude_max.degrees());
   else
     text += fmt::format(" None in the next {:.0f} days either.", days);
   return {ErrorCode::Nothing, text, {}};
@@ -127,8 +127,8 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
   if (wants(run.scenario, "csv"))
     folder.add("lightcurve.csv", to_csv(table));
   if (wants(run.scenario, "html")) {
-    UMOV_ASSIGN(page, make_run_report(run.scenario, run.object, run.request, run.outcome,
-                                      run.diagnostics));
+    UMOV_ASSIGN(
+        page, make_run_report(run.scenario, run.object, run.request, run.outcome, run.diagnostics));
     folder.add("report.html", std::move(page));
   }
   folder.add("scenario.lock.toml", locked_scenario(run.scenario));
@@ -153,8 +153,8 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   const auto started = std::chrono::system_clock::now();
   UMOV_ASSIGN(scenario, read_with_options(o));
   UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
-  UMOV_ASSIGN(object, load_object(scenario, {o.allow_bad_checksum, o.allow_old_elements},
-                                  diagnostics));
+  UMOV_ASSIGN(object,
+              load_object(scenario, {o.allow_bad_checksum, o.allow_old_elements}, diagnostics));
   warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);
   warn_if_outside_eop(scenario.time->start, scenario.time->stop, diagnostics);
   if (common.verbose)
@@ -185,15 +185,16 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   if (outcome->curve.epochs.empty())
     return tl::unexpected(outcome->stopped ? *outcome->stopped : nothing_found(request));
   warn_of_accuracy(*outcome, scenario.accuracy, diagnostics);
-  UMOV_TRY(write_folder({o, common, scenario, object, request, *outcome, diagnostics, started},
-                        folder));
+  UMOV_TRY(
+      write_folder({o, common, scenario, object, request, *outcome, diagnostics, started}, folder));
   if (!common.quiet)
     fmt::print("{}written to {}\n", summarize(*outcome), folder.path().string());
   if (common.verbose)
-    note(common, fmt::format("{:.1f} s on {} threads",
-                             std::chrono::duration<double>(std::chrono::system_clock::now() - started)
-                                 .count(),
-                             resolve_threads(request.threads)));
+    note(common,
+         fmt::format(
+             "{:.1f} s on {} threads",
+             std::chrono::duration<double>(std::chrono::system_clock::now() - started).count(),
+             resolve_threads(request.threads)));
   if (outcome->stopped)
     return tl::unexpected(*outcome->stopped);
   return {};
@@ -214,17 +215,19 @@ void add_run(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--device", o->device, "cpu or auto")->capture_default_str();
   verb->add_flag("--dry-run", o->dry_run, "Read and check everything, compute nothing");
   verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
-  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum, "Read elements with a bad checksum");
+  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum,
+                 "Read elements with a bad checksum");
   verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
   verb->add_flag("-v,--verbose", common->verbose, "Also say what was read and how long it took");
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
   verb->callback([o, common, exit_with] {
     if (o->device != "cpu" && o->device != "auto") {
-      exit_with(report(Error{ErrorCode::Device,
-                             "--device " + o->device +
-                                 ": this build has no such device. Use --device cpu; see umov doctor.",
-                             {}}));
+      exit_with(
+          report(Error{ErrorCode::Device,
+                       "--device " + o->device +
+                           ": this build has no such device. Use --device cpu; see umov doctor.",
+                       {}}));
       return;
     }
     o->command_line = {"umov", "run", o->scenario};

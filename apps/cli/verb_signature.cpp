@@ -25,8 +25,7 @@ struct SignatureOptions {
 
 Result<std::vector<Pose>> poses_from_table(const std::string &path) {
   UMOV_ASSIGN(text, read_file(path));
-  UMOV_ASSIGN(table, read_csv(text, path,
-                              {"sun_x", "sun_y", "sun_z", "obs_x", "obs_y", "obs_z"}));
+  UMOV_ASSIGN(table, read_csv(text, path, {"sun_x", "sun_y", "sun_z", "obs_x", "obs_y", "obs_z"}));
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const Vec3<Body> sun{table.number("sun_x", i), table.number("sun_y", i),
@@ -34,10 +33,10 @@ Result<std::vector<Pose>> poses_from_table(const std::string &path) {
     const Vec3<Body> observer{table.number("obs_x", i), table.number("obs_y", i),
                               table.number("obs_z", i)};
     if (!(norm(sun) > 0) || !(norm(observer) > 0))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("row {}: a direction of length 0; any other length was expected",
-                              i + 1),
-                  {path});
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("row {}: a direction of length 0; any other length was expected", i + 1),
+          {path});
     poses.push_back({normalized(sun), normalized(observer)});
   }
   return poses;
@@ -69,9 +68,23 @@ struct SignatureColumns {
     const auto &e = result.half_width;
     const double scale = is_dark || !(s.i > 0) ? nan : 1 / s.i;
     const std::array<double, 18> row{angle_between(at.sun, at.observer) * 180 / pi,
-                                     s.i, s.q, s.u, s.v, s.q * scale, s.u * scale, s.v * scale,
-                                     e.i, e.q, e.u, e.v, at.sun.x, at.sun.y, at.sun.z,
-                                     at.observer.x, at.observer.y, at.observer.z};
+                                     s.i,
+                                     s.q,
+                                     s.u,
+                                     s.v,
+                                     s.q * scale,
+                                     s.u * scale,
+                                     s.v * scale,
+                                     e.i,
+                                     e.q,
+                                     e.u,
+                                     e.v,
+                                     at.sun.x,
+                                     at.sun.y,
+                                     at.sun.z,
+                                     at.observer.x,
+                                     at.observer.y,
+                                     at.observer.z};
     pose.push_back(static_cast<std::int64_t>(index));
     band.push_back(colour.name);
     for (std::size_t i = 0; i < row.size(); ++i)
@@ -145,17 +158,20 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
 } // namespace
 
 void add_signature(CLI::App &app, const Exit &exit_with) {
-  auto *verb = app.add_subcommand("signature", "Stokes of an object for directions, without an orbit");
+  auto *verb =
+      app.add_subcommand("signature", "Stokes of an object for directions, without an orbit");
   auto o = std::make_shared<SignatureOptions>();
   auto common = std::make_shared<Common>();
   verb->add_option("scene", o->scene, "Scenario file; orbit, time and observer are not used")
       ->required();
-  auto *geometry = verb->add_option(
-      "--geometry", o->geometry, "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame");
+  auto *geometry =
+      verb->add_option("--geometry", o->geometry,
+                       "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame");
   auto *poses = verb->add_option("--poses", o->poses, "Random poses for each phase angle")
                     ->check(CLI::Range(1, 10'000'000));
-  auto *phase = verb->add_option("--phase", o->phases_deg, "Phase angles [deg], separated by commas")
-                    ->delimiter(',');
+  auto *phase =
+      verb->add_option("--phase", o->phases_deg, "Phase angles [deg], separated by commas")
+          ->delimiter(',');
   geometry->excludes(poses)->excludes(phase);
   poses->needs(phase);
   phase->needs(poses);

@@ -12,8 +12,9 @@ namespace {
 namespace fs = std::filesystem;
 
 tl::unexpected<Error> device_error(const fs::path &path, const std::string &action) {
-  return fail(ErrorCode::Device, "cannot " + action + ": " + std::strerror(errno) +
-                                     ". Free some space or choose another folder with -o.",
+  return fail(ErrorCode::Device,
+              "cannot " + action + ": " + std::strerror(errno) +
+                  ". Free some space or choose another folder with -o.",
               {path.string()});
 }
 
@@ -77,8 +78,7 @@ Result<void> write_file_atomically(const fs::path &path, std::string_view bytes)
       return device_error(path, "write");
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(temporary.descriptor) != 0 ||
-      ::rename(temporary.path.c_str(), path.c_str()) != 0)
+  if (::fsync(temporary.descriptor) != 0 || ::rename(temporary.path.c_str(), path.c_str()) != 0)
     return device_error(path, "finish the file");
   temporary.committed = true;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");

@@ -15,8 +15,7 @@ unsigned resolve_threads(unsigned requested) {
 
 void parallel_for(std::size_t count, unsigned threads,
                   const std::function<void(std::size_t)> &body) {
-  const auto used = static_cast<unsigned>(
-      std::min<std::size_t>(resolve_threads(threads), count));
+  const auto used = static_cast<unsigned>(std::min<std::size_t>(resolve_threads(threads), count));
   if (used < 2) {
     for (std::size_t i = 0; i < count; ++i)
       body(i);

@@ -17,8 +17,7 @@ std::optional<double> parse_number(std::string_view text) {
   }
   // from_chars also takes "nan" and "inf": only digits and a point may start a number here.
   const std::size_t first = !text.empty() && text.front() == '-' ? 1 : 0;
-  if (text.size() <= first ||
-      !((text[first] >= '0' && text[first] <= '9') || text[first] == '.'))
+  if (text.size() <= first || !((text[first] >= '0' && text[first] <= '9') || text[first] == '.'))
     return std::nullopt;
   double value = 0;
   const char *end = text.data() + text.size();

@@ -7,9 +7,7 @@
 
 namespace umov::kernel {
 
-template <class R> struct Complex {
-  R re, im;
-};
+template <class R> struct Complex { R re, im; };
 
 template <class R> inline Complex<R> multiply(Complex<R> a, Complex<R> b) {
   return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
@@ -19,8 +17,8 @@ template <class R> inline Complex<R> divide(Complex<R> a, Complex<R> b) {
   return {(a.re * b.re + a.im * b.im) / d, (a.im * b.re - a.re * b.im) / d};
 }
 
-/// Principal square root of z with Im z >= 0 (so Im of the root is >= 0). The larger part comes from
-/// the sum and the other by division: no cancellation, and the root of c^2 is exactly c.
+/// Principal square root of z with Im z >= 0 (so Im of the root is >= 0). The larger part comes
+/// from the sum and the other by division: no cancellation, and the root of c^2 is exactly c.
 template <class R> inline Complex<R> square_root(Complex<R> z) {
   const R modulus = std::sqrt(z.re * z.re + z.im * z.im);
   const R large = std::sqrt((modulus + std::abs(z.re)) / R(2));
@@ -28,9 +26,7 @@ template <class R> inline Complex<R> square_root(Complex<R> z) {
   return {select(z.re >= R(0), large, small), select(z.re >= R(0), small, large)};
 }
 
-template <class R> struct Amplitudes {
-  Complex<R> s, p;
-};
+template <class R> struct Amplitudes { Complex<R> s, p; };
 
 /// r_s and r_p at an incidence whose cosine is c in [0, 1], from vacuum onto eta = n + ik with
 /// n > 0, k >= 0. Exactly 0 for eta = 1; -1 and -1 at grazing incidence (c = 0) on any other eta.

@@ -120,8 +120,8 @@ Result<std::vector<Epoch<Utc>>> time_grid(Epoch<Utc> start, Epoch<Utc> stop, dou
                 fmt::format("the step is {} s; a positive number was expected", step_s));
   const double span = seconds_between(stop, start);
   if (span < 0)
-    return fail(ErrorCode::BadInput, "stop " + to_iso(stop) + " is before start " + to_iso(start) +
-                                         "; exchange them");
+    return fail(ErrorCode::BadInput,
+                "stop " + to_iso(stop) + " is before start " + to_iso(start) + "; exchange them");
   // A microsecond of slack keeps `stop` in when the step divides the span.
   const double steps = std::floor((span + 1e-6) / step_s);
   if (steps >= static_cast<double>(max_epochs))
@@ -165,8 +165,8 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
   epoch.has_glint = light.glint_share > 0.5;
   const std::size_t bands = scene.bands.size();
   for (std::size_t b = 0; b < bands; ++b)
-    curve.samples[row * bands + b] = sample_from(light.bands[b], scene.bands[b], solar[b],
-                                                 geometry, request.frame, light.is_dark);
+    curve.samples[row * bands + b] = sample_from(light.bands[b], scene.bands[b], solar[b], geometry,
+                                                 request.frame, light.is_dark);
   std::copy(light.group_intensity.begin(), light.group_intensity.end(),
             curve.group_intensity.begin() +
                 static_cast<std::ptrdiff_t>(row * light.group_intensity.size()));
@@ -227,10 +227,10 @@ std::size_t fill_rows(const RowMaker &maker, const Selection &selection, LightCu
     if (progress)
       progress(begin + count, rows);
     if (cancel) {
-      stopped = Error{ErrorCode::Interrupted,
-                      fmt::format("stopped after {} of {} epochs; they are saved", begin + count,
-                                  rows),
-                      {}};
+      stopped =
+          Error{ErrorCode::Interrupted,
+                fmt::format("stopped after {} of {} epochs; they are saved", begin + count, rows),
+                {}};
       return begin + count;
     }
   }

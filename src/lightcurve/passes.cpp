@@ -55,8 +55,8 @@ std::vector<GridPass> group_passes(const std::vector<EpochGeometry> &grid,
   return passes;
 }
 
-Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
-                   const Sgp4 &model, const LightCurveRequest &request) {
+Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid, const Sgp4 &model,
+                   const LightCurveRequest &request) {
   std::size_t top = pass.first;
   for (std::size_t i = pass.first; i <= pass.last; ++i)
     if (grid[i].geometry.altitude.radians() > grid[top].geometry.altitude.radians())

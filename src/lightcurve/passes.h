@@ -26,7 +26,7 @@ struct GridPass {
 std::vector<GridPass> group_passes(const std::vector<EpochGeometry> &grid, const EpochFilter &only);
 
 /// Name, culmination (refined between epochs to 1 ms) and limits of a pass.
-Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
-                   const Sgp4 &model, const LightCurveRequest &request);
+Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid, const Sgp4 &model,
+                   const LightCurveRequest &request);
 
 } // namespace umov

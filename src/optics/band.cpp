@@ -50,8 +50,8 @@ Result<std::vector<Band>> bands_from(const std::vector<std::string> &set) {
         bands.push_back({fmt::format("nm:{}", nm), Wavelength::nm(nm)});
       continue;
     }
-    const auto nm = name.starts_with("nm:") ? parse_number(std::string_view(name).substr(3))
-                                            : std::nullopt;
+    const auto nm =
+        name.starts_with("nm:") ? parse_number(std::string_view(name).substr(3)) : std::nullopt;
     if (!nm)
       return fail(ErrorCode::BadInput,
                   fmt::format("unknown band \"{}\"; \"paper_rgb\" or \"nm:NUMBER\" (such as "
@@ -80,7 +80,8 @@ Result<double> solar_irradiance(Wavelength wavelength) {
     return fail(ErrorCode::BadInput,
                 fmt::format("the solar spectrum (ASTM E490) covers {}-{} nm; {} nm was asked for",
                             table.wavelength_nm.front(), table.wavelength_nm.back(), nm));
-  const auto next = std::upper_bound(table.wavelength_nm.begin(), table.wavelength_nm.end() - 1, nm);
+  const auto next =
+      std::upper_bound(table.wavelength_nm.begin(), table.wavelength_nm.end() - 1, nm);
   const auto i = static_cast<std::size_t>(next - table.wavelength_nm.begin());
   const double x0 = table.wavelength_nm[i - 1], x1 = table.wavelength_nm[i];
   const double t = (nm - x0) / (x1 - x0);

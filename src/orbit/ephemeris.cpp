@@ -26,7 +26,8 @@ void add_topocentric(ObservingGeometry &out, const Site &site, Vec3<Itrs> sun_it
   const Vec3<Itrs> observer = itrs_position_km(site);
   const auto enu = enu_from_itrs(site);
   const Vec3<Itrs> line = out.itrs_km - observer;
-  const Topocentric object = topocentric(enu * line), sun = topocentric(enu * (sun_itrs_km - observer));
+  const Topocentric object = topocentric(enu * line),
+                    sun = topocentric(enu * (sun_itrs_km - observer));
   out.azimuth = object.azimuth;
   out.altitude = object.altitude;
   out.sun_azimuth = sun.azimuth;

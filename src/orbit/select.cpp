@@ -24,8 +24,8 @@ std::string list_objects(const std::vector<ElementSet> &sets) {
 
 } // namespace
 
-Result<ElementSet> choose_elements(const std::vector<ElementSet> &sets, int norad,
-                                   Epoch<Utc> start, const std::string &file) {
+Result<ElementSet> choose_elements(const std::vector<ElementSet> &sets, int norad, Epoch<Utc> start,
+                                   const std::string &file) {
   const ElementSet *best = nullptr;
   for (const ElementSet &set : sets) {
     if (norad == 0 && set.norad_cat_id != sets.front().norad_cat_id)

@@ -101,8 +101,8 @@ void count_parts(const Work &work, MeshReport &out) {
       ++out.inward_parts;
 }
 
-/// Closed, connected, of the topology of a sphere, every edge convex and every vertex with less than
-/// a full turn of face angles: then the surface bounds a convex body (van Heijenoort 1952).
+/// Closed, connected, of the topology of a sphere, every edge convex and every vertex with less
+/// than a full turn of face angles: then the surface bounds a convex body (van Heijenoort 1952).
 bool is_convex(const Work &work, const MeshReport &found) {
   if (!found.is_closed || found.parts != 1 || found.inconsistent_edges > 0 ||
       !(found.volume_m3 > 0) || found.duplicate + found.opposite_pairs > 0)
@@ -117,8 +117,8 @@ bool is_convex(const Work &work, const MeshReport &found) {
     const auto &v = mesh.triangles[i].vertex;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3<Body> p = mesh.positions[v[k]];
-      turn[work.welded[v[k]]] += angle_between(mesh.positions[v[(k + 1) % 3]] - p,
-                                               mesh.positions[v[(k + 2) % 3]] - p);
+      turn[work.welded[v[k]]] +=
+          angle_between(mesh.positions[v[(k + 1) % 3]] - p, mesh.positions[v[(k + 2) % 3]] - p);
     }
   }
   for (const double angle : turn) {
@@ -159,8 +159,11 @@ bool is_flat_sheet(const Mesh &mesh) {
 
 MeshReport inspect(const Mesh &mesh) {
   MeshReport out;
-  Work work{mesh, mesh_size(mesh), weld(mesh, weld_distance(mesh)),
-            std::vector<bool>(mesh.triangles.size(), false), {}};
+  Work work{mesh,
+            mesh_size(mesh),
+            weld(mesh, weld_distance(mesh)),
+            std::vector<bool>(mesh.triangles.size(), false),
+            {}};
   out.triangles = mesh.triangles.size();
   for (std::uint32_t i = 0; i < work.welded.size(); ++i)
     out.vertices += work.welded[i] == i ? 1u : 0u;

@@ -35,9 +35,9 @@ struct Icosahedron {
   }
 };
 
-/// Unit sphere: an icosahedron whose faces are cut into n^2 triangles each. Corners divide the edges
-/// by equal angles (weights sin(t w), which on an edge is the great circle), so that the triangles
-/// stay of like size.
+/// Unit sphere: an icosahedron whose faces are cut into n^2 triangles each. Corners divide the
+/// edges by equal angles (weights sin(t w), which on an edge is the great circle), so that the
+/// triangles stay of like size.
 Mesh unit_sphere(std::size_t facets, const std::string &group) {
   std::size_t n = 1;
   while (20 * n * n < facets)

@@ -11,9 +11,9 @@ namespace {
 constexpr double total_length = 13.2;
 constexpr double wide_radius = 4.27 / 2, narrow_radius = 3.05 / 2;
 constexpr double shroud_top = 3.5, equipment_top = 5.02, shell_top = 8.98;
-constexpr double wall = 0.05;            ///< of the light shield
-constexpr double first_baffle = 9.6;     ///< floor of the hollow light shield
-constexpr double wing_height = 5.9;      ///< of the wings' axis
+constexpr double wall = 0.05;        ///< of the light shield
+constexpr double first_baffle = 9.6; ///< floor of the hollow light shield
+constexpr double wing_height = 5.9;  ///< of the wings' axis
 constexpr double wing_inner = 3.1, wing_width = 2.5, panel_length = 6.05;
 constexpr double mid = total_length / 2; ///< the origin
 
@@ -63,8 +63,8 @@ void add_wing(MeshBuilder &b, double side, double angle) {
   for (const double edge : {-1.0, 1.0}) { // bars along both edges and at both ends
     b.box({bar, panel_length + gap + 0.1, bar},
           at(middle + edge * (wing_width / 2 + 2 * bar), 0, 0), frame, frame, frame);
-    b.box({wing_width / 2 + 0.02, bar, bar},
-          at(middle, edge * (panel_length + gap + 2.5 * bar), 0), frame, frame, frame);
+    b.box({wing_width / 2 + 0.02, bar, bar}, at(middle, edge * (panel_length + gap + 2.5 * bar), 0),
+          frame, frame, frame);
   }
   // The boom, from inside the tube to the outer bar, along x.
   Placement along{{side * 1.3, 0, wing_height - mid}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
@@ -78,7 +78,8 @@ void add_antennas(MeshBuilder &b) {
   for (const double side : {-1.0, 1.0}) {
     // Mast along the forward shell, dish 1.3 m across at its end.
     b.cylinder(0.03, 4.4, 8, {{0.02 * side, side * (narrow_radius + 0.09), 5.7 - mid}}, antenna);
-    Placement dish{{0, side * (narrow_radius + 0.16), 10.35 - mid}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
+    Placement dish{
+        {0, side * (narrow_radius + 0.16), 10.35 - mid}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}};
     if (side < 0)
       dish = {dish.origin, {1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
     b.cylinder(0.65, 0.12, 24, dish, antenna);

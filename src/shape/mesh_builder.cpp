@@ -40,9 +40,9 @@ void MeshBuilder::flat(std::uint32_t group_index, const std::vector<Vec3<Body>> 
     triangle(group_index, {c[0], c[i], c[i + 1]}, {n, n, n});
 }
 
-void MeshBuilder::revolve(
-    const std::vector<Outline> &outline, std::size_t sides, const Placement &place,
-    const std::function<std::uint32_t(std::size_t, std::size_t)> &group_of) {
+void MeshBuilder::revolve(const std::vector<Outline> &outline, std::size_t sides,
+                          const Placement &place,
+                          const std::function<std::uint32_t(std::size_t, std::size_t)> &group_of) {
   const auto at = [&](const Outline &o, std::size_t side) {
     const double phi = 2 * pi * static_cast<double>(side % sides) / static_cast<double>(sides);
     return place.point({o.r * std::cos(phi), o.r * std::sin(phi), o.z});
@@ -75,8 +75,8 @@ void MeshBuilder::cylinder(double radius, double length, std::size_t sides, cons
           [&](std::size_t, std::size_t) { return group_index; });
 }
 
-void MeshBuilder::box(Vec3<Body> h, const Placement &place, std::uint32_t top,
-                      std::uint32_t bottom, std::uint32_t sides) {
+void MeshBuilder::box(Vec3<Body> h, const Placement &place, std::uint32_t top, std::uint32_t bottom,
+                      std::uint32_t sides) {
   const auto p = [&](double x, double y, double z) {
     return place.point({x * h.x, y * h.y, z * h.z});
   };

@@ -59,18 +59,18 @@ Occluder::Occluder(const Mesh &mesh) : state_(std::make_unique<State>()) {
   rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
   if (!mesh.triangles.empty()) {
     RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto *vertices = static_cast<float *>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-        mesh.positions.size()));
+    auto *vertices = static_cast<float *>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), mesh.positions.size()));
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
       const Vec3<Body> p = state_->to_model(mesh.positions[i]);
       vertices[3 * i] = static_cast<float>(p.x);
       vertices[3 * i + 1] = static_cast<float>(p.y);
       vertices[3 * i + 2] = static_cast<float>(p.z);
     }
-    auto *indices = static_cast<unsigned *>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned),
-        mesh.triangles.size()));
+    auto *indices = static_cast<unsigned *>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                3 * sizeof(unsigned), mesh.triangles.size()));
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
       std::copy_n(mesh.triangles[i].vertex.begin(), 3, indices + 3 * i);
     rtcCommitGeometry(geometry);
@@ -132,8 +132,7 @@ Occluder::Hit Occluder::nearest(Vec3<Body> origin, Vec3<Body> direction) const {
   rtcIntersect1(state_->scene, &context, &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
     return {};
-  return {ray.hit.primID, ray.hit.u, ray.hit.v,
-          static_cast<double>(ray.ray.tfar) / state_->scale};
+  return {ray.hit.primID, ray.hit.u, ray.hit.v, static_cast<double>(ray.ray.tfar) / state_->scale};
 }
 
 } // namespace umov

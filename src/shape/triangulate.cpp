@@ -105,8 +105,8 @@ Triangulation triangulate(std::span<const Vec3<Body>> corners) {
   bool is_convex = true;
   double fan_area = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    is_convex =
-        is_convex && turn(flat[i], flat[(i + 1) % count], flat[(i + 2) % count]) >= -1e-12 * doubled;
+    is_convex = is_convex &&
+                turn(flat[i], flat[(i + 1) % count], flat[(i + 2) % count]) >= -1e-12 * doubled;
     if (i > 0 && i + 1 < count)
       fan_area += std::abs(turn(flat[0], flat[i], flat[i + 1]));
   }

@@ -49,7 +49,8 @@ std::vector<std::uint32_t> weld(const Mesh &mesh, double distance) {
     const Cell home{index(p.x), index(p.y), index(p.z)};
     out[i] = i;
     for (std::int64_t k = 0; k < 27 && out[i] == i; ++k) {
-      const auto found = cells.find({home.x + k % 3 - 1, home.y + k / 3 % 3 - 1, home.z + k / 9 - 1});
+      const auto found =
+          cells.find({home.x + k % 3 - 1, home.y + k / 3 % 3 - 1, home.z + k / 9 - 1});
       if (found == cells.end())
         continue;
       for (const std::uint32_t other : found->second)

@@ -18,8 +18,9 @@ constexpr std::size_t cells = 96;
 double fresnel_mean(double cosine, const std::complex<double> *eta) {
   if (eta == nullptr)
     return 1;
-  return kernel::reflection(kernel::fresnel(cosine, kernel::Complex<double>{eta->real(),
-                                                                           eta->imag()})).a;
+  return kernel::reflection(
+             kernel::fresnel(cosine, kernel::Complex<double>{eta->real(), eta->imag()}))
+      .a;
 }
 
 /// Over directions of the observer, for wide lobes: the kink of min(P(l), P(v)) lies at n.v = n.l,
@@ -35,8 +36,7 @@ double albedo_over_directions(double n_l, const std::complex<double> *eta,
   const auto over_azimuth = [&](double n_v) { // phi counts from the forward direction
     double sum = 0, from = 0;
     for (double to = std::max(n_l, 1e-3); from < pi; to *= 5) {
-      sum += gauss_integral<20>(from, std::min(to, pi),
-                                [&](double phi) { return at(n_v, phi); });
+      sum += gauss_integral<20>(from, std::min(to, pi), [&](double phi) { return at(n_v, phi); });
       from = to;
     }
     return 2 * sum;

@@ -61,8 +61,8 @@ double Masking::operator()(double n_k) const {
   // Lagrange's cubic through i-1, i, i+1, i+2.
   const double *v = &values_[i - 1];
   const double a = t + 1, b = t, c = t - 1, d = t - 2;
-  const double value = -v[0] * b * c * d / 6 + v[1] * a * c * d / 2 - v[2] * a * b * d / 2 +
-                       v[3] * a * b * c / 6;
+  const double value =
+      -v[0] * b * c * d / 6 + v[1] * a * c * d / 2 - v[2] * a * b * d / 2 + v[3] * a * b * c / 6;
   return std::min(1.0, n_k / value);
 }
 

@@ -6,8 +6,8 @@
 namespace umov {
 
 /// P(k) = <n.h>(n.k)/g(k) with g(k) = <max(h.k, 0)> (Ashikhmin, Premoze & Shirley 2000; it is
-/// Smith's G1 of the same D). g is tabulated once, in u = n.k sqrt(m+2) because that is the scale on
-/// which it bends, and read by a cubic through four points: within 2e-6 of the integral.
+/// Smith's G1 of the same D). g is tabulated once, in u = n.k sqrt(m+2) because that is the scale
+/// on which it bends, and read by a cubic through four points: within 2e-6 of the integral.
 class Masking {
 public:
   explicit Masking(double exponent);

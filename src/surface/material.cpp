@@ -48,8 +48,7 @@ Result<void> check(const Material &material) {
                                            eta.imag()));
   }
   if (!(material.exponent >= 0 && material.exponent <= 1e9))
-    return problem(material,
-                   fmt::format("m = {}; 0 to 1e9 was expected", material.exponent));
+    return problem(material, fmt::format("m = {}; 0 to 1e9 was expected", material.exponent));
   if (material.body) {
     UMOV_TRY(check_wavelengths(material, material.body->wavelength_nm,
                                material.body->reflectance.size(), "the body reflectance"));

@@ -34,9 +34,7 @@ struct Surface::Tables {
 
 namespace {
 
-double half_angle_cosine(double l_v) {
-  return std::sqrt(std::clamp((1 + l_v) / 2, 0.0, 1.0));
-}
+double half_angle_cosine(double l_v) { return std::sqrt(std::clamp((1 + l_v) / 2, 0.0, 1.0)); }
 
 Result<double> body_reflectance(const Material &material, const Band &band) {
   const BodyLobe &body = *material.body;
@@ -110,8 +108,8 @@ FresnelFactors Surface::fresnel(std::size_t band, double l_v) const {
   const auto eta = tables_->eta[band];
   const auto f = kernel::reflection(
       kernel::fresnel(half_angle_cosine(l_v), kernel::Complex<double>{eta.real(), eta.imag()}));
-  // At phase 0 and 180 (within rounding of the cosine) there is no scattering plane: no polarization
-  // by definition.
+  // At phase 0 and 180 (within rounding of the cosine) there is no scattering plane: no
+  // polarization by definition.
   const bool has_plane = std::abs(l_v) < 1 - 1e-15;
   return {f.a, has_plane ? f.b : 0};
 }

@@ -63,12 +63,12 @@ double parse_expiry() {
     const std::size_t first = date.find(' '), second = date.find(' ', first + 1);
     const auto day = parse_number(date.substr(0, first));
     const auto year = parse_number(trimmed(date.substr(second + 1)));
-    const auto month = std::find(months.begin(), months.end(),
-                                 date.substr(first + 1, second - first - 1));
+    const auto month =
+        std::find(months.begin(), months.end(), date.substr(first + 1, second - first - 1));
     if (!day || !year || month == months.end())
       return;
-    const auto iso = utc_from_iso(fmt::format("{:04.0f}-{:02}-{:02.0f}T00:00:00Z", *year,
-                                              month - months.begin() + 1, *day));
+    const auto iso = utc_from_iso(
+        fmt::format("{:04.0f}-{:02}-{:02.0f}T00:00:00Z", *year, month - months.begin() + 1, *day));
     out = iso ? mjd(*iso) : 0;
   });
   return out;

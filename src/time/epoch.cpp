@@ -111,9 +111,10 @@ Result<Epoch<Utc>> utc_from_iso(std::string_view text) {
     return bad_time(text.substr(0, 64), "is not a time; ISO 8601 such as 2018-01-21T04:00:00Z was "
                                         "expected");
   if (!c.has_offset)
-    return bad_time(text, fmt::format("has no zone, so it could be local time or UTC. Write {}Z for "
-                                      "UTC, or add an offset such as -10:00.",
-                                      text));
+    return bad_time(text,
+                    fmt::format("has no zone, so it could be local time or UTC. Write {}Z for "
+                                "UTC, or add an offset such as -10:00.",
+                                text));
   if (c.year < 1972)
     return bad_time(text, "is before 1972, when UTC got its leap seconds; give a later time");
   Epoch<Utc> out;

@@ -8,7 +8,7 @@
   extern "C" const char umov_embedded_##symbol##_begin[];                                          \
   extern "C" const char umov_embedded_##symbol##_end[];                                            \
   static inline std::string_view symbol() {                                                        \
-    return {umov_embedded_##symbol##_begin,                                                        \
-            static_cast<std::size_t>(umov_embedded_##symbol##_end -                                \
-                                     umov_embedded_##symbol##_begin)};                             \
+    return {                                                                                       \
+        umov_embedded_##symbol##_begin,                                                            \
+        static_cast<std::size_t>(umov_embedded_##symbol##_end - umov_embedded_##symbol##_begin)};  \
   }

@@ -22,9 +22,7 @@ public:
     return {dot(rows_[0], v), dot(rows_[1], v), dot(rows_[2], v)};
   }
   /// Axis i of `To`, in `From` components.
-  [[nodiscard]] constexpr Vec3<From> row(int i) const {
-    return rows_[static_cast<std::size_t>(i)];
-  }
+  [[nodiscard]] constexpr Vec3<From> row(int i) const { return rows_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] constexpr Rotation<From, To> inverse() const {
     const auto &r = rows_;
     return {Vec3<To>{r[0].x, r[1].x, r[2].x}, Vec3<To>{r[0].y, r[1].y, r[2].y},

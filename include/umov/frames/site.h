@@ -9,8 +9,8 @@ namespace umov {
 /// A place on the WGS 84 ellipsoid.
 struct Site {
   std::string name;
-  Angle latitude;   ///< geodetic, north positive
-  Angle longitude;  ///< east positive
+  Angle latitude;        ///< geodetic, north positive
+  Angle longitude;       ///< east positive
   double altitude_m = 0; ///< above the ellipsoid
 };
 

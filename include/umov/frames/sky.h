@@ -20,8 +20,8 @@ Vec3<Gcrs> unit_vector(SkyDirection direction);
 /// axis serves for N.
 Angle position_angle(Vec3<Gcrs> s, Vec3<Gcrs> north, Vec3<Gcrs> v);
 
-/// Normal of the scattering plane (v x l)/|v x l|; where the plane is undefined (phase 0 or 180) any
-/// fixed perpendicular of v.
+/// Normal of the scattering plane (v x l)/|v x l|; where the plane is undefined (phase 0 or 180)
+/// any fixed perpendicular of v.
 Vec3<Gcrs> scattering_normal(Vec3<Gcrs> v, Vec3<Gcrs> l);
 
 } // namespace umov

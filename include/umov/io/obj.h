@@ -19,14 +19,14 @@ struct ObjOptions {
 };
 
 struct ObjMesh {
-  Mesh mesh;                        ///< metres, body axes; groups in order of first use
-  std::vector<std::string> defined; ///< materials that the MTL files define
-  bool lacks_mtl = false;           ///< a named MTL file could not be read
+  Mesh mesh;                                ///< metres, body axes; groups in order of first use
+  std::vector<std::string> defined;         ///< materials that the MTL files define
+  bool lacks_mtl = false;                   ///< a named MTL file could not be read
   std::vector<std::filesystem::path> files; ///< MTL files that were read
 };
 
-/// Reads a mesh in double precision. Polygons of any size become triangles; `usemtl` names the group
-/// (without one the object or group name, else "default"). Rotation for `up`: +Z none, +Y
+/// Reads a mesh in double precision. Polygons of any size become triangles; `usemtl` names the
+/// group (without one the object or group name, else "default"). Rotation for `up`: +Z none, +Y
 /// (x,y,z)->(x,-z,y), +X (x,y,z)->(y,z,x), and for -Z, -Y, -X (x,-y,-z), (x,z,-y), (-y,z,-x):
 /// all proper. BadInput with file, line and column for whatever cannot be read; warnings for lines
 /// that are skipped (points, lines, faces of two corners), odd polygons and a doubtful unit.

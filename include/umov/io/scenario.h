@@ -59,8 +59,8 @@ struct Scenario {
   std::map<std::string, Where> places; ///< where keys stand ("object.materials.front")
 };
 
-/// Reads a scenario; each of `overrides` is "dotted.key=value" with a TOML value (a bare word counts
-/// as a string). BadInput names file, line and column, what was read, what was expected.
+/// Reads a scenario; each of `overrides` is "dotted.key=value" with a TOML value (a bare word
+/// counts as a string). BadInput names file, line and column, what was read, what was expected.
 Result<Scenario> read_scenario(const std::filesystem::path &path,
                                const std::vector<std::string> &overrides);
 Result<Scenario> read_scenario_text(const std::string &text, const std::filesystem::path &path,
@@ -69,8 +69,8 @@ Result<Scenario> read_scenario_text(const std::string &text, const std::filesyst
 /// BadInput that lists what a run still needs: observer, time, orbit.
 Result<void> check_complete_for_run(const Scenario &scenario);
 
-/// The scenario as TOML with every default written out and absolute paths; reading it gives the same
-/// scenario.
+/// The scenario as TOML with every default written out and absolute paths; reading it gives the
+/// same scenario.
 std::string locked_scenario(const Scenario &scenario);
 
 /// JSON Schema (draft 2020-12) of the scenario, from the same table of keys that the reader checks.

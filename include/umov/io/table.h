@@ -13,8 +13,8 @@
 namespace umov {
 
 /// Cells of one column; NaN means "not defined".
-using Cells = std::variant<std::vector<double>, std::vector<std::int64_t>,
-                           std::vector<std::string>, std::vector<bool>>;
+using Cells = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>,
+                           std::vector<bool>>;
 
 struct Column {
   std::string name;

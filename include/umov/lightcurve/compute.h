@@ -37,18 +37,18 @@ struct LightCurveRequest {
 
 /// One passage above `altitude_min`.
 struct Pass {
-  std::string id;                   ///< NORAD number dash culmination time
+  std::string id;                          ///< NORAD number dash culmination time
   Epoch<Utc> rise{}, culmination{}, set{}; ///< to the step, except the culmination (refined)
   Angle culmination_altitude;
   bool is_open_at_start = false, is_open_at_end = false; ///< goes on beyond the span
-  std::size_t rows = 0;             ///< epochs kept by the filter
+  std::size_t rows = 0;                                  ///< epochs kept by the filter
 };
 
 struct LightCurveOutcome {
   LightCurve curve;
-  std::vector<Pass> passes;         ///< those with at least one kept epoch
-  std::size_t passes_seen = 0;      ///< above the altitude limit, kept or not
-  std::optional<Error> stopped;     ///< Physics or Interrupted: rows before it are complete
+  std::vector<Pass> passes;     ///< those with at least one kept epoch
+  std::size_t passes_seen = 0;  ///< above the altitude limit, kept or not
+  std::optional<Error> stopped; ///< Physics or Interrupted: rows before it are complete
 };
 
 /// Called from worker threads with the number of finished and of all epochs.

@@ -15,16 +15,16 @@ struct Pose {
 };
 
 struct IntegrationOptions {
-  double accuracy = 0.005;   ///< wanted relative 95 % half-width of I
-  std::uint64_t seed = 0;    ///< of the point sets; the result depends on it within the error only
-  double density = 1;        ///< multiplies the number of points everywhere (64: a denser run)
+  double accuracy = 0.005; ///< wanted relative 95 % half-width of I
+  std::uint64_t seed = 0;  ///< of the point sets; the result depends on it within the error only
+  double density = 1;      ///< multiplies the number of points everywhere (64: a denser run)
   std::size_t max_points = 1u << 22; ///< per pose; past that the error is reported as it is
 };
 
 /// Result in one band.
 struct BandResult {
-  Stokes<ScatteringPlane> stokes;      ///< [m2/sr] per unit solar irradiance
-  Stokes<ScatteringPlane> half_width;  ///< numerical 95 % half-widths of I, Q, U, V
+  Stokes<ScatteringPlane> stokes;     ///< [m2/sr] per unit solar irradiance
+  Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths of I, Q, U, V
 };
 
 struct PoseResult {
@@ -32,7 +32,7 @@ struct PoseResult {
   bool is_dark = true;                 ///< nothing is both lit and seen: I = 0, q and u undefined
   std::vector<double> group_intensity; ///< [group * band_count + band], share of I by mesh group
   std::uint64_t rays = 0;              ///< 0 for a convex mesh
-  double glint_share = 0;              ///< share of I in band 0 from flats within their lobe's half width
+  double glint_share = 0; ///< share of I in band 0 from flats within their lobe's half width
 };
 
 /// Compiled scene. `evaluate` is pure and thread safe: the same pose gives the same bits whatever

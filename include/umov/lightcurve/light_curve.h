@@ -19,18 +19,18 @@ struct LightCurveEpoch {
   std::string pass_id;       ///< "" outside a pass
   double elset_age_days = 0; ///< time minus element epoch
   bool has_glint = false;
-  bool is_dark = true;       ///< nothing lit and seen
+  bool is_dark = true; ///< nothing lit and seen
 };
 
 /// One band at one epoch.
 struct LightCurveSample {
-  double irradiance = 0;     ///< I [W m-2 nm-1] at the observer above the atmosphere
-  double intensity = 0;      ///< [m2/sr]
-  Stokes<SkyNorth> sky;      ///< q, u, v as fractions in the chosen sky frame, i = 1; NaN if dark
+  double irradiance = 0; ///< I [W m-2 nm-1] at the observer above the atmosphere
+  double intensity = 0;  ///< [m2/sr]
+  Stokes<SkyNorth> sky;  ///< q, u, v as fractions in the chosen sky frame, i = 1; NaN if dark
   Stokes<ScatteringPlane> scattering; ///< q_scat, u_scat, v as fractions; NaN if dark
-  double p = 0, dop = 0;     ///< NaN if dark
-  double pa_deg = 0;         ///< [0, 180), NaN if p is 0 or dark
-  double magnitude = 0;      ///< AB; NaN if dark or in the umbra
+  double p = 0, dop = 0;              ///< NaN if dark
+  double pa_deg = 0;                  ///< [0, 180), NaN if p is 0 or dark
+  double magnitude = 0;               ///< AB; NaN if dark or in the umbra
   Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths [m2/sr]
 };
 
@@ -38,11 +38,11 @@ struct LightCurve {
   std::string object;
   int norad_cat_id = 0;
   std::vector<Band> bands;
-  std::vector<std::string> groups;      ///< mesh groups, for the contribution per material
-  std::vector<std::string> materials;   ///< material of each group
+  std::vector<std::string> groups;    ///< mesh groups, for the contribution per material
+  std::vector<std::string> materials; ///< material of each group
   std::vector<LightCurveEpoch> epochs;
-  std::vector<LightCurveSample> samples;   ///< [epoch * bands.size() + band]
-  std::vector<double> group_intensity;     ///< [(epoch * groups + group) * bands + band]
+  std::vector<LightCurveSample> samples; ///< [epoch * bands.size() + band]
+  std::vector<double> group_intensity;   ///< [(epoch * groups + group) * bands + band]
 };
 
 } // namespace umov

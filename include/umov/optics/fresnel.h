@@ -4,7 +4,8 @@
 
 namespace umov {
 
-/// Amplitude reflection coefficients; with exp(-i omega t) and (s, p, k) right-handed in both beams.
+/// Amplitude reflection coefficients; with exp(-i omega t) and (s, p, k) right-handed in both
+/// beams.
 struct FresnelAmplitudes {
   std::complex<double> s, p;
 };

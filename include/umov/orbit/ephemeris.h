@@ -20,8 +20,8 @@ struct ObservingGeometry {
   Vec3<Itrs> itrs_km, itrs_velocity_km_s; ///< velocity relative to the turning Earth
   Vec3<Gcrs> gcrs_km, gcrs_velocity_km_s; ///< inertial
   Vec3<Gcrs> observer_gcrs_km;
-  Vec3<Gcrs> sun_gcrs_km;      ///< apparent geocentric
-  Angle azimuth, altitude;     ///< of the object, geometric; azimuth 0 at an exact zenith
+  Vec3<Gcrs> sun_gcrs_km;  ///< apparent geocentric
+  Angle azimuth, altitude; ///< of the object, geometric; azimuth 0 at an exact zenith
   double range_km = 0, range_rate_km_s = 0;
   Angle right_ascension, declination; ///< topocentric, geometric, GCRS axes
   Angle sun_azimuth, sun_altitude;    ///< topocentric apparent, airless

@@ -4,11 +4,11 @@
 
 namespace umov {
 
-/// The set of `norad` (0: the only object of the file) to use for a span that begins at `start`: the
-/// newest one before it, else the first one after it. BadInput if the object is not there, or if
-/// `norad` is 0 and the file holds several; the message lists them.
-Result<ElementSet> choose_elements(const std::vector<ElementSet> &sets, int norad,
-                                   Epoch<Utc> start, const std::string &file);
+/// The set of `norad` (0: the only object of the file) to use for a span that begins at `start`:
+/// the newest one before it, else the first one after it. BadInput if the object is not there, or
+/// if `norad` is 0 and the file holds several; the message lists them.
+Result<ElementSet> choose_elements(const std::vector<ElementSet> &sets, int norad, Epoch<Utc> start,
+                                   const std::string &file);
 
 /// Warns if some epoch of the span is more than 7 days from the elements'; BadInput past 30 days
 /// unless `allow_old`.

@@ -11,7 +11,8 @@ namespace umov {
 
 enum class NormalMode { Flat, Smooth };
 
-/// One object ready to be lit: a cleaned mesh, a compiled surface for each mesh group and the bands.
+/// One object ready to be lit: a cleaned mesh, a compiled surface for each mesh group and the
+/// bands.
 struct Scene {
   Mesh mesh;
   NormalMode normals = NormalMode::Flat;

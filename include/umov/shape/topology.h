@@ -11,17 +11,17 @@
 namespace umov {
 
 struct MeshReport {
-  Vec3<Body> lower{}, upper{};         ///< bounding box [m]
-  std::vector<double> group_area_m2;   ///< one-sided area of each group
+  Vec3<Body> lower{}, upper{};       ///< bounding box [m]
+  std::vector<double> group_area_m2; ///< one-sided area of each group
   std::vector<std::size_t> group_triangles;
   double area_m2 = 0;
-  double volume_m3 = 0;                ///< signed, meaningful if closed
+  double volume_m3 = 0; ///< signed, meaningful if closed
   std::size_t vertices = 0, triangles = 0, parts = 0;
   std::size_t degenerate = 0, duplicate = 0, opposite_pairs = 0;
   std::size_t open_edges = 0, non_manifold_edges = 0, inconsistent_edges = 0;
-  std::size_t inward_parts = 0;        ///< closed parts wound inside out
-  bool is_closed = false;              ///< no open or non-manifold edge after welding
-  bool is_convex = false;              ///< closed, one part, outward, no vertex above any face plane
+  std::size_t inward_parts = 0; ///< closed parts wound inside out
+  bool is_closed = false;       ///< no open or non-manifold edge after welding
+  bool is_convex = false;       ///< closed, one part, outward, no vertex above any face plane
 };
 
 /// Looks at a mesh, vertices welded at 1e-6 of its size. Never changes it.

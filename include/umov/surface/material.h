@@ -34,9 +34,9 @@ struct BodyLobe {
 struct Material {
   std::string name;
   IndexTable index;
-  double exponent = 200;                      ///< Blinn-Phong m >= 0
+  double exponent = 200; ///< Blinn-Phong m >= 0
   Shadowing shadowing = Shadowing::Ashikhmin;
-  std::optional<BodyLobe> body;               ///< absent: none
+  std::optional<BodyLobe> body; ///< absent: none
 };
 
 /// Checks numbers and lists: n > 0, k >= 0, 0 <= m <= 1e9, reflectance 0..1, wavelengths in nm,

@@ -40,7 +40,8 @@ public:
   /// Mueller BRDF [1/sr]: w M_F + body lobe in M00. Grazing and back directions give zeros.
   [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> brdf(std::size_t band, double n_l,
                                                                double n_v, double l_v) const;
-  /// Directional albedo of the specular lobe alone, Fresnel included (R(k) of physics.md section 3).
+  /// Directional albedo of the specular lobe alone, Fresnel included (R(k) of physics.md section
+  /// 3).
   [[nodiscard]] double specular_albedo(std::size_t band, double n_k) const;
   /// The same with F = 1 (white furnace).
   [[nodiscard]] double furnace_albedo(double n_k) const;

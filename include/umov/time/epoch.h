@@ -15,9 +15,7 @@ struct Tt {};
 
 /// Two-part Julian date; jd1 is a whole or half day, jd2 a fraction: better than 1 us for
 /// 1957-2056. UTC is ERFA's quasi-JD: a day with a leap second is longer.
-template <class Scale> struct Epoch {
-  double jd1 = 0, jd2 = 0;
-};
+template <class Scale> struct Epoch { double jd1 = 0, jd2 = 0; };
 
 /// Reads "2018-01-21T04:00:00Z", with fraction, with "+hh:mm" or "-hh:mm"; ":60" only in a leap
 /// second. A time without offset, before 1972 or out of the calendar is BadInput.

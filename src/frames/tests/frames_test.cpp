@@ -27,8 +27,8 @@ TEST(Site, StandsOnTheEllipsoid) {
 }
 
 TEST(Frames, TemeAndGcrsDifferByPrecessionOnly) {
-  // The celestial pole has moved by about 20.04 arcsec a year since 2000 (IAU 2006): at 2018.055 the
-  // pole of date is .1005 deg from that of the GCRS, within nutation (10 arcsec).
+  // The celestial pole has moved by about 20.04 arcsec a year since 2000 (IAU 2006): at 2018.055
+  // the pole of date is .1005 deg from that of the GCRS, within nutation (10 arcsec).
   const auto time = *utc_from_iso("2018-01-21T05:00:00Z");
   const auto gcrs_from_teme = itrs_from_gcrs(time).inverse() * itrs_from_teme(time);
   const Vec3<Gcrs> pole = gcrs_from_teme * Vec3<Teme>{0, 0, 1};

@@ -23,7 +23,7 @@ struct Unit {
   const char *name;
   double metres;
 };
-constexpr Unit units[] = {{"m", 1},      {"cm", 0.01},   {"mm", 0.001},
+constexpr Unit units[] = {{"m", 1},     {"cm", 0.01},   {"mm", 0.001},
                           {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}};
 
 Vec3<Body> turned(Vec3<Body> v, const std::string &up) {
@@ -80,8 +80,8 @@ private:
   std::map<std::string, std::uint32_t> group_index_;
   std::string material_, object_;
   bool has_material_ = false;
-  std::size_t texture_count_ = 0, skipped_ = 0, short_faces_ = 0, concave_ = 0,
-              crossed_ = 0, bent_ = 0;
+  std::size_t texture_count_ = 0, skipped_ = 0, short_faces_ = 0, concave_ = 0, crossed_ = 0,
+              bent_ = 0;
 };
 
 Result<Vec3<Body>> Reader::vector(const std::vector<Word> &words, const char *what) {
@@ -109,13 +109,14 @@ Result<std::optional<std::uint32_t>> Reader::index(std::string_view text, const 
     if (value < 0 && value >= -size)
       return std::optional(static_cast<std::uint32_t>(size + value));
   }
-  return fail(ErrorCode::BadInput,
-              fmt::format("{} index \"{}\" in \"{}\"; 1 to {} (or -1 to -{}) was expected, since {} "
-                          "{}{} precede this line",
-                          what, text, word.text.substr(0, 40), size, size, size,
-                          what == std::string_view("vertex") ? "vertices" : what,
-                          what == std::string_view("vertex") ? "" : "s"),
-              lines_.where(word));
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("{} index \"{}\" in \"{}\"; 1 to {} (or -1 to -{}) was expected, since {} "
+                  "{}{} precede this line",
+                  what, text, word.text.substr(0, 40), size, size, size,
+                  what == std::string_view("vertex") ? "vertices" : what,
+                  what == std::string_view("vertex") ? "" : "s"),
+      lines_.where(word));
 }
 
 Result<Corner> Reader::corner(const Word &word) {
@@ -126,10 +127,10 @@ Result<Corner> Reader::corner(const Word &word) {
     const std::size_t slash = rest.find('/');
     more = slash != std::string_view::npos;
     if (count == 3 || (more && slash + 1 == rest.size()))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("corner \"{}\"; v, v/t, v//n or v/t/n was expected",
-                              word.text.substr(0, 40)),
-                  lines_.where(word));
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("corner \"{}\"; v, v/t, v//n or v/t/n was expected", word.text.substr(0, 40)),
+          lines_.where(word));
     parts[count] = rest.substr(0, slash);
     rest = more ? rest.substr(slash + 1) : std::string_view();
   }
@@ -198,11 +199,12 @@ Result<void> Reader::take_mtl(const std::vector<Word> &words) {
   }
   for (const std::string &name : names) {
     if (leaves_folder(name))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("mtllib \"{}\" leaves the folder of the mesh; put the MTL file beside "
-                              "the OBJ file",
-                              name),
-                  lines_.where(words[1]));
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("mtllib \"{}\" leaves the folder of the mesh; put the MTL file beside "
+                      "the OBJ file",
+                      name),
+          lines_.where(words[1]));
     UMOV_TRY(read_mtl(name, words[0]));
   }
   return {};
@@ -259,15 +261,16 @@ std::string Reader::box_text(const char *key) const {
   const Vec3<Body> size = high - low;
   const double longest = std::max({size.x, size.y, size.z});
   const auto length = [](double m) {
-    return m >= 1000 ? fmt::format("{:.4g} km", m / 1000)
+    return m >= 1000  ? fmt::format("{:.4g} km", m / 1000)
            : m < 0.01 ? fmt::format("{:.4g} mm", m * 1000)
                       : fmt::format("{:.4g} m", m);
   };
-  return fmt::format("no {}. The bounding box is {:.6g} x {:.6g} x {:.6g}: in mm that is {}, in m it "
-                     "is {}. Set unit = \"{}\" (or cm, km, in, ft) and up = \"+Z\" (the axis of the "
-                     "file that is up).",
-                     key, size.x, size.y, size.z, length(longest / 1000), length(longest),
-                     longest > 200 ? "mm" : "m");
+  return fmt::format(
+      "no {}. The bounding box is {:.6g} x {:.6g} x {:.6g}: in mm that is {}, in m it "
+      "is {}. Set unit = \"{}\" (or cm, km, in, ft) and up = \"+Z\" (the axis of the "
+      "file that is up).",
+      key, size.x, size.y, size.z, length(longest / 1000), length(longest),
+      longest > 200 ? "mm" : "m");
 }
 
 Result<void> Reader::finish() {
@@ -299,9 +302,10 @@ Result<void> Reader::finish() {
     n = std::abs(length - 1) < 1e-12 || !(length > 0) ? t : t / length;
   }
   if (largest < 1e-3 || largest > 1e4)
-    diagnostics_.warn(fmt::format("the mesh reaches {:.3g} m from its origin; is unit = \"{}\" right?",
-                                  largest, options_.unit),
-                      file);
+    diagnostics_.warn(
+        fmt::format("the mesh reaches {:.3g} m from its origin; is unit = \"{}\" right?", largest,
+                    options_.unit),
+        file);
   const auto warn = [&](std::size_t count, const char *what) {
     if (count > 0)
       diagnostics_.warn(fmt::format("{} {}", count, what), file);

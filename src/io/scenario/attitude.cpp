@@ -7,8 +7,8 @@
 namespace umov::scenario {
 namespace {
 
-const std::vector<std::string> target_names{"nadir", "zenith", "velocity",
-                                            "orbit_normal", "sun", "observer"};
+const std::vector<std::string> target_names{"nadir",        "zenith", "velocity",
+                                            "orbit_normal", "sun",    "observer"};
 
 Result<Vec3<Body>> read_axis(const Node &node, const char *name, Vec3<Body> fallback) {
   if (!node.has(name))
@@ -62,8 +62,8 @@ Result<void> forbid(const Node &node, const std::string &mode,
 
 Result<TwoAxisLaw> read_two_axis(const Node &node) {
   TwoAxisLaw law;
-  UMOV_TRY(forbid(node, "two axes", {"quaternion", "axis", "rate_deg_s", "period_s", "epoch",
-                                     "start"}));
+  UMOV_TRY(
+      forbid(node, "two axes", {"quaternion", "axis", "rate_deg_s", "period_s", "epoch", "start"}));
   UMOV_ASSIGN(point, read_axis(node, "point", law.point));
   UMOV_ASSIGN(at, read_direction(node, "at", Target::Nadir));
   UMOV_ASSIGN(then, read_axis(node, "then", law.then));
@@ -72,8 +72,9 @@ Result<TwoAxisLaw> read_two_axis(const Node &node) {
 }
 
 Result<InertialLaw> read_inertial(const Node &node) {
-  UMOV_TRY(forbid(node, "inertial", {"point", "at", "then", "toward", "axis", "rate_deg_s",
-                                     "period_s", "epoch", "start"}));
+  UMOV_TRY(forbid(
+      node, "inertial",
+      {"point", "at", "then", "toward", "axis", "rate_deg_s", "period_s", "epoch", "start"}));
   UMOV_ASSIGN(q, node.numbers("quaternion"));
   if (q.size() != 4)
     return fail(ErrorCode::BadInput,
@@ -97,8 +98,8 @@ Result<SpinLaw> read_spin(const Node &node) {
   if (period == 0)
     return fail(ErrorCode::BadInput, "period_s = 0; another number was expected",
                 node.where("period_s"));
-  law.rate_rad_s = node.has("rate_deg_s") ? node.number("rate_deg_s", 0) * pi / 180
-                                          : 2 * pi / period;
+  law.rate_rad_s =
+      node.has("rate_deg_s") ? node.number("rate_deg_s", 0) * pi / 180 : 2 * pi / period;
   UMOV_ASSIGN(epoch, node.time("epoch"));
   law.epoch = epoch;
   if (!node.has("start"))

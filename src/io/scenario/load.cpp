@@ -34,8 +34,8 @@ Result<void> load_orbit(const Scenario &scenario, const LoadOptions &options,
     return {};
   const std::string file = scenario.orbit->file.string();
   UMOV_ASSIGN(text, read_input(file, place(scenario, "object.orbit"), out));
-  UMOV_ASSIGN(sets, read_tle(text, file, {.allow_bad_checksum = options.allow_bad_checksum},
-                             diagnostics));
+  UMOV_ASSIGN(
+      sets, read_tle(text, file, {.allow_bad_checksum = options.allow_bad_checksum}, diagnostics));
   const Epoch<Utc> start = scenario.time ? scenario.time->start : sets.front().epoch;
   const Epoch<Utc> stop = scenario.time ? scenario.time->stop : start;
   UMOV_ASSIGN(set, choose_elements(sets, scenario.orbit->norad, start, file));
@@ -61,21 +61,22 @@ Result<void> check_material_keys(const Scenario &scenario, const Mesh &mesh) {
   return {};
 }
 
-Result<MaterialNames> names_of(const Scenario &scenario, const Mesh &mesh,
-                               const MeshReport &report, std::size_t group) {
+Result<MaterialNames> names_of(const Scenario &scenario, const Mesh &mesh, const MeshReport &report,
+                               std::size_t group) {
   for (const std::string &key : {mesh.groups[group], std::string("default")})
     if (const auto found = scenario.materials.find(key); found != scenario.materials.end())
       return found->second;
-  return fail(ErrorCode::BadInput,
-              fmt::format("material \"{}\" ({} faces, {:.4g} m2) has no entry in [object.materials] "
-                          "of {} and there is no \"default\". Known: umov material list.",
-                          mesh.groups[group], report.group_triangles[group],
-                          report.group_area_m2[group], scenario.file),
-              {scenario.mesh.file.string()});
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("material \"{}\" ({} faces, {:.4g} m2) has no entry in [object.materials] "
+                  "of {} and there is no \"default\". Known: umov material list.",
+                  mesh.groups[group], report.group_triangles[group], report.group_area_m2[group],
+                  scenario.file),
+      {scenario.mesh.file.string()});
 }
 
-/// A material that the mesh uses but no MTL file defines is only a name: an error where the scenario
-/// does not map every material by name.
+/// A material that the mesh uses but no MTL file defines is only a name: an error where the
+/// scenario does not map every material by name.
 Result<void> check_mtl(const Scenario &scenario, const ObjMesh &read) {
   if (!read.lacks_mtl)
     return {};
@@ -114,8 +115,8 @@ Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &op
     front.push_back(one);
     back.push_back(other);
   }
-  auto scene = make_scene(read.mesh, scenario.mesh.normals, scenario.bands, front, back, diagnostics,
-                          scenario.mesh.crease_deg * pi / 180);
+  auto scene = make_scene(read.mesh, scenario.mesh.normals, scenario.bands, front, back,
+                          diagnostics, scenario.mesh.crease_deg * pi / 180);
   if (!scene)
     return fail(scene.error().code, scene.error().message,
                 scene.error().where.file.empty() ? Where{scenario.file} : scene.error().where);

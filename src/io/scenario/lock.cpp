@@ -69,10 +69,10 @@ std::string object(const Scenario &s) {
   if (s.orbit)
     out += fmt::format("orbit = {{ file = {}, norad = {} }}\n", absolute_path(s.orbit->file),
                        s.orbit->norad);
-  out += fmt::format("mesh = {{ file = {}, unit = {}, up = {}, normals = \"{}\", crease_deg = {} }}\n",
-                     absolute_path(s.mesh.file), quoted(s.mesh.unit), quoted(s.mesh.up),
-                     s.mesh.normals == NormalMode::Smooth ? "smooth" : "flat",
-                     shortest(s.mesh.crease_deg));
+  out += fmt::format(
+      "mesh = {{ file = {}, unit = {}, up = {}, normals = \"{}\", crease_deg = {} }}\n",
+      absolute_path(s.mesh.file), quoted(s.mesh.unit), quoted(s.mesh.up),
+      s.mesh.normals == NormalMode::Smooth ? "smooth" : "flat", shortest(s.mesh.crease_deg));
   out += "attitude = " + scenario::attitude_toml(s.attitude) + "\n\n[object.materials]\n";
   for (const auto &[name, sides] : s.materials)
     out += fmt::format("{} = {{ front = {}, back = {} }}\n", quoted(name), quoted(sides.front),

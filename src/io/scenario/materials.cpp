@@ -33,10 +33,10 @@ Result<IndexTable> read_index(const Node &node) {
     table.wavelength_nm = nm;
   }
   if (k.size() != n.size())
-    return fail(ErrorCode::BadInput,
-                fmt::format("n has {} numbers and k {}; as many of both were expected", n.size(),
-                            k.size()),
-                below.where("k"));
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("n has {} numbers and k {}; as many of both were expected", n.size(), k.size()),
+        below.where("k"));
   for (std::size_t i = 0; i < n.size(); ++i)
     table.eta.emplace_back(n[i], k[i]);
   return table;
@@ -144,8 +144,8 @@ std::string material_toml(const Material &m) {
              ? fmt::format("index = {{ n = {}, k = {} }}\n", shortest(n[0]), shortest(k[0]))
              : fmt::format("index = {{ wavelength_nm = {}, n = {}, k = {} }}\n",
                            list_toml(m.index.wavelength_nm), list_toml(n), list_toml(k));
-  out += fmt::format("distribution = {{ model = \"blinn_phong\", m = {} }}\n",
-                     shortest(m.exponent));
+  out +=
+      fmt::format("distribution = {{ model = \"blinn_phong\", m = {} }}\n", shortest(m.exponent));
   out += fmt::format("shadowing = \"{}\"\ninterreflection = \"none\"\n",
                      shadowing_names[static_cast<std::size_t>(m.shadowing)]);
   if (m.body)
@@ -172,10 +172,10 @@ Result<Material> read_material(const std::string &name_or_path) {
     UMOV_TRY(top.check());
     UMOV_ASSIGN(all, scenario::read_material_tables(top));
     if (all.size() != 1)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("holds {} materials; one [material.NAME] table was expected",
-                              all.size()),
-                  {name_or_path});
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("holds {} materials; one [material.NAME] table was expected", all.size()),
+          {name_or_path});
     return all.begin()->second;
   } catch (const toml::parse_error &problem) {
     return fail(ErrorCode::BadInput, std::string(problem.description()),

@@ -79,8 +79,8 @@ Result<void> read_time(const Node &top, Scenario &out) {
     const double lowest = only.number("alt_min_deg", 0), sun = only.number("sun_alt_max_deg", 90);
     for (const auto &[name, value] : {std::pair{"alt_min_deg", lowest}, {"sun_alt_max_deg", sun}})
       if (std::abs(value) > 90)
-        return fail(ErrorCode::BadInput, fmt::format("{} = {}; -90 to 90 was expected", name, value),
-                    only.where(name));
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} = {}; -90 to 90 was expected", name, value), only.where(name));
     time.only.altitude_min = Angle::degrees(lowest);
     if (only.has("sun_alt_max_deg"))
       time.only.sun_altitude_max = Angle::degrees(sun);
@@ -141,7 +141,8 @@ Result<void> read_object(const Node &top, const fs::path &folder, Scenario &out)
   UMOV_TRY(top.require("object"));
   const toml::array *list = top.table().get_as<toml::array>("object");
   if (list->empty() || !list->get(0)->is_table())
-    return fail(ErrorCode::BadInput, "object: a table [[object]] was expected", top.where("object"));
+    return fail(ErrorCode::BadInput, "object: a table [[object]] was expected",
+                top.where("object"));
   if (list->size() > 1)
     return fail(ErrorCode::BadInput, "several objects are not built yet; keep one [[object]]",
                 scenario::place_of(list->get(1)->source(), out.file));
@@ -190,10 +191,10 @@ Result<void> read_render(const Node &top, Scenario &out) {
   if (top.has("render")) {
     UMOV_ASSIGN(node, top.child("render"));
     if (const auto bounces = node.integer("bounces", 1); bounces != 1)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("bounces = {} is not built yet; this version has 1 (direct light)",
-                              bounces),
-                  node.where("bounces"));
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("bounces = {} is not built yet; this version has 1 (direct light)", bounces),
+          node.where("bounces"));
     UMOV_TRY(node.choice("sun", "point", {"point"}, {"disk"}));
     out.accuracy = node.number("accuracy", 0.005);
     if (!(out.accuracy >= 1e-6 && out.accuracy <= 1))
@@ -280,9 +281,9 @@ Result<Scenario> read_scenario(const fs::path &path, const std::vector<std::stri
 
 Result<void> check_complete_for_run(const Scenario &s) {
   std::string missing;
-  for (const auto &[is_there, name] :
-       {std::pair{s.observer.has_value(), "[observer]"}, {s.time.has_value(), "[time]"},
-        {s.orbit.has_value(), "object.orbit"}})
+  for (const auto &[is_there, name] : {std::pair{s.observer.has_value(), "[observer]"},
+                                       {s.time.has_value(), "[time]"},
+                                       {s.orbit.has_value(), "object.orbit"}})
     if (!is_there)
       missing += (missing.empty() ? "" : ", ") + std::string(name);
   if (missing.empty())

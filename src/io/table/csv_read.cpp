@@ -71,7 +71,8 @@ private:
       if (found == header_.end())
         return missing(name);
       if (std::find(found + 1, header_.end(), name) != header_.end())
-        return fail(ErrorCode::BadInput, fmt::format("column \"{}\" stands twice in the header; keep one", name),
+        return fail(ErrorCode::BadInput,
+                    fmt::format("column \"{}\" stands twice in the header; keep one", name),
                     {file_, line_});
       place_.push_back(static_cast<std::size_t>(found - header_.begin()));
     }
@@ -88,16 +89,18 @@ private:
 
   Result<void> row(const std::vector<Cell> &cells) {
     if (cells.size() != header_.size())
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} cells in this row; the header has {}", cells.size(), header_.size()),
-                  {file_, line_});
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("{} cells in this row; the header has {}", cells.size(), header_.size()),
+          {file_, line_});
     for (std::size_t k = 0; k < required_.size(); ++k) {
       const Cell &cell = cells[place_[k]];
       const auto value = parse_number(cell.text);
       if (!value)
-        return fail(ErrorCode::BadInput,
-                    fmt::format("{} is \"{}\"; a finite number was expected", required_[k], cell.text),
-                    {file_, line_, cell.column});
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("{} is \"{}\"; a finite number was expected", required_[k], cell.text),
+            {file_, line_, cell.column});
       values_[k].push_back(*value);
     }
     return {};
@@ -105,8 +108,8 @@ private:
 
   Result<Table> table() {
     if (header_.empty())
-      return fail(ErrorCode::BadInput, "no header; the first line must name the columns " + wanted(),
-                  {file_});
+      return fail(ErrorCode::BadInput,
+                  "no header; the first line must name the columns " + wanted(), {file_});
     if (!values_.empty() && values_[0].empty())
       return fail(ErrorCode::BadInput, "no rows below the header; at least one was expected",
                   {file_});

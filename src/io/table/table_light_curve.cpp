@@ -21,8 +21,8 @@ public:
     cells.reserve(curve_.samples.size());
     for (std::size_t i = 0; i < curve_.epochs.size(); ++i)
       for (std::size_t b = 0; b < curve_.bands.size(); ++b)
-        cells.push_back(take(curve_.epochs[i], curve_.samples[i * curve_.bands.size() + b],
-                             curve_.bands[b]));
+        cells.push_back(
+            take(curve_.epochs[i], curve_.samples[i * curve_.bands.size() + b], curve_.bands[b]));
     table_.add(name, unit, text, std::move(cells));
   }
   template <class Take>
@@ -41,50 +41,67 @@ private:
 
 void add_names(RowColumns &t, const LightCurve &curve) {
   using B = const Band &;
-  t.add<std::string>("time_utc", "", "UTC, ISO 8601", [](E e, S, B) { return to_iso(e.geometry.time); });
-  t.of_epoch("mjd_utc", "d", "UTC as modified Julian date", [](E e) { return mjd(e.geometry.time); });
+  t.add<std::string>("time_utc", "", "UTC, ISO 8601",
+                     [](E e, S, B) { return to_iso(e.geometry.time); });
+  t.of_epoch("mjd_utc", "d", "UTC as modified Julian date",
+             [](E e) { return mjd(e.geometry.time); });
   t.add<std::string>("name", "", "object", [&](E, S, B) { return curve.object; });
   t.add<std::int64_t>("norad_cat_id", "", "catalogue number",
                       [&](E, S, B) { return std::int64_t{curve.norad_cat_id}; });
   t.add<std::string>("band", "", "band as in the scenario", [](E, S, B b) { return b.name; });
   t.add<double>("lambda_eff", "nm", "wavelength", [](E, S, B b) { return b.wavelength.nm(); });
-  t.add<std::string>("pass_id", "", "catalogue number and culmination", [](E e, S, B) { return e.pass_id; });
+  t.add<std::string>("pass_id", "", "catalogue number and culmination",
+                     [](E e, S, B) { return e.pass_id; });
 }
 
 void add_geometry(RowColumns &t) {
   t.of_epoch("sunlit", "", "visible part of the Sun's disk", [](E e) { return e.geometry.sunlit; });
-  t.of_epoch("az", "deg", "azimuth from north through east, geometric", [](E e) { return e.geometry.azimuth.degrees(); });
-  t.of_epoch("alt", "deg", "altitude, geometric", [](E e) { return e.geometry.altitude.degrees(); });
-  t.of_epoch("ra", "deg", "right ascension, topocentric, GCRS axes", [](E e) { return e.geometry.right_ascension.degrees(); });
-  t.of_epoch("dec", "deg", "declination, topocentric, GCRS axes", [](E e) { return e.geometry.declination.degrees(); });
+  t.of_epoch("az", "deg", "azimuth from north through east, geometric",
+             [](E e) { return e.geometry.azimuth.degrees(); });
+  t.of_epoch("alt", "deg", "altitude, geometric",
+             [](E e) { return e.geometry.altitude.degrees(); });
+  t.of_epoch("ra", "deg", "right ascension, topocentric, GCRS axes",
+             [](E e) { return e.geometry.right_ascension.degrees(); });
+  t.of_epoch("dec", "deg", "declination, topocentric, GCRS axes",
+             [](E e) { return e.geometry.declination.degrees(); });
   t.of_epoch("range", "km", "distance from the site", [](E e) { return e.geometry.range_km; });
-  t.of_epoch("range_rate", "km / s", "positive: receding", [](E e) { return e.geometry.range_rate_km_s; });
-  t.of_epoch("phase_angle", "deg", "Sun-object-observer, 0 = full", [](E e) { return e.geometry.phase_angle.degrees(); });
-  t.of_epoch("sun_alt", "deg", "altitude of the Sun at the site, airless", [](E e) { return e.geometry.sun_altitude.degrees(); });
+  t.of_epoch("range_rate", "km / s", "positive: receding",
+             [](E e) { return e.geometry.range_rate_km_s; });
+  t.of_epoch("phase_angle", "deg", "Sun-object-observer, 0 = full",
+             [](E e) { return e.geometry.phase_angle.degrees(); });
+  t.of_epoch("sun_alt", "deg", "altitude of the Sun at the site, airless",
+             [](E e) { return e.geometry.sun_altitude.degrees(); });
   t.of_epoch("airmass", "", "Kasten & Young 1989", [](E e) { return e.airmass; });
 }
 
 void add_light(RowColumns &t, PolarizationFrame frame) {
   const auto axis = [frame](E e) {
     const auto &g = e.geometry;
-    return (frame == PolarizationFrame::AltAz ? g.pa_scat_altaz
+    return (frame == PolarizationFrame::AltAz        ? g.pa_scat_altaz
             : frame == PolarizationFrame::Scattering ? Angle()
-                                                     : g.pa_scat_equatorial).degrees();
+                                                     : g.pa_scat_equatorial)
+        .degrees();
   };
-  t.of_sample("I", "W / (m2 nm)", "irradiance at the observer above the atmosphere", [](S s) { return s.irradiance; });
-  t.of_sample("intensity", "m2 / sr", "without distance and solar flux", [](S s) { return s.intensity; });
+  t.of_sample("I", "W / (m2 nm)", "irradiance at the observer above the atmosphere",
+              [](S s) { return s.irradiance; });
+  t.of_sample("intensity", "m2 / sr", "without distance and solar flux",
+              [](S s) { return s.intensity; });
   t.of_sample("q", "", "Q/I in the sky frame", [](S s) { return s.sky.q; });
   t.of_sample("u", "", "U/I in the sky frame", [](S s) { return s.sky.u; });
   t.of_sample("v", "", "V/I", [](S s) { return s.sky.v; });
   t.of_sample("p", "", "degree of linear polarization", [](S s) { return s.p; });
   t.of_sample("dop", "", "degree of polarization", [](S s) { return s.dop; });
-  t.of_sample("pa", "deg", "position angle of polarization, [0, 180)", [](S s) { return s.pa_deg; });
-  t.of_sample("q_scat", "", "Q/I, + perpendicular to the scattering plane", [](S s) { return s.scattering.q; });
+  t.of_sample("pa", "deg", "position angle of polarization, [0, 180)",
+              [](S s) { return s.pa_deg; });
+  t.of_sample("q_scat", "", "Q/I, + perpendicular to the scattering plane",
+              [](S s) { return s.scattering.q; });
   t.of_sample("u_scat", "", "U/I in the scattering frame", [](S s) { return s.scattering.u; });
   t.of_epoch("pa_scat", "deg", "position angle of the normal of the scattering plane", axis);
   t.of_sample("mag", "mag(AB)", "AB magnitude", [](S s) { return s.magnitude; });
-  t.add<std::string>("mag_system", "", "system of mag", [](E, S, const Band &) { return std::string("AB"); });
-  t.add<bool>("glint", "", "a flat mirror-like part gives most of the light", [](E e, S, const Band &) { return e.has_glint; });
+  t.add<std::string>("mag_system", "", "system of mag",
+                     [](E, S, const Band &) { return std::string("AB"); });
+  t.add<bool>("glint", "", "a flat mirror-like part gives most of the light",
+              [](E e, S, const Band &) { return e.has_glint; });
 }
 
 } // namespace
@@ -99,11 +116,16 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   t.of_epoch("qx", "", "attitude body_from_gcrs", [](E e) { return e.body_from_gcrs.x; });
   t.of_epoch("qy", "", "attitude body_from_gcrs", [](E e) { return e.body_from_gcrs.y; });
   t.of_epoch("qz", "", "attitude body_from_gcrs", [](E e) { return e.body_from_gcrs.z; });
-  t.of_epoch("elset_age", "d", "time since the epoch of the elements", [](E e) { return e.elset_age_days; });
-  t.of_sample("intensity_err", "m2 / sr", "numerical 95 % half-width", [](S s) { return s.half_width.i; });
-  t.of_sample("stokes_q_err", "m2 / sr", "numerical 95 % half-width, scattering frame", [](S s) { return s.half_width.q; });
-  t.of_sample("stokes_u_err", "m2 / sr", "numerical 95 % half-width, scattering frame", [](S s) { return s.half_width.u; });
-  t.of_sample("stokes_v_err", "m2 / sr", "numerical 95 % half-width", [](S s) { return s.half_width.v; });
+  t.of_epoch("elset_age", "d", "time since the epoch of the elements",
+             [](E e) { return e.elset_age_days; });
+  t.of_sample("intensity_err", "m2 / sr", "numerical 95 % half-width",
+              [](S s) { return s.half_width.i; });
+  t.of_sample("stokes_q_err", "m2 / sr", "numerical 95 % half-width, scattering frame",
+              [](S s) { return s.half_width.q; });
+  t.of_sample("stokes_u_err", "m2 / sr", "numerical 95 % half-width, scattering frame",
+              [](S s) { return s.half_width.u; });
+  t.of_sample("stokes_v_err", "m2 / sr", "numerical 95 % half-width",
+              [](S s) { return s.half_width.v; });
   note_conventions(table);
   table.note("object", curve.object);
   table.note("pol_frame", frame == PolarizationFrame::Equatorial ? "equatorial"

@@ -38,7 +38,8 @@ bool is_numeric(const Cells &cells) { return cells.index() < 2; }
 
 /// A note in one line, so that it cannot break out of a comment.
 std::string one_line(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   return text;
 }
 
@@ -143,7 +144,8 @@ std::string to_text(const Table &table) {
     for (std::size_t c = 0; c < count; ++c) {
       const bool right = is_numeric(table.columns()[c].cells);
       text += c ? "  " : "";
-      text += right ? fmt::format("{:>{}}", line[c], width[c]) : fmt::format("{:<{}}", line[c], width[c]);
+      text += right ? fmt::format("{:>{}}", line[c], width[c])
+                    : fmt::format("{:<{}}", line[c], width[c]);
     }
     text.erase(text.find_last_not_of(' ') + 1);
     out += text + '\n';

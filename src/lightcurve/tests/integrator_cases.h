@@ -31,7 +31,8 @@ inline Material white_lambert() {
 }
 
 /// The first material on the first group and so on, over and over.
-inline Scene scene_of(const Mesh &mesh, NormalMode normals, const std::vector<Material> &materials) {
+inline Scene scene_of(const Mesh &mesh, NormalMode normals,
+                      const std::vector<Material> &materials) {
   std::vector<Material> per_group;
   for (std::size_t g = 0; g < mesh.groups.size(); ++g)
     per_group.push_back(materials[g % materials.size()]);

@@ -22,8 +22,8 @@ TEST(IntegratorClosedForms, LambertSphereConvergesWithSecondOrder) {
     const Angle phase = Angle::degrees(phase_deg);
     double error[2] = {0, 0};
     for (int level = 0; level < 2; ++level) {
-      const Integrator sphere(scene_of(make_sphere(1, level == 0 ? 4000 : 64000), NormalMode::Flat,
-                                       {white_lambert()}));
+      const Integrator sphere(
+          scene_of(make_sphere(1, level == 0 ? 4000 : 64000), NormalMode::Flat, {white_lambert()}));
       EXPECT_TRUE(sphere.is_convex());
       error[level] = relative(intensity(sphere, pose_at(3, phase)), lambert_sphere(phase));
     }

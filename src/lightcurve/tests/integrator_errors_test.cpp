@@ -35,7 +35,8 @@ Coverage coverage(NormalMode normals, double accuracy, std::size_t count) {
   dense.seed = 2;
   dense.density = 64;
   dense.max_points = std::size_t{1} << 26;
-  const auto fast = integrator.evaluate(poses, usual, 0), slow = integrator.evaluate(poses, dense, 0);
+  const auto fast = integrator.evaluate(poses, usual, 0),
+             slow = integrator.evaluate(poses, dense, 0);
   Coverage out;
   std::vector<double> differences, half_widths;
   for (std::size_t i = 0; i < count; ++i) {

@@ -152,7 +152,8 @@ TEST(IntegratorEdges, BothSidesOfASheetScatter) {
   for (const double side : {1.0, -1.0}) {
     const Pose pose{normalized(Vec3<Body>{0.5, 0, side}), normalized(Vec3<Body>{-0.5, 0.1, side})};
     const auto s = sheet.evaluate(pose, {}).bands[1].stokes;
-    const auto f = (side > 0 ? scene.front[0] : scene.back[0]).fresnel(1, dot(pose.sun, pose.observer));
+    const auto f =
+        (side > 0 ? scene.front[0] : scene.back[0]).fresnel(1, dot(pose.sun, pose.observer));
     const auto expected = side > 0 ? f : scene.front[1].fresnel(1, dot(pose.sun, pose.observer));
     EXPECT_NEAR(s.q / s.i, expected.b / expected.a, 1e-12);
   }
@@ -162,7 +163,8 @@ TEST(IntegratorEdges, GrazingDirectionsStayFinite) {
   const Integrator body(scene_of(two_boxes(), NormalMode::Flat, gold_and_silicon()));
   for (const double tilt : {0.0, 1e-300, 1e-16, 1e-12, 1e-8})
     for (const double sign : {-1.0, 1.0}) {
-      const Pose pose{normalized(Vec3<Body>{1, 0, sign * tilt}), normalized(Vec3<Body>{0, 1, tilt})};
+      const Pose pose{normalized(Vec3<Body>{1, 0, sign * tilt}),
+                      normalized(Vec3<Body>{0, 1, tilt})};
       for (const BandResult &band : body.evaluate(pose, {}).bands) {
         EXPECT_TRUE(std::isfinite(band.stokes.i) && band.stokes.i >= 0);
         EXPECT_LE(std::abs(band.stokes.q), band.stokes.i * (1 + 1e-12));

@@ -53,8 +53,9 @@ TEST(Fresnel, NormalGrazingBrewsterAndNoInterface) {
     EXPECT_EQ(std::abs(fresnel_amplitudes(c, {1, 0}).p), 0);
   }
   // k -> 0 is continuous.
-  EXPECT_LT(std::abs(fresnel_amplitudes(0.4, {1.5, 1e-300}).s - fresnel_amplitudes(0.4, {1.5, 0}).s),
-            1e-299);
+  EXPECT_LT(
+      std::abs(fresnel_amplitudes(0.4, {1.5, 1e-300}).s - fresnel_amplitudes(0.4, {1.5, 0}).s),
+      1e-299);
 }
 
 TEST(Fresnel, QuarterWaveRetardanceAtThePrincipalAngle) {
@@ -62,7 +63,7 @@ TEST(Fresnel, QuarterWaveRetardanceAtThePrincipalAngle) {
   const struct {
     std::complex<double> eta;
     double phase;
-  } rows[] = {{{1.62, 1.94}, 139.843}, {{.359, 2.69}, 143.394}, {{.170, 3.14}, 147.442},
+  } rows[] = {{{1.62, 1.94}, 139.843},  {{.359, 2.69}, 143.394},   {{.170, 3.14}, 147.442},
               {{.556, 5.146}, 158.854}, {{1.015, 6.627}, 163.378}, {{1.558, 7.712}, 165.727}};
   for (const auto &row : rows) {
     const auto at = [&](double phase) {

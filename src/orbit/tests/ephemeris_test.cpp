@@ -75,11 +75,13 @@ Worst compare(const std::string &file, int norad) {
     keep(worst.range_m, (g.range_km - number("range_km")) * 1000);
     keep(worst.phase_arcsec, (g.phase_angle.degrees() - number("phase_deg")) * 3600);
     keep(worst.ellipsoid, g.sunlit - number("sun_frac_ellipsoid"));
-    if (const auto dense = dense_fractions().find(file + row["utc"]); dense != dense_fractions().end())
+    if (const auto dense = dense_fractions().find(file + row["utc"]);
+        dense != dense_fractions().end())
       keep(worst.dense, g.sunlit - dense->second);
     const Vec3<Itrs> sun{number("sun_itrs_ux"), number("sun_itrs_uy"), number("sun_itrs_uz")};
-    keep(worst.sphere, sunlit_fraction(g.itrs_km, sun * number("sun_dist_km"), ShadowModel::Sphere) -
-                           number("sun_frac_sphere"));
+    keep(worst.sphere,
+         sunlit_fraction(g.itrs_km, sun * number("sun_dist_km"), ShadowModel::Sphere) -
+             number("sun_frac_sphere"));
     const Vec3<Itrs> at{number("itrs_x_km"), number("itrs_y_km"), number("itrs_z_km")};
     keep(worst.position_m, norm(g.itrs_km - at) * 1000);
     keep(worst.sun_arcsec, (g.sun_altitude.degrees() - number("sun_el_deg")) * 3600);
@@ -107,17 +109,16 @@ TEST_P(ReferenceEphemeris, AgreesInEveryRow) {
   EXPECT_LT(worst.sun_arcsec, 1) << file;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Files, ReferenceEphemeris,
-    testing::Values(std::pair{"hst_maui_20180121_60s.csv", 20580},
-                    std::pair{"agena733_maui_20180121_60s.csv", 733},
-                    std::pair{"molniya_maui_20180121_60s.csv", 25485},
-                    std::pair{"geo_maui_20180121_60s.csv", 36411},
-                    std::pair{"geo_eclipse_maui_20210918_60s.csv", 43226},
-                    std::pair{"explorer27_maui_20220223_60s.csv", 1328},
-                    std::pair{"explorer27_maui_8passes_5s.csv", 1328},
-                    std::pair{"explorer27_maui_20220222_pass_1s.csv", 1328}),
-    [](const auto &file) { return "n" + std::to_string(file.index); });
+INSTANTIATE_TEST_SUITE_P(Files, ReferenceEphemeris,
+                         testing::Values(std::pair{"hst_maui_20180121_60s.csv", 20580},
+                                         std::pair{"agena733_maui_20180121_60s.csv", 733},
+                                         std::pair{"molniya_maui_20180121_60s.csv", 25485},
+                                         std::pair{"geo_maui_20180121_60s.csv", 36411},
+                                         std::pair{"geo_eclipse_maui_20210918_60s.csv", 43226},
+                                         std::pair{"explorer27_maui_20220223_60s.csv", 1328},
+                                         std::pair{"explorer27_maui_8passes_5s.csv", 1328},
+                                         std::pair{"explorer27_maui_20220222_pass_1s.csv", 1328}),
+                         [](const auto &file) { return "n" + std::to_string(file.index); });
 
 TEST(Eclipse, DenseReferenceIsThere) { EXPECT_GT(dense_fractions().size(), 30u); }
 
@@ -138,8 +139,8 @@ TEST(Eclipse, MatchesTheClosedFormAndIsContinuous) {
       const double c = b + a * (-1.7 + 3.0 * i / 2000);
       const Vec3<Itrs> object = r * Vec3<Itrs>{std::cos(0.6), 0, std::sin(0.6)};
       const Vec3<Itrs> down = -1 / r * object, side{0, 1, 0};
-      const double now = sunlit_fraction(
-          object, object + (std::cos(c) * down + std::sin(c) * side) * d, model);
+      const double now =
+          sunlit_fraction(object, object + (std::cos(c) * down + std::sin(c) * side) * d, model);
       EXPECT_GE(now, before - 1e-4) << i;
       EXPECT_LT(now - before, 5e-3) << i;
       before = now;

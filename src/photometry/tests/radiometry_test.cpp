@@ -22,8 +22,7 @@ TEST(AbMagnitude, IsZeroAtItsZeroPoint) {
 TEST(Irradiance, LambertSphereAgainstTheSunsOwnMagnitude) {
   // physics page, section 7: R = 1 m, rho = .2, phase 90, 1000 km, Sun -26.76: magnitude 6.6705.
   // Intensity rho R^2 .212207; a magnitude difference needs no band.
-  const double ratio =
-      irradiance_at_observer(0.2 * 0.212207, 1.0, constants::au_km, 1.0, 1000.0);
+  const double ratio = irradiance_at_observer(0.2 * 0.212207, 1.0, constants::au_km, 1.0, 1000.0);
   EXPECT_NEAR(-26.76 - 2.5 * std::log10(ratio), 6.6705, 5e-5);
 }
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <umov/core/parallel.h>
-#include <umov/core/random.h>
 #include <umov/core/quantity.h>
+#include <umov/core/random.h>
 #include <umov/shape/occluder.h>
 #include <umov/shape/primitives.h>
 

@@ -111,7 +111,8 @@ TEST(Topology, CreasesStaySharpAndCurvesBecomeRound) {
       const Vec3<Body> p = smooth.positions[t.vertex[k]], n = smooth.normals[t.normal[k]];
       if (smooth.groups[t.front] == "caps") {
         EXPECT_NEAR(std::abs(n.z), 1, 1e-12);
-      } else { // radial within a third of a side: the neighbours' areas differ from corner to corner
+      } else { // radial within a third of a side: the neighbours' areas differ from corner to
+               // corner
         EXPECT_GT(dot(n, normalized(Vec3<Body>{p.x, p.y, 0})), std::cos(6 * pi / 180));
       }
     }
@@ -123,11 +124,13 @@ TEST(Topology, SilhouetteOfConvexBodies) {
 }
 
 TEST(Shapes, AreClosedOutwardAndCleanWithUnitNormals) {
-  for (const Mesh &mesh : {make_sphere(1, 100), make_cylinder(1, 2, 12), make_ellipsoid(0.25, 0.25, 1, 5000),
-                           make_chamfered_cube(1, 0.1), make_hst(), make_agena()}) {
+  for (const Mesh &mesh :
+       {make_sphere(1, 100), make_cylinder(1, 2, 12), make_ellipsoid(0.25, 0.25, 1, 5000),
+        make_chamfered_cube(1, 0.1), make_hst(), make_agena()}) {
     const MeshReport r = inspect(mesh);
     EXPECT_TRUE(r.is_closed) << mesh.groups[0];
-    EXPECT_EQ(r.inward_parts + r.inconsistent_edges + r.degenerate + r.duplicate + r.opposite_pairs, 0u);
+    EXPECT_EQ(r.inward_parts + r.inconsistent_edges + r.degenerate + r.duplicate + r.opposite_pairs,
+              0u);
     for (const Vec3<Body> &n : mesh.normals)
       EXPECT_NEAR(norm(n), 1, 1e-14);
   }
@@ -150,8 +153,8 @@ TEST(Shapes, HstHasItsPublishedSizes) {
   EXPECT_EQ(mesh.groups.size(), 10u);
   const auto front = std::find(mesh.groups.begin(), mesh.groups.end(), "array_front");
   ASSERT_NE(front, mesh.groups.end()); // 2 wings of 2.5 m x 12.1 m
-  EXPECT_NEAR(r.group_area_m2[static_cast<std::size_t>(front - mesh.groups.begin())], 2 * 2.5 * 12.1,
-              1e-9);
+  EXPECT_NEAR(r.group_area_m2[static_cast<std::size_t>(front - mesh.groups.begin())],
+              2 * 2.5 * 12.1, 1e-9);
   HstOptions closed;
   closed.door_angle_rad = 0;
   const MeshReport shut = inspect(make_hst(closed));

@@ -44,7 +44,8 @@ FresnelFactors sphere(const Surface &surface, std::size_t band, double phase) {
   const double l_v = std::cos(phase);
   double specular = 0, body = 0;
   constexpr int steps = 400;
-  const double half = pi / 2 - phase / 2; // longitudes -half..half from the bisector are lit and seen
+  const double half =
+      pi / 2 - phase / 2; // longitudes -half..half from the bisector are lit and seen
   for (int i = 0; i < steps; ++i)
     for (int j = 0; j < steps; ++j) {
       const double lon = half * (2 * (i + 0.5) / steps - 1);
@@ -70,10 +71,11 @@ TEST(PaperTables, QOfEveryMaterialAndPhase) {
     ASSERT_EQ(row.q.size(), 36u);
     for (std::size_t i = 0; i < row.q.size(); ++i) {
       const double phase = 5.0 * static_cast<double>(i) * pi / 180;
-      const FresnelFactors f =
-          is_sphere ? sphere(*surface, row.band, phase) : surface->fresnel(row.band, std::cos(phase));
+      const FresnelFactors f = is_sphere ? sphere(*surface, row.band, phase)
+                                         : surface->fresnel(row.band, std::cos(phase));
       // The sphere's midpoint rule adds up to 2e-6 (its change from 400 to 800 steps).
-      EXPECT_NEAR(f.b / f.a, row.q[i], is_sphere ? printed + 2e-6 : printed) << row.material << " " << row.band << " " << 5 * i;
+      EXPECT_NEAR(f.b / f.a, row.q[i], is_sphere ? printed + 2e-6 : printed)
+          << row.material << " " << row.band << " " << 5 * i;
     }
   }
 }

@@ -66,8 +66,9 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ObjReader, TakesWhatIsLegal) {
   const std::string face = "f 1 2 3 4";
   for (const std::string &text :
-       {std::string(square + face), square + "f -4 -3 -2 -1\n", "\xEF\xBB\xBF" + square + face + "\n",
-        square + "f 1 2 \\\n 3 4\n", square + "# note\n\n" + face + " # end\n",
+       {std::string(square + face), square + "f -4 -3 -2 -1\n",
+        "\xEF\xBB\xBF" + square + face + "\n", square + "f 1 2 \\\n 3 4\n",
+        square + "# note\n\n" + face + " # end\n",
         std::string("v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 3 4\r\n")}) {
     Diagnostics diagnostics;
     const auto result = read(text, diagnostics);
@@ -116,8 +117,9 @@ TEST(ObjReader, NamesMayHoldBlanksAndHashes) {
       return std::string("newmtl red#2\n");
     return fail(ErrorCode::BadInput, "none");
   };
-  const auto result = read_obj_text("mtllib my file.mtl\n" + square + "usemtl red#2 # a note\nf 1 2 3\n",
-                                    "a.obj", metres, loader, diagnostics);
+  const auto result =
+      read_obj_text("mtllib my file.mtl\n" + square + "usemtl red#2 # a note\nf 1 2 3\n", "a.obj",
+                    metres, loader, diagnostics);
   ASSERT_TRUE(result) << result.error().text();
   EXPECT_EQ(result->defined, (std::vector<std::string>{"red#2"}));
   EXPECT_EQ(result->mesh.groups[0], "red#2");
@@ -126,9 +128,10 @@ TEST(ObjReader, NamesMayHoldBlanksAndHashes) {
 
 TEST(ObjReader, KeepsGroupsByMaterialElseByName) {
   Diagnostics diagnostics;
-  const auto result = read(square + "o body\nf 1 2 3\nusemtl gold foil\nf 1 3 4\nusemtl b\nf 4 3 1\n"
-                                    "usemtl gold foil\nf 2 3 4\n",
-                           diagnostics);
+  const auto result =
+      read(square + "o body\nf 1 2 3\nusemtl gold foil\nf 1 3 4\nusemtl b\nf 4 3 1\n"
+                    "usemtl gold foil\nf 2 3 4\n",
+           diagnostics);
   ASSERT_TRUE(result);
   EXPECT_EQ(result->mesh.groups, (std::vector<std::string>{"body", "gold foil", "b"}));
   EXPECT_EQ(result->mesh.triangles[3].front, 1u);
@@ -139,8 +142,9 @@ TEST(ObjReader, AsksForUnitAndUpWithTheBox) {
   const std::string big = "v 0 0 0\nv 13200 0 0\nv 13200 4200 0\nf 1 2 3\n";
   const auto no_unit = read(big, diagnostics, {.unit = "", .up = "+Z"});
   ASSERT_FALSE(no_unit);
-  EXPECT_NE(no_unit.error().message.find("13200 x 4200 x 0: in mm that is 13.2 m, in m it is 13.2 km"),
-            std::string::npos)
+  EXPECT_NE(
+      no_unit.error().message.find("13200 x 4200 x 0: in mm that is 13.2 m, in m it is 13.2 km"),
+      std::string::npos)
       << no_unit.error().message;
   EXPECT_FALSE(read(big, diagnostics, {.unit = "m", .up = ""}));
   EXPECT_FALSE(read(big, diagnostics, {.unit = "furlong", .up = "+Z"}));
@@ -157,8 +161,8 @@ TEST(ObjReader, TurnsTheUpAxisProperly) {
   const struct {
     const char *up;
     Vec3<Body> axis;
-  } rows[] = {{"+X", {1, 0, 0}}, {"-X", {-1, 0, 0}}, {"+Y", {0, 1, 0}},
-              {"-Y", {0, -1, 0}}, {"+Z", {0, 0, 1}}, {"-Z", {0, 0, -1}}};
+  } rows[] = {{"+X", {1, 0, 0}},  {"-X", {-1, 0, 0}}, {"+Y", {0, 1, 0}},
+              {"-Y", {0, -1, 0}}, {"+Z", {0, 0, 1}},  {"-Z", {0, 0, -1}}};
   for (const auto &row : rows) {
     Diagnostics diagnostics;
     const std::string marked = text + "v " + std::to_string(row.axis.x) + " " +
@@ -178,7 +182,8 @@ TEST(ObjReader, RefusesTooManyTriangles) {
 }
 
 TEST(ObjWriter, ReadsBackBitForBit) {
-  for (const Mesh &mesh : {make_hst(), make_agena(), make_sphere(0.7, 500), make_plate(1, 2, true)}) {
+  for (const Mesh &mesh :
+       {make_hst(), make_agena(), make_sphere(0.7, 500), make_plate(1, 2, true)}) {
     const ObjText text = write_obj(mesh, "m");
     Diagnostics diagnostics;
     const auto result = read(text.obj, diagnostics);

@@ -10,9 +10,9 @@ namespace fs = std::filesystem;
 class RunFolderTest : public testing::Test {
 protected:
   void SetUp() override {
-    base_ = fs::path(testing::TempDir()) /
-            (std::string("umov_run_") +
-             testing::UnitTest::GetInstance()->current_test_info()->name());
+    base_ =
+        fs::path(testing::TempDir()) /
+        (std::string("umov_run_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::remove_all(base_);
     fs::create_directories(base_);
   }

@@ -60,8 +60,8 @@ TEST(Scenario, ReadsEveryPart) {
 }
 
 TEST(Scenario, OverridesReplaceKeys) {
-  const auto s = read_scenario_text(good, "s.toml",
-                                    {"time.step_s=2", "output.dir=here", "object.name=\"X\""});
+  const auto s =
+      read_scenario_text(good, "s.toml", {"time.step_s=2", "output.dir=here", "object.name=\"X\""});
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->time->step_s, 2);
   EXPECT_EQ(s->output_dir, "here");
@@ -82,7 +82,8 @@ TEST(Scenario, TheLockReadsBackToItself) {
 
 TEST(Scenario, ASceneNeedsNoOrbit) {
   const auto s = read_scenario_text(
-      "umov = 1\n[[object]]\nmesh = { file = \"a.obj\", unit = \"m\", up = \"+Z\" }\n", "s.toml", {});
+      "umov = 1\n[[object]]\nmesh = { file = \"a.obj\", unit = \"m\", up = \"+Z\" }\n", "s.toml",
+      {});
   ASSERT_TRUE(s) << s.error().text();
   const auto complete = check_complete_for_run(*s);
   ASSERT_FALSE(complete);
@@ -107,30 +108,31 @@ TEST_P(ScenarioRefused, SaysWhereAndWhat) {
 
 INSTANTIATE_TEST_SUITE_P(
     Keys, ScenarioRefused,
-    testing::Values(
-        Wrong{"typo", "shadowing =", "shadwing =", 27, "Did you mean \"shadowing\"?"},
-        Wrong{"type", "alt_m = 3058", "alt_m = \"7 km\"", 8, "a number was expected"},
-        Wrong{"nan", "alt_m = 3058", "alt_m = nan", 8, "finite"},
-        Wrong{"zone", "05:00:00Z", "05:00:00", 10, "has no zone"},
-        Wrong{"order", "2018-01-21T05:10", "2018-01-20T05:10", 11, "before start"},
-        Wrong{"repeated", "seed = 7", "seed = 7\nseed = 8", 4, "seed"},
-        Wrong{"latitude", "20.7083", "-90.5", 6, "-90 to 90"},
-        Wrong{"material", "\"paper_al\"", "\"paper_la\"", 20, "Did you mean \"paper_al\"?"},
-        Wrong{"target", "\"sun\"", "\"sum\"", 18, "Did you mean \"sun\"?"},
-        Wrong{"axis", "\"+X\"", "\"X\"", 18, "body axis"},
-        Wrong{"parallel", "then = \"+X\"", "then = \"-Z\"", 18, "parallel"},
-        Wrong{"no_distribution", "distribution", "#", 24, "distribution"},
-        Wrong{"later_model", "blinn_phong", "ggx", 26, "not built yet"},
-        Wrong{"unsorted", "[400, 700], n", "[700, 400], n", 24, "increasing"},
-        Wrong{"negative_k", "[1.9, 3.1]", "[1.9, -3.1]", 24, "k ="},
-        Wrong{"later_band", "nm:500", "Bessell.V", 23, "not built yet"}),
+    testing::Values(Wrong{"typo", "shadowing =", "shadwing =", 27, "Did you mean \"shadowing\"?"},
+                    Wrong{"type", "alt_m = 3058", "alt_m = \"7 km\"", 8, "a number was expected"},
+                    Wrong{"nan", "alt_m = 3058", "alt_m = nan", 8, "finite"},
+                    Wrong{"zone", "05:00:00Z", "05:00:00", 10, "has no zone"},
+                    Wrong{"order", "2018-01-21T05:10", "2018-01-20T05:10", 11, "before start"},
+                    Wrong{"repeated", "seed = 7", "seed = 7\nseed = 8", 4, "seed"},
+                    Wrong{"latitude", "20.7083", "-90.5", 6, "-90 to 90"},
+                    Wrong{"material", "\"paper_al\"", "\"paper_la\"", 20,
+                          "Did you mean \"paper_al\"?"},
+                    Wrong{"target", "\"sun\"", "\"sum\"", 18, "Did you mean \"sun\"?"},
+                    Wrong{"axis", "\"+X\"", "\"X\"", 18, "body axis"},
+                    Wrong{"parallel", "then = \"+X\"", "then = \"-Z\"", 18, "parallel"},
+                    Wrong{"no_distribution", "distribution", "#", 24, "distribution"},
+                    Wrong{"later_model", "blinn_phong", "ggx", 26, "not built yet"},
+                    Wrong{"unsorted", "[400, 700], n", "[700, 400], n", 24, "increasing"},
+                    Wrong{"negative_k", "[1.9, 3.1]", "[1.9, -3.1]", 24, "k ="},
+                    Wrong{"later_band", "nm:500", "Bessell.V", 23, "not built yet"}),
     [](const auto &test) { return std::string(test.param.name); });
 
 TEST(Schema, IsJsonWithEveryTable) {
   const auto schema = nlohmann::json::parse(scenario_schema_json());
   EXPECT_EQ(schema["properties"]["render"]["properties"]["accuracy"]["default"], 0.005);
   EXPECT_TRUE(schema["properties"]["object"]["items"]["properties"].contains("attitude"));
-  EXPECT_TRUE(schema["properties"]["material"]["additionalProperties"]["properties"].contains("body"));
+  EXPECT_TRUE(
+      schema["properties"]["material"]["additionalProperties"]["properties"].contains("body"));
 }
 
 } // namespace

@@ -1,0 +1,179 @@
+// Single numbers printed on the physics page (sections 2, 6 and 7), by quadrature of Surface.
+
+#include "kernel/fresnel.inl.h"
+#include "kernel/microfacet.inl.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <umov/core/random.h>
+#include <umov/surface/surface.h>
+
+namespace umov {
+namespace {
+
+Surface make(const char *name, double m, bool body = false) {
+  Material material = *builtin_material(name);
+  material.exponent = m;
+  if (!body)
+    material.body.reset();
+  return *Surface::compile(material, *bands_from({"paper_rgb"}));
+}
+
+double q_of(const Surface &surface, std::size_t band, double phase_deg) {
+  const FresnelFactors f = surface.fresnel(band, std::cos(phase_deg * pi / 180));
+  return f.b / f.a;
+}
+
+/// I and Q of a sphere of radius 1 over its lit and seen lune, midpoint rule.
+FresnelFactors sphere(const Surface &surface, std::size_t band, double phase) {
+  const double l_v = std::cos(phase), half = pi / 2 - phase / 2;
+  constexpr int steps = 1000;
+  double specular = 0, body = 0;
+  for (int i = 0; i < steps; ++i)
+    for (int j = 0; j < steps; ++j) {
+      const double lon = half * (2 * (i + 0.5) / steps - 1),
+                   lat = pi / 2 * (2 * (j + 0.5) / steps - 1);
+      const double n_l = std::cos(lat) * std::cos(lon - phase / 2);
+      const double n_v = std::cos(lat) * std::cos(lon + phase / 2);
+      const double area = std::cos(lat) * (2 * half / steps) * (pi / steps);
+      specular += surface.specular(n_l, n_v, l_v) * area;
+      body += surface.body(band, n_l, n_v) * area;
+    }
+  const FresnelFactors f = surface.fresnel(band, l_v);
+  return {f.a * specular + body, f.b * specular};
+}
+
+TEST(Anchors, CosineWeightedMeanReflectance) {
+  // Section 2, six digits: 2 int F mu dmu, here with mu = cos of incidence = cos(phase/2).
+  const struct {
+    const char *name;
+    double mean[3];
+  } rows[] = {{"paper_au", {.419613, .844380, .938314}},
+              {"paper_al", {.915762, .904740, .892388}},
+              {"paper_bk7", {.095728, .094415, .093830}},
+              {"paper_asi", {.447122, .422834, .401416}},
+              {"paper_mylar", {.025157, .091778, .106246}}};
+  for (const auto &row : rows)
+    for (std::size_t b = 0; b < 3; ++b) {
+      double sum = 0;
+      constexpr int steps = 4000; // in sqrt(mu): F rises steeply at grazing incidence
+      const Surface surface = make(row.name, 200);
+      for (int i = 0; i < steps; ++i) {
+        const double root = (i + 0.5) / steps, mu = root * root;
+        sum += surface.fresnel(b, 2 * mu * mu - 1).a * 4 * root * root * root / steps;
+      }
+      EXPECT_NEAR(sum, row.mean[b], 6e-7) << row.name << b;
+    }
+}
+
+TEST(Anchors, PeaksOfQ) {
+  // Section 6: height to six digits and angle to .01 deg (Au 650 lies at 147.0749).
+  const struct {
+    const char *name;
+    std::size_t band;
+    double height, angle;
+  } rows[] = {{"paper_au", 0, .589109, 139.21}, {"paper_au", 1, .118072, 142.76},
+              {"paper_au", 2, .049468, 147.08}, {"paper_al", 0, .103720, 158.81},
+              {"paper_al", 1, .148238, 163.36}, {"paper_al", 2, .195039, 165.72}};
+  for (const auto &row : rows) {
+    const Surface surface = make(row.name, 200);
+    double best = 0, at = 0;
+    for (double phase = row.angle - 1; phase < row.angle + 1; phase += 0.001)
+      if (const double q = q_of(surface, row.band, phase); q > best) {
+        best = q;
+        at = phase;
+      }
+    EXPECT_NEAR(best, row.height, 6e-7) << row.name;
+    EXPECT_NEAR(at, row.angle, 0.0062) << row.name;
+  }
+}
+
+TEST(Anchors, StokesOfSpheresAt90Degrees) {
+  // Section 7: (M00, M10), R = 1, seven digits; the midpoint rule adds below 2e-7.
+  const struct {
+    const char *name;
+    double m;
+    std::size_t band;
+    double i, q;
+  } rows[] = {{"paper_au", 200, 0, .0995217, .0313506},  {"paper_au", 200, 1, .2109066, .0124111},
+              {"paper_au", 200, 2, .2355690, .0050759},  {"paper_al", 50, 0, .2344181, .0065743},
+              {"paper_al", 50, 1, .2323099, .0072210},   {"paper_al", 50, 2, .2296853, .0080181},
+              {"paper_mylar", 10, 1, .0130810, .0108766}};
+  for (const auto &row : rows) {
+    const FresnelFactors f = sphere(make(row.name, row.m), row.band, pi / 2);
+    EXPECT_NEAR(f.a, row.i, 3e-7) << row.name;
+    EXPECT_NEAR(f.b, row.q, 3e-7) << row.name;
+  }
+}
+
+TEST(Anchors, LambertSphere) {
+  // Section 7: rho R^2 times these at 0, 30, ..., 150 deg, six digits.
+  const double expected[] = {.666667, .587229, .405999, .212207, .072665, .009878};
+  const Surface surface = make("paper_spectralon", 200, true);
+  for (int i = 0; i < 6; ++i)
+    EXPECT_NEAR(sphere(surface, 0, 30.0 * i * pi / 180).a, expected[i], 2e-6);
+}
+
+TEST(Anchors, EveryReflectionIsPhysical) {
+  // A reflection by one interface is pure: its Cloude matrix has the one eigenvalue 2A, so
+  // A^2 = B^2 + |z|^2; unpolarized body light only adds to A. At least -1e-9 of that is asked.
+  for (const char *name : {"paper_au", "paper_al", "paper_bk7", "paper_asi", "paper_mylar"}) {
+    const Surface surface = make(name, 200, true);
+    for (std::uint64_t k = 0; k < 500; ++k) {
+      const auto u = uniform4(4, 4, k);
+      const auto m = surface.brdf(k % 3, u[0], u[1], 2 * u[2] - 1).m;
+      const double pure = m[1][0] * m[1][0] + m[2][2] * m[2][2] + m[3][2] * m[3][2];
+      EXPECT_GE(m[0][0] * m[0][0] - pure, -1e-9 * m[0][0] * m[0][0]);
+    }
+  }
+}
+
+TEST(Anchors, NormOfDIsOneForEveryExponent) {
+  // int D cos dw = 1 within 1e-6; substitution t = cos^(m+2) makes the integrand 1.
+  for (const double m : {0.0, 1.0, 200.0, 1e6, 1e9}) {
+    double sum = 0;
+    constexpr int steps = 20000;
+    const double last = std::min(pi / 2, 9 / std::sqrt(m + 2));
+    for (int i = 0; i < steps; ++i) {
+      const double theta = last * (i + 0.5) / steps;
+      sum += 2 * pi * kernel::blinn_phong(std::cos(theta), m) * std::cos(theta) * std::sin(theta) *
+             last / steps;
+    }
+    EXPECT_NEAR(sum, 1, 1e-6) << m;
+  }
+}
+
+TEST(Anchors, FloatKernelsFollowDouble) {
+  // Single precision: 24 bits, some 20 operations, 3e-6; D at m = 200 multiplies the rounding of
+  // the cosine by m.
+  for (std::uint64_t k = 0; k < 2000; ++k) {
+    const auto u = uniform4(5, 5, k);
+    const auto d = kernel::reflection(
+        kernel::fresnel(u[0], kernel::Complex<double>{0.2 + 3 * u[1], 4 * u[2]}));
+    const auto f = kernel::reflection(kernel::fresnel(
+        static_cast<float>(u[0]),
+        kernel::Complex<float>{static_cast<float>(0.2 + 3 * u[1]), static_cast<float>(4 * u[2])}));
+    EXPECT_NEAR(static_cast<double>(f.a), d.a, 5e-6);
+    EXPECT_NEAR(static_cast<double>(f.b), d.b, 5e-6);
+    const double c = 0.8 + 0.2 * u[3], exact = kernel::blinn_phong(c, 200.0);
+    EXPECT_NEAR(static_cast<double>(kernel::blinn_phong(static_cast<float>(c), 200.0f)), exact,
+                3e-5 * exact + 1e-30);
+  }
+}
+
+TEST(Anchors, BodyLobeTakesWhatTheInterfaceLeaves) {
+  // Directional albedo of the body lobe: R_sub (1 - R(k)), by Simpson over the observer.
+  const Surface surface = make("paper_asi", 200, true);
+  for (const double n_l : {0.2, 0.6, 1.0}) {
+    double sum = 0;
+    constexpr int steps = 2000;
+    for (int i = 0; i < steps; ++i) {
+      const double root = (i + 0.5) / steps, mu = root * root;
+      sum += surface.body(1, n_l, mu) / n_l * 2 * pi * 2 * root / steps;
+    }
+    EXPECT_NEAR(sum, 0.1 * (1 - surface.specular_albedo(1, n_l)), 1e-6);
+  }
+}
+
+} // namespace
+} // namespace umov
