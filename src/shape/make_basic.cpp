@@ -10,58 +10,76 @@
 namespace umov {
 namespace {
 
-/// Corners of the icosahedron and its 20 faces, wound outward.
-struct Icosahedron {
-  std::array<Vec3<Body>, 12> corner{};
-  std::vector<std::array<std::size_t, 3>> faces;
+using Ring = std::vector<Vec3<Body>>;
 
-  Icosahedron() {
-    // Two poles and two rings of five at the height 1/sqrt(5).
-    corner[0] = {0, 0, 1};
-    corner[11] = {0, 0, -1};
-    const double height = 1 / std::sqrt(5.0), radius = 2 * height;
-    for (std::size_t i = 0; i < 5; ++i) {
-      const double upper = 2 * pi * static_cast<double>(i) / 5, lower = upper + pi / 5;
-      corner[1 + i] = {radius * std::cos(upper), radius * std::sin(upper), height};
-      corner[6 + i] = {radius * std::cos(lower), radius * std::sin(lower), -height};
+/// Points on the unit sphere in rings of equal latitude steps, each with as many as its length
+/// holds at an even spacing; every ring is turned by the golden ratio against the one before, so
+/// that no pattern repeats. `spacing`: between neighbours [rad].
+std::vector<Ring> rings_of_points(double spacing) {
+  // Rows of equilateral triangles stand sqrt(3)/2 apart; a little more (found by trial: errors of a
+  // glint between neighbouring rings are smallest there) and a little closer along the ring.
+  constexpr double stretch = 1.05, golden = 0.61803398874989485;
+  const double height = spacing * stretch * std::sqrt(3.0) / 2;
+  const auto count = std::max<std::size_t>(2, static_cast<std::size_t>(std::lround(pi / height)));
+  std::vector<Ring> rings;
+  for (std::size_t i = 0; i <= count; ++i) {
+    const double theta = pi * static_cast<double>(i) / static_cast<double>(count);
+    if (i == 0 || i == count) {
+      rings.push_back({{0, 0, i == 0 ? 1.0 : -1.0}});
+      continue;
     }
-    for (std::size_t i = 0; i < 5; ++i) {
-      const std::size_t j = (i + 1) % 5;
-      faces.push_back({0, 1 + i, 1 + j});
-      faces.push_back({1 + i, 6 + i, 1 + j});
-      faces.push_back({6 + i, 6 + j, 1 + j});
-      faces.push_back({11, 6 + j, 6 + i});
+    const auto sides = std::max<std::size_t>(
+        4, static_cast<std::size_t>(std::lround(2 * pi * std::sin(theta) * stretch / spacing)));
+    Ring ring;
+    for (std::size_t j = 0; j < sides; ++j) {
+      const double phi = 2 * pi * (static_cast<double>(j) + golden * static_cast<double>(i)) /
+                         static_cast<double>(sides);
+      ring.push_back(
+          {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)});
     }
+    rings.push_back(std::move(ring));
   }
-};
+  return rings;
+}
 
-/// Unit sphere: an icosahedron whose faces are cut into n^2 triangles each. Corners divide the
-/// edges by equal angles (weights sin(t w), which on an edge is the great circle), so that the
-/// triangles stay of like size.
+/// Closes the band between two rings with triangles of the convex hull: of the two that can follow
+/// an edge, the one whose plane has the other's corner below it.
+template <class Add> void close_band(const Ring &upper, const Ring &lower, Add add) {
+  const std::size_t n = upper.size(), m = lower.size();
+  std::size_t start = 0; // the nearest neighbour: an edge to it is in the hull
+  for (std::size_t j = 1; j < m; ++j)
+    if (norm(lower[j] - upper[0]) < norm(lower[start] - upper[0]))
+      start = j;
+  const std::size_t upper_steps = n == 1 ? 0 : n, lower_steps = m == 1 ? 0 : m;
+  for (std::size_t x = 0, y = 0; x < upper_steps || y < lower_steps;) {
+    const Vec3<Body> a = upper[x % n], next_a = upper[(x + 1) % n];
+    const Vec3<Body> c = lower[(start + y) % m], next_c = lower[(start + y + 1) % m];
+    const bool is_hull = dot(cross(c - a, next_a - a), next_c - a) <= 0;
+    const bool step_upper = y == lower_steps || (x < upper_steps && is_hull);
+    add(a, c, step_upper ? next_a : next_c);
+    ++(step_upper ? x : y);
+  }
+}
+
+/// Unit sphere with at least `facets` triangles of like size and its corners on the sphere.
 Mesh unit_sphere(std::size_t facets, const std::string &group) {
-  std::size_t n = 1;
-  while (20 * n * n < facets)
-    ++n;
   MeshBuilder builder;
   const std::uint32_t g = builder.group(group);
-  const Icosahedron solid;
-  const double edge = std::acos(1 / std::sqrt(5.0)), step = edge / static_cast<double>(n);
-  for (const auto &face : solid.faces) {
-    const auto corner = [&](std::size_t i, std::size_t j) {
-      const double u = step * static_cast<double>(i), v = step * static_cast<double>(j);
-      return normalized(solid.corner[face[0]] * std::sin(edge - u - v) +
-                        solid.corner[face[1]] * std::sin(u) + solid.corner[face[2]] * std::sin(v));
-    };
-    const auto add = [&](Vec3<Body> p, Vec3<Body> q, Vec3<Body> r) {
-      builder.triangle(g, {p, q, r}, {p, q, r});
-    };
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; i + j < n; ++j) {
-        add(corner(i, j), corner(i + 1, j), corner(i, j + 1));
-        if (i + j + 1 < n)
-          add(corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1));
-      }
+  // Twice as many triangles as points; a point takes sqrt(3)/2 spacing^2 of the sphere.
+  double spacing = std::sqrt(4 * pi * 2 / static_cast<double>(facets) * 2 / std::sqrt(3.0));
+  std::vector<Ring> rings;
+  for (;; spacing *= 0.998) {
+    rings = rings_of_points(spacing);
+    std::size_t points = 0;
+    for (const Ring &ring : rings)
+      points += ring.size();
+    if (2 * points - 4 >= facets) // Euler
+      break;
   }
+  for (std::size_t i = 0; i + 1 < rings.size(); ++i)
+    close_band(rings[i], rings[i + 1], [&](Vec3<Body> p, Vec3<Body> q, Vec3<Body> r) {
+      builder.triangle(g, {p, q, r}, {p, q, r});
+    });
   return builder.mesh;
 }
 
