@@ -6,6 +6,19 @@
 
 namespace umov {
 
+namespace {
+
+/// Normal of a face weighted for the vertex `corner` by 1/(a^2 b^2), a and b the edges that meet
+/// there: exact where the vertices lie on a sphere, whatever the shapes of the faces (Max 1999).
+Vec3<Body> weighted_normal(const Mesh &mesh, const Triangle &t, std::size_t corner) {
+  const Vec3<Body> p = mesh.positions[t.vertex[corner]];
+  const Vec3<Body> a = mesh.positions[t.vertex[(corner + 1) % 3]] - p;
+  const Vec3<Body> b = mesh.positions[t.vertex[(corner + 2) % 3]] - p;
+  return cross(a, b) / (dot(a, a) * dot(b, b));
+}
+
+} // namespace
+
 Mesh with_vertex_normals(const Mesh &mesh, double crease_rad) {
   Mesh out = mesh;
   const auto welded = weld(mesh, weld_distance(mesh));
@@ -27,7 +40,9 @@ Mesh with_vertex_normals(const Mesh &mesh, double crease_rad) {
       for (const std::uint32_t j : around[welded[t.vertex[k]]])
         if (mesh.triangles[j].front == t.front && norm(area[j]) > 0 &&
             dot(normalized(area[j]), own) >= limit - 1e-12)
-          sum += area[j];
+          for (std::size_t c = 0; c < 3; ++c)
+            if (welded[mesh.triangles[j].vertex[c]] == welded[t.vertex[k]])
+              sum += weighted_normal(mesh, mesh.triangles[j], c);
       t.normal[k] = static_cast<std::uint32_t>(out.normals.size());
       out.normals.push_back(norm(sum) > 0 ? normalized(sum) : own);
     }

@@ -32,8 +32,9 @@ MeshReport inspect(const Mesh &mesh);
 /// BadInput if a coordinate is not finite, an index is out of range or nothing is left.
 Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics);
 
-/// Vertex normals for `normals = "smooth"` where the mesh has none: area-weighted over the faces
-/// that meet at a vertex within `crease` of each other and belong to one group.
+/// Vertex normals for `normals = "smooth"` where the mesh has none: the mean over the
+/// faces that meet at a vertex within `crease_rad` of each other and belong to one group, weighted
+/// after Max (1999), which is exact on a sphere.
 Mesh with_vertex_normals(const Mesh &mesh, double crease_rad);
 
 /// True only if no point of the surface can hide another: `is_convex`, or a single flat sheet.
