@@ -65,8 +65,8 @@ Result<EphemerisRows> compute_ephemeris(const OrbitOptions &o, const ElementSet 
     if (codes[i] == Sgp4Code::Ok)
       out.rows[i] = observe(state, times[i], site, shadow);
   });
-  for (std::size_t i = 0; i < times.size(); ++i)
-    if (codes[i] != Sgp4Code::Ok) { // the rows before it are good and are kept
+  for (std::size_t i = 0; i < times.size() && !out.stopped; ++i)
+    if (codes[i] != Sgp4Code::Ok) { // the rows before the first failure are good and are kept
       out.stopped = propagation_failure(set, times[i], codes[i]);
       out.rows.resize(i);
     }

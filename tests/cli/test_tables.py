@@ -92,6 +92,23 @@ def test_shipped_meshes_are_what_the_command_makes(umov, tmp_path):
                 assert float(a) == pytest.approx(float(b), rel=1e-12, abs=1e-12)
 
 
+def test_a_decaying_orbit_ends_the_ephemeris_at_its_first_failure(umov, tmp_path):
+    first, second = (ROOT / "data/tle/hst.tle").read_text().splitlines()[-2:]
+    first = first[:53] + " 99999+0" + first[61:]
+    digits = sum(int(c) if c.isdigit() else c == "-" for c in first[:68])
+    (tmp_path / "low.tle").write_text(first[:68] + str(digits % 10) + "\n" + second + "\n")
+    done = umov("orbit", "ephemeris", "--orbit", "low.tle", "--lat-deg", 20, "--lon-deg", 0, "--alt-m", 0,
+                "--start", "2018-01-20T12:00:00Z", "--stop", "2018-02-10T12:00:00Z", "--step-s", 600,
+                "-o", "out.csv")
+    assert done.code == 4, done.err
+    rows = read_csv(tmp_path / "out.csv")
+    assert rows and all(row["time_utc"].startswith("2018-") for row in rows)
+    # The message names the epoch right after the last good row.
+    failed = done.err.split("SGP4 fails at ")[1][:16]
+    assert rows[-1]["time_utc"][:16] < failed
+    assert len(rows) < 3025 and "-4713" not in done.err
+
+
 def test_doctor_and_schema_answer(umov):
     assert umov("doctor").code == 0
     done = umov("schema")
