@@ -41,7 +41,8 @@ int usage_error(const CLI::App &app, const CLI::ParseError &problem) {
   std::string name = verb.get_name();
   for (const CLI::App *up = verb.get_parent(); up != nullptr; up = up->get_parent())
     name = up->get_name() + " " + name;
-  return cli::report(Error{ErrorCode::Usage, text + ". See " + name + " --help.", {}});
+  return cli::report(Error{
+      ErrorCode::Usage, text + (text.ends_with('?') ? " See " : ". See ") + name + " --help.", {}});
 }
 
 int run(int argc, char **argv) {

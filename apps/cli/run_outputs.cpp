@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/io/keyframe.h>
 #include <umov/io/report.h>
@@ -96,6 +97,8 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
   input.key_frames = std::move(frames);
   input.key_frame_materials = material_names(object.scene);
   input.manifest = manifest_lines(scenario, object);
+  if (outcome.stopped)
+    input.warnings.push_back("PARTIAL RESULT: " + outcome.stopped->message);
   for (const Warning &warning : diagnostics.warnings())
     input.warnings.push_back(warning.text());
   return make_report(input);
@@ -103,10 +106,11 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
 
 std::string summarize(const LightCurveOutcome &outcome) {
   const LightCurve &curve = outcome.curve;
-  std::string out = fmt::format("{} ({}): {} epochs x {} bands in {} pass{}\n",
-                                curve.object.empty() ? "object" : curve.object, curve.norad_cat_id,
-                                curve.epochs.size(), curve.bands.size(), outcome.passes.size(),
-                                outcome.passes.size() == 1 ? "" : "es");
+  std::string out = fmt::format(
+      "{} ({}): {} x {} in {}{}\n", curve.object.empty() ? "object" : curve.object,
+      curve.norad_cat_id, counted(curve.epochs.size(), "epoch"),
+      counted(curve.bands.size(), "band"), counted(outcome.passes.size(), "pass", "passes"),
+      outcome.stopped ? ", PARTIAL: the run stopped early" : "");
   for (const Pass &pass : outcome.passes) {
     const PassNumbers n = numbers_of(curve, pass.id);
     out += fmt::format("  {}  max alt {:.0f} deg  phase {:.0f}-{:.0f} deg", pass.id,
@@ -119,8 +123,8 @@ std::string summarize(const LightCurveOutcome &outcome) {
   const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),
                                   [](const LightCurveEpoch &e) { return e.is_dark; });
   if (dark > 0)
-    out += fmt::format("  {} epochs with nothing both lit and seen: intensity 0, q and u empty\n",
-                       dark);
+    out += fmt::format("  {} with nothing both lit and seen: intensity 0, q and u empty\n",
+                       counted(static_cast<std::size_t>(dark), "epoch"));
   return out;
 }
 

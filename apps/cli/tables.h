@@ -8,4 +8,10 @@ namespace umov::cli {
 /// --json. Another suffix is a usage error.
 Result<void> put_table(const std::string &path, const Table &table, const Common &common);
 
+/// The rows of a stopped run: the header says so, and an existing file of that name stays as it is
+/// (the rows then go to "NAME.partial.csv"). The error that the verb ends with: `stopped`, and
+/// where the rows are.
+Error put_partial_table(const std::string &path, Table table, const Common &common,
+                        const Error &stopped);
+
 } // namespace umov::cli

@@ -132,13 +132,16 @@ void add_brdf(CLI::App &app, const Exit &exit_with) {
   verb->add_option("material", o->material,
                    "Name of a material, or a TOML file with one [material.NAME] table")
       ->required();
-  verb->add_option("--wavelength", o->wavelength_nm, "[nm]")->capture_default_str();
-  verb->add_option("--theta-i", o->theta_i_deg, "Source from the normal [deg]");
-  verb->add_option("--theta-o", o->theta_o_deg, "Observer from the normal [deg]");
-  verb->add_option("--phi", o->phi_deg,
-                   "Azimuth of the observer minus that of the source [deg]: 0 = same side");
-  verb->add_option("--batch", o->batch,
-                   "CSV with columns wavelength_nm, theta_i_deg, theta_o_deg, phi_deg");
+  const std::vector<CLI::Option *> single{
+      verb->add_option("--wavelength", o->wavelength_nm, "[nm]")->capture_default_str(),
+      verb->add_option("--theta-i", o->theta_i_deg, "Source from the normal [deg]"),
+      verb->add_option("--theta-o", o->theta_o_deg, "Observer from the normal [deg]"),
+      verb->add_option("--phi", o->phi_deg,
+                       "Azimuth of the observer minus that of the source [deg]: 0 = same side")};
+  auto *batch = verb->add_option(
+      "--batch", o->batch, "CSV with columns wavelength_nm, theta_i_deg, theta_o_deg, phi_deg");
+  for (CLI::Option *option : single)
+    batch->excludes(option);
   verb->add_flag("--terms", o->terms, "Add the parts of m00");
   verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv or .json by its suffix");
   add_common(*verb, *common, true);

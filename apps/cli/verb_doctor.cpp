@@ -2,6 +2,7 @@
 #include "verbs.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <umov/core/parallel.h>
 #include <umov/core/version.h>
 #include <umov/io/report.h>
@@ -48,12 +49,17 @@ std::vector<Finding> examine() {
   return out;
 }
 
-int run_doctor() {
+int run_doctor(const Common &common) {
   bool fine = true;
+  auto json = nlohmann::ordered_json::array();
   for (const Finding &finding : examine()) {
-    fmt::print("{:4} {:18} {}\n", finding.is_fine ? "ok" : "BAD", finding.what, finding.found);
+    json.push_back({{"what", finding.what}, {"found", finding.found}, {"ok", finding.is_fine}});
+    if (!common.json)
+      fmt::print("{:4} {:18} {}\n", finding.is_fine ? "ok" : "BAD", finding.what, finding.found);
     fine = fine && finding.is_fine;
   }
+  if (common.json)
+    fmt::print("{}\n", json.dump(2));
   return fine ? 0 : static_cast<int>(ErrorCode::Device);
 }
 
@@ -61,7 +67,9 @@ int run_doctor() {
 
 void add_doctor(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand("doctor", "Say what this build and machine can do");
-  verb->callback([exit_with] { exit_with(run_doctor()); });
+  auto common = std::make_shared<Common>();
+  add_common(*verb, *common, true);
+  verb->callback([common, exit_with] { exit_with(run_doctor(*common)); });
 }
 
 } // namespace umov::cli

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <umov/core/files.h>
 #include <umov/io/obj.h>
 #include <umov/shape/primitives.h>
@@ -59,7 +60,7 @@ const std::map<std::string, Maker> &makers() {
 Result<void> make(const ShapeOptions &options) {
   const Mesh mesh = makers().at(options.shape)(options);
   if (options.output.empty() || options.output == "-")
-    return put("", write_obj(mesh, options.shape).obj);
+    return put("", write_obj(mesh, options.shape, MtlUse::None).obj);
   const fs::path path = options.output;
   if (path.extension() != ".obj")
     return fail(ErrorCode::Usage,
@@ -118,7 +119,7 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
 }
 
 struct ReadOptions {
-  std::string file, output;
+  std::string file;
   ObjOptions obj;
   bool require_closed = false;
 };
@@ -150,19 +151,46 @@ void describe(const MeshReport &m) {
              m.opposite_pairs);
 }
 
+std::string to_json(const Mesh &mesh, const MeshReport &m) {
+  const auto vector = [](Vec3<Body> v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  nlohmann::ordered_json out{{"lower_m", vector(m.lower)},
+                             {"upper_m", vector(m.upper)},
+                             {"vertices", m.vertices},
+                             {"triangles", m.triangles},
+                             {"parts", m.parts},
+                             {"area_m2", m.area_m2},
+                             {"closed", m.is_closed},
+                             {"convex", m.is_convex},
+                             {"volume_m3", nullptr},
+                             {"open_edges", m.open_edges},
+                             {"non_manifold_edges", m.non_manifold_edges},
+                             {"inconsistent_edges", m.inconsistent_edges},
+                             {"inward_parts", m.inward_parts},
+                             {"degenerate", m.degenerate},
+                             {"duplicates", m.duplicate},
+                             {"opposite_pairs", m.opposite_pairs}};
+  if (m.is_closed)
+    out["volume_m3"] = m.volume_m3;
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g)
+    out["materials"].push_back({{"name", mesh.groups[g]},
+                                {"triangles", m.group_triangles[g]},
+                                {"area_m2", m.group_area_m2[g]}});
+  return out.dump(2) + "\n";
+}
+
 Result<void> look(const ReadOptions &options, const Common &common, bool check) {
   Diagnostics diagnostics;
   UMOV_ASSIGN(read, read_obj(options.file, options.obj, diagnostics));
   const MeshReport found = inspect(read.mesh);
   const Table table = group_table(read.mesh, found);
   if (common.json) {
-    UMOV_TRY(put(options.output, to_json(table)));
+    UMOV_TRY(put("", to_json(read.mesh, found)));
   } else {
     describe(found);
-    UMOV_TRY(put(options.output, to_text(table)));
+    UMOV_TRY(put("", to_text(table)));
   }
   if (check) {
-    UMOV_TRY(clean(read.mesh, diagnostics));
+    UMOV_TRY(clean(read.mesh, diagnostics, options.file));
   }
   report(diagnostics, common);
   if (options.require_closed && !found.is_closed)

@@ -2,9 +2,12 @@
 #include "verbs.h"
 
 #include "tables.h"
+#include <cmath>
 #include <fmt/format.h>
+#include <optional>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
+#include <umov/core/text.h>
 #include <umov/lightcurve/compute.h>
 #include <umov/orbit/elements.h>
 #include <umov/orbit/ephemeris.h>
@@ -42,6 +45,12 @@ Error propagation_failure(const ElementSet &set, Epoch<Utc> time, Sgp4Code code)
           {}};
 }
 
+Error stopped_by_user(std::size_t done, std::size_t all, const char *what) {
+  return {ErrorCode::Interrupted,
+          fmt::format("stopped by the user after {} of {}", done, counted(all, what)),
+          {}};
+}
+
 struct EphemerisRows {
   std::vector<ObservingGeometry> rows;
   std::optional<Error> stopped;
@@ -55,19 +64,24 @@ Result<EphemerisRows> compute_ephemeris(const OrbitOptions &o, const ElementSet 
   UMOV_ASSIGN(times, time_grid(start, stop, o.step_s));
   const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
   const Sgp4 model(set);
-  std::vector<Sgp4Code> codes(times.size(), model.init_code());
+  std::vector<std::optional<Sgp4Code>> codes(times.size()); // none: not reached before a stop
   EphemerisRows out;
   out.rows.resize(times.size());
   parallel_for(times.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
+    if (interrupted())
+      return;
     TemeState state;
-    if (codes[i] == Sgp4Code::Ok)
-      codes[i] = model.propagate(clock_days_between(times[i], set.epoch) * 1440, state);
-    if (codes[i] == Sgp4Code::Ok)
+    Sgp4Code code = model.init_code();
+    if (code == Sgp4Code::Ok)
+      code = model.propagate(clock_days_between(times[i], set.epoch) * 1440, state);
+    if (code == Sgp4Code::Ok)
       out.rows[i] = observe(state, times[i], site, shadow);
+    codes[i] = code;
   });
   for (std::size_t i = 0; i < times.size() && !out.stopped; ++i)
-    if (codes[i] != Sgp4Code::Ok) { // the rows before the first failure are good and are kept
-      out.stopped = propagation_failure(set, times[i], codes[i]);
+    if (codes[i] != Sgp4Code::Ok) { // the rows before the first gap are good and are kept
+      out.stopped = codes[i] ? propagation_failure(set, times[i], *codes[i])
+                             : stopped_by_user(i, times.size(), "epoch");
       out.rows.resize(i);
     }
   return out;
@@ -129,7 +143,11 @@ int run_ephemeris(const OrbitOptions &o, const Common &common) {
     UMOV_TRY(check_element_age(set, start, stop, o.allow_old_elements, o.orbit, diagnostics));
     UMOV_ASSIGN(rows, compute_ephemeris(o, set, common));
     const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
-    UMOV_TRY(put_table(o.output, ephemeris_table(rows.rows, shadow), common));
+    Table table = ephemeris_table(rows.rows, shadow);
+    if (rows.stopped)
+      rows.stopped = put_partial_table(o.output, std::move(table), common, *rows.stopped);
+    else
+      UMOV_TRY(put_table(o.output, table, common));
     if (!rows.rows.empty()) {
       warn_if_beyond_leap_seconds(rows.rows.back().time, diagnostics);
       warn_if_outside_eop(rows.rows.front().time, rows.rows.back().time, diagnostics);
@@ -143,6 +161,7 @@ int run_ephemeris(const OrbitOptions &o, const Common &common) {
 }
 
 struct CatalogueRow {
+  bool is_done = false; ///< not where a stop came first
   int norad_cat_id = 0;
   Epoch<Utc> time{};
   Sgp4Code code = Sgp4Code::Ok;
@@ -183,7 +202,10 @@ std::vector<CatalogueRow> propagate_all(const std::vector<ElementSet> &sets,
   parallel_for(sets.size(), threads, [&](std::size_t i) {
     const Sgp4 model(sets[i]);
     for (std::size_t k = 0; k < times.size(); ++k) {
+      if (interrupted())
+        return;
       CatalogueRow &row = rows[i * times.size() + k];
+      row.is_done = true;
       row.norad_cat_id = sets[i].norad_cat_id;
       row.time = times[k];
       row.code = model.init_code();
@@ -192,6 +214,42 @@ std::vector<CatalogueRow> propagate_all(const std::vector<ElementSet> &sets,
     }
   });
   return rows;
+}
+
+/// A catalogue has many ages: one line for all that are too old to trust, and a refusal only where
+/// none is better.
+Result<void> check_ages(const OrbitOptions &o, const std::vector<ElementSet> &sets,
+                        const std::vector<Epoch<Utc>> &times, Diagnostics &diagnostics) {
+  std::size_t doubtful = 0, old = 0;
+  const ElementSet *oldest = nullptr;
+  double age_max = 0;
+  for (const ElementSet &set : sets) {
+    double age = 0;
+    for (const Epoch<Utc> time : times)
+      age = std::max(age, std::abs(clock_days_between(time, set.epoch)));
+    doubtful += age > 7 ? 1u : 0u;
+    old += age > 30 ? 1u : 0u;
+    if (age > age_max) {
+      age_max = age;
+      oldest = &set;
+    }
+  }
+  if (doubtful == 0)
+    return {};
+  const std::string worst =
+      fmt::format("the farthest are those of {}, {:.1f} d", oldest->norad_cat_id, age_max);
+  if (old == sets.size() && !o.allow_old_elements)
+    return fail(ErrorCode::BadInput,
+                fmt::format("all elements are more than 30 d from the epochs asked for ({}). Give "
+                            "newer ones or pass --allow-old-elements.",
+                            worst),
+                {o.orbit, oldest->line});
+  diagnostics.warn(
+      fmt::format("{} of {} element sets lie more than 7 d from the epochs asked for ({}); expect "
+                  "kilometres of error along the track",
+                  doubtful, sets.size(), worst),
+      {o.orbit, oldest->line});
+  return {};
 }
 
 int run_propagate(const OrbitOptions &o, const Common &common) {
@@ -203,7 +261,12 @@ int run_propagate(const OrbitOptions &o, const Common &common) {
       UMOV_ASSIGN(time, utc_from_iso(text));
       times.push_back(time);
     }
-    const auto rows = propagate_all(sets, times, static_cast<unsigned>(common.threads));
+    UMOV_TRY(check_ages(o, sets, times, diagnostics));
+    for (const Epoch<Utc> time : times)
+      warn_if_beyond_leap_seconds(time, diagnostics);
+    auto rows = propagate_all(sets, times, static_cast<unsigned>(common.threads));
+    const std::size_t all = rows.size();
+    std::erase_if(rows, [](const CatalogueRow &row) { return !row.is_done; });
     std::size_t failed = 0;
     for (const CatalogueRow &row : rows)
       if (row.code != Sgp4Code::Ok && failed++ < 10)
@@ -212,6 +275,9 @@ int run_propagate(const OrbitOptions &o, const Common &common) {
                                      to_text(row.code)));
     if (failed > 10)
       diagnostics.warn(fmt::format("{} more states failed; see the column error", failed - 10));
+    if (rows.size() < all)
+      return tl::unexpected(put_partial_table(o.output, catalogue_table(rows), common,
+                                              stopped_by_user(rows.size(), all, "state")));
     UMOV_TRY(put_table(o.output, catalogue_table(rows), common));
     if (failed == rows.size())
       return fail(ErrorCode::Physics, "SGP4 failed for every object; give newer elements",
@@ -240,7 +306,10 @@ void add_ephemeris(CLI::App &orbit, const Exit &exit_with) {
   verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
-  verb->callback([o, common, exit_with] { exit_with(run_ephemeris(*o, *common)); });
+  verb->callback([o, common, exit_with] {
+    watch_interrupts();
+    exit_with(run_ephemeris(*o, *common));
+  });
 }
 
 void add_propagate(CLI::App &orbit, const Exit &exit_with) {
@@ -249,9 +318,13 @@ void add_propagate(CLI::App &orbit, const Exit &exit_with) {
   auto common = std::make_shared<Common>();
   add_file_options(*verb, *o);
   verb->add_option("--at", o->at, "Epochs, separated by commas")->required()->delimiter(',');
+  verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
-  verb->callback([o, common, exit_with] { exit_with(run_propagate(*o, *common)); });
+  verb->callback([o, common, exit_with] {
+    watch_interrupts();
+    exit_with(run_propagate(*o, *common));
+  });
 }
 
 } // namespace

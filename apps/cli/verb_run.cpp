@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <mutex>
 #include <umov/core/parallel.h>
+#include <umov/core/text.h>
 #include <umov/io/run_folder.h>
 #include <umov/io/scenario.h>
 #include <umov/io/table.h>
@@ -55,6 +56,14 @@ LightCurveRequest request_of(const Scenario &scenario, const LoadedObject &objec
 
 /// No row is a result of its own kind: it says when there will be one.
 Error nothing_found(const LightCurveRequest &request) {
+  const double span_days = seconds_between(request.stop, request.start) / 86400;
+  if (const auto missed = find_next_pass(request, request.start, span_days))
+    return {ErrorCode::Nothing,
+            fmt::format("no epoch of the grid falls in a pass, but there is one near {}Z, max alt "
+                        "{:.0f}: step_s = {:g} is longer than the pass. Take a shorter step.",
+                        to_iso(missed->first_row).substr(0, 16), missed->altitude_max.degrees(),
+                        request.step_s),
+            {}};
   std::string text = fmt::format(
       "no {}pass of {} above {:g} deg{} from \"{}\" in that span.",
       request.only.sunlit ? "sunlit " : "", request.elements.norad_cat_id,
@@ -64,7 +73,7 @@ Error nothing_found(const LightCurveRequest &request) {
           : "",
       request.site.name);
   constexpr double days = 14; // beyond it the elements say little
-  if (const auto next = find_next_pass(request, days))
+  if (const auto next = find_next_pass(request, request.stop, days))
     text += fmt::format(" The next one: {}Z, max alt {:.0f}.",
                         to_iso(next->first_row).substr(0, 16), next->altitude_max.degrees());
   else
@@ -119,8 +128,13 @@ struct Finished {
 };
 
 Result<void> write_folder(const Finished &run, RunFolder &folder) {
-  const Table table = light_curve_table(run.outcome.curve, run.request.frame);
-  const Table passes = passes_table(run.outcome.passes, run.outcome.curve);
+  Table table = light_curve_table(run.outcome.curve, run.request.frame);
+  Table passes = passes_table(run.outcome.passes, run.outcome.curve);
+  if (run.outcome.stopped) {
+    folder.spare_complete_run();
+    table.note("status", "stopped early: " + run.outcome.stopped->message);
+    passes.note("status", "stopped early: " + run.outcome.stopped->message);
+  }
   folder.add("passes.ecsv", to_ecsv(passes));
   if (wants(run.scenario, "ecsv"))
     folder.add("lightcurve.ecsv", to_ecsv(table));
@@ -145,6 +159,8 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
   manifest.elapsed_s = duration<double>(system_clock::now() - run.started).count();
   for (const Warning &warning : run.diagnostics.warnings())
     manifest.warnings.push_back(warning.text());
+  if (run.outcome.stopped)
+    manifest.stopped = run.outcome.stopped->text();
   folder.add("manifest.json", make_manifest(manifest));
   return folder.commit();
 }
@@ -161,8 +177,9 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
     for (const InputFile &input : object.inputs)
       note(common, fmt::format("read {} (SHA-256 {})", input.path, input.sha256));
   if (o.dry_run) {
-    note(common, fmt::format("{}: fine; {} triangles, {} bands", o.scenario,
-                             object.scene.mesh.triangles.size(), object.scene.bands.size()));
+    note(common, fmt::format("{}: fine; {}, {}", o.scenario,
+                             counted(object.scene.mesh.triangles.size(), "triangle"),
+                             counted(object.scene.bands.size(), "band")));
     return {};
   }
   const LightCurveRequest request = request_of(scenario, object, common);
@@ -195,8 +212,11 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
              "{:.1f} s on {} threads",
              std::chrono::duration<double>(std::chrono::system_clock::now() - started).count(),
              resolve_threads(request.threads)));
-  if (outcome->stopped)
-    return tl::unexpected(*outcome->stopped);
+  if (outcome->stopped) {
+    Error stopped = *outcome->stopped;
+    stopped.message += "; the finished rows are in " + folder.path().string();
+    return tl::unexpected(stopped);
+  }
   return {};
 }
 

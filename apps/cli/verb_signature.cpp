@@ -2,8 +2,10 @@
 #include "tables.h"
 #include "verbs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
 #include <umov/io/scenario.h>
@@ -23,21 +25,43 @@ struct SignatureOptions {
   double accuracy = 0;
 };
 
+/// A direction of any length but 0, from three columns.
+Result<Vec3<Body>> direction_from(const Table &table, const std::string &name, std::size_t row,
+                                  const Where &where) {
+  const Vec3<Body> v{table.number(name + "_x", row), table.number(name + "_y", row),
+                     table.number(name + "_z", row)};
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(largest > 0))
+    return fail(ErrorCode::BadInput,
+                fmt::format("{0}_x, {0}_y, {0}_z are 0; a direction was expected", name), where);
+  int exponent = 0; // squares of very long or short vectors would leave the range of a double
+  std::frexp(largest, &exponent);
+  return normalized(Vec3<Body>{std::ldexp(v.x, -exponent), std::ldexp(v.y, -exponent),
+                               std::ldexp(v.z, -exponent)});
+}
+
+/// Rows in turn with the same number in a column "pose" are one pose: so a table that
+/// `umov signature` wrote, with a row per band, gives its poses back.
 Result<std::vector<Pose>> poses_from_table(const std::string &path) {
   UMOV_ASSIGN(text, read_file(path));
-  UMOV_ASSIGN(table, read_csv(text, path, {"sun_x", "sun_y", "sun_z", "obs_x", "obs_y", "obs_z"}));
+  UMOV_ASSIGN(table, read_csv(text, path, {"sun_x", "sun_y", "sun_z", "obs_x", "obs_y", "obs_z"},
+                              {"pose"}));
+  const bool has_pose = table.find("pose") != nullptr;
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < table.rows(); ++i) {
-    const Vec3<Body> sun{table.number("sun_x", i), table.number("sun_y", i),
-                         table.number("sun_z", i)};
-    const Vec3<Body> observer{table.number("obs_x", i), table.number("obs_y", i),
-                              table.number("obs_z", i)};
-    if (!(norm(sun) > 0) || !(norm(observer) > 0))
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("row {}: a direction of length 0; any other length was expected", i + 1),
-          {path});
-    poses.push_back({normalized(sun), normalized(observer)});
+    const Where where{path, static_cast<std::size_t>(table.number("line", i))};
+    UMOV_ASSIGN(sun, direction_from(table, "sun", i, where));
+    UMOV_ASSIGN(observer, direction_from(table, "obs", i, where));
+    if (has_pose && i > 0 && table.number("pose", i) == table.number("pose", i - 1)) {
+      if (norm(poses.back().sun - sun) + norm(poses.back().observer - observer) > 1e-9)
+        return fail(ErrorCode::BadInput,
+                    fmt::format("pose {:g} has two different directions; number the poses anew or "
+                                "leave the column pose out",
+                                table.number("pose", i)),
+                    where);
+      continue;
+    }
+    poses.push_back({sun, observer});
   }
   return poses;
 }
@@ -135,24 +159,29 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   options.seed = seed;
   SignatureColumns columns;
   ProgressBar bar("poses", common);
-  constexpr std::size_t block = 512; // the grain of progress and of Ctrl-C
+  constexpr std::size_t block = 512; // the grain of progress
   std::size_t done = 0;
-  for (; done < poses.size() && !interrupted(); done += std::min(block, poses.size() - done)) {
-    const auto first = poses.begin() + static_cast<std::ptrdiff_t>(done);
-    const std::size_t count = std::min(block, poses.size() - done);
-    const std::vector<Pose> part(first, first + static_cast<std::ptrdiff_t>(count));
-    const auto results = integrator.evaluate(part, options, static_cast<unsigned>(common.threads));
-    for (std::size_t i = 0; i < count; ++i)
+  for (std::size_t begin = 0; begin < poses.size() && done == begin; begin += block) {
+    const std::size_t count = std::min(block, poses.size() - begin);
+    std::vector<std::optional<PoseResult>> results(count);
+    parallel_for(count, static_cast<unsigned>(common.threads), [&](std::size_t i) {
+      if (!interrupted()) // a pose may take seconds: a stop waits for those begun only
+        results[i] = integrator.evaluate(poses[begin + i], options);
+    });
+    for (std::size_t i = 0; i < count && results[i]; ++i, ++done)
       for (std::size_t b = 0; b < object.scene.bands.size(); ++b)
-        columns.add(done + i, part[i], object.scene.bands[b], results[i].bands[b],
-                    results[i].is_dark);
-    bar.update(done + count, poses.size());
+        columns.add(done, poses[done], object.scene.bands[b], results[i]->bands[b],
+                    results[i]->is_dark);
+    bar.update(done, poses.size());
   }
-  UMOV_TRY(put_table(o.output, std::move(columns).table(), common));
-  if (done < poses.size())
-    return fail(ErrorCode::Interrupted,
-                fmt::format("stopped after {} of {} poses; they are saved", done, poses.size()));
-  return {};
+  Table table = std::move(columns).table();
+  if (done == poses.size())
+    return put_table(o.output, table, common);
+  return tl::unexpected(put_partial_table(
+      o.output, std::move(table), common,
+      {ErrorCode::Interrupted,
+       fmt::format("stopped by the user after {} of {} poses", done, poses.size()),
+       {}}));
 }
 
 } // namespace

@@ -23,8 +23,8 @@ template <class Frame> bool are_parallel(Vec3<Frame> a, Vec3<Frame> b) {
 
 std::string describe(const Direction &direction) {
   if (const auto *star = std::get_if<CelestialDirection>(&direction))
-    return "the direction ra " + shortest(Angle::radians(star->right_ascension_rad).degrees()) +
-           " deg, dec " + shortest(Angle::radians(star->declination_rad).degrees()) + " deg";
+    return "the direction ra " + degrees_text(Angle::radians(star->right_ascension_rad)) +
+           " deg, dec " + degrees_text(Angle::radians(star->declination_rad)) + " deg";
   switch (std::get<Target>(direction)) {
   case Target::Nadir:
     return "nadir";
@@ -42,12 +42,15 @@ std::string describe(const Direction &direction) {
   return "an unknown target";
 }
 
+Vec3<Gcrs> unit_vector(const CelestialDirection &star) {
+  const double c = std::cos(star.declination_rad);
+  return {c * std::cos(star.right_ascension_rad), c * std::sin(star.right_ascension_rad),
+          std::sin(star.declination_rad)};
+}
+
 Vec3<Gcrs> along(const Direction &direction, const AttitudeContext &context) {
-  if (const auto *star = std::get_if<CelestialDirection>(&direction)) {
-    const double c = std::cos(star->declination_rad);
-    return {c * std::cos(star->right_ascension_rad), c * std::sin(star->right_ascension_rad),
-            std::sin(star->declination_rad)};
-  }
+  if (const auto *star = std::get_if<CelestialDirection>(&direction))
+    return unit_vector(*star);
   switch (std::get<Target>(direction)) {
   case Target::Nadir:
     return -context.position_km;
@@ -150,11 +153,27 @@ Result<void> check_direction(const Direction &direction, const std::string &name
                                        "of -90 to 90 deg.");
 }
 
+/// True for two targets that lie along one line at all times.
+bool are_always_parallel(const Direction &a, const Direction &b) {
+  const auto *one = std::get_if<Target>(&a), *other = std::get_if<Target>(&b);
+  if (one && other)
+    return (*one == Target::Zenith ? Target::Nadir : *one) ==
+           (*other == Target::Zenith ? Target::Nadir : *other);
+  const auto *star = std::get_if<CelestialDirection>(&a),
+             *second = std::get_if<CelestialDirection>(&b);
+  return star && second && are_parallel(unit_vector(*star), unit_vector(*second));
+}
+
 Result<void> check_law(const TwoAxisLaw &law) {
   UMOV_TRY(check_axis(law.point, "point"));
   UMOV_TRY(check_axis(law.then, "then"));
   UMOV_TRY(check_direction(law.at, "at"));
   UMOV_TRY(check_direction(law.toward, "toward"));
+  if (are_always_parallel(law.at, law.toward))
+    return fail(ErrorCode::BadInput, "\"at\" is " + describe(law.at) + " and \"toward\" is " +
+                                         describe(law.toward) +
+                                         ": they lie along one line at all times. Choose another "
+                                         "\"toward\".");
   if (are_parallel(law.point, law.then))
     return fail(ErrorCode::BadInput,
                 "the body axes \"point\" and \"then\" are parallel, expected two different axes. "

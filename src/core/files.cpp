@@ -11,10 +11,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const char *remedy(int cause) {
+  switch (cause) {
+  case ENOENT:
+  case ENOTDIR:
+    return "Make the folder first or choose another one";
+  case ENOSPC:
+  case EDQUOT:
+    return "Free some space or choose another folder";
+  case EACCES:
+  case EPERM:
+  case EROFS:
+    return "Change its permissions or choose another folder";
+  default:
+    return "Choose another folder";
+  }
+}
+
 tl::unexpected<Error> device_error(const fs::path &path, const std::string &action) {
+  const int cause = errno;
   return fail(ErrorCode::Device,
-              "cannot " + action + ": " + std::strerror(errno) +
-                  ". Free some space or choose another folder with -o.",
+              "cannot " + action + ": " + std::strerror(cause) + ". " + remedy(cause) + ".",
               {path.string()});
 }
 

@@ -55,12 +55,17 @@ std::optional<std::string> nearest_name(std::string_view given,
                                         std::span<const std::string> known) {
   const std::size_t reach = std::max<std::size_t>(2, given.size() / 3);
   std::optional<std::string> best;
-  std::size_t best_distance = reach + 1;
-  for (const std::string &name : known)
-    if (const std::size_t d = edit_distance(given, name); d < best_distance) {
-      best_distance = d;
+  std::size_t best_distance = reach + 1, best_start = 0;
+  for (const std::string &name : known) {
+    const std::size_t distance = edit_distance(given, name);
+    const auto start = static_cast<std::size_t>(
+        std::mismatch(given.begin(), given.end(), name.begin(), name.end()).first - given.begin());
+    if (distance < best_distance || (best && distance == best_distance && start > best_start)) {
+      best_distance = distance;
+      best_start = start;
       best = name;
     }
+  }
   return best;
 }
 
@@ -70,6 +75,28 @@ std::string shortest(double value) {
   std::array<char, 32> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
   return {buffer.data(), end};
+}
+
+std::string degrees_text(Angle angle) {
+  const double degrees = angle.degrees();
+  std::array<char, 40> buffer{};
+  for (int digits = 15; digits < 17; ++digits) {
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), degrees,
+                                   std::chars_format::general, digits)
+                         .ptr;
+    double back = 0;
+    std::from_chars(buffer.data(), end, back);
+    if (Angle::degrees(back).radians() == angle.radians())
+      return shortest(back);
+  }
+  return shortest(degrees);
+}
+
+std::string counted(std::size_t count, std::string_view singular, std::string_view plural) {
+  std::string out = std::to_string(count) + " ";
+  if (count == 1 || plural.empty())
+    return out.append(singular) + (count == 1 ? "" : "s");
+  return out.append(plural);
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -214,6 +214,10 @@ std::size_t fill_rows(const RowMaker &maker, const Selection &selection, LightCu
     std::vector<std::optional<Error>> failures(count);
     parallel_for(count, maker.request.threads, [&](std::size_t k) {
       const std::size_t row = begin + k;
+      if (cancel) { // a row may take seconds: a stop does not wait for the whole block
+        failures[k] = Error{ErrorCode::Interrupted, "", {}};
+        return;
+      }
       const auto made = maker.make(selection.grid[selection.kept[row]].geometry,
                                    selection.passes[selection.kept_pass[row]].id, row, curve);
       if (!made)
@@ -222,17 +226,13 @@ std::size_t fill_rows(const RowMaker &maker, const Selection &selection, LightCu
     for (std::size_t k = 0; k < count; ++k)
       if (failures[k]) {
         stopped = failures[k];
+        if (stopped->code == ErrorCode::Interrupted)
+          stopped->message =
+              fmt::format("stopped by the user after {} of {} epochs", begin + k, rows);
         return begin + k;
       }
     if (progress)
       progress(begin + count, rows);
-    if (cancel) {
-      stopped =
-          Error{ErrorCode::Interrupted,
-                fmt::format("stopped after {} of {} epochs; they are saved", begin + count, rows),
-                {}};
-      return begin + count;
-    }
   }
   return rows;
 }
@@ -270,14 +270,15 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
   return out;
 }
 
-std::optional<NextPass> find_next_pass(const LightCurveRequest &request, double days) {
+std::optional<NextPass> find_next_pass(const LightCurveRequest &request, Epoch<Utc> from,
+                                       double days) {
   const Sgp4 model(request.elements);
   if (model.init_code() != Sgp4Code::Ok)
     return std::nullopt;
   constexpr double step_s = 20; // shorter than any useful pass; the time is told to the minute
   std::optional<NextPass> found;
   for (double s = 0; s <= days * 86400; s += step_s) {
-    const EpochGeometry at = geometry_at(model, request, plus_seconds(request.stop, s));
+    const EpochGeometry at = geometry_at(model, request, plus_seconds(from, s));
     if (at.code != Sgp4Code::Ok)
       return found;
     if (!found && is_kept(at, request.only))

@@ -55,6 +55,52 @@ std::vector<GridPass> group_passes(const std::vector<EpochGeometry> &grid,
   return passes;
 }
 
+namespace {
+
+/// Highest point of a passage: seconds after `from`, where the altitude is greatest near [low,
+/// high].
+struct Summit {
+  double seconds, altitude_rad;
+};
+
+class Climb {
+public:
+  Climb(const Sgp4 &model, const LightCurveRequest &request, Epoch<Utc> origin)
+      : model_(model), request_(request), origin_(origin) {}
+
+  /// Walks on while the altitude grows; returns where it no longer does.
+  [[nodiscard]] double walk(double from, double step) const {
+    constexpr double longest_s = 43'200; // half a day: what hardly moves has no summit
+    double best = from, highest = altitude(from);
+    while (std::abs(best + step - from) <= longest_s && altitude(best + step) > highest)
+      highest = altitude(best += step);
+    return best;
+  }
+  /// Golden section, so that the name of a pass does not depend on the step.
+  [[nodiscard]] Summit refine(double low, double high) const {
+    const double golden = (std::sqrt(5.0) - 1) / 2;
+    while (high - low > 1e-3) {
+      const double a = high - golden * (high - low), b = low + golden * (high - low);
+      if (altitude(a) < altitude(b))
+        low = a;
+      else
+        high = b;
+    }
+    return {(low + high) / 2, altitude((low + high) / 2)};
+  }
+
+private:
+  [[nodiscard]] double altitude(double seconds) const {
+    const EpochGeometry at = geometry_at(model_, request_, plus_seconds(origin_, seconds));
+    return at.code == Sgp4Code::Ok ? at.geometry.altitude.radians() : -pi;
+  }
+  const Sgp4 &model_;
+  const LightCurveRequest &request_;
+  Epoch<Utc> origin_;
+};
+
+} // namespace
+
 Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid, const Sgp4 &model,
                    const LightCurveRequest &request) {
   std::size_t top = pass.first;
@@ -66,24 +112,25 @@ Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
   out.set = grid[pass.last].geometry.time;
   out.is_open_at_start = pass.first == 0;
   out.is_open_at_end = pass.last + 1 == grid.size();
-  // Golden section between the neighbours, so that the name of a pass does not depend on the step.
-  const Epoch<Utc> origin = grid[top > pass.first ? top - 1 : top].geometry.time;
-  double low = 0;
-  double high = seconds_between(grid[top < pass.last ? top + 1 : top].geometry.time, origin);
-  const auto altitude = [&](double seconds) {
-    const EpochGeometry at = geometry_at(model, request, plus_seconds(origin, seconds));
-    return at.code == Sgp4Code::Ok ? at.geometry.altitude.radians() : -pi;
-  };
-  const double golden = (std::sqrt(5.0) - 1) / 2;
-  while (high - low > 1e-3) {
-    const double a = high - golden * (high - low), b = low + golden * (high - low);
-    if (altitude(a) < altitude(b))
-      low = a;
-    else
-      high = b;
+  const Epoch<Utc> origin = grid[top].geometry.time;
+  const Climb climb(model, request, origin);
+  constexpr double stride_s = 10; // shorter than any passage above the horizon
+  double low = -stride_s, high = stride_s;
+  if (top > pass.first)
+    low = seconds_between(grid[top - 1].geometry.time, origin);
+  else if (const double summit = climb.walk(0, -stride_s); summit < 0) {
+    low = summit - stride_s; // the span cuts the pass: it keeps the name that it has as a whole
+    high = summit + stride_s;
   }
-  out.culmination = plus_seconds(origin, (low + high) / 2);
-  out.culmination_altitude = Angle::radians(altitude((low + high) / 2));
+  if (top < pass.last)
+    high = seconds_between(grid[top + 1].geometry.time, origin);
+  else if (const double summit = climb.walk(0, stride_s); summit > 0) {
+    low = summit - stride_s;
+    high = summit + stride_s;
+  }
+  const Summit summit = climb.refine(low, high);
+  out.culmination = plus_seconds(origin, summit.seconds);
+  out.culmination_altitude = Angle::radians(summit.altitude_rad);
   out.id = std::to_string(request.elements.norad_cat_id) + "-" + compact(out.culmination);
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <umov/core/text.h>
 #include <umov/shape/topology.h>
 
 namespace umov {
@@ -37,11 +38,29 @@ private:
   std::vector<Surface> surfaces_;
 };
 
+/// Vertex normals far from their face come from a broken export and darken it without a word.
+void warn_of_odd_normals(const Mesh &mesh, const std::string &file, Diagnostics &diagnostics) {
+  constexpr double far = 0.5; // cosine: 60 deg, far beyond any crease that one would smooth over
+  std::size_t count = 0;
+  for (const Triangle &t : mesh.triangles) {
+    const Vec3<Body> own = normalized(area_vector_doubled(mesh, t));
+    bool is_odd = false;
+    for (const std::uint32_t n : t.normal)
+      is_odd = is_odd || (n != no_index && dot(mesh.normals[n], own) < far);
+    count += is_odd ? 1u : 0u;
+  }
+  if (count > 0)
+    diagnostics.warn(fmt::format("{} vertex normals more than 60 deg off the face; their light is "
+                                 "doubtful. Mend the normals or take normals = \"flat\".",
+                                 counted(count, "triangle has", "triangles have")),
+                     {file});
+}
+
 } // namespace
 
 Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector<Band> &bands,
                          const std::vector<Material> &front, const std::vector<Material> &back,
-                         Diagnostics &diagnostics, double crease_rad) {
+                         Diagnostics &diagnostics, double crease_rad, const std::string &file) {
   if (front.size() != mesh.groups.size() || back.size() != mesh.groups.size())
     return fail(ErrorCode::BadInput,
                 fmt::format("{} front and {} back materials for a mesh with {} groups; give one of "
@@ -49,13 +68,15 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
                             front.size(), back.size(), mesh.groups.size()));
   if (bands.empty())
     return fail(ErrorCode::BadInput, "the scene has no band; name at least one, such as nm:550");
-  UMOV_ASSIGN(cleaned, clean(mesh, diagnostics));
+  UMOV_ASSIGN(cleaned, clean(mesh, diagnostics, file));
   Scene scene;
   scene.mesh = std::move(cleaned);
   scene.normals = normals;
   scene.bands = bands;
-  if (normals == NormalMode::Smooth) // where the mesh has none
+  if (normals == NormalMode::Smooth) { // where the mesh has none
     scene.mesh = with_vertex_normals(scene.mesh, crease_rad);
+    warn_of_odd_normals(scene.mesh, file, diagnostics);
+  }
   SurfaceCache cache(bands);
   for (std::size_t g = 0; g < front.size(); ++g) {
     UMOV_ASSIGN(front_surface, cache.compile(front[g]));

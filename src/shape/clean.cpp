@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <umov/core/text.h>
 
 namespace umov {
 
@@ -72,14 +73,15 @@ Result<void> check_numbers(const Mesh &mesh) {
   return {};
 }
 
-void warn_count(Diagnostics &diagnostics, std::size_t count, const char *what) {
+void warn_count(Diagnostics &diagnostics, const std::string &file, std::size_t count,
+                const char *singular, const char *plural) {
   if (count > 0)
-    diagnostics.warn(fmt::format("{} {}", count, what));
+    diagnostics.warn(counted(count, singular, plural), {file});
 }
 
 } // namespace
 
-Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics) {
+Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file) {
   UMOV_TRY(check_numbers(mesh));
   const auto welded = weld(mesh, weld_distance(mesh));
   std::vector<bool> skip(mesh.triangles.size());
@@ -104,12 +106,16 @@ Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics) {
       out.triangles[place[pairs.partner[i]]].back = mesh.triangles[i].front;
     }
   }
-  warn_count(diagnostics, degenerate, "triangles without area were dropped");
-  warn_count(diagnostics, pairs.duplicates, "triangles that repeat another one were dropped");
-  warn_count(diagnostics, pairs.opposites,
+  warn_count(diagnostics, file, degenerate, "triangle without area was dropped",
+             "triangles without area were dropped");
+  warn_count(diagnostics, file, pairs.duplicates, "triangle that repeats another one was dropped",
+             "triangles that repeat another one were dropped");
+  warn_count(diagnostics, file, pairs.opposites,
+             "pair of coincident opposite faces became one two-sided face",
              "pairs of coincident opposite faces became one two-sided face each");
   if (out.triangles.empty())
-    return fail(ErrorCode::BadInput, "no face with an area; a mesh of triangles was expected");
+    return fail(ErrorCode::BadInput, "no face with an area; a mesh of triangles was expected",
+                {file});
   return out;
 }
 

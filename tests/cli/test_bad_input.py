@@ -27,6 +27,13 @@ CONFIGURATION = [
     (("seed = 1", "seed = 1\n[render]\nbounces = 2"), ["bounces", "not built yet"]),
     (("cube.obj", "missing.obj"), ["missing.obj", "no such file"]),
     (("2018-01-21T05:08:00Z", "2018-04-21T05:08:00Z"), ["stop"]),
+    (("step_s = 20", "stepp = 20"), ['"step_s"']),
+    (('formats = ["ecsv", "csv", "html"]', "formats = []"), ["scenario.toml:23:1", "empty"]),
+    (('mode = "nadir"', 'mode = "nadir", point = "+X"'), ["point", 'mode = "nadir"']),
+    (('mode = "nadir"', 'mode = "nadirr"'), ["; nadir, inertial, spin was expected"]),
+    (('mode = "nadir"', 'at = "nadir", toward = "zenith"'), ["one line at all times"]),
+    (("seed = 1", 'seed = 1\n[material.paper_al]\nindex = "paper_au"\n'
+      'distribution = { model = "blinn_phong", m = 10 }'), ["paper_al", "built-in", "scenario.toml:3"]),
 ]
 
 
@@ -84,6 +91,9 @@ def test_unmapped_mesh_material_is_named_with_its_area(umov, scenario):
     ("v 1,5 2 3", ["broken.obj:1:3", "1,5"]),
     ("v 0 0 0\nf 1 2 3", ["broken.obj:2", "1 vert"]),
     ("# nothing", ["broken.obj", "face"]),
+    ("f 1 2 3", ["broken.obj:1", "no vertex precedes"]),
+    ("v 1e200 0 0", ["broken.obj:1:3", "1e+200"]),
+    ("v 0 0 0\n\x01\x02 3", ["broken.obj:2", "no OBJ text"]),
 ])
 def test_mesh_lines(umov, scenario, tmp_path, line, words):
     (tmp_path / "broken.obj").write_text(line + "\n")
@@ -100,10 +110,53 @@ def test_usage_errors_name_the_nearest_option(umov):
     assert done.code == 2 and "--wavelength" in done.err, done.err
     assert umov("run", "a.toml", "--threads", "-1").code == 2
     assert umov("frobnicate").code == 2
+    done = umov("brdf", "paper_au", "--batch", "t.csv", "--theta-i", "30")
+    assert done.code == 2 and "--batch" in done.err, done.err
+    assert "?." not in umov("run", "a.toml", "--accurac", "1").err
 
 
 def test_missing_input_and_unwritable_output(umov, tmp_path):
     assert umov("run", "nothing.toml").code == 3
     (tmp_path / "folder").mkdir()
     done = umov("mesh", "make", "sphere", "-o", "no/such/folder/a.obj")
-    assert done.code == 6, done.err
+    assert done.code == 6 and "Make the folder first" in done.err, done.err
+
+
+def test_an_impossible_folder_is_found_before_any_work(umov, scenario):
+    done = umov("run", scenario(), "--dry-run", "--set", "output.dir=/proc/umov/out")
+    assert done.code == 6 and "/proc" in done.err, done.err
+
+
+@pytest.mark.parametrize("row, words", [
+    ("0,0,0,1,0,0", ["g.csv:2", "sun_x", "0"]),
+    ("1,0,x,1,0,0", ["g.csv:2:5", "sun_z"]),
+])
+def test_directions(umov, scenario, tmp_path, row, words):
+    (tmp_path / "g.csv").write_text("sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n" + row + "\n")
+    done = umov("signature", scenario(), "--geometry", "g.csv")
+    assert done.code == 3, done.err
+    for word in words:
+        assert word in done.err, done.err
+
+
+def test_doubtful_meshes_are_told_of(umov, scenario, tmp_path):
+    # A triangle whose vertex normals nearly lie in it, twice, and a word that OBJ does not know.
+    (tmp_path / "odd.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 1 0 0.1\nfoo 1 2\nf 1//1 2//1 3//1\nf 1//1 2//1 3//1\n")
+    done = umov("signature", scenario(("cube.obj", "odd.obj"), ('"flat"', '"smooth"')),
+                "--poses", 1, "--phase", "30")
+    assert done.code == 0, done.err
+    for word in ('odd.obj:5:1: "foo" is no statement', "odd.obj: 1 triangle that repeats",
+                 "odd.obj: 1 triangle has vertex normals more than 60 deg off"):
+        assert word in done.err, done.err
+
+
+@pytest.mark.parametrize("override", [
+    "time.step_s=0", "time.stepp=1", "render.accuracy=9", "observer.lat_deg=north", "seed=-1",
+    "time.only.alt_min_deg=99", "bands.set=x", "observer=3", "object.mesh.file=no.obj",
+    "time.start=2018-01-21", "object.materials.default=paper_all",
+])
+def test_errors_of_overrides_name_the_option(umov, scenario, override):
+    done = umov("run", scenario(), "--set", override)
+    assert done.code == 3, done.err
+    assert "--set " + override.split("=")[0] in done.err, done.err

@@ -99,6 +99,25 @@ def test_no_pass_says_when_the_next_one_is(umov, scenario, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+def test_a_step_longer_than_the_pass_is_told(umov, scenario):
+    done = umov("run", scenario(("step_s = 20", "step_s = 7200"),
+                                ("2018-01-21T05:08:00Z", "2018-01-21T04:20:00Z"),
+                                ("2018-01-21T05:12:00Z", "2018-01-21T06:30:00Z")))
+    assert done.code == 5, done.err
+    assert "step_s = 7200 is longer than the pass" in done.err, done.err
+
+
+def test_a_cut_pass_keeps_its_name(umov, scenario, tmp_path):
+    # The span ends before, or begins after, the highest point at 05:12:0x.
+    names = set()
+    for start, stop in (("05:08:00", "05:12:00"), ("05:08:00", "05:09:00"), ("05:13:00", "05:13:20")):
+        done = umov("run", scenario(("2018-01-21T05:08:00Z", f"2018-01-21T{start}Z"),
+                                    ("2018-01-21T05:12:00Z", f"2018-01-21T{stop}Z")))
+        assert done.code == 0, done.err
+        names |= set(Table.read(tmp_path / "out/passes.ecsv", format="ascii.ecsv")["pass_id"])
+    assert len(names) == 1, names
+
+
 def test_an_interrupt_keeps_what_is_done(scenario, tmp_path):
     import signal
     import subprocess
@@ -114,13 +133,29 @@ def test_an_interrupt_keeps_what_is_done(scenario, tmp_path):
     if process.returncode == 0:
         pytest.fail("the run ended before the interrupt: give it more to do")
     assert process.returncode == 130, err
-    assert "saved" in err or "before the first row" in err
+    assert "the finished rows are in out" in err or "before the first row" in err
     if (tmp_path / "out").exists():
         rows = len(Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv"))
         assert 0 < rows < 3 * 12001
+        assert json.loads((tmp_path / "out/manifest.json").read_text())["status"] == "stopped early"
+        assert "stopped early" in (tmp_path / "out/lightcurve.ecsv").read_text()
+        assert "PARTIAL" in (tmp_path / "out/report.html").read_text()
 
 
-def test_a_decayed_orbit_keeps_the_finished_rows(umov, scenario, tmp_path):
+def test_a_stopped_rerun_spares_the_complete_folder(umov, scenario, tmp_path):
+    name = scenario()
+    assert umov("run", name).code == 0
+    before = (tmp_path / "out/lightcurve.ecsv").read_bytes()
+    stopped = decaying(scenario, tmp_path)
+    done = umov("run", stopped)
+    assert done.code == 4 and "out.partial" in done.err, done.err
+    assert (tmp_path / "out/lightcurve.ecsv").read_bytes() == before
+    assert b"stopped early" in (tmp_path / "out.partial/lightcurve.ecsv").read_bytes()
+    assert umov("run", stopped).code == 4  # a second one replaces the first partial folder
+    assert sorted(p.name for p in tmp_path.glob("out*")) == ["out", "out.partial"]
+
+
+def decaying(scenario, tmp_path):
     # An orbit low enough to decay soon after its epoch: HST's set with a huge drag term.
     first, second = (ROOT / "data/tle/hst.tle").read_text().splitlines()[-2:]
     first = first[:53] + " 99999+0" + first[61:]
@@ -131,7 +166,11 @@ def test_a_decayed_orbit_keeps_the_finished_rows(umov, scenario, tmp_path):
                     ("2018-01-21T05:12:00Z", "2018-02-10T12:00:00Z"), ("step_s = 20", "step_s = 300"),
                     ("alt_min_deg = 10, sun_alt_max_deg = -6, sunlit = true",
                      "alt_min_deg = 0, sunlit = false"))
-    done = umov("run", name)
+    return name
+
+
+def test_a_decayed_orbit_keeps_the_finished_rows(umov, scenario, tmp_path):
+    done = umov("run", decaying(scenario, tmp_path))
     assert done.code == 4, done.err
     assert "SGP4 fails at" in done.err and "Shorten [time] or give newer elements." in done.err
     assert len(Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv")) > 0

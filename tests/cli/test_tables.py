@@ -1,5 +1,6 @@
 """The machine-readable forms that scripts rely on."""
 import csv
+import json
 import math
 
 import pytest
@@ -63,6 +64,7 @@ def test_signature_rows_can_be_used_again(umov, scenario, tmp_path):
         if float(row["intensity"]) == 0:
             assert row["q_scat"] == "" and row["u_scat"] == "" and row["v"] == ""
     lit = {(r["sun_x"], r["obs_x"], r["band"]): r["intensity"] for r in first}
+    assert len(second) == len(first) # one pose for its three rows, one per band
     for row in second:
         key = (row["sun_x"], row["obs_x"], row["band"])
         assert float(row["intensity"]) == pytest.approx(float(lit[key]), rel=1e-12)
@@ -109,8 +111,25 @@ def test_a_decaying_orbit_ends_the_ephemeris_at_its_first_failure(umov, tmp_path
     assert len(rows) < 3025 and "-4713" not in done.err
 
 
+def test_a_catalogue_of_old_elements_is_refused(umov, tmp_path):
+    arguments = ("orbit", "propagate", "--orbit", ROOT / "data/tle/hst.tle")
+    done = umov(*arguments, "--at", "2018-04-21T00:00:00Z")
+    assert done.code == 3 and "--allow-old-elements" in done.err, done.err
+    done = umov(*arguments, "--at", "2018-04-21T00:00:00Z", "--allow-old-elements")
+    assert done.code == 0 and "kilometres" in done.err, done.err
+
+
+def test_mesh_info_as_json_has_the_box(umov):
+    done = umov("mesh", "info", ROOT / "data/mesh/hst.obj", "--unit", "m", "--up", "+Z", "--json")
+    assert done.code == 0, done.err
+    found = json.loads(done.out)
+    assert found["triangles"] == sum(m["triangles"] for m in found["materials"])
+    assert len(found["lower_m"]) == 3 and found["area_m2"] > 0
+
+
 def test_doctor_and_schema_answer(umov):
     assert umov("doctor").code == 0
+    assert all(line["ok"] for line in json.loads(umov("doctor", "--json").out))
     done = umov("schema")
     assert done.code == 0 and '"$schema"' in done.out
     assert umov("material", "list", "--json").out.count("paper_") >= 6

@@ -21,13 +21,13 @@ private:
   double value_ = 0;
 };
 
-/// Wavelength in vacuum, held in metres.
+/// Wavelength in vacuum, held in nm: the number that users write stays as it is.
 class Wavelength {
 public:
   constexpr Wavelength() = default;
-  static constexpr Wavelength nm(double value) { return Wavelength(value * 1e-9); }
-  [[nodiscard]] constexpr double nm() const { return value_ * 1e9; }
-  [[nodiscard]] constexpr double metres() const { return value_; }
+  static constexpr Wavelength nm(double value) { return Wavelength(value); }
+  [[nodiscard]] constexpr double nm() const { return value_; }
+  [[nodiscard]] constexpr double metres() const { return value_ * 1e-9; }
 
 private:
   constexpr explicit Wavelength(double value) : value_(value) {}

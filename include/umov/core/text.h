@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <umov/core/quantity.h>
 
 namespace umov {
 
@@ -16,11 +17,18 @@ std::optional<double> parse_number(std::string_view text);
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The name nearest to `given` if near enough to be a slip (distance at most 2, or a third of its
-/// length), else empty.
+/// length), else empty. Of equally near ones the one with the longest common beginning.
 std::optional<std::string> nearest_name(std::string_view given, std::span<const std::string> known);
 
 /// Shortest text that reads back to the same double ("nan" for NaN); independent of the locale.
 std::string shortest(double value);
+
+/// "1 epoch", "2 epochs"; `plural` where it is not just an s more.
+std::string counted(std::size_t count, std::string_view singular, std::string_view plural = {});
+
+/// Shortest number of degrees that gives back the same angle, although the angle is kept in
+/// radians.
+std::string degrees_text(Angle angle);
 
 /// `text` without blanks and tabs at both ends.
 std::string_view trimmed(std::string_view text);

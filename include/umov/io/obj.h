@@ -39,11 +39,14 @@ Result<ObjMesh> read_obj_text(std::string_view text, const std::string &file,
                               const ObjOptions &options, const MtlLoader &load_mtl,
                               Diagnostics &diagnostics);
 
+/// Whether the OBJ names its MTL file.
+enum class MtlUse { Named, None };
+
 struct ObjText {
   std::string obj, mtl;
 };
 /// The mesh in metres, +Z up; `name` is the stem of the files. Two-sided faces become two opposite
 /// ones, which `clean` joins again. Reading it gives the same numbers, bit for bit.
-ObjText write_obj(const Mesh &mesh, const std::string &name);
+ObjText write_obj(const Mesh &mesh, const std::string &name, MtlUse mtl = MtlUse::Named);
 
 } // namespace umov

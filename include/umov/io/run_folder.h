@@ -19,6 +19,9 @@ public:
   static Result<RunFolder> open(const std::filesystem::path &target, bool force);
 
   void add(std::string name, std::string bytes) { files_[std::move(name)] = std::move(bytes); }
+  /// For the rows of a run that stopped early: what stands in the target stays there, unless it is
+  /// the rest of such a run itself; the files then go to "<target>.partial".
+  void spare_complete_run();
   /// Writes everything. On failure the target is as it was.
   Result<void> commit();
   [[nodiscard]] const std::filesystem::path &path() const { return target_; }
@@ -38,6 +41,7 @@ struct ManifestInput {
   std::string started_utc; ///< clock time given by the caller
   double elapsed_s = 0;
   std::vector<std::string> warnings;
+  std::string stopped; ///< why the run ended early; "" = complete
 };
 
 /// JSON text; the key "program" marks the folder as ours.

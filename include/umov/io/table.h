@@ -61,11 +61,13 @@ std::string to_json(const Table &table);
 /// Aligned columns for a terminal, numbers to six digits.
 std::string to_text(const Table &table);
 
-/// Reads the `required` numeric columns of a CSV text (and no others: unknown ones are ignored).
-/// Lines that start with '#' and blank ones are skipped; the first other line is the header.
-/// BadInput with line and column for a missing column, a ragged row or what is not a finite number.
+/// Reads the `required` numeric columns of a CSV text, and those of `optional` that are there;
+/// others are ignored. A last column "line" tells where each row stands. Lines that start with '#'
+/// and blank ones are skipped; the first other line is the header. BadInput with line and column
+/// for a missing column, a ragged row or what is not a finite number.
 Result<Table> read_csv(std::string_view text, const std::string &file,
-                       const std::vector<std::string> &required);
+                       const std::vector<std::string> &required,
+                       const std::vector<std::string> &optional = {});
 
 /// Puts what every output of the project says into the header: versions and conventions.
 void note_conventions(Table &table);

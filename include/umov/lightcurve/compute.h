@@ -65,12 +65,13 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
                                               const Progress &progress,
                                               const std::atomic<bool> &cancel);
 
-/// First pass after `from` that the filter would keep, looked for over `days`; for the message when
-/// a span has none. Empty if there is none or the orbit cannot be propagated.
+/// First pass after `from` that the filter would keep, looked for over `days` in steps of 20 s; for
+/// the message when a span has none. Empty if there is none or the orbit cannot be propagated.
 struct NextPass {
   Epoch<Utc> first_row{};
   Angle altitude_max;
 };
-std::optional<NextPass> find_next_pass(const LightCurveRequest &request, double days);
+std::optional<NextPass> find_next_pass(const LightCurveRequest &request, Epoch<Utc> from,
+                                       double days);
 
 } // namespace umov

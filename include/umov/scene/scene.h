@@ -27,10 +27,12 @@ inline constexpr double default_crease_rad = 35 * 3.14159265358979323846 / 180;
 
 /// Cleans the mesh, makes vertex normals for `Smooth` where it has none and compiles each distinct
 /// material once. `front` and `back` name the material of each group of `mesh.groups`.
-/// BadInput if their number differs from that of the groups, or from the mesh or a material.
+/// `file` is what messages about the mesh name. BadInput if their number differs from that of the
+/// groups, or from the mesh or a material.
 Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector<Band> &bands,
                          const std::vector<Material> &front, const std::vector<Material> &back,
-                         Diagnostics &diagnostics, double crease_rad = default_crease_rad);
+                         Diagnostics &diagnostics, double crease_rad = default_crease_rad,
+                         const std::string &file = {});
 
 /// Sides of a triangle that anything outside can see.
 struct VisibleSides {

@@ -30,7 +30,7 @@ MeshReport inspect(const Mesh &mesh);
 /// Drops zero-area triangles and exact duplicates, merges coincident faces of opposite winding into
 /// one two-sided face (front and back groups from the two); each with a counted warning.
 /// BadInput if a coordinate is not finite, an index is out of range or nothing is left.
-Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics);
+Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file = {});
 
 /// Vertex normals for `normals = "smooth"` where the mesh has none: the mean over the
 /// faces that meet at a vertex within `crease_rad` of each other and belong to one group, weighted

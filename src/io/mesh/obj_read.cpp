@@ -23,6 +23,14 @@ struct Unit {
   const char *name;
   double metres;
 };
+/// Statements of the format that change no triangle: smoothing, appearance, free-form geometry.
+constexpr std::string_view harmless[] = {
+    "s",      "vp",   "lod",   "bevel",  "c_interp", "d_interp", "shadow_obj", "trace_obj",
+    "mg",     "deg",  "bmat",  "step",   "cstype",   "curv",     "curv2",      "surf",
+    "parm",   "trim", "hole",  "scrv",   "sp",       "end",      "con",        "ctech",
+    "usemap", "call", "stech", "maplib", "csh"};
+constexpr double farthest = 1e12; ///< beyond it areas lose their meaning [units of the file]
+
 constexpr Unit units[] = {{"m", 1},     {"cm", 0.01},   {"mm", 0.001},
                           {"km", 1000}, {"in", 0.0254}, {"ft", 0.3048}};
 
@@ -80,6 +88,7 @@ private:
   std::map<std::string, std::uint32_t> group_index_;
   std::string material_, object_;
   bool has_material_ = false;
+  std::map<std::string, Word, std::less<>> unknown_; ///< statements that are none, where first seen
   std::size_t texture_count_ = 0, skipped_ = 0, short_faces_ = 0, concave_ = 0, crossed_ = 0,
               bent_ = 0;
 };
@@ -109,6 +118,11 @@ Result<std::optional<std::uint32_t>> Reader::index(std::string_view text, const 
     if (value < 0 && value >= -size)
       return std::optional(static_cast<std::uint32_t>(size + value));
   }
+  if (size == 0)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} index \"{}\" in \"{}\", but no {} precedes this line", what, text,
+                            word.text.substr(0, 40), what),
+                lines_.where(word));
   return fail(
       ErrorCode::BadInput,
       fmt::format("{} index \"{}\" in \"{}\"; 1 to {} (or -1 to -{}) was expected, since {} "
@@ -229,6 +243,12 @@ Result<void> Reader::take(const std::vector<Word> &words) {
   const std::string_view key = words[0].text;
   if (key == "v") {
     UMOV_ASSIGN(v, vector(words, "vertex"));
+    if (const double reach = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+        reach > farthest)
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("a vertex at {:g}; coordinates up to {:g} were expected", reach, farthest),
+          lines_.where(words[1]));
     out_.mesh.positions.push_back(v);
   } else if (key == "vn") {
     UMOV_ASSIGN(n, vector(words, "normal"));
@@ -246,8 +266,13 @@ Result<void> Reader::take(const std::vector<Word> &words) {
     object_ = obj::name_from(words, 1);
   } else if (key == "l" || key == "p") {
     ++skipped_;
+  } else if (std::find(std::begin(harmless), std::end(harmless), key) == std::end(harmless)) {
+    if (std::any_of(key.begin(), key.end(), [](unsigned char c) { return c < 0x20 || c >= 0x7f; }))
+      return fail(ErrorCode::BadInput,
+                  "this is no OBJ text (a byte that is not printable); is it another format?",
+                  lines_.where(words[0]));
+    unknown_.emplace(key.substr(0, 40), words[0]);
   }
-  // Other statements (smoothing groups, free-form curves) change no triangle.
   return {};
 }
 
@@ -275,6 +300,10 @@ std::string Reader::box_text(const char *key) const {
 
 Result<void> Reader::finish() {
   const Where file{lines_.file()};
+  for (const auto &[name, first] : unknown_)
+    diagnostics_.warn(
+        fmt::format("\"{}\" is no statement of the OBJ format; such lines were skipped", name),
+        lines_.where(first));
   if (out_.mesh.triangles.empty())
     return fail(ErrorCode::BadInput, "no face; a mesh of polygons was expected", file);
   if (options_.unit.empty())

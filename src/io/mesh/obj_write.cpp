@@ -21,9 +21,12 @@ void write_face(std::string &out, const Triangle &t, std::array<std::size_t, 3> 
 
 } // namespace
 
-ObjText write_obj(const Mesh &mesh, const std::string &name) {
+ObjText write_obj(const Mesh &mesh, const std::string &name, MtlUse mtl) {
   ObjText text;
-  text.obj = fmt::format("# {}: metres, +Z up\nmtllib {}.mtl\no {}\n", name, name, name);
+  text.obj = fmt::format("# {}: metres, +Z up\n", name);
+  if (mtl == MtlUse::Named)
+    text.obj += fmt::format("mtllib {}.mtl\n", name);
+  text.obj += fmt::format("o {}\n", name);
   for (const Vec3<Body> &p : mesh.positions)
     text.obj += "v " + shortest(p.x) + " " + shortest(p.y) + " " + shortest(p.z) + "\n";
   for (const Vec3<Body> &n : mesh.normals)

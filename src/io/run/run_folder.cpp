@@ -1,9 +1,11 @@
 #include <umov/io/run_folder.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdio.h>
 #include <umov/core/files.h>
 #include <umov/core/version.h>
@@ -19,12 +21,25 @@ tl::unexpected<Error> trouble(const fs::path &path, const std::string &text) {
   return fail(ErrorCode::Device, text, {path.string()});
 }
 
-bool has_our_manifest(const fs::path &folder) {
+constexpr const char *complete = "complete", *stopped_early = "stopped early";
+
+/// Status of the run that umov wrote into a folder; empty for any other folder.
+std::optional<std::string> status_of(const fs::path &folder) {
   const auto text = read_file(folder / "manifest.json");
   if (!text)
-    return false;
+    return std::nullopt;
   const auto json = nlohmann::json::parse(*text, nullptr, false);
-  return json.is_object() && json.value("program", "") == program;
+  if (!json.is_object() || !json.contains("program") || json["program"] != program)
+    return std::nullopt;
+  const auto status = json.find("status");
+  return status != json.end() && status->is_string() ? status->get<std::string>() : complete;
+}
+
+bool is_free(const fs::path &folder) {
+  std::error_code code;
+  return !fs::exists(folder, code) ||
+         (fs::is_directory(folder, code) && fs::is_empty(folder, code)) ||
+         status_of(folder) == stopped_early;
 }
 
 /// Nearest folder above that exists: where a new one would be made.
@@ -56,17 +71,31 @@ Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
   if (fs::exists(out.target_, code) && !fs::is_directory(out.target_, code))
     return trouble(target, "is a file; the name of a folder was expected");
   if (fs::is_directory(out.target_, code) && !fs::is_empty(out.target_, code) &&
-      !has_our_manifest(out.target_)) {
+      !status_of(out.target_)) {
     if (!force)
       return trouble(target, "is not empty and was not written by umov. Choose another folder "
                              "(output.dir) or pass --force to put the files into it.");
     out.is_foreign_ = true;
   }
   const fs::path parent = existing_parent(fs::absolute(out.target_, code).parent_path());
-  if (::access(parent.c_str(), W_OK | X_OK) != 0)
+  // Tried, not asked: the right to write says little on special file systems.
+  std::string probe = (parent / ".umov-XXXXXX").string();
+  if (::mkdtemp(probe.data()) != nullptr)
+    ::rmdir(probe.c_str());
+  else
     return trouble(parent, std::string("cannot be written to: ") + std::strerror(errno) +
                                ". Choose another folder (output.dir).");
   return out;
+}
+
+void RunFolder::spare_complete_run() {
+  if (is_free(target_))
+    return;
+  const std::string base = target_.string() + ".partial";
+  target_ = base;
+  for (int k = 2; !is_free(target_); ++k)
+    target_ = base + std::to_string(k);
+  is_foreign_ = false;
 }
 
 Result<void> RunFolder::commit() {
@@ -117,6 +146,9 @@ std::string make_manifest(const ManifestInput &input) {
   out["conventions_version"] = conventions_version;
   out["compiler"] = "g++ " __VERSION__;
   out["command_line"] = input.command_line;
+  out["status"] = input.stopped.empty() ? complete : stopped_early;
+  if (!input.stopped.empty())
+    out["stopped"] = input.stopped;
   out["started_utc"] = input.started_utc;
   out["elapsed_s"] = input.elapsed_s;
   out["seed"] = input.seed;

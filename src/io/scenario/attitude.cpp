@@ -41,7 +41,8 @@ Result<Direction> read_direction(const Node &node, const char *name, Target fall
     if (std::abs(dec) > 90)
       return fail(ErrorCode::BadInput, fmt::format("dec_deg = {}; -90 to 90 was expected", dec),
                   below.where("dec_deg"));
-    return Direction{CelestialDirection{below.number("ra_deg", 0) * pi / 180, dec * pi / 180}};
+    return Direction{CelestialDirection{Angle::degrees(below.number("ra_deg", 0)).radians(),
+                                        Angle::degrees(dec).radians()}};
   }
   UMOV_ASSIGN(text, node.choice(name, "", target_names));
   for (std::size_t i = 0; i < target_names.size(); ++i)
@@ -55,15 +56,18 @@ Result<void> forbid(const Node &node, const std::string &mode,
   for (const char *name : names)
     if (node.has(name))
       return fail(ErrorCode::BadInput,
-                  fmt::format("{} has no meaning with mode = \"{}\"; leave it out", name, mode),
+                  fmt::format("{} has no meaning with {}; leave it out", name, mode),
                   node.where(name));
   return {};
 }
 
 Result<TwoAxisLaw> read_two_axis(const Node &node) {
   TwoAxisLaw law;
-  UMOV_TRY(
-      forbid(node, "two axes", {"quaternion", "axis", "rate_deg_s", "period_s", "epoch", "start"}));
+  const bool is_nadir = node.text("mode", "") == "nadir";
+  UMOV_TRY(forbid(node, is_nadir ? "mode = \"nadir\"" : "two axes (point, at, then, toward)",
+                  {"quaternion", "axis", "rate_deg_s", "period_s", "epoch", "start"}));
+  if (is_nadir)
+    UMOV_TRY(forbid(node, "mode = \"nadir\"", {"point", "at", "then", "toward"}));
   UMOV_ASSIGN(point, read_axis(node, "point", law.point));
   UMOV_ASSIGN(at, read_direction(node, "at", Target::Nadir));
   UMOV_ASSIGN(then, read_axis(node, "then", law.then));
@@ -73,7 +77,7 @@ Result<TwoAxisLaw> read_two_axis(const Node &node) {
 
 Result<InertialLaw> read_inertial(const Node &node) {
   UMOV_TRY(forbid(
-      node, "inertial",
+      node, "mode = \"inertial\"",
       {"point", "at", "then", "toward", "axis", "rate_deg_s", "period_s", "epoch", "start"}));
   UMOV_ASSIGN(q, node.numbers("quaternion"));
   if (q.size() != 4)
@@ -87,7 +91,7 @@ Result<InertialLaw> read_inertial(const Node &node) {
 }
 
 Result<SpinLaw> read_spin(const Node &node) {
-  UMOV_TRY(forbid(node, "spin", {"point", "at", "then", "toward", "quaternion"}));
+  UMOV_TRY(forbid(node, "mode = \"spin\"", {"point", "at", "then", "toward", "quaternion"}));
   SpinLaw law;
   UMOV_ASSIGN(axis, read_axis(node, "axis", law.axis));
   law.axis = axis;
@@ -98,8 +102,8 @@ Result<SpinLaw> read_spin(const Node &node) {
   if (period == 0)
     return fail(ErrorCode::BadInput, "period_s = 0; another number was expected",
                 node.where("period_s"));
-  law.rate_rad_s =
-      node.has("rate_deg_s") ? node.number("rate_deg_s", 0) * pi / 180 : 2 * pi / period;
+  law.rate_rad_s = node.has("rate_deg_s") ? Angle::degrees(node.number("rate_deg_s", 0)).radians()
+                                          : 2 * pi / period;
   UMOV_ASSIGN(epoch, node.time("epoch"));
   law.epoch = epoch;
   if (!node.has("start"))
@@ -125,8 +129,8 @@ std::string direction_toml(const Direction &d) {
     return quoted(target_names[static_cast<std::size_t>(*target)]);
   const auto &sky = std::get<CelestialDirection>(d);
   return fmt::format("{{ ra_deg = {}, dec_deg = {} }}",
-                     shortest(sky.right_ascension_rad * 180 / pi),
-                     shortest(sky.declination_rad * 180 / pi));
+                     degrees_text(Angle::radians(sky.right_ascension_rad)),
+                     degrees_text(Angle::radians(sky.declination_rad)));
 }
 
 std::string law_toml(const TwoAxisLaw &law) {
@@ -143,8 +147,8 @@ std::string law_toml(const InertialLaw &law) {
 std::string law_toml(const SpinLaw &law) {
   const std::string start = std::visit([](const auto &s) { return law_toml(s); }, law.start);
   return fmt::format("{{ mode = \"spin\", axis = {}, rate_deg_s = {}, epoch = {}, start = {} }}",
-                     axis_toml(law.axis), shortest(law.rate_rad_s * 180 / pi), to_iso(law.epoch),
-                     start);
+                     axis_toml(law.axis), degrees_text(Angle::radians(law.rate_rad_s)),
+                     to_iso(law.epoch), start);
 }
 
 } // namespace
@@ -156,8 +160,6 @@ Result<AttitudeLaw> read_attitude(const Node &node) {
       return read_inertial(node).map([](auto law) { return AttitudeLaw{law}; });
     if (mode == "spin")
       return read_spin(node).map([](auto law) { return AttitudeLaw{law}; });
-    if (mode == "nadir")
-      UMOV_TRY(forbid(node, "nadir", {"point", "at", "then", "toward"}));
     return read_two_axis(node).map([](auto law) { return AttitudeLaw{law}; });
   };
   UMOV_ASSIGN(law, read());

@@ -115,8 +115,9 @@ Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &op
     front.push_back(one);
     back.push_back(other);
   }
-  auto scene = make_scene(read.mesh, scenario.mesh.normals, scenario.bands, front, back,
-                          diagnostics, scenario.mesh.crease_deg * pi / 180);
+  auto scene =
+      make_scene(read.mesh, scenario.mesh.normals, scenario.bands, front, back, diagnostics,
+                 scenario.mesh.crease_deg * pi / 180, scenario.mesh.file.string());
   if (!scene)
     return fail(scene.error().code, scene.error().message,
                 scene.error().where.file.empty() ? Where{scenario.file} : scene.error().where);

@@ -50,16 +50,16 @@ std::string observer_and_time(const Scenario &s) {
   if (s.observer)
     out += fmt::format("\n[observer]\nname = {}\nlat_deg = {}\nlon_deg = {}\nalt_m = {}\n"
                        "atmosphere = \"none\"\n",
-                       quoted(s.observer->name), shortest(s.observer->latitude.degrees()),
-                       shortest(s.observer->longitude.degrees()), shortest(s.observer->altitude_m));
+                       quoted(s.observer->name), degrees_text(s.observer->latitude),
+                       degrees_text(s.observer->longitude), shortest(s.observer->altitude_m));
   if (s.time) {
     const EpochFilter &only = s.time->only;
-    out += fmt::format("\n[time]\nstart = {}\nstop = {}\nstep_s = {}\nonly = {{ alt_min_deg = {}, "
-                       "sun_alt_max_deg = {}, sunlit = {} }}\n",
-                       to_iso(s.time->start), to_iso(s.time->stop), shortest(s.time->step_s),
-                       shortest(only.altitude_min.degrees()),
-                       shortest(only.sun_altitude_max ? only.sun_altitude_max->degrees() : 90),
-                       only.sunlit);
+    out +=
+        fmt::format("\n[time]\nstart = {}\nstop = {}\nstep_s = {}\nonly = {{ alt_min_deg = {}, "
+                    "sun_alt_max_deg = {}, sunlit = {} }}\n",
+                    to_iso(s.time->start), to_iso(s.time->stop), shortest(s.time->step_s),
+                    degrees_text(only.altitude_min),
+                    degrees_text(only.sun_altitude_max.value_or(Angle::degrees(90))), only.sunlit);
   }
   return out;
 }

@@ -110,6 +110,13 @@ Result<std::map<std::string, Material>> read_material_tables(const Node &top) {
     const Node node(*table, "material", "material." + name, top.file());
     UMOV_TRY(node.check());
     UMOV_ASSIGN(material, read_material_table(node, name));
+    if (const auto built_in = builtin_material(name);
+        built_in && material_toml(*built_in) != material_toml(material))
+      return fail(ErrorCode::BadInput,
+                  "[material." + name +
+                      "] differs from the built-in material of that name; give "
+                      "it a name of its own",
+                  place_of(key.source(), top.file()));
     out.emplace(name, material);
   }
   return out;

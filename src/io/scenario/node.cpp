@@ -73,6 +73,11 @@ Where place_of(const toml::source_region &source, const std::string &file) {
   return {file, source.begin.line, source.begin.column};
 }
 
+Where place_of(const toml::key &key, const toml::node &value, const std::string &file) {
+  const bool has_place = value.source().path != nullptr; // lost where a --set put the value
+  return place_of(has_place ? value.source() : key.source(), file);
+}
+
 Result<void> Node::check() const {
   const auto known = names_in(schema_);
   for (const auto &[key, value] : *table_) {
@@ -91,12 +96,12 @@ Result<void> Node::check() const {
       return fail(ErrorCode::BadInput,
                   fmt::format("{} is {}; {} was expected ({})", name, name_of(value),
                               to_text(spec->kind), spec->text),
-                  place_of(value.source(), file_));
+                  place_of(key, value, file_));
     if (const auto number = value.value<double>();
         number && spec->kind == Kind::Number && !std::isfinite(*number))
       return fail(ErrorCode::BadInput,
                   fmt::format("{} is {}; a finite number was expected", name, *number),
-                  place_of(value.source(), file_));
+                  place_of(key, value, file_));
   }
   return {};
 }
@@ -204,17 +209,20 @@ Result<std::string> Node::choice(const char *name, const std::string &fallback,
                                  const std::vector<std::string> &known,
                                  const std::vector<std::string> &later) const {
   const std::string given = text(name, fallback);
+  std::vector<std::string> shown; // "" stands for an absent key
+  std::copy_if(known.begin(), known.end(), std::back_inserter(shown),
+               [](const std::string &one) { return !one.empty(); });
   if (std::find(known.begin(), known.end(), given) != known.end())
     return given;
   if (std::find(later.begin(), later.end(), given) != later.end())
     return fail(ErrorCode::BadInput,
                 fmt::format("{} = \"{}\" is not built yet; this version knows {}", name, given,
-                            fmt::join(known, ", ")),
+                            fmt::join(shown, ", ")),
                 where(name));
-  const auto near = nearest_name(given, known);
+  const auto near = nearest_name(given, shown);
   return fail(ErrorCode::BadInput,
               fmt::format("{} = \"{}\" is unknown; {} was expected.{}", name, given,
-                          fmt::join(known, ", "),
+                          fmt::join(shown, ", "),
                           near ? fmt::format(" Did you mean \"{}\"?", *near) : ""),
               where(name));
 }

@@ -53,5 +53,7 @@ private:
 
 /// Place of a node or key; values of --set carry their own source name.
 Where place_of(const toml::source_region &source, const std::string &file);
+/// Place of a value; of its key where that is all one knows.
+Where place_of(const toml::key &key, const toml::node &value, const std::string &file);
 
 } // namespace umov::scenario

@@ -37,8 +37,8 @@ Result<void> override_key(toml::table &document, const std::string &text) {
     if (at == nullptr)
       return fail(ErrorCode::BadInput, origin + ": " + name + " is not a table");
   }
-  at->insert_or_assign(toml::key(key.substr(begin), toml::source_region(parsed.source())),
-                       *parsed.get("x"));
+  at->erase(key.substr(begin)); // an assignment would keep the place of the old key
+  at->insert(toml::key(key.substr(begin), toml::source_region(parsed.source())), *parsed.get("x"));
   return {};
 }
 
@@ -108,9 +108,9 @@ Result<void> read_materials(const Node &object, Scenario &out) {
     } else {
       return fail(ErrorCode::BadInput,
                   name + ": the name of a material or { front = ..., back = ... } was expected",
-                  scenario::place_of(value.source(), out.file));
+                  scenario::place_of(key, value, out.file));
     }
-    const Where where = scenario::place_of(value.source(), out.file);
+    const Where where = scenario::place_of(key, value, out.file);
     for (const std::string &side : {sides.front, sides.back})
       if (auto found = scenario::find_material(side, out); !found)
         return fail(found.error().code, found.error().text(), where);
@@ -133,7 +133,7 @@ Result<void> read_mesh(const Node &object, const fs::path &folder, Scenario &out
     return fail(ErrorCode::BadInput,
                 fmt::format("crease_deg = {}; 0 to 180 was expected", out.mesh.crease_deg),
                 mesh.where("crease_deg"));
-  out.places["object.mesh"] = object.where("mesh");
+  out.places["object.mesh"] = mesh.where("file");
   return {};
 }
 
@@ -159,7 +159,7 @@ Result<void> read_object(const Node &top, const fs::path &folder, Scenario &out)
                   orbit.where("norad"));
     out.orbit = ScenarioOrbit{(folder / orbit.text("file", "")).lexically_normal(),
                               static_cast<int>(norad)};
-    out.places["object.orbit"] = object.where("orbit");
+    out.places["object.orbit"] = orbit.where("file");
   }
   UMOV_TRY(read_mesh(object, folder, out));
   if (object.has("attitude")) {
@@ -222,6 +222,9 @@ Result<void> read_output(const Node &top, Scenario &out) {
                                       : PolarizationFrame::Equatorial;
   if (node.has("formats")) {
     UMOV_ASSIGN(formats, node.strings("formats"));
+    if (formats.empty())
+      return fail(ErrorCode::BadInput, "formats is empty; ecsv, csv or html was expected",
+                  node.where("formats"));
     for (const std::string &format : formats)
       if (format != "ecsv" && format != "csv" && format != "html")
         return fail(ErrorCode::BadInput,

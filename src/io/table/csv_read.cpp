@@ -37,8 +37,9 @@ std::optional<std::vector<Cell>> split(std::string_view line) {
 
 class Reader {
 public:
-  Reader(std::string_view text, const std::string &file, const std::vector<std::string> &required)
-      : text_(text), file_(file), required_(required), values_(required.size()) {}
+  Reader(std::string_view text, const std::string &file, const std::vector<std::string> &required,
+         const std::vector<std::string> &optional)
+      : text_(text), file_(file), required_(required), optional_(optional) {}
 
   Result<Table> read() {
     if (text_.substr(0, 3) == "\xEF\xBB\xBF")
@@ -67,15 +68,22 @@ private:
     for (const Cell &cell : cells)
       header_.push_back(cell.text);
     for (const std::string &name : required_) {
-      const auto found = std::find(header_.begin(), header_.end(), name);
-      if (found == header_.end())
+      if (std::find(header_.begin(), header_.end(), name) == header_.end())
         return missing(name);
+      taken_.push_back(name);
+    }
+    for (const std::string &name : optional_)
+      if (std::find(header_.begin(), header_.end(), name) != header_.end())
+        taken_.push_back(name);
+    for (const std::string &name : taken_) {
+      const auto found = std::find(header_.begin(), header_.end(), name);
       if (std::find(found + 1, header_.end(), name) != header_.end())
         return fail(ErrorCode::BadInput,
                     fmt::format("column \"{}\" stands twice in the header; keep one", name),
                     {file_, line_});
       place_.push_back(static_cast<std::size_t>(found - header_.begin()));
     }
+    values_.resize(taken_.size());
     return {};
   }
 
@@ -93,16 +101,16 @@ private:
           ErrorCode::BadInput,
           fmt::format("{} cells in this row; the header has {}", cells.size(), header_.size()),
           {file_, line_});
-    for (std::size_t k = 0; k < required_.size(); ++k) {
+    for (std::size_t k = 0; k < taken_.size(); ++k) {
       const Cell &cell = cells[place_[k]];
       const auto value = parse_number(cell.text);
       if (!value)
-        return fail(
-            ErrorCode::BadInput,
-            fmt::format("{} is \"{}\"; a finite number was expected", required_[k], cell.text),
-            {file_, line_, cell.column});
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} is \"{}\"; a finite number was expected", taken_[k], cell.text),
+                    {file_, line_, cell.column});
       values_[k].push_back(*value);
     }
+    lines_.push_back(static_cast<std::int64_t>(line_));
     return {};
   }
 
@@ -110,29 +118,32 @@ private:
     if (header_.empty())
       return fail(ErrorCode::BadInput,
                   "no header; the first line must name the columns " + wanted(), {file_});
-    if (!values_.empty() && values_[0].empty())
+    if (lines_.empty())
       return fail(ErrorCode::BadInput, "no rows below the header; at least one was expected",
                   {file_});
     Table out;
-    for (std::size_t k = 0; k < required_.size(); ++k)
-      out.add(required_[k], "", "", std::move(values_[k]));
+    for (std::size_t k = 0; k < taken_.size(); ++k)
+      out.add(taken_[k], "", "", std::move(values_[k]));
+    out.add("line", "", "line in the file", std::move(lines_));
     return out;
   }
 
   std::string_view text_;
   const std::string &file_;
-  const std::vector<std::string> &required_;
-  std::vector<std::string> header_;
+  const std::vector<std::string> &required_, &optional_;
+  std::vector<std::string> header_, taken_;
   std::vector<std::size_t> place_;
   std::vector<std::vector<double>> values_;
+  std::vector<std::int64_t> lines_;
   std::size_t line_ = 0;
 };
 
 } // namespace
 
 Result<Table> read_csv(std::string_view text, const std::string &file,
-                       const std::vector<std::string> &required) {
-  return Reader(text, file, required).read();
+                       const std::vector<std::string> &required,
+                       const std::vector<std::string> &optional) {
+  return Reader(text, file, required, optional).read();
 }
 
 } // namespace umov
