@@ -59,3 +59,33 @@ umov_embedded_@symbol@_end:
   set_property(SOURCE ${source} APPEND PROPERTY OBJECT_DEPENDS ${path})
   target_sources(${target} PRIVATE ${source})
 endfunction()
+
+# umov_embed_folder(TARGET SYMBOL FOLDER SUFFIX): every file of a folder in the binary;
+# `const std::vector<EmbeddedFile> &SYMBOL_files()` lists them by stem (umov/core/embedded.h).
+function(umov_embed_folder target symbol folder suffix)
+  file(GLOB files CONFIGURE_DEPENDS ${folder}/*.${suffix})
+  set(declarations "")
+  set(entries "")
+  set(index 0)
+  foreach(path IN LISTS files)
+    get_filename_component(stem ${path} NAME_WLE)
+    umov_embed(${target} ${symbol}_${index} ${path})
+    string(APPEND declarations "UMOV_EMBEDDED(${symbol}_${index})\n")
+    string(APPEND entries "      {\"${stem}\", ${symbol}_${index}()},\n")
+    math(EXPR index "${index} + 1")
+  endforeach()
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${symbol}_files.cpp)
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
+#include <umov/core/embedded.h>
+
+namespace umov {
+@declarations@
+const std::vector<EmbeddedFile> &@symbol@_files() {
+  static const std::vector<EmbeddedFile> all{
+@entries@  };
+  return all;
+}
+} // namespace umov
+]])
+  target_sources(${target} PRIVATE ${source})
+endfunction()

@@ -13,26 +13,30 @@
 namespace umov::cli {
 namespace {
 
+/// Radius of the disk that a mirror shows, as seen from 1 au.
+constexpr double solar_radius_rad = 0.2665 * pi / 180;
+
 struct BrdfOptions {
   std::string material, batch, output;
-  double wavelength_nm = 550, theta_i_deg = 0, theta_o_deg = 0, phi_deg = 0;
+  double wavelength_nm = 550, theta_i_deg = 0, theta_o_deg = 0, phi_deg = 0, azimuth_deg = 0;
   bool terms = false;
 };
 
 struct BrdfRow {
-  double wavelength_nm, theta_i_deg, theta_o_deg, phi_deg;
+  double wavelength_nm, theta_i_deg, theta_o_deg, phi_deg, azimuth_deg;
 };
 
 Result<std::vector<BrdfRow>> rows_of(const BrdfOptions &o) {
   if (o.batch.empty())
-    return std::vector<BrdfRow>{{o.wavelength_nm, o.theta_i_deg, o.theta_o_deg, o.phi_deg}};
+    return std::vector<BrdfRow>{
+        {o.wavelength_nm, o.theta_i_deg, o.theta_o_deg, o.phi_deg, o.azimuth_deg}};
   UMOV_ASSIGN(text, read_file(o.batch));
   UMOV_ASSIGN(table,
               read_csv(text, o.batch, {"wavelength_nm", "theta_i_deg", "theta_o_deg", "phi_deg"}));
   std::vector<BrdfRow> rows(table.rows());
   for (std::size_t i = 0; i < rows.size(); ++i)
     rows[i] = {table.number("wavelength_nm", i), table.number("theta_i_deg", i),
-               table.number("theta_o_deg", i), table.number("phi_deg", i)};
+               table.number("theta_o_deg", i), table.number("phi_deg", i), o.azimuth_deg};
   return rows;
 }
 
@@ -66,32 +70,31 @@ private:
   std::map<double, Surface> known_;
 };
 
-double cosine(double degrees) { // exact at the horizon, where cos(pi/2) is not
-  return degrees == 90 ? 0 : std::cos(degrees * pi / 180);
-}
-
 struct BrdfColumns {
-  std::vector<std::vector<double>> in{4}, mueller{16}, terms{2};
+  std::vector<std::vector<double>> in{4}, mueller{16}, terms{4};
 };
 
 Result<void> evaluate(const BrdfRow &row, const BrdfOptions &o, Surfaces &surfaces,
                       BrdfColumns &out) {
   UMOV_ASSIGN(surface, surfaces.at(row.wavelength_nm));
-  const double n_l = cosine(row.theta_i_deg), n_v = cosine(row.theta_o_deg);
-  const double l_v = std::clamp(n_l * n_v + std::sqrt((1 - n_l * n_l) * (1 - n_v * n_v)) *
-                                                std::cos(row.phi_deg * pi / 180),
-                                -1.0, 1.0);
-  const auto m = surface.brdf(0, n_l, n_v, l_v);
+  constexpr double rad = pi / 180;
+  SurfaceDirections at =
+      directions_from_angles(row.theta_i_deg == 90 ? pi / 2 : row.theta_i_deg * rad,
+                             row.theta_o_deg == 90 ? pi / 2 : row.theta_o_deg * rad,
+                             row.phi_deg * rad, row.azimuth_deg * rad);
+  at.disk_rad = surface.has_mirror() ? solar_radius_rad : 0;
+  const auto m = surface.brdf(0, at);
   const std::array<double, 4> in{row.wavelength_nm, row.theta_i_deg, row.theta_o_deg, row.phi_deg};
   for (std::size_t c = 0; c < 4; ++c)
     out.in[c].push_back(in[c]);
   for (std::size_t k = 0; k < 16; ++k)
     out.mueller[k].push_back(m.m[k / 4][k % 4]);
   if (o.terms) {
-    const double cosines = n_l * n_v;
-    const double body = cosines > 0 ? surface.body(0, n_l, n_v) / cosines : 0;
-    out.terms[0].push_back(m.m[0][0] - body);
-    out.terms[1].push_back(body);
+    const auto terms = surface.terms(0, at);
+    const std::array<double, 4> parts{terms.specular, terms.body, terms.interreflection,
+                                      terms.measured};
+    for (std::size_t k = 0; k < parts.size(); ++k)
+      out.terms[k].push_back(parts[k]);
   }
   return {};
 }
@@ -119,6 +122,10 @@ Result<void> run_brdf(const BrdfOptions &o, const Common &common) {
               std::move(columns.terms[0]));
     table.add("m00_body", "1 / sr", "part of m00: light scattered below the surface",
               std::move(columns.terms[1]));
+    table.add("m00_interreflection", "1 / sr", "part of m00: several microfacets",
+              std::move(columns.terms[2]));
+    table.add("m00_measured", "1 / sr", "part of m00: from a measured table",
+              std::move(columns.terms[3]));
   }
   return put_table(o.output, table, common);
 }
@@ -138,6 +145,9 @@ void add_brdf(CLI::App &app, const Exit &exit_with) {
       verb->add_option("--theta-o", o->theta_o_deg, "Observer from the normal [deg]"),
       verb->add_option("--phi", o->phi_deg,
                        "Azimuth of the observer minus that of the source [deg]: 0 = same side")};
+  verb->add_option(
+      "--azimuth", o->azimuth_deg,
+      "Azimuth of the source from the direction field of an anisotropic surface [deg]");
   auto *batch = verb->add_option(
       "--batch", o->batch, "CSV with columns wavelength_nm, theta_i_deg, theta_o_deg, phi_deg");
   for (CLI::Option *option : single)

@@ -48,6 +48,7 @@ LightCurveRequest request_of(const Scenario &scenario, const LoadedObject &objec
   request.only = scenario.time->only;
   request.attitude = scenario.attitude;
   request.frame = scenario.frame;
+  request.has_solar_disk = scenario.has_solar_disk;
   request.integration.accuracy = scenario.accuracy;
   request.integration.seed = scenario.seed;
   request.threads = static_cast<unsigned>(common.threads);

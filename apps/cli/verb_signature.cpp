@@ -23,7 +23,25 @@ struct SignatureOptions {
   std::uint64_t seed = 0;
   bool has_seed = false;
   double accuracy = 0;
+  std::string source = "sun";
+  std::vector<double> state{1, 0, 0, 0};
 };
+
+/// Radius of the Sun's disk seen from 1 au: a signature has no distance.
+constexpr double solar_radius_rad = 0.2665 * pi / 180;
+
+/// Stokes vector of the source per unit irradiance.
+Result<Stokes<ScatteringPlane>> source_of(const SignatureOptions &o) {
+  const Stokes<ScatteringPlane> s{o.state[0], o.state[1], o.state[2], o.state[3]};
+  const double polarized = std::sqrt(s.q * s.q + s.u * s.u + s.v * s.v);
+  if (o.source == "sun" && polarized > 0)
+    return fail(ErrorCode::Usage, "--state goes with --source laser; sunlight is unpolarized");
+  if (!(s.i > 0) || !(polarized <= s.i * (1 + 1e-12)))
+    return fail(ErrorCode::Usage,
+                fmt::format("--state {} {} {} {}: I > 0 and sqrt(Q2 + U2 + V2) <= I were expected",
+                            s.i, s.q, s.u, s.v));
+  return s * (1 / s.i);
+}
 
 /// A direction of any length but 0, from three columns.
 Result<Vec3<Body>> direction_from(const Table &table, const std::string &name, std::size_t row,
@@ -78,6 +96,14 @@ Result<std::vector<Pose>> poses_of(const SignatureOptions &o, std::uint64_t seed
   }
   return poses;
 }
+
+/// Where the model of an active source falls short (explicit rough surfaces, docs/theory/lobes.md).
+constexpr const char *laser_limits =
+    "One reflection keeps the degree of polarization; light between microfacets is depolarized or "
+    "keeps the single-bounce form, while explicit rough surfaces (slope 0.6, backscatter) "
+    "depolarize "
+    "circular light about twice as fast as linear. For very rough metals near retro-reflection the "
+    "double bounce is understated.";
 
 /// Columns that grow by one row per pose and band.
 struct SignatureColumns {
@@ -151,12 +177,18 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
                            Diagnostics &diagnostics) {
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
   const std::uint64_t seed = o.has_seed ? o.seed : scenario.seed;
+  UMOV_ASSIGN(source, source_of(o));
   UMOV_ASSIGN(poses, poses_of(o, seed));
-  UMOV_ASSIGN(object, load_object(scenario, {.allow_old_elements = true}, diagnostics));
+  const bool is_sun = o.source == "sun";
+  for (Pose &pose : poses)
+    pose.sun_radius_rad = is_sun && scenario.has_solar_disk ? solar_radius_rad : 0;
+  UMOV_ASSIGN(object, load_object(scenario, {.allow_old_elements = true, .source_is_sun = is_sun},
+                                  diagnostics));
   const Integrator integrator(object.scene);
   IntegrationOptions options;
   options.accuracy = o.accuracy > 0 ? o.accuracy : scenario.accuracy;
   options.seed = seed;
+  options.source = source;
   SignatureColumns columns;
   ProgressBar bar("poses", common);
   constexpr std::size_t block = 512; // the grain of progress
@@ -175,6 +207,12 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
     bar.update(done, poses.size());
   }
   Table table = std::move(columns).table();
+  table.note("source", is_sun ? (scenario.has_solar_disk ? "Sun, uniform disk of 0.2665 deg radius"
+                                                         : "Sun, a point")
+                              : fmt::format("laser, Stokes {} {} {} {} in the scattering frame",
+                                            source.i, source.q, source.u, source.v));
+  if (!is_sun)
+    table.note("limits", laser_limits);
   if (done == poses.size())
     return put_table(o.output, table, common);
   return tl::unexpected(put_partial_table(
@@ -204,6 +242,14 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
   geometry->excludes(poses)->excludes(phase);
   poses->needs(phase);
   phase->needs(poses);
+  verb->add_option(
+          "--source", o->source,
+          "sun, or laser: a point source of any polarization; give its wavelength as the band")
+      ->check(CLI::IsMember({"sun", "laser"}))
+      ->capture_default_str();
+  verb->add_option("--state", o->state,
+                   "Laser: Stokes I Q U V of the incoming light in the scattering frame")
+      ->expected(4);
   auto *seed = verb->add_option("--seed", o->seed, "Of the random poses; default: the scenario's");
   verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
   verb->add_option("--accuracy", o->accuracy, "Relative 95 % half-width asked of I")

@@ -12,6 +12,91 @@ template <class R> inline R blinn_phong(R n_h, R m) {
   return (m + R(2)) / R(2 * std::numbers::pi) * power(n_h, m);
 }
 
+/// Blinn-Phong D averaged over half vectors with variances kappa1, kappa2 along two axes on which
+/// the normal has the squared coordinates x2, y2: D is a Gaussian there, so the product is one
+/// again.
+template <class R> inline R blinn_phong_spread(R n_h, R x2, R y2, R m, R kappa1, R kappa2) {
+  const R p = m * kappa1, q = m * kappa2;
+  const R growth = m / R(2) * (x2 * p / (R(1) + p) + y2 * q / (R(1) + q));
+  return blinn_phong(n_h, m) * std::exp(growth) / std::sqrt((R(1) + p) * (R(1) + q));
+}
+
+/// Beckmann D = exp(-tan^2/a^2)/(pi a^2 cos^4) (Walter et al. 2007).
+template <class R> inline R beckmann(R n_h, R alpha) {
+  const R c2 = std::max(n_h * n_h, R(1e-30)), a2 = alpha * alpha;
+  return std::exp(-(R(1) - c2) / (c2 * a2)) / (R(std::numbers::pi) * a2 * c2 * c2);
+}
+
+/// Smith's G1 of Beckmann: 1/(1 + L), L = (erf(a) - 1)/2 + exp(-a^2)/(2 a sqrt(pi)).
+template <class R> inline R beckmann_masking(R n_k, R alpha) {
+  const R sine = std::sqrt(std::max(R(0), (R(1) - n_k) * (R(1) + n_k)));
+  const R a = n_k / std::max(alpha * sine, R(1e-30));
+  const R root_pi = R(1.7724538509055160);
+  const R lambda = std::exp(-a * a) / (R(2) * a * root_pi) - std::erfc(a) / R(2);
+  return select(n_k > R(0), R(1) / (R(1) + std::max(R(0), lambda)), R(0));
+}
+
+/// 2 pi int of Beckmann's D sin(theta) from theta on, with z = 1/(a cos): int 2 z^2 exp(1/a^2 -
+/// z^2) dz = exp(1/a^2) (z exp(-z^2) + sqrt(pi)/2 erfc(z)) a, written without the large factors.
+template <class R> inline R beckmann_beyond(R cos_theta, R alpha) {
+  const R c = std::max(cos_theta, R(1e-9));
+  const R z = R(1) / (alpha * c);
+  const R tail = std::exp(-(R(1) - c) * (R(1) + c) / (c * c * alpha * alpha));
+  // exp(z^2) erfc(z) by its continued fraction for large z (Abramowitz & Stegun 7.1.14).
+  const R root_pi = R(1.7724538509055160);
+  R scaled = R(0);
+  if (z < R(5)) {
+    scaled = std::exp(z * z) * std::erfc(z);
+  } else {
+    R fraction = R(0);
+    for (int k = 24; k >= 1; --k)
+      fraction = R(k) / R(2) / (z + fraction);
+    scaled = R(1) / (root_pi * (z + fraction));
+  }
+  return alpha * tail * (z + root_pi / R(2) * scaled);
+}
+
+/// GGX D = a^2/(pi (cos^2 (a^2 - 1) + 1)^2) (Walter et al. 2007).
+template <class R> inline R ggx(R n_h, R alpha) {
+  const R a2 = alpha * alpha;
+  // 1 - cos^2 (1 - a^2) as sin^2 + a^2 cos^2: no cancellation for small a.
+  const R f = (R(1) - n_h) * (R(1) + n_h) + a2 * n_h * n_h;
+  return a2 / (R(std::numbers::pi) * f * f);
+}
+
+/// Smith's G1 of GGX: 2/(1 + sqrt(1 + a^2 tan^2)).
+template <class R> inline R ggx_masking(R n_k, R alpha) {
+  const R s2 = (R(1) - n_k) * (R(1) + n_k);
+  return R(2) * n_k / (n_k + std::sqrt(n_k * n_k + alpha * alpha * s2));
+}
+
+/// 2 pi int of GGX's D sin(theta) from theta on: int_0^c 2 a^2/(1 - (1 - a^2) x^2)^2 dx.
+template <class R> inline R ggx_beyond(R cos_theta, R alpha) {
+  const R a2 = alpha * alpha, b2 = R(1) - a2, c = cos_theta;
+  const R f = (R(1) - c) * (R(1) + c) + a2 * c * c; // 1 - b2 c^2
+  const R b = std::sqrt(std::abs(b2));
+  R angle = c; // limit at b = 0
+  if (b > R(1e-4))
+    angle = b2 > R(0) ? std::log((R(1) + b * c) * (R(1) + b * c) / f) / (R(2) * b)
+                      : std::atan(b * c) / b;
+  return a2 * (c / f + angle);
+}
+
+/// Ashikhmin & Shirley 2000 with the normalisation of D; x2, y2: squared components of h along and
+/// across the direction field.
+template <class R> inline R ashikhmin_shirley(R n_h, R x2, R y2, R nu, R nv) {
+  const R across = x2 + y2;
+  const R m = select(across > R(0), (nu * x2 + nv * y2) / std::max(across, R(1e-37)), nu);
+  return std::sqrt((nu + R(2)) * (nv + R(2))) / R(2 * std::numbers::pi) * power(n_h, m);
+}
+
+/// Lagrange's cubic through four equal steps v[0..3], at t steps past v[1].
+template <class R> inline R cubic(const R *v, R t) {
+  const R a = t + R(1), b = t, c = t - R(1), d = t - R(2);
+  return -v[0] * b * c * d / R(6) + v[1] * a * c * d / R(2) - v[2] * a * b * d / R(2) +
+         v[3] * a * b * c / R(6);
+}
+
 /// <n.h> of the paper's density (Eq. 11): (m+1)/(m+2).
 template <class R> inline R mean_cosine(R m) { return (m + R(1)) / (m + R(2)); }
 

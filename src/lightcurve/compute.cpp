@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <umov/core/constants.h>
 #include <umov/core/parallel.h>
 #include <umov/photometry/radiometry.h>
 
@@ -155,8 +156,10 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
   LightCurveEpoch &epoch = curve.epochs[row];
   epoch.geometry = geometry;
   epoch.body_from_gcrs = quaternion_from(body_from_gcrs);
-  epoch.pose = {normalized(body_from_gcrs * geometry.to_sun),
-                normalized(body_from_gcrs * geometry.to_observer)};
+  epoch.pose = {
+      normalized(body_from_gcrs * geometry.to_sun),
+      normalized(body_from_gcrs * geometry.to_observer),
+      request.has_solar_disk ? std::asin(constants::sun_radius_km / geometry.sun_distance_km) : 0};
   epoch.airmass = airmass(geometry.altitude);
   epoch.pass_id = pass_id;
   epoch.elset_age_days = clock_days_between(geometry.time, request.elements.epoch);

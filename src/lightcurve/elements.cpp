@@ -103,11 +103,11 @@ SideSlots slots_of(const Triangle &t, VisibleSides sides) {
 }
 
 double turn_limit(const Scene &scene, SideSlots slots) {
-  double exponent = 0;
+  double width = 1;
   for (const std::uint32_t slot : {slots.front, slots.back})
     if (slot != no_index)
-      exponent = std::max(exponent, surface_of_slot(scene, slot).material().exponent);
-  return std::min(element_turn_max_rad, element_turn_in_lobes / std::sqrt(exponent + 2));
+      width = std::min(width, surface_of_slot(scene, slot).width());
+  return std::clamp(element_turn_in_lobes * width, element_turn_min_rad, element_turn_max_rad);
 }
 
 /// Unit normals at the corners; the winding is right where a vertex normal contradicts it.

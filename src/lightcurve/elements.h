@@ -39,10 +39,14 @@ struct Elements {
   double size_m = 0;              ///< diagonal of the bounding box
 };
 
-/// Largest turn of the normal over one element, in standard deviations of the lobe 1/sqrt(m + 2).
+/// Largest turn of the normal over one element, in standard deviations of the lobe's slope.
 inline constexpr double element_turn_in_lobes = 1.0;
 /// The same for broad lobes [rad]: the body lobe and the terminator vary on this scale.
 inline constexpr double element_turn_max_rad = 0.09;
+
+/// Elements are not cut finer than this [rad] before the pose is known: a lobe narrower than that
+/// lights few of them, which are cut further then.
+inline constexpr double element_turn_min_rad = 0.02;
 
 Elements make_elements(const Scene &scene, const std::vector<VisibleSides> &sides);
 

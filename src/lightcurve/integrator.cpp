@@ -39,7 +39,7 @@ PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &opti
   const Scene &scene = state_->scene;
   const std::size_t bands = scene.bands.size(), groups = scene.mesh.groups.size();
   const PoseGeometry geometry = geometry_of(pose);
-  const LitElements lit = light_elements(scene, state_->elements, geometry);
+  const LitElements lit = light_elements(scene, state_->elements, geometry, options.source);
   const VisibleSums sums =
       state_->is_convex
           ? sum_unhidden(scene, lit)
@@ -52,15 +52,22 @@ PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &opti
   for (std::size_t b = 0; b < bands; ++b) {
     BandResult &band = out.bands[b];
     for (std::size_t slot = 0; slot < 2 * groups; ++slot) {
-      const FresnelFactors f = lit.fresnel[slot * bands + b];
-      const double i = f.a * sums.specular[slot] + sums.body[slot * bands + b];
-      band.stokes.i += i;
-      band.stokes.q += f.b * sums.specular[slot];
-      out.group_intensity[group_of_slot(static_cast<std::uint32_t>(slot)) * bands + b] += i;
+      const Stokes<ScatteringPlane> light =
+          lit.fresnel[slot * bands + b] * sums.specular[slot * lit.lobes + lit.lobe_of(b)] +
+          sums.diffuse[slot * bands + b];
+      band.stokes += light;
+      out.group_intensity[group_of_slot(static_cast<std::uint32_t>(slot)) * bands + b] += light.i;
     }
     const double floor = rounding * band.stokes.i;
-    band.half_width.i = sums.half_width_i[b] + lit.rule_error_i[b] + floor;
-    band.half_width.q = sums.half_width_q[b] + lit.rule_error_q[b] + floor;
+    band.half_width = sums.half_width[b] + lit.rule_error[b];
+    band.half_width.i += floor;
+    band.half_width.q += floor;
+    if (lit.has_u_or_v) {
+      band.half_width.u += floor;
+      band.half_width.v += floor;
+    }
+    if (!geometry.has_plane && options.source.q == 0 && options.source.u == 0)
+      band.stokes.q = band.stokes.u = 0;
   }
   if (bands > 0 && out.bands[0].stokes.i > 0)
     out.glint_share = sums.glint / out.bands[0].stokes.i;

@@ -26,9 +26,9 @@ constexpr double decay = 1.5;
 double worst_relative(const VisibleSums &sums) {
   double worst = 0;
   for (std::size_t b = 0; b < sums.intensity.size(); ++b) {
-    if (sums.half_width_i[b] <= 0)
+    if (sums.half_width[b].i <= 0)
       continue;
-    worst = std::max(worst, sums.intensity[b] > 0 ? sums.half_width_i[b] / sums.intensity[b]
+    worst = std::max(worst, sums.intensity[b] > 0 ? sums.half_width[b].i / sums.intensity[b]
                                                   : std::numeric_limits<double>::infinity());
   }
   return worst;
@@ -164,20 +164,20 @@ private:
 } // namespace
 
 VisibleSums sum_unhidden(const Scene &scene, const LitElements &lit) {
-  const std::size_t bands = scene.bands.size();
+  const std::size_t bands = scene.bands.size(), slots = 2 * scene.mesh.groups.size();
   VisibleSums out;
-  out.specular.assign(2 * scene.mesh.groups.size(), 0);
-  out.body.assign(2 * scene.mesh.groups.size() * bands, 0);
+  out.specular.assign(slots * lit.lobes, 0);
+  out.diffuse.resize(slots * bands);
   for (const LitElement &e : lit.list) {
-    out.specular[e.slot] += e.specular;
+    for (std::size_t k = 0; k < lit.lobes; ++k)
+      out.specular[e.slot * lit.lobes + k] += lit.specular[e.specular_at + k];
     if (e.is_glint)
-      out.glint += lit.fresnel[e.slot * bands].a * e.specular;
+      out.glint += lit.fresnel[e.slot * bands].i * lit.specular[e.specular_at];
     for (std::size_t b = 0; b < bands; ++b)
-      out.body[e.slot * bands + b] += lit.body[e.body_at + b];
+      out.diffuse[e.slot * bands + b] += lit.diffuse[e.diffuse_at + b];
   }
   out.intensity = lit.total;
-  out.half_width_i.assign(bands, 0);
-  out.half_width_q.assign(bands, 0);
+  out.half_width.resize(bands);
   out.is_any_seen = !lit.list.empty();
   return out;
 }

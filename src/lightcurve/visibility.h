@@ -9,11 +9,11 @@ namespace umov {
 
 /// What is lit and seen at the same point, with its sampling variance.
 struct VisibleSums {
-  std::vector<double> specular;  ///< per slot: integral of D G / 4 [m2/sr]
-  std::vector<double> body;      ///< [slot * bands + band] [m2/sr]
-  double glint = 0;              ///< part of `specular` times A in band 0 from flats in glint
+  std::vector<double> specular; ///< [slot * lobes + lobe]: integral of D G / 4 [m2/sr]
+  std::vector<Stokes<ScatteringPlane>> diffuse; ///< [slot * bands + band] [m2/sr]
+  double glint = 0;              ///< part of the reflected light in band 0 from flats in glint
   std::vector<double> intensity; ///< per band [m2/sr]
-  std::vector<double> half_width_i, half_width_q; ///< 95 %, sampling alone
+  std::vector<Stokes<ScatteringPlane>> half_width; ///< per band, 95 %, sampling alone
   std::uint64_t points = 0, rays = 0;
   bool is_any_seen = false;
 };

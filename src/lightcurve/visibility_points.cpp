@@ -35,8 +35,7 @@ std::array<double, 2> point_in_cell(std::size_t cuts, std::size_t cell, double x
 }
 
 Vec3<Body> ray_origin(const Scene &scene, const Elements &elements, const LitElement &lit,
-                      std::array<double, 2> point) {
-  const Element &e = elements.list[lit.element];
+                      const Element &e, std::array<double, 2> point) {
   const Mesh &mesh = scene.mesh;
   const Triangle &t = mesh.triangles[e.triangle];
   const double side = static_cast<double>(lit.side);

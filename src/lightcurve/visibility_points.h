@@ -14,6 +14,6 @@ std::array<double, 2> point_in_cell(std::size_t cuts, std::size_t cell, double x
 /// normals describe (Hanika 2021, "Hacking the shadow terminator") and 1e-5 of the size further,
 /// on the side that is seen.
 Vec3<Body> ray_origin(const Scene &scene, const Elements &elements, const LitElement &lit,
-                      std::array<double, 2> point);
+                      const Element &e, std::array<double, 2> point);
 
 } // namespace umov

@@ -12,11 +12,6 @@ namespace {
 /// Points traced together: enough for packets, little memory.
 constexpr std::size_t batch_points = 8192;
 
-/// A point's weight in the specular and in the body integral of its block.
-struct PointWeight {
-  double specular = 0, body = 0;
-};
-
 /// Two-sided variance bookkeeping of one kind of result in one band.
 struct Variance {
   double sum = 0, squares = 0; ///< of the variances of the cells
@@ -46,10 +41,11 @@ public:
           const PoseGeometry &pose, const LitElements &lit, std::uint64_t seed,
           std::uint32_t stream)
       : scene_(scene), elements_(elements), occluder_(occluder), pose_(pose), lit_(lit),
-        seed_(seed), stream_(stream), bands_(scene.bands.size()), variance_i_(bands_),
-        variance_q_(bands_), block_body_(bands_) {
-    out_.sums.specular.assign(2 * scene.mesh.groups.size(), 0);
-    out_.sums.body.assign(2 * scene.mesh.groups.size() * bands_, 0);
+        seed_(seed), stream_(stream), bands_(scene.bands.size()), lobes_(lit.lobes),
+        kinds_(lit.lobes + 1), variance_(bands_), block_specular_(lobes_), block_diffuse_(bands_),
+        ratio_(kinds_), weight_sum_(kinds_) {
+    out_.sums.specular.assign(2 * scene.mesh.groups.size() * lobes_, 0);
+    out_.sums.diffuse.resize(2 * scene.mesh.groups.size() * bands_);
     out_.sums.intensity.assign(bands_, 0);
   }
 
@@ -82,8 +78,9 @@ private:
         const LitElement &lit = lit_.list[pick(block, choice[k])];
         const auto point =
             point_in_cell(std::max<std::size_t>(1, block.cuts), cell, u[2 * k], u[2 * k + 1]);
-        origins_.push_back(ray_origin(scene_, elements_, lit, point));
-        weights_.push_back(weigh(lit, point));
+        origins_.push_back(
+            ray_origin(scene_, elements_, lit, element_of(elements_, lit_, lit), point));
+        weigh(lit, point);
       }
     }
   }
@@ -103,18 +100,26 @@ private:
     return block.last - 1;
   }
 
-  [[nodiscard]] PointWeight weigh(const LitElement &lit, std::array<double, 2> p) const {
-    const Element &e = elements_.list[lit.element];
-    if (e.is_flat)
-      return {lit.specular / lit.share, lit.projected / lit.share};
+  /// A point's weights in its block's integrals: each lobe's, then that of diffuse light.
+  void weigh(const LitElement &lit, std::array<double, 2> p) {
+    const Element &e = element_of(elements_, lit_, lit);
+    if (e.is_flat) {
+      for (std::size_t k = 0; k < lobes_; ++k)
+        weights_.push_back(lit_.specular[lit.specular_at + k] / lit.share);
+      weights_.push_back(lit.projected / lit.share);
+      return;
+    }
     const Vec3<Body> n = shading_normal(e, 1 - p[0] - p[1], p[0], p[1]);
-    const double side = static_cast<double>(lit.side);
-    const double n_l = side * dot(n, pose_.sun), n_v = side * dot(n, pose_.observer);
-    if (!(n_l > 0 && n_v > 0))
-      return {};
+    const SurfaceDirections at =
+        directions_at(scene_, pose_, e, lit.slot, static_cast<double>(lit.side) * n);
+    if (!(at.l.z > 0 && at.v.z > 0)) {
+      weights_.insert(weights_.end(), kinds_, 0.0);
+      return;
+    }
     const double scale = e.area_m2 / lit.share;
-    return {scale * surface_of_slot(scene_, lit.slot).specular(n_l, n_v, pose_.cos_phase),
-            scale * n_l * n_v};
+    for (std::size_t k = 0; k < lobes_; ++k)
+      weights_.push_back(scale * surface_of_slot(scene_, lit.slot).specular(k, at));
+    weights_.push_back(scale * at.l.z * at.v.z);
   }
 
   /// free_[i]: both directions are free at the same point.
@@ -138,87 +143,97 @@ private:
   std::size_t finish(Block &block, std::size_t at) {
     const std::size_t count = 2 * block.cells();
     const std::size_t slot = sum_block(block);
-    double specular = 0, specular_all = 0, body = 0, body_all = 0, seen = 0;
+    double seen = 0;
+    std::fill(ratio_.begin(), ratio_.end(), 0.0);
+    std::fill(weight_sum_.begin(), weight_sum_.end(), 0.0);
     for (std::size_t i = at; i < at + count; ++i) {
       const double v = free_[i] != 0 ? 1 : 0;
       seen += v;
-      specular += v * weights_[i].specular;
-      specular_all += weights_[i].specular;
-      body += v * weights_[i].body;
-      body_all += weights_[i].body;
+      for (std::size_t k = 0; k < kinds_; ++k) {
+        ratio_[k] += v * weights_[i * kinds_ + k];
+        weight_sum_[k] += weights_[i * kinds_ + k];
+      }
     }
-    const double plain = seen / static_cast<double>(count);
-    const double ratio_s = specular_all > 0 ? specular / specular_all : plain;
-    const double ratio_d = body_all > 0 ? body / body_all : plain;
+    for (std::size_t k = 0; k < kinds_; ++k)
+      ratio_[k] =
+          weight_sum_[k] > 0 ? ratio_[k] / weight_sum_[k] : seen / static_cast<double>(count);
     out_.sums.is_any_seen = out_.sums.is_any_seen || seen > 0;
-    out_.sums.specular[slot] += ratio_s * block_specular_;
-    out_.sums.glint += ratio_s * block_glint_;
+    for (std::size_t k = 0; k < lobes_; ++k)
+      out_.sums.specular[slot * lobes_ + k] += ratio_[k] * block_specular_[k];
+    out_.sums.glint += ratio_[0] * block_glint_;
+    const double cells = static_cast<double>(block.cells());
     for (std::size_t b = 0; b < bands_; ++b) {
-      out_.sums.body[slot * bands_ + b] += ratio_d * block_body_[b];
-      const FresnelFactors f = lit_.fresnel[slot * bands_ + b];
-      const double all = f.a * block_specular_ + block_body_[b];
-      const double cells = static_cast<double>(block.cells());
-      out_.sums.intensity[b] += f.a * block_specular_ * ratio_s + block_body_[b] * ratio_d;
-      variance_i_[b].weight2 += all * all / cells;
-      variance_q_[b].weight2 += f.b * f.b * block_specular_ * block_specular_ / cells;
+      const std::size_t lobe = lit_.lobe_of(b);
+      out_.sums.diffuse[slot * bands_ + b] += block_diffuse_[b] * ratio_[lobes_];
+      const Stokes<ScatteringPlane> f = lit_.fresnel[slot * bands_ + b];
+      const Stokes<ScatteringPlane> all = f * block_specular_[lobe] + block_diffuse_[b];
+      out_.sums.intensity[b] +=
+          f.i * block_specular_[lobe] * ratio_[lobe] + block_diffuse_[b].i * ratio_[lobes_];
+      const std::array<double, 4> parts{all.i, all.q, all.u, all.v};
+      for (std::size_t k = 0; k < 4; ++k)
+        variance_[b][k].weight2 += parts[k] * parts[k] / cells;
       if (lit_.total[b] > 0)
         block.weight2 +=
-            all * all /
+            all.i * all.i /
             (cells * cells * lit_.total[b] * lit_.total[b] * static_cast<double>(bands_));
     }
-    cells_ += static_cast<double>(block.cells());
+    cells_ += cells;
     if (seen > 0 && seen < static_cast<double>(count))
-      add_variance(block, at, slot, {ratio_s, ratio_d}, {specular_all, body_all});
+      add_variance(block, at, slot);
     return at + count;
   }
 
   /// Adds the light of the block's elements up; returns their common slot.
   std::size_t sum_block(const Block &block) {
-    block_specular_ = block_glint_ = 0;
-    std::fill(block_body_.begin(), block_body_.end(), 0.0);
+    std::fill(block_specular_.begin(), block_specular_.end(), 0.0);
+    std::fill(block_diffuse_.begin(), block_diffuse_.end(), Stokes<ScatteringPlane>{});
+    block_glint_ = 0;
     const std::size_t slot = lit_.list[block.first].slot;
     for (std::size_t i = block.first; i < block.last; ++i) {
       const LitElement &lit = lit_.list[i];
-      block_specular_ += lit.specular;
+      for (std::size_t k = 0; k < lobes_; ++k)
+        block_specular_[k] += lit_.specular[lit.specular_at + k];
       if (lit.is_glint)
-        block_glint_ += lit_.fresnel[slot * bands_].a * lit.specular;
+        block_glint_ += lit_.fresnel[slot * bands_].i * lit_.specular[lit.specular_at];
       for (std::size_t b = 0; b < bands_; ++b)
-        block_body_[b] += lit_.body[lit.body_at + b];
+        block_diffuse_[b] += lit_.diffuse[lit.diffuse_at + b];
     }
     return slot;
   }
 
-  void add_variance(Block &block, std::size_t at, std::size_t slot, PointWeight ratio,
-                    PointWeight all) {
-    const auto residual = [](double w, double v, double r, double sum) {
-      return sum > 0 ? w * (v - r) / sum : 0.0;
-    };
+  /// The ratio estimators' residuals of the two points of each cell.
+  void add_variance(Block &block, std::size_t at, std::size_t slot) {
+    std::vector<double> difference(kinds_);
     for (std::size_t i = at; i < at + 2 * block.cells(); i += 2) {
-      std::array<double, 2> s{}, d{};
-      for (std::size_t k = 0; k < 2; ++k) {
-        const double v = free_[i + k] != 0 ? 1 : 0;
-        s[k] = residual(weights_[i + k].specular, v, ratio.specular, all.specular);
-        d[k] = residual(weights_[i + k].body, v, ratio.body, all.body);
+      for (std::size_t k = 0; k < kinds_; ++k) {
+        const auto residual = [&](std::size_t point) {
+          const double v = free_[point] != 0 ? 1 : 0;
+          return weight_sum_[k] > 0
+                     ? weights_[point * kinds_ + k] * (v - ratio_[k]) / weight_sum_[k]
+                     : 0.0;
+        };
+        difference[k] = residual(i) - residual(i + 1);
       }
       for (std::size_t b = 0; b < bands_; ++b) {
-        const FresnelFactors f = lit_.fresnel[slot * bands_ + b];
-        const double ds = block_specular_ * (s[0] - s[1]);
-        const double di = f.a * ds + block_body_[b] * (d[0] - d[1]);
-        variance_i_[b].add(di * di);
-        variance_q_[b].add(f.b * f.b * ds * ds);
+        const std::size_t lobe = lit_.lobe_of(b);
+        const Stokes<ScatteringPlane> d =
+            lit_.fresnel[slot * bands_ + b] * (block_specular_[lobe] * difference[lobe]) +
+            block_diffuse_[b] * difference[lobes_];
+        const std::array<double, 4> parts{d.i, d.q, d.u, d.v};
+        for (std::size_t k = 0; k < 4; ++k)
+          variance_[b][k].add(parts[k] * parts[k]);
         if (lit_.total[b] > 0)
           block.spread +=
-              di * di /
+              d.i * d.i /
               (lit_.total[b] * lit_.total[b] * static_cast<double>(bands_ * block.cells()));
       }
     }
   }
 
   void close() {
-    for (std::size_t b = 0; b < bands_; ++b) {
-      out_.sums.half_width_i.push_back(variance_i_[b].half_width(cells_));
-      out_.sums.half_width_q.push_back(variance_q_[b].half_width(cells_));
-    }
+    for (const auto &band : variance_)
+      out_.sums.half_width.push_back({band[0].half_width(cells_), band[1].half_width(cells_),
+                                      band[2].half_width(cells_), band[3].half_width(cells_)});
   }
 
   const Scene &scene_;
@@ -228,15 +243,17 @@ private:
   const LitElements &lit_;
   std::uint64_t seed_;
   std::uint32_t stream_;
-  std::size_t bands_;
+  std::size_t bands_, lobes_, kinds_; ///< kinds of weights: lobes, and diffuse light
   std::uint64_t pair_ = 0;
   double cells_ = 0;
-  std::vector<Variance> variance_i_, variance_q_;
+  std::vector<std::array<Variance, 4>> variance_; ///< per band: I, Q, U, V
   std::vector<Vec3<Body>> origins_, lit_origins_;
-  std::vector<PointWeight> weights_;
+  std::vector<double> weights_; ///< [point * kinds + kind]
   std::vector<unsigned char> free_, seen_;
-  double block_specular_ = 0, block_glint_ = 0;
-  std::vector<double> block_body_;
+  std::vector<double> block_specular_; ///< per lobe
+  std::vector<Stokes<ScatteringPlane>> block_diffuse_;
+  std::vector<double> ratio_, weight_sum_; ///< per kind: visible share, sum of weights
+  double block_glint_ = 0;
   Measurement out_;
 };
 

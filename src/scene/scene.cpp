@@ -8,17 +8,6 @@
 namespace umov {
 namespace {
 
-bool is_same(const Material &a, const Material &b) {
-  if (a.name != b.name || a.exponent != b.exponent || a.shadowing != b.shadowing ||
-      a.body.has_value() != b.body.has_value())
-    return false;
-  if (a.body && (a.body->wavelength_nm != b.body->wavelength_nm ||
-                 a.body->reflectance != b.body->reflectance))
-    return false;
-  return a.index.name == b.index.name && a.index.wavelength_nm == b.index.wavelength_nm &&
-         a.index.eta == b.index.eta;
-}
-
 /// Compiles each distinct material once; copies of a Surface share their tables.
 class SurfaceCache {
 public:
@@ -26,7 +15,7 @@ public:
 
   Result<Surface> compile(const Material &material) {
     for (const Surface &known : surfaces_)
-      if (is_same(known.material(), material))
+      if (known.material() == material)
         return known;
     UMOV_ASSIGN(surface, Surface::compile(material, bands_));
     surfaces_.push_back(surface);
@@ -83,8 +72,36 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
     scene.front.push_back(front_surface);
     UMOV_ASSIGN(back_surface, cache.compile(back[g]));
     scene.back.push_back(back_surface);
+    for (const Surface *surface : {&front_surface, &back_surface})
+      if (surface->is_anisotropic() && !surface->material().direction &&
+          scene.mesh.tangents.empty())
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("material \"{}\" needs a direction field: say direction = \"+X\" (a "
+                        "body axis) or give the mesh texture coordinates",
+                        surface->material().name));
   }
   return scene;
+}
+
+Vec3<Body> direction_field(const Mesh &mesh, const Surface &surface, std::size_t triangle) {
+  if (!surface.is_anisotropic())
+    return {};
+  if (surface.material().direction)
+    return *surface.material().direction;
+  return triangle < mesh.tangents.size() ? mesh.tangents[triangle] : Vec3<Body>{};
+}
+
+SurfaceDirections directions_on(Vec3<Body> normal, Vec3<Body> field, Vec3<Body> to_source,
+                                Vec3<Body> to_observer, double cos_phase, double disk_rad) {
+  Vec3<Body> x = field - dot(field, normal) * normal;
+  const double length = norm(x);
+  x = length > 1e-9 ? x / length : any_perpendicular(normal);
+  const Vec3<Body> y = cross(normal, x);
+  return {{dot(to_source, x), dot(to_source, y), dot(to_source, normal)},
+          {dot(to_observer, x), dot(to_observer, y), dot(to_observer, normal)},
+          cos_phase,
+          disk_rad};
 }
 
 } // namespace umov

@@ -102,6 +102,8 @@ Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string
     if (pairs.partner[i] == i) {
       place[i] = static_cast<std::uint32_t>(out.triangles.size());
       out.triangles.push_back(mesh.triangles[i]);
+      if (!mesh.tangents.empty())
+        out.tangents.push_back(mesh.tangents[i]);
     } else if (pairs.is_opposite[i]) {
       out.triangles[place[pairs.partner[i]]].back = mesh.triangles[i].front;
     }

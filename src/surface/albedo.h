@@ -1,35 +1,36 @@
 #pragma once
-// Private: what the specular lobe reflects in all, and the body lobe that takes the rest.
+// Private: what the microfacet lobe reflects in all.
 
-#include <complex>
+#include "surface/lobe.h"
+
 #include <functional>
 #include <vector>
 
 namespace umov {
 
-/// D G2 / 4 as a function of n.l, n.v, l.v and n.h. The last follows from the others, but not to
-/// the 1/m that D needs near grazing.
-using SpecularWeight = std::function<double(double, double, double, double)>;
+/// Reflectance of a microfacet for unpolarized light at an incidence with that cosine; empty for
+/// F = 1 (white furnace).
+using FacetReflectance = std::function<double(double)>;
 
-/// Fraction of the light from a direction with cosine n_k that one reflection sends out; `eta` null
-/// for F = 1 (white furnace). n_k in [0, 1]; the limit is taken at 0.
-double directional_albedo(double n_k, double exponent, const std::complex<double> *eta,
-                          const SpecularWeight &weight);
+/// Fraction of the light from a direction with cosine n_k that one reflection sends out, for an
+/// isotropic distribution. n_k in [0, 1]; the limit is taken at 0.
+double directional_albedo(double n_k, const MicrofacetLobe &lobe, const FacetReflectance &facet);
+/// The same for any distribution and the direction k.
+double directional_albedo(Vec3<Facet> k, const MicrofacetLobe &lobe, const FacetReflectance &facet);
 
-/// The paper's body lobe (Eq. 16 with its factor fixed by energy):
-/// f_b = R_sub (1-R(l)) (1-R(v)) / (pi (1-Rbar)), R(k) the specular albedo, Rbar = 2 int R mu dmu.
-class BodyTable {
+/// Directional albedos of an isotropic lobe against sqrt(n.k), and their mean 2 int R mu dmu.
+class AlbedoTable {
 public:
-  BodyTable(double reflectance, double exponent, std::complex<double> eta,
-            const SpecularWeight &weight);
-  /// f_b (n.l)(n.v).
-  [[nodiscard]] double operator()(double n_l, double n_v) const;
+  AlbedoTable() = default;
+  /// `more`: what else the surface sends out, against n.k, added to the lobe's.
+  AlbedoTable(const MicrofacetLobe &lobe, const FacetReflectance &facet,
+              const FacetReflectance &more = {});
+  [[nodiscard]] double operator()(double n_k) const;
+  [[nodiscard]] double mean() const { return mean_; }
 
 private:
-  [[nodiscard]] double passed(double n_k) const; ///< 1 - R(k)
-
-  double factor_;              ///< R_sub / (pi (1 - Rbar))
-  std::vector<double> passed_; ///< 1 - R at equal steps of sqrt(n.k)
+  std::vector<double> values_;
+  double mean_ = 0;
 };
 
 } // namespace umov

@@ -26,6 +26,12 @@ constexpr std::array<PaperRow, 6> table_1{{
 }};
 const std::vector<double> table_1_nm{425, 550, 650};
 
+IndexTable paper_index(const PaperRow &row) {
+  IndexTable out = tabulated_index(row.name, table_1_nm, {row.eta.begin(), row.eta.end()});
+  out.reference = "Table 1 of the paper";
+  return out;
+}
+
 Result<const PaperRow *> row_of(const std::string &name, const char *what) {
   for (const PaperRow &row : table_1)
     if (name == row.name)
@@ -47,17 +53,17 @@ std::vector<std::string> builtin_material_names() {
 
 Result<IndexTable> builtin_index(const std::string &name) {
   UMOV_ASSIGN(row, row_of(name, "index"));
-  return IndexTable{row->name, table_1_nm, {row->eta.begin(), row->eta.end()}};
+  return paper_index(*row);
 }
 
 Result<Material> builtin_material(const std::string &name) {
   UMOV_ASSIGN(row, row_of(name, "material"));
   Material out;
   out.name = row->name;
-  out.index = {row->name, table_1_nm, {row->eta.begin(), row->eta.end()}};
-  out.exponent = 200; // the paper names none; a product decision
+  out.index = paper_index(*row);
+  out.distribution = blinn_phong(200); // the paper names no exponent; a product decision
   if (row->r_sub > 0)
-    out.body = BodyLobe{{}, {row->r_sub}};
+    out.body = BodyLobe{{{}, {row->r_sub}}, false};
   return out;
 }
 

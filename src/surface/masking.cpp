@@ -1,18 +1,16 @@
 #include "surface/masking.h"
 
-#include "surface/gauss.h"
+#include "kernel/gauss.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <umov/core/quantity.h>
 
 namespace umov {
 namespace {
 
 constexpr std::size_t cells = 2048;
-/// Beyond 9 standard deviations of the slope no facet is turned away from k: P = 1 to the last bit.
-constexpr double reach = 9;
-constexpr double pi = std::numbers::pi;
 
 /// Integral over azimuth of max(a + b cos phi, 0); closed (physics of P, section 3).
 double azimuth_integral(double a, double b) {
@@ -25,15 +23,14 @@ double azimuth_integral(double a, double b) {
 
 } // namespace
 
-double Masking::integral(double n_k, double exponent) {
+double Masking::integral(double n_k, const std::function<double(double)> &density,
+                         double reach_rad) {
   const double sine = std::sqrt(std::max(0.0, (1 - n_k) * (1 + n_k)));
   const auto integrand = [&](double theta) {
     const double c = std::cos(theta), s = std::sin(theta);
-    // D instead of rho: g/<n.h> directly.
-    const double d = (exponent + 2) / (2 * pi) * std::exp(exponent * std::log(std::max(c, 1e-300)));
-    return d * s * azimuth_integral(c * n_k, s * sine);
+    return density(std::max(c, 0.0)) * s * azimuth_integral(c * n_k, s * sine);
   };
-  const double last = std::min(pi / 2, reach / std::sqrt(exponent + 2));
+  const double last = std::min(pi / 2, reach_rad);
   // Facets tilted by more than 90 deg - theta_k are cut by the horizon of k: a kink.
   const double kink = std::min(last, std::asin(std::min(1.0, n_k)));
   double sum = gauss_integral(0, kink, integrand);
@@ -43,11 +40,10 @@ double Masking::integral(double n_k, double exponent) {
   return sum;
 }
 
-Masking::Masking(double exponent)
-    : scale_(std::sqrt(exponent + 2)), limit_(std::min(1.0, reach / scale_)),
-      per_cell_(cells / limit_) {
+Masking::Masking(const std::function<double(double)> &density, double reach_rad)
+    : limit_(std::min(1.0, std::sin(std::min(reach_rad, pi / 2)))), per_cell_(cells / limit_) {
   for (std::size_t i = 0; i <= cells; ++i)
-    values_.push_back(integral(limit_ * static_cast<double>(i) / cells, exponent));
+    values_.push_back(integral(limit_ * static_cast<double>(i) / cells, density, reach_rad));
 }
 
 double Masking::operator()(double n_k) const {

@@ -1,10 +1,9 @@
 #include <umov/surface/material.h>
 
-#include "surface/lookup.h"
-
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace umov {
 namespace {
@@ -13,73 +12,111 @@ tl::unexpected<Error> problem(const Material &material, const std::string &text)
   return fail(ErrorCode::BadInput, "material \"" + material.name + "\": " + text);
 }
 
-Result<void> check_wavelengths(const Material &material, const std::vector<double> &nm,
-                               std::size_t values, const char *what) {
-  if (values == 0 || (nm.empty() ? values != 1 : nm.size() != values))
-    return problem(material, fmt::format("{} wavelengths and {} values of {}; as many of both were "
-                                         "expected (or one value and no wavelength)",
-                                         nm.size(), values, what));
-  for (std::size_t i = 0; i < nm.size(); ++i) {
-    if (!(nm[i] > 0) || !std::isfinite(nm[i]))
-      return problem(material, fmt::format("wavelength {} nm of {}; a positive number was expected",
-                                           nm[i], what));
-    if (nm[i] < 10)
-      return problem(material, fmt::format("wavelength {} nm of {} is very short; is the table in "
-                                           "um? Multiply by 1000.",
-                                           nm[i], what));
-    if (i > 0 && !(nm[i] > nm[i - 1]))
-      return problem(material, fmt::format("wavelength {} nm of {} follows {} nm; increasing ones "
-                                           "were expected. Sort them and leave repeated ones out.",
-                                           nm[i], what, nm[i - 1]));
+Result<void> named(const Material &material, const Result<void> &done, const std::string &part) {
+  if (done)
+    return {};
+  return problem(material,
+                 part.empty() ? done.error().message : part + ": " + done.error().message);
+}
+
+Result<void> check_body(const Material &material) {
+  if (!material.body)
+    return {};
+  UMOV_TRY(named(material, check(material.body->reflectance, "the body reflectance"), ""));
+  for (const double r : material.body->reflectance.value)
+    if (!(r >= 0 && r <= 1))
+      return problem(material, fmt::format("body reflectance {}; 0 to 1 was expected", r));
+  return {};
+}
+
+Result<void> check_layers(const Material &material) {
+  for (const Layer &layer : material.layers) {
+    UMOV_TRY(named(material, check(layer.index), "layer " + layer.index.name));
+    if (!(layer.thickness_nm >= 0 && layer.thickness_nm <= 1e9))
+      return problem(material, fmt::format("layer {}: thickness {:g} nm; 0 to 1e9 was expected",
+                                           layer.index.name, layer.thickness_nm));
+    if (layer.is_coherent && layer.thickness_nm > 1e5)
+      return problem(
+          material, fmt::format("layer {}: {:g} nm is too thick to interfere; say coherent = false",
+                                layer.index.name, layer.thickness_nm));
   }
   return {};
+}
+
+Result<void> check_apparent_roughness(const Material &material) {
+  if (!material.apparent_roughness)
+    return {};
+  const ApparentRoughness &a = *material.apparent_roughness;
+  if (a.hurst.has_value() == a.rms_height_nm.has_value())
+    return problem(material, "apparent_roughness takes hurst or rms_height_nm, one of them");
+  if (a.hurst && !(*a.hurst >= 0.3 && *a.hurst <= 1))
+    return problem(material, fmt::format("hurst = {:g}; 0.3 to 1 was expected", *a.hurst));
+  if (!(a.reference_nm >= 10 && a.reference_nm <= 1e6))
+    return problem(material,
+                   fmt::format("reference_nm = {:g}; 10 to 1e6 was expected", a.reference_nm));
+  if (a.rms_height_nm && !(*a.rms_height_nm >= 0 && *a.rms_height_nm <= 1e5))
+    return problem(material,
+                   fmt::format("rms_height_nm = {:g}; 0 to 1e5 was expected", *a.rms_height_nm));
+  return {};
+}
+
+void narrow(WavelengthRange &range, WavelengthRange by) {
+  range.first_nm = std::max(range.first_nm, by.first_nm);
+  range.last_nm = std::min(range.last_nm, by.last_nm);
 }
 
 } // namespace
 
 Result<void> check(const Material &material) {
-  UMOV_TRY(check_wavelengths(material, material.index.wavelength_nm, material.index.eta.size(),
-                             "the index"));
-  for (const auto &eta : material.index.eta) {
-    if (!(eta.real() > 0) || !std::isfinite(eta.real()))
-      return problem(material, fmt::format("n = {}; a positive number was expected", eta.real()));
-    if (!(eta.imag() >= 0) || !std::isfinite(eta.imag()))
-      return problem(material, fmt::format("k = {}; 0 or more was expected (n + ik, k > 0 absorbs)",
-                                           eta.imag()));
-  }
-  if (!(material.exponent >= 0 && material.exponent <= 1e9))
-    return problem(material, fmt::format("m = {}; 0 to 1e9 was expected", material.exponent));
-  if (material.body) {
-    UMOV_TRY(check_wavelengths(material, material.body->wavelength_nm,
-                               material.body->reflectance.size(), "the body reflectance"));
-    for (const double r : material.body->reflectance)
-      if (!(r >= 0 && r <= 1))
-        return problem(material, fmt::format("body reflectance {}; 0 to 1 was expected", r));
-  }
+  if (material.measured)
+    return {};
+  UMOV_TRY(named(material, check(material.index), ""));
+  UMOV_TRY(check_layers(material));
+  const auto normals = make_distribution(material.distribution);
+  if (!normals)
+    return problem(material, normals.error().message);
+  UMOV_TRY(check_body(material));
+  UMOV_TRY(check_apparent_roughness(material));
+  const bool needs_albedo = material.interreflection != Interreflection::None ||
+                            (material.body && !material.body->is_polarized);
+  if (!(*normals)->is_isotropic() && needs_albedo)
+    return problem(material, "an anisotropic distribution goes with interreflection = \"none\" and "
+                             "without an unpolarized body lobe");
+  if ((*normals)->is_mirror() && material.interreflection != Interreflection::None)
+    return problem(material, "a mirror has no inter-reflection; leave interreflection out");
+  if ((*normals)->is_mirror() && material.apparent_roughness)
+    return problem(material, "a mirror has no roughness; leave apparent_roughness out");
   return {};
 }
 
-Result<Segment> find_segment(const std::vector<double> &x, double at) {
-  if (x.empty())
-    return Segment{0, 0, 0};
-  if (!(at >= x.front() && at <= x.back()))
-    return fail(ErrorCode::BadInput, "");
-  const auto next = std::upper_bound(x.begin(), x.end(), at);
-  const auto high = static_cast<std::size_t>(std::min(next, x.end() - 1) - x.begin());
-  const std::size_t low = next == x.end() ? high : high - 1;
-  return Segment{low, high, high == low ? 0 : (at - x[low]) / (x[high] - x[low])};
+std::string describe_polarization(const Material &material) {
+  if (material.measured)
+    return material.measured->has_polarization() ? "as measured"
+                                                 : "depolarizes (only brightness was measured)";
+  const bool is_void =
+      material.layers.empty() && std::holds_alternative<Tabulated>(material.index.n) &&
+      std::get<Tabulated>(material.index.n).value ==
+          std::vector<double>(std::get<Tabulated>(material.index.n).value.size(), 1.0);
+  std::string out = is_void ? "no interface" : "reflection polarizes";
+  if (material.body)
+    out += material.body->is_polarized ? "; body light p-polarized" : "; body light unpolarized";
+  if (material.interreflection == Interreflection::Unpolarized)
+    out += "; inter-reflection unpolarized";
+  else if (material.interreflection == Interreflection::SingleBounceQ)
+    out += "; inter-reflection as one reflection";
+  return out;
 }
 
-Result<std::complex<double>> index_at(const IndexTable &table, Wavelength wavelength) {
-  const auto segment = find_segment(table.wavelength_nm, wavelength.nm());
-  if (!segment)
-    return fail(ErrorCode::BadInput,
-                fmt::format("index \"{}\" covers {}-{} nm; {} nm was asked for. Extrapolation is "
-                            "off.",
-                            table.name, table.wavelength_nm.front(), table.wavelength_nm.back(),
-                            wavelength.nm()));
-  const auto &[low, high, t] = *segment;
-  return (1 - t) * table.eta[low] + t * table.eta[high];
+WavelengthRange range_of(const Material &material) {
+  if (material.measured)
+    return {material.measured->first_nm(), material.measured->last_nm()};
+  WavelengthRange range = range_of(material.index);
+  for (const Layer &layer : material.layers)
+    narrow(range, range_of(layer.index));
+  if (material.body && !material.body->reflectance.wavelength_nm.empty())
+    narrow(range, {material.body->reflectance.wavelength_nm.front(),
+                   material.body->reflectance.wavelength_nm.back()});
+  return range;
 }
 
 } // namespace umov

@@ -1,148 +1,336 @@
 #include <umov/surface/surface.h>
 
-#include "kernel/fresnel.inl.h"
-#include "kernel/microfacet.inl.h"
-#include "surface/albedo.h"
-#include "surface/lookup.h"
-#include "surface/masking.h"
+#include "surface/body_lobe.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/optics/fresnel.h>
 
 namespace umov {
 namespace {
 
-double specular_weight(const Masking &masking, const Material &material, double n_l, double n_v,
-                       double l_v, double n_h);
+double half_angle_cosine(double l_v) { return std::sqrt(std::clamp((1 + l_v) / 2, 0.0, 1.0)); }
+
+/// At phase 0 and 180 (within rounding of the cosine) there is no scattering plane.
+bool has_plane(double l_v) { return std::abs(l_v) < 1 - 1e-15; }
+
+/// What one band of a compiled material holds.
+struct BandTables {
+  Interface interface { 1.0 };
+  std::size_t lobe = 0; ///< into Tables::lobes
+  std::optional<BodyLight> body;
+  std::optional<Interreflected> interreflected;
+  double wavelength_nm = 0;
+};
+
+Result<Interface> make_interface(const Material &material, const Band &band) {
+  const auto named = [&](const Error &error) {
+    return fail(ErrorCode::BadInput, fmt::format("material \"{}\", band \"{}\": {}", material.name,
+                                                 band.name, error.message));
+  };
+  const auto eta = index_at(material.index, band.wavelength);
+  if (!eta)
+    return named(eta.error());
+  if (material.layers.empty())
+    return Interface(*eta);
+  std::vector<OpticalLayer> layers;
+  for (const Layer &layer : material.layers) {
+    const auto film = index_at(layer.index, band.wavelength);
+    if (!film)
+      return named(film.error());
+    layers.push_back({*film, layer.thickness_nm, layer.is_coherent});
+  }
+  return Interface(*eta, std::move(layers), band.wavelength);
+}
+
+/// Slopes seen at a wavelength over those at the reference (physics.md section 5, model A).
+double slope_factor(const Material &material, Wavelength wavelength) {
+  if (!material.apparent_roughness || !material.apparent_roughness->hurst)
+    return 1;
+  const double h = *material.apparent_roughness->hurst;
+  return std::pow(material.apparent_roughness->reference_nm / wavelength.nm(), (1 - h) / h);
+}
 
 } // namespace
 
 struct Surface::Tables {
   Material material;
-  Masking masking;
-  std::vector<std::complex<double>> eta; ///< per band
-  std::vector<BodyTable> body;           ///< per band; empty without a body lobe
+  std::vector<MicrofacetLobe> lobes;                       ///< one, or one per band
+  std::vector<std::shared_ptr<const AlbedoTable>> furnace; ///< per lobe, where needed
+  std::optional<MicrofacetLobe> mirror;                    ///< of a polished surface
+  std::vector<BandTables> bands;
+  bool has_diffuse = false;
 
-  explicit Tables(const Material &m) : material(m), masking(m.exponent) {}
-  [[nodiscard]] SpecularWeight weight() const {
-    return [this](double n_l, double n_v, double l_v, double n_h) {
-      return specular_weight(masking, material, n_l, n_v, l_v, n_h);
-    };
+  /// Part of the light that meets a polished surface as a mirror (physics.md section 5, model B).
+  [[nodiscard]] double mirror_share(const BandTables &band, double n_l, double n_v) const {
+    if (!mirror)
+      return 0;
+    const double root =
+        2 * pi * *material.apparent_roughness->rms_height_nm * (n_l + n_v) / band.wavelength_nm;
+    return std::exp(-root * root);
   }
 };
 
 namespace {
 
-double half_angle_cosine(double l_v) { return std::sqrt(std::clamp((1 + l_v) / 2, 0.0, 1.0)); }
-
-Result<double> body_reflectance(const Material &material, const Band &band) {
-  const BodyLobe &body = *material.body;
-  const auto segment = find_segment(body.wavelength_nm, band.wavelength.nm());
-  if (!segment)
-    return fail(ErrorCode::BadInput,
-                fmt::format("material \"{}\": the body reflectance covers {}-{} nm; band \"{}\" "
-                            "needs {} nm. Extrapolation is off.",
-                            material.name, body.wavelength_nm.front(), body.wavelength_nm.back(),
-                            band.name, band.wavelength.nm()));
-  return (1 - segment->t) * body.reflectance[segment->low] +
-         segment->t * body.reflectance[segment->high];
-}
-
-/// D G2 / 4 with the material's combination of the two maskings.
-double specular_weight(const Masking &masking, const Material &material, double n_l, double n_v,
-                       double l_v, double n_h) {
-  if (!(n_l > 0 && n_v > 0 && n_h > 0))
-    return 0;
-  const double d = kernel::blinn_phong(n_h, material.exponent);
-  const double p_l = masking(std::min(n_l, 1.0)), p_v = masking(std::min(n_v, 1.0));
-  const auto azimuth = [&] { return kernel::cos_azimuth(n_l, n_v, l_v); };
-  switch (material.shadowing) {
-  case Shadowing::Ashikhmin:
-    return d * kernel::ashikhmin(p_l, p_v, azimuth()) / 4;
-  case Shadowing::Smith:
-    return d * kernel::smith(p_l, p_v) / 4;
-  case Shadowing::SmithDirectional:
-    return d * kernel::smith_directional(p_l, p_v, azimuth()) / 4;
-  case Shadowing::Separable:
-    return d * kernel::separable(p_l, p_v) / 4;
-  }
-  return 0;
+FacetReflectance reflectance_of(const Interface &interface) {
+  return [&interface](double cosine) { return interface.reflection(std::min(cosine, 1.0)).a; };
 }
 
 } // namespace
 
 Result<Surface> Surface::compile(const Material &material, const std::vector<Band> &bands) {
   UMOV_TRY(check(material));
-  auto tables = std::make_shared<Tables>(material);
-  for (const Band &band : bands) {
-    auto eta = index_at(material.index, band.wavelength);
-    if (!eta)
-      return fail(ErrorCode::BadInput, fmt::format("material \"{}\", band \"{}\": {}",
-                                                   material.name, band.name, eta.error().message));
-    tables->eta.push_back(*eta);
-    if (material.body) {
-      UMOV_ASSIGN(reflectance, body_reflectance(material, band));
-      tables->body.emplace_back(reflectance, material.exponent, *eta, tables->weight());
+  auto tables = std::make_shared<Tables>();
+  tables->material = material;
+  if (material.measured) {
+    for (const Band &band : bands) {
+      if (band.wavelength.nm() < material.measured->first_nm() ||
+          band.wavelength.nm() > material.measured->last_nm())
+        return fail(ErrorCode::BadInput,
+                    fmt::format("material \"{}\" was measured at {:g}-{:g} nm; band \"{}\" needs "
+                                "{:g} nm. Extrapolation is off.",
+                                material.name, material.measured->first_nm(),
+                                material.measured->last_nm(), band.name, band.wavelength.nm()));
+      tables->bands.push_back({});
+      tables->bands.back().wavelength_nm = band.wavelength.nm();
     }
+    tables->has_diffuse = true;
+    Surface out;
+    out.tables_ = std::move(tables);
+    return out;
   }
+  UMOV_ASSIGN(normals, make_distribution(material.distribution));
+  const bool is_grey = !material.apparent_roughness || !material.apparent_roughness->hurst;
+  if (material.apparent_roughness && material.apparent_roughness->rms_height_nm) {
+    UMOV_ASSIGN(mirror, make_distribution({"mirror", {}, {}, {}}));
+    tables->mirror.emplace(mirror, material.shadowing);
+  }
+  tables->bands.reserve(bands.size()); // callbacks below point into it
+  for (const Band &band : bands) {
+    UMOV_ASSIGN(interface, make_interface(material, band));
+    BandTables &out = tables->bands.emplace_back();
+    out.interface = std::move(interface);
+    out.wavelength_nm = band.wavelength.nm();
+    if (!is_grey)
+      tables->lobes.emplace_back(normals->scaled(slope_factor(material, band.wavelength)),
+                                 material.shadowing);
+    else if (tables->lobes.empty())
+      tables->lobes.emplace_back(normals, material.shadowing);
+    out.lobe = tables->lobes.size() - 1;
+    const MicrofacetLobe &lobe = tables->lobes.back();
+    if (material.interreflection != Interreflection::None) {
+      if (tables->furnace.size() < tables->lobes.size())
+        tables->furnace.push_back(std::make_shared<AlbedoTable>(lobe, FacetReflectance{}));
+      out.interreflected.emplace(tables->furnace.back(), out.interface.mean_reflectance());
+    }
+    if (!material.body)
+      continue;
+    auto reflectance =
+        value_at(material.body->reflectance, band.wavelength, "the body reflectance");
+    if (!reflectance)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("material \"{}\", band \"{}\": {}", material.name, band.name,
+                              reflectance.error().message));
+    if (material.body->is_polarized)
+      out.body.emplace(*reflectance, out.interface);
+    else if (out.interface.is_void())
+      out.body.emplace(*reflectance, AlbedoTable()); // exactly R_sub / pi
+    else
+      out.body.emplace(*reflectance,
+                       AlbedoTable(lobe, reflectance_of(out.interface),
+                                   out.interreflected ? FacetReflectance([&out](double n_k) {
+                                     return out.interreflected->albedo(n_k);
+                                   })
+                                                      : FacetReflectance{}));
+  }
+  tables->has_diffuse = material.body || material.interreflection != Interreflection::None;
   Surface out;
   out.tables_ = std::move(tables);
   return out;
 }
 
-double Surface::specular(double n_l, double n_v, double l_v) const {
-  return specular_weight(tables_->masking, tables_->material, n_l, n_v, l_v,
-                         kernel::half_cosine(n_l, n_v, l_v));
-}
-
-bool Surface::has_body() const { return !tables_->body.empty(); }
-
-double Surface::body(std::size_t band, double n_l, double n_v) const {
-  if (tables_->body.empty() || !(n_l > 0 && n_v > 0))
+double Surface::specular(std::size_t band, const SurfaceDirections &at) const {
+  if (tables_->lobes.empty())
     return 0;
-  return tables_->body[band](std::min(n_l, 1.0), std::min(n_v, 1.0));
+  const BandTables &own = tables_->bands[band];
+  const double facets = tables_->lobes[own.lobe](at.l, at.v, at.l_v, at.disk_rad);
+  if (!tables_->mirror)
+    return facets;
+  const double share = tables_->mirror_share(own, at.l.z, at.v.z);
+  return (1 - share) * facets + share * (*tables_->mirror)(at.l, at.v, at.l_v, at.disk_rad);
 }
 
-FresnelFactors Surface::fresnel(std::size_t band, double l_v) const {
-  const auto eta = tables_->eta[band];
-  const auto f = kernel::reflection(
-      kernel::fresnel(half_angle_cosine(l_v), kernel::Complex<double>{eta.real(), eta.imag()}));
-  // At phase 0 and 180 (within rounding of the cosine) there is no scattering plane: no
-  // polarization by definition.
-  const bool has_plane = std::abs(l_v) < 1 - 1e-15;
-  return {f.a, has_plane ? f.b : 0};
-}
+bool Surface::is_specular_grey() const { return tables_->lobes.size() < 2 && !tables_->mirror; }
 
-Mueller<ScatteringPlane, ScatteringPlane> Surface::mueller(std::size_t band, double l_v) const {
-  return fresnel_mueller(half_angle_cosine(l_v), tables_->eta[band]);
-}
+bool Surface::has_diffuse() const { return tables_->has_diffuse; }
 
-Mueller<ScatteringPlane, ScatteringPlane> Surface::brdf(std::size_t band, double n_l, double n_v,
-                                                        double l_v) const {
-  if (!(n_l > 0 && n_v > 0))
+Stokes<ScatteringPlane> Surface::diffuse(std::size_t band, const SurfaceDirections &at,
+                                         const Stokes<ScatteringPlane> &in) const {
+  if (!tables_->has_diffuse || !(at.l.z > 0 && at.v.z > 0))
     return {};
-  // Divided one by one: the product of two denormal cosines would underflow.
-  const double w = specular(n_l, n_v, l_v) / n_l / n_v;
-  auto out = mueller(band, l_v);
-  for (auto &row : out.m)
-    for (double &entry : row)
-      entry *= w;
-  out.m[0][0] += body(band, n_l, n_v) / n_l / n_v;
+  const BandTables &own = tables_->bands[band];
+  Stokes<ScatteringPlane> out;
+  if (tables_->material.measured) {
+    const double azimuth = std::atan2(at.v.y, at.v.x) - std::atan2(at.l.y, at.l.x);
+    const auto m =
+        (*tables_->material.measured)(own.wavelength_nm, std::acos(std::min(at.l.z, 1.0)),
+                                      std::acos(std::min(at.v.z, 1.0)), azimuth);
+    const double scale = at.l.z * at.v.z;
+    Mueller<ScatteringPlane, ScatteringPlane> matrix;
+    for (std::size_t k = 0; k < 16; ++k)
+      matrix.m[k / 4][k % 4] = scale * m[k];
+    out = matrix * in;
+  }
+  if (own.body)
+    out += (*own.body)(at, in);
+  if (own.interreflected) {
+    const double value = (*own.interreflected)(at.l.z, at.v.z);
+    if (tables_->material.interreflection == Interreflection::SingleBounceQ) {
+      const auto f = mueller(band, at.l_v);
+      out += (f * in) * (f.m[0][0] > 0 ? value / f.m[0][0] : 0);
+    } else {
+      out += Stokes<ScatteringPlane>{value * in.i, 0, 0, 0};
+    }
+  }
+  if (!has_plane(at.l_v))
+    out.q = out.u = 0;
   return out;
 }
 
-double Surface::specular_albedo(std::size_t band, double n_k) const {
-  return directional_albedo(n_k, tables_->material.exponent, &tables_->eta[band],
-                            tables_->weight());
+FresnelFactors Surface::fresnel(std::size_t band, double l_v) const {
+  const MuellerEntries f = tables_->bands[band].interface.reflection(half_angle_cosine(l_v));
+  return {f.a, has_plane(l_v) ? f.b : 0};
 }
 
-double Surface::furnace_albedo(double n_k) const {
-  return directional_albedo(n_k, tables_->material.exponent, nullptr, tables_->weight());
+Mueller<ScatteringPlane, ScatteringPlane> Surface::mueller(std::size_t band, double l_v) const {
+  return tables_->bands[band].interface.reflection(half_angle_cosine(l_v)).matrix();
 }
 
-double Surface::masking(double n_k) const { return tables_->masking(n_k); }
+Mueller<ScatteringPlane, ScatteringPlane> Surface::brdf(std::size_t band,
+                                                        const SurfaceDirections &at) const {
+  const double n_l = at.l.z, n_v = at.v.z;
+  if (!(n_l > 0 && n_v > 0))
+    return {};
+  // Divided one by one: the product of two denormal cosines would underflow.
+  const double w = specular(band, at) / n_l / n_v;
+  auto out = mueller(band, at.l_v);
+  for (auto &row : out.m)
+    for (double &entry : row)
+      entry *= w;
+  for (std::size_t c = 0; c < 4 && tables_->has_diffuse; ++c) {
+    const Stokes<ScatteringPlane> in{c == 0 ? 1.0 : 0, c == 1 ? 1.0 : 0, c == 2 ? 1.0 : 0,
+                                     c == 3 ? 1.0 : 0};
+    const auto s = diffuse(band, at, in);
+    const double column[4] = {s.i, s.q, s.u, s.v};
+    for (std::size_t r = 0; r < 4; ++r)
+      out.m[r][c] += column[r] / n_l / n_v;
+  }
+  return out;
+}
+
+Surface::Terms Surface::terms(std::size_t band, const SurfaceDirections &at) const {
+  Terms out;
+  const double n_l = at.l.z, n_v = at.v.z;
+  if (!(n_l > 0 && n_v > 0))
+    return out;
+  const BandTables &own = tables_->bands[band];
+  const Stokes<ScatteringPlane> sunlight{1, 0, 0, 0};
+  out.specular = specular(band, at) / n_l / n_v * fresnel(band, at.l_v).a;
+  if (own.body)
+    out.body = (*own.body)(at, sunlight).i / n_l / n_v;
+  if (own.interreflected)
+    out.interreflection = (*own.interreflected)(n_l, n_v) / n_l / n_v;
+  if (tables_->material.measured)
+    out.measured = diffuse(band, at, sunlight).i / n_l / n_v;
+  return out;
+}
+
+double Surface::specular_albedo(std::size_t band, Vec3<Facet> k) const {
+  if (tables_->lobes.empty())
+    return 0;
+  const BandTables &own = tables_->bands[band];
+  const auto facet = reflectance_of(own.interface);
+  const double facets = directional_albedo(k, tables_->lobes[own.lobe], facet);
+  const double share = tables_->mirror_share(own, k.z, k.z);
+  return (1 - share) * facets + share * facet(k.z);
+}
+
+double Surface::albedo(std::size_t band, Vec3<Facet> k) const {
+  if (tables_->material.measured)
+    return tables_->material.measured->albedo(tables_->bands[band].wavelength_nm,
+                                              std::acos(std::clamp(k.z, 0.0, 1.0)));
+  const BandTables &own = tables_->bands[band];
+  double out = specular_albedo(band, k);
+  if (own.interreflected)
+    out += own.interreflected->albedo(k.z);
+  if (own.body)
+    out += own.body->albedo(k.z);
+  return out;
+}
+
+double Surface::furnace_albedo(Vec3<Facet> k) const {
+  return tables_->lobes.empty() ? 0 : directional_albedo(k, tables_->lobes.front(), {});
+}
+
+double Surface::masking(Vec3<Facet> k) const {
+  return tables_->lobes.empty() ? 1 : tables_->lobes.front().normals().masking(k);
+}
+
+double Surface::width() const {
+  if (tables_->mirror)
+    return 0;
+  double narrowest = 1;
+  for (const MicrofacetLobe &lobe : tables_->lobes)
+    narrowest = std::min(narrowest, lobe.normals().width());
+  return narrowest;
+}
+
+double Surface::half_width_rad() const {
+  return tables_->mirror          ? 0
+         : tables_->lobes.empty() ? pi / 2
+                                  : tables_->lobes.front().normals().half_width_rad();
+}
+
+bool Surface::has_mirror() const {
+  return tables_->mirror ||
+         (!tables_->lobes.empty() && tables_->lobes.front().normals().is_mirror());
+}
+
+bool Surface::is_anisotropic() const {
+  return !tables_->lobes.empty() && !tables_->lobes.front().normals().is_isotropic();
+}
+
 const Material &Surface::material() const { return tables_->material; }
-std::size_t Surface::band_count() const { return tables_->eta.size(); }
+std::size_t Surface::band_count() const { return tables_->bands.size(); }
+const Interface &Surface::interface(std::size_t band) const {
+  return tables_->bands[band].interface;
+}
+
+SurfaceDirections directions_from_angles(double theta_i, double theta_o, double phi,
+                                         double azimuth) {
+  const auto sine = [](double theta) { return theta == pi / 2 ? 1 : std::sin(theta); };
+  const auto cosine = [](double theta) { // exact at the horizon, where cos(pi/2) is not
+    return theta == pi / 2 ? 0 : std::cos(theta);
+  };
+  SurfaceDirections out;
+  const double s_i = sine(theta_i), c_i = cosine(theta_i), s_o = sine(theta_o),
+               c_o = cosine(theta_o);
+  out.l = {s_i * std::cos(azimuth), s_i * std::sin(azimuth), c_i};
+  out.v = {s_o * std::cos(azimuth + phi), s_o * std::sin(azimuth + phi), c_o};
+  out.l_v = std::clamp(c_i * c_o + s_i * s_o * std::cos(phi), -1.0, 1.0);
+  return out;
+}
+
+SurfaceDirections directions_from_cosines(double n_l, double n_v, double l_v) {
+  const double s_l = std::sqrt(std::max(0.0, (1 - n_l) * (1 + n_l)));
+  SurfaceDirections out;
+  out.l = {s_l, 0, n_l};
+  const double s_v2 = std::max(0.0, (1 - n_v) * (1 + n_v));
+  const double x = s_l > 1e-12 ? std::clamp((l_v - n_l * n_v) / s_l, -1.0, 1.0) : std::sqrt(s_v2);
+  out.v = {x, std::sqrt(std::max(0.0, s_v2 - x * x)), n_v};
+  out.l_v = l_v;
+  return out;
+}
 
 } // namespace umov

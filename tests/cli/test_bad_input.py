@@ -33,7 +33,7 @@ CONFIGURATION = [
     (('mode = "nadir"', 'mode = "nadirr"'), ["; nadir, inertial, spin was expected"]),
     (('mode = "nadir"', 'at = "nadir", toward = "zenith"'), ["one line at all times"]),
     (("seed = 1", 'seed = 1\n[material.paper_al]\nindex = "paper_au"\n'
-      'distribution = { model = "blinn_phong", m = 10 }'), ["paper_al", "built-in", "scenario.toml:3"]),
+      'distribution = { model = "blinn_phong", m = 10 }'), ["paper_al", "the paper's", "scenario.toml:3"]),
 ]
 
 

@@ -53,6 +53,7 @@ struct Scenario {
   std::vector<std::string> band_set{"paper_rgb"};
   std::vector<Band> bands;
   double accuracy = 0.005;
+  bool has_solar_disk = true;              ///< false: a point Sun
   std::filesystem::path output_dir{"out"}; ///< relative to the working folder
   std::vector<std::string> formats{"ecsv", "html"};
   PolarizationFrame frame = PolarizationFrame::Equatorial;
@@ -76,8 +77,12 @@ std::string locked_scenario(const Scenario &scenario);
 /// JSON Schema (draft 2020-12) of the scenario, from the same table of keys that the reader checks.
 std::string scenario_schema_json();
 
-/// A material by built-in name, or from a TOML file with one [material.NAME] table.
+/// A material by name (paper_* or the library), or from a TOML file with one [material.NAME] table.
 Result<Material> read_material(const std::string &name_or_path);
+/// Names of all compiled-in materials: the paper's six, then the library of data/materials.
+std::vector<std::string> material_library();
+/// A material as TOML, with the tables of its indices by name, file or in place.
+std::string material_as_toml(const Material &material);
 
 /// An input file and the hash of what was read.
 struct InputFile {
@@ -92,6 +97,7 @@ struct LoadedObject {
 
 struct LoadOptions {
   bool allow_bad_checksum = false, allow_old_elements = false;
+  bool source_is_sun = true; ///< false: a laser, for which a mirror is no matter of the disk
 };
 
 /// Reads the files that a scenario names and compiles the scene.

@@ -31,6 +31,7 @@ struct LightCurveRequest {
   AttitudeLaw attitude;
   PolarizationFrame frame = PolarizationFrame::Equatorial;
   ShadowModel shadow = ShadowModel::Ellipsoid;
+  bool has_solar_disk = true; ///< the Sun as a uniform disk at its distance, or a point
   IntegrationOptions integration;
   unsigned threads = 0;
 };

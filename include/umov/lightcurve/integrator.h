@@ -12,12 +12,15 @@ namespace umov {
 /// Directions from the object, unit vectors in the body frame.
 struct Pose {
   Vec3<Body> sun, observer;
+  double sun_radius_rad = 0; ///< of the Sun's uniform disk; 0: a point
 };
 
 struct IntegrationOptions {
   double accuracy = 0.005; ///< wanted relative 95 % half-width of I
   std::uint64_t seed = 0;  ///< of the point sets; the result depends on it within the error only
   double density = 1;      ///< multiplies the number of points everywhere (64: a denser run)
+  /// Light of the source per unit irradiance, in the scattering plane: sunlight, or a laser's.
+  Stokes<ScatteringPlane> source{1, 0, 0, 0};
   std::size_t max_points = 1u << 22; ///< per pose; past that the error is reported as it is
 };
 

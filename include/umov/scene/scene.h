@@ -34,6 +34,14 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
                          Diagnostics &diagnostics, double crease_rad = default_crease_rad,
                          const std::string &file = {});
 
+/// Direction field of a group's surface on a triangle, zero where it has none.
+Vec3<Body> direction_field(const Mesh &mesh, const Surface &surface, std::size_t triangle);
+
+/// Directions to the source and the observer in the facet frame of a unit normal; x is the field
+/// made perpendicular to it (any direction where the field is zero or along the normal).
+SurfaceDirections directions_on(Vec3<Body> normal, Vec3<Body> field, Vec3<Body> to_source,
+                                Vec3<Body> to_observer, double cos_phase, double disk_rad);
+
 /// Sides of a triangle that anything outside can see.
 struct VisibleSides {
   bool front = true, back = true;

@@ -23,6 +23,8 @@ struct Mesh {
   std::vector<Vec3<Body>> positions;
   std::vector<Vec3<Body>> normals; ///< unit vertex normals, used with normals = "smooth"
   std::vector<Triangle> triangles;
+  /// Per triangle: direction of the texture's first coordinate; empty without texture coordinates.
+  std::vector<Vec3<Body>> tangents;
   std::vector<std::string> groups; ///< names of mesh materials, in order of first use
 };
 

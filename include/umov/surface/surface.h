@@ -3,7 +3,9 @@
 
 #include <complex>
 #include <memory>
+#include <umov/core/vec3.h>
 #include <umov/optics/band.h>
+#include <umov/optics/interface.h>
 #include <umov/optics/stokes.h>
 #include <umov/surface/material.h>
 #include <vector>
@@ -15,40 +17,75 @@ struct FresnelFactors {
   double a = 0, b = 0;
 };
 
+/// Two directions on a surface, unit vectors in its frame, and the source's size.
+struct SurfaceDirections {
+  Vec3<Facet> l, v;    ///< to the source and to the observer
+  double l_v = 1;      ///< l.v, which the pose knows better than the components
+  double disk_rad = 0; ///< angular radius of a uniform disk around l; 0: a point
+};
+/// From angles: theta from the normal, phi the azimuth of the observer minus that of the source,
+/// counter-clockwise about the normal; `azimuth` of the source from the direction field. [rad]
+SurfaceDirections directions_from_angles(double theta_i, double theta_o, double phi,
+                                         double azimuth = 0);
+/// From cosines, for surfaces that do not ask on which side the observer stands.
+SurfaceDirections directions_from_cosines(double n_l, double n_v, double l_v);
+
 /// A compiled material. Copies share their tables. All functions are pure and thread safe.
-/// n_l, n_v: cosines of Sun and observer to the normal; l_v: cosine of the phase angle. Directions
-/// at or below the horizon (n_l <= 0 or n_v <= 0) give 0.
+/// Directions at or below the horizon give 0. Stokes vectors refer to the scattering plane; where
+/// there is none (phase 0 and 180, within rounding) sunlight has Q = U = 0 by definition.
 class Surface {
 public:
-  /// Tabulates g(k), and R(k) per band where there is a body lobe. BadInput where a table does not
-  /// cover a band, m < 0 or a reflectance is outside 0..1.
+  /// Tabulates masking and, where lobes need them, albedos. BadInput where a table does not cover a
+  /// band or a number is impossible.
   static Result<Surface> compile(const Material &material, const std::vector<Band> &bands);
 
-  /// w (n.l)(n.v) = D(h) G2(l,v) / 4 [1/sr]: the specular sum of a facet per unit area, without
-  /// Fresnel. Finite everywhere; 0 at phase 180.
-  [[nodiscard]] double specular(double n_l, double n_v, double l_v) const;
+  /// w (n.l)(n.v) = D(h) G2(l,v) / 4 [1/sr] in a band: the microfacet lobe without Fresnel. Finite
+  /// everywhere; 0 at phase 180.
+  [[nodiscard]] double specular(std::size_t band, const SurfaceDirections &at) const;
+  /// The same for every band.
+  [[nodiscard]] bool is_specular_grey() const;
 
-  /// f_b (n.l)(n.v) [1/sr] of the body lobe in a band, unpolarized (adds to I alone).
-  [[nodiscard]] double body(std::size_t band, double n_l, double n_v) const;
-  [[nodiscard]] bool has_body() const;
+  /// f M (n.l)(n.v) [1/sr] of all light that is not one reflection (body, inter-reflection,
+  /// measured surfaces), for the incoming light `in` per unit irradiance.
+  [[nodiscard]] Stokes<ScatteringPlane> diffuse(std::size_t band, const SurfaceDirections &at,
+                                                const Stokes<ScatteringPlane> &in) const;
+  [[nodiscard]] bool has_diffuse() const;
 
   /// Fresnel reflection of every contributing microfacet (incidence = half the phase angle).
   [[nodiscard]] FresnelFactors fresnel(std::size_t band, double l_v) const;
   /// The whole Mueller matrix of one reflection at that phase angle (physics.md section 2).
   [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> mueller(std::size_t band,
                                                                   double l_v) const;
-  /// Mueller BRDF [1/sr]: w M_F + body lobe in M00. Grazing and back directions give zeros.
-  [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> brdf(std::size_t band, double n_l,
-                                                               double n_v, double l_v) const;
-  /// Directional albedo of the specular lobe alone, Fresnel included (R(k) of physics.md section
-  /// 3).
-  [[nodiscard]] double specular_albedo(std::size_t band, double n_k) const;
-  /// The same with F = 1 (white furnace).
-  [[nodiscard]] double furnace_albedo(double n_k) const;
+  /// Mueller BRDF [1/sr] of all lobes. Grazing and back directions give zeros.
+  [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> brdf(std::size_t band,
+                                                               const SurfaceDirections &at) const;
+  /// Parts of M00 of the BRDF, for people.
+  struct Terms {
+    double specular = 0, body = 0, interreflection = 0, measured = 0;
+  };
+  [[nodiscard]] Terms terms(std::size_t band, const SurfaceDirections &at) const;
+
+  /// Directional albedo of the microfacet lobe alone, Fresnel included (R(k) of physics.md section
+  /// 3), towards a direction in the facet frame.
+  [[nodiscard]] double specular_albedo(std::size_t band, Vec3<Facet> k) const;
+  /// Directional albedo of everything, for unpolarized light.
+  [[nodiscard]] double albedo(std::size_t band, Vec3<Facet> k) const;
+  /// The microfacet lobe with F = 1 (white furnace).
+  [[nodiscard]] double furnace_albedo(Vec3<Facet> k) const;
   /// Masking P(k) of one direction.
-  [[nodiscard]] double masking(double n_k) const;
+  [[nodiscard]] double masking(Vec3<Facet> k) const;
+  /// Slope of the narrowest lobe: how finely normals must be sampled; 0 for a mirror.
+  [[nodiscard]] double width() const;
+  /// Angle from the normal at which the lobe falls to one half [rad].
+  [[nodiscard]] double half_width_rad() const;
+  /// Some part of the light needs a source with a size (a mirror).
+  [[nodiscard]] bool has_mirror() const;
+  /// The microfacet lobe depends on the azimuth about the normal.
+  [[nodiscard]] bool is_anisotropic() const;
   [[nodiscard]] const Material &material() const;
   [[nodiscard]] std::size_t band_count() const;
+  /// The smooth interface of a band.
+  [[nodiscard]] const Interface &interface(std::size_t band) const;
 
 private:
   struct Tables;

@@ -3,6 +3,7 @@
 #include "io/mesh/obj_lines.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -49,7 +50,7 @@ Vec3<Body> turned(Vec3<Body> v, const std::string &up) {
 }
 
 struct Corner {
-  std::uint32_t vertex = no_index, normal = no_index;
+  std::uint32_t vertex = no_index, normal = no_index, texture = no_index;
 };
 
 /// True if a name could lead out of the folder of the mesh.
@@ -70,6 +71,8 @@ public:
 private:
   Result<void> take(const std::vector<Word> &words);
   Result<Vec3<Body>> vector(const std::vector<Word> &words, const char *what);
+  Result<std::array<double, 2>> texture(const std::vector<Word> &words);
+  [[nodiscard]] Vec3<Body> tangent(const std::array<Corner, 3> &corners) const;
   Result<void> take_face(const std::vector<Word> &words);
   Result<Corner> corner(const Word &word);
   Result<std::optional<std::uint32_t>> index(std::string_view text, const Word &word,
@@ -89,8 +92,8 @@ private:
   std::string material_, object_;
   bool has_material_ = false;
   std::map<std::string, Word, std::less<>> unknown_; ///< statements that are none, where first seen
-  std::size_t texture_count_ = 0, skipped_ = 0, short_faces_ = 0, concave_ = 0, crossed_ = 0,
-              bent_ = 0;
+  std::vector<std::array<double, 2>> texture_;       ///< u, v
+  std::size_t skipped_ = 0, short_faces_ = 0, concave_ = 0, crossed_ = 0, bent_ = 0;
 };
 
 Result<Vec3<Body>> Reader::vector(const std::vector<Word> &words, const char *what) {
@@ -150,13 +153,42 @@ Result<Corner> Reader::corner(const Word &word) {
   }
   Corner out;
   UMOV_ASSIGN(vertex, index(parts[0], word, out_.mesh.positions.size(), "vertex"));
-  UMOV_TRY(index(parts[1], word, texture_count_, "texture coordinate"));
+  UMOV_ASSIGN(texture, index(parts[1], word, texture_.size(), "texture coordinate"));
   UMOV_ASSIGN(normal, index(parts[2], word, out_.mesh.normals.size(), "normal"));
   if (!vertex)
     return fail(ErrorCode::BadInput, "a corner without a vertex index", lines_.where(word));
   out.vertex = *vertex;
   out.normal = normal.value_or(no_index);
+  out.texture = texture.value_or(no_index);
   return out;
+}
+
+/// vt u [v [w]]: v is 0 where it is absent.
+Result<std::array<double, 2>> Reader::texture(const std::vector<Word> &words) {
+  std::array<double, 2> out{};
+  if (words.size() < 2)
+    return fail(ErrorCode::BadInput, "a texture coordinate without numbers",
+                lines_.where(words[0]));
+  for (std::size_t k = 0; k < 2 && k + 1 < words.size(); ++k) {
+    UMOV_ASSIGN(value, obj::number(lines_, words[k + 1]));
+    out[k] = value;
+  }
+  return out;
+}
+
+/// Direction in which the first texture coordinate grows; zero without one.
+Vec3<Body> Reader::tangent(const std::array<Corner, 3> &c) const {
+  for (const Corner &one : c)
+    if (one.texture == no_index)
+      return {};
+  const auto &p = out_.mesh.positions;
+  const Vec3<Body> a = p[c[1].vertex] - p[c[0].vertex], b = p[c[2].vertex] - p[c[0].vertex];
+  const auto &t0 = texture_[c[0].texture], &t1 = texture_[c[1].texture],
+             &t2 = texture_[c[2].texture];
+  const double du1 = t1[0] - t0[0], dv1 = t1[1] - t0[1], du2 = t2[0] - t0[0], dv2 = t2[1] - t0[1];
+  const double area = du1 * dv2 - du2 * dv1;
+  const Vec3<Body> along = std::copysign(1.0, area) * (dv2 * a - dv1 * b);
+  return area != 0 && norm(along) > 0 ? normalized(along) : Vec3<Body>{};
 }
 
 std::uint32_t Reader::group() {
@@ -198,6 +230,7 @@ Result<void> Reader::take_face(const std::vector<Word> &words) {
       triangle.normal[k] = has_normals ? corners[t[k]].normal : no_index;
     }
     out_.mesh.triangles.push_back(triangle);
+    out_.mesh.tangents.push_back(tangent({corners[t[0]], corners[t[1]], corners[t[2]]}));
   }
   return {};
 }
@@ -254,7 +287,8 @@ Result<void> Reader::take(const std::vector<Word> &words) {
     UMOV_ASSIGN(n, vector(words, "normal"));
     out_.mesh.normals.push_back(n);
   } else if (key == "vt") {
-    ++texture_count_;
+    UMOV_ASSIGN(uv, texture(words));
+    texture_.push_back(uv);
   } else if (key == "f") {
     return take_face(words);
   } else if (key == "usemtl") {
@@ -324,6 +358,10 @@ Result<void> Reader::finish() {
     p = turned(p * unit->metres, options_.up);
     largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   }
+  if (texture_.empty())
+    out_.mesh.tangents.clear();
+  for (Vec3<Body> &t : out_.mesh.tangents)
+    t = turned(t, options_.up);
   for (Vec3<Body> &n : out_.mesh.normals) {
     const Vec3<Body> t = turned(n, options_.up);
     const double length = norm(t);

@@ -50,6 +50,7 @@ struct Seen {
   std::size_t column = 0;
   Vec3<Body> point, geometric, normal;
   const Surface *surface = nullptr;
+  std::size_t triangle = 0;
 };
 
 Vec3<Body> shown_normal(const Scene &scene, const Triangle &t, const Occluder::Hit &hit,
@@ -82,7 +83,7 @@ std::vector<Seen> look(const Camera &camera, std::size_t row, std::span<KeyFrame
       continue;
     const Mesh &mesh = camera.scene.mesh;
     const Triangle &t = mesh.triangles[hit.triangle];
-    Seen s{column, {}, normalized(area_vector_doubled(mesh, t)), {}, nullptr};
+    Seen s{column, {}, normalized(area_vector_doubled(mesh, t)), {}, nullptr, hit.triangle};
     s.normal = shown_normal(camera.scene, t, hit, s.geometric);
     const bool is_front = dot(s.geometric, v) >= 0;
     if (!is_front) {
@@ -121,11 +122,15 @@ void light(const Camera &camera, const std::vector<Seen> &seen, std::span<KeyFra
     out.is_lit = true;
     const double l_v = dot(l, v);
     const FresnelFactors f = s.surface->fresnel(camera.band, l_v);
-    const double specular = s.surface->specular(n_l, n_v, l_v);
-    const double intensity = f.a * specular + s.surface->body(camera.band, n_l, n_v);
+    const SurfaceDirections at =
+        directions_on(s.normal, direction_field(camera.scene.mesh, *s.surface, s.triangle), l, v,
+                      l_v, camera.view.pose.sun_radius_rad);
+    const double specular = s.surface->specular(camera.band, at);
+    const auto diffuse = s.surface->diffuse(camera.band, at, {1, 0, 0, 0});
+    const double intensity = f.a * specular + diffuse.i;
     out.radiance = static_cast<float>(intensity / n_v);
     if (intensity > 0)
-      out.p = static_cast<float>(std::abs(f.b * specular) / intensity);
+      out.p = static_cast<float>(std::hypot(f.b * specular + diffuse.q, diffuse.u) / intensity);
   }
 }
 

@@ -5,10 +5,6 @@
 #include <umov/core/text.h>
 
 namespace umov::scenario {
-namespace {
-
-const std::vector<std::string> target_names{"nadir",        "zenith", "velocity",
-                                            "orbit_normal", "sun",    "observer"};
 
 Result<Vec3<Body>> read_axis(const Node &node, const char *name, Vec3<Body> fallback) {
   if (!node.has(name))
@@ -29,6 +25,15 @@ Result<Vec3<Body>> read_axis(const Node &node, const char *name, Vec3<Body> fall
               fmt::format("{}: a body axis was expected, \"+X\" to \"-Z\" or [x, y, z]", name),
               node.where(name));
 }
+
+std::string axis_toml(Vec3<Body> v) {
+  return fmt::format("[{}, {}, {}]", shortest(v.x), shortest(v.y), shortest(v.z));
+}
+
+namespace {
+
+const std::vector<std::string> target_names{"nadir",        "zenith", "velocity",
+                                            "orbit_normal", "sun",    "observer"};
 
 Result<Direction> read_direction(const Node &node, const char *name, Target fallback) {
   if (!node.has(name))
@@ -118,10 +123,6 @@ Result<SpinLaw> read_spin(const Node &node) {
     law.start = two_axis;
   }
   return law;
-}
-
-std::string axis_toml(Vec3<Body> v) {
-  return fmt::format("[{}, {}, {}]", shortest(v.x), shortest(v.y), shortest(v.z));
 }
 
 std::string direction_toml(const Direction &d) {

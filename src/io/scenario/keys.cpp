@@ -1,13 +1,33 @@
 #include "io/scenario/keys.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <umov/io/scenario.h>
+#include <umov/surface/distribution.h>
 
 namespace umov::scenario {
 
+namespace {
+
+/// The numbers that the distributions take come from the distributions.
+std::vector<Key> with_distributions(std::vector<Key> keys) {
+  for (const DistributionModel *model : distribution_models())
+    for (const DistributionParameter &one : model->parameters) {
+      const auto is_there = [&](const Key &key) {
+        return std::string_view(key.table) == "material.distribution" &&
+               std::string_view(key.name) == one.name;
+      };
+      if (std::none_of(keys.begin(), keys.end(), is_there))
+        keys.push_back({"material.distribution", one.name, Kind::Number, "", one.text});
+    }
+  return keys;
+}
+
+} // namespace
+
 const std::vector<Key> &keys() {
   using enum Kind;
-  static const std::vector<Key> all{
+  static const std::vector<Key> all = with_distributions({
       {"", "umov", Integer, "", "version of the scenario's form: 1"},
       {"", "title", String, "\"\"", "heading of the report"},
       {"", "seed", Integer, "0", "of every random stream"},
@@ -61,29 +81,51 @@ const std::vector<Key> &keys() {
       {"sides", "back", String, "", "material of the other side"},
       {"bands", "set", Any, "\"paper_rgb\"", "\"paper_rgb\" or a list of \"nm:NUMBER\""},
       {"render", "bounces", Integer, "1", "surfaces that the light touches; only 1 so far"},
-      {"render", "sun", String, "\"point\"", "only \"point\" is built so far"},
+      {"render", "sun", String, "\"disk\"", "disk (695,700 km at its distance) or point"},
       {"render", "accuracy", Number, "0.005", "relative 95 % half-width asked of I"},
       {"detector", "model", String, "\"ideal\"", "only \"ideal\" is built so far"},
       {"output", "dir", String, "\"out\"", "folder, relative to the working folder"},
       {"output", "formats", List, "[\"ecsv\", \"html\"]", "ecsv, csv, html"},
       {"output", "pol_frame", String, "\"equatorial\"", "equatorial, altaz or scattering"},
-      {"material", "index", Any, "", "name, { n, k } or { wavelength_nm, n, k }"},
+      {"material", "index", Any, "", "name, { file }, { n, k } or { wavelength_nm, n, k }"},
+      {"material", "layers", List, "", "films on the substrate, first on top"},
       {"material", "distribution", Table, "", "of microfacet normals"},
+      {"material", "direction", Any, "",
+       "direction field of ashikhmin_shirley: a body axis such as \"+X\", or \"uv\""},
       {"material", "shadowing", String, "\"ashikhmin\"",
        "ashikhmin, smith, smith_directional or separable"},
       {"material", "body", Table, "", "light scattered below the surface; absent: none"},
-      {"material", "interreflection", String, "\"none\"", "only \"none\" is built so far"},
+      {"material", "interreflection", String, "\"none\"",
+       "between microfacets: none, unpolarized or single_bounce_q"},
+      {"material", "apparent_roughness", Table, "",
+       "absent: the same roughness at every wavelength"},
+      {"material", "table", String, "", "measured BRDF (CSV), instead of all of the above"},
+      {"material", "accept", Boolean, "false", "take a measured table that is not physical"},
+      {"material", "description", String, "", "what it is"},
+      {"material", "source", String, "", "where its numbers come from"},
+      {"material", "assumed", String, "", "what is not known and was assumed"},
+      {"material.index", "file", String, "", "page of refractiveindex.info (YAML)"},
       {"material.index", "n", Any, "", "real part, a number or a list"},
       {"material.index", "k", Any, "0.0", "imaginary part (n + ik, k >= 0 absorbs)"},
       {"material.index", "wavelength_nm", List, "", "wavelengths of the lists [nm]"},
-      {"material.distribution", "model", String, "", "only \"blinn_phong\" is built so far"},
-      {"material.distribution", "m", Number, "", "exponent, 0 to 1e9"},
+      {"material.layers", "index", Any, "", "as the material's"},
+      {"material.layers", "thickness_nm", Number, "", "[nm]"},
+      {"material.layers", "coherent", Boolean, "true", "false: too thick to interfere"},
+      {"material.apparent_roughness", "hurst", Number, "",
+       "Hurst exponent of the surface, 0.3 to 1: smoother at longer wavelengths"},
+      {"material.apparent_roughness", "reference_nm", Number, "550.0",
+       "wavelength at which the distribution holds [nm]"},
+      {"material.apparent_roughness", "rms_height_nm", Number, "",
+       "polished surface: part of the light sees a mirror [nm]"},
       {"material.body", "reflectance", Any, "",
        "R_sub: a number or { wavelength_nm, reflectance }"},
-      {"material.body", "polarized", Boolean, "false", "only false is built so far"},
+      {"material.body", "polarized", Boolean, "false", "p-polarized by the way out (Baek 2018)"},
       {"material.body.reflectance", "wavelength_nm", List, "", "[nm]"},
       {"material.body.reflectance", "reflectance", List, "", "0 to 1"},
-  };
+      {"material.distribution", "model", String, "", "see umov material list --models"},
+      {"material.distribution", "file", String, "",
+       "model table: CSV with columns theta_deg, density"},
+  });
   return all;
 }
 
@@ -152,8 +194,8 @@ nlohmann::ordered_json schema_of(std::string_view table) {
       break;
     case Kind::List:
       entry["type"] = "array";
-      if (below == "object")
-        entry["items"] = schema_of("object");
+      if (below == "object" || below == "material.layers")
+        entry["items"] = schema_of(below);
       break;
     case Kind::Table:
       if (below == "material")

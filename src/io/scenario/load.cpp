@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
+#include <umov/io/index_file.h>
 #include <umov/io/obj.h>
 #include <umov/orbit/select.h>
 #include <umov/shape/topology.h>
@@ -91,6 +92,28 @@ Result<void> check_mtl(const Scenario &scenario, const ObjMesh &read) {
   return {};
 }
 
+/// A band that an index does not cover: which compiled-in tables would.
+Result<void> check_bands(const Material &material, const Scenario &scenario) {
+  if (material.measured)
+    return {};
+  std::vector<const IndexTable *> tables{&material.index};
+  for (const Layer &layer : material.layers)
+    tables.push_back(&layer.index);
+  for (const Band &band : scenario.bands)
+    for (const IndexTable *table : tables)
+      if (const auto eta = index_at(*table, band.wavelength); !eta) {
+        const auto others = indices_covering(table->name, band.wavelength);
+        return fail(ErrorCode::BadInput,
+                    fmt::format("material \"{}\", band \"{}\": {}{}", material.name, band.name,
+                                eta.error().message,
+                                others.empty() ? ""
+                                               : fmt::format(" Tables that cover it: {}.",
+                                                             fmt::join(others, ", "))),
+                    {scenario.file});
+      }
+  return {};
+}
+
 } // namespace
 
 Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &options,
@@ -115,6 +138,9 @@ Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &op
     front.push_back(one);
     back.push_back(other);
   }
+  for (std::size_t i = 0; i < front.size(); ++i)
+    for (const Material *material : {&front[i], &back[i]})
+      UMOV_TRY(check_bands(*material, scenario));
   auto scene =
       make_scene(read.mesh, scenario.mesh.normals, scenario.bands, front, back, diagnostics,
                  scenario.mesh.crease_deg * pi / 180, scenario.mesh.file.string());
@@ -122,6 +148,19 @@ Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &op
     return fail(scene.error().code, scene.error().message,
                 scene.error().where.file.empty() ? Where{scenario.file} : scene.error().where);
   out.scene = std::move(*scene);
+  for (const auto *side : {&out.scene.front, &out.scene.back})
+    for (const Surface &surface : *side) {
+      if (surface.has_mirror() && !scenario.has_solar_disk && options.source_is_sun)
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("material \"{}\" is a mirror and would show a point Sun as nothing or "
+                        "infinitely bright; take [render] sun = \"disk\"",
+                        surface.material().name),
+            {scenario.file});
+      for (const std::string &remark : surface.material().remarks)
+        diagnostics.warn("material \"" + surface.material().name + "\": " + remark,
+                         {surface.material().measured_file});
+    }
   return out;
 }
 

@@ -87,8 +87,8 @@ std::string locked_scenario(const Scenario &s) {
   out += fmt::format("umov = 1\ntitle = {}\nseed = {}\n", quoted(s.title), s.seed);
   out += observer_and_time(s) + object(s);
   out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));
-  out += fmt::format("\n[render]\nbounces = 1\nsun = \"point\"\naccuracy = {}\n",
-                     shortest(s.accuracy));
+  out += fmt::format("\n[render]\nbounces = 1\nsun = \"{}\"\naccuracy = {}\n",
+                     s.has_solar_disk ? "disk" : "point", shortest(s.accuracy));
   out += "\n[detector]\nmodel = \"ideal\"\n";
   out += fmt::format("\n[output]\ndir = {}\nformats = {}\npol_frame = \"{}\"\n",
                      quoted(s.output_dir.string()), list(s.formats), frame_name(s.frame));

@@ -4,69 +4,168 @@
 #include <fmt/format.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
+#include <umov/io/index_file.h>
+#include <umov/io/measured_file.h>
 
 namespace umov::scenario {
 namespace {
 
+namespace fs = std::filesystem;
+
 const std::vector<std::string> shadowing_names{"ashikhmin", "smith", "smith_directional",
                                                "separable"};
+const std::vector<std::string> interreflection_names{"none", "unpolarized", "single_bounce_q"};
 
-Result<IndexTable> read_index(const Node &node) {
-  UMOV_TRY(node.require("index"));
-  if (node.get("index")->is_string()) {
-    auto found = builtin_index(node.text("index", ""));
-    if (!found)
-      return fail(ErrorCode::BadInput, found.error().message, node.where("index"));
-    return *found;
-  }
-  UMOV_ASSIGN(below, node.child("index"));
+/// A file that a material names, from the folder of the file that names it.
+fs::path beside(const Node &node, const std::string &file) {
+  return (fs::path(node.file()).parent_path() / file).lexically_normal();
+}
+
+/// Numbers in place: { n, k } or { wavelength_nm, n, k }.
+Result<IndexTable> read_index_in_place(const Node &below) {
   UMOV_ASSIGN(n, below.numbers("n"));
-  std::vector<double> k(n.size(), 0.0);
+  std::vector<double> k(n.size(), 0.0), nm;
   if (below.has("k")) {
     UMOV_ASSIGN(given, below.numbers("k"));
     k = given;
   }
-  IndexTable table;
-  table.name = "in place";
   if (below.has("wavelength_nm")) {
-    UMOV_ASSIGN(nm, below.numbers("wavelength_nm"));
-    table.wavelength_nm = nm;
+    UMOV_ASSIGN(given, below.numbers("wavelength_nm"));
+    nm = given;
   }
   if (k.size() != n.size())
     return fail(
         ErrorCode::BadInput,
         fmt::format("n has {} numbers and k {}; as many of both were expected", n.size(), k.size()),
         below.where("k"));
+  std::vector<std::complex<double>> eta;
   for (std::size_t i = 0; i < n.size(); ++i)
-    table.eta.emplace_back(n[i], k[i]);
-  return table;
+    eta.emplace_back(n[i], k[i]);
+  return tabulated_index("in place", nm, eta);
 }
 
-Result<BodyLobe> read_body(const Node &node) {
-  UMOV_ASSIGN(below, node.child("body"));
+Result<IndexTable> read_index(const Node &node) {
+  UMOV_TRY(node.require("index"));
+  if (node.get("index")->is_string()) {
+    auto found = find_index(node.text("index", ""));
+    if (!found)
+      return fail(ErrorCode::BadInput, found.error().message, node.where("index"));
+    return *found;
+  }
+  UMOV_ASSIGN(below, node.child("index", "material.index"));
+  if (!below.has("file"))
+    return read_index_in_place(below);
+  for (const char *name : {"n", "k", "wavelength_nm"})
+    if (below.has(name))
+      return fail(ErrorCode::BadInput, fmt::format("{} has no meaning beside file", name),
+                  below.where(name));
+  return read_index_file(beside(node, below.text("file", "")));
+}
+
+Result<std::vector<Layer>> read_layers(const Node &node) {
+  std::vector<Layer> out;
+  if (!node.has("layers"))
+    return out;
+  const toml::array *list = node.get("layers")->as_array();
+  for (const toml::node &item : *list) {
+    const toml::table *table = item.as_table();
+    if (table == nullptr)
+      return fail(ErrorCode::BadInput, "layers: tables { index, thickness_nm } were expected",
+                  node.where("layers"));
+    const Node layer(*table, "material.layers", node.label() + ".layers", node.file());
+    UMOV_TRY(layer.check());
+    UMOV_TRY(layer.require("thickness_nm"));
+    UMOV_ASSIGN(index, read_index(layer));
+    out.push_back({index, layer.number("thickness_nm", 0), layer.boolean("coherent", true)});
+  }
+  return out;
+}
+
+Result<Tabulated> read_reflectance(const Node &below) {
   UMOV_TRY(below.require("reflectance"));
-  if (below.boolean("polarized", false))
-    return fail(ErrorCode::BadInput, "polarized = true is not built yet; this version has false",
-                below.where("polarized"));
-  BodyLobe body;
   if (!below.get("reflectance")->is_table()) {
     UMOV_ASSIGN(one, below.numbers("reflectance"));
-    body.reflectance = one;
-    return body;
+    return Tabulated{{}, one};
   }
   UMOV_ASSIGN(table, below.child("reflectance"));
   UMOV_ASSIGN(nm, table.numbers("wavelength_nm"));
   UMOV_ASSIGN(values, table.numbers("reflectance"));
-  body.wavelength_nm = nm;
-  body.reflectance = values;
-  return body;
+  return Tabulated{nm, values};
 }
 
-std::string list_toml(const std::vector<double> &values) {
-  std::string out;
-  for (const double v : values)
-    out += (out.empty() ? "" : ", ") + shortest(v);
-  return "[" + out + "]";
+Result<DistributionChoice> read_distribution(const Node &node) {
+  UMOV_ASSIGN(below, node.child("distribution"));
+  UMOV_TRY(below.require("model"));
+  DistributionChoice out{below.text("model", ""), {}, {}, {}, {}};
+  for (const auto &[key, value] : below.table())
+    if (value.is_number())
+      out.parameters[std::string(key.str())] = below.number(std::string(key.str()).c_str(), 0);
+  if (below.has("file")) {
+    const fs::path path = beside(node, below.text("file", ""));
+    UMOV_ASSIGN(normals, read_normals_file(path));
+    out.angle_deg = normals.angle_deg;
+    out.density = normals.density;
+    out.file = path.string();
+  }
+  if (const auto made = make_distribution(out); !made)
+    return fail(ErrorCode::BadInput, made.error().message, node.where("distribution"));
+  return out;
+}
+
+Result<std::optional<ApparentRoughness>> read_apparent_roughness(const Node &node) {
+  if (!node.has("apparent_roughness"))
+    return std::optional<ApparentRoughness>{};
+  UMOV_ASSIGN(below, node.child("apparent_roughness"));
+  ApparentRoughness out;
+  if (below.has("hurst"))
+    out.hurst = below.number("hurst", 1);
+  if (below.has("rms_height_nm"))
+    out.rms_height_nm = below.number("rms_height_nm", 0);
+  out.reference_nm = below.number("reference_nm", 550);
+  return std::optional(out);
+}
+
+Result<Material> read_measured(const Node &node, Material out) {
+  for (const char *name : {"index", "layers", "distribution", "shadowing", "body",
+                           "interreflection", "apparent_roughness", "direction"})
+    if (node.has(name))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} has no meaning beside a measured table; leave it out", name),
+                  node.where(name));
+  const fs::path path = beside(node, node.text("table", ""));
+  UMOV_ASSIGN(measured, read_measured_file(path, node.boolean("accept", false), out.remarks));
+  out.measured = std::make_shared<MeasuredBrdf>(std::move(measured));
+  out.measured_file = path.string();
+  return out;
+}
+
+Result<void> read_scattering(const Node &node, Material &out) {
+  UMOV_ASSIGN(index, read_index(node));
+  UMOV_ASSIGN(layers, read_layers(node));
+  UMOV_ASSIGN(distribution, read_distribution(node));
+  UMOV_ASSIGN(apparent, read_apparent_roughness(node));
+  out.index = index;
+  out.layers = layers;
+  out.distribution = distribution;
+  out.apparent_roughness = apparent;
+  if (node.has("direction") && node.text("direction", "") != "uv") {
+    UMOV_ASSIGN(axis, read_axis(node, "direction", {1, 0, 0}));
+    out.direction = axis;
+  }
+  UMOV_ASSIGN(shadowing, node.choice("shadowing", "ashikhmin", shadowing_names));
+  UMOV_ASSIGN(between, node.choice("interreflection", "none", interreflection_names));
+  for (std::size_t i = 0; i < shadowing_names.size(); ++i)
+    if (shadowing == shadowing_names[i])
+      out.shadowing = static_cast<Shadowing>(i);
+  for (std::size_t i = 0; i < interreflection_names.size(); ++i)
+    if (between == interreflection_names[i])
+      out.interreflection = static_cast<Interreflection>(i);
+  if (node.has("body")) {
+    UMOV_ASSIGN(below, node.child("body"));
+    UMOV_ASSIGN(reflectance, read_reflectance(below));
+    out.body = BodyLobe{reflectance, below.boolean("polarized", false)};
+  }
+  return {};
 }
 
 } // namespace
@@ -74,23 +173,12 @@ std::string list_toml(const std::vector<double> &values) {
 Result<Material> read_material_table(const Node &node, const std::string &name) {
   Material out;
   out.name = name;
-  UMOV_ASSIGN(index, read_index(node));
-  out.index = index;
-  UMOV_ASSIGN(distribution, node.child("distribution"));
-  UMOV_TRY(distribution.require("model"));
-  UMOV_TRY(distribution.choice("model", "", {"blinn_phong"},
-                               {"beckmann", "ggx", "ashikhmin_shirley", "table", "mirror"}));
-  UMOV_TRY(distribution.require("m"));
-  out.exponent = distribution.number("m", 0);
-  UMOV_ASSIGN(shadowing, node.choice("shadowing", "ashikhmin", shadowing_names));
-  for (std::size_t i = 0; i < shadowing_names.size(); ++i)
-    if (shadowing == shadowing_names[i])
-      out.shadowing = static_cast<Shadowing>(i);
-  UMOV_TRY(node.choice("interreflection", "none", {"none"}, {"unpolarized", "single_bounce_q"}));
-  if (node.has("body")) {
-    UMOV_ASSIGN(body, read_body(node));
-    out.body = body;
-  }
+  out.description = node.text("description", "");
+  out.source = node.text("source", "");
+  out.assumed = node.text("assumed", "");
+  if (node.has("table"))
+    return read_measured(node, out);
+  UMOV_TRY(read_scattering(node, out));
   if (auto checked = umov::check(out); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, node.where());
   return out;
@@ -110,16 +198,39 @@ Result<std::map<std::string, Material>> read_material_tables(const Node &top) {
     const Node node(*table, "material", "material." + name, top.file());
     UMOV_TRY(node.check());
     UMOV_ASSIGN(material, read_material_table(node, name));
-    if (const auto built_in = builtin_material(name);
-        built_in && material_toml(*built_in) != material_toml(material))
-      return fail(ErrorCode::BadInput,
-                  "[material." + name +
-                      "] differs from the built-in material of that name; give "
-                      "it a name of its own",
-                  place_of(key.source(), top.file()));
     out.emplace(name, material);
   }
   return out;
+}
+
+Result<void> check_own_names(const Node &top, const std::map<std::string, Material> &own) {
+  for (const auto &[name, material] : own)
+    if (const auto known = builtin_material(name);
+        known && material_toml(*known) != material_toml(material))
+      return fail(ErrorCode::BadInput,
+                  "[material." + name +
+                      "] differs from the paper's material of that name; give it "
+                      "a name of its own",
+                  top.where("material"));
+  return {};
+}
+
+Result<Material> read_material_text(const std::string &text, const std::string &file) {
+  try {
+    const toml::table document = toml::parse(text, file);
+    const Node top(document, "", "", file);
+    UMOV_TRY(top.check());
+    UMOV_ASSIGN(all, read_material_tables(top));
+    if (all.size() != 1)
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("holds {} materials; one [material.NAME] table was expected", all.size()),
+          {file});
+    return all.begin()->second;
+  } catch (const toml::parse_error &problem) {
+    return fail(ErrorCode::BadInput, std::string(problem.description()),
+                place_of(problem.source(), file));
+  }
 }
 
 Result<Material> find_material(const std::string &name, const Scenario &scenario) {
@@ -127,11 +238,11 @@ Result<Material> find_material(const std::string &name, const Scenario &scenario
     return own->second;
   if (name.ends_with(".toml"))
     return read_material(
-        (std::filesystem::path(scenario.file).parent_path() / name).lexically_normal().string());
-  auto found = builtin_material(name);
+        (fs::path(scenario.file).parent_path() / name).lexically_normal().string());
+  auto found = library_material(name);
   if (found)
     return found;
-  std::vector<std::string> known = builtin_material_names();
+  std::vector<std::string> known = material_library();
   for (const auto &[own, material] : scenario.own_materials)
     known.push_back(own);
   const auto near = nearest_name(name, known);
@@ -140,54 +251,4 @@ Result<Material> find_material(const std::string &name, const Scenario &scenario
                           near ? fmt::format(" Did you mean \"{}\"?", *near) : ""));
 }
 
-std::string material_toml(const Material &m) {
-  std::vector<double> n, k;
-  for (const auto &eta : m.index.eta) {
-    n.push_back(eta.real());
-    k.push_back(eta.imag());
-  }
-  std::string out = fmt::format("[material.{}]\n", quoted(m.name));
-  out += m.index.wavelength_nm.empty()
-             ? fmt::format("index = {{ n = {}, k = {} }}\n", shortest(n[0]), shortest(k[0]))
-             : fmt::format("index = {{ wavelength_nm = {}, n = {}, k = {} }}\n",
-                           list_toml(m.index.wavelength_nm), list_toml(n), list_toml(k));
-  out +=
-      fmt::format("distribution = {{ model = \"blinn_phong\", m = {} }}\n", shortest(m.exponent));
-  out += fmt::format("shadowing = \"{}\"\ninterreflection = \"none\"\n",
-                     shadowing_names[static_cast<std::size_t>(m.shadowing)]);
-  if (m.body)
-    out += m.body->wavelength_nm.empty()
-               ? fmt::format("body = {{ reflectance = {}, polarized = false }}\n",
-                             shortest(m.body->reflectance[0]))
-               : fmt::format("body = {{ reflectance = {{ wavelength_nm = {}, reflectance = {} }}, "
-                             "polarized = false }}\n",
-                             list_toml(m.body->wavelength_nm), list_toml(m.body->reflectance));
-  return out;
-}
-
 } // namespace umov::scenario
-
-namespace umov {
-
-Result<Material> read_material(const std::string &name_or_path) {
-  if (!name_or_path.ends_with(".toml"))
-    return builtin_material(name_or_path);
-  UMOV_ASSIGN(text, read_file(name_or_path));
-  try {
-    const toml::table document = toml::parse(text, name_or_path);
-    const scenario::Node top(document, "", "", name_or_path);
-    UMOV_TRY(top.check());
-    UMOV_ASSIGN(all, scenario::read_material_tables(top));
-    if (all.size() != 1)
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("holds {} materials; one [material.NAME] table was expected", all.size()),
-          {name_or_path});
-    return all.begin()->second;
-  } catch (const toml::parse_error &problem) {
-    return fail(ErrorCode::BadInput, std::string(problem.description()),
-                scenario::place_of(problem.source(), name_or_path));
-  }
-}
-
-} // namespace umov

@@ -15,6 +15,18 @@ Result<std::map<std::string, Material>> read_material_tables(const Node &top);
 Result<Material> find_material(const std::string &name, const Scenario &scenario);
 /// TOML of one material table.
 std::string material_toml(const Material &material);
+/// A compiled-in material.
+Result<Material> library_material(const std::string &name);
+bool is_in_library(const std::string &name);
+/// BadInput where a document's own material has the name of one of the paper's (paper_*) and
+/// differs from it. Over a name of the library the document's own wins.
+Result<void> check_own_names(const Node &top, const std::map<std::string, Material> &own);
+/// The one [material.NAME] of a TOML text.
+Result<Material> read_material_text(const std::string &text, const std::string &file);
+/// A body axis as TOML.
+std::string axis_toml(Vec3<Body> v);
+/// A body axis: "+X" to "-Z" or [x, y, z]; `fallback` where the key is absent.
+Result<Vec3<Body>> read_axis(const Node &node, const char *name, Vec3<Body> fallback);
 /// TOML of an attitude, as an inline table.
 std::string attitude_toml(const AttitudeLaw &law);
 /// A TOML string with what must be escaped.

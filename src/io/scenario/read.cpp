@@ -195,7 +195,8 @@ Result<void> read_render(const Node &top, Scenario &out) {
           ErrorCode::BadInput,
           fmt::format("bounces = {} is not built yet; this version has 1 (direct light)", bounces),
           node.where("bounces"));
-    UMOV_TRY(node.choice("sun", "point", {"point"}, {"disk"}));
+    UMOV_ASSIGN(sun, node.choice("sun", "disk", {"disk", "point"}));
+    out.has_solar_disk = sun == "disk";
     out.accuracy = node.number("accuracy", 0.005);
     if (!(out.accuracy >= 1e-6 && out.accuracy <= 1))
       return fail(ErrorCode::BadInput,
@@ -257,6 +258,7 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(read_render(top, out));
   UMOV_TRY(read_output(top, out));
   UMOV_ASSIGN(own, scenario::read_material_tables(top));
+  UMOV_TRY(scenario::check_own_names(top, own));
   out.own_materials = own;
   UMOV_TRY(read_object(top, path.parent_path(), out));
   return out;

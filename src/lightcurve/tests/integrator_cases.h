@@ -18,7 +18,7 @@ inline std::vector<Band> three_bands() {
 /// A built-in index with an exponent and without body light.
 inline Material interface_of(const std::string &name, double exponent) {
   Material out = builtin_material(name).value();
-  out.exponent = exponent;
+  out.distribution = blinn_phong(exponent);
   out.body.reset();
   return out;
 }
@@ -26,7 +26,7 @@ inline Material interface_of(const std::string &name, double exponent) {
 /// Index 1 reflects nothing at the interface; what is left is Lambert's law with reflectance 1.
 inline Material white_lambert() {
   Material out = builtin_material("paper_spectralon").value();
-  out.body = BodyLobe{{}, {1.0}};
+  out.body = BodyLobe{{{}, {1.0}}, false};
   return out;
 }
 

@@ -30,7 +30,7 @@ TEST(Scene, WantsABand) {
 TEST(Scene, PassesTheErrorOfAMaterialOn) {
   Diagnostics diagnostics;
   Material wrong = metal();
-  wrong.exponent = -1;
+  wrong.distribution = blinn_phong(-1);
   const auto scene =
       make_scene(make_sphere(1, 100), NormalMode::Flat, bands, {wrong}, {metal()}, diagnostics);
   ASSERT_FALSE(scene);

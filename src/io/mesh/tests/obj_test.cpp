@@ -232,3 +232,25 @@ TEST(ObjReader, AgreesWithTinyobjloader) {
 
 } // namespace
 } // namespace umov
+
+namespace umov {
+namespace {
+
+TEST(ObjReader, TakesTheDirectionFieldFromTheTexture) {
+  // u grows along +y of the file on the first face and along -x on the second; +Y up turns them.
+  const std::string text =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 0 1\nvt 1 0\nvt 0 0\nvt -1 0\nvt 0 1\n"
+      "f 1/1 2/2 3/3\nf 1/4 2/5 3/6\n";
+  Diagnostics diagnostics;
+  const auto read = read_obj_text(
+      text, "t.obj", {.unit = "m", .up = "+Y"},
+      [](const std::string &) { return fail(ErrorCode::BadInput, ""); }, diagnostics);
+  ASSERT_TRUE(read) << read.error().text();
+  ASSERT_EQ(read->mesh.tangents.size(), 2u);
+  // (x, y, z) becomes (x, -z, y).
+  EXPECT_NEAR(norm(read->mesh.tangents[0] - Vec3<Body>{0, 0, 1}), 0, 1e-15);
+  EXPECT_NEAR(norm(read->mesh.tangents[1] - Vec3<Body>{-1, 0, 0}), 0, 1e-15);
+}
+
+} // namespace
+} // namespace umov

@@ -53,7 +53,7 @@ TEST(Scenario, ReadsEveryPart) {
   EXPECT_EQ(s->orbit->file, "dir/hst.tle");
   EXPECT_EQ(s->mesh.normals, NormalMode::Smooth);
   EXPECT_EQ(s->materials.at("array").back, "paper_al");
-  EXPECT_EQ(s->own_materials.at("gold").exponent, 50);
+  EXPECT_EQ(s->own_materials.at("gold").distribution.parameters.at("m"), 50);
   EXPECT_EQ(s->own_materials.at("gold").shadowing, Shadowing::Smith);
   EXPECT_EQ(s->bands.size(), 2u);
   EXPECT_TRUE(check_complete_for_run(*s));
@@ -121,7 +121,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Wrong{"axis", "\"+X\"", "\"X\"", 18, "body axis"},
                     Wrong{"parallel", "then = \"+X\"", "then = \"-Z\"", 18, "parallel"},
                     Wrong{"no_distribution", "distribution", "#", 24, "distribution"},
-                    Wrong{"later_model", "blinn_phong", "ggx", 26, "not built yet"},
+                    Wrong{"lacks_alpha", "blinn_phong", "ggx", 26, "needs alpha"},
                     Wrong{"unsorted", "[400, 700], n", "[700, 400], n", 24, "increasing"},
                     Wrong{"negative_k", "[1.9, 3.1]", "[1.9, -3.1]", 24, "k ="},
                     Wrong{"later_band", "nm:500", "Bessell.V", 23, "not built yet"}),

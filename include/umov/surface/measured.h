@@ -1,0 +1,51 @@
+#pragma once
+// Surfaces known from measurements.
+
+#include <array>
+#include <string>
+#include <umov/core/result.h>
+#include <vector>
+
+namespace umov {
+
+/// One measured geometry: angles from the normal, azimuth between the directions (0 = source and
+/// observer on the same side), and the Mueller BRDF [1/sr] in the scattering plane; a plain BRDF has
+/// m00 alone.
+struct BrdfSample {
+  double wavelength_nm = 0, theta_i_deg = 0, theta_o_deg = 0, phi_deg = 0;
+  std::array<double, 16> mueller{};
+};
+
+/// A table of samples on a full grid of wavelength, theta_i, theta_o and phi, interpolated so that
+/// reciprocity holds exactly: each value is the mean of the table's at (i, o) and, transposed, at
+/// (o, i), with multilinear weights. Outside the grid: no light below the horizon, the nearest angle
+/// inside it, and no wavelength beyond the ends.
+class MeasuredBrdf {
+public:
+  /// `in_plane`: the table has the azimuths 0 and 180 only, and others take the mean of the two by
+  /// cos^2(phi/2) (said in the report). BadInput if the grid has holes; if the table is not
+  /// reciprocal within 5 % of its largest value or gives more than it gets, and `accept` is false,
+  /// with the numbers.
+  static Result<MeasuredBrdf> from(std::vector<BrdfSample> samples, bool has_polarization,
+                                   bool accept, std::vector<std::string> &remarks);
+
+  /// f M [1/sr], 4 x 4 by rows.
+  [[nodiscard]] std::array<double, 16> operator()(double wavelength_nm, double theta_i_rad,
+                                                  double theta_o_rad, double phi_rad) const;
+  /// Directional albedo at an incidence.
+  [[nodiscard]] double albedo(double wavelength_nm, double theta_i_rad) const;
+  /// Largest difference of f(i, o) and f(o, i) in the table, in parts of its largest value.
+  [[nodiscard]] double worst_asymmetry() const { return asymmetry_; }
+  [[nodiscard]] bool has_polarization() const { return has_polarization_; }
+  [[nodiscard]] double first_nm() const { return axes_[0].front(); }
+  [[nodiscard]] double last_nm() const { return axes_[0].back(); }
+
+private:
+  [[nodiscard]] std::array<double, 16> look_up(double nm, double i, double o, double phi) const;
+  std::array<std::vector<double>, 4> axes_; ///< nm, theta_i, theta_o, phi [deg]
+  std::vector<std::array<double, 16>> values_;
+  double asymmetry_ = 0;
+  bool has_polarization_ = false;
+};
+
+} // namespace umov

@@ -1,0 +1,76 @@
+#include "surface/body_lobe.h"
+
+#include "kernel/body.inl.h"
+
+#include <algorithm>
+#include <cmath>
+#include <umov/core/quantity.h>
+#include <numbers>
+
+namespace umov {
+namespace {
+
+
+kernel::Transmitted<double> transmitted(const Interface &surface, double cosine) {
+  const MuellerEntries r = surface.reflection(std::min(cosine, 1.0));
+  return {1 - r.a, -r.b};
+}
+
+} // namespace
+
+BodyLight::BodyLight(double reflectance, AlbedoTable reflected)
+    : factor_(reflectance / (pi * (1 - reflected.mean()))), reflectance_(reflectance),
+      reflected_(std::move(reflected)) {}
+
+BodyLight::BodyLight(double reflectance, const Interface &surface)
+    : factor_(reflectance / (pi * (1 - surface.mean_reflectance()))), reflectance_(reflectance),
+      surface_(surface) {}
+
+double BodyLight::albedo(double n_k) const {
+  // int f_b mu dw over the hemisphere: R_sub (1 - R(k)), since int (1 - R) mu dw = pi (1 - Rbar).
+  return reflectance_ *
+         (surface_ ? transmitted(*surface_, n_k).mean : 1 - reflected_(std::clamp(n_k, 0.0, 1.0)));
+}
+
+Stokes<ScatteringPlane> BodyLight::operator()(const SurfaceDirections &at,
+                                         const Stokes<ScatteringPlane> &in) const {
+  const double n_l = at.l.z, n_v = at.v.z;
+  if (!(n_l > 0 && n_v > 0))
+    return {};
+  const double scale = factor_ * n_l * n_v;
+  if (!surface_)
+    return {scale * (1 - reflected_(std::min(n_l, 1.0))) * (1 - reflected_(std::min(n_v, 1.0))) *
+                in.i,
+            0, 0, 0};
+  const auto turn = kernel::emission_planes(at.l.x, at.l.y, at.l.z, at.v.x, at.v.y, at.v.z);
+  const auto enters = transmitted(*surface_, n_l), leaves = transmitted(*surface_, n_v);
+  // t_in . S: only what is transmitted of the incoming light counts.
+  const double inside = enters.mean * in.i + enters.half_difference *
+                                                 (turn.cos_in * in.q + turn.sin_in * in.u);
+  return {scale * leaves.mean * inside, scale * leaves.half_difference * turn.cos_out * inside,
+          scale * leaves.half_difference * turn.sin_out * inside, 0};
+}
+
+Interreflected::Interreflected(std::shared_ptr<const AlbedoTable> furnace, double mean_reflectance)
+    : furnace_(std::move(furnace)) {
+  const double e = furnace_->mean(), f = mean_reflectance;
+  factor_ = f * f * e / (1 - f * (1 - e));
+}
+
+double Interreflected::operator()(double n_l, double n_v) const {
+  if (!(n_l > 0 && n_v > 0))
+    return 0;
+  const double lost = 1 - furnace_->mean();
+  // Narrow lobes lose nothing: the limit is no light, not 0/0.
+  if (lost < 1e-9)
+    return 0;
+  const double e_l = std::max(0.0, 1 - (*furnace_)(std::min(n_l, 1.0)));
+  const double e_v = std::max(0.0, 1 - (*furnace_)(std::min(n_v, 1.0)));
+  return factor_ * e_l * e_v / (pi * lost) * n_l * n_v;
+}
+
+double Interreflected::albedo(double n_k) const {
+  return factor_ * std::max(0.0, 1 - (*furnace_)(std::clamp(n_k, 0.0, 1.0)));
+}
+
+} // namespace umov

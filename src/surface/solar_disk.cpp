@@ -1,0 +1,156 @@
+#include "surface/solar_disk.h"
+
+#include <array>
+#include <cmath>
+#include <umov/core/quantity.h>
+#include <numbers>
+#include <umov/core/vec3.h>
+
+namespace umov {
+namespace {
+
+
+/// Variance of the disk's image over that of the lobe, up to which a closed form is taken: it leaves
+/// out fourth moments, of the order q^2/8.
+constexpr double closed_form_max = 3e-3;
+/// The same for seven nodes, exact up to the fifth power.
+constexpr double nodes_max = 3e-2;
+
+/// Azimuth of the edge's point that is nearest to the normal, and how near it is in radii.
+struct Nearest {
+  double beta, distance;
+};
+
+/// Half vectors of a disk of directions around l.
+class DiskImage {
+public:
+  DiskImage(Vec3<Facet> l, Vec3<Facet> v, double l_v, double radius_rad)
+      : l_(l), v_(v), sine_(std::sin(radius_rad)), cosine_(std::cos(radius_rad)) {
+    const Vec3<Facet> across = cross(v, l);
+    const double length = norm(across);
+    // Without a plane (phase 0 or 180) any pair of axes serves: the image is round or empty there.
+    e2_ = length > 1e-12 ? across / length : any_perpendicular(l);
+    e1_ = cross(e2_, l);
+    half_cosine_ = std::sqrt(std::max(0.0, (1 + l_v) / 2));
+  }
+  /// At the share `r` of the radius (small angles) and the azimuth beta.
+  [[nodiscard]] Vec3<Facet> at(double r, double beta) const {
+    const double s = r * sine_, c = r == 1 ? cosine_ : std::sqrt(1 - s * s);
+    const Vec3<Facet> source = c * l_ + (s * std::cos(beta)) * e1_ + (s * std::sin(beta)) * e2_;
+    return normalized(source + v_);
+  }
+  [[nodiscard]] double half_cosine() const { return half_cosine_; }
+  /// Coordinate of the surface normal in the scattering plane, from the image's centre towards l.
+  [[nodiscard]] double along_plane() const { return cross(e2_, normalized(l_ + v_)).z; }
+  /// In the plane at the image's centre, where the image is an ellipse.
+  [[nodiscard]] Nearest nearest_edge() const;
+
+private:
+  Vec3<Facet> l_, v_, e1_, e2_;
+  double sine_, cosine_, half_cosine_ = 0;
+};
+
+Nearest DiskImage::nearest_edge() const {
+  const Vec3<Facet> h = normalized(l_ + v_);
+  const double x = cross(e2_, h).z / (0.5 * sine_), y = e2_.z * half_cosine_ / (0.5 * sine_);
+  const double r = std::hypot(x, y);
+  constexpr double least = 1e-3; // the parabolas serve down to there
+  return {r > 0 ? std::atan2(y, x) : 0, std::clamp(std::abs(r - 1), least, 1.0)};
+}
+
+/// Degree 5 on the disk with seven nodes (Stroud 1971, S2 5-1).
+double by_nodes(const Distribution &normals, const DiskImage &image) {
+  const double ring = std::sqrt(2.0 / 3);
+  double sum = normals.density(image.at(0, 0)) / 4;
+  for (int k = 0; k < 6; ++k)
+    sum += normals.density(image.at(ring, k * pi / 3)) / 8;
+  return sum;
+}
+
+/// Many nodes on rings of equal area, for what has no contour form (anisotropic lobes).
+double by_rings(const Distribution &normals, const DiskImage &image) {
+  constexpr int rings = 12, spokes = 24;
+  double sum = 0;
+  for (int i = 0; i < rings; ++i)
+    for (int k = 0; k < spokes; ++k)
+      sum += normals.density(image.at(std::sqrt((i + 0.5) / rings), 2 * pi * (k + 0.5 * (i % 2)) / spokes));
+  return sum / (rings * spokes);
+}
+
+/// Mean of D over the image by Green's theorem: int over the image of D dw is the contour integral of
+/// C(theta) dphi, with theta, phi about the normal and C the integral of D sin(theta) from 0.
+/// Smooth for every width of the lobe, exact for a mirror (C constant: 2 pi inside, 0 outside).
+double by_contour(const Distribution &normals, const DiskImage &image) {
+  constexpr std::size_t steps = 48; // pairs of nodes
+  const Nearest near = image.nearest_edge();
+  // phi runs fastest where the edge passes the normal: nodes crowd there, beta ~ distance sinh(k t).
+  const double k = std::asinh(pi / near.distance);
+  struct Node {
+    double x, y, z, beyond;
+  };
+  std::array<Node, 2 * steps + 1> node{};
+  for (std::size_t i = 0; i < 2 * steps; ++i) {
+    const double t = static_cast<double>(i) / steps - 1;
+    const Vec3<Facet> h = image.at(1, near.beta + near.distance * std::sinh(k * t));
+    node[i] = {h.x, h.y, h.z, normals.beyond(h.z) / (2 * pi)};
+  }
+  node.back() = node.front();
+  // Simpson in t; the increments of phi are exact angles, so their sum is the winding number.
+  double turn = 0, outer = 0, area = 0;
+  for (std::size_t i = 0; i < 2 * steps; i += 2) {
+    const Node &a = node[i], &b = node[i + 1], &c = node[i + 2];
+    const auto angle = [](const Node &p, const Node &q) {
+      return std::atan2(p.x * q.y - p.y * q.x, p.x * q.x + p.y * q.y);
+    };
+    const double first = angle(a, b), second = angle(b, c), dphi = first + second;
+    turn += dphi;
+    // The middle node is not quite the middle angle: a parabola through three uneven points.
+    const double u = std::abs(dphi) > 0 ? std::clamp(first / dphi, 0.2, 0.8) : 0.5;
+    const double wb = 1 / (6 * u * (1 - u)), wa = 0.5 - wb * (1 - u), wc = 1 - wa - wb;
+    outer += dphi * (wa * a.beyond + wb * b.beyond + wc * c.beyond);
+    area += dphi * (wa * (1 - a.z) + wb * (1 - b.z) + wc * (1 - c.z));
+  }
+  const double inside = std::abs(turn) > pi ? std::copysign(2 * pi, turn) : 0; // winding number
+  const double whole = normals.beyond(1) / (2 * pi);
+  return area != 0 ? std::max(0.0, (inside * whole - outer) / area) : 0;
+}
+
+} // namespace
+
+double density_over_disk(const Distribution &normals, Vec3<Facet> l, Vec3<Facet> v, double l_v,
+                         double radius_rad) {
+  const Vec3<Facet> sum = l + v;
+  const double length = norm(sum);
+  if (!(length > 1e-15))
+    return 0; // phase 180: no half vector
+  const Vec3<Facet> h = sum / length;
+  if (!(radius_rad > 0))
+    return normals.density(h);
+  const DiskImage image(l, v, l_v, radius_rad);
+  // Per-axis variances of a uniform disk, halved in angle by the half vector; across the scattering
+  // plane the image is longer by 1/cos(phase/2).
+  const double kappa1 = radius_rad * radius_rad / 16;
+  const double kappa2 = kappa1 / std::max(image.half_cosine() * image.half_cosine(), 1e-6);
+  const double width = normals.width();
+  const double q = width > 0 ? kappa2 / (width * width) : HUGE_VAL;
+  if (q < closed_form_max) {
+    const double difference = l.z - v.z, s2 = (1 - l_v) / 2;
+    const double x2 = s2 > 1e-15 ? difference * difference / (4 * s2) : 0;
+    const double y2 = std::max(0.0, (1 - h.z) * (1 + h.z) - x2);
+    const double value = normals.spread(h.z, x2, y2, kappa1, kappa2);
+    if (std::isfinite(value))
+      return h.z > 0 ? value : 0;
+  }
+  if (q < nodes_max)
+    return by_nodes(normals, image);
+  if (!normals.is_isotropic())
+    return by_rings(normals, image);
+  // The image is not evenly bright (dw_l = 4 h.v dw_h): its brightness where the lobe looks, at the
+  // mean of the product of both.
+  const double tangent = std::sqrt(std::max(0.0, (1 - l_v) / std::max(1 + l_v, 1e-15)));
+  const double x = std::clamp(image.along_plane(), -radius_rad / 2, radius_rad / 2);
+  return by_contour(normals, image) *
+         std::max(0.0, 1 - x * tangent * kappa1 / (kappa1 + width * width));
+}
+
+} // namespace umov
