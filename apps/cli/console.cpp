@@ -101,6 +101,11 @@ void watch_interrupts() {
   std::signal(SIGTERM, on_interrupt);
 }
 
+std::vector<std::string> &command_line() {
+  static std::vector<std::string> words;
+  return words;
+}
+
 bool may_colour(std::FILE *stream) {
   const char *no_colour = std::getenv("NO_COLOR");
   return (no_colour == nullptr || *no_colour == '\0') && ::isatty(fileno(stream)) != 0;

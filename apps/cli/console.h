@@ -52,6 +52,12 @@ private:
 const std::atomic<bool> &interrupted();
 void watch_interrupts();
 
+/// "." unless the text ends with one.
+inline std::string sentence_end(const std::string &text) { return text.ends_with('.') ? "" : "."; }
+
+/// The command line as it was given, for manifests.
+std::vector<std::string> &command_line();
+
 /// True if stdout or stderr may be coloured (a terminal, NO_COLOR unset).
 bool may_colour(std::FILE *stream);
 

@@ -73,6 +73,7 @@ int run(int argc, char **argv) {
 
 int main(int argc, char **argv) {
   std::signal(SIGPIPE, SIG_DFL); // `umov ... | head` ends quietly
+  cli::command_line().assign(argv, argv + argc);
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc &) {

@@ -115,6 +115,9 @@ std::string summarize(const LightCurveOutcome &outcome) {
     const PassNumbers n = numbers_of(curve, pass.id);
     out += fmt::format("  {}  max alt {:.0f} deg  phase {:.0f}-{:.0f} deg", pass.id,
                        pass.culmination_altitude.degrees(), n.phase_min, n.phase_max);
+    if (seconds_between(pass.culmination, pass.rise) < 0 ||
+        seconds_between(pass.set, pass.culmination) < 0)
+      out += " (outside the span)";
     if (std::isfinite(n.brightest))
       out += fmt::format("  mag {:.1f} to {:.1f} AB  p up to {:.0f} %", n.brightest, n.faintest,
                          100 * n.p_max);

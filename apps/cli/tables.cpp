@@ -18,20 +18,42 @@ Result<void> put_table(const std::string &path, const Table &table, const Common
               "-o " + path + ": a name that ends in .csv, .ecsv or .json was expected");
 }
 
+Result<void> check_output(const std::string &path) {
+  if (path.empty() || path == "-")
+    return {};
+  namespace fs = std::filesystem;
+  const fs::path target(path);
+  const std::string suffix = target.extension().string();
+  if (suffix != ".csv" && suffix != ".ecsv" && suffix != ".json")
+    return fail(ErrorCode::Usage,
+                "-o " + path + ": a name that ends in .csv, .ecsv or .json was expected");
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (std::error_code code; !fs::is_directory(folder, code))
+    return fail(ErrorCode::Device, "no such folder. Make the folder first or choose another one.",
+                {folder.string()});
+  if (std::error_code code; fs::is_directory(target, code))
+    return fail(ErrorCode::Device, "this is a folder; the name of a file was expected", {path});
+  return {};
+}
+
 Error put_partial_table(const std::string &path, Table table, const Common &common,
                         const Error &stopped) {
-  namespace fs = std::filesystem;
-  fs::path target = path;
-  std::error_code code;
+  Error out = stopped;
+  if (table.rows() == 0)
+    return out;
+  std::filesystem::path target = path;
   const bool is_file = !path.empty() && path != "-";
-  if (is_file && fs::exists(target, code))
+  if (is_file)
     target.replace_extension(".partial" + target.extension().string());
   table.note("status", "stopped early: " + stopped.message);
-  if (const auto done = put_table(target.string(), table, common); !done)
-    return done.error();
-  Error out = stopped;
-  out.message += is_file ? "; the finished rows are in " + target.string()
-                         : std::string("; the finished rows were printed");
+  if (const auto done = put_table(target.string(), table, common); !done) {
+    out.message +=
+        sentence_end(out.message) + " The finished rows are lost: " + done.error().text();
+    return out;
+  }
+  out.message += sentence_end(out.message) +
+                 (is_file ? " The finished rows are in " + target.string() + "."
+                          : std::string(" The finished rows were printed; they are not all."));
   return out;
 }
 

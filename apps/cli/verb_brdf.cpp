@@ -100,6 +100,7 @@ Result<void> evaluate(const BrdfRow &row, const BrdfOptions &o, Surfaces &surfac
 }
 
 Result<void> run_brdf(const BrdfOptions &o, const Common &common) {
+  UMOV_TRY(check_output(o.output));
   UMOV_ASSIGN(material, read_material(o.material));
   UMOV_ASSIGN(rows, rows_of(o));
   Surfaces surfaces(material);

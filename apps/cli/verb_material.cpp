@@ -154,6 +154,7 @@ struct CheckOptions {
 };
 
 Result<void> check_materials(const CheckOptions &o, const Common &common) {
+  UMOV_TRY(check_output(o.output));
   const std::vector<std::string> names = o.all ? material_library() : o.names;
   if (names.empty())
     return fail(ErrorCode::Usage, "name a material, or pass --all");

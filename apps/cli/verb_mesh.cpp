@@ -178,21 +178,25 @@ std::string to_json(const Mesh &mesh, const MeshReport &m) {
   return out.dump(2) + "\n";
 }
 
-Result<void> look(const ReadOptions &options, const Common &common, bool check) {
-  Diagnostics diagnostics;
+Result<void> describe_file(const ReadOptions &options, const Common &common, bool check,
+                           Diagnostics &diagnostics) {
   UMOV_ASSIGN(read, read_obj(options.file, options.obj, diagnostics));
-  const MeshReport found = inspect(read.mesh);
-  const Table table = group_table(read.mesh, found);
+  Mesh mesh = std::move(read.mesh);
+  const MeshReport raw = inspect(mesh);
+  if (check) { // what is left when a scene is made of it
+    UMOV_ASSIGN(cleaned, clean(mesh, diagnostics, options.file));
+    mesh = std::move(cleaned);
+  }
+  MeshReport found = inspect(mesh);
+  found.degenerate = raw.degenerate;
+  found.duplicate = raw.duplicate;
+  found.opposite_pairs = raw.opposite_pairs;
   if (common.json) {
-    UMOV_TRY(put("", to_json(read.mesh, found)));
+    UMOV_TRY(put("", to_json(mesh, found)));
   } else {
     describe(found);
-    UMOV_TRY(put("", to_text(table)));
+    UMOV_TRY(put("", to_text(group_table(mesh, found))));
   }
-  if (check) {
-    UMOV_TRY(clean(read.mesh, diagnostics, options.file));
-  }
-  report(diagnostics, common);
   if (options.require_closed && !found.is_closed)
     return fail(ErrorCode::BadInput,
                 fmt::format("not closed: {} open and {} non-manifold edges. Mend the mesh or leave "
@@ -200,6 +204,13 @@ Result<void> look(const ReadOptions &options, const Common &common, bool check) 
                             found.open_edges, found.non_manifold_edges),
                 {options.file});
   return {};
+}
+
+Result<void> look(const ReadOptions &options, const Common &common, bool check) {
+  Diagnostics diagnostics;
+  const auto done = describe_file(options, common, check, diagnostics);
+  report(diagnostics, common); // also where the file could not be read: they may say why
+  return done;
 }
 
 void add_look(CLI::App &mesh, const Exit &exit_with, bool check) {

@@ -136,6 +136,7 @@ Table ephemeris_table(const std::vector<ObservingGeometry> &rows, ShadowModel sh
 int run_ephemeris(const OrbitOptions &o, const Common &common) {
   Diagnostics diagnostics;
   const auto done = [&]() -> Result<std::optional<Error>> {
+    UMOV_TRY(check_output(o.output));
     UMOV_ASSIGN(sets, read_sets(o, diagnostics));
     UMOV_ASSIGN(start, utc_from_iso(o.start));
     UMOV_ASSIGN(set, choose_elements(sets, o.norad, start, o.orbit));
@@ -255,6 +256,7 @@ Result<void> check_ages(const OrbitOptions &o, const std::vector<ElementSet> &se
 int run_propagate(const OrbitOptions &o, const Common &common) {
   Diagnostics diagnostics;
   const auto done = [&]() -> Result<void> {
+    UMOV_TRY(check_output(o.output));
     UMOV_ASSIGN(sets, read_sets(o, diagnostics));
     std::vector<Epoch<Utc>> times;
     for (const std::string &text : o.at) {

@@ -19,7 +19,7 @@ namespace {
 
 struct RunOptions {
   std::string scenario, device = "auto";
-  std::vector<std::string> overrides, command_line;
+  std::vector<std::string> overrides;
   std::int64_t seed = -1;
   double accuracy = 0;
   bool dry_run = false, allow_bad_checksum = false, allow_old_elements = false;
@@ -146,7 +146,14 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
         page, make_run_report(run.scenario, run.object, run.request, run.outcome, run.diagnostics));
     folder.add("report.html", std::move(page));
   }
-  folder.add("scenario.lock.toml", locked_scenario(run.scenario));
+  std::string needed;
+  if (run.options.allow_bad_checksum)
+    needed += " --allow-bad-checksum";
+  if (run.options.allow_old_elements)
+    needed += " --allow-old-elements";
+  folder.add("scenario.lock.toml",
+             (needed.empty() ? "" : "# This run was made with" + needed + ".\n") +
+                 locked_scenario(run.scenario));
   folder.add("log.txt", log_of(run.outcome, run.diagnostics));
   using namespace std::chrono;
   ManifestInput manifest;
@@ -154,7 +161,7 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
     manifest.inputs.emplace_back(input.path, input.sha256);
   manifest.seed = run.scenario.seed;
   manifest.threads = resolve_threads(static_cast<unsigned>(run.common.threads));
-  manifest.command_line = run.options.command_line;
+  manifest.command_line = command_line();
   manifest.started_utc =
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(system_clock::to_time_t(run.started)));
   manifest.elapsed_s = duration<double>(system_clock::now() - run.started).count();
@@ -172,6 +179,10 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
   UMOV_ASSIGN(object,
               load_object(scenario, {o.allow_bad_checksum, o.allow_old_elements}, diagnostics));
+  if (constexpr double long_step_s = 300; scenario.time->step_s > long_step_s)
+    diagnostics.warn(
+        fmt::format("step_s = {:g} is long against a pass: passes may be missed or joined",
+                    scenario.time->step_s));
   warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);
   warn_if_outside_eop(scenario.time->start, scenario.time->stop, diagnostics);
   if (common.verbose)
@@ -215,7 +226,8 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
              resolve_threads(request.threads)));
   if (outcome->stopped) {
     Error stopped = *outcome->stopped;
-    stopped.message += "; the finished rows are in " + folder.path().string();
+    stopped.message +=
+        sentence_end(stopped.message) + " The finished rows are in " + folder.path().string() + ".";
     return tl::unexpected(stopped);
   }
   return {};
@@ -251,9 +263,6 @@ void add_run(CLI::App &app, const Exit &exit_with) {
                        {}}));
       return;
     }
-    o->command_line = {"umov", "run", o->scenario};
-    for (const std::string &one : o->overrides)
-      o->command_line.insert(o->command_line.end(), {"--set", one});
     watch_interrupts();
     Diagnostics diagnostics;
     const auto done = run(*o, *common, diagnostics);

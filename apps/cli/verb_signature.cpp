@@ -58,14 +58,21 @@ Result<Vec3<Body>> direction_from(const Table &table, const std::string &name, s
                                std::ldexp(v.z, -exponent)});
 }
 
+/// Poses and the numbers that they have in the output.
+struct NumberedPoses {
+  std::vector<Pose> poses;
+  std::vector<std::int64_t> number;
+};
+
 /// Rows in turn with the same number in a column "pose" are one pose: so a table that
 /// `umov signature` wrote, with a row per band, gives its poses back.
-Result<std::vector<Pose>> poses_from_table(const std::string &path) {
+Result<NumberedPoses> poses_from_table(const std::string &path) {
   UMOV_ASSIGN(text, read_file(path));
   UMOV_ASSIGN(table, read_csv(text, path, {"sun_x", "sun_y", "sun_z", "obs_x", "obs_y", "obs_z"},
                               {"pose"}));
   const bool has_pose = table.find("pose") != nullptr;
-  std::vector<Pose> poses;
+  NumberedPoses out;
+  std::vector<Pose> &poses = out.poses;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const Where where{path, static_cast<std::size_t>(table.number("line", i))};
     UMOV_ASSIGN(sun, direction_from(table, "sun", i, where));
@@ -79,22 +86,27 @@ Result<std::vector<Pose>> poses_from_table(const std::string &path) {
                     where);
       continue;
     }
+    out.number.push_back(has_pose ? static_cast<std::int64_t>(table.number("pose", i))
+                                  : static_cast<std::int64_t>(poses.size()));
     poses.push_back({sun, observer});
   }
-  return poses;
+  return out;
 }
 
-Result<std::vector<Pose>> poses_of(const SignatureOptions &o, std::uint64_t seed) {
+Result<NumberedPoses> poses_of(const SignatureOptions &o, std::uint64_t seed) {
   if (!o.geometry.empty())
     return poses_from_table(o.geometry);
-  std::vector<Pose> poses;
+  NumberedPoses out;
+  std::vector<Pose> &poses = out.poses;
   for (const double phase : o.phases_deg) {
     if (!(phase >= 0 && phase <= 180))
       return fail(ErrorCode::Usage, fmt::format("--phase {}: 0 to 180 was expected", phase));
-    for (std::size_t i = 0; i < o.poses; ++i)
+    for (std::size_t i = 0; i < o.poses; ++i) {
+      out.number.push_back(static_cast<std::int64_t>(poses.size()));
       poses.push_back(random_pose(seed, poses.size(), Angle::degrees(phase)));
+    }
   }
-  return poses;
+  return out;
 }
 
 /// Where the model of an active source falls short (explicit rough surfaces, docs/theory/lobes.md).
@@ -111,7 +123,7 @@ struct SignatureColumns {
   std::vector<std::string> band;
   std::vector<std::vector<double>> numbers{18};
 
-  void add(std::size_t index, const Pose &at, const Band &colour, const BandResult &result,
+  void add(std::int64_t number, const Pose &at, const Band &colour, const BandResult &result,
            bool is_dark) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto &s = result.stokes;
@@ -135,7 +147,7 @@ struct SignatureColumns {
                                      at.observer.x,
                                      at.observer.y,
                                      at.observer.z};
-    pose.push_back(static_cast<std::int64_t>(index));
+    pose.push_back(number);
     band.push_back(colour.name);
     for (std::size_t i = 0; i < row.size(); ++i)
       numbers[i].push_back(row[i]);
@@ -175,10 +187,12 @@ struct SignatureColumns {
 
 Result<void> run_signature(const SignatureOptions &o, const Common &common,
                            Diagnostics &diagnostics) {
+  UMOV_TRY(check_output(o.output));
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
   const std::uint64_t seed = o.has_seed ? o.seed : scenario.seed;
   UMOV_ASSIGN(source, source_of(o));
-  UMOV_ASSIGN(poses, poses_of(o, seed));
+  UMOV_ASSIGN(numbered, poses_of(o, seed));
+  std::vector<Pose> &poses = numbered.poses;
   const bool is_sun = o.source == "sun";
   for (Pose &pose : poses)
     pose.sun_radius_rad = is_sun && scenario.has_solar_disk ? solar_radius_rad : 0;
@@ -202,7 +216,7 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
     });
     for (std::size_t i = 0; i < count && results[i]; ++i, ++done)
       for (std::size_t b = 0; b < object.scene.bands.size(); ++b)
-        columns.add(done, poses[done], object.scene.bands[b], results[i]->bands[b],
+        columns.add(numbered.number[done], poses[done], object.scene.bands[b], results[i]->bands[b],
                     results[i]->is_dark);
     bar.update(done, poses.size());
   }
@@ -233,7 +247,8 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
       ->required();
   auto *geometry =
       verb->add_option("--geometry", o->geometry,
-                       "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame");
+                       "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame; with a "
+                       "column pose, rows in turn of one number are one pose and keep it");
   auto *poses = verb->add_option("--poses", o->poses, "Random poses for each phase angle")
                     ->check(CLI::Range(1, 10'000'000));
   auto *phase =
@@ -250,7 +265,8 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--state", o->state,
                    "Laser: Stokes I Q U V of the incoming light in the scattering frame")
       ->expected(4);
-  auto *seed = verb->add_option("--seed", o->seed, "Of the random poses; default: the scenario's");
+  auto *seed = verb->add_option("--seed", o->seed, "Of the random poses; default: the scenario's")
+                   ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
   verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
   verb->add_option("--accuracy", o->accuracy, "Relative 95 % half-width asked of I")
       ->check(CLI::Range(1e-6, 1.0));
@@ -258,7 +274,7 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
   verb->callback([o, common, exit_with, seed, geometry, poses] {
-    if (geometry->count() + poses->count() == 0) {
+    if ((geometry->count() == 0 || o->geometry.empty()) && poses->count() == 0) {
       exit_with(report(Error{ErrorCode::Usage,
                              "say for which directions: --geometry TABLE, or --poses N --phase DEG",
                              {}}));

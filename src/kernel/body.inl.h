@@ -8,8 +8,8 @@ namespace umov::kernel {
 /// Transmission for both polarizations as (T_s + T_p)/2 and (T_s - T_p)/2.
 template <class R> struct Transmitted { R mean, half_difference; };
 
-/// cos and sin of twice the angles from the scattering plane's s axis to the normals of the plane of
-/// incidence (n, l) and of emission (n, v), each in its own beam.
+/// cos and sin of twice the angles from the scattering plane's s axis to the normals of the plane
+/// of incidence (n, l) and of emission (n, v), each in its own beam.
 template <class R> struct EmissionPlanes { R cos_in, sin_in, cos_out, sin_out; };
 
 /// l, v: unit vectors in a frame with the surface normal along z. With s = (v x l)/|v x l| and

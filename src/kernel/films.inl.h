@@ -100,9 +100,9 @@ template <class R> inline Powers<R> powers(Amplitudes<R> a, R factor_s = R(1), R
 }
 
 /// A thick layer: light enters through a surface (reflection `top`, transmissions `down` and `up`,
-/// reflection `inside` from below), crosses it with the internal transmittance `tau` per pass and is
-/// reflected by what lies beneath. Sum over all passes without interference:
-/// R = R_top + T_down T_up tau^2 R_b/(1 - R_in R_b tau^2), the cross terms alike.
+/// reflection `inside` from below), crosses it with the internal transmittance `tau` per pass and
+/// is reflected by what lies beneath. Sum over all passes without interference: R = R_top + T_down
+/// T_up tau^2 R_b/(1 - R_in R_b tau^2), the cross terms alike.
 template <class R>
 inline Powers<R> thick_layer(Powers<R> top, Powers<R> down, Powers<R> up, Powers<R> inside, R tau,
                              Powers<R> beneath) {

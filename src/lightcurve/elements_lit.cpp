@@ -84,7 +84,6 @@ public:
             (surface.material().measured && surface.material().measured->has_polarization());
     out_.fresnel.resize(is_known_.size() * bands_);
     out_.total.assign(bands_, 0);
-    variance_.resize(bands_);
     integrals_.specular.resize(out_.lobes);
     integrals_.diffuse.resize(bands_);
   }
@@ -188,16 +187,17 @@ private:
       has_light = has_light || value > 0;
       out_.total[b] += value;
       const Stokes<ScatteringPlane> f = out_.fresnel[lit.slot * bands_ + b];
-      const double s = integrals_.specular[out_.lobe_of(b)].error();
+      const double error = integrals_.specular[out_.lobe_of(b)].error();
       const Stokes<ScatteringPlane> d = integrals_.diffuse[b].error();
       const auto square = [](double x) { return x * x; };
-      variance_[b] +=
-          Stokes<ScatteringPlane>{square(f.i * s + d.i), square(std::abs(f.q) * s + d.q),
-                                  square(std::abs(f.u) * s + d.u), square(std::abs(f.v) * s + d.v)};
+      out_.rule_variance.push_back({square(f.i * error + d.i), square(std::abs(f.q) * error + d.q),
+                                    square(std::abs(f.u) * error + d.u),
+                                    square(std::abs(f.v) * error + d.v)});
     }
     if (!has_light) {
       out_.specular.resize(lit.specular_at);
       out_.diffuse.resize(lit.diffuse_at);
+      out_.rule_variance.resize(lit.diffuse_at);
     }
     return has_light;
   }
@@ -260,8 +260,6 @@ private:
         if (out_.total[b] > 0)
           lit.share += out_.light_of(lit, b).i / (out_.total[b] * static_cast<double>(bands_));
     std::erase_if(out_.list, [](const LitElement &lit) { return !(lit.share > negligible); });
-    for (const auto &v : variance_)
-      out_.rule_error.push_back({std::sqrt(v.i), std::sqrt(v.q), std::sqrt(v.u), std::sqrt(v.v)});
   }
 
   const Scene &scene_;
@@ -270,7 +268,6 @@ private:
   const Stokes<ScatteringPlane> &source_;
   std::size_t bands_;
   std::vector<char> is_known_; ///< per slot: its Fresnel factors are there
-  std::vector<Stokes<ScatteringPlane>> variance_;
   SideIntegrals integrals_;
   LitElements out_;
 };

@@ -35,10 +35,10 @@ struct LitElements {
   bool has_u_or_v = false;      ///< some surface or the source gives light outside I and Q
   std::size_t lobes = 1;        ///< 1: the lobe is the same in all bands; or bands
   std::vector<double> specular; ///< integral of D G / 4 per lobe [m2/sr]
-  std::vector<Stokes<ScatteringPlane>> diffuse;    ///< all other light, per band [m2/sr]
-  std::vector<Stokes<ScatteringPlane>> fresnel;    ///< one reflection: [slot * bands + band]
-  std::vector<double> total;                       ///< per band: I if nothing were hidden
-  std::vector<Stokes<ScatteringPlane>> rule_error; ///< per band: error of the triangle rule
+  std::vector<Stokes<ScatteringPlane>> diffuse;       ///< all other light, per band [m2/sr]
+  std::vector<Stokes<ScatteringPlane>> fresnel;       ///< one reflection: [slot * bands + band]
+  std::vector<double> total;                          ///< per band: I if nothing were hidden
+  std::vector<Stokes<ScatteringPlane>> rule_variance; ///< as `diffuse`: squared error of the rule
 
   [[nodiscard]] std::size_t lobe_of(std::size_t band) const { return lobes == 1 ? 0 : band; }
   /// Light of an element in a band if nothing were hidden.

@@ -2,6 +2,7 @@
 
 #include "lightcurve/visibility.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <umov/core/parallel.h>
@@ -59,7 +60,10 @@ PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &opti
       out.group_intensity[group_of_slot(static_cast<std::uint32_t>(slot)) * bands + b] += light.i;
     }
     const double floor = rounding * band.stokes.i;
-    band.half_width = sums.half_width[b] + lit.rule_error[b];
+    const Stokes<ScatteringPlane> &rule = sums.rule_variance[b];
+    band.half_width = sums.half_width[b];
+    band.half_width += Stokes<ScatteringPlane>{std::sqrt(rule.i), std::sqrt(rule.q),
+                                               std::sqrt(rule.u), std::sqrt(rule.v)};
     band.half_width.i += floor;
     band.half_width.q += floor;
     if (lit.has_u_or_v) {

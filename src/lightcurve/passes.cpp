@@ -70,10 +70,11 @@ public:
 
   /// Walks on while the altitude grows; returns where it no longer does.
   [[nodiscard]] double walk(double from, double step) const {
-    constexpr double longest_s = 43'200; // half a day: what hardly moves has no summit
+    constexpr double longest_s = 21'600; // what still climbs after that hardly moves: no summit
     double best = from, highest = altitude(from);
-    while (std::abs(best + step - from) <= longest_s && altitude(best + step) > highest)
-      highest = altitude(best += step);
+    for (double next; (next = altitude(best + step)) > highest; highest = next)
+      if (std::abs((best += step) - from) > longest_s)
+        return from;
     return best;
   }
   /// Golden section, so that the name of a pass does not depend on the step.

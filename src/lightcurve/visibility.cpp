@@ -168,13 +168,16 @@ VisibleSums sum_unhidden(const Scene &scene, const LitElements &lit) {
   VisibleSums out;
   out.specular.assign(slots * lit.lobes, 0);
   out.diffuse.resize(slots * bands);
+  out.rule_variance.resize(bands);
   for (const LitElement &e : lit.list) {
     for (std::size_t k = 0; k < lit.lobes; ++k)
       out.specular[e.slot * lit.lobes + k] += lit.specular[e.specular_at + k];
     if (e.is_glint)
       out.glint += lit.fresnel[e.slot * bands].i * lit.specular[e.specular_at];
-    for (std::size_t b = 0; b < bands; ++b)
+    for (std::size_t b = 0; b < bands; ++b) {
       out.diffuse[e.slot * bands + b] += lit.diffuse[e.diffuse_at + b];
+      out.rule_variance[b] += lit.rule_variance[e.diffuse_at + b];
+    }
   }
   out.intensity = lit.total;
   out.half_width.resize(bands);

@@ -13,7 +13,8 @@ struct VisibleSums {
   std::vector<Stokes<ScatteringPlane>> diffuse; ///< [slot * bands + band] [m2/sr]
   double glint = 0;              ///< part of the reflected light in band 0 from flats in glint
   std::vector<double> intensity; ///< per band [m2/sr]
-  std::vector<Stokes<ScatteringPlane>> half_width; ///< per band, 95 %, sampling alone
+  std::vector<Stokes<ScatteringPlane>> half_width;    ///< per band, 95 %, sampling alone
+  std::vector<Stokes<ScatteringPlane>> rule_variance; ///< per band: of the rule, over what is seen
   std::uint64_t points = 0, rays = 0;
   bool is_any_seen = false;
 };

@@ -43,10 +43,11 @@ public:
       : scene_(scene), elements_(elements), occluder_(occluder), pose_(pose), lit_(lit),
         seed_(seed), stream_(stream), bands_(scene.bands.size()), lobes_(lit.lobes),
         kinds_(lit.lobes + 1), variance_(bands_), block_specular_(lobes_), block_diffuse_(bands_),
-        ratio_(kinds_), weight_sum_(kinds_) {
+        block_rule_(bands_), ratio_(kinds_), weight_sum_(kinds_) {
     out_.sums.specular.assign(2 * scene.mesh.groups.size() * lobes_, 0);
     out_.sums.diffuse.resize(2 * scene.mesh.groups.size() * bands_);
     out_.sums.intensity.assign(bands_, 0);
+    out_.sums.rule_variance.resize(bands_);
   }
 
   Measurement run(std::vector<Block> blocks) {
@@ -169,6 +170,8 @@ private:
       const Stokes<ScatteringPlane> all = f * block_specular_[lobe] + block_diffuse_[b];
       out_.sums.intensity[b] +=
           f.i * block_specular_[lobe] * ratio_[lobe] + block_diffuse_[b].i * ratio_[lobes_];
+      const double seen_part = std::max(ratio_[lobe], ratio_[lobes_]);
+      out_.sums.rule_variance[b] += block_rule_[b] * (seen_part * seen_part);
       const std::array<double, 4> parts{all.i, all.q, all.u, all.v};
       for (std::size_t k = 0; k < 4; ++k)
         variance_[b][k].weight2 += parts[k] * parts[k] / cells;
@@ -187,6 +190,7 @@ private:
   std::size_t sum_block(const Block &block) {
     std::fill(block_specular_.begin(), block_specular_.end(), 0.0);
     std::fill(block_diffuse_.begin(), block_diffuse_.end(), Stokes<ScatteringPlane>{});
+    std::fill(block_rule_.begin(), block_rule_.end(), Stokes<ScatteringPlane>{});
     block_glint_ = 0;
     const std::size_t slot = lit_.list[block.first].slot;
     for (std::size_t i = block.first; i < block.last; ++i) {
@@ -195,8 +199,10 @@ private:
         block_specular_[k] += lit_.specular[lit.specular_at + k];
       if (lit.is_glint)
         block_glint_ += lit_.fresnel[slot * bands_].i * lit_.specular[lit.specular_at];
-      for (std::size_t b = 0; b < bands_; ++b)
+      for (std::size_t b = 0; b < bands_; ++b) {
         block_diffuse_[b] += lit_.diffuse[lit.diffuse_at + b];
+        block_rule_[b] += lit_.rule_variance[lit.diffuse_at + b];
+      }
     }
     return slot;
   }
@@ -251,7 +257,7 @@ private:
   std::vector<double> weights_; ///< [point * kinds + kind]
   std::vector<unsigned char> free_, seen_;
   std::vector<double> block_specular_; ///< per lobe
-  std::vector<Stokes<ScatteringPlane>> block_diffuse_;
+  std::vector<Stokes<ScatteringPlane>> block_diffuse_, block_rule_;
   std::vector<double> ratio_, weight_sum_; ///< per kind: visible share, sum of weights
   double block_glint_ = 0;
   Measurement out_;

@@ -126,8 +126,9 @@ WavelengthRange range_of(const IndexTable &table) {
 Result<double> value_at(const Tabulated &table, Wavelength wavelength, const std::string &what) {
   const WavelengthRange range = range_of(table);
   if (!(wavelength.nm() >= range.first_nm && wavelength.nm() <= range.last_nm))
-    return problem(fmt::format("{} covers {:g}-{:g} nm; {:g} nm was asked for. Extrapolation is off.",
-                               what, range.first_nm, range.last_nm, wavelength.nm()));
+    return problem(
+        fmt::format("{} covers {:g}-{:g} nm; {:g} nm was asked for. Extrapolation is off.", what,
+                    range.first_nm, range.last_nm, wavelength.nm()));
   return interpolate(table, wavelength.nm());
 }
 
@@ -142,13 +143,15 @@ Result<std::complex<double>> index_at(const IndexTable &table, Wavelength wavele
   const double n = formula != nullptr ? evaluate(*formula, nm / 1000)
                                       : interpolate(std::get<Tabulated>(table.n), nm);
   if (!(n > 0) || !std::isfinite(n))
-    return problem(fmt::format("index \"{}\": its formula has no real n at {:g} nm", table.name, nm));
+    return problem(
+        fmt::format("index \"{}\": its formula has no real n at {:g} nm", table.name, nm));
   return std::complex<double>(n, interpolate(table.k, nm));
 }
 
 Result<void> check(const Tabulated &table, const std::string &what) {
   const auto &nm = table.wavelength_nm;
-  if (table.value.empty() || (nm.empty() ? table.value.size() != 1 : nm.size() != table.value.size()))
+  if (table.value.empty() ||
+      (nm.empty() ? table.value.size() != 1 : nm.size() != table.value.size()))
     return problem(fmt::format("{} wavelengths and {} values of {}; as many of both were expected "
                                "(or one value and no wavelength)",
                                nm.size(), table.value.size(), what));
@@ -156,7 +159,8 @@ Result<void> check(const Tabulated &table, const std::string &what) {
     if (!(nm[i] > 0) || !std::isfinite(nm[i]))
       return problem(
           fmt::format("wavelength {:g} nm of {}; a positive number was expected", nm[i], what));
-    if (nm[i] < 10 && nm.back() < 1000) // a table that goes on into the infrared may begin at X-rays
+    if (nm[i] < 10 &&
+        nm.back() < 1000) // a table that goes on into the infrared may begin at X-rays
       return problem(fmt::format("wavelength {:g} nm of {} is very short; is the table in um? "
                                  "Multiply by 1000.",
                                  nm[i], what));
@@ -175,8 +179,8 @@ namespace {
 
 Result<void> check_formula(const DispersionFormula &formula) {
   if (formula.number < 1 || formula.number > 9)
-    return problem(fmt::format("dispersion formula {} is unknown; 1 to 9 was expected",
-                               formula.number));
+    return problem(
+        fmt::format("dispersion formula {} is unknown; 1 to 9 was expected", formula.number));
   const bool is_open = formula.number <= 6; // any number of terms
   const std::size_t most = formula.number == 8 ? 4 : 6;
   const std::size_t count = formula.coefficients.size();
@@ -209,7 +213,8 @@ Result<void> check(const IndexTable &table) {
   UMOV_TRY(check(table.k, "k"));
   for (const double value : table.k.value)
     if (!(value >= 0))
-      return problem(fmt::format("k = {:g}; 0 or more was expected (n + ik, k > 0 absorbs)", value));
+      return problem(
+          fmt::format("k = {:g}; 0 or more was expected (n + ik, k > 0 absorbs)", value));
   const WavelengthRange range = range_of(table);
   if (!(range.first_nm <= range.last_nm))
     return problem(fmt::format("n and k have no wavelength in common ({:g} nm is above {:g} nm)",

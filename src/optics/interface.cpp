@@ -14,9 +14,7 @@ using Powers = kernel::Powers<double>;
 
 Kc of(std::complex<double> z) { return {z.real(), z.imag()}; }
 
-MuellerEntries entries(const kernel::Reflection<double> &r) {
-  return {r.a, r.b, {r.z.re, r.z.im}};
-}
+MuellerEntries entries(const kernel::Reflection<double> &r) { return {r.a, r.b, {r.z.re, r.z.im}}; }
 
 /// Coherent films between two media that count as infinite.
 struct Packet {
@@ -123,9 +121,9 @@ Slab slab(std::complex<double> eta, double cos_incidence) {
 
 MuellerEntries slab_reflection(std::complex<double> eta, double cos_incidence, double tau) {
   const Slab s = slab(eta, cos_incidence);
-  return entries(kernel::reflection(kernel::thick_layer(reflected(s.in), transmitted(s.in),
-                                                        transmitted(s.out), reflected(s.out), tau,
-                                                        reflected(s.out))));
+  return entries(
+      kernel::reflection(kernel::thick_layer(reflected(s.in), transmitted(s.in), transmitted(s.out),
+                                             reflected(s.out), tau, reflected(s.out))));
 }
 
 MuellerEntries slab_transmission(std::complex<double> eta, double cos_incidence, double tau) {
@@ -134,10 +132,9 @@ MuellerEntries slab_transmission(std::complex<double> eta, double cos_incidence,
   const double t2 = tau * tau;
   const auto through = kernel::multiply(in.z, out.z);
   const auto loop = kernel::multiply(r.z, r.z);
-  const Powers total{in.s * out.s * tau / (1 - r.s * r.s * t2),
-                     in.p * out.p * tau / (1 - r.p * r.p * t2),
-                     kernel::divide(Kc{through.re * tau, through.im * tau},
-                                    Kc{1 - loop.re * t2, -loop.im * t2})};
+  const Powers total{
+      in.s * out.s * tau / (1 - r.s * r.s * t2), in.p * out.p * tau / (1 - r.p * r.p * t2),
+      kernel::divide(Kc{through.re * tau, through.im * tau}, Kc{1 - loop.re * t2, -loop.im * t2})};
   return entries(kernel::reflection(total));
 }
 

@@ -9,9 +9,10 @@ std::array<double, 4> cloude_eigenvalues(const std::array<std::array<double, 4>,
   using Complex = std::complex<double>;
   const Complex i(0, 1);
   // Pauli matrices in the order of Stokes I, Q, U, V.
-  const std::array<Eigen::Matrix2cd, 4> sigma{
-      Eigen::Matrix2cd::Identity(), (Eigen::Matrix2cd() << 1, 0, 0, -1).finished(),
-      (Eigen::Matrix2cd() << 0, 1, 1, 0).finished(), (Eigen::Matrix2cd() << 0, -i, i, 0).finished()};
+  const std::array<Eigen::Matrix2cd, 4> sigma{Eigen::Matrix2cd::Identity(),
+                                              (Eigen::Matrix2cd() << 1, 0, 0, -1).finished(),
+                                              (Eigen::Matrix2cd() << 0, 1, 1, 0).finished(),
+                                              (Eigen::Matrix2cd() << 0, -i, i, 0).finished()};
   Eigen::Matrix4cd coherency = Eigen::Matrix4cd::Zero();
   for (std::size_t r = 0; r < 4; ++r)
     for (std::size_t c = 0; c < 4; ++c)

@@ -17,7 +17,8 @@ Vec3<Facet> direction(double u, double w) {
   return {s * std::cos(2 * pi * w), s * std::sin(2 * pi * w), u};
 }
 
-/// int of the diffuse light over all directions of the observer, per unit irradiance on the surface.
+/// int of the diffuse light over all directions of the observer, per unit irradiance on the
+/// surface.
 double diffuse_albedo(const Surface &surface, std::size_t band, double theta) {
   double sum = 0;
   constexpr int azimuths = 16;
@@ -36,7 +37,8 @@ double diffuse_albedo(const Surface &surface, std::size_t band, double theta) {
 void look_at_pair(const Surface &surface, std::size_t band, Vec3<Facet> l, Vec3<Facet> v,
                   SurfaceAudit &out) {
   const double l_v = std::clamp(dot(l, v), -1.0, 1.0);
-  const auto there = surface.brdf(band, {l, v, l_v, 0}).m, back = surface.brdf(band, {v, l, l_v, 0}).m;
+  const auto there = surface.brdf(band, {l, v, l_v, 0}).m,
+             back = surface.brdf(band, {v, l, l_v, 0}).m;
   const double scale = there[0][0];
   // Deep in the tail of a narrow lobe numbers are denormal and have few digits left.
   if (!(scale > 1e-280))
@@ -44,7 +46,8 @@ void look_at_pair(const Surface &surface, std::size_t band, Vec3<Facet> l, Vec3<
   for (std::size_t r = 0; r < 4; ++r)
     for (std::size_t c = 0; c < 4; ++c) {
       const double sign = (r == 2) != (c == 2) ? -1 : 1;
-      out.reciprocity = std::max(out.reciprocity, std::abs(back[r][c] - sign * there[c][r]) / scale);
+      out.reciprocity =
+          std::max(out.reciprocity, std::abs(back[r][c] - sign * there[c][r]) / scale);
     }
   out.cloude_min = std::min(out.cloude_min, cloude_eigenvalues(there)[0] / scale);
   out.polarization_max =
@@ -70,8 +73,8 @@ SurfaceAudit audit(const Surface &surface, std::uint64_t geometries, std::uint64
     for (const double deg : {0., 20., 40., 60., 75., 85., 89.}) {
       const double theta = deg * pi / 180;
       for (const double azimuth : {0., 0.8, pi / 2}) {
-        const Vec3<Facet> k{std::sin(theta) * std::cos(azimuth), std::sin(theta) * std::sin(azimuth),
-                            std::cos(theta)};
+        const Vec3<Facet> k{std::sin(theta) * std::cos(azimuth),
+                            std::sin(theta) * std::sin(azimuth), std::cos(theta)};
         out.albedo_max = std::max(out.albedo_max, surface.albedo(b, k));
         if (out.promises_energy && azimuth == 0)
           out.energy_gap = std::max(

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <umov/core/quantity.h>
 #include <numbers>
+#include <umov/core/quantity.h>
 
 namespace umov {
 namespace {
-
 
 kernel::Transmitted<double> transmitted(const Interface &surface, double cosine) {
   const MuellerEntries r = surface.reflection(std::min(cosine, 1.0));
@@ -33,7 +32,7 @@ double BodyLight::albedo(double n_k) const {
 }
 
 Stokes<ScatteringPlane> BodyLight::operator()(const SurfaceDirections &at,
-                                         const Stokes<ScatteringPlane> &in) const {
+                                              const Stokes<ScatteringPlane> &in) const {
   const double n_l = at.l.z, n_v = at.v.z;
   if (!(n_l > 0 && n_v > 0))
     return {};
@@ -45,8 +44,8 @@ Stokes<ScatteringPlane> BodyLight::operator()(const SurfaceDirections &at,
   const auto turn = kernel::emission_planes(at.l.x, at.l.y, at.l.z, at.v.x, at.v.y, at.v.z);
   const auto enters = transmitted(*surface_, n_l), leaves = transmitted(*surface_, n_v);
   // t_in . S: only what is transmitted of the incoming light counts.
-  const double inside = enters.mean * in.i + enters.half_difference *
-                                                 (turn.cos_in * in.q + turn.sin_in * in.u);
+  const double inside =
+      enters.mean * in.i + enters.half_difference * (turn.cos_in * in.q + turn.sin_in * in.u);
   return {scale * leaves.mean * inside, scale * leaves.half_difference * turn.cos_out * inside,
           scale * leaves.half_difference * turn.sin_out * inside, 0};
 }

@@ -74,8 +74,8 @@ Result<std::shared_ptr<const Distribution>> make_distribution(const Distribution
   for (const DistributionParameter &one : model->parameters) {
     const auto given = choice.parameters.find(one.name);
     if (given == choice.parameters.end())
-      return fail(ErrorCode::BadInput, fmt::format("distribution {} needs {} ({})", model->name,
-                                                   one.name, one.text));
+      return fail(ErrorCode::BadInput,
+                  fmt::format("distribution {} needs {} ({})", model->name, one.name, one.text));
     if (!(given->second >= one.low && given->second <= one.high))
       return fail(ErrorCode::BadInput, fmt::format("{} = {:g}; {:g} to {:g} was expected", one.name,
                                                    given->second, one.low, one.high));
@@ -86,9 +86,9 @@ Result<std::shared_ptr<const Distribution>> make_distribution(const Distribution
       for (const DistributionParameter &one : model->parameters)
         is_known = is_known || name == one.name;
       if (!is_known)
-        return fail(ErrorCode::BadInput,
-                    fmt::format("{} has no meaning with model = \"{}\"; leave it out", name,
-                                model->name));
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("{} has no meaning with model = \"{}\"; leave it out", name, model->name));
     }
   if (model->takes_table)
     UMOV_TRY(check_table(choice));

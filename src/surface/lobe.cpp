@@ -36,16 +36,20 @@ double MicrofacetLobe::operator()(Vec3<Facet> l, Vec3<Facet> v, double l_v,
   const double d = density_over_disk(*normals_, l, v, l_v, disk_radius_rad);
   if (!(d > 0))
     return 0;
-  return d * joint_masking(normals_->masking(l), normals_->masking(v), std::min(l.z, 1.0),
-                           std::min(v.z, 1.0), l_v) / 4;
+  return d *
+         joint_masking(normals_->masking(l), normals_->masking(v), std::min(l.z, 1.0),
+                       std::min(v.z, 1.0), l_v) /
+         4;
 }
 
 double MicrofacetLobe::isotropic(double n_l, double n_v, double l_v, double n_h) const {
   if (!(n_l > 0 && n_v > 0 && n_h > 0))
     return 0;
   const double d = normals_->density(tilted(n_h));
-  return d * joint_masking(normals_->masking(tilted(n_l)), normals_->masking(tilted(n_v)), n_l, n_v,
-                           l_v) / 4;
+  return d *
+         joint_masking(normals_->masking(tilted(n_l)), normals_->masking(tilted(n_v)), n_l, n_v,
+                       l_v) /
+         4;
 }
 
 } // namespace umov

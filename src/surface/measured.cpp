@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <umov/core/quantity.h>
 #include <fmt/format.h>
 #include <numbers>
 #include <tuple>
+#include <umov/core/quantity.h>
 
 namespace umov {
 namespace {
@@ -56,7 +56,8 @@ Place place_of(const std::vector<double> &axis, double at) {
     return {0, 0, 0};
   if (at >= axis.back())
     return {axis.size() - 1, axis.size() - 1, 0};
-  const auto high = static_cast<std::size_t>(std::upper_bound(axis.begin(), axis.end(), at) - axis.begin());
+  const auto high =
+      static_cast<std::size_t>(std::upper_bound(axis.begin(), axis.end(), at) - axis.begin());
   return {high - 1, high, (at - axis[high - 1]) / (axis[high] - axis[high - 1])};
 }
 
@@ -86,10 +87,11 @@ Result<void> check_samples(const std::vector<BrdfSample> &samples) {
     for (const double m : s.mueller)
       square += m * m;
     if (!(square <= 4 * s.mueller[0] * s.mueller[0] * (1 + 1e-6)))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("row {}: the Mueller matrix is not physical (it would polarize by more "
-                              "than 100 %)",
-                              i + 1));
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("row {}: the Mueller matrix is not physical (it would polarize by more "
+                      "than 100 %)",
+                      i + 1));
   }
   return {};
 }
@@ -113,11 +115,12 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
     size *= out.axes_[k].size();
   }
   if (size != samples.size())
-    return fail(ErrorCode::BadInput,
-                fmt::format("{} rows do not fill the grid of {} wavelengths x {} theta_i x {} theta_o "
-                            "x {} phi = {}; every combination once was expected",
-                            samples.size(), out.axes_[0].size(), out.axes_[1].size(),
-                            out.axes_[2].size(), out.axes_[3].size(), size));
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("{} rows do not fill the grid of {} wavelengths x {} theta_i x {} theta_o "
+                    "x {} phi = {}; every combination once was expected",
+                    samples.size(), out.axes_[0].size(), out.axes_[1].size(), out.axes_[2].size(),
+                    out.axes_[3].size(), size));
   std::sort(samples.begin(), samples.end(), [](const BrdfSample &a, const BrdfSample &b) {
     return std::tie(a.wavelength_nm, a.theta_i_deg, a.theta_o_deg, a.phi_deg) <
            std::tie(b.wavelength_nm, b.theta_i_deg, b.theta_o_deg, b.phi_deg);
@@ -157,9 +160,10 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
       }
   std::string trouble;
   if (out.asymmetry_ > 0.05)
-    trouble = fmt::format("the table is not reciprocal: f(i, o) and f(o, i) differ by up to {:.1f} % "
-                          "of its largest value",
-                          100 * out.asymmetry_);
+    trouble =
+        fmt::format("the table is not reciprocal: f(i, o) and f(o, i) differ by up to {:.1f} % "
+                    "of its largest value",
+                    100 * out.asymmetry_);
   if (albedo > 1 + 1e-4)
     trouble += fmt::format("{}the table gives more than it gets: albedo {:.3f} at {:g} deg",
                            trouble.empty() ? "" : "; ", albedo, at);

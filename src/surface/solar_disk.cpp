@@ -2,16 +2,15 @@
 
 #include <array>
 #include <cmath>
-#include <umov/core/quantity.h>
 #include <numbers>
+#include <umov/core/quantity.h>
 #include <umov/core/vec3.h>
 
 namespace umov {
 namespace {
 
-
-/// Variance of the disk's image over that of the lobe, up to which a closed form is taken: it leaves
-/// out fourth moments, of the order q^2/8.
+/// Variance of the disk's image over that of the lobe, up to which a closed form is taken: it
+/// leaves out fourth moments, of the order q^2/8.
 constexpr double closed_form_max = 3e-3;
 /// The same for seven nodes, exact up to the fifth power.
 constexpr double nodes_max = 3e-2;
@@ -73,17 +72,19 @@ double by_rings(const Distribution &normals, const DiskImage &image) {
   double sum = 0;
   for (int i = 0; i < rings; ++i)
     for (int k = 0; k < spokes; ++k)
-      sum += normals.density(image.at(std::sqrt((i + 0.5) / rings), 2 * pi * (k + 0.5 * (i % 2)) / spokes));
+      sum += normals.density(
+          image.at(std::sqrt((i + 0.5) / rings), 2 * pi * (k + 0.5 * (i % 2)) / spokes));
   return sum / (rings * spokes);
 }
 
-/// Mean of D over the image by Green's theorem: int over the image of D dw is the contour integral of
-/// C(theta) dphi, with theta, phi about the normal and C the integral of D sin(theta) from 0.
+/// Mean of D over the image by Green's theorem: int over the image of D dw is the contour integral
+/// of C(theta) dphi, with theta, phi about the normal and C the integral of D sin(theta) from 0.
 /// Smooth for every width of the lobe, exact for a mirror (C constant: 2 pi inside, 0 outside).
 double by_contour(const Distribution &normals, const DiskImage &image) {
   constexpr std::size_t steps = 48; // pairs of nodes
   const Nearest near = image.nearest_edge();
-  // phi runs fastest where the edge passes the normal: nodes crowd there, beta ~ distance sinh(k t).
+  // phi runs fastest where the edge passes the normal: nodes crowd there, beta ~ distance sinh(k
+  // t).
   const double k = std::asinh(pi / near.distance);
   struct Node {
     double x, y, z, beyond;

@@ -128,12 +128,23 @@ Result<Epoch<Utc>> utc_from_iso(std::string_view text) {
   return c.offset_min == 0 ? out : plus_seconds(out, -60.0 * c.offset_min);
 }
 
-std::string to_iso(Epoch<Utc> time) {
+std::string to_iso(Epoch<Utc> time, int digits) {
   int year = 0, month = 0, day = 0;
   std::array<int, 4> clock{};
-  eraD2dtf("UTC", 3, time.jd1, time.jd2, &year, &month, &day, clock.data());
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:03}Z", year, month, day, clock[0],
-                     clock[1], clock[2], clock[3]);
+  eraD2dtf("UTC", digits, time.jd1, time.jd2, &year, &month, &day, clock.data());
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:0{}}Z", year, month, day, clock[0],
+                     clock[1], clock[2], clock[3], digits);
+}
+
+std::string to_iso_exact(Epoch<Utc> time) {
+  for (const int digits : {3, 6}) {
+    const std::string text = to_iso(time, digits);
+    // Half a nanosecond: what nine digits could not tell either.
+    if (const auto back = utc_from_iso(text);
+        back && std::abs(seconds_between(*back, time)) < 5e-10)
+      return text;
+  }
+  return to_iso(time, 9);
 }
 
 double mjd(Epoch<Utc> time) {

@@ -133,7 +133,7 @@ def test_an_interrupt_keeps_what_is_done(scenario, tmp_path):
     if process.returncode == 0:
         pytest.fail("the run ended before the interrupt: give it more to do")
     assert process.returncode == 130, err
-    assert "the finished rows are in out" in err or "before the first row" in err
+    assert "The finished rows are in out" in err or "before the first row" in err
     if (tmp_path / "out").exists():
         rows = len(Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv"))
         assert 0 < rows < 3 * 12001
@@ -180,3 +180,33 @@ def test_a_decayed_orbit_keeps_the_finished_rows(umov, scenario, tmp_path):
 def test_examples_are_well_formed(umov, example):
     done = umov("run", ROOT / f"examples/{example}.toml", "--dry-run")
     assert done.code == 0, done.err
+
+
+def test_files_of_others_survive_a_rerun(umov, scenario, tmp_path):
+    name = scenario()
+    assert umov("run", name).code == 0
+    (tmp_path / "out/notes.txt").write_text("mine")
+    done = umov("run", name)
+    assert done.code == 6 and "notes.txt" in done.err and "--force" in done.err, done.err
+    assert umov("run", name, "--force").code == 0
+    assert (tmp_path / "out/notes.txt").read_text() == "mine"
+
+
+def test_the_working_folder_and_links_can_take_the_output(umov, scenario, tmp_path):
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to("real")
+    assert umov("run", scenario(), "--set", "output.dir=link").code == 0
+    assert (tmp_path / "link").is_symlink() and (tmp_path / "real/report.html").exists()
+    assert umov("run", scenario(), "--set", "output.dir=link").code == 0
+    assert (tmp_path / "link").is_symlink()
+    done = umov("run", scenario(), "--set", "output.dir=.", "--force")
+    assert done.code == 0 and (tmp_path / "report.html").exists(), done.err
+
+
+def test_the_manifest_has_the_command_and_the_lock_the_exact_times(umov, scenario, tmp_path):
+    name = scenario(("2018-01-21T05:08:00Z", "2018-01-21T05:08:00.000250Z"))
+    done = umov("run", name, "--accuracy", 0.01, "--seed", 5)
+    assert done.code == 0, done.err
+    words = json.loads((tmp_path / "out/manifest.json").read_text())["command_line"]
+    assert words[1:] == ["run", name, "--accuracy", "0.01", "--seed", "5"]
+    assert "05:08:00.000250Z" in (tmp_path / "out/scenario.lock.toml").read_text()

@@ -103,7 +103,7 @@ def test_a_decaying_orbit_ends_the_ephemeris_at_its_first_failure(umov, tmp_path
                 "--start", "2018-01-20T12:00:00Z", "--stop", "2018-02-10T12:00:00Z", "--step-s", 600,
                 "-o", "out.csv")
     assert done.code == 4, done.err
-    rows = read_csv(tmp_path / "out.csv")
+    rows = read_csv(tmp_path / "out.partial.csv")
     assert rows and all(row["time_utc"].startswith("2018-") for row in rows)
     # The message names the epoch right after the last good row.
     failed = done.err.split("SGP4 fails at ")[1][:16]
@@ -133,3 +133,39 @@ def test_doctor_and_schema_answer(umov):
     done = umov("schema")
     assert done.code == 0 and '"$schema"' in done.out
     assert umov("material", "list", "--json").out.count("paper_") >= 6
+
+
+def test_the_output_file_is_checked_before_any_work(umov, scenario, tmp_path):
+    for name, code in (("x.txt", 2), ("none/x.csv", 6)):
+        assert umov("signature", "missing.toml", "--poses", 1, "--phase", 30, "-o", name).code == code
+        assert umov("orbit", "propagate", "--orbit", "missing.tle", "--at", "2018-01-21T00:00:00Z",
+                    "-o", name).code == code
+    assert umov("signature", scenario(), "--geometry", "").code == 2
+
+
+def test_poses_keep_the_numbers_of_their_file(umov, scenario, tmp_path):
+    (tmp_path / "g.csv").write_text("pose,sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n"
+                                    "7,1,0,0,0,1,0\n9,1,0,0,0,0,1\n7,0,1,0,0,0,1\n")
+    done = umov("signature", scenario(), "--geometry", "g.csv", "--set", 'bands.set=["nm:550"]',
+                "-o", "o.csv")
+    assert done.code == 0, done.err
+    assert [row["pose"] for row in read_csv(tmp_path / "o.csv")] == ["7", "9", "7"]
+    (tmp_path / "t.csv").write_text("pose,sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\nA,1,0,0,0,1,0\n")
+    assert umov("signature", scenario(), "--geometry", "t.csv").code == 0
+
+
+def test_a_stop_without_rows_writes_no_table(umov, tmp_path):
+    first, second = (ROOT / "data/tle/hst.tle").read_text().splitlines()[-2:]
+    first = first[:53] + " 99999+0" + first[61:]
+    digits = sum(int(c) if c.isdigit() else c == "-" for c in first[:68])
+    (tmp_path / "low.tle").write_text(first[:68] + str(digits % 10) + "\n" + second + "\n")
+    done = umov("orbit", "ephemeris", "--orbit", "low.tle", "--lat-deg", 20, "--lon-deg", 0, "--alt-m", 0,
+                "--start", "2018-02-09T12:00:00Z", "--stop", "2018-02-10T12:00:00Z", "-o", "out.csv")
+    assert done.code == 4 and "finished rows" not in done.err, done.err
+    assert not list(tmp_path.glob("out*"))
+
+
+def test_mesh_check_looks_at_what_is_left(umov, tmp_path):
+    (tmp_path / "twice.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3\ncall other.obj\n")
+    done = umov("mesh", "check", "twice.obj", "--unit", "m", "--up", "+Z", "--require-closed")
+    assert done.code == 3 and "not closed" in done.err and "geometry that is not read" in done.err, done.err

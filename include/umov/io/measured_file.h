@@ -9,9 +9,9 @@
 
 namespace umov {
 
-/// CSV with columns wavelength_nm, theta_i_deg, theta_o_deg, phi_deg [deg, 0 to 180] and m00 [1/sr],
-/// and m01 ... m33 too for a Mueller table (scattering plane). `accept` takes a table that is not
-/// reciprocal or gives more than it gets; what is odd about it goes to `remarks`.
+/// CSV with columns wavelength_nm, theta_i_deg, theta_o_deg, phi_deg [deg, 0 to 180] and m00
+/// [1/sr], and m01 ... m33 too for a Mueller table (scattering plane). `accept` takes a table that
+/// is not reciprocal or gives more than it gets; what is odd about it goes to `remarks`.
 Result<MeasuredBrdf> read_measured_file(const std::filesystem::path &path, bool accept,
                                         std::vector<std::string> &remarks);
 

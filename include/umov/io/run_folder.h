@@ -11,8 +11,9 @@
 namespace umov {
 
 /// Collects the files of a run and puts them in place at once. A folder that umov wrote (it has our
-/// manifest.json) is replaced as a whole when the new one is complete; a kill at any moment leaves
-/// the old or the new one. With `force` the files are put, one by one, into a folder of the user's.
+/// manifest.json, and nothing else of anybody's) is replaced as a whole when the new one is
+/// complete; a kill at any moment leaves the old or the new one. With `force` the files are put,
+/// one by one, into a folder of the user's.
 class RunFolder {
 public:
   /// Refuses (Device) what it must not or cannot write to, before any work is done.
@@ -27,7 +28,8 @@ public:
   [[nodiscard]] const std::filesystem::path &path() const { return target_; }
 
 private:
-  std::filesystem::path target_;
+  std::filesystem::path target_; ///< as the user named it
+  std::filesystem::path real_;   ///< where that is
   bool is_foreign_ = false;
   std::map<std::string, std::string> files_;
 };

@@ -26,14 +26,14 @@ struct DispersionFormula {
   bool operator==(const DispersionFormula &) const = default;
 };
 
-/// Complex refractive index n + ik; k >= 0 absorbs (time factor exp(-i omega t)). It ends where n or
-/// k ends.
+/// Complex refractive index n + ik; k >= 0 absorbs (time factor exp(-i omega t)). It ends where n
+/// or k ends.
 struct IndexTable {
   std::string name;
   std::variant<Tabulated, DispersionFormula> n;
   Tabulated k{{}, {0}};
-  bool has_k = true;     ///< false: the source gives no k, and 0 stands for "transparent or unknown"
-  std::string file;      ///< of a table that is not compiled in
+  bool has_k = true; ///< false: the source gives no k, and 0 stands for "transparent or unknown"
+  std::string file;  ///< of a table that is not compiled in
   std::string reference; ///< where the numbers come from
   bool operator==(const IndexTable &) const = default;
 };
@@ -56,8 +56,8 @@ Result<std::complex<double>> index_at(const IndexTable &table, Wavelength wavele
 /// A tabulated value at a wavelength; BadInput outside, named `what`.
 Result<double> value_at(const Tabulated &table, Wavelength wavelength, const std::string &what);
 
-/// Increasing wavelengths that are plausible in nm, as many values, n > 0, k >= 0, a formula that is
-/// known with as many coefficients as it takes. BadInput says what was found and how to mend it.
+/// Increasing wavelengths that are plausible in nm, as many values, n > 0, k >= 0, a formula that
+/// is known with as many coefficients as it takes. BadInput says what was found and how to mend it.
 Result<void> check(const IndexTable &table);
 Result<void> check(const Tabulated &table, const std::string &what);
 

@@ -30,7 +30,8 @@ struct MuellerEntries {
 class Interface {
 public:
   explicit Interface(std::complex<double> substrate);
-  Interface(std::complex<double> substrate, std::vector<OpticalLayer> layers, Wavelength wavelength);
+  Interface(std::complex<double> substrate, std::vector<OpticalLayer> layers,
+            Wavelength wavelength);
 
   /// Reflection at an incidence whose cosine is in [0, 1].
   [[nodiscard]] MuellerEntries reflection(double cos_incidence) const;
@@ -49,9 +50,9 @@ private:
   bool has_thick_ = false;
 };
 
-/// A plane slab in vacuum, thick against the coherence length: sum over all passes with the internal
-/// transmittance `tau` per pass. Clear (tau = 1): R = 2 R1/(1 + R1), T = (1 - R1)/(1 + R1) for each
-/// polarization.
+/// A plane slab in vacuum, thick against the coherence length: sum over all passes with the
+/// internal transmittance `tau` per pass. Clear (tau = 1): R = 2 R1/(1 + R1), T = (1 - R1)/(1 + R1)
+/// for each polarization.
 MuellerEntries slab_reflection(std::complex<double> eta, double cos_incidence, double tau);
 MuellerEntries slab_transmission(std::complex<double> eta, double cos_incidence, double tau);
 

@@ -21,8 +21,8 @@ struct DistributionChoice {
 DistributionChoice blinn_phong(double m);
 
 /// Density of normals D(h) [1/sr] and its exact masking, in the frame Facet: z the normal, x the
-/// direction field (brushing, weave) made perpendicular to it, y = z cross x. D is facet area per macroscopic area and
-/// solid angle: int D (h.n) dw = 1 (Walter et al. 2007). Pure and thread safe.
+/// direction field (brushing, weave) made perpendicular to it, y = z cross x. D is facet area per
+/// macroscopic area and solid angle: int D (h.n) dw = 1 (Walter et al. 2007). Pure and thread safe.
 class Distribution {
 public:
   Distribution() = default;

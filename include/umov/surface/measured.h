@@ -9,8 +9,8 @@
 namespace umov {
 
 /// One measured geometry: angles from the normal, azimuth between the directions (0 = source and
-/// observer on the same side), and the Mueller BRDF [1/sr] in the scattering plane; a plain BRDF has
-/// m00 alone.
+/// observer on the same side), and the Mueller BRDF [1/sr] in the scattering plane; a plain BRDF
+/// has m00 alone.
 struct BrdfSample {
   double wavelength_nm = 0, theta_i_deg = 0, theta_o_deg = 0, phi_deg = 0;
   std::array<double, 16> mueller{};
@@ -18,8 +18,8 @@ struct BrdfSample {
 
 /// A table of samples on a full grid of wavelength, theta_i, theta_o and phi, interpolated so that
 /// reciprocity holds exactly: each value is the mean of the table's at (i, o) and, transposed, at
-/// (o, i), with multilinear weights. Outside the grid: no light below the horizon, the nearest angle
-/// inside it, and no wavelength beyond the ends.
+/// (o, i), with multilinear weights. Outside the grid: no light below the horizon, the nearest
+/// angle inside it, and no wavelength beyond the ends.
 class MeasuredBrdf {
 public:
   /// `in_plane`: the table has the azimuths 0 and 180 only, and others take the mean of the two by

@@ -21,7 +21,9 @@ template <class Scale> struct Epoch { double jd1 = 0, jd2 = 0; };
 /// second. A time without offset, before 1972 or out of the calendar is BadInput.
 Result<Epoch<Utc>> utc_from_iso(std::string_view text);
 /// "2018-01-21T04:00:00.000Z": milliseconds, rounded, leap seconds as :60.
-std::string to_iso(Epoch<Utc> time);
+std::string to_iso(Epoch<Utc> time, int digits = 3);
+/// With as many digits (3, 6 or 9) as it takes to read the same time back.
+std::string to_iso_exact(Epoch<Utc> time);
 double mjd(Epoch<Utc> time);
 
 Epoch<Tai> tai_from(Epoch<Utc> time);

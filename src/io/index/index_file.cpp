@@ -41,7 +41,8 @@ Result<std::vector<double>> numbers_of(const Reader &reader, const YAML::Node &e
   for (std::string word; words >> word;) {
     const auto value = parse_number(word);
     if (!value)
-      return reader.problem(entry[key], fmt::format("{}: \"{}\" is not a finite number", key, word));
+      return reader.problem(entry[key],
+                            fmt::format("{}: \"{}\" is not a finite number", key, word));
     out.push_back(*value);
   }
   return out;
@@ -69,10 +70,10 @@ Result<std::vector<std::vector<double>>> rows_of(const Reader &reader, const YAM
     if (row.empty())
       continue;
     if (row.size() != columns)
-      return reader.problem(entry["data"],
-                            fmt::format("{} numbers in this row; {} were expected", row.size(),
-                                        columns),
-                            line_number);
+      return reader.problem(
+          entry["data"],
+          fmt::format("{} numbers in this row; {} were expected", row.size(), columns),
+          line_number);
     if (!out[0].empty() && !(row[0] > out[0].back()))
       return reader.problem(entry["data"],
                             fmt::format("wavelength {:g} um follows {:g}; increasing ones were "
@@ -170,8 +171,8 @@ Result<IndexTable> read_index_text(const std::string &text, const std::string &f
     const YAML::Node root = YAML::Load(text);
     const YAML::Node data = root.IsMap() ? root["DATA"] : YAML::Node();
     if (!data || !data.IsSequence() || data.size() == 0)
-      return fail(ErrorCode::BadInput,
-                  "no list DATA; a page of refractiveindex.info was expected", {file});
+      return fail(ErrorCode::BadInput, "no list DATA; a page of refractiveindex.info was expected",
+                  {file});
     bool has_n = false;
     for (const YAML::Node &entry : data) {
       if (!entry.IsMap())

@@ -25,10 +25,9 @@ Result<IndexTable> find_index(const std::string &name) {
   if (auto paper = builtin_index(name))
     return paper;
   const auto near = nearest_name(name, index_names());
-  return fail(ErrorCode::BadInput, fmt::format("unknown index \"{}\".{} Known: umov material index.",
-                                               name,
-                                               near ? fmt::format(" Did you mean \"{}\"?", *near)
-                                                    : ""));
+  return fail(ErrorCode::BadInput,
+              fmt::format("unknown index \"{}\".{} Known: umov material index.", name,
+                          near ? fmt::format(" Did you mean \"{}\"?", *near) : ""));
 }
 
 std::vector<std::string> indices_covering(const std::string &name, Wavelength wavelength) {

@@ -24,12 +24,13 @@ struct Unit {
   const char *name;
   double metres;
 };
-/// Statements of the format that change no triangle: smoothing, appearance, free-form geometry.
-constexpr std::string_view harmless[] = {
-    "s",      "vp",   "lod",   "bevel",  "c_interp", "d_interp", "shadow_obj", "trace_obj",
-    "mg",     "deg",  "bmat",  "step",   "cstype",   "curv",     "curv2",      "surf",
-    "parm",   "trim", "hole",  "scrv",   "sp",       "end",      "con",        "ctech",
-    "usemap", "call", "stech", "maplib", "csh"};
+/// Statements of the format that change no triangle: smoothing and appearance.
+constexpr std::string_view harmless[] = {"s",          "lod", "bevel",  "c_interp", "d_interp",
+                                         "shadow_obj", "mg",  "usemap", "maplib",   "trace_obj"};
+/// Statements that bring geometry which is not read: the user must know.
+constexpr std::string_view unread[] = {"vp",   "deg",  "bmat", "step",  "cstype", "curv", "curv2",
+                                       "surf", "parm", "trim", "hole",  "scrv",   "sp",   "end",
+                                       "con",  "call", "csh",  "ctech", "stech"};
 constexpr double farthest = 1e12; ///< beyond it areas lose their meaning [units of the file]
 
 constexpr Unit units[] = {{"m", 1},     {"cm", 0.01},   {"mm", 0.001},
@@ -334,10 +335,14 @@ std::string Reader::box_text(const char *key) const {
 
 Result<void> Reader::finish() {
   const Where file{lines_.file()};
-  for (const auto &[name, first] : unknown_)
-    diagnostics_.warn(
-        fmt::format("\"{}\" is no statement of the OBJ format; such lines were skipped", name),
-        lines_.where(first));
+  for (const auto &[name, first] : unknown_) {
+    const bool is_geometry =
+        std::find(std::begin(unread), std::end(unread), name) != std::end(unread);
+    const char *what = is_geometry ? "brings geometry that is not read (free-form or another file)"
+                                   : "is no statement of the OBJ format";
+    diagnostics_.warn(fmt::format("\"{}\" {}; such lines were skipped", name, what),
+                      lines_.where(first));
+  }
   if (out_.mesh.triangles.empty())
     return fail(ErrorCode::BadInput, "no face; a mesh of polygons was expected", file);
   if (options_.unit.empty())

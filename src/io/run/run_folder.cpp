@@ -1,9 +1,11 @@
 #include <umov/io/run_folder.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdio.h>
@@ -35,11 +37,27 @@ std::optional<std::string> status_of(const fs::path &folder) {
   return status != json.end() && status->is_string() ? status->get<std::string>() : complete;
 }
 
+/// What a run writes: a folder with anything else in it is never replaced as a whole.
+constexpr const char *our_files[] = {"lightcurve.ecsv", "lightcurve.csv", "passes.ecsv",
+                                     "report.html",     "manifest.json",  "scenario.lock.toml",
+                                     "log.txt"};
+
+/// Something in a folder that umov did not write; empty if there is nothing.
+std::string stranger_in(const fs::path &folder) {
+  std::error_code code;
+  for (const auto &entry : fs::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename().string();
+    if (std::find(std::begin(our_files), std::end(our_files), name) == std::end(our_files))
+      return name;
+  }
+  return {};
+}
+
 bool is_free(const fs::path &folder) {
   std::error_code code;
   return !fs::exists(folder, code) ||
          (fs::is_directory(folder, code) && fs::is_empty(folder, code)) ||
-         status_of(folder) == stopped_early;
+         (status_of(folder) == stopped_early && stranger_in(folder).empty());
 }
 
 /// Nearest folder above that exists: where a new one would be made.
@@ -64,19 +82,30 @@ struct Temporary {
 
 Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
   RunFolder out;
+  std::error_code code;
   out.target_ = target;
   if (out.target_.filename().empty()) // "out/" is "out"
     out.target_ = out.target_.parent_path();
-  std::error_code code;
+  // Through symbolic links and "." to the folder that is meant.
+  if (fs::exists(out.target_, code))
+    if (const fs::path real = fs::canonical(out.target_, code); !code)
+      out.real_ = real;
+  if (out.real_.empty())
+    out.real_ = fs::absolute(out.target_, code).lexically_normal();
   if (fs::exists(out.target_, code) && !fs::is_directory(out.target_, code))
     return trouble(target, "is a file; the name of a folder was expected");
   if (fs::is_directory(out.target_, code) && !fs::is_empty(out.target_, code) &&
-      !status_of(out.target_)) {
+      (!status_of(out.target_) || !stranger_in(out.target_).empty())) {
     if (!force)
-      return trouble(target, "is not empty and was not written by umov. Choose another folder "
-                             "(output.dir) or pass --force to put the files into it.");
+      return trouble(target, fmt::format("holds \"{}\", which umov did not write. Choose another "
+                                         "folder (output.dir) or pass --force to put the files "
+                                         "beside it.",
+                                         stranger_in(out.target_)));
     out.is_foreign_ = true;
   }
+  // The working folder cannot be exchanged under the user's feet.
+  if (out.real_ == fs::current_path(code))
+    out.is_foreign_ = true;
   const fs::path parent = existing_parent(fs::absolute(out.target_, code).parent_path());
   // Tried, not asked: the right to write says little on special file systems.
   std::string probe = (parent / ".umov-XXXXXX").string();
@@ -91,10 +120,12 @@ Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
 void RunFolder::spare_complete_run() {
   if (is_free(target_))
     return;
-  const std::string base = target_.string() + ".partial";
+  const std::string base = (target_ == "." ? real_ : target_).string() + ".partial";
   target_ = base;
   for (int k = 2; !is_free(target_); ++k)
     target_ = base + std::to_string(k);
+  std::error_code code;
+  real_ = fs::absolute(target_, code).lexically_normal();
   is_foreign_ = false;
 }
 
@@ -102,10 +133,10 @@ Result<void> RunFolder::commit() {
   std::error_code code;
   if (is_foreign_) {
     for (const auto &[name, bytes] : files_)
-      UMOV_TRY(write_file_atomically(target_ / name, bytes));
+      UMOV_TRY(write_file_atomically(real_ / name, bytes));
     return {};
   }
-  const fs::path full = fs::absolute(target_, code);
+  const fs::path &full = real_;
   fs::create_directories(full.parent_path(), code);
   Temporary fresh{full.parent_path() /
                   ("." + full.filename().string() + ".part-" + std::to_string(::getpid()))};

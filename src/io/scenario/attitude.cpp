@@ -149,7 +149,7 @@ std::string law_toml(const SpinLaw &law) {
   const std::string start = std::visit([](const auto &s) { return law_toml(s); }, law.start);
   return fmt::format("{{ mode = \"spin\", axis = {}, rate_deg_s = {}, epoch = {}, start = {} }}",
                      axis_toml(law.axis), degrees_text(Angle::radians(law.rate_rad_s)),
-                     to_iso(law.epoch), start);
+                     to_iso_exact(law.epoch), start);
 }
 
 } // namespace

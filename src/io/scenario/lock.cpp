@@ -57,8 +57,8 @@ std::string observer_and_time(const Scenario &s) {
     out +=
         fmt::format("\n[time]\nstart = {}\nstop = {}\nstep_s = {}\nonly = {{ alt_min_deg = {}, "
                     "sun_alt_max_deg = {}, sunlit = {} }}\n",
-                    to_iso(s.time->start), to_iso(s.time->stop), shortest(s.time->step_s),
-                    degrees_text(only.altitude_min),
+                    to_iso_exact(s.time->start), to_iso_exact(s.time->stop),
+                    shortest(s.time->step_s), degrees_text(only.altitude_min),
                     degrees_text(only.sun_altitude_max.value_or(Angle::degrees(90))), only.sunlit);
   }
   return out;

@@ -35,9 +35,9 @@ std::string index_toml(const IndexTable &table) {
 std::string layers_toml(const std::vector<Layer> &layers) {
   std::string out;
   for (const Layer &layer : layers)
-    out += fmt::format("{}{{ index = {}, thickness_nm = {}, coherent = {} }}",
-                       out.empty() ? "" : ", ", index_toml(layer.index),
-                       shortest(layer.thickness_nm), layer.is_coherent);
+    out +=
+        fmt::format("{}{{ index = {}, thickness_nm = {}, coherent = {} }}", out.empty() ? "" : ", ",
+                    index_toml(layer.index), shortest(layer.thickness_nm), layer.is_coherent);
   return "layers = [" + out + "]\n";
 }
 
@@ -46,13 +46,13 @@ std::string distribution_toml(const DistributionChoice &choice) {
   for (const auto &[name, value] : choice.parameters)
     out += ", " + name + " = " + shortest(value);
   if (!choice.file.empty())
-    out += ", file = " +
-           quoted(std::filesystem::absolute(choice.file).lexically_normal().string());
+    out += ", file = " + quoted(std::filesystem::absolute(choice.file).lexically_normal().string());
   return out + " }\n";
 }
 
 std::string apparent_toml(const ApparentRoughness &a) {
-  std::string out = fmt::format("apparent_roughness = {{ reference_nm = {}", shortest(a.reference_nm));
+  std::string out =
+      fmt::format("apparent_roughness = {{ reference_nm = {}", shortest(a.reference_nm));
   if (a.hurst)
     out += ", hurst = " + shortest(*a.hurst);
   if (a.rms_height_nm)
@@ -62,8 +62,8 @@ std::string apparent_toml(const ApparentRoughness &a) {
 
 std::string texts_toml(const Material &m) {
   std::string out;
-  for (const auto &[key, text] : {std::pair{"description", &m.description}, {"source", &m.source},
-                                  {"assumed", &m.assumed}})
+  for (const auto &[key, text] :
+       {std::pair{"description", &m.description}, {"source", &m.source}, {"assumed", &m.assumed}})
     if (!text->empty())
       out += fmt::format("{} = {}\n", key, quoted(*text));
   return out;
@@ -74,10 +74,10 @@ std::string texts_toml(const Material &m) {
 std::string material_toml(const Material &m) {
   std::string out = fmt::format("[material.{}]\n", quoted(m.name)) + texts_toml(m);
   if (m.measured)
-    return out + fmt::format("table = {}\naccept = true\n",
-                             quoted(std::filesystem::absolute(m.measured_file)
-                                        .lexically_normal()
-                                        .string()));
+    return out +
+           fmt::format(
+               "table = {}\naccept = true\n",
+               quoted(std::filesystem::absolute(m.measured_file).lexically_normal().string()));
   out += "index = " + index_toml(m.index) + "\n";
   if (!m.layers.empty())
     out += layers_toml(m.layers);
@@ -92,11 +92,10 @@ std::string material_toml(const Material &m) {
   if (!m.body)
     return out;
   const Tabulated &r = m.body->reflectance;
-  const std::string reflectance =
-      r.wavelength_nm.empty()
-          ? shortest(r.value[0])
-          : fmt::format("{{ wavelength_nm = {}, reflectance = {} }}", list_toml(r.wavelength_nm),
-                        list_toml(r.value));
+  const std::string reflectance = r.wavelength_nm.empty()
+                                      ? shortest(r.value[0])
+                                      : fmt::format("{{ wavelength_nm = {}, reflectance = {} }}",
+                                                    list_toml(r.wavelength_nm), list_toml(r.value));
   return out + fmt::format("body = {{ reflectance = {}, polarized = {} }}\n", reflectance,
                            m.body->is_polarized);
 }

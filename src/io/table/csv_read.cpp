@@ -84,6 +84,7 @@ private:
       place_.push_back(static_cast<std::size_t>(found - header_.begin()));
     }
     values_.resize(taken_.size());
+    is_dropped_.resize(taken_.size());
     return {};
   }
 
@@ -104,6 +105,11 @@ private:
     for (std::size_t k = 0; k < taken_.size(); ++k) {
       const Cell &cell = cells[place_[k]];
       const auto value = parse_number(cell.text);
+      if (!value && k >= required_.size()) { // not the numbers that were hoped for: no such column
+        is_dropped_[k] = true;
+        values_[k].push_back(0);
+        continue;
+      }
       if (!value)
         return fail(ErrorCode::BadInput,
                     fmt::format("{} is \"{}\"; a finite number was expected", taken_[k], cell.text),
@@ -123,7 +129,8 @@ private:
                   {file_});
     Table out;
     for (std::size_t k = 0; k < taken_.size(); ++k)
-      out.add(taken_[k], "", "", std::move(values_[k]));
+      if (!is_dropped_[k])
+        out.add(taken_[k], "", "", std::move(values_[k]));
     out.add("line", "", "line in the file", std::move(lines_));
     return out;
   }
@@ -135,6 +142,7 @@ private:
   std::vector<std::size_t> place_;
   std::vector<std::vector<double>> values_;
   std::vector<std::int64_t> lines_;
+  std::vector<bool> is_dropped_; ///< optional columns that hold something else
   std::size_t line_ = 0;
 };
 

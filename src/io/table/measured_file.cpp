@@ -20,9 +20,9 @@ Result<MeasuredBrdf> read_measured_file(const std::filesystem::path &path, bool 
                                         std::vector<std::string> &remarks) {
   UMOV_ASSIGN(text, read_file(path));
   const std::vector<std::string> others = mueller_names();
-  UMOV_ASSIGN(table, read_csv(text, path.string(),
-                              {"wavelength_nm", "theta_i_deg", "theta_o_deg", "phi_deg", "m00"},
-                              others));
+  UMOV_ASSIGN(table,
+              read_csv(text, path.string(),
+                       {"wavelength_nm", "theta_i_deg", "theta_o_deg", "phi_deg", "m00"}, others));
   std::size_t there = 0;
   for (const std::string &name : others)
     there += table.find(name) != nullptr ? 1u : 0u;

@@ -12,12 +12,14 @@ IndexTable formula(int number, std::vector<double> c) {
   return out;
 }
 
-double n_at(const IndexTable &table, double nm) { return index_at(table, Wavelength::nm(nm))->real(); }
+double n_at(const IndexTable &table, double nm) {
+  return index_at(table, Wavelength::nm(nm))->real();
+}
 
 TEST(Index, SellmeierOfSchottGlassAtTheHeliumLine) {
   // N-BK7 at 587.6 nm: n = 1.5168 (Schott catalogue), formula 2.
-  const auto bk7 = formula(2, {0, 1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945,
-                               103.560653});
+  const auto bk7 =
+      formula(2, {0, 1.03961212, 0.00600069867, 0.231792344, 0.0200179144, 1.01046945, 103.560653});
   EXPECT_NEAR(n_at(bk7, 587.5618), 1.5168, 5e-6);
   // The same glass in formula 1 has the roots of the poles.
   const auto same = formula(1, {0, 1.03961212, std::sqrt(0.00600069867), 0.231792344,
@@ -39,7 +41,8 @@ TEST(Index, EveryFormulaAgainstItsOwnArithmetic) {
               1.4 + 0.01 * l + 0.001 * l * l + 0.02 * x2 + 0.003 * x2 * x2 + 0.0004 * x2 * x2 * x2,
               1e-14);
   const double f = 0.2 + 0.1 * x2 / (x2 - 0.01) + 0.03 * x2;
-  EXPECT_NEAR(n_at(formula(8, {0.2, 0.1, 0.01, 0.03}), 500), std::sqrt((1 + 2 * f) / (1 - f)), 1e-14);
+  EXPECT_NEAR(n_at(formula(8, {0.2, 0.1, 0.01, 0.03}), 500), std::sqrt((1 + 2 * f) / (1 - f)),
+              1e-14);
   EXPECT_NEAR(n_at(formula(9, {2, 0.01, 0.02, 0.03, 0.4, 0.05}), 500),
               std::sqrt(2 + 0.01 / (x2 - 0.02) + 0.03 * (x - 0.4) / (0.01 + 0.05)), 1e-14);
 }

@@ -54,9 +54,7 @@ TEST(Interface, WhatIsNotReflectedEntersAClearSubstrate) {
 
 TEST(Interface, ThickFilmOverAMetal) {
   // physics page: n = 1.7 over aluminium with tau = .9 per pass at every angle: k chosen for each.
-  const struct {
-    double theta, s, p;
-  } rows[] = {{0, .707303, .707303}, {60, .739436, .684513}};
+  const struct { double theta, s, p; } rows[] = {{0, .707303, .707303}, {60, .739436, .684513}};
   for (const auto &row : rows) {
     const double c = std::cos(row.theta * degree);
     const double inside = std::sqrt(1 - (1 - c * c) / (1.7 * 1.7));
@@ -78,8 +76,8 @@ TEST(Interface, ThickLayersAgreeWithTheMeanOverManyThicknesses) {
   const double period = 550 / (2 * std::sqrt(1.5 * 1.5 - (1 - c * c)));
   for (int i = 0; i < count; ++i) {
     const MuellerEntries m =
-        Interface(aluminium, {{1.9, 80, true}, {1.5, 5000 + period * i / count, true}, {2.2, 50, true}},
-                  green)
+        Interface(aluminium,
+                  {{1.9, 80, true}, {1.5, 5000 + period * i / count, true}, {2.2, 50, true}}, green)
             .reflection(c);
     a += m.a / count;
     b += m.b / count;
@@ -91,13 +89,14 @@ TEST(Interface, ThickLayersAgreeWithTheMeanOverManyThicknesses) {
 }
 
 TEST(Interface, MatricesStayRealisable) {
-  // Eigenvalues of the coherency matrix: (a + b) and (a - b) with the cross term z: |z|^2 <= a^2-b^2.
+  // Eigenvalues of the coherency matrix: (a + b) and (a - b) with the cross term z: |z|^2 <=
+  // a^2-b^2.
   for (std::uint64_t i = 0; i < 500; ++i) {
     const auto u = uniform4(3, 1, i), w = uniform4(3, 2, i);
-    const Interface s({0.3 + 3 * u[0], 5 * u[1]},
-                      {{{1.2 + u[2], 0.1 * u[3]}, 400 * w[0], true},
-                       {{1.3 + w[1], 1e-4 * w[2]}, 20'000, false}},
-                      green);
+    const Interface s(
+        {0.3 + 3 * u[0], 5 * u[1]},
+        {{{1.2 + u[2], 0.1 * u[3]}, 400 * w[0], true}, {{1.3 + w[1], 1e-4 * w[2]}, 20'000, false}},
+        green);
     const MuellerEntries m = s.reflection(w[3]);
     EXPECT_LE(std::norm(m.z), (m.a * m.a - m.b * m.b) * (1 + 1e-12) + 1e-15);
     EXPECT_LE(m.a + std::abs(m.b), 1 + 1e-12);

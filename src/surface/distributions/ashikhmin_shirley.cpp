@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <umov/core/quantity.h>
 #include <numbers>
+#include <umov/core/quantity.h>
 
 namespace umov {
 namespace {
@@ -87,8 +87,8 @@ private:
     const auto j = std::clamp<std::size_t>(static_cast<std::size_t>(y), 1, azimuths - 2);
     double rows[4];
     for (std::size_t k = 0; k < 4; ++k)
-      rows[k] = kernel::cubic(&values_[(i - 1 + k) * (azimuths + 1) + j - 1],
-                              y - static_cast<double>(j));
+      rows[k] =
+          kernel::cubic(&values_[(i - 1 + k) * (azimuths + 1) + j - 1], y - static_cast<double>(j));
     return kernel::cubic(rows, x - static_cast<double>(i));
   }
 
@@ -102,8 +102,7 @@ const DistributionModel &distribution_ashikhmin_shirley() {
   static const DistributionModel model{
       "ashikhmin_shirley",
       "two exponents: brushed or woven surfaces",
-      {{"nu", "exponent along the direction field", 0, 1e6},
-       {"nv", "exponent across it", 0, 1e6}},
+      {{"nu", "exponent along the direction field", 0, 1e6}, {"nv", "exponent across it", 0, 1e6}},
       false,
       [](const DistributionChoice &c) -> std::shared_ptr<const Distribution> {
         return std::make_shared<AshikhminShirley>(c.parameters.at("nu"), c.parameters.at("nv"));

@@ -25,7 +25,8 @@ public:
     double low = 0, high = std::numbers::pi / 2;
     for (int i = 0; i < 60; ++i) {
       const double middle = (low + high) / 2;
-      const double ratio = kernel::beckmann(std::cos(middle), alpha_) / kernel::beckmann(1.0, alpha_);
+      const double ratio =
+          kernel::beckmann(std::cos(middle), alpha_) / kernel::beckmann(1.0, alpha_);
       (ratio > 0.5 ? low : high) = middle;
     }
     return low;

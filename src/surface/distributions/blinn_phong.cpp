@@ -5,12 +5,11 @@
 #include "surface/masking.h"
 
 #include <cmath>
-#include <umov/core/quantity.h>
 #include <numbers>
+#include <umov/core/quantity.h>
 
 namespace umov {
 namespace {
-
 
 class BlinnPhong final : public Distribution {
 public:
@@ -22,9 +21,7 @@ public:
   }
   double masking(Vec3<Facet> k) const override { return masking_(std::clamp(k.z, 0.0, 1.0)); }
   double width() const override { return 1 / std::sqrt(m_ + 2); }
-  double half_width_rad() const override {
-    return m_ > 0 ? std::acos(std::exp2(-1 / m_)) : pi / 2;
-  }
+  double half_width_rad() const override { return m_ > 0 ? std::acos(std::exp2(-1 / m_)) : pi / 2; }
   double reach_rad() const override { return reach(m_); }
   std::shared_ptr<const Distribution> scaled(double factor) const override {
     return std::make_shared<BlinnPhong>(std::max(0.0, (m_ + 2) / (factor * factor) - 2));

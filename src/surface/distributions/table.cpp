@@ -6,12 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <umov/core/quantity.h>
 #include <numbers>
+#include <umov/core/quantity.h>
 
 namespace umov {
 namespace {
-
 
 /// Piecewise linear in theta, rescaled so that int D cos dw = 1.
 class Curve {
@@ -36,9 +35,8 @@ public:
     for (std::size_t i = 1; i < angle_.size(); ++i) {
       const double a = std::max(from, angle_[i - 1]), b = std::min(to, angle_[i]);
       if (b > a)
-        sum += gauss_integral<12>(a, b, [&](double theta) {
-          return (*this)(theta) * std::sin(theta) * weight(theta);
-        });
+        sum += gauss_integral<12>(
+            a, b, [&](double theta) { return (*this)(theta)*std::sin(theta) * weight(theta); });
     }
     return 2 * pi * sum;
   }

@@ -91,7 +91,8 @@ TEST(Interreflection, ClosesTheFurnace) {
       perfect.interreflection = Interreflection::Unpolarized;
       const Surface surface = compiled(perfect, "nm:550");
       for (const double theta : {0., 30., 60., 80., 88.})
-        EXPECT_NEAR(surface.albedo(0, tilted(std::cos(theta * degree))), 1, 2e-4) << m << " " << theta;
+        EXPECT_NEAR(surface.albedo(0, tilted(std::cos(theta * degree))), 1, 2e-4)
+            << m << " " << theta;
     }
 }
 
@@ -157,9 +158,11 @@ TEST(ApparentRoughness, RatiosOfTheGoldPlate) {
         continue;
       const auto at = angles(60, thetas[k], 180);
       const auto i = [&](std::size_t b) { return surface.terms(b, at).specular; };
-      EXPECT_NEAR(i(0) / i(2), row.ratio[k], 1.2e-5 * std::max(1.0, row.ratio[k])) << row.m << " " << thetas[k];
+      EXPECT_NEAR(i(0) / i(2), row.ratio[k], 1.2e-5 * std::max(1.0, row.ratio[k]))
+          << row.m << " " << thetas[k];
       const auto blue = surface.brdf(0, at);
-      EXPECT_NEAR(blue.m[1][0] / blue.m[0][0], surface.fresnel(0, at.l_v).b / surface.fresnel(0, at.l_v).a,
+      EXPECT_NEAR(blue.m[1][0] / blue.m[0][0],
+                  surface.fresnel(0, at.l_v).b / surface.fresnel(0, at.l_v).a,
                   1e-12); // Q does not know of it
     }
   }
@@ -226,19 +229,21 @@ TEST(Transmission, OfAWideLobeCarriesWhatReflectionLeaves) {
       moment += t.f * element;
     }
   const double f = Interface(n).reflection(std::cos(theta)).a;
-  EXPECT_NEAR(sum, 1 - f, 2e-3);   // Fresnel's change over the lobe
+  EXPECT_NEAR(sum, 1 - f, 2e-3); // Fresnel's change over the lobe
   EXPECT_NEAR(moment, 1, 1e-3);
 }
 
 TEST(Lobes, AllKindsAreReciprocalAndPhysical) {
   std::vector<Material> all;
-  for (const auto kind : {Interreflection::None, Interreflection::Unpolarized, Interreflection::SingleBounceQ})
+  for (const auto kind :
+       {Interreflection::None, Interreflection::Unpolarized, Interreflection::SingleBounceQ})
     for (const bool polarized : {false, true}) {
       Material m = *builtin_material("paper_asi");
       m.distribution = {"ggx", {{"alpha", .4}}, {}, {}};
       m.body->is_polarized = polarized;
       m.interreflection = kind;
-      m.layers = {{constant_index({1.46, 0}), 120, true}, {constant_index({1.9, 1e-6}), 50'000, false}};
+      m.layers = {{constant_index({1.46, 0}), 120, true},
+                  {constant_index({1.9, 1e-6}), 50'000, false}};
       all.push_back(m);
     }
   Material brushed = *builtin_material("paper_al");
@@ -249,10 +254,12 @@ TEST(Lobes, AllKindsAreReciprocalAndPhysical) {
     for (std::uint64_t i = 0; i < 300; ++i) {
       const auto u = uniform4(9, 8, i);
       const Vec3<Facet> l = direction_from(u[0], u[1]), v = direction_from(u[2], u[3]);
-      const auto there = surface.brdf(1, directions(l, v)).m, back = surface.brdf(1, directions(v, l)).m;
+      const auto there = surface.brdf(1, directions(l, v)).m,
+                 back = surface.brdf(1, directions(v, l)).m;
       for (std::size_t r = 0; r < 4; ++r)
         for (std::size_t c = 0; c < 4; ++c)
-          EXPECT_NEAR(back[r][c], ((r == 2) != (c == 2) ? -1 : 1) * there[c][r], 1e-12 * there[0][0]);
+          EXPECT_NEAR(back[r][c], ((r == 2) != (c == 2) ? -1 : 1) * there[c][r],
+                      1e-12 * there[0][0]);
     }
   }
 }

@@ -20,7 +20,8 @@ double by_brute_force(const Distribution &d, Vec3<Facet> l, Vec3<Facet> v) {
     const double r = radius * std::sqrt((i + 0.5) / rings);
     for (int k = 0; k < spokes; ++k) {
       const double phi = 2 * pi * (k + 0.5) / spokes;
-      const Vec3<Facet> source = std::cos(r) * l + std::sin(r) * (std::cos(phi) * a + std::sin(phi) * b);
+      const Vec3<Facet> source =
+          std::cos(r) * l + std::sin(r) * (std::cos(phi) * a + std::sin(phi) * b);
       sum += d.density(normalized(source + v));
     }
   }
@@ -44,15 +45,18 @@ TEST(SolarDisk, EveryRegimeAgreesWithBruteForce) {
   for (const double phase : {10., 60., 110., 140.})
     for (const double m : {10., 200., 1e3, 3e3, 1e4, 3e4, 1e5, 1e6}) {
       const auto d = *make_distribution(blinn_phong(m));
-      const double peak = by_brute_force(*d, pose(phase * degree, 0, 0).l, pose(phase * degree, 0, 0).v);
+      const double peak =
+          by_brute_force(*d, pose(phase * degree, 0, 0).l, pose(phase * degree, 0, 0).v);
       for (const double tilt : {0., .5, 1., 2.})
         for (const double azimuth : {0., 1., 1.57}) {
           // From the lobe's and the disk's own widths, whichever is larger.
-          const double scale = std::max(1 / std::sqrt(m), radius / 4 / std::cos(phase / 2 * degree));
+          const double scale =
+              std::max(1 / std::sqrt(m), radius / 4 / std::cos(phase / 2 * degree));
           const Case c = pose(phase * degree, tilt * scale, azimuth);
           const double exact = by_brute_force(*d, c.l, c.v);
           const double ours = density_over_disk(*d, c.l, c.v, dot(c.l, c.v), radius);
-          EXPECT_NEAR(ours, exact, 2e-3 * peak) << m << " " << phase << " " << tilt << " " << azimuth;
+          EXPECT_NEAR(ours, exact, 2e-3 * peak)
+              << m << " " << phase << " " << tilt << " " << azimuth;
         }
     }
 }
@@ -63,7 +67,8 @@ TEST(SolarDisk, IsContinuousAcrossItsSwitches) {
     for (double m = 100; m < 3e6; m *= 1.002) {
       const auto d = *make_distribution({"beckmann", {{"alpha", std::sqrt(2 / (m + 2))}}, {}, {}});
       const Case c = pose(80 * degree, tilt / std::sqrt(m), 0.6);
-      const double value = density_over_disk(*d, c.l, c.v, dot(c.l, c.v), radius) / d->density(tilted(1));
+      const double value =
+          density_over_disk(*d, c.l, c.v, dot(c.l, c.v), radius) / d->density(tilted(1));
       if (before > 0) { // a smooth curve moves by little more than the step of 0.2 %
         EXPECT_NEAR(value, before, 0.003 * std::max(before, value)) << m << " " << tilt;
       }
@@ -81,8 +86,8 @@ TEST(SolarDisk, OtherLobesAgreeWithBruteForce) {
     const auto d = *make_distribution(choice);
     for (const double tilt : {0., .002, .005}) {
       const Case c = pose(70 * degree, tilt, 0.7), top = pose(70 * degree, 0, 0);
-      EXPECT_NEAR(density_over_disk(*d, c.l, c.v, dot(c.l, c.v), radius), by_brute_force(*d, c.l, c.v),
-                  3e-3 * by_brute_force(*d, top.l, top.v))
+      EXPECT_NEAR(density_over_disk(*d, c.l, c.v, dot(c.l, c.v), radius),
+                  by_brute_force(*d, c.l, c.v), 3e-3 * by_brute_force(*d, top.l, top.v))
           << choice.model << " " << tilt;
     }
   }

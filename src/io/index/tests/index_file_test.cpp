@@ -45,7 +45,8 @@ bool says(const std::string &text, const std::string &word) {
 
 TEST(IndexFile, RefusesWhatIsNoPage) {
   const std::string head = "DATA:\n  - type: tabulated nk\n    data: |\n";
-  EXPECT_TRUE(says(head + "        0.5 1.5 0\n        0.4 1.5 0\n", "x.yml:5: wavelength 0.4 um follows 0.5"));
+  EXPECT_TRUE(says(head + "        0.5 1.5 0\n        0.4 1.5 0\n",
+                   "x.yml:5: wavelength 0.4 um follows 0.5"));
   EXPECT_TRUE(says(head + "        0.4 1.5 0\n        0.4 1.5 0\n", "repeated"));
   EXPECT_TRUE(says(head + "        400 1.5 0\n        500 1.5 0\n", "nm"));
   EXPECT_TRUE(says(head + "        0.4 1.5 -1\n        0.5 1.5 0\n", "k = -1"));

@@ -28,11 +28,11 @@ TEST_F(RunFolderTest, ReplacesItsOwnFolderAsAWhole) {
     auto folder = RunFolder::open(base_ / "deep/out", false);
     ASSERT_TRUE(folder) << folder.error().text();
     folder->add("manifest.json", make_manifest({}));
-    folder->add(std::string(round) + ".txt", round);
+    folder->add(round == std::string("first") ? "lightcurve.csv" : "lightcurve.ecsv", round);
     ASSERT_TRUE(folder->commit());
   }
-  EXPECT_FALSE(fs::exists(base_ / "deep/out/first.txt"));
-  EXPECT_EQ(*read_file(base_ / "deep/out/second.txt"), "second");
+  EXPECT_FALSE(fs::exists(base_ / "deep/out/lightcurve.csv"));
+  EXPECT_EQ(*read_file(base_ / "deep/out/lightcurve.ecsv"), "second");
   EXPECT_EQ(std::distance(fs::directory_iterator(base_ / "deep"), fs::directory_iterator()), 1);
 }
 

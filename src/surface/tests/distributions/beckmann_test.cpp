@@ -12,7 +12,8 @@ TEST(Beckmann, MaskingMatchesThePrintedValues) {
   // Against Blinn-Phong of the same slope variance, alpha^2 = 2/(m+2).
   const auto ten = *make_distribution({"beckmann", {{"alpha", std::sqrt(2. / 12)}}, {}, {}});
   EXPECT_NEAR(ten->masking(tilted(std::cos(75 * degree))), .90685, 5.1e-6);
-  const auto two_hundred = *make_distribution({"beckmann", {{"alpha", std::sqrt(2. / 202)}}, {}, {}});
+  const auto two_hundred =
+      *make_distribution({"beckmann", {{"alpha", std::sqrt(2. / 202)}}, {}, {}});
   EXPECT_NEAR(two_hundred->masking(tilted(std::cos(85 * degree))), .96039, 5.1e-6);
 }
 

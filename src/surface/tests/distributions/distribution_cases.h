@@ -42,9 +42,10 @@ inline void check_distribution(const DistributionChoice &choice, double toleranc
       const double s = std::sin(theta * degree);
       const Vec3<Facet> k{s * std::cos(phi), s * std::sin(phi), std::cos(theta * degree)};
       const double seen = d.masking(k) * hemisphere_integral([&](Vec3<Facet> h) {
-        return d.density(h) * std::max(0.0, dot(h, k));
-      });
-      // The clip at h.k = 0 is a kink for the quadrature of this test: 1e-4 of n.k is its own error.
+                            return d.density(h) * std::max(0.0, dot(h, k));
+                          });
+      // The clip at h.k = 0 is a kink for the quadrature of this test: 1e-4 of n.k is its own
+      // error.
       EXPECT_NEAR(seen, k.z, std::max(tolerance, 2e-4) * k.z) << choice.model << " " << theta;
     }
   if (!d.is_isotropic())
