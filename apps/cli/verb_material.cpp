@@ -1,3 +1,4 @@
+#include "verb_material.h"
 #include "console.h"
 #include "tables.h"
 #include "verbs.h"
@@ -251,8 +252,8 @@ template <class F> auto finishing(const Exit &exit_with, F run) {
 }
 
 void add_check(CLI::App &material, const Exit &exit_with) {
-  auto *verb =
-      material.add_subcommand("check", "Reciprocity, realisability and energy of materials");
+  auto *verb = material.add_subcommand(
+      "check", "Reciprocity, realisability and energy of materials; or an explicit rough surface");
   auto o = std::make_shared<CheckOptions>();
   auto common = std::make_shared<Common>();
   verb->add_option("material", o->names, "Names or TOML files");
@@ -264,7 +265,11 @@ void add_check(CLI::App &material, const Exit &exit_with) {
   verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv or .json by its suffix");
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
-  verb->callback(finishing(exit_with, [o, common] { return check_materials(*o, *common); }));
+  auto explicit_surface = add_explicit_options(*verb);
+  verb->callback(finishing(exit_with, [o, common, explicit_surface] {
+    return explicit_surface->is_wanted ? check_explicit(*explicit_surface, o->output, *common)
+                                       : check_materials(*o, *common);
+  }));
 }
 
 void add_index(CLI::App &material, const Exit &exit_with) {
@@ -304,6 +309,7 @@ void add_material(CLI::App &app, const Exit &exit_with) {
   shown->callback(finishing(exit_with, [name] { return show(*name); }));
   add_index(*material, exit_with);
   add_check(*material, exit_with);
+  add_plot(*material, exit_with);
   auto *import = material->add_subcommand(
       "import",
       "Check a page of refractiveindex.info (.yml) or a measured BRDF (.csv), as a material");

@@ -10,6 +10,7 @@
 #include <umov/core/files.h>
 #include <umov/io/obj.h>
 #include <umov/shape/primitives.h>
+#include <umov/shape/rough_surface.h>
 #include <umov/shape/topology.h>
 
 namespace umov::cli {
@@ -25,6 +26,7 @@ struct ShapeOptions {
   int facets = 5000, sides = 48;
   double array_angle_deg = 0;
   bool two_sided = false;
+  RoughSurfaceOptions rough;
 };
 
 using Maker = std::function<Mesh(const ShapeOptions &)>;
@@ -57,8 +59,15 @@ const std::map<std::string, Maker> &makers() {
   return all;
 }
 
+Result<Mesh> mesh_for(const ShapeOptions &options) {
+  if (options.shape != "rough-surface")
+    return makers().at(options.shape)(options);
+  UMOV_ASSIGN(field, make_height_field(options.rough));
+  return mesh_of(field);
+}
+
 Result<void> make(const ShapeOptions &options) {
-  const Mesh mesh = makers().at(options.shape)(options);
+  UMOV_ASSIGN(mesh, mesh_for(options));
   if (options.output.empty() || options.output == "-")
     return put("", write_obj(mesh, options.shape, MtlUse::None).obj);
   const fs::path path = options.output;
@@ -77,10 +86,13 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
   std::vector<std::string> names;
   for (const auto &[name, maker] : makers())
     names.push_back(name);
+  names.emplace_back("rough-surface");
   verb->add_option("shape", options->shape,
                    "sphere (--radius --facets), plate (--width --height --two-sided), cylinder "
                    "(--radius --length --sides), chamfered-cube (--edge --chamfer), cigar "
-                   "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides)")
+                   "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides), "
+                   "rough-surface (--cells "
+                   "--cell --slope --correlation --hurst --seed)")
       ->required()
       ->check(CLI::IsMember(names));
   verb->add_option("-o,--output", options->output, "OBJ file; the MTL goes beside it");
@@ -105,6 +117,20 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
       ->capture_default_str();
   verb->add_option("--array-angle-deg", options->array_angle_deg,
                    "Turn of the solar arrays about their boom")
+      ->capture_default_str();
+  verb->add_option("--cells", options->rough.cells, "rough-surface: cells per side")
+      ->capture_default_str();
+  verb->add_option("--cell", options->rough.cell_m, "rough-surface: side of a cell [m]")
+      ->check(length)
+      ->capture_default_str();
+  verb->add_option("--slope", options->rough.slope, "rough-surface: rms slope along an axis")
+      ->capture_default_str();
+  verb->add_option("--correlation", options->rough.correlation_cells,
+                   "rough-surface: correlation length [cells]")
+      ->capture_default_str();
+  verb->add_option("--hurst", options->rough.hurst, "rough-surface: Hurst exponent; 0: one scale")
+      ->capture_default_str();
+  verb->add_option("--seed", options->rough.seed, "rough-surface: of the heights")
       ->capture_default_str();
   verb->add_flag("--two-sided", options->two_sided, "Materials \"front\" and \"back\"");
   add_common(*verb, *common, false);

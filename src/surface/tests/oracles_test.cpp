@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <gtest/gtest.h>
+#include <map>
 #include <sstream>
 #include <umov/core/text.h>
 
@@ -54,7 +55,8 @@ TEST(Oracles, MitsubaRoughConductorAndPlastic) {
   for (const Row &row : rows) {
     const double *c = row.number.data(); // eta_n, eta_k, alpha, diffuse, angles, m00 ...
     const std::string key = row.name + shortest(c[2]);
-    const bool is_plastic = row.name.starts_with("pplastic"), is_beckmann = row.name != "roughconductor_ggx";
+    const bool is_plastic = row.name.starts_with("pplastic"),
+               is_beckmann = row.name != "roughconductor_ggx";
     if (key != last) {
       Material material;
       material.index = constant_index({c[0], c[1]});
@@ -68,18 +70,17 @@ TEST(Oracles, MitsubaRoughConductorAndPlastic) {
       last = key;
     }
     const auto at = directions_from_angles(c[4] * degree, c[5] * degree, c[6] * degree);
-    const double masking =
-        is_beckmann ? fit_over_exact(at.l.z, c[2], surface.masking(at.l)) *
-                          fit_over_exact(at.v.z, c[2], surface.masking(at.v))
-                    : 1;
+    const double masking = is_beckmann ? fit_over_exact(at.l.z, c[2], surface.masking(at.l)) *
+                                             fit_over_exact(at.v.z, c[2], surface.masking(at.v))
+                                       : 1;
     const double w = row.name == "pplastic_diffuse_only"
                          ? 0
                          : masking * surface.specular(0, at) / (at.l.z * at.v.z);
     const auto facet = surface.mueller(0, at.l_v).m;
     for (std::size_t k = 0; k < 16; ++k) {
       const std::size_t column = k % 4;
-      const Stokes<ScatteringPlane> in{column == 0 ? 1. : 0, column == 1 ? 1. : 0, column == 2 ? 1. : 0,
-                                       column == 3 ? 1. : 0};
+      const Stokes<ScatteringPlane> in{column == 0 ? 1. : 0, column == 1 ? 1. : 0,
+                                       column == 2 ? 1. : 0, column == 3 ? 1. : 0};
       const auto s = surface.diffuse(0, at, in);
       const double parts[4] = {s.i, s.q, s.u, s.v};
       const double ours = w * facet[k / 4][column] + parts[k / 4] / (at.l.z * at.v.z);
@@ -89,6 +90,38 @@ TEST(Oracles, MitsubaRoughConductorAndPlastic) {
   }
   RecordProperty("worst", std::to_string(worst));
   EXPECT_GT(worst, 0);
+}
+
+TEST(Oracles, ScatmechFacets) {
+  // tools/oracles/scatmech_surfaces.py: Beckmann facets without shadowing, 15 digits.
+  const auto rows = rows_of("scatmech_facets.csv");
+  ASSERT_GT(rows.size(), 600u);
+  for (const Row &row : rows) {
+    const double n = *parse_number(row.name),
+                 *c = row.number.data(); // eta_k, alpha, angles, m00 ...
+    const auto normals = *make_distribution({"beckmann", {{"alpha", c[1]}}, {}, {}, {}});
+    const auto at = directions_from_angles(c[2] * degree, c[3] * degree, c[4] * degree);
+    const double w = normals->density(normalized(at.l + at.v)) / (4 * at.l.z * at.v.z);
+    const auto m = Interface({n, c[0]}).reflection(std::sqrt((1 + at.l_v) / 2)).matrix().m;
+    for (std::size_t k = 0; k < 16; ++k)
+      ASSERT_NEAR(w * m[k / 4][k % 4], c[5 + k], 1e-11 * c[5]);
+  }
+}
+
+TEST(Oracles, ScatmechFilms) {
+  const std::map<std::string, Interface> stacks{
+      {"sio2_on_al", Interface({1.015, 6.627}, {{1.46, 150, true}}, Wavelength::nm(550))},
+      {"mgf2_on_glass", Interface(1.518, {{1.38, 550.0 / 4 / 1.38, true}}, Wavelength::nm(550))},
+      {"three_on_glass",
+       Interface(1.518, {{2.1, 60, true}, {1.46, 95, true}, {2.1, 60, true}}, Wavelength::nm(550))},
+      {"ito_on_si", Interface({4.08, 0.028}, {{{1.9, 0.01}, 80, true}}, Wavelength::nm(550))}};
+  const auto rows = rows_of("scatmech_films.csv");
+  ASSERT_EQ(rows.size(), 180u);
+  for (const Row &row : rows) {
+    const auto f = stacks.at(row.name).reflection(std::cos(row.number[0] * degree));
+    EXPECT_NEAR(f.a + f.b, row.number[1], 1e-12) << row.name << " " << row.number[0];
+    EXPECT_NEAR(f.a - f.b, row.number[2], 1e-12) << row.name << " " << row.number[0];
+  }
 }
 
 } // namespace

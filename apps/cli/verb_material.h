@@ -1,0 +1,26 @@
+#pragma once
+// Parts of `umov material` that stand in files of their own.
+
+#include "console.h"
+#include "verbs.h"
+
+#include <memory>
+
+namespace umov::cli {
+
+/// `umov material check --explicit`: a ray-traced height field against the statistical model.
+struct ExplicitOptions {
+  bool is_wanted = false;
+  double slope = 0.3, hurst = 0;
+  std::vector<double> theta_deg{60};
+  int cells = 256, correlation_cells = 8, realisations = 4;
+  std::uint64_t rays = 200'000, seed = 0;
+};
+std::shared_ptr<ExplicitOptions> add_explicit_options(CLI::App &verb);
+Result<void> check_explicit(const ExplicitOptions &options, const std::string &output,
+                            const Common &common);
+
+/// `umov material plot`.
+void add_plot(CLI::App &material, const Exit &exit_with);
+
+} // namespace umov::cli

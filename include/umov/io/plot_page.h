@@ -1,0 +1,27 @@
+#pragma once
+// A page of line plots: one HTML file that needs no network.
+
+#include <string>
+#include <umov/core/result.h>
+#include <vector>
+
+namespace umov {
+
+struct PlotLine {
+  std::string name;
+  std::vector<double> x, y; ///< NaN breaks the line
+  std::size_t colour = 0;   ///< into the colour-blind safe list
+  std::string dash = "solid"; ///< solid, dash, dot, dashdot: lines differ by more than colour
+};
+struct PlotFigure {
+  std::string title, x_title, y_title;
+  std::vector<PlotLine> lines;
+  bool has_log_y = false;
+};
+
+/// The page: title, one card per figure (each can be saved as SVG), notes at the end. Same input,
+/// same bytes. Internal if this build has no plotting script.
+Result<std::string> make_plot_page(const std::string &title, const std::vector<PlotFigure> &figures,
+                                   const std::vector<std::string> &notes);
+
+} // namespace umov
