@@ -38,11 +38,12 @@ struct Traced {
 Result<Traced> trace(const ExplicitOptions &o, double theta, const Common &common) {
   Traced out;
   for (int r = 0; r < o.realisations; ++r) {
-    UMOV_ASSIGN(field, make_height_field({.cells = static_cast<std::size_t>(o.cells),
-                                          .slope = o.slope,
-                                          .correlation_cells = static_cast<double>(o.correlation_cells),
-                                          .hurst = o.hurst,
-                                          .seed = o.seed + static_cast<std::uint64_t>(r)}));
+    UMOV_ASSIGN(field,
+                make_height_field({.cells = static_cast<std::size_t>(o.cells),
+                                   .slope = o.slope,
+                                   .correlation_cells = static_cast<double>(o.correlation_cells),
+                                   .hurst = o.hurst,
+                                   .seed = o.seed + static_cast<std::uint64_t>(r)}));
     const SingleScatter one =
         trace_height_field(field, theta, o.rays, o.seed + static_cast<std::uint64_t>(r),
                            static_cast<unsigned>(common.threads));
@@ -62,7 +63,8 @@ std::shared_ptr<ExplicitOptions> add_explicit_options(CLI::App &verb) {
   verb.add_option("--slope", o->slope, "--explicit: rms slope along an axis")
       ->check(CLI::Range(0.01, 2.0))
       ->capture_default_str();
-  verb.add_option("--hurst", o->hurst, "--explicit: Hurst exponent of a fractal surface; 0: one scale")
+  verb.add_option("--hurst", o->hurst,
+                  "--explicit: Hurst exponent of a fractal surface; 0: one scale")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   verb.add_option("--theta", o->theta_deg, "--explicit: incidences [deg], separated by commas")
@@ -83,7 +85,8 @@ std::shared_ptr<ExplicitOptions> add_explicit_options(CLI::App &verb) {
 Result<void> check_explicit(const ExplicitOptions &o, const std::string &output,
                             const Common &common) {
   UMOV_TRY(check_output(output));
-  UMOV_ASSIGN(normals, make_distribution({"beckmann", {{"alpha", std::sqrt(2.0) * o.slope}}, {}, {}, {}}));
+  UMOV_ASSIGN(normals,
+              make_distribution({"beckmann", {{"alpha", std::sqrt(2.0) * o.slope}}, {}, {}, {}}));
   std::vector<double> explicit_once, error, once[4], distance[4];
   for (const double deg : o.theta_deg) {
     const double theta = deg * pi / 180;
@@ -109,8 +112,8 @@ Result<void> check_explicit(const ExplicitOptions &o, const std::string &output,
     table.add(fmt::format("diff_{}", shadowing_names[k]), "",
               "sum of |model - explicit| over 36 bins of direction over the light scattered once",
               std::move(distance[k]));
-  table.note("surface", fmt::format("{} x {} cells, slope {:g}, {} surfaces x {} rays", o.cells, o.cells,
-                                    o.slope, o.realisations, o.rays));
+  table.note("surface", fmt::format("{} x {} cells, slope {:g}, {} surfaces x {} rays", o.cells,
+                                    o.cells, o.slope, o.realisations, o.rays));
   return put_table(output, table, common);
 }
 

@@ -44,8 +44,8 @@ std::vector<PlotLine> lines_over(const std::vector<Subject> &subjects, const std
   std::vector<PlotLine> out;
   for (const Subject &s : subjects)
     for (std::size_t b = 0; b < s.bands.size(); ++b) {
-      PlotLine line{s.name + " " + s.bands[b].name, x, {},
-                    subjects.size() > 1 ? s.colour : b, dashes[b % 4]};
+      PlotLine line{
+          s.name + " " + s.bands[b].name, x, {}, subjects.size() > 1 ? s.colour : b, dashes[b % 4]};
       for (const double at : x)
         line.y.push_back(value(s, b, at));
       out.push_back(std::move(line));
@@ -55,7 +55,10 @@ std::vector<PlotLine> lines_over(const std::vector<Subject> &subjects, const std
 
 PlotFigure reflectances(const std::vector<Subject> &subjects) {
   PlotFigure out{"Reflectance of the smooth interface: R_s (upper) and R_p (lower)",
-                 "incidence [deg]", "R", {}, false};
+                 "incidence [deg]",
+                 "R",
+                 {},
+                 false};
   for (const double sign : {1.0, -1.0})
     for (PlotLine &line :
          lines_over(subjects, steps(0, 90, 1), [sign](const Subject &s, std::size_t b, double deg) {
@@ -125,7 +128,10 @@ PlotFigure lobes(const std::vector<Subject> &subjects, double theta_i) {
 
 PlotFigure colour_ratios(const std::vector<Subject> &subjects, double theta_i) {
   PlotFigure out{fmt::format("Colour ratio, first band over last, source at {:g} deg", theta_i),
-                 "observer [deg], mirror side positive", "ratio", {}, false};
+                 "observer [deg], mirror side positive",
+                 "ratio",
+                 {},
+                 false};
   for (const Subject &s : subjects) {
     PlotLine line{s.name, steps(-80, 80, 1), {}, s.colour, "solid"};
     for (const double deg : line.x) {
@@ -140,13 +146,17 @@ PlotFigure colour_ratios(const std::vector<Subject> &subjects, double theta_i) {
 }
 
 PlotFigure indices(const std::vector<Subject> &subjects) {
-  PlotFigure out{"Refractive index n (solid) and k (dashed) of the substrate", "wavelength [nm]", "n, k",
-                 {}, false};
+  PlotFigure out{"Refractive index n (solid) and k (dashed) of the substrate",
+                 "wavelength [nm]",
+                 "n, k",
+                 {},
+                 false};
   for (const Subject &s : subjects) {
     const Material &material = s.surface.material();
     const WavelengthRange range = range_of(material.index);
     const double first = std::max(range.first_nm, 300.0), last = std::min(range.last_nm, 1100.0);
-    PlotLine n{s.name + " n", {}, {}, s.colour, "solid"}, k{s.name + " k", {}, {}, s.colour, "dash"};
+    PlotLine n{s.name + " n", {}, {}, s.colour, "solid"},
+        k{s.name + " k", {}, {}, s.colour, "dash"};
     for (double nm = first; nm <= last; nm += 5)
       if (const auto eta = index_at(material.index, Wavelength::nm(nm))) {
         n.x.push_back(nm);
@@ -215,7 +225,8 @@ void add_plot(CLI::App &material, const Exit &exit_with) {
       ->delimiter(',')
       ->check(CLI::Range(10.0, 1e6))
       ->capture_default_str();
-  verb->add_option("--theta-i", o->theta_i_deg, "Source from the normal, for lobes and colour [deg]")
+  verb->add_option("--theta-i", o->theta_i_deg,
+                   "Source from the normal, for lobes and colour [deg]")
       ->check(CLI::Range(0.0, 89.0))
       ->capture_default_str();
   verb->add_option("-o,--output", o->output, "HTML file")->required();

@@ -85,7 +85,8 @@ Result<HeightField> make_height_field(const RoughSurfaceOptions &o) {
                                                  "expected",
                                                  o.correlation_cells, longest));
   if (!(o.hurst >= 0 && o.hurst <= 1) || !(o.cell_m > 0))
-    return fail(ErrorCode::BadInput, "a Hurst exponent of 0 to 1 and a positive cell were expected");
+    return fail(ErrorCode::BadInput,
+                "a Hurst exponent of 0 to 1 and a positive cell were expected");
   HeightField out{o.cells, o.cell_m, std::vector<double>(o.cells * o.cells, 0.0)};
   double length = o.correlation_cells, weight = 1;
   for (std::uint32_t octave = 0; octave == 0 || (o.hurst > 0 && length >= 2); ++octave) {

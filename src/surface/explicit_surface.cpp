@@ -60,8 +60,8 @@ private:
     for (int tile = 0; tile < tiles_max; ++tile) {
       const auto hit = occluder_.nearest(at, direction);
       const double to_x = edge(at.x, direction.x), to_y = edge(at.y, direction.y);
-      const double to_z = direction.z > 0 ? (high_ - at.z) / direction.z
-                                          : std::numeric_limits<double>::infinity();
+      const double to_z =
+          direction.z > 0 ? (high_ - at.z) / direction.z : std::numeric_limits<double>::infinity();
       const double exit = std::min(to_x, to_y);
       if (hit.triangle != no_index && hit.distance_m <= std::min(exit, to_z) + lift_) {
         triangle = hit.triangle;

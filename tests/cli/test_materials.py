@@ -157,3 +157,39 @@ def test_laser_light_keeps_what_one_reflection_keeps(umov, scenario, tmp_path):
     assert umov("signature", scenario(), "--geometry", "g.csv", "--source", "laser",
                 "--state", 1, 1, 1, 0).code == 2
     assert umov("signature", scenario(), "--geometry", "g.csv", "--state", 1, 1, 0, 0).code == 2
+
+
+def test_the_example_table_gives_its_model_back(umov, tmp_path):
+    panel = ROOT / "examples/measured_panel.toml"
+    assert umov("material", "check", panel, "--geometries", 500).code == 0
+    for i, o, phi in ((30, 45, 60), (60, 15, 150), (75, 75, 180)): # grid points, nine digits
+        rows = [json.loads(umov("brdf", name, "--wavelength", 550, "--theta-i", i, "--theta-o", o,
+                                "--phi", phi, "--json").out)[0] for name in (panel, "paint_white")]
+        for r in range(4):
+            for c in range(4):
+                key = f"m{r}{c}"
+                assert rows[0][key] == pytest.approx(rows[1][key], abs=1e-8 * rows[1]["m00"]), key
+
+
+def test_plots_are_a_page_without_network(umov, tmp_path):
+    done = umov("material", "plot", "paper_au", "cell_gaas", "-o", "p.html")
+    assert done.code == 0, done.err
+    text = (tmp_path / "p.html").read_text()
+    assert "Q/I of one reflection" in text and "Colour ratio" in text and "paper_au" in text
+    page = text.split("<script>")[0] + text.rsplit("<script>", 1)[1]  # without the drawing library
+    assert "http" not in page and "@import" not in page and "fetch(" not in page
+    assert umov("material", "plot", "paper_au", "-o", "p.png").code == 2
+    done = umov("material", "plot", "paper_au", "--wavelength", 900, "-o", "q.html")
+    assert done.code == 3 and not (tmp_path / "q.html").exists()
+
+
+def test_an_explicit_surface_is_a_mesh_and_a_check(umov, tmp_path):
+    assert umov("mesh", "make", "rough-surface", "--cells", 64, "-o", "r.obj").code == 0
+    info = json.loads(umov("mesh", "info", "r.obj", "--unit", "m", "--up", "+Z", "--json").out)
+    assert info["triangles"] == 2 * 64 * 64
+    done = umov("material", "check", "--explicit", "--cells", 128, "--slope", 0.2, "--theta", "0,50",
+                "--realisations", 2, "--rays", 20000, "--json")
+    assert done.code == 0, done.err
+    for row in json.loads(done.out):
+        assert abs(row["once"] - row["once_ashikhmin"]) < 0.02, row
+    assert umov("mesh", "make", "rough-surface", "--correlation", 99, "-o", "x.obj").code == 3

@@ -9,8 +9,8 @@ namespace umov {
 
 struct PlotLine {
   std::string name;
-  std::vector<double> x, y; ///< NaN breaks the line
-  std::size_t colour = 0;   ///< into the colour-blind safe list
+  std::vector<double> x, y;   ///< NaN breaks the line
+  std::size_t colour = 0;     ///< into the colour-blind safe list
   std::string dash = "solid"; ///< solid, dash, dot, dashdot: lines differ by more than colour
 };
 struct PlotFigure {

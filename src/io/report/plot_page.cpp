@@ -30,8 +30,11 @@ Json figure_json(const PlotFigure &figure) {
                      {"y", numbers(line.y)},
                      {"colour", material_colour(line.colour)},
                      {"dash", line.dash}});
-  return {{"title", figure.title},     {"x", figure.x_title}, {"y", figure.y_title},
-          {"log", figure.has_log_y}, {"lines", lines}};
+  return {{"title", figure.title},
+          {"x", figure.x_title},
+          {"y", figure.y_title},
+          {"log", figure.has_log_y},
+          {"lines", lines}};
 }
 
 /// Text in a script block must not close it.

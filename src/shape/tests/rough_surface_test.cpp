@@ -7,7 +7,8 @@ namespace umov {
 namespace {
 
 TEST(RoughSurface, HasTheSlopeAndCorrelationAskedFor) {
-  const auto field = make_height_field({.cells = 256, .slope = 0.4, .correlation_cells = 8, .seed = 3});
+  const auto field =
+      make_height_field({.cells = 256, .slope = 0.4, .correlation_cells = 8, .seed = 3});
   ASSERT_TRUE(field);
   double slopes = 0, variance = 0, covariance = 0, mean = 0;
   const std::size_t n = field->cells;

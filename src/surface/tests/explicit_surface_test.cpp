@@ -7,13 +7,12 @@ namespace umov {
 namespace {
 
 TEST(ExplicitSurface, AgreesWithThePublishedFractionsScatteredOnce) {
-  // physics page, section 4, rows a (24 surfaces, 8 cells a correlation length): E1 explicit at slope
-  // .3: .9868 at 0 and .8887 at 60 deg; model (ashikhmin) .9825, .8844. Two surfaces here: their
-  // scatter is .003.
-  const auto normals = *make_distribution({"beckmann", {{"alpha", std::sqrt(2.) * .3}}, {}, {}, {}});
-  const struct {
-    double theta, traced, model;
-  } rows[] = {{0, .9868, .9825}, {60, .8887, .8844}};
+  // physics page, section 4, rows a (24 surfaces, 8 cells a correlation length): E1 explicit at
+  // slope .3: .9868 at 0 and .8887 at 60 deg; model (ashikhmin) .9825, .8844. Two surfaces here:
+  // their scatter is .003.
+  const auto normals =
+      *make_distribution({"beckmann", {{"alpha", std::sqrt(2.) * .3}}, {}, {}, {}});
+  const struct { double theta, traced, model; } rows[] = {{0, .9868, .9825}, {60, .8887, .8844}};
   for (const auto &row : rows) {
     const double theta = row.theta * pi / 180;
     double once = 0;
