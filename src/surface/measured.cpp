@@ -8,6 +8,7 @@
 #include <numbers>
 #include <tuple>
 #include <umov/core/quantity.h>
+#include <utility>
 
 namespace umov {
 namespace {
@@ -65,6 +66,22 @@ bool holds(const std::vector<double> &axis, double at) {
   return at >= axis.front() - 1e-9 && at <= axis.back() + 1e-9;
 }
 
+struct HalfAngles {
+  double tilt, incidence; ///< of the half vector from the normal; on the half vector [rad]
+};
+
+HalfAngles half_angles(double theta_i, double theta_o, double phi) {
+  const double l_v =
+      std::cos(theta_i) * std::cos(theta_o) + std::sin(theta_i) * std::sin(theta_o) * std::cos(phi);
+  const double half = std::sqrt(std::max(1e-15, (1 + l_v) / 2));
+  const double n_h = (std::cos(theta_i) + std::cos(theta_o)) / (2 * half);
+  // sin of the tilt from the components across the normal: acos would lose the digits of narrow
+  // lobes.
+  const double x = std::sin(theta_i) + std::sin(theta_o) * std::cos(phi);
+  const double y = std::sin(theta_o) * std::sin(phi);
+  return {std::atan2(std::hypot(x, y) / (2 * half), n_h), std::acos(std::min(1.0, half))};
+}
+
 Result<void> check_samples(const std::vector<BrdfSample> &samples) {
   if (samples.empty())
     return fail(ErrorCode::BadInput, "a BRDF table without rows");
@@ -97,6 +114,14 @@ Result<void> check_samples(const std::vector<BrdfSample> &samples) {
 }
 
 } // namespace
+
+bool MeasuredBrdf::is_partner_known(const BrdfSample &s) const {
+  if (!is_in_plane_)
+    return holds(axes_[1], s.theta_o_deg) && holds(axes_[2], s.theta_i_deg);
+  // Between the few incidences of a goniometer a lobe cannot be interpolated: on the grid alone.
+  return std::binary_search(axes_[1].begin(), axes_[1].end(), s.theta_o_deg) &&
+         std::binary_search(axes_[2].begin(), axes_[2].end(), s.theta_i_deg);
+}
 
 Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool has_polarization,
                                         bool accept, std::vector<std::string> &remarks) {
@@ -135,16 +160,18 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
                               samples[i].theta_i_deg, samples[i].theta_o_deg, samples[i].phi_deg));
     out.values_.push_back(samples[i].mueller);
   }
-  if (out.axes_[3].size() == 2 && out.axes_[3][0] == 0 && out.axes_[3][1] == 180)
-    remarks.emplace_back("measured in the plane of incidence; other azimuths are interpolated by "
-                         "cos^2(phi/2)");
+  out.is_in_plane_ = !has_polarization && out.axes_[3] == std::vector<double>{0, 180};
+  if (out.is_in_plane_)
+    remarks.emplace_back(
+        "measured in the plane of incidence; other azimuths take the value of the same "
+        "tilt of the half vector");
   else if (out.axes_[3].size() == 1)
     remarks.emplace_back("measured at one azimuth; the same is taken for all");
   double largest = 0, worst = 0;
   for (const BrdfSample &s : samples)
     largest = std::max(largest, s.mueller[0]);
   for (const BrdfSample &s : samples)
-    if (holds(out.axes_[1], s.theta_o_deg) && holds(out.axes_[2], s.theta_i_deg)) {
+    if (out.is_partner_known(s)) {
       const Matrix back =
           way_back(mirrored(out.look_up(s.wavelength_nm, s.theta_o_deg, s.theta_i_deg, s.phi_deg)));
       for (std::size_t k = 0; k < 16; ++k)
@@ -177,16 +204,13 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
 Matrix MeasuredBrdf::look_up(double nm, double i, double o, double phi) const {
   const Place p[4] = {place_of(axes_[0], nm), place_of(axes_[1], i), place_of(axes_[2], o),
                       place_of(axes_[3], phi)};
-  const bool in_plane = axes_[3].size() == 2 && axes_[3][0] == 0 && axes_[3][1] == 180;
-  const double s = std::sin(phi * pi / 360);
   Matrix out{};
   for (unsigned corner = 0; corner < 16; ++corner) {
     double weight = 1;
     std::size_t at = 0;
     for (std::size_t k = 0; k < 4; ++k) {
       const bool high = (corner >> k & 1) != 0;
-      const double t = k == 3 && in_plane && p[k].high != p[k].low ? s * s : p[k].t;
-      weight *= high ? t : 1 - t;
+      weight *= high ? p[k].t : 1 - p[k].t;
       at = at * axes_[k].size() + (high ? p[k].high : p[k].low);
     }
     if (weight > 0)
@@ -201,6 +225,12 @@ Matrix MeasuredBrdf::operator()(double wavelength_nm, double theta_i_rad, double
   const double i = theta_i_rad * 180 / pi, o = theta_o_rad * 180 / pi;
   const double turned = std::remainder(phi_rad, 2 * pi) * 180 / pi;
   const double phi = std::abs(turned);
+  if (is_in_plane_) {
+    const HalfAngles at = half_angles(theta_i_rad, theta_o_rad, phi * pi / 180);
+    Matrix plain{};
+    plain[0] = in_plane(wavelength_nm, at.tilt, at.incidence);
+    return plain;
+  }
   const bool there = holds(axes_[1], i) && holds(axes_[2], o);
   const bool back = holds(axes_[1], o) && holds(axes_[2], i);
   Matrix m{};
@@ -213,12 +243,56 @@ Matrix MeasuredBrdf::operator()(double wavelength_nm, double theta_i_rad, double
   return turned < 0 ? mirrored(m) : m;
 }
 
+double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) const {
+  // In the plane, with the observer's angle s positive on the mirror side, tilt = (i - s)/2 and
+  // incidence on the half vector = (i + s)/2: each measured i gives the wanted tilt twice.
+  const double tilt = tilt_rad * 180 / pi, wanted = std::abs(incidence_rad) * 180 / pi;
+  const double last = axes_[2].back();
+  std::vector<std::pair<double, double>> found; // incidence on the half vector, value
+  for (const double i : axes_[1])
+    for (const double side : {1.0, -1.0}) {
+      const double s = i - 2 * side * tilt;
+      if (std::abs(s) > last)
+        continue;
+      found.emplace_back(std::abs(i - side * tilt),
+                         look_up(nm, i, std::abs(s), s >= 0 ? 180 : 0)[0]);
+      if (tilt == 0)
+        break;
+    }
+  if (found.empty()) // beyond what was measured: the nearest angle that was
+    return look_up(nm, axes_[1].back(), last, 0)[0];
+  std::sort(found.begin(), found.end());
+  if (wanted <= found.front().first)
+    return found.front().second;
+  for (std::size_t k = 1; k < found.size(); ++k)
+    if (wanted <= found[k].first) {
+      const double width = found[k].first - found[k - 1].first;
+      const double t = width > 0 ? (wanted - found[k - 1].first) / width : 0.5;
+      return (1 - t) * found[k - 1].second + t * found[k].second;
+    }
+  return found.back().second;
+}
+
 double MeasuredBrdf::albedo(double wavelength_nm, double theta_i_rad) const {
-  return 2 * gauss_integral<48>(0, pi, [&](double phi) {
-           return gauss_integral<64>(0, pi / 2, [&](double o) {
-             return (*this)(wavelength_nm, theta_i_rad, o, phi)[0] * std::cos(o) * std::sin(o);
-           });
-         });
+  // Panels that grow away from the mirror direction, where lobes stand.
+  std::vector<double> theta{0, theta_i_rad, pi / 2}, phi{0, pi};
+  for (double step = 0.005; step < pi; step *= 1.6) {
+    for (const double edge : {theta_i_rad - step, theta_i_rad + step})
+      if (edge > 0 && edge < pi / 2)
+        theta.push_back(edge);
+    phi.push_back(step); // from the mirror's azimuth
+  }
+  std::sort(theta.begin(), theta.end());
+  std::sort(phi.begin(), phi.end());
+  double sum = 0;
+  for (std::size_t t = 1; t < theta.size(); ++t)
+    for (std::size_t p = 1; p < phi.size(); ++p)
+      sum += gauss_integral<6>(theta[t - 1], theta[t], [&](double o) {
+        return std::cos(o) * std::sin(o) * gauss_integral<6>(phi[p - 1], phi[p], [&](double from) {
+                 return (*this)(wavelength_nm, theta_i_rad, o, pi - from)[0];
+               });
+      });
+  return 2 * sum;
 }
 
 } // namespace umov

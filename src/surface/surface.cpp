@@ -193,8 +193,6 @@ Stokes<ScatteringPlane> Surface::diffuse(std::size_t band, const SurfaceDirectio
       out += Stokes<ScatteringPlane>{value * in.i, 0, 0, 0};
     }
   }
-  if (!has_plane(at.l_v))
-    out.q = out.u = 0;
   return out;
 }
 

@@ -22,10 +22,11 @@ struct BrdfSample {
 /// angle inside it, and no wavelength beyond the ends.
 class MeasuredBrdf {
 public:
-  /// `in_plane`: the table has the azimuths 0 and 180 only, and others take the mean of the two by
-  /// cos^2(phi/2) (said in the report). BadInput if the grid has holes; if the table is not
-  /// reciprocal within 5 % of its largest value or gives more than it gets, and `accept` is false,
-  /// with the numbers.
+  /// A plain table with the azimuths 0 and 180 only (in plane) is read in the coordinates in which
+  /// lobes keep their shape, tilt of the half vector and incidence on it (Rusinkiewicz 1998), and
+  /// taken to be isotropic about the normal: the same tilt to any side gives the same. BadInput if
+  /// the grid has holes; if a table is not reciprocal within 5 % of its largest value, or any
+  /// gives more than it gets, and `accept` is false, with the numbers.
   static Result<MeasuredBrdf> from(std::vector<BrdfSample> samples, bool has_polarization,
                                    bool accept, std::vector<std::string> &remarks);
 
@@ -41,11 +42,14 @@ public:
   [[nodiscard]] double last_nm() const { return axes_[0].back(); }
 
 private:
+  /// The table can say what the way back of a sample gives.
+  [[nodiscard]] bool is_partner_known(const BrdfSample &sample) const;
+  [[nodiscard]] double in_plane(double nm, double tilt_rad, double incidence_rad) const;
   [[nodiscard]] std::array<double, 16> look_up(double nm, double i, double o, double phi) const;
   std::array<std::vector<double>, 4> axes_; ///< nm, theta_i, theta_o, phi [deg]
   std::vector<std::array<double, 16>> values_;
   double asymmetry_ = 0;
-  bool has_polarization_ = false;
+  bool has_polarization_ = false, is_in_plane_ = false;
 };
 
 } // namespace umov

@@ -32,7 +32,8 @@ SurfaceDirections directions_from_cosines(double n_l, double n_v, double l_v);
 
 /// A compiled material. Copies share their tables. All functions are pure and thread safe.
 /// Directions at or below the horizon give 0. Stokes vectors refer to the scattering plane; where
-/// there is none (phase 0 and 180, within rounding) sunlight has Q = U = 0 by definition.
+/// there is none (phase 0 and 180, within rounding) s is any axis, and the sum over an object
+/// leaves sunlight with Q = U = 0 by definition.
 class Surface {
 public:
   /// Tabulates masking and, where lobes need them, albedos. BadInput where a table does not cover a

@@ -62,13 +62,13 @@ TEST(Mixtures, DepartFromTheChordAsPrinted) {
   const struct {
     const char *one, *other;
     double phase, expected;
-  } rows[] = {{"paper_au", "paper_al", 60, .0216},   {"paper_au", "paper_al", 140, .0244},
-              {"paper_au", "paper_al", 100, .0202},  {"paper_au", "paper_al", 160, .0489},
-              {"paper_au", "paper_bk7", 60, .0819},  {"paper_au", "paper_bk7", 140, .0322},
-              {"paper_au", "paper_asi", 60, .0456},  {"paper_au", "paper_asi", 140, .0381},
-              {"paper_al", "paper_mylar", 60, .315}, {"paper_al", "paper_mylar", 140, .109},
+  } rows[] = {{"paper_au", "paper_al", 60, .0216},     {"paper_au", "paper_al", 140, .0244},
+              {"paper_au", "paper_al", 100, .0202},    {"paper_au", "paper_al", 160, .0489},
+              {"paper_au", "paper_bk7", 60, .0819},    {"paper_au", "paper_bk7", 140, .0322},
+              {"paper_au", "paper_asi", 60, .0456},    {"paper_au", "paper_asi", 140, .0381},
+              {"paper_al", "paper_mylar", 60, .315},   {"paper_al", "paper_mylar", 140, .109},
               {"paper_bk7", "paper_mylar", 60, .0899}, {"paper_bk7", "paper_mylar", 140, .0433},
-              {"paper_al", "paper_bk7", 60, .0022},  {"paper_al", "paper_bk7", 140, .0024}};
+              {"paper_al", "paper_bk7", 60, .0022},    {"paper_al", "paper_bk7", 140, .0024}};
   for (const auto &row : rows) {
     const Departure d = departure(row.one, row.other, row.phase);
     EXPECT_NEAR(d.largest / d.chord, row.expected, row.expected > .1 ? 5.1e-4 : 5.1e-5)
@@ -84,9 +84,9 @@ TEST(Mixtures, DepartFromTheChordAsPrinted) {
 }
 
 TEST(Mixtures, LieOnAPlaneThroughTheOrigin) {
-  // physics page, section 6: normal (B, G, R) = (-.131, .769, -.626) at 40 deg, (-.127, .766, -.631) at
-  // 140; offset below .0012; out-of-plane rms over the largest .011 to .017. The page's random weights
-  // are not given: uniform ones here, so the normal holds to .01.
+  // physics page, section 6: normal (B, G, R) = (-.131, .769, -.626) at 40 deg, (-.127, .766,
+  // -.631) at 140; offset below .0012; out-of-plane rms over the largest .011 to .017. The page's
+  // random weights are not given: uniform ones here, so the normal holds to .01.
   const char *names[] = {"paper_au", "paper_al", "paper_bk7", "paper_asi", "paper_mylar"};
   const struct {
     double phase, normal[3];
