@@ -1,6 +1,7 @@
 #include <umov/scene/scene.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <umov/core/text.h>
 #include <umov/shape/topology.h>
@@ -94,10 +95,17 @@ Vec3<Body> direction_field(const Mesh &mesh, const Surface &surface, std::size_t
 
 SurfaceDirections directions_on(Vec3<Body> normal, Vec3<Body> field, Vec3<Body> to_source,
                                 Vec3<Body> to_observer, double cos_phase, double disk_rad) {
-  Vec3<Body> x = field - dot(field, normal) * normal;
-  const double length = norm(x);
-  x = length > 1e-9 ? x / length : any_perpendicular(normal);
-  const Vec3<Body> y = cross(normal, x);
+  const Vec3<Body> &n = normal;
+  // Some frame without roots or branches (Duff et al. 2017): most surfaces do not ask which.
+  const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  Vec3<Body> x{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, y{b, sign + n.y * n.y * a, -n.y};
+  if (!(field == Vec3<Body>{})) {
+    const Vec3<Body> along = field - dot(field, n) * n;
+    if (const double length = norm(along); length > 1e-9) {
+      x = along / length;
+      y = cross(n, x);
+    }
+  }
   return {{dot(to_source, x), dot(to_source, y), dot(to_source, normal)},
           {dot(to_observer, x), dot(to_observer, y), dot(to_observer, normal)},
           cos_phase,

@@ -11,7 +11,7 @@ namespace {
 
 /// Variance of the disk's image over that of the lobe, up to which a closed form is taken: it
 /// leaves out fourth moments, of the order q^2/8.
-constexpr double closed_form_max = 3e-3;
+constexpr double closed_form_max = 1e-2;
 /// The same for seven nodes, exact up to the fifth power.
 constexpr double nodes_max = 3e-2;
 
@@ -38,7 +38,6 @@ public:
     const Vec3<Facet> source = c * l_ + (s * std::cos(beta)) * e1_ + (s * std::sin(beta)) * e2_;
     return normalized(source + v_);
   }
-  [[nodiscard]] double half_cosine() const { return half_cosine_; }
   /// Coordinate of the surface normal in the scattering plane, from the image's centre towards l.
   [[nodiscard]] double along_plane() const { return cross(e2_, normalized(l_ + v_)).z; }
   /// In the plane at the image's centre, where the image is an ellipse.
@@ -127,11 +126,10 @@ double density_over_disk(const Distribution &normals, Vec3<Facet> l, Vec3<Facet>
   const Vec3<Facet> h = sum / length;
   if (!(radius_rad > 0))
     return normals.density(h);
-  const DiskImage image(l, v, l_v, radius_rad);
   // Per-axis variances of a uniform disk, halved in angle by the half vector; across the scattering
   // plane the image is longer by 1/cos(phase/2).
   const double kappa1 = radius_rad * radius_rad / 16;
-  const double kappa2 = kappa1 / std::max(image.half_cosine() * image.half_cosine(), 1e-6);
+  const double kappa2 = kappa1 / std::max((1 + l_v) / 2, 1e-6);
   const double width = normals.width();
   const double q = width > 0 ? kappa2 / (width * width) : HUGE_VAL;
   if (q < closed_form_max) {
@@ -142,6 +140,7 @@ double density_over_disk(const Distribution &normals, Vec3<Facet> l, Vec3<Facet>
     if (std::isfinite(value))
       return h.z > 0 ? value : 0;
   }
+  const DiskImage image(l, v, l_v, radius_rad);
   if (q < nodes_max)
     return by_nodes(normals, image);
   if (!normals.is_isotropic())

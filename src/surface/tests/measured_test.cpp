@@ -20,7 +20,8 @@ std::vector<BrdfSample> sampled_in_plane(const Surface &surface) {
 }
 
 TEST(Measured, ALobeSampledInThePlaneComesBackOutOfIt) {
-  // Beckmann, alpha .15, on a conductor: its BRDF depends on the tilt of h mostly, on the rest slowly.
+  // Beckmann, alpha .15, on a conductor: its BRDF depends on the tilt of h mostly, on the rest
+  // slowly.
   Material metal;
   metal.index = constant_index({.359, 2.69});
   metal.distribution = {"beckmann", {{"alpha", .15}}, {}, {}, {}};
@@ -29,7 +30,8 @@ TEST(Measured, ALobeSampledInThePlaneComesBackOutOfIt) {
   const auto measured = MeasuredBrdf::from(sampled_in_plane(surface), false, false, remarks);
   ASSERT_TRUE(measured) << measured.error().message;
   EXPECT_EQ(remarks.size(), 1u);
-  EXPECT_NEAR(measured->albedo(550, 30 * degree), surface.specular_albedo(0, tilted(std::cos(30 * degree))), .02);
+  EXPECT_NEAR(measured->albedo(550, 30 * degree),
+              surface.specular_albedo(0, tilted(std::cos(30 * degree))), .02);
   double worst = 0, peak = 0;
   for (std::uint64_t k = 0; k < 500; ++k) {
     const auto u = uniform4(8, 3, k);
@@ -57,7 +59,8 @@ TEST(Measured, AMuellerTableIsReciprocalToTheLastBit) {
     for (const double o : {0., 20., 40., 60., 80.})
       for (const double phi : {0., 45., 90., 135., 180.}) {
         BrdfSample s{550, i, o, phi, {}};
-        const auto m = surface.brdf(0, directions_from_angles(i * degree, o * degree, phi * degree)).m;
+        const auto m =
+            surface.brdf(0, directions_from_angles(i * degree, o * degree, phi * degree)).m;
         for (std::size_t k = 0; k < 16; ++k)
           s.mueller[k] = m[k / 4][k % 4];
         samples.push_back(s);
