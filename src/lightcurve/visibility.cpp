@@ -58,6 +58,7 @@ std::vector<double> smooth_spread(const std::vector<Block> &blocks) {
 struct Growth {
   std::vector<double> factor; ///< per block
   double cells = 0;           ///< in all
+  bool is_enough = false;     ///< for the wanted variance, as far as one can tell
 };
 
 /// Fewest cells for a wanted total variance (Neyman 1934, with the decay above): growth goes with
@@ -84,7 +85,7 @@ Growth grow_to(const std::vector<Block> &blocks, const std::vector<double> &spre
     const bool is_enough = apply(middle) <= wanted_variance;
     (is_enough || out.cells > cells_max ? high : low) = middle;
   }
-  apply(high);
+  out.is_enough = apply(high) <= wanted_variance * 1.01;
   return out;
 }
 
@@ -103,7 +104,7 @@ public:
     // needed would bias the variance low (optional stopping).
     for (int round = 0; round < rounds_max; ++round) {
       const double cells_before = static_cast<double>(last.sums.points) / 2;
-      if (!refine(last, round == 0 ? 2 : 1))
+      if (!refine(last, round == 0 ? 2 : 1, round > 1))
         break;
       last = look(1);
       const bool is_spent =
@@ -129,8 +130,8 @@ private:
     return out;
   }
 
-  /// Sets the cells of the next look; false if there is no room for more points.
-  bool refine(const Measurement &last, double at_least) {
+  /// Sets the cells of the next look; false if there is no room for more points, or not for enough.
+  bool refine(const Measurement &last, double at_least, bool must_suffice) {
     double visible = 1; // least part of the unhidden light that is seen, over the bands
     for (std::size_t b = 0; b < lit_.total.size(); ++b)
       if (lit_.total[b] > 0)
@@ -140,7 +141,8 @@ private:
     const double room = static_cast<double>(options_.max_points) / 2;
     const auto spread = smooth_spread(last.blocks);
     const Growth growth = grow_to(last.blocks, spread, wanted * wanted, at_least, room);
-    if (growth.cells > 1.5 * room)
+    // Out of reach: more points would cost much and change little.
+    if (growth.cells > 1.5 * room || (must_suffice && !growth.is_enough))
       return false;
     for (std::size_t i = 0; i < last.blocks.size(); ++i)
       for (std::size_t e = last.blocks[i].first; e < last.blocks[i].last; ++e)

@@ -62,7 +62,7 @@ public:
           at = finish(out_.blocks[first], at);
         out_.sums.points += origins_.size();
         origins_.clear();
-        weights_.clear();
+        drawn_.clear();
       }
     }
     close();
@@ -81,7 +81,7 @@ private:
             point_in_cell(std::max<std::size_t>(1, block.cuts), cell, u[2 * k], u[2 * k + 1]);
         origins_.push_back(
             ray_origin(scene_, elements_, lit, element_of(elements_, lit_, lit), point));
-        weigh(lit, point);
+        drawn_.push_back({static_cast<std::uint32_t>(&lit - lit_.list.data()), point});
       }
     }
   }
@@ -101,7 +101,13 @@ private:
     return block.last - 1;
   }
 
-  /// A point's weights in its block's integrals: each lobe's, then that of diffuse light.
+  /// Weights of a block's points in its integrals: each lobe's, then that of diffuse light.
+  void weigh_block(std::size_t at, std::size_t count) {
+    weights_.clear();
+    for (std::size_t i = at; i < at + count; ++i)
+      weigh(lit_.list[drawn_[i].lit], drawn_[i].point);
+  }
+
   void weigh(const LitElement &lit, std::array<double, 2> p) {
     const Element &e = element_of(elements_, lit_, lit);
     if (e.is_flat) {
@@ -111,15 +117,20 @@ private:
       return;
     }
     const Vec3<Body> n = shading_normal(e, 1 - p[0] - p[1], p[0], p[1]);
-    const SurfaceDirections at =
+    const Surface &surface = surface_of_slot(scene_, lit.slot);
+    SurfaceDirections at =
         directions_at(scene_, pose_, e, lit.slot, static_cast<double>(lit.side) * n);
     if (!(at.l.z > 0 && at.v.z > 0)) {
       weights_.insert(weights_.end(), kinds_, 0.0);
       return;
     }
+    // Only the shape over one element counts here, and the disk does not change that of a wide
+    // lobe.
+    if (surface.width() > 10 * pose_.sun_radius_rad)
+      at.disk_rad = 0;
     const double scale = e.area_m2 / lit.share;
     for (std::size_t k = 0; k < lobes_; ++k)
-      weights_.push_back(scale * surface_of_slot(scene_, lit.slot).specular(k, at));
+      weights_.push_back(scale * surface.specular(k, at));
     weights_.push_back(scale * at.l.z * at.v.z);
   }
 
@@ -145,19 +156,13 @@ private:
     const std::size_t count = 2 * block.cells();
     const std::size_t slot = sum_block(block);
     double seen = 0;
-    std::fill(ratio_.begin(), ratio_.end(), 0.0);
-    std::fill(weight_sum_.begin(), weight_sum_.end(), 0.0);
-    for (std::size_t i = at; i < at + count; ++i) {
-      const double v = free_[i] != 0 ? 1 : 0;
-      seen += v;
-      for (std::size_t k = 0; k < kinds_; ++k) {
-        ratio_[k] += v * weights_[i * kinds_ + k];
-        weight_sum_[k] += weights_[i * kinds_ + k];
-      }
-    }
-    for (std::size_t k = 0; k < kinds_; ++k)
-      ratio_[k] =
-          weight_sum_[k] > 0 ? ratio_[k] / weight_sum_[k] : seen / static_cast<double>(count);
+    for (std::size_t i = at; i < at + count; ++i)
+      seen += free_[i] != 0 ? 1 : 0;
+    const bool is_mixed = seen > 0 && seen < static_cast<double>(count);
+    if (is_mixed)
+      learn_ratios(at, count, seen);
+    else // all or nothing, whatever the weights
+      std::fill(ratio_.begin(), ratio_.end(), seen > 0 ? 1.0 : 0.0);
     out_.sums.is_any_seen = out_.sums.is_any_seen || seen > 0;
     for (std::size_t k = 0; k < lobes_; ++k)
       out_.sums.specular[slot * lobes_ + k] += ratio_[k] * block_specular_[k];
@@ -181,9 +186,25 @@ private:
             (cells * cells * lit_.total[b] * lit_.total[b] * static_cast<double>(bands_));
     }
     cells_ += cells;
-    if (seen > 0 && seen < static_cast<double>(count))
+    if (is_mixed)
       add_variance(block, at, slot);
     return at + count;
+  }
+
+  /// Visible share of each kind of weight.
+  void learn_ratios(std::size_t at, std::size_t count, double seen) {
+    weigh_block(at, count);
+    std::fill(ratio_.begin(), ratio_.end(), 0.0);
+    std::fill(weight_sum_.begin(), weight_sum_.end(), 0.0);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < kinds_; ++k) {
+        const double w = weights_[i * kinds_ + k];
+        ratio_[k] += free_[at + i] != 0 ? w : 0;
+        weight_sum_[k] += w;
+      }
+    for (std::size_t k = 0; k < kinds_; ++k)
+      ratio_[k] =
+          weight_sum_[k] > 0 ? ratio_[k] / weight_sum_[k] : seen / static_cast<double>(count);
   }
 
   /// Adds the light of the block's elements up; returns their common slot.
@@ -210,10 +231,10 @@ private:
   /// The ratio estimators' residuals of the two points of each cell.
   void add_variance(Block &block, std::size_t at, std::size_t slot) {
     std::vector<double> difference(kinds_);
-    for (std::size_t i = at; i < at + 2 * block.cells(); i += 2) {
+    for (std::size_t i = 0; i < 2 * block.cells(); i += 2) {
       for (std::size_t k = 0; k < kinds_; ++k) {
         const auto residual = [&](std::size_t point) {
-          const double v = free_[point] != 0 ? 1 : 0;
+          const double v = free_[at + point] != 0 ? 1 : 0;
           return weight_sum_[k] > 0
                      ? weights_[point * kinds_ + k] * (v - ratio_[k]) / weight_sum_[k]
                      : 0.0;
@@ -254,7 +275,12 @@ private:
   double cells_ = 0;
   std::vector<std::array<Variance, 4>> variance_; ///< per band: I, Q, U, V
   std::vector<Vec3<Body>> origins_, lit_origins_;
-  std::vector<double> weights_; ///< [point * kinds + kind]
+  struct Drawn {
+    std::uint32_t lit;
+    std::array<double, 2> point;
+  };
+  std::vector<Drawn> drawn_;    ///< of the batch
+  std::vector<double> weights_; ///< of one block: [point * kinds + kind]
   std::vector<unsigned char> free_, seen_;
   std::vector<double> block_specular_; ///< per lobe
   std::vector<Stokes<ScatteringPlane>> block_diffuse_, block_rule_;
