@@ -133,6 +133,14 @@ TEST(Eclipse, MatchesTheClosedFormAndIsContinuous) {
     const Vec3<Itrs> sun = object + Vec3<Itrs>{-std::cos(c), std::sin(c), 0} * d;
     EXPECT_NEAR(sunlit_fraction(object, sun, ShadowModel::Sphere), expected[i], 1e-6);
   }
+  // The same from GEO (42,164 km; the page does not print its radius: 1e-5).
+  const double far[] = {.197637, .503251, .806587};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3<Itrs> object{42164, 0, 0};
+    const double c = std::asin(6378.137 / 42164) + (i - 1) * 0.5 * a;
+    const Vec3<Itrs> sun = object + Vec3<Itrs>{-std::cos(c), std::sin(c), 0} * d;
+    EXPECT_NEAR(sunlit_fraction(object, sun, ShadowModel::Sphere), far[i], 1e-5);
+  }
   for (const ShadowModel model : {ShadowModel::Sphere, ShadowModel::Ellipsoid}) {
     double before = 0;
     for (int i = 0; i <= 2000; ++i) { // through the penumbra: monotone, no jump
