@@ -1,52 +1,61 @@
-#pragma once
 // Microfacets: distribution of normals and the joint masking of two directions.
+#if defined(UMOV_KERNEL_MICROFACET_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef UMOV_KERNEL_MICROFACET_INL_H
+#undef UMOV_KERNEL_MICROFACET_INL_H
+#else
+#define UMOV_KERNEL_MICROFACET_INL_H
+#endif
 
 #include "kernel/math.inl.h"
 #include <numbers>
 
-namespace umov::kernel {
+#include "kernel/begin.h"
 
 /// Blinn-Phong D: facet area per macroscopic area and solid angle, (m+2)/(2 pi) (n.h)^m, normalised
 /// with the projected area (Walter et al. 2007). n_h in [0, 1], m >= 0.
-template <class R> inline R blinn_phong(R n_h, R m) {
-  return (m + R(2)) / R(2 * std::numbers::pi) * power(n_h, m);
-}
+template <class R> inline R blinn_phong_peak(R m) { return (m + R(2)) / R(2 * std::numbers::pi); }
+template <class R> inline R blinn_phong(R n_h, R m) { return blinn_phong_peak(m) * power(n_h, m); }
 
-/// Blinn-Phong D averaged over half vectors with variances kappa1, kappa2 along two axes on which
-/// the normal has the squared coordinates x2, y2: D is a Gaussian there, so the product is one
-/// again.
-template <class R> inline R blinn_phong_spread(R n_h, R x2, R y2, R m, R kappa1, R kappa2) {
+/// D over a spread of half vectors with variances kappa1, kappa2 along two axes, on which the normal
+/// has the squared coordinates x2, y2: D is a Gaussian there, so the mean is one again, scale D(h)
+/// exp(along x2 + across y2).
+template <class R> struct Spread { R scale, along, across; };
+template <class R> inline Spread<R> blinn_phong_spread(R m, R kappa1, R kappa2) {
   const R p = m * kappa1, q = m * kappa2;
-  const R growth = m / R(2) * (x2 * p / (R(1) + p) + y2 * q / (R(1) + q));
-  return blinn_phong(n_h, m) * std::exp(growth) / std::sqrt((R(1) + p) * (R(1) + q));
+  return {R(1) / sqrt((R(1) + p) * (R(1) + q)), m / R(2) * p / (R(1) + p),
+          m / R(2) * q / (R(1) + q)};
 }
 
-/// Beckmann D = exp(-tan^2/a^2)/(pi a^2 cos^4) (Walter et al. 2007).
+/// Beckmann D = exp(-tan^2/a^2)/(pi a^2 cos^4) (Walter et al. 2007) from sin^2 and cos^2 > 0.
+template <class R> inline R beckmann(R sine2, R cosine2, R alpha) {
+  const R a2 = alpha * alpha;
+  return exp(-sine2 / (cosine2 * a2)) / (R(std::numbers::pi) * a2 * cosine2 * cosine2);
+}
 template <class R> inline R beckmann(R n_h, R alpha) {
-  const R c2 = std::max(n_h * n_h, R(1e-30)), a2 = alpha * alpha;
-  return std::exp(-(R(1) - c2) / (c2 * a2)) / (R(std::numbers::pi) * a2 * c2 * c2);
+  const R c2 = max(n_h * n_h, R(1e-30));
+  return beckmann(R(1) - c2, c2, alpha);
 }
 
 /// Smith's G1 of Beckmann: 1/(1 + L), L = (erf(a) - 1)/2 + exp(-a^2)/(2 a sqrt(pi)).
 template <class R> inline R beckmann_masking(R n_k, R alpha) {
-  const R sine = std::sqrt(std::max(R(0), (R(1) - n_k) * (R(1) + n_k)));
-  const R a = n_k / std::max(alpha * sine, R(1e-30));
+  const R sine = sqrt(max(R(0), (R(1) - n_k) * (R(1) + n_k)));
+  const R a = n_k / max(alpha * sine, R(1e-30));
   const R root_pi = R(1.7724538509055160);
-  const R lambda = std::exp(-a * a) / (R(2) * a * root_pi) - std::erfc(a) / R(2);
-  return select(n_k > R(0), R(1) / (R(1) + std::max(R(0), lambda)), R(0));
+  const R lambda = exp(-a * a) / (R(2) * a * root_pi) - erfc(a) / R(2);
+  return select(n_k > R(0), R(1) / (R(1) + max(R(0), lambda)), R(0));
 }
 
 /// 2 pi int of Beckmann's D sin(theta) from theta on, with z = 1/(a cos): int 2 z^2 exp(1/a^2 -
 /// z^2) dz = exp(1/a^2) (z exp(-z^2) + sqrt(pi)/2 erfc(z)) a, written without the large factors.
 template <class R> inline R beckmann_beyond(R cos_theta, R alpha) {
-  const R c = std::max(cos_theta, R(1e-9));
+  const R c = max(cos_theta, R(1e-9));
   const R z = R(1) / (alpha * c);
-  const R tail = std::exp(-(R(1) - c) * (R(1) + c) / (c * c * alpha * alpha));
+  const R tail = exp(-(R(1) - c) * (R(1) + c) / (c * c * alpha * alpha));
   // exp(z^2) erfc(z) by its continued fraction for large z (Abramowitz & Stegun 7.1.14).
   const R root_pi = R(1.7724538509055160);
   R scaled = R(0);
   if (z < R(5)) {
-    scaled = std::exp(z * z) * std::erfc(z);
+    scaled = exp(z * z) * erfc(z);
   } else {
     R fraction = R(0);
     for (int k = 24; k >= 1; --k)
@@ -56,28 +65,31 @@ template <class R> inline R beckmann_beyond(R cos_theta, R alpha) {
   return alpha * tail * (z + root_pi / R(2) * scaled);
 }
 
-/// GGX D = a^2/(pi (cos^2 (a^2 - 1) + 1)^2) (Walter et al. 2007).
-template <class R> inline R ggx(R n_h, R alpha) {
+/// GGX D = a^2/(pi (cos^2 (a^2 - 1) + 1)^2) (Walter et al. 2007) from sin^2 and cos^2, without the
+/// cancellation for small a.
+template <class R> inline R ggx(R sine2, R cosine2, R alpha) {
   const R a2 = alpha * alpha;
-  // 1 - cos^2 (1 - a^2) as sin^2 + a^2 cos^2: no cancellation for small a.
-  const R f = (R(1) - n_h) * (R(1) + n_h) + a2 * n_h * n_h;
+  const R f = sine2 + a2 * cosine2;
   return a2 / (R(std::numbers::pi) * f * f);
+}
+template <class R> inline R ggx(R n_h, R alpha) {
+  return ggx((R(1) - n_h) * (R(1) + n_h), n_h * n_h, alpha);
 }
 
 /// Smith's G1 of GGX: 2/(1 + sqrt(1 + a^2 tan^2)).
 template <class R> inline R ggx_masking(R n_k, R alpha) {
   const R s2 = (R(1) - n_k) * (R(1) + n_k);
-  return R(2) * n_k / (n_k + std::sqrt(n_k * n_k + alpha * alpha * s2));
+  return R(2) * n_k / (n_k + sqrt(n_k * n_k + alpha * alpha * s2));
 }
 
 /// 2 pi int of GGX's D sin(theta) from theta on: int_0^c 2 a^2/(1 - (1 - a^2) x^2)^2 dx.
 template <class R> inline R ggx_beyond(R cos_theta, R alpha) {
   const R a2 = alpha * alpha, b2 = R(1) - a2, c = cos_theta;
   const R f = (R(1) - c) * (R(1) + c) + a2 * c * c; // 1 - b2 c^2
-  const R b = std::sqrt(std::abs(b2));
+  const R b = sqrt(abs(b2));
   R angle = c; // limit at b = 0
   if (b > R(1e-4))
-    angle = b2 > R(0) ? std::log((R(1) + b * c) * (R(1) + b * c) / f) / (R(2) * b)
+    angle = b2 > R(0) ? log((R(1) + b * c) * (R(1) + b * c) / f) / (R(2) * b)
                       : std::atan(b * c) / b;
   return a2 * (c / f + angle);
 }
@@ -86,15 +98,20 @@ template <class R> inline R ggx_beyond(R cos_theta, R alpha) {
 /// across the direction field.
 template <class R> inline R ashikhmin_shirley(R n_h, R x2, R y2, R nu, R nv) {
   const R across = x2 + y2;
-  const R m = select(across > R(0), (nu * x2 + nv * y2) / std::max(across, R(1e-37)), nu);
-  return std::sqrt((nu + R(2)) * (nv + R(2))) / R(2 * std::numbers::pi) * power(n_h, m);
+  const R m = select(across > R(0), (nu * x2 + nv * y2) / max(across, R(1e-37)), nu);
+  return sqrt((nu + R(2)) * (nv + R(2))) / R(2 * std::numbers::pi) * power(n_h, m);
 }
 
-/// Lagrange's cubic through four equal steps v[0..3], at t steps past v[1].
-template <class R> inline R cubic(const R *v, R t) {
+/// Weights of Lagrange's cubic through four equal steps, at t steps past the second.
+template <class R> struct CubicWeights { R w[4]; };
+template <class R> inline CubicWeights<R> cubic_weights(R t) {
   const R a = t + R(1), b = t, c = t - R(1), d = t - R(2);
-  return -v[0] * b * c * d / R(6) + v[1] * a * c * d / R(2) - v[2] * a * b * d / R(2) +
-         v[3] * a * b * c / R(6);
+  return {{-b * c * d / R(6), a * c * d / R(2), -a * b * d / R(2), a * b * c / R(6)}};
+}
+/// The cubic through v[0..3].
+template <class R> inline R cubic(const R *v, R t) {
+  const auto c = cubic_weights(t);
+  return c.w[0] * v[0] + c.w[1] * v[1] + c.w[2] * v[2] + c.w[3] * v[3];
 }
 
 /// <n.h> of the paper's density (Eq. 11): (m+1)/(m+2).
@@ -105,26 +122,26 @@ template <class R> inline R separable(R p_l, R p_v) { return p_l * p_v; }
 
 /// Ashikhmin, Premoze & Shirley 2000, Eq. 14 of the paper: (1-t) P(l)P(v) + t min, t = cos(phi/2).
 template <class R> inline R ashikhmin(R p_l, R p_v, R cos_phi) {
-  const R t = std::sqrt(std::max(R(0), (R(1) + cos_phi) / R(2)));
-  return (R(1) - t) * p_l * p_v + t * std::min(p_l, p_v);
+  const R t = sqrt(max(R(0), (R(1) + cos_phi) / R(2)));
+  return (R(1) - t) * p_l * p_v + t * min(p_l, p_v);
 }
 
 /// Height-correlated Smith, 1/(1 + L_l + L_v) with L = 1/P - 1 (Ross et al. 2005; Heitz 2014,
 /// section 6), written with P so that P = 0 gives 0.
 template <class R> inline R smith(R p_l, R p_v) {
   const R sum = p_l + p_v - p_l * p_v;
-  return select(sum > R(0), p_l * p_v / std::max(sum, R(1e-37)), R(0));
+  return select(sum > R(0), p_l * p_v / max(sum, R(1e-37)), R(0));
 }
 
 /// Height and direction correlated Smith, 1/(1 + max L + x min L), x = 4.41 phi/(4.41 phi + 1)
 /// (van Ginneken et al. 1998; Heitz 2014). Both sides are multiplied by P(l)P(v).
 template <class R> inline R smith_directional(R p_l, R p_v, R cos_phi) {
-  const R phi = std::acos(clamped(cos_phi, R(-1), R(1)));
+  const R phi = acos(clamped(cos_phi, R(-1), R(1)));
   const R x = R(4.41) * phi / (R(4.41) * phi + R(1));
-  const R low = std::min(p_l, p_v), high = std::max(p_l, p_v);
+  const R low = min(p_l, p_v), high = max(p_l, p_v);
   // 1 + (1/low - 1) + x (1/high - 1) = (high + x low (1 - high)) / (low high)
   const R sum = high + x * low * (R(1) - high);
-  return select(sum > R(0), low * high / std::max(sum, R(1e-37)), R(0));
+  return select(sum > R(0), low * high / max(sum, R(1e-37)), R(0));
 }
 
 /// Cosine of the azimuth between the projections of two directions on the surface, 1 where one of
@@ -132,7 +149,7 @@ template <class R> inline R smith_directional(R p_l, R p_v, R cos_phi) {
 template <class R> inline R cos_azimuth(R n_l, R n_v, R l_v) {
   const R s = (R(1) - n_l * n_l) * (R(1) - n_v * n_v);
   const R tiny = R(1e-30);
-  return select(s > tiny, clamped((l_v - n_l * n_v) / std::sqrt(std::max(s, tiny)), R(-1), R(1)),
+  return select(s > tiny, clamped((l_v - n_l * n_v) / sqrt(max(s, tiny)), R(-1), R(1)),
                 R(1));
 }
 
@@ -140,7 +157,8 @@ template <class R> inline R cos_azimuth(R n_l, R n_v, R l_v) {
 template <class R> inline R half_cosine(R n_l, R n_v, R l_v) {
   const R s = R(2) + R(2) * l_v;
   const R tiny = R(1e-30);
-  return select(s > tiny, clamped((n_l + n_v) / std::sqrt(std::max(s, tiny)), R(0), R(1)), R(0));
+  return select(s > tiny, clamped((n_l + n_v) / sqrt(max(s, tiny)), R(0), R(1)), R(0));
 }
 
-} // namespace umov::kernel
+#include "kernel/end.h"
+#endif

@@ -1,6 +1,7 @@
 #include <umov/shape/occluder.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <embree3/rtcore.h>
 #include <limits>
@@ -25,6 +26,11 @@ struct Occluder::State {
 
 namespace {
 
+constexpr std::size_t ray_packet = 16;
+
+bool is_finite(Occluder::Point p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 bool is_finite(Vec3<Body> v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -84,25 +90,44 @@ Occluder::~Occluder() = default;
 Occluder::Occluder(Occluder &&) noexcept = default;
 Occluder &Occluder::operator=(Occluder &&) noexcept = default;
 
+Occluder::Point Occluder::to_point(Vec3<Body> p) const {
+  const Vec3<Body> m = state_->to_model(p);
+  return {static_cast<float>(m.x), static_cast<float>(m.y), static_cast<float>(m.z)};
+}
+
 void Occluder::is_free(std::span<const Vec3<Body>> origins, Vec3<Body> direction,
+                       std::span<unsigned char> free) const {
+  const Point along{static_cast<float>(direction.x), static_cast<float>(direction.y),
+                    static_cast<float>(direction.z)};
+  std::array<Point, ray_packet> packet{}, directions{};
+  directions.fill(along);
+  for (std::size_t begin = 0; begin < origins.size(); begin += ray_packet) {
+    const std::size_t count = std::min(ray_packet, origins.size() - begin);
+    for (std::size_t i = 0; i < count; ++i)
+      packet[i] = to_point(origins[begin + i]);
+    is_free({packet.data(), count}, {directions.data(), count}, free.subspan(begin, count));
+  }
+}
+
+void Occluder::is_free(std::span<const Point> origins, std::span<const Point> directions,
                        std::span<unsigned char> free) const {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  const bool is_usable = is_finite(direction);
-  for (std::size_t begin = 0; begin < origins.size(); begin += 16) {
-    const std::size_t count = std::min<std::size_t>(16, origins.size() - begin);
+  for (std::size_t begin = 0; begin < origins.size(); begin += ray_packet) {
+    const std::size_t count = std::min(ray_packet, origins.size() - begin);
     alignas(64) RTCRay16 ray{};
-    alignas(64) int valid[16];
-    for (std::size_t i = 0; i < 16; ++i) {
-      const Vec3<Body> p = i < count ? state_->to_model(origins[begin + i]) : Vec3<Body>{};
-      valid[i] = i < count && is_usable && is_finite(p) ? -1 : 0;
-      ray.org_x[i] = static_cast<float>(p.x);
-      ray.org_y[i] = static_cast<float>(p.y);
-      ray.org_z[i] = static_cast<float>(p.z);
-      ray.dir_x[i] = static_cast<float>(direction.x);
-      ray.dir_y[i] = static_cast<float>(direction.y);
-      ray.dir_z[i] = static_cast<float>(direction.z);
+    alignas(64) int valid[ray_packet];
+    for (std::size_t i = 0; i < ray_packet; ++i) {
+      const Point p = i < count ? origins[begin + i] : Point{};
+      const Point d = i < count ? directions[begin + i] : Point{};
+      valid[i] = i < count && is_finite(p) && is_finite(d) ? -1 : 0;
+      ray.org_x[i] = p.x;
+      ray.org_y[i] = p.y;
+      ray.org_z[i] = p.z;
+      ray.dir_x[i] = d.x;
+      ray.dir_y[i] = d.y;
+      ray.dir_z[i] = d.z;
       ray.tnear[i] = 0;
       ray.tfar[i] = std::numeric_limits<float>::infinity();
       ray.mask[i] = ~0u;

@@ -25,10 +25,14 @@ BodyLight::BodyLight(double reflectance, const Interface &surface)
     : factor_(reflectance / (pi * (1 - surface.mean_reflectance()))), reflectance_(reflectance),
       surface_(surface) {}
 
+double BodyLight::entering(double n_k) const {
+  return 1 - reflected_(std::clamp(n_k, 0.0, 1.0));
+}
+
 double BodyLight::albedo(double n_k) const {
   // int f_b mu dw over the hemisphere: R_sub (1 - R(k)), since int (1 - R) mu dw = pi (1 - Rbar).
   return reflectance_ *
-         (surface_ ? transmitted(*surface_, n_k).mean : 1 - reflected_(std::clamp(n_k, 0.0, 1.0)));
+         (surface_ ? transmitted(*surface_, n_k).mean : entering(n_k));
 }
 
 Stokes<ScatteringPlane> BodyLight::operator()(const SurfaceDirections &at,
@@ -38,9 +42,7 @@ Stokes<ScatteringPlane> BodyLight::operator()(const SurfaceDirections &at,
     return {};
   const double scale = factor_ * n_l * n_v;
   if (!surface_)
-    return {scale * (1 - reflected_(std::min(n_l, 1.0))) * (1 - reflected_(std::min(n_v, 1.0))) *
-                in.i,
-            0, 0, 0};
+    return {scale * entering(n_l) * entering(n_v) * in.i, 0, 0, 0};
   const auto turn = kernel::emission_planes(at.l.x, at.l.y, at.l.z, at.v.x, at.v.y, at.v.z);
   const auto enters = transmitted(*surface_, n_l), leaves = transmitted(*surface_, n_v);
   // t_in . S: only what is transmitted of the incoming light counts.
@@ -53,23 +55,25 @@ Stokes<ScatteringPlane> BodyLight::operator()(const SurfaceDirections &at,
 Interreflected::Interreflected(std::shared_ptr<const AlbedoTable> furnace, double mean_reflectance)
     : furnace_(std::move(furnace)) {
   const double e = furnace_->mean(), f = mean_reflectance;
-  factor_ = f * f * e / (1 - f * (1 - e));
+  f_ms_ = f * f * e / (1 - f * (1 - e));
+}
+
+double Interreflected::factor() const {
+  const double lost = 1 - furnace_->mean();
+  // Narrow lobes lose nothing: the limit is no light, not 0/0.
+  return lost < 1e-9 ? 0 : f_ms_ / (pi * lost);
+}
+
+double Interreflected::lost(double n_k) const {
+  return std::max(0.0, 1 - (*furnace_)(std::clamp(n_k, 0.0, 1.0)));
 }
 
 double Interreflected::operator()(double n_l, double n_v) const {
   if (!(n_l > 0 && n_v > 0))
     return 0;
-  const double lost = 1 - furnace_->mean();
-  // Narrow lobes lose nothing: the limit is no light, not 0/0.
-  if (lost < 1e-9)
-    return 0;
-  const double e_l = std::max(0.0, 1 - (*furnace_)(std::min(n_l, 1.0)));
-  const double e_v = std::max(0.0, 1 - (*furnace_)(std::min(n_v, 1.0)));
-  return factor_ * e_l * e_v / (pi * lost) * n_l * n_v;
+  return factor() * lost(n_l) * lost(n_v) * n_l * n_v;
 }
 
-double Interreflected::albedo(double n_k) const {
-  return factor_ * std::max(0.0, 1 - (*furnace_)(std::clamp(n_k, 0.0, 1.0)));
-}
+double Interreflected::albedo(double n_k) const { return f_ms_ * lost(n_k); }
 
 } // namespace umov

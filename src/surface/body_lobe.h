@@ -21,6 +21,11 @@ public:
   [[nodiscard]] Stokes<ScatteringPlane> operator()(const SurfaceDirections &at,
                                                    const Stokes<ScatteringPlane> &in) const;
 
+  /// The unpolarized lobe is factor() (n.l)(n.v) entering(n.l) entering(n.v).
+  [[nodiscard]] bool is_polarized() const { return surface_.has_value(); }
+  [[nodiscard]] double factor() const { return factor_; }
+  [[nodiscard]] double entering(double n_k) const;
+
   /// Directional albedo for unpolarized light.
   [[nodiscard]] double albedo(double n_k) const;
 
@@ -36,14 +41,16 @@ private:
 class Interreflected {
 public:
   Interreflected(std::shared_ptr<const AlbedoTable> furnace, double mean_reflectance);
-  /// f (n.l)(n.v).
+  /// f (n.l)(n.v) = factor() (n.l)(n.v) lost(n.l) lost(n.v).
   [[nodiscard]] double operator()(double n_l, double n_v) const;
+  [[nodiscard]] double factor() const;
+  [[nodiscard]] double lost(double n_k) const;
   /// Directional albedo F_ms (1 - E(k)).
   [[nodiscard]] double albedo(double n_k) const;
 
 private:
   std::shared_ptr<const AlbedoTable> furnace_;
-  double factor_ = 0; ///< F_ms
+  double f_ms_ = 0;
 };
 
 } // namespace umov

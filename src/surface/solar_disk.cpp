@@ -1,5 +1,7 @@
 #include "surface/solar_disk.h"
 
+#include "kernel/solar_nodes.inl.h"
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -8,12 +10,6 @@
 
 namespace umov {
 namespace {
-
-/// Variance of the disk's image over that of the lobe, up to which a closed form is taken: it
-/// leaves out fourth moments, of the order q^2/8.
-constexpr double closed_form_max = 1e-2;
-/// The same for seven nodes, exact up to the fifth power.
-constexpr double nodes_max = 3e-2;
 
 /// Azimuth of the edge's point that is nearest to the normal, and how near it is in radii.
 struct Nearest {
@@ -24,7 +20,7 @@ struct Nearest {
 class DiskImage {
 public:
   DiskImage(Vec3<Facet> l, Vec3<Facet> v, double l_v, double radius_rad)
-      : l_(l), v_(v), sine_(std::sin(radius_rad)), cosine_(std::cos(radius_rad)) {
+      : l_(l), v_(v), sine_(std::sin(radius_rad)) {
     const Vec3<Facet> across = cross(v, l);
     const double length = norm(across);
     // Without a plane (phase 0 or 180) any pair of axes serves: the image is round or empty there.
@@ -34,8 +30,7 @@ public:
   }
   /// At the share `r` of the radius (small angles) and the azimuth beta.
   [[nodiscard]] Vec3<Facet> at(double r, double beta) const {
-    const double s = r * sine_, c = r == 1 ? cosine_ : std::sqrt(1 - s * s);
-    const Vec3<Facet> source = c * l_ + (s * std::cos(beta)) * e1_ + (s * std::sin(beta)) * e2_;
+    const Vec3<Facet> source = kernel::disk_direction(l_, e1_, e2_, sine_, r, beta);
     return normalized(source + v_);
   }
   /// Coordinate of the surface normal in the scattering plane, from the image's centre towards l.
@@ -45,7 +40,7 @@ public:
 
 private:
   Vec3<Facet> l_, v_, e1_, e2_;
-  double sine_, cosine_, half_cosine_ = 0;
+  double sine_, half_cosine_ = 0;
 };
 
 Nearest DiskImage::nearest_edge() const {
@@ -56,12 +51,12 @@ Nearest DiskImage::nearest_edge() const {
   return {r > 0 ? std::atan2(y, x) : 0, std::clamp(std::abs(r - 1), least, 1.0)};
 }
 
-/// Degree 5 on the disk with seven nodes (Stroud 1971, S2 5-1).
+/// Degree 5 on the disk with seven nodes.
 double by_nodes(const Distribution &normals, const DiskImage &image) {
-  const double ring = std::sqrt(2.0 / 3);
-  double sum = normals.density(image.at(0, 0)) / 4;
-  for (int k = 0; k < 6; ++k)
-    sum += normals.density(image.at(ring, k * pi / 3)) / 8;
+  double sum = normals.density(image.at(0, 0)) * kernel::source_node_weights[0];
+  for (std::size_t k = 1; k < kernel::source_nodes; ++k)
+    sum += normals.density(image.at(kernel::source_ring, static_cast<double>(k - 1) * pi / 3)) *
+           kernel::source_node_weights[k];
   return sum;
 }
 
@@ -126,13 +121,10 @@ double density_over_disk(const Distribution &normals, Vec3<Facet> l, Vec3<Facet>
   const Vec3<Facet> h = sum / length;
   if (!(radius_rad > 0))
     return normals.density(h);
-  // Per-axis variances of a uniform disk, halved in angle by the half vector; across the scattering
-  // plane the image is longer by 1/cos(phase/2).
-  const double kappa1 = radius_rad * radius_rad / 16;
-  const double kappa2 = kappa1 / std::max((1 + l_v) / 2, 1e-6);
+  const auto [kappa1, kappa2] = kernel::disk_variances(radius_rad, l_v);
   const double width = normals.width();
   const double q = width > 0 ? kappa2 / (width * width) : HUGE_VAL;
-  if (q < closed_form_max) {
+  if (q < kernel::closed_form_max) {
     const double difference = l.z - v.z, s2 = (1 - l_v) / 2;
     const double x2 = s2 > 1e-15 ? difference * difference / (4 * s2) : 0;
     const double y2 = std::max(0.0, (1 - h.z) * (1 + h.z) - x2);
@@ -141,7 +133,7 @@ double density_over_disk(const Distribution &normals, Vec3<Facet> l, Vec3<Facet>
       return h.z > 0 ? value : 0;
   }
   const DiskImage image(l, v, l_v, radius_rad);
-  if (q < nodes_max)
+  if (q < kernel::nodes_max)
     return by_nodes(normals, image);
   if (!normals.is_isotropic())
     return by_rings(normals, image);

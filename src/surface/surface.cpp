@@ -300,6 +300,27 @@ bool Surface::is_anisotropic() const {
 }
 
 const Material &Surface::material() const { return tables_->material; }
+
+const Distribution *Surface::normals(std::size_t band) const {
+  return tables_->lobes.empty() ? nullptr
+                                : &tables_->lobes[tables_->bands[band].lobe].normals();
+}
+
+std::optional<std::vector<Surface::SeparableDiffuse>>
+Surface::separable_diffuse(std::size_t band) const {
+  const BandTables &own = tables_->bands[band];
+  if (tables_->material.measured || (own.body && own.body->is_polarized()))
+    return {};
+  std::vector<SeparableDiffuse> out;
+  if (own.body)
+    out.push_back({own.body->factor(), [&own](double n_k) { return own.body->entering(n_k); }});
+  if (own.interreflected)
+    out.push_back({own.interreflected->factor(),
+                   [&own](double n_k) { return own.interreflected->lost(n_k); },
+                   tables_->material.interreflection == Interreflection::SingleBounceQ});
+  return out;
+}
+
 std::size_t Surface::band_count() const { return tables_->bands.size(); }
 const Interface &Surface::interface(std::size_t band) const {
   return tables_->bands[band].interface;

@@ -18,6 +18,15 @@ public:
   void is_free(std::span<const Vec3<Body>> origins, Vec3<Body> direction,
                std::span<unsigned char> free) const;
 
+  /// A point in the coordinates of the ray tests, for origins that serve again and again.
+  struct Point {
+    float x, y, z;
+  };
+  [[nodiscard]] Point to_point(Vec3<Body> p) const;
+  /// As above for one direction (unit) per origin.
+  void is_free(std::span<const Point> origins, std::span<const Point> directions,
+               std::span<unsigned char> free) const;
+
   /// Nearest hit of a ray: triangle index and barycentric u, v, or no_index.
   struct Hit {
     std::uint32_t triangle = no_index;

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <umov/core/result.h>
 #include <umov/core/vec3.h>
@@ -19,6 +20,12 @@ struct DistributionChoice {
   bool operator==(const DistributionChoice &) const = default;
 };
 DistributionChoice blinn_phong(double m);
+
+/// A distribution that the facet kernels know (src/kernel/facet.inl.h), with its one number.
+struct KernelForm {
+  enum class Kind { BlinnPhong, Beckmann, Ggx } kind;
+  double shape; ///< m of Blinn-Phong, alpha of the others
+};
 
 /// Density of normals D(h) [1/sr] and its exact masking, in the frame Facet: z the normal, x the
 /// direction field (brushing, weave) made perpendicular to it, y = z cross x. D is facet area per
@@ -53,6 +60,9 @@ public:
   /// the normal has the coordinates x, y; NaN if there is no closed form for it.
   [[nodiscard]] virtual double spread(double n_h, double x2, double y2, double kappa1,
                                       double kappa2) const;
+  /// Which of the forms that the facet kernels know it is; empty: they call `density` facet by
+  /// facet, which is slower.
+  [[nodiscard]] virtual std::optional<KernelForm> kernel_form() const { return {}; }
 };
 
 /// A number that a model takes.

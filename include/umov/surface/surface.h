@@ -2,7 +2,9 @@
 // A material made ready for a set of bands: what the sum over facets needs.
 
 #include <complex>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <umov/core/vec3.h>
 #include <umov/optics/band.h>
 #include <umov/optics/interface.h>
@@ -85,6 +87,17 @@ public:
   [[nodiscard]] bool is_anisotropic() const;
   [[nodiscard]] const Material &material() const;
   [[nodiscard]] std::size_t band_count() const;
+  /// Normals of the microfacet lobe of a band; null for a measured surface.
+  [[nodiscard]] const Distribution *normals(std::size_t band) const;
+  /// Diffuse light that is a product: factor (n.l)(n.v) profile(n.l) profile(n.v) of the source's
+  /// intensity, unpolarized or with the Q/I of one reflection.
+  struct SeparableDiffuse {
+    double factor = 0;
+    std::function<double(double)> profile; ///< valid as long as this surface lives
+    bool is_single_bounce = false;
+  };
+  /// All diffuse light of a band as such products; empty if some of it is of another form.
+  [[nodiscard]] std::optional<std::vector<SeparableDiffuse>> separable_diffuse(std::size_t band) const;
   /// The smooth interface of a band.
   [[nodiscard]] const Interface &interface(std::size_t band) const;
 

@@ -39,6 +39,9 @@ public:
     // int of 2 t exp(-t2/a2)/(a2 cos) dt: numerically, as sqrt(1 + t2) leaves no elementary form.
     return kernel::beckmann_beyond(std::clamp(cos_theta, 0.0, 1.0), alpha_);
   }
+  std::optional<KernelForm> kernel_form() const override {
+    return KernelForm{KernelForm::Kind::Beckmann, alpha_};
+  }
 
 private:
   double alpha_;

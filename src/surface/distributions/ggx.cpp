@@ -34,6 +34,9 @@ public:
   double beyond(double cos_theta) const override {
     return kernel::ggx_beyond(std::clamp(cos_theta, 0.0, 1.0), alpha_);
   }
+  std::optional<KernelForm> kernel_form() const override {
+    return KernelForm{KernelForm::Kind::Ggx, alpha_};
+  }
 
 private:
   double alpha_;

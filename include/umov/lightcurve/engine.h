@@ -1,0 +1,79 @@
+#pragma once
+// The fast path: a scene prepared once, then hundreds of thousands of poses per second and core.
+// docs/theory/engine.md
+
+#include <memory>
+#include <span>
+#include <umov/lightcurve/integrator.h>
+#include <umov/scene/scene.h>
+#include <vector>
+
+namespace umov {
+
+/// How hiding is decided.
+enum class Visibility {
+  None, ///< nothing hides anything: right for a proven convex mesh only
+  Masks ///< looked up between directions for which rays were traced beforehand
+};
+
+/// How finely masks sample the surface and the directions.
+struct MaskQuality {
+  std::size_t points = 0;       ///< over the whole surface, shared out by area
+  std::size_t narrow_cells = 0; ///< directions: (cells + 1)^2 for small classes, even
+  std::size_t wide_cells = 0;   ///< the same for large flat ones, even
+};
+/// Typical error of I 0.2-0.5 %, a few seconds and tens of megabytes.
+inline constexpr MaskQuality fast_masks{60'000, 64, 64};
+/// Typical error of I 0.1 %, up to half a minute and 300 MB.
+inline constexpr MaskQuality fine_masks{240'000, 96, 128};
+
+struct EngineOptions {
+  Visibility visibility = Visibility::Masks; ///< a proven convex mesh takes None by itself
+  MaskQuality masks = fast_masks;
+  /// Facets of one material whose normals differ by less are joined [rad]; the error goes into the
+  /// half-widths. 0: only those that are equal to 1e-5.
+  double cluster_rad = 0;
+  bool is_double = false; ///< the scalar reference in double instead of the vector unit in float
+  unsigned threads = 0;   ///< of the preparation; 0: all cores
+};
+
+/// What was prepared.
+struct EngineFacts {
+  std::size_t triangles = 0, classes = 0, groups = 0; ///< groups of 16 classes
+  std::size_t general_classes = 0; ///< lit one by one: their surface has no kernel
+  std::size_t mask_bytes = 0, scene_bytes = 0;
+  double setup_s = 0;
+  bool is_convex = false;
+};
+
+/// Results of many poses: [pose * bands + band], in the scattering plane, [m2/sr] per unit solar
+/// irradiance, with 95 % half-widths.
+struct StokesTable {
+  std::size_t bands = 0;
+  std::vector<double> i, q, u, v;
+  std::vector<double> i_err, q_err, u_err, v_err;
+  std::vector<char> is_dark; ///< per pose: nothing is both lit and seen
+  void resize(std::size_t poses, std::size_t band_count);
+};
+
+/// A scene ready for sunlight from any direction. Evaluation is thread safe, and gives the same bits
+/// for any number of threads and any split of the poses.
+class Engine {
+public:
+  Engine(const Scene &scene, const EngineOptions &options);
+  ~Engine();
+  Engine(Engine &&) noexcept;
+  Engine &operator=(Engine &&) noexcept;
+
+  /// Stokes of every pose. `out` is resized.
+  void evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads = 1) const;
+
+  [[nodiscard]] const EngineFacts &facts() const;
+  [[nodiscard]] std::size_t band_count() const;
+
+private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+} // namespace umov

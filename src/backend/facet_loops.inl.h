@@ -1,0 +1,285 @@
+// The loops over facets: which are lit and seen, how much of each, and what they add up to. The same
+// text for every instruction set; what differs is in `load`, `store`, `total` and the counting of
+// bits, which stand above its inclusion.
+#if defined(UMOV_BACKEND_FACET_LOOPS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef UMOV_BACKEND_FACET_LOOPS_INL_H
+#undef UMOV_BACKEND_FACET_LOOPS_INL_H
+#else
+#define UMOV_BACKEND_FACET_LOOPS_INL_H
+#endif
+
+#include "backend/scene_data.h"
+#include "kernel/facet.inl.h"
+
+#include "kernel/begin.h"
+
+using backend::Chunk;
+using backend::FacetGroup;
+using backend::GridLook;
+using backend::GroupMask;
+using backend::MaskBlock;
+using backend::MaskErrorModel;
+using backend::Masks;
+using backend::MaskTable;
+using backend::PoseData;
+using backend::PoseSums;
+using backend::SceneData;
+using backend::SlotTerms;
+
+/// The blocks of one entry in the three directions around one.
+struct EntryLook {
+  const MaskBlock *block[3];
+  bool is_free = false, is_hidden = false;
+};
+
+inline EntryLook look_up(const Masks &masks, const MaskTable &table, const GridLook &look,
+                         std::uint32_t entry) {
+  EntryLook out;
+  std::uint32_t offset[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    offset[k] = table.offset[look.direction[k] * table.entries + entry];
+    out.block[k] = masks.pool.data() + offset[k];
+  }
+  out.is_free = offset[0] == masks.free() && offset[1] == masks.free() && offset[2] == masks.free();
+  out.is_hidden = offset[0] == masks.hidden() && offset[1] == masks.hidden() &&
+                  offset[2] == masks.hidden();
+  return out;
+}
+
+/// Sums of one pose. `Machine` names the lane type R, the scalar T and how to load and count.
+template <class Machine> class FacetLoops {
+  using R = typename Machine::R;
+  using T = typename Machine::T;
+  static constexpr std::size_t lanes = backend::lanes, width = Machine::width;
+
+public:
+  FacetLoops(const SceneData<T> &scene, const Masks *masks, const MaskErrorModel &model,
+             const PoseData<T> &pose, PoseSums &out)
+      : scene_(scene), masks_(masks), model_(model), pose_(pose), out_(out) {
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) {
+        narrow_weight_[3 * a + b] = pose.narrow_sun.weight[a] * pose.narrow_observer.weight[b];
+        wide_weight_[3 * a + b] = pose.wide_sun.weight[a] * pose.wide_observer.weight[b];
+      }
+  }
+
+  void run() {
+    out_.specular.assign(scene_.lobes.size(), 0);
+    out_.specular_variance.assign(scene_.lobes.size(), 0);
+    out_.product.assign(scene_.products.size(), 0);
+    out_.product_variance.assign(scene_.products.size(), 0);
+    out_.seen.clear();
+    out_.is_any_seen = false;
+    for (const Chunk &chunk : scene_.chunks) {
+      count_ = 0;
+      for (std::uint32_t g = chunk.first; g < chunk.first + chunk.count; ++g)
+        collect(g);
+      if (count_ == 0)
+        continue;
+      out_.is_any_seen = true;
+      const SlotTerms &slot = scene_.slots[chunk.slot];
+      bool is_handed_back = slot.is_general;
+      for (std::uint32_t k = 0; k < slot.lobe_count && !slot.is_general; ++k)
+        if (pose_.is_narrow[slot.lobe_first + k])
+          is_handed_back = true;
+        else
+          shade_lobe(slot.lobe_first + k);
+      if (is_handed_back)
+        hand_back(chunk.slot);
+      if (slot.product_count > 0 && !slot.is_general)
+        shade_products(slot);
+    }
+  }
+
+private:
+  struct Cosines {
+    R n_l, n_v;
+  };
+  Cosines cosines(const FacetGroup<T> &f, std::size_t s, R &x, R &y, R &z) const {
+    x = Machine::load(f.nx + s);
+    y = Machine::load(f.ny + s);
+    z = Machine::load(f.nz + s);
+    const auto &p = pose_.facet;
+    return {x * R(p.sun[0]) + y * R(p.sun[1]) + z * R(p.sun[2]),
+            x * R(p.observer[0]) + y * R(p.observer[1]) + z * R(p.observer[2])};
+  }
+
+  /// Enters a group into the list if any of it is lit and seen.
+  void collect(std::uint32_t g) {
+    const FacetGroup<T> &f = scene_.groups[g];
+    bool is_any = false;
+    for (std::size_t s = 0; s < lanes; s += width) {
+      R x, y, z;
+      const Cosines at = cosines(f, s, x, y, z);
+      const auto faces = min(at.n_l, at.n_v) > R(T(0));
+      is_any = Machine::any(faces) || is_any;
+      Machine::store(select(faces, Machine::load(f.area + s), R(T(0))), area_[count_] + s);
+    }
+    if (!is_any)
+      return;
+    is_exact_[count_] = true;
+    if (masks_ != nullptr) {
+      const GroupMask &mask = masks_->groups[g];
+      if (!(mask.is_wide ? hide_wide(mask) : hide_narrow(mask)))
+        return;
+    }
+    if (!scene_.cluster_error.empty())
+      add_cluster_error(g);
+    group_[count_++] = g;
+  }
+
+  /// Makes room for a variance where there was none.
+  void clear_variance() {
+    for (std::size_t s = 0; is_exact_[count_] && s < lanes; s += width)
+      Machine::store(R(T(0)), variance_[count_] + s);
+    is_exact_[count_] = false;
+  }
+
+  void add_cluster_error(std::uint32_t g) {
+    clear_variance();
+    for (std::size_t s = 0; s < lanes; s += width) {
+      const R e = Machine::load(scene_.cluster_error[g].data() + s) *
+                  Machine::load(area_[count_] + s);
+      Machine::store(Machine::load(variance_[count_] + s) + e * e, variance_[count_] + s);
+    }
+  }
+
+  /// Many classes with few points each; false if nothing of them is left.
+  bool hide_narrow(const GroupMask &mask) {
+    const EntryLook sun = look_up(*masks_, masks_->narrow, pose_.narrow_sun, mask.entry);
+    const EntryLook seen = look_up(*masks_, masks_->narrow, pose_.narrow_observer, mask.entry);
+    if (sun.is_hidden || seen.is_hidden)
+      return false;
+    if (sun.is_free && seen.is_free)
+      return true;
+    clear_variance();
+    const T points = T(32) * T(mask.words);
+    bool is_any = false;
+    for (std::size_t s = 0; s < lanes; s += width) {
+      R mean, square;
+      Machine::count_lanes(sun, seen, mask.words, s, narrow_weight_, mean, square);
+      is_any = apply(s, mean * R(T(1) / points), square * R(T(1) / (points * points)), points) ||
+               is_any;
+    }
+    return is_any;
+  }
+
+  /// Multiplies areas by their visible shares; `square` is the mean square of the nine shares.
+  bool apply(std::size_t s, R share, R square, T points) {
+    const R area = Machine::load(area_[count_] + s);
+    const R visible = area * share;
+    const R sampling = share * max(R(T(1)) - share, R(T(0))) *
+                       R(T(model_.points) / (points * sqrt(points)));
+    const R grid = max(square - share * share, R(T(0))) * R(T(model_.grid));
+    Machine::store(visible, area_[count_] + s);
+    Machine::store(area * area * (sampling + grid), variance_[count_] + s);
+    return Machine::any(visible > R(T(0)));
+  }
+
+  /// Few classes with many points each.
+  bool hide_wide(const GroupMask &mask) {
+    bool is_any = false;
+    const T points = T(32) * T(mask.words);
+    for (std::size_t j = 0; j < lanes; ++j) {
+      T &area = area_[count_][j];
+      if (!(area > 0))
+        continue;
+      const auto entry = static_cast<std::uint32_t>(mask.entry + j);
+      const EntryLook sun = look_up(*masks_, masks_->wide, pose_.wide_sun, entry);
+      const EntryLook seen = look_up(*masks_, masks_->wide, pose_.wide_observer, entry);
+      if (sun.is_hidden || seen.is_hidden) {
+        area = 0;
+        continue;
+      }
+      is_any = true;
+      if (sun.is_free && seen.is_free)
+        continue;
+      clear_variance();
+      float count[9];
+      Machine::count_long(sun, seen, mask.words, count);
+      T share = 0, square = 0;
+      for (std::size_t k = 0; k < 9; ++k) {
+        const T f = T(count[k]) / points, w = T(wide_weight_[k]);
+        share += w * f;
+        square += w * f * f;
+      }
+      const T sampling =
+          share * max(T(1) - share, T(0)) * T(model_.points) / (points * sqrt(points));
+      variance_[count_][j] =
+          area * area * (sampling + max(square - share * share, T(0)) * T(model_.grid));
+      area *= share;
+    }
+    return is_any;
+  }
+
+  void shade_lobe(std::size_t lobe) {
+    R sum = R(T(0)), variance = R(T(0));
+    for (std::size_t k = 0; k < count_; ++k)
+      for (std::size_t s = 0; s < lanes; s += width) {
+        R x, y, z;
+        const Cosines at = cosines(scene_.groups[group_[k]], s, x, y, z);
+        const R w = lobe_weight(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet, x, y, z,
+                                max(at.n_l, R(T(0))), max(at.n_v, R(T(0))));
+        sum = sum + Machine::load(area_[k] + s) * w;
+        if (!is_exact_[k])
+          variance = variance + Machine::load(variance_[k] + s) * (w * w);
+      }
+    out_.specular[lobe] += Machine::total(sum);
+    out_.specular_variance[lobe] += Machine::total(variance);
+  }
+
+  void shade_products(const SlotTerms &slot) {
+    R sum[backend::products_max], variance[backend::products_max];
+    for (std::size_t p = 0; p < slot.product_count; ++p)
+      sum[p] = variance[p] = R(T(0));
+    for (std::size_t k = 0; k < count_; ++k)
+      for (std::size_t s = 0; s < lanes; s += width) {
+        R x, y, z;
+        const Cosines at = cosines(scene_.groups[group_[k]], s, x, y, z);
+        const R n_l = max(at.n_l, R(T(0))), n_v = max(at.n_v, R(T(0)));
+        const R t_l = sqrt(n_l) * R(T(2)) - R(T(1)), t_v = sqrt(n_v) * R(T(2)) - R(T(1));
+        R in[backend::profiles_max], out[backend::profiles_max];
+        for (std::size_t i = 0; i < slot.profile_count; ++i) {
+          const auto &profile = scene_.profiles[slot.profile_first + i];
+          in[i] = n_l * polynomial(profile.c, profile.degree, t_l);
+          out[i] = n_v * polynomial(profile.c, profile.degree, t_v);
+        }
+        const R area = Machine::load(area_[k] + s);
+        for (std::size_t p = 0; p < slot.product_count; ++p) {
+          const auto &product = scene_.products[slot.product_first + p];
+          const R w = R(T(0.5)) * (in[product.first] * out[product.second] +
+                                   in[product.second] * out[product.first]);
+          sum[p] = sum[p] + area * w;
+          if (!is_exact_[k])
+            variance[p] = variance[p] + Machine::load(variance_[k] + s) * (w * w);
+        }
+      }
+    for (std::size_t p = 0; p < slot.product_count; ++p) {
+      out_.product[slot.product_first + p] += Machine::total(sum[p]);
+      out_.product_variance[slot.product_first + p] += Machine::total(variance[p]);
+    }
+  }
+
+  void hand_back(std::uint32_t slot) {
+    for (std::size_t k = 0; k < count_; ++k)
+      for (std::uint32_t j = 0; j < lanes; ++j)
+        if (area_[k][j] > 0)
+          out_.seen.push_back({group_[k], j, slot, static_cast<double>(area_[k][j]),
+                               is_exact_[k] ? 0 : static_cast<double>(variance_[k][j])});
+  }
+
+  const SceneData<T> &scene_;
+  const Masks *masks_;
+  const MaskErrorModel &model_;
+  const PoseData<T> &pose_;
+  PoseSums &out_;
+  float narrow_weight_[9]{}, wide_weight_[9]{};
+  std::size_t count_ = 0; ///< groups of the chunk that are lit and seen
+  std::uint32_t group_[backend::groups_per_chunk];
+  bool is_exact_[backend::groups_per_chunk]; ///< no variance: nothing of it is partly hidden
+  alignas(64) T area_[backend::groups_per_chunk][lanes];
+  alignas(64) T variance_[backend::groups_per_chunk][lanes];
+};
+
+#include "kernel/end.h"
+#endif

@@ -1,0 +1,53 @@
+// The reference: one facet at a time in double.
+
+#include "backend/facet_loops.inl.h"
+
+#include <bit>
+
+namespace umov::backend {
+namespace {
+
+struct ScalarMachine {
+  using R = double;
+  using T = double;
+  static constexpr std::size_t width = 1;
+  static double load(const double *p) { return *p; }
+  static void store(double x, double *p) { *p = x; }
+  static double total(double x) { return x; }
+  static bool any(bool x) { return x; }
+
+  static int joint(const std::uint32_t *a, const std::uint32_t *b) { return std::popcount(*a & *b); }
+
+  static void count_lanes(const kernel::EntryLook &sun, const kernel::EntryLook &seen,
+                          std::size_t words, std::size_t s, const float *weight, double &mean,
+                          double &square) {
+    mean = square = 0;
+    for (std::size_t k = 0; k < 9; ++k) {
+      int count = 0;
+      for (std::size_t w = 0; w < words; ++w)
+        count += joint(sun.block[k / 3][w].word + s, seen.block[k % 3][w].word + s);
+      mean += static_cast<double>(weight[k]) * count;
+      square += static_cast<double>(weight[k]) * count * count;
+    }
+  }
+
+  static void count_long(const kernel::EntryLook &sun, const kernel::EntryLook &seen,
+                         std::size_t words, float *count) {
+    for (std::size_t k = 0; k < 9; ++k) {
+      int sum = 0;
+      for (std::size_t w = 0; w < words; ++w)
+        sum += joint(sun.block[k / 3][w / lanes].word + w % lanes,
+                     seen.block[k % 3][w / lanes].word + w % lanes);
+      count[k] = static_cast<float>(sum);
+    }
+  }
+};
+
+} // namespace
+
+void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
+                const PoseData<double> &pose, PoseSums &out) {
+  kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, out).run();
+}
+
+} // namespace umov::backend

@@ -1,0 +1,142 @@
+#pragma once
+// Private to the light curve: a scene flattened to what the facet loops read. T is float for the
+// vector units and double for the scalar reference.
+
+#include "kernel/facet_constants.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace umov::backend {
+
+/// Facets side by side, whatever the width of the vector unit: sums keep their order.
+inline constexpr std::size_t lanes = 16;
+
+/// Classes of equal normal and material; a lane without a class has area 0.
+template <class T> struct alignas(64) FacetGroup {
+  T nx[lanes]{}, ny[lanes]{}, nz[lanes]{}, area[lanes]{};
+};
+
+/// Groups of one slot that are summed in T before the sum goes to double.
+struct Chunk {
+  std::uint32_t first = 0, count = 0; ///< groups
+  std::uint32_t slot = 0;             ///< into SceneData::slots
+};
+inline constexpr std::size_t groups_per_chunk = 64;
+
+/// A symmetric product of two profiles of a slot: sum of area (n.l)(n.v) times the mean of
+/// p_first(n.l) p_second(n.v) and p_second(n.l) p_first(n.v).
+struct Product {
+  std::uint32_t first = 0, second = 0; ///< counted from SlotTerms::profile_first
+};
+inline constexpr std::size_t profiles_max = 4, products_max = 8; ///< of one slot
+
+/// A function of the cosine as a polynomial in 2 sqrt(n.k) - 1.
+template <class T> struct Profile {
+  T c[kernel::polynomial_degree + 1]{};
+  std::uint32_t degree = 0;
+};
+
+/// What is summed over the facets of one side of a material.
+struct SlotTerms {
+  std::uint32_t lobe_first = 0, lobe_count = 0;
+  std::uint32_t profile_first = 0, profile_count = 0;
+  std::uint32_t product_first = 0, product_count = 0;
+  bool is_general = false; ///< nothing is summed here: its seen facets are handed back
+};
+
+/// Bits of points that are free in a direction, for a grid of directions on the octahedron.
+struct MaskTable {
+  std::size_t cells = 0;             ///< per edge of the unfolded octahedron
+  std::size_t entries = 0;           ///< blocks per direction
+  std::vector<std::uint32_t> offset; ///< [direction * entries + entry], in units of 64 bytes
+  std::vector<std::uint32_t> row;    ///< first block of each direction in the pool, and the end
+  [[nodiscard]] std::size_t directions() const { return (cells + 1) * (cells + 1); }
+};
+
+/// How the visible share of a group is looked up.
+struct GroupMask {
+  std::uint32_t entry = 0; ///< first entry of its table
+  std::uint16_t words = 0; ///< per lane (32 points each)
+  bool is_wide = false;    ///< an entry per lane, whose words are contiguous, in the second table
+};
+
+/// 64 bytes.
+struct alignas(64) MaskBlock {
+  std::uint32_t word[lanes];
+};
+
+struct Masks {
+  MaskTable narrow, wide;
+  std::vector<GroupMask> groups;
+  std::vector<MaskBlock> pool; ///< begins with `longest` blocks of zeros and as many of ones
+  std::uint32_t longest = 0;   ///< blocks of the longest entry
+  [[nodiscard]] std::uint32_t hidden() const { return 0; }
+  [[nodiscard]] std::uint32_t free() const { return longest; }
+};
+
+template <class T> struct SceneData {
+  std::vector<FacetGroup<T>> groups;
+  std::vector<Chunk> chunks;
+  std::vector<SlotTerms> slots;
+  std::vector<kernel::LobeConstants<T>> lobes;
+  std::vector<Profile<T>> profiles;
+  std::vector<Product> products;
+  /// Per group and lane: relative error of the area's light from joining unlike normals.
+  std::vector<std::array<T, lanes>> cluster_error; ///< empty: none
+};
+
+/// Three directions of a grid around one, with their weights.
+struct GridLook {
+  std::array<std::uint32_t, 3> direction{};
+  std::array<float, 3> weight{};
+};
+
+/// One pose made ready: constants of the directions and of each lobe.
+template <class T> struct PoseData {
+  kernel::FacetPose<T> facet;
+  std::vector<kernel::LobeAtPose<T>> lobes;
+  std::vector<char> is_narrow; ///< per lobe: too narrow for the kernels at this pose
+  GridLook narrow_sun, narrow_observer, wide_sun, wide_observer;
+};
+
+/// A facet whose light the caller computes.
+struct SeenFacet {
+  std::uint32_t group = 0, lane = 0, slot = 0;
+  double area = 0, variance = 0; ///< seen area [m2] and the variance of that [m4]
+};
+
+struct PoseSums {
+  std::vector<double> specular, specular_variance; ///< per lobe [m2/sr]
+  std::vector<double> product, product_variance;   ///< per product [m2]
+  std::vector<SeenFacet> seen;                     ///< of general slots and narrow lobes
+  bool is_any_seen = false;
+};
+
+/// Error of the looked-up shares: sampling `points` of f (1 - f) / n^1.5, and `grid` of the
+/// variance among the directions around (docs/theory/engine.md).
+struct MaskErrorModel {
+  float points = 1, grid = 1;
+};
+
+/// Asks the processor for what the masks hold around the directions of a pose that comes soon:
+/// random poses would wait for memory most of their time.
+void prefetch(const Masks &masks, const GridLook &narrow_sun, const GridLook &narrow_observer,
+              const GridLook &wide_sun, const GridLook &wide_observer);
+
+/// Sums over all facets of a pose. `masks` may be null: nothing hides anything.
+void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
+                const PoseData<double> &pose, PoseSums &out);
+void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
+                const PoseData<float> &pose, PoseSums &out);
+
+/// Which instruction sets `sum_facets` for float may use.
+enum class InstructionSet { Best, Baseline, Sse4, Avx2, Avx512 };
+/// Restricts the choice, for tests and benchmarks; false if this machine lacks it.
+bool choose_instruction_set(InstructionSet set);
+/// Name of the one in use.
+const char *instruction_set_name();
+
+} // namespace umov::backend

@@ -1,0 +1,133 @@
+// The facet loops for each instruction set of the processor family, chosen when the program runs.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "backend/simd/facets_simd.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target comes first: it includes this file once for each instruction set.
+#include "backend/simd/lanes.inl.h"
+
+#include "backend/facet_loops.inl.h"
+
+#include "kernel/begin.h"
+
+struct SimdMachine {
+  using R = Lanes;
+  using T = float;
+  static constexpr std::size_t width = hn::MaxLanes(FloatTag());
+  static HWY_INLINE Lanes load(const float *p) { return hn::Load(FloatTag(), p); }
+  static HWY_INLINE void store(Lanes x, float *p) { hn::Store(x.v, FloatTag(), p); }
+  static HWY_INLINE double total(Lanes x) {
+    return static_cast<double>(hn::GetLane(hn::SumOfLanes(FloatTag(), x.v)));
+  }
+  static HWY_INLINE bool any(LaneMask m) { return kernel::HWY_NAMESPACE::any(m); }
+
+  static HWY_INLINE hn::Vec<WordTag> word(const EntryLook &look, std::size_t k, std::size_t block,
+                                          std::size_t s) {
+    return hn::Load(WordTag(), look.block[k][block].word + s);
+  }
+
+  static HWY_INLINE void count_lanes(const EntryLook &sun, const EntryLook &seen,
+                                     std::size_t words, std::size_t s, const float *weight,
+                                     Lanes &mean, Lanes &square) {
+    const WordTag du;
+    hn::Vec<WordTag> count[9];
+    for (auto &c : count)
+      c = hn::Zero(du);
+    for (std::size_t w = 0; w < words; ++w) {
+      const auto l0 = word(sun, 0, w, s), l1 = word(sun, 1, w, s), l2 = word(sun, 2, w, s);
+      for (std::size_t b = 0; b < 3; ++b) {
+        const auto v = word(seen, b, w, s);
+        count[b] = hn::Add(count[b], hn::PopulationCount(hn::And(l0, v)));
+        count[3 + b] = hn::Add(count[3 + b], hn::PopulationCount(hn::And(l1, v)));
+        count[6 + b] = hn::Add(count[6 + b], hn::PopulationCount(hn::And(l2, v)));
+      }
+    }
+    mean = square = Lanes(0.0f);
+    for (std::size_t k = 0; k < 9; ++k) {
+      const Lanes c = hn::ConvertTo(FloatTag(), hn::BitCast(IntTag(), count[k]));
+      const Lanes weighted = c * Lanes(weight[k]);
+      mean = mean + weighted;
+      square = square + weighted * c;
+    }
+  }
+
+  static HWY_INLINE void count_long(const EntryLook &sun, const EntryLook &seen, std::size_t words,
+                                    float *out) {
+    const WordTag du;
+    hn::Vec<WordTag> count[9];
+    for (auto &c : count)
+      c = hn::Zero(du);
+    for (std::size_t block = 0; block < words / backend::lanes; ++block)
+      for (std::size_t s = 0; s < backend::lanes; s += width) {
+        const auto l0 = word(sun, 0, block, s), l1 = word(sun, 1, block, s),
+                   l2 = word(sun, 2, block, s);
+        for (std::size_t b = 0; b < 3; ++b) {
+          const auto v = word(seen, b, block, s);
+          count[b] = hn::Add(count[b], hn::PopulationCount(hn::And(l0, v)));
+          count[3 + b] = hn::Add(count[3 + b], hn::PopulationCount(hn::And(l1, v)));
+          count[6 + b] = hn::Add(count[6 + b], hn::PopulationCount(hn::And(l2, v)));
+        }
+      }
+    for (std::size_t k = 0; k < 9; ++k)
+      out[k] = hn::GetLane(
+          hn::SumOfLanes(FloatTag(), hn::ConvertTo(FloatTag(), hn::BitCast(IntTag(), count[k]))));
+  }
+};
+
+void sum_facets_here(const SceneData<float> &scene, const Masks *masks,
+                     const MaskErrorModel &model, const PoseData<float> &pose, PoseSums &out) {
+  FacetLoops<SimdMachine>(scene, masks, model, pose, out).run();
+}
+
+#include "kernel/end.h"
+
+#if HWY_ONCE
+#include <hwy/targets.h>
+
+namespace umov::kernel {
+HWY_EXPORT(sum_facets_here);
+} // namespace umov::kernel
+
+namespace umov::backend {
+
+void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
+                const PoseData<float> &pose, PoseSums &out) {
+  using namespace kernel; // the table of HWY_EXPORT stands there
+  HWY_DYNAMIC_DISPATCH(sum_facets_here)(scene, masks, model, pose, out);
+}
+
+bool choose_instruction_set(InstructionSet set) {
+  std::int64_t wanted = 0;
+  switch (set) {
+  case InstructionSet::Best:
+    hwy::SetSupportedTargetsForTest(0);
+    break;
+  case InstructionSet::Baseline:
+    wanted = HWY_STATIC_TARGET;
+    break;
+  case InstructionSet::Sse4:
+    wanted = HWY_SSE4;
+    break;
+  case InstructionSet::Avx2:
+    wanted = HWY_AVX2;
+    break;
+  case InstructionSet::Avx512:
+    wanted = HWY_AVX3 | HWY_AVX3_DL;
+    break;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  const std::int64_t here = hwy::SupportedTargets();
+  const bool has_it = set == InstructionSet::Best || (wanted & (here | HWY_STATIC_TARGET)) != 0;
+  if (has_it && wanted != 0)
+    hwy::SetSupportedTargetsForTest(wanted & (here | HWY_STATIC_TARGET));
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  return has_it;
+}
+
+const char *instruction_set_name() {
+  const std::int64_t targets = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(targets & -targets); // the best one is the lowest bit
+}
+
+} // namespace umov::backend
+#endif

@@ -1,0 +1,105 @@
+// Lanes of a vector unit as a number: what kernels take for R (Highway, Apache-2.0).
+#if defined(UMOV_BACKEND_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef UMOV_BACKEND_LANES_INL_H
+#undef UMOV_BACKEND_LANES_INL_H
+#else
+#define UMOV_BACKEND_LANES_INL_H
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace umov::kernel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// As many floats as a register has, at most 16.
+using FloatTag = hn::CappedTag<float, 16>;
+using IntTag = hn::RebindToSigned<FloatTag>;
+using WordTag = hn::RebindToUnsigned<FloatTag>;
+
+struct LaneMask {
+  hn::Mask<FloatTag> m;
+};
+
+struct Lanes {
+  hn::Vec<FloatTag> v;
+  Lanes() = default;
+  HWY_INLINE explicit Lanes(float x) : v(hn::Set(FloatTag(), x)) {}
+  HWY_INLINE explicit Lanes(double x) : Lanes(static_cast<float>(x)) {}
+  HWY_INLINE explicit Lanes(int x) : Lanes(static_cast<float>(x)) {}
+  HWY_INLINE Lanes(hn::Vec<FloatTag> x) : v(x) {}
+
+  friend HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v, b.v); }
+  friend HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v, b.v); }
+  friend HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v, b.v); }
+  friend HWY_INLINE Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
+  friend HWY_INLINE Lanes operator-(Lanes a) { return hn::Neg(a.v); }
+  friend HWY_INLINE LaneMask operator>(Lanes a, Lanes b) { return {hn::Gt(a.v, b.v)}; }
+  friend HWY_INLINE LaneMask operator<(Lanes a, Lanes b) { return {hn::Lt(a.v, b.v)}; }
+};
+
+HWY_INLINE Lanes min(Lanes a, Lanes b) { return hn::Min(a.v, b.v); }
+HWY_INLINE Lanes max(Lanes a, Lanes b) { return hn::Max(a.v, b.v); }
+HWY_INLINE Lanes abs(Lanes a) { return hn::Abs(a.v); }
+HWY_INLINE Lanes sqrt(Lanes a) { return hn::Sqrt(a.v); }
+HWY_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) { return hn::IfThenElse(m.m, yes.v, no.v); }
+HWY_INLINE bool any(LaneMask m) { return !hn::AllFalse(FloatTag(), m.m); }
+
+/// 2^x: relative error below 3e-7 for x in [-126, 127]; 0 below.
+HWY_INLINE Lanes exp2(Lanes x) {
+  const FloatTag d;
+  const IntTag di;
+  const auto is_zero = hn::Lt(x.v, hn::Set(d, -126.0f));
+  const auto clamped = hn::Min(hn::Max(x.v, hn::Set(d, -126.0f)), hn::Set(d, 127.0f));
+  const auto whole = hn::NearestInt(clamped);
+  const Lanes f = hn::Sub(clamped, hn::ConvertTo(d, whole));
+  // Taylor's series of exp(f ln 2), |f| <= 1/2: the first term left out is below 1.2e-7.
+  constexpr float c[7] = {1.0f,           0.693147181f,   0.240226507f,  0.0555041087f,
+                          0.00961812911f, 0.00133335581f, 0.000154035304f};
+  Lanes p(c[6]);
+  for (int k = 5; k >= 0; --k)
+    p = hn::MulAdd(p.v, f.v, hn::Set(d, c[k]));
+  const auto scale = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(whole, hn::Set(di, 127))));
+  return hn::IfThenZeroElse(is_zero, hn::Mul(p.v, scale));
+}
+
+HWY_INLINE Lanes exp(Lanes x) { return exp2(x * Lanes(1.44269504f)); }
+
+/// log2(1 - y), y in [0, 1]: absolute error below 2e-7 + 2e-7 |log2(1 - y)|, also for tiny y.
+HWY_INLINE Lanes log2_of_one_minus(Lanes y) {
+  const FloatTag d;
+  const IntTag di;
+  const Lanes x = max(Lanes(1.0f) - y, Lanes(1e-30f));
+  // x = m 2^e with m in [sqrt(1/2), sqrt(2)).
+  const auto shifted = hn::Sub(hn::BitCast(di, x.v), hn::Set(di, 0x3F3504F3));
+  const auto e = hn::ShiftRight<23>(shifted);
+  const auto m = hn::BitCast(
+      d, hn::Add(hn::And(shifted, hn::Set(di, 0x007FFFFF)), hn::Set(di, 0x3F3504F3)));
+  // Where e = 0, m - 1 is -y exactly: the rounding of 1 - y would cost 6e-8 times the exponent.
+  const auto is_near = hn::RebindMask(d, hn::Eq(e, hn::Zero(di)));
+  const Lanes z = hn::IfThenElse(is_near, hn::Neg(y.v), hn::Sub(m, hn::Set(d, 1.0f)));
+  const Lanes s = z / (Lanes(2.0f) + z), s2 = s * s;
+  // 2 atanh(s) / ln 2, |s| <= 0.1716.
+  Lanes p(2.0f / 9 * 1.44269504f);
+  p = hn::MulAdd(p.v, s2.v, hn::Set(d, 2.0f / 7 * 1.44269504f));
+  p = hn::MulAdd(p.v, s2.v, hn::Set(d, 2.0f / 5 * 1.44269504f));
+  p = hn::MulAdd(p.v, s2.v, hn::Set(d, 2.0f / 3 * 1.44269504f));
+  p = hn::MulAdd(p.v, s2.v, hn::Set(d, 2.0f * 1.44269504f));
+  return hn::MulAdd(p.v, s.v, hn::ConvertTo(d, e));
+}
+
+/// arc cosine [rad], absolute error below 7e-5 (Abramowitz & Stegun 1972, 4.4.45); for the
+/// correlation of shadowing with direction, which it changes by less than 3e-4.
+HWY_INLINE Lanes acos(Lanes x) {
+  const Lanes a = min(abs(x), Lanes(1.0f));
+  const Lanes p =
+      ((Lanes(-0.0187293f) * a + Lanes(0.0742610f)) * a + Lanes(-0.2121144f)) * a +
+      Lanes(1.5707288f);
+  const Lanes near = sqrt(Lanes(1.0f) - a) * p;
+  return select(x < Lanes(0.0f), Lanes(3.14159265f) - near, near);
+}
+
+} // namespace umov::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

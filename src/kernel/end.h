@@ -1,0 +1,5 @@
+// Closes what kernel/begin.h opened.
+} // namespace
+#ifdef HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

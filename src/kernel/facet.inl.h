@@ -1,0 +1,81 @@
+// The light of one facet: the microfacet lobe under a Sun with a size, and diffuse products.
+// docs/theory/engine.md. R is a lane type, T the scalar that constants are stored in.
+#if defined(UMOV_KERNEL_FACET_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef UMOV_KERNEL_FACET_INL_H
+#undef UMOV_KERNEL_FACET_INL_H
+#else
+#define UMOV_KERNEL_FACET_INL_H
+#endif
+
+#include "kernel/facet_constants.h"
+#include "kernel/microfacet.inl.h"
+
+#include "kernel/begin.h"
+
+/// Mean of D over the half vectors of the source. The half vector enters through |n - h|^2 / 2 = 1
+/// - n.h, which keeps in single precision what the rounding of n.h would cost: 6e-8 m.
+template <class R, class T>
+inline R lobe_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
+                      const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+  const auto one_minus_cosine = [&](std::size_t k) {
+    const R x = nx - R(pose.half[k][0]), y = ny - R(pose.half[k][1]), z = nz - R(pose.half[k][2]);
+    return (x * x + y * y + z * z) * R(T(0.5));
+  };
+  const auto density = [&](R d) {
+    if (lobe.kind == LobeKind::BlinnPhong)
+      return R(lobe.peak) * exp2(R(lobe.shape) * log2_of_one_minus(d));
+    const R cosine = max(R(T(1)) - d, R(T(1e-4))), sine2 = d * (R(T(2)) - d);
+    if (lobe.kind == LobeKind::Beckmann)
+      return beckmann(sine2, cosine * cosine, R(lobe.shape));
+    return ggx(sine2, cosine * cosine, R(lobe.shape));
+  };
+  const R d0 = one_minus_cosine(0);
+  if (at.has_closed_form) {
+    const R x = (n_l - n_v) * R(pose.along_scale), x2 = x * x;
+    const R y2 = max(R(T(0)), d0 * (R(T(2)) - d0) - x2);
+    return R(at.peak) * exp2(R(lobe.shape) * log2_of_one_minus(d0) + R(at.along) * x2 +
+                             R(at.across) * y2);
+  }
+  if (!at.uses_nodes)
+    return density(d0);
+  R sum = density(d0) * R(T(source_node_weights[0]));
+  for (std::size_t k = 1; k < source_nodes; ++k)
+    sum = sum + density(one_minus_cosine(k)) * R(T(source_node_weights[k]));
+  return sum;
+}
+
+/// P(k) of one direction above the horizon.
+template <class R, class T> inline R lobe_masking(const LobeConstants<T> &lobe, R n_k) {
+  if (lobe.kind == LobeKind::Ggx)
+    return ggx_masking(min(n_k, R(T(1))), R(lobe.shape));
+  const R t = min(n_k, R(lobe.masking_limit)) * R(lobe.masking_scale) - R(T(1));
+  return min(R(T(1)), n_k * polynomial(lobe.masking, polynomial_degree, t));
+}
+
+/// G2 of both directions.
+template <class R, class T>
+inline R joint_masking(JointMasking joint, const FacetPose<T> &pose, R p_l, R p_v, R n_l, R n_v) {
+  switch (joint) {
+  case JointMasking::Ashikhmin:
+    return ashikhmin(p_l, p_v, cos_azimuth(n_l, n_v, R(pose.cos_phase)));
+  case JointMasking::Smith:
+    return smith(p_l, p_v);
+  case JointMasking::SmithDirectional:
+    return smith_directional(p_l, p_v, cos_azimuth(n_l, n_v, R(pose.cos_phase)));
+  case JointMasking::Separable:
+    break;
+  }
+  return separable(p_l, p_v);
+}
+
+/// w (n.l)(n.v) = D G2/4 [1/sr] of a facet that faces both directions.
+template <class R, class T>
+inline R lobe_weight(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
+                     const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+  const R g = joint_masking(lobe.joint, pose, lobe_masking(lobe, n_l), lobe_masking(lobe, n_v), n_l,
+                            n_v);
+  return lobe_density(lobe, at, pose, nx, ny, nz, n_l, n_v) * g * R(T(0.25));
+}
+
+#include "kernel/end.h"
+#endif

@@ -1,0 +1,31 @@
+// The source's disk in half-vector space.
+#if defined(UMOV_KERNEL_SOLAR_NODES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef UMOV_KERNEL_SOLAR_NODES_INL_H
+#undef UMOV_KERNEL_SOLAR_NODES_INL_H
+#else
+#define UMOV_KERNEL_SOLAR_NODES_INL_H
+#endif
+
+#include "kernel/facet_constants.h"
+#include "kernel/math.inl.h"
+
+#include "kernel/begin.h"
+
+/// Per-axis variances of the image of a uniform disk: halved in angle by the half vector; across
+/// the scattering plane the image is longer by 1/cos(phase/2) (physics.md section 8).
+template <class R> struct DiskVariances { R along, across; };
+template <class R> inline DiskVariances<R> disk_variances(R radius, R l_v) {
+  const R along = radius * radius / R(16);
+  return {along, along / max((R(1) + l_v) / R(2), R(1e-6))};
+}
+
+/// A direction of the disk around l, at the share `r` of its radius and the azimuth `beta` from e1
+/// towards e2; V is any vector with + and products with numbers.
+template <class V, class R>
+inline V disk_direction(V l, V e1, V e2, R sine_radius, R r, R beta) {
+  const R s = r * sine_radius, c = sqrt(R(1) - s * s);
+  return c * l + (s * std::cos(beta)) * e1 + (s * std::sin(beta)) * e2;
+}
+
+#include "kernel/end.h"
+#endif

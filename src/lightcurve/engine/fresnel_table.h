@@ -1,0 +1,33 @@
+#pragma once
+// Private: reflection of the microfacets of all materials and bands against the phase angle, as one
+// microfacet incidence serves a whole pose.
+
+#include <cstddef>
+#include <umov/surface/surface.h>
+#include <vector>
+
+namespace umov {
+
+class FresnelTable {
+public:
+  FresnelTable() = default;
+  /// Columns in the order of the surfaces, each with all its bands. Interpolates to 1e-7; columns
+  /// that need finer steps than that (thick films) are computed anew for each pose.
+  explicit FresnelTable(std::vector<const Surface *> surfaces);
+
+  [[nodiscard]] std::size_t columns() const { return columns_; }
+  /// a and b (M00 and M10 of one reflection) of all columns; no plane at phase 0 and 180 is the
+  /// caller's to know.
+  void at(double cos_phase, double *a, double *b) const;
+
+private:
+  std::vector<const Surface *> surfaces_;
+  std::size_t columns_ = 0, rows_ = 0;
+  std::vector<double> values_; ///< [row][a of all columns, b of all columns]
+  struct Exact {
+    std::size_t column, surface, band;
+  };
+  std::vector<Exact> exact_;
+};
+
+} // namespace umov

@@ -1,0 +1,273 @@
+#include "lightcurve/engine/surface_fit.h"
+
+#include "kernel/microfacet.inl.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace umov {
+namespace {
+
+using Function = std::function<double(double)>;
+using Coefficients = std::array<double, kernel::polynomial_degree + 1>;
+
+/// A function times the cosine may differ from its polynomial by so much of its largest value: far
+/// below what visibility costs.
+constexpr double wanted_error = 1e-4, accepted_error = 5e-4;
+constexpr std::size_t nodes = 64;
+
+double node(std::size_t i) { // Chebyshev's, in [-1, 1]
+  return std::cos(std::numbers::pi * (static_cast<double>(i) + 0.5) / nodes);
+}
+
+/// Profiles are polynomials in t = 2 sqrt(n.k) - 1: what happens near grazing is drawn out.
+double cosine(double t) { return 0.25 * (t + 1) * (t + 1); }
+
+/// Powers of t of Chebyshev's polynomials T_0 ... T_degree.
+std::vector<Coefficients> chebyshev_powers(std::size_t degree) {
+  std::vector<Coefficients> out{{1}, {0, 1}};
+  for (std::size_t k = 2; k <= degree; ++k) { // T_k = 2 t T_{k-1} - T_{k-2}
+    Coefficients next{};
+    for (std::size_t j = 0; j < kernel::polynomial_degree; ++j)
+      next[j + 1] = 2 * out[k - 1][j];
+    for (std::size_t j = 0; j <= kernel::polynomial_degree; ++j)
+      next[j] -= out[k - 2][j];
+    out.push_back(next);
+  }
+  return out;
+}
+
+/// Weighted least squares over the nodes, as powers of t.
+Coefficients fit(const std::array<double, nodes> &value, const std::array<double, nodes> &weight,
+                 std::size_t degree) {
+  const auto powers = chebyshev_powers(degree);
+  const auto columns = static_cast<Eigen::Index>(degree + 1);
+  Eigen::MatrixXd a(static_cast<Eigen::Index>(nodes), columns);
+  Eigen::VectorXd b(static_cast<Eigen::Index>(nodes));
+  for (std::size_t i = 0; i < nodes; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    b(row) = weight[i] * value[i];
+    for (Eigen::Index k = 0; k < columns; ++k)
+      a(row, k) = weight[i] * kernel::polynomial(powers[static_cast<std::size_t>(k)].data(),
+                                                 static_cast<std::size_t>(k), node(i));
+  }
+  const Eigen::VectorXd c = a.householderQr().solve(b);
+  Coefficients out{};
+  for (std::size_t k = 0; k <= degree; ++k)
+    for (std::size_t j = 0; j <= k; ++j)
+      out[j] += c(static_cast<Eigen::Index>(k)) * powers[k][j];
+  return out;
+}
+
+/// P = 1 beyond this cosine, to single precision.
+double masking_limit(const Distribution &normals) {
+  const auto p = [&](double c) { return normals.masking({std::sqrt(1 - c * c), 0, c}); };
+  double low = 0, high = 1;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (p(middle) < 1 - 3e-7 ? low : high) = middle;
+  }
+  return std::max(high, 1e-6);
+}
+
+std::optional<kernel::LobeConstants<double>> fit_lobe(const Distribution &normals,
+                                                      Shadowing shadowing) {
+  const auto form = normals.kernel_form();
+  if (!form)
+    return {};
+  kernel::LobeConstants<double> out;
+  out.shape = form->shape;
+  switch (form->kind) {
+  case KernelForm::Kind::BlinnPhong:
+    out.kind = kernel::LobeKind::BlinnPhong;
+    out.peak = kernel::blinn_phong_peak(form->shape);
+    break;
+  case KernelForm::Kind::Beckmann:
+    out.kind = kernel::LobeKind::Beckmann;
+    break;
+  case KernelForm::Kind::Ggx:
+    out.kind = kernel::LobeKind::Ggx;
+    break;
+  }
+  switch (shadowing) {
+  case Shadowing::Ashikhmin:
+    out.joint = kernel::JointMasking::Ashikhmin;
+    break;
+  case Shadowing::Smith:
+    out.joint = kernel::JointMasking::Smith;
+    break;
+  case Shadowing::SmithDirectional:
+    out.joint = kernel::JointMasking::SmithDirectional;
+    break;
+  case Shadowing::Separable:
+    out.joint = kernel::JointMasking::Separable;
+    break;
+  }
+  if (out.kind == kernel::LobeKind::Ggx)
+    return out; // its masking is closed
+  out.masking_limit = masking_limit(normals);
+  out.masking_scale = 2 / out.masking_limit;
+  const auto per_cosine = [&](double c) {
+    return normals.masking({std::sqrt(std::max(0.0, 1 - c * c)), 0, c}) / c;
+  };
+  std::array<double, nodes> value{};
+  for (std::size_t i = 0; i < nodes; ++i)
+    value[i] = per_cosine((node(i) + 1) / out.masking_scale);
+  std::array<double, nodes> even{};
+  even.fill(1);
+  const Coefficients c = fit(value, even, kernel::polynomial_degree);
+  std::copy(c.begin(), c.end(), out.masking);
+  for (int i = 1; i <= 400; ++i) {
+    const double t = i / 200.0 - 1, x = (t + 1) / out.masking_scale;
+    const double p = x * kernel::polynomial(out.masking, kernel::polynomial_degree, t);
+    if (!(std::abs(p / (x * per_cosine(x)) - 1) < 1e-4))
+      return {};
+  }
+  return out;
+}
+
+/// The values of a family of functions of the cosine at the nodes, reduced to few.
+struct Basis {
+  std::vector<std::array<double, nodes>> functions;
+  std::vector<std::vector<double>> share; ///< [member][function]
+  double largest = 0;                     ///< value of any member
+
+  /// How much the members make of an error of a function.
+  [[nodiscard]] double weight(std::size_t function) const {
+    double most = 0;
+    for (const auto &of_member : share)
+      most = std::max(most, std::abs(of_member[function]));
+    return most;
+  }
+};
+
+/// Greedy: the member that is reproduced worst, made orthogonal to those before it, comes next.
+Basis reduce(const std::vector<Function> &family) {
+  Basis out;
+  std::vector<std::array<double, nodes>> rest(family.size());
+  for (std::size_t b = 0; b < family.size(); ++b)
+    for (std::size_t i = 0; i < nodes; ++i) {
+      rest[b][i] = family[b](cosine(node(i)));
+      out.largest = std::max(out.largest, std::abs(rest[b][i]));
+    }
+  const auto size_of = [](const std::array<double, nodes> &f) {
+    double most = 0; // weighted with the cosine that multiplies it
+    for (std::size_t i = 0; i < nodes; ++i)
+      most = std::max(most, std::abs(f[i]) * cosine(node(i)));
+    return most;
+  };
+  const auto product = [](const std::array<double, nodes> &f, const std::array<double, nodes> &g) {
+    double sum = 0;
+    for (std::size_t i = 0; i < nodes; ++i)
+      sum += f[i] * g[i];
+    return sum;
+  };
+  out.share.resize(family.size());
+  while (out.functions.size() < backend::profiles_max) {
+    std::size_t worst = 0;
+    for (std::size_t b = 1; b < rest.size(); ++b)
+      if (size_of(rest[b]) > size_of(rest[worst]))
+        worst = b;
+    if (size_of(rest[worst]) <= wanted_error * out.largest)
+      break;
+    const std::array<double, nodes> f = rest[worst];
+    const double square = product(f, f);
+    for (std::size_t b = 0; b < rest.size(); ++b) {
+      const double c = product(rest[b], f) / square;
+      out.share[b].push_back(c);
+      for (std::size_t i = 0; i < nodes; ++i)
+        rest[b][i] -= c * f[i];
+    }
+    out.functions.push_back(f);
+  }
+  return out;
+}
+
+/// The lowest degree that serves; empty if none does. `unit`: what an error of 1 would matter.
+std::optional<backend::Profile<double>> fit_profile(const std::array<double, nodes> &value,
+                                                    double unit) {
+  std::array<double, nodes> weight{};
+  for (std::size_t i = 0; i < nodes; ++i)
+    weight[i] = std::max(cosine(node(i)), 0.02); // grazing facets count for something, too
+  for (std::size_t degree = 0; degree <= kernel::polynomial_degree; ++degree) {
+    const Coefficients c = fit(value, weight, degree);
+    double error = 0;
+    for (std::size_t i = 0; i < nodes; ++i)
+      error = std::max(error, std::abs(kernel::polynomial(c.data(), degree, node(i)) - value[i]) *
+                                  cosine(node(i)));
+    const bool is_last = degree == kernel::polynomial_degree;
+    if (error > (is_last ? accepted_error : wanted_error) * unit)
+      continue;
+    backend::Profile<double> out;
+    out.degree = static_cast<std::uint32_t>(degree);
+    std::copy(c.begin(), c.end(), out.c);
+    return out;
+  }
+  return {};
+}
+
+/// Diffuse light: term number t of all bands is one family of profiles. False if it does not fit.
+bool fit_diffuse(const std::vector<std::vector<Surface::SeparableDiffuse>> &bands,
+                 SurfaceFit &out) {
+  out.light.assign(bands.size(), {});
+  const std::size_t terms = bands.front().size();
+  for (std::size_t t = 0; t < terms; ++t) {
+    std::vector<Function> family;
+    for (const auto &band : bands)
+      family.push_back(band[t].profile);
+    const Basis basis = reduce(family);
+    const auto first = static_cast<std::uint32_t>(out.profiles.size());
+    for (std::size_t k = 0; k < basis.functions.size(); ++k) {
+      const auto profile = fit_profile(basis.functions[k], basis.largest / basis.weight(k));
+      if (!profile)
+        return false;
+      out.profiles.push_back(*profile);
+    }
+    for (std::uint32_t i = 0; i < basis.functions.size(); ++i)
+      for (std::uint32_t j = i; j < basis.functions.size(); ++j) {
+        out.products.push_back({first + i, first + j});
+        for (std::size_t b = 0; b < bands.size(); ++b)
+          out.light[b].push_back({bands[b][t].factor * basis.share[b][i] * basis.share[b][j] *
+                                      (i == j ? 1 : 2),
+                                  bands[b][t].is_single_bounce});
+      }
+  }
+  return out.profiles.size() <= backend::profiles_max &&
+         out.products.size() <= backend::products_max;
+}
+
+} // namespace
+
+std::optional<SurfaceFit> fit_surface(const Surface &surface) {
+  SurfaceFit out;
+  const std::size_t bands = surface.band_count();
+  std::vector<std::vector<Surface::SeparableDiffuse>> diffuse;
+  bool has_lobe = false;
+  for (std::size_t b = 0; b < bands; ++b) {
+    auto terms = surface.separable_diffuse(b);
+    if (!terms || surface.normals(b) == nullptr)
+      return {};
+    diffuse.push_back(std::move(*terms));
+    has_lobe = has_lobe || !surface.interface(b).is_void();
+  }
+  if (bands == 0 || !fit_diffuse(diffuse, out))
+    return {};
+  if (!has_lobe)
+    return out;
+  // A polished surface is a lobe and a mirror in one.
+  if (surface.material().apparent_roughness && surface.material().apparent_roughness->rms_height_nm)
+    return {};
+  for (std::size_t b = 0; b < (surface.is_specular_grey() ? 1 : bands); ++b) {
+    const auto lobe = fit_lobe(*surface.normals(b), surface.material().shadowing);
+    if (!lobe)
+      return {};
+    out.lobes.push_back(*lobe);
+    out.widths.push_back(surface.normals(b)->width());
+  }
+  return out;
+}
+
+} // namespace umov
