@@ -46,6 +46,31 @@ inline EntryLook look_up(const Masks &masks, const MaskTable &table, const GridL
   return out;
 }
 
+/// (n.k) p(n.k) of a slot's profiles towards both directions.
+template <class R> struct ProfileValues {
+  R in[backend::profiles_max], out[backend::profiles_max];
+  template <class T> R product(const backend::Product &p) const {
+    return R(T(0.5)) * (in[p.first] * out[p.second] + in[p.second] * out[p.first]);
+  }
+};
+template <class R, class T>
+inline ProfileValues<R> profile_values(const SceneData<T> &scene, const SlotTerms &slot, R n_l,
+                                       R n_v) {
+  ProfileValues<R> out;
+  if (slot.profile_count == 0)
+    return out;
+  const T bend = scene.profiles[slot.profile_first].bend;
+  const R scale = R(T(2) * (T(1) + bend));
+  const R t_l = scale * n_l / (n_l + R(bend)) - R(T(1));
+  const R t_v = scale * n_v / (n_v + R(bend)) - R(T(1));
+  for (std::size_t i = 0; i < slot.profile_count; ++i) {
+    const auto &profile = scene.profiles[slot.profile_first + i];
+    out.in[i] = n_l * polynomial(profile.c, profile.degree, t_l);
+    out.out[i] = n_v * polynomial(profile.c, profile.degree, t_v);
+  }
+  return out;
+}
+
 /// Sums of one pose. `Machine` names the lane type R, the scalar T and how to load and count.
 template <class Machine> class FacetLoops {
   using R = typename Machine::R;
@@ -71,9 +96,11 @@ public:
     out_.seen.clear();
     out_.is_any_seen = false;
     for (const Chunk &chunk : scene_.chunks) {
-      count_ = 0;
-      for (std::uint32_t g = chunk.first; g < chunk.first + chunk.count; ++g)
-        collect(g);
+      find_facing(chunk);
+      if (masks_ != nullptr)
+        hide();
+      if (!scene_.cluster_error.empty())
+        add_cluster_errors();
       if (count_ == 0)
         continue;
       out_.is_any_seen = true;
@@ -91,41 +118,77 @@ public:
     }
   }
 
+  /// Facets whose share is uncertain.
+  void list_uncertain(std::vector<backend::SeenFacet> &out) {
+    out.clear();
+    for (const Chunk &chunk : scene_.chunks) {
+      find_facing(chunk);
+      if (masks_ != nullptr)
+        hide();
+      for (std::size_t k = 0; k < count_; ++k)
+        for (std::uint32_t j = 0; j < lanes && !is_exact_[k]; ++j)
+          if (variance_[k][j] > 0)
+            out.push_back({group_[k], j, chunk.slot, static_cast<double>(area_[k][j]),
+                           static_cast<double>(variance_[k][j])});
+    }
+  }
+
 private:
+  /// Directions in lanes, loaded once for a loop.
+  struct Directions {
+    R lx, ly, lz, vx, vy, vz;
+    explicit Directions(const FacetPose<T> &p)
+        : lx(R(p.sun[0])), ly(R(p.sun[1])), lz(R(p.sun[2])), vx(R(p.observer[0])),
+          vy(R(p.observer[1])), vz(R(p.observer[2])) {}
+  };
   struct Cosines {
     R n_l, n_v;
   };
-  Cosines cosines(const FacetGroup<T> &f, std::size_t s, R &x, R &y, R &z) const {
+  static Cosines cosines(const Directions &d, const FacetGroup<T> &f, std::size_t s, R &x, R &y,
+                         R &z) {
     x = Machine::load(f.nx + s);
     y = Machine::load(f.ny + s);
     z = Machine::load(f.nz + s);
-    const auto &p = pose_.facet;
-    return {x * R(p.sun[0]) + y * R(p.sun[1]) + z * R(p.sun[2]),
-            x * R(p.observer[0]) + y * R(p.observer[1]) + z * R(p.observer[2])};
+    return {x * d.lx + y * d.ly + z * d.lz, x * d.vx + y * d.vy + z * d.vz};
   }
 
-  /// Enters a group into the list if any of it is lit and seen.
-  void collect(std::uint32_t g) {
-    const FacetGroup<T> &f = scene_.groups[g];
-    bool is_any = false;
-    for (std::size_t s = 0; s < lanes; s += width) {
-      R x, y, z;
-      const Cosines at = cosines(f, s, x, y, z);
-      const auto faces = min(at.n_l, at.n_v) > R(T(0));
-      is_any = Machine::any(faces) || is_any;
-      Machine::store(select(faces, Machine::load(f.area + s), R(T(0))), area_[count_] + s);
+  /// Lists the groups some of which face both directions, with the area that does. Without a branch:
+  /// whether the next group is among them is as good as random.
+  void find_facing(const Chunk &chunk) {
+    const Directions d(pose_.facet);
+    std::size_t count = 0;
+    for (std::uint32_t g = chunk.first; g < chunk.first + chunk.count; ++g) {
+      const FacetGroup<T> &f = scene_.groups[g];
+      bool is_any = false;
+      for (std::size_t s = 0; s < lanes; s += width) {
+        R x, y, z;
+        const Cosines at = cosines(d, f, s, x, y, z);
+        const auto faces = min(at.n_l, at.n_v) > R(T(0));
+        is_any = Machine::any(faces) | is_any;
+        Machine::store(select(faces, Machine::load(f.area + s), R(T(0))), area_[count] + s);
+      }
+      group_[count] = g;
+      is_exact_[count] = true;
+      count += is_any ? 1 : 0;
     }
-    if (!is_any)
-      return;
-    is_exact_[count_] = true;
-    if (masks_ != nullptr) {
-      const GroupMask &mask = masks_->groups[g];
-      if (!(mask.is_wide ? hide_wide(mask) : hide_narrow(mask)))
-        return;
+    count_ = count;
+  }
+
+  /// Multiplies the areas by what is both lit and seen; groups of which nothing is are dropped.
+  void hide() {
+    const std::size_t facing = count_;
+    count_ = 0;
+    for (std::size_t k = 0; k < facing; ++k) {
+      const GroupMask &mask = masks_->groups[group_[k]];
+      if (k != count_) {
+        for (std::size_t s = 0; s < lanes; s += width)
+          Machine::store(Machine::load(area_[k] + s), area_[count_] + s);
+        group_[count_] = group_[k];
+        is_exact_[count_] = true;
+      }
+      if (mask.is_wide ? hide_wide(mask) : hide_narrow(mask))
+        ++count_;
     }
-    if (!scene_.cluster_error.empty())
-      add_cluster_error(g);
-    group_[count_++] = g;
   }
 
   /// Makes room for a variance where there was none.
@@ -135,12 +198,15 @@ private:
     is_exact_[count_] = false;
   }
 
-  void add_cluster_error(std::uint32_t g) {
-    clear_variance();
-    for (std::size_t s = 0; s < lanes; s += width) {
-      const R e = Machine::load(scene_.cluster_error[g].data() + s) *
-                  Machine::load(area_[count_] + s);
-      Machine::store(Machine::load(variance_[count_] + s) + e * e, variance_[count_] + s);
+  void add_cluster_errors() {
+    const std::size_t count = count_;
+    for (count_ = 0; count_ < count; ++count_) {
+      clear_variance();
+      for (std::size_t s = 0; s < lanes; s += width) {
+        const R e = Machine::load(scene_.cluster_error[group_[count_]].data() + s) *
+                    Machine::load(area_[count_] + s);
+        Machine::store(Machine::load(variance_[count_] + s) + e * e, variance_[count_] + s);
+      }
     }
   }
 
@@ -213,11 +279,12 @@ private:
   }
 
   void shade_lobe(std::size_t lobe) {
+    const Directions d(pose_.facet);
     R sum = R(T(0)), variance = R(T(0));
     for (std::size_t k = 0; k < count_; ++k)
       for (std::size_t s = 0; s < lanes; s += width) {
         R x, y, z;
-        const Cosines at = cosines(scene_.groups[group_[k]], s, x, y, z);
+        const Cosines at = cosines(d, scene_.groups[group_[k]], s, x, y, z);
         const R w = lobe_weight(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet, x, y, z,
                                 max(at.n_l, R(T(0))), max(at.n_v, R(T(0))));
         sum = sum + Machine::load(area_[k] + s) * w;
@@ -229,26 +296,19 @@ private:
   }
 
   void shade_products(const SlotTerms &slot) {
+    const Directions d(pose_.facet);
     R sum[backend::products_max], variance[backend::products_max];
     for (std::size_t p = 0; p < slot.product_count; ++p)
       sum[p] = variance[p] = R(T(0));
     for (std::size_t k = 0; k < count_; ++k)
       for (std::size_t s = 0; s < lanes; s += width) {
         R x, y, z;
-        const Cosines at = cosines(scene_.groups[group_[k]], s, x, y, z);
+        const Cosines at = cosines(d, scene_.groups[group_[k]], s, x, y, z);
         const R n_l = max(at.n_l, R(T(0))), n_v = max(at.n_v, R(T(0)));
-        const R t_l = sqrt(n_l) * R(T(2)) - R(T(1)), t_v = sqrt(n_v) * R(T(2)) - R(T(1));
-        R in[backend::profiles_max], out[backend::profiles_max];
-        for (std::size_t i = 0; i < slot.profile_count; ++i) {
-          const auto &profile = scene_.profiles[slot.profile_first + i];
-          in[i] = n_l * polynomial(profile.c, profile.degree, t_l);
-          out[i] = n_v * polynomial(profile.c, profile.degree, t_v);
-        }
+        const ProfileValues<R> values = profile_values<R, T>(scene_, slot, n_l, n_v);
         const R area = Machine::load(area_[k] + s);
         for (std::size_t p = 0; p < slot.product_count; ++p) {
-          const auto &product = scene_.products[slot.product_first + p];
-          const R w = R(T(0.5)) * (in[product.first] * out[product.second] +
-                                   in[product.second] * out[product.first]);
+          const R w = values.template product<T>(scene_.products[slot.product_first + p]);
           sum[p] = sum[p] + area * w;
           if (!is_exact_[k])
             variance[p] = variance[p] + Machine::load(variance_[k] + s) * (w * w);

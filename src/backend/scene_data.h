@@ -33,10 +33,11 @@ struct Product {
 };
 inline constexpr std::size_t profiles_max = 4, products_max = 8; ///< of one slot
 
-/// A function of the cosine as a polynomial in 2 sqrt(n.k) - 1.
+/// A function of the cosine c as a polynomial in 2 (1 + bend) c / (c + bend) - 1.
 template <class T> struct Profile {
   T c[kernel::polynomial_degree + 1]{};
   std::uint32_t degree = 0;
+  T bend = 1; ///< the same for all profiles of a slot
 };
 
 /// What is summed over the facets of one side of a material.
@@ -131,6 +132,17 @@ void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskEr
                 const PoseData<double> &pose, PoseSums &out);
 void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
                 const PoseData<float> &pose, PoseSums &out);
+
+/// Facets of a pose of which a part is hidden, with their seen areas; `out` is emptied first.
+void list_uncertain(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
+                    const PoseData<double> &pose, std::vector<SeenFacet> &out);
+void list_uncertain(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
+                    const PoseData<float> &pose, std::vector<SeenFacet> &out);
+
+/// Light of one facet per unit area without its colour: per lobe of its slot, then per product.
+/// `weight` has room for all of them.
+void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
+                 const SeenFacet &facet, double *weight);
 
 /// Which instruction sets `sum_facets` for float may use.
 enum class InstructionSet { Best, Baseline, Sse4, Avx2, Avx512 };

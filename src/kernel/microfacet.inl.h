@@ -149,7 +149,7 @@ template <class R> inline R smith_directional(R p_l, R p_v, R cos_phi) {
 template <class R> inline R cos_azimuth(R n_l, R n_v, R l_v) {
   const R s = (R(1) - n_l * n_l) * (R(1) - n_v * n_v);
   const R tiny = R(1e-30);
-  return select(s > tiny, clamped((l_v - n_l * n_v) / sqrt(max(s, tiny)), R(-1), R(1)),
+  return select(s > tiny, clamped((l_v - n_l * n_v) * inverse_sqrt(max(s, tiny)), R(-1), R(1)),
                 R(1));
 }
 

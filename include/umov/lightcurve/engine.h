@@ -21,11 +21,14 @@ struct MaskQuality {
   std::size_t points = 0;       ///< over the whole surface, shared out by area
   std::size_t narrow_cells = 0; ///< directions: (cells + 1)^2 for small classes, even
   std::size_t wide_cells = 0;   ///< the same for large flat ones, even
+  /// Poses whose half-width of I is larger than this part of I are mended by rays, class by class,
+  /// the most uncertain first; 0: never.
+  double refine_above = 0;
 };
 /// Typical error of I 0.2-0.5 %, a few seconds and tens of megabytes.
-inline constexpr MaskQuality fast_masks{60'000, 64, 64};
+inline constexpr MaskQuality fast_masks{60'000, 64, 64, 0.03};
 /// Typical error of I 0.1 %, up to half a minute and 300 MB.
-inline constexpr MaskQuality fine_masks{240'000, 96, 128};
+inline constexpr MaskQuality fine_masks{240'000, 96, 128, 0.01};
 
 struct EngineOptions {
   Visibility visibility = Visibility::Masks; ///< a proven convex mesh takes None by itself

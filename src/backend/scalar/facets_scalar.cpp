@@ -50,4 +50,27 @@ void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskEr
   kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, out).run();
 }
 
+void list_uncertain(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
+                    const PoseData<double> &pose, std::vector<SeenFacet> &out) {
+  PoseSums unused;
+  kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_uncertain(out);
+}
+
+void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
+                 const SeenFacet &facet, double *weight) {
+  const FacetGroup<double> &f = scene.groups[facet.group];
+  const SlotTerms &slot = scene.slots[facet.slot];
+  const double x = f.nx[facet.lane], y = f.ny[facet.lane], z = f.nz[facet.lane];
+  const auto towards = [&](const double *d) {
+    return std::max(x * d[0] + y * d[1] + z * d[2], 0.0);
+  };
+  const double n_l = towards(pose.facet.sun), n_v = towards(pose.facet.observer);
+  for (std::size_t k = 0; k < slot.lobe_count; ++k)
+    *weight++ = kernel::lobe_weight(scene.lobes[slot.lobe_first + k],
+                                    pose.lobes[slot.lobe_first + k], pose.facet, x, y, z, n_l, n_v);
+  const auto values = kernel::profile_values<double, double>(scene, slot, n_l, n_v);
+  for (std::size_t p = 0; p < slot.product_count; ++p)
+    *weight++ = values.product<double>(scene.products[slot.product_first + p]);
+}
+
 } // namespace umov::backend

@@ -33,7 +33,12 @@ struct Lanes {
   friend HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return hn::Add(a.v, b.v); }
   friend HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return hn::Sub(a.v, b.v); }
   friend HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return hn::Mul(a.v, b.v); }
-  friend HWY_INLINE Lanes operator/(Lanes a, Lanes b) { return hn::Div(a.v, b.v); }
+  /// a/b to 2e-7 for b between 1e-37 and 1e37: divisions proper would take most of the time.
+  friend HWY_INLINE Lanes operator/(Lanes a, Lanes b) {
+    const auto r = hn::ApproximateReciprocal(b.v);
+    const auto two = hn::Set(FloatTag(), 2.0f);
+    return hn::Mul(a.v, hn::Mul(r, hn::NegMulAdd(b.v, r, two)));
+  }
   friend HWY_INLINE Lanes operator-(Lanes a) { return hn::Neg(a.v); }
   friend HWY_INLINE LaneMask operator>(Lanes a, Lanes b) { return {hn::Gt(a.v, b.v)}; }
   friend HWY_INLINE LaneMask operator<(Lanes a, Lanes b) { return {hn::Lt(a.v, b.v)}; }
@@ -42,7 +47,14 @@ struct Lanes {
 HWY_INLINE Lanes min(Lanes a, Lanes b) { return hn::Min(a.v, b.v); }
 HWY_INLINE Lanes max(Lanes a, Lanes b) { return hn::Max(a.v, b.v); }
 HWY_INLINE Lanes abs(Lanes a) { return hn::Abs(a.v); }
-HWY_INLINE Lanes sqrt(Lanes a) { return hn::Sqrt(a.v); }
+/// 1/sqrt(a) to 2e-7 for a above 1e-37: one step of Newton's on the processor's estimate.
+HWY_INLINE Lanes inverse_sqrt(Lanes a) {
+  const FloatTag d;
+  const auto r = hn::ApproximateReciprocalSqrt(a.v);
+  const auto half = hn::Mul(hn::Mul(a.v, r), hn::Mul(r, hn::Set(d, -0.5f)));
+  return hn::Mul(r, hn::Add(half, hn::Set(d, 1.5f)));
+}
+HWY_INLINE Lanes sqrt(Lanes a) { return a * inverse_sqrt(max(a, Lanes(1e-36f))); }
 HWY_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) { return hn::IfThenElse(m.m, yes.v, no.v); }
 HWY_INLINE bool any(LaneMask m) { return !hn::AllFalse(FloatTag(), m.m); }
 
@@ -50,20 +62,22 @@ HWY_INLINE bool any(LaneMask m) { return !hn::AllFalse(FloatTag(), m.m); }
 HWY_INLINE Lanes exp2(Lanes x) {
   const FloatTag d;
   const IntTag di;
-  const auto is_zero = hn::Lt(x.v, hn::Set(d, -126.0f));
-  const auto clamped = hn::Min(hn::Max(x.v, hn::Set(d, -126.0f)), hn::Set(d, 127.0f));
-  const auto whole = hn::NearestInt(clamped);
-  const Lanes f = hn::Sub(clamped, hn::ConvertTo(d, whole));
-  // Taylor's series of exp(f ln 2), |f| <= 1/2: the first term left out is below 1.2e-7.
-  constexpr float c[7] = {1.0f,           0.693147181f,   0.240226507f,  0.0555041087f,
-                          0.00961812911f, 0.00133335581f, 0.000154035304f};
-  Lanes p(c[6]);
-  for (int k = 5; k >= 0; --k)
-    p = hn::MulAdd(p.v, f.v, hn::Set(d, c[k]));
-  const auto scale = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(whole, hn::Set(di, 127))));
-  return hn::IfThenZeroElse(is_zero, hn::Mul(p.v, scale));
+  // At -127 the exponent's bits are 0, and so is the result.
+  const auto clamped = hn::Min(hn::Max(x.v, hn::Set(d, -127.0f)), hn::Set(d, 127.0f));
+  // Adding 3 2^22 rounds to a whole number, which then stands in the lowest bits.
+  const auto magic = hn::Set(d, 12582912.0f);
+  const auto shifted = hn::Add(clamped, magic);
+  const auto f = hn::Sub(clamped, hn::Sub(shifted, magic));
+  // Chebyshev fit of 2^f, |f| <= 1/2, in relative error.
+  constexpr float c[6] = {1.00000012f,   0.693146944f,  0.240221217f,
+                          0.0555074252f, 0.00967545994f, 0.00132669706f};
+  auto p = hn::Set(d, c[5]);
+  for (int k = 4; k >= 0; --k)
+    p = hn::MulAdd(p, f, hn::Set(d, c[k]));
+  const auto scale = hn::BitCast(
+      d, hn::Add(hn::ShiftLeft<23>(hn::BitCast(di, shifted)), hn::Set(di, 127 << 23)));
+  return hn::Mul(p, scale);
 }
-
 HWY_INLINE Lanes exp(Lanes x) { return exp2(x * Lanes(1.44269504f)); }
 
 /// log2(1 - y), y in [0, 1]: absolute error below 2e-7 + 2e-7 |log2(1 - y)|, also for tiny y.

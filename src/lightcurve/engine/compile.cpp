@@ -29,6 +29,7 @@ void add_slot(const Scene &scene, std::uint32_t slot, CompiledScene &out,
     terms.product_count = static_cast<std::uint32_t>(fit->products.size());
     light.is_grey = fit->lobes.size() <= 1;
     light.products = std::move(fit->light);
+    light.diffuse_error = fit->diffuse_error;
     const auto append = [](auto &to, const auto &from) {
       to.insert(to.end(), from.begin(), from.end());
     };
@@ -124,6 +125,7 @@ backend::SceneData<float> round_scene(const backend::SceneData<double> &from) {
     auto &to = out.profiles.emplace_back();
     std::transform(std::begin(profile.c), std::end(profile.c), to.c, f);
     to.degree = profile.degree;
+    to.bend = f(profile.bend);
   }
   return out;
 }

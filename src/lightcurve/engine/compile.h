@@ -15,6 +15,7 @@ struct SlotLight {
   const Surface *surface = nullptr; ///< of the compiled scene
   bool is_grey = true;              ///< one lobe for all bands
   std::vector<std::vector<ProductLight>> products; ///< [band][product]
+  double diffuse_error = 0; ///< of the polynomials, relative
 };
 
 struct CompiledScene {

@@ -3,11 +3,13 @@
 #include "lightcurve/engine/compile.h"
 #include "lightcurve/engine/masks.h"
 #include "lightcurve/engine/pose_data.h"
+#include "lightcurve/engine/refine.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <umov/core/parallel.h>
 #include <umov/shape/topology.h>
@@ -18,10 +20,10 @@ namespace {
 constexpr double normal_95 = 1.959963984540054; ///< two-sided quantile of the normal law
 
 /// Rounding of the sums, in parts of I: docs/theory/engine.md has the measured agreement.
-constexpr double float_rounding = 2e-5, double_rounding = 1e-5;
+constexpr double rounding = 2e-6;
 
 /// Calibrated against dense runs (tests/engine_errors_test.cpp).
-constexpr backend::MaskErrorModel mask_error{1.0F, 1.0F};
+constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F};
 
 bool has_scattering_plane(const Pose &pose) {
   return !(pose.sun == pose.observer) && !(pose.sun == -pose.observer);
@@ -53,9 +55,12 @@ struct Engine::State {
   CompiledScene compiled;
   backend::SceneData<float> single;
   std::optional<backend::Masks> masks;
+  std::optional<Occluder> occluder;
+  RefinePoints refine_points;
 
   struct Light {
     Stokes<ScatteringPlane> stokes, deviation2; ///< and squared standard deviations
+    double bias = 0; ///< bound of what the polynomials miss, in I
   };
 
   /// A pose made ready; the next one is while this one is summed.
@@ -70,6 +75,11 @@ struct Engine::State {
     backend::PoseSums sums;
     std::vector<double> a, b; ///< Fresnel factors by column
     std::vector<Light> bands;
+    std::vector<backend::SeenFacet> uncertain;
+    std::vector<double> weights;
+    std::vector<Light> facet_light; ///< [uncertain facet * bands + band], per unit area
+    std::vector<std::uint32_t> order;
+    std::optional<RefineTracer> tracer;
   };
 
   [[nodiscard]] const backend::Masks *hiding() const { return masks ? &*masks : nullptr; }
@@ -90,11 +100,13 @@ struct Engine::State {
       backend::sum_facets(single, hiding(), mask_error, at.single, sums);
   }
 
-  /// Light of the slots that have kernels.
+  /// Sums of one slot: its lobes and products, and their variances.
+  struct SlotSums {
+    const double *specular, *specular_variance, *product, *product_variance;
+  };
+  /// Light of a slot that has kernels.
   [[nodiscard]] Light light_of_slot(std::size_t slot, std::size_t band, bool has_plane,
-                                    const double *specular, const double *specular_variance,
-                                    const double *product, const double *product_variance,
-                                    const Workspace &work) const {
+                                    const SlotSums &sums, const Workspace &work) const {
     const SlotLight &light = compiled.slots[slot];
     const backend::SlotTerms &terms = compiled.data.slots[slot];
     const double a = work.a[light.column + band];
@@ -102,21 +114,21 @@ struct Engine::State {
     Light out;
     double deviation_i = 0, deviation_q = 0;
     if (terms.lobe_count > 0) {
-      const std::size_t lobe = terms.lobe_first + (light.is_grey ? 0 : band);
-      const double deviation = std::sqrt(specular_variance[lobe]);
-      out.stokes.i = a * specular[lobe];
-      out.stokes.q = b * specular[lobe];
+      const std::size_t lobe = light.is_grey ? 0 : band;
+      const double deviation = std::sqrt(sums.specular_variance[lobe]);
+      out.stokes.i = a * sums.specular[lobe];
+      out.stokes.q = b * sums.specular[lobe];
       deviation_i = a * deviation;
       deviation_q = std::abs(b) * deviation;
     }
     for (std::size_t p = 0; p < terms.product_count; ++p) {
       const ProductLight &by = light.products[band][p];
-      const double value = by.coefficient * product[terms.product_first + p];
-      const double deviation =
-          std::abs(by.coefficient) * std::sqrt(product_variance[terms.product_first + p]);
+      const double value = by.coefficient * sums.product[p];
+      const double deviation = std::abs(by.coefficient) * std::sqrt(sums.product_variance[p]);
       const double q = by.is_single_bounce && a > 0 ? b / a : 0;
       out.stokes.i += value;
       out.stokes.q += q * value;
+      out.bias += light.diffuse_error * value;
       deviation_i += deviation;
       deviation_q += std::abs(q) * deviation;
     }
@@ -126,47 +138,168 @@ struct Engine::State {
 
   void evaluate(const Pose &pose, const Prepared &at, std::size_t row, StokesTable &out,
                 Workspace &work) const;
-  void add_seen(const Pose &pose, double cos_phase, bool has_plane, const Workspace &work,
-                std::vector<Light> &bands) const;
+  void add_seen(const Pose &pose, const Prepared &ready, Workspace &work) const;
+  void light_of_surface(const Pose &pose, const Prepared &ready, const backend::SeenFacet &seen,
+                        bool has_diffuse, const Workspace &work, Light *bands) const;
+  void light_of_facet(const Pose &pose, const Prepared &ready, const backend::SeenFacet &facet,
+                      Workspace &work, Light *bands) const;
+  void refine(const Pose &pose, const Prepared &ready, Workspace &work) const;
+  [[nodiscard]] bool is_uncertain(const std::vector<Light> &bands) const;
   void finish(const Pose &pose, bool has_u_or_v, std::size_t row, const std::vector<Light> &bands,
               StokesTable &out) const;
 };
 
-/// Facets whose surface has no kernel at this pose, by the surface itself.
-void Engine::State::add_seen(const Pose &pose, double cos_phase, bool has_plane,
-                             const Workspace &work, std::vector<Light> &bands) const {
+/// Light of one facet per unit area by its surface: for what has no kernel at this pose.
+void Engine::State::light_of_surface(const Pose &pose, const Prepared &ready,
+                                     const backend::SeenFacet &seen, bool has_diffuse,
+                                     const Workspace &work, Light *bands) const {
   const Stokes<ScatteringPlane> sunlight{1, 0, 0, 0};
+  const bool has_plane = has_scattering_plane(pose);
+  const SlotLight &light = compiled.slots[seen.slot];
+  const Surface &surface = *light.surface;
+  const FacetClass &c = classes.list[plan.groups[seen.group].member[seen.lane]];
+  const Element &e = elements.list[classes.element[c.first]];
+  const SurfaceDirections at =
+      directions_on(c.normal, direction_field(scene.mesh, surface, e.triangle), pose.sun,
+                    pose.observer, ready.cos_phase, pose.sun_radius_rad);
+  for (std::size_t b = 0; b < scene.bands.size(); ++b) {
+    const double w = surface.specular(b, at);
+    bands[b].stokes = {work.a[light.column + b] * w, has_plane ? work.b[light.column + b] * w : 0,
+                       0, 0};
+    if (has_diffuse && surface.has_diffuse())
+      bands[b].stokes += surface.diffuse(b, at, sunlight);
+  }
+}
+
+/// Light of one facet per unit area, all of it.
+void Engine::State::light_of_facet(const Pose &pose, const Prepared &ready,
+                                   const backend::SeenFacet &facet, Workspace &work,
+                                   Light *bands) const {
+  const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
+  bool is_narrow = false;
+  for (std::size_t k = 0; k < terms.lobe_count; ++k)
+    is_narrow = is_narrow || ready.pose.is_narrow[terms.lobe_first + k] != 0;
+  if (terms.is_general || is_narrow) {
+    light_of_surface(pose, ready, facet, true, work, bands);
+    return;
+  }
+  work.weights.assign(terms.lobe_count + terms.product_count, 0);
+  backend::weigh_facet(compiled.data, ready.pose, facet, work.weights.data());
+  const std::vector<double> none(work.weights.size(), 0);
+  for (std::size_t b = 0; b < scene.bands.size(); ++b)
+    bands[b] = light_of_slot(facet.slot, b, has_scattering_plane(pose),
+                             {work.weights.data(), none.data(),
+                              work.weights.data() + terms.lobe_count, none.data()},
+                             work);
+}
+
+/// Facets whose surface has no kernel at this pose.
+void Engine::State::add_seen(const Pose &pose, const Prepared &ready, Workspace &work) const {
+  work.facet_light.resize(work.bands.size());
   for (const backend::SeenFacet &seen : work.sums.seen) {
-    const SlotLight &light = compiled.slots[seen.slot];
-    const Surface &surface = *light.surface;
-    const FacetClass &c = classes.list[plan.groups[seen.group].member[seen.lane]];
-    const Element &e = elements.list[classes.element[c.first]];
-    const SurfaceDirections at =
-        directions_on(c.normal, direction_field(scene.mesh, surface, e.triangle), pose.sun,
-                      pose.observer, cos_phase, pose.sun_radius_rad);
-    const bool is_general = compiled.data.slots[seen.slot].is_general;
-    for (std::size_t b = 0; b < bands.size(); ++b) {
-      const double w = surface.specular(b, at);
-      Stokes<ScatteringPlane> s{work.a[light.column + b] * w,
-                                has_plane ? work.b[light.column + b] * w : 0, 0, 0};
-      if (is_general && surface.has_diffuse())
-        s += surface.diffuse(b, at, sunlight);
-      bands[b].stokes += s * seen.area;
-      bands[b].deviation2 += Stokes<ScatteringPlane>{s.i * s.i, s.q * s.q, s.u * s.u, s.v * s.v} *
-                             seen.variance;
+    light_of_surface(pose, ready, seen, compiled.data.slots[seen.slot].is_general, work,
+                     work.facet_light.data());
+    for (std::size_t b = 0; b < work.bands.size(); ++b) {
+      const auto &s = work.facet_light[b].stokes;
+      work.bands[b].stokes += s * seen.area;
+      work.bands[b].deviation2 +=
+          Stokes<ScatteringPlane>{s.i * s.i, s.q * s.q, s.u * s.u, s.v * s.v} * seen.variance;
+    }
+  }
+}
+
+/// Some band misses the accuracy from which on rays are traced.
+bool Engine::State::is_uncertain(const std::vector<Light> &bands) const {
+  const double most = options.masks.refine_above / normal_95;
+  return std::any_of(bands.begin(), bands.end(), [&](const Light &band) {
+    return band.deviation2.i > most * most * band.stokes.i * band.stokes.i;
+  });
+}
+
+/// Points that bring the error of a class down to a third of what may be left, if its whole light is
+/// `weight` times that: sampling leaves 0.6 n^-3/4 at worst.
+std::size_t points_for(double weight) {
+  constexpr double fewest = 32, most = 4096;
+  return static_cast<std::size_t>(std::clamp(std::pow(3 * 0.6 * weight, 4.0 / 3), fewest, most));
+}
+
+/// Replaces the shares of the classes that make the error by traced ones, the worst first, until
+/// the rest is well below what is allowed.
+void Engine::State::refine(const Pose &pose, const Prepared &ready, Workspace &work) const {
+  if (options.is_double)
+    backend::list_uncertain(compiled.data, hiding(), mask_error, ready.pose, work.uncertain);
+  else
+    backend::list_uncertain(single, hiding(), mask_error, ready.single, work.uncertain);
+  const std::size_t bands = work.bands.size();
+  work.facet_light.assign(work.uncertain.size() * bands, {});
+  std::vector<double> importance(work.uncertain.size(), 0);
+  std::vector<double> left(bands, 0);
+  for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
+    const backend::SeenFacet &facet = work.uncertain[k];
+    light_of_facet(pose, ready, facet, work, &work.facet_light[k * bands]);
+    for (std::size_t b = 0; b < bands; ++b) {
+      const double i = work.facet_light[k * bands + b].stokes.i;
+      left[b] += i * i * facet.variance;
+      const double total = work.bands[b].stokes.i;
+      importance[k] += total > 0 ? i * i * facet.variance / (total * total) : 0;
+    }
+  }
+  work.order.resize(work.uncertain.size());
+  std::iota(work.order.begin(), work.order.end(), 0u);
+  std::sort(work.order.begin(), work.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(-importance[a], a) < std::pair(-importance[b], b);
+  });
+  const double wanted = 0.7 * options.masks.refine_above / normal_95;
+  for (const std::uint32_t k : work.order) {
+    bool is_enough = true;
+    for (std::size_t b = 0; b < bands; ++b) {
+      const double allowed = wanted * work.bands[b].stokes.i;
+      is_enough = is_enough && left[b] <= allowed * allowed;
+    }
+    if (is_enough)
+      break;
+    backend::SeenFacet &facet = work.uncertain[k];
+    const double whole = compiled.data.groups[facet.group].area[facet.lane];
+    double weight = 0; // of the class's whole light against what may be left
+    for (std::size_t b = 0; b < bands; ++b)
+      weight = std::max(weight, work.facet_light[k * bands + b].stokes.i * whole /
+                                    (wanted * std::max(work.bands[b].stokes.i, 1e-300)));
+    const TracedShare traced = work.tracer->trace(refine_points.of(facet.group, facet.lane),
+                                                  points_for(weight), pose);
+    const double area = whole * traced.share;
+    const double n = static_cast<double>(traced.points);
+    // One pseudo-disagreement stands for slivers that no point has found.
+    const double share = std::clamp(traced.share, 0.5 / n, 1 - 0.5 / n);
+    const double variance = whole * whole * static_cast<double>(mask_error.points) * share *
+                            (1 - share) / (n * std::sqrt(n));
+    for (std::size_t b = 0; b < bands; ++b) {
+      const Light &light = work.facet_light[k * bands + b];
+      left[b] -= light.stokes.i * light.stokes.i * facet.variance;
+      work.bands[b].stokes += light.stokes * (area - facet.area);
+    }
+    facet.area = area;
+    facet.variance = variance;
+  }
+  for (std::size_t b = 0; b < bands; ++b) {
+    work.bands[b].deviation2 = {};
+    for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
+      const auto &s = work.facet_light[k * bands + b].stokes;
+      work.bands[b].deviation2 +=
+          Stokes<ScatteringPlane>{s.i * s.i, s.q * s.q, s.u * s.u, s.v * s.v} *
+          work.uncertain[k].variance;
     }
   }
 }
 
 void Engine::State::finish(const Pose &pose, bool has_u_or_v, std::size_t row,
                            const std::vector<Light> &bands, StokesTable &out) const {
-  const double rounding = options.is_double ? double_rounding : float_rounding;
   const bool has_plane = has_scattering_plane(pose);
   for (std::size_t b = 0; b < bands.size(); ++b) {
     const std::size_t at = row * bands.size() + b;
     const auto &s = bands[b].stokes;
     const auto &d = bands[b].deviation2;
-    const double k = compiled.area_m2, floor = rounding * std::abs(s.i) * k;
+    const double k = compiled.area_m2;
+    const double floor = (rounding * std::abs(s.i) + bands[b].bias) * k;
     const auto half_width = [&](double variance) {
       return normal_95 * std::sqrt(std::max(variance, 0.0)) * k + floor;
     };
@@ -192,16 +325,24 @@ void Engine::State::evaluate(const Pose &pose, const Prepared &ready, std::size_
   compiled.fresnel.at(cos_phase, work.a.data(), work.b.data());
   std::vector<Light> &bands = work.bands;
   bands.assign(scene.bands.size(), {});
-  for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot)
+  const backend::PoseSums &sums = work.sums;
+  for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
+    const backend::SlotTerms &terms = compiled.data.slots[slot];
+    const SlotSums of_slot{sums.specular.data() + terms.lobe_first,
+                           sums.specular_variance.data() + terms.lobe_first,
+                           sums.product.data() + terms.product_first,
+                           sums.product_variance.data() + terms.product_first};
     for (std::size_t b = 0; b < bands.size(); ++b) {
-      const Light light = light_of_slot(
-          slot, b, has_plane, work.sums.specular.data(), work.sums.specular_variance.data(),
-          work.sums.product.data(), work.sums.product_variance.data(), work);
+      const Light light = light_of_slot(slot, b, has_plane, of_slot, work);
       bands[b].stokes += light.stokes;
       bands[b].deviation2 += light.deviation2;
+      bands[b].bias += light.bias;
     }
+  }
   if (!work.sums.seen.empty())
-    add_seen(pose, cos_phase, has_plane, work, bands);
+    add_seen(pose, ready, work);
+  if (masks && options.masks.refine_above > 0 && is_uncertain(bands))
+    refine(pose, ready, work);
   finish(pose, compiled.general_classes > 0, row, bands, out);
 }
 
@@ -219,12 +360,15 @@ Engine::Engine(const Scene &scene, const EngineOptions &options)
   s.compiled = compile_scene(s.scene, s.classes, s.plan, options.cluster_rad);
   s.single = round_scene(s.compiled.data);
   if (has_masks) {
-    const Occluder occluder(scene.mesh);
+    s.occluder.emplace(scene.mesh);
     const auto even = [](std::size_t cells) { return std::max<std::size_t>(cells / 2 * 2, 2); };
-    s.masks = build_masks(s.scene, s.elements, s.classes, s.plan, occluder,
+    s.masks = build_masks(s.scene, s.elements, s.classes, s.plan, *s.occluder,
                           {even(options.masks.narrow_cells), even(options.masks.wide_cells)},
                           options.threads);
-    s.facts.mask_bytes = memory_of(*s.masks);
+    if (options.masks.refine_above > 0)
+      s.refine_points =
+          RefinePoints(s.scene, s.elements, s.classes, s.plan, *s.occluder, options.threads);
+    s.facts.mask_bytes = memory_of(*s.masks) + s.refine_points.bytes();
   }
   s.facts.triangles = scene.mesh.triangles.size();
   s.facts.classes = s.classes.list.size();
@@ -252,6 +396,8 @@ void Engine::evaluate(std::span<const Pose> poses, StokesTable &out, unsigned th
     work.b.resize(state_->compiled.fresnel.columns());
     const std::size_t end = std::min(poses.size(), (task + 1) * poses_per_task);
     const std::size_t begin = task * poses_per_task;
+    if (state_->occluder)
+      work.tracer.emplace(*state_->occluder);
     state_->prepare(poses[begin], work.prepared[0]);
     for (std::size_t i = begin; i < end; ++i) {
       if (i + 1 < end)

@@ -39,6 +39,29 @@ Plan plan_of(const FacetClass &c, std::uint32_t index, double points_per_area, s
   return out;
 }
 
+/// Neighbours in space become neighbours in the list (Morton's curve): rays that run together are
+/// traced together, and every m-th point is spread over the whole.
+void sort_along_curve(std::vector<Occluder::Point> &points) {
+  const auto key = [](const Occluder::Point &p) { // coordinates are within [-1, 1]
+    std::uint64_t out = 0;
+    const float c[3] = {p.x, p.y, p.z};
+    for (unsigned k = 0; k < 3; ++k) {
+      const auto q = static_cast<std::uint64_t>(std::clamp(c[k] * 0.5F + 0.5F, 0.0F, 1.0F) * 4095);
+      for (unsigned bit = 0; bit < 12; ++bit)
+        out |= ((q >> bit) & 1u) << (3 * bit + k);
+    }
+    return out;
+  };
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    order.emplace_back(key(points[i]), i);
+  std::sort(order.begin(), order.end());
+  std::vector<Occluder::Point> sorted;
+  for (const auto &[at, i] : order)
+    sorted.push_back(points[i]);
+  points = std::move(sorted);
+}
+
 } // namespace
 
 GroupPlan plan_groups(const FacetClasses &classes, std::size_t points) {
@@ -101,6 +124,7 @@ ClassPoints spread_points(const Scene &scene, const Elements &elements,
     }
     out.origin.push_back(occluder.to_point(ray_origin(scene, elements, side, e, {x, y})));
   }
+  sort_along_curve(out.origin);
   return out;
 }
 

@@ -21,6 +21,7 @@ struct SurfaceFit {
   std::vector<backend::Profile<double>> profiles;
   std::vector<backend::Product> products;
   std::vector<std::vector<ProductLight>> light; ///< [band][product]
+  double diffuse_error = 0; ///< of the polynomials, relative to the diffuse light of a facet
 };
 
 /// Empty if some part of the surface's light has no form that the kernels know.
