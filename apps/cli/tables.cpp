@@ -1,8 +1,16 @@
 #include "tables.h"
 
 #include <filesystem>
+#include <umov/io/table_stream.h>
 
 namespace umov::cli {
+namespace {
+
+std::string wrong_suffix(const std::string &path) {
+  return "-o " + path + ": a name that ends in .csv, .ecsv, .fits or .json was expected";
+}
+
+} // namespace
 
 Result<void> put_table(const std::string &path, const Table &table, const Common &common) {
   if (path.empty() || path == "-")
@@ -14,8 +22,11 @@ Result<void> put_table(const std::string &path, const Table &table, const Common
     return put(path, to_ecsv(table));
   if (suffix == ".json")
     return put(path, to_json(table));
-  return fail(ErrorCode::Usage,
-              "-o " + path + ": a name that ends in .csv, .ecsv or .json was expected");
+  if (suffix == ".fits") {
+    UMOV_ASSIGN(stream, TableStream::open(path, table));
+    return stream.commit();
+  }
+  return fail(ErrorCode::Usage, wrong_suffix(path));
 }
 
 Result<void> check_output(const std::string &path) {
@@ -24,9 +35,8 @@ Result<void> check_output(const std::string &path) {
   namespace fs = std::filesystem;
   const fs::path target(path);
   const std::string suffix = target.extension().string();
-  if (suffix != ".csv" && suffix != ".ecsv" && suffix != ".json")
-    return fail(ErrorCode::Usage,
-                "-o " + path + ": a name that ends in .csv, .ecsv or .json was expected");
+  if (suffix != ".csv" && suffix != ".ecsv" && suffix != ".json" && suffix != ".fits")
+    return fail(ErrorCode::Usage, wrong_suffix(path));
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (std::error_code code; !fs::is_directory(folder, code))
     return fail(ErrorCode::Device, "no such folder. Make the folder first or choose another one.",

@@ -1,4 +1,5 @@
 #include "console.h"
+#include "signature_rows.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -9,7 +10,8 @@
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
 #include <umov/io/scenario.h>
-#include <umov/io/table.h>
+#include <umov/io/table_stream.h>
+#include <umov/lightcurve/engine.h>
 #include <umov/lightcurve/poses.h>
 
 namespace umov::cli {
@@ -23,6 +25,7 @@ struct SignatureOptions {
   std::uint64_t seed = 0;
   bool has_seed = false;
   double accuracy = 0;
+  std::string visibility = "auto";
   std::string source = "sun";
   std::vector<double> state{1, 0, 0, 0};
 };
@@ -93,20 +96,30 @@ Result<NumberedPoses> poses_from_table(const std::string &path) {
   return out;
 }
 
-Result<NumberedPoses> poses_of(const SignatureOptions &o, std::uint64_t seed) {
-  if (!o.geometry.empty())
-    return poses_from_table(o.geometry);
-  NumberedPoses out;
-  std::vector<Pose> &poses = out.poses;
-  for (const double phase : o.phases_deg) {
+/// Poses by number.
+struct PoseSource {
+  std::size_t count = 0;
+  std::function<Pose(std::size_t)> at;
+  std::function<std::int64_t(std::size_t)> number;
+};
+
+Result<void> check_phases(const SignatureOptions &o) {
+  for (const double phase : o.phases_deg)
     if (!(phase >= 0 && phase <= 180))
       return fail(ErrorCode::Usage, fmt::format("--phase {}: 0 to 180 was expected", phase));
-    for (std::size_t i = 0; i < o.poses; ++i) {
-      out.number.push_back(static_cast<std::int64_t>(poses.size()));
-      poses.push_back(random_pose(seed, poses.size(), Angle::degrees(phase)));
-    }
-  }
-  return out;
+  return {};
+}
+
+/// How hiding was decided, for the header.
+std::string engine_method(const EngineFacts &facts, const EngineOptions &options) {
+  if (facts.is_convex)
+    return "none: the mesh is convex";
+  return fmt::format("direction masks, {} points, {} and {} directions; rays where the half-width "
+                     "of I exceeds {:g} of it",
+                     options.masks.points,
+                     (options.masks.narrow_cells + 1) * (options.masks.narrow_cells + 1),
+                     (options.masks.wide_cells + 1) * (options.masks.wide_cells + 1),
+                     options.masks.refine_above);
 }
 
 /// Where the model of an active source falls short (explicit rough surfaces, docs/theory/lobes.md).
@@ -117,73 +130,132 @@ constexpr const char *laser_limits =
     "circular light about twice as fast as linear. For very rough metals near retro-reflection the "
     "double bounce is understated.";
 
-/// Columns that grow by one row per pose and band.
-struct SignatureColumns {
-  std::vector<std::int64_t> pose;
-  std::vector<std::string> band;
-  std::vector<std::vector<double>> numbers{18};
+/// What all ways to compute have in common.
+struct SignatureJob {
+  const SignatureOptions &options;
+  const Common &common;
+  const Scenario &scenario;
+  const LoadedObject &object;
+  Stokes<ScatteringPlane> source;
+  std::uint64_t seed = 0;
+  double accuracy = 0;
+  bool is_sun = true;
 
-  void add(std::int64_t number, const Pose &at, const Band &colour, const BandResult &result,
-           bool is_dark) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    const auto &s = result.stokes;
-    const auto &e = result.half_width;
-    const double scale = is_dark || !(s.i > 0) ? nan : 1 / s.i;
-    const std::array<double, 18> row{angle_between(at.sun, at.observer) * 180 / pi,
-                                     s.i,
-                                     s.q,
-                                     s.u,
-                                     s.v,
-                                     s.q * scale,
-                                     s.u * scale,
-                                     s.v * scale,
-                                     e.i,
-                                     e.q,
-                                     e.u,
-                                     e.v,
-                                     at.sun.x,
-                                     at.sun.y,
-                                     at.sun.z,
-                                     at.observer.x,
-                                     at.observer.y,
-                                     at.observer.z};
-    pose.push_back(number);
-    band.push_back(colour.name);
-    for (std::size_t i = 0; i < row.size(); ++i)
-      numbers[i].push_back(row[i]);
+  [[nodiscard]] unsigned threads() const { return static_cast<unsigned>(common.threads); }
+  [[nodiscard]] double sun_radius() const {
+    return is_sun && scenario.has_solar_disk ? solar_radius_rad : 0;
   }
-
-  Table table() && {
-    struct Head {
-      const char *name, *unit, *text;
-    };
-    constexpr std::array<Head, 18> heads{{{"phase_angle", "deg", "Sun-object-observer, 0 = full"},
-                                          {"intensity", "m2 / sr", "per unit solar irradiance"},
-                                          {"stokes_q", "m2 / sr", "scattering frame"},
-                                          {"stokes_u", "m2 / sr", "scattering frame"},
-                                          {"stokes_v", "m2 / sr", "scattering frame"},
-                                          {"q_scat", "", "Q/I, scattering frame"},
-                                          {"u_scat", "", "U/I, scattering frame"},
-                                          {"v", "", "V/I"},
-                                          {"intensity_err", "m2 / sr", "numerical 95 % half-width"},
-                                          {"stokes_q_err", "m2 / sr", "numerical 95 % half-width"},
-                                          {"stokes_u_err", "m2 / sr", "numerical 95 % half-width"},
-                                          {"stokes_v_err", "m2 / sr", "numerical 95 % half-width"},
-                                          {"sun_x", "", "direction of the Sun, body frame"},
-                                          {"sun_y", "", "direction of the Sun, body frame"},
-                                          {"sun_z", "", "direction of the Sun, body frame"},
-                                          {"obs_x", "", "direction of the observer, body frame"},
-                                          {"obs_y", "", "direction of the observer, body frame"},
-                                          {"obs_z", "", "direction of the observer, body frame"}}};
-    Table out;
-    out.add("pose", "", "number of the pose", std::move(pose));
-    out.add("band", "", "band as in the scene", std::move(band));
-    for (std::size_t i = 0; i < heads.size(); ++i)
-      out.add(heads[i].name, heads[i].unit, heads[i].text, std::move(numbers[i]));
-    note_conventions(out);
-    return out;
+  void describe(Table &table, const std::string &method) const {
+    table.note("source", is_sun ? (scenario.has_solar_disk
+                                       ? "Sun, uniform disk of 0.2665 deg radius"
+                                       : "Sun, a point")
+                                : fmt::format("laser, Stokes {} {} {} {} in the scattering frame",
+                                              source.i, source.q, source.u, source.v));
+    if (!is_sun)
+      table.note("limits", laser_limits);
+    table.note("visibility", method);
   }
 };
+
+/// Pose by pose with rays, to the accuracy asked.
+Result<void> run_with_rays(const SignatureJob &job, NumberedPoses numbered) {
+  std::vector<Pose> &poses = numbered.poses;
+  for (Pose &pose : poses)
+    pose.sun_radius_rad = job.sun_radius();
+  const Integrator integrator(job.object.scene);
+  IntegrationOptions options;
+  options.accuracy = job.accuracy;
+  options.seed = job.seed;
+  options.source = job.source;
+  SignatureRows rows;
+  ProgressBar bar("poses", job.common);
+  constexpr std::size_t block = 512; // the grain of progress
+  std::size_t done = 0;
+  for (std::size_t begin = 0; begin < poses.size() && done == begin; begin += block) {
+    const std::size_t count = std::min(block, poses.size() - begin);
+    std::vector<std::optional<PoseResult>> results(count);
+    parallel_for(count, job.threads(), [&](std::size_t i) {
+      if (!interrupted()) // a pose may take seconds: a stop waits for those begun only
+        results[i] = integrator.evaluate(poses[begin + i], options);
+    });
+    for (std::size_t i = 0; i < count && results[i]; ++i, ++done)
+      for (std::size_t b = 0; b < job.object.scene.bands.size(); ++b)
+        rows.add(numbered.number[done], poses[done], job.object.scene.bands[b].name,
+                 results[i]->bands[b], results[i]->is_dark);
+    bar.update(done, poses.size());
+  }
+  Table table = std::move(rows).table();
+  job.describe(table, integrator.is_convex() ? "none: the mesh is convex" : "rays");
+  if (done == poses.size())
+    return put_table(job.options.output, table, job.common);
+  return tl::unexpected(put_partial_table(
+      job.options.output, std::move(table), job.common,
+      {ErrorCode::Interrupted,
+       fmt::format("stopped by the user after {} of {} poses", done, poses.size()),
+       {}}));
+}
+
+/// Block by block with the prepared scene; files of rows are written as they come.
+Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) {
+  EngineOptions options;
+  options.masks = masks_for(job.accuracy);
+  options.threads = job.threads();
+  note(job.common, "preparing the scene ...");
+  const Engine engine(job.object.scene, options);
+  const EngineFacts &facts = engine.facts();
+  note(job.common, fmt::format("{} triangles in {} classes, {:.0f} MB of masks, {:.1f} s",
+                               facts.triangles, facts.classes,
+                               static_cast<double>(facts.mask_bytes) / 1e6, facts.setup_s));
+  ProgressBar bar("poses", job.common);
+  std::optional<TableStream> stream;
+  const bool is_streamed_file = !job.options.output.empty() && is_streamed(job.options.output);
+  Table whole; // of what is not streamed
+  constexpr std::size_t block = 1u << 15;
+  std::size_t done = 0;
+  StokesTable results;
+  std::vector<Pose> poses;
+  std::vector<std::int64_t> numbers;
+  while (done < source.count && !interrupted()) {
+    const std::size_t count = std::min(block, source.count - done);
+    poses.resize(count);
+    numbers.resize(count);
+    parallel_for((count + 1023) / 1024, job.threads(), [&](std::size_t task) {
+      for (std::size_t i = task * 1024; i < std::min(count, (task + 1) * 1024); ++i) {
+        poses[i] = source.at(done + i);
+        poses[i].sun_radius_rad = job.sun_radius();
+        numbers[i] = source.number(done + i);
+      }
+    });
+    engine.evaluate(poses, results, job.threads());
+    Table table = SignatureRows::of(numbers, poses, job.object.scene.bands, results, job.threads())
+                      .table();
+    job.describe(table, engine_method(facts, options));
+    if (is_streamed_file && !stream) {
+      UMOV_ASSIGN(opened, TableStream::open(job.options.output, table, job.threads()));
+      stream.emplace(std::move(opened));
+    } else if (stream) {
+      UMOV_TRY(stream->append(table));
+    } else {
+      whole.append(std::move(table));
+    }
+    done += count;
+    bar.update(done, source.count);
+  }
+  if (done == source.count)
+    return stream ? stream->commit() : put_table(job.options.output, whole, job.common);
+  Error stopped{ErrorCode::Interrupted,
+                fmt::format("stopped by the user after {} of {} poses", done, source.count),
+                {}};
+  if (!stream)
+    return tl::unexpected(
+        put_partial_table(job.options.output, std::move(whole), job.common, stopped));
+  UMOV_ASSIGN(kept, stream->commit_partial(stopped.message));
+  stopped.message += ". The finished rows are in " + kept.string() + ".";
+  return tl::unexpected(stopped);
+}
+
+/// Fewer poses than this take longer to prepare than to trace.
+constexpr std::size_t engine_from = 5000;
 
 Result<void> run_signature(const SignatureOptions &o, const Common &common,
                            Diagnostics &diagnostics) {
@@ -191,49 +263,44 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
   const std::uint64_t seed = o.has_seed ? o.seed : scenario.seed;
   UMOV_ASSIGN(source, source_of(o));
-  UMOV_ASSIGN(numbered, poses_of(o, seed));
-  std::vector<Pose> &poses = numbered.poses;
+  UMOV_TRY(check_phases(o));
   const bool is_sun = o.source == "sun";
-  for (Pose &pose : poses)
-    pose.sun_radius_rad = is_sun && scenario.has_solar_disk ? solar_radius_rad : 0;
+  if (!is_sun && o.visibility == "masks")
+    return fail(ErrorCode::Usage, "--visibility masks is for sunlight; a laser takes rays");
+  const std::size_t random = o.poses * o.phases_deg.size();
+  const bool has_engine =
+      is_sun &&
+      (o.visibility == "masks" || (o.visibility == "auto" && random >= engine_from &&
+                                   (o.accuracy > 0 ? o.accuracy : scenario.accuracy) >= 1e-3));
+  NumberedPoses numbered;
+  if (!o.geometry.empty()) {
+    UMOV_ASSIGN(table, poses_from_table(o.geometry));
+    numbered = std::move(table);
+  }
   UMOV_ASSIGN(object, load_object(scenario, {.allow_old_elements = true, .source_is_sun = is_sun},
                                   diagnostics));
-  const Integrator integrator(object.scene);
-  IntegrationOptions options;
-  options.accuracy = o.accuracy > 0 ? o.accuracy : scenario.accuracy;
-  options.seed = seed;
-  options.source = source;
-  SignatureColumns columns;
-  ProgressBar bar("poses", common);
-  constexpr std::size_t block = 512; // the grain of progress
-  std::size_t done = 0;
-  for (std::size_t begin = 0; begin < poses.size() && done == begin; begin += block) {
-    const std::size_t count = std::min(block, poses.size() - begin);
-    std::vector<std::optional<PoseResult>> results(count);
-    parallel_for(count, static_cast<unsigned>(common.threads), [&](std::size_t i) {
-      if (!interrupted()) // a pose may take seconds: a stop waits for those begun only
-        results[i] = integrator.evaluate(poses[begin + i], options);
-    });
-    for (std::size_t i = 0; i < count && results[i]; ++i, ++done)
-      for (std::size_t b = 0; b < object.scene.bands.size(); ++b)
-        columns.add(numbered.number[done], poses[done], object.scene.bands[b], results[i]->bands[b],
-                    results[i]->is_dark);
-    bar.update(done, poses.size());
-  }
-  Table table = std::move(columns).table();
-  table.note("source", is_sun ? (scenario.has_solar_disk ? "Sun, uniform disk of 0.2665 deg radius"
-                                                         : "Sun, a point")
-                              : fmt::format("laser, Stokes {} {} {} {} in the scattering frame",
-                                            source.i, source.q, source.u, source.v));
-  if (!is_sun)
-    table.note("limits", laser_limits);
-  if (done == poses.size())
-    return put_table(o.output, table, common);
-  return tl::unexpected(put_partial_table(
-      o.output, std::move(table), common,
-      {ErrorCode::Interrupted,
-       fmt::format("stopped by the user after {} of {} poses", done, poses.size()),
-       {}}));
+  const SignatureJob job{o,      common, scenario,
+                         object, source, seed,
+                         o.accuracy > 0 ? o.accuracy : scenario.accuracy, is_sun};
+  const PoseSource poses{o.geometry.empty() ? random : numbered.poses.size(),
+                         [&](std::size_t i) {
+                           return o.geometry.empty()
+                                      ? random_pose(seed, i,
+                                                    Angle::degrees(o.phases_deg[i / o.poses]))
+                                      : numbered.poses[i];
+                         },
+                         [&](std::size_t i) {
+                           return o.geometry.empty() ? static_cast<std::int64_t>(i)
+                                                     : numbered.number[i];
+                         }};
+  if (has_engine)
+    return run_with_engine(job, poses);
+  if (o.geometry.empty())
+    for (std::size_t i = 0; i < poses.count; ++i) {
+      numbered.number.push_back(static_cast<std::int64_t>(i));
+      numbered.poses.push_back(poses.at(i));
+    }
+  return run_with_rays(job, std::move(numbered));
 }
 
 } // namespace
@@ -270,7 +337,13 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
   verb->add_option("--accuracy", o->accuracy, "Relative 95 % half-width asked of I")
       ->check(CLI::Range(1e-6, 1.0));
-  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv or .json by its suffix");
+  verb->add_option("--visibility", o->visibility,
+                   "rays: each pose to the accuracy asked; masks: looked up between directions "
+                   "traced beforehand, hundreds of times faster, typical error as asked, each row "
+                   "with its own; auto: masks for 5000 random poses or more")
+      ->check(CLI::IsMember({"auto", "rays", "masks"}))
+      ->capture_default_str();
+  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv, .fits or .json by its suffix");
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
   verb->callback([o, common, exit_with, seed, geometry, poses] {

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <umov/core/files.h>
 #include <unistd.h>
+#include <utility>
 
 namespace umov {
 namespace {
@@ -34,19 +35,6 @@ tl::unexpected<Error> device_error(const fs::path &path, const std::string &acti
               "cannot " + action + ": " + std::strerror(cause) + ". " + remedy(cause) + ".",
               {path.string()});
 }
-
-/// Closes and removes the temporary file unless it was committed.
-struct TemporaryFile {
-  fs::path path;
-  int descriptor = -1;
-  bool committed = false;
-  ~TemporaryFile() {
-    if (descriptor >= 0)
-      ::close(descriptor);
-    if (!committed)
-      ::unlink(path.c_str());
-  }
-};
 
 } // namespace
 
@@ -78,26 +66,67 @@ Result<std::string> read_file(const fs::path &path, std::size_t limit_bytes) {
   return bytes;
 }
 
-Result<void> write_file_atomically(const fs::path &path, std::string_view bytes) {
+Result<FileInProgress> FileInProgress::open(const fs::path &path) {
   if (std::error_code code; fs::is_directory(path, code))
     return fail(ErrorCode::Device, "this is a folder; the name of a file was expected",
                 {path.string()});
-  TemporaryFile temporary{path.string() + ".part-" + std::to_string(::getpid())};
-  temporary.descriptor =
-      ::open(temporary.path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (temporary.descriptor < 0)
+  FileInProgress out = for_library(path);
+  out.descriptor_ =
+      ::open(out.temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (out.descriptor_ < 0)
     return device_error(path, "write here");
+  return out;
+}
+
+FileInProgress FileInProgress::for_library(const fs::path &path) {
+  FileInProgress out;
+  out.path_ = path;
+  out.temporary_ = path.string() + ".part-" + std::to_string(::getpid());
+  return out;
+}
+
+FileInProgress::FileInProgress(FileInProgress &&other) noexcept { *this = std::move(other); }
+FileInProgress &FileInProgress::operator=(FileInProgress &&other) noexcept {
+  if (this != &other) {
+    discard();
+    path_ = std::move(other.path_);
+    temporary_ = std::exchange(other.temporary_, {});
+    descriptor_ = std::exchange(other.descriptor_, -1);
+  }
+  return *this;
+}
+FileInProgress::~FileInProgress() { discard(); }
+
+void FileInProgress::discard() {
+  if (descriptor_ >= 0)
+    ::close(descriptor_);
+  if (!temporary_.empty())
+    ::unlink(temporary_.c_str());
+  descriptor_ = -1;
+  temporary_.clear();
+}
+
+Result<void> FileInProgress::write(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t written = ::write(temporary.descriptor, bytes.data(), bytes.size());
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR)
       continue;
     if (written < 0)
-      return device_error(path, "write");
+      return device_error(path_, "write");
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::fsync(temporary.descriptor) != 0 || ::rename(temporary.path.c_str(), path.c_str()) != 0)
+  return {};
+}
+
+Result<void> FileInProgress::commit() { return commit_as(path_); }
+
+Result<void> FileInProgress::commit_as(const fs::path &path) {
+  if (descriptor_ < 0)
+    descriptor_ = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor_ < 0 || ::fsync(descriptor_) != 0 || ::rename(temporary_.c_str(), path.c_str()) != 0)
     return device_error(path, "finish the file");
-  temporary.committed = true;
+  ::close(std::exchange(descriptor_, -1));
+  temporary_.clear();
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   // A rename is durable only once the folder itself is on disk; some file systems refuse: harmless.
   if (const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); fd >= 0) {
@@ -105,6 +134,12 @@ Result<void> write_file_atomically(const fs::path &path, std::string_view bytes)
     ::close(fd);
   }
   return {};
+}
+
+Result<void> write_file_atomically(const fs::path &path, std::string_view bytes) {
+  UMOV_ASSIGN(file, FileInProgress::open(path));
+  UMOV_TRY(file.write(bytes));
+  return file.commit();
 }
 
 } // namespace umov

@@ -12,7 +12,9 @@ namespace {
 
 kernel::Transmitted<double> transmitted(const Interface &surface, double cosine) {
   const MuellerEntries r = surface.reflection(std::min(cosine, 1.0));
-  return {1 - r.a, -r.b};
+  // In total reflection the rounding of 1 - a would be light, or polarize more than there is.
+  const double mean = std::max(0.0, 1 - r.a);
+  return {mean, std::clamp(-r.b, -mean, mean)};
 }
 
 } // namespace

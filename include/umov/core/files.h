@@ -18,4 +18,29 @@ Result<std::string> read_file(const std::filesystem::path &path,
 /// target is always absent, the complete old or the complete new file. Failure is Device.
 Result<void> write_file_atomically(const std::filesystem::path &path, std::string_view bytes);
 
+/// A file that grows piece by piece and is there under its name only when it is complete: written as
+/// a temporary file in the same folder, which is removed unless `commit` succeeds.
+class FileInProgress {
+public:
+  /// Device if a file cannot be made there.
+  static Result<FileInProgress> open(const std::filesystem::path &path);
+  FileInProgress(FileInProgress &&other) noexcept;
+  FileInProgress &operator=(FileInProgress &&other) noexcept;
+  ~FileInProgress();
+
+  Result<void> write(std::string_view bytes);
+  /// For a library that makes and fills the file by its name: where it goes. No `write` then.
+  static FileInProgress for_library(const std::filesystem::path &path);
+  [[nodiscard]] const std::filesystem::path &temporary() const { return temporary_; }
+  /// Flushes to disk and renames to `path`, or to another name in the same folder.
+  Result<void> commit();
+  Result<void> commit_as(const std::filesystem::path &path);
+
+private:
+  FileInProgress() = default;
+  void discard();
+  std::filesystem::path path_, temporary_;
+  int descriptor_ = -1;
+};
+
 } // namespace umov

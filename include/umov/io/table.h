@@ -29,6 +29,8 @@ public:
   /// Adds a column, which must be as long as those before it (else it is cut or filled up with
   /// NaN, 0, "" or false) and have a new name.
   void add(std::string name, std::string unit, std::string description, Cells cells);
+  /// Rows of a table with the same columns; an empty table becomes that one.
+  void append(Table &&rows);
   /// Adds one line of the header ("object" -> "HST").
   void note(std::string key, std::string value);
 
@@ -56,6 +58,9 @@ std::string to_ecsv(const Table &table);
 /// RFC 4180 with LF; notes as "# key: value", then "# unit: ..." above the header; NaN is an empty
 /// cell.
 std::string to_csv(const Table &table);
+/// Its two parts: everything above the rows, and rows [begin, end).
+std::string csv_header(const Table &table);
+void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std::string &out);
 /// An array of objects; NaN is null.
 std::string to_json(const Table &table);
 /// Aligned columns for a terminal, numbers to six digits.

@@ -30,6 +30,9 @@ inline constexpr MaskQuality fast_masks{60'000, 64, 64, 0.03};
 /// Typical error of I 0.1 %, up to half a minute and 300 MB.
 inline constexpr MaskQuality fine_masks{240'000, 96, 128, 0.01};
 
+/// The masks for a wanted typical error of I, and rays for poses twenty times worse.
+MaskQuality masks_for(double accuracy);
+
 struct EngineOptions {
   Visibility visibility = Visibility::Masks; ///< a proven convex mesh takes None by itself
   MaskQuality masks = fast_masks;
@@ -57,6 +60,7 @@ struct StokesTable {
   std::vector<double> i_err, q_err, u_err, v_err;
   std::vector<char> is_dark; ///< per pose: nothing is both lit and seen
   void resize(std::size_t poses, std::size_t band_count);
+  [[nodiscard]] BandResult at(std::size_t pose, std::size_t band) const;
 };
 
 /// A scene ready for sunlight from any direction. Evaluation is thread safe, and gives the same bits

@@ -66,6 +66,21 @@ double Table::number(std::string_view name, std::size_t row) const {
   return column && row < rows_ ? std::visit(AsNumber{row}, column->cells) : nan;
 }
 
+void Table::append(Table &&rows) {
+  if (columns_.empty()) {
+    *this = std::move(rows);
+    return;
+  }
+  for (std::size_t c = 0; c < columns_.size(); ++c)
+    std::visit(
+        [&](auto &cells) {
+          const auto &more = std::get<std::decay_t<decltype(cells)>>(rows.columns_[c].cells);
+          cells.insert(cells.end(), more.begin(), more.end());
+        },
+        columns_[c].cells);
+  rows_ += rows.rows_;
+}
+
 std::string Table::text(std::string_view name, std::size_t row) const {
   const Column *column = find(name);
   return column && row < rows_ ? std::visit(AsText{row}, column->cells) : "";

@@ -95,7 +95,7 @@ std::string to_ecsv(const Table &table) {
   return out;
 }
 
-std::string to_csv(const Table &table) {
+std::string csv_header(const Table &table) {
   std::string out, names, units;
   for (const auto &[key, value] : table.notes())
     out += fmt::format("# {}: {}\n", one_line(key), one_line(value));
@@ -104,12 +104,31 @@ std::string to_csv(const Table &table) {
     names += comma + quoted_csv(c.name, ',');
     units += comma + c.unit;
   }
-  out += "# unit: " + units + '\n' + names + '\n';
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    for (std::size_t c = 0; c < table.columns().size(); ++c)
-      out += (c ? "," : "") + quoted_csv(table.text(table.columns()[c].name, row), ',');
+  return out + "# unit: " + units + '\n' + names + '\n';
+}
+
+void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std::string &out) {
+  for (std::size_t row = begin; row < end; ++row) {
+    for (std::size_t c = 0; c < table.columns().size(); ++c) {
+      const Column &column = table.columns()[c];
+      if (c > 0)
+        out += ',';
+      if (const auto *numbers = std::get_if<std::vector<double>>(&column.cells)) {
+        if (!std::isnan((*numbers)[row]))
+          out += shortest((*numbers)[row]);
+      } else if (const auto *text = std::get_if<std::vector<std::string>>(&column.cells)) {
+        out += quoted_csv((*text)[row], ',');
+      } else {
+        out += quoted_csv(table.text(column.name, row), ',');
+      }
+    }
     out += '\n';
   }
+}
+
+std::string to_csv(const Table &table) {
+  std::string out = csv_header(table);
+  append_csv_rows(table, 0, table.rows(), out);
   return out;
 }
 

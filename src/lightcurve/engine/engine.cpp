@@ -45,6 +45,17 @@ void StokesTable::resize(std::size_t poses, std::size_t band_count) {
   is_dark.assign(poses, 1);
 }
 
+BandResult StokesTable::at(std::size_t pose, std::size_t band) const {
+  const std::size_t k = pose * bands + band;
+  return {{i[k], q[k], u[k], v[k]}, {i_err[k], q_err[k], u_err[k], v_err[k]}};
+}
+
+MaskQuality masks_for(double accuracy) {
+  MaskQuality out = accuracy >= 0.004 ? fast_masks : fine_masks;
+  out.refine_above = std::max(20 * accuracy, 0.01);
+  return out;
+}
+
 struct Engine::State {
   Scene scene;
   EngineOptions options;

@@ -1,0 +1,109 @@
+#include "signature_rows.h"
+
+#include <array>
+#include <limits>
+#include <umov/core/parallel.h>
+
+namespace umov::cli {
+
+void SignatureRows::reserve(std::size_t rows) {
+  pose_.reserve(rows);
+  band_.reserve(rows);
+  for (auto &column : numbers_)
+    column.reserve(rows);
+}
+
+void SignatureRows::put(std::size_t row, std::int64_t number, const Pose &at,
+                        const std::string &band, const BandResult &result, bool is_dark) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto &s = result.stokes;
+  const auto &e = result.half_width;
+  const double scale = is_dark || !(s.i > 0) ? nan : 1 / s.i;
+  const std::array<double, number_columns> values{angle_between(at.sun, at.observer) * 180 / pi,
+                                                  s.i,
+                                                  s.q,
+                                                  s.u,
+                                                  s.v,
+                                                  s.q * scale,
+                                                  s.u * scale,
+                                                  s.v * scale,
+                                                  e.i,
+                                                  e.q,
+                                                  e.u,
+                                                  e.v,
+                                                  at.sun.x,
+                                                  at.sun.y,
+                                                  at.sun.z,
+                                                  at.observer.x,
+                                                  at.observer.y,
+                                                  at.observer.z};
+  pose_[row] = number;
+  band_[row] = band;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    numbers_[i][row] = values[i];
+}
+
+void SignatureRows::add(std::int64_t number, const Pose &pose, const std::string &band,
+                        const BandResult &result, bool is_dark) {
+  pose_.emplace_back();
+  band_.emplace_back();
+  for (auto &column : numbers_)
+    column.emplace_back();
+  put(pose_.size() - 1, number, pose, band, result, is_dark);
+}
+
+SignatureRows SignatureRows::of(const std::vector<std::int64_t> &numbers,
+                                const std::vector<Pose> &poses,
+                                const std::vector<Band> &bands, const StokesTable &results,
+                                unsigned threads) {
+  SignatureRows out;
+  const std::size_t rows = poses.size() * bands.size();
+  out.pose_.resize(rows);
+  out.band_.resize(rows);
+  for (auto &column : out.numbers_)
+    column.resize(rows);
+  constexpr std::size_t poses_per_task = 2048;
+  parallel_for((poses.size() + poses_per_task - 1) / poses_per_task, threads, [&](std::size_t task) {
+    const std::size_t end = std::min(poses.size(), (task + 1) * poses_per_task);
+    for (std::size_t i = task * poses_per_task; i < end; ++i)
+      for (std::size_t b = 0; b < bands.size(); ++b) {
+        const std::size_t row = i * bands.size() + b;
+        out.put(row, numbers[i], poses[i], bands[b].name,
+                results.at(i, b), results.is_dark[i] != 0);
+      }
+  });
+  return out;
+}
+
+Table SignatureRows::table() && {
+  struct Head {
+    const char *name, *unit, *text;
+  };
+  constexpr std::array<Head, 18> heads{{{"phase_angle", "deg", "Sun-object-observer, 0 = full"},
+                                        {"intensity", "m2 / sr", "per unit solar irradiance"},
+                                        {"stokes_q", "m2 / sr", "scattering frame"},
+                                        {"stokes_u", "m2 / sr", "scattering frame"},
+                                        {"stokes_v", "m2 / sr", "scattering frame"},
+                                        {"q_scat", "", "Q/I, scattering frame"},
+                                        {"u_scat", "", "U/I, scattering frame"},
+                                        {"v", "", "V/I"},
+                                        {"intensity_err", "m2 / sr", "numerical 95 % half-width"},
+                                        {"stokes_q_err", "m2 / sr", "numerical 95 % half-width"},
+                                        {"stokes_u_err", "m2 / sr", "numerical 95 % half-width"},
+                                        {"stokes_v_err", "m2 / sr", "numerical 95 % half-width"},
+                                        {"sun_x", "", "direction of the Sun, body frame"},
+                                        {"sun_y", "", "direction of the Sun, body frame"},
+                                        {"sun_z", "", "direction of the Sun, body frame"},
+                                        {"obs_x", "", "direction of the observer, body frame"},
+                                        {"obs_y", "", "direction of the observer, body frame"},
+                                        {"obs_z", "", "direction of the observer, body frame"}}};
+  Table out;
+  out.add("pose", "", "number of the pose", std::move(pose_));
+  out.add("band", "", "band as in the scene", std::move(band_));
+  for (std::size_t i = 0; i < heads.size(); ++i)
+    out.add(heads[i].name, heads[i].unit, heads[i].text, std::move(numbers_[i]));
+  note_conventions(out);
+  return out;
+}
+
+} // namespace umov::cli

@@ -1,0 +1,32 @@
+#pragma once
+// The rows of `umov signature`: one per pose and band.
+
+#include <umov/io/table.h>
+#include <umov/lightcurve/engine.h>
+#include <umov/lightcurve/integrator.h>
+
+namespace umov::cli {
+
+/// Columns that grow by one row per pose and band.
+class SignatureRows {
+public:
+  void reserve(std::size_t rows);
+  void add(std::int64_t number, const Pose &pose, const std::string &band, const BandResult &result,
+           bool is_dark);
+  /// All rows of a block of poses, filled side by side on `threads` threads.
+  static SignatureRows of(const std::vector<std::int64_t> &numbers, const std::vector<Pose> &poses,
+                          const std::vector<Band> &bands, const StokesTable &results,
+                          unsigned threads);
+  /// The columns with units; the notes of the project's conventions.
+  Table table() &&;
+
+private:
+  static constexpr std::size_t number_columns = 18;
+  void put(std::size_t row, std::int64_t number, const Pose &pose, const std::string &band,
+           const BandResult &result, bool is_dark);
+  std::vector<std::int64_t> pose_;
+  std::vector<std::string> band_;
+  std::vector<std::vector<double>> numbers_{number_columns};
+};
+
+} // namespace umov::cli

@@ -1,0 +1,36 @@
+#pragma once
+// Private: a binary table of a FITS file, written through CFITSIO.
+
+#include <filesystem>
+#include <umov/io/table.h>
+
+namespace umov {
+
+/// Makes the file and its header at once; rows come as bytes, in order.
+class FitsTable {
+public:
+  /// Device with CFITSIO's words if the file cannot be made.
+  static Result<FitsTable> create(const std::filesystem::path &path, const Table &columns);
+  FitsTable(FitsTable &&other) noexcept;
+  FitsTable &operator=(FitsTable &&other) noexcept;
+  ~FitsTable();
+
+  /// Rows [begin, end) as the bytes of the file. Pure: for many threads. BadInput for a text that is
+  /// longer than its column.
+  Result<void> encode(const Table &table, std::size_t begin, std::size_t end,
+                      std::string &out) const;
+  Result<void> append(std::size_t rows, const std::string &bytes);
+  Result<void> note(const std::string &text);
+  Result<void> close();
+
+private:
+  FitsTable() = default;
+  Result<void> check(int status, const char *action) const;
+  void *file_ = nullptr; ///< fitsfile
+  std::filesystem::path path_;
+  std::vector<std::size_t> widths_; ///< bytes per column
+  std::size_t row_bytes_ = 0;
+  long long rows_ = 0;
+};
+
+} // namespace umov
