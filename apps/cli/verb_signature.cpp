@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <future>
 #include <optional>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
@@ -209,7 +210,8 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
   ProgressBar bar("poses", job.common);
   std::optional<TableStream> stream;
   const bool is_streamed_file = !job.options.output.empty() && is_streamed(job.options.output);
-  Table whole; // of what is not streamed
+  std::future<Result<void>> writing; // ends before what it writes to
+  Table whole;                       // of what is not streamed
   constexpr std::size_t block = 1u << 15;
   std::size_t done = 0;
   StokesTable results;
@@ -233,14 +235,20 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
     if (is_streamed_file && !stream) {
       UMOV_ASSIGN(opened, TableStream::open(job.options.output, table, job.threads()));
       stream.emplace(std::move(opened));
-    } else if (stream) {
-      UMOV_TRY(stream->append(table));
+    } else if (stream) { // the disk works while the next block is computed
+      if (writing.valid())
+        UMOV_TRY(writing.get());
+      writing = std::async(std::launch::async, [&stream, rows = std::move(table)] {
+        return stream->append(rows);
+      });
     } else {
       whole.append(std::move(table));
     }
     done += count;
     bar.update(done, source.count);
   }
+  if (writing.valid())
+    UMOV_TRY(writing.get());
   if (done == source.count)
     return stream ? stream->commit() : put_table(job.options.output, whole, job.common);
   Error stopped{ErrorCode::Interrupted,

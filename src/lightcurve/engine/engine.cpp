@@ -86,6 +86,7 @@ struct Engine::State {
     backend::PoseSums sums;
     std::vector<double> a, b; ///< Fresnel factors by column
     std::vector<Light> bands;
+    std::vector<Light> slots; ///< [slot * bands + band]
     std::vector<backend::SeenFacet> uncertain;
     std::vector<double> weights;
     std::vector<Light> facet_light; ///< [uncertain facet * bands + band], per unit area
@@ -155,7 +156,7 @@ struct Engine::State {
   void light_of_facet(const Pose &pose, const Prepared &ready, const backend::SeenFacet &facet,
                       Workspace &work, Light *bands) const;
   void refine(const Pose &pose, const Prepared &ready, Workspace &work) const;
-  [[nodiscard]] bool is_uncertain(const std::vector<Light> &bands) const;
+  [[nodiscard]] bool is_uncertain(const Workspace &work) const;
   void finish(const Pose &pose, bool has_u_or_v, std::size_t row, const std::vector<Light> &bands,
               StokesTable &out) const;
 };
@@ -219,12 +220,32 @@ void Engine::State::add_seen(const Pose &pose, const Prepared &ready, Workspace 
   }
 }
 
-/// Some band misses the accuracy from which on rays are traced.
-bool Engine::State::is_uncertain(const std::vector<Light> &bands) const {
+/// Part of the accuracy asked of I that is asked of Q/I.
+constexpr double polarization_part = 0.06;
+
+/// Some band misses the accuracy from which on rays are traced, in I or in Q/I. What a slot lacks
+/// of its light changes Q/I by how far its own is from that of the whole.
+bool Engine::State::is_uncertain(const Workspace &work) const {
   const double most = options.masks.refine_above / normal_95;
-  return std::any_of(bands.begin(), bands.end(), [&](const Light &band) {
-    return band.deviation2.i > most * most * band.stokes.i * band.stokes.i;
-  });
+  const std::size_t bands = work.bands.size();
+  for (std::size_t b = 0; b < bands; ++b) {
+    const Light &all = work.bands[b];
+    const double allowed = most * all.stokes.i, allowed_q = polarization_part * allowed;
+    if (all.deviation2.i > allowed * allowed)
+      return true;
+    double variance = 0;
+    for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
+      const Light &part = work.slots[slot * bands + b];
+      if (!(part.deviation2.i > 0))
+        continue;
+      const double apart = part.stokes.q * all.stokes.i - all.stokes.q * part.stokes.i;
+      const double scale = part.stokes.i * all.stokes.i;
+      variance += scale > 0 ? part.deviation2.i * (apart / scale) * (apart / scale) : 0;
+    }
+    if (variance > allowed_q * allowed_q)
+      return true;
+  }
+  return false;
 }
 
 /// Points that bring the error of a class down to a third of what may be left, if its whole light is
@@ -244,15 +265,22 @@ void Engine::State::refine(const Pose &pose, const Prepared &ready, Workspace &w
   const std::size_t bands = work.bands.size();
   work.facet_light.assign(work.uncertain.size() * bands, {});
   std::vector<double> importance(work.uncertain.size(), 0);
-  std::vector<double> left(bands, 0);
+  std::vector<double> left(bands, 0), left_q(bands, 0); ///< variances of I and of Q at constant Q/I
+  // What an area error does to Q/I, times I.
+  const auto polarized = [&](std::size_t k, std::size_t b) {
+    const auto &s = work.facet_light[k * bands + b].stokes, &all = work.bands[b].stokes;
+    return all.i > 0 ? s.q - s.i * all.q / all.i : 0;
+  };
   for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
     const backend::SeenFacet &facet = work.uncertain[k];
     light_of_facet(pose, ready, facet, work, &work.facet_light[k * bands]);
     for (std::size_t b = 0; b < bands; ++b) {
       const double i = work.facet_light[k * bands + b].stokes.i;
+      const double q = polarized(k, b) / polarization_part;
       left[b] += i * i * facet.variance;
+      left_q[b] += q * q * facet.variance;
       const double total = work.bands[b].stokes.i;
-      importance[k] += total > 0 ? i * i * facet.variance / (total * total) : 0;
+      importance[k] += total > 0 ? (i * i + q * q) * facet.variance / (total * total) : 0;
     }
   }
   work.order.resize(work.uncertain.size());
@@ -265,7 +293,7 @@ void Engine::State::refine(const Pose &pose, const Prepared &ready, Workspace &w
     bool is_enough = true;
     for (std::size_t b = 0; b < bands; ++b) {
       const double allowed = wanted * work.bands[b].stokes.i;
-      is_enough = is_enough && left[b] <= allowed * allowed;
+      is_enough = is_enough && std::max(left[b], left_q[b]) <= allowed * allowed;
     }
     if (is_enough)
       break;
@@ -273,8 +301,9 @@ void Engine::State::refine(const Pose &pose, const Prepared &ready, Workspace &w
     const double whole = compiled.data.groups[facet.group].area[facet.lane];
     double weight = 0; // of the class's whole light against what may be left
     for (std::size_t b = 0; b < bands; ++b)
-      weight = std::max(weight, work.facet_light[k * bands + b].stokes.i * whole /
-                                    (wanted * std::max(work.bands[b].stokes.i, 1e-300)));
+      weight = std::max(weight, std::max(work.facet_light[k * bands + b].stokes.i,
+                                         std::abs(polarized(k, b)) / polarization_part) *
+                                    whole / (wanted * std::max(work.bands[b].stokes.i, 1e-300)));
     const TracedShare traced = work.tracer->trace(refine_points.of(facet.group, facet.lane),
                                                   points_for(weight), pose);
     const double area = whole * traced.share;
@@ -285,7 +314,9 @@ void Engine::State::refine(const Pose &pose, const Prepared &ready, Workspace &w
                             (1 - share) / (n * std::sqrt(n));
     for (std::size_t b = 0; b < bands; ++b) {
       const Light &light = work.facet_light[k * bands + b];
+      const double q = polarized(k, b) / polarization_part;
       left[b] -= light.stokes.i * light.stokes.i * facet.variance;
+      left_q[b] -= q * q * facet.variance;
       work.bands[b].stokes += light.stokes * (area - facet.area);
     }
     facet.area = area;
@@ -337,6 +368,7 @@ void Engine::State::evaluate(const Pose &pose, const Prepared &ready, std::size_
   std::vector<Light> &bands = work.bands;
   bands.assign(scene.bands.size(), {});
   const backend::PoseSums &sums = work.sums;
+  work.slots.resize(compiled.slots.size() * bands.size());
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
     const backend::SlotTerms &terms = compiled.data.slots[slot];
     const SlotSums of_slot{sums.specular.data() + terms.lobe_first,
@@ -344,7 +376,8 @@ void Engine::State::evaluate(const Pose &pose, const Prepared &ready, std::size_
                            sums.product.data() + terms.product_first,
                            sums.product_variance.data() + terms.product_first};
     for (std::size_t b = 0; b < bands.size(); ++b) {
-      const Light light = light_of_slot(slot, b, has_plane, of_slot, work);
+      const Light &light = work.slots[slot * bands.size() + b] =
+          light_of_slot(slot, b, has_plane, of_slot, work);
       bands[b].stokes += light.stokes;
       bands[b].deviation2 += light.deviation2;
       bands[b].bias += light.bias;
@@ -352,7 +385,7 @@ void Engine::State::evaluate(const Pose &pose, const Prepared &ready, std::size_
   }
   if (!work.sums.seen.empty())
     add_seen(pose, ready, work);
-  if (masks && options.masks.refine_above > 0 && is_uncertain(bands))
+  if (masks && options.masks.refine_above > 0 && is_uncertain(work))
     refine(pose, ready, work);
   finish(pose, compiled.general_classes > 0, row, bands, out);
 }
