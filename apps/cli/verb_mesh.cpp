@@ -24,7 +24,7 @@ struct ShapeOptions {
   double radius = 1, length = 2, width = 1, height = 1, edge = 1, chamfer = 0.1;
   std::vector<double> semi_axes{0.25, 0.25, 1};
   int facets = 5000, sides = 48;
-  double array_angle_deg = 0;
+  double array_angle_deg = 0, crumple = 0;
   bool two_sided = false;
   RoughSurfaceOptions rough;
 };
@@ -52,6 +52,11 @@ const std::map<std::string, Maker> &makers() {
          hst.sides = static_cast<std::size_t>(o.sides);
          hst.array_angle_rad = o.array_angle_deg * pi / 180;
          return make_hst(hst);
+       }},
+      {"box-wing",
+       [](const auto &o) {
+         return make_box_wing(
+             {.facets = static_cast<std::size_t>(o.facets), .crumple_m = o.crumple});
        }},
       {"agena",
        [](const auto &o) { return make_agena({.sides = static_cast<std::size_t>(o.sides)}); }},
@@ -90,7 +95,7 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
   verb->add_option("shape", options->shape,
                    "sphere (--radius --facets), plate (--width --height --two-sided), cylinder "
                    "(--radius --length --sides), chamfered-cube (--edge --chamfer), cigar "
-                   "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides), "
+                   "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides), box-wing (--facets --crumple), "
                    "rough-surface (--cells "
                    "--cell --slope --correlation --hurst --seed)")
       ->required()
@@ -114,6 +119,10 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
       ->capture_default_str();
   verb->add_option("--sides", options->sides, "Sides of round parts")
       ->check(CLI::Range(8, 4096))
+      ->capture_default_str();
+  verb->add_option("--crumple", options->crumple,
+                   "box-wing: height of the folds of the bus's foil [m]")
+      ->check(CLI::Range(0.0, 0.05))
       ->capture_default_str();
   verb->add_option("--array-angle-deg", options->array_angle_deg,
                    "Turn of the solar arrays about their boom")

@@ -111,31 +111,28 @@ void list_uncertain(const SceneData<float> &scene, const Masks *masks, const Mas
 }
 
 bool choose_instruction_set(InstructionSet set) {
-  std::int64_t wanted = 0;
-  switch (set) {
-  case InstructionSet::Best:
-    hwy::SetSupportedTargetsForTest(0);
-    break;
-  case InstructionSet::Baseline:
-    wanted = HWY_STATIC_TARGET;
-    break;
-  case InstructionSet::Sse4:
-    wanted = HWY_SSE4;
-    break;
-  case InstructionSet::Avx2:
-    wanted = HWY_AVX2;
-    break;
-  case InstructionSet::Avx512:
-    wanted = HWY_AVX3 | HWY_AVX3_DL;
-    break;
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  const std::int64_t here = hwy::SupportedTargets();
-  const bool has_it = set == InstructionSet::Best || (wanted & (here | HWY_STATIC_TARGET)) != 0;
-  if (has_it && wanted != 0)
-    hwy::SetSupportedTargetsForTest(wanted & (here | HWY_STATIC_TARGET));
+  const auto of = [](InstructionSet which) -> std::int64_t {
+    switch (which) {
+    case InstructionSet::Baseline:
+      return HWY_STATIC_TARGET;
+    case InstructionSet::Sse4:
+      return HWY_SSE4;
+    case InstructionSet::Avx2:
+      return HWY_AVX2;
+    case InstructionSet::Avx512:
+      return HWY_AVX3 | HWY_AVX3_DL;
+    case InstructionSet::Best:
+      break;
+    }
+    return 0;
+  };
+  hwy::SetSupportedTargetsForTest(0); // all that the machine has
+  const std::int64_t wanted = of(set) & (hwy::SupportedTargets() | HWY_STATIC_TARGET);
+  if (set != InstructionSet::Best && wanted == 0)
+    return false;
+  hwy::SetSupportedTargetsForTest(wanted);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  return has_it;
+  return true;
 }
 
 const char *instruction_set_name() {
