@@ -54,6 +54,7 @@ int run(int argc, char **argv) {
   cli::add_run(app, exit_with);
   cli::add_signature(app, exit_with);
   cli::add_brdf(app, exit_with);
+  cli::add_bench(app, exit_with);
   cli::add_material(app, exit_with);
   cli::add_mesh(app, exit_with);
   cli::add_orbit(app, exit_with);

@@ -53,9 +53,8 @@ void SignatureRows::add(std::int64_t number, const Pose &pose, const std::string
 }
 
 SignatureRows SignatureRows::of(const std::vector<std::int64_t> &numbers,
-                                const std::vector<Pose> &poses,
-                                const std::vector<Band> &bands, const StokesTable &results,
-                                unsigned threads) {
+                                const std::vector<Pose> &poses, const std::vector<Band> &bands,
+                                const StokesTable &results, unsigned threads) {
   SignatureRows out;
   const std::size_t rows = poses.size() * bands.size();
   out.pose_.resize(rows);
@@ -63,15 +62,16 @@ SignatureRows SignatureRows::of(const std::vector<std::int64_t> &numbers,
   for (auto &column : out.numbers_)
     column.resize(rows);
   constexpr std::size_t poses_per_task = 2048;
-  parallel_for((poses.size() + poses_per_task - 1) / poses_per_task, threads, [&](std::size_t task) {
-    const std::size_t end = std::min(poses.size(), (task + 1) * poses_per_task);
-    for (std::size_t i = task * poses_per_task; i < end; ++i)
-      for (std::size_t b = 0; b < bands.size(); ++b) {
-        const std::size_t row = i * bands.size() + b;
-        out.put(row, numbers[i], poses[i], bands[b].name,
-                results.at(i, b), results.is_dark[i] != 0);
-      }
-  });
+  parallel_for((poses.size() + poses_per_task - 1) / poses_per_task, threads,
+               [&](std::size_t task) {
+                 const std::size_t end = std::min(poses.size(), (task + 1) * poses_per_task);
+                 for (std::size_t i = task * poses_per_task; i < end; ++i)
+                   for (std::size_t b = 0; b < bands.size(); ++b) {
+                     const std::size_t row = i * bands.size() + b;
+                     out.put(row, numbers[i], poses[i], bands[b].name, results.at(i, b),
+                             results.is_dark[i] != 0);
+                   }
+               });
   return out;
 }
 

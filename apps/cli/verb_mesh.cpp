@@ -95,7 +95,8 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
   verb->add_option("shape", options->shape,
                    "sphere (--radius --facets), plate (--width --height --two-sided), cylinder "
                    "(--radius --length --sides), chamfered-cube (--edge --chamfer), cigar "
-                   "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides), box-wing (--facets --crumple), "
+                   "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides), "
+                   "box-wing (--facets --crumple), "
                    "rough-surface (--cells "
                    "--cell --slope --correlation --hurst --seed)")
       ->required()

@@ -115,12 +115,11 @@ Result<void> check_phases(const SignatureOptions &o) {
 std::string engine_method(const EngineFacts &facts, const EngineOptions &options) {
   if (facts.is_convex)
     return "none: the mesh is convex";
-  return fmt::format("direction masks, {} points, {} and {} directions; rays where the half-width "
-                     "of I exceeds {:g} of it",
-                     options.masks.points,
-                     (options.masks.narrow_cells + 1) * (options.masks.narrow_cells + 1),
-                     (options.masks.wide_cells + 1) * (options.masks.wide_cells + 1),
-                     options.masks.refine_above);
+  return fmt::format(
+      "direction masks, {} points, {} and {} directions; rays where the half-width "
+      "of I exceeds {:g} of it",
+      options.masks.points, (options.masks.narrow_cells + 1) * (options.masks.narrow_cells + 1),
+      (options.masks.wide_cells + 1) * (options.masks.wide_cells + 1), options.masks.refine_above);
 }
 
 /// Where the model of an active source falls short (explicit rough surfaces, docs/theory/lobes.md).
@@ -147,11 +146,11 @@ struct SignatureJob {
     return is_sun && scenario.has_solar_disk ? solar_radius_rad : 0;
   }
   void describe(Table &table, const std::string &method) const {
-    table.note("source", is_sun ? (scenario.has_solar_disk
-                                       ? "Sun, uniform disk of 0.2665 deg radius"
-                                       : "Sun, a point")
-                                : fmt::format("laser, Stokes {} {} {} {} in the scattering frame",
-                                              source.i, source.q, source.u, source.v));
+    table.note("source", is_sun
+                             ? (scenario.has_solar_disk ? "Sun, uniform disk of 0.2665 deg radius"
+                                                        : "Sun, a point")
+                             : fmt::format("laser, Stokes {} {} {} {} in the scattering frame",
+                                           source.i, source.q, source.u, source.v));
     if (!is_sun)
       table.note("limits", laser_limits);
     table.note("visibility", method);
@@ -204,9 +203,9 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
   note(job.common, "preparing the scene ...");
   const Engine engine(job.object.scene, options);
   const EngineFacts &facts = engine.facts();
-  note(job.common, fmt::format("{} triangles in {} classes, {:.0f} MB of masks, {:.1f} s",
-                               facts.triangles, facts.classes,
-                               static_cast<double>(facts.mask_bytes) / 1e6, facts.setup_s));
+  note(job.common,
+       fmt::format("{} triangles in {} classes, {:.0f} MB of masks, {:.1f} s", facts.triangles,
+                   facts.classes, static_cast<double>(facts.mask_bytes) / 1e6, facts.setup_s));
   ProgressBar bar("poses", job.common);
   std::optional<TableStream> stream;
   const bool is_streamed_file = !job.options.output.empty() && is_streamed(job.options.output);
@@ -229,8 +228,8 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
       }
     });
     engine.evaluate(poses, results, job.threads());
-    Table table = SignatureRows::of(numbers, poses, job.object.scene.bands, results, job.threads())
-                      .table();
+    Table table =
+        SignatureRows::of(numbers, poses, job.object.scene.bands, results, job.threads()).table();
     job.describe(table, engine_method(facts, options));
     if (is_streamed_file && !stream) {
       UMOV_ASSIGN(opened, TableStream::open(job.options.output, table, job.threads()));
@@ -238,9 +237,8 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
     } else if (stream) { // the disk works while the next block is computed
       if (writing.valid())
         UMOV_TRY(writing.get());
-      writing = std::async(std::launch::async, [&stream, rows = std::move(table)] {
-        return stream->append(rows);
-      });
+      writing = std::async(std::launch::async,
+                           [&stream, rows = std::move(table)] { return stream->append(rows); });
     } else {
       whole.append(std::move(table));
     }
@@ -276,10 +274,9 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   if (!is_sun && o.visibility == "masks")
     return fail(ErrorCode::Usage, "--visibility masks is for sunlight; a laser takes rays");
   const std::size_t random = o.poses * o.phases_deg.size();
-  const bool has_engine =
-      is_sun &&
-      (o.visibility == "masks" || (o.visibility == "auto" && random >= engine_from &&
-                                   (o.accuracy > 0 ? o.accuracy : scenario.accuracy) >= 1e-3));
+  const bool has_engine = is_sun && (o.visibility == "masks" ||
+                                     (o.visibility == "auto" && random >= engine_from &&
+                                      (o.accuracy > 0 ? o.accuracy : scenario.accuracy) >= 1e-3));
   NumberedPoses numbered;
   if (!o.geometry.empty()) {
     UMOV_ASSIGN(table, poses_from_table(o.geometry));
@@ -287,20 +284,23 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   }
   UMOV_ASSIGN(object, load_object(scenario, {.allow_old_elements = true, .source_is_sun = is_sun},
                                   diagnostics));
-  const SignatureJob job{o,      common, scenario,
-                         object, source, seed,
-                         o.accuracy > 0 ? o.accuracy : scenario.accuracy, is_sun};
-  const PoseSource poses{o.geometry.empty() ? random : numbered.poses.size(),
-                         [&](std::size_t i) {
-                           return o.geometry.empty()
-                                      ? random_pose(seed, i,
-                                                    Angle::degrees(o.phases_deg[i / o.poses]))
-                                      : numbered.poses[i];
-                         },
-                         [&](std::size_t i) {
-                           return o.geometry.empty() ? static_cast<std::int64_t>(i)
-                                                     : numbered.number[i];
-                         }};
+  const SignatureJob job{o,
+                         common,
+                         scenario,
+                         object,
+                         source,
+                         seed,
+                         o.accuracy > 0 ? o.accuracy : scenario.accuracy,
+                         is_sun};
+  const PoseSource poses{
+      o.geometry.empty() ? random : numbered.poses.size(),
+      [&](std::size_t i) {
+        return o.geometry.empty() ? random_pose(seed, i, Angle::degrees(o.phases_deg[i / o.poses]))
+                                  : numbered.poses[i];
+      },
+      [&](std::size_t i) {
+        return o.geometry.empty() ? static_cast<std::int64_t>(i) : numbered.number[i];
+      }};
   if (has_engine)
     return run_with_engine(job, poses);
   if (o.geometry.empty())

@@ -1,6 +1,6 @@
-// The loops over facets: which are lit and seen, how much of each, and what they add up to. The same
-// text for every instruction set; what differs is in `load`, `store`, `total` and the counting of
-// bits, which stand above its inclusion.
+// The loops over facets: which are lit and seen, how much of each, and what they add up to. The
+// same text for every instruction set; what differs is in `load`, `store`, `total` and the counting
+// of bits, which stand above its inclusion.
 #if defined(UMOV_BACKEND_FACET_LOOPS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef UMOV_BACKEND_FACET_LOOPS_INL_H
 #undef UMOV_BACKEND_FACET_LOOPS_INL_H
@@ -41,8 +41,8 @@ inline EntryLook look_up(const Masks &masks, const MaskTable &table, const GridL
     out.block[k] = masks.pool.data() + offset[k];
   }
   out.is_free = offset[0] == masks.free() && offset[1] == masks.free() && offset[2] == masks.free();
-  out.is_hidden = offset[0] == masks.hidden() && offset[1] == masks.hidden() &&
-                  offset[2] == masks.hidden();
+  out.is_hidden =
+      offset[0] == masks.hidden() && offset[1] == masks.hidden() && offset[2] == masks.hidden();
   return out;
 }
 
@@ -91,6 +91,7 @@ public:
   void run() {
     out_.specular.assign(scene_.lobes.size(), 0);
     out_.specular_variance.assign(scene_.lobes.size(), 0);
+    out_.specular_bias.assign(scene_.lobes.size(), 0);
     out_.product.assign(scene_.products.size(), 0);
     out_.product_variance.assign(scene_.products.size(), 0);
     out_.seen.clear();
@@ -99,8 +100,6 @@ public:
       find_facing(chunk);
       if (masks_ != nullptr)
         hide();
-      if (!scene_.cluster_error.empty())
-        add_cluster_errors();
       if (count_ == 0)
         continue;
       out_.is_any_seen = true;
@@ -152,8 +151,8 @@ private:
     return {x * d.lx + y * d.ly + z * d.lz, x * d.vx + y * d.vy + z * d.vz};
   }
 
-  /// Lists the groups some of which face both directions, with the area that does. Without a branch:
-  /// whether the next group is among them is as good as random.
+  /// Lists the groups some of which face both directions, with the area that does. Without a
+  /// branch: whether the next group is among them is as good as random.
   void find_facing(const Chunk &chunk) {
     const Directions d(pose_.facet);
     std::size_t count = 0;
@@ -198,18 +197,6 @@ private:
     is_exact_[count_] = false;
   }
 
-  void add_cluster_errors() {
-    const std::size_t count = count_;
-    for (count_ = 0; count_ < count; ++count_) {
-      clear_variance();
-      for (std::size_t s = 0; s < lanes; s += width) {
-        const R e = Machine::load(scene_.cluster_error[group_[count_]].data() + s) *
-                    Machine::load(area_[count_] + s);
-        Machine::store(Machine::load(variance_[count_] + s) + e * e, variance_[count_] + s);
-      }
-    }
-  }
-
   /// Many classes with few points each; false if nothing of them is left.
   bool hide_narrow(const GroupMask &mask) {
     const EntryLook sun = look_up(*masks_, masks_->narrow, pose_.narrow_sun, mask.entry);
@@ -224,8 +211,8 @@ private:
     for (std::size_t s = 0; s < lanes; s += width) {
       R mean, square;
       Machine::count_lanes(sun, seen, mask.words, s, narrow_weight_, mean, square);
-      is_any = apply(s, mean * R(T(1) / points), square * R(T(1) / (points * points)), points) ||
-               is_any;
+      is_any =
+          apply(s, mean * R(T(1) / points), square * R(T(1) / (points * points)), points) || is_any;
     }
     return is_any;
   }
@@ -234,8 +221,8 @@ private:
   bool apply(std::size_t s, R share, R square, T points) {
     const R area = Machine::load(area_[count_] + s);
     const R visible = area * share;
-    const R sampling = share * max(R(T(1)) - share, R(T(0))) *
-                       R(T(model_.points) / (points * sqrt(points)));
+    const R sampling =
+        share * max(R(T(1)) - share, R(T(0))) * R(T(model_.points) / (points * sqrt(points)));
     const R grid = max(square - share * share, R(T(0))) * R(T(model_.grid));
     Machine::store(visible, area_[count_] + s);
     Machine::store(area * area * (sampling + grid), variance_[count_] + s);
@@ -280,7 +267,8 @@ private:
 
   void shade_lobe(std::size_t lobe) {
     const Directions d(pose_.facet);
-    R sum = R(T(0)), variance = R(T(0));
+    R sum = R(T(0)), variance = R(T(0)), bias = R(T(0));
+    const bool is_clustered = !scene_.cluster_error.empty();
     for (std::size_t k = 0; k < count_; ++k)
       for (std::size_t s = 0; s < lanes; s += width) {
         R x, y, z;
@@ -290,9 +278,21 @@ private:
         sum = sum + Machine::load(area_[k] + s) * w;
         if (!is_exact_[k])
           variance = variance + Machine::load(variance_[k] + s) * (w * w);
+        if (is_clustered)
+          bias = bias + Machine::load(area_[k] + s) * w * cluster_error(lobe, k, s, x, y, z);
       }
+    out_.specular_bias[lobe] += Machine::total(bias);
     out_.specular[lobe] += Machine::total(sum);
     out_.specular_variance[lobe] += Machine::total(variance);
+  }
+
+  /// Relative error of the lobe from unlike normals in a class: m spread^2 / 2 at the peak, more on
+  /// its flanks as (n - h)^2 m. Neighbours err to the same side, so the errors add up.
+  R cluster_error(std::size_t lobe, std::size_t k, std::size_t s, R x, R y, R z) const {
+    const auto &h = pose_.facet.half[0];
+    const R dx = x - R(h[0]), dy = y - R(h[1]), dz = z - R(h[2]);
+    return Machine::load(scene_.cluster_error[group_[k]].value + s) *
+           (R(T(1)) + (dx * dx + dy * dy + dz * dz) * R(scene_.lobes[lobe].per_width2));
   }
 
   void shade_products(const SlotTerms &slot) {

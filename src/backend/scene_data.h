@@ -19,6 +19,9 @@ template <class T> struct alignas(64) FacetGroup {
   T nx[lanes]{}, ny[lanes]{}, nz[lanes]{}, area[lanes]{};
 };
 
+/// One number for each lane of a group.
+template <class T> struct alignas(64) LaneNumbers { T value[lanes]{}; };
+
 /// Groups of one slot that are summed in T before the sum goes to double.
 struct Chunk {
   std::uint32_t first = 0, count = 0; ///< groups
@@ -86,7 +89,7 @@ template <class T> struct SceneData {
   std::vector<Profile<T>> profiles;
   std::vector<Product> products;
   /// Per group and lane: relative error of the area's light from joining unlike normals.
-  std::vector<std::array<T, lanes>> cluster_error; ///< empty: none
+  std::vector<LaneNumbers<T>> cluster_error; ///< empty: none
 };
 
 /// Three directions of a grid around one, with their weights.
@@ -111,6 +114,7 @@ struct SeenFacet {
 
 struct PoseSums {
   std::vector<double> specular, specular_variance; ///< per lobe [m2/sr]
+  std::vector<double> specular_bias;               ///< error from joined normals, added up
   std::vector<double> product, product_variance;   ///< per product [m2]
   std::vector<SeenFacet> seen;                     ///< of general slots and narrow lobes
   bool is_any_seen = false;

@@ -71,8 +71,7 @@ Result<FileInProgress> FileInProgress::open(const fs::path &path) {
     return fail(ErrorCode::Device, "this is a folder; the name of a file was expected",
                 {path.string()});
   FileInProgress out = for_library(path);
-  out.descriptor_ =
-      ::open(out.temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  out.descriptor_ = ::open(out.temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (out.descriptor_ < 0)
     return device_error(path, "write here");
   return out;
@@ -123,7 +122,8 @@ Result<void> FileInProgress::commit() { return commit_as(path_); }
 Result<void> FileInProgress::commit_as(const fs::path &path) {
   if (descriptor_ < 0)
     descriptor_ = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0 || ::fsync(descriptor_) != 0 || ::rename(temporary_.c_str(), path.c_str()) != 0)
+  if (descriptor_ < 0 || ::fsync(descriptor_) != 0 ||
+      ::rename(temporary_.c_str(), path.c_str()) != 0)
     return device_error(path, "finish the file");
   ::close(std::exchange(descriptor_, -1));
   temporary_.clear();

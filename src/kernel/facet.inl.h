@@ -33,8 +33,8 @@ inline R lobe_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
   if (at.has_closed_form) {
     const R x = (n_l - n_v) * R(pose.along_scale), x2 = x * x;
     const R y2 = max(R(T(0)), d0 * (R(T(2)) - d0) - x2);
-    return R(at.peak) * exp2(R(lobe.shape) * log2_of_one_minus(d0) + R(at.along) * x2 +
-                             R(at.across) * y2);
+    return R(at.peak) *
+           exp2(R(lobe.shape) * log2_of_one_minus(d0) + R(at.along) * x2 + R(at.across) * y2);
   }
   if (!at.uses_nodes)
     return density(d0);
@@ -72,8 +72,8 @@ inline R joint_masking(JointMasking joint, const FacetPose<T> &pose, R p_l, R p_
 template <class R, class T>
 inline R lobe_weight(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
                      const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
-  const R g = joint_masking(lobe.joint, pose, lobe_masking(lobe, n_l), lobe_masking(lobe, n_v), n_l,
-                            n_v);
+  const R g =
+      joint_masking(lobe.joint, pose, lobe_masking(lobe, n_l), lobe_masking(lobe, n_v), n_l, n_v);
   return lobe_density(lobe, at, pose, nx, ny, nz, n_l, n_v) * g * R(T(0.25));
 }
 

@@ -25,8 +25,9 @@ inline constexpr double closed_form_max = 1e-2, nodes_max = 3e-2;
 template <class T> struct LobeConstants {
   LobeKind kind = LobeKind::BlinnPhong;
   JointMasking joint = JointMasking::Ashikhmin;
-  T shape = 0; ///< m of Blinn-Phong, alpha of the others
-  T peak = 0;  ///< D at the normal, of Blinn-Phong
+  T shape = 0;                        ///< m of Blinn-Phong, alpha of the others
+  T peak = 0;                         ///< D at the normal, of Blinn-Phong
+  T per_width2 = 0;                   ///< 1 / variance of the slope
   T masking[polynomial_degree + 1]{}; ///< P(k) / (n.k) against masking_scale n.k - 1
   T masking_limit = 1;                ///< P = 1 beyond it
   T masking_scale = 2;                ///< 2 / masking_limit
@@ -34,8 +35,8 @@ template <class T> struct LobeConstants {
 
 /// What the source's size makes of a lobe at one phase angle.
 template <class T> struct LobeAtPose {
-  bool has_closed_form = false; ///< Blinn-Phong, Gaussian mean over the disk
-  bool uses_nodes = false;      ///< seven half vectors
+  bool has_closed_form = false;      ///< Blinn-Phong, Gaussian mean over the disk
+  bool uses_nodes = false;           ///< seven half vectors
   T peak = 0, along = 0, across = 0; ///< of the mean; growth of its logarithm (base 2) with x2, y2
 };
 
@@ -43,7 +44,8 @@ template <class T> struct LobeAtPose {
 template <class T> struct FacetPose {
   T sun[3]{}, observer[3]{};
   T cos_phase = 1;
-  T along_scale = 0; ///< 1/|l - v|: (n.l - n.v) times it is the normal's x in the plane; 0 at phase 0
+  T along_scale =
+      0; ///< 1/|l - v|: (n.l - n.v) times it is the normal's x in the plane; 0 at phase 0
   T half[source_nodes][3]{};
 };
 

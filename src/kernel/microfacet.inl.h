@@ -16,9 +16,9 @@
 template <class R> inline R blinn_phong_peak(R m) { return (m + R(2)) / R(2 * std::numbers::pi); }
 template <class R> inline R blinn_phong(R n_h, R m) { return blinn_phong_peak(m) * power(n_h, m); }
 
-/// D over a spread of half vectors with variances kappa1, kappa2 along two axes, on which the normal
-/// has the squared coordinates x2, y2: D is a Gaussian there, so the mean is one again, scale D(h)
-/// exp(along x2 + across y2).
+/// D over a spread of half vectors with variances kappa1, kappa2 along two axes, on which the
+/// normal has the squared coordinates x2, y2: D is a Gaussian there, so the mean is one again,
+/// scale D(h) exp(along x2 + across y2).
 template <class R> struct Spread { R scale, along, across; };
 template <class R> inline Spread<R> blinn_phong_spread(R m, R kappa1, R kappa2) {
   const R p = m * kappa1, q = m * kappa2;
@@ -89,8 +89,8 @@ template <class R> inline R ggx_beyond(R cos_theta, R alpha) {
   const R b = sqrt(abs(b2));
   R angle = c; // limit at b = 0
   if (b > R(1e-4))
-    angle = b2 > R(0) ? log((R(1) + b * c) * (R(1) + b * c) / f) / (R(2) * b)
-                      : std::atan(b * c) / b;
+    angle =
+        b2 > R(0) ? log((R(1) + b * c) * (R(1) + b * c) / f) / (R(2) * b) : std::atan(b * c) / b;
   return a2 * (c / f + angle);
 }
 

@@ -21,8 +21,7 @@ template <class R> inline DiskVariances<R> disk_variances(R radius, R l_v) {
 
 /// A direction of the disk around l, at the share `r` of its radius and the azimuth `beta` from e1
 /// towards e2; V is any vector with + and products with numbers.
-template <class V, class R>
-inline V disk_direction(V l, V e1, V e2, R sine_radius, R r, R beta) {
+template <class V, class R> inline V disk_direction(V l, V e1, V e2, R sine_radius, R r, R beta) {
   const R s = r * sine_radius, c = sqrt(R(1) - s * s);
   return c * l + (s * std::cos(beta)) * e1 + (s * std::sin(beta)) * e2;
 }

@@ -30,7 +30,7 @@ public:
     tank_ = builder_.group("tank");
     add_box({0, 0, 0}, {bus_x, bus_y, bus_z}, {10, 10, 15}, bus_, true);
     for (const double side : {-1.0, 1.0}) {
-      add_box({side * 1.75, 0, 0}, {0.8, 0.5, 0.012}, {24, 15, 1}, panels_, false);
+      add_box({side * 1.68, 0, 0}, {0.73, 0.45, 0.012}, {24, 15, 1}, panels_, false);
       add_box({side * 0.775, 0, 0}, {0.165, 0.03, 0.03}, {3, 1, 1}, tank_, false);
     }
     add_dish();
@@ -65,8 +65,8 @@ private:
   }
 
   /// Six faces; `is_foil`: crumpled but for the edges.
-  void add_box(Vec3<Body> centre, Vec3<Body> half, std::array<double, 3> cells,
-               std::uint32_t group, bool is_foil) {
+  void add_box(Vec3<Body> centre, Vec3<Body> half, std::array<double, 3> cells, std::uint32_t group,
+               bool is_foil) {
     const std::array<Vec3<Body>, 3> axis{{{half.x, 0, 0}, {0, half.y, 0}, {0, 0, half.z}}};
     for (std::size_t k = 0; k < 3; ++k)
       for (const double side : {-1.0, 1.0}) {
@@ -103,8 +103,7 @@ private:
     const auto bowl = [](double r, double phi, double lift, double sign) {
       const double slope = r / (2 * dish_focus);
       const Vec3<Body> out{std::cos(phi), std::sin(phi), 0};
-      return PatchPoint{r * out +
-                            Vec3<Body>{0, 0, dish_height + r * r / (4 * dish_focus) + lift},
+      return PatchPoint{r * out + Vec3<Body>{0, 0, dish_height + r * r / (4 * dish_focus) + lift},
                         sign * normalized(Vec3<Body>{0, 0, 1} - slope * out)};
     };
     const auto radius = [](double v) { return dish_hole + (dish_radius - dish_hole) * v; };

@@ -27,14 +27,11 @@ BodyLight::BodyLight(double reflectance, const Interface &surface)
     : factor_(reflectance / (pi * (1 - surface.mean_reflectance()))), reflectance_(reflectance),
       surface_(surface) {}
 
-double BodyLight::entering(double n_k) const {
-  return 1 - reflected_(std::clamp(n_k, 0.0, 1.0));
-}
+double BodyLight::entering(double n_k) const { return 1 - reflected_(std::clamp(n_k, 0.0, 1.0)); }
 
 double BodyLight::albedo(double n_k) const {
   // int f_b mu dw over the hemisphere: R_sub (1 - R(k)), since int (1 - R) mu dw = pi (1 - Rbar).
-  return reflectance_ *
-         (surface_ ? transmitted(*surface_, n_k).mean : entering(n_k));
+  return reflectance_ * (surface_ ? transmitted(*surface_, n_k).mean : entering(n_k));
 }
 
 Stokes<ScatteringPlane> BodyLight::operator()(const SurfaceDirections &at,

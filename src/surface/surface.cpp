@@ -302,8 +302,7 @@ bool Surface::is_anisotropic() const {
 const Material &Surface::material() const { return tables_->material; }
 
 const Distribution *Surface::normals(std::size_t band) const {
-  return tables_->lobes.empty() ? nullptr
-                                : &tables_->lobes[tables_->bands[band].lobe].normals();
+  return tables_->lobes.empty() ? nullptr : &tables_->lobes[tables_->bands[band].lobe].normals();
 }
 
 std::optional<std::vector<Surface::SeparableDiffuse>>

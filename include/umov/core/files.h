@@ -18,8 +18,8 @@ Result<std::string> read_file(const std::filesystem::path &path,
 /// target is always absent, the complete old or the complete new file. Failure is Device.
 Result<void> write_file_atomically(const std::filesystem::path &path, std::string_view bytes);
 
-/// A file that grows piece by piece and is there under its name only when it is complete: written as
-/// a temporary file in the same folder, which is removed unless `commit` succeeds.
+/// A file that grows piece by piece and is there under its name only when it is complete: written
+/// as a temporary file in the same folder, which is removed unless `commit` succeeds.
 class FileInProgress {
 public:
   /// Device if a file cannot be made there.

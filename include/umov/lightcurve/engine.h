@@ -64,8 +64,8 @@ struct StokesTable {
   [[nodiscard]] BandResult at(std::size_t pose, std::size_t band) const;
 };
 
-/// A scene ready for sunlight from any direction. Evaluation is thread safe, and gives the same bits
-/// for any number of threads and any split of the poses.
+/// A scene ready for sunlight from any direction. Evaluation is thread safe, and gives the same
+/// bits for any number of threads and any split of the poses.
 class Engine {
 public:
   Engine(const Scene &scene, const EngineOptions &options);

@@ -30,8 +30,9 @@ struct AgenaOptions {
   std::size_t sides = 48;
 };
 Mesh make_agena(const AgenaOptions &options = {});
-/// The benchmark's satellite: bus, two panels on yokes, dish (a shell), tower and tank, 4.2 m across,
-/// at least `facets` triangles, most of them dividing flat faces. Groups: bus, panels, dish, tank.
+/// The benchmark's satellite: bus, two panels on yokes, dish (a shell), tower and tank, 4.2 m
+/// across, at least `facets` triangles, most of them dividing flat faces. Groups: bus, panels,
+/// dish, tank.
 struct BoxWingOptions {
   std::size_t facets = 10'000;
   double crumple_m = 0; ///< height of the folds of the bus's foil; 0: flat faces

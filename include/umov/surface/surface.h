@@ -97,7 +97,8 @@ public:
     bool is_single_bounce = false;
   };
   /// All diffuse light of a band as such products; empty if some of it is of another form.
-  [[nodiscard]] std::optional<std::vector<SeparableDiffuse>> separable_diffuse(std::size_t band) const;
+  [[nodiscard]] std::optional<std::vector<SeparableDiffuse>>
+  separable_diffuse(std::size_t band) const;
   /// The smooth interface of a band.
   [[nodiscard]] const Interface &interface(std::size_t band) const;
 

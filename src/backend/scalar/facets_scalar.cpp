@@ -16,7 +16,9 @@ struct ScalarMachine {
   static double total(double x) { return x; }
   static bool any(bool x) { return x; }
 
-  static int joint(const std::uint32_t *a, const std::uint32_t *b) { return std::popcount(*a & *b); }
+  static int joint(const std::uint32_t *a, const std::uint32_t *b) {
+    return std::popcount(*a & *b);
+  }
 
   static void count_lanes(const kernel::EntryLook &sun, const kernel::EntryLook &seen,
                           std::size_t words, std::size_t s, const float *weight, double &mean,

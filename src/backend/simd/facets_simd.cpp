@@ -26,9 +26,9 @@ struct SimdMachine {
     return hn::Load(WordTag(), look.block[k][block].word + s);
   }
 
-  static HWY_INLINE void count_lanes(const EntryLook &sun, const EntryLook &seen,
-                                     std::size_t words, std::size_t s, const float *weight,
-                                     Lanes &mean, Lanes &square) {
+  static HWY_INLINE void count_lanes(const EntryLook &sun, const EntryLook &seen, std::size_t words,
+                                     std::size_t s, const float *weight, Lanes &mean,
+                                     Lanes &square) {
     const WordTag du;
     hn::Vec<WordTag> count[9];
     for (auto &c : count)
@@ -74,8 +74,8 @@ struct SimdMachine {
   }
 };
 
-void sum_facets_here(const SceneData<float> &scene, const Masks *masks,
-                     const MaskErrorModel &model, const PoseData<float> &pose, PoseSums &out) {
+void sum_facets_here(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
+                     const PoseData<float> &pose, PoseSums &out) {
   FacetLoops<SimdMachine>(scene, masks, model, pose, out).run();
 }
 

@@ -55,7 +55,9 @@ HWY_INLINE Lanes inverse_sqrt(Lanes a) {
   return hn::Mul(r, hn::Add(half, hn::Set(d, 1.5f)));
 }
 HWY_INLINE Lanes sqrt(Lanes a) { return a * inverse_sqrt(max(a, Lanes(1e-36f))); }
-HWY_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) { return hn::IfThenElse(m.m, yes.v, no.v); }
+HWY_INLINE Lanes select(LaneMask m, Lanes yes, Lanes no) {
+  return hn::IfThenElse(m.m, yes.v, no.v);
+}
 HWY_INLINE bool any(LaneMask m) { return !hn::AllFalse(FloatTag(), m.m); }
 
 /// 2^x: relative error below 3e-7 for x in [-126, 127]; 0 below.
@@ -69,13 +71,13 @@ HWY_INLINE Lanes exp2(Lanes x) {
   const auto shifted = hn::Add(clamped, magic);
   const auto f = hn::Sub(clamped, hn::Sub(shifted, magic));
   // Chebyshev fit of 2^f, |f| <= 1/2, in relative error.
-  constexpr float c[6] = {1.00000012f,   0.693146944f,  0.240221217f,
+  constexpr float c[6] = {1.00000012f,   0.693146944f,   0.240221217f,
                           0.0555074252f, 0.00967545994f, 0.00132669706f};
   auto p = hn::Set(d, c[5]);
   for (int k = 4; k >= 0; --k)
     p = hn::MulAdd(p, f, hn::Set(d, c[k]));
-  const auto scale = hn::BitCast(
-      d, hn::Add(hn::ShiftLeft<23>(hn::BitCast(di, shifted)), hn::Set(di, 127 << 23)));
+  const auto scale =
+      hn::BitCast(d, hn::Add(hn::ShiftLeft<23>(hn::BitCast(di, shifted)), hn::Set(di, 127 << 23)));
   return hn::Mul(p, scale);
 }
 HWY_INLINE Lanes exp(Lanes x) { return exp2(x * Lanes(1.44269504f)); }
@@ -88,8 +90,8 @@ HWY_INLINE Lanes log2_of_one_minus(Lanes y) {
   // x = m 2^e with m in [sqrt(1/2), sqrt(2)).
   const auto shifted = hn::Sub(hn::BitCast(di, x.v), hn::Set(di, 0x3F3504F3));
   const auto e = hn::ShiftRight<23>(shifted);
-  const auto m = hn::BitCast(
-      d, hn::Add(hn::And(shifted, hn::Set(di, 0x007FFFFF)), hn::Set(di, 0x3F3504F3)));
+  const auto m =
+      hn::BitCast(d, hn::Add(hn::And(shifted, hn::Set(di, 0x007FFFFF)), hn::Set(di, 0x3F3504F3)));
   // Where e = 0, m - 1 is -y exactly: the rounding of 1 - y would cost 6e-8 times the exponent.
   const auto is_near = hn::RebindMask(d, hn::Eq(e, hn::Zero(di)));
   const Lanes z = hn::IfThenElse(is_near, hn::Neg(y.v), hn::Sub(m, hn::Set(d, 1.0f)));
@@ -107,9 +109,8 @@ HWY_INLINE Lanes log2_of_one_minus(Lanes y) {
 /// correlation of shadowing with direction, which it changes by less than 3e-4.
 HWY_INLINE Lanes acos(Lanes x) {
   const Lanes a = min(abs(x), Lanes(1.0f));
-  const Lanes p =
-      ((Lanes(-0.0187293f) * a + Lanes(0.0742610f)) * a + Lanes(-0.2121144f)) * a +
-      Lanes(1.5707288f);
+  const Lanes p = ((Lanes(-0.0187293f) * a + Lanes(0.0742610f)) * a + Lanes(-0.2121144f)) * a +
+                  Lanes(1.5707288f);
   const Lanes near = sqrt(Lanes(1.0f) - a) * p;
   return select(x < Lanes(0.0f), Lanes(3.14159265f) - near, near);
 }

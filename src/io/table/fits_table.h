@@ -15,8 +15,8 @@ public:
   FitsTable &operator=(FitsTable &&other) noexcept;
   ~FitsTable();
 
-  /// Rows [begin, end) as the bytes of the file. Pure: for many threads. BadInput for a text that is
-  /// longer than its column.
+  /// Rows [begin, end) as the bytes of the file. Pure: for many threads. BadInput for a text that
+  /// is longer than its column.
   Result<void> encode(const Table &table, std::size_t begin, std::size_t end,
                       std::string &out) const;
   Result<void> append(std::size_t rows, const std::string &bytes);

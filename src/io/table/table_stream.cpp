@@ -55,8 +55,7 @@ Result<TableStream> TableStream::open(const std::filesystem::path &path, const T
   if (path.extension() == ".fits") {
     FileInProgress file = FileInProgress::for_library(path);
     UMOV_ASSIGN(fits, FitsTable::create(file.temporary(), first));
-    out.writer_ =
-        std::make_unique<Writer>(Writer{std::move(file), path, std::move(fits), threads});
+    out.writer_ = std::make_unique<Writer>(Writer{std::move(file), path, std::move(fits), threads});
   } else {
     UMOV_ASSIGN(file, FileInProgress::open(path));
     UMOV_TRY(file.write(csv_header(first)));

@@ -7,11 +7,11 @@ namespace umov {
 
 /// One side of elements that share normal and slot.
 struct FacetClass {
-  Vec3<Body> normal;         ///< unit, out of the side that scatters
+  Vec3<Body> normal; ///< unit, out of the side that scatters
   double area_m2 = 0;
   std::uint32_t slot = 0;
-  float side = 1;            ///< +1 front, -1 back of its elements
-  double spread2 = 0;        ///< mean square deviation of the joined normals [rad2]
+  float side = 1;                     ///< +1 front, -1 back of its elements
+  double spread2 = 0;                 ///< mean square deviation of the joined normals [rad2]
   std::uint32_t first = 0, count = 0; ///< into FacetClasses::element
 };
 

@@ -61,12 +61,12 @@ CompiledScene compile_scene(const Scene &scene, const FacetClasses &classes, con
     if (is_new)
       add_slot(scene, group.slot, out, surfaces, columns);
     const backend::SlotTerms &terms = out.data.slots[it->second];
-    // Second-order error of a Gaussian lobe whose normal is off: m spread^2 / 2 of its value.
+    // A Gaussian lobe with unlike normals is off by m spread^2 / 2 of its value at the peak.
     double narrowest = 1;
     for (std::size_t k = 0; k < terms.lobe_count; ++k)
       narrowest = std::min(narrowest, out.widths[terms.lobe_first + k]);
     backend::FacetGroup<double> facets;
-    std::array<double, backend::lanes> error{};
+    backend::LaneNumbers<double> error;
     for (std::size_t lane = 0; lane < backend::lanes; ++lane) {
       // Lanes without a class repeat the first one's normal, so that they never keep a group alive.
       const std::uint32_t of =
@@ -76,7 +76,7 @@ CompiledScene compile_scene(const Scene &scene, const FacetClasses &classes, con
       facets.ny[lane] = c.normal.y;
       facets.nz[lane] = c.normal.z;
       facets.area[lane] = group.member[lane] == no_index ? 0 : c.area_m2 / out.area_m2;
-      error[lane] = 0.5 * c.spread2 / std::max(narrowest * narrowest, 1e-12);
+      error.value[lane] = 0.5 * c.spread2 / std::max(narrowest * narrowest, 1e-12);
       if (terms.is_general && group.member[lane] != no_index)
         ++out.general_classes;
     }
@@ -109,7 +109,7 @@ backend::SceneData<float> round_scene(const backend::SceneData<double> &from) {
     }
   for (const auto &error : from.cluster_error) {
     auto &to = out.cluster_error.emplace_back();
-    std::transform(error.begin(), error.end(), to.begin(), f);
+    std::transform(std::begin(error.value), std::end(error.value), to.value, f);
   }
   for (const auto &lobe : from.lobes) {
     auto &to = out.lobes.emplace_back();
@@ -117,6 +117,7 @@ backend::SceneData<float> round_scene(const backend::SceneData<double> &from) {
     to.joint = lobe.joint;
     to.shape = f(lobe.shape);
     to.peak = f(lobe.peak);
+    to.per_width2 = f(lobe.per_width2);
     std::transform(std::begin(lobe.masking), std::end(lobe.masking), to.masking, f);
     to.masking_limit = f(lobe.masking_limit);
     to.masking_scale = f(lobe.masking_scale);

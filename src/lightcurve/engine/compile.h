@@ -10,12 +10,12 @@ namespace umov {
 
 /// What colours the sums of one slot.
 struct SlotLight {
-  std::uint32_t slot = 0;           ///< of the scene (elements.h)
-  std::size_t column = 0;           ///< of the Fresnel table, first band
-  const Surface *surface = nullptr; ///< of the compiled scene
-  bool is_grey = true;              ///< one lobe for all bands
+  std::uint32_t slot = 0;                          ///< of the scene (elements.h)
+  std::size_t column = 0;                          ///< of the Fresnel table, first band
+  const Surface *surface = nullptr;                ///< of the compiled scene
+  bool is_grey = true;                             ///< one lobe for all bands
   std::vector<std::vector<ProductLight>> products; ///< [band][product]
-  double diffuse_error = 0; ///< of the polynomials, relative
+  double diffuse_error = 0;                        ///< of the polynomials, relative
 };
 
 struct CompiledScene {

@@ -71,7 +71,7 @@ struct Engine::State {
 
   struct Light {
     Stokes<ScatteringPlane> stokes, deviation2; ///< and squared standard deviations
-    double bias = 0; ///< bound of what the polynomials miss, in I
+    double bias = 0;                            ///< bound of what the polynomials miss, in I
   };
 
   /// A pose made ready; the next one is while this one is summed.
@@ -114,7 +114,7 @@ struct Engine::State {
 
   /// Sums of one slot: its lobes and products, and their variances.
   struct SlotSums {
-    const double *specular, *specular_variance, *product, *product_variance;
+    const double *specular, *specular_variance, *specular_bias, *product, *product_variance;
   };
   /// Light of a slot that has kernels.
   [[nodiscard]] Light light_of_slot(std::size_t slot, std::size_t band, bool has_plane,
@@ -130,6 +130,7 @@ struct Engine::State {
       const double deviation = std::sqrt(sums.specular_variance[lobe]);
       out.stokes.i = a * sums.specular[lobe];
       out.stokes.q = b * sums.specular[lobe];
+      out.bias += a * sums.specular_bias[lobe];
       deviation_i = a * deviation;
       deviation_q = std::abs(b) * deviation;
     }
@@ -200,7 +201,7 @@ void Engine::State::light_of_facet(const Pose &pose, const Prepared &ready,
   const std::vector<double> none(work.weights.size(), 0);
   for (std::size_t b = 0; b < scene.bands.size(); ++b)
     bands[b] = light_of_slot(facet.slot, b, has_scattering_plane(pose),
-                             {work.weights.data(), none.data(),
+                             {work.weights.data(), none.data(), none.data(),
                               work.weights.data() + terms.lobe_count, none.data()},
                              work);
 }
@@ -248,8 +249,8 @@ bool Engine::State::is_uncertain(const Workspace &work) const {
   return false;
 }
 
-/// Points that bring the error of a class down to a third of what may be left, if its whole light is
-/// `weight` times that: sampling leaves 0.6 n^-3/4 at worst.
+/// Points that bring the error of a class down to a third of what may be left, if its whole light
+/// is `weight` times that: sampling leaves 0.6 n^-3/4 at worst.
 std::size_t points_for(double weight) {
   constexpr double fewest = 32, most = 4096;
   return static_cast<std::size_t>(std::clamp(std::pow(3 * 0.6 * weight, 4.0 / 3), fewest, most));
@@ -304,8 +305,8 @@ void Engine::State::refine(const Pose &pose, const Prepared &ready, Workspace &w
       weight = std::max(weight, std::max(work.facet_light[k * bands + b].stokes.i,
                                          std::abs(polarized(k, b)) / polarization_part) *
                                     whole / (wanted * std::max(work.bands[b].stokes.i, 1e-300)));
-    const TracedShare traced = work.tracer->trace(refine_points.of(facet.group, facet.lane),
-                                                  points_for(weight), pose);
+    const TracedShare traced =
+        work.tracer->trace(refine_points.of(facet.group, facet.lane), points_for(weight), pose);
     const double area = whole * traced.share;
     const double n = static_cast<double>(traced.points);
     // One pseudo-disagreement stands for slivers that no point has found.
@@ -371,10 +372,10 @@ void Engine::State::evaluate(const Pose &pose, const Prepared &ready, std::size_
   work.slots.resize(compiled.slots.size() * bands.size());
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
     const backend::SlotTerms &terms = compiled.data.slots[slot];
-    const SlotSums of_slot{sums.specular.data() + terms.lobe_first,
-                           sums.specular_variance.data() + terms.lobe_first,
-                           sums.product.data() + terms.product_first,
-                           sums.product_variance.data() + terms.product_first};
+    const SlotSums of_slot{
+        sums.specular.data() + terms.lobe_first, sums.specular_variance.data() + terms.lobe_first,
+        sums.specular_bias.data() + terms.lobe_first, sums.product.data() + terms.product_first,
+        sums.product_variance.data() + terms.product_first};
     for (std::size_t b = 0; b < bands.size(); ++b) {
       const Light &light = work.slots[slot * bands.size() + b] =
           light_of_slot(slot, b, has_plane, of_slot, work);
@@ -418,11 +419,9 @@ Engine::Engine(const Scene &scene, const EngineOptions &options)
   s.facts.classes = s.classes.list.size();
   s.facts.groups = s.plan.groups.size();
   s.facts.general_classes = s.compiled.general_classes;
-  s.facts.scene_bytes =
-      s.compiled.data.groups.size() *
-      (sizeof(backend::FacetGroup<double>) + sizeof(backend::FacetGroup<float>));
-  s.facts.setup_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  s.facts.scene_bytes = s.compiled.data.groups.size() *
+                        (sizeof(backend::FacetGroup<double>) + sizeof(backend::FacetGroup<float>));
+  s.facts.setup_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 Engine::~Engine() = default;
 Engine::Engine(Engine &&) noexcept = default;

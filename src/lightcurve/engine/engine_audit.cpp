@@ -40,9 +40,9 @@ EngineErrors compare(const StokesTable &fast, const std::vector<PoseResult> &ref
     if (!(wanted.stokes.i > EngineErrors::dim * median))
       continue;
     i.push_back(apart / wanted.stokes.i);
-    q.push_back(found.stokes.i > 0 ? std::abs(found.stokes.q / found.stokes.i -
-                                              wanted.stokes.q / wanted.stokes.i)
-                                   : 1);
+    q.push_back(found.stokes.i > 0
+                    ? std::abs(found.stokes.q / found.stokes.i - wanted.stokes.q / wanted.stokes.i)
+                    : 1);
     estimate.push_back(found.half_width.i / wanted.stokes.i);
   }
   for (auto *list : {&i, &q, &estimate})

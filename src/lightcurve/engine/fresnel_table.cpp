@@ -52,8 +52,7 @@ FresnelTable::FresnelTable(std::vector<const Surface *> surfaces) : surfaces_(st
 void FresnelTable::at(double cos_phase, double *a, double *b) const {
   const double cosine = std::sqrt(std::clamp(0.5 * (1 + cos_phase), 0.0, 1.0));
   const double x = cosine * steps;
-  const std::size_t first =
-      std::clamp<std::size_t>(static_cast<std::size_t>(x), 1, steps - 2) - 1;
+  const std::size_t first = std::clamp<std::size_t>(static_cast<std::size_t>(x), 1, steps - 2) - 1;
   const auto c = kernel::cubic_weights(x - static_cast<double>(first + 1));
   const double *row[4];
   for (std::size_t k = 0; k < 4; ++k)

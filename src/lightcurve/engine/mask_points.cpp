@@ -96,9 +96,8 @@ GroupPlan plan_groups(const FacetClasses &classes, std::size_t points) {
   return out;
 }
 
-ClassPoints spread_points(const Scene &scene, const Elements &elements,
-                          const FacetClasses &classes, std::uint32_t of, std::size_t count,
-                          const Occluder &occluder) {
+ClassPoints spread_points(const Scene &scene, const Elements &elements, const FacetClasses &classes,
+                          std::uint32_t of, std::size_t count, const Occluder &occluder) {
   const FacetClass &c = classes.list[of];
   ClassPoints out;
   out.origin.reserve(count);

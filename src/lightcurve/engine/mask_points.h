@@ -26,8 +26,7 @@ GroupPlan plan_groups(const FacetClasses &classes, std::size_t points);
 struct ClassPoints {
   std::vector<Occluder::Point> origin; ///< in the occluder's coordinates
 };
-ClassPoints spread_points(const Scene &scene, const Elements &elements,
-                          const FacetClasses &classes, std::uint32_t of, std::size_t count,
-                          const Occluder &occluder);
+ClassPoints spread_points(const Scene &scene, const Elements &elements, const FacetClasses &classes,
+                          std::uint32_t of, std::size_t count, const Occluder &occluder);
 
 } // namespace umov

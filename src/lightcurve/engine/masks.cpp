@@ -18,8 +18,8 @@ constexpr double least_sine = 0.002;
 struct Entry {
   std::size_t blocks = 0; ///< of 64 bytes
   bool is_wide = false;
-  std::vector<Vec3<Body>> normal;    ///< per lane; one for a wide entry
-  std::vector<ClassPoints> points;   ///< per lane
+  std::vector<Vec3<Body>> normal;  ///< per lane; one for a wide entry
+  std::vector<ClassPoints> points; ///< per lane
 };
 
 /// Blocks of one direction and where each entry's are: hidden, free, or counted from the first.
@@ -47,10 +47,9 @@ public:
         fill_lane(entry, lane);
         continue;
       }
-      const Vec3<Body> ray =
-          sine < least_sine
-              ? normalized(direction + (least_sine - sine) * entry.normal[lane])
-              : direction;
+      const Vec3<Body> ray = sine < least_sine
+                                 ? normalized(direction + (least_sine - sine) * entry.normal[lane])
+                                 : direction;
       const auto &origins = entry.points[lane].origin;
       directions_.assign(origins.size(), as_point(ray));
       free_.resize(origins.size());
@@ -157,8 +156,8 @@ backend::Masks build_masks(const Scene &scene, const Elements &elements,
     if (!group.is_wide)
       narrow.push_back(std::move(entry));
     out.groups.push_back(mask);
-    out.longest = std::max(out.longest, static_cast<std::uint32_t>(
-                                            group.is_wide ? wide.back().blocks : group.words));
+    out.longest = std::max(
+        out.longest, static_cast<std::uint32_t>(group.is_wide ? wide.back().blocks : group.words));
   }
   out.pool.assign(std::size_t{2} * out.longest, backend::MaskBlock{});
   std::memset(out.pool.data() + out.longest, 0xFF, out.longest * sizeof(backend::MaskBlock));

@@ -33,8 +33,8 @@ Vec3<Body> octahedron_direction(SquarePoint p) {
 
 Vec3<Body> grid_direction(std::size_t cells, std::size_t index) {
   const double n = static_cast<double>(cells);
-  return octahedron_direction({static_cast<double>(index / (cells + 1)) / n,
-                               static_cast<double>(index % (cells + 1)) / n});
+  return octahedron_direction(
+      {static_cast<double>(index / (cells + 1)) / n, static_cast<double>(index % (cells + 1)) / n});
 }
 
 backend::GridLook look_around(std::size_t cells, Vec3<Body> direction) {

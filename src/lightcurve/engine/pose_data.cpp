@@ -16,8 +16,8 @@ void put(Vec3<Body> v, double *out) {
   out[2] = v.z;
 }
 
-/// Half vector of a direction of light; some vector where there is none (phase 180), when no facet is
-/// lit for the observer.
+/// Half vector of a direction of light; some vector where there is none (phase 180), when no facet
+/// is lit for the observer.
 void put_half_vector(Vec3<Body> l, Vec3<Body> v, double *out) {
   const Vec3<Body> sum = l + v;
   put(norm(sum) > 1e-12 ? normalized(sum) : any_perpendicular(l), out);
@@ -56,8 +56,8 @@ void prepare_pose(const Pose &pose, double cos_phase,
     kernel::LobeAtPose<double> &at = out.lobes[k];
     at = {};
     const double q = widths[k] > 0 ? kappa.across / (widths[k] * widths[k]) : HUGE_VAL;
-    out.is_narrow[k] = pose.sun_radius_rad > 0 ? (q < kernel::nodes_max ? 0 : 1)
-                                               : (widths[k] > 0 ? 0 : 1);
+    out.is_narrow[k] =
+        pose.sun_radius_rad > 0 ? (q < kernel::nodes_max ? 0 : 1) : (widths[k] > 0 ? 0 : 1);
     if (lobes[k].kind == kernel::LobeKind::BlinnPhong && q < kernel::closed_form_max) {
       const auto by = kernel::blinn_phong_spread(lobes[k].shape, kappa.along, kappa.across);
       at = {true, false, lobes[k].peak * by.scale, by.along * std::numbers::log2e,

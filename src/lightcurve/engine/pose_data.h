@@ -7,8 +7,8 @@
 
 namespace umov {
 
-/// Directions and, for each lobe of that width, what the Sun's size makes of it. Grid directions are
-/// filled in where there are masks.
+/// Directions and, for each lobe of that width, what the Sun's size makes of it. Grid directions
+/// are filled in where there are masks.
 void prepare_pose(const Pose &pose, double cos_phase,
                   const std::vector<kernel::LobeConstants<double>> &lobes,
                   const std::vector<double> &widths, const backend::Masks *masks,

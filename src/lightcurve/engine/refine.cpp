@@ -29,8 +29,8 @@ RefinePoints::RefinePoints(const Scene &scene, const Elements &elements,
       const std::size_t count = first_[g * backend::lanes + lane + 1] - at;
       if (count == 0)
         continue;
-      const ClassPoints points = spread_points(scene, elements, classes,
-                                               plan.groups[g].member[lane], count, occluder);
+      const ClassPoints points =
+          spread_points(scene, elements, classes, plan.groups[g].member[lane], count, occluder);
       std::copy(points.origin.begin(), points.origin.end(),
                 origin_.begin() + static_cast<std::ptrdiff_t>(at));
     }
@@ -43,9 +43,9 @@ std::span<const Occluder::Point> RefinePoints::of(std::uint32_t group, std::uint
 }
 
 void RefineTracer::trace(Vec3<Body> direction) {
-  directions_.assign(left_.size(), {static_cast<float>(direction.x),
-                                    static_cast<float>(direction.y),
-                                    static_cast<float>(direction.z)});
+  directions_.assign(left_.size(),
+                     {static_cast<float>(direction.x), static_cast<float>(direction.y),
+                      static_cast<float>(direction.z)});
   free_.resize(left_.size());
   occluder_.is_free(left_, directions_, free_);
   std::size_t kept = 0;

@@ -23,9 +23,10 @@ double node(std::size_t i) { // Chebyshev's, in [-1, 1]
   return std::cos(std::numbers::pi * (static_cast<double>(i) + 0.5) / nodes);
 }
 
-/// Profiles are polynomials in t = 2 (1 + bend) c / (c + bend) - 1, c the cosine: with a bend of some
-/// widths of the lobe, what happens near grazing is drawn out. Chosen by trial: degree 12 leaves
-/// 4e-7 at m = 20, 7e-5 at m = 1000 and 3e-4 at m = 10,000; in the square root of c 2e-3 and 3e-2.
+/// Profiles are polynomials in t = 2 (1 + bend) c / (c + bend) - 1, c the cosine: with a bend of
+/// some widths of the lobe, what happens near grazing is drawn out. Chosen by trial: degree 12
+/// leaves 4e-7 at m = 20, 7e-5 at m = 1000 and 3e-4 at m = 10,000; in the square root of c 2e-3 and
+/// 3e-2.
 double cosine(double t, double bend) {
   const double y = 0.5 * (t + 1);
   return bend * y / (1 + bend - y);
@@ -85,6 +86,7 @@ std::optional<kernel::LobeConstants<double>> fit_lobe(const Distribution &normal
     return {};
   kernel::LobeConstants<double> out;
   out.shape = form->shape;
+  out.per_width2 = 1 / (normals.width() * normals.width());
   switch (form->kind) {
   case KernelForm::Kind::BlinnPhong:
     out.kind = kernel::LobeKind::BlinnPhong;
@@ -196,8 +198,7 @@ std::optional<backend::Profile<double>> fit_profile(const std::array<double, nod
     const Coefficients c = fit(value, degree);
     double error = 0;
     for (std::size_t i = 0; i < nodes; ++i)
-      error = std::max(error,
-                       std::abs(kernel::polynomial(c.data(), degree, node(i)) - value[i]));
+      error = std::max(error, std::abs(kernel::polynomial(c.data(), degree, node(i)) - value[i]));
     const bool is_last = degree == kernel::polynomial_degree;
     if (error > (is_last ? accepted_error : wanted_error) * unit)
       continue;
@@ -249,13 +250,13 @@ bool fit_diffuse(const std::vector<std::vector<Surface::SeparableDiffuse>> &band
       for (std::uint32_t j = i; j < basis.functions.size(); ++j) {
         out.products.push_back({first + i, first + j});
         for (std::size_t b = 0; b < bands.size(); ++b)
-          out.light[b].push_back({bands[b][t].factor * basis.share[b][i] * basis.share[b][j] *
-                                      (i == j ? 1 : 2),
-                                  bands[b][t].is_single_bounce});
+          out.light[b].push_back(
+              {bands[b][t].factor * basis.share[b][i] * basis.share[b][j] * (i == j ? 1 : 2),
+               bands[b][t].is_single_bounce});
       }
     for (std::size_t b = 0; b < bands.size(); ++b)
-      out.diffuse_error = std::max(out.diffuse_error, fit_error(family[b], basis.share[b],
-                                                                out.profiles.data() + first));
+      out.diffuse_error = std::max(
+          out.diffuse_error, fit_error(family[b], basis.share[b], out.profiles.data() + first));
   }
   return out.profiles.size() <= backend::profiles_max &&
          out.products.size() <= backend::products_max;

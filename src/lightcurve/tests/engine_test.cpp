@@ -6,8 +6,8 @@
 namespace umov::cases {
 namespace {
 
-/// Largest |I - I_ref| over the larger of I_ref and a thousandth of the brightest pose, and the same
-/// of Q and U over I.
+/// Largest |I - I_ref| over the larger of I_ref and a thousandth of the brightest pose, and the
+/// same of Q and U over I.
 struct Difference {
   double i = 0, q = 0, u = 0;
 };
@@ -42,15 +42,17 @@ TEST(Engine, EveryKernelAgreesWithTheReference) {
   // A convex body: both paths sum the same facets. Polynomials for masking are good to 4e-6, single
   // precision to some 1e-6; the correlation with direction has an arc cosine of 3e-4.
   const Mesh mesh = make_chamfered_cube(1, 0.1);
-  const DistributionChoice lobes[] = {blinn_phong(5), blinn_phong(200), blinn_phong(1000),
+  const DistributionChoice lobes[] = {blinn_phong(5),
+                                      blinn_phong(200),
+                                      blinn_phong(1000),
                                       {"beckmann", {{"alpha", 0.2}}, {}, {}, {}},
                                       {"ggx", {{"alpha", 0.15}}, {}, {}, {}}};
   for (const double radius : {0.0, solar_radius})
     for (const auto &lobe : lobes)
       for (const Shadowing shadowing : {Shadowing::Ashikhmin, Shadowing::Smith,
                                         Shadowing::SmithDirectional, Shadowing::Separable}) {
-        const Scene scene = scene_of(mesh, NormalMode::Flat,
-                                     {with(interface_of("paper_al", 1), lobe, shadowing)});
+        const Scene scene =
+            scene_of(mesh, NormalMode::Flat, {with(interface_of("paper_al", 1), lobe, shadowing)});
         const bool has_acos = shadowing == Shadowing::SmithDirectional;
         for (const bool is_double : {false, true}) {
           const Engine engine = engine_of(scene, Visibility::None, is_double);
@@ -194,6 +196,35 @@ TEST(Engine, RefiningAFlatPanelChangesNothing) {
     EXPECT_NEAR(x.i[k], y.i[k], 1e-6 * x.i[k]);
 }
 
+TEST(Engine, JoinedNormalsStayWithinTheirEstimate) {
+  // Crumpled foil: clusters of 0.01 rad at m = 200 move lobes by a fifteenth of their width.
+  Material foil = interface_of("paper_au", 200);
+  const Scene scene = scene_of(make_box_wing({20'000, 0.01}), NormalMode::Flat, {foil});
+  EngineOptions options;
+  options.visibility = Visibility::None;
+  const Engine exact(scene, options);
+  options.cluster_rad = 0.01;
+  const Engine joined(scene, options);
+  EXPECT_LT(joined.facts().classes, exact.facts().classes * 6 / 10);
+  const auto poses = random_poses(200);
+  const StokesTable a = evaluated(exact, poses), b = evaluated(joined, poses);
+  std::vector<double> error;
+  std::size_t covered = 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const auto x = a.at(k, 1), y = b.at(k, 1);
+    error.push_back(relative(y.stokes.i, x.stokes.i));
+    covered += std::abs(y.stokes.i - x.stokes.i) <= y.half_width.i ? 1u : 0u;
+  }
+  EXPECT_LT(quantile(error, 0.5), 1e-3);
+  EXPECT_LT(quantile(error, 0.95), 1e-2);
+  EXPECT_GE(covered, 180u);
+}
+
+TEST(Engine, TheBenchmarkHasTheClassesThatItsFiguresSay) {
+  const Scene scene = scene_of(make_box_wing(), NormalMode::Flat, four_materials());
+  EXPECT_GE(engine_of(scene, Visibility::None).facts().classes, 1250u);
+}
+
 TEST(Engine, NothingIsEverNotANumber) {
   // Grazing, opposite and equal directions, poles of the grids, and a million random poses.
   const Scene cube = scene_of(make_chamfered_cube(1, 0.1), NormalMode::Flat, four_materials());
@@ -250,9 +281,9 @@ TEST(Engine, SmoothSphereAndCylinderMatchQuadrature) {
     const Angle angle = Angle::degrees(phase);
     const double a = ball.front[0].fresnel(1, std::cos(angle.radians())).a;
     for (std::uint64_t i = 0; i < 8 && phase <= 120; ++i)
-      EXPECT_LT(relative(4 * evaluated(sphere, {pose_at(i, angle)}).at(0, 1).stokes.i / a,
-                         1002.0 / 1001),
-                5e-3)
+      EXPECT_LT(
+          relative(4 * evaluated(sphere, {pose_at(i, angle)}).at(0, 1).stokes.i / a, 1002.0 / 1001),
+          5e-3)
           << phase;
     // Both directions across the axis, so that the sides alone are lit.
     const Pose pose{{1, 0, 0}, {std::cos(angle.radians()), std::sin(angle.radians()), 0}};
@@ -282,8 +313,7 @@ TEST(EngineGrid, TriangleHoldsTheDirection) {
         EXPECT_GE(weight, 0);
         sum += weight;
         // On the octahedron's face the weights are exact.
-        flat += weight * corner /
-                (std::abs(corner.x) + std::abs(corner.y) + std::abs(corner.z));
+        flat += weight * corner / (std::abs(corner.x) + std::abs(corner.y) + std::abs(corner.z));
         if (cells > 2) {
           EXPECT_LE(norm(cross(corner, d)), grid_reach(cells));
         }

@@ -1,0 +1,35 @@
+#pragma once
+// The standard cases of `umov bench`.
+
+#include <string>
+#include <umov/lightcurve/engine.h>
+#include <vector>
+
+namespace umov::cli {
+
+/// One line of the report.
+struct BenchCase {
+  std::string name;
+  std::string mesh = "box-wing"; ///< what `bench_mesh` knows, or an OBJ file in metres, +Z up
+  std::size_t facets = 10'000;
+  std::size_t bands = 3;
+  bool has_own_roughness = false; ///< per band
+  NormalMode normals = NormalMode::Flat;
+  Visibility visibility = Visibility::Masks;
+  MaskQuality masks = fast_masks;
+  double cluster_rad = 0;
+  unsigned threads = 1;
+  std::string instruction_set = "best";
+  bool has_errors = true;    ///< compared with rays
+  bool is_single_pose = false; ///< latency instead of rate
+};
+
+/// All cases, in the order of the report.
+std::vector<BenchCase> standard_cases();
+/// Masks without and with rays, fast and fine, on a mesh file.
+std::vector<BenchCase> cases_for_mesh(const std::string &file);
+
+/// The scene of a case: four materials (foil m = 200, cells 1000, white 20, metal 50) over its groups.
+Result<Scene> bench_scene(const BenchCase &of, Diagnostics &diagnostics);
+
+} // namespace umov::cli
