@@ -83,7 +83,7 @@ std::vector<BenchCase> standard_cases() {
     for (const bool own : {false, true})
       if (bands > 1 || !own)
         add(fmt::format("no visibility, {}", bands == 1 ? "1 band"
-                                              : own     ? "16 bands, own roughness"
+                                             : own      ? "16 bands, own roughness"
                                                         : "16 bands"),
             [&](BenchCase &c) {
               open(c);
@@ -143,9 +143,9 @@ Result<Scene> bench_scene(const BenchCase &of, Diagnostics &diagnostics) {
   UMOV_ASSIGN(mesh, bench_mesh(of, diagnostics));
   std::vector<Band> bands;
   for (std::size_t b = 0; b < of.bands; ++b) { // within Table 1 of the paper
-    const double nm = of.bands == 1 ? 550
-                                    : 425 + 225 * static_cast<double>(b) /
-                                                static_cast<double>(of.bands - 1);
+    const double nm = of.bands == 1
+                          ? 550
+                          : 425 + 225 * static_cast<double>(b) / static_cast<double>(of.bands - 1);
     bands.push_back({fmt::format("nm:{:g}", nm), Wavelength::nm(nm)});
   }
   const char *names[] = {"paper_au", "paper_asi", "paper_spectralon", "paper_al"};

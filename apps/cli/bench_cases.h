@@ -20,7 +20,7 @@ struct BenchCase {
   double cluster_rad = 0;
   unsigned threads = 1;
   std::string instruction_set = "best";
-  bool has_errors = true;    ///< compared with rays
+  bool has_errors = true;      ///< compared with rays
   bool is_single_pose = false; ///< latency instead of rate
 };
 
@@ -29,7 +29,8 @@ std::vector<BenchCase> standard_cases();
 /// Masks without and with rays, fast and fine, on a mesh file.
 std::vector<BenchCase> cases_for_mesh(const std::string &file);
 
-/// The scene of a case: four materials (foil m = 200, cells 1000, white 20, metal 50) over its groups.
+/// The scene of a case: four materials (foil m = 200, cells 1000, white 20, metal 50) over its
+/// groups.
 Result<Scene> bench_scene(const BenchCase &of, Diagnostics &diagnostics);
 
 } // namespace umov::cli

@@ -130,7 +130,7 @@ public:
     const auto probe = bench_poses(1, 64);
     const double guess = best_time(*engine_, probe, 1, 0.01);
     const auto count = static_cast<std::size_t>(
-        std::clamp(options_.seconds / repetitions / guess, 256.0, 200'000.0));
+        std::clamp(options_.seconds / repetitions / guess, 256.0, 300'000.0));
     const auto poses = bench_poses(2, count);
     if (one.is_single_pose)
       out.latency_us = 1e6 * latency(*engine_, poses);
@@ -178,8 +178,8 @@ struct BenchTable {
     threads.push_back(one.threads);
     const auto or_nan = [&](double x) { return r.has_errors ? x : nan; };
     numbers["setup_s"].push_back(r.facts.setup_s);
-    numbers["memory_mb"].push_back(
-        static_cast<double>(r.facts.mask_bytes + r.facts.scene_bytes) / 1e6);
+    numbers["memory_mb"].push_back(static_cast<double>(r.facts.mask_bytes + r.facts.scene_bytes) /
+                                   1e6);
     numbers["poses_per_s"].push_back(one.is_single_pose ? nan : r.rate);
     numbers["latency_us"].push_back(r.latency_us);
     numbers["i_err_median"].push_back(or_nan(r.errors.i_median));
@@ -274,8 +274,8 @@ Result<void> run_bench(const BenchOptions &o, const Common &common, Diagnostics 
 } // namespace
 
 void add_bench(CLI::App &app, const Exit &exit_with) {
-  auto *verb = app.add_subcommand(
-      "bench", "Speed and accuracy of the engine on this machine, side by side");
+  auto *verb =
+      app.add_subcommand("bench", "Speed and accuracy of the engine on this machine, side by side");
   auto o = std::make_shared<BenchOptions>();
   auto common = std::make_shared<Common>();
   verb->add_option("--mesh", o->meshes, "OBJ files (m, +Z up) instead of the standard cases");

@@ -197,7 +197,8 @@ private:
     is_exact_[count_] = false;
   }
 
-  /// Many classes with few points each; false if nothing of them is left.
+  /// Many classes with few points each. Where all directions around one are free, three counts tell
+  /// what nine would. False if nothing of them is left.
   bool hide_narrow(const GroupMask &mask) {
     const EntryLook sun = look_up(*masks_, masks_->narrow, pose_.narrow_sun, mask.entry);
     const EntryLook seen = look_up(*masks_, masks_->narrow, pose_.narrow_observer, mask.entry);
@@ -210,7 +211,14 @@ private:
     bool is_any = false;
     for (std::size_t s = 0; s < lanes; s += width) {
       R mean, square;
-      Machine::count_lanes(sun, seen, mask.words, s, narrow_weight_, mean, square);
+      if (seen.is_free)
+        Machine::template count_lanes<3, 1>(sun, seen, mask.words, s,
+                                            pose_.narrow_sun.weight.data(), mean, square);
+      else if (sun.is_free)
+        Machine::template count_lanes<1, 3>(sun, seen, mask.words, s,
+                                            pose_.narrow_observer.weight.data(), mean, square);
+      else
+        Machine::template count_lanes<3, 3>(sun, seen, mask.words, s, narrow_weight_, mean, square);
       is_any =
           apply(s, mean * R(T(1) / points), square * R(T(1) / (points * points)), points) || is_any;
     }

@@ -2,6 +2,7 @@
 // Private to the light curve: a scene flattened to what the facet loops read. T is float for the
 // vector units and double for the scalar reference.
 
+#include "backend/huge_pages.h"
 #include "kernel/facet_constants.h"
 
 #include <array>
@@ -53,10 +54,11 @@ struct SlotTerms {
 
 /// Bits of points that are free in a direction, for a grid of directions on the octahedron.
 struct MaskTable {
-  std::size_t cells = 0;             ///< per edge of the unfolded octahedron
-  std::size_t entries = 0;           ///< blocks per direction
-  std::vector<std::uint32_t> offset; ///< [direction * entries + entry], in units of 64 bytes
-  std::vector<std::uint32_t> row;    ///< first block of each direction in the pool, and the end
+  std::size_t cells = 0;   ///< per edge of the unfolded octahedron
+  std::size_t entries = 0; ///< blocks per direction
+  /// [direction * entries + entry], in units of 64 bytes
+  std::vector<std::uint32_t, HugePageAllocator<std::uint32_t>> offset;
+  std::vector<std::uint32_t> row; ///< first block of each direction in the pool, and the end
   [[nodiscard]] std::size_t directions() const { return (cells + 1) * (cells + 1); }
 };
 
@@ -75,8 +77,9 @@ struct alignas(64) MaskBlock {
 struct Masks {
   MaskTable narrow, wide;
   std::vector<GroupMask> groups;
-  std::vector<MaskBlock> pool; ///< begins with `longest` blocks of zeros and as many of ones
-  std::uint32_t longest = 0;   ///< blocks of the longest entry
+  /// Begins with `longest` blocks of zeros and as many of ones.
+  std::vector<MaskBlock, HugePageAllocator<MaskBlock>> pool;
+  std::uint32_t longest = 0; ///< blocks of the longest entry
   [[nodiscard]] std::uint32_t hidden() const { return 0; }
   [[nodiscard]] std::uint32_t free() const { return longest; }
 };

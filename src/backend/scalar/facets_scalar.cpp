@@ -20,14 +20,15 @@ struct ScalarMachine {
     return std::popcount(*a & *b);
   }
 
+  template <std::size_t A, std::size_t B>
   static void count_lanes(const kernel::EntryLook &sun, const kernel::EntryLook &seen,
                           std::size_t words, std::size_t s, const float *weight, double &mean,
                           double &square) {
     mean = square = 0;
-    for (std::size_t k = 0; k < 9; ++k) {
+    for (std::size_t k = 0; k < A * B; ++k) {
       int count = 0;
       for (std::size_t w = 0; w < words; ++w)
-        count += joint(sun.block[k / 3][w].word + s, seen.block[k % 3][w].word + s);
+        count += joint(sun.block[k / B][w].word + s, seen.block[k % B][w].word + s);
       mean += static_cast<double>(weight[k]) * count;
       square += static_cast<double>(weight[k]) * count * count;
     }

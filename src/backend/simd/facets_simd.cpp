@@ -26,24 +26,27 @@ struct SimdMachine {
     return hn::Load(WordTag(), look.block[k][block].word + s);
   }
 
+  /// Counts of A directions around the Sun with B around the observer, weighted.
+  template <std::size_t A, std::size_t B>
   static HWY_INLINE void count_lanes(const EntryLook &sun, const EntryLook &seen, std::size_t words,
                                      std::size_t s, const float *weight, Lanes &mean,
                                      Lanes &square) {
     const WordTag du;
-    hn::Vec<WordTag> count[9];
+    hn::Vec<WordTag> count[A * B];
     for (auto &c : count)
       c = hn::Zero(du);
     for (std::size_t w = 0; w < words; ++w) {
-      const auto l0 = word(sun, 0, w, s), l1 = word(sun, 1, w, s), l2 = word(sun, 2, w, s);
-      for (std::size_t b = 0; b < 3; ++b) {
+      hn::Vec<WordTag> l[A];
+      for (std::size_t a = 0; a < A; ++a)
+        l[a] = word(sun, a, w, s);
+      for (std::size_t b = 0; b < B; ++b) {
         const auto v = word(seen, b, w, s);
-        count[b] = hn::Add(count[b], hn::PopulationCount(hn::And(l0, v)));
-        count[3 + b] = hn::Add(count[3 + b], hn::PopulationCount(hn::And(l1, v)));
-        count[6 + b] = hn::Add(count[6 + b], hn::PopulationCount(hn::And(l2, v)));
+        for (std::size_t a = 0; a < A; ++a)
+          count[a * B + b] = hn::Add(count[a * B + b], hn::PopulationCount(hn::And(l[a], v)));
       }
     }
     mean = square = Lanes(0.0f);
-    for (std::size_t k = 0; k < 9; ++k) {
+    for (std::size_t k = 0; k < A * B; ++k) {
       const Lanes c = hn::ConvertTo(FloatTag(), hn::BitCast(IntTag(), count[k]));
       const Lanes weighted = c * Lanes(weight[k]);
       mean = mean + weighted;

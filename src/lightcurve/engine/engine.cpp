@@ -3,6 +3,7 @@
 #include "lightcurve/engine/compile.h"
 #include "lightcurve/engine/masks.h"
 #include "lightcurve/engine/pose_data.h"
+#include "lightcurve/engine/pose_order.h"
 #include "lightcurve/engine/refine.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ double cos_phase_of(const Pose &pose) {
 }
 
 /// Poses that one thread takes at a time.
-constexpr std::size_t poses_per_task = 256;
+constexpr std::size_t poses_per_task_min = 64, poses_per_task_max = 16'384;
 
 } // namespace
 
@@ -112,9 +113,9 @@ struct Engine::State {
       backend::sum_facets(single, hiding(), mask_error, at.single, sums);
   }
 
-  /// Sums of one slot: its lobes and products, and their variances.
+  /// Sums of one slot: its lobes and products, and their standard deviations.
   struct SlotSums {
-    const double *specular, *specular_variance, *specular_bias, *product, *product_variance;
+    const double *specular, *specular_deviation, *specular_bias, *product, *product_deviation;
   };
   /// Light of a slot that has kernels.
   [[nodiscard]] Light light_of_slot(std::size_t slot, std::size_t band, bool has_plane,
@@ -127,7 +128,7 @@ struct Engine::State {
     double deviation_i = 0, deviation_q = 0;
     if (terms.lobe_count > 0) {
       const std::size_t lobe = light.is_grey ? 0 : band;
-      const double deviation = std::sqrt(sums.specular_variance[lobe]);
+      const double deviation = sums.specular_deviation[lobe];
       out.stokes.i = a * sums.specular[lobe];
       out.stokes.q = b * sums.specular[lobe];
       out.bias += a * sums.specular_bias[lobe];
@@ -137,7 +138,7 @@ struct Engine::State {
     for (std::size_t p = 0; p < terms.product_count; ++p) {
       const ProductLight &by = light.products[band][p];
       const double value = by.coefficient * sums.product[p];
-      const double deviation = std::abs(by.coefficient) * std::sqrt(sums.product_variance[p]);
+      const double deviation = std::abs(by.coefficient) * sums.product_deviation[p];
       const double q = by.is_single_bounce && a > 0 ? b / a : 0;
       out.stokes.i += value;
       out.stokes.q += q * value;
@@ -368,7 +369,10 @@ void Engine::State::evaluate(const Pose &pose, const Prepared &ready, std::size_
   compiled.fresnel.at(cos_phase, work.a.data(), work.b.data());
   std::vector<Light> &bands = work.bands;
   bands.assign(scene.bands.size(), {});
-  const backend::PoseSums &sums = work.sums;
+  backend::PoseSums &sums = work.sums;
+  for (auto *variances : {&sums.specular_variance, &sums.product_variance})
+    for (double &variance : *variances) // now standard deviations, once for all bands
+      variance = std::sqrt(variance);
   work.slots.resize(compiled.slots.size() * bands.size());
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
     const backend::SlotTerms &terms = compiled.data.slots[slot];
@@ -432,20 +436,27 @@ std::size_t Engine::band_count() const { return state_->scene.bands.size(); }
 
 void Engine::evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads) const {
   out.resize(poses.size(), band_count());
-  const std::size_t tasks = (poses.size() + poses_per_task - 1) / poses_per_task;
-  parallel_for(tasks, threads, [&](std::size_t task) {
+  std::vector<std::uint32_t> order(poses.size());
+  if (const backend::Masks *masks = state_->hiding(); masks) {
+    const std::size_t directions = masks->narrow.directions();
+    order = order_for_masks(poses, directions, state_->facts.mask_bytes / directions);
+  } else {
+    std::iota(order.begin(), order.end(), 0u);
+  }
+  const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(threads)) + 1,
+                                      poses_per_task_min, poses_per_task_max);
+  parallel_for((poses.size() + size - 1) / size, threads, [&](std::size_t task) {
     State::Workspace work;
     work.a.resize(state_->compiled.fresnel.columns());
     work.b.resize(state_->compiled.fresnel.columns());
-    const std::size_t end = std::min(poses.size(), (task + 1) * poses_per_task);
-    const std::size_t begin = task * poses_per_task;
     if (state_->occluder)
       work.tracer.emplace(*state_->occluder);
-    state_->prepare(poses[begin], work.prepared[0]);
-    for (std::size_t i = begin; i < end; ++i) {
-      if (i + 1 < end)
-        state_->prepare(poses[i + 1], work.prepared[(i + 1 - begin) % 2]);
-      state_->evaluate(poses[i], work.prepared[(i - begin) % 2], i, out, work);
+    const std::size_t begin = task * size, end = std::min(poses.size(), begin + size);
+    state_->prepare(poses[order[begin]], work.prepared[0]);
+    for (std::size_t k = begin; k < end; ++k) {
+      if (k + 1 < end)
+        state_->prepare(poses[order[k + 1]], work.prepared[(k + 1 - begin) % 2]);
+      state_->evaluate(poses[order[k]], work.prepared[(k - begin) % 2], order[k], out, work);
     }
   });
 }
