@@ -73,6 +73,10 @@ std::vector<BenchCase> standard_cases() {
     open(c);
     c.threads = 2;
   });
+  add("no visibility, intensity alone", [&](BenchCase &c) {
+    open(c);
+    c.is_intensity_only = true;
+  });
   for (const std::size_t n : {1u, 10u})
     add(fmt::format("flat panel, {} triangles", 2 * n * n), [&](BenchCase &c) {
       open(c);
@@ -101,12 +105,15 @@ std::vector<BenchCase> standard_cases() {
     c.threads = 2;
     c.has_errors = false;
   });
-  for (const std::size_t bands : {1u, 16u})
-    add(fmt::format("fast masks, {} band{}", bands, bands == 1 ? "" : "s"), [&](BenchCase &c) {
-      c.masks = without_rays(fast_masks);
-      c.bands = bands;
-      c.has_errors = false;
-    });
+  for (const auto &[bands, own] : {std::pair{1u, false}, {16u, false}, {16u, true}})
+    add(fmt::format("fast masks, {} band{}{}", bands, bands == 1 ? "" : "s",
+                    own ? ", own roughness" : ""),
+        [&, bands = bands, own = own](BenchCase &c) {
+          c.masks = without_rays(fast_masks);
+          c.bands = bands;
+          c.has_own_roughness = own;
+          c.has_errors = false;
+        });
   add("fast masks and rays", [](BenchCase &) {});
   add("fine masks", [](BenchCase &c) { c.masks = without_rays(fine_masks); });
   add("one pose, fast masks", [](BenchCase &c) {

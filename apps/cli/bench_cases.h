@@ -20,8 +20,9 @@ struct BenchCase {
   double cluster_rad = 0;
   unsigned threads = 1;
   std::string instruction_set = "best";
-  bool has_errors = true;      ///< compared with rays
-  bool is_single_pose = false; ///< latency instead of rate
+  bool has_errors = true;         ///< compared with rays
+  bool is_single_pose = false;    ///< latency instead of rate
+  bool is_intensity_only = false; ///< what polarization costs
 };
 
 /// All cases, in the order of the report.

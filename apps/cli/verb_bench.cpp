@@ -108,10 +108,10 @@ public:
   Result<BenchResult> run(const BenchCase &one, Diagnostics &diagnostics) {
     BenchResult out;
     out.bands = one.bands;
-    const std::string key =
-        fmt::format("{} {} {} {} {} {} {} {} {}", one.mesh, one.facets, one.bands,
-                    one.has_own_roughness, static_cast<int>(one.visibility), one.masks.points,
-                    one.masks.narrow_cells, one.masks.refine_above, one.cluster_rad);
+    const std::string key = fmt::format(
+        "{} {} {} {} {} {} {} {} {} {}", one.mesh, one.facets, one.bands, one.has_own_roughness,
+        static_cast<int>(one.visibility), one.masks.points, one.masks.narrow_cells,
+        one.masks.refine_above, one.cluster_rad, one.is_intensity_only);
     if (key != key_) {
       engine_.reset();
       UMOV_ASSIGN(scene, bench_scene(one, diagnostics));
@@ -120,6 +120,7 @@ public:
       options.visibility = one.visibility;
       options.masks = one.masks;
       options.cluster_rad = one.cluster_rad;
+      options.is_intensity_only = one.is_intensity_only;
       engine_.emplace(*scene_, options);
       key_ = key;
     }

@@ -104,14 +104,12 @@ public:
         continue;
       out_.is_any_seen = true;
       const SlotTerms &slot = scene_.slots[chunk.slot];
-      bool is_handed_back = slot.is_general;
-      for (std::uint32_t k = 0; k < slot.lobe_count && !slot.is_general; ++k)
-        if (pose_.is_narrow[slot.lobe_first + k])
-          is_handed_back = true;
-        else
-          shade_lobe(slot.lobe_first + k);
-      if (is_handed_back)
+      if (slot.is_general)
         hand_back(chunk.slot);
+      else if (is_closed_family(slot))
+        shade_family(slot);
+      else
+        shade_lobes(slot, chunk.slot);
       if (slot.product_count > 0 && !slot.is_general)
         shade_products(slot);
     }
@@ -155,9 +153,11 @@ private:
   /// branch: whether the next group is among them is as good as random.
   void find_facing(const Chunk &chunk) {
     const Directions d(pose_.facet);
+    const FacetGroup<T> *const groups = scene_.groups.data() + chunk.first;
+    const std::uint32_t first = chunk.first, all = chunk.count;
     std::size_t count = 0;
-    for (std::uint32_t g = chunk.first; g < chunk.first + chunk.count; ++g) {
-      const FacetGroup<T> &f = scene_.groups[g];
+    for (std::uint32_t g = 0; g < all; ++g) {
+      const FacetGroup<T> &f = groups[g];
       bool is_any = false;
       for (std::size_t s = 0; s < lanes; s += width) {
         R x, y, z;
@@ -166,10 +166,10 @@ private:
         is_any = Machine::any(faces) | is_any;
         Machine::store(select(faces, Machine::load(f.area + s), R(T(0))), area_[count] + s);
       }
-      group_[count] = g;
-      is_exact_[count] = true;
+      group_[count] = first + g;
       count += is_any ? 1 : 0;
     }
+    std::fill_n(is_exact_, count, true);
     count_ = count;
   }
 
@@ -271,6 +271,59 @@ private:
       area *= share;
     }
     return is_any;
+  }
+
+  /// One lobe after the other; those too narrow for a kernel go back to the caller.
+  void shade_lobes(const SlotTerms &slot, std::uint32_t index) {
+    bool is_any_narrow = false;
+    for (std::uint32_t k = slot.lobe_first; k < slot.lobe_first + slot.lobe_count; ++k)
+      if (pose_.is_narrow[k])
+        is_any_narrow = true;
+      else
+        shade_lobe(k);
+    if (is_any_narrow)
+      hand_back(index);
+  }
+
+  [[nodiscard]] bool is_closed_family(const SlotTerms &slot) const {
+    bool is_closed = slot.family != backend::no_family && scene_.cluster_error.empty();
+    for (std::uint32_t k = 0; is_closed && k < slot.lobe_count; ++k)
+      is_closed = pose_.lobes[slot.lobe_first + k].has_closed_form;
+    return is_closed;
+  }
+
+  void shade_family(const SlotTerms &slot) {
+    const backend::LobeFamily<T> &family = scene_.families[slot.family];
+    const Directions d(pose_.facet);
+    R sum[backend::family_lobes_max], variance[backend::family_lobes_max];
+    for (std::size_t b = 0; b < slot.lobe_count; ++b)
+      sum[b] = variance[b] = R(T(0));
+    for (std::size_t k = 0; k < count_; ++k)
+      for (std::size_t s = 0; s < lanes; s += width) {
+        R x, y, z;
+        const Cosines at = cosines(d, scene_.groups[group_[k]], s, x, y, z);
+        const R n_l = max(at.n_l, R(T(0))), n_v = max(at.n_v, R(T(0)));
+        const FromHalf<R> from = from_half(pose_.facet, x, y, z, n_l, n_v);
+        R g[backend::family_nodes_max];
+        for (std::size_t n = 0; n < family.node_count; ++n)
+          g[n] = lobe_shadowing(family.node[n], pose_.facet, n_l, n_v);
+        const R area = Machine::load(area_[k] + s);
+        const R area_variance = is_exact_[k] ? R(T(0)) : Machine::load(variance_[k] + s);
+        for (std::size_t b = 0; b < slot.lobe_count; ++b) {
+          const T *weight = family.weight[b].data();
+          R shadowing = g[0] * R(weight[0]);
+          for (std::size_t n = 1; n < family.node_count; ++n)
+            shadowing = shadowing + g[n] * R(weight[n]);
+          const std::size_t lobe = slot.lobe_first + b;
+          const R w = closed_density(scene_.lobes[lobe], pose_.lobes[lobe], from) * shadowing;
+          sum[b] = sum[b] + area * w;
+          variance[b] = variance[b] + area_variance * (w * w);
+        }
+      }
+    for (std::size_t b = 0; b < slot.lobe_count; ++b) {
+      out_.specular[slot.lobe_first + b] += Machine::total(sum[b]);
+      out_.specular_variance[slot.lobe_first + b] += Machine::total(variance[b]);
+    }
   }
 
   void shade_lobe(std::size_t lobe) {

@@ -44,9 +44,20 @@ template <class T> struct Profile {
   T bend = 1; ///< the same for all profiles of a slot
 };
 
+/// Blinn-Phong lobes of one slot, one per band, that differ in m alone: their G2 is interpolated in
+/// log m between a few lobes, and only D is computed for each.
+inline constexpr std::size_t family_nodes_max = 6, family_lobes_max = 64;
+template <class T> struct LobeFamily {
+  std::uint32_t node_count = 0;
+  kernel::LobeConstants<T> node[family_nodes_max];
+  std::vector<std::array<T, family_nodes_max>> weight; ///< per lobe: Lagrange's, over 4
+};
+
 /// What is summed over the facets of one side of a material.
+inline constexpr std::uint32_t no_family = ~0u;
 struct SlotTerms {
   std::uint32_t lobe_first = 0, lobe_count = 0;
+  std::uint32_t family = no_family; ///< of those lobes, if they are one
   std::uint32_t profile_first = 0, profile_count = 0;
   std::uint32_t product_first = 0, product_count = 0;
   bool is_general = false; ///< nothing is summed here: its seen facets are handed back
@@ -89,6 +100,7 @@ template <class T> struct SceneData {
   std::vector<Chunk> chunks;
   std::vector<SlotTerms> slots;
   std::vector<kernel::LobeConstants<T>> lobes;
+  std::vector<LobeFamily<T>> families;
   std::vector<Profile<T>> profiles;
   std::vector<Product> products;
   /// Per group and lane: relative error of the area's light from joining unlike normals.

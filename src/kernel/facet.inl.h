@@ -12,16 +12,39 @@
 
 #include "kernel/begin.h"
 
-/// Mean of D over the half vectors of the source. The half vector enters through |n - h|^2 / 2 = 1
-/// - n.h, which keeps in single precision what the rounding of n.h would cost: 6e-8 m.
+/// 1 - n.h as |n - h|^2 / 2, which keeps in single precision what the rounding of n.h would cost:
+/// 6e-8 m.
+template <class R, class T>
+inline R one_minus_cosine(const FacetPose<T> &pose, std::size_t node, R nx, R ny, R nz) {
+  const R x = nx - R(pose.half[node][0]), y = ny - R(pose.half[node][1]),
+          z = nz - R(pose.half[node][2]);
+  return (x * x + y * y + z * z) * R(T(0.5));
+}
+
+/// The normal against the half vector: what all Blinn-Phong lobes of a facet share.
+template <class R> struct FromHalf { R log2_cosine, x2, y2; };
+template <class R, class T>
+inline FromHalf<R> from_half(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+  const R d = one_minus_cosine(pose, 0, nx, ny, nz);
+  const R x = (n_l - n_v) * R(pose.along_scale), x2 = x * x;
+  return {log2_of_one_minus(d), x2, max(R(T(0)), d * (R(T(2)) - d) - x2)};
+}
+/// Mean of Blinn-Phong's D over the disk, in closed form.
+template <class R, class T>
+inline R closed_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
+                        const FromHalf<R> &from) {
+  return R(at.peak) *
+         exp2(R(lobe.shape) * from.log2_cosine + R(at.along) * from.x2 + R(at.across) * from.y2);
+}
+
+/// Mean of D over the half vectors of the source.
 template <class R, class T>
 inline R lobe_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
                       const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
-  const auto one_minus_cosine = [&](std::size_t k) {
-    const R x = nx - R(pose.half[k][0]), y = ny - R(pose.half[k][1]), z = nz - R(pose.half[k][2]);
-    return (x * x + y * y + z * z) * R(T(0.5));
-  };
-  const auto density = [&](R d) {
+  if (at.has_closed_form)
+    return closed_density(lobe, at, from_half(pose, nx, ny, nz, n_l, n_v));
+  const auto density = [&](std::size_t node) {
+    const R d = one_minus_cosine(pose, node, nx, ny, nz);
     if (lobe.kind == LobeKind::BlinnPhong)
       return R(lobe.peak) * exp2(R(lobe.shape) * log2_of_one_minus(d));
     const R cosine = max(R(T(1)) - d, R(T(1e-4))), sine2 = d * (R(T(2)) - d);
@@ -29,18 +52,11 @@ inline R lobe_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
       return beckmann(sine2, cosine * cosine, R(lobe.shape));
     return ggx(sine2, cosine * cosine, R(lobe.shape));
   };
-  const R d0 = one_minus_cosine(0);
-  if (at.has_closed_form) {
-    const R x = (n_l - n_v) * R(pose.along_scale), x2 = x * x;
-    const R y2 = max(R(T(0)), d0 * (R(T(2)) - d0) - x2);
-    return R(at.peak) *
-           exp2(R(lobe.shape) * log2_of_one_minus(d0) + R(at.along) * x2 + R(at.across) * y2);
-  }
   if (!at.uses_nodes)
-    return density(d0);
-  R sum = density(d0) * R(T(source_node_weights[0]));
+    return density(0);
+  R sum = density(0) * R(T(source_node_weights[0]));
   for (std::size_t k = 1; k < source_nodes; ++k)
-    sum = sum + density(one_minus_cosine(k)) * R(T(source_node_weights[k]));
+    sum = sum + density(k) * R(T(source_node_weights[k]));
   return sum;
 }
 
@@ -68,12 +84,18 @@ inline R joint_masking(JointMasking joint, const FacetPose<T> &pose, R p_l, R p_
   return separable(p_l, p_v);
 }
 
+/// G2 of a facet that faces both directions.
+template <class R, class T>
+inline R lobe_shadowing(const LobeConstants<T> &lobe, const FacetPose<T> &pose, R n_l, R n_v) {
+  return joint_masking(lobe.joint, pose, lobe_masking(lobe, n_l), lobe_masking(lobe, n_v), n_l,
+                       n_v);
+}
+
 /// w (n.l)(n.v) = D G2/4 [1/sr] of a facet that faces both directions.
 template <class R, class T>
 inline R lobe_weight(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
                      const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
-  const R g =
-      joint_masking(lobe.joint, pose, lobe_masking(lobe, n_l), lobe_masking(lobe, n_v), n_l, n_v);
+  const R g = lobe_shadowing(lobe, pose, n_l, n_v);
   return lobe_density(lobe, at, pose, nx, ny, nz, n_l, n_v) * g * R(T(0.25));
 }
 

@@ -5,7 +5,8 @@
 #include <memory>
 #include <span>
 #include <string_view>
-#include <umov/lightcurve/integrator.h>
+#include <umov/lightcurve/abundances.h>
+#include <umov/lightcurve/stokes_table.h>
 #include <umov/scene/scene.h>
 #include <vector>
 
@@ -41,7 +42,10 @@ struct EngineOptions {
   /// half-widths. 0: only those that are equal to 1e-5.
   double cluster_rad = 0;
   bool is_double = false; ///< the scalar reference in double instead of the vector unit in float
-  unsigned threads = 0;   ///< of the preparation; 0: all cores
+  bool is_intensity_only = false; ///< leaves Q = 0: to measure what polarization costs
+  /// Other materials on the same mesh that abundances must serve exactly too.
+  std::vector<Scene> hypotheses;
+  unsigned threads = 0; ///< of the preparation; 0: all cores
 };
 
 /// What was prepared.
@@ -51,17 +55,6 @@ struct EngineFacts {
   std::size_t mask_bytes = 0, scene_bytes = 0;
   double setup_s = 0;
   bool is_convex = false;
-};
-
-/// Results of many poses: [pose * bands + band], in the scattering plane, [m2/sr] per unit solar
-/// irradiance, with 95 % half-widths.
-struct StokesTable {
-  std::size_t bands = 0;
-  std::vector<double> i, q, u, v;
-  std::vector<double> i_err, q_err, u_err, v_err;
-  std::vector<char> is_dark; ///< per pose: nothing is both lit and seen
-  void resize(std::size_t poses, std::size_t band_count);
-  [[nodiscard]] BandResult at(std::size_t pose, std::size_t band) const;
 };
 
 /// A scene ready for sunlight from any direction. Evaluation is thread safe, and gives the same
@@ -75,6 +68,16 @@ public:
 
   /// Stokes of every pose. `out` is resized.
   void evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads = 1) const;
+
+  /// Sums of every pose before any colour. BadInput if a material has none (measured or
+  /// anisotropic surfaces, polarized body light: they are lit facet by facet).
+  Result<void> abundances(std::span<const Pose> poses, AbundanceTable &out,
+                          unsigned threads = 1) const;
+  /// What other materials and bands (of a scene with the same mesh groups) make of this engine's
+  /// sums. Their roughness and shadowing must be those of the engine's own or of its hypotheses;
+  /// BadInput says which is not. Body light of others is expressed in the profiles that there are:
+  /// see MaterialTables::diffuse_error.
+  [[nodiscard]] Result<MaterialTables> tables_for(const Scene &materials) const;
 
   [[nodiscard]] const EngineFacts &facts() const;
   [[nodiscard]] std::size_t band_count() const;

@@ -86,6 +86,8 @@ public:
   /// The microfacet lobe depends on the azimuth about the normal.
   [[nodiscard]] bool is_anisotropic() const;
   [[nodiscard]] const Material &material() const;
+  /// Both are copies of one compiled surface.
+  [[nodiscard]] bool is_same(const Surface &other) const { return tables_ == other.tables_; }
   [[nodiscard]] std::size_t band_count() const;
   /// Normals of the microfacet lobe of a band; null for a measured surface.
   [[nodiscard]] const Distribution *normals(std::size_t band) const;

@@ -2,34 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 
 namespace umov {
 namespace {
 
-/// Appends what is summed for one slot and what colours it.
-void add_slot(const Scene &scene, std::uint32_t slot, CompiledScene &out,
-              std::vector<const Surface *> &surfaces, std::size_t &columns) {
-  const Surface &surface = surface_of_slot(scene, slot);
+/// A surface that has a lobe, and the band.
+CompiledScene::LobeSource source_of(const kernel::LobeConstants<double> &lobe,
+                                    const std::vector<const Surface *> &surfaces) {
+  for (const Surface *surface : surfaces)
+    for (std::size_t b = 0; b < surface->band_count(); ++b) {
+      const auto form = surface->normals(b)->kernel_form();
+      if (form && form->shape == lobe.shape)
+        return {surface, b};
+    }
+  return {surfaces.front(), 0};
+}
+
+/// The materials of a slot: of the scene, then of each hypothesis.
+std::vector<const Surface *> surfaces_of(const Scene &scene, const std::vector<Scene> &hypotheses,
+                                         std::uint32_t slot) {
+  std::vector<const Surface *> out{&surface_of_slot(scene, slot)};
+  for (const Scene &other : hypotheses)
+    out.push_back(&surface_of_slot(other, slot));
+  return out;
+}
+
+/// Number of equal materials in the list, or its size.
+std::uint32_t find_material(const std::vector<std::vector<const Surface *>> &list,
+                            const std::vector<const Surface *> &surfaces) {
+  const auto it = std::find_if(list.begin(), list.end(), [&](const auto &other) {
+    return std::equal(other.begin(), other.end(), surfaces.begin(),
+                      [](const Surface *a, const Surface *b) { return a->is_same(*b); });
+  });
+  return static_cast<std::uint32_t>(it - list.begin());
+}
+
+/// Appends what is summed for slots of these materials.
+void add_slot(const std::vector<const Surface *> &surfaces, CompiledScene &out) {
   backend::SlotTerms terms;
-  SlotLight light;
-  light.slot = slot;
-  light.surface = &surface;
-  light.column = columns;
-  columns += surface.band_count();
-  surfaces.push_back(&surface);
-  auto fit = fit_surface(surface);
+  auto fit = fit_surfaces(surfaces);
   terms.is_general = !fit.has_value();
   if (fit) {
-    terms.lobe_first = static_cast<std::uint32_t>(out.data.lobes.size());
-    terms.lobe_count = static_cast<std::uint32_t>(fit->lobes.size());
-    terms.profile_first = static_cast<std::uint32_t>(out.data.profiles.size());
-    terms.profile_count = static_cast<std::uint32_t>(fit->profiles.size());
-    terms.product_first = static_cast<std::uint32_t>(out.data.products.size());
-    terms.product_count = static_cast<std::uint32_t>(fit->products.size());
-    light.is_grey = fit->lobes.size() <= 1;
-    light.products = std::move(fit->light);
-    light.diffuse_error = fit->diffuse_error;
+    const auto count = [](const auto &list) { return static_cast<std::uint32_t>(list.size()); };
+    terms.lobe_first = count(out.data.lobes);
+    terms.lobe_count = count(fit->lobes);
+    terms.profile_first = count(out.data.profiles);
+    terms.profile_count = count(fit->profiles);
+    terms.product_first = count(out.data.products);
+    terms.product_count = count(fit->products);
     const auto append = [](auto &to, const auto &from) {
       to.insert(to.end(), from.begin(), from.end());
     };
@@ -37,29 +59,68 @@ void add_slot(const Scene &scene, std::uint32_t slot, CompiledScene &out,
     append(out.widths, fit->widths);
     append(out.data.profiles, fit->profiles);
     append(out.data.products, fit->products);
+    for (const auto &lobe : fit->lobes)
+      out.lobe_sources.push_back(source_of(lobe, surfaces));
+    if (fit->family) {
+      terms.family = count(out.data.families);
+      out.data.families.push_back(*fit->family);
+    }
   }
   out.data.slots.push_back(terms);
-  out.slots.push_back(std::move(light));
+  out.slots.emplace_back();
+  out.fits.push_back(std::move(fit));
 }
 
 } // namespace
 
-CompiledScene compile_scene(const Scene &scene, const FacetClasses &classes, const GroupPlan &plan,
-                            double cluster_rad) {
+Result<Colours> colours_of(const Scene &scene, const CompiledScene &sums, bool is_intensity_only,
+                           double &diffuse_error) {
+  std::vector<const Surface *> surfaces;
+  std::vector<std::optional<SurfaceLight>> light;
+  diffuse_error = 0;
+  for (std::size_t s = 0; s < sums.slots.size(); ++s) {
+    surfaces.push_back(&surface_of_slot(scene, sums.slots[s].front()));
+    for (const std::uint32_t slot : sums.slots[s])
+      if (!surface_of_slot(scene, slot).is_same(*surfaces.back()))
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("mesh groups \"{}\" and \"{}\" have one material in these sums, but "
+                        "\"{}\" and \"{}\" here; name it when the engine is made",
+                        scene.mesh.groups[group_of_slot(sums.slots[s].front())],
+                        scene.mesh.groups[group_of_slot(slot)], surfaces.back()->material().name,
+                        surface_of_slot(scene, slot).material().name));
+    light.emplace_back();
+    if (!sums.fits[s])
+      continue;
+    UMOV_ASSIGN(one, light_in(*sums.fits[s], *surfaces.back()));
+    diffuse_error = std::max(diffuse_error, one.diffuse_error);
+    light.back() = std::move(one);
+  }
+  return Colours(std::move(surfaces), std::move(light), sums.data.slots, is_intensity_only);
+}
+
+CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypotheses,
+                            const FacetClasses &classes, const GroupPlan &plan, double cluster_rad,
+                            bool is_intensity_only) {
   CompiledScene out;
   out.area_m2 = 0;
   for (const FacetClass &c : classes.list)
     out.area_m2 += c.area_m2;
   if (!(out.area_m2 > 0))
     out.area_m2 = 1;
-  std::map<std::uint32_t, std::uint32_t> slots; // of the scene -> compiled
-  std::vector<const Surface *> surfaces;
-  std::size_t columns = 0;
+  std::map<std::uint32_t, std::uint32_t> slots;        // of the scene -> compiled
+  std::vector<std::vector<const Surface *>> materials; // as data.slots
   for (const GroupPlan::Group &group : plan.groups) {
-    const auto [it, is_new] =
-        slots.emplace(group.slot, static_cast<std::uint32_t>(out.data.slots.size()));
-    if (is_new)
-      add_slot(scene, group.slot, out, surfaces, columns);
+    const auto [it, is_new] = slots.emplace(group.slot, 0);
+    if (is_new) {
+      const auto surfaces = surfaces_of(scene, hypotheses, group.slot);
+      it->second = find_material(materials, surfaces);
+      if (it->second == materials.size()) {
+        materials.push_back(surfaces);
+        add_slot(surfaces, out);
+      }
+      out.slots[it->second].push_back(group.slot);
+    }
     const backend::SlotTerms &terms = out.data.slots[it->second];
     // A Gaussian lobe with unlike normals is off by m spread^2 / 2 of its value at the peak.
     double narrowest = 1;
@@ -89,9 +150,28 @@ CompiledScene compile_scene(const Scene &scene, const FacetClasses &classes, con
       out.data.chunks.push_back({index, 0, it->second});
     ++out.data.chunks.back().count;
   }
-  out.fresnel = FresnelTable(std::move(surfaces));
+  double diffuse_error = 0;
+  out.colours = colours_of(scene, out, is_intensity_only, diffuse_error).value(); // made for it
   return out;
 }
+
+namespace {
+
+kernel::LobeConstants<float> round_lobe(const kernel::LobeConstants<double> &from) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  kernel::LobeConstants<float> out;
+  out.kind = from.kind;
+  out.joint = from.joint;
+  out.shape = f(from.shape);
+  out.peak = f(from.peak);
+  out.per_width2 = f(from.per_width2);
+  std::transform(std::begin(from.masking), std::end(from.masking), out.masking, f);
+  out.masking_limit = f(from.masking_limit);
+  out.masking_scale = f(from.masking_scale);
+  return out;
+}
+
+} // namespace
 
 backend::SceneData<float> round_scene(const backend::SceneData<double> &from) {
   const auto f = [](double x) { return static_cast<float>(x); };
@@ -111,16 +191,14 @@ backend::SceneData<float> round_scene(const backend::SceneData<double> &from) {
     auto &to = out.cluster_error.emplace_back();
     std::transform(std::begin(error.value), std::end(error.value), to.value, f);
   }
-  for (const auto &lobe : from.lobes) {
-    auto &to = out.lobes.emplace_back();
-    to.kind = lobe.kind;
-    to.joint = lobe.joint;
-    to.shape = f(lobe.shape);
-    to.peak = f(lobe.peak);
-    to.per_width2 = f(lobe.per_width2);
-    std::transform(std::begin(lobe.masking), std::end(lobe.masking), to.masking, f);
-    to.masking_limit = f(lobe.masking_limit);
-    to.masking_scale = f(lobe.masking_scale);
+  for (const auto &lobe : from.lobes)
+    out.lobes.push_back(round_lobe(lobe));
+  for (const auto &family : from.families) {
+    auto &to = out.families.emplace_back();
+    to.node_count = family.node_count;
+    std::transform(std::begin(family.node), std::end(family.node), to.node, round_lobe);
+    for (const auto &weight : family.weight)
+      std::transform(weight.begin(), weight.end(), to.weight.emplace_back().begin(), f);
   }
   for (const auto &profile : from.profiles) {
     auto &to = out.profiles.emplace_back();

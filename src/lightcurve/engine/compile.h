@@ -2,34 +2,38 @@
 // Private: a scene flattened for the facet loops.
 
 #include "backend/scene_data.h"
-#include "lightcurve/engine/fresnel_table.h"
+#include "lightcurve/engine/colours.h"
 #include "lightcurve/engine/mask_points.h"
-#include "lightcurve/engine/surface_fit.h"
 
 namespace umov {
 
-/// What colours the sums of one slot.
-struct SlotLight {
-  std::uint32_t slot = 0;                          ///< of the scene (elements.h)
-  std::size_t column = 0;                          ///< of the Fresnel table, first band
-  const Surface *surface = nullptr;                ///< of the compiled scene
-  bool is_grey = true;                             ///< one lobe for all bands
-  std::vector<std::vector<ProductLight>> products; ///< [band][product]
-  double diffuse_error = 0;                        ///< of the polynomials, relative
-};
-
+/// A scene as sums over facets and what colours them.
 struct CompiledScene {
   backend::SceneData<double> data; ///< areas in parts of `area_m2`
   double area_m2 = 1;              ///< of all classes
-  std::vector<SlotLight> slots;    ///< as data.slots
-  std::vector<double> widths;      ///< per lobe
-  FresnelTable fresnel;
+  /// Slots of the scene (elements.h) that share their material, as data.slots.
+  std::vector<std::vector<std::uint32_t>> slots;
+  std::vector<std::optional<SurfaceFit>> fits; ///< as data.slots; empty: no kernel
+  std::vector<double> widths;                  ///< per lobe
+  /// Per lobe: a surface that has it, and in which band.
+  struct LobeSource {
+    const Surface *surface;
+    std::size_t band;
+  };
+  std::vector<LobeSource> lobe_sources;
+  Colours colours;
   std::size_t general_classes = 0;
 };
 
-/// Groups by plan, surfaces by fit. `cluster_rad` > 0 adds the error of joined normals.
-CompiledScene compile_scene(const Scene &scene, const FacetClasses &classes, const GroupPlan &plan,
-                            double cluster_rad);
+/// Groups by plan, surfaces by fit: those of `scene`, and of `hypotheses`, other materials on the
+/// same mesh that the sums are to serve too. `cluster_rad` > 0 adds the error of joined normals.
+CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypotheses,
+                            const FacetClasses &classes, const GroupPlan &plan, double cluster_rad,
+                            bool is_intensity_only);
+
+/// What a scene's materials make of the sums. BadInput if they were not made for one of them.
+Result<Colours> colours_of(const Scene &scene, const CompiledScene &sums, bool is_intensity_only,
+                           double &diffuse_error);
 
 /// The same in single precision.
 backend::SceneData<float> round_scene(const backend::SceneData<double> &from);

@@ -1,27 +1,22 @@
 #include "lightcurve/engine/surface_fit.h"
 
-#include "kernel/microfacet.inl.h"
+#include "kernel/math.inl.h"
+#include "lightcurve/engine/chebyshev.h"
+#include "lightcurve/engine/lobe_fit.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 namespace umov {
 namespace {
 
 using Function = std::function<double(double)>;
-using Coefficients = std::array<double, kernel::polynomial_degree + 1>;
 
 /// A profile may differ from its polynomial by so much of its largest value: far below what
 /// visibility costs.
 constexpr double wanted_error = 1e-4, accepted_error = 2e-3;
-constexpr std::size_t nodes = 64;
-
-double node(std::size_t i) { // Chebyshev's, in [-1, 1]
-  return std::cos(std::numbers::pi * (static_cast<double>(i) + 0.5) / nodes);
-}
 
 /// Profiles are polynomials in t = 2 (1 + bend) c / (c + bend) - 1, c the cosine: with a bend of
 /// some widths of the lobe, what happens near grazing is drawn out. Chosen by trial: degree 12
@@ -33,110 +28,9 @@ double cosine(double t, double bend) {
 }
 constexpr double bend_in_widths = 8, bend_max = 20;
 
-/// Powers of t of Chebyshev's polynomials T_0 ... T_degree.
-std::vector<Coefficients> chebyshev_powers(std::size_t degree) {
-  std::vector<Coefficients> out{{1}, {0, 1}};
-  for (std::size_t k = 2; k <= degree; ++k) { // T_k = 2 t T_{k-1} - T_{k-2}
-    Coefficients next{};
-    for (std::size_t j = 0; j < kernel::polynomial_degree; ++j)
-      next[j + 1] = 2 * out[k - 1][j];
-    for (std::size_t j = 0; j <= kernel::polynomial_degree; ++j)
-      next[j] -= out[k - 2][j];
-    out.push_back(next);
-  }
-  return out;
-}
-
-/// Least squares over the nodes, as powers of t.
-Coefficients fit(const std::array<double, nodes> &value, std::size_t degree) {
-  const auto powers = chebyshev_powers(degree);
-  const auto columns = static_cast<Eigen::Index>(degree + 1);
-  Eigen::MatrixXd a(static_cast<Eigen::Index>(nodes), columns);
-  Eigen::VectorXd b(static_cast<Eigen::Index>(nodes));
-  for (std::size_t i = 0; i < nodes; ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    b(row) = value[i];
-    for (Eigen::Index k = 0; k < columns; ++k)
-      a(row, k) = kernel::polynomial(powers[static_cast<std::size_t>(k)].data(),
-                                     static_cast<std::size_t>(k), node(i));
-  }
-  const Eigen::VectorXd c = a.householderQr().solve(b);
-  Coefficients out{};
-  for (std::size_t k = 0; k <= degree; ++k)
-    for (std::size_t j = 0; j <= k; ++j)
-      out[j] += c(static_cast<Eigen::Index>(k)) * powers[k][j];
-  return out;
-}
-
-/// P = 1 beyond this cosine, to single precision.
-double masking_limit(const Distribution &normals) {
-  const auto p = [&](double c) { return normals.masking({std::sqrt(1 - c * c), 0, c}); };
-  double low = 0, high = 1;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (p(middle) < 1 - 3e-7 ? low : high) = middle;
-  }
-  return std::max(high, 1e-6);
-}
-
-std::optional<kernel::LobeConstants<double>> fit_lobe(const Distribution &normals,
-                                                      Shadowing shadowing) {
-  const auto form = normals.kernel_form();
-  if (!form)
-    return {};
-  kernel::LobeConstants<double> out;
-  out.shape = form->shape;
-  out.per_width2 = 1 / (normals.width() * normals.width());
-  switch (form->kind) {
-  case KernelForm::Kind::BlinnPhong:
-    out.kind = kernel::LobeKind::BlinnPhong;
-    out.peak = kernel::blinn_phong_peak(form->shape);
-    break;
-  case KernelForm::Kind::Beckmann:
-    out.kind = kernel::LobeKind::Beckmann;
-    break;
-  case KernelForm::Kind::Ggx:
-    out.kind = kernel::LobeKind::Ggx;
-    break;
-  }
-  switch (shadowing) {
-  case Shadowing::Ashikhmin:
-    out.joint = kernel::JointMasking::Ashikhmin;
-    break;
-  case Shadowing::Smith:
-    out.joint = kernel::JointMasking::Smith;
-    break;
-  case Shadowing::SmithDirectional:
-    out.joint = kernel::JointMasking::SmithDirectional;
-    break;
-  case Shadowing::Separable:
-    out.joint = kernel::JointMasking::Separable;
-    break;
-  }
-  if (out.kind == kernel::LobeKind::Ggx)
-    return out; // its masking is closed
-  out.masking_limit = masking_limit(normals);
-  out.masking_scale = 2 / out.masking_limit;
-  const auto per_cosine = [&](double c) {
-    return normals.masking({std::sqrt(std::max(0.0, 1 - c * c)), 0, c}) / c;
-  };
-  std::array<double, nodes> value{};
-  for (std::size_t i = 0; i < nodes; ++i)
-    value[i] = per_cosine((node(i) + 1) / out.masking_scale);
-  const Coefficients c = fit(value, kernel::polynomial_degree);
-  std::copy(c.begin(), c.end(), out.masking);
-  for (int i = 1; i <= 400; ++i) {
-    const double t = i / 200.0 - 1, x = (t + 1) / out.masking_scale;
-    const double p = x * kernel::polynomial(out.masking, kernel::polynomial_degree, t);
-    if (!(std::abs(p / (x * per_cosine(x)) - 1) < 1e-4))
-      return {};
-  }
-  return out;
-}
-
 /// The values of a family of functions of the cosine at the nodes, reduced to few.
 struct Basis {
-  std::vector<std::array<double, nodes>> functions;
+  std::vector<NodeValues> functions;
   std::vector<std::vector<double>> share; ///< [member][function]
   double largest = 0;                     ///< value of any member
 
@@ -149,24 +43,25 @@ struct Basis {
   }
 };
 
+double size_of(const NodeValues &f) {
+  double most = 0;
+  for (const double value : f)
+    most = std::max(most, std::abs(value));
+  return most;
+}
+
 /// Greedy: the member that is reproduced worst, made orthogonal to those before it, comes next.
 Basis reduce(const std::vector<Function> &family, double bend) {
   Basis out;
-  std::vector<std::array<double, nodes>> rest(family.size());
+  std::vector<NodeValues> rest(family.size());
   for (std::size_t b = 0; b < family.size(); ++b)
-    for (std::size_t i = 0; i < nodes; ++i) {
-      rest[b][i] = family[b](cosine(node(i), bend));
+    for (std::size_t i = 0; i < chebyshev_nodes; ++i) {
+      rest[b][i] = family[b](cosine(chebyshev_node(i), bend));
       out.largest = std::max(out.largest, std::abs(rest[b][i]));
     }
-  const auto size_of = [](const std::array<double, nodes> &f) {
-    double most = 0;
-    for (const double value : f)
-      most = std::max(most, std::abs(value));
-    return most;
-  };
-  const auto product = [](const std::array<double, nodes> &f, const std::array<double, nodes> &g) {
+  const auto product = [](const NodeValues &f, const NodeValues &g) {
     double sum = 0;
-    for (std::size_t i = 0; i < nodes; ++i)
+    for (std::size_t i = 0; i < chebyshev_nodes; ++i)
       sum += f[i] * g[i];
     return sum;
   };
@@ -178,12 +73,12 @@ Basis reduce(const std::vector<Function> &family, double bend) {
         worst = b;
     if (size_of(rest[worst]) <= wanted_error * out.largest)
       break;
-    const std::array<double, nodes> f = rest[worst];
+    const NodeValues f = rest[worst];
     const double square = product(f, f);
     for (std::size_t b = 0; b < rest.size(); ++b) {
       const double c = product(rest[b], f) / square;
       out.share[b].push_back(c);
-      for (std::size_t i = 0; i < nodes; ++i)
+      for (std::size_t i = 0; i < chebyshev_nodes; ++i)
         rest[b][i] -= c * f[i];
     }
     out.functions.push_back(f);
@@ -192,13 +87,14 @@ Basis reduce(const std::vector<Function> &family, double bend) {
 }
 
 /// The lowest degree that serves; empty if none does. `unit`: what an error of 1 would matter.
-std::optional<backend::Profile<double>> fit_profile(const std::array<double, nodes> &value,
-                                                    double unit, double bend) {
+std::optional<backend::Profile<double>> fit_profile(const NodeValues &value, double unit,
+                                                    double bend) {
   for (std::size_t degree = 0; degree <= kernel::polynomial_degree; ++degree) {
-    const Coefficients c = fit(value, degree);
+    const Coefficients c = fit_polynomial(value, degree);
     double error = 0;
-    for (std::size_t i = 0; i < nodes; ++i)
-      error = std::max(error, std::abs(kernel::polynomial(c.data(), degree, node(i)) - value[i]));
+    for (std::size_t i = 0; i < chebyshev_nodes; ++i)
+      error = std::max(
+          error, std::abs(kernel::polynomial(c.data(), degree, chebyshev_node(i)) - value[i]));
     const bool is_last = degree == kernel::polynomial_degree;
     if (error > (is_last ? accepted_error : wanted_error) * unit)
       continue;
@@ -211,85 +107,207 @@ std::optional<backend::Profile<double>> fit_profile(const std::array<double, nod
   return {};
 }
 
-/// Relative error of a profile of a member of a family, at worst: about that of a product of two.
-double fit_error(const Function &exact, const std::vector<double> &share,
-                 const backend::Profile<double> *profiles) {
-  double worst = 0;
-  constexpr int steps = 200;
-  for (int i = 1; i < steps; ++i) {
-    const double t = 2.0 * i / steps - 1;
-    double value = 0;
-    for (std::size_t k = 0; k < share.size(); ++k)
-      value += share[k] * kernel::polynomial(profiles[k].c, profiles[k].degree, t);
-    const double wanted = exact(cosine(t, profiles[0].bend));
-    if (wanted > 0)
-      worst = std::max(worst, std::abs(value / wanted - 1));
+using DiffuseBands = std::vector<std::vector<Surface::SeparableDiffuse>>;
+
+/// Diffuse terms of every band of a surface; empty if they have no such form.
+std::optional<DiffuseBands> diffuse_of(const Surface &surface) {
+  DiffuseBands out;
+  for (std::size_t b = 0; b < surface.band_count(); ++b) {
+    auto terms = surface.separable_diffuse(b);
+    if (!terms || surface.normals(b) == nullptr)
+      return {};
+    out.push_back(std::move(*terms));
   }
-  return worst;
+  return out;
 }
 
-/// Diffuse light: term number t of all bands is one family of profiles. False if it does not fit.
-bool fit_diffuse(const std::vector<std::vector<Surface::SeparableDiffuse>> &bands, double width,
-                 SurfaceFit &out) {
-  const double bend = std::min(bend_in_widths * width, bend_max);
-  out.light.assign(bands.size(), {});
-  const std::size_t terms = bands.front().size();
-  for (std::size_t t = 0; t < terms; ++t) {
-    std::vector<Function> family;
-    for (const auto &band : bands)
-      family.push_back(band[t].profile);
-    const Basis basis = reduce(family, bend);
-    const auto first = static_cast<std::uint32_t>(out.profiles.size());
-    for (std::size_t k = 0; k < basis.functions.size(); ++k) {
-      const auto profile = fit_profile(basis.functions[k], basis.largest / basis.weight(k), bend);
-      if (!profile)
-        return false;
-      out.profiles.push_back(*profile);
-    }
-    for (std::uint32_t i = 0; i < basis.functions.size(); ++i)
-      for (std::uint32_t j = i; j < basis.functions.size(); ++j) {
-        out.products.push_back({first + i, first + j});
-        for (std::size_t b = 0; b < bands.size(); ++b)
-          out.light[b].push_back(
-              {bands[b][t].factor * basis.share[b][i] * basis.share[b][j] * (i == j ? 1 : 2),
-               bands[b][t].is_single_bounce});
-      }
-    for (std::size_t b = 0; b < bands.size(); ++b)
-      out.diffuse_error = std::max(
-          out.diffuse_error, fit_error(family[b], basis.share[b], out.profiles.data() + first));
+/// Profiles of term number t of all surfaces and bands: one family. False if it does not fit.
+bool fit_term(const std::vector<DiffuseBands> &surfaces, std::size_t t, double bend,
+              SurfaceFit &out) {
+  std::vector<Function> family;
+  for (const DiffuseBands &bands : surfaces)
+    for (const auto &terms : bands)
+      if (t < terms.size())
+        family.push_back(terms[t].profile);
+  const Basis basis = reduce(family, bend);
+  SurfaceFit::Term term{static_cast<std::uint32_t>(out.profiles.size()),
+                        static_cast<std::uint32_t>(basis.functions.size()),
+                        static_cast<std::uint32_t>(out.products.size()), 0};
+  for (std::size_t k = 0; k < basis.functions.size(); ++k) {
+    const auto profile = fit_profile(basis.functions[k], basis.largest / basis.weight(k), bend);
+    if (!profile)
+      return false;
+    out.profiles.push_back(*profile);
   }
+  // Products of two small profiles are smaller than what the profiles themselves leave out.
+  const auto part = [&](std::size_t k) {
+    return size_of(basis.functions[k]) * basis.weight(k) / basis.largest;
+  };
+  for (std::uint32_t i = 0; i < term.count; ++i)
+    for (std::uint32_t j = i; j < term.count; ++j)
+      if (part(i) * part(j) > wanted_error)
+        out.products.push_back({term.first + i, term.first + j});
+  term.product_count = static_cast<std::uint32_t>(out.products.size()) - term.product_first;
+  out.terms.push_back(term);
+  return true;
+}
+
+bool fit_diffuse(const std::vector<DiffuseBands> &surfaces, double width, SurfaceFit &out) {
+  const double bend = std::min(bend_in_widths * width, bend_max);
+  std::size_t terms = 0;
+  for (const DiffuseBands &bands : surfaces)
+    for (const auto &of_band : bands)
+      terms = std::max(terms, of_band.size());
+  for (std::size_t t = 0; t < terms; ++t)
+    if (!fit_term(surfaces, t, bend, out))
+      return false;
   return out.profiles.size() <= backend::profiles_max &&
          out.products.size() <= backend::products_max;
 }
 
-} // namespace
+bool has_lobe(const Surface &surface) {
+  for (std::size_t b = 0; b < surface.band_count(); ++b)
+    if (!surface.interface(b).is_void())
+      return true;
+  return false;
+}
 
-std::optional<SurfaceFit> fit_surface(const Surface &surface) {
-  SurfaceFit out;
-  const std::size_t bands = surface.band_count();
-  std::vector<std::vector<Surface::SeparableDiffuse>> diffuse;
-  bool has_lobe = false;
-  for (std::size_t b = 0; b < bands; ++b) {
-    auto terms = surface.separable_diffuse(b);
-    if (!terms || surface.normals(b) == nullptr)
-      return {};
-    diffuse.push_back(std::move(*terms));
-    has_lobe = has_lobe || !surface.interface(b).is_void();
-  }
-  if (bands == 0 || !fit_diffuse(diffuse, surface.width(), out))
-    return {};
-  if (!has_lobe)
-    return out;
+bool is_same_lobe(const kernel::LobeConstants<double> &a, const kernel::LobeConstants<double> &b) {
+  return a.kind == b.kind && a.joint == b.joint && std::abs(a.shape - b.shape) <= 1e-9 * a.shape;
+}
+
+/// Adds the lobes of a surface that are not yet there. False if a kernel does not know one.
+bool add_lobes(const Surface &surface, SurfaceFit &out) {
   // A polished surface is a lobe and a mirror in one.
   if (surface.material().apparent_roughness && surface.material().apparent_roughness->rms_height_nm)
-    return {};
-  for (std::size_t b = 0; b < (surface.is_specular_grey() ? 1 : bands); ++b) {
+    return false;
+  for (std::size_t b = 0; b < (surface.is_specular_grey() ? 1 : surface.band_count()); ++b) {
     const auto lobe = fit_lobe(*surface.normals(b), surface.material().shadowing);
     if (!lobe)
-      return {};
+      return false;
+    const auto is_it = [&](const auto &other) { return is_same_lobe(*lobe, other); };
+    if (std::any_of(out.lobes.begin(), out.lobes.end(), is_it))
+      continue;
     out.lobes.push_back(*lobe);
     out.widths.push_back(surface.normals(b)->width());
   }
+  return true;
+}
+
+/// A function as a sum of a term's profiles, and how far it is off at worst, relatively.
+struct Projection {
+  std::vector<double> share;
+  std::vector<double> part; ///< of the function, that each profile makes at most
+  double error = HUGE_VAL;
+};
+Projection project(const Function &exact, const SurfaceFit &fit, const SurfaceFit::Term &term) {
+  const auto columns = static_cast<Eigen::Index>(term.count);
+  const auto *profiles = fit.profiles.data() + term.first;
+  const auto value = [&](Eigen::Index k, double t) {
+    return kernel::polynomial(profiles[k].c, profiles[k].degree, t);
+  };
+  Eigen::MatrixXd a(static_cast<Eigen::Index>(chebyshev_nodes), columns);
+  Eigen::VectorXd wanted(static_cast<Eigen::Index>(chebyshev_nodes));
+  for (std::size_t i = 0; i < chebyshev_nodes; ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    wanted(row) = exact(cosine(chebyshev_node(i), profiles[0].bend));
+    for (Eigen::Index k = 0; k < columns; ++k)
+      a(row, k) = value(k, chebyshev_node(i));
+  }
+  const Eigen::VectorXd share = a.colPivHouseholderQr().solve(wanted);
+  Projection out{{share.data(), share.data() + share.size()},
+                 std::vector<double>(static_cast<std::size_t>(term.count), 0),
+                 0};
+  constexpr int steps = 200;
+  for (int i = 1; i < steps; ++i) {
+    const double t = 2.0 * i / steps - 1, f = exact(cosine(t, profiles[0].bend));
+    double sum = 0;
+    for (Eigen::Index k = 0; k < columns; ++k) {
+      sum += share(k) * value(k, t);
+      auto &part = out.part[static_cast<std::size_t>(k)];
+      part = f > 0 ? std::max(part, std::abs(share(k) * value(k, t) / f)) : part;
+    }
+    if (f > 0)
+      out.error = std::max(out.error, std::abs(sum / f - 1));
+  }
+  return out;
+}
+
+/// Adds one diffuse term of one band as a sum of products.
+void add_term(const Surface::SeparableDiffuse &of, const SurfaceFit &fit, SurfaceLight &out,
+              std::vector<ProductLight> &products) {
+  const SurfaceFit::Term *best = nullptr;
+  Projection by;
+  for (const auto &term : fit.terms)
+    if (Projection one = project(of.profile, fit, term); one.error < by.error) {
+      best = &term;
+      by = std::move(one);
+    }
+  if (best == nullptr) {
+    out.diffuse_error = HUGE_VAL;
+    return;
+  }
+  std::size_t product = best->product_first;
+  const std::size_t end = product + best->product_count;
+  for (std::size_t i = 0; i < best->count; ++i)
+    for (std::size_t j = i; j < best->count; ++j) {
+      const int both = i == j ? 1 : 2;
+      if (product == end || fit.products[product].first != best->first + i ||
+          fit.products[product].second != best->first + j) {
+        by.error += both * by.part[i] * by.part[j]; // not summed
+        continue;
+      }
+      const double c = of.factor * by.share[i] * by.share[j] * both;
+      (of.is_single_bounce ? products[product].single_bounce : products[product].unpolarized) += c;
+      ++product;
+    }
+  out.diffuse_error = std::max(out.diffuse_error, by.error);
+}
+
+} // namespace
+
+std::optional<SurfaceFit> fit_surfaces(std::span<const Surface *const> surfaces) {
+  SurfaceFit out;
+  std::vector<DiffuseBands> diffuse;
+  for (const Surface *surface : surfaces) {
+    auto terms = diffuse_of(*surface);
+    if (!terms || terms->empty() || (has_lobe(*surface) && !add_lobes(*surface, out)))
+      return {};
+    diffuse.push_back(std::move(*terms));
+  }
+  if (!fit_diffuse(diffuse, surfaces.front()->width(), out))
+    return {};
+  out.family = fit_family(out.lobes, surfaces.front()->material().shadowing);
+  return out;
+}
+
+Result<SurfaceLight> light_in(const SurfaceFit &fit, const Surface &surface) {
+  const auto refuse = [&](const char *why) {
+    return fail(ErrorCode::BadInput,
+                "material \"" + surface.material().name + "\" " + why +
+                    " these sums were not made for; name it when the engine is made");
+  };
+  SurfaceLight out;
+  const auto diffuse = diffuse_of(surface);
+  if (!diffuse)
+    return refuse("scatters in a way that");
+  const bool is_lit = has_lobe(surface);
+  for (std::size_t b = 0; b < surface.band_count(); ++b) {
+    std::size_t lobe = 0;
+    if (is_lit) {
+      const auto wanted = fit_lobe(*surface.normals(b), surface.material().shadowing);
+      while (wanted && lobe < fit.lobes.size() && !is_same_lobe(*wanted, fit.lobes[lobe]))
+        ++lobe;
+      if (!wanted || lobe == fit.lobes.size())
+        return refuse("has a roughness or shadowing that");
+    }
+    out.lobe.push_back(static_cast<std::uint32_t>(lobe));
+    auto &products = out.products.emplace_back(fit.products.size());
+    for (const auto &term : (*diffuse)[b])
+      add_term(term, fit, out, products);
+  }
+  if (!(out.diffuse_error < HUGE_VAL))
+    return refuse("has body light that");
   return out;
 }
 

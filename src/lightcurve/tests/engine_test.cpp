@@ -3,6 +3,8 @@
 #include "lightcurve/engine/octahedron.h"
 #include "lightcurve/tests/engine_cases.h"
 
+#include <fmt/format.h>
+
 namespace umov::cases {
 namespace {
 
@@ -108,6 +110,28 @@ TEST(Engine, LobesMayDependOnTheBand) {
   const Difference d =
       difference(scene, engine_of(scene, Visibility::None), random_poses(60, solar_radius));
   EXPECT_LT(d.i, 1e-5);
+}
+
+TEST(Engine, LobesOfManyBandsShareTheirShadowing) {
+  // Interpolated in log m to 1e-4 (lobe_fit.cpp), over a factor of three in m.
+  const Mesh mesh = make_chamfered_cube(1, 0.1);
+  std::vector<Band> bands;
+  for (int nm = 430; nm <= 650; nm += 20)
+    bands.push_back({fmt::format("nm:{}", nm), Wavelength::nm(nm)});
+  for (const Shadowing shadowing : {Shadowing::Ashikhmin, Shadowing::Smith, Shadowing::Separable}) {
+    Material material = with(interface_of("paper_al", 1), blinn_phong(60), shadowing);
+    material.apparent_roughness = ApparentRoughness{0.3, 550, {}};
+    Diagnostics diagnostics;
+    const Scene scene =
+        make_scene(mesh, NormalMode::Flat, bands, {material}, {material}, diagnostics).value();
+    EXPECT_GT(scene.front[0].normals(0)->width() / scene.front[0].normals(11)->width(), 1.7);
+    for (const bool is_double : {false, true}) {
+      const Difference d = difference(scene, engine_of(scene, Visibility::None, is_double),
+                                      random_poses(60, solar_radius));
+      EXPECT_LT(d.i, 1e-4);
+      EXPECT_LT(d.q, 1e-4);
+    }
+  }
 }
 
 TEST(Engine, LobesTooNarrowForAKernelAreLitByTheirSurface) {

@@ -1,4 +1,4 @@
-#include "lightcurve/engine/refine.h"
+#include "lightcurve/engine/refine_points.h"
 
 #include <algorithm>
 #include <umov/core/parallel.h>

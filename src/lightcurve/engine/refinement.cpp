@@ -1,0 +1,192 @@
+// Poses whose masks are uncertain: rays for the classes that make the error.
+
+#include "lightcurve/engine/state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace umov {
+namespace {
+
+/// Part of the accuracy asked of I that is asked of Q/I.
+constexpr double polarization_part = 0.06;
+
+/// Points that bring the error of a class down to a third of what may be left, if its whole light
+/// is `weight` times that: sampling leaves 0.6 n^-3/4 at worst.
+std::size_t points_for(double weight) {
+  constexpr double fewest = 32, most = 4096;
+  return static_cast<std::size_t>(std::clamp(std::pow(3 * 0.6 * weight, 4.0 / 3), fewest, most));
+}
+
+/// What an area error of a facet does to Q/I, times I and in units of what is allowed of I.
+double polarized(const Stokes<ScatteringPlane> &facet, const BandLight &all, std::size_t b) {
+  return all.i[b] > 0 ? (facet.q - facet.i * all.q[b] / all.i[b]) / polarization_part : 0;
+}
+
+} // namespace
+
+/// Some band misses the accuracy from which on rays are traced, in I or in Q/I. What a slot lacks
+/// of its light changes Q/I by how far its own is from that of the whole.
+bool Engine::State::is_uncertain(Workspace &work) const {
+  colour(work);
+  const double most = options.masks.refine_above / normal_95;
+  const BandLight &all = work.light;
+  for (std::size_t b = 0; b < bands(); ++b)
+    if (all.var_i[b] > most * most * all.i[b] * all.i[b])
+      return true;
+  std::vector<double> &variance = work.band_room;
+  variance.assign(bands(), 0);
+  for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
+    if (compiled.data.slots[slot].is_general)
+      continue;
+    work.part.reset(bands());
+    compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.part);
+    for (std::size_t b = 0; b < bands(); ++b) {
+      const double scale = work.part.i[b] * all.i[b];
+      const double apart = work.part.q[b] * all.i[b] - all.q[b] * work.part.i[b];
+      if (scale > 0)
+        variance[b] += work.part.var_i[b] * (apart / scale) * (apart / scale);
+    }
+  }
+  bool is_any = false;
+  for (std::size_t b = 0; b < bands(); ++b) {
+    const double allowed = polarization_part * most * all.i[b];
+    is_any = is_any || variance[b] > allowed * allowed;
+  }
+  return is_any;
+}
+
+/// The light of one uncertain facet per unit area, and its weights in the sums.
+void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
+                          Workspace &work) const {
+  const backend::SeenFacet &facet = work.uncertain[k];
+  const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
+  Stokes<ScatteringPlane> *light = &work.facet_light[k * bands()];
+  if (terms.is_general)
+    return light_of_general(pose, at, facet, work, light);
+  double *weight = &work.weights[k * terms_max()];
+  backend::weigh_facet(compiled.data, at.pose, facet, weight);
+  for (std::size_t l = 0; l < terms.lobe_count; ++l)
+    if (at.pose.is_narrow[terms.lobe_first + l])
+      weight[l] = narrow_weight(terms.lobe_first + l, directions(pose, at, facet));
+  const double *none = work.nothing.data();
+  work.part.reset(bands());
+  compiled.colours.add_slot(facet.slot, {weight, none, none, weight + terms.lobe_count, none},
+                            work.factors, work.part);
+  for (std::size_t b = 0; b < bands(); ++b)
+    light[b] = {work.part.i[b], work.part.q[b], 0, 0};
+}
+
+void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
+  if (options.is_double)
+    backend::list_uncertain(compiled.data, hiding(), mask_error, at.pose, work.uncertain);
+  else
+    backend::list_uncertain(single, hiding(), mask_error, at.single, work.uncertain);
+  work.nothing.assign(terms_max(), 0);
+  work.facet_light.assign(work.uncertain.size() * bands(), {});
+  work.weights.assign(work.uncertain.size() * terms_max(), 0);
+  for (std::size_t k = 0; k < work.uncertain.size(); ++k)
+    weigh(pose, at, k, work);
+}
+
+/// Replaces the shares of the classes that make the error by traced ones, the worst first, until
+/// the rest is well below what is allowed.
+void Engine::State::trace(const Pose &pose, Workspace &work) const {
+  const std::size_t n = bands();
+  const BandLight &all = work.light;
+  std::vector<double> importance(work.uncertain.size(), 0);
+  std::vector<double> left(n, 0), left_q(n, 0); // variances of I, and of Q at constant Q/I
+  for (std::size_t k = 0; k < work.uncertain.size(); ++k)
+    for (std::size_t b = 0; b < n; ++b) {
+      const double variance = work.uncertain[k].variance;
+      const auto &light = work.facet_light[k * n + b];
+      const double q = polarized(light, all, b);
+      left[b] += light.i * light.i * variance;
+      left_q[b] += q * q * variance;
+      if (all.i[b] > 0)
+        importance[k] += (light.i * light.i + q * q) * variance / (all.i[b] * all.i[b]);
+    }
+  work.order.resize(work.uncertain.size());
+  std::iota(work.order.begin(), work.order.end(), 0u);
+  std::sort(work.order.begin(), work.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(-importance[a], a) < std::pair(-importance[b], b);
+  });
+  const double wanted = 0.7 * options.masks.refine_above / normal_95;
+  for (const std::uint32_t k : work.order) {
+    bool is_enough = true;
+    for (std::size_t b = 0; b < n; ++b) {
+      const double allowed = wanted * all.i[b];
+      is_enough = is_enough && std::max(left[b], left_q[b]) <= allowed * allowed;
+    }
+    if (is_enough)
+      break;
+    backend::SeenFacet &facet = work.uncertain[k];
+    const double whole = compiled.data.groups[facet.group].area[facet.lane];
+    double weight = 0; // of the class's whole light against what may be left
+    for (std::size_t b = 0; b < n; ++b) {
+      const auto &light = work.facet_light[k * n + b];
+      weight = std::max(weight, std::max(light.i, std::abs(polarized(light, all, b))) * whole /
+                                    (wanted * std::max(all.i[b], 1e-300)));
+      left[b] -= light.i * light.i * facet.variance;
+      left_q[b] -= std::pow(polarized(light, all, b), 2) * facet.variance;
+    }
+    const TracedShare traced =
+        work.tracer->trace(refine_points.of(facet.group, facet.lane), points_for(weight), pose);
+    const double points = static_cast<double>(traced.points);
+    // One pseudo-disagreement stands for slivers that no point has found.
+    const double share = std::clamp(traced.share, 0.5 / points, 1 - 0.5 / points);
+    const double change = whole * traced.share - facet.area;
+    facet.variance = whole * whole * static_cast<double>(mask_error.points) * share * (1 - share) /
+                     (points * std::sqrt(points));
+    facet.area += change;
+    const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
+    const double *weights = &work.weights[k * terms_max()];
+    for (std::size_t l = 0; l < terms.lobe_count; ++l)
+      work.sums.specular[terms.lobe_first + l] += weights[l] * change;
+    for (std::size_t p = 0; p < terms.product_count; ++p)
+      work.sums.product[terms.product_first + p] += weights[terms.lobe_count + p] * change;
+    for (std::size_t b = 0; terms.is_general && b < n; ++b) {
+      const auto &light = work.facet_light[k * n + b];
+      work.general.i[b] += light.i * change;
+      work.general.q[b] += light.q * change;
+      work.general.u[b] += light.u * change;
+      work.general.v[b] += light.v * change;
+    }
+  }
+}
+
+/// Variances of the sums from those that the facets have now.
+void Engine::State::take_variances(Workspace &work) const {
+  for (auto *column : {&work.sums.specular_variance, &work.sums.product_variance,
+                       &work.general.var_i, &work.general.var_q, &work.general.var_u,
+                       &work.general.var_v})
+    std::fill(column->begin(), column->end(), 0);
+  for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
+    const backend::SeenFacet &facet = work.uncertain[k];
+    const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
+    const double *weights = &work.weights[k * terms_max()];
+    for (std::size_t l = 0; l < terms.lobe_count; ++l)
+      work.sums.specular_variance[terms.lobe_first + l] += weights[l] * weights[l] * facet.variance;
+    for (std::size_t p = 0; p < terms.product_count; ++p) {
+      const double w = weights[terms.lobe_count + p];
+      work.sums.product_variance[terms.product_first + p] += w * w * facet.variance;
+    }
+    for (std::size_t b = 0; terms.is_general && b < bands(); ++b) {
+      const auto &s = work.facet_light[k * bands() + b];
+      work.general.var_i[b] += s.i * s.i * facet.variance;
+      work.general.var_q[b] += s.q * s.q * facet.variance;
+      work.general.var_u[b] += s.u * s.u * facet.variance;
+      work.general.var_v[b] += s.v * s.v * facet.variance;
+    }
+  }
+}
+
+void Engine::State::refine(const Pose &pose, const Prepared &at, Workspace &work) const {
+  list_uncertain(pose, at, work);
+  trace(pose, work);
+  take_variances(work);
+  take_roots(work);
+}
+
+} // namespace umov
