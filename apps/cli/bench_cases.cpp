@@ -127,7 +127,7 @@ std::vector<BenchCase> standard_cases() {
     c.mesh = "foil";
     c.facets = 1'000'000;
     c.cluster_rad = 0.01;
-    c.masks = {60'000, 32, 48, 0};
+    c.masks = {60'000, 48, 48, 0};
   });
   return out;
 }

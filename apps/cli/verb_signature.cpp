@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <future>
 #include <optional>
@@ -27,6 +28,7 @@ struct SignatureOptions {
   bool has_seed = false;
   double accuracy = 0;
   std::string visibility = "auto";
+  std::string masks; ///< file to keep them in
   std::string source = "sun";
   std::vector<double> state{1, 0, 0, 0};
 };
@@ -195,13 +197,28 @@ Result<void> run_with_rays(const SignatureJob &job, NumberedPoses numbered) {
        {}}));
 }
 
+/// Prepared, with masks from the file that the user names; made and kept there if there is none.
+Result<Engine> engine_for(const SignatureJob &job, const EngineOptions &options) {
+  const std::string &file = job.options.masks;
+  if (!file.empty() && std::filesystem::exists(file))
+    return Engine::with_masks(file, job.object.scene, options);
+  Engine out(job.object.scene, options);
+  if (!file.empty() && out.facts().is_convex) {
+    note(job.common, "a convex body needs no masks: nothing is kept in " + file);
+  } else if (!file.empty()) {
+    UMOV_TRY(out.save_masks(file));
+    note(job.common, "masks are kept in " + file);
+  }
+  return out;
+}
+
 /// Block by block with the prepared scene; files of rows are written as they come.
 Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) {
   EngineOptions options;
   options.masks = masks_for(job.accuracy);
   options.threads = job.threads();
   note(job.common, "preparing the scene ...");
-  const Engine engine(job.object.scene, options);
+  UMOV_ASSIGN(engine, engine_for(job, options));
   const EngineFacts &facts = engine.facts();
   note(job.common,
        fmt::format("{} triangles in {} classes, {:.0f} MB of masks, {:.1f} s", facts.triangles,
@@ -209,9 +226,9 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
   ProgressBar bar("poses", job.common);
   std::optional<TableStream> stream;
   const bool is_streamed_file = !job.options.output.empty() && is_streamed(job.options.output);
-  std::future<Result<void>> writing; // ends before what it writes to
-  Table whole;                       // of what is not streamed
-  constexpr std::size_t block = 1u << 15;
+  std::future<Result<void>> writing;      // ends before what it writes to
+  Table whole;                            // of what is not streamed
+  constexpr std::size_t block = 1u << 17; // many: neighbours in direction share their masks
   std::size_t done = 0;
   StokesTable results;
   std::vector<Pose> poses;
@@ -271,10 +288,12 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   UMOV_ASSIGN(source, source_of(o));
   UMOV_TRY(check_phases(o));
   const bool is_sun = o.source == "sun";
-  if (!is_sun && o.visibility == "masks")
-    return fail(ErrorCode::Usage, "--visibility masks is for sunlight; a laser takes rays");
+  if (!is_sun && (o.visibility == "masks" || !o.masks.empty()))
+    return fail(ErrorCode::Usage, "masks are for sunlight; a laser takes rays");
   const std::size_t random = o.poses * o.phases_deg.size();
-  const bool has_engine = is_sun && (o.visibility == "masks" ||
+  if (!o.masks.empty() && o.visibility == "rays")
+    return fail(ErrorCode::Usage, "--masks goes with --visibility masks or auto");
+  const bool has_engine = is_sun && (!o.masks.empty() || o.visibility == "masks" ||
                                      (o.visibility == "auto" && random >= engine_from &&
                                       (o.accuracy > 0 ? o.accuracy : scenario.accuracy) >= 1e-3));
   NumberedPoses numbered;
@@ -351,6 +370,9 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
                    "with its own; auto: masks for 5000 random poses or more")
       ->check(CLI::IsMember({"auto", "rays", "masks"}))
       ->capture_default_str();
+  verb->add_option("--masks", o->masks,
+                   "File to keep the masks in: read if it exists, made if not. For one mesh, its "
+                   "material groups and one accuracy");
   verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv, .fits or .json by its suffix");
   add_threads(*verb, *common);
   add_common(*verb, *common, true);

@@ -94,6 +94,8 @@ public:
     out_.specular_bias.assign(scene_.lobes.size(), 0);
     out_.product.assign(scene_.products.size(), 0);
     out_.product_variance.assign(scene_.products.size(), 0);
+    out_.specular_linear.assign(scene_.lobes.size(), 0);
+    out_.product_linear.assign(scene_.products.size(), 0);
     out_.seen.clear();
     out_.is_any_seen = false;
     for (const Chunk &chunk : scene_.chunks) {
@@ -113,6 +115,8 @@ public:
       if (slot.product_count > 0 && !slot.is_general)
         shade_products(slot);
     }
+    if (masks_ != nullptr)
+      backend::add_alike(model_, out_);
   }
 
   /// Facets whose share is uncertain.
@@ -124,9 +128,9 @@ public:
         hide();
       for (std::size_t k = 0; k < count_; ++k)
         for (std::uint32_t j = 0; j < lanes && !is_exact_[k]; ++j)
-          if (variance_[k][j] > 0)
+          if (deviation_[k][j] > 0)
             out.push_back({group_[k], j, chunk.slot, static_cast<double>(area_[k][j]),
-                           static_cast<double>(variance_[k][j])});
+                           square(static_cast<double>(deviation_[k][j]))});
     }
   }
 
@@ -190,10 +194,12 @@ private:
     }
   }
 
-  /// Makes room for a variance where there was none.
-  void clear_variance() {
+  static double square(double x) { return x * x; }
+
+  /// Makes room for a deviation where there was none.
+  void clear_deviation() {
     for (std::size_t s = 0; is_exact_[count_] && s < lanes; s += width)
-      Machine::store(R(T(0)), variance_[count_] + s);
+      Machine::store(R(T(0)), deviation_[count_] + s);
     is_exact_[count_] = false;
   }
 
@@ -206,34 +212,36 @@ private:
       return false;
     if (sun.is_free && seen.is_free)
       return true;
-    clear_variance();
+    clear_deviation();
     const T points = T(32) * T(mask.words);
     bool is_any = false;
     for (std::size_t s = 0; s < lanes; s += width) {
-      R mean, square;
+      R mean, mean_square;
       if (seen.is_free)
         Machine::template count_lanes<3, 1>(sun, seen, mask.words, s,
-                                            pose_.narrow_sun.weight.data(), mean, square);
+                                            pose_.narrow_sun.weight.data(), mean, mean_square);
       else if (sun.is_free)
         Machine::template count_lanes<1, 3>(sun, seen, mask.words, s,
-                                            pose_.narrow_observer.weight.data(), mean, square);
+                                            pose_.narrow_observer.weight.data(), mean, mean_square);
       else
-        Machine::template count_lanes<3, 3>(sun, seen, mask.words, s, narrow_weight_, mean, square);
+        Machine::template count_lanes<3, 3>(sun, seen, mask.words, s, narrow_weight_, mean,
+                                            mean_square);
       is_any =
-          apply(s, mean * R(T(1) / points), square * R(T(1) / (points * points)), points) || is_any;
+          apply(s, mean * R(T(1) / points), mean_square * R(T(1) / (points * points)), points) ||
+          is_any;
     }
     return is_any;
   }
 
-  /// Multiplies areas by their visible shares; `square` is the mean square of the nine shares.
-  bool apply(std::size_t s, R share, R square, T points) {
+  /// Multiplies areas by their visible shares, of nine whose mean square is given.
+  bool apply(std::size_t s, R share, R mean_square, T points) {
     const R area = Machine::load(area_[count_] + s);
     const R visible = area * share;
     const R sampling =
         share * max(R(T(1)) - share, R(T(0))) * R(T(model_.points) / (points * sqrt(points)));
-    const R grid = max(square - share * share, R(T(0))) * R(T(model_.grid));
+    const R grid = max(mean_square - share * share, R(T(0))) * R(T(model_.grid));
     Machine::store(visible, area_[count_] + s);
-    Machine::store(area * area * (sampling + grid), variance_[count_] + s);
+    Machine::store(area * sqrt(sampling + grid), deviation_[count_] + s);
     return Machine::any(visible > R(T(0)));
   }
 
@@ -255,19 +263,19 @@ private:
       is_any = true;
       if (sun.is_free && seen.is_free)
         continue;
-      clear_variance();
+      clear_deviation();
       float count[9];
       Machine::count_long(sun, seen, mask.words, count);
-      T share = 0, square = 0;
+      T share = 0, mean_square = 0;
       for (std::size_t k = 0; k < 9; ++k) {
         const T f = T(count[k]) / points, w = T(wide_weight_[k]);
         share += w * f;
-        square += w * f * f;
+        mean_square += w * f * f;
       }
       const T sampling =
           share * max(T(1) - share, T(0)) * T(model_.points) / (points * sqrt(points));
-      variance_[count_][j] =
-          area * area * (sampling + max(square - share * share, T(0)) * T(model_.grid));
+      deviation_[count_][j] =
+          area * sqrt(sampling + max(mean_square - share * share, T(0)) * T(model_.grid));
       area *= share;
     }
     return is_any;
@@ -295,9 +303,10 @@ private:
   void shade_family(const SlotTerms &slot) {
     const backend::LobeFamily<T> &family = scene_.families[slot.family];
     const Directions d(pose_.facet);
-    R sum[backend::family_lobes_max], variance[backend::family_lobes_max];
+    R sum[backend::family_lobes_max], variance[backend::family_lobes_max],
+        linear[backend::family_lobes_max];
     for (std::size_t b = 0; b < slot.lobe_count; ++b)
-      sum[b] = variance[b] = R(T(0));
+      sum[b] = variance[b] = linear[b] = R(T(0));
     for (std::size_t k = 0; k < count_; ++k)
       for (std::size_t s = 0; s < lanes; s += width) {
         R x, y, z;
@@ -308,7 +317,7 @@ private:
         for (std::size_t n = 0; n < family.node_count; ++n)
           g[n] = lobe_shadowing(family.node[n], pose_.facet, n_l, n_v);
         const R area = Machine::load(area_[k] + s);
-        const R area_variance = is_exact_[k] ? R(T(0)) : Machine::load(variance_[k] + s);
+        const R deviation = is_exact_[k] ? R(T(0)) : Machine::load(deviation_[k] + s);
         for (std::size_t b = 0; b < slot.lobe_count; ++b) {
           const T *weight = family.weight[b].data();
           R shadowing = g[0] * R(weight[0]);
@@ -316,35 +325,47 @@ private:
             shadowing = shadowing + g[n] * R(weight[n]);
           const std::size_t lobe = slot.lobe_first + b;
           const R w = closed_density(scene_.lobes[lobe], pose_.lobes[lobe], from) * shadowing;
+          const R error = deviation * w;
           sum[b] = sum[b] + area * w;
-          variance[b] = variance[b] + area_variance * (w * w);
+          variance[b] = variance[b] + error * error;
+          linear[b] = linear[b] + error;
         }
       }
     for (std::size_t b = 0; b < slot.lobe_count; ++b) {
       out_.specular[slot.lobe_first + b] += Machine::total(sum[b]);
       out_.specular_variance[slot.lobe_first + b] += Machine::total(variance[b]);
+      out_.specular_linear[slot.lobe_first + b] += Machine::total(linear[b]);
     }
   }
 
   void shade_lobe(std::size_t lobe) {
     const Directions d(pose_.facet);
-    R sum = R(T(0)), variance = R(T(0)), bias = R(T(0));
+    R sum = R(T(0)), variance = R(T(0)), linear = R(T(0)), bias = R(T(0));
     const bool is_clustered = !scene_.cluster_error.empty();
     for (std::size_t k = 0; k < count_; ++k)
       for (std::size_t s = 0; s < lanes; s += width) {
         R x, y, z;
         const Cosines at = cosines(d, scene_.groups[group_[k]], s, x, y, z);
-        const R w = lobe_weight(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet, x, y, z,
-                                max(at.n_l, R(T(0))), max(at.n_v, R(T(0))));
+        const R n_l = max(at.n_l, R(T(0))), n_v = max(at.n_v, R(T(0)));
+        const R density =
+            lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet, x, y, z, n_l, n_v);
+        if (!Machine::any(density > R(T(0))))
+          continue; // far from a narrow lobe
+        const R w =
+            density * lobe_shadowing(scene_.lobes[lobe], pose_.facet, n_l, n_v) * R(T(0.25));
         sum = sum + Machine::load(area_[k] + s) * w;
-        if (!is_exact_[k])
-          variance = variance + Machine::load(variance_[k] + s) * (w * w);
+        if (!is_exact_[k]) {
+          const R error = Machine::load(deviation_[k] + s) * w;
+          variance = variance + error * error;
+          linear = linear + error;
+        }
         if (is_clustered)
           bias = bias + Machine::load(area_[k] + s) * w * cluster_error(lobe, k, s, x, y, z);
       }
     out_.specular_bias[lobe] += Machine::total(bias);
     out_.specular[lobe] += Machine::total(sum);
     out_.specular_variance[lobe] += Machine::total(variance);
+    out_.specular_linear[lobe] += Machine::total(linear);
   }
 
   /// Relative error of the lobe from unlike normals in a class: m spread^2 / 2 at the peak, more on
@@ -358,9 +379,9 @@ private:
 
   void shade_products(const SlotTerms &slot) {
     const Directions d(pose_.facet);
-    R sum[backend::products_max], variance[backend::products_max];
+    R sum[backend::products_max], variance[backend::products_max], linear[backend::products_max];
     for (std::size_t p = 0; p < slot.product_count; ++p)
-      sum[p] = variance[p] = R(T(0));
+      sum[p] = variance[p] = linear[p] = R(T(0));
     for (std::size_t k = 0; k < count_; ++k)
       for (std::size_t s = 0; s < lanes; s += width) {
         R x, y, z;
@@ -371,13 +392,17 @@ private:
         for (std::size_t p = 0; p < slot.product_count; ++p) {
           const R w = values.template product<T>(scene_.products[slot.product_first + p]);
           sum[p] = sum[p] + area * w;
-          if (!is_exact_[k])
-            variance[p] = variance[p] + Machine::load(variance_[k] + s) * (w * w);
+          if (!is_exact_[k]) {
+            const R error = Machine::load(deviation_[k] + s) * w;
+            variance[p] = variance[p] + error * error;
+            linear[p] = linear[p] + abs(error);
+          }
         }
       }
     for (std::size_t p = 0; p < slot.product_count; ++p) {
       out_.product[slot.product_first + p] += Machine::total(sum[p]);
       out_.product_variance[slot.product_first + p] += Machine::total(variance[p]);
+      out_.product_linear[slot.product_first + p] += Machine::total(linear[p]);
     }
   }
 
@@ -386,7 +411,7 @@ private:
       for (std::uint32_t j = 0; j < lanes; ++j)
         if (area_[k][j] > 0)
           out_.seen.push_back({group_[k], j, slot, static_cast<double>(area_[k][j]),
-                               is_exact_[k] ? 0 : static_cast<double>(variance_[k][j])});
+                               is_exact_[k] ? 0 : square(static_cast<double>(deviation_[k][j]))});
   }
 
   const SceneData<T> &scene_;
@@ -397,9 +422,9 @@ private:
   float narrow_weight_[9]{}, wide_weight_[9]{};
   std::size_t count_ = 0; ///< groups of the chunk that are lit and seen
   std::uint32_t group_[backend::groups_per_chunk];
-  bool is_exact_[backend::groups_per_chunk]; ///< no variance: nothing of it is partly hidden
+  bool is_exact_[backend::groups_per_chunk]; ///< no deviation: nothing of it is partly hidden
   alignas(64) T area_[backend::groups_per_chunk][lanes];
-  alignas(64) T variance_[backend::groups_per_chunk][lanes];
+  alignas(64) T deviation_[backend::groups_per_chunk][lanes]; ///< of the area
 };
 
 #include "kernel/end.h"

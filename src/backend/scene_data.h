@@ -128,18 +128,31 @@ struct SeenFacet {
 };
 
 struct PoseSums {
-  std::vector<double> specular, specular_variance; ///< per lobe [m2/sr]
-  std::vector<double> specular_bias;               ///< error from joined normals, added up
-  std::vector<double> product, product_variance;   ///< per product [m2]
-  std::vector<SeenFacet> seen;                     ///< of general slots and narrow lobes
+  std::vector<double> specular, specular_variance;     ///< per lobe [m2/sr]
+  std::vector<double> specular_bias;                   ///< error from joined normals, added up
+  std::vector<double> product, product_variance;       ///< per product [m2]
+  std::vector<double> specular_linear, product_linear; ///< standard deviations, added up
+  std::vector<SeenFacet> seen;                         ///< of general slots and narrow lobes
   bool is_any_seen = false;
 };
 
 /// Error of the looked-up shares: sampling `points` of f (1 - f) / n^1.5, and `grid` of the
-/// variance among the directions around (docs/theory/engine.md).
+/// variance among the directions around; `alike` of the square of all standard deviations together
+/// stands for what neighbouring classes have in common: the same shadow's edge crosses many
+/// (docs/theory/engine.md).
 struct MaskErrorModel {
-  float points = 1, grid = 1;
+  float points = 1, grid = 1, alike = 0;
 };
+
+/// Adds to the variances what the classes' errors have in common.
+inline void add_alike(const MaskErrorModel &model, PoseSums &sums) {
+  const auto add = [&](const std::vector<double> &linear, std::vector<double> &variance) {
+    for (std::size_t k = 0; k < linear.size(); ++k)
+      variance[k] += static_cast<double>(model.alike) * linear[k] * linear[k];
+  };
+  add(sums.specular_linear, sums.specular_variance);
+  add(sums.product_linear, sums.product_variance);
+}
 
 /// Asks the processor for what the masks hold around the directions of a pose that comes soon:
 /// random poses would wait for memory most of their time.

@@ -31,7 +31,7 @@ struct AbundanceColumn {
 struct AbundanceTable {
   std::vector<AbundanceColumn> columns;
   std::vector<double> sum, half_width;
-  std::vector<double> bias;      ///< error of joined normals, added up; empty: none are joined
+  std::vector<double> bias;      ///< error of joined normals and of rounding, added up
   std::vector<double> cos_phase; ///< per pose
   std::vector<char> has_plane;   ///< per pose: there is a scattering plane, and so a Q
   std::vector<char> is_dark;     ///< per pose: nothing is both lit and seen

@@ -2,6 +2,7 @@
 // The fast path: a scene prepared once, then hundreds of thousands of poses per second and core.
 // docs/theory/engine.md
 
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -62,6 +63,12 @@ struct EngineFacts {
 class Engine {
 public:
   Engine(const Scene &scene, const EngineOptions &options);
+  /// The same with masks that `save_masks` has written for this very mesh, material groups and
+  /// quality. BadInput if the file is none, is damaged or was made for something else.
+  static Result<Engine> with_masks(const std::filesystem::path &file, const Scene &scene,
+                                   const EngineOptions &options);
+  /// Writes the masks, whole or not at all (nothing for a convex mesh: Usage). Device if it fails.
+  [[nodiscard]] Result<void> save_masks(const std::filesystem::path &file) const;
   ~Engine();
   Engine(Engine &&) noexcept;
   Engine &operator=(Engine &&) noexcept;
@@ -84,6 +91,7 @@ public:
 
 private:
   struct State;
+  explicit Engine(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
 

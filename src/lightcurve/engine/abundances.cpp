@@ -26,7 +26,7 @@ void begin_abundances(const CompiledScene &scene, const Mesh &mesh, std::span<co
   const std::size_t cells = poses.size() * out.columns.size();
   out.sum.assign(cells, 0);
   out.half_width.assign(cells, 0);
-  out.bias.assign(scene.data.cluster_error.empty() ? 0 : cells, 0);
+  out.bias.assign(cells, 0);
   out.is_dark.assign(poses.size(), 1);
   out.cos_phase.clear();
   out.has_plane.clear();
@@ -42,8 +42,7 @@ void put_abundances(const CompiledScene &scene, const backend::PoseSums &sums, s
   const auto put = [&](double sum, double variance, double bias) {
     out.sum[k] = sum * scene.area_m2;
     out.half_width[k] = normal_95 * std::sqrt(variance) * scene.area_m2;
-    if (!out.bias.empty())
-      out.bias[k] = bias * scene.area_m2;
+    out.bias[k] = bias * scene.area_m2;
     ++k;
   };
   for (const backend::SlotTerms &terms : scene.data.slots) {
@@ -68,8 +67,7 @@ Result<MaterialTables> make_material_tables(const Scene &materials, const Compil
                                      "one that the sums are of");
   auto state = std::make_shared<MaterialTables::State>();
   state->scene = materials;
-  UMOV_ASSIGN(colours,
-              colours_of(state->scene, sums, is_intensity_only, state->diffuse_error));
+  UMOV_ASSIGN(colours, colours_of(state->scene, sums, is_intensity_only, state->diffuse_error));
   state->colours = std::move(colours);
   state->slots = sums.data.slots;
   return MaterialTables(std::move(state));
@@ -83,35 +81,33 @@ void MaterialTables::apply(const AbundanceTable &from, StokesTable &out, unsigne
   out.resize(from.poses(), band_count());
   const std::size_t columns = from.columns.size();
   constexpr std::size_t poses_per_task = 1024;
-  const std::vector<double> none(columns, 0);
-  parallel_for((from.poses() + poses_per_task - 1) / poses_per_task, threads,
-               [&](std::size_t task) {
-                 PhaseFactors factors;
-                 BandLight light;
-                 std::vector<double> deviation(columns);
-                 const std::size_t end = std::min(from.poses(), (task + 1) * poses_per_task);
-                 for (std::size_t row = task * poses_per_task; row < end; ++row) {
-                   if (from.is_dark[row] != 0) {
-                     put_darkness(row, out);
-                     continue;
-                   }
-                   const double *sum = &from.sum[row * columns];
-                   const double *bias = from.bias.empty() ? none.data() : &from.bias[row * columns];
-                   for (std::size_t k = 0; k < columns; ++k)
-                     deviation[k] = from.half_width[row * columns + k] / normal_95;
-                   s.colours.prepare(from.cos_phase[row], from.has_plane[row] != 0, factors);
-                   light.reset(band_count());
-                   std::size_t k = 0;
-                   for (std::size_t slot = 0; slot < s.slots.size(); ++slot) {
-                     const std::size_t p = k + s.slots[slot].lobe_count;
-                     s.colours.add_slot(slot,
-                                        {sum + k, &deviation[k], bias + k, sum + p, &deviation[p]},
-                                        factors, light);
-                     k = p + s.slots[slot].product_count;
-                   }
-                   put_light(light, 1, from.has_plane[row] != 0, false, row, out);
-                 }
-               });
+  parallel_for(
+      (from.poses() + poses_per_task - 1) / poses_per_task, threads, [&](std::size_t task) {
+        PhaseFactors factors;
+        BandLight light;
+        std::vector<double> deviation(columns);
+        const std::size_t end = std::min(from.poses(), (task + 1) * poses_per_task);
+        for (std::size_t row = task * poses_per_task; row < end; ++row) {
+          if (from.is_dark[row] != 0) {
+            put_darkness(row, out);
+            continue;
+          }
+          const double *sum = &from.sum[row * columns];
+          const double *bias = &from.bias[row * columns];
+          for (std::size_t k = 0; k < columns; ++k)
+            deviation[k] = from.half_width[row * columns + k] / normal_95;
+          s.colours.prepare(from.cos_phase[row], from.has_plane[row] != 0, factors);
+          light.reset(band_count());
+          std::size_t k = 0;
+          for (std::size_t slot = 0; slot < s.slots.size(); ++slot) {
+            const std::size_t p = k + s.slots[slot].lobe_count;
+            s.colours.add_slot(slot, {sum + k, &deviation[k], bias + k, sum + p, &deviation[p]},
+                               factors, light);
+            k = p + s.slots[slot].product_count;
+          }
+          put_light(light, 1, from.has_plane[row] != 0, false, row, out);
+        }
+      });
 }
 
 } // namespace umov

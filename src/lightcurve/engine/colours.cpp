@@ -5,8 +5,11 @@
 
 namespace umov {
 
-void BandLight::reset(std::size_t bands) {
-  for (auto *column : {&i, &q, &u, &v, &var_i, &var_q, &var_u, &var_v, &bias})
+void BandLight::reset(std::size_t bands, bool has_u_or_v) {
+  if (has_u_or_v || bands != size())
+    for (auto *column : {&u, &v, &var_u, &var_v})
+      column->assign(bands, 0);
+  for (auto *column : {&i, &q, &var_i, &var_q, &bias})
     column->assign(bands, 0);
 }
 
@@ -15,9 +18,8 @@ void BandLight::add(const BandLight &other) {
     for (std::size_t b = 0; b < size(); ++b)
       (this->*column)[b] += (other.*column)[b];
   };
-  for (auto column : {&BandLight::i, &BandLight::q, &BandLight::u, &BandLight::v,
-                      &BandLight::var_i, &BandLight::var_q, &BandLight::var_u, &BandLight::var_v,
-                      &BandLight::bias})
+  for (auto column : {&BandLight::i, &BandLight::q, &BandLight::u, &BandLight::v, &BandLight::var_i,
+                      &BandLight::var_q, &BandLight::var_u, &BandLight::var_v, &BandLight::bias})
     one(column);
 }
 
@@ -104,9 +106,9 @@ void Colours::add_slot(std::size_t index, const SlotSums &sums, PhaseFactors &at
                            *__restrict ratio = at.ratio.data() + slot.column;
   if (slot.is_plain)
     return add_plain(slot, sums, a, b, out);
-  double *__restrict i = at.i.data(), *__restrict q = at.q.data(), *__restrict dev_i =
-                                                                       at.dev_i.data(),
-         *__restrict dev_q = at.dev_q.data(), *__restrict bias = at.bias.data();
+  double *__restrict i = at.i.data(), *__restrict q = at.q.data(),
+                     *__restrict dev_i = at.dev_i.data(), *__restrict dev_q = at.dev_q.data(),
+                     *__restrict bias = at.bias.data();
   const bool has_q = !is_intensity_only_;
   if (!slot.has_lobe) {
     for (auto *column : {i, q, dev_i, dev_q, bias})

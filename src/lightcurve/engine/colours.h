@@ -12,7 +12,8 @@ struct BandLight {
   std::vector<double> i, q, u, v;
   std::vector<double> var_i, var_q, var_u, var_v;
   std::vector<double> bias; ///< bound of what is known to be left out of I
-  void reset(std::size_t bands);
+  /// Zeros; U and V only if something gives them: kernels do not.
+  void reset(std::size_t bands, bool has_u_or_v = false);
   void add(const BandLight &other);
   [[nodiscard]] std::size_t size() const { return i.size(); }
 };
@@ -50,8 +51,8 @@ private:
   struct Slot {
     const Surface *surface = nullptr;
     std::size_t column = 0, product_count = 0;
-    bool has_lobe = false, is_grey = true; ///< grey: the first lobe for all bands
-    std::vector<std::uint32_t> lobe;       ///< per band
+    bool has_lobe = false, is_grey = true;                 ///< grey: the first lobe for all bands
+    std::vector<std::uint32_t> lobe;                       ///< per band
     std::vector<double> unpolarized, single_bounce, whole; ///< [product * bands + band]
     bool has_single_bounce = false, is_plain = false;
     double diffuse_error = 0;

@@ -1,6 +1,7 @@
 #include <umov/lightcurve/engine.h>
 
 #include "lightcurve/engine/abundance_state.h"
+#include "lightcurve/engine/mask_file.h"
 #include "lightcurve/engine/pose_data.h"
 #include "lightcurve/engine/pose_order.h"
 #include "lightcurve/engine/state.h"
@@ -17,6 +18,11 @@ namespace {
 
 double cos_phase_of(const Pose &pose) {
   return std::clamp(dot(pose.sun, pose.observer), -1.0, 1.0);
+}
+
+constexpr std::size_t ordered_from = 2048; ///< fewer poses are not worth sorting
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Poses that one thread takes at a time.
@@ -56,7 +62,7 @@ template <class Body>
 void Engine::State::for_each(std::span<const Pose> poses, unsigned threads,
                              const Body &body) const {
   std::vector<std::uint32_t> order(poses.size());
-  if (masks)
+  if (masks && poses.size() >= ordered_from)
     order = order_for_masks(poses, masks->narrow.directions(),
                             facts.mask_bytes / masks->narrow.directions());
   else
@@ -75,39 +81,73 @@ void Engine::State::for_each(std::span<const Pose> poses, unsigned threads,
   });
 }
 
-Engine::Engine(const Scene &scene, const EngineOptions &options)
-    : state_(std::make_unique<State>()) {
-  const auto start = std::chrono::steady_clock::now();
-  State &s = *state_;
-  s.scene = scene;
-  s.options = options;
-  s.facts.is_convex = is_proven_convex(scene.mesh);
-  const bool has_masks = options.visibility == Visibility::Masks && !s.facts.is_convex;
-  s.elements = make_elements(s.scene, visible_sides(scene.mesh));
-  s.classes = join_facets(s.elements, options.cluster_rad);
-  s.plan = plan_groups(s.classes, has_masks ? std::max<std::size_t>(options.masks.points, 1) : 0);
-  s.compiled = compile_scene(s.scene, s.options.hypotheses, s.classes, s.plan, options.cluster_rad,
-                             options.is_intensity_only);
-  s.single = round_scene(s.compiled.data);
-  if (has_masks) {
-    s.occluder.emplace(scene.mesh);
-    const auto even = [](std::size_t cells) { return std::max<std::size_t>(cells / 2 * 2, 2); };
-    s.masks = build_masks(s.scene, s.elements, s.classes, s.plan, *s.occluder,
-                          {even(options.masks.narrow_cells), even(options.masks.wide_cells)},
-                          options.threads);
-    if (options.masks.refine_above > 0)
-      s.refine_points =
-          RefinePoints(s.scene, s.elements, s.classes, s.plan, *s.occluder, options.threads);
-    s.facts.mask_bytes = memory_of(*s.masks) + s.refine_points.bytes();
-  }
-  s.facts.triangles = scene.mesh.triangles.size();
-  s.facts.classes = s.classes.list.size();
-  s.facts.groups = s.plan.groups.size();
-  s.facts.general_classes = s.compiled.general_classes;
-  s.facts.scene_bytes = s.compiled.data.groups.size() *
-                        (sizeof(backend::FacetGroup<double>) + sizeof(backend::FacetGroup<float>));
-  s.facts.setup_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+bool Engine::State::has_masks() const {
+  return options.visibility == Visibility::Masks && !facts.is_convex;
 }
+
+MaskSize Engine::State::mask_size() const {
+  const auto even = [](std::size_t cells) { return std::max<std::size_t>(cells / 2 * 2, 2); };
+  return {even(options.masks.narrow_cells), even(options.masks.wide_cells)};
+}
+
+/// Everything but the masks.
+Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), options(with) {
+  facts.is_convex = is_proven_convex(scene.mesh);
+  elements = make_elements(scene, visible_sides(scene.mesh));
+  classes = join_facets(elements, options.cluster_rad);
+  plan = plan_groups(classes, has_masks() ? std::max<std::size_t>(options.masks.points, 1) : 0);
+  compiled = compile_scene(scene, options.hypotheses, classes, plan, options.cluster_rad,
+                           options.is_intensity_only);
+  single = round_scene(compiled.data);
+  facts.triangles = scene.mesh.triangles.size();
+  facts.classes = classes.list.size();
+  facts.groups = plan.groups.size();
+  facts.general_classes = compiled.general_classes;
+  facts.scene_bytes = compiled.data.groups.size() *
+                      (sizeof(backend::FacetGroup<double>) + sizeof(backend::FacetGroup<float>));
+}
+
+void Engine::State::take_masks(std::optional<backend::Masks> ready) {
+  if (!has_masks())
+    return;
+  occluder.emplace(scene.mesh);
+  masks =
+      ready ? std::move(*ready)
+            : build_masks(scene, elements, classes, plan, *occluder, mask_size(), options.threads);
+  if (options.masks.refine_above > 0)
+    refine_points = RefinePoints(scene, elements, classes, plan, *occluder, options.threads);
+  facts.mask_bytes = memory_of(*masks) + refine_points.bytes();
+}
+
+Engine::Engine(const Scene &scene, const EngineOptions &options) {
+  const auto start = std::chrono::steady_clock::now();
+  state_ = std::make_unique<State>(scene, options);
+  state_->take_masks({});
+  state_->facts.setup_s = seconds_since(start);
+}
+
+Engine::Engine(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Result<Engine> Engine::with_masks(const std::filesystem::path &file, const Scene &scene,
+                                  const EngineOptions &options) {
+  const auto start = std::chrono::steady_clock::now();
+  auto state = std::make_unique<State>(scene, options);
+  if (state->has_masks()) {
+    UMOV_ASSIGN(masks, read_masks(file, mask_key(state->scene.mesh, state->classes, state->plan,
+                                                 state->mask_size())));
+    state->take_masks(std::move(masks));
+  }
+  state->facts.setup_s = seconds_since(start);
+  return Engine(std::move(state));
+}
+
+Result<void> Engine::save_masks(const std::filesystem::path &file) const {
+  const State &s = *state_;
+  if (!s.masks)
+    return fail(ErrorCode::Usage, "nothing hides anything here: there are no masks to keep");
+  return write_masks(file, *s.masks, mask_key(s.scene.mesh, s.classes, s.plan, s.mask_size()));
+}
+
 Engine::~Engine() = default;
 Engine::Engine(Engine &&) noexcept = default;
 Engine &Engine::operator=(Engine &&) noexcept = default;

@@ -103,14 +103,12 @@ double family_error(const backend::LobeFamily<double> &family, std::size_t lobe,
       for (const double cos_azimuth : {-1.0, 0.0, 0.9}) {
         // Denser towards grazing.
         const double n_l = std::pow(i / double(steps), 2), n_v = std::pow(j / double(steps), 2);
-        pose.cos_phase =
-            n_l * n_v + cos_azimuth * std::sqrt((1 - n_l * n_l) * (1 - n_v * n_v));
+        pose.cos_phase = n_l * n_v + cos_azimuth * std::sqrt((1 - n_l * n_l) * (1 - n_v * n_v));
         double sum = 0;
         for (std::size_t n = 0; n < family.node_count; ++n)
-          sum += 4 * family.weight[lobe][n] *
-                 kernel::lobe_shadowing(family.node[n], pose, n_l, n_v);
-        worst = std::max(
-            worst, std::abs(sum / kernel::lobe_shadowing(exact, pose, n_l, n_v) - 1));
+          sum +=
+              4 * family.weight[lobe][n] * kernel::lobe_shadowing(family.node[n], pose, n_l, n_v);
+        worst = std::max(worst, std::abs(sum / kernel::lobe_shadowing(exact, pose, n_l, n_v) - 1));
       }
   return worst;
 }

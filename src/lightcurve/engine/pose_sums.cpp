@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <umov/core/quantity.h>
 
 namespace umov {
 bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) const {
@@ -14,13 +15,31 @@ bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) c
   if (!work.sums.is_any_seen)
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
-  work.general.reset(compiled.general_classes > 0 ? bands() : 0);
+  work.general.reset(compiled.general_classes > 0 ? bands() : 0, true);
   if (!work.sums.seen.empty())
     add_narrow_and_general(pose, at, work);
   take_roots(work);
+  if (!options.is_double)
+    add_rounding(work);
   if (masks && options.masks.refine_above > 0 && is_uncertain(work))
     refine(pose, at, work);
   return true;
+}
+
+/// On the flank of a lobe, exp(-m |n - h|^2/2), the rounding of n and h to single precision is
+/// multiplied by m |n - h|, which is sqrt(2 m x) where the lobe has fallen to exp(-x): by that of
+/// the whole sum at most. Below 2^-126 of the peak nothing is left.
+void Engine::State::add_rounding(Workspace &work) const {
+  constexpr double half_width = 1.5e-7; // of a difference of two rounded unit vectors, 95 %
+  constexpr double least = 1.2e-38;
+  for (std::size_t lobe = 0; lobe < compiled.data.lobes.size(); ++lobe) {
+    const double sum = work.sums.specular[lobe], width = std::max(compiled.widths[lobe], 1e-9);
+    const double peak = 1 / (8 * pi * width * width); // of a Gaussian's D G2/4
+    int below = 0;                                    // halvings, ln 2 each
+    std::frexp(sum / peak, &below);
+    const double x = sum > 0 ? std::max(0, 1 - below) * 0.7 : 0;
+    work.sums.specular_bias[lobe] += sum * half_width * std::sqrt(2 * x) / width + peak * least;
+  }
 }
 
 void Engine::State::take_roots(Workspace &work) const {
@@ -39,10 +58,9 @@ SurfaceDirections Engine::State::directions(const Pose &pose, const Prepared &at
                                             const backend::SeenFacet &facet) const {
   const FacetClass &c = classes.list[plan.groups[facet.group].member[facet.lane]];
   const Element &e = elements.list[classes.element[c.first]];
-  return directions_on(c.normal,
-                       direction_field(scene.mesh, compiled.colours.surface(facet.slot),
-                                       e.triangle),
-                       pose.sun, pose.observer, at.cos_phase, pose.sun_radius_rad);
+  return directions_on(
+      c.normal, direction_field(scene.mesh, compiled.colours.surface(facet.slot), e.triangle),
+      pose.sun, pose.observer, at.cos_phase, pose.sun_radius_rad);
 }
 
 double Engine::State::narrow_weight(std::size_t lobe, const SurfaceDirections &at) const {
@@ -106,7 +124,7 @@ SlotSums Engine::State::sums_of(std::size_t slot, const Workspace &work) const {
 }
 
 void Engine::State::colour(Workspace &work) const {
-  work.light.reset(bands());
+  work.light.reset(bands(), compiled.general_classes > 0);
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot)
     if (!compiled.data.slots[slot].is_general)
       compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.light);

@@ -90,88 +90,125 @@ void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspa
     weigh(pose, at, k, work);
 }
 
-/// Replaces the shares of the classes that make the error by traced ones, the worst first, until
-/// the rest is well below what is allowed.
-void Engine::State::trace(const Pose &pose, Workspace &work) const {
-  const std::size_t n = bands();
-  const BandLight &all = work.light;
+/// What is left of the error: variances of I and of Q at constant Q/I, and deviations of I added
+/// up, per band.
+struct Engine::State::Left {
+  std::vector<double> i, q, linear;
+  explicit Left(std::size_t bands) : i(bands, 0), q(bands, 0), linear(bands, 0) {}
+  void add(const Workspace &work, std::size_t k, double sign) {
+    const double variance = work.uncertain[k].variance;
+    for (std::size_t b = 0; b < i.size(); ++b) {
+      const auto &light = work.facet_light[k * i.size() + b];
+      i[b] += sign * light.i * light.i * variance;
+      q[b] += sign * std::pow(polarized(light, work.light, b), 2) * variance;
+      linear[b] += sign * light.i * std::sqrt(variance);
+    }
+  }
+  [[nodiscard]] bool is_enough(const BandLight &all, double wanted) const {
+    for (std::size_t b = 0; b < i.size(); ++b) {
+      const double allowed = wanted * all.i[b];
+      const double common = static_cast<double>(mask_error.alike) * linear[b] * linear[b];
+      if (std::max(i[b] + common, q[b]) > allowed * allowed)
+        return false;
+    }
+    return true;
+  }
+};
+
+/// Uncertain facets, those that make most of the error first.
+void Engine::State::order_by_error(Workspace &work) const {
   std::vector<double> importance(work.uncertain.size(), 0);
-  std::vector<double> left(n, 0), left_q(n, 0); // variances of I, and of Q at constant Q/I
   for (std::size_t k = 0; k < work.uncertain.size(); ++k)
-    for (std::size_t b = 0; b < n; ++b) {
-      const double variance = work.uncertain[k].variance;
-      const auto &light = work.facet_light[k * n + b];
-      const double q = polarized(light, all, b);
-      left[b] += light.i * light.i * variance;
-      left_q[b] += q * q * variance;
-      if (all.i[b] > 0)
-        importance[k] += (light.i * light.i + q * q) * variance / (all.i[b] * all.i[b]);
+    for (std::size_t b = 0; b < bands(); ++b) {
+      const auto &light = work.facet_light[k * bands() + b];
+      const double q = polarized(light, work.light, b), total = work.light.i[b];
+      if (total > 0)
+        importance[k] += (light.i * light.i + q * q) * work.uncertain[k].variance / (total * total);
     }
   work.order.resize(work.uncertain.size());
   std::iota(work.order.begin(), work.order.end(), 0u);
   std::sort(work.order.begin(), work.order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(-importance[a], a) < std::pair(-importance[b], b);
   });
+}
+
+/// Puts the share of a facet's area that rays find in place of the looked-up one.
+void Engine::State::trace_facet(const Pose &pose, std::size_t k, double wanted,
+                                Workspace &work) const {
+  backend::SeenFacet &facet = work.uncertain[k];
+  const double whole = compiled.data.groups[facet.group].area[facet.lane];
+  double weight = 0; // of the class's whole light against what may be left
+  for (std::size_t b = 0; b < bands(); ++b) {
+    const auto &light = work.facet_light[k * bands() + b];
+    weight = std::max(weight, std::max(light.i, std::abs(polarized(light, work.light, b))) * whole /
+                                  (wanted * std::max(work.light.i[b], 1e-300)));
+  }
+  const TracedShare traced =
+      work.tracer->trace(refine_points.of(facet.group, facet.lane), points_for(weight), pose);
+  const double points = static_cast<double>(traced.points);
+  // One pseudo-disagreement stands for slivers that no point has found.
+  const double share = std::clamp(traced.share, 0.5 / points, 1 - 0.5 / points);
+  change_area(k, whole * traced.share - facet.area, work);
+  facet.variance = whole * whole * static_cast<double>(mask_error.points) * share * (1 - share) /
+                   (points * std::sqrt(points));
+  work.is_traced[k] = 1;
+}
+
+void Engine::State::change_area(std::size_t k, double change, Workspace &work) const {
+  backend::SeenFacet &facet = work.uncertain[k];
+  const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
+  const double *weights = &work.weights[k * terms_max()];
+  facet.area += change;
+  for (std::size_t l = 0; l < terms.lobe_count; ++l)
+    work.sums.specular[terms.lobe_first + l] += weights[l] * change;
+  for (std::size_t p = 0; p < terms.product_count; ++p)
+    work.sums.product[terms.product_first + p] += weights[terms.lobe_count + p] * change;
+  for (std::size_t b = 0; terms.is_general && b < bands(); ++b) {
+    const auto &light = work.facet_light[k * bands() + b];
+    work.general.i[b] += light.i * change;
+    work.general.q[b] += light.q * change;
+    work.general.u[b] += light.u * change;
+    work.general.v[b] += light.v * change;
+  }
+}
+
+/// Traces the classes that make the error, the worst first, until the rest is well below what is
+/// allowed.
+void Engine::State::trace(const Pose &pose, Workspace &work) const {
   const double wanted = 0.7 * options.masks.refine_above / normal_95;
+  Left left(bands());
+  for (std::size_t k = 0; k < work.uncertain.size(); ++k)
+    left.add(work, k, 1);
+  order_by_error(work);
+  work.is_traced.assign(work.uncertain.size(), 0);
   for (const std::uint32_t k : work.order) {
-    bool is_enough = true;
-    for (std::size_t b = 0; b < n; ++b) {
-      const double allowed = wanted * all.i[b];
-      is_enough = is_enough && std::max(left[b], left_q[b]) <= allowed * allowed;
-    }
-    if (is_enough)
+    if (left.is_enough(work.light, wanted))
       break;
-    backend::SeenFacet &facet = work.uncertain[k];
-    const double whole = compiled.data.groups[facet.group].area[facet.lane];
-    double weight = 0; // of the class's whole light against what may be left
-    for (std::size_t b = 0; b < n; ++b) {
-      const auto &light = work.facet_light[k * n + b];
-      weight = std::max(weight, std::max(light.i, std::abs(polarized(light, all, b))) * whole /
-                                    (wanted * std::max(all.i[b], 1e-300)));
-      left[b] -= light.i * light.i * facet.variance;
-      left_q[b] -= std::pow(polarized(light, all, b), 2) * facet.variance;
-    }
-    const TracedShare traced =
-        work.tracer->trace(refine_points.of(facet.group, facet.lane), points_for(weight), pose);
-    const double points = static_cast<double>(traced.points);
-    // One pseudo-disagreement stands for slivers that no point has found.
-    const double share = std::clamp(traced.share, 0.5 / points, 1 - 0.5 / points);
-    const double change = whole * traced.share - facet.area;
-    facet.variance = whole * whole * static_cast<double>(mask_error.points) * share * (1 - share) /
-                     (points * std::sqrt(points));
-    facet.area += change;
-    const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-    const double *weights = &work.weights[k * terms_max()];
-    for (std::size_t l = 0; l < terms.lobe_count; ++l)
-      work.sums.specular[terms.lobe_first + l] += weights[l] * change;
-    for (std::size_t p = 0; p < terms.product_count; ++p)
-      work.sums.product[terms.product_first + p] += weights[terms.lobe_count + p] * change;
-    for (std::size_t b = 0; terms.is_general && b < n; ++b) {
-      const auto &light = work.facet_light[k * n + b];
-      work.general.i[b] += light.i * change;
-      work.general.q[b] += light.q * change;
-      work.general.u[b] += light.u * change;
-      work.general.v[b] += light.v * change;
-    }
+    left.add(work, k, -1);
+    trace_facet(pose, k, wanted, work);
   }
 }
 
 /// Variances of the sums from those that the facets have now.
 void Engine::State::take_variances(Workspace &work) const {
   for (auto *column : {&work.sums.specular_variance, &work.sums.product_variance,
-                       &work.general.var_i, &work.general.var_q, &work.general.var_u,
-                       &work.general.var_v})
+                       &work.sums.specular_linear, &work.sums.product_linear, &work.general.var_i,
+                       &work.general.var_q, &work.general.var_u, &work.general.var_v})
     std::fill(column->begin(), column->end(), 0);
   for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
     const backend::SeenFacet &facet = work.uncertain[k];
     const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-    const double *weights = &work.weights[k * terms_max()];
+    const double *weights = &work.weights[k * terms_max()], deviation = std::sqrt(facet.variance);
+    const auto add = [&](double weight, double &variance, double &linear) {
+      variance += weight * weight * facet.variance;
+      linear += work.is_traced[k] != 0 ? 0 : std::abs(weight) * deviation;
+    };
     for (std::size_t l = 0; l < terms.lobe_count; ++l)
-      work.sums.specular_variance[terms.lobe_first + l] += weights[l] * weights[l] * facet.variance;
-    for (std::size_t p = 0; p < terms.product_count; ++p) {
-      const double w = weights[terms.lobe_count + p];
-      work.sums.product_variance[terms.product_first + p] += w * w * facet.variance;
-    }
+      add(weights[l], work.sums.specular_variance[terms.lobe_first + l],
+          work.sums.specular_linear[terms.lobe_first + l]);
+    for (std::size_t p = 0; p < terms.product_count; ++p)
+      add(weights[terms.lobe_count + p], work.sums.product_variance[terms.product_first + p],
+          work.sums.product_linear[terms.product_first + p]);
     for (std::size_t b = 0; terms.is_general && b < bands(); ++b) {
       const auto &s = work.facet_light[k * bands() + b];
       work.general.var_i[b] += s.i * s.i * facet.variance;
@@ -180,6 +217,7 @@ void Engine::State::take_variances(Workspace &work) const {
       work.general.var_v[b] += s.v * s.v * facet.variance;
     }
   }
+  backend::add_alike(mask_error, work.sums);
 }
 
 void Engine::State::refine(const Pose &pose, const Prepared &at, Workspace &work) const {

@@ -14,7 +14,7 @@ namespace umov {
 inline constexpr double normal_95 = 1.959963984540054; ///< two-sided quantile of the normal law
 
 /// Calibrated against dense runs (tests/engine_errors_test.cpp).
-inline constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F};
+inline constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F, 4e-3F};
 
 /// There is a Q: Sun and observer are not in line.
 inline bool has_scattering_plane(const Pose &pose) {
@@ -27,6 +27,12 @@ void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_
 void put_darkness(std::size_t row, StokesTable &out);
 
 struct Engine::State {
+  State(const Scene &of, const EngineOptions &with);
+  /// Masks read from a file, or made.
+  void take_masks(std::optional<backend::Masks> ready);
+  [[nodiscard]] bool has_masks() const;
+  [[nodiscard]] MaskSize mask_size() const;
+
   Scene scene;
   EngineOptions options;
   EngineFacts facts;
@@ -59,9 +65,10 @@ struct Engine::State {
     // Of `is_uncertain` and `refine`:
     std::vector<double> band_room, nothing;
     std::vector<backend::SeenFacet> uncertain;
-    std::vector<double> weights; ///< [uncertain * terms_max + term]
+    std::vector<double> weights;                      ///< [uncertain * terms_max + term]
     std::vector<Stokes<ScatteringPlane>> facet_light; ///< [uncertain * bands + band], per area
     std::vector<std::uint32_t> order;
+    std::vector<char> is_traced; ///< per uncertain facet
     std::optional<RefineTracer> tracer;
   };
 
@@ -81,6 +88,7 @@ struct Engine::State {
   // pose_sums.cpp
   void add_narrow_and_general(const Pose &pose, const Prepared &at, Workspace &work) const;
   void take_roots(Workspace &work) const;
+  void add_rounding(Workspace &work) const;
   void light_of_general(const Pose &pose, const Prepared &at, const backend::SeenFacet &facet,
                         const Workspace &work, Stokes<ScatteringPlane> *bands) const;
   [[nodiscard]] SurfaceDirections directions(const Pose &pose, const Prepared &at,
@@ -93,7 +101,11 @@ struct Engine::State {
   void refine(const Pose &pose, const Prepared &at, Workspace &work) const;
   void list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const;
   void weigh(const Pose &pose, const Prepared &at, std::size_t k, Workspace &work) const;
+  struct Left;
+  void order_by_error(Workspace &work) const;
   void trace(const Pose &pose, Workspace &work) const;
+  void trace_facet(const Pose &pose, std::size_t k, double wanted, Workspace &work) const;
+  void change_area(std::size_t k, double change, Workspace &work) const;
   void take_variances(Workspace &work) const;
 };
 

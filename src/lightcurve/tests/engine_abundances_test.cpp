@@ -80,9 +80,8 @@ TEST(EngineAbundances, ServeOtherIndicesAndBands) {
   for (std::size_t g = 0; g < mesh.groups.size(); ++g)
     per_group.push_back(same_shapes("paper_bk7", "paper_asi", false)[g % 2]);
   Diagnostics diagnostics;
-  const Scene glass = make_scene(mesh, NormalMode::Flat,
-                                 {{"nm:600", Wavelength::nm(600)}}, per_group, per_group,
-                                 diagnostics)
+  const Scene glass = make_scene(mesh, NormalMode::Flat, {{"nm:600", Wavelength::nm(600)}},
+                                 per_group, per_group, diagnostics)
                           .value();
   const Engine engine = engine_of(metals, Visibility::Masks);
   const auto poses = random_poses(200, solar_radius);
@@ -116,9 +115,9 @@ TEST(EngineAbundances, BodyLightOfOthersIsWithinItsStatedError) {
 TEST(EngineAbundances, RefuseWhatTheyWereNotMadeFor) {
   const Mesh mesh = make_box_wing({2000, 0});
   const auto refusal = [&](const std::vector<Material> &materials) {
-    const Engine engine = engine_of(
-        scene_of(mesh, NormalMode::Flat, same_shapes("paper_au", "paper_al", false)),
-        Visibility::None);
+    const Engine engine =
+        engine_of(scene_of(mesh, NormalMode::Flat, same_shapes("paper_au", "paper_al", false)),
+                  Visibility::None);
     const auto tables = engine.tables_for(scene_of(mesh, NormalMode::Flat, materials));
     return tables ? std::string() : tables.error().message;
   };
