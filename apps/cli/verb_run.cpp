@@ -141,6 +141,10 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
     folder.add("lightcurve.ecsv", to_ecsv(table));
   if (wants(run.scenario, "csv"))
     folder.add("lightcurve.csv", to_csv(table));
+  if (wants(run.scenario, "fits")) {
+    UMOV_ASSIGN(bytes, to_fits(table));
+    folder.add("lightcurve.fits", std::move(bytes));
+  }
   if (wants(run.scenario, "html")) {
     UMOV_ASSIGN(
         page, make_run_report(run.scenario, run.object, run.request, run.outcome, run.diagnostics));

@@ -59,6 +59,11 @@ inline ProfileValues<R> profile_values(const SceneData<T> &scene, const SlotTerm
   ProfileValues<R> out;
   if (slot.profile_count == 0)
     return out;
+  if (slot.profile_count == 1 && scene.profiles[slot.profile_first].degree == 0) { // Lambert's
+    out.in[0] = n_l * R(scene.profiles[slot.profile_first].c[0]);
+    out.out[0] = n_v * R(scene.profiles[slot.profile_first].c[0]);
+    return out;
+  }
   const T bend = scene.profiles[slot.profile_first].bend;
   const R scale = R(T(2) * (T(1) + bend));
   const R t_l = scale * n_l / (n_l + R(bend)) - R(T(1));

@@ -96,3 +96,43 @@ def test_mesh_make_box_wing(umov, tmp_path):
     assert done.code == 0, done.err
     done = umov("mesh", "check", "foil.obj", "--unit", "m", "--up", "+Z")
     assert done.code == 0, done.out + done.err
+
+
+def test_masks_are_kept_and_read_again(umov, wing, tmp_path):
+    ask = ("signature", wing, "--poses", 300, "--phase", "60", "--masks", "wing.masks")
+    first = umov(*ask, "-o", "a.csv")
+    assert first.code == 0 and "masks are kept in wing.masks" in first.err
+    second = umov(*ask, "-o", "b.csv")
+    assert second.code == 0 and "kept" not in second.err
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (("--accuracy", 0.002), ["other.masks", "made for another", "Remove it"]),
+    (("--visibility", "rays"), ["--masks goes with"]),
+    (("--source", "laser", "--set", 'bands.set=["nm:550"]'), ["masks are for sunlight"]),
+])
+def test_masks_that_do_not_fit_are_refused(umov, wing, tmp_path, arguments, words):
+    done = umov("signature", wing, "--poses", 10, "--phase", "60", "--masks", "other.masks",
+                "-o", "a.csv")
+    assert done.code == 0, done.err
+    before = (tmp_path / "other.masks").read_bytes()
+    done = umov("signature", wing, "--poses", 10, "--phase", "60", "--masks", "other.masks",
+                "-o", "b.csv", *arguments)
+    assert done.code in (2, 3) and all(word in done.err for word in words), done.err
+    assert not (tmp_path / "b.csv").exists()
+    assert (tmp_path / "other.masks").read_bytes() == before
+
+
+def test_a_file_that_holds_no_masks_is_left_alone(umov, wing, tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    done = umov("signature", wing, "--poses", 10, "--phase", "60", "--masks", "notes.txt")
+    assert done.code == 3 and "notes.txt: is not a file of masks" in done.err
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+
+
+def test_a_convex_body_keeps_no_masks(umov, scenario, tmp_path):
+    done = umov("signature", scenario(), "--poses", 10, "--phase", "60", "--masks", "cube.masks",
+                "-o", "a.csv")
+    assert done.code == 0 and "convex" in done.err
+    assert not (tmp_path / "cube.masks").exists()

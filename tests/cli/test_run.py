@@ -2,6 +2,7 @@
 import filecmp
 import json
 import math
+import warnings
 
 import pytest
 from astropy.table import Table
@@ -210,3 +211,19 @@ def test_the_manifest_has_the_command_and_the_lock_the_exact_times(umov, scenari
     words = json.loads((tmp_path / "out/manifest.json").read_text())["command_line"]
     assert words[1:] == ["run", name, "--accuracy", "0.01", "--seed", "5"]
     assert "05:08:00.000250Z" in (tmp_path / "out/scenario.lock.toml").read_text()
+
+
+def test_run_writes_fits_with_the_numbers_of_the_ecsv(umov, scenario, tmp_path):
+    name = scenario(('formats = ["ecsv", "csv", "html"]', 'formats = ["ecsv", "fits"]'))
+    assert umov("run", name, "--quiet").code == 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        fits = Table.read(tmp_path / "out/lightcurve.fits")
+    ecsv = Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv")
+    assert fits.colnames == ecsv.colnames and len(fits) == len(ecsv) > 0
+    for column in ("intensity", "phase_angle", "range"):
+        if column in ecsv.colnames:
+            assert list(fits[column]) == list(ecsv[column])
+            assert str(fits[column].unit) == str(ecsv[column].unit)
+    # Run again over its own folder.
+    assert umov("run", name, "--quiet").code == 0

@@ -58,6 +58,8 @@ std::string to_ecsv(const Table &table);
 /// RFC 4180 with LF; notes as "# key: value", then "# unit: ..." above the header; NaN is an empty
 /// cell.
 std::string to_csv(const Table &table);
+/// A binary table of a FITS file (standard 4.0). BadInput for text that a column cannot hold.
+Result<std::string> to_fits(const Table &table);
 /// Its two parts: everything above the rows, and rows [begin, end).
 std::string csv_header(const Table &table);
 void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std::string &out);

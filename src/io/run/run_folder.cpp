@@ -38,9 +38,9 @@ std::optional<std::string> status_of(const fs::path &folder) {
 }
 
 /// What a run writes: a folder with anything else in it is never replaced as a whole.
-constexpr const char *our_files[] = {"lightcurve.ecsv", "lightcurve.csv", "passes.ecsv",
-                                     "report.html",     "manifest.json",  "scenario.lock.toml",
-                                     "log.txt"};
+constexpr const char *our_files[] = {"lightcurve.ecsv",    "lightcurve.csv", "lightcurve.fits",
+                                     "passes.ecsv",        "report.html",    "manifest.json",
+                                     "scenario.lock.toml", "log.txt"};
 
 /// Something in a folder that umov did not write; empty if there is nothing.
 std::string stranger_in(const fs::path &folder) {

@@ -85,7 +85,7 @@ const std::vector<Key> &keys() {
       {"render", "accuracy", Number, "0.005", "relative 95 % half-width asked of I"},
       {"detector", "model", String, "\"ideal\"", "only \"ideal\" is built so far"},
       {"output", "dir", String, "\"out\"", "folder, relative to the working folder"},
-      {"output", "formats", List, "[\"ecsv\", \"html\"]", "ecsv, csv, html"},
+      {"output", "formats", List, "[\"ecsv\", \"html\"]", "ecsv, csv, fits, html"},
       {"output", "pol_frame", String, "\"equatorial\"", "equatorial, altaz or scattering"},
       {"material", "index", Any, "", "name, { file }, { n, k } or { wavelength_nm, n, k }"},
       {"material", "layers", List, "", "films on the substrate, first on top"},

@@ -224,14 +224,15 @@ Result<void> read_output(const Node &top, Scenario &out) {
   if (node.has("formats")) {
     UMOV_ASSIGN(formats, node.strings("formats"));
     if (formats.empty())
-      return fail(ErrorCode::BadInput, "formats is empty; ecsv, csv or html was expected",
+      return fail(ErrorCode::BadInput, "formats is empty; ecsv, csv, fits or html was expected",
                   node.where("formats"));
     for (const std::string &format : formats)
-      if (format != "ecsv" && format != "csv" && format != "html")
-        return fail(ErrorCode::BadInput,
-                    fmt::format("formats: \"{}\" is {}; ecsv, csv and html were expected", format,
-                                format == "fits" ? "not built yet" : "unknown"),
-                    node.where("formats"));
+      if (format != "ecsv" && format != "csv" && format != "fits" && format != "html")
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("formats: \"{}\" is unknown; ecsv, csv, fits and html were expected",
+                        format),
+            node.where("formats"));
     out.formats = formats;
   }
   return {};

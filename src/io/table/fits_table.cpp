@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 #include <fitsio.h>
 #include <fmt/format.h>
@@ -39,8 +40,11 @@ void append_big_endian(std::uint64_t bits, std::string &out) {
   out.append(bytes, 8);
 }
 
-/// "W / (m2 nm)" as FITS has it (standard 4.0, section 4.3): no blanks around the solidus.
+/// "W / (m2 nm)" as FITS has it (standard 4.0, section 4.3): no blanks around the solidus, and no
+/// zero points of magnitudes, which the column's description names.
 std::string fits_unit(std::string unit) {
+  if (unit.starts_with("mag("))
+    return "mag";
   for (std::size_t at = 0; (at = unit.find(" / ")) != std::string::npos;)
     unit.replace(at, 3, "/");
   return unit;
@@ -67,17 +71,43 @@ Result<void> FitsTable::check(int status, const char *action) const {
               {path_.string()});
 }
 
+FitsTable::Memory::~Memory() { std::free(bytes); }
+
 Result<FitsTable> FitsTable::create(const std::filesystem::path &path, const Table &columns) {
   FitsTable out;
   out.path_ = path;
+  int status = 0;
+  fitsfile *file = nullptr;
+  fits_create_diskfile(&file, path.c_str(), &status); // no extended file-name syntax
+  out.file_ = file;
+  UMOV_TRY(out.begin(columns, status));
+  return out;
+}
+
+Result<FitsTable> FitsTable::create_in_memory(const Table &columns) {
+  FitsTable out;
+  out.path_ = "memory";
+  out.memory_ = std::make_unique<Memory>();
+  int status = 0;
+  fitsfile *file = nullptr;
+  constexpr std::size_t step = 1 << 16;
+  fits_create_memfile(&file, &out.memory_->bytes, &out.memory_->size, step, std::realloc, &status);
+  out.file_ = file;
+  UMOV_TRY(out.begin(columns, status));
+  return out;
+}
+
+/// Writes the header.
+Result<void> FitsTable::begin(const Table &columns, int status) {
+  UMOV_TRY(check(status, "make the file"));
   std::vector<std::string> names, forms, units;
   for (const Column &c : columns.columns()) {
     const Form form = form_of(c.cells);
     names.push_back(printable(c.name));
     forms.push_back(form.text);
     units.push_back(printable(fits_unit(c.unit)));
-    out.widths_.push_back(form.bytes);
-    out.row_bytes_ += form.bytes;
+    widths_.push_back(form.bytes);
+    row_bytes_ += form.bytes;
   }
   const auto pointers = [](std::vector<std::string> &texts) {
     std::vector<char *> p;
@@ -86,30 +116,26 @@ Result<FitsTable> FitsTable::create(const std::filesystem::path &path, const Tab
     return p;
   };
   auto name = pointers(names), form = pointers(forms), unit = pointers(units);
-  int status = 0;
-  fitsfile *file = nullptr;
-  fits_create_diskfile(&file, path.c_str(), &status); // no extended file-name syntax
-  UMOV_TRY(out.check(status, "make the file"));
-  out.file_ = file;
+  fitsfile *file = as_fits(file_);
   fits_create_tbl(file, BINARY_TBL, 0, static_cast<int>(names.size()), name.data(), form.data(),
                   unit.data(), "UMOV", &status);
   for (std::size_t i = 0; i < columns.columns().size(); ++i)
     fits_modify_comment(file, fmt::format("TTYPE{}", i + 1).c_str(),
                         printable(columns.columns()[i].description).c_str(), &status);
-  UMOV_TRY(out.check(status, "write the header"));
+  UMOV_TRY(check(status, "write the header"));
   for (const auto &[key, value] : columns.notes()) {
     if (key == "POLCCONV") // a keyword of its own (Hamaker & Bregman 1996; astropy's convention)
       fits_write_key_str(file, "POLCCONV", value.c_str(), "convention of Q, U", &status);
     else
       fits_write_comment(file, printable(key + ": " + value).c_str(), &status);
   }
-  UMOV_TRY(out.check(status, "write the header"));
-  return out;
+  return check(status, "write the header");
 }
 
 FitsTable::FitsTable(FitsTable &&other) noexcept { *this = std::move(other); }
 FitsTable &FitsTable::operator=(FitsTable &&other) noexcept {
   std::swap(file_, other.file_);
+  std::swap(memory_, other.memory_);
   path_ = std::move(other.path_);
   widths_ = std::move(other.widths_);
   row_bytes_ = other.row_bytes_;
@@ -168,6 +194,25 @@ Result<void> FitsTable::close() {
   int status = 0;
   fits_close_file(as_fits(std::exchange(file_, nullptr)), &status);
   return check(status, "finish the file");
+}
+
+Result<std::string> FitsTable::take() {
+  int status = 0;
+  LONGLONG header = 0, data = 0, end = 0;
+  fits_flush_file(as_fits(file_), &status);
+  fits_get_hduaddrll(as_fits(file_), &header, &data, &end, &status);
+  UMOV_TRY(close());
+  UMOV_TRY(check(status, "finish the file"));
+  return std::string(static_cast<const char *>(memory_->bytes), static_cast<std::size_t>(end));
+}
+
+Result<std::string> to_fits(const Table &table) {
+  UMOV_ASSIGN(file, FitsTable::create_in_memory(table));
+  std::string bytes;
+  UMOV_TRY(file.encode(table, 0, table.rows(), bytes));
+  if (table.rows() > 0)
+    UMOV_TRY(file.append(table.rows(), bytes));
+  return file.take();
 }
 
 } // namespace umov

@@ -2,6 +2,7 @@
 // Private: a binary table of a FITS file, written through CFITSIO.
 
 #include <filesystem>
+#include <memory>
 #include <umov/io/table.h>
 
 namespace umov {
@@ -11,6 +12,8 @@ class FitsTable {
 public:
   /// Device with CFITSIO's words if the file cannot be made.
   static Result<FitsTable> create(const std::filesystem::path &path, const Table &columns);
+  /// The same without a file: `take` gives its bytes.
+  static Result<FitsTable> create_in_memory(const Table &columns);
   FitsTable(FitsTable &&other) noexcept;
   FitsTable &operator=(FitsTable &&other) noexcept;
   ~FitsTable();
@@ -22,11 +25,21 @@ public:
   Result<void> append(std::size_t rows, const std::string &bytes);
   Result<void> note(const std::string &text);
   Result<void> close();
+  /// Finishes what was made in memory.
+  Result<std::string> take();
 
 private:
+  /// What CFITSIO enlarges by `realloc`.
+  struct Memory {
+    void *bytes = nullptr;
+    std::size_t size = 0;
+    ~Memory();
+  };
   FitsTable() = default;
+  Result<void> begin(const Table &columns, int status);
   Result<void> check(int status, const char *action) const;
-  void *file_ = nullptr; ///< fitsfile
+  void *file_ = nullptr;           ///< fitsfile
+  std::unique_ptr<Memory> memory_; ///< CFITSIO keeps its address
   std::filesystem::path path_;
   std::vector<std::size_t> widths_; ///< bytes per column
   std::size_t row_bytes_ = 0;

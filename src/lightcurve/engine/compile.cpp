@@ -20,25 +20,6 @@ CompiledScene::LobeSource source_of(const kernel::LobeConstants<double> &lobe,
   return {surfaces.front(), 0};
 }
 
-/// The materials of a slot: of the scene, then of each hypothesis.
-std::vector<const Surface *> surfaces_of(const Scene &scene, const std::vector<Scene> &hypotheses,
-                                         std::uint32_t slot) {
-  std::vector<const Surface *> out{&surface_of_slot(scene, slot)};
-  for (const Scene &other : hypotheses)
-    out.push_back(&surface_of_slot(other, slot));
-  return out;
-}
-
-/// Number of equal materials in the list, or its size.
-std::uint32_t find_material(const std::vector<std::vector<const Surface *>> &list,
-                            const std::vector<const Surface *> &surfaces) {
-  const auto it = std::find_if(list.begin(), list.end(), [&](const auto &other) {
-    return std::equal(other.begin(), other.end(), surfaces.begin(),
-                      [](const Surface *a, const Surface *b) { return a->is_same(*b); });
-  });
-  return static_cast<std::uint32_t>(it - list.begin());
-}
-
 /// Appends what is summed for slots of these materials.
 void add_slot(const std::vector<const Surface *> &surfaces, CompiledScene &out) {
   backend::SlotTerms terms;
@@ -100,8 +81,8 @@ Result<Colours> colours_of(const Scene &scene, const CompiledScene &sums, bool i
 }
 
 CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypotheses,
-                            const FacetClasses &classes, const GroupPlan &plan, double cluster_rad,
-                            bool is_intensity_only) {
+                            const SharedSlots &shared, const FacetClasses &classes,
+                            const GroupPlan &plan, double cluster_rad, bool is_intensity_only) {
   CompiledScene out;
   out.area_m2 = 0;
   for (const FacetClass &c : classes.list)
@@ -111,15 +92,11 @@ CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypoth
   std::map<std::uint32_t, std::uint32_t> slots;        // of the scene -> compiled
   std::vector<std::vector<const Surface *>> materials; // as data.slots
   for (const GroupPlan::Group &group : plan.groups) {
-    const auto [it, is_new] = slots.emplace(group.slot, 0);
+    const auto [it, is_new] =
+        slots.emplace(group.slot, static_cast<std::uint32_t>(out.data.slots.size()));
     if (is_new) {
-      const auto surfaces = surfaces_of(scene, hypotheses, group.slot);
-      it->second = find_material(materials, surfaces);
-      if (it->second == materials.size()) {
-        materials.push_back(surfaces);
-        add_slot(surfaces, out);
-      }
-      out.slots[it->second].push_back(group.slot);
+      add_slot(surfaces_of(scene, hypotheses, group.slot), out);
+      out.slots.back() = shared[group.slot];
     }
     const backend::SlotTerms &terms = out.data.slots[it->second];
     // A Gaussian lobe with unlike normals is off by m spread^2 / 2 of its value at the peak.

@@ -4,6 +4,7 @@
 #include "backend/scene_data.h"
 #include "lightcurve/engine/colours.h"
 #include "lightcurve/engine/mask_points.h"
+#include "lightcurve/engine/shared_materials.h"
 
 namespace umov {
 
@@ -28,8 +29,8 @@ struct CompiledScene {
 /// Groups by plan, surfaces by fit: those of `scene`, and of `hypotheses`, other materials on the
 /// same mesh that the sums are to serve too. `cluster_rad` > 0 adds the error of joined normals.
 CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypotheses,
-                            const FacetClasses &classes, const GroupPlan &plan, double cluster_rad,
-                            bool is_intensity_only);
+                            const SharedSlots &shared, const FacetClasses &classes,
+                            const GroupPlan &plan, double cluster_rad, bool is_intensity_only);
 
 /// What a scene's materials make of the sums. BadInput if they were not made for one of them.
 Result<Colours> colours_of(const Scene &scene, const CompiledScene &sums, bool is_intensity_only,

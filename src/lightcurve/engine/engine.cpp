@@ -94,9 +94,10 @@ MaskSize Engine::State::mask_size() const {
 Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), options(with) {
   facts.is_convex = is_proven_convex(scene.mesh);
   elements = make_elements(scene, visible_sides(scene.mesh));
+  const SharedSlots shared = share_materials(scene, options.hypotheses, elements);
   classes = join_facets(elements, options.cluster_rad);
   plan = plan_groups(classes, has_masks() ? std::max<std::size_t>(options.masks.points, 1) : 0);
-  compiled = compile_scene(scene, options.hypotheses, classes, plan, options.cluster_rad,
+  compiled = compile_scene(scene, options.hypotheses, shared, classes, plan, options.cluster_rad,
                            options.is_intensity_only);
   single = round_scene(compiled.data);
   facts.triangles = scene.mesh.triangles.size();

@@ -12,9 +12,8 @@ class MaskFile : public testing::Test {
 protected:
   MaskFile()
       : file_(std::filesystem::temp_directory_path() /
-              ("umov_masks_" + std::string(testing::UnitTest::GetInstance()
-                                               ->current_test_info()
-                                               ->name()))) {
+              ("umov_masks_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()))) {
     options_.masks = {5'000, 8, 10, 0.02};
   }
   ~MaskFile() override { std::filesystem::remove(file_); }
@@ -67,8 +66,8 @@ TEST_F(MaskFile, DamageIsFoundWhereverItIs) {
   ASSERT_TRUE(Engine(plain, options_).save_masks(file_));
   const std::string good = read_file(file_).value();
   EXPECT_EQ(refusal(plain, options_), "");
-  for (const std::size_t length : {std::size_t{0}, std::size_t{7}, std::size_t{50}, std::size_t{100},
-                                   good.size() / 2, good.size() - 1}) {
+  for (const std::size_t length : {std::size_t{0}, std::size_t{7}, std::size_t{50},
+                                   std::size_t{100}, good.size() / 2, good.size() - 1}) {
     ASSERT_TRUE(write_file_atomically(file_, good.substr(0, length)));
     EXPECT_NE(refusal(plain, options_), "") << length;
   }

@@ -264,5 +264,29 @@ TEST(Lobes, AllKindsAreReciprocalAndPhysical) {
   }
 }
 
+// Total reflection lets nothing in; the rounding of 1 - a must not be light, nor more polarized
+// than there is of it. Found with random materials: n = 1e-3 reflects totally beyond 0.06 deg.
+TEST(BodyLight, TotalReflectionLetsNothingInAndOut) {
+  Material m = *builtin_material("paper_asi");
+  m.body = BodyLobe{{{}, {1.0}}, true};
+  for (const double n : {1e-3, 1e-2, 0.3}) {
+    m.index = constant_index(n);
+    m.distribution = blinn_phong(200);
+    const Surface surface = compiled(m);
+    for (int i = 1; i <= 90; ++i)
+      for (int o = 1; o <= 90; ++o) {
+        const auto at =
+            directions(tilted(std::cos(i * degree)), direction_from(std::cos(o * degree), o / 91.));
+        const auto s = surface.diffuse(1, at, {1, 0, 0, 0});
+        ASSERT_GE(s.i, 0) << n << " " << i << " " << o;
+        ASSERT_LE(s.q * s.q + s.u * s.u, s.i * s.i * (1 + 1e-12)) << n << " " << i << " " << o;
+        const double critical = std::asin(n) / degree;
+        if (i > critical + 1 && o > critical + 1) { // rounding, twice, over 1 - mean reflectance
+          ASSERT_LE(s.i, 1e-12) << n << " " << i << " " << o;
+        }
+      }
+  }
+}
+
 } // namespace
 } // namespace umov
