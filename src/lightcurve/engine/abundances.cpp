@@ -92,8 +92,8 @@ void MaterialTables::apply(const AbundanceTable &from, StokesTable &out, unsigne
             put_darkness(row, out);
             continue;
           }
-          const double *sum = &from.sum[row * columns];
-          const double *bias = &from.bias[row * columns];
+          const double *sum = from.sum.data() + row * columns;
+          const double *bias = from.bias.data() + row * columns;
           for (std::size_t k = 0; k < columns; ++k)
             deviation[k] = from.half_width[row * columns + k] / normal_95;
           s.colours.prepare(from.cos_phase[row], from.has_plane[row] != 0, factors);
@@ -101,8 +101,9 @@ void MaterialTables::apply(const AbundanceTable &from, StokesTable &out, unsigne
           std::size_t k = 0;
           for (std::size_t slot = 0; slot < s.slots.size(); ++slot) {
             const std::size_t p = k + s.slots[slot].lobe_count;
-            s.colours.add_slot(slot, {sum + k, &deviation[k], bias + k, sum + p, &deviation[p]},
-                               factors, light);
+            s.colours.add_slot(
+                slot, {sum + k, deviation.data() + k, bias + k, sum + p, deviation.data() + p},
+                factors, light);
             k = p + s.slots[slot].product_count;
           }
           put_light(light, 1, from.has_plane[row] != 0, false, row, out);

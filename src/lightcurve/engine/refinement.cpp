@@ -62,10 +62,10 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
                           Workspace &work) const {
   const backend::SeenFacet &facet = work.uncertain[k];
   const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-  Stokes<ScatteringPlane> *light = &work.facet_light[k * bands()];
+  Stokes<ScatteringPlane> *light = work.facet_light.data() + k * bands();
   if (terms.is_general)
     return light_of_general(pose, at, facet, work, light);
-  double *weight = &work.weights[k * terms_max()];
+  double *weight = work.weights.data() + k * terms_max();
   backend::weigh_facet(compiled.data, at.pose, facet, weight);
   for (std::size_t l = 0; l < terms.lobe_count; ++l)
     if (at.pose.is_narrow[terms.lobe_first + l])
@@ -157,7 +157,7 @@ void Engine::State::trace_facet(const Pose &pose, std::size_t k, double wanted,
 void Engine::State::change_area(std::size_t k, double change, Workspace &work) const {
   backend::SeenFacet &facet = work.uncertain[k];
   const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-  const double *weights = &work.weights[k * terms_max()];
+  const double *weights = work.weights.data() + k * terms_max();
   facet.area += change;
   for (std::size_t l = 0; l < terms.lobe_count; ++l)
     work.sums.specular[terms.lobe_first + l] += weights[l] * change;
@@ -198,7 +198,8 @@ void Engine::State::take_variances(Workspace &work) const {
   for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
     const backend::SeenFacet &facet = work.uncertain[k];
     const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-    const double *weights = &work.weights[k * terms_max()], deviation = std::sqrt(facet.variance);
+    const double *weights = work.weights.data() + k * terms_max(),
+                 deviation = std::sqrt(facet.variance);
     const auto add = [&](double weight, double &variance, double &linear) {
       variance += weight * weight * facet.variance;
       linear += work.is_traced[k] != 0 ? 0 : std::abs(weight) * deviation;

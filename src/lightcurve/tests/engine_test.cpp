@@ -177,7 +177,7 @@ TEST(Engine, SameBytesForAnyThreadsAndBatches) {
   const Engine one(scene, options);
   options.threads = 8;
   const Engine eight(scene, options);
-  const auto poses = random_poses(1500);
+  const auto poses = random_poses(3000); // so many are taken in the order of the masks' rows
   const StokesTable whole = evaluated(one, poses, 1);
   for (const unsigned threads : {2u, 8u})
     for (const Engine *engine : {&one, &eight}) {
@@ -186,6 +186,9 @@ TEST(Engine, SameBytesForAnyThreadsAndBatches) {
       EXPECT_EQ(whole.q, other.q);
       EXPECT_EQ(whole.i_err, other.i_err);
     }
+  const StokesTable backwards = evaluated(one, {poses.rbegin(), poses.rend()}, 2);
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    ASSERT_EQ(backwards.at(poses.size() - 1 - k, 1).stokes.i, whole.at(k, 1).stokes.i);
   for (std::size_t begin = 0; begin < poses.size(); begin += 7) { // shards of any size
     const std::size_t count = std::min<std::size_t>(7, poses.size() - begin);
     const std::vector<Pose> shard(poses.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -293,35 +296,50 @@ TEST(Engine, NothingIsEverNotANumber) {
   }
 }
 
-TEST(Engine, SmoothSphereAndCylinderMatchQuadrature) {
-  // m = 1000, point Sun. Sphere: J = R^2 F (m + 2)/(4 (m + 1)) while no facet is blocked (up to
-  // phase 120); cylinder: quadrature over the normal at every phase. Within 0.5 %.
-  const Material material = interface_of("paper_au", 1000);
-  const Scene ball = scene_of(make_sphere(1, 5000), NormalMode::Smooth, {material});
-  const Engine sphere = engine_of(ball, Visibility::None);
-  const Scene tube = scene_of(make_cylinder(1, 2, 48), NormalMode::Smooth, {material});
-  const Engine cylinder = engine_of(tube, Visibility::None);
-  for (double phase = 20; phase <= 150; phase += 10) {
-    const Angle angle = Angle::degrees(phase);
-    const double a = ball.front[0].fresnel(1, std::cos(angle.radians())).a;
-    for (std::uint64_t i = 0; i < 8 && phase <= 120; ++i)
-      EXPECT_LT(
-          relative(4 * evaluated(sphere, {pose_at(i, angle)}).at(0, 1).stokes.i / a, 1002.0 / 1001),
-          5e-3)
-          << phase;
-    // Both directions across the axis, so that the sides alone are lit.
-    const Pose pose{{1, 0, 0}, {std::cos(angle.radians()), std::sin(angle.radians()), 0}};
-    constexpr int steps = 20'000;
-    double quadrature = 0;
-    for (int k = 0; k < steps; ++k) {
-      const double phi = 2 * pi * (k + 0.5) / steps;
-      const auto at = directions_on({std::cos(phi), std::sin(phi), 0}, {}, pose.sun, pose.observer,
-                                    std::cos(angle.radians()), 0);
-      quadrature += tube.front[0].specular(1, at) * 2 * 2 * pi / steps;
-    }
-    EXPECT_LT(relative(evaluated(cylinder, {pose}).at(0, 1).stokes.i, a * quadrature), 5e-3)
-        << phase;
+/// I over the closed form of a sphere with m = 1000 under a point Sun: J = R^2 F (m + 2)/(4 (m +
+/// 1)).
+double sphere_ratio(const Scene &scene, const Engine &engine, std::uint64_t attitude, Angle phase) {
+  const double a = scene.front[0].fresnel(1, std::cos(phase.radians())).a;
+  return 4 * evaluated(engine, {pose_at(attitude, phase)}).at(0, 1).stokes.i / (a * 1002.0 / 1001);
+}
+/// I of a tube (radius 1, 2 long) over a quadrature of the normal around its axis, with both
+/// directions across the axis, so that the sides alone are lit.
+double tube_ratio(const Scene &scene, const Engine &engine, Angle phase) {
+  const Pose pose{{1, 0, 0}, {std::cos(phase.radians()), std::sin(phase.radians()), 0}};
+  constexpr int steps = 20'000;
+  double quadrature = 0;
+  for (int k = 0; k < steps; ++k) {
+    const double phi = 2 * pi * (k + 0.5) / steps;
+    const auto at = directions_on({std::cos(phi), std::sin(phi), 0}, {}, pose.sun, pose.observer,
+                                  std::cos(phase.radians()), 0);
+    quadrature += scene.front[0].specular(1, at) * 2 * 2 * pi / steps;
   }
+  const double a = scene.front[0].fresnel(1, std::cos(phase.radians())).a;
+  return evaluated(engine, {pose}).at(0, 1).stokes.i / (a * quadrature);
+}
+
+TEST(Engine, SmoothSphereAndCylinderMatchQuadrature) {
+  // Smooth within 0.5 %; flat facets of the same meshes are off by 6-9 % and 30-61 % (docs).
+  const Material material = interface_of("paper_au", 1000);
+  const auto worst = [&](NormalMode normals) {
+    const Scene ball = scene_of(make_sphere(1, 5000), normals, {material});
+    const Scene tube = scene_of(make_cylinder(1, 2, 48), normals, {material});
+    const Engine sphere = engine_of(ball, Visibility::None);
+    const Engine cylinder = engine_of(tube, Visibility::None);
+    std::array<double, 2> out{0, 0};
+    for (double phase = 20; phase <= 150; phase += 10) {
+      const Angle angle = Angle::degrees(phase);
+      for (std::uint64_t i = 0; i < 8; ++i)
+        out[0] = std::max(out[0], std::abs(sphere_ratio(ball, sphere, i, angle) - 1));
+      out[1] = std::max(out[1], std::abs(tube_ratio(tube, cylinder, angle) - 1));
+    }
+    return out;
+  };
+  const auto smooth = worst(NormalMode::Smooth), flat = worst(NormalMode::Flat);
+  EXPECT_LT(smooth[0], 5e-3);
+  EXPECT_LT(smooth[1], 5e-3);
+  EXPECT_GT(flat[0], 10 * smooth[0]);
+  EXPECT_GT(flat[1], 10 * smooth[1]);
 }
 
 TEST(EngineGrid, TriangleHoldsTheDirection) {
