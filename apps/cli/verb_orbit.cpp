@@ -8,6 +8,7 @@
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
+#include <umov/io/elements_file.h>
 #include <umov/lightcurve/compute.h>
 #include <umov/orbit/elements.h>
 #include <umov/orbit/ephemeris.h>
@@ -25,7 +26,7 @@ struct OrbitOptions {
 };
 
 void add_file_options(CLI::App &verb, OrbitOptions &o) {
-  verb.add_option("--orbit", o.orbit, "TLE or 3LE file")->required();
+  verb.add_option("--orbit", o.orbit, "TLE, 3LE or OMM (KVN, XML, JSON, CSV) file")->required();
   verb.add_flag("--allow-bad-checksum", o.allow_bad_checksum, "Read lines with a wrong checksum");
   verb.add_flag("--keep-going", o.keep_going, "Report bad sets and keep the others");
   verb.add_option("-o,--output", o.output, "Table: .csv, .ecsv or .json by its suffix");
@@ -33,7 +34,7 @@ void add_file_options(CLI::App &verb, OrbitOptions &o) {
 
 Result<std::vector<ElementSet>> read_sets(const OrbitOptions &o, Diagnostics &diagnostics) {
   UMOV_ASSIGN(text, read_file(o.orbit));
-  return read_tle(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics);
+  return read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics);
 }
 
 Error propagation_failure(const ElementSet &set, Epoch<Utc> time, Sgp4Code code) {

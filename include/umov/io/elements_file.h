@@ -1,0 +1,24 @@
+#pragma once
+// Files of mean elements, told apart by what they hold.
+
+#include <string>
+#include <string_view>
+#include <umov/core/diagnostics.h>
+#include <umov/orbit/elements.h>
+#include <vector>
+
+namespace umov {
+
+enum class ElementsForm { Tle, OmmKvn, OmmXml, OmmJson, OmmCsv };
+
+/// By content, never by name: TLE is what nothing else is.
+ElementsForm form_of_elements(std::string_view text);
+
+/// Reads TLE and 3LE (see read_tle), and the CCSDS Orbit Mean-Elements Message (502.0-B-3) as KVN, XML,
+/// JSON and CSV; numbers may be strings, catalogue numbers may have nine digits. KVN and XML must
+/// state centre EARTH, frame TEME, time scale UTC and theory SGP4; JSON and CSV, as catalogues
+/// serve them, may leave these out. BadInput names message, object and field.
+Result<std::vector<ElementSet>> read_elements(std::string_view text, const std::string &file,
+                                              const TleOptions &options, Diagnostics &diagnostics);
+
+} // namespace umov

@@ -1,0 +1,74 @@
+// A line of keywords, then a line of values for each message.
+
+#include "io/elements/omm_message.h"
+
+#include <optional>
+#include <umov/core/text.h>
+
+namespace umov::omm {
+namespace {
+
+/// Cells of a line; quotes as in RFC 4180. Empty if a quote is not closed.
+std::optional<std::vector<std::string>> cells_of(std::string_view line) {
+  std::vector<std::string> out(1);
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (is_quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
+      out.back() += c;
+      ++i;
+    } else if (c == '"') {
+      is_quoted = !is_quoted;
+    } else if (c == ',' && !is_quoted) {
+      out.emplace_back();
+    } else {
+      out.back() += c;
+    }
+  }
+  if (is_quoted)
+    return {};
+  for (std::string &cell : out)
+    cell = trimmed(cell);
+  return out;
+}
+
+} // namespace
+
+Result<void> read_csv(std::string_view text, const std::string &file, const Sink &sink) {
+  std::vector<std::string> keys;
+  std::size_t line_number = 0, messages = 0;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    ++line_number;
+    line = trimmed(line.substr(0, line.find_last_not_of('\r') + 1));
+    if (line.empty() || line.starts_with('#'))
+      continue;
+    auto cells = cells_of(line);
+    const auto refuse = [&](const std::string &what) {
+      return fail(ErrorCode::BadInput, what, {file, line_number});
+    };
+    if (keys.empty()) {
+      if (!cells)
+        return refuse("a quote is not closed");
+      keys = std::move(*cells);
+      continue;
+    }
+    Message message{{}, line_number, ++messages};
+    Result<void> done;
+    if (!cells || cells->size() != keys.size())
+      done = refuse(cells ? std::to_string(cells->size()) + " cells, expected " +
+                                std::to_string(keys.size()) + " as in the line of keywords"
+                          : std::string("a quote is not closed"));
+    for (std::size_t k = 0; done && k < keys.size(); ++k)
+      done = put(message, file, keys[k], {(*cells)[k], "", line_number});
+    if (done)
+      UMOV_TRY(sink(std::move(message)));
+    else
+      UMOV_TRY(sink(tl::unexpected(std::move(done).error())));
+  }
+  return {};
+}
+
+} // namespace umov::omm

@@ -1,0 +1,199 @@
+// Fields to elements, each with its unit and range.
+
+#include "io/elements/omm_message.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/core/quantity.h>
+#include <umov/core/text.h>
+#include <umov/time/epoch.h>
+
+namespace umov::omm {
+
+Result<void> put(Message &message, const std::string &file, const std::string &key, Field field) {
+  const std::size_t line = field.line;
+  if (const auto it = message.fields.find(key); it != message.fields.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} stands twice{}. Keep one of them.", key,
+                            it->second.line > 0
+                                ? fmt::format(", first in line {}", it->second.line)
+                                : std::string()),
+                {file, line});
+  message.fields.emplace(key, std::move(field));
+  return {};
+}
+
+namespace {
+
+class Fields {
+public:
+  Fields(const Message &message, const std::string &file) : message_(message), file_(file) {}
+
+  [[nodiscard]] const Field *find(const std::string &key) const {
+    const auto it = message_.fields.find(key);
+    return it == message_.fields.end() || it->second.text.empty() ? nullptr : &it->second;
+  }
+  /// "KEY is "FOUND", expected EXPECTED."
+  [[nodiscard]] tl::unexpected<Error> refuse(const std::string &key, const std::string &expected,
+                                             const std::string &hint = "") const {
+    const Field *field = find(key);
+    const Where where{file_, field != nullptr && field->line > 0 ? field->line : message_.line};
+    const std::string found =
+        field == nullptr ? "is missing" : fmt::format("is \"{}\"", field->text.substr(0, 60));
+    return fail(ErrorCode::BadInput,
+                fmt::format("message {}{}: {} {}, expected {}.{}{}", message_.number, name(), key,
+                            found, expected, hint.empty() ? "" : " ", hint),
+                where);
+  }
+  [[nodiscard]] Result<double> number(const std::string &key, const std::string &unit,
+                                      const std::string &expected, double low, double high) const {
+    const Field *field = find(key);
+    if (field == nullptr)
+      return refuse(key, expected);
+    if (!field->unit.empty() && !unit.empty() && field->unit != unit)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("message {}{}: {} is in \"{}\", expected {}", message_.number, name(),
+                              key, field->unit, unit),
+                  {file_, field->line});
+    const auto value = parse_number(field->text);
+    if (!value || !(*value >= low && *value <= high))
+      return refuse(key, expected);
+    return *value;
+  }
+  [[nodiscard]] Result<int> whole(const std::string &key, double high, int otherwise) const {
+    if (find(key) == nullptr)
+      return otherwise;
+    UMOV_ASSIGN(value, number(key, "", fmt::format("a whole number from 0 to {:g}", high), 0, high));
+    if (value != std::floor(value))
+      return refuse(key, "a whole number");
+    return static_cast<int>(value);
+  }
+  [[nodiscard]] std::string text(const std::string &key) const {
+    const Field *field = find(key);
+    return field == nullptr ? std::string() : field->text;
+  }
+
+private:
+  [[nodiscard]] std::string name() const {
+    const std::string object = text("OBJECT_NAME");
+    return object.empty() ? std::string() : fmt::format(" ({})", object.substr(0, 40));
+  }
+  const Message &message_;
+  const std::string &file_;
+};
+
+/// SGP4's elements mean something in one frame and one time scale only.
+Result<void> check_metadata(const Fields &fields, Metadata metadata) {
+  struct Rule {
+    const char *key;
+    std::vector<std::string> known;
+    const char *hint;
+  };
+  const Rule rules[] = {
+      {"CENTER_NAME", {"EARTH"}, "SGP4 is of the Earth."},
+      {"REF_FRAME", {"TEME"}, "SGP4's elements are of the true equator and mean equinox."},
+      {"TIME_SYSTEM", {"UTC"}, "Give the epoch in UTC."},
+      {"MEAN_ELEMENT_THEORY",
+       {"SGP4", "SGP/SGP4", "SGP"},
+       "Elements of another theory would be propagated wrongly."},
+  };
+  for (const Rule &rule : rules) {
+    if (fields.find(rule.key) == nullptr && metadata == Metadata::Optional)
+      continue;
+    if (std::find(rule.known.begin(), rule.known.end(), fields.text(rule.key)) == rule.known.end())
+      return fields.refuse(rule.key, rule.known.front(), rule.hint);
+  }
+  UMOV_ASSIGN(type, fields.whole("EPHEMERIS_TYPE", 9, 0));
+  if (type != 0 && type != 2 && type != 3)
+    return fields.refuse("EPHEMERIS_TYPE", "0 (SGP4)",
+                         type == 4 ? "Type 4 is SGP4-XP. Fetch the SGP4 set of this object." : "");
+  return {};
+}
+
+bool is_leap(int year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
+
+/// "2020-064T10:34:41.4" (CCSDS 301.0-B-4, code B) as "2020-03-04T10:34:41.4".
+std::string calendar_date(const std::string &text) {
+  if (text.size() < 9 || text[4] != '-' || text[8] != 'T')
+    return text;
+  const auto year = parse_number(text.substr(0, 4)), day = parse_number(text.substr(5, 3));
+  if (!year || !day || *day < 1 || *day > (is_leap(static_cast<int>(*year)) ? 366 : 365))
+    return text;
+  const int days[] = {31, is_leap(static_cast<int>(*year)) ? 29 : 28, 31, 30, 31, 30, 31, 31,
+                      30, 31, 30, 31};
+  int rest = static_cast<int>(*day), month = 0;
+  while (rest > days[month])
+    rest -= days[month++];
+  return fmt::format("{}-{:02}-{:02}{}", text.substr(0, 4), month + 1, rest, text.substr(8));
+}
+
+Result<void> read_epoch(const Fields &fields, ElementSet &out) {
+  std::string text = calendar_date(fields.text("EPOCH"));
+  if (!text.empty() && text.back() != 'Z' && text.find('+') == std::string::npos)
+    text += 'Z'; // TIME_SYSTEM says so
+  const auto epoch = utc_from_iso(text);
+  if (!epoch)
+    return fields.refuse("EPOCH", "a date such as 2018-01-20T12:25:40.104192",
+                         fields.find("EPOCH") == nullptr ? "" : epoch.error().message);
+  out.epoch = *epoch;
+  const auto part = [&](std::size_t at, std::size_t count) {
+    return static_cast<int>(parse_number(text.substr(at, count)).value_or(0));
+  };
+  out.epoch_year = part(0, 4);
+  out.epoch_day_of_year =
+      1 + clock_days_between(*epoch, utc_from_year_day(out.epoch_year, 1.0));
+  return {};
+}
+
+} // namespace
+
+Result<ElementSet> elements_of(const Message &message, const std::string &file, Metadata metadata) {
+  const Fields fields(message, file);
+  UMOV_TRY(check_metadata(fields, metadata));
+  ElementSet out;
+  out.line = message.line;
+  for (const char *key : {"OBJECT_NAME", "OBJECT_ID"})
+    if (fields.find(key) == nullptr)
+      return fields.refuse(key, "a name");
+  out.name = fields.text("OBJECT_NAME");
+  out.international_designator = fields.text("OBJECT_ID");
+  UMOV_TRY(read_epoch(fields, out));
+  constexpr double huge = 1e30;
+  UMOV_ASSIGN(motion, fields.number("MEAN_MOTION", "rev/day", "revolutions per day above 0",
+                                    1e-9, 100));
+  UMOV_ASSIGN(shape, fields.number("ECCENTRICITY", "", "0 to below 1", 0, 1 - 1e-12));
+  UMOV_ASSIGN(inclination, fields.number("INCLINATION", "deg", "0 to 180 deg", 0, 180));
+  const auto turn = [&](const char *key) -> Result<double> {
+    UMOV_ASSIGN(value, fields.number(key, "deg", "0 to 360 deg", 0, 360));
+    return Angle::degrees(value == 360 ? 0.0 : value).radians();
+  };
+  UMOV_ASSIGN(raan, turn("RA_OF_ASC_NODE"));
+  UMOV_ASSIGN(perigee, turn("ARG_OF_PERICENTER"));
+  UMOV_ASSIGN(anomaly, turn("MEAN_ANOMALY"));
+  UMOV_ASSIGN(bstar, fields.number("BSTAR", "1/ER", "the drag term B*", -huge, huge));
+  UMOV_ASSIGN(dot, fields.number("MEAN_MOTION_DOT", "rev/day**2", "a number", -huge, huge));
+  UMOV_ASSIGN(ddot, fields.number("MEAN_MOTION_DDOT", "rev/day**3", "a number", -huge, huge));
+  UMOV_ASSIGN(norad, fields.whole("NORAD_CAT_ID", 999'999'999, 0));
+  UMOV_ASSIGN(set_number, fields.whole("ELEMENT_SET_NO", 1e9, 0));
+  UMOV_ASSIGN(revolution, fields.whole("REV_AT_EPOCH", 1e9, 0));
+  UMOV_ASSIGN(type, fields.whole("EPHEMERIS_TYPE", 9, 0));
+  out.mean_motion = motion * (2 * pi / 1440);
+  out.eccentricity = shape;
+  out.inclination = Angle::degrees(inclination).radians();
+  out.raan = raan;
+  out.argument_of_perigee = perigee;
+  out.mean_anomaly = anomaly;
+  out.bstar = bstar;
+  out.mean_motion_dot = dot;
+  out.mean_motion_ddot = ddot;
+  out.norad_cat_id = norad;
+  out.element_number = set_number;
+  out.revolution = revolution;
+  out.ephemeris_type = type;
+  const std::string classification = fields.text("CLASSIFICATION_TYPE");
+  out.classification = classification.empty() ? 'U' : classification[0];
+  return out;
+}
+
+} // namespace umov::omm

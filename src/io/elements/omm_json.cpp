@@ -1,0 +1,94 @@
+// JSON as catalogues serve it: one object or a list of them, values as numbers or strings.
+
+#include "io/elements/omm_message.h"
+
+#include <nlohmann/json.hpp>
+#include <umov/core/text.h>
+
+namespace umov::omm {
+namespace {
+
+constexpr int deepest = 4;
+
+/// Depth of brackets outside strings, and the line where it first exceeds `deepest`.
+std::size_t line_too_deep(std::string_view text) {
+  int depth = 0;
+  std::size_t line = 1;
+  bool is_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    line += c == '\n' ? 1u : 0u;
+    if (is_text) {
+      if (c == '\\')
+        ++i;
+      else if (c == '"')
+        is_text = false;
+    } else if (c == '"') {
+      is_text = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > deepest)
+        return line;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return 0;
+}
+
+std::string text_of(const nlohmann::json &value) {
+  if (value.is_string())
+    return value.get<std::string>();
+  if (value.is_number_float())
+    return shortest(value.get<double>());
+  return value.is_null() ? std::string() : value.dump();
+}
+
+} // namespace
+
+Result<void> read_json(std::string_view text, const std::string &file, const Sink &sink) {
+  if (const std::size_t line = line_too_deep(text); line > 0)
+    return fail(ErrorCode::BadInput, "is nested deeper than any list of element sets", {file, line});
+  // The parser keeps the last of two equal keys: they are caught as they pass.
+  std::vector<std::string> keys;
+  std::string twice;
+  const auto watch = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json &parsed) {
+    using Event = nlohmann::json::parse_event_t;
+    if (event == Event::object_start && depth <= 1)
+      keys.clear();
+    if (event == Event::key && depth <= 2) {
+      const auto key = parsed.get<std::string>();
+      if (std::find(keys.begin(), keys.end(), key) != keys.end() && twice.empty())
+        twice = key;
+      keys.push_back(key);
+    }
+    return true;
+  };
+  nlohmann::json document;
+  try {
+    document = nlohmann::json::parse(text, watch);
+  } catch (const nlohmann::json::exception &e) {
+    std::string why = e.what();
+    why = why.substr(why.find("] ") == std::string::npos ? 0 : why.find("] ") + 2);
+    return fail(ErrorCode::BadInput, "is no JSON of element sets: " + why, {file});
+  }
+  if (!twice.empty())
+    return fail(ErrorCode::BadInput, twice + " stands twice in one object. Keep one of them.", {file});
+  if (document.is_object())
+    document = nlohmann::json::array({document});
+  std::size_t messages = 0;
+  for (const auto &entry : document) {
+    Message message{{}, 0, ++messages};
+    if (!entry.is_object()) {
+      UMOV_TRY(sink(fail(ErrorCode::BadInput,
+                         "entry " + std::to_string(messages) + " is no object of keywords and values",
+                         {file})));
+      continue;
+    }
+    for (const auto &[key, value] : entry.items())
+      message.fields[key] = {text_of(value), "", 0};
+    UMOV_TRY(sink(std::move(message)));
+  }
+  return {};
+}
+
+} // namespace umov::omm

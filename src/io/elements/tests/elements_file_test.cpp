@@ -1,0 +1,242 @@
+// OMM in its four forms against the same set as a TLE, and what is refused.
+
+#include <umov/io/elements_file.h>
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <umov/core/files.h>
+#include <umov/core/quantity.h>
+
+namespace umov {
+namespace {
+
+const std::string folder = UMOV_SOURCE_DIR "/tests/data/ccsds/";
+
+Result<std::vector<ElementSet>> read_text(const std::string &text, TleOptions options = {}) {
+  Diagnostics diagnostics;
+  return read_elements(text, "sets", options, diagnostics);
+}
+std::string refusal(const std::string &text) {
+  const auto sets = read_text(text);
+  return sets ? std::string() : sets.error().text();
+}
+std::vector<ElementSet> read_sample(const std::string &name) {
+  const auto sets = read_text(*read_file(folder + name));
+  EXPECT_TRUE(sets) << name << ": " << sets.error().text();
+  return sets ? *sets : std::vector<ElementSet>(1);
+}
+
+/// The ISS of 2008-09-20, of the samples, as a TLE (Wikipedia's example of the format).
+constexpr const char *iss_tle =
+    "ISS (ZARYA)\n"
+    "1 25544U 98067A   08264.51782528 -.00002182  00000-0 -11606-4 0  2927\n"
+    "2 25544  51.6416 247.4627 0006703 130.5360 325.0288 15.72125391563537\n";
+
+void expect_same(const ElementSet &a, const ElementSet &b) {
+  EXPECT_EQ(a.norad_cat_id, b.norad_cat_id);
+  EXPECT_EQ(a.bstar, b.bstar);
+  EXPECT_EQ(a.mean_motion_dot, b.mean_motion_dot);
+  EXPECT_EQ(a.mean_motion_ddot, b.mean_motion_ddot);
+  EXPECT_EQ(a.inclination, b.inclination);
+  EXPECT_EQ(a.raan, b.raan);
+  EXPECT_EQ(a.eccentricity, b.eccentricity);
+  EXPECT_EQ(a.argument_of_perigee, b.argument_of_perigee);
+  EXPECT_EQ(a.mean_anomaly, b.mean_anomaly);
+  EXPECT_EQ(a.mean_motion, b.mean_motion);
+  EXPECT_EQ(a.element_number, b.element_number);
+  EXPECT_EQ(a.revolution, b.revolution);
+  EXPECT_EQ(a.epoch_year, b.epoch_year);
+  // The TLE's epoch has 8 decimals of a day: the OMM's are its microseconds, 0.43 ms apart.
+  EXPECT_NEAR(clock_days_between(a.epoch, b.epoch) * 86400, 0, 5e-4);
+  EXPECT_NEAR(a.epoch_day_of_year, b.epoch_day_of_year, 6e-9);
+}
+
+/// The message as catalogues serve it.
+std::string json_of(const std::string &changed = "", const std::string &value = "",
+                    bool is_text = false) {
+  const std::pair<const char *, const char *> fields[] = {
+      {"OBJECT_NAME", "\"ISS (ZARYA)\""}, {"OBJECT_ID", "\"1998-067A\""},
+      {"EPOCH", "\"2008-09-20T12:25:40.104192\""}, {"MEAN_MOTION", "15.72125391"},
+      {"ECCENTRICITY", ".6703E-3"}, {"INCLINATION", "51.6416"}, {"RA_OF_ASC_NODE", "247.4627"},
+      {"ARG_OF_PERICENTER", "130.536"}, {"MEAN_ANOMALY", "325.0288"}, {"EPHEMERIS_TYPE", "0"},
+      {"CLASSIFICATION_TYPE", "\"U\""}, {"NORAD_CAT_ID", "25544"}, {"ELEMENT_SET_NO", "292"},
+      {"REV_AT_EPOCH", "56353"}, {"BSTAR", "-1.1606e-5"}, {"MEAN_MOTION_DOT", "-2.182e-5"},
+      {"MEAN_MOTION_DDOT", "0"}};
+  std::string out = "[{";
+  for (const auto &[key, text] : fields) {
+    std::string shown = key == changed ? value : text;
+    if (shown.starts_with('.'))
+      shown = "0" + shown;
+    if (key == changed && value.empty())
+      continue;
+    if (is_text && !shown.starts_with('"'))
+      shown = "\"" + shown + "\"";
+    out += (out.size() > 2 ? ",\"" : "\"") + std::string(key) + "\":" + shown;
+  }
+  return out + "}]";
+}
+std::string csv_of(const std::string &row_end = "") {
+  return "OBJECT_NAME,OBJECT_ID,EPOCH,MEAN_MOTION,ECCENTRICITY,INCLINATION,RA_OF_ASC_NODE,"
+         "ARG_OF_PERICENTER,MEAN_ANOMALY,EPHEMERIS_TYPE,CLASSIFICATION_TYPE,NORAD_CAT_ID,"
+         "ELEMENT_SET_NO,REV_AT_EPOCH,BSTAR,MEAN_MOTION_DOT,MEAN_MOTION_DDOT\r\n"
+         "\"ISS (ZARYA)\",1998-067A,2008-09-20T12:25:40.104192,15.72125391,.0006703,51.6416,"
+         "247.4627,130.5360,325.0288,0,U,25544,292,56353,-.11606E-4,-.2182E-4,0" + row_end + "\r\n";
+}
+
+TEST(Elements, OneSetInEveryFormIsTheSame) {
+  const ElementSet tle = read_text(iss_tle)->front();
+  for (const char *name : {"omm.kvn", "omm.xml", "omm_cov.kvn", "omm_cov.xml",
+                           "omm_user_defined.kvn", "omm_user_defined.xml"}) {
+    SCOPED_TRACE(name);
+    const auto sets = read_sample(name);
+    ASSERT_EQ(sets.size(), 1u);
+    expect_same(sets[0], tle);
+    EXPECT_EQ(sets[0].name, "ISS (ZARYA)");
+    EXPECT_EQ(sets[0].international_designator, "1998-067A");
+  }
+  for (const std::string &text : {json_of(), json_of("", "", true), csv_of(),
+                                  "\xEF\xBB\xBF" + csv_of(), json_of().substr(1, json_of().size() - 2)})
+    expect_same(read_text(text)->front(), tle);
+}
+
+TEST(Elements, TheBlueBooksExampleIsReadInBothForms) {
+  const ElementSet kvn = read_sample("omm_bluebook.kvn")[0], xml = read_sample("omm_bluebook.xml")[0];
+  expect_same(kvn, xml);
+  EXPECT_EQ(kvn.norad_cat_id, 23581);
+  EXPECT_EQ(kvn.inclination, Angle::degrees(3.0539).radians());
+  EXPECT_NEAR(kvn.epoch_day_of_year, 64.44075725, 1e-12); // 5 March 2007, 10:34:41.4264
+  // The example of the format gives the same elements under day 064 = 5 March.
+  expect_same(kvn, read_sample("bluebook.tle")[0]);
+}
+
+TEST(Elements, SeveralMessagesInOneFile) {
+  const std::string kvn = *read_file(folder + "omm.kvn") + "\n" + *read_file(folder + "omm_bluebook.kvn");
+  EXPECT_EQ(read_text(kvn)->size(), 2u);
+  std::string xml = *read_file(folder + "omm.xml");
+  xml = xml.substr(xml.find("<omm"));
+  EXPECT_EQ(read_text("<ndm>" + xml + xml + "</ndm>")->size(), 2u);
+  const std::string one = json_of().substr(1, json_of().size() - 2);
+  EXPECT_EQ(read_text("[" + one + "," + one + "," + one + "]")->size(), 3u);
+}
+
+TEST(Elements, CatalogueNumbersOfSixAndNineDigits) {
+  for (const int number : {270123, 799500123}) {
+    EXPECT_EQ(read_text(json_of("NORAD_CAT_ID", std::to_string(number)))->front().norad_cat_id, number);
+    EXPECT_EQ(read_text(json_of("NORAD_CAT_ID", "\"" + std::to_string(number) + "\""))->front().norad_cat_id,
+              number);
+  }
+}
+
+TEST(Elements, EpochsInEveryWriting) {
+  const auto epoch = [](const std::string &text) {
+    const auto sets = read_text(json_of("EPOCH", "\"" + text + "\""));
+    EXPECT_TRUE(sets) << sets.error().text();
+    return sets ? to_iso(sets->front().epoch, 9) : std::string();
+  };
+  EXPECT_EQ(epoch("2008-09-20T12:25:40.104192Z"), "2008-09-20T12:25:40.104192000Z");
+  EXPECT_EQ(epoch("2008-264T12:25:40.104192"), "2008-09-20T12:25:40.104192000Z");
+  EXPECT_EQ(epoch("2008-366T00:00:00"), "2008-12-31T00:00:00.000000000Z");
+  EXPECT_EQ(epoch("2008-09-20T12:25:40"), "2008-09-20T12:25:40.000000000Z");
+  EXPECT_EQ(epoch("2016-12-31T23:59:60.5"), "2016-12-31T23:59:60.500000000Z");
+  EXPECT_NE(refusal(json_of("EPOCH", "\"2007-366T00:00:00\"")).find("EPOCH"), std::string::npos);
+  EXPECT_NE(refusal(json_of("EPOCH", "\"2015-12-31T23:59:60\"")).find("EPOCH"), std::string::npos);
+}
+
+TEST(Elements, EveryMissingFieldIsNamed) {
+  for (const char *key : {"OBJECT_NAME", "OBJECT_ID", "EPOCH", "MEAN_MOTION", "ECCENTRICITY",
+                          "INCLINATION", "RA_OF_ASC_NODE", "ARG_OF_PERICENTER", "MEAN_ANOMALY",
+                          "BSTAR", "MEAN_MOTION_DOT", "MEAN_MOTION_DDOT"}) {
+    const std::string said = refusal(json_of(key, ""));
+    EXPECT_NE(said.find(std::string(key) + " is missing"), std::string::npos) << said;
+  }
+  // KVN and XML must say what SGP4 takes for granted.
+  for (const char *key : {"CENTER_NAME", "REF_FRAME", "TIME_SYSTEM", "MEAN_ELEMENT_THEORY"})
+    for (const char *name : {"omm.kvn", "omm.xml"}) {
+      std::string text = *read_file(folder + name);
+      const std::size_t at = text.find(key);
+      if (name == std::string("omm.kvn"))
+        text.replace(at, 1, "X");
+      else
+        text.erase(at - 1, text.find('\n', at) - at + 1);
+      EXPECT_NE(refusal(text).find(key), std::string::npos) << name << refusal(text);
+    }
+}
+
+struct Bad {
+  const char *key, *value, *said;
+};
+class BadField : public testing::TestWithParam<Bad> {};
+TEST_P(BadField, IsRefusedByName) {
+  const std::string said = refusal(json_of(GetParam().key, GetParam().value));
+  EXPECT_NE(said.find(GetParam().said), std::string::npos) << said;
+  EXPECT_NE(said.find("sets"), std::string::npos);
+}
+INSTANTIATE_TEST_SUITE_P(
+    Elements, BadField,
+    testing::Values(Bad{"MEAN_MOTION", "0", "above 0"}, Bad{"MEAN_MOTION", "\"NaN\"", "MEAN_MOTION"},
+                    Bad{"MEAN_MOTION", "\"1e400\"", "MEAN_MOTION"}, Bad{"MEAN_MOTION", "1e400", "JSON"},
+                    Bad{"ECCENTRICITY", "1", "below 1"}, Bad{"ECCENTRICITY", "-0.1", "0 to below 1"},
+                    Bad{"INCLINATION", "180.0001", "0 to 180"}, Bad{"RA_OF_ASC_NODE", "-1", "0 to 360"},
+                    Bad{"MEAN_ANOMALY", "\"12 deg\"", "MEAN_ANOMALY"},
+                    Bad{"NORAD_CAT_ID", "1234567890", "NORAD_CAT_ID"},
+                    Bad{"NORAD_CAT_ID", "1.5", "whole"}, Bad{"EPHEMERIS_TYPE", "4", "SGP4-XP"},
+                    Bad{"EPOCH", "\"yesterday\"", "EPOCH"}, Bad{"BSTAR", "[1]", "BSTAR"},
+                    Bad{"OBJECT_ID", "{\"a\":{\"b\":[]}}", "deeper"}));
+
+TEST(Elements, AnotherTheoryFrameOrMessageIsRefused) {
+  EXPECT_NE(refusal(*read_file(folder + "omm_eh.kvn")).find("REF_FRAME"), std::string::npos);
+  EXPECT_NE(refusal(*read_file(folder + "omm_eh.xml")).find("REF_FRAME"), std::string::npos);
+  std::string text = *read_file(folder + "omm.kvn");
+  EXPECT_NE(refusal("CCSDS_OEM_VERS = 2.0\n").find("CCSDS_OEM_VERS"), std::string::npos);
+  const std::string units = "51.6416 [deg]";
+  text.replace(text.find(units), units.size(), "0.90131 [rad]");
+  EXPECT_NE(refusal(text).find("sets:16"), std::string::npos) << refusal(text); // with its line
+  EXPECT_NE(refusal(text).find("expected deg"), std::string::npos);
+}
+
+TEST(Elements, FieldsThatStandTwiceAreRefused) {
+  const std::string kvn = *read_file(folder + "omm.kvn") + "\nBSTAR = 0\n";
+  EXPECT_NE(refusal(kvn).find("BSTAR stands twice, first in line 27"), std::string::npos)
+      << refusal(kvn);
+  std::string xml = *read_file(folder + "omm.xml");
+  xml.insert(xml.find("<ECCENTRICITY>"), "<ECCENTRICITY>0</ECCENTRICITY>");
+  EXPECT_NE(refusal(xml).find("ECCENTRICITY stands twice"), std::string::npos);
+  std::string json = json_of();
+  json.insert(2, "\"BSTAR\":1,");
+  EXPECT_NE(refusal(json).find("BSTAR stands twice"), std::string::npos);
+}
+
+TEST(Elements, HostileFilesAreRefusedAtOnce) {
+  // Entities that expand to gigabytes, and a file of this machine.
+  const std::string lol = "<?xml version=\"1.0\"?><!DOCTYPE omm [<!ENTITY a \"lol\"><!ENTITY b "
+                          "\"&a;&a;&a;&a;&a;&a;&a;&a;&a;&a;\">]><omm><body>&b;</body></omm>";
+  EXPECT_NE(refusal(lol).find("document type"), std::string::npos) << refusal(lol);
+  EXPECT_NE(refusal("<!DOCTYPE omm SYSTEM \"file:///etc/passwd\"><omm/>").find("document type"),
+            std::string::npos);
+  EXPECT_NE(refusal(std::string(10'000, '[')).find("deeper"), std::string::npos);
+  EXPECT_NE(refusal("<omm" + std::string(1'000'000, '<')).find("no XML"), std::string::npos);
+  std::string deep;
+  for (int i = 0; i < 100'000; ++i)
+    deep += "<a>";
+  EXPECT_NE(refusal("<omm>" + deep), "");
+  for (const char *text : {"", "{", "[1,2]", "[]", "<a/>", "<ndm/>", "CCSDS_OMM_VERS = 2.0\nx\n",
+                           "CCSDS_OMM_VERS", "MEAN_MOTION,\n1,2,3\n", "MEAN_MOTION,\n\"1,2\n", "{}"})
+    EXPECT_NE(refusal(text), "") << text;
+}
+
+TEST(Elements, BadMessagesMayBeLeftOut) {
+  const std::string good = json_of().substr(1, json_of().size() - 2);
+  const std::string bad = json_of("INCLINATION", "").substr(1, json_of("INCLINATION", "").size() - 2);
+  Diagnostics diagnostics;
+  const auto sets = read_elements("[" + good + "," + bad + "," + good + "]", "sets",
+                                  {.keep_going = true}, diagnostics);
+  ASSERT_TRUE(sets);
+  EXPECT_EQ(sets->size(), 2u);
+  const auto csv = read_text(csv_of() + "1,2,3\n", {.keep_going = true});
+  ASSERT_TRUE(csv);
+  EXPECT_EQ(csv->size(), 1u);
+  EXPECT_NE(refusal(csv_of(",0")).find("18 cells, expected 17"), std::string::npos);
+}
+
+} // namespace
+} // namespace umov
