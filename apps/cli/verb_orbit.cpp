@@ -337,6 +337,8 @@ void add_orbit(CLI::App &app, const Exit &exit_with) {
   orbit->require_subcommand(1);
   add_ephemeris(*orbit, exit_with);
   add_propagate(*orbit, exit_with);
+  add_orbit_show(*orbit, exit_with);
+  add_orbit_convert(*orbit, exit_with);
 }
 
 } // namespace umov::cli

@@ -191,8 +191,13 @@ Epoch<Utc> utc_from_year_day(int year, double day_of_year) {
   eraCal2jd(year, 1, 1, &zero, &january);
   const double whole = std::floor(day_of_year);
   const double midnight = zero + january + (whole - 1);
+  // A day of year as a double is good to 3e-14 d. One that is a decimal of eight places, as element
+  // sets have it, to that, means that decimal.
+  double fraction = day_of_year - whole;
+  if (const double decimal = std::round(fraction * 1e8) / 1e8; std::abs(fraction - decimal) < 6e-14)
+    fraction = decimal;
   // The element set's fraction counts days of 86,400 s; the quasi-JD may have a longer one.
-  return {midnight, (day_of_year - whole) * day_s / day_length(midnight)};
+  return {midnight, fraction * day_s / day_length(midnight)};
 }
 
 double clock_days_between(Epoch<Utc> a, Epoch<Utc> b) {

@@ -60,7 +60,8 @@ ElementsForm form_of_elements(std::string_view text) {
     return ElementsForm::OmmJson;
   if (line.starts_with("CCSDS_"))
     return ElementsForm::OmmKvn;
-  if (line.find("MEAN_MOTION") != std::string_view::npos && line.find(',') != std::string_view::npos)
+  if (line.find("MEAN_MOTION") != std::string_view::npos &&
+      line.find(',') != std::string_view::npos)
     return ElementsForm::OmmCsv;
   return ElementsForm::Tle;
 }

@@ -16,9 +16,8 @@ Result<void> put(Message &message, const std::string &file, const std::string &k
   if (const auto it = message.fields.find(key); it != message.fields.end())
     return fail(ErrorCode::BadInput,
                 fmt::format("{} stands twice{}. Keep one of them.", key,
-                            it->second.line > 0
-                                ? fmt::format(", first in line {}", it->second.line)
-                                : std::string()),
+                            it->second.line > 0 ? fmt::format(", first in line {}", it->second.line)
+                                                : std::string()),
                 {file, line});
   message.fields.emplace(key, std::move(field));
   return {};
@@ -64,7 +63,8 @@ public:
   [[nodiscard]] Result<int> whole(const std::string &key, double high, int otherwise) const {
     if (find(key) == nullptr)
       return otherwise;
-    UMOV_ASSIGN(value, number(key, "", fmt::format("a whole number from 0 to {:g}", high), 0, high));
+    UMOV_ASSIGN(value,
+                number(key, "", fmt::format("a whole number from 0 to {:g}", high), 0, high));
     if (value != std::floor(value))
       return refuse(key, "a whole number");
     return static_cast<int>(value);
@@ -120,8 +120,8 @@ std::string calendar_date(const std::string &text) {
   const auto year = parse_number(text.substr(0, 4)), day = parse_number(text.substr(5, 3));
   if (!year || !day || *day < 1 || *day > (is_leap(static_cast<int>(*year)) ? 366 : 365))
     return text;
-  const int days[] = {31, is_leap(static_cast<int>(*year)) ? 29 : 28, 31, 30, 31, 30, 31, 31,
-                      30, 31, 30, 31};
+  const int days[] = {
+      31, is_leap(static_cast<int>(*year)) ? 29 : 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
   int rest = static_cast<int>(*day), month = 0;
   while (rest > days[month])
     rest -= days[month++];
@@ -141,8 +141,16 @@ Result<void> read_epoch(const Fields &fields, ElementSet &out) {
     return static_cast<int>(parse_number(text.substr(at, count)).value_or(0));
   };
   out.epoch_year = part(0, 4);
-  out.epoch_day_of_year =
-      1 + clock_days_between(*epoch, utc_from_year_day(out.epoch_year, 1.0));
+  out.epoch_day_of_year = 1 + clock_days_between(*epoch, utc_from_year_day(out.epoch_year, 1.0));
+  // Catalogues make their epochs from a TLE's eight decimals of a day. What is that decimal to a
+  // nanosecond is that decimal: the set is then the same to the last bit, whatever its form.
+  const double decimal = parse_number(fmt::format("{:.8f}", out.epoch_day_of_year)).value_or(0);
+  const Epoch<Utc> meant = utc_from_year_day(out.epoch_year, decimal);
+  if (text.find(":60") == std::string::npos &&
+      std::abs(clock_days_between(*epoch, meant)) * 86400 < 1e-9) {
+    out.epoch_day_of_year = decimal;
+    out.epoch = meant;
+  }
   return {};
 }
 
@@ -160,8 +168,8 @@ Result<ElementSet> elements_of(const Message &message, const std::string &file, 
   out.international_designator = fields.text("OBJECT_ID");
   UMOV_TRY(read_epoch(fields, out));
   constexpr double huge = 1e30;
-  UMOV_ASSIGN(motion, fields.number("MEAN_MOTION", "rev/day", "revolutions per day above 0",
-                                    1e-9, 100));
+  UMOV_ASSIGN(motion,
+              fields.number("MEAN_MOTION", "rev/day", "revolutions per day above 0", 1e-9, 100));
   UMOV_ASSIGN(shape, fields.number("ECCENTRICITY", "", "0 to below 1", 0, 1 - 1e-12));
   UMOV_ASSIGN(inclination, fields.number("INCLINATION", "deg", "0 to 180 deg", 0, 180));
   const auto turn = [&](const char *key) -> Result<double> {

@@ -47,7 +47,8 @@ std::string text_of(const nlohmann::json &value) {
 
 Result<void> read_json(std::string_view text, const std::string &file, const Sink &sink) {
   if (const std::size_t line = line_too_deep(text); line > 0)
-    return fail(ErrorCode::BadInput, "is nested deeper than any list of element sets", {file, line});
+    return fail(ErrorCode::BadInput, "is nested deeper than any list of element sets",
+                {file, line});
   // The parser keeps the last of two equal keys: they are caught as they pass.
   std::vector<std::string> keys;
   std::string twice;
@@ -72,16 +73,17 @@ Result<void> read_json(std::string_view text, const std::string &file, const Sin
     return fail(ErrorCode::BadInput, "is no JSON of element sets: " + why, {file});
   }
   if (!twice.empty())
-    return fail(ErrorCode::BadInput, twice + " stands twice in one object. Keep one of them.", {file});
+    return fail(ErrorCode::BadInput, twice + " stands twice in one object. Keep one of them.",
+                {file});
   if (document.is_object())
     document = nlohmann::json::array({document});
   std::size_t messages = 0;
   for (const auto &entry : document) {
     Message message{{}, 0, ++messages};
     if (!entry.is_object()) {
-      UMOV_TRY(sink(fail(ErrorCode::BadInput,
-                         "entry " + std::to_string(messages) + " is no object of keywords and values",
-                         {file})));
+      UMOV_TRY(sink(fail(
+          ErrorCode::BadInput,
+          "entry " + std::to_string(messages) + " is no object of keywords and values", {file})));
       continue;
     }
     for (const auto &[key, value] : entry.items())

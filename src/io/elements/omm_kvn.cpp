@@ -14,7 +14,8 @@ Field field_of(std::string_view text, std::size_t line) {
   Field out{std::string(text), "", line};
   const std::size_t open = text.rfind('[');
   if (open != std::string_view::npos && text.ends_with(']') && open > 0 &&
-      (text[open - 1] == ' ' || text[open - 1] == '\t') && parse_number(trimmed(text.substr(0, open)))) {
+      (text[open - 1] == ' ' || text[open - 1] == '\t') &&
+      parse_number(trimmed(text.substr(0, open)))) {
     out.text = trimmed(text.substr(0, open));
     out.unit = text.substr(open + 1, text.size() - open - 2);
   }
@@ -59,7 +60,8 @@ Result<void> read_kvn(std::string_view text, const std::string &file, const Sink
       continue;
     if (equals == std::string_view::npos) {
       broken = Error{ErrorCode::BadInput,
-                     "\"" + std::string(line.substr(0, 60)) + "\" has no '='; KEYWORD = VALUE was expected",
+                     "\"" + std::string(line.substr(0, 60)) +
+                         "\" has no '='; KEYWORD = VALUE was expected",
                      {file, line_number}};
       continue;
     }

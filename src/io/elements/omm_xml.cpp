@@ -1,5 +1,5 @@
-// NDM/XML: <omm>, alone or in <ndm>. pugixml knows no entities but the five of XML, so a document type
-// has nothing to offer here and is refused.
+// NDM/XML: <omm>, alone or in <ndm>. pugixml knows no entities but the five of XML, so a document
+// type has nothing to offer here and is refused.
 
 #include "io/elements/omm_message.h"
 
@@ -21,7 +21,8 @@ public:
   [[nodiscard]] std::size_t of(std::ptrdiff_t offset) const {
     const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0));
     return static_cast<std::size_t>(std::lower_bound(ends_.begin(), ends_.end(), at) -
-                                    ends_.begin()) + 1;
+                                    ends_.begin()) +
+           1;
   }
 
 private:
@@ -36,7 +37,8 @@ Result<void> take_leaves(pugi::xml_node node, int depth, const Lines &lines,
     if (child.type() != pugi::node_element)
       continue;
     const std::string name = child.name();
-    const bool is_leaf = !child.find_child([](pugi::xml_node n) { return n.type() == pugi::node_element; });
+    const bool is_leaf =
+        !child.find_child([](pugi::xml_node n) { return n.type() == pugi::node_element; });
     if (!is_leaf && depth < deepest) {
       UMOV_TRY(take_leaves(child, depth + 1, lines, file, out));
     } else if (name == "USER_DEFINED") {
@@ -55,9 +57,9 @@ Result<void> take_leaves(pugi::xml_node node, int depth, const Lines &lines,
 
 Result<void> read_xml(std::string_view text, const std::string &file, const Sink &sink) {
   pugi::xml_document document;
-  const auto done = document.load_buffer(text.data(), text.size(),
-                                         pugi::parse_default | pugi::parse_doctype |
-                                             pugi::parse_trim_pcdata);
+  const auto done =
+      document.load_buffer(text.data(), text.size(),
+                           pugi::parse_default | pugi::parse_doctype | pugi::parse_trim_pcdata);
   const Lines lines(text);
   if (!done)
     return fail(ErrorCode::BadInput, std::string("is no XML: ") + done.description(),
@@ -85,8 +87,9 @@ Result<void> read_xml(std::string_view text, const std::string &file, const Sink
       return {};
   }
   return fail(ErrorCode::BadInput,
-              std::string("the element <") + root.name() + "> was found, <omm> or <ndm> with <omm> in it "
-                                                           "was expected",
+              std::string("the element <") + root.name() +
+                  "> was found, <omm> or <ndm> with <omm> in it "
+                  "was expected",
               {file, lines.of(root.offset_debug())});
 }
 

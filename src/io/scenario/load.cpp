@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
-#include <umov/io/index_file.h>
 #include <umov/io/elements_file.h>
+#include <umov/io/index_file.h>
 #include <umov/io/obj.h>
 #include <umov/orbit/select.h>
 #include <umov/shape/topology.h>
@@ -36,8 +36,8 @@ Result<void> load_orbit(const Scenario &scenario, const LoadOptions &options,
     return {};
   const std::string file = scenario.orbit->file.string();
   UMOV_ASSIGN(text, read_input(file, place(scenario, "object.orbit"), out));
-  UMOV_ASSIGN(
-      sets, read_elements(text, file, {.allow_bad_checksum = options.allow_bad_checksum}, diagnostics));
+  UMOV_ASSIGN(sets, read_elements(text, file, {.allow_bad_checksum = options.allow_bad_checksum},
+                                  diagnostics));
   const Epoch<Utc> start = scenario.time ? scenario.time->start : sets.front().epoch;
   const Epoch<Utc> stop = scenario.time ? scenario.time->stop : start;
   UMOV_ASSIGN(set, choose_elements(sets, scenario.orbit->norad, start, file));

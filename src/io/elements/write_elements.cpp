@@ -1,0 +1,184 @@
+// Elements to text. Numbers are the shortest that give back the same element.
+
+#include <umov/io/elements_file.h>
+
+#include "io/elements/write_tle.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <umov/core/quantity.h>
+#include <umov/core/text.h>
+#include <umov/time/epoch.h>
+
+namespace umov {
+namespace {
+
+/// Revolutions per day that give back the same radians per minute.
+std::string revolutions_text(double rad_per_min) {
+  const double exact = rad_per_min / (2 * pi / 1440);
+  for (int digits = 1; digits < 17; ++digits) {
+    const std::string text = fmt::format("{:.{}g}", exact, digits);
+    if (parse_number(text).value_or(0) * (2 * pi / 1440) == rad_per_min)
+      return text;
+  }
+  return shortest(exact);
+}
+
+struct Item {
+  const char *key, *unit;
+  std::string text;
+  bool is_number;
+};
+
+/// "98067A" of a TLE as "1998-067A"; anything else as it is.
+std::string long_designator(const std::string &text) {
+  const bool is_short = text.size() >= 6 && text.size() <= 8 &&
+                        std::all_of(text.begin(), text.begin() + 5,
+                                    [](char c) { return c >= '0' && c <= '9'; });
+  if (!is_short)
+    return text;
+  return (text.substr(0, 2) < "57" ? "20" : "19") + text.substr(0, 2) + "-" + text.substr(2);
+}
+
+std::vector<Item> metadata_of(const ElementSet &set) {
+  return {{"OBJECT_NAME", "", set.name.empty() ? "UNKNOWN" : set.name, false},
+          {"OBJECT_ID", "",
+           set.international_designator.empty() ? "UNKNOWN"
+                                                : long_designator(set.international_designator),
+           false},
+          {"CENTER_NAME", "", "EARTH", false},
+          {"REF_FRAME", "", "TEME", false},
+          {"TIME_SYSTEM", "", "UTC", false},
+          {"MEAN_ELEMENT_THEORY", "", "SGP4", false}};
+}
+std::vector<Item> elements_of(const ElementSet &set) {
+  std::string epoch = to_iso_exact(set.epoch);
+  epoch.pop_back(); // the Z: TIME_SYSTEM says so
+  const auto degrees = [](double radians) { return degrees_text(Angle::radians(radians)); };
+  return {{"EPOCH", "", epoch, false},
+          {"MEAN_MOTION", "rev/day", revolutions_text(set.mean_motion), true},
+          {"ECCENTRICITY", "", shortest(set.eccentricity), true},
+          {"INCLINATION", "deg", degrees(set.inclination), true},
+          {"RA_OF_ASC_NODE", "deg", degrees(set.raan), true},
+          {"ARG_OF_PERICENTER", "deg", degrees(set.argument_of_perigee), true},
+          {"MEAN_ANOMALY", "deg", degrees(set.mean_anomaly), true}};
+}
+std::vector<Item> tle_parameters_of(const ElementSet &set) {
+  return {{"EPHEMERIS_TYPE", "", std::to_string(set.ephemeris_type), true},
+          {"CLASSIFICATION_TYPE", "", std::string(1, set.classification), false},
+          {"NORAD_CAT_ID", "", std::to_string(set.norad_cat_id), true},
+          {"ELEMENT_SET_NO", "", std::to_string(set.element_number), true},
+          {"REV_AT_EPOCH", "", std::to_string(set.revolution), true},
+          {"BSTAR", "1/ER", shortest(set.bstar), true},
+          {"MEAN_MOTION_DOT", "rev/day**2", shortest(set.mean_motion_dot), true},
+          {"MEAN_MOTION_DDOT", "rev/day**3", shortest(set.mean_motion_ddot), true}};
+}
+std::vector<Item> all_of(const ElementSet &set) {
+  auto out = metadata_of(set);
+  for (auto *part : {&elements_of, &tle_parameters_of})
+    for (Item &item : (*part)(set))
+      out.push_back(std::move(item));
+  return out;
+}
+
+std::string kvn_of(const std::vector<ElementSet> &sets, const std::string &created) {
+  std::string out;
+  for (const ElementSet &set : sets) {
+    out += fmt::format("CCSDS_OMM_VERS = 2.0\nCREATION_DATE = {}\nORIGINATOR = umov\n\n", created);
+    for (const Item &item : all_of(set))
+      out += fmt::format("{} = {}{}\n", item.key, item.text,
+                         *item.unit != 0 ? fmt::format(" [{}]", item.unit) : std::string());
+    out += '\n';
+  }
+  return out;
+}
+
+std::string escaped(const std::string &text) {
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+  return out;
+}
+std::string xml_of(const std::vector<ElementSet> &sets, const std::string &created) {
+  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<ndm>\n";
+  const auto put = [&](const std::vector<Item> &items) {
+    for (const Item &item : items)
+      out += fmt::format("        <{0}{1}>{2}</{0}>\n", item.key,
+                         *item.unit != 0 ? fmt::format(" units=\"{}\"", item.unit) : std::string(),
+                         escaped(item.text));
+  };
+  for (const ElementSet &set : sets) {
+    out += fmt::format("  <omm id=\"CCSDS_OMM_VERS\" version=\"2.0\">\n    <header><CREATION_DATE>{}"
+                       "</CREATION_DATE><ORIGINATOR>umov</ORIGINATOR></header>\n"
+                       "    <body><segment>\n      <metadata>\n",
+                       created);
+    put(metadata_of(set));
+    out += "      </metadata>\n      <data><meanElements>\n";
+    put(elements_of(set));
+    out += "      </meanElements><tleParameters>\n";
+    put(tle_parameters_of(set));
+    out += "      </tleParameters></data>\n    </segment></body>\n  </omm>\n";
+  }
+  return out + "</ndm>\n";
+}
+
+std::string json_of(const std::vector<ElementSet> &sets) {
+  std::string out = "[";
+  for (const ElementSet &set : sets) {
+    out += out.size() > 1 ? ",\n {" : "\n {";
+    bool is_first = true;
+    for (const Item &item : all_of(set)) {
+      out += fmt::format("{}\"{}\":{}", is_first ? "" : ",", item.key,
+                         item.is_number ? item.text : nlohmann::json(item.text).dump());
+      is_first = false;
+    }
+    out += '}';
+  }
+  return out + "\n]\n";
+}
+
+std::string csv_of(const std::vector<ElementSet> &sets) {
+  std::string out;
+  const auto put = [&](const std::vector<Item> &items, bool is_head) {
+    for (std::size_t k = 0; k < items.size(); ++k) {
+      std::string cell = is_head ? items[k].key : items[k].text;
+      if (cell.find_first_of(",\"\r\n") != std::string::npos) {
+        for (std::size_t i = 0; (i = cell.find('"', i)) != std::string::npos; i += 2)
+          cell.insert(i, 1, '"');
+        cell = "\"" + cell + "\"";
+      }
+      out += (k > 0 ? "," : "") + cell;
+    }
+    out += '\n';
+  };
+  for (const ElementSet &set : sets) {
+    if (out.empty())
+      put(all_of(set), true);
+    put(all_of(set), false);
+  }
+  return out;
+}
+
+} // namespace
+
+Result<std::string> write_elements(const std::vector<ElementSet> &sets, ElementsForm form,
+                                   Epoch<Utc> created, Diagnostics &diagnostics) {
+  const std::string when = to_iso(created, 3).substr(0, 19);
+  switch (form) {
+  case ElementsForm::OmmKvn:
+    return kvn_of(sets, when);
+  case ElementsForm::OmmXml:
+    return xml_of(sets, when);
+  case ElementsForm::OmmJson:
+    return json_of(sets);
+  case ElementsForm::OmmCsv:
+    return csv_of(sets);
+  case ElementsForm::Tle:
+    break;
+  }
+  return tle_of(sets, diagnostics);
+}
+
+} // namespace umov
