@@ -25,7 +25,8 @@ struct ElementsOptions {
 
 Result<std::vector<ElementSet>> read_sets(const ElementsOptions &o, Diagnostics &diagnostics) {
   UMOV_ASSIGN(text, read_file(o.orbit));
-  UMOV_ASSIGN(sets, read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics));
+  UMOV_ASSIGN(sets,
+              read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics));
   if (o.norad == 0)
     return sets;
   std::erase_if(sets, [&](const ElementSet &set) { return set.norad_cat_id != o.norad; });
@@ -66,9 +67,8 @@ Table elements_table(const std::vector<ElementSet> &sets) {
   const auto degrees = [](double radians) {
     return parse_number(degrees_text(Angle::radians(radians))).value_or(0); // as printed
   };
-  add("mean_motion", "1 / d", "revolutions, Kozai", [](E e) {
-    return e.mean_motion / (2 * pi / 1440);
-  });
+  add("mean_motion", "1 / d", "revolutions, Kozai",
+      [](E e) { return e.mean_motion / (2 * pi / 1440); });
   add("eccentricity", "", "mean", [](E e) { return e.eccentricity; });
   add("inclination", "deg", "mean, TEME", [&](E e) { return degrees(e.inclination); });
   add("raan", "deg", "right ascension of the node, TEME", [&](E e) { return degrees(e.raan); });
@@ -76,20 +76,17 @@ Table elements_table(const std::vector<ElementSet> &sets) {
   add("mean_anomaly", "deg", "mean", [&](E e) { return degrees(e.mean_anomaly); });
   add("bstar", "", "drag term, per Earth radius", [](E e) { return e.bstar; });
   add("period", "min", "of the mean motion", [](E e) { return 2 * pi / e.mean_motion; });
-  add("perigee_alt", "km", "above a sphere of 6378.135 km, mean", [](E e) {
-    return semi_major_axis_km(e) * (1 - e.eccentricity) - earth_radius_km;
-  });
-  add("apogee_alt", "km", "above a sphere of 6378.135 km, mean", [](E e) {
-    return semi_major_axis_km(e) * (1 + e.eccentricity) - earth_radius_km;
-  });
+  add("perigee_alt", "km", "above a sphere of 6378.135 km, mean",
+      [](E e) { return semi_major_axis_km(e) * (1 - e.eccentricity) - earth_radius_km; });
+  add("apogee_alt", "km", "above a sphere of 6378.135 km, mean",
+      [](E e) { return semi_major_axis_km(e) * (1 + e.eccentricity) - earth_radius_km; });
   return t;
 }
 
 Result<ElementsForm> wanted_form(const ElementsOptions &o) {
   constexpr std::pair<const char *, ElementsForm> known[] = {
-      {"tle", ElementsForm::Tle},     {"3le", ElementsForm::Tle},
-      {"txt", ElementsForm::Tle},     {"kvn", ElementsForm::OmmKvn},
-      {"omm", ElementsForm::OmmKvn},  {"xml", ElementsForm::OmmXml},
+      {"tle", ElementsForm::Tle},      {"3le", ElementsForm::Tle},    {"txt", ElementsForm::Tle},
+      {"kvn", ElementsForm::OmmKvn},   {"omm", ElementsForm::OmmKvn}, {"xml", ElementsForm::OmmXml},
       {"json", ElementsForm::OmmJson}, {"csv", ElementsForm::OmmCsv}};
   std::string name = o.form;
   if (name.empty() && !o.output.empty() && o.output != "-")

@@ -42,6 +42,11 @@ void add_topocentric(ObservingGeometry &out, const Site &site, Vec3<Itrs> sun_it
 
 } // namespace
 
+Angle topocentric_altitude(const TemeState &state, Epoch<Utc> time, const Site &site) {
+  const Vec3<Itrs> line = itrs_from_teme(time) * state.position_km - itrs_position_km(site);
+  return topocentric(enu_from_itrs(site) * line).altitude;
+}
+
 ObservingGeometry observe(const TemeState &state, Epoch<Utc> time, const Site &site,
                           ShadowModel shadow) {
   ObservingGeometry out;

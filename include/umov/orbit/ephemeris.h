@@ -37,6 +37,9 @@ struct ObservingGeometry {
 ObservingGeometry observe(const TemeState &state, Epoch<Utc> time, const Site &site,
                           ShadowModel shadow);
 
+/// The altitude that `observe` gives, alone: many times faster, for searches.
+Angle topocentric_altitude(const TemeState &state, Epoch<Utc> time, const Site &site);
+
 /// Visible fraction of the Sun's uniform disk over the Earth, 0..1, from positions in one
 /// geocentric Earth-fixed frame. No atmosphere.
 double sunlit_fraction(Vec3<Itrs> object_km, Vec3<Itrs> sun_km, ShadowModel shadow);

@@ -34,9 +34,9 @@ struct Item {
 
 /// "98067A" of a TLE as "1998-067A"; anything else as it is.
 std::string long_designator(const std::string &text) {
-  const bool is_short = text.size() >= 6 && text.size() <= 8 &&
-                        std::all_of(text.begin(), text.begin() + 5,
-                                    [](char c) { return c >= '0' && c <= '9'; });
+  const bool is_short =
+      text.size() >= 6 && text.size() <= 8 &&
+      std::all_of(text.begin(), text.begin() + 5, [](char c) { return c >= '0' && c <= '9'; });
   if (!is_short)
     return text;
   return (text.substr(0, 2) < "57" ? "20" : "19") + text.substr(0, 2) + "-" + text.substr(2);
@@ -110,10 +110,11 @@ std::string xml_of(const std::vector<ElementSet> &sets, const std::string &creat
                          escaped(item.text));
   };
   for (const ElementSet &set : sets) {
-    out += fmt::format("  <omm id=\"CCSDS_OMM_VERS\" version=\"2.0\">\n    <header><CREATION_DATE>{}"
-                       "</CREATION_DATE><ORIGINATOR>umov</ORIGINATOR></header>\n"
-                       "    <body><segment>\n      <metadata>\n",
-                       created);
+    out +=
+        fmt::format("  <omm id=\"CCSDS_OMM_VERS\" version=\"2.0\">\n    <header><CREATION_DATE>{}"
+                    "</CREATION_DATE><ORIGINATOR>umov</ORIGINATOR></header>\n"
+                    "    <body><segment>\n      <metadata>\n",
+                    created);
     put(metadata_of(set));
     out += "      </metadata>\n      <data><meanElements>\n";
     put(elements_of(set));

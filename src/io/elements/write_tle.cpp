@@ -70,9 +70,8 @@ std::string lines_of(const ElementSet &set) {
       implied_decimal(set.bstar), set.ephemeris_type % 10, set.element_number % 10'000);
   const std::string second = fmt::format(
       "2 {} {} {} {:07} {} {} {:11.8f}{:5}", number, degrees(set.inclination), degrees(set.raan),
-      std::min(std::llround(set.eccentricity * 1e7), 9'999'999LL),
-      degrees(set.argument_of_perigee), degrees(set.mean_anomaly),
-      set.mean_motion / (2 * pi / 1440), set.revolution % 100'000);
+      std::min(std::llround(set.eccentricity * 1e7), 9'999'999LL), degrees(set.argument_of_perigee),
+      degrees(set.mean_anomaly), set.mean_motion / (2 * pi / 1440), set.revolution % 100'000);
   return (set.name.empty() ? "" : set.name + "\n") + with_checksum(first) + with_checksum(second);
 }
 

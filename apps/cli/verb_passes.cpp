@@ -1,0 +1,305 @@
+// umov passes: when the objects of a file pass over a site.
+
+#include "console.h"
+#include "verbs.h"
+
+#include "tables.h"
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <umov/core/files.h>
+#include <umov/core/parallel.h>
+#include <umov/core/text.h>
+#include <umov/io/elements_file.h>
+#include <umov/orbit/passes.h>
+#include <umov/orbit/select.h>
+
+namespace umov::cli {
+namespace {
+
+struct PassesOptions {
+  std::string orbit, output, site, start, stop, shadow = "ellipsoid";
+  std::vector<int> norad;
+  double latitude_deg = 0, longitude_deg = 0, altitude_m = 0, altitude_min_deg = 10,
+         sun_altitude_max_deg = -6;
+  bool is_visible_only = false, allow_bad_checksum = false, keep_going = false,
+       allow_old_elements = false;
+};
+
+Result<Site> site_of(const PassesOptions &o) {
+  if (o.site.empty())
+    return make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m);
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= o.site.size();) {
+    const std::size_t end = std::min(o.site.find(',', begin), o.site.size());
+    const auto value = parse_number(trimmed(std::string_view(o.site).substr(begin, end - begin)));
+    if (!value)
+      break;
+    numbers.push_back(*value);
+    begin = end + 1;
+  }
+  if (numbers.size() != 3 || std::count(o.site.begin(), o.site.end(), ',') != 2)
+    return fail(ErrorCode::Usage, "--site " + o.site +
+                                      ": latitude, longitude [deg, north and east positive] and "
+                                      "altitude [m], separated by commas, were expected");
+  return make_site("", numbers[0], numbers[1], numbers[2]);
+}
+
+/// The set of each object to use for a span.
+Result<std::vector<ElementSet>> choose(const PassesOptions &o, const std::vector<ElementSet> &sets,
+                                       Epoch<Utc> start, Epoch<Utc> stop, Diagnostics &diagnostics) {
+  std::vector<int> wanted = o.norad;
+  if (wanted.empty())
+    for (const ElementSet &set : sets)
+      wanted.push_back(set.norad_cat_id);
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  std::vector<ElementSet> sorted = sets, out; // by number, so that each object is chosen from its own
+  std::stable_sort(sorted.begin(), sorted.end(), [](const ElementSet &a, const ElementSet &b) {
+    return a.norad_cat_id < b.norad_cat_id;
+  });
+  std::size_t doubtful = 0, old = 0;
+  for (const int norad : wanted) {
+    const auto [first, last] = std::equal_range(
+        sorted.begin(), sorted.end(), norad,
+        [](const auto &a, const auto &b) {
+          const auto number = [](const auto &x) {
+            if constexpr (std::is_same_v<std::decay_t<decltype(x)>, int>)
+              return x;
+            else
+              return x.norad_cat_id;
+          };
+          return number(a) < number(b);
+        });
+    UMOV_ASSIGN(set, choose_elements({first, last}, norad, start, o.orbit));
+    const double age = std::max(std::abs(clock_days_between(start, set.epoch)),
+                                std::abs(clock_days_between(stop, set.epoch)));
+    doubtful += age > 7 ? 1u : 0u;
+    if (age > 30 && !o.allow_old_elements)
+      ++old;
+    else
+      out.push_back(std::move(set));
+  }
+  if (out.empty())
+    return fail(ErrorCode::BadInput,
+                "all elements are more than 30 d from the span. Give newer ones or pass "
+                "--allow-old-elements.",
+                {o.orbit});
+  if (old > 0)
+    diagnostics.warn(fmt::format("{} with elements more than 30 d from the span are left out; "
+                                 "--allow-old-elements takes them",
+                                 counted(old, "object")),
+                     {o.orbit});
+  if (doubtful > old)
+    diagnostics.warn(fmt::format("elements of {} are more than 7 d from the span; passes may be "
+                                 "seconds off",
+                                 counted(doubtful - old, "object")),
+                     {o.orbit});
+  return out;
+}
+
+struct FoundPass {
+  std::size_t object = 0;
+  SitePass pass;
+};
+
+std::string pass_id(const ElementSet &set, const SitePass &pass) {
+  std::string time = to_iso(pass.culmination.time, 3).substr(0, 19) + "Z";
+  std::erase_if(time, [](char c) { return c == '-' || c == ':'; });
+  return std::to_string(set.norad_cat_id) + "-" + time;
+}
+
+Table passes_table(const std::vector<FoundPass> &found, const std::vector<ElementSet> &sets) {
+  Table t;
+  const auto text = [&](const char *name, const char *description, auto take) {
+    std::vector<std::string> values;
+    for (const FoundPass &one : found)
+      values.push_back(take(sets[one.object], one.pass));
+    t.add(name, "", description, std::move(values));
+  };
+  const auto number = [&](const char *name, const char *unit, const char *description, auto take) {
+    std::vector<double> values;
+    for (const FoundPass &one : found)
+      values.push_back(take(sets[one.object], one.pass));
+    t.add(name, unit, description, std::move(values));
+  };
+  using E = const ElementSet &;
+  using P = const SitePass &;
+  const auto shadow = [](P pass, bool is_entry) -> std::string {
+    for (const ShadowCrossing &crossing : pass.shadow)
+      if (crossing.is_entry == is_entry)
+        return to_iso(crossing.time);
+    return "";
+  };
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  text("name", "as in the file", [](E e, P) { return e.name; });
+  std::vector<std::int64_t> numbers;
+  for (const FoundPass &one : found)
+    numbers.push_back(sets[one.object].norad_cat_id);
+  t.add("norad_cat_id", "", "catalogue number", std::move(numbers));
+  text("pass_id", "number and time of culmination", pass_id);
+  text("rise_utc", "crosses the altitude going up; empty: it is up when the span begins",
+       [](E, P p) { return p.is_rise_cut ? std::string() : to_iso(p.rise.time); });
+  text("culmination_utc", "highest point within the span",
+       [](E, P p) { return to_iso(p.culmination.time); });
+  text("set_utc", "crosses the altitude going down; empty: it is up when the span ends",
+       [](E, P p) { return p.is_set_cut ? std::string() : to_iso(p.set.time); });
+  number("rise_az", "deg", "azimuth from north through east",
+         [](E, P p) { return p.rise.azimuth.degrees(); });
+  number("culmination_alt", "deg", "altitude, geometric",
+         [](E, P p) { return p.culmination.altitude.degrees(); });
+  number("culmination_az", "deg", "azimuth", [](E, P p) { return p.culmination.azimuth.degrees(); });
+  number("set_az", "deg", "azimuth", [](E, P p) { return p.set.azimuth.degrees(); });
+  text("shadow_entry_utc", "half of the Sun's disk is gone; empty: not during the pass",
+       [&](E, P p) { return shadow(p, true); });
+  text("shadow_exit_utc", "half of the Sun's disk is back; empty: not during the pass",
+       [&](E, P p) { return shadow(p, false); });
+  number("sunlit_share", "", "of the time between rise and set", [](E, P p) { return p.sunlit_share; });
+  number("visible", "s", "sunlit, with the site's Sun below --sun-alt-max-deg",
+         [](E, P p) { return p.visible_s; });
+  number("range_min", "km", "smallest distance from the site", [](E, P p) { return p.range_min_km; });
+  number("phase_min", "deg", "smallest phase angle while sunlit",
+         [&](E, P p) { return p.sunlit_share > 0 ? p.phase_min.degrees() : none; });
+  number("phase_max", "deg", "largest phase angle while sunlit",
+         [&](E, P p) { return p.sunlit_share > 0 ? p.phase_max.degrees() : none; });
+  number("sun_alt", "deg", "altitude of the Sun at culmination, airless",
+         [](E, P p) { return p.culmination.sun_altitude.degrees(); });
+  number("elset_age", "d", "culmination less epoch of the elements",
+         [](E e, P p) { return clock_days_between(p.culmination.time, e.epoch); });
+  return t;
+}
+
+struct Search {
+  std::vector<FoundPass> found;
+  std::size_t objects = 0, failed = 0; ///< searched, of which SGP4 failed
+  bool is_stopped = false;
+};
+
+Search search_all(const PassesOptions &o, const std::vector<ElementSet> &sets, const Site &site,
+                  Epoch<Utc> start, Epoch<Utc> stop, const Common &common,
+                  Diagnostics &diagnostics) {
+  PassSearch wanted;
+  wanted.altitude_min = Angle::degrees(o.altitude_min_deg);
+  wanted.sun_altitude_max = Angle::degrees(o.sun_altitude_max_deg);
+  wanted.shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
+  std::vector<std::optional<Result<std::vector<SitePass>>>> results(sets.size());
+  ProgressBar bar("objects", common);
+  std::mutex lock;
+  std::size_t done = 0;
+  parallel_for(sets.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
+    if (interrupted())
+      return;
+    results[i] = find_passes(sets[i], site, start, stop, wanted);
+    const std::scoped_lock guard(lock);
+    bar.update(++done, sets.size());
+  });
+  Search out;
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    if (!results[i]) {
+      out.is_stopped = true;
+      continue;
+    }
+    ++out.objects;
+    if (!*results[i]) {
+      if (out.failed++ < 10)
+        diagnostics.warn(results[i]->error().message);
+      continue;
+    }
+    for (SitePass &pass : **results[i])
+      if (!o.is_visible_only || pass.visible_s > 0)
+        out.found.push_back({i, std::move(pass)});
+  }
+  if (out.failed > 10)
+    diagnostics.warn(fmt::format("{} more objects failed", out.failed - 10));
+  std::stable_sort(out.found.begin(), out.found.end(), [](const FoundPass &a, const FoundPass &b) {
+    return seconds_between(a.pass.rise.time, b.pass.rise.time) < 0;
+  });
+  return out;
+}
+
+Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostics &diagnostics) {
+  UMOV_TRY(check_output(o.output));
+  UMOV_ASSIGN(site, site_of(o));
+  UMOV_ASSIGN(start, utc_from_iso(o.start));
+  UMOV_ASSIGN(stop, utc_from_iso(o.stop));
+  if (seconds_between(stop, start) < 0)
+    return fail(ErrorCode::Usage, "--stop lies before --start");
+  UMOV_ASSIGN(text, read_file(o.orbit));
+  UMOV_ASSIGN(sets, read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics));
+  UMOV_ASSIGN(chosen, choose(o, sets, start, stop, diagnostics));
+  warn_if_beyond_leap_seconds(stop, diagnostics);
+  warn_if_outside_eop(start, stop, diagnostics);
+  const Search search = search_all(o, chosen, site, start, stop, common, diagnostics);
+  Table table = passes_table(search.found, chosen);
+  table.note("site", fmt::format("latitude {} deg, longitude {} deg, altitude {:g} m",
+                                 degrees_text(site.latitude), degrees_text(site.longitude),
+                                 site.altitude_m));
+  table.note("altitude_min", fmt::format("{:g} deg, geometric", o.altitude_min_deg));
+  if (search.is_stopped)
+    return tl::unexpected(put_partial_table(
+        o.output, std::move(table), common,
+        {ErrorCode::Interrupted,
+         fmt::format("stopped by the user after {} of {} objects", search.objects, chosen.size()),
+         {}}));
+  if (search.failed == chosen.size())
+    return fail(ErrorCode::Physics, "SGP4 failed for every object; give newer elements", {o.orbit});
+  if (search.found.empty())
+    return fail(ErrorCode::Nothing,
+                fmt::format("no {}pass above {:g} deg in this span", o.is_visible_only ? "visible " : "",
+                            o.altitude_min_deg));
+  return put_table(o.output, table, common);
+}
+
+} // namespace
+
+void add_passes(CLI::App &app, const Exit &exit_with) {
+  auto *verb = app.add_subcommand("passes", "When objects pass over a site, and in which light");
+  auto o = std::make_shared<PassesOptions>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("--orbit", o->orbit, "TLE, 3LE or OMM (KVN, XML, JSON, CSV) file")->required();
+  verb->add_option("--norad", o->norad, "Catalogue numbers, separated by commas; else all")
+      ->delimiter(',');
+  auto *site = verb->add_option("-s,--site", o->site,
+                                "latitude,longitude,altitude: deg north, deg east, m");
+  auto *latitude = verb->add_option("--lat-deg", o->latitude_deg, "Geodetic latitude, north positive");
+  auto *longitude = verb->add_option("--lon-deg", o->longitude_deg, "Longitude, east positive");
+  auto *altitude = verb->add_option("--alt-m", o->altitude_m, "Height above the WGS 84 ellipsoid");
+  for (auto *one : {latitude, longitude, altitude})
+    one->excludes(site);
+  verb->add_option("--start", o->start, "Begin, such as 2018-01-21T04:00:00Z")->required();
+  verb->add_option("--stop", o->stop, "End")->required();
+  verb->add_option("--alt-min-deg", o->altitude_min_deg, "Rise and set are at this altitude")
+      ->check(CLI::Range(-90.0, 90.0))
+      ->capture_default_str();
+  verb->add_option("--sun-alt-max-deg", o->sun_altitude_max_deg,
+                   "The sky is dark with the Sun below this altitude")
+      ->check(CLI::Range(-90.0, 90.0))
+      ->capture_default_str();
+  verb->add_flag("--visible", o->is_visible_only, "Only passes sunlit in a dark sky for some time");
+  verb->add_option("--shadow", o->shadow, "The Earth that casts the shadow")
+      ->check(CLI::IsMember({"ellipsoid", "sphere"}))
+      ->capture_default_str();
+  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum, "Read lines with a wrong checksum");
+  verb->add_flag("--keep-going", o->keep_going, "Report bad sets and keep the others");
+  verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
+  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv, .fits or .json by its suffix");
+  add_threads(*verb, *common);
+  add_common(*verb, *common, true);
+  verb->callback([=] {
+    if (site->count() == 0 && (latitude->count() == 0 || longitude->count() == 0 || altitude->count() == 0)) {
+      exit_with(report(Error{ErrorCode::Usage,
+                             "where? Give --site LAT,LON,ALT, or --lat-deg, --lon-deg and --alt-m", {}}));
+      return;
+    }
+    watch_interrupts();
+    Diagnostics diagnostics;
+    const auto done = run_passes(*o, *common, diagnostics);
+    report(diagnostics, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace umov::cli

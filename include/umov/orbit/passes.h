@@ -1,0 +1,39 @@
+#pragma once
+// When an object passes over a site.
+
+#include <umov/core/diagnostics.h>
+#include <umov/orbit/elements.h>
+#include <umov/orbit/ephemeris.h>
+#include <vector>
+
+namespace umov {
+
+/// The middle of the penumbra: half of the Sun's disk is behind the Earth.
+struct ShadowCrossing {
+  Epoch<Utc> time;
+  bool is_entry = true; ///< into the shadow
+};
+
+/// A stretch above an altitude, as seen from a site.
+struct SitePass {
+  ObservingGeometry rise, culmination, set; ///< rise and set: where it crosses the altitude
+  bool is_rise_cut = false, is_set_cut = false; ///< it is above already, or still, at the span's end
+  std::vector<ShadowCrossing> shadow;           ///< between rise and set, in order
+  double range_min_km = 0;
+  double sunlit_share = 0; ///< of the time between rise and set
+  double visible_s = 0;    ///< sunlit, with the site's Sun below PassSearch::sun_altitude_max
+  Angle phase_min, phase_max; ///< while sunlit; 0 if never
+};
+
+struct PassSearch {
+  Angle altitude_min = Angle::degrees(10);
+  Angle sun_altitude_max = Angle::degrees(-6); ///< of `visible_s`
+  ShadowModel shadow = ShadowModel::Ellipsoid;
+};
+
+/// All passes of a set between two times, in order; times are good to 1 ms of the model. Physics if
+/// SGP4 fails on the way (decay), with the time.
+Result<std::vector<SitePass>> find_passes(const ElementSet &set, const Site &site, Epoch<Utc> start,
+                                          Epoch<Utc> stop, const PassSearch &search);
+
+} // namespace umov

@@ -1,0 +1,214 @@
+// Passes against the reference ephemerides and against themselves.
+
+#include <umov/orbit/passes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <sstream>
+#include <umov/core/files.h>
+
+namespace umov {
+namespace {
+
+const std::string folder = UMOV_SOURCE_DIR "/tests/data/ephemeris/";
+const Site maui = *make_site("maui", 20.7083, -156.2578, 3058);
+
+ElementSet elements_of(const std::string &file, int norad) {
+  Diagnostics diagnostics;
+  const auto sets = read_tle(*read_file(file), file, {}, diagnostics);
+  for (const ElementSet &set : *sets)
+    if (set.norad_cat_id == norad)
+      return set;
+  ADD_FAILURE() << "no element set of " << norad;
+  return {};
+}
+Epoch<Utc> utc(const std::string &text) { return *utc_from_iso(text); }
+
+/// Columns of a reference file by name, one list of rows per pass (one where it has no such column).
+struct Row {
+  Epoch<Utc> time;
+  double elevation, sunlit, phase;
+};
+std::vector<std::vector<Row>> read_rows(const std::string &file) {
+  std::ifstream stream(folder + file);
+  std::string line;
+  std::getline(stream, line);
+  std::map<std::string, std::size_t> column;
+  std::istringstream head(line);
+  for (std::string name; std::getline(head, name, ',');)
+    column.emplace(name, column.size());
+  std::map<std::string, std::vector<Row>> out;
+  while (std::getline(stream, line)) {
+    std::vector<std::string> cell;
+    std::istringstream cells(line);
+    for (std::string text; std::getline(cells, text, ',');)
+      cell.push_back(text);
+    const auto number = [&](const char *name) { return std::stod(cell[column.at(name)]); };
+    out[column.contains("pass") ? cell[0] : ""].push_back(
+        {utc(cell[column.at("utc")]), number("el_deg"), number("sun_frac_ellipsoid"),
+         number("phase_deg")});
+  }
+  std::vector<std::vector<Row>> list;
+  for (auto &[name, rows] : out)
+    list.push_back(std::move(rows));
+  return list;
+}
+
+/// Seconds from the first row at which the elevation crosses a value, by the cubic through four
+/// rows: good to 1e-3 s for rows 5 s apart.
+double crossing(const std::vector<Row> &rows, double wanted, bool is_up) {
+  for (std::size_t k = 1; k + 2 < rows.size(); ++k) {
+    const bool is_here = is_up ? rows[k].elevation <= wanted && rows[k + 1].elevation > wanted
+                               : rows[k].elevation > wanted && rows[k + 1].elevation <= wanted;
+    if (!is_here)
+      continue;
+    const double step = seconds_between(rows[k + 1].time, rows[k].time);
+    const auto value = [&](double t) { // Lagrange, t in steps past row k
+      const double y0 = rows[k - 1].elevation, y1 = rows[k].elevation, y2 = rows[k + 1].elevation,
+                   y3 = rows[k + 2].elevation;
+      return -y0 * t * (t - 1) * (t - 2) / 6 + y1 * (t + 1) * (t - 1) * (t - 2) / 2 -
+             y2 * (t + 1) * t * (t - 2) / 2 + y3 * (t + 1) * t * (t - 1) / 6;
+    };
+    double a = 0, b = 1;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (a + b);
+      ((value(middle) > wanted) == is_up ? b : a) = middle;
+    }
+    return seconds_between(rows[k].time, rows[0].time) + a * step;
+  }
+  ADD_FAILURE() << "no crossing";
+  return 0;
+}
+
+TEST(Passes, EightPassesOfExplorer27RiseAndSetWhenTheReferenceSays) {
+  const ElementSet set = elements_of(folder + "elements.tle", 1328);
+  const auto found = find_passes(set, maui, utc("2022-02-22T00:00:00Z"), utc("2022-03-02T00:00:00Z"), {});
+  ASSERT_TRUE(found) << found.error().text();
+  const auto references = read_rows("explorer27_maui_8passes_5s.csv");
+  ASSERT_EQ(references.size(), 8u);
+  for (const auto &rows : references) {
+    const SitePass *pass = nullptr;
+    for (const SitePass &one : *found)
+      if (seconds_between(one.culmination.time, rows.front().time) > 0 &&
+          seconds_between(rows.back().time, one.culmination.time) > 0)
+        pass = &one;
+    ASSERT_NE(pass, nullptr) << to_iso(rows.front().time);
+    EXPECT_NEAR(seconds_between(pass->rise.time, rows[0].time), crossing(rows, 10, true), 0.1);
+    EXPECT_NEAR(seconds_between(pass->set.time, rows[0].time), crossing(rows, 10, false), 0.1);
+    double top = 0, low = 180, high = 0;
+    for (const Row &row : rows) {
+      top = std::max(top, row.elevation);
+      if (row.elevation > 10 && row.sunlit > 0) {
+        low = std::min(low, row.phase);
+        high = std::max(high, row.phase);
+      }
+    }
+    EXPECT_NEAR(pass->culmination.altitude.degrees(), top, 0.02); // rows are 5 s apart
+    EXPECT_NEAR(pass->rise.altitude.degrees(), 10, 1e-4);
+    EXPECT_NEAR(pass->set.altitude.degrees(), 10, 1e-4);
+    if (high > 0) { // the file's samples at 5 s against ours
+      EXPECT_NEAR(pass->phase_min.degrees(), low, 1);
+      EXPECT_NEAR(pass->phase_max.degrees(), high, 1);
+    }
+  }
+}
+
+TEST(Passes, TheShadowIsEnteredWhenHalfTheSunIsGone) {
+  // Rows 1 s apart; the reference's fraction is good to 3e-3, of which the Sun loses a tenth per
+  // second.
+  const auto rows = read_rows("explorer27_maui_20220222_pass_1s.csv").front();
+  double expected = -1;
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k)
+    if ((rows[k].sunlit > 0.5) != (rows[k + 1].sunlit > 0.5))
+      expected = static_cast<double>(k) + (rows[k].sunlit - 0.5) / (rows[k].sunlit - rows[k + 1].sunlit);
+  ASSERT_GT(expected, 0);
+  PassSearch search;
+  search.altitude_min = Angle::degrees(2);
+  const auto found = find_passes(elements_of(folder + "elements.tle", 1328), maui, rows.front().time,
+                                 rows.back().time, search);
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->size(), 1u);
+  ASSERT_EQ(found->front().shadow.size(), 1u);
+  EXPECT_TRUE(found->front().shadow[0].is_entry);
+  EXPECT_NEAR(seconds_between(found->front().shadow[0].time, rows.front().time), expected, 0.1);
+  EXPECT_GT(found->front().sunlit_share, 0);
+  EXPECT_LT(found->front().sunlit_share, 1);
+}
+
+TEST(Passes, NoneIsMissedThatADenseSearchSees) {
+  // Every pass of a night for objects of all kinds, against altitudes every 5 s.
+  Diagnostics diagnostics;
+  const std::string file = UMOV_SOURCE_DIR "/tests/data/tle/mixed_979_2018-01-20.tle";
+  const auto sets = read_tle(*read_file(file), file, {}, diagnostics);
+  const Epoch<Utc> start = utc("2018-01-21T04:00:00Z"), stop = utc("2018-01-21T10:00:00Z");
+  std::size_t passes = 0;
+  for (std::size_t i = 0; i < sets->size(); i += 23) {
+    const ElementSet &set = (*sets)[i];
+    const auto found = find_passes(set, maui, start, stop, {});
+    if (!found)
+      continue; // decayed before
+    passes += found->size();
+    const Sgp4 model(set);
+    for (double t = 0; t <= 6 * 3600; t += 5) {
+      const Epoch<Utc> time = plus_seconds(start, t);
+      TemeState state;
+      ASSERT_EQ(model.propagate(clock_days_between(time, set.epoch) * 1440, state), Sgp4Code::Ok);
+      const double altitude = topocentric_altitude(state, time, maui).degrees();
+      const bool is_up = std::any_of(found->begin(), found->end(), [&](const SitePass &pass) {
+        return seconds_between(time, pass.rise.time) >= 0 && seconds_between(pass.set.time, time) >= 0;
+      });
+      if (std::abs(altitude - 10) > 1e-3) {
+        ASSERT_EQ(is_up, altitude > 10) << set.name << " " << to_iso(time);
+      }
+    }
+  }
+  EXPECT_GT(passes, 40u);
+}
+
+TEST(Passes, TheQuickAltitudeIsThatOfTheEphemeris) {
+  const ElementSet set = elements_of(folder + "elements.tle", 1328);
+  const Sgp4 model(set);
+  for (double minutes = -2000; minutes < 2000; minutes += 37) {
+    const Epoch<Utc> time = plus_seconds(set.epoch, 60 * minutes);
+    TemeState state;
+    ASSERT_EQ(model.propagate(minutes, state), Sgp4Code::Ok);
+    EXPECT_EQ(topocentric_altitude(state, time, maui).radians(),
+              observe(state, time, maui, ShadowModel::Ellipsoid).altitude.radians());
+  }
+}
+
+TEST(Passes, AStationaryObjectIsUpAllTheTime) {
+  const ElementSet set = elements_of(UMOV_SOURCE_DIR "/tests/data/tle/mixed_979_2018-01-20.tle", 20580);
+  ElementSet still = set;
+  still.mean_motion = 1.00273791 * 2 * pi / 1440;
+  still.inclination = 1e-3;
+  still.eccentricity = 1e-4;
+  for (double raan = 0; raan < 2 * pi; raan += 0.5) {
+    still.raan = raan;
+    const auto found = find_passes(still, maui, utc("2018-01-21T00:00:00Z"), utc("2018-01-22T00:00:00Z"), {});
+    ASSERT_TRUE(found);
+    ASSERT_LE(found->size(), 1u);
+    if (found->size() == 1) {
+      EXPECT_TRUE(found->front().is_rise_cut && found->front().is_set_cut);
+      EXPECT_NEAR(seconds_between(found->front().set.time, found->front().rise.time), 86400, 1e-6);
+    }
+  }
+}
+
+TEST(Passes, AnEmptySpanAndADecayedObject) {
+  const ElementSet set = elements_of(folder + "elements.tle", 1328);
+  const auto none = find_passes(set, maui, utc("2022-02-22T00:00:00Z"), utc("2022-02-22T00:00:00Z"), {});
+  ASSERT_TRUE(none);
+  EXPECT_TRUE(none->empty());
+  ElementSet low = set;
+  low.mean_motion = 17.5 * 2 * pi / 1440;
+  const auto decayed = find_passes(low, maui, utc("2022-02-22T00:00:00Z"), utc("2022-03-22T00:00:00Z"), {});
+  ASSERT_FALSE(decayed);
+  EXPECT_EQ(decayed.error().code, ErrorCode::Physics);
+}
+
+} // namespace
+} // namespace umov

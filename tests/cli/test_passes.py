@@ -1,0 +1,85 @@
+"""umov passes: one object, a catalogue, what is refused."""
+import signal
+import subprocess
+import time
+
+import pytest
+from astropy.time import Time
+
+from conftest import ROOT, UMOV, read_csv
+
+HST = ROOT / "data/tle/hst.tle"
+MIXED = ROOT / "tests/data/tle/mixed_979_2018-01-20.tle"
+SITE = "20.7083,-156.2578,3058"
+DAY = ("--start", "2018-01-21T00:00:00Z", "--stop", "2018-01-22T00:00:00Z")
+
+
+def test_passes_agree_with_the_ephemeris(umov, tmp_path):
+    done = umov("passes", "--orbit", HST, "-s", SITE, *DAY, "-o", "p.csv")
+    assert done.code == 0, done.err
+    rows = read_csv(tmp_path / "p.csv")
+    assert len(rows) == 7
+    row = next(r for r in rows if r["pass_id"] == "20580-20180121T051147Z")
+    for key, altitude in (("rise_utc", 10), ("set_utc", 10),
+                          ("culmination_utc", float(row["culmination_alt"]))):
+        done = umov("orbit", "ephemeris", "--orbit", HST, "--lat-deg", 20.7083, "--lon-deg", -156.2578,
+                    "--alt-m", 3058, "--start", row[key], "--stop", row[key], "-o", "e.csv")
+        assert done.code == 0, done.err
+        seen = read_csv(tmp_path / "e.csv")[0]
+        assert abs(float(seen["alt"]) - altitude) < 1e-3
+    # Half of the Sun is gone at the entry into the shadow.
+    done = umov("orbit", "ephemeris", "--orbit", HST, "--lat-deg", 20.7083, "--lon-deg", -156.2578,
+                "--alt-m", 3058, "--start", row["shadow_entry_utc"], "--stop",
+                row["shadow_entry_utc"], "-o", "e.csv")
+    assert abs(float(read_csv(tmp_path / "e.csv")[0]["sunlit"]) - 0.5) < 1e-3
+    assert 0 < float(row["sunlit_share"]) < 1 and row["shadow_exit_utc"] == ""
+
+
+def test_a_catalogue_the_same_for_any_threads(umov, tmp_path):
+    ask = ("passes", "--orbit", MIXED, "--lat-deg", 20.7083, "--lon-deg", -156.2578, "--alt-m", 3058,
+           "--start", "2018-01-21T05:00:00Z", "--stop", "2018-01-21T06:00:00Z", "--visible")
+    for threads in (1, 2, 8):
+        done = umov(*ask, "--threads", threads, "-o", f"{threads}.csv")
+        assert done.code == 0, done.err
+    one = (tmp_path / "1.csv").read_bytes()
+    assert one == (tmp_path / "2.csv").read_bytes() == (tmp_path / "8.csv").read_bytes()
+    rows = read_csv(tmp_path / "1.csv")
+    assert len(rows) > 20 and all(float(row["visible"]) > 0 for row in rows)
+    begins = [Time(row["rise_utc"] or "2018-01-21T05:00:00Z") for row in rows]
+    assert all(a <= b for a, b in zip(begins, begins[1:]))
+
+
+@pytest.mark.parametrize("change, code, words", [
+    (("-s", "20.7,-156.2"), 2, ["latitude, longitude"]),
+    (("-s", "95,0,0"), 3, ["lat_deg = 95", "-90 to 90"]),
+    (("-s", SITE, "--norad", 1), 3, ["1"]),
+    ((), 2, ["where?", "--site"]),
+    (("-s", "80,0,0"), 5, ["no pass above 10 deg"]),
+    (("-s", SITE, "--lat-deg", 3), 2, ["--site"]),
+])
+def test_passes_refuse(umov, tmp_path, change, code, words):
+    done = umov("passes", "--orbit", HST, *DAY, "-o", "p.csv", *change)
+    assert done.code == code and all(word in done.err for word in words), done.err
+    assert not (tmp_path / "p.csv").exists()
+
+
+def test_old_elements_are_left_out(umov, tmp_path):
+    ask = ("passes", "--orbit", HST, "-s", SITE, "--start", "2018-04-21T00:00:00Z", "--stop",
+           "2018-04-22T00:00:00Z")
+    done = umov(*ask)
+    assert done.code == 3 and "--allow-old-elements" in done.err
+    done = umov(*ask, "--allow-old-elements", "-o", "p.csv")
+    assert done.code == 0 and "7 d" in done.err
+
+
+def test_a_stop_keeps_what_is_found(umov, tmp_path):
+    running = subprocess.Popen(
+        [UMOV, "passes", "--orbit", MIXED, "-s", SITE, "--start", "2018-01-21T00:00:00Z", "--stop",
+         "2018-02-20T00:00:00Z", "-o", "p.csv", "--threads", "1"], cwd=tmp_path,
+        stderr=subprocess.PIPE, text=True)
+    time.sleep(3)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=60)
+    assert running.returncode == 130 and "stopped by the user" in said
+    assert not (tmp_path / "p.csv").exists()
+    assert len(read_csv(tmp_path / "p.partial.csv")) > 0
