@@ -50,22 +50,23 @@ Result<Site> site_of(const PassesOptions &o) {
 
 /// The set of each object to use for a span.
 Result<std::vector<ElementSet>> choose(const PassesOptions &o, const std::vector<ElementSet> &sets,
-                                       Epoch<Utc> start, Epoch<Utc> stop, Diagnostics &diagnostics) {
+                                       Epoch<Utc> start, Epoch<Utc> stop,
+                                       Diagnostics &diagnostics) {
   std::vector<int> wanted = o.norad;
   if (wanted.empty())
     for (const ElementSet &set : sets)
       wanted.push_back(set.norad_cat_id);
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  std::vector<ElementSet> sorted = sets, out; // by number, so that each object is chosen from its own
+  std::vector<ElementSet> sorted = sets,
+                          out; // by number, so that each object is chosen from its own
   std::stable_sort(sorted.begin(), sorted.end(), [](const ElementSet &a, const ElementSet &b) {
     return a.norad_cat_id < b.norad_cat_id;
   });
   std::size_t doubtful = 0, old = 0;
   for (const int norad : wanted) {
-    const auto [first, last] = std::equal_range(
-        sorted.begin(), sorted.end(), norad,
-        [](const auto &a, const auto &b) {
+    const auto [first, last] =
+        std::equal_range(sorted.begin(), sorted.end(), norad, [](const auto &a, const auto &b) {
           const auto number = [](const auto &x) {
             if constexpr (std::is_same_v<std::decay_t<decltype(x)>, int>)
               return x;
@@ -151,16 +152,19 @@ Table passes_table(const std::vector<FoundPass> &found, const std::vector<Elemen
          [](E, P p) { return p.rise.azimuth.degrees(); });
   number("culmination_alt", "deg", "altitude, geometric",
          [](E, P p) { return p.culmination.altitude.degrees(); });
-  number("culmination_az", "deg", "azimuth", [](E, P p) { return p.culmination.azimuth.degrees(); });
+  number("culmination_az", "deg", "azimuth",
+         [](E, P p) { return p.culmination.azimuth.degrees(); });
   number("set_az", "deg", "azimuth", [](E, P p) { return p.set.azimuth.degrees(); });
   text("shadow_entry_utc", "half of the Sun's disk is gone; empty: not during the pass",
        [&](E, P p) { return shadow(p, true); });
   text("shadow_exit_utc", "half of the Sun's disk is back; empty: not during the pass",
        [&](E, P p) { return shadow(p, false); });
-  number("sunlit_share", "", "of the time between rise and set", [](E, P p) { return p.sunlit_share; });
+  number("sunlit_share", "", "of the time between rise and set",
+         [](E, P p) { return p.sunlit_share; });
   number("visible", "s", "sunlit, with the site's Sun below --sun-alt-max-deg",
          [](E, P p) { return p.visible_s; });
-  number("range_min", "km", "smallest distance from the site", [](E, P p) { return p.range_min_km; });
+  number("range_min", "km", "smallest distance from the site",
+         [](E, P p) { return p.range_min_km; });
   number("phase_min", "deg", "smallest phase angle while sunlit",
          [&](E, P p) { return p.sunlit_share > 0 ? p.phase_min.degrees() : none; });
   number("phase_max", "deg", "largest phase angle while sunlit",
@@ -228,7 +232,8 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   if (seconds_between(stop, start) < 0)
     return fail(ErrorCode::Usage, "--stop lies before --start");
   UMOV_ASSIGN(text, read_file(o.orbit));
-  UMOV_ASSIGN(sets, read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics));
+  UMOV_ASSIGN(sets,
+              read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics));
   UMOV_ASSIGN(chosen, choose(o, sets, start, stop, diagnostics));
   warn_if_beyond_leap_seconds(stop, diagnostics);
   warn_if_outside_eop(start, stop, diagnostics);
@@ -248,8 +253,8 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
     return fail(ErrorCode::Physics, "SGP4 failed for every object; give newer elements", {o.orbit});
   if (search.found.empty())
     return fail(ErrorCode::Nothing,
-                fmt::format("no {}pass above {:g} deg in this span", o.is_visible_only ? "visible " : "",
-                            o.altitude_min_deg));
+                fmt::format("no {}pass above {:g} deg in this span",
+                            o.is_visible_only ? "visible " : "", o.altitude_min_deg));
   return put_table(o.output, table, common);
 }
 
@@ -262,9 +267,10 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--orbit", o->orbit, "TLE, 3LE or OMM (KVN, XML, JSON, CSV) file")->required();
   verb->add_option("--norad", o->norad, "Catalogue numbers, separated by commas; else all")
       ->delimiter(',');
-  auto *site = verb->add_option("-s,--site", o->site,
-                                "latitude,longitude,altitude: deg north, deg east, m");
-  auto *latitude = verb->add_option("--lat-deg", o->latitude_deg, "Geodetic latitude, north positive");
+  auto *site =
+      verb->add_option("-s,--site", o->site, "latitude,longitude,altitude: deg north, deg east, m");
+  auto *latitude =
+      verb->add_option("--lat-deg", o->latitude_deg, "Geodetic latitude, north positive");
   auto *longitude = verb->add_option("--lon-deg", o->longitude_deg, "Longitude, east positive");
   auto *altitude = verb->add_option("--alt-m", o->altitude_m, "Height above the WGS 84 ellipsoid");
   for (auto *one : {latitude, longitude, altitude})
@@ -289,9 +295,11 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
   verb->callback([=] {
-    if (site->count() == 0 && (latitude->count() == 0 || longitude->count() == 0 || altitude->count() == 0)) {
+    if (site->count() == 0 &&
+        (latitude->count() == 0 || longitude->count() == 0 || altitude->count() == 0)) {
       exit_with(report(Error{ErrorCode::Usage,
-                             "where? Give --site LAT,LON,ALT, or --lat-deg, --lon-deg and --alt-m", {}}));
+                             "where? Give --site LAT,LON,ALT, or --lat-deg, --lon-deg and --alt-m",
+                             {}}));
       return;
     }
     watch_interrupts();

@@ -197,6 +197,20 @@ Result<void> run_with_rays(const SignatureJob &job, NumberedPoses numbered) {
        {}}));
 }
 
+/// Before minutes are spent on what could not be kept.
+Result<void> check_mask_file(const std::string &file) {
+  namespace fs = std::filesystem;
+  const fs::path target(file);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  std::error_code code;
+  if (!file.empty() && fs::is_directory(target, code))
+    return fail(ErrorCode::Device, "this is a folder; the name of a file was expected", {file});
+  if (!file.empty() && !fs::is_directory(folder, code))
+    return fail(ErrorCode::Device, "no such folder. Make the folder first or choose another one.",
+                {folder.string()});
+  return {};
+}
+
 /// Prepared, with masks from the file that the user names; made and kept there if there is none.
 Result<Engine> engine_for(const SignatureJob &job, const EngineOptions &options) {
   const std::string &file = job.options.masks;
@@ -283,6 +297,7 @@ constexpr std::size_t engine_from = 5000;
 Result<void> run_signature(const SignatureOptions &o, const Common &common,
                            Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
+  UMOV_TRY(check_mask_file(o.masks));
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
   const std::uint64_t seed = o.has_seed ? o.seed : scenario.seed;
   UMOV_ASSIGN(source, source_of(o));

@@ -70,8 +70,15 @@ inline ProfileValues<R> profile_values(const SceneData<T> &scene, const SlotTerm
   const R t_v = scale * n_v / (n_v + R(bend)) - R(T(1));
   for (std::size_t i = 0; i < slot.profile_count; ++i) {
     const auto &profile = scene.profiles[slot.profile_first + i];
-    out.in[i] = n_l * polynomial(profile.c, profile.degree, t_l);
-    out.out[i] = n_v * polynomial(profile.c, profile.degree, t_v);
+    // Both directions at once: neither waits for the other's chain.
+    R in = R(profile.c[profile.degree]), seen = in;
+    for (std::size_t k = profile.degree; k-- > 0;) {
+      const R c = R(profile.c[k]);
+      in = in * t_l + c;
+      seen = seen * t_v + c;
+    }
+    out.in[i] = n_l * in;
+    out.out[i] = n_v * seen;
   }
   return out;
 }
@@ -382,10 +389,29 @@ private:
            (R(T(1)) + (dx * dx + dy * dy + dz * dz) * R(scene_.lobes[lobe].per_width2));
   }
 
+  /// The number of products is known to the compiler where it is small: sums stay in registers.
   void shade_products(const SlotTerms &slot) {
+    switch (slot.product_count) {
+    case 1:
+      return shade_products_of<1>(slot);
+    case 2:
+      return shade_products_of<2>(slot);
+    case 3:
+      return shade_products_of<3>(slot);
+    case 4:
+      return shade_products_of<4>(slot);
+    default:
+      return shade_products_of<0>(slot);
+    }
+  }
+
+  /// `known` products; 0: as many as the slot has.
+  template <std::size_t known> void shade_products_of(const SlotTerms &slot) {
+    const std::size_t count = known > 0 ? known : slot.product_count;
+    constexpr std::size_t room = known > 0 ? known : backend::products_max;
     const Directions d(pose_.facet);
-    R sum[backend::products_max], variance[backend::products_max], linear[backend::products_max];
-    for (std::size_t p = 0; p < slot.product_count; ++p)
+    R sum[room], variance[room], linear[room];
+    for (std::size_t p = 0; p < count; ++p)
       sum[p] = variance[p] = linear[p] = R(T(0));
     for (std::size_t k = 0; k < count_; ++k)
       for (std::size_t s = 0; s < lanes; s += width) {
@@ -394,17 +420,16 @@ private:
         const R n_l = max(at.n_l, R(T(0))), n_v = max(at.n_v, R(T(0)));
         const ProfileValues<R> values = profile_values<R, T>(scene_, slot, n_l, n_v);
         const R area = Machine::load(area_[k] + s);
-        for (std::size_t p = 0; p < slot.product_count; ++p) {
+        const R deviation = is_exact_[k] ? R(T(0)) : Machine::load(deviation_[k] + s);
+        for (std::size_t p = 0; p < count; ++p) {
           const R w = values.template product<T>(scene_.products[slot.product_first + p]);
+          const R error = deviation * w;
           sum[p] = sum[p] + area * w;
-          if (!is_exact_[k]) {
-            const R error = Machine::load(deviation_[k] + s) * w;
-            variance[p] = variance[p] + error * error;
-            linear[p] = linear[p] + abs(error);
-          }
+          variance[p] = variance[p] + error * error;
+          linear[p] = linear[p] + abs(error);
         }
       }
-    for (std::size_t p = 0; p < slot.product_count; ++p) {
+    for (std::size_t p = 0; p < count; ++p) {
       out_.product[slot.product_first + p] += Machine::total(sum[p]);
       out_.product_variance[slot.product_first + p] += Machine::total(variance[p]);
       out_.product_linear[slot.product_first + p] += Machine::total(linear[p]);

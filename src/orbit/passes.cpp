@@ -90,12 +90,12 @@ double maximum(const std::function<double(double)> &f, double a, double b) {
 /// fraction of the time that perigee takes.
 std::vector<double> coarse_times(const ElementSet &set, double span_s) {
   const double period_s = 60 * 2 * pi / set.mean_motion;
-  const double step =
-      std::clamp(period_s / 48 * std::pow(1 - set.eccentricity, 1.5), 20.0, 300.0);
+  const double step = std::clamp(period_s / 48 * std::pow(1 - set.eccentricity, 1.5), 20.0, 300.0);
   const auto count = static_cast<std::size_t>(std::ceil(span_s / step)) + 1;
   std::vector<double> out;
   for (std::size_t k = 0; k < count; ++k)
-    out.push_back(span_s * static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(count - 1, 1)));
+    out.push_back(span_s * static_cast<double>(k) /
+                  static_cast<double>(std::max<std::size_t>(count - 1, 1)));
   return out;
 }
 
@@ -145,7 +145,8 @@ std::vector<Stretch> stretches(const Samples &samples, const std::function<doubl
     for (; k + 1 < n && samples.above[k + 1] > 0; ++k)
       best = samples.above[k + 1] > samples.above[best] ? k + 1 : best;
     one.is_set_cut = k + 1 == n;
-    one.set = one.is_set_cut ? samples.time[k] : crossing(above, samples.time[k], samples.time[k + 1]);
+    one.set =
+        one.is_set_cut ? samples.time[k] : crossing(above, samples.time[k], samples.time[k + 1]);
     const double low = std::max(one.rise, best > 0 ? samples.time[best - 1] : one.rise);
     const double high = std::min(one.set, best + 1 < n ? samples.time[best + 1] : one.set);
     one.top = maximum(above, low, high);
@@ -162,7 +163,8 @@ std::vector<Stretch> stretches(const Samples &samples, const std::function<doubl
 void describe(Tracker &tracker, const Stretch &stretch, const PassSearch &search, SitePass &out) {
   constexpr double step_max = 5;
   const double length = stretch.set - stretch.rise;
-  const auto steps = static_cast<std::size_t>(std::clamp(std::ceil(length / step_max), 1.0, 2000.0));
+  const auto steps =
+      static_cast<std::size_t>(std::clamp(std::ceil(length / step_max), 1.0, 2000.0));
   const auto light = [&](double t) { return tracker.at(t).sunlit - 0.5; };
   double before = 0, previous_time = stretch.rise;
   std::size_t lit = 0, visible = 0;
@@ -172,17 +174,18 @@ void describe(Tracker &tracker, const Stretch &stretch, const PassSearch &search
     const ObservingGeometry at = tracker.at(t);
     const double now = at.sunlit - 0.5;
     if (k > 0 && (now > 0) != (before > 0))
-      out.shadow.push_back(
-          {tracker.at(crossing(light, previous_time, t)).time, before > 0});
+      out.shadow.push_back({tracker.at(crossing(light, previous_time, t)).time, before > 0});
     before = now;
     previous_time = t;
     out.range_min_km = std::min(out.range_min_km, at.range_km);
     if (!(at.sunlit > 0))
       continue;
-    out.phase_min = lit == 0 ? at.phase_angle
-                             : Angle::radians(std::min(out.phase_min.radians(), at.phase_angle.radians()));
-    out.phase_max = lit == 0 ? at.phase_angle
-                             : Angle::radians(std::max(out.phase_max.radians(), at.phase_angle.radians()));
+    out.phase_min =
+        lit == 0 ? at.phase_angle
+                 : Angle::radians(std::min(out.phase_min.radians(), at.phase_angle.radians()));
+    out.phase_max =
+        lit == 0 ? at.phase_angle
+                 : Angle::radians(std::max(out.phase_max.radians(), at.phase_angle.radians()));
     ++lit;
     visible += at.sun_altitude.radians() < search.sun_altitude_max.radians() ? 1u : 0u;
   }
@@ -197,12 +200,11 @@ Result<std::vector<SitePass>> find_passes(const ElementSet &set, const Site &sit
                                           Epoch<Utc> stop, const PassSearch &search) {
   Tracker tracker(set, site, start, search.shadow);
   const double span_s = std::max(0.0, seconds_between(stop, start));
-  const auto above = [&](double t) {
-    return tracker.altitude(t) - search.altitude_min.radians();
-  };
+  const auto above = [&](double t) { return tracker.altitude(t) - search.altitude_min.radians(); };
   const Samples samples = sample(tracker, coarse_times(set, span_s), above);
   std::vector<SitePass> out;
-  for (const Stretch &stretch : tracker.failed() ? std::vector<Stretch>() : stretches(samples, above)) {
+  for (const Stretch &stretch :
+       tracker.failed() ? std::vector<Stretch>() : stretches(samples, above)) {
     SitePass pass;
     pass.rise = tracker.at(stretch.rise);
     pass.culmination = tracker.at(stretch.top);

@@ -131,6 +131,13 @@ def test_a_file_that_holds_no_masks_is_left_alone(umov, wing, tmp_path):
     assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
+@pytest.mark.parametrize("file, words", [(".", "this is a folder"), ("no/where", "no such folder")])
+def test_a_place_that_cannot_hold_masks_is_told_at_once(umov, wing, tmp_path, file, words):
+    done = umov("signature", wing, "--poses", 10, "--phase", "60", "--masks", file)
+    assert done.code == 6 and words in done.err, done.err
+    assert "preparing" not in done.err
+
+
 def test_a_convex_body_keeps_no_masks(umov, scenario, tmp_path):
     done = umov("signature", scenario(), "--poses", 10, "--phase", "60", "--masks", "cube.masks",
                 "-o", "a.csv")

@@ -17,11 +17,12 @@ struct ShadowCrossing {
 /// A stretch above an altitude, as seen from a site.
 struct SitePass {
   ObservingGeometry rise, culmination, set; ///< rise and set: where it crosses the altitude
-  bool is_rise_cut = false, is_set_cut = false; ///< it is above already, or still, at the span's end
-  std::vector<ShadowCrossing> shadow;           ///< between rise and set, in order
+  bool is_rise_cut = false,
+       is_set_cut = false;            ///< it is above already, or still, at the span's end
+  std::vector<ShadowCrossing> shadow; ///< between rise and set, in order
   double range_min_km = 0;
-  double sunlit_share = 0; ///< of the time between rise and set
-  double visible_s = 0;    ///< sunlit, with the site's Sun below PassSearch::sun_altitude_max
+  double sunlit_share = 0;    ///< of the time between rise and set
+  double visible_s = 0;       ///< sunlit, with the site's Sun below PassSearch::sun_altitude_max
   Angle phase_min, phase_max; ///< while sunlit; 0 if never
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <umov/core/quantity.h>
 
 namespace umov {
 namespace {
@@ -42,6 +43,11 @@ void add_slot(const std::vector<const Surface *> &surfaces, CompiledScene &out) 
     append(out.data.products, fit->products);
     for (const auto &lobe : fit->lobes)
       out.lobe_sources.push_back(source_of(lobe, surfaces));
+    for (const double slope : fit->widths) {
+      constexpr double half_width = 1.5e-7; // of the difference of two rounded unit vectors, 95 %
+      const double width = std::max(slope, 1e-9);
+      out.rounding.push_back({8 * pi * width * width, half_width / width});
+    }
     if (fit->family) {
       terms.family = count(out.data.families);
       out.data.families.push_back(*fit->family);

@@ -22,6 +22,12 @@ struct CompiledScene {
     std::size_t band;
   };
   std::vector<LobeSource> lobe_sources;
+  /// Per lobe: what single precision costs on its flanks.
+  struct Rounding {
+    double per_peak; ///< 1 over the largest value of D G2/4, that of a Gaussian
+    double per_root; ///< relative error per sqrt(2 x) where the lobe has fallen to exp(-x)
+  };
+  std::vector<Rounding> rounding;
   Colours colours;
   std::size_t general_classes = 0;
 };

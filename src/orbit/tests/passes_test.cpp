@@ -27,7 +27,8 @@ ElementSet elements_of(const std::string &file, int norad) {
 }
 Epoch<Utc> utc(const std::string &text) { return *utc_from_iso(text); }
 
-/// Columns of a reference file by name, one list of rows per pass (one where it has no such column).
+/// Columns of a reference file by name, one list of rows per pass (one where it has no such
+/// column).
 struct Row {
   Epoch<Utc> time;
   double elevation, sunlit, phase;
@@ -85,7 +86,8 @@ double crossing(const std::vector<Row> &rows, double wanted, bool is_up) {
 
 TEST(Passes, EightPassesOfExplorer27RiseAndSetWhenTheReferenceSays) {
   const ElementSet set = elements_of(folder + "elements.tle", 1328);
-  const auto found = find_passes(set, maui, utc("2022-02-22T00:00:00Z"), utc("2022-03-02T00:00:00Z"), {});
+  const auto found =
+      find_passes(set, maui, utc("2022-02-22T00:00:00Z"), utc("2022-03-02T00:00:00Z"), {});
   ASSERT_TRUE(found) << found.error().text();
   const auto references = read_rows("explorer27_maui_8passes_5s.csv");
   ASSERT_EQ(references.size(), 8u);
@@ -123,12 +125,13 @@ TEST(Passes, TheShadowIsEnteredWhenHalfTheSunIsGone) {
   double expected = -1;
   for (std::size_t k = 0; k + 1 < rows.size(); ++k)
     if ((rows[k].sunlit > 0.5) != (rows[k + 1].sunlit > 0.5))
-      expected = static_cast<double>(k) + (rows[k].sunlit - 0.5) / (rows[k].sunlit - rows[k + 1].sunlit);
+      expected =
+          static_cast<double>(k) + (rows[k].sunlit - 0.5) / (rows[k].sunlit - rows[k + 1].sunlit);
   ASSERT_GT(expected, 0);
   PassSearch search;
   search.altitude_min = Angle::degrees(2);
-  const auto found = find_passes(elements_of(folder + "elements.tle", 1328), maui, rows.front().time,
-                                 rows.back().time, search);
+  const auto found = find_passes(elements_of(folder + "elements.tle", 1328), maui,
+                                 rows.front().time, rows.back().time, search);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->size(), 1u);
   ASSERT_EQ(found->front().shadow.size(), 1u);
@@ -158,7 +161,8 @@ TEST(Passes, NoneIsMissedThatADenseSearchSees) {
       ASSERT_EQ(model.propagate(clock_days_between(time, set.epoch) * 1440, state), Sgp4Code::Ok);
       const double altitude = topocentric_altitude(state, time, maui).degrees();
       const bool is_up = std::any_of(found->begin(), found->end(), [&](const SitePass &pass) {
-        return seconds_between(time, pass.rise.time) >= 0 && seconds_between(pass.set.time, time) >= 0;
+        return seconds_between(time, pass.rise.time) >= 0 &&
+               seconds_between(pass.set.time, time) >= 0;
       });
       if (std::abs(altitude - 10) > 1e-3) {
         ASSERT_EQ(is_up, altitude > 10) << set.name << " " << to_iso(time);
@@ -181,14 +185,16 @@ TEST(Passes, TheQuickAltitudeIsThatOfTheEphemeris) {
 }
 
 TEST(Passes, AStationaryObjectIsUpAllTheTime) {
-  const ElementSet set = elements_of(UMOV_SOURCE_DIR "/tests/data/tle/mixed_979_2018-01-20.tle", 20580);
+  const ElementSet set =
+      elements_of(UMOV_SOURCE_DIR "/tests/data/tle/mixed_979_2018-01-20.tle", 20580);
   ElementSet still = set;
   still.mean_motion = 1.00273791 * 2 * pi / 1440;
   still.inclination = 1e-3;
   still.eccentricity = 1e-4;
   for (double raan = 0; raan < 2 * pi; raan += 0.5) {
     still.raan = raan;
-    const auto found = find_passes(still, maui, utc("2018-01-21T00:00:00Z"), utc("2018-01-22T00:00:00Z"), {});
+    const auto found =
+        find_passes(still, maui, utc("2018-01-21T00:00:00Z"), utc("2018-01-22T00:00:00Z"), {});
     ASSERT_TRUE(found);
     ASSERT_LE(found->size(), 1u);
     if (found->size() == 1) {
@@ -200,12 +206,14 @@ TEST(Passes, AStationaryObjectIsUpAllTheTime) {
 
 TEST(Passes, AnEmptySpanAndADecayedObject) {
   const ElementSet set = elements_of(folder + "elements.tle", 1328);
-  const auto none = find_passes(set, maui, utc("2022-02-22T00:00:00Z"), utc("2022-02-22T00:00:00Z"), {});
+  const auto none =
+      find_passes(set, maui, utc("2022-02-22T00:00:00Z"), utc("2022-02-22T00:00:00Z"), {});
   ASSERT_TRUE(none);
   EXPECT_TRUE(none->empty());
   ElementSet low = set;
   low.mean_motion = 17.5 * 2 * pi / 1440;
-  const auto decayed = find_passes(low, maui, utc("2022-02-22T00:00:00Z"), utc("2022-03-22T00:00:00Z"), {});
+  const auto decayed =
+      find_passes(low, maui, utc("2022-02-22T00:00:00Z"), utc("2022-03-22T00:00:00Z"), {});
   ASSERT_FALSE(decayed);
   EXPECT_EQ(decayed.error().code, ErrorCode::Physics);
 }
