@@ -24,7 +24,7 @@ struct BenchOptions {
   std::vector<std::string> meshes;
   std::string only;
   std::size_t geometries = 200;
-  double seconds = 0.4;
+  double seconds = 2;
 };
 
 constexpr double solar_radius_rad = 0.2665 * pi / 180;
