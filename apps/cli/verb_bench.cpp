@@ -1,4 +1,5 @@
 #include "bench_cases.h"
+#include "bench_orbit.h"
 #include "console.h"
 #include "tables.h"
 #include "verbs.h"
@@ -22,7 +23,7 @@ namespace {
 struct BenchOptions {
   std::string output;
   std::vector<std::string> meshes;
-  std::string only;
+  std::string only, orbit;
   std::size_t geometries = 200;
   double seconds = 2;
 };
@@ -56,6 +57,14 @@ std::string first_line_with(const char *file, const std::string &key) {
 std::string load_average() {
   double load[1] = {0};
   return getloadavg(load, 1) == 1 ? fmt::format("{:.2f}", load[0]) : "unknown";
+}
+
+void add_machine(Table &table, const std::string &load_before) {
+  table.note("umov_version", version);
+  table.note("machine", first_line_with("/proc/cpuinfo", "model name"));
+  table.note("cores", std::to_string(std::thread::hardware_concurrency()));
+  table.note("load_average", load_before + " before, " + load_average() + " after");
+  table.note("compiler", __VERSION__);
 }
 
 /// What one case measured.
@@ -229,6 +238,12 @@ void print_outliers(const Common &common, const BenchCase &one, const BenchResul
 
 Result<void> run_bench(const BenchOptions &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
+  const std::string load_before = load_average();
+  if (!o.orbit.empty()) {
+    UMOV_ASSIGN(table, bench_orbit(o.orbit, diagnostics));
+    add_machine(table, load_before);
+    return put_table(o.output, table, common);
+  }
   std::vector<BenchCase> cases;
   for (const std::string &mesh : o.meshes)
     for (BenchCase &one : cases_for_mesh(mesh))
@@ -241,7 +256,6 @@ Result<void> run_bench(const BenchOptions &o, const Common &common, Diagnostics 
   restrict_engine("best");
   if (cases.empty())
     return fail(ErrorCode::Usage, "--only " + o.only + ": no case has that in its name");
-  const std::string load_before = load_average();
   Bench bench(o);
   BenchTable rows;
   ProgressBar bar("cases", common);
@@ -255,11 +269,7 @@ Result<void> run_bench(const BenchOptions &o, const Common &common, Diagnostics 
     bar.update(++done, cases.size());
   }
   Table table = std::move(rows).table();
-  table.note("umov_version", version);
-  table.note("machine", first_line_with("/proc/cpuinfo", "model name"));
-  table.note("cores", std::to_string(std::thread::hardware_concurrency()));
-  table.note("load_average", load_before + " before, " + load_average() + " after");
-  table.note("compiler", __VERSION__);
+  add_machine(table, load_before);
   table.note("poses", fmt::format("random attitudes, phase 15-150 deg, solar disk; errors from {} "
                                   "of them against rays at 5e-4",
                                   o.geometries));
@@ -280,6 +290,7 @@ void add_bench(CLI::App &app, const Exit &exit_with) {
   auto o = std::make_shared<BenchOptions>();
   auto common = std::make_shared<Common>();
   verb->add_option("--mesh", o->meshes, "OBJ files (m, +Z up) instead of the standard cases");
+  verb->add_option("--orbit", o->orbit, "Catalogue of elements: rates of SGP4 instead");
   verb->add_option("--only", o->only, "Cases with this in their name");
   verb->add_option("--geometries", o->geometries, "Poses compared with rays; 0: none")
       ->check(CLI::Range(0, 100'000))

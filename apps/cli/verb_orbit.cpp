@@ -65,19 +65,23 @@ Result<EphemerisRows> compute_ephemeris(const OrbitOptions &o, const ElementSet 
   UMOV_ASSIGN(times, time_grid(start, stop, o.step_s));
   const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
   const Sgp4 model(set);
+  std::vector<double> minutes;
+  minutes.reserve(times.size());
+  for (const Epoch<Utc> time : times)
+    minutes.push_back(clock_days_between(time, set.epoch) * 1440);
+  std::vector<TemeState> states(times.size());
+  std::vector<Sgp4Code> found(times.size(), model.init_code());
+  if (model.init_code() == Sgp4Code::Ok)
+    model.propagate(minutes, states, found);
   std::vector<std::optional<Sgp4Code>> codes(times.size()); // none: not reached before a stop
   EphemerisRows out;
   out.rows.resize(times.size());
   parallel_for(times.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
     if (interrupted())
       return;
-    TemeState state;
-    Sgp4Code code = model.init_code();
-    if (code == Sgp4Code::Ok)
-      code = model.propagate(clock_days_between(times[i], set.epoch) * 1440, state);
-    if (code == Sgp4Code::Ok)
-      out.rows[i] = observe(state, times[i], site, shadow);
-    codes[i] = code;
+    if (found[i] == Sgp4Code::Ok)
+      out.rows[i] = observe(states[i], times[i], site, shadow);
+    codes[i] = found[i];
   });
   for (std::size_t i = 0; i < times.size() && !out.stopped; ++i)
     if (codes[i] != Sgp4Code::Ok) { // the rows before the first gap are good and are kept
@@ -198,21 +202,29 @@ Table catalogue_table(const std::vector<CatalogueRow> &rows) {
   return t;
 }
 
+/// Objects by times, object by object; whole blocks of objects are missing after a stop.
 std::vector<CatalogueRow> propagate_all(const std::vector<ElementSet> &sets,
                                         const std::vector<Epoch<Utc>> &times, unsigned threads) {
   std::vector<CatalogueRow> rows(sets.size() * times.size());
-  parallel_for(sets.size(), threads, [&](std::size_t i) {
-    const Sgp4 model(sets[i]);
-    for (std::size_t k = 0; k < times.size(); ++k) {
-      if (interrupted())
-        return;
-      CatalogueRow &row = rows[i * times.size() + k];
-      row.is_done = true;
-      row.norad_cat_id = sets[i].norad_cat_id;
-      row.time = times[k];
-      row.code = model.init_code();
-      if (row.code == Sgp4Code::Ok)
-        row.code = model.propagate(clock_days_between(times[k], sets[i].epoch) * 1440, row.state);
+  constexpr std::size_t block = 256; // objects side by side in lanes
+  parallel_for((sets.size() + block - 1) / block, threads, [&](std::size_t b) {
+    const std::size_t first = b * block, count = std::min(block, sets.size() - first);
+    std::vector<Sgp4> models;
+    for (std::size_t i = 0; i < count; ++i)
+      models.emplace_back(sets[first + i]);
+    std::vector<double> minutes(count);
+    std::vector<TemeState> states(count);
+    std::vector<Sgp4Code> codes(count);
+    for (std::size_t k = 0; k < times.size() && !interrupted(); ++k) {
+      for (std::size_t i = 0; i < count; ++i)
+        minutes[i] = clock_days_between(times[k], sets[first + i].epoch) * 1440;
+      propagate_objects(models, minutes, states, codes);
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool can_start = models[i].init_code() == Sgp4Code::Ok;
+        rows[(first + i) * times.size() + k] = {true, sets[first + i].norad_cat_id, times[k],
+                                                can_start ? codes[i] : models[i].init_code(),
+                                                can_start ? states[i] : TemeState{}};
+      }
     }
   });
   return rows;

@@ -25,6 +25,7 @@ using std::sqrt;
 
 inline double inverse_sqrt(double x) { return 1 / std::sqrt(x); }
 template <class R> inline R select(bool condition, R yes, R no) { return condition ? yes : no; }
+inline bool any(bool condition) { return condition; }
 template <class R> inline R clamped(R x, R low, R high) { return min(max(x, low), high); }
 /// x^m for x in [0, 1], m >= 0, in log space: exact at 1, 0^0 = 1.
 template <class R> inline R power(R x, R m) {

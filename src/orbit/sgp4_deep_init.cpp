@@ -1,6 +1,6 @@
 // SDP4: amplitudes and rates of the perturbations by Sun and Moon (H section 7, DPINIT; V).
 
-#include "sgp4_model.h"
+#include "orbit/sgp4_model.h"
 
 #include <cmath>
 
@@ -122,7 +122,7 @@ BodyTerms body_terms(const ThirdBody &b, const InclinationTerms &inc, const Mean
 
 ThirdBodyPeriodics periodics(const ThirdBody &b, const BodyTerms &t, double eccentricity) {
   const double e2 = eccentricity * eccentricity;
-  ThirdBodyPeriodics p;
+  ThirdBodyPeriodics p{};
   p.e2 = 2 * t.s1 * t.s6;
   p.e3 = 2 * t.s1 * t.s7;
   p.i2 = 2 * t.s2 * t.z12;
@@ -159,18 +159,18 @@ void add_rates(ThirdBodyRates &rates, const ThirdBody &b, const BodyTerms &t, co
 
 } // namespace
 
-DeepSpace deep_space_constants(const Constants &base, double days_1900) {
-  const MeanElements &m = base.epoch;
-  DeepSpace deep;
-  const double s = std::sin(m.node), c = std::cos(m.node);
+void add_deep_space(Constants &c, double days_1900) {
+  Numbers &n = c.numbers;
+  const MeanElements &m = n.epoch;
+  const double sin_node = std::sin(m.node), cos_node = std::cos(m.node);
   for (const bool is_sun : {true, false}) {
-    const ThirdBody body = is_sun ? sun(s, c, days_1900) : moon(s, c, days_1900);
-    const BodyTerms terms = body_terms(body, base.inclination, m);
-    (is_sun ? deep.sun : deep.moon) = periodics(body, terms, m.eccentricity);
-    add_rates(deep.rates, body, terms, m, base.inclination);
+    const ThirdBody body =
+        is_sun ? sun(sin_node, cos_node, days_1900) : moon(sin_node, cos_node, days_1900);
+    const BodyTerms terms = body_terms(body, n.inclination, m);
+    (is_sun ? n.sun : n.moon) = periodics(body, terms, m.eccentricity);
+    add_rates(n.third, body, terms, m, n.inclination);
   }
-  deep.resonance = resonance_model(base, deep.rates);
-  return deep;
+  add_resonance(c);
 }
 
 } // namespace umov::sgp4

@@ -1,6 +1,7 @@
 // SGP4: constants of the elements. Sources H, V, S as in sgp4_model.h.
 
-#include "sgp4_model.h"
+#include "kernel/sgp4.inl.h"
+#include "orbit/sgp4_model.h"
 
 #include <cmath>
 
@@ -42,7 +43,7 @@ SecularRates secular_rates(const MeanElements &m, double axis, double cosine) {
   const double first = 1.5 * j2 * p2 * m.motion;
   const double second = 0.5 * first * j2 * p2;
   const double fourth_zonal = -0.46875 * j4 * p2 * p2 * m.motion;
-  SecularRates r;
+  SecularRates r{};
   r.anomaly = m.motion + 0.5 * first * beta * (3 * c2 - 1) +
               0.0625 * second * beta * (13 - 78 * c2 + 137 * c4);
   r.perigee = -0.5 * first * (1 - 5 * c2) + 0.0625 * second * (7 - 114 * c2 + 395 * c4) +
@@ -89,13 +90,12 @@ void add_higher_drag(DragTerms &d, double axis, const Atmosphere &a) {
 }
 
 DragTerms drag_terms(const MeanElements &m, const InclinationTerms &inc, double axis, double bstar,
-                     bool is_deep) {
+                     bool is_simple) {
   const Atmosphere a = atmosphere(axis, m.eccentricity);
   const DragCoefficients c = drag_coefficients(m, axis, a, inc);
   const double beta2 = 1 - m.eccentricity * m.eccentricity;
   const double p = axis * beta2;
-  DragTerms d;
-  d.is_simple = is_deep || axis * (1 - m.eccentricity) < 220 / earth_radius_km + 1;
+  DragTerms d{};
   d.bstar = bstar;
   d.c1 = bstar * c.c2;
   d.c4 = c.c4;
@@ -110,34 +110,12 @@ DragTerms drag_terms(const MeanElements &m, const InclinationTerms &inc, double 
   const double offset = 1 + a.eta * std::cos(m.anomaly);
   d.anomaly_offset = offset * offset * offset;
   d.sine_anomaly0 = std::sin(m.anomaly);
-  if (!d.is_simple)
+  if (!is_simple)
     add_higher_drag(d, axis, a);
   return d;
 }
 
 } // namespace
-
-double gravity_rate() {
-  static const double rate =
-      60 / std::sqrt(earth_radius_km * earth_radius_km * earth_radius_km / mu_km3_s2);
-  return rate;
-}
-
-InclinationTerms inclination_terms(double inclination) {
-  InclinationTerms t;
-  t.sine = std::sin(inclination);
-  t.cosine = std::cos(inclination);
-  const double c2 = t.cosine * t.cosine;
-  t.three_cos2_minus_1 = 3 * c2 - 1;
-  t.one_minus_cos2 = 1 - c2;
-  t.seven_cos2_minus_1 = 7 * c2 - 1;
-  t.long_period_y = -0.5 * j3_over_j2 * t.sine;
-  // The J3 term of the longitude is singular at 180 deg; the reference holds the divisor at
-  // 1.5e-12 there (V).
-  const double divisor = std::abs(1 + t.cosine) > 1.5e-12 ? 1 + t.cosine : 1.5e-12;
-  t.long_period_l = -0.25 * j3_over_j2 * t.sine * (3 + 5 * t.cosine) / divisor;
-  return t;
-}
 
 double julian_date_of_year_day(int year, int day) {
   // Days of the Gregorian calendar before 1 January of `year`; 1 January 1 is JD 1721425.5.
@@ -158,7 +136,7 @@ double brouwer_mean_motion(double kozai, double eccentricity, double cos_inclina
   const double beta2 = 1 - eccentricity * eccentricity;
   const double shift =
       0.75 * j2 * (3 * cos_inclination * cos_inclination - 1) / (std::sqrt(beta2) * beta2);
-  const double a1 = std::pow(gravity_rate() / kozai, 2.0 / 3.0);
+  const double a1 = std::pow(gravity_rate / kozai, 2.0 / 3.0);
   const double delta1 = shift / (a1 * a1);
   const double a0 = a1 * (1 - delta1 * delta1 - delta1 * (1.0 / 3.0 + 134 * delta1 * delta1 / 81));
   return kozai / (1 + shift / (a0 * a0));
@@ -166,7 +144,8 @@ double brouwer_mean_motion(double kozai, double eccentricity, double cos_inclina
 
 Constants initialise(const ElementSet &elements) {
   Constants c;
-  MeanElements &m = c.epoch;
+  Numbers &n = c.numbers;
+  MeanElements &m = n.epoch;
   m = {elements.mean_motion, elements.eccentricity,        elements.inclination,
        elements.raan,        elements.argument_of_perigee, elements.mean_anomaly};
   if (!(m.eccentricity >= 0 && m.eccentricity < 1)) {
@@ -181,24 +160,25 @@ Constants initialise(const ElementSet &elements) {
     c.code = Sgp4Code::OutOfRange;
     return c;
   }
-  c.inclination = inclination_terms(m.inclination);
-  m.motion = brouwer_mean_motion(m.motion, m.eccentricity, c.inclination.cosine);
+  n.inclination = kernel::inclination_terms(m.inclination);
+  m.motion = brouwer_mean_motion(m.motion, m.eccentricity, n.inclination.cosine);
   if (!(m.motion > 0 && std::isfinite(m.motion))) {
     c.code = Sgp4Code::MeanMotion;
     return c;
   }
-  const double axis = std::pow(gravity_rate() / m.motion, 2.0 / 3.0);
+  const double axis = n.axis0 = std::pow(gravity_rate / m.motion, 2.0 / 3.0);
   const double day = std::floor(elements.epoch_day_of_year);
   // NOTE: the epoch is rounded to one double (20 us) because the reference does so: the Moon's
   // place at the epoch moves object 23333, at its perigee, by 4e-6 km otherwise.
   const double jd = julian_date_of_year_day(elements.epoch_year, static_cast<int>(day)) +
                     (elements.epoch_day_of_year - day);
-  c.greenwich = greenwich_angle_1982(jd);
-  c.rates = secular_rates(m, axis, c.inclination.cosine);
-  const bool is_deep = two_pi / m.motion >= 225; // period [min] from which on Sun and Moon count
-  c.drag = drag_terms(m, c.inclination, axis, elements.bstar, is_deep);
-  if (is_deep)
-    c.deep = deep_space_constants(c, jd - 2415020.0);
+  n.greenwich = greenwich_angle_1982(jd);
+  n.rates = secular_rates(m, axis, n.inclination.cosine);
+  c.kind.is_deep = two_pi / m.motion >= 225; // period [min] from which on Sun and Moon count
+  c.kind.is_simple = c.kind.is_deep || axis * (1 - m.eccentricity) < 220 / earth_radius_km + 1;
+  n.drag = drag_terms(m, n.inclination, axis, elements.bstar, c.kind.is_simple);
+  if (c.kind.is_deep)
+    add_deep_space(c, jd - 2415020.0);
   c.is_usable = true;
   TemeState unused;
   c.code = state_at(c, 0, unused);

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 #include <umov/core/result.h>
 #include <umov/core/vec3.h>
 #include <umov/orbit/elements.h>
@@ -35,11 +36,22 @@ public:
   [[nodiscard]] Sgp4Code init_code() const;
   /// State `minutes` after the epoch (UTC clock). On failure the state is zero.
   Sgp4Code propagate(double minutes, TemeState &state) const;
+  /// The same for many times at once, eight or so in the lanes of the vector unit; bit for bit what
+  /// the other overload gives. The three spans have one length.
+  void propagate(std::span<const double> minutes, std::span<TemeState> states,
+                 std::span<Sgp4Code> codes) const;
   [[nodiscard]] bool is_deep_space() const;
 
 private:
+  friend void propagate_objects(std::span<const Sgp4> objects, std::span<const double> minutes,
+                                std::span<TemeState> states, std::span<Sgp4Code> codes);
   struct Model;
   std::shared_ptr<const Model> model_;
 };
+
+/// States of many objects, each at its own time [min after its own epoch], in lanes; bit for bit
+/// what Sgp4::propagate gives. All spans have one length.
+void propagate_objects(std::span<const Sgp4> objects, std::span<const double> minutes,
+                       std::span<TemeState> states, std::span<Sgp4Code> codes);
 
 } // namespace umov
