@@ -1,6 +1,7 @@
 # Every dependency comes from the distribution or from PyPI and is only looked up here.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
+find_package(Boost 1.74 REQUIRED) # headers: Math, Odeint
 find_package(fmt REQUIRED)
 find_package(tl-expected REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)

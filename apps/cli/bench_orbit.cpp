@@ -49,8 +49,8 @@ double rate_over_objects(const Catalogue &c) {
   const std::size_t rounds = 100; // epochs
   return best_rate(c.objects.size() * rounds, [&] {
     for (std::size_t k = 0; k < rounds; ++k)
-      propagate_objects(c.objects,
-                        std::vector<double>(c.objects.size(), c.minutes[14 * k]), states, codes);
+      propagate_objects(c.objects, std::vector<double>(c.objects.size(), c.minutes[14 * k]), states,
+                        codes);
   });
 }
 

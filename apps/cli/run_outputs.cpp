@@ -8,7 +8,6 @@
 #include <umov/core/version.h>
 #include <umov/io/keyframe.h>
 #include <umov/io/report.h>
-#include <umov/orbit/sgp4.h>
 
 namespace umov::cli {
 namespace {
@@ -17,17 +16,15 @@ namespace {
 std::vector<SkyTrackPoint> sky_track(const LightCurveRequest &request,
                                      const std::vector<Pass> &passes) {
   std::vector<SkyTrackPoint> out;
-  const Sgp4 model(request.elements);
   constexpr double points_per_pass = 200;
   for (const Pass &pass : passes) {
     const double length = seconds_between(pass.set, pass.rise);
     for (double k = 0; k <= points_per_pass; ++k) {
       const Epoch<Utc> time = plus_seconds(pass.rise, length * k / points_per_pass);
-      TemeState state;
-      if (model.propagate(clock_days_between(time, request.elements.epoch) * 1440, state) !=
-          Sgp4Code::Ok)
+      const auto state = request.orbit.at(time);
+      if (!state)
         continue;
-      const ObservingGeometry g = observe(state, time, request.site, request.shadow);
+      const ObservingGeometry g = observe(*state, time, request.site, request.shadow);
       out.push_back({time, pass.id, g.azimuth, g.altitude, g.sunlit});
     }
   }

@@ -2,6 +2,7 @@
 #include "verbs.h"
 
 #include "tables.h"
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
@@ -9,10 +10,10 @@
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/io/elements_file.h>
+#include <umov/io/trajectory_file.h>
 #include <umov/lightcurve/compute.h>
 #include <umov/orbit/elements.h>
 #include <umov/orbit/ephemeris.h>
-#include <umov/orbit/select.h>
 
 namespace umov::cli {
 namespace {
@@ -37,15 +38,6 @@ Result<std::vector<ElementSet>> read_sets(const OrbitOptions &o, Diagnostics &di
   return read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics);
 }
 
-Error propagation_failure(const ElementSet &set, Epoch<Utc> time, Sgp4Code code) {
-  return {ErrorCode::Physics,
-          fmt::format("{}: SGP4 fails at {} (code {}, {}); the set is {:.1f} d old. Shorten the "
-                      "span or give newer elements.",
-                      set.norad_cat_id, to_iso(time), static_cast<int>(code), to_text(code),
-                      clock_days_between(time, set.epoch)),
-          {}};
-}
-
 Error stopped_by_user(std::size_t done, std::size_t all, const char *what) {
   return {ErrorCode::Interrupted,
           fmt::format("stopped by the user after {} of {}", done, counted(all, what)),
@@ -57,38 +49,31 @@ struct EphemerisRows {
   std::optional<Error> stopped;
 };
 
-Result<EphemerisRows> compute_ephemeris(const OrbitOptions &o, const ElementSet &set,
+Result<EphemerisRows> compute_ephemeris(const OrbitOptions &o, const Trajectory &orbit,
                                         const Common &common) {
   UMOV_ASSIGN(site, make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m));
   UMOV_ASSIGN(start, utc_from_iso(o.start));
   UMOV_ASSIGN(stop, utc_from_iso(o.stop));
   UMOV_ASSIGN(times, time_grid(start, stop, o.step_s));
   const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
-  const Sgp4 model(set);
-  std::vector<double> minutes;
-  minutes.reserve(times.size());
-  for (const Epoch<Utc> time : times)
-    minutes.push_back(clock_days_between(time, set.epoch) * 1440);
   std::vector<TemeState> states(times.size());
-  std::vector<Sgp4Code> found(times.size(), model.init_code());
-  if (model.init_code() == Sgp4Code::Ok)
-    model.propagate(minutes, states, found);
-  std::vector<std::optional<Sgp4Code>> codes(times.size()); // none: not reached before a stop
+  const std::size_t count = orbit.at(times, states); // the rows before the first gap are good
+  std::vector<char> is_done(count);
   EphemerisRows out;
-  out.rows.resize(times.size());
-  parallel_for(times.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
+  out.rows.resize(count);
+  parallel_for(count, static_cast<unsigned>(common.threads), [&](std::size_t i) {
     if (interrupted())
       return;
-    if (found[i] == Sgp4Code::Ok)
-      out.rows[i] = observe(states[i], times[i], site, shadow);
-    codes[i] = found[i];
+    out.rows[i] = observe(states[i], times[i], site, shadow);
+    is_done[i] = 1;
   });
-  for (std::size_t i = 0; i < times.size() && !out.stopped; ++i)
-    if (codes[i] != Sgp4Code::Ok) { // the rows before the first gap are good and are kept
-      out.stopped = codes[i] ? propagation_failure(set, times[i], *codes[i])
-                             : stopped_by_user(i, times.size(), "epoch");
-      out.rows.resize(i);
-    }
+  const auto kept =
+      static_cast<std::size_t>(std::find(is_done.begin(), is_done.end(), 0) - is_done.begin());
+  out.rows.resize(kept);
+  if (kept < count)
+    out.stopped = stopped_by_user(kept, times.size(), "epoch");
+  else if (count < times.size())
+    out.stopped = orbit.at(times[count]).error();
   return out;
 }
 
@@ -142,12 +127,14 @@ int run_ephemeris(const OrbitOptions &o, const Common &common) {
   Diagnostics diagnostics;
   const auto done = [&]() -> Result<std::optional<Error>> {
     UMOV_TRY(check_output(o.output));
-    UMOV_ASSIGN(sets, read_sets(o, diagnostics));
+    UMOV_ASSIGN(text, read_file(o.orbit));
     UMOV_ASSIGN(start, utc_from_iso(o.start));
-    UMOV_ASSIGN(set, choose_elements(sets, o.norad, start, o.orbit));
     UMOV_ASSIGN(stop, utc_from_iso(o.stop));
-    UMOV_TRY(check_element_age(set, start, stop, o.allow_old_elements, o.orbit, diagnostics));
-    UMOV_ASSIGN(rows, compute_ephemeris(o, set, common));
+    UMOV_ASSIGN(orbit, read_trajectory(text, o.orbit,
+                                       {o.norad, start, stop, o.allow_bad_checksum, o.keep_going,
+                                        o.allow_old_elements},
+                                       diagnostics));
+    UMOV_ASSIGN(rows, compute_ephemeris(o, orbit, common));
     const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
     Table table = ephemeris_table(rows.rows, shadow);
     if (rows.stopped)

@@ -14,6 +14,7 @@
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/io/elements_file.h>
+#include <umov/io/trajectory_file.h>
 #include <umov/orbit/passes.h>
 #include <umov/orbit/select.h>
 
@@ -49,7 +50,7 @@ Result<Site> site_of(const PassesOptions &o) {
 }
 
 /// The set of each object to use for a span.
-Result<std::vector<ElementSet>> choose(const PassesOptions &o, const std::vector<ElementSet> &sets,
+Result<std::vector<Trajectory>> choose(const PassesOptions &o, const std::vector<ElementSet> &sets,
                                        Epoch<Utc> start, Epoch<Utc> stop,
                                        Diagnostics &diagnostics) {
   std::vector<int> wanted = o.norad;
@@ -58,8 +59,8 @@ Result<std::vector<ElementSet>> choose(const PassesOptions &o, const std::vector
       wanted.push_back(set.norad_cat_id);
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-  std::vector<ElementSet> sorted = sets,
-                          out; // by number, so that each object is chosen from its own
+  std::vector<ElementSet> sorted = sets; // by number, so that each object is chosen from its own
+  std::vector<Trajectory> out;
   std::stable_sort(sorted.begin(), sorted.end(), [](const ElementSet &a, const ElementSet &b) {
     return a.norad_cat_id < b.norad_cat_id;
   });
@@ -82,7 +83,7 @@ Result<std::vector<ElementSet>> choose(const PassesOptions &o, const std::vector
     if (age > 30 && !o.allow_old_elements)
       ++old;
     else
-      out.push_back(std::move(set));
+      out.emplace_back(set);
   }
   if (out.empty())
     return fail(ErrorCode::BadInput,
@@ -102,32 +103,48 @@ Result<std::vector<ElementSet>> choose(const PassesOptions &o, const std::vector
   return out;
 }
 
+Result<std::vector<Trajectory>> read_orbits(const PassesOptions &o, const std::string &text,
+                                            Epoch<Utc> start, Epoch<Utc> stop,
+                                            Diagnostics &diagnostics) {
+  if (!ccsds::is_message(text)) {
+    UMOV_ASSIGN(sets,
+                read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics));
+    return choose(o, sets, start, stop, diagnostics);
+  }
+  TrajectoryRequest request;
+  request.norad = o.norad.size() == 1 ? o.norad[0] : 0;
+  request.first = start;
+  request.last = stop;
+  UMOV_ASSIGN(orbit, read_trajectory(text, o.orbit, request, diagnostics));
+  return std::vector<Trajectory>{orbit};
+}
+
 struct FoundPass {
   std::size_t object = 0;
   SitePass pass;
 };
 
-std::string pass_id(const ElementSet &set, const SitePass &pass) {
+std::string pass_id(const Trajectory &orbit, const SitePass &pass) {
   std::string time = to_iso(pass.culmination.time, 3).substr(0, 19) + "Z";
   std::erase_if(time, [](char c) { return c == '-' || c == ':'; });
-  return std::to_string(set.norad_cat_id) + "-" + time;
+  return orbit.id() + "-" + time;
 }
 
-Table passes_table(const std::vector<FoundPass> &found, const std::vector<ElementSet> &sets) {
+Table passes_table(const std::vector<FoundPass> &found, const std::vector<Trajectory> &orbits) {
   Table t;
   const auto text = [&](const char *name, const char *description, auto take) {
     std::vector<std::string> values;
     for (const FoundPass &one : found)
-      values.push_back(take(sets[one.object], one.pass));
+      values.push_back(take(orbits[one.object], one.pass));
     t.add(name, "", description, std::move(values));
   };
   const auto number = [&](const char *name, const char *unit, const char *description, auto take) {
     std::vector<double> values;
     for (const FoundPass &one : found)
-      values.push_back(take(sets[one.object], one.pass));
+      values.push_back(take(orbits[one.object], one.pass));
     t.add(name, unit, description, std::move(values));
   };
-  using E = const ElementSet &;
+  using E = const Trajectory &;
   using P = const SitePass &;
   const auto shadow = [](P pass, bool is_entry) -> std::string {
     for (const ShadowCrossing &crossing : pass.shadow)
@@ -136,10 +153,10 @@ Table passes_table(const std::vector<FoundPass> &found, const std::vector<Elemen
     return "";
   };
   const double none = std::numeric_limits<double>::quiet_NaN();
-  text("name", "as in the file", [](E e, P) { return e.name; });
+  text("name", "as in the file", [](E e, P) { return e.name(); });
   std::vector<std::int64_t> numbers;
   for (const FoundPass &one : found)
-    numbers.push_back(sets[one.object].norad_cat_id);
+    numbers.push_back(orbits[one.object].norad_cat_id());
   t.add("norad_cat_id", "", "catalogue number", std::move(numbers));
   text("pass_id", "number and time of culmination", pass_id);
   text("rise_utc", "crosses the altitude going up; empty: it is up when the span begins",
@@ -172,7 +189,7 @@ Table passes_table(const std::vector<FoundPass> &found, const std::vector<Elemen
   number("sun_alt", "deg", "altitude of the Sun at culmination, airless",
          [](E, P p) { return p.culmination.sun_altitude.degrees(); });
   number("elset_age", "d", "culmination less epoch of the elements",
-         [](E e, P p) { return clock_days_between(p.culmination.time, e.epoch); });
+         [](E e, P p) { return e.element_age_days(p.culmination.time); });
   return t;
 }
 
@@ -182,26 +199,26 @@ struct Search {
   bool is_stopped = false;
 };
 
-Search search_all(const PassesOptions &o, const std::vector<ElementSet> &sets, const Site &site,
+Search search_all(const PassesOptions &o, const std::vector<Trajectory> &orbits, const Site &site,
                   Epoch<Utc> start, Epoch<Utc> stop, const Common &common,
                   Diagnostics &diagnostics) {
   PassSearch wanted;
   wanted.altitude_min = Angle::degrees(o.altitude_min_deg);
   wanted.sun_altitude_max = Angle::degrees(o.sun_altitude_max_deg);
   wanted.shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
-  std::vector<std::optional<Result<std::vector<SitePass>>>> results(sets.size());
+  std::vector<std::optional<Result<std::vector<SitePass>>>> results(orbits.size());
   ProgressBar bar("objects", common);
   std::mutex lock;
   std::size_t done = 0;
-  parallel_for(sets.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
+  parallel_for(orbits.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
     if (interrupted())
       return;
-    results[i] = find_passes(sets[i], site, start, stop, wanted);
+    results[i] = find_passes(orbits[i], site, start, stop, wanted);
     const std::scoped_lock guard(lock);
-    bar.update(++done, sets.size());
+    bar.update(++done, orbits.size());
   });
   Search out;
-  for (std::size_t i = 0; i < sets.size(); ++i) {
+  for (std::size_t i = 0; i < orbits.size(); ++i) {
     if (!results[i]) {
       out.is_stopped = true;
       continue;
@@ -232,9 +249,7 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   if (seconds_between(stop, start) < 0)
     return fail(ErrorCode::Usage, "--stop lies before --start");
   UMOV_ASSIGN(text, read_file(o.orbit));
-  UMOV_ASSIGN(sets,
-              read_elements(text, o.orbit, {o.allow_bad_checksum, o.keep_going}, diagnostics));
-  UMOV_ASSIGN(chosen, choose(o, sets, start, stop, diagnostics));
+  UMOV_ASSIGN(chosen, read_orbits(o, text, start, stop, diagnostics));
   warn_if_beyond_leap_seconds(stop, diagnostics);
   warn_if_outside_eop(start, stop, diagnostics);
   const Search search = search_all(o, chosen, site, start, stop, common, diagnostics);
@@ -250,7 +265,7 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
          fmt::format("stopped by the user after {} of {} objects", search.objects, chosen.size()),
          {}}));
   if (search.failed == chosen.size())
-    return fail(ErrorCode::Physics, "SGP4 failed for every object; give newer elements", {o.orbit});
+    return fail(ErrorCode::Physics, "the orbit of every object ends within the span", {o.orbit});
   if (search.found.empty())
     return fail(ErrorCode::Nothing,
                 fmt::format("no {}pass above {:g} deg in this span",
@@ -264,7 +279,7 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand("passes", "When objects pass over a site, and in which light");
   auto o = std::make_shared<PassesOptions>();
   auto common = std::make_shared<Common>();
-  verb->add_option("--orbit", o->orbit, "TLE, 3LE or OMM (KVN, XML, JSON, CSV) file")->required();
+  verb->add_option("--orbit", o->orbit, "TLE, 3LE, OMM, OEM or OPM file")->required();
   verb->add_option("--norad", o->norad, "Catalogue numbers, separated by commas; else all")
       ->delimiter(',');
   auto *site =

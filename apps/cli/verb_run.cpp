@@ -39,8 +39,8 @@ Result<Scenario> read_with_options(const RunOptions &o) {
 LightCurveRequest request_of(const Scenario &scenario, const LoadedObject &object,
                              const Common &common) {
   LightCurveRequest request;
-  request.object = scenario.object_name.empty() ? object.elements->name : scenario.object_name;
-  request.elements = *object.elements;
+  request.object = scenario.object_name.empty() ? object.orbit->name() : scenario.object_name;
+  request.orbit = *object.orbit;
   request.site = *scenario.observer;
   request.start = scenario.time->start;
   request.stop = scenario.time->stop;
@@ -67,8 +67,7 @@ Error nothing_found(const LightCurveRequest &request) {
             {}};
   std::string text = fmt::format(
       "no {}pass of {} above {:g} deg{} from \"{}\" in that span.",
-      request.only.sunlit ? "sunlit " : "", request.elements.norad_cat_id,
-      request.only.altitude_min.degrees(),
+      request.only.sunlit ? "sunlit " : "", request.orbit.id(), request.only.altitude_min.degrees(),
       request.only.sun_altitude_max
           ? fmt::format(" with the Sun below {:g} deg", request.only.sun_altitude_max->degrees())
           : "",

@@ -49,8 +49,8 @@ resonance_derivatives(const std::array<ResonanceHarmonic, N> &harmonics, const S
   ResonanceDerivatives<R> d{at.motion + c.resonance.rate0, R(0), R(0)};
   for (std::size_t i = 0; i < N; ++i) {
     const ResonanceHarmonic &h = harmonics[i];
-    const SineCosine<R> wave = sine_cosine(R(h.perigee_multiple) * perigee +
-                                           R(h.angle_multiple) * at.angle - R(h.phase));
+    const SineCosine<R> wave =
+        sine_cosine(R(h.perigee_multiple) * perigee + R(h.angle_multiple) * at.angle - R(h.phase));
     const R amplitude = c.resonance.amplitude[i];
     d.motion_rate = d.motion_rate + amplitude * wave.sine;
     d.motion_second = d.motion_second + R(h.angle_multiple) * amplitude * wave.cosine;
@@ -82,8 +82,7 @@ template <class R> struct Drifted {
 };
 
 /// Secular gravity and drag (H section 6, "secular effects").
-template <class R>
-inline Drifted<R> secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c, R t) {
+template <class R> inline Drifted<R> secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c, R t) {
   const DragTerms<R> &d = c.drag;
   const R t2 = t * t;
   Drifted<R> out;
@@ -103,8 +102,8 @@ inline Drifted<R> secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c, R t) {
   m.perigee = m.perigee - shift;
   const R t3 = t2 * t, t4 = t3 * t;
   out.axis_factor = out.axis_factor - (d.d2 * t2 + d.d3 * t3 + d.d4 * t4);
-  out.eccentricity_loss = out.eccentricity_loss +
-                          d.bstar * d.c5 * (sine_cosine(m.anomaly).sine - d.sine_anomaly0);
+  out.eccentricity_loss =
+      out.eccentricity_loss + d.bstar * d.c5 * (sine_cosine(m.anomaly).sine - d.sine_anomaly0);
   out.longitude_gain = out.longitude_gain + (d.l3 * t3 + t4 * (d.l4 + t * d.l5));
   return out;
 }
@@ -124,9 +123,8 @@ inline void deep_space_secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c,
   const R theta = within_turn(c.greenwich + t * earth_rate);
   const ResonanceNode<R> at = resonance_step(kind.resonance, c, node, t - node.minutes);
   m.motion = at.motion;
-  m.anomaly = kind.resonance == Resonance::HalfDay
-                  ? at.angle - R(2) * m.node + R(2) * theta
-                  : at.angle - m.node - m.perigee + theta;
+  m.anomaly = kind.resonance == Resonance::HalfDay ? at.angle - R(2) * m.node + R(2) * theta
+                                                   : at.angle - m.node - m.perigee + theta;
 }
 
 /// x^(2/3) for x > 0, near 1 by nature: Newton's method for the cube root.
@@ -186,8 +184,7 @@ inline void add_third_body(const ThirdBodyPeriodics<R> &b, R t, LunarSolar<R> &s
 }
 
 /// Lyddane's form for small inclinations: node and inclination as a vector.
-template <class R>
-inline MeanElements<R> with_lyddane(const LunarSolar<R> &p, MeanElements<R> m) {
+template <class R> inline MeanElements<R> with_lyddane(const LunarSolar<R> &p, MeanElements<R> m) {
   const SineCosine<R> i = sine_cosine(m.inclination), n = sine_cosine(m.node);
   const R x = i.sine * n.sine + p.node * n.cosine + p.inclination * i.cosine * n.sine;
   const R y = i.sine * n.cosine - p.node * n.sine + p.inclination * i.cosine * n.cosine;
@@ -308,8 +305,7 @@ inline Osculating<R> short_periodics(const MeanElements<R> &m, R axis, const Non
                            cos_u * shift.cosine + sin_u * shift.sine};
   out.node = m.node + R(1.5) * j2_p2 * inc.cosine * sin_2u;
   out.inclination = m.inclination + R(1.5) * j2_p2 * inc.cosine * inc.sine * cos_2u;
-  out.radius_rate =
-      sqrt(axis) * e_sin * per_radius - motion * j2_p * inc.one_minus_cos2 * sin_2u;
+  out.radius_rate = sqrt(axis) * e_sin * per_radius - motion * j2_p * inc.one_minus_cos2 * sin_2u;
   out.transverse_rate =
       sqrt(max(p, R(0))) * per_radius +
       motion * j2_p * (inc.one_minus_cos2 * cos_2u + R(1.5) * inc.three_cos2_minus_1);
@@ -328,8 +324,7 @@ template <class R> inline Sgp4State<R> to_state(const Osculating<R> &o, R code) 
   const R km = o.radius * R(sgp4_earth_radius_km);
   const R km_s = R(sgp4_earth_radius_km * sgp4_gravity_rate / 60);
   const R in = o.radius_rate * km_s, on = o.transverse_rate * km_s;
-  return {ax * km,           ay * km,           az * km, ax * in + bx * on,
-          ay * in + by * on, az * in + bz * on, code};
+  return {ax * km, ay * km, az * km, ax * in + bx * on, ay * in + by * on, az * in + bz * on, code};
 }
 
 /// State `t` minutes after the epoch. `node`: of the resonance, a whole number of its steps from

@@ -19,16 +19,6 @@ constexpr std::size_t max_epochs = 10'000'000;
 /// Epochs per work unit: also the grain of progress, cancelling and stopping.
 constexpr std::size_t block = 256;
 
-Error propagation_error(const LightCurveRequest &request, Epoch<Utc> time, Sgp4Code code) {
-  const double age = clock_days_between(time, request.elements.epoch);
-  return {ErrorCode::Physics,
-          fmt::format("{}: SGP4 fails at {} (code {}, {}); the set is {:.1f} d old. Shorten [time] "
-                      "or give newer elements.",
-                      request.elements.norad_cat_id, to_iso(time), static_cast<int>(code),
-                      to_text(code), age),
-          {}};
-}
-
 /// Position angle in [0, 180) deg of linear polarization, NaN where there is none.
 double position_angle_deg(double q, double u) {
   if (!(q * q + u * u > 0))
@@ -78,8 +68,7 @@ struct Selection {
   std::optional<Error> stopped;
 };
 
-Result<Selection> select_epochs(const Sgp4 &model, const LightCurveRequest &request,
-                                const std::atomic<bool> &cancel) {
+Result<Selection> select_epochs(const LightCurveRequest &request, const std::atomic<bool> &cancel) {
   UMOV_ASSIGN(times, time_grid(request.start, request.stop, request.step_s));
   Selection out;
   out.grid.resize(times.size());
@@ -88,13 +77,13 @@ Result<Selection> select_epochs(const Sgp4 &model, const LightCurveRequest &requ
     if (cancel)
       return;
     for (std::size_t i = b * block; i < std::min((b + 1) * block, times.size()); ++i)
-      out.grid[i] = geometry_at(model, request, times[i]);
+      out.grid[i] = geometry_at(request, times[i]);
   });
   if (cancel)
     return fail(ErrorCode::Interrupted, "stopped before the first row");
   for (std::size_t i = 0; i < out.grid.size() && !out.stopped; ++i)
-    if (out.grid[i].code != Sgp4Code::Ok) {
-      out.stopped = propagation_error(request, times[i], out.grid[i].code);
+    if (!out.grid[i].is_there) {
+      out.stopped = request.orbit.at(times[i]).error();
       out.grid.resize(i);
     }
   for (const GridPass &span : group_passes(out.grid, request.only)) {
@@ -107,7 +96,7 @@ Result<Selection> select_epochs(const Sgp4 &model, const LightCurveRequest &requ
       }
     if (out.kept.size() == before)
       continue;
-    out.passes.push_back(describe_pass(span, out.grid, model, request));
+    out.passes.push_back(describe_pass(span, out.grid, request));
     out.passes.back().rows = out.kept.size() - before;
   }
   return out;
@@ -162,7 +151,7 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
       request.has_solar_disk ? std::asin(constants::sun_radius_km / geometry.sun_distance_km) : 0};
   epoch.airmass = airmass(geometry.altitude);
   epoch.pass_id = pass_id;
-  epoch.elset_age_days = clock_days_between(geometry.time, request.elements.epoch);
+  epoch.elset_age_days = request.orbit.element_age_days(geometry.time);
   const PoseResult light = integrator.evaluate(epoch.pose, request.integration);
   epoch.is_dark = light.is_dark;
   epoch.has_glint = light.glint_share > 0.5;
@@ -179,7 +168,7 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
 LightCurve empty_curve(const LightCurveRequest &request, const Scene &scene, std::size_t rows) {
   LightCurve curve;
   curve.object = request.object;
-  curve.norad_cat_id = request.elements.norad_cat_id;
+  curve.norad_cat_id = request.orbit.norad_cat_id();
   curve.bands = scene.bands;
   curve.groups = scene.mesh.groups;
   for (const Surface &surface : scene.front)
@@ -246,10 +235,9 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
                                               const Integrator &integrator,
                                               const Progress &progress,
                                               const std::atomic<bool> &cancel) {
-  const Sgp4 model(request.elements);
-  if (model.init_code() != Sgp4Code::Ok)
-    return tl::unexpected(propagation_error(request, request.elements.epoch, model.init_code()));
-  UMOV_ASSIGN(selection, select_epochs(model, request, cancel));
+  if (const ElementSet *set = request.orbit.elements())
+    UMOV_TRY(request.orbit.at(set->epoch)); // elements that cannot even start
+  UMOV_ASSIGN(selection, select_epochs(request, cancel));
   std::vector<double> solar;
   for (const Band &band : scene.bands) {
     UMOV_ASSIGN(value, solar_irradiance(band.wavelength));
@@ -257,9 +245,9 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
   }
   AttitudeContext spin_start{};
   if (const auto *spin = std::get_if<SpinLaw>(&request.attitude)) {
-    const EpochGeometry at = geometry_at(model, request, spin->epoch);
-    if (at.code != Sgp4Code::Ok)
-      return tl::unexpected(propagation_error(request, spin->epoch, at.code));
+    const EpochGeometry at = geometry_at(request, spin->epoch);
+    if (!at.is_there)
+      return tl::unexpected(request.orbit.at(spin->epoch).error());
     spin_start = context_of(at.geometry);
   }
   LightCurveOutcome out;
@@ -275,14 +263,11 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
 
 std::optional<NextPass> find_next_pass(const LightCurveRequest &request, Epoch<Utc> from,
                                        double days) {
-  const Sgp4 model(request.elements);
-  if (model.init_code() != Sgp4Code::Ok)
-    return std::nullopt;
   constexpr double step_s = 20; // shorter than any useful pass; the time is told to the minute
   std::optional<NextPass> found;
   for (double s = 0; s <= days * 86400; s += step_s) {
-    const EpochGeometry at = geometry_at(model, request, plus_seconds(from, s));
-    if (at.code != Sgp4Code::Ok)
+    const EpochGeometry at = geometry_at(request, plus_seconds(from, s));
+    if (!at.is_there)
       return found;
     if (!found && is_kept(at, request.only))
       found = NextPass{at.geometry.time, at.geometry.altitude};

@@ -18,18 +18,15 @@ std::string compact(Epoch<Utc> time) {
 
 } // namespace
 
-EpochGeometry geometry_at(const Sgp4 &model, const LightCurveRequest &request, Epoch<Utc> time) {
-  TemeState state;
-  const double minutes = clock_days_between(time, request.elements.epoch) * 1440;
-  const Sgp4Code code = model.propagate(minutes, state);
-  if (code != Sgp4Code::Ok)
-    return {code, {}};
-  return {code, observe(state, time, request.site, request.shadow)};
+EpochGeometry geometry_at(const LightCurveRequest &request, Epoch<Utc> time) {
+  const auto state = request.orbit.at(time);
+  if (!state)
+    return {};
+  return {true, observe(*state, time, request.site, request.shadow)};
 }
 
 bool is_above(const EpochGeometry &epoch, const EpochFilter &only) {
-  return epoch.code == Sgp4Code::Ok &&
-         epoch.geometry.altitude.radians() >= only.altitude_min.radians();
+  return epoch.is_there && epoch.geometry.altitude.radians() >= only.altitude_min.radians();
 }
 
 bool is_kept(const EpochGeometry &epoch, const EpochFilter &only) {
@@ -65,8 +62,7 @@ struct Summit {
 
 class Climb {
 public:
-  Climb(const Sgp4 &model, const LightCurveRequest &request, Epoch<Utc> origin)
-      : model_(model), request_(request), origin_(origin) {}
+  Climb(const LightCurveRequest &request, Epoch<Utc> origin) : request_(request), origin_(origin) {}
 
   /// Walks on while the altitude grows; returns where it no longer does.
   [[nodiscard]] double walk(double from, double step) const {
@@ -92,17 +88,16 @@ public:
 
 private:
   [[nodiscard]] double altitude(double seconds) const {
-    const EpochGeometry at = geometry_at(model_, request_, plus_seconds(origin_, seconds));
-    return at.code == Sgp4Code::Ok ? at.geometry.altitude.radians() : -pi;
+    const EpochGeometry at = geometry_at(request_, plus_seconds(origin_, seconds));
+    return at.is_there ? at.geometry.altitude.radians() : -pi;
   }
-  const Sgp4 &model_;
   const LightCurveRequest &request_;
   Epoch<Utc> origin_;
 };
 
 } // namespace
 
-Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid, const Sgp4 &model,
+Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
                    const LightCurveRequest &request) {
   std::size_t top = pass.first;
   for (std::size_t i = pass.first; i <= pass.last; ++i)
@@ -114,7 +109,7 @@ Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
   out.is_open_at_start = pass.first == 0;
   out.is_open_at_end = pass.last + 1 == grid.size();
   const Epoch<Utc> origin = grid[top].geometry.time;
-  const Climb climb(model, request, origin);
+  const Climb climb(request, origin);
   constexpr double stride_s = 10; // shorter than any passage above the horizon
   double low = -stride_s, high = stride_s;
   if (top > pass.first)
@@ -132,7 +127,7 @@ Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
   const Summit summit = climb.refine(low, high);
   out.culmination = plus_seconds(origin, summit.seconds);
   out.culmination_altitude = Angle::radians(summit.altitude_rad);
-  out.id = std::to_string(request.elements.norad_cat_id) + "-" + compact(out.culmination);
+  out.id = request.orbit.id() + "-" + compact(out.culmination);
   return out;
 }
 

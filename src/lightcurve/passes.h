@@ -6,14 +6,14 @@
 
 namespace umov {
 
-/// Geometry of one epoch of the grid, or the code with which SGP4 failed there.
+/// Geometry of one epoch of the grid, unless the orbit could not be had there.
 struct EpochGeometry {
-  Sgp4Code code = Sgp4Code::Ok;
+  bool is_there = false;
   ObservingGeometry geometry;
 };
 
 /// Propagates and observes one epoch.
-EpochGeometry geometry_at(const Sgp4 &model, const LightCurveRequest &request, Epoch<Utc> time);
+EpochGeometry geometry_at(const LightCurveRequest &request, Epoch<Utc> time);
 
 bool is_above(const EpochGeometry &epoch, const EpochFilter &only);
 /// Above the altitude limit, and dark and sunlit as the filter asks.
@@ -26,7 +26,7 @@ struct GridPass {
 std::vector<GridPass> group_passes(const std::vector<EpochGeometry> &grid, const EpochFilter &only);
 
 /// Name, culmination (refined between epochs to 1 ms) and limits of a pass.
-Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid, const Sgp4 &model,
+Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
                    const LightCurveRequest &request);
 
 } // namespace umov

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <functional>
 #include <optional>
 #include <umov/core/quantity.h>
@@ -17,41 +16,48 @@ constexpr double time_tolerance_s = 1e-3;
 /// The object over the site, at seconds after the start.
 class Tracker {
 public:
-  Tracker(const ElementSet &set, const Site &site, Epoch<Utc> start, ShadowModel shadow)
-      : set_(set), model_(set), site_(site), start_(start), shadow_(shadow),
-        code_(model_.init_code()) {}
+  Tracker(const Trajectory &orbit, const Site &site, Epoch<Utc> start, ShadowModel shadow)
+      : orbit_(orbit), site_(site), start_(start), shadow_(shadow) {}
 
-  /// Zeros if SGP4 fails; `failed` tells the first time.
+  /// Zeros where the orbit ends; `failed` tells the first time.
   ObservingGeometry at(double seconds) {
     const Epoch<Utc> time = plus_seconds(start_, seconds);
-    TemeState state;
-    return propagate(time, state) ? observe(state, time, site_, shadow_) : ObservingGeometry{};
+    const auto state = ask(time);
+    return state ? observe(*state, time, site_, shadow_) : ObservingGeometry{};
   }
   double altitude(double seconds) {
     const Epoch<Utc> time = plus_seconds(start_, seconds);
-    TemeState state;
-    return propagate(time, state) ? topocentric_altitude(state, time, site_).radians() : 0;
+    const auto state = ask(time);
+    return state ? topocentric_altitude(*state, time, site_).radians() : 0;
   }
-  [[nodiscard]] const std::optional<std::pair<Sgp4Code, Epoch<Utc>>> &failed() const {
-    return failed_;
+  /// Altitudes at many times; shorter where the orbit ends.
+  std::vector<double> altitudes(const std::vector<double> &seconds) {
+    std::vector<Epoch<Utc>> times;
+    for (const double s : seconds)
+      times.push_back(plus_seconds(start_, s));
+    std::vector<TemeState> states(times.size());
+    const std::size_t count = orbit_.at(times, states);
+    if (count < times.size())
+      ask(times[count]);
+    std::vector<double> out;
+    for (std::size_t k = 0; k < count; ++k)
+      out.push_back(topocentric_altitude(states[k], times[k], site_).radians());
+    return out;
   }
+  [[nodiscard]] const std::optional<Error> &failed() const { return failed_; }
 
 private:
-  bool propagate(Epoch<Utc> time, TemeState &state) {
-    Sgp4Code code = code_;
-    if (code == Sgp4Code::Ok)
-      code = model_.propagate(clock_days_between(time, set_.epoch) * 1440, state);
-    if (code != Sgp4Code::Ok && !failed_)
-      failed_ = {code, time};
-    return code == Sgp4Code::Ok;
+  Result<TemeState> ask(Epoch<Utc> time) {
+    auto state = orbit_.at(time);
+    if (!state && !failed_)
+      failed_ = state.error();
+    return state;
   }
-  const ElementSet &set_;
-  Sgp4 model_;
+  const Trajectory &orbit_;
   const Site &site_;
   Epoch<Utc> start_;
   ShadowModel shadow_;
-  Sgp4Code code_;
-  std::optional<std::pair<Sgp4Code, Epoch<Utc>>> failed_;
+  std::optional<Error> failed_;
 };
 
 /// Where f changes sign between a and b, by bisection.
@@ -86,12 +92,9 @@ double maximum(const std::function<double(double)> &f, double a, double b) {
   return 0.5 * (a + b);
 }
 
-/// Times on which the altitude has no more than one maximum between neighbours' neighbours: a
-/// fraction of the time that perigee takes.
-std::vector<double> coarse_times(const ElementSet &set, double span_s) {
-  const double period_s = 60 * 2 * pi / set.mean_motion;
-  const double step = std::clamp(period_s / 48 * std::pow(1 - set.eccentricity, 1.5), 20.0, 300.0);
-  const auto count = static_cast<std::size_t>(std::ceil(span_s / step)) + 1;
+/// Times on which the altitude has no more than one maximum between neighbours' neighbours.
+std::vector<double> coarse_times(const Trajectory &orbit, double span_s) {
+  const auto count = static_cast<std::size_t>(std::ceil(span_s / orbit.search_step_s())) + 1;
   std::vector<double> out;
   for (std::size_t k = 0; k < count; ++k)
     out.push_back(span_s * static_cast<double>(k) /
@@ -108,15 +111,14 @@ struct Stretch {
 struct Samples {
   std::vector<double> time, above; ///< above: altitude less the wanted one [rad]
 };
-Samples sample(Tracker &tracker, const std::vector<double> &grid,
+Samples sample(Tracker &tracker, const std::vector<double> &grid, double altitude_min,
                const std::function<double(double)> &above) {
-  Samples out;
-  for (const double t : grid) {
-    out.time.push_back(t);
-    out.above.push_back(above(t));
-    if (tracker.failed())
-      return out;
-  }
+  Samples out{grid, tracker.altitudes(grid)};
+  out.time.resize(out.above.size());
+  for (double &value : out.above)
+    value -= altitude_min;
+  if (tracker.failed())
+    return out;
   for (std::size_t k = 1; k + 1 < out.time.size(); ++k) {
     const double here = out.above[k];
     // The top reaches further than the samples by less than their spread.
@@ -196,12 +198,14 @@ void describe(Tracker &tracker, const Stretch &stretch, const PassSearch &search
 
 } // namespace
 
-Result<std::vector<SitePass>> find_passes(const ElementSet &set, const Site &site, Epoch<Utc> start,
-                                          Epoch<Utc> stop, const PassSearch &search) {
-  Tracker tracker(set, site, start, search.shadow);
+Result<std::vector<SitePass>> find_passes(const Trajectory &orbit, const Site &site,
+                                          Epoch<Utc> start, Epoch<Utc> stop,
+                                          const PassSearch &search) {
+  Tracker tracker(orbit, site, start, search.shadow);
   const double span_s = std::max(0.0, seconds_between(stop, start));
   const auto above = [&](double t) { return tracker.altitude(t) - search.altitude_min.radians(); };
-  const Samples samples = sample(tracker, coarse_times(set, span_s), above);
+  const Samples samples =
+      sample(tracker, coarse_times(orbit, span_s), search.altitude_min.radians(), above);
   std::vector<SitePass> out;
   for (const Stretch &stretch :
        tracker.failed() ? std::vector<Stretch>() : stretches(samples, above)) {
@@ -215,10 +219,7 @@ Result<std::vector<SitePass>> find_passes(const ElementSet &set, const Site &sit
     out.push_back(std::move(pass));
   }
   if (const auto &failed = tracker.failed())
-    return fail(ErrorCode::Physics,
-                fmt::format("{}: SGP4 fails at {} (code {}, {})", set.norad_cat_id,
-                            to_iso(failed->second), static_cast<int>(failed->first),
-                            to_text(failed->first)));
+    return tl::unexpected(*failed);
   return out;
 }
 

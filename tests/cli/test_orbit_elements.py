@@ -46,7 +46,8 @@ def test_convert_prints_and_comes_back(umov, tmp_path):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (("--to", "oem"), ["--to tle, kvn, xml, json or csv"]),
+    (("--to", "oem"), ["--start and --stop"]),
+    (("--to", "opm"), ["--to tle, kvn, xml, json or csv"]),
     (("-o", "hst.pdf"), ["hst.pdf"]),
     ((), ["no form to write"]),
     (("--to", "json", "--norad", 1), ["holds no object 1"]),
@@ -69,3 +70,41 @@ def test_a_bad_message_is_named_and_may_be_left_out(umov, tmp_path):
     done = umov("orbit", "show", "--orbit", "all.json", "--keep-going", "-o", "t.csv")
     assert done.code == 0 and "BSTAR is missing" in done.err
     assert len(read_csv(tmp_path / "t.csv")) == 978
+
+
+def test_an_ephemeris_file_serves_as_orbit(umov, scenario, tmp_path):
+    """OEM made from elements: the run is that of the elements to the interpolation's error."""
+    done = umov("orbit", "convert", "--orbit", HST, "-o", "hst.oem", "--start", "2018-01-21T04:30:00Z",
+                "--stop", "2018-01-21T06:30:00Z")
+    assert done.code == 0, done.err
+    plain = scenario(name="plain.toml")
+    other = scenario((f'"{HST}"', '"hst.oem"'), ('dir = "out"', 'dir = "other"'), name="other.toml")
+    for name in (plain, other):
+        done = umov("run", name, "--quiet")
+        assert done.code == 0, done.err
+    a, b = (read_csv(tmp_path / folder / "lightcurve.csv") for folder in ("out", "other"))
+    assert len(a) == len(b) > 0
+    for one, two in zip(a, b):
+        assert abs(float(one["range"]) - float(two["range"])) < 1e-5
+        assert abs(float(one["phase_angle"]) - float(two["phase_angle"])) < 1e-6
+        assert two["elset_age"] == ""  # an ephemeris has no age
+
+
+def test_messages_between_kvn_and_xml(umov, tmp_path):
+    for name in ("oem_cov", "opm_user_defined", "tdm"):
+        there = umov("orbit", "convert", "--orbit", ROOT / f"tests/data/ccsds/{name}.kvn", "-o",
+                     f"{name}.xml")
+        back = umov("orbit", "convert", "--orbit", f"{name}.xml", "--to", "kvn")
+        again = umov("orbit", "convert", "--orbit", ROOT / f"tests/data/ccsds/{name}.kvn", "--to", "kvn")
+        assert there.code == back.code == again.code == 0, there.err + back.err
+        assert back.out == again.out
+    done = umov("orbit", "show", "--orbit", "tdm.xml", "--json")
+    assert json.loads(done.out)[0]["records"] > 100
+
+
+def test_an_ephemeris_that_ends_keeps_its_rows(umov, tmp_path):
+    done = umov("orbit", "ephemeris", "--orbit", ROOT / "tests/data/ccsds/oem.kvn", "--lat-deg", 0,
+                "--lon-deg", 0, "--alt-m", 0, "--start", "2008-09-20T14:20:00Z", "--stop",
+                "2008-09-20T15:00:00Z", "-o", "e.csv")
+    assert done.code == 4 and "does not cover 2008-09-20T14:26:00.000Z" in done.err, done.err
+    assert len(read_csv(tmp_path / "e.partial.csv")) == 6

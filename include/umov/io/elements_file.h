@@ -21,6 +21,9 @@ ElementsForm form_of_elements(std::string_view text);
 Result<std::vector<ElementSet>> read_elements(std::string_view text, const std::string &file,
                                               const TleOptions &options, Diagnostics &diagnostics);
 
+/// "98067A" of a TLE as "1998-067A"; anything else as it is.
+std::string long_designator(const std::string &text);
+
 /// Text of a form. In OMM every element is the shortest decimal that gives back the same number; a
 /// TLE has fewer digits, and a warning per field says how many sets lost some. A name that there
 /// is none of is written UNKNOWN, which CCSDS wants. BadInput for a catalogue number that a TLE

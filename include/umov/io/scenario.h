@@ -8,7 +8,7 @@
 #include <umov/attitude/attitude.h>
 #include <umov/core/diagnostics.h>
 #include <umov/lightcurve/compute.h>
-#include <umov/orbit/elements.h>
+#include <umov/orbit/trajectory.h>
 #include <umov/scene/scene.h>
 #include <vector>
 
@@ -90,7 +90,7 @@ struct InputFile {
 };
 
 struct LoadedObject {
-  std::optional<ElementSet> elements; ///< absent for a scene
+  std::optional<Trajectory> orbit; ///< absent for a scene
   Scene scene;
   std::vector<InputFile> inputs;
 };

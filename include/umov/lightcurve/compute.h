@@ -7,7 +7,7 @@
 #include <umov/attitude/attitude.h>
 #include <umov/core/diagnostics.h>
 #include <umov/lightcurve/light_curve.h>
-#include <umov/orbit/elements.h>
+#include <umov/orbit/trajectory.h>
 
 namespace umov {
 
@@ -23,7 +23,7 @@ enum class PolarizationFrame { Equatorial, AltAz, Scattering };
 
 struct LightCurveRequest {
   std::string object;
-  ElementSet elements;
+  Trajectory orbit;
   Site site;
   Epoch<Utc> start{}, stop{};
   double step_s = 1; ///< > 0; `stop` is included and may equal `start`

@@ -2,8 +2,8 @@
 // When an object passes over a site.
 
 #include <umov/core/diagnostics.h>
-#include <umov/orbit/elements.h>
 #include <umov/orbit/ephemeris.h>
+#include <umov/orbit/trajectory.h>
 #include <vector>
 
 namespace umov {
@@ -32,9 +32,10 @@ struct PassSearch {
   ShadowModel shadow = ShadowModel::Ellipsoid;
 };
 
-/// All passes of a set between two times, in order; times are good to 1 ms of the model. Physics if
-/// SGP4 fails on the way (decay), with the time.
-Result<std::vector<SitePass>> find_passes(const ElementSet &set, const Site &site, Epoch<Utc> start,
-                                          Epoch<Utc> stop, const PassSearch &search);
+/// All passes of an object between two times, in order; times are good to 1 ms of the model.
+/// Physics if the orbit ends on the way (decay, end of an ephemeris), with the time.
+Result<std::vector<SitePass>> find_passes(const Trajectory &orbit, const Site &site,
+                                          Epoch<Utc> start, Epoch<Utc> stop,
+                                          const PassSearch &search);
 
 } // namespace umov

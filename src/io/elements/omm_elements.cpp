@@ -8,6 +8,7 @@
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
 #include <umov/time/epoch.h>
+#include <umov/time/time_system.h>
 
 namespace umov::omm {
 
@@ -111,36 +112,14 @@ Result<void> check_metadata(const Fields &fields, Metadata metadata) {
   return {};
 }
 
-bool is_leap(int year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
-
-/// "2020-064T10:34:41.4" (CCSDS 301.0-B-4, code B) as "2020-03-04T10:34:41.4".
-std::string calendar_date(const std::string &text) {
-  if (text.size() < 9 || text[4] != '-' || text[8] != 'T')
-    return text;
-  const auto year = parse_number(text.substr(0, 4)), day = parse_number(text.substr(5, 3));
-  if (!year || !day || *day < 1 || *day > (is_leap(static_cast<int>(*year)) ? 366 : 365))
-    return text;
-  const int days[] = {
-      31, is_leap(static_cast<int>(*year)) ? 29 : 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-  int rest = static_cast<int>(*day), month = 0;
-  while (rest > days[month])
-    rest -= days[month++];
-  return fmt::format("{}-{:02}-{:02}{}", text.substr(0, 4), month + 1, rest, text.substr(8));
-}
-
 Result<void> read_epoch(const Fields &fields, ElementSet &out) {
-  std::string text = calendar_date(fields.text("EPOCH"));
-  if (!text.empty() && text.back() != 'Z' && text.find('+') == std::string::npos)
-    text += 'Z'; // TIME_SYSTEM says so
-  const auto epoch = utc_from_iso(text);
+  const std::string text = fields.text("EPOCH");
+  const auto epoch = utc_from_calendar(text, TimeSystem::Utc);
   if (!epoch)
     return fields.refuse("EPOCH", "a date such as 2018-01-20T12:25:40.104192",
                          fields.find("EPOCH") == nullptr ? "" : epoch.error().message);
   out.epoch = *epoch;
-  const auto part = [&](std::size_t at, std::size_t count) {
-    return static_cast<int>(parse_number(text.substr(at, count)).value_or(0));
-  };
-  out.epoch_year = part(0, 4);
+  out.epoch_year = static_cast<int>(parse_number(text.substr(0, 4)).value_or(0));
   out.epoch_day_of_year = 1 + clock_days_between(*epoch, utc_from_year_day(out.epoch_year, 1.0));
   // Catalogues make their epochs from a TLE's eight decimals of a day. What is that decimal to a
   // nanosecond is that decimal: the set is then the same to the last bit, whatever its form.

@@ -1,36 +1,17 @@
 // NDM/XML: <omm>, alone or in <ndm>. pugixml knows no entities but the five of XML, so a document
 // type has nothing to offer here and is refused.
 
+#include "io/ccsds/xml_lines.h"
 #include "io/elements/omm_message.h"
 
-#include <algorithm>
 #include <pugixml.hpp>
 #include <umov/core/text.h>
 
 namespace umov::omm {
 namespace {
 
-/// Lines of byte offsets.
-class Lines {
-public:
-  explicit Lines(std::string_view text) {
-    for (std::size_t i = 0; i < text.size(); ++i)
-      if (text[i] == '\n')
-        ends_.push_back(i);
-  }
-  [[nodiscard]] std::size_t of(std::ptrdiff_t offset) const {
-    const auto at = static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0));
-    return static_cast<std::size_t>(std::lower_bound(ends_.begin(), ends_.end(), at) -
-                                    ends_.begin()) +
-           1;
-  }
-
-private:
-  std::vector<std::size_t> ends_;
-};
-
 /// Every element without children below a node, down to the depth that the schema has.
-Result<void> take_leaves(pugi::xml_node node, int depth, const Lines &lines,
+Result<void> take_leaves(pugi::xml_node node, int depth, const XmlLines &lines,
                          const std::string &file, Message &out) {
   constexpr int deepest = 6;
   for (const pugi::xml_node child : node.children()) {
@@ -60,7 +41,7 @@ Result<void> read_xml(std::string_view text, const std::string &file, const Sink
   const auto done =
       document.load_buffer(text.data(), text.size(),
                            pugi::parse_default | pugi::parse_doctype | pugi::parse_trim_pcdata);
-  const Lines lines(text);
+  const XmlLines lines(text);
   if (!done)
     return fail(ErrorCode::BadInput, std::string("is no XML: ") + done.description(),
                 {file, lines.of(done.offset)});

@@ -32,16 +32,6 @@ struct Item {
   bool is_number;
 };
 
-/// "98067A" of a TLE as "1998-067A"; anything else as it is.
-std::string long_designator(const std::string &text) {
-  const bool is_short =
-      text.size() >= 6 && text.size() <= 8 &&
-      std::all_of(text.begin(), text.begin() + 5, [](char c) { return c >= '0' && c <= '9'; });
-  if (!is_short)
-    return text;
-  return (text.substr(0, 2) < "57" ? "20" : "19") + text.substr(0, 2) + "-" + text.substr(2);
-}
-
 std::vector<Item> metadata_of(const ElementSet &set) {
   return {{"OBJECT_NAME", "", set.name.empty() ? "UNKNOWN" : set.name, false},
           {"OBJECT_ID", "",
@@ -163,6 +153,15 @@ std::string csv_of(const std::vector<ElementSet> &sets) {
 }
 
 } // namespace
+
+std::string long_designator(const std::string &text) {
+  const bool is_short =
+      text.size() >= 6 && text.size() <= 8 &&
+      std::all_of(text.begin(), text.begin() + 5, [](char c) { return c >= '0' && c <= '9'; });
+  if (!is_short)
+    return text;
+  return (text.substr(0, 2) < "57" ? "20" : "19") + text.substr(0, 2) + "-" + text.substr(2);
+}
 
 Result<std::string> write_elements(const std::vector<ElementSet> &sets, ElementsForm form,
                                    Epoch<Utc> created, Diagnostics &diagnostics) {

@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
-#include <umov/io/elements_file.h>
 #include <umov/io/index_file.h>
 #include <umov/io/obj.h>
-#include <umov/orbit/select.h>
+#include <umov/io/trajectory_file.h>
 #include <umov/shape/topology.h>
 
 namespace umov {
@@ -36,13 +35,16 @@ Result<void> load_orbit(const Scenario &scenario, const LoadOptions &options,
     return {};
   const std::string file = scenario.orbit->file.string();
   UMOV_ASSIGN(text, read_input(file, place(scenario, "object.orbit"), out));
-  UMOV_ASSIGN(sets, read_elements(text, file, {.allow_bad_checksum = options.allow_bad_checksum},
-                                  diagnostics));
-  const Epoch<Utc> start = scenario.time ? scenario.time->start : sets.front().epoch;
-  const Epoch<Utc> stop = scenario.time ? scenario.time->stop : start;
-  UMOV_ASSIGN(set, choose_elements(sets, scenario.orbit->norad, start, file));
-  UMOV_TRY(check_element_age(set, start, stop, options.allow_old_elements, file, diagnostics));
-  out.elements = set;
+  if (!scenario.time)
+    return {}; // a scene: its orbit is not asked for
+  TrajectoryRequest request;
+  request.norad = scenario.orbit->norad;
+  request.first = scenario.time->start;
+  request.last = scenario.time->stop;
+  request.allow_bad_checksum = options.allow_bad_checksum;
+  request.allow_old_elements = options.allow_old_elements;
+  UMOV_ASSIGN(orbit, read_trajectory(text, file, request, diagnostics));
+  out.orbit = orbit;
   return {};
 }
 

@@ -18,9 +18,7 @@ using DoubleTag = hn::CappedTag<double, 8>;
 
 struct DoubleMask {
   hn::Mask<DoubleTag> m;
-  friend HWY_INLINE DoubleMask operator&(DoubleMask a, DoubleMask b) {
-    return {hn::And(a.m, b.m)};
-  }
+  friend HWY_INLINE DoubleMask operator&(DoubleMask a, DoubleMask b) { return {hn::And(a.m, b.m)}; }
   friend HWY_INLINE DoubleMask operator|(DoubleMask a, DoubleMask b) { return {hn::Or(a.m, b.m)}; }
 };
 

@@ -38,9 +38,7 @@ struct Columns {
   }
 };
 
-HWY_INLINE DoubleLanes load(const Column &column) {
-  return hn::LoadU(DoubleTag(), column.data());
-}
+HWY_INLINE DoubleLanes load(const Column &column) { return hn::LoadU(DoubleTag(), column.data()); }
 HWY_INLINE Column stored(DoubleLanes x) {
   Column out;
   hn::StoreU(x.v, DoubleTag(), out.data());

@@ -86,8 +86,8 @@ double crossing(const std::vector<Row> &rows, double wanted, bool is_up) {
 
 TEST(Passes, EightPassesOfExplorer27RiseAndSetWhenTheReferenceSays) {
   const ElementSet set = elements_of(folder + "elements.tle", 1328);
-  const auto found =
-      find_passes(set, maui, utc("2022-02-22T00:00:00Z"), utc("2022-03-02T00:00:00Z"), {});
+  const auto found = find_passes(Trajectory(set), maui, utc("2022-02-22T00:00:00Z"),
+                                 utc("2022-03-02T00:00:00Z"), {});
   ASSERT_TRUE(found) << found.error().text();
   const auto references = read_rows("explorer27_maui_8passes_5s.csv");
   ASSERT_EQ(references.size(), 8u);
@@ -130,7 +130,7 @@ TEST(Passes, TheShadowIsEnteredWhenHalfTheSunIsGone) {
   ASSERT_GT(expected, 0);
   PassSearch search;
   search.altitude_min = Angle::degrees(2);
-  const auto found = find_passes(elements_of(folder + "elements.tle", 1328), maui,
+  const auto found = find_passes(Trajectory(elements_of(folder + "elements.tle", 1328)), maui,
                                  rows.front().time, rows.back().time, search);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->size(), 1u);
@@ -150,7 +150,7 @@ TEST(Passes, NoneIsMissedThatADenseSearchSees) {
   std::size_t passes = 0;
   for (std::size_t i = 0; i < sets->size(); i += 23) {
     const ElementSet &set = (*sets)[i];
-    const auto found = find_passes(set, maui, start, stop, {});
+    const auto found = find_passes(Trajectory(set), maui, start, stop, {});
     if (!found)
       continue; // decayed before
     passes += found->size();
@@ -193,8 +193,8 @@ TEST(Passes, AStationaryObjectIsUpAllTheTime) {
   still.eccentricity = 1e-4;
   for (double raan = 0; raan < 2 * pi; raan += 0.5) {
     still.raan = raan;
-    const auto found =
-        find_passes(still, maui, utc("2018-01-21T00:00:00Z"), utc("2018-01-22T00:00:00Z"), {});
+    const auto found = find_passes(Trajectory(still), maui, utc("2018-01-21T00:00:00Z"),
+                                   utc("2018-01-22T00:00:00Z"), {});
     ASSERT_TRUE(found);
     ASSERT_LE(found->size(), 1u);
     if (found->size() == 1) {
@@ -206,14 +206,14 @@ TEST(Passes, AStationaryObjectIsUpAllTheTime) {
 
 TEST(Passes, AnEmptySpanAndADecayedObject) {
   const ElementSet set = elements_of(folder + "elements.tle", 1328);
-  const auto none =
-      find_passes(set, maui, utc("2022-02-22T00:00:00Z"), utc("2022-02-22T00:00:00Z"), {});
+  const auto none = find_passes(Trajectory(set), maui, utc("2022-02-22T00:00:00Z"),
+                                utc("2022-02-22T00:00:00Z"), {});
   ASSERT_TRUE(none);
   EXPECT_TRUE(none->empty());
   ElementSet low = set;
   low.mean_motion = 17.5 * 2 * pi / 1440;
-  const auto decayed =
-      find_passes(low, maui, utc("2022-02-22T00:00:00Z"), utc("2022-03-22T00:00:00Z"), {});
+  const auto decayed = find_passes(Trajectory(low), maui, utc("2022-02-22T00:00:00Z"),
+                                   utc("2022-03-22T00:00:00Z"), {});
   ASSERT_FALSE(decayed);
   EXPECT_EQ(decayed.error().code, ErrorCode::Physics);
 }

@@ -89,8 +89,8 @@ TEST(KernelAngles, SineAndCosineOfTheCLibrary) {
   for (int k = -500000; k <= 500000; ++k) {
     const double x = 1.7e-3 * k + 1e-7 * k * (k % 3);
     const auto wave = kernel::sine_cosine(x);
-    worst = std::max(
-        {worst, std::abs(wave.sine - std::sin(x)), std::abs(wave.cosine - std::cos(x))});
+    worst =
+        std::max({worst, std::abs(wave.sine - std::sin(x)), std::abs(wave.cosine - std::cos(x))});
   }
   EXPECT_LE(worst, 2.3e-16); // one unit in the last place of 1
 }

@@ -1,0 +1,21 @@
+#pragma once
+// Dates of CCSDS messages: their time system stands elsewhere in the message.
+
+#include <optional>
+#include <string_view>
+#include <umov/core/result.h>
+#include <umov/time/epoch.h>
+
+namespace umov {
+
+enum class TimeSystem { Utc, Tai, Tt, Gps, Tdb, Ut1 };
+
+/// "UTC", "TAI", "TT" ("TDT"), "GPS", "TDB", "UT1"; empty for another.
+std::optional<TimeSystem> time_system_from(std::string_view name);
+
+/// Reads "2008-09-20T12:25:40.104192" or, with a day of the year, "2006-090T05:00:00.071" (CCSDS
+/// 301.0-B-4, codes A and B); a Z at the end is allowed. BadInput for anything else, and before
+/// 1972. TDB as seen from the Earth's centre (ERFA's series, Fairhead & Bretagnon 1990).
+Result<Epoch<Utc>> utc_from_calendar(std::string_view text, TimeSystem system);
+
+} // namespace umov

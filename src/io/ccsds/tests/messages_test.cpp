@@ -1,0 +1,171 @@
+// CCSDS messages: every sample read (tests/data/ccsds/README.md), the two forms of one message
+// against each other, and written and read again without a character lost.
+
+#include <umov/io/ccsds.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <umov/core/files.h>
+
+namespace umov::ccsds {
+namespace {
+
+const std::string folder = UMOV_SOURCE_DIR "/tests/data/ccsds/";
+
+Message read(const std::string &text) {
+  Diagnostics diagnostics;
+  auto message = read_message(text, "m", diagnostics);
+  EXPECT_TRUE(message) << message.error().text();
+  return message ? *message : Message{};
+}
+std::string refusal(const std::string &text) {
+  Diagnostics diagnostics;
+  const auto message = read_message(text, "m", diagnostics);
+  return message ? std::string() : message.error().text();
+}
+
+void expect_same(const std::vector<Field> &a, const std::vector<Field> &b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].key, b[k].key);
+    EXPECT_EQ(a[k].text, b[k].text) << a[k].key;
+    EXPECT_EQ(a[k].unit, b[k].unit) << a[k].key;
+  }
+}
+void expect_same(const Message &a, const Message &b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.version, b.version);
+  expect_same(a.header, b.header);
+  ASSERT_EQ(a.segments.size(), b.segments.size());
+  for (std::size_t s = 0; s < a.segments.size(); ++s) {
+    expect_same(a.segments[s].metadata, b.segments[s].metadata);
+    ASSERT_EQ(a.segments[s].data.size(), b.segments[s].data.size());
+    for (std::size_t r = 0; r < a.segments[s].data.size(); ++r) {
+      EXPECT_EQ(a.segments[s].data[r].name, b.segments[s].data[r].name);
+      expect_same(a.segments[s].data[r].fields, b.segments[s].data[r].fields);
+    }
+  }
+}
+
+std::vector<std::string> samples() {
+  std::vector<std::string> out;
+  for (const auto &entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (is_message(*read_file(entry.path().string())))
+      out.push_back(name);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+TEST(CcsdsMessages, EverySampleComesBackFromBothForms) {
+  const auto names = samples();
+  EXPECT_EQ(names.size(), 33u); // 9 OPM, 6 OEM and one TDM in both forms, one OEM without indents
+  for (const std::string &name : names) {
+    SCOPED_TRACE(name);
+    const Message first = read(*read_file(folder + name));
+    for (const Form form : {Form::Kvn, Form::Xml}) {
+      const auto text = write_message(first, form);
+      ASSERT_TRUE(text) << text.error().text();
+      expect_same(first, read(*text));
+      EXPECT_EQ(*write_message(read(*text), form), *text);
+    }
+  }
+}
+
+TEST(CcsdsMessages, BothFormsOfOneMessageSayTheSame) {
+  // The pairs differ in date and, in OPM, in digits: the states are compared.
+  for (const char *name : {"oem", "oem_cov", "oem_cov_qsw", "oem_double", "oem_interplanetary",
+                           "oem_minimal", "tdm"}) {
+    SCOPED_TRACE(name);
+    const Message kvn = read(*read_file(folder + name + ".kvn")),
+                  xml = read(*read_file(folder + name + ".xml"));
+    ASSERT_EQ(kvn.segments.size(), xml.segments.size());
+    for (std::size_t s = 0; s < kvn.segments.size(); ++s) {
+      ASSERT_EQ(kvn.segments[s].data.size(), xml.segments[s].data.size());
+      for (std::size_t r = 0; r < kvn.segments[s].data.size(); ++r)
+        expect_same(kvn.segments[s].data[r].fields, xml.segments[s].data[r].fields);
+    }
+  }
+}
+
+TEST(CcsdsMessages, UnitsOfXmlDataLinesAreTheStandardOnes) {
+  Message m = read(*read_file(folder + "oem_minimal.kvn"));
+  m.segments[0].data[3].fields[1].unit = "m";
+  EXPECT_NE(write_message(m, Form::Kvn).error().message.find("X is in m"), std::string::npos);
+  const auto xml = write_message(m, Form::Xml);
+  ASSERT_TRUE(xml);
+  EXPECT_EQ(read(*xml).segments[0].data[3].fields[1].unit, "m");
+  EXPECT_EQ(read(*xml).segments[0].data[3].fields[2].unit, ""); // km, as always
+}
+
+// Attitude messages in the form of 504.0-B; the values are made up.
+constexpr const char *aem_head = "CCSDS_AEM_VERS = 1.0\n"
+                                 "CREATION_DATE = 2018-01-20T00:00:00\nORIGINATOR = UMOV\n"
+                                 "META_START\nOBJECT_NAME = A\nOBJECT_ID = 2018-001A\n"
+                                 "REF_FRAME_A = EME2000\nREF_FRAME_B = SC_BODY_1\n"
+                                 "ATTITUDE_DIR = A2B\nTIME_SYSTEM = UTC\n"
+                                 "START_TIME = 2018-01-21T00:00:00\n"
+                                 "STOP_TIME = 2018-01-21T00:01:00\n";
+
+TEST(CcsdsMessages, EveryTypeOfAttitude) {
+  const std::pair<const char *, const char *> types[] = {
+      {"QUATERNION", "0.5 0.5 0.5 0.5"},
+      {"QUATERNION/DERIVATIVE", "0.5 0.5 0.5 0.5 1e-3 0 0 0"},
+      {"QUATERNION/RATE", "0.5 0.5 0.5 0.5 1 2 3"},
+      {"QUATERNION/ANGVEL", "0.5 0.5 0.5 0.5 1 2 3"},
+      {"EULER_ANGLE", "10 20 30"},
+      {"EULER_ANGLE/RATE", "10 20 30 1 2 3"},
+      {"SPIN", "268.6 68.4 159.7 -110.0"},
+      {"SPIN/NUTATION", "268.6 68.4 159.7 -110.0 2.0 13.5 40"}};
+  for (const auto &[type, values] : types)
+    for (const char *order : {"", "QUATERNION_TYPE = FIRST\n"}) {
+      SCOPED_TRACE(type);
+      const Message first =
+          read(std::string(aem_head) + "ATTITUDE_TYPE = " + type + "\n" + order +
+               "META_STOP\nDATA_START\nCOMMENT one\n2018-01-21T00:00:00 " + values +
+               "\n2018-01-21T00:01:00 " + values + "\nDATA_STOP\n");
+      for (const Form form : {Form::Kvn, Form::Xml}) {
+        const Message again = read(*write_message(first, form));
+        ASSERT_EQ(again.segments[0].data.size(), 2u);
+        for (const Field &field : first.segments[0].data[0].fields)
+          EXPECT_EQ(find(again.segments[0].data[0].fields, field.key)->text, field.text);
+        EXPECT_EQ(*write_message(again, Form::Kvn), *write_message(first, Form::Kvn));
+      }
+    }
+}
+
+std::string replaced(std::string text, const std::string &from, const std::string &to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(CcsdsMessages, RefusesWithPlaceAndKeyword) {
+  const std::string oem = *read_file(folder + "oem.kvn"), opm = *read_file(folder + "opm.kvn"),
+                    xml = *read_file(folder + "oem.xml");
+  const std::tuple<std::string, const char *> cases[] = {
+      {replaced(oem, "REF_FRAME            = TEME\n", ""), "no REF_FRAME"},
+      {replaced(oem, "META_STOP", "META_STOP\nFOO = 1"), "m:16: FOO"},
+      {replaced(oem, " -993.632000", ""), "a data line has 6 entries"},
+      {replaced(oem, "-993.632000", "nan"), "Y is \"nan\", expected a finite number"},
+      {replaced(oem, "-993.632000", "1e400"), "Y is \"1e400\""},
+      {replaced(oem, "CCSDS_OEM_VERS", "CCSDS_XYZ_VERS"), "m:1: \"CCSDS_XYZ_VERS\""},
+      {replaced(oem, "META_STOP\n", ""), "has no '='"},
+      {replaced(opm, "X                    =", "X_                   ="), "is no keyword"},
+      {replaced(opm, "Y_DOT ", "Z_DOT "), "Z_DOT stands twice"},
+      {replaced(opm, "Y_DOT                =     7.255240 [km/s]\n", ""), "has no Y_DOT"},
+      {replaced(xml, "<oem", "<!DOCTYPE oem [<!ENTITY a \"b\">]><oem"), "document type"},
+      {xml.substr(0, xml.size() / 2), "is no XML"},
+      {"CCSDS_OEM_VERS = 2.0\n", "holds no segment"},
+      {"", "holds no CCSDS message"},
+  };
+  for (const auto &[text, expected] : cases) {
+    const std::string message = refusal(text);
+    EXPECT_NE(message.find(expected), std::string::npos) << expected << ": " << message;
+  }
+}
+
+} // namespace
+} // namespace umov::ccsds

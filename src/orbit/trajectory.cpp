@@ -1,0 +1,196 @@
+#include <umov/orbit/trajectory.h>
+
+#include "orbit/interpolation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <umov/core/constants.h>
+#include <umov/core/quantity.h>
+#include <umov/frames/earth.h>
+
+namespace umov {
+
+struct Trajectory::Body {
+  std::string name;
+  int norad_cat_id = 0;
+  std::optional<ElementSet> elements;
+  std::optional<Sgp4> model;
+  OrbitEphemeris ephemeris;
+};
+
+namespace {
+
+template <class Frame> Vec3<Frame> vec(const std::array<double, 3> &v) { return {v[0], v[1], v[2]}; }
+
+/// EME2000 to GCRS: the frame bias of the mean equator and equinox of J2000 (IERS 2010, section
+/// 5.4.4), small angles.
+Vec3<Gcrs> gcrs_from_eme2000(const std::array<double, 3> &v) {
+  constexpr double arcsec = pi / 648000;
+  constexpr double xi = -0.016617 * arcsec, eta = -0.0068192 * arcsec, alpha = -0.0146 * arcsec;
+  return {v[0] - alpha * v[1] + xi * v[2], v[1] + alpha * v[0] + eta * v[2],
+          v[2] - xi * v[0] - eta * v[1]};
+}
+
+TemeState teme_from(const EphemerisState &s, OrbitFrame frame) {
+  if (frame == OrbitFrame::Teme)
+    return {vec<Teme>(s.position_km), vec<Teme>(s.velocity_km_s)};
+  const auto teme_from_itrs = itrs_from_teme(s.time).inverse();
+  if (frame == OrbitFrame::Itrs) {
+    const auto position = vec<Itrs>(s.position_km);
+    const Vec3<Itrs> spin{0, 0, constants::earth_rate_rad_s};
+    return {teme_from_itrs * position,
+            teme_from_itrs * (vec<Itrs>(s.velocity_km_s) + cross(spin, position))};
+  }
+  const auto teme_from_gcrs = teme_from_itrs * itrs_from_gcrs(s.time);
+  if (frame == OrbitFrame::Eme2000)
+    return {teme_from_gcrs * gcrs_from_eme2000(s.position_km),
+            teme_from_gcrs * gcrs_from_eme2000(s.velocity_km_s)};
+  return {teme_from_gcrs * vec<Gcrs>(s.position_km), teme_from_gcrs * vec<Gcrs>(s.velocity_km_s)};
+}
+
+/// A tenth of a millisecond: what dates of six decimals lose on the way through Julian dates.
+constexpr double edge_s = 1e-4;
+
+const EphemerisSegment *segment_at(const OrbitEphemeris &ephemeris, Epoch<Utc> time) {
+  for (const EphemerisSegment &segment : ephemeris.segments)
+    if (seconds_between(time, segment.first) >= -edge_s &&
+        seconds_between(segment.last, time) >= -edge_s)
+      return &segment;
+  return nullptr;
+}
+
+tl::unexpected<Error> not_covered(const OrbitEphemeris &e, Epoch<Utc> time) {
+  std::string spans;
+  for (std::size_t k = 0; k < e.segments.size() && k < 4; ++k)
+    spans += fmt::format("{}{} to {}", k > 0 ? ", " : "", to_iso(e.segments[k].first),
+                         to_iso(e.segments[k].last));
+  return fail(ErrorCode::Physics,
+              fmt::format("{}: the ephemeris does not cover {}; it holds {}{}. Shorten the span or "
+                          "give a longer ephemeris.",
+                          e.name, to_iso(time), spans, e.segments.size() > 4 ? ", ..." : ""));
+}
+
+tl::unexpected<Error> sgp4_failure(const ElementSet &set, Epoch<Utc> time, Sgp4Code code) {
+  return fail(ErrorCode::Physics,
+              fmt::format("{}: SGP4 fails at {} (code {}, {}); the set is {:.1f} d old. Shorten the "
+                          "span or give newer elements.",
+                          set.norad_cat_id, to_iso(time), static_cast<int>(code), to_text(code),
+                          clock_days_between(time, set.epoch)));
+}
+
+} // namespace
+
+Result<void> check(const OrbitEphemeris &ephemeris) {
+  if (ephemeris.segments.empty())
+    return fail(ErrorCode::BadInput, "the ephemeris has no segment");
+  for (const EphemerisSegment &segment : ephemeris.segments) {
+    if (segment.states.size() < 2)
+      return fail(ErrorCode::BadInput, "a segment of the ephemeris has fewer than two states");
+    if (segment.degree < 1 || segment.degree > 31)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("the degree of interpolation is {}, expected 1 to 31", segment.degree));
+    for (std::size_t k = 0; k < segment.states.size(); ++k) {
+      const EphemerisState &s = segment.states[k];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!std::isfinite(s.position_km[axis]) || !std::isfinite(s.velocity_km_s[axis]))
+          return fail(ErrorCode::BadInput, "the state of " + to_iso(s.time) + " is not finite");
+      if (k > 0 && !(seconds_between(s.time, segment.states[k - 1].time) > 0))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("the state of {} follows that of {}, expected a later time",
+                                to_iso(s.time, 6), to_iso(segment.states[k - 1].time, 6)));
+    }
+    if (seconds_between(segment.first, segment.states.front().time) < -edge_s ||
+        seconds_between(segment.states.back().time, segment.last) < -edge_s ||
+        seconds_between(segment.last, segment.first) < 0)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("the usable span {} to {} is not within the states, {} to {}",
+                              to_iso(segment.first), to_iso(segment.last),
+                              to_iso(segment.states.front().time),
+                              to_iso(segment.states.back().time)));
+  }
+  return {};
+}
+
+Trajectory::Trajectory(const ElementSet &elements) {
+  auto body = std::make_shared<Body>();
+  body->name = elements.name;
+  body->norad_cat_id = elements.norad_cat_id;
+  body->elements = elements;
+  body->model.emplace(elements);
+  body_ = std::move(body);
+}
+
+Trajectory::Trajectory(OrbitEphemeris ephemeris) {
+  auto body = std::make_shared<Body>();
+  body->name = ephemeris.name;
+  body->norad_cat_id = ephemeris.norad_cat_id;
+  body->ephemeris = std::move(ephemeris);
+  body_ = std::move(body);
+}
+
+const std::string &Trajectory::name() const { return body_->name; }
+int Trajectory::norad_cat_id() const { return body_->norad_cat_id; }
+std::string Trajectory::id() const {
+  if (body_->norad_cat_id > 0 || body_->elements)
+    return std::to_string(body_->norad_cat_id);
+  return body_->ephemeris.object_id.empty() ? body_->name : body_->ephemeris.object_id;
+}
+const ElementSet *Trajectory::elements() const {
+  return body_->elements ? &*body_->elements : nullptr;
+}
+double Trajectory::element_age_days(Epoch<Utc> time) const {
+  return body_->elements ? clock_days_between(time, body_->elements->epoch)
+                         : std::numeric_limits<double>::quiet_NaN();
+}
+
+double Trajectory::search_step_s() const {
+  constexpr double shortest = 20, longest = 300;
+  if (!body_->elements)
+    return shortest;
+  const ElementSet &set = *body_->elements;
+  const double period_s = 60 * 2 * pi / set.mean_motion;
+  return std::clamp(period_s / 48 * std::pow(1 - set.eccentricity, 1.5), shortest, longest);
+}
+
+Result<TemeState> Trajectory::at(Epoch<Utc> time) const {
+  if (body_->elements) {
+    const ElementSet &set = *body_->elements;
+    TemeState state;
+    Sgp4Code code = body_->model->init_code();
+    if (code == Sgp4Code::Ok)
+      code = body_->model->propagate(clock_days_between(time, set.epoch) * 1440, state);
+    if (code != Sgp4Code::Ok)
+      return sgp4_failure(set, time, code);
+    return state;
+  }
+  const EphemerisSegment *segment = segment_at(body_->ephemeris, time);
+  if (segment == nullptr)
+    return not_covered(body_->ephemeris, time);
+  return teme_from(interpolate(*segment, time), segment->frame);
+}
+
+std::size_t Trajectory::at(std::span<const Epoch<Utc>> times, std::span<TemeState> states) const {
+  if (!body_->elements) {
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const auto state = at(times[k]);
+      if (!state)
+        return k;
+      states[k] = *state;
+    }
+    return times.size();
+  }
+  if (body_->model->init_code() != Sgp4Code::Ok)
+    return 0;
+  std::vector<double> minutes(times.size());
+  for (std::size_t k = 0; k < times.size(); ++k)
+    minutes[k] = clock_days_between(times[k], body_->elements->epoch) * 1440;
+  std::vector<Sgp4Code> codes(times.size());
+  body_->model->propagate(minutes, states, codes);
+  const auto bad =
+      std::find_if(codes.begin(), codes.end(), [](Sgp4Code code) { return code != Sgp4Code::Ok; });
+  return static_cast<std::size_t>(bad - codes.begin());
+}
+
+} // namespace umov
