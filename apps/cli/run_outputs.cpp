@@ -72,12 +72,22 @@ PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
 
 } // namespace
 
+namespace {
+
+std::string title_of(const Scenario &scenario, const LightCurveRequest &request) {
+  if (scenario.title.empty())
+    return request.object;
+  return scenario.objects.size() == 1 ? scenario.title : scenario.title + ": " + request.object;
+}
+
+} // namespace
+
 Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject &object,
                                     const LightCurveRequest &request,
                                     const LightCurveOutcome &outcome,
                                     const Diagnostics &diagnostics) {
   ReportInput input{.curve = outcome.curve,
-                    .title = scenario.title.empty() ? scenario.object_name : scenario.title,
+                    .title = title_of(scenario, request),
                     .site = request.site,
                     .frame = request.frame,
                     .passes = outcome.passes};
@@ -90,7 +100,8 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
     epochs.resize(12);
   UMOV_ASSIGN(frames,
               make_key_frames(object.scene, outcome.curve, epochs,
-                              {.band = object.scene.bands.size() / 2, .threads = request.threads}));
+                              {.band = object.scene.bands.size() / 2, .threads = request.threads},
+                              joints_of(request.joints)));
   input.key_frames = std::move(frames);
   input.key_frame_materials = material_names(object.scene);
   input.manifest = manifest_lines(scenario, object);

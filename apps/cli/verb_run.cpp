@@ -36,17 +36,18 @@ Result<Scenario> read_with_options(const RunOptions &o) {
   return scenario;
 }
 
-LightCurveRequest request_of(const Scenario &scenario, const LoadedObject &object,
-                             const Common &common) {
+LightCurveRequest request_of(const Scenario &scenario, const ScenarioObject &named,
+                             const LoadedObject &object, const Common &common) {
   LightCurveRequest request;
-  request.object = scenario.object_name.empty() ? object.orbit->name() : scenario.object_name;
+  request.object = named.name.empty() ? object.orbit->name() : named.name;
   request.orbit = *object.orbit;
   request.site = *scenario.observer;
   request.start = scenario.time->start;
   request.stop = scenario.time->stop;
   request.step_s = scenario.time->step_s;
   request.only = scenario.time->only;
-  request.attitude = scenario.attitude;
+  request.attitude = object.attitude;
+  request.joints = named.parts;
   request.frame = scenario.frame;
   request.has_solar_disk = scenario.has_solar_disk;
   request.integration.accuracy = scenario.accuracy;
@@ -81,15 +82,6 @@ Error nothing_found(const LightCurveRequest &request) {
   return {ErrorCode::Nothing, text, {}};
 }
 
-std::string log_of(const LightCurveOutcome &outcome, const Diagnostics &diagnostics) {
-  std::string out = summarize(outcome);
-  for (const Warning &warning : diagnostics.warnings())
-    out += "warning: " + warning.text() + "\n";
-  if (outcome.stopped)
-    out += "error: " + outcome.stopped->text() + "\n";
-  return out;
-}
-
 /// Rows whose numerical error stayed above what was asked are told, not hidden.
 void warn_of_accuracy(const LightCurveOutcome &outcome, double accuracy, Diagnostics &diagnostics) {
   const LightCurve &curve = outcome.curve;
@@ -115,25 +107,34 @@ bool wants(const Scenario &scenario, const char *format) {
          scenario.formats.end();
 }
 
+/// One object of the run: what it is and what came of it.
+struct ObjectRun {
+  LoadedObject object;
+  LightCurveRequest request;
+  LightCurveOutcome outcome;
+};
+
 /// Everything that a finished run knows.
 struct Finished {
   const RunOptions &options;
   const Common &common;
   const Scenario &scenario;
-  const LoadedObject &object;
-  const LightCurveRequest &request;
-  const LightCurveOutcome &outcome;
+  const std::vector<ObjectRun> &objects;
+  const std::optional<Error> &stopped;
   const Diagnostics &diagnostics;
   std::chrono::system_clock::time_point started;
 };
 
-Result<void> write_folder(const Finished &run, RunFolder &folder) {
-  Table table = light_curve_table(run.outcome.curve, run.request.frame);
-  Table passes = passes_table(run.outcome.passes, run.outcome.curve);
-  if (run.outcome.stopped) {
+Result<void> add_tables(const Finished &run, RunFolder &folder) {
+  Table table, passes;
+  for (const ObjectRun &one : run.objects) {
+    table.append(light_curve_table(one.outcome.curve, one.request.frame));
+    passes.append(passes_table(one.outcome.passes, one.outcome.curve));
+  }
+  if (run.stopped) {
     folder.spare_complete_run();
-    table.note("status", "stopped early: " + run.outcome.stopped->message);
-    passes.note("status", "stopped early: " + run.outcome.stopped->message);
+    table.note("status", "stopped early: " + run.stopped->message);
+    passes.note("status", "stopped early: " + run.stopped->message);
   }
   folder.add("passes.ecsv", to_ecsv(passes));
   if (wants(run.scenario, "ecsv"))
@@ -144,11 +145,38 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
     UMOV_ASSIGN(bytes, to_fits(table));
     folder.add("lightcurve.fits", std::move(bytes));
   }
-  if (wants(run.scenario, "html")) {
+  return {};
+}
+
+/// The first object's page is report.html, the others' are numbered from 2.
+Result<void> add_reports(const Finished &run, RunFolder &folder) {
+  if (!wants(run.scenario, "html"))
+    return {};
+  for (std::size_t k = 0; k < run.objects.size(); ++k) {
+    const ObjectRun &one = run.objects[k];
+    if (one.outcome.curve.epochs.empty())
+      continue;
     UMOV_ASSIGN(
-        page, make_run_report(run.scenario, run.object, run.request, run.outcome, run.diagnostics));
-    folder.add("report.html", std::move(page));
+        page, make_run_report(run.scenario, one.object, one.request, one.outcome, run.diagnostics));
+    folder.add(k == 0 ? "report.html" : fmt::format("report_{}.html", k + 1), std::move(page));
   }
+  return {};
+}
+
+std::string log_of(const Finished &run) {
+  std::string out;
+  for (const ObjectRun &one : run.objects)
+    out += summarize(one.outcome);
+  for (const Warning &warning : run.diagnostics.warnings())
+    out += "warning: " + warning.text() + "\n";
+  if (run.stopped)
+    out += "error: " + run.stopped->text() + "\n";
+  return out;
+}
+
+Result<void> write_folder(const Finished &run, RunFolder &folder) {
+  UMOV_TRY(add_tables(run, folder));
+  UMOV_TRY(add_reports(run, folder));
   std::string needed;
   if (run.options.allow_bad_checksum)
     needed += " --allow-bad-checksum";
@@ -157,11 +185,14 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
   folder.add("scenario.lock.toml",
              (needed.empty() ? "" : "# This run was made with" + needed + ".\n") +
                  locked_scenario(run.scenario));
-  folder.add("log.txt", log_of(run.outcome, run.diagnostics));
+  folder.add("log.txt", log_of(run));
   using namespace std::chrono;
   ManifestInput manifest;
-  for (const InputFile &input : run.object.inputs)
-    manifest.inputs.emplace_back(input.path, input.sha256);
+  for (const ObjectRun &one : run.objects)
+    for (const InputFile &input : one.object.inputs)
+      if (const std::pair entry{input.path, input.sha256};
+          std::find(manifest.inputs.begin(), manifest.inputs.end(), entry) == manifest.inputs.end())
+        manifest.inputs.push_back(entry);
   manifest.seed = run.scenario.seed;
   manifest.threads = resolve_threads(static_cast<unsigned>(run.common.threads));
   manifest.command_line = command_line();
@@ -170,68 +201,108 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
   manifest.elapsed_s = duration<double>(system_clock::now() - run.started).count();
   for (const Warning &warning : run.diagnostics.warnings())
     manifest.warnings.push_back(warning.text());
-  if (run.outcome.stopped)
-    manifest.stopped = run.outcome.stopped->text();
+  if (run.stopped)
+    manifest.stopped = run.stopped->text();
   folder.add("manifest.json", make_manifest(manifest));
   return folder.commit();
+}
+
+Result<std::vector<ObjectRun>> load_all(const RunOptions &o, const Scenario &scenario,
+                                        const Common &common, Diagnostics &diagnostics) {
+  std::vector<ObjectRun> out;
+  for (std::size_t k = 0; k < scenario.objects.size(); ++k) {
+    UMOV_ASSIGN(object, load_object(scenario, k, {o.allow_bad_checksum, o.allow_old_elements},
+                                    diagnostics));
+    LightCurveRequest request = request_of(scenario, scenario.objects[k], object, common);
+    if (common.verbose)
+      for (const InputFile &input : object.inputs)
+        note(common, fmt::format("read {} (SHA-256 {})", input.path, input.sha256));
+    out.push_back({std::move(object), std::move(request), {}});
+  }
+  return out;
+}
+
+Result<LightCurveOutcome> compute(const ObjectRun &one, bool is_alone, const Common &common) {
+  const Integrator integrator(one.object.scene);
+  ProgressBar bar(is_alone ? "light curve" : one.request.object, common);
+  std::mutex one_at_a_time;
+  return compute_light_curve(
+      one.request, one.object.scene, integrator,
+      [&](std::size_t done, std::size_t total) {
+        const std::lock_guard lock(one_at_a_time);
+        bar.update(done, total);
+      },
+      interrupted());
+}
+
+/// Computes object after object; the first stop ends it, with the rows so far kept.
+Result<std::optional<Error>> compute_all(std::vector<ObjectRun> &objects, const Scenario &scenario,
+                                         const Common &common, Diagnostics &diagnostics) {
+  std::optional<Error> stopped;
+  std::size_t with_rows = 0;
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    auto outcome = compute(objects[k], objects.size() == 1, common);
+    if (!outcome && objects.size() == 1)
+      return tl::unexpected(outcome.error());
+    if (outcome) {
+      objects[k].outcome = std::move(*outcome);
+      stopped = objects[k].outcome.stopped;
+    } else {
+      stopped = outcome.error();
+    }
+    const bool is_empty = objects[k].outcome.curve.epochs.empty();
+    with_rows += is_empty ? 0u : 1u;
+    if (!is_empty)
+      warn_of_accuracy(objects[k].outcome, scenario.accuracy, diagnostics);
+    if (stopped) {
+      objects.resize(k + 1);
+      break;
+    }
+    if (is_empty && objects.size() > 1)
+      diagnostics.warn(nothing_found(objects[k].request).message);
+  }
+  if (with_rows == 0)
+    return tl::unexpected(stopped ? *stopped : nothing_found(objects.front().request));
+  std::erase_if(objects, [](const ObjectRun &one) { return one.outcome.curve.epochs.empty(); });
+  return stopped;
 }
 
 Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnostics) {
   const auto started = std::chrono::system_clock::now();
   UMOV_ASSIGN(scenario, read_with_options(o));
   UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
-  UMOV_ASSIGN(object,
-              load_object(scenario, {o.allow_bad_checksum, o.allow_old_elements}, diagnostics));
+  UMOV_ASSIGN(objects, load_all(o, scenario, common, diagnostics));
   if (constexpr double long_step_s = 300; scenario.time->step_s > long_step_s)
     diagnostics.warn(
         fmt::format("step_s = {:g} is long against a pass: passes may be missed or joined",
                     scenario.time->step_s));
   warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);
   warn_if_outside_eop(scenario.time->start, scenario.time->stop, diagnostics);
-  if (common.verbose)
-    for (const InputFile &input : object.inputs)
-      note(common, fmt::format("read {} (SHA-256 {})", input.path, input.sha256));
   if (o.dry_run) {
-    note(common, fmt::format("{}: fine; {}, {}", o.scenario,
-                             counted(object.scene.mesh.triangles.size(), "triangle"),
-                             counted(object.scene.bands.size(), "band")));
+    for (const ObjectRun &one : objects)
+      note(common, fmt::format("{}: fine; {}, {}", o.scenario,
+                               counted(one.object.scene.mesh.triangles.size(), "triangle"),
+                               counted(one.object.scene.bands.size(), "band")));
     return {};
   }
-  const LightCurveRequest request = request_of(scenario, object, common);
-  const Integrator integrator(object.scene);
-  std::optional<LightCurveOutcome> outcome;
-  {
-    ProgressBar bar("light curve", common);
-    std::mutex one_at_a_time;
-    auto result = compute_light_curve(
-        request, object.scene, integrator,
-        [&](std::size_t done, std::size_t total) {
-          const std::lock_guard lock(one_at_a_time);
-          bar.update(done, total);
-        },
-        interrupted());
-    if (!result)
-      return tl::unexpected(result.error());
-    outcome = std::move(*result);
+  UMOV_ASSIGN(stopped, compute_all(objects, scenario, common, diagnostics));
+  UMOV_TRY(write_folder({o, common, scenario, objects, stopped, diagnostics, started}, folder));
+  if (!common.quiet) {
+    for (const ObjectRun &one : objects)
+      fmt::print("{}", summarize(one.outcome));
+    fmt::print("written to {}\n", folder.path().string());
   }
-  if (outcome->curve.epochs.empty())
-    return tl::unexpected(outcome->stopped ? *outcome->stopped : nothing_found(request));
-  warn_of_accuracy(*outcome, scenario.accuracy, diagnostics);
-  UMOV_TRY(
-      write_folder({o, common, scenario, object, request, *outcome, diagnostics, started}, folder));
-  if (!common.quiet)
-    fmt::print("{}written to {}\n", summarize(*outcome), folder.path().string());
   if (common.verbose)
     note(common,
          fmt::format(
              "{:.1f} s on {} threads",
              std::chrono::duration<double>(std::chrono::system_clock::now() - started).count(),
-             resolve_threads(request.threads)));
-  if (outcome->stopped) {
-    Error stopped = *outcome->stopped;
-    stopped.message +=
-        sentence_end(stopped.message) + " The finished rows are in " + folder.path().string() + ".";
-    return tl::unexpected(stopped);
+             resolve_threads(static_cast<unsigned>(common.threads))));
+  if (stopped) {
+    Error kept = *stopped;
+    kept.message +=
+        sentence_end(kept.message) + " The finished rows are in " + folder.path().string() + ".";
+    return tl::unexpected(kept);
   }
   return {};
 }

@@ -299,6 +299,13 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   UMOV_TRY(check_output(o.output));
   UMOV_TRY(check_mask_file(o.masks));
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
+  if (scenario.objects.size() > 1)
+    return fail(ErrorCode::BadInput,
+                fmt::format("holds {} objects; a signature is of one. Keep one [[object]].",
+                            scenario.objects.size()),
+                {o.scene});
+  if (!scenario.objects.front().parts.empty())
+    diagnostics.warn("parts stand as in the mesh: without a time nothing turns", {o.scene});
   const std::uint64_t seed = o.has_seed ? o.seed : scenario.seed;
   UMOV_ASSIGN(source, source_of(o));
   UMOV_TRY(check_phases(o));
@@ -316,8 +323,9 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
     UMOV_ASSIGN(table, poses_from_table(o.geometry));
     numbered = std::move(table);
   }
-  UMOV_ASSIGN(object, load_object(scenario, {.allow_old_elements = true, .source_is_sun = is_sun},
-                                  diagnostics));
+  UMOV_ASSIGN(
+      object,
+      load_object(scenario, 0, {.allow_old_elements = true, .source_is_sun = is_sun}, diagnostics));
   const SignatureJob job{o,
                          common,
                          scenario,

@@ -19,6 +19,14 @@ constexpr std::size_t max_epochs = 10'000'000;
 /// Epochs per work unit: also the grain of progress, cancelling and stopping.
 constexpr std::size_t block = 256;
 
+/// A scenario calls the span [time].
+Error in_scenario_words(Error error) {
+  constexpr std::string_view plain = "Shorten the span";
+  if (const std::size_t at = error.message.find(plain); at != std::string::npos)
+    error.message.replace(at, plain.size(), "Shorten [time]");
+  return error;
+}
+
 /// Position angle in [0, 180) deg of linear polarization, NaN where there is none.
 double position_angle_deg(double q, double u) {
   if (!(q * q + u * u > 0))
@@ -83,7 +91,7 @@ Result<Selection> select_epochs(const LightCurveRequest &request, const std::ato
     return fail(ErrorCode::Interrupted, "stopped before the first row");
   for (std::size_t i = 0; i < out.grid.size() && !out.stopped; ++i)
     if (!out.grid[i].is_there) {
-      out.stopped = request.orbit.at(times[i]).error();
+      out.stopped = in_scenario_words(request.orbit.at(times[i]).error());
       out.grid.resize(i);
     }
   for (const GridPass &span : group_passes(out.grid, request.only)) {
@@ -133,15 +141,29 @@ struct RowMaker {
   const Scene &scene;
   const Integrator &integrator;
   const std::vector<double> &solar; ///< per band
-  AttitudeContext spin_start;
+  Attitude attitude;
 
+  Result<PoseResult> light_of(LightCurveEpoch &epoch, const AttitudeContext &now,
+                              const Rotation<Body, Gcrs> &body_from_gcrs) const;
   Result<void> make(const ObservingGeometry &geometry, const std::string &pass_id, std::size_t row,
                     LightCurve &curve) const;
 };
 
+/// The mesh of an articulated object is another one at every epoch.
+Result<PoseResult> RowMaker::light_of(LightCurveEpoch &epoch, const AttitudeContext &now,
+                                      const Rotation<Body, Gcrs> &body_from_gcrs) const {
+  if (request.joints.empty())
+    return integrator.evaluate(epoch.pose, request.integration);
+  UMOV_ASSIGN(angles, joint_angles(request.joints, now, body_from_gcrs));
+  epoch.joint_angles_rad = angles;
+  Scene turned = scene;
+  turned.mesh = posed(scene.mesh, joints_of(request.joints), angles);
+  return Integrator(turned).evaluate(epoch.pose, request.integration);
+}
+
 Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string &pass_id,
                             std::size_t row, LightCurve &curve) const {
-  UMOV_ASSIGN(body_from_gcrs, attitude_at(request.attitude, context_of(geometry), spin_start));
+  UMOV_ASSIGN(body_from_gcrs, attitude.at(context_of(geometry)));
   LightCurveEpoch &epoch = curve.epochs[row];
   epoch.geometry = geometry;
   epoch.body_from_gcrs = quaternion_from(body_from_gcrs);
@@ -152,7 +174,7 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
   epoch.airmass = airmass(geometry.altitude);
   epoch.pass_id = pass_id;
   epoch.elset_age_days = request.orbit.element_age_days(geometry.time);
-  const PoseResult light = integrator.evaluate(epoch.pose, request.integration);
+  UMOV_ASSIGN(light, light_of(epoch, context_of(geometry), body_from_gcrs));
   epoch.is_dark = light.is_dark;
   epoch.has_glint = light.glint_share > 0.5;
   const std::size_t bands = scene.bands.size();
@@ -243,19 +265,17 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
     UMOV_ASSIGN(value, solar_irradiance(band.wavelength));
     solar.push_back(value);
   }
-  AttitudeContext spin_start{};
-  if (const auto *spin = std::get_if<SpinLaw>(&request.attitude)) {
-    const EpochGeometry at = geometry_at(request, spin->epoch);
-    if (!at.is_there)
-      return tl::unexpected(request.orbit.at(spin->epoch).error());
-    spin_start = context_of(at.geometry);
-  }
+  UMOV_ASSIGN(attitude, Attitude::make(request.attitude, [&](Epoch<Utc> time) {
+                return request.orbit.at(time).map([&](const TemeState &state) {
+                  return context_of(observe(state, time, request.site, request.shadow));
+                });
+              }));
   LightCurveOutcome out;
   out.curve = empty_curve(request, scene, selection.kept.size());
   out.passes = selection.passes;
   out.passes_seen = selection.passes_seen;
   out.stopped = selection.stopped;
-  const RowMaker maker{request, scene, integrator, solar, spin_start};
+  const RowMaker maker{request, scene, integrator, solar, attitude};
   truncate(out.curve, fill_rows(maker, selection, out.curve, progress, cancel, out.stopped));
   count_rows(out);
   return out;

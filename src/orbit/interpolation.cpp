@@ -16,10 +16,9 @@ struct Window {
 Window window_at(const EphemerisSegment &segment, Epoch<Utc> time, std::size_t count) {
   const auto &states = segment.states;
   count = std::min({count, states.size(), nodes_max});
-  const auto above =
-      std::upper_bound(states.begin(), states.end(), time, [](Epoch<Utc> t, const EphemerisState &s) {
-        return seconds_between(s.time, t) > 0;
-      });
+  const auto above = std::upper_bound(
+      states.begin(), states.end(), time,
+      [](Epoch<Utc> t, const EphemerisState &s) { return seconds_between(s.time, t) > 0; });
   const auto place = static_cast<std::size_t>(above - states.begin());
   const std::size_t half = count / 2;
   const std::size_t first = place > half ? place - half : 0;

@@ -35,8 +35,8 @@ Vec3<Gcrs> zonal(Vec3<Gcrs> r, Vec3<Gcrs> pole) {
   const Vec3<Gcrs> u = r / d;
   const double a2 = 1.5 * j2 * q * q, a3 = 0.5 * j3 * q * q * q, a4 = 0.625 * j4 * q * q * q * q;
   // Along the radius, and along the pole.
-  const double radial = a2 * (5 * z2 - 1) + a3 * 5 * (7 * z2 - 3) * z +
-                        a4 * (3 - 42 * z2 + 63 * z2 * z2);
+  const double radial =
+      a2 * (5 * z2 - 1) + a3 * 5 * (7 * z2 - 3) * z + a4 * (3 - 42 * z2 + 63 * z2 * z2);
   const double axial = -2 * a2 * z - a3 * (15 * z2 - 3) + a4 * (12 - 28 * z2) * z;
   return (u * radial + pole * axial) * scale;
 }
@@ -129,9 +129,8 @@ Result<OrbitEphemeris> integrate_orbit(const StateVector &start, Epoch<Utc> firs
   EphemerisSegment segment;
   std::reverse(before.begin(), before.end());
   segment.states = std::move(before);
-  segment.states.push_back({start.state.time,
-                            {phase[0], phase[1], phase[2]},
-                            {phase[3], phase[4], phase[5]}});
+  segment.states.push_back(
+      {start.state.time, {phase[0], phase[1], phase[2]}, {phase[3], phase[4], phase[5]}});
   segment.states.insert(segment.states.end(), after.begin(), after.end());
   segment.first = segment.states.front().time;
   segment.last = segment.states.back().time;

@@ -22,7 +22,9 @@ struct Trajectory::Body {
 
 namespace {
 
-template <class Frame> Vec3<Frame> vec(const std::array<double, 3> &v) { return {v[0], v[1], v[2]}; }
+template <class Frame> Vec3<Frame> vec(const std::array<double, 3> &v) {
+  return {v[0], v[1], v[2]};
+}
 
 /// EME2000 to GCRS: the frame bias of the mean equator and equinox of J2000 (IERS 2010, section
 /// 5.4.4), small angles.
@@ -73,11 +75,12 @@ tl::unexpected<Error> not_covered(const OrbitEphemeris &e, Epoch<Utc> time) {
 }
 
 tl::unexpected<Error> sgp4_failure(const ElementSet &set, Epoch<Utc> time, Sgp4Code code) {
-  return fail(ErrorCode::Physics,
-              fmt::format("{}: SGP4 fails at {} (code {}, {}); the set is {:.1f} d old. Shorten the "
-                          "span or give newer elements.",
-                          set.norad_cat_id, to_iso(time), static_cast<int>(code), to_text(code),
-                          clock_days_between(time, set.epoch)));
+  return fail(
+      ErrorCode::Physics,
+      fmt::format("{}: SGP4 fails at {} (code {}, {}); the set is {:.1f} d old. Shorten the "
+                  "span or give newer elements.",
+                  set.norad_cat_id, to_iso(time), static_cast<int>(code), to_text(code),
+                  clock_days_between(time, set.epoch)));
 }
 
 } // namespace
@@ -89,8 +92,9 @@ Result<void> check(const OrbitEphemeris &ephemeris) {
     if (segment.states.size() < 2)
       return fail(ErrorCode::BadInput, "a segment of the ephemeris has fewer than two states");
     if (segment.degree < 1 || segment.degree > 31)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("the degree of interpolation is {}, expected 1 to 31", segment.degree));
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("the degree of interpolation is {}, expected 1 to 31", segment.degree));
     for (std::size_t k = 0; k < segment.states.size(); ++k) {
       const EphemerisState &s = segment.states[k];
       for (std::size_t axis = 0; axis < 3; ++axis)

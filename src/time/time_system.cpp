@@ -26,14 +26,15 @@ int three_digits(std::string_view text) {
 std::string with_month(std::string_view text) {
   if (text.size() < 9 || text[4] != '-' || text[8] != 'T')
     return std::string(text);
-  const int thousands = three_digits(text), units = text[3] - '0', day = three_digits(text.substr(5));
+  const int thousands = three_digits(text), units = text[3] - '0',
+            day = three_digits(text.substr(5));
   if (thousands < 0 || units < 0 || units > 9)
     return std::string(text);
   const int year = 10 * thousands + units;
   if (day < 1 || day > (is_leap(year) ? 366 : 365))
     return std::string(text);
-  const std::array<int, 12> days{31, is_leap(year) ? 29 : 28, 31, 30, 31, 30,
-                                 31, 31,                      30, 31, 30, 31};
+  const std::array<int, 12> days{31, is_leap(year) ? 29 : 28, 31, 30, 31, 30, 31, 31, 30, 31, 30,
+                                 31};
   int rest = day;
   std::size_t month = 0;
   while (rest > days[month])

@@ -22,7 +22,7 @@ CONFIGURATION = [
     (('up = "+Z", ', ""), ["up"]),
     (("norad = 20580", "norad = 99"), ["99", "20580"]),
     (('mode = "nadir"', 'mode = "nadirr"'), ["nadirr", "nadir"]),
-    (('mode = "nadir"', 'mode = "tumble"'), ["tumble", "not built yet"]),
+    (('mode = "nadir"', 'mode = "tumble"'), ["inertia", '"shell" or "solid"']),
     (('dir = "out"', 'dir = "out"\npol_frame = "galactic"'), ["galactic", "equatorial"]),
     (("seed = 1", "seed = 1\n[render]\nbounces = 2"), ["bounces", "not built yet"]),
     (("cube.obj", "missing.obj"), ["missing.obj", "no such file"]),
@@ -30,7 +30,7 @@ CONFIGURATION = [
     (("step_s = 20", "stepp = 20"), ['"step_s"']),
     (('formats = ["ecsv", "csv", "html"]', "formats = []"), ["scenario.toml:23:1", "empty"]),
     (('mode = "nadir"', 'mode = "nadir", point = "+X"'), ["point", 'mode = "nadir"']),
-    (('mode = "nadir"', 'mode = "nadirr"'), ["; nadir, inertial, spin was expected"]),
+    (('mode = "nadir"', 'mode = "nadirr"'), ["; nadir, inertial, spin, tumble, aem, pieces was expected"]),
     (('mode = "nadir"', 'at = "nadir", toward = "zenith"'), ["one line at all times"]),
     (("seed = 1", 'seed = 1\n[material.paper_al]\nindex = "paper_au"\n'
       'distribution = { model = "blinn_phong", m = 10 }'), ["paper_al", "the paper's", "scenario.toml:3"]),

@@ -1,12 +1,19 @@
 #pragma once
-// Which way the body points.
+// Which way the body points: laws as the user states them, and the attitude that they give.
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <umov/attitude/attitude_table.h>
+#include <umov/attitude/tumble.h>
 #include <umov/core/result.h>
 #include <umov/core/rotation.h>
+#include <umov/frames/site.h>
+#include <umov/shape/mass.h>
 #include <umov/time/epoch.h>
 #include <variant>
+#include <vector>
 
 namespace umov {
 
@@ -16,7 +23,17 @@ enum class Target { Nadir, Zenith, Velocity, OrbitNormal, Sun, Observer };
 struct CelestialDirection {
   double right_ascension_rad = 0, declination_rad = 0;
 };
-using Direction = std::variant<Target, CelestialDirection>;
+/// A place on the Earth, geometric.
+struct GroundTarget {
+  Site site;
+};
+using Direction = std::variant<Target, CelestialDirection, GroundTarget>;
+
+/// Turns about the body's own axes after a law has been obeyed: yaw about +Z first, then pitch
+/// about the new +Y, then roll about the new +X (Diebel 2006, sequence 3-2-1).
+struct AttitudeOffset {
+  double roll_rad = 0, pitch_rad = 0, yaw_rad = 0;
+};
 
 /// `point` exactly at one direction, `then` as near as possible towards another.
 struct TwoAxisLaw {
@@ -24,20 +41,59 @@ struct TwoAxisLaw {
   Direction at = Target::Nadir;
   Vec3<Body> then{1, 0, 0};
   Direction toward = Target::Velocity;
+  AttitudeOffset offset{};
 };
 /// Fixed among the stars.
 struct InertialLaw {
   Quaternion body_from_gcrs;
 };
-/// Turns at a constant rate about a body axis, starting at `epoch` from another law's attitude,
-/// which is frozen at that epoch. Positive: right-handed about the axis.
+/// What a turning law starts from; a two-axis attitude is frozen at the law's epoch.
+using StartLaw = std::variant<TwoAxisLaw, InertialLaw>;
+
+/// Turns at a constant rate about a body axis from `start` at `epoch` on. Positive: right-handed
+/// about the axis.
 struct SpinLaw {
-  std::variant<TwoAxisLaw, InertialLaw> start;
+  StartLaw start;
   Vec3<Body> axis{0, 0, 1};
   double rate_rad_s = 0;
   Epoch<Utc> epoch{};
 };
-using AttitudeLaw = std::variant<TwoAxisLaw, InertialLaw, SpinLaw>;
+/// Torque-free motion from `start` and an angular velocity at `epoch` on.
+struct TumbleLaw {
+  StartLaw start;
+  Inertia inertia;
+  std::optional<MassModel> from_mesh; ///< `inertia` is yet to be taken from the mesh
+  Vec3<Body> rate_rad_s;
+  Epoch<Utc> epoch{};
+};
+/// A table of attitudes (CCSDS AEM); `table` is null until `file` has been read.
+struct TableLaw {
+  std::string file;
+  std::shared_ptr<const AttitudeTable> table;
+};
+
+struct AttitudeLaw;
+/// A law from a time on.
+struct AttitudePiece {
+  Epoch<Utc> from{};
+  std::shared_ptr<const AttitudeLaw> law;
+};
+/// The last piece that has begun holds; before the first one there is no attitude.
+struct PiecewiseLaw {
+  std::vector<AttitudePiece> pieces;
+};
+/// Another law with a small unsteadiness: about each body axis a sum of five waves with periods
+/// around `period_s` and random phases, of `rms_rad` in the mean square per axis.
+struct LibrationLaw {
+  std::shared_ptr<const AttitudeLaw> law;
+  double rms_rad = 0, period_s = 60;
+  std::uint64_t seed = 0;
+};
+
+struct AttitudeLaw : std::variant<TwoAxisLaw, InertialLaw, SpinLaw, TumbleLaw, TableLaw,
+                                  PiecewiseLaw, LibrationLaw> {
+  using variant::variant;
+};
 
 /// What a law may look at.
 struct AttitudeContext {
@@ -45,17 +101,40 @@ struct AttitudeContext {
   Vec3<Gcrs> position_km, velocity_km_s; ///< inertial
   Vec3<Gcrs> to_sun, to_observer;        ///< unit vectors at the object
 };
+/// The context at any time; fails where the orbit does.
+using ContextAt = std::function<Result<AttitudeContext>(Epoch<Utc>)>;
 
-/// Attitude at a time. For a spin `at_epoch` is the context at the law's epoch (else unused).
-/// Physics error if the two directions of a two-axis law are parallel within 1e-9 rad, or if a
-/// direction has no length (no velocity). A quaternion is normalised; `check` judges its length.
-/// Nadir is towards the Earth's centre; the orbit normal is position x velocity.
-Result<Rotation<Body, Gcrs>> attitude_at(const AttitudeLaw &law, const AttitudeContext &now,
-                                         const AttitudeContext &at_epoch);
+/// Unit vector of a direction at the object. Physics where it has no length.
+Result<Vec3<Gcrs>> direction_to(const Direction &direction, const AttitudeContext &now);
+
+/// A law ready to be asked; cheap to copy, thread safe.
+class Attitude {
+public:
+  /// Physics if the law's start has no attitude (see `at`), or the orbit none at its epoch.
+  static Result<Attitude> make(const AttitudeLaw &law, const ContextAt &context);
+
+  /// Physics error if the two directions of a two-axis law are parallel within 1e-9 rad, if a
+  /// direction has no length (no velocity), or where a table or a piece says nothing. Nadir is
+  /// towards the Earth's centre; the orbit normal is position x velocity.
+  [[nodiscard]] Result<Rotation<Body, Gcrs>> at(const AttitudeContext &now) const;
+
+  class Model;
+
+private:
+  std::shared_ptr<const Model> model_;
+};
 
 /// Checks what a law says on its own: finite numbers, axes of a length, `point` and `then` not
-/// parallel within 1e-9 rad, unit quaternion within 1e-6, a finite spin rate. BadInput otherwise.
+/// parallel within 1e-9 rad, unit quaternion within 1e-6, a finite rate, an inertia that a rigid
+/// body can have, pieces in order of time. BadInput otherwise.
 Result<void> check(const AttitudeLaw &law);
+
+/// True if some law within wants the inertia of the mesh.
+bool needs_mesh(const AttitudeLaw &law);
+/// The law with the inertia of the mesh where it wants that, and with tables read by `read`.
+Result<AttitudeLaw> completed(
+    const AttitudeLaw &law, const Mesh &mesh,
+    const std::function<Result<std::shared_ptr<const AttitudeTable>>(const std::string &)> &read);
 
 /// A quaternion as the user gave it: normalised if within 1e-6 of unit length, else BadInput.
 Result<Quaternion> unit_quaternion(Quaternion q);

@@ -48,8 +48,9 @@ const char *to_text(Kind kind);
 bool is_message(std::string_view text);
 
 /// BadInput, with line and keyword, for what is not of the form: keywords out of place, a missing
-/// mandatory one, a data line with a wrong number of values, values that are no numbers. Keywords of
-/// headers and metadata that are not known are kept. Document types are refused; nothing is fetched.
+/// mandatory one, a data line with a wrong number of values, values that are no numbers. Keywords
+/// of headers and metadata that are not known are kept. Document types are refused; nothing is
+/// fetched.
 Result<Message> read_message(std::string_view text, const std::string &file,
                              Diagnostics &diagnostics);
 

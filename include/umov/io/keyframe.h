@@ -7,6 +7,7 @@
 #include <umov/core/result.h>
 #include <umov/io/report.h>
 #include <umov/lightcurve/light_curve.h>
+#include <umov/scene/articulation.h>
 #include <umov/scene/scene.h>
 #include <umov/shape/occluder.h>
 #include <vector>
@@ -72,9 +73,11 @@ std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading sh
 /// pass in all; fewer if the pass is shorter. In order of time; dark epochs are left out.
 std::vector<std::size_t> choose_key_epochs(const LightCurve &curve, std::size_t count);
 
-/// The pictures of the chosen epochs in all three shadings, ready for the report.
+/// The pictures of the chosen epochs in all three shadings, ready for the report. `joints` turn by
+/// the angles that the epochs hold.
 Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const LightCurve &curve,
                                                     std::span<const std::size_t> epochs,
-                                                    const KeyFrameOptions &options);
+                                                    const KeyFrameOptions &options,
+                                                    const std::vector<Joint> &joints = {});
 
 } // namespace umov

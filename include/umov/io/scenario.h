@@ -8,6 +8,7 @@
 #include <umov/attitude/attitude.h>
 #include <umov/core/diagnostics.h>
 #include <umov/lightcurve/compute.h>
+#include <umov/orbit/state_vector.h>
 #include <umov/orbit/trajectory.h>
 #include <umov/scene/scene.h>
 #include <vector>
@@ -20,9 +21,11 @@ struct ScenarioTime {
   EpochFilter only;
 };
 
+/// A file, or a state written in place.
 struct ScenarioOrbit {
   std::filesystem::path file;
   int norad = 0; ///< 0: the only object of the file
+  std::optional<StateVector> state;
 };
 
 struct ScenarioMesh {
@@ -37,6 +40,16 @@ struct MaterialNames {
   std::string front, back;
 };
 
+/// One [[object]].
+struct ScenarioObject {
+  std::string name;
+  std::optional<ScenarioOrbit> orbit;
+  ScenarioMesh mesh;
+  AttitudeLaw attitude = TwoAxisLaw{};
+  std::map<std::string, MaterialNames> materials; ///< mesh material, or "default"
+  std::vector<MovingJoint> parts;
+};
+
 /// A scenario with all defaults filled in. A scene (for `umov signature`) has no orbit, time and
 /// observer. Relative paths have been resolved against the folder of the scenario.
 struct Scenario {
@@ -44,12 +57,8 @@ struct Scenario {
   std::uint64_t seed = 0;
   std::optional<Site> observer;
   std::optional<ScenarioTime> time;
-  std::string object_name;
-  std::optional<ScenarioOrbit> orbit;
-  ScenarioMesh mesh;
-  AttitudeLaw attitude = TwoAxisLaw{};
-  std::map<std::string, MaterialNames> materials; ///< mesh material, or "default"
-  std::map<std::string, Material> own_materials;  ///< the [material.NAME] tables
+  std::vector<ScenarioObject> objects;           ///< at least one
+  std::map<std::string, Material> own_materials; ///< the [material.NAME] tables
   std::vector<std::string> band_set{"paper_rgb"};
   std::vector<Band> bands;
   double accuracy = 0.005;
@@ -57,7 +66,7 @@ struct Scenario {
   std::filesystem::path output_dir{"out"}; ///< relative to the working folder
   std::vector<std::string> formats{"ecsv", "html"};
   PolarizationFrame frame = PolarizationFrame::Equatorial;
-  std::map<std::string, Where> places; ///< where keys stand ("object.materials.front")
+  std::map<std::string, Where> places; ///< where keys stand ("object.0.materials.front")
 };
 
 /// Reads a scenario; each of `overrides` is "dotted.key=value" with a TOML value (a bare word
@@ -91,6 +100,7 @@ struct InputFile {
 
 struct LoadedObject {
   std::optional<Trajectory> orbit; ///< absent for a scene
+  AttitudeLaw attitude;            ///< complete: tables read, inertia taken from the mesh
   Scene scene;
   std::vector<InputFile> inputs;
 };
@@ -100,8 +110,8 @@ struct LoadOptions {
   bool source_is_sun = true; ///< false: a laser, for which a mirror is no matter of the disk
 };
 
-/// Reads the files that a scenario names and compiles the scene.
-Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &options,
-                                 Diagnostics &diagnostics);
+/// Reads the files that an object of a scenario names and compiles its scene.
+Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
+                                 const LoadOptions &options, Diagnostics &diagnostics);
 
 } // namespace umov

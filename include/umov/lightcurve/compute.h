@@ -6,6 +6,7 @@
 #include <optional>
 #include <umov/attitude/attitude.h>
 #include <umov/core/diagnostics.h>
+#include <umov/lightcurve/articulated.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/orbit/trajectory.h>
 
@@ -28,7 +29,8 @@ struct LightCurveRequest {
   Epoch<Utc> start{}, stop{};
   double step_s = 1; ///< > 0; `stop` is included and may equal `start`
   EpochFilter only;
-  AttitudeLaw attitude;
+  AttitudeLaw attitude;            ///< complete: no table or inertia to be read
+  std::vector<MovingJoint> joints; ///< checked against the scene's mesh
   PolarizationFrame frame = PolarizationFrame::Equatorial;
   ShadowModel shadow = ShadowModel::Ellipsoid;
   bool has_solar_disk = true; ///< the Sun as a uniform disk at its distance, or a point

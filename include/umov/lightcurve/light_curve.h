@@ -14,10 +14,11 @@ namespace umov {
 struct LightCurveEpoch {
   ObservingGeometry geometry;
   Quaternion body_from_gcrs;
-  Pose pose;                 ///< Sun and observer in the body frame
-  double airmass = 0;        ///< Kasten & Young 1989; NaN below the horizon
-  std::string pass_id;       ///< "" outside a pass
-  double elset_age_days = 0; ///< time minus element epoch
+  Pose pose;                            ///< Sun and observer in the body frame
+  std::vector<double> joint_angles_rad; ///< of the object's moving parts, if any
+  double airmass = 0;                   ///< Kasten & Young 1989; NaN below the horizon
+  std::string pass_id;                  ///< "" outside a pass
+  double elset_age_days = 0;            ///< time minus element epoch
   bool has_glint = false;
   bool is_dark = true; ///< nothing lit and seen
 };

@@ -18,7 +18,6 @@ struct StateVector {
 /// pressure, so a low orbit is kilometres off after a day. Steps by Runge-Kutta-Fehlberg 7(8) to
 /// 1e-12. BadInput for a state below the surface or a span beyond 30 days; Physics if the orbit
 /// meets the surface.
-Result<OrbitEphemeris> integrate_orbit(const StateVector &start, Epoch<Utc> first,
-                                       Epoch<Utc> last);
+Result<OrbitEphemeris> integrate_orbit(const StateVector &start, Epoch<Utc> first, Epoch<Utc> last);
 
 } // namespace umov

@@ -104,8 +104,8 @@ private:
     if (equals == std::string_view::npos) {
       if (place_ == Place::Data && (out_.kind == Kind::Oem || out_.kind == Kind::Aem))
         return take_data_line(line);
-      return refuse(fmt::format("\"{}\" has no '='; KEYWORD = VALUE was expected",
-                                line.substr(0, 60)));
+      return refuse(
+          fmt::format("\"{}\" has no '='; KEYWORD = VALUE was expected", line.substr(0, 60)));
     }
     return take_field(field_of(key, line.substr(equals + 1), line_));
   }
@@ -211,10 +211,9 @@ private:
       columns.resize(6);
     }
     if (parts.size() != columns.size() + 1)
-      return refuse(fmt::format("a data line has {}, expected an epoch and {}",
-                                counted(parts.size(), "entry", "entries"),
-                                out_.kind == Kind::Oem ? "6 or 9 numbers"
-                                                       : counted(columns.size(), "number")));
+      return refuse(fmt::format(
+          "a data line has {}, expected an epoch and {}", counted(parts.size(), "entry", "entries"),
+          out_.kind == Kind::Oem ? "6 or 9 numbers" : counted(columns.size(), "number")));
     begin_record(out_.kind == Kind::Aem ? "attitudeState" : "stateVector");
     record_->fields.push_back({"EPOCH", std::string(parts[0]), "", line_});
     for (std::size_t k = 0; k < columns.size(); ++k)
@@ -237,8 +236,7 @@ private:
     std::size_t have = 0;
     if (record_)
       for (const Field &field : record_->fields)
-        have += field.key.starts_with("C") && field.key != "COV_REF_FRAME" &&
-                        field.key != "COMMENT"
+        have += field.key.starts_with("C") && field.key != "COV_REF_FRAME" && field.key != "COMMENT"
                     ? 1u
                     : 0u;
     std::size_t row = 0;

@@ -67,9 +67,9 @@ Result<void> put_record(std::string &out, const Message &message, const Segment 
   if (message.kind == Kind::Oem)
     return put_line(out, message, record, state_columns());
   if (message.kind == Kind::Aem)
-    return put_line(out, message, record,
-                    attitude_columns(*attitude_form(find(segment.metadata, "ATTITUDE_TYPE")->text),
-                                     segment));
+    return put_line(
+        out, message, record,
+        attitude_columns(*attitude_form(find(segment.metadata, "ATTITUDE_TYPE")->text), segment));
   if (message.kind == Kind::Tdm) {
     put_comments(out, record);
     for (const Field &field : record.fields)

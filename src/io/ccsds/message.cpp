@@ -62,10 +62,10 @@ Result<void> check_segment(const Message &message, const Segment &segment) {
   UMOV_TRY(check_fields(segment.metadata, message.file, false));
   for (const std::string &key : mandatory_metadata(message.kind))
     if (const Field *field = find(segment.metadata, key); field == nullptr)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("the metadata have no {}, which a {} must have", key,
-                              to_text(message.kind)),
-                  {message.file, segment.metadata.empty() ? 0 : segment.metadata.front().line});
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("the metadata have no {}, which a {} must have", key, to_text(message.kind)),
+          {message.file, segment.metadata.empty() ? 0 : segment.metadata.front().line});
   if (const Field *type = find(segment.metadata, "ATTITUDE_TYPE");
       message.kind == Kind::Aem && attitude_form(type->text) == nullptr)
     return fail(ErrorCode::BadInput,
@@ -78,8 +78,8 @@ Result<void> check_segment(const Message &message, const Segment &segment) {
     UMOV_TRY(check_fields(record.fields, message.file, message.kind != Kind::Tdm));
     for (const std::string &key : mandatory(message, segment, record))
       if (find(record.fields, key) == nullptr)
-        return fail(ErrorCode::BadInput,
-                    fmt::format("a {} has no {}", record.name, key), {message.file, record.line});
+        return fail(ErrorCode::BadInput, fmt::format("a {} has no {}", record.name, key),
+                    {message.file, record.line});
   }
   const auto has = [&](std::string_view name) {
     return std::any_of(segment.data.begin(), segment.data.end(),

@@ -37,9 +37,10 @@ public:
     }
     const KindInfo *info = find_kind(root.name());
     if (info == nullptr)
-      return refuse(root, fmt::format("the element <{}> was found; <opm>, <oem>, <aem> or <tdm> was "
-                                      "expected",
-                                      root.name()));
+      return refuse(root,
+                    fmt::format("the element <{}> was found; <opm>, <oem>, <aem> or <tdm> was "
+                                "expected",
+                                root.name()));
     out_.kind = info->kind;
     out_.version = root.attribute("version").value();
     for (const pugi::xml_node node : root.child("header").children())

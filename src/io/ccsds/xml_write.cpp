@@ -68,8 +68,8 @@ void put_data(pugi::xml_node data, const Message &message, const Segment &segmen
       continue;
     }
     // Comments before a data line stand beside its element.
-    const bool is_line = is_in_data_line(message.kind, record.name) &&
-                         record.name != "covarianceMatrix";
+    const bool is_line =
+        is_in_data_line(message.kind, record.name) && record.name != "covarianceMatrix";
     if (is_line)
       for (const Field &field : record.fields)
         if (field.key == "COMMENT")
@@ -95,8 +95,7 @@ Result<std::string> write_xml(const Message &message) {
   declaration.append_attribute("version") = "1.0";
   declaration.append_attribute("encoding") = "UTF-8";
   pugi::xml_node root = document.append_child(info_of(message.kind).element);
-  root.append_attribute("id") =
-      (std::string("CCSDS_") + to_text(message.kind) + "_VERS").c_str();
+  root.append_attribute("id") = (std::string("CCSDS_") + to_text(message.kind) + "_VERS").c_str();
   root.append_attribute("version") = message.version.c_str();
   put(root.append_child("header"), message.header);
   pugi::xml_node body = root.append_child("body");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 #include <set>
 
 namespace umov {
@@ -100,15 +101,25 @@ std::vector<std::size_t> choose_key_epochs(const LightCurve &curve, std::size_t 
 
 Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const LightCurve &curve,
                                                     std::span<const std::size_t> epochs,
-                                                    const KeyFrameOptions &options) {
-  const Occluder occluder(scene.mesh);
+                                                    const KeyFrameOptions &options,
+                                                    const std::vector<Joint> &joints) {
+  const Occluder still(scene.mesh);
   std::vector<KeyFrameRaster> rasters;
   for (const std::size_t i : epochs) {
     if (i >= curve.epochs.size())
       return fail(ErrorCode::Internal,
                   fmt::format("key frame of epoch {}; the curve has {}", i, curve.epochs.size()));
     const LightCurveEpoch &at = curve.epochs[i];
-    UMOV_ASSIGN(raster, trace_key_frame(scene, occluder, {at.pose, celestial_north(at)}, options));
+    const KeyFrameView view{at.pose, celestial_north(at)};
+    Scene turned;
+    std::optional<Occluder> moved;
+    if (!at.joint_angles_rad.empty()) {
+      turned = scene;
+      turned.mesh = posed(scene.mesh, joints, at.joint_angles_rad);
+      moved.emplace(turned.mesh);
+    }
+    UMOV_ASSIGN(raster,
+                trace_key_frame(moved ? turned : scene, moved ? *moved : still, view, options));
     rasters.push_back(std::move(raster));
   }
   const double white = common_exposure(rasters);

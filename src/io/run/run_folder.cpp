@@ -42,12 +42,22 @@ constexpr const char *our_files[] = {"lightcurve.ecsv",    "lightcurve.csv", "li
                                      "passes.ecsv",        "report.html",    "manifest.json",
                                      "scenario.lock.toml", "log.txt"};
 
+/// report_2.html, report_3.html, ...: pages of further objects.
+bool is_further_page(std::string_view name) {
+  constexpr std::string_view begin = "report_", end = ".html";
+  if (!name.starts_with(begin) || !name.ends_with(end) || name.size() <= begin.size() + end.size())
+    return false;
+  name = name.substr(begin.size(), name.size() - begin.size() - end.size());
+  return name.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
 /// Something in a folder that umov did not write; empty if there is nothing.
 std::string stranger_in(const fs::path &folder) {
   std::error_code code;
   for (const auto &entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
-    if (std::find(std::begin(our_files), std::end(our_files), name) == std::end(our_files))
+    if (std::find(std::begin(our_files), std::end(our_files), name) == std::end(our_files) &&
+        !is_further_page(name))
       return name;
   }
   return {};

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
+#include <umov/io/attitude_file.h>
 #include <umov/io/index_file.h>
 #include <umov/io/obj.h>
 #include <umov/io/trajectory_file.h>
@@ -29,16 +30,40 @@ Where place(const Scenario &scenario, const std::string &key) {
   return found == scenario.places.end() ? Where{scenario.file} : found->second;
 }
 
-Result<void> load_orbit(const Scenario &scenario, const LoadOptions &options,
-                        Diagnostics &diagnostics, LoadedObject &out) {
-  if (!scenario.orbit)
+/// An object of a scenario, and how its keys are called.
+struct Named {
+  const Scenario &scenario;
+  const ScenarioObject &object;
+  std::size_t number;
+
+  [[nodiscard]] Where place(const std::string &key) const {
+    return umov::place(scenario, fmt::format("object.{}.{}", number, key));
+  }
+};
+
+Result<void> load_orbit(const Named &of, const LoadOptions &options, Diagnostics &diagnostics,
+                        LoadedObject &out) {
+  const Scenario &scenario = of.scenario;
+  if (!of.object.orbit)
     return {};
-  const std::string file = scenario.orbit->file.string();
-  UMOV_ASSIGN(text, read_input(file, place(scenario, "object.orbit"), out));
+  if (of.object.orbit->state) {
+    if (!scenario.time)
+      return {};
+    StateVector state = *of.object.orbit->state;
+    state.name = of.object.name;
+    state.norad_cat_id = of.object.orbit->norad;
+    auto orbit = integrate_orbit(state, scenario.time->start, scenario.time->stop);
+    if (!orbit)
+      return fail(orbit.error().code, orbit.error().message, of.place("orbit"));
+    out.orbit = Trajectory(*orbit);
+    return {};
+  }
+  const std::string file = of.object.orbit->file.string();
+  UMOV_ASSIGN(text, read_input(file, of.place("orbit"), out));
   if (!scenario.time)
     return {}; // a scene: its orbit is not asked for
   TrajectoryRequest request;
-  request.norad = scenario.orbit->norad;
+  request.norad = of.object.orbit->norad;
   request.first = scenario.time->start;
   request.last = scenario.time->stop;
   request.allow_bad_checksum = options.allow_bad_checksum;
@@ -48,50 +73,68 @@ Result<void> load_orbit(const Scenario &scenario, const LoadOptions &options,
   return {};
 }
 
+Result<void> load_attitude(const Named &of, const Mesh &mesh, Diagnostics &diagnostics,
+                           LoadedObject &out) {
+  auto law =
+      completed(of.object.attitude, mesh,
+                [&](const std::string &file) -> Result<std::shared_ptr<const AttitudeTable>> {
+                  UMOV_ASSIGN(text, read_input(file, of.place("attitude"), out));
+                  UMOV_ASSIGN(table, read_attitude_table(text, file, diagnostics));
+                  return std::make_shared<const AttitudeTable>(table);
+                });
+  if (!law)
+    return fail(law.error().code, law.error().message,
+                law.error().where.file.empty() ? of.place("attitude") : law.error().where);
+  if (auto checked = umov::check(*law); !checked)
+    return fail(ErrorCode::BadInput, checked.error().message, of.place("attitude"));
+  out.attitude = *law;
+  return {};
+}
+
 /// Every key of [object.materials] must mean some material of the mesh.
-Result<void> check_material_keys(const Scenario &scenario, const Mesh &mesh) {
-  for (const auto &[name, sides] : scenario.materials) {
+Result<void> check_material_keys(const Named &of, const Mesh &mesh) {
+  for (const auto &[name, sides] : of.object.materials) {
     if (name == "default" ||
         std::find(mesh.groups.begin(), mesh.groups.end(), name) != mesh.groups.end())
       continue;
     const auto near = nearest_name(name, mesh.groups);
     return fail(ErrorCode::BadInput,
                 fmt::format("\"{}\" is no material of {}.{} It has {}.", name,
-                            scenario.mesh.file.string(),
+                            of.object.mesh.file.string(),
                             near ? fmt::format(" Did you mean \"{}\"?", *near) : "",
                             fmt::join(mesh.groups, ", ")),
-                place(scenario, "object.materials." + name));
+                of.place("materials." + name));
   }
   return {};
 }
 
-Result<MaterialNames> names_of(const Scenario &scenario, const Mesh &mesh, const MeshReport &report,
+Result<MaterialNames> names_of(const Named &of, const Mesh &mesh, const MeshReport &report,
                                std::size_t group) {
   for (const std::string &key : {mesh.groups[group], std::string("default")})
-    if (const auto found = scenario.materials.find(key); found != scenario.materials.end())
+    if (const auto found = of.object.materials.find(key); found != of.object.materials.end())
       return found->second;
   return fail(
       ErrorCode::BadInput,
       fmt::format("material \"{}\" ({} faces, {:.4g} m2) has no entry in [object.materials] "
                   "of {} and there is no \"default\". Known: umov material list.",
                   mesh.groups[group], report.group_triangles[group], report.group_area_m2[group],
-                  scenario.file),
-      {scenario.mesh.file.string()});
+                  of.scenario.file),
+      {of.object.mesh.file.string()});
 }
 
 /// A material that the mesh uses but no MTL file defines is only a name: an error where the
 /// scenario does not map every material by name.
-Result<void> check_mtl(const Scenario &scenario, const ObjMesh &read) {
+Result<void> check_mtl(const Named &of, const ObjMesh &read) {
   if (!read.lacks_mtl)
     return {};
   for (const std::string &group : read.mesh.groups)
-    if (!scenario.materials.contains(group) &&
+    if (!of.object.materials.contains(group) &&
         std::find(read.defined.begin(), read.defined.end(), group) == read.defined.end())
       return fail(ErrorCode::BadInput,
                   fmt::format("the MTL file is missing and material \"{}\" has no entry of its own "
                               "in [object.materials] of {}. Add the file or the entry.",
-                              group, scenario.file),
-                  {scenario.mesh.file.string()});
+                              group, of.scenario.file),
+                  {of.object.mesh.file.string()});
   return {};
 }
 
@@ -119,23 +162,27 @@ Result<void> check_bands(const Material &material, const Scenario &scenario) {
 
 } // namespace
 
-Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &options,
-                                 Diagnostics &diagnostics) {
+Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
+                                 const LoadOptions &options, Diagnostics &diagnostics) {
   LoadedObject out;
-  UMOV_TRY(load_orbit(scenario, options, diagnostics, out));
-  UMOV_TRY(read_input(scenario.mesh.file, place(scenario, "object.mesh"), out));
-  UMOV_ASSIGN(read, read_obj(scenario.mesh.file,
-                             {.unit = scenario.mesh.unit, .up = scenario.mesh.up}, diagnostics));
+  const Named of{scenario, scenario.objects[which], which};
+  UMOV_TRY(load_orbit(of, options, diagnostics, out));
+  UMOV_TRY(read_input(of.object.mesh.file, of.place("mesh"), out));
+  UMOV_ASSIGN(read, read_obj(of.object.mesh.file,
+                             {.unit = of.object.mesh.unit, .up = of.object.mesh.up}, diagnostics));
   for (const auto &file : read.files) {
     UMOV_ASSIGN(text, read_file(file));
     out.inputs.push_back({file.string(), sha256_hex(text)});
   }
-  UMOV_TRY(check_mtl(scenario, read));
-  UMOV_TRY(check_material_keys(scenario, read.mesh));
+  UMOV_TRY(check_mtl(of, read));
+  UMOV_TRY(check_material_keys(of, read.mesh));
+  UMOV_TRY(load_attitude(of, read.mesh, diagnostics, out));
+  if (auto checked = check_joints(joints_of(of.object.parts), read.mesh); !checked)
+    return fail(ErrorCode::BadInput, checked.error().message, of.place("part"));
   const MeshReport report = inspect(read.mesh);
   std::vector<Material> front, back;
   for (std::size_t i = 0; i < read.mesh.groups.size(); ++i) {
-    UMOV_ASSIGN(names, names_of(scenario, read.mesh, report, i));
+    UMOV_ASSIGN(names, names_of(of, read.mesh, report, i));
     UMOV_ASSIGN(one, scenario::find_material(names.front, scenario));
     UMOV_ASSIGN(other, scenario::find_material(names.back, scenario));
     front.push_back(one);
@@ -145,8 +192,8 @@ Result<LoadedObject> load_object(const Scenario &scenario, const LoadOptions &op
     for (const Material *material : {&front[i], &back[i]})
       UMOV_TRY(check_bands(*material, scenario));
   auto scene =
-      make_scene(read.mesh, scenario.mesh.normals, scenario.bands, front, back, diagnostics,
-                 scenario.mesh.crease_deg * pi / 180, scenario.mesh.file.string());
+      make_scene(read.mesh, of.object.mesh.normals, scenario.bands, front, back, diagnostics,
+                 of.object.mesh.crease_deg * pi / 180, of.object.mesh.file.string());
   if (!scene)
     return fail(scene.error().code, scene.error().message,
                 scene.error().where.file.empty() ? Where{scenario.file} : scene.error().where);

@@ -1,5 +1,6 @@
 #include "io/scenario/parts.h"
 
+#include <array>
 #include <fmt/format.h>
 #include <umov/core/text.h>
 
@@ -24,6 +25,7 @@ std::string quoted(const std::string &text) {
 
 namespace {
 
+using scenario::axis_toml;
 using scenario::quoted;
 
 std::string list(const std::vector<std::string> &items) {
@@ -64,19 +66,33 @@ std::string observer_and_time(const Scenario &s) {
   return out;
 }
 
-std::string object(const Scenario &s) {
-  std::string out = fmt::format("\n[[object]]\nname = {}\n", quoted(s.object_name));
-  if (s.orbit)
-    out += fmt::format("orbit = {{ file = {}, norad = {} }}\n", absolute_path(s.orbit->file),
-                       s.orbit->norad);
+std::string orbit_toml(const ScenarioOrbit &orbit) {
+  if (!orbit.state)
+    return fmt::format("orbit = {{ file = {}, norad = {} }}\n", absolute_path(orbit.file),
+                       orbit.norad);
+  const StateVector &s = *orbit.state;
+  const auto three = [](const std::array<double, 3> &v) { return axis_toml({v[0], v[1], v[2]}); };
+  constexpr std::array frames{"gcrs", "eme2000", "teme", "itrs"};
+  return fmt::format("orbit = {{ epoch = {}, frame = \"{}\", position_km = {}, velocity_km_s = {}, "
+                     "norad = {} }}\n",
+                     to_iso_exact(s.state.time), frames[static_cast<std::size_t>(s.frame)],
+                     three(s.state.position_km), three(s.state.velocity_km_s), orbit.norad);
+}
+
+std::string object(const ScenarioObject &o) {
+  std::string out = fmt::format("\n[[object]]\nname = {}\n", quoted(o.name));
+  if (o.orbit)
+    out += orbit_toml(*o.orbit);
   out += fmt::format(
       "mesh = {{ file = {}, unit = {}, up = {}, normals = \"{}\", crease_deg = {} }}\n",
-      absolute_path(s.mesh.file), quoted(s.mesh.unit), quoted(s.mesh.up),
-      s.mesh.normals == NormalMode::Smooth ? "smooth" : "flat", shortest(s.mesh.crease_deg));
-  out += "attitude = " + scenario::attitude_toml(s.attitude) + "\n\n[object.materials]\n";
-  for (const auto &[name, sides] : s.materials)
+      absolute_path(o.mesh.file), quoted(o.mesh.unit), quoted(o.mesh.up),
+      o.mesh.normals == NormalMode::Smooth ? "smooth" : "flat", shortest(o.mesh.crease_deg));
+  out += "attitude = " + scenario::attitude_toml(o.attitude) + "\n\n[object.materials]\n";
+  for (const auto &[name, sides] : o.materials)
     out += fmt::format("{} = {{ front = {}, back = {} }}\n", quoted(name), quoted(sides.front),
                        quoted(sides.back));
+  for (const MovingJoint &part : o.parts)
+    out += "\n[[object.part]]\n" + scenario::part_toml(part);
   return out;
 }
 
@@ -85,7 +101,9 @@ std::string object(const Scenario &s) {
 std::string locked_scenario(const Scenario &s) {
   std::string out = "# Every default filled in; running this file repeats the run.\n";
   out += fmt::format("umov = 1\ntitle = {}\nseed = {}\n", quoted(s.title), s.seed);
-  out += observer_and_time(s) + object(s);
+  out += observer_and_time(s);
+  for (const ScenarioObject &one : s.objects)
+    out += object(one);
   out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));
   out += fmt::format("\n[render]\nbounces = 1\nsun = \"{}\"\naccuracy = {}\n",
                      s.has_solar_disk ? "disk" : "point", shortest(s.accuracy));

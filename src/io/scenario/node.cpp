@@ -126,11 +126,25 @@ bool Node::boolean(const char *name, bool fallback) const {
   return (*table_)[name].value_or(fallback);
 }
 
+namespace {
+
+Result<Epoch<Utc>> time_from(const toml::node &node) {
+  const auto stamp = node.value<toml::date_time>();
+  return utc_from_iso(stamp ? iso_of(*stamp) : node.value_or(std::string()));
+}
+
+} // namespace
+
+Result<Epoch<Utc>> time_of(const Node &node, const toml::node &item) {
+  auto time = time_from(item);
+  if (!time)
+    return fail(ErrorCode::BadInput, time.error().message, place_of(item.source(), node.file()));
+  return *time;
+}
+
 Result<Epoch<Utc>> Node::time(const char *name) const {
   UMOV_TRY(require(name));
-  const toml::node &node = *table_->get(name);
-  const auto stamp = node.value<toml::date_time>();
-  auto time = utc_from_iso(stamp ? iso_of(*stamp) : node.value_or(std::string()));
+  auto time = time_from(*table_->get(name));
   if (!time)
     return fail(ErrorCode::BadInput, fmt::format("{} = {}", name, time.error().message),
                 where(name));

@@ -51,6 +51,9 @@ private:
   std::string schema_, label_, file_;
 };
 
+/// A time that stands in a list of `node`.
+Result<Epoch<Utc>> time_of(const Node &node, const toml::node &item);
+
 /// Place of a node or key; values of --set carry their own source name.
 Where place_of(const toml::source_region &source, const std::string &file);
 /// Place of a value; of its key where that is all one knows.

@@ -6,7 +6,12 @@
 
 namespace umov::scenario {
 
-Result<AttitudeLaw> read_attitude(const Node &node);
+/// `folder`: of relative paths; `seed`: of the scenario, for libration.
+Result<AttitudeLaw> read_attitude(const Node &node, const std::filesystem::path &folder,
+                                  std::uint64_t seed);
+/// One [[object.part]].
+Result<MovingJoint> read_part(const Node &node);
+std::string part_toml(const MovingJoint &part);
 /// One [material.NAME] table.
 Result<Material> read_material_table(const Node &node, const std::string &name);
 /// All [material.NAME] tables of a document.

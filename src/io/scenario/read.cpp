@@ -1,6 +1,9 @@
 #include "io/scenario/parts.h"
 
+#include <algorithm>
+#include <array>
 #include <fmt/format.h>
+#include <optional>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 
@@ -10,7 +13,8 @@ namespace {
 using scenario::Node;
 namespace fs = std::filesystem;
 
-/// Puts one "dotted.key=value" into the document; "object.x" means its first object.
+/// Puts one "dotted.key=value" into the document; "object.x" means its first object, "object.1.x"
+/// its second.
 Result<void> override_key(toml::table &document, const std::string &text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
@@ -25,17 +29,33 @@ Result<void> override_key(toml::table &document, const std::string &text) {
   }
   toml::table *at = &document;
   std::size_t begin = 0;
-  for (std::size_t dot = key.find('.'); dot != std::string::npos; dot = key.find('.', begin)) {
-    const std::string name = key.substr(begin, dot - begin);
-    begin = dot + 1;
-    if (!at->contains(name))
-      at->insert(name, toml::table{});
-    toml::node *next = at->get(name);
-    if (toml::array *list = next->as_array(); list != nullptr && !list->empty())
-      next = list->get(0);
+  const auto next_name = [&]() -> std::optional<std::string> {
+    const std::size_t dot = key.find('.', begin);
+    if (dot == std::string::npos)
+      return std::nullopt;
+    return key.substr(begin, dot - begin);
+  };
+  while (const auto name = next_name()) {
+    begin += name->size() + 1;
+    if (!at->contains(*name))
+      at->insert(*name, toml::table{});
+    toml::node *next = at->get(*name);
+    if (toml::array *list = next->as_array(); list != nullptr && !list->empty()) {
+      std::size_t index = 0;
+      if (const auto number = next_name();
+          number && !number->empty() && number->size() < 6 &&
+          number->find_first_not_of("0123456789") == std::string::npos) {
+        index = static_cast<std::size_t>(std::stoul(*number));
+        begin += number->size() + 1;
+      }
+      if (index >= list->size())
+        return fail(ErrorCode::BadInput, fmt::format("{}: {} has {} entries, counted from 0",
+                                                     origin, *name, list->size()));
+      next = list->get(index);
+    }
     at = next->as_table();
     if (at == nullptr)
-      return fail(ErrorCode::BadInput, origin + ": " + name + " is not a table");
+      return fail(ErrorCode::BadInput, origin + ": " + *name + " is not a table");
   }
   at->erase(key.substr(begin)); // an assignment would keep the place of the old key
   at->insert(toml::key(key.substr(begin), toml::source_region(parsed.source())), *parsed.get("x"));
@@ -90,6 +110,11 @@ Result<void> read_time(const Node &top, Scenario &out) {
   return {};
 }
 
+/// How the places of an object's keys are called.
+std::string key_of(const Scenario &out, const std::string &key) {
+  return fmt::format("object.{}.{}", out.objects.size() - 1, key);
+}
+
 Result<void> read_materials(const Node &object, Scenario &out) {
   if (!object.has("materials"))
     return {};
@@ -114,60 +139,129 @@ Result<void> read_materials(const Node &object, Scenario &out) {
     for (const std::string &side : {sides.front, sides.back})
       if (auto found = scenario::find_material(side, out); !found)
         return fail(found.error().code, found.error().text(), where);
-    out.places["object.materials." + name] = scenario::place_of(key.source(), out.file);
-    out.materials.emplace(name, sides);
+    out.places[key_of(out, "materials." + name)] = scenario::place_of(key.source(), out.file);
+    out.objects.back().materials.emplace(name, sides);
   }
   return {};
 }
 
 Result<void> read_mesh(const Node &object, const fs::path &folder, Scenario &out) {
-  UMOV_ASSIGN(mesh, object.child("mesh"));
-  UMOV_TRY(mesh.require("file"));
-  UMOV_ASSIGN(normals, mesh.choice("normals", "flat", {"flat", "smooth"}));
-  out.mesh.file = (folder / mesh.text("file", "")).lexically_normal();
-  out.mesh.unit = mesh.text("unit", "");
-  out.mesh.up = mesh.text("up", "");
-  out.mesh.normals = normals == "smooth" ? NormalMode::Smooth : NormalMode::Flat;
-  out.mesh.crease_deg = mesh.number("crease_deg", 35);
-  if (!(out.mesh.crease_deg >= 0 && out.mesh.crease_deg <= 180))
+  UMOV_ASSIGN(node, object.child("mesh"));
+  UMOV_TRY(node.require("file"));
+  UMOV_ASSIGN(normals, node.choice("normals", "flat", {"flat", "smooth"}));
+  ScenarioMesh &mesh = out.objects.back().mesh;
+  mesh.file = (folder / node.text("file", "")).lexically_normal();
+  mesh.unit = node.text("unit", "");
+  mesh.up = node.text("up", "");
+  mesh.normals = normals == "smooth" ? NormalMode::Smooth : NormalMode::Flat;
+  mesh.crease_deg = node.number("crease_deg", 35);
+  if (!(mesh.crease_deg >= 0 && mesh.crease_deg <= 180))
     return fail(ErrorCode::BadInput,
-                fmt::format("crease_deg = {}; 0 to 180 was expected", out.mesh.crease_deg),
-                mesh.where("crease_deg"));
-  out.places["object.mesh"] = mesh.where("file");
+                fmt::format("crease_deg = {}; 0 to 180 was expected", mesh.crease_deg),
+                node.where("crease_deg"));
+  out.places[key_of(out, "mesh")] = node.where("file");
   return {};
 }
 
-Result<void> read_object(const Node &top, const fs::path &folder, Scenario &out) {
-  UMOV_TRY(top.require("object"));
-  const toml::array *list = top.table().get_as<toml::array>("object");
-  if (list->empty() || !list->get(0)->is_table())
-    return fail(ErrorCode::BadInput, "object: a table [[object]] was expected",
-                top.where("object"));
-  if (list->size() > 1)
-    return fail(ErrorCode::BadInput, "several objects are not built yet; keep one [[object]]",
-                scenario::place_of(list->get(1)->source(), out.file));
-  const Node object(*list->get(0)->as_table(), "object", "object", out.file);
-  UMOV_TRY(object.check());
-  out.object_name = object.text("name", "");
-  if (object.has("orbit")) {
-    UMOV_ASSIGN(orbit, object.child("orbit"));
+Result<std::array<double, 3>> three_numbers(const Node &node, const char *name) {
+  UMOV_ASSIGN(v, node.numbers(name));
+  if (v.size() != 3)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} has {} numbers; 3 were expected, [x, y, z]", name, v.size()),
+                node.where(name));
+  return std::array<double, 3>{v[0], v[1], v[2]};
+}
+
+Result<StateVector> read_state(const Node &orbit) {
+  StateVector out;
+  UMOV_ASSIGN(frame, orbit.choice("frame", "gcrs", {"gcrs", "eme2000", "teme", "itrs"}));
+  out.frame = frame == "gcrs"      ? OrbitFrame::Gcrs
+              : frame == "eme2000" ? OrbitFrame::Eme2000
+              : frame == "teme"    ? OrbitFrame::Teme
+                                   : OrbitFrame::Itrs;
+  UMOV_ASSIGN(epoch, orbit.time("epoch"));
+  UMOV_ASSIGN(position, three_numbers(orbit, "position_km"));
+  UMOV_ASSIGN(velocity, three_numbers(orbit, "velocity_km_s"));
+  out.state = {epoch, position, velocity};
+  return out;
+}
+
+Result<void> read_orbit(const Node &object, const fs::path &folder, Scenario &out) {
+  if (!object.has("orbit"))
+    return {};
+  UMOV_ASSIGN(orbit, object.child("orbit"));
+  const auto norad = orbit.integer("norad", 0);
+  if (norad < 0 || norad > 999'999'999)
+    return fail(ErrorCode::BadInput,
+                fmt::format("norad = {}; a catalogue number was expected", norad),
+                orbit.where("norad"));
+  ScenarioOrbit one;
+  one.norad = static_cast<int>(norad);
+  out.places[key_of(out, "orbit")] = orbit.where(orbit.has("file") ? "file" : "epoch");
+  if (!orbit.has("file") && orbit.has("position_km")) {
+    UMOV_ASSIGN(state, read_state(orbit));
+    one.state = state;
+  } else {
     UMOV_TRY(orbit.require("file"));
-    const auto norad = orbit.integer("norad", 0);
-    if (norad < 0 || norad > 999'999'999)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("norad = {}; a catalogue number was expected", norad),
-                  orbit.where("norad"));
-    out.orbit = ScenarioOrbit{(folder / orbit.text("file", "")).lexically_normal(),
-                              static_cast<int>(norad)};
-    out.places["object.orbit"] = orbit.where("file");
+    for (const char *name : {"epoch", "frame", "position_km", "velocity_km_s"})
+      if (orbit.has(name))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} has no meaning with file; leave one of them out", name),
+                    orbit.where(name));
+    one.file = (folder / orbit.text("file", "")).lexically_normal();
   }
+  out.objects.back().orbit = one;
+  return {};
+}
+
+Result<void> read_parts(const Node &object, Scenario &out) {
+  const toml::array *list = object.table().get_as<toml::array>("part");
+  if (list == nullptr)
+    return {};
+  out.places[key_of(out, "part")] = object.where("part");
+  for (const toml::node &item : *list) {
+    if (!item.is_table())
+      return fail(ErrorCode::BadInput, "part: a table [[object.part]] was expected",
+                  object.where("part"));
+    const Node node(*item.as_table(), "object.part", "object.part", out.file);
+    UMOV_TRY(node.check());
+    UMOV_ASSIGN(part, scenario::read_part(node));
+    out.objects.back().parts.push_back(part);
+  }
+  return {};
+}
+
+Result<void> read_object(const Node &object, const fs::path &folder, Scenario &out) {
+  UMOV_TRY(object.check());
+  ScenarioObject &one = out.objects.emplace_back();
+  one.name = object.text("name", "");
+  UMOV_TRY(read_orbit(object, folder, out));
   UMOV_TRY(read_mesh(object, folder, out));
   if (object.has("attitude")) {
     UMOV_ASSIGN(node, object.child("attitude"));
-    UMOV_ASSIGN(law, scenario::read_attitude(node));
-    out.attitude = law;
+    out.places[key_of(out, "attitude")] = object.where("attitude");
+    UMOV_ASSIGN(law, scenario::read_attitude(node, folder, out.seed));
+    one.attitude = law;
   }
+  UMOV_TRY(read_parts(object, out));
   return read_materials(object, out);
+}
+
+Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out) {
+  UMOV_TRY(top.require("object"));
+  const toml::array *list = top.table().get_as<toml::array>("object");
+  constexpr std::size_t objects_max = 10'000;
+  if (list->empty() || list->size() > objects_max)
+    return fail(ErrorCode::BadInput,
+                fmt::format("object: 1 to {} tables [[object]] were expected", objects_max),
+                top.where("object"));
+  for (const toml::node &item : *list) {
+    if (!item.is_table())
+      return fail(ErrorCode::BadInput, "object: a table [[object]] was expected",
+                  top.where("object"));
+    UMOV_TRY(read_object(Node(*item.as_table(), "object", "object", out.file), folder, out));
+  }
+  return {};
 }
 
 Result<void> read_bands(const Node &top, Scenario &out) {
@@ -261,7 +355,7 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_ASSIGN(own, scenario::read_material_tables(top));
   UMOV_TRY(scenario::check_own_names(top, own));
   out.own_materials = own;
-  UMOV_TRY(read_object(top, path.parent_path(), out));
+  UMOV_TRY(read_objects(top, path.parent_path(), out));
   return out;
 }
 
@@ -287,9 +381,12 @@ Result<Scenario> read_scenario(const fs::path &path, const std::vector<std::stri
 
 Result<void> check_complete_for_run(const Scenario &s) {
   std::string missing;
+  const bool has_orbits =
+      std::all_of(s.objects.begin(), s.objects.end(),
+                  [](const ScenarioObject &one) { return one.orbit.has_value(); });
   for (const auto &[is_there, name] : {std::pair{s.observer.has_value(), "[observer]"},
                                        {s.time.has_value(), "[time]"},
-                                       {s.orbit.has_value(), "object.orbit"}})
+                                       {has_orbits, "object.orbit"}})
     if (!is_there)
       missing += (missing.empty() ? "" : ", ") + std::string(name);
   if (missing.empty())

@@ -25,10 +25,10 @@ std::string upper(std::string text) {
 
 tl::unexpected<Error> refuse(const Message &message, const Field &field,
                              const std::string &expected) {
-  return fail(ErrorCode::BadInput,
-              fmt::format("{} is \"{}\", expected {}", field.key, field.text.substr(0, 60),
-                          expected),
-              {message.file, field.line});
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("{} is \"{}\", expected {}", field.key, field.text.substr(0, 60), expected),
+      {message.file, field.line});
 }
 
 /// What decides about all states of a segment.

@@ -58,18 +58,20 @@ Result<ccsds::Message> oem_from(const Trajectory &orbit, const std::vector<Epoch
   out.header = {{"CREATION_DATE", to_iso(created, 3).substr(0, 19), "", 0},
                 {"ORIGINATOR", "UMOV", "", 0}};
   const ElementSet *set = orbit.elements();
-  const std::string id = set != nullptr ? long_designator(set->international_designator) : orbit.id();
+  const std::string id =
+      set != nullptr ? long_designator(set->international_designator) : orbit.id();
   ccsds::Segment segment;
-  segment.metadata = {{"OBJECT_NAME", orbit.name().empty() ? "UNKNOWN" : orbit.name(), "", 0},
-                      {"OBJECT_ID", id.empty() ? "UNKNOWN" : id, "", 0},
-                      {"CENTER_NAME", "EARTH", "", 0},
-                      {"REF_FRAME", "TEME", "", 0},
-                      {"TIME_SYSTEM", "UTC", "", 0},
-                      {"START_TIME", date(times.front()), "", 0},
-                      {"STOP_TIME", date(times.back()), "", 0},
-                      // Not Hermite: SGP4's velocity is not the derivative of its position to 1e-5 km/s.
-                      {"INTERPOLATION", "LAGRANGE", "", 0},
-                      {"INTERPOLATION_DEGREE", "9", "", 0}};
+  segment.metadata = {
+      {"OBJECT_NAME", orbit.name().empty() ? "UNKNOWN" : orbit.name(), "", 0},
+      {"OBJECT_ID", id.empty() ? "UNKNOWN" : id, "", 0},
+      {"CENTER_NAME", "EARTH", "", 0},
+      {"REF_FRAME", "TEME", "", 0},
+      {"TIME_SYSTEM", "UTC", "", 0},
+      {"START_TIME", date(times.front()), "", 0},
+      {"STOP_TIME", date(times.back()), "", 0},
+      // Not Hermite: SGP4's velocity is not the derivative of its position to 1e-5 km/s.
+      {"INTERPOLATION", "LAGRANGE", "", 0},
+      {"INTERPOLATION_DEGREE", "9", "", 0}};
   constexpr std::array keys{"X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT"};
   for (std::size_t k = 0; k < times.size(); ++k) {
     const Vec3<Teme> r = states[k].position_km, v = states[k].velocity_km_s;

@@ -122,10 +122,9 @@ TEST(CcsdsMessages, EveryTypeOfAttitude) {
   for (const auto &[type, values] : types)
     for (const char *order : {"", "QUATERNION_TYPE = FIRST\n"}) {
       SCOPED_TRACE(type);
-      const Message first =
-          read(std::string(aem_head) + "ATTITUDE_TYPE = " + type + "\n" + order +
-               "META_STOP\nDATA_START\nCOMMENT one\n2018-01-21T00:00:00 " + values +
-               "\n2018-01-21T00:01:00 " + values + "\nDATA_STOP\n");
+      const Message first = read(std::string(aem_head) + "ATTITUDE_TYPE = " + type + "\n" + order +
+                                 "META_STOP\nDATA_START\nCOMMENT one\n2018-01-21T00:00:00 " +
+                                 values + "\n2018-01-21T00:01:00 " + values + "\nDATA_STOP\n");
       for (const Form form : {Form::Kvn, Form::Xml}) {
         const Message again = read(*write_message(first, form));
         ASSERT_EQ(again.segments[0].data.size(), 2u);

@@ -50,9 +50,9 @@ TEST(Scenario, ReadsEveryPart) {
   EXPECT_EQ(s->time->step_s, 0.5);
   EXPECT_EQ(to_iso(s->time->stop), "2018-01-21T05:10:00.000Z");
   EXPECT_TRUE(s->time->only.sunlit);
-  EXPECT_EQ(s->orbit->file, "dir/hst.tle");
-  EXPECT_EQ(s->mesh.normals, NormalMode::Smooth);
-  EXPECT_EQ(s->materials.at("array").back, "paper_al");
+  EXPECT_EQ(s->objects[0].orbit->file, "dir/hst.tle");
+  EXPECT_EQ(s->objects[0].mesh.normals, NormalMode::Smooth);
+  EXPECT_EQ(s->objects[0].materials.at("array").back, "paper_al");
   EXPECT_EQ(s->own_materials.at("gold").distribution.parameters.at("m"), 50);
   EXPECT_EQ(s->own_materials.at("gold").shadowing, Shadowing::Smith);
   EXPECT_EQ(s->bands.size(), 2u);
@@ -65,7 +65,7 @@ TEST(Scenario, OverridesReplaceKeys) {
   ASSERT_TRUE(s) << s.error().text();
   EXPECT_EQ(s->time->step_s, 2);
   EXPECT_EQ(s->output_dir, "here");
-  EXPECT_EQ(s->object_name, "X");
+  EXPECT_EQ(s->objects[0].name, "X");
   EXPECT_FALSE(read_scenario_text(good, "s.toml", {"time.step=2"}));
   EXPECT_FALSE(read_scenario_text(good, "s.toml", {"seed"}));
 }
@@ -77,7 +77,43 @@ TEST(Scenario, TheLockReadsBackToItself) {
   const auto again = read_scenario_text(lock, "/elsewhere/lock.toml", {});
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_EQ(locked_scenario(*again), lock);
-  EXPECT_EQ(again->orbit->file, "/base/hst.tle");
+  EXPECT_EQ(again->objects[0].orbit->file, "/base/hst.tle");
+}
+
+TEST(Scenario, EveryAttitudeLocksAndReadsBack) {
+  const std::string laws[] = {
+      "{ mode = \"nadir\", yaw_deg = 5.0, roll_deg = -1 }",
+      "{ point = \"+X\", at = { lat_deg = 20, lon_deg = -156, alt_m = 3000 }, then = \"+Z\", "
+      "toward = "
+      "\"sun\" }",
+      "{ mode = \"tumble\", inertia = \"shell\", rate_deg_s = [1, 2, 3], epoch = "
+      "2018-01-21T05:00:00Z }",
+      "{ mode = \"tumble\", inertia = [1, 2, 2.5], rate_deg_s = [1.5, 0, 3], epoch = "
+      "2018-01-21T05:00:00Z, start = { mode = \"inertial\", quaternion = [1, 0, 0, 0] } }",
+      "{ mode = \"aem\", file = \"a.aem\" }",
+      "{ mode = \"spin\", axis = \"+X\", period_s = 7, epoch = 2018-01-21T05:00:00Z, libration = { "
+      "rms_deg = 0.5, period_s = 30 } }",
+      "{ mode = \"pieces\", pieces = [ { from = 2018-01-21T05:00:00Z, mode = \"nadir\" }, { from = "
+      "2018-01-21T06:00:00Z, mode = \"inertial\", quaternion = [1, 0, 0, 0] } ] }"};
+  for (const std::string &law : laws) {
+    SCOPED_TRACE(law);
+    const auto s = read_scenario_text(
+        "umov = 1\n[[object]]\nmesh = { file = \"a.obj\", unit = \"m\", up = \"+Z\" }\nattitude "
+        "= " +
+            law +
+            "\n[[object.part]]\ngroups = [\"array\"]\naxis = \"+X\"\n[[object.part]]\n"
+            "groups = [\"dish\"]\nangle_deg = [0, 10]\ntime = [2018-01-21T05:00:00Z, "
+            "2018-01-21T06:00:00Z]\n[[object]]\norbit = { epoch = 2018-01-21T05:00:00Z, "
+            "position_km = [7000, 0, 0], velocity_km_s = [0, 7.5, 0] }\nmesh = { file = "
+            "\"b.obj\", unit = \"m\", up = \"+Z\" }\n",
+        "/base/s.toml", {"object.1.name=second"});
+    ASSERT_TRUE(s) << s.error().text();
+    EXPECT_EQ(s->objects[1].name, "second");
+    const std::string lock = locked_scenario(*s);
+    const auto again = read_scenario_text(lock, "/elsewhere/lock.toml", {});
+    ASSERT_TRUE(again) << again.error().text() << lock;
+    EXPECT_EQ(locked_scenario(*again), lock);
+  }
 }
 
 TEST(Scenario, ASceneNeedsNoOrbit) {

@@ -48,7 +48,8 @@ TEST(Trajectory, InterpolatesAKeplerOrbit) {
     int degree;
     double step_s, position_km, velocity_km_s;
   };
-  // Errors of the polynomials for these steps, a few times what theory gives: (n h)^(d+1) a / (d+1)!
+  // Errors of the polynomials for these steps, a few times what theory gives: (n h)^(d+1) a /
+  // (d+1)!
   const Case cases[] = {{Interpolation::Hermite, 7, 60, 2e-7, 1e-8},
                         {Interpolation::Hermite, 3, 60, 5e-3, 5e-4},
                         {Interpolation::Lagrange, 8, 60, 2e-6, 2e-9},
@@ -154,9 +155,8 @@ TEST(Trajectory, IntegratesAStateVector) {
   start.frame = OrbitFrame::Gcrs;
   constexpr double gm = 398600.4418, a = 7200, i = 1.1, j2 = 1.08262668e-3, radius = 6378.1363;
   const double speed = std::sqrt(gm / a);
-  start.state = {utc("2018-01-21T00:00:00Z"),
-                 {a, 0, 0},
-                 {0, speed * std::cos(i), speed * std::sin(i)}};
+  start.state = {
+      utc("2018-01-21T00:00:00Z"), {a, 0, 0}, {0, speed * std::cos(i), speed * std::sin(i)}};
   const Epoch<Utc> later = plus_seconds(start.state.time, 86400);
   const auto orbit = integrate_orbit(start, start.state.time, later);
   ASSERT_TRUE(orbit) << orbit.error().text();
@@ -168,10 +168,9 @@ TEST(Trajectory, IntegratesAStateVector) {
   };
   // Whole turns only: the node wavers twice a turn.
   const double turn = 2 * pi * std::sqrt(a * a * a / gm);
-  const double drift = node_at(plus_seconds(start.state.time, 14 * turn)) -
-                       node_at(start.state.time);
-  const double expected =
-      -1.5 * j2 * std::pow(radius / a, 2) * std::cos(i) * 2 * pi * 14;
+  const double drift =
+      node_at(plus_seconds(start.state.time, 14 * turn)) - node_at(start.state.time);
+  const double expected = -1.5 * j2 * std::pow(radius / a, 2) * std::cos(i) * 2 * pi * 14;
   EXPECT_NEAR(drift / expected, 1, 6e-3);
   // Backwards and forwards again.
   StateVector end = start;
@@ -180,8 +179,8 @@ TEST(Trajectory, IntegratesAStateVector) {
   ASSERT_TRUE(back);
   const TemeState first = *Trajectory(*back).at(start.state.time),
                   truth = *path.at(start.state.time);
-  // The pole of the state's date is held; in a day it moves by 0.055 arcsec, which turns the pull of
-  // J2 (1e-5 km/s2) by 3e-7: a metre over the day.
+  // The pole of the state's date is held; in a day it moves by 0.055 arcsec, which turns the pull
+  // of J2 (1e-5 km/s2) by 3e-7: a metre over the day.
   EXPECT_LT(norm(first.position_km - truth.position_km), 2e-3);
 }
 
@@ -206,7 +205,8 @@ TEST(Trajectory, RefusesWithTheReason) {
       {replaced(oem, "= 8", "= 0"), "INTERPOLATION_DEGREE is \"0\""},
       {replaced(oem, "2008-09-20T12:28:40.104192 ", "2008-09-20T12:20:40.104192 "),
        "expected a later time"},
-      {replaced(oem, "STOP_TIME            = 2008-09-20T14", "STOP_TIME            = 2008-09-20T18"),
+      {replaced(oem, "STOP_TIME            = 2008-09-20T14",
+                "STOP_TIME            = 2008-09-20T18"),
        "is not within the states"},
       {replaced(oem, "2008-09-20T12:28:40.104192 ", "2008-13-20T12:28:40.104192 "),
        "is not in the calendar"},

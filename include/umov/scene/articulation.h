@@ -1,0 +1,40 @@
+#pragma once
+// Parts of a mesh that turn against the body.
+
+#include <optional>
+#include <string>
+#include <umov/core/result.h>
+#include <umov/shape/mesh.h>
+#include <vector>
+
+namespace umov {
+
+/// Mesh groups that turn together about an axis; everything as it stands in the mesh, body axes.
+struct Joint {
+  std::string name;
+  std::vector<std::string> groups;
+  Vec3<Body> axis{0, 1, 0}; ///< unit; right-handed angles
+  Vec3<Body> pivot_m{};     ///< a point of the axis
+  Vec3<Body> face{0, 0, 1}; ///< what is turned towards a target
+  std::string on;           ///< the joint that carries this one; "" the body
+};
+
+/// BadInput for a group that the mesh lacks or that two joints claim, a carrier that does not stand
+/// before, an axis without length, or a face along the axis.
+Result<void> check_joints(const std::vector<Joint> &joints, const Mesh &mesh);
+
+/// The angle [rad] that brings the face as near as possible to a direction, for a joint whose
+/// carrier has turned by the angles before it: the face and the direction are alike across the axis.
+/// 0 where the direction lies along the axis (any angle would do).
+double following_angle(const std::vector<Joint> &joints, std::size_t which,
+                       const std::vector<double> &angles_rad, Vec3<Body> direction);
+
+/// Where a joint's face points after all have turned.
+Vec3<Body> turned_face(const std::vector<Joint> &joints, std::size_t which,
+                       const std::vector<double> &angles_rad);
+
+/// The mesh with its joints turned by one angle each.
+Mesh posed(const Mesh &mesh, const std::vector<Joint> &joints,
+           const std::vector<double> &angles_rad);
+
+} // namespace umov

@@ -1,0 +1,141 @@
+#include <umov/scene/articulation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <umov/core/rotation.h>
+
+namespace umov {
+namespace {
+
+/// x -> turn x + shift, in body axes.
+struct Motion {
+  Rotation<Body, Body> turn;
+  Vec3<Body> shift{};
+
+  [[nodiscard]] Vec3<Body> place(Vec3<Body> p) const { return turn * p + shift; }
+};
+
+/// Turns vectors by `angle` about the unit axis (the body's frame stands still).
+Rotation<Body, Body> rotating(Vec3<Body> axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto row = [&](Vec3<Body> e) { return e * c + axis * ((1 - c) * dot(axis, e)) - cross(axis, e) * s; };
+  return {row({1, 0, 0}), row({0, 1, 0}), row({0, 0, 1})};
+}
+
+std::size_t carrier_of(const std::vector<Joint> &joints, std::size_t which) {
+  for (std::size_t k = 0; k < which; ++k)
+    if (joints[k].name == joints[which].on)
+      return k;
+  return joints.size();
+}
+
+/// Motion of everything that a joint carries; those before `which` have angles.
+Motion motion_of(const std::vector<Joint> &joints, std::size_t which,
+                 const std::vector<double> &angles) {
+  const Joint &joint = joints[which];
+  Motion own{rotating(joint.axis, angles[which]), {}};
+  own.shift = joint.pivot_m - own.turn * joint.pivot_m;
+  if (joint.on.empty())
+    return own;
+  const Motion carrier = motion_of(joints, carrier_of(joints, which), angles);
+  return {carrier.turn * own.turn, carrier.place(own.shift)};
+}
+
+Rotation<Body, Body> carrier_turn(const std::vector<Joint> &joints, std::size_t which,
+                                  const std::vector<double> &angles) {
+  return joints[which].on.empty() ? Rotation<Body, Body>{}
+                                  : motion_of(joints, carrier_of(joints, which), angles).turn;
+}
+
+} // namespace
+
+Result<void> check_joints(const std::vector<Joint> &joints, const Mesh &mesh) {
+  std::map<std::string, std::string> owner;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const Joint &joint = joints[k];
+    if (joint.groups.empty())
+      return fail(ErrorCode::BadInput, fmt::format("part \"{}\" has no groups", joint.name));
+    for (const std::string &group : joint.groups) {
+      if (std::find(mesh.groups.begin(), mesh.groups.end(), group) == mesh.groups.end())
+        return fail(ErrorCode::BadInput,
+                    fmt::format("part \"{}\": the mesh has no group \"{}\"; it has {}", joint.name,
+                                group, fmt::join(mesh.groups, ", ")));
+      if (const auto [it, is_new] = owner.emplace(group, joint.name); !is_new)
+        return fail(ErrorCode::BadInput,
+                    fmt::format("group \"{}\" is of part \"{}\" and of part \"{}\"", group,
+                                it->second, joint.name));
+    }
+    if (!joint.on.empty() && carrier_of(joints, k) == joints.size())
+      return fail(ErrorCode::BadInput,
+                  fmt::format("part \"{}\" is carried by \"{}\", which does not stand before it",
+                              joint.name, joint.on));
+    if (!(std::abs(norm(joint.axis) - 1) < 1e-9))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("the axis of part \"{}\" is no unit vector", joint.name));
+    if (!(norm(cross(joint.axis, joint.face)) > 1e-9))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("the face of part \"{}\" lies along its axis: it cannot be turned "
+                              "towards anything",
+                              joint.name));
+  }
+  return {};
+}
+
+double following_angle(const std::vector<Joint> &joints, std::size_t which,
+                       const std::vector<double> &angles_rad, Vec3<Body> direction) {
+  const Joint &joint = joints[which];
+  const Vec3<Body> d = carrier_turn(joints, which, angles_rad).inverse() * direction;
+  const Vec3<Body> x = normalized(joint.face - joint.axis * dot(joint.axis, joint.face));
+  const Vec3<Body> y = cross(joint.axis, x);
+  return std::atan2(dot(d, y), dot(d, x));
+}
+
+Vec3<Body> turned_face(const std::vector<Joint> &joints, std::size_t which,
+                       const std::vector<double> &angles_rad) {
+  return motion_of(joints, which, angles_rad).turn * joints[which].face;
+}
+
+Mesh posed(const Mesh &mesh, const std::vector<Joint> &joints,
+           const std::vector<double> &angles_rad) {
+  constexpr std::size_t still = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> joint_of(mesh.groups.size(), still);
+  std::vector<Motion> motions;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    motions.push_back(motion_of(joints, k, angles_rad));
+    for (const std::string &group : joints[k].groups)
+      joint_of[static_cast<std::size_t>(
+          std::find(mesh.groups.begin(), mesh.groups.end(), group) - mesh.groups.begin())] = k;
+  }
+  Mesh out = mesh;
+  // A vertex that a moving and another group share becomes one for each.
+  std::map<std::pair<std::size_t, std::uint32_t>, std::uint32_t> places, normals;
+  for (std::size_t t = 0; t < out.triangles.size(); ++t) {
+    Triangle &triangle = out.triangles[t];
+    const std::size_t joint = joint_of[triangle.front];
+    if (joint == still)
+      continue;
+    const Motion &motion = motions[joint];
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t vertex = triangle.vertex[corner], normal = triangle.normal[corner];
+      const auto [place, is_new] = places.emplace(
+          std::pair{joint, vertex}, static_cast<std::uint32_t>(out.positions.size()));
+      if (is_new)
+        out.positions.push_back(motion.place(mesh.positions[vertex]));
+      triangle.vertex[corner] = place->second;
+      if (normal == no_index)
+        continue;
+      const auto [turned, is_new_normal] = normals.emplace(
+          std::pair{joint, normal}, static_cast<std::uint32_t>(out.normals.size()));
+      if (is_new_normal)
+        out.normals.push_back(motion.turn * mesh.normals[normal]);
+      triangle.normal[corner] = turned->second;
+    }
+    if (!out.tangents.empty())
+      out.tangents[t] = motion.turn * mesh.tangents[t];
+  }
+  return out;
+}
+
+} // namespace umov
