@@ -3,6 +3,7 @@
 #include "console.h"
 #include "verbs.h"
 
+#include "pass_models.h"
 #include "tables.h"
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,8 @@
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/io/elements_file.h>
+#include <umov/io/plot_page.h>
+#include <umov/io/sites.h>
 #include <umov/io/trajectory_file.h>
 #include <umov/orbit/passes.h>
 #include <umov/orbit/select.h>
@@ -23,6 +26,8 @@ namespace {
 
 struct PassesOptions {
   std::string orbit, output, site, start, stop, shadow = "ellipsoid";
+  PassModelOptions model;
+  std::string chart;
   std::vector<int> norad;
   double latitude_deg = 0, longitude_deg = 0, altitude_m = 0, altitude_min_deg = 10,
          sun_altitude_max_deg = -6;
@@ -31,22 +36,8 @@ struct PassesOptions {
 };
 
 Result<Site> site_of(const PassesOptions &o) {
-  if (o.site.empty())
-    return make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m);
-  std::vector<double> numbers;
-  for (std::size_t begin = 0; begin <= o.site.size();) {
-    const std::size_t end = std::min(o.site.find(',', begin), o.site.size());
-    const auto value = parse_number(trimmed(std::string_view(o.site).substr(begin, end - begin)));
-    if (!value)
-      break;
-    numbers.push_back(*value);
-    begin = end + 1;
-  }
-  if (numbers.size() != 3 || std::count(o.site.begin(), o.site.end(), ',') != 2)
-    return fail(ErrorCode::Usage, "--site " + o.site +
-                                      ": latitude, longitude [deg, north and east positive] and "
-                                      "altitude [m], separated by commas, were expected");
-  return make_site("", numbers[0], numbers[1], numbers[2]);
+  return o.site.empty() ? make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m)
+                        : site_from(o.site);
 }
 
 /// The set of each object to use for a span.
@@ -130,6 +121,17 @@ std::string pass_id(const Trajectory &orbit, const SitePass &pass) {
   return orbit.id() + "-" + time;
 }
 
+/// What the age of elements costs along the track, roughly: 1 km at the epoch and 2 km per day in
+/// low orbits (docs/theory/sgp4.md, Limits), a tenth of that above 2,000 km, where drag is not what
+/// errs.
+double along_track_error_km(const Trajectory &orbit, Epoch<Utc> time) {
+  const ElementSet *set = orbit.elements();
+  if (set == nullptr)
+    return std::numeric_limits<double>::quiet_NaN();
+  const bool is_low = set->mean_motion > 2 * pi / 127; // a period of 127 min: 2,000 km
+  return 1 + (is_low ? 2 : 0.2) * std::abs(orbit.element_age_days(time));
+}
+
 Table passes_table(const std::vector<FoundPass> &found, const std::vector<Trajectory> &orbits) {
   Table t;
   const auto text = [&](const char *name, const char *description, auto take) {
@@ -186,11 +188,75 @@ Table passes_table(const std::vector<FoundPass> &found, const std::vector<Trajec
          [&](E, P p) { return p.sunlit_share > 0 ? p.phase_min.degrees() : none; });
   number("phase_max", "deg", "largest phase angle while sunlit",
          [&](E, P p) { return p.sunlit_share > 0 ? p.phase_max.degrees() : none; });
+  number("mag_min", "mag(AB)", "brightest while sunlit; empty where no model is given",
+         [](E, P p) { return p.magnitude_min; });
+  number("mag_max", "mag(AB)", "faintest while sunlit", [](E, P p) { return p.magnitude_max; });
+  number("p_max", "", "largest degree of linear polarization while sunlit",
+         [](E, P p) { return p.p_max; });
+  text("glints", "times of glints, joined by semicolons", [](E, P p) {
+    std::string out;
+    for (const PassGlint &glint : p.glints)
+      out += (out.empty() ? "" : ";") + to_iso(glint.time);
+    return out;
+  });
+  text("glint_widths", "how long each lasts [s]", [](E, P p) {
+    std::string out;
+    for (const PassGlint &glint : p.glints)
+      out += fmt::format("{}{:.3f}", out.empty() ? "" : ";", glint.width_s);
+    return out;
+  });
   number("sun_alt", "deg", "altitude of the Sun at culmination, airless",
          [](E, P p) { return p.culmination.sun_altitude.degrees(); });
   number("elset_age", "d", "culmination less epoch of the elements",
          [](E e, P p) { return e.element_age_days(p.culmination.time); });
+  number("track_error", "km", "expected along the track from that age: see the note",
+         [](E e, P p) { return along_track_error_km(e, p.culmination.time); });
   return t;
+}
+
+/// Tracks over the site's sky, sunlit parts full and shadowed ones dotted, times at both ends.
+Result<std::string> sky_chart(const std::vector<FoundPass> &found,
+                              const std::vector<Trajectory> &orbits, const Site &site) {
+  constexpr std::size_t passes_max = 40; // more is a tangle
+  PlotFigure figure{"Passes over the site", "", "", {}, false, true};
+  for (std::size_t k = 0; k < std::min(found.size(), passes_max); ++k) {
+    const SitePass &pass = found[k].pass;
+    const Trajectory &orbit = orbits[found[k].object];
+    PlotLine lit{pass_id(orbit, pass), {}, {}, k % 7, "solid", {}},
+        dark{"in the shadow", {}, {}, k % 7, "dot", {}};
+    constexpr int points = 120;
+    const double length = seconds_between(pass.set.time, pass.rise.time);
+    for (int i = 0; i <= points; ++i) {
+      const Epoch<Utc> time = plus_seconds(pass.rise.time, length * i / points);
+      const auto state = orbit.at(time);
+      if (!state)
+        continue;
+      const ObservingGeometry g = observe(*state, time, site, ShadowModel::Ellipsoid);
+      const bool is_end = i == 0 || i == points;
+      for (PlotLine *line : {&lit, &dark}) {
+        const bool is_on = (g.sunlit > 0.5) == (line == &lit);
+        line->x.push_back(is_on ? g.azimuth.degrees() : std::nan(""));
+        line->y.push_back(is_on ? g.altitude.degrees() : std::nan(""));
+        line->labels.push_back(is_on && is_end ? to_iso(time).substr(11, 8) : "");
+      }
+    }
+    const auto has_any = [](const PlotLine &line) {
+      return std::any_of(line.x.begin(), line.x.end(), [](double x) { return !std::isnan(x); });
+    };
+    if (has_any(lit))
+      figure.lines.push_back(lit);
+    if (has_any(dark)) {
+      dark.name = pass_id(orbit, pass) + (has_any(lit) ? ", in the shadow" : "");
+      figure.lines.push_back(dark);
+    }
+  }
+  std::vector<std::string> notes{
+      "The sky overhead: zenith in the middle, north up, east left. Times are UTC.",
+      "Dotted: more than half of the Sun's disk is behind the Earth."};
+  if (found.size() > passes_max)
+    notes.push_back(fmt::format("The first {} of {} passes are drawn.", passes_max, found.size()));
+  return make_plot_page("Passes over " + (site.name.empty() ? "the site" : site.name), {figure},
+                        notes);
 }
 
 struct Search {
@@ -199,9 +265,9 @@ struct Search {
   bool is_stopped = false;
 };
 
-Search search_all(const PassesOptions &o, const std::vector<Trajectory> &orbits, const Site &site,
-                  Epoch<Utc> start, Epoch<Utc> stop, const Common &common,
-                  Diagnostics &diagnostics) {
+Search search_all(const PassesOptions &o, const std::vector<Trajectory> &orbits,
+                  const PassModels &models, const Site &site, Epoch<Utc> start, Epoch<Utc> stop,
+                  const Common &common, Diagnostics &diagnostics) {
   PassSearch wanted;
   wanted.altitude_min = Angle::degrees(o.altitude_min_deg);
   wanted.sun_altitude_max = Angle::degrees(o.sun_altitude_max_deg);
@@ -213,7 +279,12 @@ Search search_all(const PassesOptions &o, const std::vector<Trajectory> &orbits,
   parallel_for(orbits.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
     if (interrupted())
       return;
-    results[i] = find_passes(orbits[i], site, start, stop, wanted);
+    PassSearch search = wanted;
+    if (const PassLight *light = models.of(orbits[i].norad_cat_id()))
+      search.on_pass = [&, light](SitePass &pass, std::span<const ObservingGeometry> samples) {
+        return light->describe(orbits[i], site, wanted.shadow, models.band(), samples, pass);
+      };
+    results[i] = find_passes(orbits[i], site, start, stop, search);
     const std::scoped_lock guard(lock);
     bar.update(++done, orbits.size());
   });
@@ -252,11 +323,16 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   UMOV_ASSIGN(chosen, read_orbits(o, text, start, stop, diagnostics));
   warn_if_beyond_leap_seconds(stop, diagnostics);
   warn_if_outside_eop(start, stop, diagnostics);
-  const Search search = search_all(o, chosen, site, start, stop, common, diagnostics);
+  UMOV_ASSIGN(models, PassModels::make(o.model, chosen.size(), diagnostics));
+  const Search search = search_all(o, chosen, models, site, start, stop, common, diagnostics);
   Table table = passes_table(search.found, chosen);
-  table.note("site", fmt::format("latitude {} deg, longitude {} deg, altitude {:g} m",
-                                 degrees_text(site.latitude), degrees_text(site.longitude),
-                                 site.altitude_m));
+  table.note("model", models.description());
+  table.note("track_error",
+             "roughly 1 km and 2 km per day of age below 2,000 km, 0.2 km per day above");
+  table.note("site",
+             fmt::format("{}latitude {} deg, longitude {} deg, altitude {:g} m",
+                         site.name.empty() ? "" : site.name + ", ", degrees_text(site.latitude),
+                         degrees_text(site.longitude), site.altitude_m));
   table.note("altitude_min", fmt::format("{:g} deg, geometric", o.altitude_min_deg));
   if (search.is_stopped)
     return tl::unexpected(put_partial_table(
@@ -270,6 +346,10 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
     return fail(ErrorCode::Nothing,
                 fmt::format("no {}pass above {:g} deg in this span",
                             o.is_visible_only ? "visible " : "", o.altitude_min_deg));
+  if (!o.chart.empty()) {
+    UMOV_ASSIGN(page, sky_chart(search.found, chosen, site));
+    UMOV_TRY(put(o.chart, page));
+  }
   return put_table(o.output, table, common);
 }
 
@@ -283,7 +363,9 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--norad", o->norad, "Catalogue numbers, separated by commas; else all")
       ->delimiter(',');
   auto *site =
-      verb->add_option("-s,--site", o->site, "latitude,longitude,altitude: deg north, deg east, m");
+      verb->add_option("-s,--site", o->site,
+                       "A known site such as maui or paranal, or latitude,longitude,altitude: deg "
+                       "north, deg east, m");
   auto *latitude =
       verb->add_option("--lat-deg", o->latitude_deg, "Geodetic latitude, north positive");
   auto *longitude = verb->add_option("--lon-deg", o->longitude_deg, "Longitude, east positive");
@@ -306,15 +388,18 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum, "Read lines with a wrong checksum");
   verb->add_flag("--keep-going", o->keep_going, "Report bad sets and keep the others");
   verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
+  add_pass_model(*verb, o->model);
+  verb->add_option("--chart", o->chart, "Sky chart of the passes (HTML)");
   verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv, .fits or .json by its suffix");
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
   verb->callback([=] {
     if (site->count() == 0 &&
         (latitude->count() == 0 || longitude->count() == 0 || altitude->count() == 0)) {
-      exit_with(report(Error{ErrorCode::Usage,
-                             "where? Give --site LAT,LON,ALT, or --lat-deg, --lon-deg and --alt-m",
-                             {}}));
+      exit_with(report(
+          Error{ErrorCode::Usage,
+                "where? Give --site NAME or LAT,LON,ALT, or --lat-deg, --lon-deg and --alt-m",
+                {}}));
       return;
     }
     watch_interrupts();

@@ -4,6 +4,7 @@
 
 #include "attitude/directions.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
@@ -19,6 +20,7 @@ public:
   Model &operator=(const Model &) = delete;
   virtual ~Model() = default;
   [[nodiscard]] virtual Result<Rotation<Body, Gcrs>> at(const AttitudeContext &now) const = 0;
+  [[nodiscard]] virtual AttitudeRates rates() const = 0;
 };
 
 namespace {
@@ -33,6 +35,7 @@ public:
     UMOV_ASSIGN(plain, two_axis(law_, now));
     return offset_ * plain;
   }
+  [[nodiscard]] AttitudeRates rates() const override { return {0, true}; }
 
 private:
   TwoAxisLaw law_;
@@ -45,6 +48,7 @@ public:
   [[nodiscard]] Result<Rotation<Body, Gcrs>> at(const AttitudeContext &) const override {
     return attitude_;
   }
+  [[nodiscard]] AttitudeRates rates() const override { return {}; }
 
 private:
   Rotation<Body, Gcrs> attitude_;
@@ -57,6 +61,7 @@ public:
     const double turns = seconds_between(now.time, law_.epoch) * (law_.rate_rad_s / (2 * pi));
     return turned(law_.axis, 2 * pi * (turns - std::floor(turns))) * start_;
   }
+  [[nodiscard]] AttitudeRates rates() const override { return {std::abs(law_.rate_rad_s), false}; }
 
 private:
   SpinLaw law_;
@@ -70,6 +75,7 @@ public:
   [[nodiscard]] Result<Rotation<Body, Gcrs>> at(const AttitudeContext &now) const override {
     return motion_.turned(seconds_between(now.time, epoch_)) * start_;
   }
+  [[nodiscard]] AttitudeRates rates() const override { return {motion_.rate_bound_rad_s(), false}; }
 
 private:
   TorqueFreeMotion motion_;
@@ -83,6 +89,7 @@ public:
   [[nodiscard]] Result<Rotation<Body, Gcrs>> at(const AttitudeContext &now) const override {
     return attitude_in(*table_, now.time);
   }
+  [[nodiscard]] AttitudeRates rates() const override { return {rate_bound_rad_s(*table_), false}; }
 
 private:
   std::shared_ptr<const AttitudeTable> table_;
@@ -101,6 +108,15 @@ public:
                   fmt::format("the attitude is not given for {}: its first piece begins at {}",
                               to_iso(now.time), to_iso(from_.front())));
     return pieces_[k - 1].at(now);
+  }
+  [[nodiscard]] AttitudeRates rates() const override {
+    AttitudeRates out;
+    for (const Attitude &piece : pieces_) {
+      const AttitudeRates one = piece.rates();
+      out.own_rad_s = std::max(out.own_rad_s, one.own_rad_s);
+      out.follows_orbit = out.follows_orbit || one.follows_orbit;
+    }
+    return out;
   }
 
 private:
@@ -131,6 +147,12 @@ public:
       }
     const Vec3<Body> vector{angle[0], angle[1], angle[2]};
     return norm(vector) > 0 ? turned(vector, norm(vector)) * plain : plain;
+  }
+  [[nodiscard]] AttitudeRates rates() const override {
+    AttitudeRates out = base_.rates();
+    for (const Wave &w : wave_)
+      out.own_rad_s += amplitude_ * w.rate;
+    return out;
   }
 
 private:
@@ -194,6 +216,8 @@ Result<Attitude> Attitude::make(const AttitudeLaw &law, const ContextAt &context
   out.model_ = model;
   return out;
 }
+
+AttitudeRates Attitude::rates() const { return model_->rates(); }
 
 Result<Rotation<Body, Gcrs>> Attitude::at(const AttitudeContext &now) const {
   return model_->at(now);

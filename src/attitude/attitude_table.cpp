@@ -22,11 +22,9 @@ Rotation<Body, Gcrs> rotation_of(const Four &q) {
 
 /// Index of the state before a time, so that it and the next one enclose it.
 std::size_t before(const AttitudeSegment &segment, Epoch<Utc> time) {
-  const auto after =
-      std::upper_bound(segment.states.begin(), segment.states.end(), time,
-                       [](Epoch<Utc> t, const AttitudeState &s) {
-                         return seconds_between(s.time, t) > 0;
-                       });
+  const auto after = std::upper_bound(
+      segment.states.begin(), segment.states.end(), time,
+      [](Epoch<Utc> t, const AttitudeState &s) { return seconds_between(s.time, t) > 0; });
   const auto place = static_cast<std::size_t>(after - segment.states.begin());
   return std::clamp<std::size_t>(place, 1, segment.states.size() - 1) - 1;
 }
@@ -99,8 +97,7 @@ Rotation<Body, Gcrs> between_spins(const AttitudeState &a, const AttitudeState &
   const double delta = p.declination_rad + share * (q.declination_rad - p.declination_rad);
   const double expected = p.angle_rad + h * 0.5 * (p.rate_rad_s + q.rate_rad_s);
   const double end = expected + within_half_turn(q.angle_rad - expected);
-  return spin_rotation(alpha, delta,
-                       cubic(p.angle_rad, end, p.rate_rad_s, q.rate_rad_s, h, share));
+  return spin_rotation(alpha, delta, cubic(p.angle_rad, end, p.rate_rad_s, q.rate_rad_s, h, share));
 }
 
 constexpr double edge_s = 1e-4; // what dates of six decimals lose on the way through Julian dates
@@ -124,6 +121,27 @@ Result<void> check(const AttitudeTable &table) {
     }
   }
   return {};
+}
+
+double rate_bound_rad_s(const AttitudeTable &table) {
+  double out = 0;
+  for (const AttitudeSegment &segment : table.segments)
+    for (std::size_t k = 1; k < segment.states.size(); ++k) {
+      const AttitudeState &a = segment.states[k - 1], &b = segment.states[k];
+      const double h = seconds_between(b.time, a.time);
+      if (b.spin) {
+        const double axis =
+            std::abs(within_half_turn(b.spin->right_ascension_rad - a.spin->right_ascension_rad)) +
+            std::abs(b.spin->declination_rad - a.spin->declination_rad);
+        out = std::max(out,
+                       1.5 * std::max(std::abs(a.spin->rate_rad_s), std::abs(b.spin->rate_rad_s)) +
+                           2 * axis / h);
+        continue;
+      }
+      const double cosine = std::abs(dot4(four(a.body_from_gcrs), four(b.body_from_gcrs)));
+      out = std::max(out, 2 * 2 * std::acos(std::min(cosine, 1.0)) / h);
+    }
+  return out;
 }
 
 Result<Rotation<Body, Gcrs>> attitude_in(const AttitudeTable &table, Epoch<Utc> time) {

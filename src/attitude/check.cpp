@@ -108,7 +108,8 @@ Result<void> check_law(const PiecewiseLaw &law) {
 Result<void> check_law(const LibrationLaw &law) {
   UMOV_TRY(umov::check(*law.law));
   if (!(law.rms_rad >= 0 && law.rms_rad <= 0.5))
-    return fail(ErrorCode::BadInput, "the libration is " + degrees_text(Angle::radians(law.rms_rad)) +
+    return fail(ErrorCode::BadInput, "the libration is " +
+                                         degrees_text(Angle::radians(law.rms_rad)) +
                                          " deg, expected 0 to 28 deg");
   if (!(law.period_s > 0 && std::isfinite(law.period_s)))
     return fail(ErrorCode::BadInput, "the period of the libration is " + shortest(law.period_s) +

@@ -17,9 +17,9 @@ bool needs_mesh(const AttitudeLaw &law) {
   return false;
 }
 
-Result<AttitudeLaw>
-completed(const AttitudeLaw &law, const Mesh &mesh,
-          const std::function<Result<std::shared_ptr<const AttitudeTable>>(const std::string &)> &read) {
+Result<AttitudeLaw> completed(
+    const AttitudeLaw &law, const Mesh &mesh,
+    const std::function<Result<std::shared_ptr<const AttitudeTable>>(const std::string &)> &read) {
   AttitudeLaw out = law;
   if (auto *tumble = std::get_if<TumbleLaw>(&out); tumble && tumble->from_mesh) {
     UMOV_ASSIGN(mass, mass_properties(mesh, *tumble->from_mesh));

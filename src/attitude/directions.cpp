@@ -82,7 +82,6 @@ Result<Vec3<Gcrs>> unit_along(const Direction &direction, const AttitudeContext 
   return v / length;
 }
 
-
 // The attitude takes the triad of the body axes to the triad of the directions (Black 1964).
 Result<Rotation<Body, Gcrs>> two_axis(const TwoAxisLaw &law, const AttitudeContext &context) {
   UMOV_ASSIGN(at, unit_along(law.at, context));

@@ -30,8 +30,8 @@ Result<TorqueFreeMotion> TorqueFreeMotion::make(const Inertia &inertia, Vec3<Bod
   Vec3<Body> w = m.principal_ * rate;
   const double energy2 =
       moment[0] * w.x * w.x + moment[1] * w.y * w.y + moment[2] * w.z * w.z; // twice the energy
-  const double momentum2 = std::pow(moment[0] * w.x, 2) + std::pow(moment[1] * w.y, 2) +
-                           std::pow(moment[2] * w.z, 2);
+  const double momentum2 =
+      std::pow(moment[0] * w.x, 2) + std::pow(moment[1] * w.y, 2) + std::pow(moment[2] * w.z, 2);
   // The motion goes around the axis of the largest moment, or of the smallest.
   if (momentum2 < energy2 * moment[1]) {
     m.principal_ = {axes.axis[2], axes.axis[1], -axes.axis[0]};
@@ -65,8 +65,8 @@ Result<TorqueFreeMotion> TorqueFreeMotion::make(const Inertia &inertia, Vec3<Bod
   m.ratio2_ = sense * side * m.i2_ / std::sqrt(std::abs(d22));
   m.frequency_ = std::sqrt((m.i3_ - m.i2_) * high / (m.i1_ * m.i2_ * m.i3_));
   // On the separatrix the period is infinite and no double can say on which side one is.
-  m.k_ = std::sqrt(std::min(1 - 1e-14, std::max(0.0, (m.i2_ - m.i1_) * low /
-                                                         ((m.i3_ - m.i2_) * high))));
+  m.k_ = std::sqrt(
+      std::min(1 - 1e-14, std::max(0.0, (m.i2_ - m.i1_) * low / ((m.i3_ - m.i2_) * high))));
   m.quarter_ = boost::math::ellint_1(m.k_);
   m.third_ = -m.i3_ * (m.i2_ - m.i1_) / (m.i1_ * (m.i3_ - m.i2_));
   m.node_scale_ = m.momentum_ * (m.i3_ - m.i1_) / (m.i1_ * m.i3_ * m.frequency_);
@@ -106,8 +106,7 @@ Vec3<Body> TorqueFreeMotion::rate_at(double seconds) const {
   if (is_steady_)
     return steady_rate_;
   const Phase phase = phase_at(seconds);
-  return principal_.inverse() *
-         Vec3<Body>{a1_ * phase.cn, a2_ * phase.sn, a3_ * phase.dn};
+  return principal_.inverse() * Vec3<Body>{a1_ * phase.cn, a2_ * phase.sn, a3_ * phase.dn};
 }
 
 Rotation<Body, Body> TorqueFreeMotion::turned(double seconds) const {
@@ -126,6 +125,10 @@ Rotation<Body, Body> TorqueFreeMotion::turned(double seconds) const {
 double TorqueFreeMotion::body_period_s() const {
   return is_steady_ || a1_ == 0 ? std::numeric_limits<double>::infinity()
                                 : 4 * quarter_ / frequency_;
+}
+
+double TorqueFreeMotion::rate_bound_rad_s() const {
+  return is_steady_ ? norm(steady_rate_) : norm(Vec3<Body>{a1_, a2_, a3_});
 }
 
 double TorqueFreeMotion::precession_rate_rad_s() const {

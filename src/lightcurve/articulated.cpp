@@ -14,8 +14,8 @@ double angle_in(const AngleTable &table, Epoch<Utc> time) {
   if (after == table.time.end())
     return table.angle_rad.back();
   const auto k = static_cast<std::size_t>(after - table.time.begin());
-  const double share = seconds_between(time, table.time[k - 1]) /
-                       seconds_between(table.time[k], table.time[k - 1]);
+  const double share =
+      seconds_between(time, table.time[k - 1]) / seconds_between(table.time[k], table.time[k - 1]);
   return table.angle_rad[k - 1] + share * (table.angle_rad[k] - table.angle_rad[k - 1]);
 }
 

@@ -161,8 +161,11 @@ std::vector<Stretch> stretches(const Samples &samples, const std::function<doubl
   return out;
 }
 
-/// Everything along a pass that needs samples: shadow, phase, range.
-void describe(Tracker &tracker, const Stretch &stretch, const PassSearch &search, SitePass &out) {
+/// Everything along a pass that needs samples: shadow, phase, range. Returns them if they are
+/// wanted.
+std::vector<ObservingGeometry> describe(Tracker &tracker, const Stretch &stretch,
+                                        const PassSearch &search, SitePass &out) {
+  std::vector<ObservingGeometry> samples;
   constexpr double step_max = 5;
   const double length = stretch.set - stretch.rise;
   const auto steps =
@@ -174,6 +177,8 @@ void describe(Tracker &tracker, const Stretch &stretch, const PassSearch &search
   for (std::size_t k = 0; k <= steps; ++k) {
     const double t = stretch.rise + length * static_cast<double>(k) / static_cast<double>(steps);
     const ObservingGeometry at = tracker.at(t);
+    if (search.on_pass)
+      samples.push_back(at);
     const double now = at.sunlit - 0.5;
     if (k > 0 && (now > 0) != (before > 0))
       out.shadow.push_back({tracker.at(crossing(light, previous_time, t)).time, before > 0});
@@ -194,6 +199,7 @@ void describe(Tracker &tracker, const Stretch &stretch, const PassSearch &search
   const double share = 1 / static_cast<double>(steps + 1);
   out.sunlit_share = static_cast<double>(lit) * share;
   out.visible_s = static_cast<double>(visible) * share * length;
+  return samples;
 }
 
 } // namespace
@@ -215,7 +221,9 @@ Result<std::vector<SitePass>> find_passes(const Trajectory &orbit, const Site &s
     pass.set = tracker.at(stretch.set);
     pass.is_rise_cut = stretch.is_rise_cut;
     pass.is_set_cut = stretch.is_set_cut;
-    describe(tracker, stretch, search, pass);
+    const auto along = describe(tracker, stretch, search, pass);
+    if (search.on_pass && !tracker.failed())
+      UMOV_TRY(search.on_pass(pass, along));
     out.push_back(std::move(pass));
   }
   if (const auto &failed = tracker.failed())

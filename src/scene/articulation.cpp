@@ -20,7 +20,9 @@ struct Motion {
 /// Turns vectors by `angle` about the unit axis (the body's frame stands still).
 Rotation<Body, Body> rotating(Vec3<Body> axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
-  const auto row = [&](Vec3<Body> e) { return e * c + axis * ((1 - c) * dot(axis, e)) - cross(axis, e) * s; };
+  const auto row = [&](Vec3<Body> e) {
+    return e * c + axis * ((1 - c) * dot(axis, e)) - cross(axis, e) * s;
+  };
   return {row({1, 0, 0}), row({0, 1, 0}), row({0, 0, 1})};
 }
 
@@ -105,8 +107,8 @@ Mesh posed(const Mesh &mesh, const std::vector<Joint> &joints,
   for (std::size_t k = 0; k < joints.size(); ++k) {
     motions.push_back(motion_of(joints, k, angles_rad));
     for (const std::string &group : joints[k].groups)
-      joint_of[static_cast<std::size_t>(
-          std::find(mesh.groups.begin(), mesh.groups.end(), group) - mesh.groups.begin())] = k;
+      joint_of[static_cast<std::size_t>(std::find(mesh.groups.begin(), mesh.groups.end(), group) -
+                                        mesh.groups.begin())] = k;
   }
   Mesh out = mesh;
   // A vertex that a moving and another group share becomes one for each.
@@ -119,15 +121,15 @@ Mesh posed(const Mesh &mesh, const std::vector<Joint> &joints,
     const Motion &motion = motions[joint];
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::uint32_t vertex = triangle.vertex[corner], normal = triangle.normal[corner];
-      const auto [place, is_new] = places.emplace(
-          std::pair{joint, vertex}, static_cast<std::uint32_t>(out.positions.size()));
+      const auto [place, is_new] = places.emplace(std::pair{joint, vertex},
+                                                  static_cast<std::uint32_t>(out.positions.size()));
       if (is_new)
         out.positions.push_back(motion.place(mesh.positions[vertex]));
       triangle.vertex[corner] = place->second;
       if (normal == no_index)
         continue;
-      const auto [turned, is_new_normal] = normals.emplace(
-          std::pair{joint, normal}, static_cast<std::uint32_t>(out.normals.size()));
+      const auto [turned, is_new_normal] =
+          normals.emplace(std::pair{joint, normal}, static_cast<std::uint32_t>(out.normals.size()));
       if (is_new_normal)
         out.normals.push_back(motion.turn * mesh.normals[normal]);
       triangle.normal[corner] = turned->second;

@@ -45,8 +45,9 @@ Result<MassProperties> mass_properties(const Mesh &mesh, MassModel model) {
   Moments sum;
   const bool is_solid = model == MassModel::Solid;
   if (is_solid && !inspect(mesh).is_closed)
-    return fail(ErrorCode::BadInput, "the mesh is not closed and has no inside; take the inertia of "
-                                     "its shell, or give numbers");
+    return fail(ErrorCode::BadInput,
+                "the mesh is not closed and has no inside; take the inertia of "
+                "its shell, or give numbers");
   // Volumes are taken from a point of the mesh: a far origin would cost digits.
   const Vec3<Body> origin = mesh.positions.empty() ? Vec3<Body>{} : mesh.positions.front();
   for (const Triangle &t : mesh.triangles) {

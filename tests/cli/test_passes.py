@@ -83,3 +83,70 @@ def test_a_stop_keeps_what_is_found(umov, tmp_path):
     assert running.returncode == 130 and "stopped by the user" in said
     assert not (tmp_path / "p.csv").exists()
     assert len(read_csv(tmp_path / "p.partial.csv")) > 0
+
+
+def test_magnitudes_of_a_sphere_are_those_of_a_run(umov, scenario, tmp_path):
+    """umov passes with a model against the rows of umov run for the same sphere."""
+    assert umov("mesh", "make", "sphere", "--radius", 0.5, "--facets", 5000, "-o", "cube.obj").code == 0
+    name = scenario(('normals = "flat"', 'normals = "smooth"'), ("step_s = 20", "step_s = 2"),
+                    ("alt_min_deg = 10, sun_alt_max_deg = -6", "alt_min_deg = 10"),
+                    ("05:08:00Z", "05:00:00Z"), ("05:12:00Z", "05:20:00Z"),
+                    ('set = "paper_rgb"', 'set = ["nm:550"]'))
+    done = umov("run", name, "--quiet")
+    assert done.code == 0, done.err
+    rows = read_csv(tmp_path / "out/lightcurve.csv")
+    done = umov("passes", "--orbit", HST, "-s", "maui", "--start", "2018-01-21T05:00:00Z", "--stop",
+                "2018-01-21T05:20:00Z", "--model", "sphere", "--size-m", 0.5, "--material", "paper_al", "-o",
+                "p.csv")
+    assert done.code == 0, done.err
+    found, = read_csv(tmp_path / "p.csv")
+    # Penumbra apart, the faint end is at the rise; samples are 5 s apart, the table of phases 0.5 deg.
+    assert abs(float(found["mag_min"]) - min(float(row["mag"]) for row in rows)) < 0.01
+    assert abs(float(found["p_max"]) - max(float(row["p"]) for row in rows)) < 0.01
+    assert found["glints"] == ""
+
+
+def test_glints_of_a_spinning_plate_stand_in_the_run(umov, scenario, tmp_path):
+    """At the times that umov passes finds, a run's rows have a glint, and nothing else is as bright."""
+    assert umov("mesh", "make", "plate", "-o", "cube.obj").code == 0
+    spin = 'mode = "spin", axis = [1, 1, 1], period_s = 37, epoch = 2018-01-21T05:00:00Z'
+    sky = ("alt_min_deg = 10, sun_alt_max_deg = -6", "alt_min_deg = 10")
+    base = [('mode = "nadir"', spin), sky, ('set = "paper_rgb"', 'set = ["nm:550"]')]
+    name = scenario(*base, ("05:08:00Z", "05:08:00Z"), ("05:12:00Z", "05:13:00Z"),
+                    ("step_s = 20", "step_s = 0.25"))
+    done = umov("run", name, "--quiet")
+    assert done.code == 0, done.err
+    rows = read_csv(tmp_path / "out/lightcurve.csv")
+    done = umov("passes", "--orbit", HST, "-s", "maui", "--start", "2018-01-21T05:00:00Z", "--stop",
+                "2018-01-21T05:20:00Z", "--scene", name, "--chart", "sky.html", "-o", "p.csv")
+    assert done.code == 0, done.err
+    found, = read_csv(tmp_path / "p.csv")
+    times = [Time(text) for text in found["glints"].split(";") if text]
+    widths = [float(text) for text in found["glint_widths"].split(";") if text]
+    flagged = [Time(row["time_utc"]) for row in rows if row["glint"] == "True"]
+    assert times and len(times) == len(widths) and flagged
+    for time in flagged:  # a row in glint lies within the width of one that was found
+        assert any(abs((time - t).sec) <= w for t, w in zip(times, widths)), time
+    assert (tmp_path / "sky.html").stat().st_size > 100_000
+
+
+@pytest.mark.parametrize("change, words", [
+    (("--model", "sphere"), ["--material"]),
+    (("--model", "ball", "--material", "paper_al"), ["sphere"]),
+    (("--band", "nm:550"), ["--scene or --model"]),
+    (("--model", "sphere", "--material", "nothing"), ["nothing"]),
+    (("-s", "Mauii"), ['Did you mean "maui"?']),
+])
+def test_models_refuse(umov, tmp_path, change, words):
+    site = () if "-s" in change else ("-s", "maui")
+    done = umov("passes", "--orbit", HST, *DAY, *site, "-o", "p.csv", *change)
+    assert done.code in (2, 3) and all(word in done.err for word in words), done.err
+    assert not (tmp_path / "p.csv").exists()
+
+
+def test_a_site_by_name_in_a_scenario(umov, scenario, tmp_path):
+    name = scenario(("lat_deg = 20.7083\nlon_deg = -156.2578\nalt_m = 3058", 'name = "Maui"'))
+    done = umov("run", name, "--quiet")
+    assert done.code == 0, done.err
+    lock = (tmp_path / "out/scenario.lock.toml").read_text()
+    assert "lat_deg = 20.7083" in lock and "alt_m = 3058" in lock

@@ -107,6 +107,12 @@ using ContextAt = std::function<Result<AttitudeContext>(Epoch<Utc>)>;
 /// Unit vector of a direction at the object. Physics where it has no length.
 Result<Vec3<Gcrs>> direction_to(const Direction &direction, const AttitudeContext &now);
 
+/// How fast an attitude can change.
+struct AttitudeRates {
+  double own_rad_s = 0;       ///< bound on turns that the law makes by itself (spin, tumbling)
+  bool follows_orbit = false; ///< turns with its targets besides
+};
+
 /// A law ready to be asked; cheap to copy, thread safe.
 class Attitude {
 public:
@@ -117,6 +123,8 @@ public:
   /// direction has no length (no velocity), or where a table or a piece says nothing. Nadir is
   /// towards the Earth's centre; the orbit normal is position x velocity.
   [[nodiscard]] Result<Rotation<Body, Gcrs>> at(const AttitudeContext &now) const;
+
+  [[nodiscard]] AttitudeRates rates() const;
 
   class Model;
 

@@ -39,6 +39,10 @@ struct AttitudeTable {
 /// BadInput unless states are in order of time, finite and at least two per segment.
 Result<void> check(const AttitudeTable &table);
 
+/// Bound on the rate of turning [rad/s]: twice the largest mean rate between neighbours, and the
+/// spins' own.
+double rate_bound_rad_s(const AttitudeTable &table);
+
 /// Physics where no segment covers the time; the message says what is covered.
 Result<Rotation<Body, Gcrs>> attitude_in(const AttitudeTable &table, Epoch<Utc> time);
 

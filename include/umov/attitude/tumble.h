@@ -22,6 +22,8 @@ public:
   [[nodiscard]] Rotation<Body, Body> turned(double seconds) const;
   /// Period of the angular velocity in the body [s]; infinite where it stands still there.
   [[nodiscard]] double body_period_s() const;
+  /// No angular velocity is larger [rad/s].
+  [[nodiscard]] double rate_bound_rad_s() const;
   /// Mean rate at which the body goes around its angular momentum [rad/s].
   [[nodiscard]] double precession_rate_rad_s() const;
 

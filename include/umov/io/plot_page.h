@@ -12,11 +12,14 @@ struct PlotLine {
   std::vector<double> x, y;   ///< NaN breaks the line
   std::size_t colour = 0;     ///< into the colour-blind safe list
   std::string dash = "solid"; ///< solid, dash, dot, dashdot: lines differ by more than colour
+  std::vector<std::string> labels = {}; ///< of points of a sky figure, "" for none; may be empty
 };
 struct PlotFigure {
   std::string title, x_title, y_title;
   std::vector<PlotLine> lines;
   bool has_log_y = false;
+  bool is_sky = false; ///< x: azimuth from north through east, y: altitude [deg]; drawn as the sky
+                       ///< overhead, north up and east left
 };
 
 /// The page: title, one card per figure (each can be saved as SVG), notes at the end. Same input,

@@ -1,6 +1,9 @@
 #pragma once
 // When an object passes over a site.
 
+#include <functional>
+#include <limits>
+#include <span>
 #include <umov/core/diagnostics.h>
 #include <umov/orbit/ephemeris.h>
 #include <umov/orbit/trajectory.h>
@@ -14,6 +17,12 @@ struct ShadowCrossing {
   bool is_entry = true; ///< into the shadow
 };
 
+/// A flat that mirrors the Sun to the site.
+struct PassGlint {
+  Epoch<Utc> time;    ///< normal and half vector nearest
+  double width_s = 0; ///< for which the half vector is within the lobe
+};
+
 /// A stretch above an altitude, as seen from a site.
 struct SitePass {
   ObservingGeometry rise, culmination, set; ///< rise and set: where it crosses the altitude
@@ -24,12 +33,19 @@ struct SitePass {
   double sunlit_share = 0;    ///< of the time between rise and set
   double visible_s = 0;       ///< sunlit, with the site's Sun below PassSearch::sun_altitude_max
   Angle phase_min, phase_max; ///< while sunlit; 0 if never
+  // While sunlit, and only where PassSearch::on_pass says what the object is; else NaN and none.
+  double magnitude_min = std::numeric_limits<double>::quiet_NaN(), ///< the brightest
+      magnitude_max = std::numeric_limits<double>::quiet_NaN(),
+         p_max = std::numeric_limits<double>::quiet_NaN();
+  std::vector<PassGlint> glints; ///< in order
 };
 
 struct PassSearch {
   Angle altitude_min = Angle::degrees(10);
   Angle sun_altitude_max = Angle::degrees(-6); ///< of `visible_s`
   ShadowModel shadow = ShadowModel::Ellipsoid;
+  /// Called with every pass and its samples, some seconds apart from rise to set.
+  std::function<Result<void>(SitePass &, std::span<const ObservingGeometry>)> on_pass;
 };
 
 /// All passes of an object between two times, in order; times are good to 1 ms of the model.

@@ -24,8 +24,8 @@ struct Joint {
 Result<void> check_joints(const std::vector<Joint> &joints, const Mesh &mesh);
 
 /// The angle [rad] that brings the face as near as possible to a direction, for a joint whose
-/// carrier has turned by the angles before it: the face and the direction are alike across the axis.
-/// 0 where the direction lies along the axis (any angle would do).
+/// carrier has turned by the angles before it: the face and the direction are alike across the
+/// axis. 0 where the direction lies along the axis (any angle would do).
 double following_angle(const std::vector<Joint> &joints, std::size_t which,
                        const std::vector<double> &angles_rad, Vec3<Body> direction);
 

@@ -96,8 +96,8 @@ TEST(AttitudeLaws, PiecesFollowEachOther) {
   PiecewiseLaw law;
   law.pieces = {{plus_seconds(start, 10), std::make_shared<AttitudeLaw>(TwoAxisLaw{})},
                 {plus_seconds(start, 20),
-                 std::make_shared<AttitudeLaw>(SpinLaw{InertialLaw{}, {0, 0, 1}, 0.1,
-                                                       plus_seconds(start, 20)})}};
+                 std::make_shared<AttitudeLaw>(
+                     SpinLaw{InertialLaw{}, {0, 0, 1}, 0.1, plus_seconds(start, 20)})}};
   ASSERT_TRUE(check(law));
   const auto ready = Attitude::make(law, context);
   ASSERT_TRUE(ready);

@@ -15,8 +15,8 @@ namespace {
 
 using State = std::array<long double, 7>; // angular velocity, quaternion of the turn
 
-/// Euler's equations and the quaternion's, by Runge-Kutta-Fehlberg 7(8) to 1e-17 in long double: the
-/// oracle.
+/// Euler's equations and the quaternion's, by Runge-Kutta-Fehlberg 7(8) to 1e-17 in long double:
+/// the oracle.
 State integrate(const Inertia &i, Vec3<Body> rate, double seconds) {
   namespace ode = boost::numeric::odeint;
   const auto slope = [&](const State &s, State &out, long double) {
@@ -53,12 +53,10 @@ TEST(Tumble, AgreesWithIntegrationOverAHundredTurns) {
   const struct {
     Inertia inertia;
     Vec3<Body> rate;
-  } cases[] = {{{1, 2, 2.5, 0, 0, 0}, {0.1, 0.2, 1}},
-               {{1, 2, 2.5, 0, 0, 0}, {1, 0.3, -0.1}},
-               {{1, 2, 2.5, 0, 0, 0}, {-0.4, 0.9, -0.4}},
-               {{2.5, 1, 2, 0, 0, 0}, {-1, 0.02, 0.03}},
-               {{2, 2.5, 1, 0, 0, 0}, {0.3, 0.3, 0.3}},
-               {{1, 1.001, 1.9, 0, 0, 0}, {0.5, 0.5, -0.5}}};
+  } cases[] = {
+      {{1, 2, 2.5, 0, 0, 0}, {0.1, 0.2, 1}},     {{1, 2, 2.5, 0, 0, 0}, {1, 0.3, -0.1}},
+      {{1, 2, 2.5, 0, 0, 0}, {-0.4, 0.9, -0.4}}, {{2.5, 1, 2, 0, 0, 0}, {-1, 0.02, 0.03}},
+      {{2, 2.5, 1, 0, 0, 0}, {0.3, 0.3, 0.3}},   {{1, 1.001, 1.9, 0, 0, 0}, {0.5, 0.5, -0.5}}};
   for (const auto &one : cases) {
     const auto motion = TorqueFreeMotion::make(one.inertia, one.rate);
     ASSERT_TRUE(motion);
@@ -131,7 +129,11 @@ TEST(Tumble, TurnsAtTheRateItSays) {
   std::mt19937_64 random(6);
   std::uniform_real_distribution<double> even(-1, 1);
   for (int k = 0; k < 300; ++k) {
-    const Inertia i{1, 1.3 + 0.2 * even(random), 1.8, 0.1 * even(random), 0.1 * even(random),
+    const Inertia i{1,
+                    1.3 + 0.2 * even(random),
+                    1.8,
+                    0.1 * even(random),
+                    0.1 * even(random),
                     0.1 * even(random)};
     const auto motion = TorqueFreeMotion::make(i, {even(random), even(random), even(random)});
     const double t = 1000 * even(random), h = 1e-4;

@@ -29,12 +29,10 @@ Json figure_json(const PlotFigure &figure) {
                      {"x", numbers(line.x)},
                      {"y", numbers(line.y)},
                      {"colour", material_colour(line.colour)},
-                     {"dash", line.dash}});
-  return {{"title", figure.title},
-          {"x", figure.x_title},
-          {"y", figure.y_title},
-          {"log", figure.has_log_y},
-          {"lines", lines}};
+                     {"dash", line.dash},
+                     {"labels", line.labels}});
+  return {{"title", figure.title},   {"x", figure.x_title},  {"y", figure.y_title},
+          {"log", figure.has_log_y}, {"sky", figure.is_sky}, {"lines", lines}};
 }
 
 /// Text in a script block must not close it.

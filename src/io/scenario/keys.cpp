@@ -39,7 +39,7 @@ const std::vector<Key> &keys() {
       {"", "detector", Table, "", "what measures it"},
       {"", "output", Table, "", "what is written"},
       {"", "material", Table, "", "materials written in place: [material.NAME]"},
-      {"observer", "name", String, "\"\"", "name of the site"},
+      {"observer", "name", String, "\"\"", "name of the site; a known one needs no coordinates"},
       {"observer", "lat_deg", Number, "", "geodetic latitude [deg], north positive"},
       {"observer", "lon_deg", Number, "", "longitude [deg], east positive"},
       {"observer", "alt_m", Number, "", "height above the WGS 84 ellipsoid [m]"},

@@ -6,6 +6,7 @@
 #include <optional>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
+#include <umov/io/sites.h>
 
 namespace umov {
 namespace {
@@ -66,9 +67,17 @@ Result<void> read_observer(const Node &top, Scenario &out) {
   if (!top.has("observer"))
     return {};
   UMOV_ASSIGN(node, top.child("observer"));
+  UMOV_TRY(node.choice("atmosphere", "none", {"none"}));
+  if (node.has("name") && !node.has("lat_deg") && !node.has("lon_deg") && !node.has("alt_m")) {
+    auto known = site_from(node.text("name", ""));
+    if (!known)
+      return fail(ErrorCode::BadInput, known.error().message, node.where("name"));
+    known->name = node.text("name", "");
+    out.observer = *known;
+    return {};
+  }
   for (const char *name : {"lat_deg", "lon_deg", "alt_m"})
     UMOV_TRY(node.require(name));
-  UMOV_TRY(node.choice("atmosphere", "none", {"none"}));
   auto site = make_site(node.text("name", ""), node.number("lat_deg", 0), node.number("lon_deg", 0),
                         node.number("alt_m", 0));
   if (!site) // the message begins with the name of the key

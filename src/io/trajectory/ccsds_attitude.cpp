@@ -29,10 +29,10 @@ std::string upper(std::string text) {
 
 tl::unexpected<Error> refuse(const Message &message, const Field &field,
                              const std::string &expected) {
-  return fail(ErrorCode::BadInput,
-              fmt::format("{} is \"{}\", expected {}", field.key, field.text.substr(0, 60),
-                          expected),
-              {message.file, field.line});
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("{} is \"{}\", expected {}", field.key, field.text.substr(0, 60), expected),
+      {message.file, field.line});
 }
 
 bool is_inertial(const std::string &name) {
@@ -88,11 +88,12 @@ Result<Quaternion> quaternion_of(const Message &message, const Record &record, d
   const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   worst = std::max(worst, std::abs(length - 1));
   if (!(std::abs(length - 1) <= 1e-3))
-    return fail(ErrorCode::BadInput,
-                fmt::format("the quaternion has length {:.6f}, expected 1 within 0.001. Divide it by "
-                            "its length.",
-                            length),
-                {message.file, record.line});
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("the quaternion has length {:.6f}, expected 1 within 0.001. Divide it by "
+                    "its length.",
+                    length),
+        {message.file, record.line});
   return Quaternion{q.w / length, q.x / length, q.y / length, q.z / length};
 }
 
@@ -111,13 +112,14 @@ Quaternion euler_of(const Record &record, const std::string &sequence) {
   constexpr std::array keys{"X_ANGLE", "Y_ANGLE", "Z_ANGLE"};
   Rotation<Body, Body> out;
   for (const char axis : sequence)
-    out = turned_about(axis, number(record, keys[static_cast<std::size_t>(axis - '1')]) * pi / 180) *
-          out;
+    out =
+        turned_about(axis, number(record, keys[static_cast<std::size_t>(axis - '1')]) * pi / 180) *
+        out;
   return quaternion_from(out);
 }
 
-Result<AttitudeState> state_of(const Message &message, const Context &context,
-                               const Record &record, double &worst) {
+Result<AttitudeState> state_of(const Message &message, const Context &context, const Record &record,
+                               double &worst) {
   AttitudeState out;
   const Field &epoch = *find(record.fields, "EPOCH");
   auto time = utc_from_calendar(epoch.text, context.system);
@@ -125,10 +127,9 @@ Result<AttitudeState> state_of(const Message &message, const Context &context,
     return fail(ErrorCode::BadInput, "EPOCH: " + time.error().message, {message.file, epoch.line});
   out.time = *time;
   if (context.type.starts_with("SPIN")) {
-    out.spin = SpinState{number(record, "SPIN_ALPHA") * pi / 180,
-                         number(record, "SPIN_DELTA") * pi / 180,
-                         number(record, "SPIN_ANGLE") * pi / 180,
-                         number(record, "SPIN_ANGLE_VEL") * pi / 180};
+    out.spin = SpinState{
+        number(record, "SPIN_ALPHA") * pi / 180, number(record, "SPIN_DELTA") * pi / 180,
+        number(record, "SPIN_ANGLE") * pi / 180, number(record, "SPIN_ANGLE_VEL") * pi / 180};
     return out;
   }
   Quaternion q;
@@ -175,10 +176,10 @@ Result<AttitudeTable> read_attitude_table(std::string_view text, const std::stri
                                           Diagnostics &diagnostics) {
   UMOV_ASSIGN(message, ccsds::read_message(text, file, diagnostics));
   if (message.kind != ccsds::Kind::Aem)
-    return fail(ErrorCode::BadInput,
-                fmt::format("is a CCSDS {}; an attitude (AEM) was expected",
-                            ccsds::to_text(message.kind)),
-                {file});
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("is a CCSDS {}; an attitude (AEM) was expected", ccsds::to_text(message.kind)),
+        {file});
   AttitudeTable out;
   out.name = find(message.segments.front().metadata, "OBJECT_NAME")->text;
   double worst = 0;

@@ -218,5 +218,55 @@ TEST(Passes, AnEmptySpanAndADecayedObject) {
   EXPECT_EQ(decayed.error().code, ErrorCode::Physics);
 }
 
+// passes_skyfield.csv: Skyfield at 0.1 s steps, see tests/data/ephemeris/README.md.
+TEST(Passes, ADenseReference) {
+  std::map<std::string, std::vector<SitePass>> found;
+  const std::tuple<int, const char *, const char *> spans[] = {
+      {1328, "2022-02-22T00:00:00Z", "2022-03-02T00:00:00Z"},
+      {20580, "2018-01-21T00:00:00Z", "2018-01-25T00:00:00Z"}};
+  for (const auto &[norad, start, stop] : spans)
+    found[std::to_string(norad)] =
+        find_passes(Trajectory(elements_of(folder + "elements.tle", norad)), maui, utc(start),
+                    utc(stop), {})
+            .value();
+  std::ifstream stream(folder + "passes_skyfield.csv");
+  std::string line;
+  std::getline(stream, line);
+  int rows = 0, shadows = 0;
+  while (std::getline(stream, line)) {
+    std::istringstream cells(line);
+    std::string norad;
+    std::getline(cells, norad, ',');
+    std::vector<std::string> cell(9);
+    for (std::string &text : cell)
+      std::getline(cells, text, ',');
+    const auto *passes = &found.at(norad);
+    SCOPED_TRACE(cell[0]);
+    const Epoch<Utc> rise = utc(cell[0]);
+    const auto pass = std::find_if(passes->begin(), passes->end(), [&](const SitePass &one) {
+      return std::abs(seconds_between(one.rise.time, rise)) < 60;
+    });
+    ASSERT_NE(pass, passes->end());
+    EXPECT_NEAR(seconds_between(pass->rise.time, rise), 0, 0.1);
+    EXPECT_NEAR(seconds_between(pass->set.time, utc(cell[2])), 0, 0.1);
+    EXPECT_NEAR(seconds_between(pass->culmination.time, utc(cell[1])), 0, 0.1);
+    // The file has the highest of rows 0.1 s apart.
+    EXPECT_NEAR(pass->culmination.altitude.degrees(), std::stod(cell[3]), 1e-4);
+    // One second of arc, and what the phase moves by in the millisecond that times are printed to.
+    constexpr double arcsec = 1 / 3600.0;
+    EXPECT_NEAR(pass->rise.phase_angle.degrees(), std::stod(cell[4]), arcsec);
+    EXPECT_NEAR(pass->set.phase_angle.degrees(), std::stod(cell[6]), arcsec);
+    if (!cell[7].empty()) {
+      ASSERT_EQ(pass->shadow.size(), 1u);
+      EXPECT_NEAR(seconds_between(pass->shadow[0].time, utc(cell[7])), 0, 0.1);
+      EXPECT_EQ(pass->shadow[0].is_entry, cell[8] == "1");
+      ++shadows;
+    }
+    ++rows;
+  }
+  EXPECT_GE(rows, 75);
+  EXPECT_GE(shadows, 4);
+}
+
 } // namespace
 } // namespace umov

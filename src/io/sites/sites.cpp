@@ -1,0 +1,78 @@
+#include <umov/io/sites.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fmt/format.h>
+#include <umov/core/embedded.h>
+#include <umov/core/text.h>
+
+UMOV_EMBEDDED(sites)
+
+namespace umov {
+namespace {
+
+std::vector<std::string> cells_of(std::string_view line) {
+  std::vector<std::string> out;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    out.emplace_back(trimmed(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::vector<Site> known_sites() {
+  std::vector<Site> out;
+  std::string_view text = sites();
+  for (bool is_header = true; !text.empty(); is_header = false) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const auto cells = cells_of(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (is_header || cells.size() != 4)
+      continue;
+    out.push_back(make_site(cells[0], parse_number(cells[1]).value(), parse_number(cells[2]).value(),
+                            parse_number(cells[3]).value())
+                      .value());
+  }
+  return out;
+}
+
+/// Lower case, letters and digits alone.
+std::string plain(std::string_view text) {
+  std::string out;
+  for (const char c : text)
+    if (std::isalnum(static_cast<unsigned char>(c)))
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+} // namespace
+
+std::vector<std::string> site_names() {
+  std::vector<std::string> out;
+  for (const Site &site : known_sites())
+    out.push_back(site.name);
+  return out;
+}
+
+Result<Site> site_from(const std::string &text) {
+  const auto cells = cells_of(text);
+  if (cells.size() == 3 && parse_number(cells[0])) {
+    const auto lat = parse_number(cells[0]), lon = parse_number(cells[1]),
+               alt = parse_number(cells[2]);
+    if (lat && lon && alt)
+      return make_site("", *lat, *lon, *alt);
+  }
+  for (Site &site : known_sites())
+    if (plain(site.name) == plain(text))
+      return std::move(site);
+  const auto names = site_names();
+  const auto near = nearest_name(text, names);
+  return fail(ErrorCode::Usage,
+              fmt::format("site \"{}\" is not known.{} Names are {}; or give latitude, longitude "
+                          "[deg, north and east positive] and altitude [m], separated by commas.",
+                          text, near ? fmt::format(" Did you mean \"{}\"?", *near) : "",
+                          fmt::join(names, ", ")));
+}
+
+} // namespace umov
