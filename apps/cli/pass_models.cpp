@@ -7,11 +7,13 @@
 namespace umov::cli {
 
 void add_pass_model(CLI::App &verb, PassModelOptions &o) {
-  auto *scene = verb.add_option("--scene", o.scene,
-                                "Scenario whose objects give mesh, materials, attitude and bands: by "
-                                "their norad, and one without orbit for all others");
-  auto *shape = verb.add_option("--model", o.shape, "Every object as a sphere, or a cube in nadir "
-                                                    "attitude")
+  auto *scene =
+      verb.add_option("--scene", o.scene,
+                      "Scenario whose objects give mesh, materials, attitude and bands: by "
+                      "their norad, and one without orbit for all others");
+  auto *shape = verb.add_option("--model", o.shape,
+                                "Every object as a sphere, or a cube in nadir "
+                                "attitude")
                     ->check(CLI::IsMember({"sphere", "cube"}));
   shape->excludes(scene);
   verb.add_option("--size-m", o.size_m, "Of --model: radius, or edge [m]")
@@ -56,13 +58,12 @@ Result<PassModels> PassModels::make(const PassModelOptions &o, std::size_t objec
       UMOV_ASSIGN(sphere, PassLight::of_sphere(o.size_m, material, bands));
       out.other_ = sphere;
     } else {
-      UMOV_ASSIGN(scene,
-                  make_scene(make_chamfered_cube(o.size_m, 0.1 * o.size_m), NormalMode::Flat, bands,
-                             {material}, {material}, diagnostics));
+      UMOV_ASSIGN(scene, make_scene(make_chamfered_cube(o.size_m, 0.1 * o.size_m), NormalMode::Flat,
+                                    bands, {material}, {material}, diagnostics));
       out.other_ = PassLight::of_body(scene, TwoAxisLaw{}, true);
     }
-    out.description_ = fmt::format("{} of {:g} m, {}, {}", o.shape, o.size_m, o.material,
-                                   bands.front().name);
+    out.description_ =
+        fmt::format("{} of {:g} m, {}, {}", o.shape, o.size_m, o.material, bands.front().name);
     return out;
   }
   if (o.scene.empty()) {

@@ -207,6 +207,8 @@ Table passes_table(const std::vector<FoundPass> &found, const std::vector<Trajec
   });
   number("sun_alt", "deg", "altitude of the Sun at culmination, airless",
          [](E, P p) { return p.culmination.sun_altitude.degrees(); });
+  text("twilight", "at culmination: day, civil, nautical, astronomical or night",
+       [](E, P p) { return std::string(twilight(p.culmination.sun_altitude)); });
   number("elset_age", "d", "culmination less epoch of the elements",
          [](E e, P p) { return e.element_age_days(p.culmination.time); });
   number("track_error", "km", "expected along the track from that age: see the note",

@@ -49,6 +49,7 @@ LightCurveRequest request_of(const Scenario &scenario, const ScenarioObject &nam
   request.attitude = object.attitude;
   request.joints = named.parts;
   request.frame = scenario.frame;
+  request.earthshine = scenario.earthshine;
   request.has_solar_disk = scenario.has_solar_disk;
   request.integration.accuracy = scenario.accuracy;
   request.integration.seed = scenario.seed;

@@ -8,6 +8,8 @@
 #include <limits>
 #include <umov/core/constants.h>
 #include <umov/core/parallel.h>
+#include <umov/frames/sky.h>
+#include <umov/lightcurve/engine.h>
 #include <umov/photometry/radiometry.h>
 
 namespace umov {
@@ -142,9 +144,13 @@ struct RowMaker {
   const Integrator &integrator;
   const std::vector<double> &solar; ///< per band
   Attitude attitude;
+  const Engine *engine; ///< for the many directions of earthshine; null without it
 
   Result<PoseResult> light_of(LightCurveEpoch &epoch, const AttitudeContext &now,
                               const Rotation<Body, Gcrs> &body_from_gcrs) const;
+  void add_earthshine(const ObservingGeometry &geometry, const LightCurveEpoch &epoch,
+                      const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
+                      LightCurve &curve) const;
   Result<void> make(const ObservingGeometry &geometry, const std::string &pass_id, std::size_t row,
                     LightCurve &curve) const;
 };
@@ -159,6 +165,46 @@ Result<PoseResult> RowMaker::light_of(LightCurveEpoch &epoch, const AttitudeCont
   Scene turned = scene;
   turned.mesh = posed(scene.mesh, joints_of(request.joints), angles);
   return Integrator(turned).evaluate(epoch.pose, request.integration);
+}
+
+/// Many directions at one epoch: masks where the object is rigid, rough tracing where it is not.
+void RowMaker::add_earthshine(const ObservingGeometry &geometry, const LightCurveEpoch &epoch,
+                              const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
+                              LightCurve &curve) const {
+  const std::size_t bands = scene.bands.size();
+  std::optional<Integrator> turned;
+  if (!epoch.joint_angles_rad.empty()) {
+    Scene posed_scene = scene;
+    posed_scene.mesh = posed(scene.mesh, joints_of(request.joints), epoch.joint_angles_rad);
+    turned.emplace(posed_scene);
+  }
+  const auto light = [&](const std::vector<Pose> &poses) {
+    std::vector<std::vector<BandResult>> out;
+    StokesTable table;
+    IntegrationOptions rough = request.integration;
+    rough.accuracy = std::max(rough.accuracy, 0.05);
+    if (!turned)
+      engine->evaluate(poses, table);
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      std::vector<BandResult> &one = out.emplace_back();
+      if (turned)
+        one = turned->evaluate(poses[k], rough).bands;
+      else
+        for (std::size_t b = 0; b < bands; ++b)
+          one.push_back(table.at(k, b));
+    }
+    return out;
+  };
+  const Vec3<Gcrs> north = request.frame == PolarizationFrame::Equatorial ? Vec3<Gcrs>{0, 0, 1}
+                           : request.frame == PolarizationFrame::AltAz
+                               ? geometry.zenith
+                               : scattering_normal(geometry.to_observer, geometry.to_sun);
+  const auto sum = earth_light(geometry, body_from_gcrs, north, *request.earthshine, bands, light);
+  for (std::size_t b = 0; b < bands; ++b) {
+    curve.earth_intensity[row * bands + b] = sum[b];
+    curve.earth_irradiance[row * bands + b] =
+        irradiance_at_observer(sum[b].i, solar[b], geometry.sun_distance_km, 1, geometry.range_km);
+  }
 }
 
 Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string &pass_id,
@@ -184,6 +230,8 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
   std::copy(light.group_intensity.begin(), light.group_intensity.end(),
             curve.group_intensity.begin() +
                 static_cast<std::ptrdiff_t>(row * light.group_intensity.size()));
+  if (request.earthshine)
+    add_earthshine(geometry, epoch, body_from_gcrs, row, curve);
   return {};
 }
 
@@ -198,6 +246,10 @@ LightCurve empty_curve(const LightCurveRequest &request, const Scene &scene, std
   curve.epochs.resize(rows);
   curve.samples.resize(rows * scene.bands.size());
   curve.group_intensity.resize(rows * scene.mesh.groups.size() * scene.bands.size());
+  if (request.earthshine) {
+    curve.earth_intensity.resize(curve.samples.size());
+    curve.earth_irradiance.resize(curve.samples.size());
+  }
   return curve;
 }
 
@@ -205,6 +257,8 @@ void truncate(LightCurve &curve, std::size_t rows) {
   const std::size_t before = std::max<std::size_t>(1, curve.epochs.size());
   curve.samples.resize(curve.samples.size() / before * rows);
   curve.group_intensity.resize(curve.group_intensity.size() / before * rows);
+  curve.earth_intensity.resize(curve.earth_intensity.size() / before * rows);
+  curve.earth_irradiance.resize(curve.earth_irradiance.size() / before * rows);
   curve.epochs.resize(rows);
 }
 
@@ -275,7 +329,13 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
   out.passes = selection.passes;
   out.passes_seen = selection.passes_seen;
   out.stopped = selection.stopped;
-  const RowMaker maker{request, scene, integrator, solar, attitude};
+  std::optional<Engine> engine;
+  if (request.earthshine && request.joints.empty() && !out.curve.epochs.empty()) {
+    EngineOptions options;
+    options.threads = request.threads;
+    engine.emplace(scene, options);
+  }
+  const RowMaker maker{request, scene, integrator, solar, attitude, engine ? &*engine : nullptr};
   truncate(out.curve, fill_rows(maker, selection, out.curve, progress, cancel, out.stopped));
   count_rows(out);
   return out;

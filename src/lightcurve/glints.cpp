@@ -132,8 +132,8 @@ void collect(Miss &miss, const std::vector<Sample> &samples, double limit, std::
                         (k + 1 == n || samples[k].miss < samples[k + 1].miss);
     if (!is_low)
       continue;
-    Sample best = minimum(miss, samples[k > 0 ? k - 1 : k].seconds,
-                          samples[k + 1 < n ? k + 1 : k].seconds);
+    Sample best =
+        minimum(miss, samples[k > 0 ? k - 1 : k].seconds, samples[k + 1 < n ? k + 1 : k].seconds);
     if (samples[k].miss < best.miss)
       best = samples[k];
     if (best.miss < limit)
@@ -188,8 +188,7 @@ std::vector<GlintFlat> glint_flats(const Scene &scene, double least_share, doubl
       if (scene.normals != NormalMode::Smooth)
         return false;
       for (const std::uint32_t normal : triangle.normal)
-        if (normal != no_index &&
-            angle_between(scene.mesh.normals[normal], doubled) > 1e-4)
+        if (normal != no_index && angle_between(scene.mesh.normals[normal], doubled) > 1e-4)
           return true;
       return false;
     };
@@ -208,9 +207,8 @@ std::vector<GlintFlat> glint_flats(const Scene &scene, double least_share, doubl
   for (const auto &[key, flat] : found)
     if (flat.area_m2 >= least_share * largest)
       out.push_back(flat);
-  std::stable_sort(out.begin(), out.end(), [](const GlintFlat &a, const GlintFlat &b) {
-    return a.area_m2 > b.area_m2;
-  });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const GlintFlat &a, const GlintFlat &b) { return a.area_m2 > b.area_m2; });
   return out;
 }
 
@@ -248,10 +246,11 @@ Result<std::vector<Glint>> find_glints(const std::vector<GlintFlat> &flats,
     if (miss.failure())
       return tl::unexpected(*miss.failure());
     if (count > evaluations_max)
-      return fail(ErrorCode::Physics,
-                  fmt::format("glints of a body that turns by {:.3g} rad/s over {:.0f} s are too many "
-                              "to be told one by one; shorten the span",
-                              rate_rad_s, last_s - first_s));
+      return fail(
+          ErrorCode::Physics,
+          fmt::format("glints of a body that turns by {:.3g} rad/s over {:.0f} s are too many "
+                      "to be told one by one; shorten the span",
+                      rate_rad_s, last_s - first_s));
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const Glint &a, const Glint &b) { return a.seconds < b.seconds; });

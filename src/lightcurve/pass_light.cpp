@@ -49,9 +49,8 @@ Pose pose_of(const Rotation<Body, Gcrs> &body, const ObservingGeometry &g) {
 Result<Attitude> attitude_of(const AttitudeLaw &law, const Trajectory &orbit, const Site &site,
                              ShadowModel shadow) {
   return Attitude::make(law, [&](Epoch<Utc> time) {
-    return orbit.at(time).map([&](const TemeState &state) {
-      return context_of(observe(state, time, site, shadow));
-    });
+    return orbit.at(time).map(
+        [&](const TemeState &state) { return context_of(observe(state, time, site, shadow)); });
   });
 }
 
@@ -200,8 +199,9 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
   if (state.engine)
     state.engine->evaluate(poses, table);
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    const BandResult light = state.engine ? table.at(k, band)
-                                          : state.integrator->evaluate(poses[k], pass_accuracy()).bands[band];
+    const BandResult light =
+        state.engine ? table.at(k, band)
+                     : state.integrator->evaluate(poses[k], pass_accuracy()).bands[band];
     take(light.stokes, lit[k], state.bands[band], state.solar[band], pass);
   }
   return {};

@@ -4,17 +4,20 @@
 #include <array>
 #include <cmath>
 #include <umov/core/constants.h>
+#include <umov/orbit/moon.h>
 
 namespace umov {
 namespace {
 
-/// Visible part of a small disk of angular radius a whose centre is c from the centre of a larger
-/// disk of radius b: two circles overlapping in a plane (Montenbruck & Gill 2000, section 3.4.2).
+/// Visible part of a disk of angular radius a whose centre is c from the centre of another disk of
+/// radius b: two circles overlapping in a plane (Montenbruck & Gill 2000, section 3.4.2).
 double visible_of_two_disks(double a, double b, double c) {
   if (c >= a + b)
     return 1;
   if (c <= b - a)
     return 0;
+  if (c <= a - b) // a ring is left
+    return 1 - b * b / (a * a);
   const double x = (c * c + a * a - b * b) / (2 * c);
   const double y = std::sqrt(std::max(0.0, a * a - x * x));
   const double overlap = a * a * std::acos(std::clamp(x / a, -1.0, 1.0)) +
@@ -99,6 +102,20 @@ double sunlit_fraction(Vec3<Itrs> object_km, Vec3<Itrs> sun_km, ShadowModel shad
   if (apart <= pole - disk)
     return 0;
   return visible_over_ellipsoid(object_km, to_sun / distance, disk);
+}
+
+double sunlit_beside_moon(Epoch<Utc> time, Vec3<Gcrs> object_km, Vec3<Gcrs> sun_km) {
+  // Mean elongation of the Moon (Meeus 1998, chapter 47): the true one differs by less than 8 deg,
+  // the parallax of an object out to 100,000 km by less than 16.
+  const double days = mjd(time) - 51544.5;
+  const double elongation = std::remainder(297.8502 + 12.19074912 * days, 360.0);
+  if (std::abs(elongation) > 26)
+    return 1;
+  constexpr double moon_radius_km = 1737.4; // IAU 2015 working group (Archinal et al. 2018)
+  const Vec3<Gcrs> to_sun = sun_km - object_km, to_moon = moon_km(time) - object_km;
+  const double disk = std::asin(std::min(1.0, constants::sun_radius_km / norm(to_sun)));
+  const double moon = std::asin(std::min(1.0, moon_radius_km / norm(to_moon)));
+  return visible_of_two_disks(disk, moon, angle_between(to_sun, to_moon));
 }
 
 } // namespace umov

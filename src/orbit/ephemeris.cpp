@@ -47,6 +47,15 @@ Angle topocentric_altitude(const TemeState &state, Epoch<Utc> time, const Site &
   return topocentric(enu_from_itrs(site) * line).altitude;
 }
 
+const char *twilight(Angle sun_altitude) {
+  const double altitude = sun_altitude.degrees();
+  return altitude > -0.833 ? "day" // refraction and the solar radius
+         : altitude > -6   ? "civil"
+         : altitude > -12  ? "nautical"
+         : altitude > -18  ? "astronomical"
+                           : "night";
+}
+
 ObservingGeometry observe(const TemeState &state, Epoch<Utc> time, const Site &site,
                           ShadowModel shadow) {
   ObservingGeometry out;
@@ -70,11 +79,13 @@ ObservingGeometry observe(const TemeState &state, Epoch<Utc> time, const Site &s
   out.to_sun = to_sun / out.sun_distance_km;
   out.to_observer = normalized(out.observer_gcrs_km - out.gcrs_km);
   out.phase_angle = Angle::radians(angle_between(out.to_sun, out.to_observer));
-  out.sunlit = sunlit_fraction(out.itrs_km, sun_itrs_km, shadow);
+  // Both at once within one epoch are rare, and then each takes its own part.
+  out.sunlit = sunlit_fraction(out.itrs_km, sun_itrs_km, shadow) *
+               sunlit_beside_moon(time, out.gcrs_km, out.sun_gcrs_km);
   const Vec3<Gcrs> s = scattering_normal(out.to_observer, out.to_sun);
-  const Vec3<Gcrs> zenith = gcrs_from_itrs * enu_from_itrs(site).row(2);
+  out.zenith = gcrs_from_itrs * enu_from_itrs(site).row(2);
   out.pa_scat_equatorial = position_angle(s, {0, 0, 1}, out.to_observer);
-  out.pa_scat_altaz = position_angle(s, zenith, out.to_observer);
+  out.pa_scat_altaz = position_angle(s, out.zenith, out.to_observer);
   return out;
 }
 

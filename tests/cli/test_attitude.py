@@ -167,3 +167,40 @@ def test_refuses_bad_attitude_messages(umov, scenario, tmp_path, row, words):
     assert done.code == 3, done.err
     for word in words:
         assert word in done.err, done.err
+
+
+def test_the_spin_comes_back_from_the_light_curve(umov, scenario, tmp_path):
+    """A plate with two different sides spins with 41 s in the geostationary ring, where the view hardly
+    changes: the periodogram has its peak there."""
+    from astropy.timeseries import LombScargle
+    import numpy as np
+
+    assert umov("mesh", "make", "plate", "--two-sided", "-o", "cube.obj").code == 0
+    law = 'mode = "spin", axis = [1, 2, 0.5], period_s = 41, epoch = 2018-01-21T05:00:00Z'
+    name = scenario(('mode = "nadir"', law), ('default = "paper_al"',
+                                              'front = "paper_spectralon"\nback = "paper_asi"'),
+                    (f'"{HST}", norad = 20580', f'"{ROOT}/tests/data/tle/mixed_979_2018-01-20.tle", norad = 36411'),
+                    ("alt_min_deg = 10, sun_alt_max_deg = -6", "alt_min_deg = 10"),
+                    ('set = "paper_rgb"', 'set = ["nm:550"]'), ("step_s = 20", "step_s = 1.7"),
+                    ("05:12:00Z", "05:38:00Z"))
+    rows = light_curve(umov, name, tmp_path)
+    seconds = (np.array([float(row["mjd_utc"]) for row in rows]) - 58139) * 86400
+    light = np.array([float(row["intensity"]) for row in rows])
+    frequency = np.linspace(1 / 120, 1 / 5, 40000)
+    power = LombScargle(seconds, light, nterms=4).power(frequency)
+    # Sun and observer turn by 8 deg against each other in half an hour: a fiftieth of a turn in 44.
+    assert abs(1 / frequency[np.argmax(power)] / 41 - 1) < 1e-3
+
+
+def test_earthshine_has_columns_of_its_own(umov, scenario, tmp_path):
+    plain = light_curve(umov, scenario(), tmp_path)
+    rows = light_curve(umov, scenario(("[output]", "[render]\nearthshine = { albedo = 0.3 }\n[output]"),
+                                      ('dir = "out"', 'dir = "out"')), tmp_path)
+    assert len(rows) == len(plain) > 0
+    for one, two in zip(plain, rows):
+        assert "earth_I" not in one and one["I"] == two["I"]
+        assert 0 <= float(two["earth_I"])
+        if two["earth_q"]:
+            assert float(two["earth_q"]) ** 2 + float(two["earth_u"]) ** 2 <= 1
+    done = umov("run", scenario(("[output]", "[render]\nearthshine = { albedo = 3 }\n[output]")))
+    assert done.code == 3 and "albedo = 3; 0 to 1 was expected" in done.err

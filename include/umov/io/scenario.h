@@ -62,6 +62,7 @@ struct Scenario {
   std::vector<std::string> band_set{"paper_rgb"};
   std::vector<Band> bands;
   double accuracy = 0.005;
+  std::optional<EarthshineOptions> earthshine;
   bool has_solar_disk = true;              ///< false: a point Sun
   std::filesystem::path output_dir{"out"}; ///< relative to the working folder
   std::vector<std::string> formats{"ecsv", "html"};

@@ -7,6 +7,7 @@
 #include <umov/attitude/attitude.h>
 #include <umov/core/diagnostics.h>
 #include <umov/lightcurve/articulated.h>
+#include <umov/lightcurve/earth_light.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/orbit/trajectory.h>
 
@@ -33,6 +34,7 @@ struct LightCurveRequest {
   std::vector<MovingJoint> joints; ///< checked against the scene's mesh
   PolarizationFrame frame = PolarizationFrame::Equatorial;
   ShadowModel shadow = ShadowModel::Ellipsoid;
+  std::optional<EarthshineOptions> earthshine; ///< absent: none
   bool has_solar_disk = true; ///< the Sun as a uniform disk at its distance, or a point
   IntegrationOptions integration;
   unsigned threads = 0;

@@ -29,10 +29,10 @@ struct GlintView {
 using GlintPath = std::function<Result<GlintView>(double seconds)>;
 
 struct Glint {
-  double seconds = 0;    ///< when normal and half vector are nearest
-  double miss_rad = 0;   ///< their angle then
-  double width_s = 0;    ///< for how long the angle stays below the limit, within the span
-  std::size_t flat = 0;  ///< into the list asked for
+  double seconds = 0;   ///< when normal and half vector are nearest
+  double miss_rad = 0;  ///< their angle then
+  double width_s = 0;   ///< for how long the angle stays below the limit, within the span
+  std::size_t flat = 0; ///< into the list asked for
 };
 
 /// Every stretch between two times in which the half vector comes within the lobe's half width plus

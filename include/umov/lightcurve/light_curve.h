@@ -43,7 +43,10 @@ struct LightCurve {
   std::vector<std::string> materials; ///< material of each group
   std::vector<LightCurveEpoch> epochs;
   std::vector<LightCurveSample> samples; ///< [epoch * bands.size() + band]
-  std::vector<double> group_intensity;   ///< [(epoch * groups + group) * bands + band]
+  /// By earthshine, [epoch * bands + band]; empty unless asked for. Sky axes of the curve.
+  std::vector<Stokes<SkyNorth>> earth_intensity; ///< [m2/sr] per unit solar irradiance
+  std::vector<double> earth_irradiance;          ///< I at the observer [W m-2 nm-1]
+  std::vector<double> group_intensity;           ///< [(epoch * groups + group) * bands + band]
 };
 
 } // namespace umov

@@ -20,8 +20,8 @@ public:
   static Result<PassLight> of_sphere(double radius_m, const Material &material,
                                      const std::vector<Band> &bands);
 
-  /// Fills magnitudes, largest p and glints of a pass from its samples (those with sunlight), in one
-  /// band. Glints: candidates of flats that give more than half of the light at their time.
+  /// Fills magnitudes, largest p and glints of a pass from its samples (those with sunlight), in
+  /// one band. Glints: candidates of flats that give more than half of the light at their time.
   Result<void> describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
                         std::size_t band, std::span<const ObservingGeometry> samples,
                         SitePass &pass) const;

@@ -107,6 +107,9 @@ std::string locked_scenario(const Scenario &s) {
   out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));
   out += fmt::format("\n[render]\nbounces = 1\nsun = \"{}\"\naccuracy = {}\n",
                      s.has_solar_disk ? "disk" : "point", shortest(s.accuracy));
+  if (s.earthshine)
+    out += fmt::format("earthshine = {{ albedo = {}, patches = {} }}\n",
+                       shortest(s.earthshine->albedo), s.earthshine->patches);
   out += "\n[detector]\nmodel = \"ideal\"\n";
   out += fmt::format("\n[output]\ndir = {}\nformats = {}\npol_frame = \"{}\"\n",
                      quoted(s.output_dir.string()), list(s.formats), frame_name(s.frame));

@@ -298,6 +298,22 @@ Result<void> read_render(const Node &top, Scenario &out) {
           ErrorCode::BadInput,
           fmt::format("bounces = {} is not built yet; this version has 1 (direct light)", bounces),
           node.where("bounces"));
+    if (node.has("earthshine")) {
+      UMOV_ASSIGN(earth, node.child("earthshine"));
+      EarthshineOptions options;
+      options.albedo = earth.number("albedo", options.albedo);
+      const auto patches = earth.integer("patches", static_cast<std::int64_t>(options.patches));
+      if (!(options.albedo >= 0 && options.albedo <= 1))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("albedo = {}; 0 to 1 was expected", options.albedo),
+                    earth.where("albedo"));
+      if (patches < 10 || patches > 100'000)
+        return fail(ErrorCode::BadInput,
+                    fmt::format("patches = {}; 10 to 100000 was expected", patches),
+                    earth.where("patches"));
+      options.patches = static_cast<std::size_t>(patches);
+      out.earthshine = options;
+    }
     UMOV_ASSIGN(sun, node.choice("sun", "disk", {"disk", "point"}));
     out.has_solar_disk = sun == "disk";
     out.accuracy = node.number("accuracy", 0.005);

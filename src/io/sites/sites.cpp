@@ -30,8 +30,8 @@ std::vector<Site> known_sites() {
     text.remove_prefix(std::min(end + 1, text.size()));
     if (is_header || cells.size() != 4)
       continue;
-    out.push_back(make_site(cells[0], parse_number(cells[1]).value(), parse_number(cells[2]).value(),
-                            parse_number(cells[3]).value())
+    out.push_back(make_site(cells[0], parse_number(cells[1]).value(),
+                            parse_number(cells[2]).value(), parse_number(cells[3]).value())
                       .value());
   }
   return out;

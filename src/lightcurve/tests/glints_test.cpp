@@ -49,12 +49,12 @@ TEST(Glints, AThousandSpinningMirrorsGlintWhenTheyMust) {
         flat.normal = normalized(flat.normal + spinner.axis * 0.015);
     }
     const double span = 30 + 100 * even(random);
-    const auto found =
-        find_glints({flat}, [&](double t) { return spinner.view(t); }, 0, span, spinner.rate,
-                    half_disk);
+    const auto found = find_glints(
+        {flat}, [&](double t) { return spinner.view(t); }, 0, span, spinner.rate, half_disk);
     ASSERT_TRUE(found);
     const Vec3<Body> half = normalized(spinner.sun + spinner.observer);
-    const double from_axis = angle_between(spinner.axis, half) - angle_between(spinner.axis, flat.normal);
+    const double from_axis =
+        angle_between(spinner.axis, half) - angle_between(spinner.axis, flat.normal);
     const Vec3<Body> x = normalized(half - spinner.axis * dot(spinner.axis, half)),
                      y = cross(spinner.axis, x);
     // The half vector's azimuth is -rate t; the normal's is fixed.
@@ -88,8 +88,8 @@ TEST(Glints, WidthIsTheTimeWithinTheLobe) {
   // The normal crosses the half vector at right angles to the axis: width = 2 limit / rate.
   const Spinner spinner{{0, 0, 1}, {1, 0, 0}, {1, 0, 0}, 0.1};
   const GlintFlat flat{normalized(Vec3<Body>{std::cos(1.0), -std::sin(1.0), 0}), 0.02, 1, 0};
-  const auto found =
-      find_glints({flat}, [&](double t) { return spinner.view(t); }, 0, 60, 0.1, 0.002);
+  const auto found = find_glints(
+      {flat}, [&](double t) { return spinner.view(t); }, 0, 60, 0.1, 0.002);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->size(), 1u);
   EXPECT_NEAR((*found)[0].seconds, 10, 1e-4);

@@ -6,8 +6,10 @@
 #include <map>
 #include <sstream>
 #include <umov/core/files.h>
+#include <umov/frames/earth.h>
 #include <umov/orbit/elements.h>
 #include <umov/orbit/ephemeris.h>
+#include <umov/orbit/moon.h>
 
 namespace umov {
 namespace {
@@ -155,6 +157,50 @@ TEST(Eclipse, MatchesTheClosedFormAndIsContinuous) {
     }
     EXPECT_EQ(before, 1);
   }
+}
+
+TEST(Eclipse, TheMoonOfTwentyOneAugust2017) {
+  // Greatest eclipse at 18:25:32 UTC above 36.967 N, 87.672 W (F. Espenak, NASA's eclipse page):
+  // total there, and the axis of the shadow passes within a kilometre.
+  const Epoch<Utc> time = *utc_from_iso("2017-08-21T18:25:32Z");
+  const auto to_gcrs = itrs_from_gcrs(time).inverse();
+  const Vec3<Gcrs> ground = to_gcrs * itrs_position_km(*make_site("", 36.967, -87.672, 0));
+  const Vec3<Gcrs> sun = apparent_sun_km(time);
+  EXPECT_EQ(sunlit_beside_moon(time, ground, sun), 0);
+  // 2,000 km aside the penumbra lets some of it through, a day later the Moon is gone.
+  const Vec3<Gcrs> aside = ground + any_perpendicular(normalized(sun)) * 2000;
+  EXPECT_GT(sunlit_beside_moon(time, aside, sun), 0.3);
+  EXPECT_LT(sunlit_beside_moon(time, aside, sun), 0.8);
+  const Epoch<Utc> later = plus_seconds(time, 86400);
+  EXPECT_EQ(sunlit_beside_moon(later, ground, apparent_sun_km(later)), 1);
+  // Maximum obscuration of the annular eclipse of 2016-09-01 at 09:06:53 UTC, 10.7 S 37.8 E: the
+  // diameters' ratio is 0.9736 (the same page), so 1 - 0.9736^2 is left.
+  const Epoch<Utc> ring = *utc_from_iso("2016-09-01T09:06:53Z");
+  const Vec3<Gcrs> under =
+      itrs_from_gcrs(ring).inverse() * itrs_position_km(*make_site("", -10.68, 37.77, 0));
+  EXPECT_NEAR(sunlit_beside_moon(ring, under, apparent_sun_km(ring)), 1 - 0.9736 * 0.9736, 2e-3);
+}
+
+TEST(Eclipse, TheMoonIsNeverLeftOutWhereItCounts) {
+  // Without the short cut on the mean elongation: all new moons of three years, in steps of 10 min,
+  // for objects around the Earth out to the geostationary ring.
+  for (int k = 0; k < 3 * 365 * 24 * 6; k += 7) {
+    const Epoch<Utc> time = plus_seconds(*utc_from_iso("2017-01-01T00:00:00Z"), 600.0 * k);
+    const Vec3<Gcrs> sun = normalized(apparent_sun_km(time)), moon = moon_km(time);
+    // The place around the Earth from which Sun and Moon are nearest each other.
+    const Vec3<Gcrs> across = moon - sun * dot(moon, sun);
+    if (dot(moon, sun) < 0 || norm(across) > 42164 + 2000)
+      continue;
+    EXPECT_LT(sunlit_beside_moon(time, across, apparent_sun_km(time)), 1) << to_iso(time);
+  }
+}
+
+TEST(Twilight, ByTheSunsAltitude) {
+  EXPECT_STREQ(twilight(Angle::degrees(0)), "day");
+  EXPECT_STREQ(twilight(Angle::degrees(-5.9)), "civil");
+  EXPECT_STREQ(twilight(Angle::degrees(-6.1)), "nautical");
+  EXPECT_STREQ(twilight(Angle::degrees(-12.1)), "astronomical");
+  EXPECT_STREQ(twilight(Angle::degrees(-18.1)), "night");
 }
 
 } // namespace
