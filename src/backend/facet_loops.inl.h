@@ -131,6 +131,20 @@ public:
       backend::add_alike(model_, out_);
   }
 
+  /// Facets of which something is both lit and seen.
+  void list_seen(std::vector<backend::SeenFacet> &out) {
+    out.clear();
+    for (const Chunk &chunk : scene_.chunks) {
+      find_facing(chunk);
+      if (masks_ != nullptr)
+        hide();
+      for (std::size_t k = 0; k < count_; ++k)
+        for (std::uint32_t j = 0; j < lanes; ++j)
+          if (area_[k][j] > 0)
+            out.push_back({group_[k], j, chunk.slot, static_cast<double>(area_[k][j]), 0});
+    }
+  }
+
   /// Facets whose share is uncertain.
   void list_uncertain(std::vector<backend::SeenFacet> &out) {
     out.clear();

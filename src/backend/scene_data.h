@@ -171,6 +171,9 @@ void list_uncertain(const SceneData<double> &scene, const Masks *masks, const Ma
 void list_uncertain(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
                     const PoseData<float> &pose, std::vector<SeenFacet> &out);
 
+/// Facets of which something is both lit and seen, without variances.
+void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
+               const PoseData<double> &pose, std::vector<SeenFacet> &out);
 /// Light of one facet per unit area without its colour: per lobe of its slot, then per product.
 /// `weight` has room for all of them.
 void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,

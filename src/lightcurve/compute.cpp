@@ -9,6 +9,7 @@
 #include <umov/core/constants.h>
 #include <umov/core/parallel.h>
 #include <umov/frames/sky.h>
+#include <umov/lightcurve/articulated_engine.h>
 #include <umov/lightcurve/engine.h>
 #include <umov/photometry/radiometry.h>
 
@@ -144,7 +145,9 @@ struct RowMaker {
   const Integrator &integrator;
   const std::vector<double> &solar; ///< per band
   Attitude attitude;
-  const Engine *engine; ///< for the many directions of earthshine; null without it
+  /// For the many directions of earthshine: one of them, by whether parts turn.
+  const Engine *engine;
+  const ArticulatedEngine *turning;
 
   Result<PoseResult> light_of(LightCurveEpoch &epoch, const AttitudeContext &now,
                               const Rotation<Body, Gcrs> &body_from_gcrs) const;
@@ -167,32 +170,25 @@ Result<PoseResult> RowMaker::light_of(LightCurveEpoch &epoch, const AttitudeCont
   return Integrator(turned).evaluate(epoch.pose, request.integration);
 }
 
-/// Many directions at one epoch: masks where the object is rigid, rough tracing where it is not.
+/// Many directions at one epoch, by masks.
 void RowMaker::add_earthshine(const ObservingGeometry &geometry, const LightCurveEpoch &epoch,
                               const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
                               LightCurve &curve) const {
   const std::size_t bands = scene.bands.size();
-  std::optional<Integrator> turned;
-  if (!epoch.joint_angles_rad.empty()) {
-    Scene posed_scene = scene;
-    posed_scene.mesh = posed(scene.mesh, joints_of(request.joints), epoch.joint_angles_rad);
-    turned.emplace(posed_scene);
-  }
   const auto light = [&](const std::vector<Pose> &poses) {
-    std::vector<std::vector<BandResult>> out;
     StokesTable table;
-    IntegrationOptions rough = request.integration;
-    rough.accuracy = std::max(rough.accuracy, 0.05);
-    if (!turned)
+    if (turning != nullptr) {
+      std::vector<double> angles;
+      for (std::size_t k = 0; k < poses.size(); ++k)
+        angles.insert(angles.end(), epoch.joint_angles_rad.begin(), epoch.joint_angles_rad.end());
+      turning->evaluate(poses, angles, table);
+    } else {
       engine->evaluate(poses, table);
-    for (std::size_t k = 0; k < poses.size(); ++k) {
-      std::vector<BandResult> &one = out.emplace_back();
-      if (turned)
-        one = turned->evaluate(poses[k], rough).bands;
-      else
-        for (std::size_t b = 0; b < bands; ++b)
-          one.push_back(table.at(k, b));
     }
+    std::vector<std::vector<BandResult>> out(poses.size());
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      for (std::size_t b = 0; b < bands; ++b)
+        out[k].push_back(table.at(k, b));
     return out;
   };
   const Vec3<Gcrs> north = request.frame == PolarizationFrame::Equatorial ? Vec3<Gcrs>{0, 0, 1}
@@ -330,12 +326,22 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
   out.passes_seen = selection.passes_seen;
   out.stopped = selection.stopped;
   std::optional<Engine> engine;
-  if (request.earthshine && request.joints.empty() && !out.curve.epochs.empty()) {
+  std::optional<ArticulatedEngine> turning;
+  if (request.earthshine && !out.curve.epochs.empty()) {
     EngineOptions options;
     options.threads = request.threads;
-    engine.emplace(scene, options);
+    if (request.joints.empty())
+      engine.emplace(scene, options);
+    else
+      turning.emplace(scene, joints_of(request.joints), options);
   }
-  const RowMaker maker{request, scene, integrator, solar, attitude, engine ? &*engine : nullptr};
+  const RowMaker maker{request,
+                       scene,
+                       integrator,
+                       solar,
+                       attitude,
+                       engine ? &*engine : nullptr,
+                       turning ? &*turning : nullptr};
   truncate(out.curve, fill_rows(maker, selection, out.curve, progress, cancel, out.stopped));
   count_rows(out);
   return out;

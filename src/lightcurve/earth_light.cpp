@@ -8,8 +8,8 @@
 namespace umov {
 namespace {
 
-/// Of a source, for mirrors: as the Sun's, though a patch is larger. Lobes narrower than a patch see
-/// the patches one by one.
+/// Of a source, for mirrors: as the Sun's, though a patch is larger. Lobes narrower than a patch
+/// see the patches one by one.
 constexpr double patch_radius_rad = 0.2665 * pi / 180;
 
 /// A part of the Earth's disk as the object sees it.
@@ -31,16 +31,16 @@ std::vector<Patch> lit_patches(const ObservingGeometry &g, const EarthshineOptio
   constexpr double golden_angle = 2.399963229728653;
   std::vector<Patch> out;
   for (std::size_t k = 0; k < o.patches; ++k) {
-    const double c = 1 - (1 - cos_limb) * (static_cast<double>(k) + 0.5) /
-                             static_cast<double>(o.patches);
+    const double c =
+        1 - (1 - cos_limb) * (static_cast<double>(k) + 0.5) / static_cast<double>(o.patches);
     const double s = std::sqrt(std::max(0.0, 1 - c * c)),
                  azimuth = golden_angle * static_cast<double>(k);
     const Vec3<Gcrs> direction =
         down * c + e1 * (s * std::cos(azimuth)) + e2 * (s * std::sin(azimuth));
     // Where that line meets the sphere: the nearer of the two places.
-    const double along = distance * c -
-                         std::sqrt(std::max(0.0, constants::wgs84_a_km * constants::wgs84_a_km -
-                                                     distance * distance * s * s));
+    const double along =
+        distance * c - std::sqrt(std::max(0.0, constants::wgs84_a_km * constants::wgs84_a_km -
+                                                   distance * distance * s * s));
     const double cos_sun = dot(normalized(g.gcrs_km + direction * along), sun);
     if (cos_sun > 0)
       out.push_back({direction, o.albedo / pi * cos_sun * solid});

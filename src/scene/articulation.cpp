@@ -9,14 +9,6 @@
 namespace umov {
 namespace {
 
-/// x -> turn x + shift, in body axes.
-struct Motion {
-  Rotation<Body, Body> turn;
-  Vec3<Body> shift{};
-
-  [[nodiscard]] Vec3<Body> place(Vec3<Body> p) const { return turn * p + shift; }
-};
-
 /// Turns vectors by `angle` about the unit axis (the body's frame stands still).
 Rotation<Body, Body> rotating(Vec3<Body> axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
@@ -34,15 +26,14 @@ std::size_t carrier_of(const std::vector<Joint> &joints, std::size_t which) {
 }
 
 /// Motion of everything that a joint carries; those before `which` have angles.
-Motion motion_of(const std::vector<Joint> &joints, std::size_t which,
-                 const std::vector<double> &angles) {
+PartMotion motion_of(const std::vector<Joint> &joints, std::size_t which,
+                     const std::vector<double> &angles) {
   const Joint &joint = joints[which];
-  Motion own{rotating(joint.axis, angles[which]), {}};
-  own.shift = joint.pivot_m - own.turn * joint.pivot_m;
+  PartMotion own{rotating(joint.axis, angles[which]), {}};
+  own.shift_m = joint.pivot_m - own.turn * joint.pivot_m;
   if (joint.on.empty())
     return own;
-  const Motion carrier = motion_of(joints, carrier_of(joints, which), angles);
-  return {carrier.turn * own.turn, carrier.place(own.shift)};
+  return motion_of(joints, carrier_of(joints, which), angles) * own;
 }
 
 Rotation<Body, Body> carrier_turn(const std::vector<Joint> &joints, std::size_t which,
@@ -99,26 +90,36 @@ Vec3<Body> turned_face(const std::vector<Joint> &joints, std::size_t which,
   return motion_of(joints, which, angles_rad).turn * joints[which].face;
 }
 
+std::vector<PartMotion> part_motions(const std::vector<Joint> &joints,
+                                     const std::vector<double> &angles_rad) {
+  std::vector<PartMotion> out;
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    out.push_back(motion_of(joints, k, angles_rad));
+  return out;
+}
+
+std::vector<std::size_t> joint_of_groups(const Mesh &mesh, const std::vector<Joint> &joints) {
+  std::vector<std::size_t> out(mesh.groups.size(), joints.size());
+  for (std::size_t k = 0; k < joints.size(); ++k)
+    for (const std::string &group : joints[k].groups)
+      out[static_cast<std::size_t>(std::find(mesh.groups.begin(), mesh.groups.end(), group) -
+                                   mesh.groups.begin())] = k;
+  return out;
+}
+
 Mesh posed(const Mesh &mesh, const std::vector<Joint> &joints,
            const std::vector<double> &angles_rad) {
-  constexpr std::size_t still = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> joint_of(mesh.groups.size(), still);
-  std::vector<Motion> motions;
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    motions.push_back(motion_of(joints, k, angles_rad));
-    for (const std::string &group : joints[k].groups)
-      joint_of[static_cast<std::size_t>(std::find(mesh.groups.begin(), mesh.groups.end(), group) -
-                                        mesh.groups.begin())] = k;
-  }
+  const std::vector<std::size_t> joint_of = joint_of_groups(mesh, joints);
+  const std::vector<PartMotion> motions = part_motions(joints, angles_rad);
   Mesh out = mesh;
   // A vertex that a moving and another group share becomes one for each.
   std::map<std::pair<std::size_t, std::uint32_t>, std::uint32_t> places, normals;
   for (std::size_t t = 0; t < out.triangles.size(); ++t) {
     Triangle &triangle = out.triangles[t];
     const std::size_t joint = joint_of[triangle.front];
-    if (joint == still)
+    if (joint == joints.size())
       continue;
-    const Motion &motion = motions[joint];
+    const PartMotion &motion = motions[joint];
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::uint32_t vertex = triangle.vertex[corner], normal = triangle.normal[corner];
       const auto [place, is_new] = places.emplace(std::pair{joint, vertex},

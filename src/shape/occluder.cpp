@@ -94,6 +94,9 @@ Occluder::Point Occluder::to_point(Vec3<Body> p) const {
   const Vec3<Body> m = state_->to_model(p);
   return {static_cast<float>(m.x), static_cast<float>(m.y), static_cast<float>(m.z)};
 }
+Vec3<Body> Occluder::from_point(Point p) const {
+  return Vec3<Body>{p.x, p.y, p.z} / state_->scale + state_->centre;
+}
 
 void Occluder::is_free(std::span<const Vec3<Body>> origins, Vec3<Body> direction,
                        std::span<unsigned char> free) const {

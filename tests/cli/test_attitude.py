@@ -202,5 +202,10 @@ def test_earthshine_has_columns_of_its_own(umov, scenario, tmp_path):
         assert 0 <= float(two["earth_I"])
         if two["earth_q"]:
             assert float(two["earth_q"]) ** 2 + float(two["earth_u"]) ** 2 <= 1
+    part = '[[object.part]]\ngroups = ["cube"]\naxis = "+X"\nangle_deg = 0\n'
+    turned = light_curve(umov, scenario(("[output]", "[render]\nearthshine = { albedo = 0.3 }\n[output]"),
+                                        ("[bands]", part + "[bands]")), tmp_path)
+    for one, two in zip(rows, turned):  # turned by nothing: the engine of turning parts says the same
+        assert float(one["earth_I"]) == pytest.approx(float(two["earth_I"]), rel=1e-3, abs=1e-30)
     done = umov("run", scenario(("[output]", "[render]\nearthshine = { albedo = 3 }\n[output]")))
     assert done.code == 3 and "albedo = 3; 0 to 1 was expected" in done.err

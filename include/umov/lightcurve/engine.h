@@ -90,6 +90,7 @@ public:
   [[nodiscard]] std::size_t band_count() const;
 
 private:
+  friend class ArticulatedEngine;
   struct State;
   explicit Engine(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;

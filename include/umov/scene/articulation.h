@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <umov/core/result.h>
+#include <umov/core/rotation.h>
 #include <umov/shape/mesh.h>
 #include <vector>
 
@@ -32,6 +33,27 @@ double following_angle(const std::vector<Joint> &joints, std::size_t which,
 /// Where a joint's face points after all have turned.
 Vec3<Body> turned_face(const std::vector<Joint> &joints, std::size_t which,
                        const std::vector<double> &angles_rad);
+
+/// Where a rigid part of the mesh goes: x -> turn x + shift_m, in body axes.
+struct PartMotion {
+  Rotation<Body, Body> turn;
+  Vec3<Body> shift_m{};
+
+  [[nodiscard]] Vec3<Body> place(Vec3<Body> p) const { return turn * p + shift_m; }
+  [[nodiscard]] PartMotion inverse() const {
+    const Rotation<Body, Body> back = turn.inverse();
+    return {back, back * (-1 * shift_m)};
+  }
+  friend PartMotion operator*(const PartMotion &a, const PartMotion &b) {
+    return {a.turn * b.turn, a.place(b.shift_m)};
+  }
+};
+/// Motions of all joints.
+std::vector<PartMotion> part_motions(const std::vector<Joint> &joints,
+                                     const std::vector<double> &angles_rad);
+
+/// The joint of each mesh group; joints.size() where it stands still.
+std::vector<std::size_t> joint_of_groups(const Mesh &mesh, const std::vector<Joint> &joints);
 
 /// The mesh with its joints turned by one angle each.
 Mesh posed(const Mesh &mesh, const std::vector<Joint> &joints,

@@ -23,6 +23,7 @@ public:
     float x, y, z;
   };
   [[nodiscard]] Point to_point(Vec3<Body> p) const;
+  [[nodiscard]] Vec3<Body> from_point(Point p) const;
   /// As above for one direction (unit) per origin.
   void is_free(std::span<const Point> origins, std::span<const Point> directions,
                std::span<unsigned char> free) const;

@@ -59,6 +59,12 @@ void list_uncertain(const SceneData<double> &scene, const Masks *masks, const Ma
   kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_uncertain(out);
 }
 
+void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
+               const PoseData<double> &pose, std::vector<SeenFacet> &out) {
+  PoseSums unused;
+  kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_seen(out);
+}
+
 void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
                  const SeenFacet &facet, double *weight) {
   const FacetGroup<double> &f = scene.groups[facet.group];

@@ -23,6 +23,17 @@ void BandLight::add(const BandLight &other) {
     one(column);
 }
 
+void BandLight::add_scaled(const BandLight &other, double scale) {
+  const auto one = [&](std::vector<double> BandLight::*column, double by) {
+    for (std::size_t b = 0; b < size(); ++b)
+      (this->*column)[b] += (other.*column)[b] * by;
+  };
+  for (auto column : {&BandLight::i, &BandLight::q, &BandLight::u, &BandLight::v, &BandLight::bias})
+    one(column, scale);
+  for (auto column : {&BandLight::var_i, &BandLight::var_q, &BandLight::var_u, &BandLight::var_v})
+    one(column, scale * scale);
+}
+
 Colours::Colours(std::vector<const Surface *> surfaces,
                  std::vector<std::optional<SurfaceLight>> light,
                  const std::vector<backend::SlotTerms> &terms, bool is_intensity_only)

@@ -15,6 +15,8 @@ struct BandLight {
   /// Zeros; U and V only if something gives them: kernels do not.
   void reset(std::size_t bands, bool has_u_or_v = false);
   void add(const BandLight &other);
+  /// The same with the other's unit of area changed into this one's.
+  void add_scaled(const BandLight &other, double scale);
   [[nodiscard]] std::size_t size() const { return i.size(); }
 };
 

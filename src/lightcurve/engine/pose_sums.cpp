@@ -62,10 +62,10 @@ void Engine::State::add_rounding(Workspace &work) const {
   }
 }
 
-void Engine::State::take_roots(Workspace &work) const {
+void Engine::State::take_roots(Workspace &work, bool may_vary) const {
   const auto root = [&](const std::vector<double> &variance, std::vector<double> &out) {
     out.assign(variance.size(), 0);
-    if (!masks && work.sums.seen.empty())
+    if (!masks && work.sums.seen.empty() && !may_vary)
       return; // nothing varies
     std::transform(variance.begin(), variance.end(), out.begin(),
                    [](double x) { return std::sqrt(x); });

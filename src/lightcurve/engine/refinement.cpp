@@ -172,6 +172,25 @@ void Engine::State::change_area(std::size_t k, double change, Workspace &work) c
   }
 }
 
+void Engine::State::add_variance(std::size_t k, double variance, Workspace &work) const {
+  const backend::SeenFacet &facet = work.uncertain[k];
+  const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
+  const double *weights = work.weights.data() + k * terms_max();
+  for (std::size_t l = 0; l < terms.lobe_count; ++l)
+    work.sums.specular_variance[terms.lobe_first + l] += weights[l] * weights[l] * variance;
+  for (std::size_t p = 0; p < terms.product_count; ++p) {
+    const double w = weights[terms.lobe_count + p];
+    work.sums.product_variance[terms.product_first + p] += w * w * variance;
+  }
+  for (std::size_t b = 0; terms.is_general && b < bands(); ++b) {
+    const auto &light = work.facet_light[k * bands() + b];
+    work.general.var_i[b] += light.i * light.i * variance;
+    work.general.var_q[b] += light.q * light.q * variance;
+    work.general.var_u[b] += light.u * light.u * variance;
+    work.general.var_v[b] += light.v * light.v * variance;
+  }
+}
+
 /// Traces the classes that make the error, the worst first, until the rest is well below what is
 /// allowed.
 void Engine::State::trace(const Pose &pose, Workspace &work) const {

@@ -87,7 +87,8 @@ struct Engine::State {
 
   // pose_sums.cpp
   void add_narrow_and_general(const Pose &pose, const Prepared &at, Workspace &work) const;
-  void take_roots(Workspace &work) const;
+  /// `may_vary`: something has added variances besides masks and listed facets.
+  void take_roots(Workspace &work, bool may_vary = false) const;
   void add_rounding(Workspace &work) const;
   void light_of_general(const Pose &pose, const Prepared &at, const backend::SeenFacet &facet,
                         const Workspace &work, Stokes<ScatteringPlane> *bands) const;
@@ -106,6 +107,8 @@ struct Engine::State {
   void trace(const Pose &pose, Workspace &work) const;
   void trace_facet(const Pose &pose, std::size_t k, double wanted, Workspace &work) const;
   void change_area(std::size_t k, double change, Workspace &work) const;
+  /// A variance of the seen area of work.uncertain[k] besides what the sums hold.
+  void add_variance(std::size_t k, double variance, Workspace &work) const;
   void take_variances(Workspace &work) const;
 };
 

@@ -62,8 +62,8 @@ TEST(EarthLight, LambertPlateOverTheSubsolarPoint) {
 
 TEST(EarthLight, TwoHundredPatchesAreEnough) {
   // A sphere of the paper's aluminium: the default against twenty times as many.
-  const Scene sphere = scene_of(make_sphere(1, 2000), NormalMode::Smooth,
-                                {builtin_material("paper_al").value()});
+  const Scene sphere =
+      scene_of(make_sphere(1, 2000), NormalMode::Smooth, {builtin_material("paper_al").value()});
   for (const double zenith : {0.0, 70.0, 95.0}) {
     const auto g = geometry(600, zenith, {-0.3, 0.8, 0.4});
     const auto few = light_of(sphere, g, nadir, 200), many = light_of(sphere, g, nadir, 4000);
@@ -77,8 +77,8 @@ TEST(EarthLight, TwoHundredPatchesAreEnough) {
 TEST(EarthLight, PolarizationIsThatOfSymmetry) {
   // Sun at the zenith: everything is symmetric about the plane of observer and vertical, so that
   // in its axes there is Q alone; and turning the axes turns Q into U.
-  const Scene sphere = scene_of(make_sphere(1, 2000), NormalMode::Smooth,
-                                {builtin_material("paper_al").value()});
+  const Scene sphere =
+      scene_of(make_sphere(1, 2000), NormalMode::Smooth, {builtin_material("paper_al").value()});
   const Vec3<Gcrs> v = normalized(Vec3<Gcrs>{-0.3, 0.8, 0});
   const auto g = geometry(600, 0, v);
   const Vec3<Gcrs> across{0, 0, 1}; // the normal of that plane
