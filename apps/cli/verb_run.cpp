@@ -50,6 +50,8 @@ LightCurveRequest request_of(const Scenario &scenario, const ScenarioObject &nam
   request.joints = named.parts;
   request.frame = scenario.frame;
   request.earthshine = scenario.earthshine;
+  request.has_moonlight = scenario.has_moonlight;
+  request.has_refracted_shadow = scenario.has_refracted_shadow;
   request.has_solar_disk = scenario.has_solar_disk;
   request.integration.accuracy = scenario.accuracy;
   request.integration.seed = scenario.seed;

@@ -12,6 +12,7 @@
 #include <umov/lightcurve/articulated_engine.h>
 #include <umov/lightcurve/engine.h>
 #include <umov/photometry/radiometry.h>
+#include <umov/photometry/refracted_shadow.h>
 
 namespace umov {
 namespace {
@@ -38,14 +39,33 @@ double position_angle_deg(double q, double u) {
   return angle < 0 ? (angle + 180 < 180 ? angle + 180 : 0) : angle;
 }
 
+/// Sunlight at the object in a band, in parts of that outside all shadows.
+double sunlight(const LightCurveRequest &request, const ObservingGeometry &g, const Band &band) {
+  if (!request.has_refracted_shadow)
+    return g.sunlit;
+  const double distance = norm(g.gcrs_km);
+  const Vec3<Gcrs> down = -1 * g.gcrs_km / distance;
+  // The ellipsoid's radius under the limb that the Sun stands over.
+  const Vec3<Gcrs> side = g.to_sun - down * dot(g.to_sun, down);
+  const double limb = std::acos(std::min(1.0, constants::wgs84_a_km / distance));
+  const double up = norm(side) > 1e-12 ? normalized(side).z : 0;
+  const double sine = -down.z * std::cos(limb) + up * std::sin(limb); // of the limb's latitude
+  const double radius = constants::wgs84_a_km * (1 - constants::wgs84_f * sine * sine);
+  const Angle disk = Angle::radians(std::asin(constants::sun_radius_km / g.sun_distance_km));
+  return refracted_sunlight(disk, radius, distance, Angle::radians(angle_between(g.to_sun, down)),
+                            band.wavelength) *
+         sunlit_beside_moon(g.time, g.gcrs_km, g.sun_gcrs_km);
+}
+
 LightCurveSample sample_from(const BandResult &band, const Band &colour, double solar,
-                             const ObservingGeometry &geometry, PolarizationFrame frame,
+                             const ObservingGeometry &geometry, const LightCurveRequest &request,
                              bool is_dark) {
+  const PolarizationFrame frame = request.frame;
   LightCurveSample out;
   out.intensity = band.stokes.i;
   out.half_width = band.half_width;
   out.irradiance = irradiance_at_observer(band.stokes.i, solar, geometry.sun_distance_km,
-                                          geometry.sunlit, geometry.range_km);
+                                          sunlight(request, geometry, colour), geometry.range_km);
   out.magnitude = ab_magnitude(out.irradiance, colour.wavelength);
   if (is_dark || !(band.stokes.i > 0)) {
     out.sky = {nan, nan, nan, nan};
@@ -145,15 +165,15 @@ struct RowMaker {
   const Integrator &integrator;
   const std::vector<double> &solar; ///< per band
   Attitude attitude;
-  /// For the many directions of earthshine: one of them, by whether parts turn.
+  /// For the many directions of other sources: one of them, by whether parts turn.
   const Engine *engine;
   const ArticulatedEngine *turning;
 
   Result<PoseResult> light_of(LightCurveEpoch &epoch, const AttitudeContext &now,
                               const Rotation<Body, Gcrs> &body_from_gcrs) const;
-  void add_earthshine(const ObservingGeometry &geometry, const LightCurveEpoch &epoch,
-                      const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
-                      LightCurve &curve) const;
+  void add_second_lights(const ObservingGeometry &geometry, const LightCurveEpoch &epoch,
+                         const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
+                         LightCurve &curve) const;
   Result<void> make(const ObservingGeometry &geometry, const std::string &pass_id, std::size_t row,
                     LightCurve &curve) const;
 };
@@ -171,9 +191,9 @@ Result<PoseResult> RowMaker::light_of(LightCurveEpoch &epoch, const AttitudeCont
 }
 
 /// Many directions at one epoch, by masks.
-void RowMaker::add_earthshine(const ObservingGeometry &geometry, const LightCurveEpoch &epoch,
-                              const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
-                              LightCurve &curve) const {
+void RowMaker::add_second_lights(const ObservingGeometry &geometry, const LightCurveEpoch &epoch,
+                                 const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
+                                 LightCurve &curve) const {
   const std::size_t bands = scene.bands.size();
   const auto light = [&](const std::vector<Pose> &poses) {
     StokesTable table;
@@ -195,11 +215,16 @@ void RowMaker::add_earthshine(const ObservingGeometry &geometry, const LightCurv
                            : request.frame == PolarizationFrame::AltAz
                                ? geometry.zenith
                                : scattering_normal(geometry.to_observer, geometry.to_sun);
-  const auto sum = earth_light(geometry, body_from_gcrs, north, *request.earthshine, bands, light);
-  for (std::size_t b = 0; b < bands; ++b) {
-    curve.earth_intensity[row * bands + b] = sum[b];
-    curve.earth_irradiance[row * bands + b] =
-        irradiance_at_observer(sum[b].i, solar[b], geometry.sun_distance_km, 1, geometry.range_km);
+  for (SecondLight &second : curve.second_lights) {
+    const auto sum =
+        second.name == "moon"
+            ? moon_light(geometry, body_from_gcrs, north, bands, light)
+            : earth_light(geometry, body_from_gcrs, north, *request.earthshine, bands, light);
+    for (std::size_t b = 0; b < bands; ++b) {
+      second.intensity[row * bands + b] = sum[b];
+      second.irradiance[row * bands + b] = irradiance_at_observer(
+          sum[b].i, solar[b], geometry.sun_distance_km, 1, geometry.range_km);
+    }
   }
 }
 
@@ -221,13 +246,13 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
   epoch.has_glint = light.glint_share > 0.5;
   const std::size_t bands = scene.bands.size();
   for (std::size_t b = 0; b < bands; ++b)
-    curve.samples[row * bands + b] = sample_from(light.bands[b], scene.bands[b], solar[b], geometry,
-                                                 request.frame, light.is_dark);
+    curve.samples[row * bands + b] =
+        sample_from(light.bands[b], scene.bands[b], solar[b], geometry, request, light.is_dark);
   std::copy(light.group_intensity.begin(), light.group_intensity.end(),
             curve.group_intensity.begin() +
                 static_cast<std::ptrdiff_t>(row * light.group_intensity.size()));
-  if (request.earthshine)
-    add_earthshine(geometry, epoch, body_from_gcrs, row, curve);
+  if (!curve.second_lights.empty())
+    add_second_lights(geometry, epoch, body_from_gcrs, row, curve);
   return {};
 }
 
@@ -242,9 +267,13 @@ LightCurve empty_curve(const LightCurveRequest &request, const Scene &scene, std
   curve.epochs.resize(rows);
   curve.samples.resize(rows * scene.bands.size());
   curve.group_intensity.resize(rows * scene.mesh.groups.size() * scene.bands.size());
-  if (request.earthshine) {
-    curve.earth_intensity.resize(curve.samples.size());
-    curve.earth_irradiance.resize(curve.samples.size());
+  if (request.earthshine)
+    curve.second_lights.push_back({"earth", {}, {}});
+  if (request.has_moonlight)
+    curve.second_lights.push_back({"moon", {}, {}});
+  for (SecondLight &second : curve.second_lights) {
+    second.intensity.resize(curve.samples.size());
+    second.irradiance.resize(curve.samples.size());
   }
   return curve;
 }
@@ -253,8 +282,10 @@ void truncate(LightCurve &curve, std::size_t rows) {
   const std::size_t before = std::max<std::size_t>(1, curve.epochs.size());
   curve.samples.resize(curve.samples.size() / before * rows);
   curve.group_intensity.resize(curve.group_intensity.size() / before * rows);
-  curve.earth_intensity.resize(curve.earth_intensity.size() / before * rows);
-  curve.earth_irradiance.resize(curve.earth_irradiance.size() / before * rows);
+  for (SecondLight &second : curve.second_lights) {
+    second.intensity.resize(second.intensity.size() / before * rows);
+    second.irradiance.resize(second.irradiance.size() / before * rows);
+  }
   curve.epochs.resize(rows);
 }
 
@@ -327,7 +358,7 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
   out.stopped = selection.stopped;
   std::optional<Engine> engine;
   std::optional<ArticulatedEngine> turning;
-  if (request.earthshine && !out.curve.epochs.empty()) {
+  if (!out.curve.second_lights.empty() && !out.curve.epochs.empty()) {
     EngineOptions options;
     options.threads = request.threads;
     if (request.joints.empty())

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <umov/core/constants.h>
 #include <umov/frames/sky.h>
+#include <umov/orbit/moon.h>
 
 namespace umov {
 namespace {
@@ -50,12 +51,15 @@ std::vector<Patch> lit_patches(const ObservingGeometry &g, const EarthshineOptio
 
 } // namespace
 
-std::vector<Stokes<SkyNorth>> earth_light(const ObservingGeometry &g,
-                                          const Rotation<Body, Gcrs> &body_from_gcrs,
-                                          Vec3<Gcrs> sky_north, const EarthshineOptions &options,
-                                          std::size_t bands, const LightOfPoses &light) {
+namespace {
+
+/// The light of all sources, each turned into the sky's axes from its own scattering plane.
+std::vector<Stokes<SkyNorth>> light_by(const std::vector<Patch> &patches,
+                                       const ObservingGeometry &g,
+                                       const Rotation<Body, Gcrs> &body_from_gcrs,
+                                       Vec3<Gcrs> sky_north, std::size_t bands,
+                                       const LightOfPoses &light) {
   std::vector<Stokes<SkyNorth>> out(bands);
-  const std::vector<Patch> patches = lit_patches(g, options);
   std::vector<Pose> poses;
   for (const Patch &patch : patches)
     poses.push_back({normalized(body_from_gcrs * patch.direction),
@@ -71,6 +75,42 @@ std::vector<Stokes<SkyNorth>> earth_light(const ObservingGeometry &g,
                 patches[k].irradiance;
   }
   return out;
+}
+
+} // namespace
+
+std::vector<Stokes<SkyNorth>> earth_light(const ObservingGeometry &g,
+                                          const Rotation<Body, Gcrs> &body_from_gcrs,
+                                          Vec3<Gcrs> sky_north, const EarthshineOptions &options,
+                                          std::size_t bands, const LightOfPoses &light) {
+  return light_by(lit_patches(g, options), g, body_from_gcrs, sky_north, bands, light);
+}
+
+double moon_irradiance(const ObservingGeometry &g, Vec3<Gcrs> moon) {
+  const Vec3<Gcrs> to_moon = moon - g.gcrs_km, down = -1 * g.gcrs_km;
+  const double limb = std::asin(std::min(1.0, constants::wgs84_a_km / norm(down)));
+  if (angle_between(to_moon, down) < limb)
+    return 0;
+  const double phase =
+      angle_between(g.sun_gcrs_km - moon, g.gcrs_km - moon) * 180 / pi; // at the Moon
+  if (phase > 160)
+    return 0;
+  constexpr double sun_magnitude = -26.74, mean_distance_km = 384400;
+  const double magnitude = -12.73 + 0.026 * phase + 4e-9 * std::pow(phase, 4);
+  return std::pow(10, -0.4 * (magnitude - sun_magnitude)) *
+         std::pow(mean_distance_km / norm(to_moon), 2);
+}
+
+std::vector<Stokes<SkyNorth>> moon_light(const ObservingGeometry &g,
+                                         const Rotation<Body, Gcrs> &body_from_gcrs,
+                                         Vec3<Gcrs> sky_north, std::size_t bands,
+                                         const LightOfPoses &light) {
+  const Vec3<Gcrs> moon = moon_km(g.time);
+  const double irradiance = moon_irradiance(g, moon);
+  if (!(irradiance > 0))
+    return std::vector<Stokes<SkyNorth>>(bands);
+  return light_by({{normalized(moon - g.gcrs_km), irradiance}}, g, body_from_gcrs, sky_north, bands,
+                  light);
 }
 
 } // namespace umov

@@ -209,3 +209,25 @@ def test_earthshine_has_columns_of_its_own(umov, scenario, tmp_path):
         assert float(one["earth_I"]) == pytest.approx(float(two["earth_I"]), rel=1e-3, abs=1e-30)
     done = umov("run", scenario(("[output]", "[render]\nearthshine = { albedo = 3 }\n[output]")))
     assert done.code == 3 and "albedo = 3; 0 to 1 was expected" in done.err
+
+
+def test_the_shadows_edge_bent_and_reddened(umov, scenario, tmp_path):
+    """HST goes into the shadow at 05:13:46: with refraction blue fades before red, and light lasts longer."""
+    span = ("05:08:00Z", "05:13:20Z"), ("05:12:00Z", "05:14:10Z"), ("step_s = 20", "step_s = 2"), ("sunlit = true",
+                                                                                             "sunlit = false")
+    plain = light_curve(umov, scenario(*span), tmp_path)
+    rows = light_curve(umov, scenario(*span, ("[output]",
+                                              '[render]\nshadow_edge = "refracted"\nmoonlight = true\n[output]')),
+                       tmp_path)
+    assert len(rows) == len(plain) and {row["sunlit"] for row in rows} == {row["sunlit"] for row in plain}
+    part = {}
+    for one, two in zip(plain, rows):
+        if float(one["intensity"]) > 0:
+            part.setdefault(one["band"], []).append((float(one["sunlit"]), float(two["I"]), float(one["I"])))
+        assert 0 <= float(two["moon_I"])
+    blue, red = part["nm:425"], part["nm:650"]
+    full = [k for k, row in enumerate(blue) if row[0] == 1][0]
+    assert all(row[1] <= row[2] * (1 + 1e-12) for row in blue[:full + 1])
+    penumbra = [k for k, row in enumerate(blue) if 0.05 < row[0] < 0.6]
+    assert penumbra and all(blue[k][1] / blue[k][2] < red[k][1] / red[k][2] for k in penumbra)
+    assert any(row[0] == 0 and row[1] > 0 for row in red)  # into the umbra

@@ -63,6 +63,7 @@ struct Scenario {
   std::vector<Band> bands;
   double accuracy = 0.005;
   std::optional<EarthshineOptions> earthshine;
+  bool has_moonlight = false, has_refracted_shadow = false;
   bool has_solar_disk = true;              ///< false: a point Sun
   std::filesystem::path output_dir{"out"}; ///< relative to the working folder
   std::vector<std::string> formats{"ecsv", "html"};

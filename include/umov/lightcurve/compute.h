@@ -35,6 +35,10 @@ struct LightCurveRequest {
   PolarizationFrame frame = PolarizationFrame::Equatorial;
   ShadowModel shadow = ShadowModel::Ellipsoid;
   std::optional<EarthshineOptions> earthshine; ///< absent: none
+  bool has_moonlight = false;
+  /// Sunlight at the Earth's edge bent and reddened by its air: I takes `refracted_sunlight` of its
+  /// band where `sunlit` of the geometry has none of it.
+  bool has_refracted_shadow = false;
   bool has_solar_disk = true; ///< the Sun as a uniform disk at its distance, or a point
   IntegrationOptions integration;
   unsigned threads = 0;

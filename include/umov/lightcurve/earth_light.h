@@ -29,4 +29,16 @@ std::vector<Stokes<SkyNorth>> earth_light(const ObservingGeometry &geometry,
                                           Vec3<Gcrs> sky_north, const EarthshineOptions &options,
                                           std::size_t bands, const LightOfPoses &light);
 
+/// Irradiance of moonlight at an object per unit solar irradiance: 10^(-0.4 (V + 26.74)) with
+/// V = -12.73 + 0.026 a + 4e-9 a^4 for a phase angle of a degrees at 384,400 km (Krisciunas &
+/// Schaefer 1991, Eq. 20), grey in all bands; 0 beyond 160 deg and behind the Earth.
+double moon_irradiance(const ObservingGeometry &geometry, Vec3<Gcrs> moon_km);
+
+/// The same as `earth_light` for moonlight: one source, unpolarized (the Moon's own 0 to 10 % is
+/// left out).
+std::vector<Stokes<SkyNorth>> moon_light(const ObservingGeometry &geometry,
+                                         const Rotation<Body, Gcrs> &body_from_gcrs,
+                                         Vec3<Gcrs> sky_north, std::size_t bands,
+                                         const LightOfPoses &light);
+
 } // namespace umov

@@ -35,6 +35,14 @@ struct LightCurveSample {
   Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths [m2/sr]
 };
 
+/// Light of the object by another source than the Sun, not in I; [epoch * bands + band], in the sky
+/// axes of the curve.
+struct SecondLight {
+  std::string name;                        ///< "earth" or "moon": begins its columns
+  std::vector<Stokes<SkyNorth>> intensity; ///< [m2/sr] per unit solar irradiance
+  std::vector<double> irradiance;          ///< I at the observer [W m-2 nm-1]
+};
+
 struct LightCurve {
   std::string object;
   int norad_cat_id = 0;
@@ -42,11 +50,9 @@ struct LightCurve {
   std::vector<std::string> groups;    ///< mesh groups, for the contribution per material
   std::vector<std::string> materials; ///< material of each group
   std::vector<LightCurveEpoch> epochs;
-  std::vector<LightCurveSample> samples; ///< [epoch * bands.size() + band]
-  /// By earthshine, [epoch * bands + band]; empty unless asked for. Sky axes of the curve.
-  std::vector<Stokes<SkyNorth>> earth_intensity; ///< [m2/sr] per unit solar irradiance
-  std::vector<double> earth_irradiance;          ///< I at the observer [W m-2 nm-1]
-  std::vector<double> group_intensity;           ///< [(epoch * groups + group) * bands + band]
+  std::vector<LightCurveSample> samples;  ///< [epoch * bands.size() + band]
+  std::vector<SecondLight> second_lights; ///< those asked for
+  std::vector<double> group_intensity;    ///< [(epoch * groups + group) * bands + band]
 };
 
 } // namespace umov

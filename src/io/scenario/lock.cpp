@@ -107,6 +107,8 @@ std::string locked_scenario(const Scenario &s) {
   out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));
   out += fmt::format("\n[render]\nbounces = 1\nsun = \"{}\"\naccuracy = {}\n",
                      s.has_solar_disk ? "disk" : "point", shortest(s.accuracy));
+  out += fmt::format("moonlight = {}\nshadow_edge = \"{}\"\n", s.has_moonlight,
+                     s.has_refracted_shadow ? "refracted" : "geometric");
   if (s.earthshine)
     out += fmt::format("earthshine = {{ albedo = {}, patches = {} }}\n",
                        shortest(s.earthshine->albedo), s.earthshine->patches);

@@ -298,6 +298,9 @@ Result<void> read_render(const Node &top, Scenario &out) {
           ErrorCode::BadInput,
           fmt::format("bounces = {} is not built yet; this version has 1 (direct light)", bounces),
           node.where("bounces"));
+    out.has_moonlight = node.boolean("moonlight", false);
+    UMOV_ASSIGN(edge, node.choice("shadow_edge", "geometric", {"geometric", "refracted"}));
+    out.has_refracted_shadow = edge == "refracted";
     if (node.has("earthshine")) {
       UMOV_ASSIGN(earth, node.child("earthshine"));
       EarthshineOptions options;

@@ -104,19 +104,20 @@ void add_light(RowColumns &t, PolarizationFrame frame) {
               [](E e, S, const Band &) { return e.has_glint; });
 }
 
-/// Light of the Earth, not in I: columns of their own.
-void add_earthshine(Table &table, const LightCurve &curve) {
-  table.add("earth_I", "W / (m2 nm)", "irradiance at the observer by earthshine",
-            curve.earth_irradiance);
+/// Light of other sources, not in I: columns of their own.
+void add_second_light(Table &table, const SecondLight &light) {
+  const std::string of = light.name == "moon" ? "moonlight" : "earthshine";
+  table.add(light.name + "_I", "W / (m2 nm)", "irradiance at the observer by " + of,
+            light.irradiance);
   const auto add = [&](const char *name, const char *text, double Stokes<SkyNorth>::*part) {
     std::vector<double> values;
-    for (const Stokes<SkyNorth> &s : curve.earth_intensity)
+    for (const Stokes<SkyNorth> &s : light.intensity)
       values.push_back(s.i > 0 ? s.*part / s.i : std::numeric_limits<double>::quiet_NaN());
-    table.add(name, "", text, std::move(values));
+    table.add(light.name + name, "", text + of, std::move(values));
   };
-  add("earth_q", "Q/I of earthshine in the sky frame", &Stokes<SkyNorth>::q);
-  add("earth_u", "U/I of earthshine in the sky frame", &Stokes<SkyNorth>::u);
-  add("earth_v", "V/I of earthshine", &Stokes<SkyNorth>::v);
+  add("_q", "Q/I in the sky frame of ", &Stokes<SkyNorth>::q);
+  add("_u", "U/I in the sky frame of ", &Stokes<SkyNorth>::u);
+  add("_v", "V/I of ", &Stokes<SkyNorth>::v);
 }
 
 } // namespace
@@ -127,8 +128,8 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   add_names(t, curve);
   add_geometry(t);
   add_light(t, frame);
-  if (!curve.earth_irradiance.empty())
-    add_earthshine(table, curve);
+  for (const SecondLight &light : curve.second_lights)
+    add_second_light(table, light);
   t.of_epoch("qw", "", "attitude body_from_gcrs, scalar", [](E e) { return e.body_from_gcrs.w; });
   t.of_epoch("qx", "", "attitude body_from_gcrs", [](E e) { return e.body_from_gcrs.x; });
   t.of_epoch("qy", "", "attitude body_from_gcrs", [](E e) { return e.body_from_gcrs.y; });

@@ -55,8 +55,8 @@ std::vector<Sphere> cover(const Mesh &mesh) {
     const Vec3<Body> d = high - low;
     const auto along = [&](std::uint32_t t) {
       const Triangle &x = mesh.triangles[t];
-      const Vec3<Body> c = mesh.positions[x.vertex[0]] + mesh.positions[x.vertex[1]] +
-                           mesh.positions[x.vertex[2]];
+      const Vec3<Body> c =
+          mesh.positions[x.vertex[0]] + mesh.positions[x.vertex[1]] + mesh.positions[x.vertex[2]];
       return d.x >= d.y && d.x >= d.z ? c.x : d.y >= d.z ? c.y : c.z;
     };
     std::stable_sort(largest->begin(), largest->end(),
@@ -153,9 +153,9 @@ ArticulatedEngine::State::Part::Part(const Scene &scene, const EngineOptions &op
       const double share = engine->classes.list[member].area_m2 / area;
       const auto count = static_cast<std::size_t>(std::clamp(80'000 * share, 64.0, 4096.0));
       auto &to = points[g * backend::lanes + lane];
-      for (const Occluder::Point &p : spread_points(engine->scene, engine->elements,
-                                                    engine->classes, member, count, occluder)
-                                          .origin)
+      for (const Occluder::Point &p :
+           spread_points(engine->scene, engine->elements, engine->classes, member, count, occluder)
+               .origin)
         to.push_back(occluder.from_point(p));
       bounds[g * backend::lanes + lane] = around(to);
     }
@@ -184,18 +184,19 @@ std::vector<bool> ArticulatedEngine::State::hidden(const Occluder &occluder,
 /// Points that bring the error of a class down to a third of 0.3 % of the whole light, if sampling
 /// leaves 0.6 n^-3/4.
 std::size_t ArticulatedEngine::State::points_for(const Engine::State &engine,
-                                                 const Engine::State::Workspace &own,
-                                                 std::size_t k, const BandLight &total) const {
+                                                 const Engine::State::Workspace &own, std::size_t k,
+                                                 const BandLight &total) const {
   constexpr double wanted = 0.003, fewest = 24;
   double weight = 0;
   for (std::size_t b = 0; b < bands; ++b)
-    weight = std::max(weight, own.facet_light[k * bands + b].i * own.uncertain[k].area *
-                                  engine.compiled.area_m2 /
-                                  (wanted * std::max(total.i[b], 1e-300)));
+    weight =
+        std::max(weight, own.facet_light[k * bands + b].i * own.uncertain[k].area *
+                             engine.compiled.area_m2 / (wanted * std::max(total.i[b], 1e-300)));
   return static_cast<std::size_t>(std::max(std::pow(3 * 0.6 * weight, 4.0 / 3), fewest));
 }
 
-/// Takes away what other parts hide of this one's visible areas. work.total: the light without that.
+/// Takes away what other parts hide of this one's visible areas. work.total: the light without
+/// that.
 void ArticulatedEngine::State::hide(std::size_t which, const std::vector<PartMotion> &to_part,
                                     Workspace &work) const {
   const Part &part = parts[which];
@@ -275,8 +276,7 @@ void ArticulatedEngine::State::hide(std::size_t which, const std::vector<PartMot
 }
 
 void ArticulatedEngine::State::evaluate(const Pose &pose, const std::vector<double> &angles,
-                                        Workspace &work, std::size_t row,
-                                        StokesTable &out) const {
+                                        Workspace &work, std::size_t row, StokesTable &out) const {
   std::vector<PartMotion> motions = part_motions(joints, angles);
   motions.emplace_back(); // what stands still
   work.total.reset(bands, true);

@@ -65,15 +65,13 @@ Compared compare(const Turning &of, std::size_t count) {
   std::size_t covered = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const BandResult here = table.at(k, 1), there = truth[k].bands[1];
-    covered += std::abs(here.stokes.i - there.stokes.i) <=
-                       here.half_width.i + there.half_width.i
+    covered += std::abs(here.stokes.i - there.stokes.i) <= here.half_width.i + there.half_width.i
                    ? 1u
                    : 0u;
     if (there.stokes.i < 0.01 * median)
       continue;
     out.i.push_back(std::abs(here.stokes.i / there.stokes.i - 1));
-    out.q.push_back(
-        std::abs(here.stokes.q / here.stokes.i - there.stokes.q / there.stokes.i));
+    out.q.push_back(std::abs(here.stokes.q / here.stokes.i - there.stokes.q / there.stokes.i));
   }
   out.covered = static_cast<double>(covered) / static_cast<double>(count);
   return out;
@@ -87,7 +85,9 @@ void expect_good(const Compared &errors) {
   EXPECT_GT(errors.covered, 0.88); // 90 % asked of many; 100 poses know it to 3 %
 }
 
-TEST(ArticulatedEngine, MasksStayRightWhileWingsTurn) { expect_good(compare(hst_with_wings(), 100)); }
+TEST(ArticulatedEngine, MasksStayRightWhileWingsTurn) {
+  expect_good(compare(hst_with_wings(), 100));
+}
 
 TEST(ArticulatedEngine, TwoPartsTurnAtOnce) { expect_good(compare(box_wing_with_panels(), 100)); }
 

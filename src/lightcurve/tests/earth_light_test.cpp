@@ -7,6 +7,7 @@
 #include <cmath>
 #include <umov/frames/sky.h>
 #include <umov/lightcurve/engine.h>
+#include <umov/orbit/moon.h>
 #include <umov/photometry/earthshine.h>
 
 namespace umov {
@@ -90,6 +91,38 @@ TEST(EarthLight, PolarizationIsThatOfSymmetry) {
   const auto turned = light_of(sphere, g, nadir, 2000, other)[1];
   EXPECT_NEAR(turned.q, straight.q * std::cos(2 * turn) + straight.u * std::sin(2 * turn), 1e-12);
   EXPECT_NEAR(turned.u, straight.u * std::cos(2 * turn) - straight.q * std::sin(2 * turn), 1e-12);
+}
+
+TEST(MoonLight, IsThatOfTheMoonOverhead) {
+  // Full Moon: V = -12.73 against -26.74 of the Sun (Krisciunas & Schaefer 1991): 10^(-0.4 14.01);
+  // at 90 deg of phase 2.60 mag less.
+  auto g = geometry(500, 180, {0, 1, 0});
+  const Vec3<Gcrs> above = normalized(g.gcrs_km) * (384400 + norm(g.gcrs_km));
+  EXPECT_NEAR(moon_irradiance(g, above) / 2.4889e-6, 1, 2e-3);
+  auto half = geometry(500, 90, {0, 1, 0});
+  EXPECT_NEAR(moon_irradiance(half, above) / 2.4889e-6, std::pow(10, -0.4 * 2.602), 2e-3);
+  EXPECT_EQ(moon_irradiance(g, -1 * above), 0); // behind the Earth
+  // A Lambert plate that faces it, seen from its normal: irradiance over pi.
+  const Scene plate = scene_of(make_plate(1, 1, false), NormalMode::Flat, {white_lambert()});
+  g.time =
+      *utc_from_iso("2018-01-31T13:30:00Z"); // a full Moon, eclipsed, which the formula ignores
+  const Vec3<Gcrs> moon = moon_km(g.time), to_moon = normalized(moon);
+  g.gcrs_km = to_moon * 7000;
+  g.sun_gcrs_km = apparent_sun_km(g.time);
+  g.to_observer = to_moon;
+  const Vec3<Gcrs> x = any_perpendicular(to_moon);
+  const Rotation<Body, Gcrs> facing(x, cross(to_moon, x), to_moon);
+  const Engine engine(plate, EngineOptions{});
+  const auto light = moon_light(g, facing, {0, 0, 1}, 3, [&](const std::vector<Pose> &poses) {
+    StokesTable table;
+    engine.evaluate(poses, table);
+    std::vector<std::vector<BandResult>> out(1);
+    for (std::size_t b = 0; b < 3; ++b)
+      out[0].push_back(table.at(0, b));
+    return out;
+  });
+  EXPECT_NEAR(light[1].i / (moon_irradiance(g, moon) / pi), 1, 1e-3);
+  EXPECT_GT(moon_irradiance(g, moon), 2e-6);
 }
 
 TEST(EarthLight, NothingOverTheNightSide) {
