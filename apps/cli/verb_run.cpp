@@ -55,6 +55,10 @@ LightCurveRequest request_of(const Scenario &scenario, const ScenarioObject &nam
   request.has_solar_disk = scenario.has_solar_disk;
   request.integration.accuracy = scenario.accuracy;
   request.integration.seed = scenario.seed;
+  request.integration.bounces = scenario.bounces;
+  // A sampled path costs more than a point: rows that are mostly indirect say what they reached.
+  if (scenario.bounces > 1)
+    request.integration.max_points = 1u << 19;
   request.threads = static_cast<unsigned>(common.threads);
   return request;
 }

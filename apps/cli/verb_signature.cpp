@@ -167,6 +167,9 @@ Result<void> run_with_rays(const SignatureJob &job, NumberedPoses numbered) {
   const Integrator integrator(job.object.scene);
   IntegrationOptions options;
   options.accuracy = job.accuracy;
+  options.bounces = job.scenario.bounces;
+  if (options.bounces > 1)
+    options.max_points = 1u << 19;
   options.seed = job.seed;
   options.source = job.source;
   SignatureRows rows;
@@ -315,9 +318,12 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   const std::size_t random = o.poses * o.phases_deg.size();
   if (!o.masks.empty() && o.visibility == "rays")
     return fail(ErrorCode::Usage, "--masks goes with --visibility masks or auto");
-  const bool has_engine = is_sun && (!o.masks.empty() || o.visibility == "masks" ||
-                                     (o.visibility == "auto" && random >= engine_from &&
-                                      (o.accuracy > 0 ? o.accuracy : scenario.accuracy) >= 1e-3));
+  if (scenario.bounces > 1 && (o.visibility == "masks" || !o.masks.empty()))
+    return fail(ErrorCode::Usage, "masks know direct light alone; take bounces = 1, or rays");
+  const bool has_engine = is_sun && scenario.bounces == 1 &&
+                          (!o.masks.empty() || o.visibility == "masks" ||
+                           (o.visibility == "auto" && random >= engine_from &&
+                            (o.accuracy > 0 ? o.accuracy : scenario.accuracy) >= 1e-3));
   NumberedPoses numbered;
   if (!o.geometry.empty()) {
     UMOV_ASSIGN(table, poses_from_table(o.geometry));

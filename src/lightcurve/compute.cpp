@@ -248,6 +248,9 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
   for (std::size_t b = 0; b < bands; ++b)
     curve.samples[row * bands + b] =
         sample_from(light.bands[b], scene.bands[b], solar[b], geometry, request, light.is_dark);
+  for (std::size_t b = 0; b < light.indirect.size(); ++b)
+    if (light.bands[b].stokes.i > 0)
+      curve.samples[row * bands + b].indirect = light.indirect[b] * (1 / light.bands[b].stokes.i);
   std::copy(light.group_intensity.begin(), light.group_intensity.end(),
             curve.group_intensity.begin() +
                 static_cast<std::ptrdiff_t>(row * light.group_intensity.size()));
@@ -259,6 +262,7 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
 LightCurve empty_curve(const LightCurveRequest &request, const Scene &scene, std::size_t rows) {
   LightCurve curve;
   curve.object = request.object;
+  curve.bounces = request.integration.bounces;
   curve.norad_cat_id = request.orbit.norad_cat_id();
   curve.bands = scene.bands;
   curve.groups = scene.mesh.groups;

@@ -1,5 +1,6 @@
 #include <umov/lightcurve/integrator.h>
 
+#include "lightcurve/bounces.h"
 #include "lightcurve/visibility.h"
 
 #include <cmath>
@@ -21,20 +22,46 @@ struct Integrator::State {
   bool is_convex = false;
   Elements elements;
   std::optional<Occluder> occluder; ///< none for a convex mesh
+  std::optional<BounceScene> bounces;
 };
 
 Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>()) {
   state_->scene = scene;
   state_->is_convex = is_proven_convex(scene.mesh);
   state_->elements = make_elements(scene, visible_sides(scene.mesh));
-  if (!state_->is_convex)
+  if (!state_->is_convex) {
     state_->occluder.emplace(scene.mesh);
+    state_->bounces.emplace(state_->scene);
+  }
 }
 Integrator::~Integrator() = default;
 Integrator::Integrator(Integrator &&) noexcept = default;
 Integrator &Integrator::operator=(Integrator &&) noexcept = default;
 
 bool Integrator::is_convex() const { return state_->is_convex; }
+
+void Integrator::add_indirect(const State &state, const Pose &pose,
+                              const IntegrationOptions &options, PoseResult &out) {
+  out.indirect.assign(out.bands.size(), {});
+  if (!state.bounces)
+    return;
+  std::vector<double> direct;
+  for (const BandResult &band : out.bands)
+    direct.push_back(band.stokes.i);
+  const IndirectLight light = state.bounces->light(*state.occluder, pose, options, direct);
+  out.rays += light.rays;
+  const auto quadrature = [](double &a, double b) { a = std::hypot(a, b); };
+  for (std::size_t b = 0; b < out.bands.size(); ++b) {
+    const BandResult &more = light.bands[b];
+    out.indirect[b] = more.stokes;
+    out.bands[b].stokes += more.stokes;
+    quadrature(out.bands[b].half_width.i, more.half_width.i);
+    quadrature(out.bands[b].half_width.q, more.half_width.q);
+    quadrature(out.bands[b].half_width.u, more.half_width.u);
+    quadrature(out.bands[b].half_width.v, more.half_width.v);
+    out.is_dark = out.is_dark && !(more.stokes.i > 0);
+  }
+}
 
 PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &options) const {
   const Scene &scene = state_->scene;
@@ -73,6 +100,8 @@ PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &opti
     if (!geometry.has_plane && options.source.q == 0 && options.source.u == 0)
       band.stokes.q = band.stokes.u = 0;
   }
+  if (options.bounces > 1)
+    add_indirect(*state_, pose, options, out);
   if (bands > 0 && out.bands[0].stokes.i > 0)
     out.glint_share = sums.glint / out.bands[0].stokes.i;
   return out;

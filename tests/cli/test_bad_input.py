@@ -24,7 +24,7 @@ CONFIGURATION = [
     (('mode = "nadir"', 'mode = "nadirr"'), ["nadirr", "nadir"]),
     (('mode = "nadir"', 'mode = "tumble"'), ["inertia", '"shell" or "solid"']),
     (('dir = "out"', 'dir = "out"\npol_frame = "galactic"'), ["galactic", "equatorial"]),
-    (("seed = 1", "seed = 1\n[render]\nbounces = 2"), ["bounces", "not built yet"]),
+    (("seed = 1", "seed = 1\n[render]\nbounces = 65"), ["bounces = 65", "1 to 64"]),
     (("cube.obj", "missing.obj"), ["missing.obj", "no such file"]),
     (("2018-01-21T05:08:00Z", "2018-04-21T05:08:00Z"), ["stop"]),
     (("step_s = 20", "stepp = 20"), ['"step_s"']),

@@ -62,6 +62,7 @@ struct Scenario {
   std::vector<std::string> band_set{"paper_rgb"};
   std::vector<Band> bands;
   double accuracy = 0.005;
+  std::size_t bounces = 1; ///< surfaces that the light may touch
   std::optional<EarthshineOptions> earthshine;
   bool has_moonlight = false, has_refracted_shadow = false;
   bool has_solar_disk = true;              ///< false: a point Sun

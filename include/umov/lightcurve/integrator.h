@@ -22,6 +22,9 @@ struct IntegrationOptions {
   /// Light of the source per unit irradiance, in the scattering plane: sunlight, or a laser's.
   Stokes<ScatteringPlane> source{1, 0, 0, 0};
   std::size_t max_points = 1u << 22; ///< per pose; past that the error is reported as it is
+  /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
+  /// Up to 64. Mirrors and convex meshes have direct light alone.
+  std::size_t bounces = 1;
 };
 
 /// Result in one band.
@@ -35,6 +38,7 @@ struct PoseResult {
   bool is_dark = true;                 ///< nothing is both lit and seen: I = 0, q and u undefined
   std::vector<double> group_intensity; ///< [group * band_count + band], share of I by mesh group
   std::uint64_t rays = 0;              ///< 0 for a convex mesh
+  std::vector<Stokes<ScatteringPlane>> indirect; ///< per band, part of `bands`; with bounces > 1
   double glint_share = 0; ///< share of I in band 0 from flats within their lobe's half width
 };
 
@@ -56,6 +60,8 @@ public:
 
 private:
   struct State;
+  static void add_indirect(const State &state, const Pose &pose, const IntegrationOptions &options,
+                           PoseResult &out);
   std::unique_ptr<State> state_;
 };
 

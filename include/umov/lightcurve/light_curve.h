@@ -33,6 +33,8 @@ struct LightCurveSample {
   double pa_deg = 0;                  ///< [0, 180), NaN if p is 0 or dark
   double magnitude = 0;               ///< AB; NaN if dark or in the umbra
   Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths [m2/sr]
+  /// Light of more than one surface, part of `intensity`, as fractions of it; with bounces > 1.
+  Stokes<ScatteringPlane> indirect;
 };
 
 /// Light of the object by another source than the Sun, not in I; [epoch * bands + band], in the sky
@@ -45,6 +47,7 @@ struct SecondLight {
 
 struct LightCurve {
   std::string object;
+  std::size_t bounces = 1; ///< surfaces that the light may have touched
   int norad_cat_id = 0;
   std::vector<Band> bands;
   std::vector<std::string> groups;    ///< mesh groups, for the contribution per material

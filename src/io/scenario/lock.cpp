@@ -105,7 +105,7 @@ std::string locked_scenario(const Scenario &s) {
   for (const ScenarioObject &one : s.objects)
     out += object(one);
   out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));
-  out += fmt::format("\n[render]\nbounces = 1\nsun = \"{}\"\naccuracy = {}\n",
+  out += fmt::format("\n[render]\nbounces = {}\nsun = \"{}\"\naccuracy = {}\n", s.bounces,
                      s.has_solar_disk ? "disk" : "point", shortest(s.accuracy));
   out += fmt::format("moonlight = {}\nshadow_edge = \"{}\"\n", s.has_moonlight,
                      s.has_refracted_shadow ? "refracted" : "geometric");

@@ -293,11 +293,11 @@ Result<void> read_bands(const Node &top, Scenario &out) {
 Result<void> read_render(const Node &top, Scenario &out) {
   if (top.has("render")) {
     UMOV_ASSIGN(node, top.child("render"));
-    if (const auto bounces = node.integer("bounces", 1); bounces != 1)
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("bounces = {} is not built yet; this version has 1 (direct light)", bounces),
-          node.where("bounces"));
+    const auto bounces = node.integer("bounces", 1);
+    if (bounces < 1 || bounces > 64)
+      return fail(ErrorCode::BadInput, fmt::format("bounces = {}; 1 to 64 was expected", bounces),
+                  node.where("bounces"));
+    out.bounces = static_cast<std::size_t>(bounces);
     out.has_moonlight = node.boolean("moonlight", false);
     UMOV_ASSIGN(edge, node.choice("shadow_edge", "geometric", {"geometric", "refracted"}));
     out.has_refracted_shadow = edge == "refracted";

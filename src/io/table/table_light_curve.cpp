@@ -128,6 +128,15 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   add_names(t, curve);
   add_geometry(t);
   add_light(t, frame);
+  if (curve.bounces > 1) {
+    t.of_sample("indirect_i", "", "part of I that touched several surfaces",
+                [](S s) { return s.indirect.i; });
+    t.of_sample("indirect_q", "", "its Q over the whole I, scattering frame",
+                [](S s) { return s.indirect.q; });
+    t.of_sample("indirect_u", "", "its U over the whole I, scattering frame",
+                [](S s) { return s.indirect.u; });
+    t.of_sample("indirect_v", "", "its V over the whole I", [](S s) { return s.indirect.v; });
+  }
   for (const SecondLight &light : curve.second_lights)
     add_second_light(table, light);
   t.of_epoch("qw", "", "attitude body_from_gcrs, scalar", [](E e) { return e.body_from_gcrs.w; });

@@ -48,8 +48,8 @@ TEST(RefractedShadow, ReddensAndReachesIntoTheUmbra) {
 }
 
 TEST(RefractedShadow, FarAboveTheAirItIsTheDisksGeometry) {
-  // The air of a scale height of 8 km is 0.1 deg high from 4,500 km: in the penumbra of an object so far
-  // away the light is lower than the geometric half, by what the air takes.
+  // The air of a scale height of 8 km is 0.1 deg high from 4,500 km: in the penumbra of an object
+  // so far away the light is lower than the geometric half, by what the air takes.
   const double half = light(42164, 0, 550);
   EXPECT_LT(half, 0.5);
   EXPECT_GT(half, 0.4);

@@ -1,0 +1,36 @@
+#pragma once
+// Private: light that has touched more than one surface before it reaches the observer.
+
+#include <umov/lightcurve/integrator.h>
+#include <umov/shape/occluder.h>
+
+namespace umov {
+
+/// Mean over sampled paths and its 95 % half-widths, per band; no path of one surface is in it.
+struct IndirectLight {
+  std::vector<BandResult> bands;
+  std::uint64_t rays = 0;
+};
+
+/// What does not depend on the pose.
+class BounceScene {
+public:
+  explicit BounceScene(const Scene &scene);
+
+  /// Paths of 2 to options.bounces surfaces (docs/theory/bounces.md). Refined until the half-width
+  /// of I falls below options.accuracy times the whole, `direct_i` per band included, or
+  /// options.max_points paths are spent. The result depends on pose and seed alone.
+  [[nodiscard]] IndirectLight light(const Occluder &occluder, const Pose &pose,
+                                    const IntegrationOptions &options,
+                                    const std::vector<double> &direct_i) const;
+
+private:
+  friend class PathSampler;
+  const Scene &scene_;
+  std::vector<VisibleSides> sides_;
+  std::vector<Vec3<Body>> normal_; ///< per triangle: unit geometric normal, zero without area
+  std::vector<double> area_m2_;
+  double size_m_ = 0;
+};
+
+} // namespace umov

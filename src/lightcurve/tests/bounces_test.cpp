@@ -1,0 +1,170 @@
+// Light between surfaces against closed forms.
+
+#include "lightcurve/tests/integrator_cases.h"
+
+#include <numeric>
+
+namespace umov {
+namespace {
+
+using namespace cases;
+
+Material black() { // n = 1 and nothing below: all light is gone
+  Material out = builtin_material("paper_spectralon").value();
+  out.body.reset();
+  return out;
+}
+
+Material grey(double reflectance) {
+  Material out = white_lambert();
+  out.body->reflectance.value = {reflectance};
+  return out;
+}
+
+/// A sphere with the triangles about +z taken out; the share of its area that is missing.
+struct Cavity {
+  Mesh mesh;
+  double hole_area = 0, whole_area = 0;
+  Vec3<Body> opening{}; ///< vector area of the hole: along a direction, what one looks through
+};
+Cavity cavity(double opening_deg) {
+  Cavity out;
+  out.mesh = make_sphere(1, 20000);
+  std::vector<Triangle> kept;
+  for (const Triangle &t : out.mesh.triangles) {
+    const double area = 0.5 * norm(area_vector_doubled(out.mesh, t));
+    Vec3<Body> middle{};
+    for (const std::uint32_t v : t.vertex)
+      middle += out.mesh.positions[v] / 3;
+    out.whole_area += area;
+    if (middle.z > std::cos(Angle::degrees(opening_deg).radians()) * norm(middle)) {
+      out.hole_area += area;
+      out.opening += area_vector_doubled(out.mesh, t) * 0.5;
+    } else
+      kept.push_back(t);
+  }
+  out.mesh.triangles = kept;
+  return out;
+}
+
+Scene scene_of_sides(const Mesh &mesh, const Material &front, const Material &back) {
+  Diagnostics diagnostics;
+  auto scene = make_scene(mesh, NormalMode::Flat, three_bands(), {front}, {back}, diagnostics);
+  EXPECT_TRUE(scene) << scene.error().text();
+  return *scene;
+}
+
+TEST(Bounces, WhiteCavityThroughItsHole) {
+  // Inside a sphere each point sees all others alike: the light of k surfaces comes out with
+  // J_k = phi rho^k (1 - f)^(k - 2) A_hole cos v / (pi A), phi what enters, f = A_hole/A, k >= 2.
+  const Cavity c = cavity(50);
+  const double rho = 0.8, f = c.hole_area / c.whole_area;
+  const Integrator integrator(scene_of_sides(c.mesh, black(), grey(rho)));
+  const Pose pose{normalized(Vec3<Body>{0.2, 0, 1}), normalized(Vec3<Body>{-0.1, 0.2, 1})};
+  IntegrationOptions options;
+  options.accuracy = 0.002;
+  options.max_points = 1u << 18;
+  double expected = 0;
+  for (const std::size_t bounces : {2u, 3u, 5u, 12u}) {
+    options.bounces = bounces;
+    const PoseResult light = integrator.evaluate(pose, options);
+    expected = 0;
+    for (std::size_t k = 2; k <= bounces; ++k)
+      expected += std::pow(rho, static_cast<double>(k)) *
+                  std::pow(1 - f, static_cast<double>(k) - 2);
+    expected *= dot(c.opening, pose.sun) * dot(c.opening, pose.observer) / (pi * c.whole_area);
+    // Chords for arcs: 20,000 facets are 0.1 % short of the sphere, some of it per bounce.
+    const double sure = light.bands[1].half_width.i / expected;
+    EXPECT_NEAR(light.indirect[1].i / expected, 1, 1.5 * sure + 5e-3) << bounces;
+    EXPECT_LT(sure, 0.05);
+    EXPECT_LT(std::abs(light.indirect[1].q), 2e-3 * light.indirect[1].i); // Lambert: unpolarized
+    EXPECT_LT(std::abs(light.indirect[1].v), 1e-12);
+  }
+}
+
+TEST(Bounces, AConvexMeshHasDirectLightAlone) {
+  const Integrator cube(scene_of(make_chamfered_cube(1, 0.1), NormalMode::Flat,
+                                 {builtin_material("paper_al").value()}));
+  IntegrationOptions direct, deep;
+  deep.bounces = 6;
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const auto a = cube.evaluate(random_pose(i), direct), b = cube.evaluate(random_pose(i), deep);
+    EXPECT_EQ(a.bands[1].stokes.i, b.bands[1].stokes.i);
+    EXPECT_EQ(a.bands[1].stokes.q, b.bands[1].stokes.q);
+  }
+}
+
+/// Two square plates at a right angle, their inner sides facing each other.
+Mesh corner() {
+  Mesh mesh;
+  mesh.groups = {"floor", "wall"};
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}};
+  const std::array<std::uint32_t, 3> none{no_index, no_index, no_index};
+  mesh.triangles = {{{0, 1, 2}, none, 0, 0},
+                    {{0, 2, 3}, none, 0, 0},
+                    {{0, 3, 5}, none, 1, 1},
+                    {{0, 5, 4}, none, 1, 1}};
+  return mesh;
+}
+
+TEST(Bounces, TwoLambertPlatesByTheirFormFactor) {
+  // Sun along the wall's plane lights the floor alone, the observer along the floor's plane sees
+  // the wall alone; the form factor of two squares with a common edge at a right angle is 0.200044
+  // (Siegel & Howell 2002, configuration 16).
+  const double rho = 0.6;
+  const Integrator plates(scene_of(corner(), NormalMode::Flat, {grey(rho)}));
+  const Pose pose{{0, 0, 1}, {1, 0, 0}};
+  IntegrationOptions options;
+  options.accuracy = 1e-3;
+  options.bounces = 2;
+  const PoseResult light = plates.evaluate(pose, options);
+  const double floor_exitance = rho, wall_flux = floor_exitance * 0.200044;
+  EXPECT_NEAR(light.bands[1].stokes.i, rho * wall_flux / pi, 3e-3 * rho * wall_flux / pi);
+  EXPECT_EQ(light.indirect[1].i, light.bands[1].stokes.i);
+}
+
+TEST(Bounces, ShinyPlatesAgreeFromBothEnds) {
+  // Reciprocity: Sun and observer exchanged give the transposed matrix with signs, so the same I, Q
+  // and the same V, U with the other sign, within the errors.
+  const Material metal = interface_of("paper_au", 60);
+  const Integrator plates(scene_of(corner(), NormalMode::Flat, {metal}));
+  IntegrationOptions options;
+  options.accuracy = 4e-3;
+  options.max_points = 1u << 17;
+  options.bounces = 3;
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    const auto u = uniform4(5, 1, i);
+    const auto inside = [](double x, double y) {
+      return normalized(Vec3<Body>{0.2 + x, 0.6 * (y - 0.5), 0.9 - 0.5 * x});
+    };
+    const Pose there{inside(u[0], u[1]), inside(u[2], u[3])};
+    const Pose back{there.observer, there.sun};
+    const auto a = plates.evaluate(there, options).bands[1],
+               b = plates.evaluate(back, options).bands[1];
+    // Half-widths of both, twice: eight poses.
+    EXPECT_NEAR(a.stokes.i, b.stokes.i, 2 * (a.half_width.i + b.half_width.i)) << i;
+    EXPECT_GT(a.stokes.i, 0);
+    EXPECT_LE(std::hypot(a.stokes.q, a.stokes.u, a.stokes.v), a.stokes.i * (1 + 1e-9));
+  }
+}
+
+TEST(Bounces, SameBytesForAnyThreads) {
+  const Integrator hst(scene_of(make_hst(), NormalMode::Flat,
+                                {builtin_material("paper_al").value(),
+                                 builtin_material("paper_asi").value()}));
+  IntegrationOptions options;
+  options.bounces = 3;
+  options.accuracy = 0.05;
+  std::vector<Pose> poses;
+  for (std::uint64_t i = 0; i < 8; ++i)
+    poses.push_back(random_pose(i));
+  const auto one = hst.evaluate(poses, options, 1), many = hst.evaluate(poses, options, 8);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    EXPECT_EQ(one[k].bands[0].stokes.i, many[k].bands[0].stokes.i);
+    EXPECT_EQ(one[k].bands[0].stokes.v, many[k].bands[0].stokes.v);
+    EXPECT_GE(one[k].indirect[0].i, 0);
+  }
+}
+
+} // namespace
+} // namespace umov
