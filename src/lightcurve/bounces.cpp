@@ -24,7 +24,8 @@ struct Vertex {
   const Surface *surface = nullptr;
 };
 
-/// Axis +Q of a beam that leaves towards `out` and came from direction `in`: the normal of the plane.
+/// Axis +Q of a beam that leaves towards `out` and came from direction `in`: the normal of the
+/// plane.
 Vec3<Body> plane_normal(Vec3<Body> out, Vec3<Body> in) {
   const Vec3<Body> s = cross(out, in);
   return norm(s) > 1e-14 ? normalized(s) : any_perpendicular(out);
@@ -75,8 +76,8 @@ struct Direction {
   double density = 0; ///< [1/sr]
 };
 
-/// How directions are drawn at a surface: Lambert's cosine, or the mirror image about a normal drawn
-/// from a lobe as wide as the surface's.
+/// How directions are drawn at a surface: Lambert's cosine, or the mirror image about a normal
+/// drawn from a lobe as wide as the surface's.
 struct Sampler {
   double cosine_share, exponent;
   explicit Sampler(const Surface &surface) {
@@ -147,8 +148,7 @@ public:
   [[nodiscard]] bool has_any() const { return seen_.area() > 0 && lit_.area() > 0; }
 
   /// Adds what one pair of paths carries: one from the observer, one from the Sun.
-  void add(const std::array<double, dimensions> &x, std::uint64_t stream,
-           std::vector<Light> &sum) {
+  void add(const std::array<double, dimensions> &x, std::uint64_t stream, std::vector<Light> &sum) {
     from_observer(x, stream, sum);
     from_sun(x, sum);
   }
@@ -197,8 +197,8 @@ private:
                                  Vec3<Body> towards) const {
     const double wanted = x * table.area();
     const auto it = std::upper_bound(table.end.begin(), table.end.end(), wanted);
-    const auto k = std::min(static_cast<std::size_t>(it - table.end.begin()),
-                            table.triangle.size() - 1);
+    const auto k =
+        std::min(static_cast<std::size_t>(it - table.end.begin()), table.triangle.size() - 1);
     const double root = std::sqrt(u); // even over the triangle
     return vertex_on(table.triangle[k], root * (1 - v), root * v, towards);
   }
@@ -218,8 +218,8 @@ private:
     const Occluder::Hit hit = occluder_.nearest(from.point, direction);
     if (hit.triangle == no_index)
       return false;
-    to = vertex_on(hit.triangle, static_cast<double>(hit.u), static_cast<double>(hit.v),
-                   -direction);
+    to =
+        vertex_on(hit.triangle, static_cast<double>(hit.u), static_cast<double>(hit.v), -direction);
     distance = hit.distance_m;
     return distance > 0;
   }
@@ -231,8 +231,8 @@ private:
     const double cosine = dot(at.normal, in);
     if (!(cosine > 0) || !(dot(at.normal, out) > 0))
       return {};
-    const auto on = directions_on(at.normal, at.field, in, out,
-                                  std::clamp(dot(in, out), -1.0, 1.0), disk);
+    const auto on =
+        directions_on(at.normal, at.field, in, out, std::clamp(dot(in, out), -1.0, 1.0), disk);
     return at.surface->brdf(band, on) * light * cosine;
   }
 

@@ -70,8 +70,8 @@ TEST(Bounces, WhiteCavityThroughItsHole) {
     const PoseResult light = integrator.evaluate(pose, options);
     expected = 0;
     for (std::size_t k = 2; k <= bounces; ++k)
-      expected += std::pow(rho, static_cast<double>(k)) *
-                  std::pow(1 - f, static_cast<double>(k) - 2);
+      expected +=
+          std::pow(rho, static_cast<double>(k)) * std::pow(1 - f, static_cast<double>(k) - 2);
     expected *= dot(c.opening, pose.sun) * dot(c.opening, pose.observer) / (pi * c.whole_area);
     // Chords for arcs: 20,000 facets are 0.1 % short of the sphere, some of it per bounce.
     const double sure = light.bands[1].half_width.i / expected;
@@ -149,9 +149,9 @@ TEST(Bounces, ShinyPlatesAgreeFromBothEnds) {
 }
 
 TEST(Bounces, SameBytesForAnyThreads) {
-  const Integrator hst(scene_of(make_hst(), NormalMode::Flat,
-                                {builtin_material("paper_al").value(),
-                                 builtin_material("paper_asi").value()}));
+  const Integrator hst(
+      scene_of(make_hst(), NormalMode::Flat,
+               {builtin_material("paper_al").value(), builtin_material("paper_asi").value()}));
   IntegrationOptions options;
   options.bounces = 3;
   options.accuracy = 0.05;

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Light between surfaces by Mitsuba 3.9.1's polarized path tracer: tests/data/bounces/mitsuba_box_wing.csv.
+
+    python3 -m venv venv && venv/bin/pip install mitsuba==3.9.1 numpy      (LLVM 19: see bench/peers/run)
+    DRJIT_LIBLLVM_PATH=... venv/bin/python tools/oracles/mitsuba_bounces.py MESH.obj > .../mitsuba_box_wing.csv
+
+MESH.obj: `umov mesh make box-wing --facets 1000`. Each geometry is rendered by `path` in `stokes` (variant
+llvm_ad_mono_polarized, 550 nm) with a directional emitter of unit irradiance and an orthographic sensor whose
+window holds the object and whose vertical is the normal of the scattering plane s = (v x l)/|v x l|. The
+integrator's reference is the sensor's horizontal, 90 degrees from s, so Q and U are turned in sign here; and V,
+which Mitsuba counts positive for light that is right-circular to the observer who faces it. That the signs are
+these is seen at one surface, where Q is B/A I > 0 for every metal. Pixels added up times their area are m2/sr per unit
+irradiance. max_depth is the number of surfaces plus one. Errors: of the mean of ten independent renderings.
+
+Materials: separable Smith GGX conductors, two-sided with the index and alpha of MATERIALS, which
+tests/cli/test_bounces.py has too.
+"""
+import sys
+
+import mitsuba
+import numpy as np
+
+mitsuba.set_variant("llvm_ad_mono_polarized")
+import drjit  # noqa: E402
+
+MATERIALS = {"bus": (0.4, 2.4, 0.30), "panels": (4.0, 0.5, 0.20), "dish": (0.96, 6.69, 0.25), "tank": (0.4, 2.4, 0.15)}
+RENDERINGS, SIZE, SAMPLES = 10, 192, 96
+
+
+def read_groups(path):
+    vertices, faces, group = [], {}, None
+    for line in open(path):
+        word = line.split()
+        if not word:
+            continue
+        if word[0] == "v":
+            vertices.append([float(x) for x in word[1:4]])
+        elif word[0] == "usemtl":
+            group = faces.setdefault(word[1], [])
+        elif word[0] == "f":
+            group.append([int(corner.split("/")[0]) - 1 for corner in word[1:4]])
+    return np.array(vertices), {name: np.array(f) for name, f in faces.items()}
+
+
+vertices, groups = read_groups(sys.argv[1])
+centre = (vertices.min(0) + vertices.max(0)) / 2
+radius = 1.01 * np.linalg.norm(vertices - centre, axis=1).max()
+shapes = {}
+for name, triangles in groups.items():
+    n, k, alpha = MATERIALS[name]
+    properties = mitsuba.Properties()
+    properties["bsdf"] = mitsuba.load_dict({"type": "twosided", "bsdf": {
+        "type": "roughconductor", "distribution": "ggx", "alpha": alpha, "eta": n, "k": k}})
+    properties["face_normals"] = True
+    mesh = mitsuba.Mesh(name, len(vertices), len(triangles), props=properties)
+    parameters = mitsuba.traverse(mesh)
+    parameters["vertex_positions"] = mitsuba.Float(vertices.astype(np.float32).ravel())
+    parameters["faces"] = mitsuba.UInt32(triangles.astype(np.uint32).ravel())
+    parameters.update()
+    shapes["mesh_" + name] = mesh
+
+
+def render(sun, observer, depth, seed):
+    s = np.cross(observer, sun)
+    s /= np.linalg.norm(s)
+    T = mitsuba.ScalarTransform4f
+    view = T().look_at(origin=list(centre + 3 * radius * observer), target=list(centre), up=list(s))
+    scene = mitsuba.load_dict({
+        "type": "scene", **shapes,
+        "light": {"type": "directional", "direction": list(-sun), "irradiance": 1.0},
+        "sensor": {"type": "orthographic", "to_world": view @ T().scale([radius, radius, 1]), "near_clip": 0.01 * radius,
+                   "far_clip": 10 * radius, "film": {"type": "hdrfilm", "width": SIZE, "height": SIZE,
+                                                     "rfilter": {"type": "box"}, "pixel_format": "luminance",
+                                                     "component_format": "float32"},
+                   "sampler": {"type": "independent", "sample_count": SAMPLES}},
+        "integrator": {"type": "stokes", "nested": {"type": "path", "max_depth": depth, "rr_depth": 1000}}})
+    image = np.array(mitsuba.render(scene, seed=seed, spp=SAMPLES), float)
+    area = (2 * radius / SIZE) ** 2
+    total = image.reshape(-1, image.shape[-1]).sum(0) * area
+    i, q, u, v = total[-4:] if len(total) < 12 else total[[-12, -9, -6, -3]]
+    return np.array([i, -q, -u, -v])
+
+
+rng = np.random.default_rng(2024)
+print("bounces,sun_x,sun_y,sun_z,obs_x,obs_y,obs_z,i,q,u,v,i_err,q_err,u_err,v_err")
+for k in range(40):
+    phase = np.radians(20 + 120 * (k + 0.5) / 40)
+    a = rng.normal(size=3)
+    a /= np.linalg.norm(a)
+    b = np.cross(a, rng.normal(size=3))
+    b /= np.linalg.norm(b)
+    sun, observer = a, np.cos(phase) * a + np.sin(phase) * b
+    for bounces in (1, 2, 5):
+        runs = np.array([render(sun, observer, bounces + 1, 100 * k + r) for r in range(RENDERINGS)])
+        mean, error = runs.mean(0), runs.std(0, ddof=1) / np.sqrt(RENDERINGS)
+        print(",".join([str(bounces)] + [f"{x:.9g}" for x in (*sun, *observer, *mean, *error)]), flush=True)
