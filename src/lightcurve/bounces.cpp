@@ -76,6 +76,14 @@ struct Direction {
   double density = 0; ///< [1/sr]
 };
 
+bool is_mirror(const Surface &surface) {
+  const Distribution *normals = surface.normals(0);
+  return normals != nullptr && normals->is_mirror();
+}
+Vec3<Body> mirrored(Vec3<Body> direction, Vec3<Body> normal) {
+  return normalized(normal * (2 * dot(direction, normal)) - direction);
+}
+
 /// How directions are drawn at a surface: Lambert's cosine, or the mirror image about a normal
 /// drawn from a lobe as wide as the surface's.
 struct Sampler {
@@ -227,10 +235,12 @@ private:
   /// f (n.in) applied to light that comes from direction `in` and leaves to `out`. The light's axes
   /// are those of this plane, before and after.
   [[nodiscard]] Light scattered(const Vertex &at, std::size_t band, Vec3<Body> in, Vec3<Body> out,
-                                double disk, const Light &light) const {
+                                double disk, bool is_drawn_by_mirror, const Light &light) const {
     const double cosine = dot(at.normal, in);
     if (!(cosine > 0) || !(dot(at.normal, out) > 0))
       return {};
+    if (is_drawn_by_mirror) // the one direction there is: radiance is kept but for Fresnel
+      return at.surface->mueller(band, std::clamp(dot(in, out), -1.0, 1.0)) * light;
     const auto on =
         directions_on(at.normal, at.field, in, out, std::clamp(dot(in, out), -1.0, 1.0), disk);
     return at.surface->brdf(band, on) * light * cosine;
@@ -239,13 +249,15 @@ private:
   /// Light of the Sun that goes x[count-1] ... x[0] and then to the observer, in the pose's axes.
   /// `step[i]`: direction from x[i] to x[i+1].
   [[nodiscard]] Light along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
-                            std::size_t band) const {
+                            std::size_t band, bool is_sun_mirrored = false) const {
     Light light = options_.source;
     Vec3<Body> axis = plane_, from = pose_.sun;
     for (std::size_t i = count; i-- > 0;) {
       const Vec3<Body> out = i == 0 ? pose_.observer : -step[i - 1];
       const Vec3<Body> plane = plane_normal(out, from);
-      light = scattered(x[i], band, from, out, i + 1 == count ? pose_.sun_radius_rad : 0,
+      const bool is_last = i + 1 == count;
+      light = scattered(x[i], band, from, out, is_last ? pose_.sun_radius_rad : 0,
+                        (!is_last || is_sun_mirrored) && is_mirror(*x[i].surface),
                         turned(light, axis, plane, -from));
       if (light.i == 0)
         return {};
@@ -269,8 +281,10 @@ private:
       std::array<double, 4> u{x[3], x[4], x[5], 0};
       if (k > 0)
         u = uniform4(options_.seed, 0xB0D + static_cast<std::uint32_t>(k), stream);
-      const Sampler sampler(*path[k].surface);
-      const Direction d = sampler.draw(path[k].normal, back, u[0], u[1], u[2]);
+      const bool is_delta = is_mirror(*path[k].surface);
+      const Direction d =
+          is_delta ? Direction{mirrored(back, path[k].normal), 1}
+                   : Sampler(*path[k].surface).draw(path[k].normal, back, u[0], u[1], u[2]);
       double distance = 0;
       if (!(d.density > 0) || !next(path[k], d.to, path[k + 1], distance))
         return;
@@ -281,7 +295,9 @@ private:
       if (!(dot(end.face, pose_.sun) > 0) || !is_free(end.point, pose_.sun))
         continue;
       double share = 1;
-      if (k == 0) { // the same path could have been drawn from the Sun
+      if (k == 0 && !is_delta && is_mirror(*end.surface))
+        continue;                // only the Sun's side meets its image
+      if (k == 0 && !is_delta) { // the same path could have been drawn from the Sun
         const double d2 = distance * distance;
         const double here = d.density * dot(end.face, back) / d2 / seen_.area();
         const double there = Sampler(*end.surface).density(end.normal, pose_.sun, back) *
@@ -299,8 +315,10 @@ private:
     path[1] = vertex_at(lit_, x[0], x[1], x[2], pose_.sun);
     if (!(dot(path[1].normal, pose_.sun) > 0) || !is_free(path[1].point, pose_.sun))
       return;
-    const Sampler sampler(*path[1].surface);
-    const Direction d = sampler.draw(path[1].normal, pose_.sun, x[3], x[4], x[5]);
+    const bool is_delta = is_mirror(*path[1].surface);
+    const Direction d =
+        is_delta ? Direction{mirrored(pose_.sun, path[1].normal), 1}
+                 : Sampler(*path[1].surface).draw(path[1].normal, pose_.sun, x[3], x[4], x[5]);
     double distance = 0;
     if (!(d.density > 0) || !next(path[1], d.to, path[0], distance))
       return;
@@ -310,6 +328,15 @@ private:
     const double leaving = dot(path[0].normal, pose_.observer);
     if (!(leaving > 0))
       return;
+    if (is_mirror(*path[0].surface))
+      return;       // only the observer's side meets it
+    if (is_delta) { // the flux of the Sun's image: f1 without its cosine
+      const double arriving = dot(path[0].normal, back);
+      for (std::size_t b = 0; arriving > 0 && b < bands_; ++b)
+        sum[b] += along(path.data(), &back, 2, b, true) *
+                  (leaving * lit_.area() * dot(path[1].normal, pose_.sun) / arriving);
+      return;
+    }
     const double d2 = distance * distance;
     const double here = d.density * dot(path[0].face, back) / d2 / lit_.area();
     const double there = Sampler(*path[0].surface).density(path[0].normal, pose_.observer, back) *

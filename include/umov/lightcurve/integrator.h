@@ -23,7 +23,7 @@ struct IntegrationOptions {
   Stokes<ScatteringPlane> source{1, 0, 0, 0};
   std::size_t max_points = 1u << 22; ///< per pose; past that the error is reported as it is
   /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
-  /// Up to 64. Mirrors and convex meshes have direct light alone.
+  /// Up to 64. Convex meshes have direct light alone.
   std::size_t bounces = 1;
 };
 

@@ -2,12 +2,15 @@
 
 #include "lightcurve/tests/integrator_cases.h"
 
+#include <complex>
 #include <numeric>
 
 namespace umov {
 namespace {
 
 using namespace cases;
+
+constexpr double solar_radius_of_test = 0.2665 * pi / 180;
 
 Material black() { // n = 1 and nothing below: all light is gone
   Material out = builtin_material("paper_spectralon").value();
@@ -146,6 +149,123 @@ TEST(Bounces, ShinyPlatesAgreeFromBothEnds) {
     EXPECT_GT(a.stokes.i, 0);
     EXPECT_LE(std::hypot(a.stokes.q, a.stokes.u, a.stokes.v), a.stokes.i * (1 + 1e-9));
   }
+}
+
+Material mirror_of(const std::string &name) {
+  Material out = builtin_material(name).value();
+  out.distribution = {"mirror", {}, {}, {}};
+  out.body.reset();
+  return out;
+}
+
+using Complex = std::complex<double>;
+using Field = std::array<Complex, 3>; // of a plane wave, body axes
+
+Field along_axis(Vec3<Body> axis, Complex amplitude) {
+  return {amplitude * axis.x, amplitude * axis.y, amplitude * axis.z};
+}
+Complex component(const Field &e, Vec3<Body> axis) {
+  return e[0] * axis.x + e[1] * axis.y + e[2] * axis.z;
+}
+
+/// A field reflected at a smooth interface (Born & Wolf 1999, section 1.5), in three dimensions.
+Field reflected(const Field &e, Vec3<Body> k_in, Vec3<Body> k_out, Complex eta) {
+  const Vec3<Body> s = normalized(cross(k_in, k_out)), p_in = cross(k_in, s),
+                   p_out = cross(k_out, s);
+  const double c = std::cos(angle_between(-k_in, k_out) / 2), sine2 = 1 - c * c;
+  const Complex q = std::sqrt(eta * eta - sine2);
+  const Complex r_s = (c - q) / (c + q), r_p = (eta * eta * c - q) / (eta * eta * c + q);
+  const Field a = along_axis(s, r_s * component(e, s)),
+              b = along_axis(p_out, r_p * component(e, p_in));
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+TEST(Bounces, TwoMirrorsOutOfOnePlaneAgainstFields) {
+  // Floor and wall of gold at a right angle; the Sun where both reflections bring it to the
+  // observer.
+  const Material gold = mirror_of("paper_au");
+  const Complex eta = index_at(gold.index, Wavelength::nm(550)).value();
+  const Integrator plates(scene_of(corner(), NormalMode::Flat, {gold}));
+  IntegrationOptions options;
+  options.bounces = 2;
+  options.accuracy = 0.05;
+  for (int k = 0; k < 10; ++k) {
+    const Vec3<Body> v = normalized(Vec3<Body>{0.52 + 0.05 * k, 0.31 - 0.05 * k, 0.7});
+    // Reflected at the floor (z) and the wall (x), in either order.
+    const Vec3<Body> sun{v.x, -v.y, v.z};
+    const Pose pose{sun, v, solar_radius_of_test};
+    const BandResult light = plates.evaluate(pose, options).bands[1];
+    ASSERT_GT(light.stokes.i, 0) << k;
+    // Both orders: floor first, and wall first. Their intensities add, with their areas, which the
+    // program finds; by symmetry of the incidence angles each order has the same I per area only if
+    // the angles are: compared is the mixture that fits I.
+    std::array<Stokes<ScatteringPlane>, 2> order{};
+    const Vec3<Body> s = normalized(cross(v, sun)), p_sun = cross(-sun, s), p_v = cross(v, s);
+    for (int first = 0; first < 2; ++first) {
+      const Vec3<Body> middle =
+          first == 0 ? Vec3<Body>{-sun.x, -sun.y, sun.z} : Vec3<Body>{sun.x, -sun.y, -sun.z};
+      for (const Vec3<Body> axis : {s, p_sun}) { // unpolarized: two fields at random phase
+        const Field e =
+            reflected(reflected(along_axis(axis, 1.0), -sun, middle, eta), middle, v, eta);
+        const Complex a = component(e, s), b = component(e, p_v);
+        order[static_cast<std::size_t>(first)] +=
+            Stokes<ScatteringPlane>{std::norm(a) + std::norm(b), std::norm(a) - std::norm(b),
+                                    2 * (a * std::conj(b)).real(), 2 * (std::conj(a) * b).imag()};
+      }
+    }
+    // q, u, v are those of one mixture of the two orders: weights from I and Q, checked in U and V.
+    const auto &x = order[0], &y = order[1];
+    const double q = light.stokes.q / light.stokes.i;
+    const double t = std::abs(x.q - q * x.i - (y.q - q * y.i)) < 1e-12
+                         ? 0.5
+                         : -(y.q - q * y.i) / (x.q - q * x.i - (y.q - q * y.i));
+    ASSERT_GT(t, -1e-6);
+    ASSERT_LT(t, 1 + 1e-6);
+    const double i = t * x.i + (1 - t) * y.i;
+    EXPECT_NEAR(light.stokes.u / light.stokes.i, (t * x.u + (1 - t) * y.u) / i, 1e-6) << k;
+    EXPECT_NEAR(light.stokes.v / light.stokes.i, (t * x.v + (1 - t) * y.v) / i, 1e-6) << k;
+    EXPECT_GT(std::abs(light.stokes.u / light.stokes.i), 1e-4); // the plane has turned
+  }
+}
+
+TEST(Bounces, ACornerOfMirrorsSendsTheLightBack) {
+  // Sun and observer in one direction across the corner's edge: two reflections, all of the light.
+  const Material gold = mirror_of("paper_au");
+  const Complex eta = index_at(gold.index, Wavelength::nm(550)).value();
+  const Integrator plates(scene_of(corner(), NormalMode::Flat, {gold}));
+  const Vec3<Body> d = normalized(Vec3<Body>{1, 0, 1});
+  IntegrationOptions options;
+  options.bounces = 2;
+  options.accuracy = 2e-3;
+  const double rho = solar_radius_of_test;
+  const PoseResult light = plates.evaluate({d, d, rho}, options);
+  // Both plates at 45 deg: area seen sqrt(2), all of it by two reflections; spread over the disk.
+  const double c = std::sqrt(0.5);
+  const Complex q = std::sqrt(eta * eta - 0.5);
+  const double r_s = std::norm((c - q) / (c + q)),
+               r_p = std::norm((eta * eta * c - q) / (eta * eta * c + q));
+  const double expected = std::sqrt(2.0) * (r_s * r_s + r_p * r_p) / 2 / (pi * rho * rho);
+  EXPECT_NEAR(light.indirect[1].i / expected, 1, 5e-3);
+}
+
+TEST(Bounces, AMirrorsImageOnALambertPlate) {
+  // The Sun on the gold floor throws light on the Lambert wall: half of the wall's light by the
+  // floor at 45 deg. J = rho/pi F cos45 A (n.v) with the area that the image covers.
+  const Material gold = mirror_of("paper_au");
+  const Complex eta = index_at(gold.index, Wavelength::nm(550)).value();
+  const double rho = 0.5;
+  const Integrator plates(scene_of(corner(), NormalMode::Flat, {gold, grey(rho)}));
+  const Vec3<Body> sun = normalized(Vec3<Body>{1, 0, 1}), observer{1, 0, 0};
+  IntegrationOptions options;
+  options.bounces = 2;
+  options.accuracy = 2e-3;
+  const PoseResult light = plates.evaluate({sun, observer, solar_radius_of_test}, options);
+  const double c = std::sqrt(0.5);
+  const Complex q = std::sqrt(eta * eta - 0.5);
+  const double f =
+      (std::norm((c - q) / (c + q)) + std::norm((eta * eta * c - q) / (eta * eta * c + q))) / 2;
+  // Everything that the floor sends up meets the wall: flux F cos45 times 1 m2.
+  EXPECT_NEAR(light.indirect[1].i / (rho / pi * f * c), 1, 5e-3);
 }
 
 TEST(Bounces, SameBytesForAnyThreads) {
