@@ -2,6 +2,7 @@
 import csv
 import math
 
+import pytest
 from conftest import ROOT, read_csv
 
 
@@ -43,19 +44,29 @@ def test_signature_takes_rays_with_bounces(umov, scenario, tmp_path):
     assert done.code == 2 and "direct light alone" in done.err
 
 
-MATERIALS = {"bus": (0.4, 2.4, 0.30), "panels": (4.0, 0.5, 0.20), "dish": (0.96, 6.69, 0.25), "tank": (0.4, 2.4, 0.15)}
+METALS = {"gold": (0.4, 2.4, 0.30), "silicon": (4.0, 0.5, 0.20), "aluminium": (0.96, 6.69, 0.25), "smooth": (0.4, 2.4, 0.15)}
+OBJECTS = {
+    "box_wing": (["box-wing", "--facets", 1000],
+                 {"bus": "gold", "panels": "silicon", "dish": "aluminium", "tank": "smooth"}),
+    "hst": (["hst"],
+            {"array_front": "silicon", "array_back": "gold", "forward_shell": "smooth", "aft_shroud": "gold",
+             "antenna": "aluminium", "array_frame": "aluminium", "door": "aluminium", "equipment": "aluminium",
+             "handrail": "aluminium", "light_shield": "aluminium"}),
+}
 
 
-def test_stokes_agree_with_mitsubas_path_tracer(umov, tmp_path):
+@pytest.mark.parametrize("which", OBJECTS)
+def test_stokes_agree_with_mitsubas_path_tracer(umov, tmp_path, which):
     """tests/data/bounces: I, Q, U and V of 40 geometries at 1, 2 and 5 surfaces, chi-square at 1 %."""
-    assert umov("mesh", "make", "box-wing", "--facets", 1000, "-o", "bw.obj").code == 0
-    text = 'umov = 1\n[[object]]\nmesh = { file = "bw.obj", unit = "m", up = "+Z" }\n[object.materials]\n'
-    text += "".join(f'{group} = "m_{group}"\n' for group in MATERIALS)
-    for group, (n, k, alpha) in MATERIALS.items():
-        text += (f'[material.m_{group}]\nindex = {{ n = {n}, k = {k} }}\nshadowing = "separable"\n'
+    mesh, groups = OBJECTS[which]
+    assert umov("mesh", "make", *mesh, "-o", "object.obj").code == 0
+    text = 'umov = 1\n[[object]]\nmesh = { file = "object.obj", unit = "m", up = "+Z" }\n[object.materials]\n'
+    text += "".join(f'{group} = "m_{metal}"\n' for group, metal in groups.items())
+    for metal, (n, k, alpha) in METALS.items():
+        text += (f'[material.m_{metal}]\nindex = {{ n = {n}, k = {k} }}\nshadowing = "separable"\n'
                  f'distribution = {{ model = "ggx", alpha = {alpha} }}\n')
     (tmp_path / "s.toml").write_text(text + '[bands]\nset = ["nm:550"]\n[render]\nsun = "point"\n')
-    with open(ROOT / "tests/data/bounces/mitsuba_box_wing.csv") as file:
+    with open(ROOT / f"tests/data/bounces/mitsuba_{which}.csv") as file:
         reference = list(csv.DictReader(file))
     axes = ["sun_x", "sun_y", "sun_z", "obs_x", "obs_y", "obs_z"]
     for bounces in (1, 2, 5):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Light between surfaces by Mitsuba 3.9.1's polarized path tracer: tests/data/bounces/mitsuba_box_wing.csv.
+"""Light between surfaces by Mitsuba 3.9.1's polarized path tracer: tests/data/bounces/mitsuba_*.csv.
 
     python3 -m venv venv && venv/bin/pip install mitsuba==3.9.1 numpy      (LLVM 19: see bench/peers/run)
     DRJIT_LIBLLVM_PATH=... venv/bin/python tools/oracles/mitsuba_bounces.py MESH.obj > .../mitsuba_box_wing.csv
 
-MESH.obj: `umov mesh make box-wing --facets 1000`. Each geometry is rendered by `path` in `stokes` (variant
+MESH.obj: `umov mesh make box-wing --facets 1000` (mitsuba_box_wing.csv) or `umov mesh make hst` (mitsuba_hst.csv). Each geometry is rendered by `path` in `stokes` (variant
 llvm_ad_mono_polarized, 550 nm) with a directional emitter of unit irradiance and an orthographic sensor whose
 window holds the object and whose vertical is the normal of the scattering plane s = (v x l)/|v x l|. The
 integrator's reference is the sensor's horizontal, 90 degrees from s, so Q and U are turned in sign here; and V,
@@ -12,8 +12,8 @@ which Mitsuba counts positive for light that is right-circular to the observer w
 these is seen at one surface, where Q is B/A I > 0 for every metal. Pixels added up times their area are m2/sr per unit
 irradiance. max_depth is the number of surfaces plus one. Errors: of the mean of ten independent renderings.
 
-Materials: separable Smith GGX conductors, two-sided with the index and alpha of MATERIALS, which
-tests/cli/test_bounces.py has too.
+Materials: separable Smith GGX conductors, two-sided with the index and alpha of METALS; GROUPS gives each group of
+the mesh its own. tests/cli/test_bounces.py has both too.
 """
 import sys
 
@@ -23,7 +23,9 @@ import numpy as np
 mitsuba.set_variant("llvm_ad_mono_polarized")
 import drjit  # noqa: E402
 
-MATERIALS = {"bus": (0.4, 2.4, 0.30), "panels": (4.0, 0.5, 0.20), "dish": (0.96, 6.69, 0.25), "tank": (0.4, 2.4, 0.15)}
+METALS = {"gold": (0.4, 2.4, 0.30), "silicon": (4.0, 0.5, 0.20), "aluminium": (0.96, 6.69, 0.25), "smooth": (0.4, 2.4, 0.15)}
+GROUPS = {"bus": "gold", "panels": "silicon", "dish": "aluminium", "tank": "smooth",
+          "array_front": "silicon", "array_back": "gold", "forward_shell": "smooth", "aft_shroud": "gold"}
 RENDERINGS, SIZE, SAMPLES = 10, 192, 96
 
 
@@ -38,7 +40,8 @@ def read_groups(path):
         elif word[0] == "usemtl":
             group = faces.setdefault(word[1], [])
         elif word[0] == "f":
-            group.append([int(corner.split("/")[0]) - 1 for corner in word[1:4]])
+            corners = [int(corner.split("/")[0]) - 1 for corner in word[1:]]
+            group.extend([corners[0], corners[k], corners[k + 1]] for k in range(1, len(corners) - 1))
     return np.array(vertices), {name: np.array(f) for name, f in faces.items()}
 
 
@@ -47,7 +50,7 @@ centre = (vertices.min(0) + vertices.max(0)) / 2
 radius = 1.01 * np.linalg.norm(vertices - centre, axis=1).max()
 shapes = {}
 for name, triangles in groups.items():
-    n, k, alpha = MATERIALS[name]
+    n, k, alpha = METALS[GROUPS.get(name, "aluminium")]
     properties = mitsuba.Properties()
     properties["bsdf"] = mitsuba.load_dict({"type": "twosided", "bsdf": {
         "type": "roughconductor", "distribution": "ggx", "alpha": alpha, "eta": n, "k": k}})
