@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/quantity.h>
+#include <umov/time/span.h>
 
 namespace umov {
 namespace {
@@ -100,8 +101,6 @@ Rotation<Body, Gcrs> between_spins(const AttitudeState &a, const AttitudeState &
   return spin_rotation(alpha, delta, cubic(p.angle_rad, end, p.rate_rad_s, q.rate_rad_s, h, share));
 }
 
-constexpr double edge_s = 1e-4; // what dates of six decimals lose on the way through Julian dates
-
 } // namespace
 
 Result<void> check(const AttitudeTable &table) {
@@ -146,8 +145,7 @@ double rate_bound_rad_s(const AttitudeTable &table) {
 
 Result<Rotation<Body, Gcrs>> attitude_in(const AttitudeTable &table, Epoch<Utc> time) {
   for (const AttitudeSegment &segment : table.segments) {
-    if (seconds_between(time, segment.first) < -edge_s ||
-        seconds_between(segment.last, time) < -edge_s)
+    if (!covers(segment, time))
       continue;
     const std::size_t k = before(segment, time);
     const AttitudeState &a = segment.states[k], &b = segment.states[k + 1];
@@ -157,15 +155,10 @@ Result<Rotation<Body, Gcrs>> attitude_in(const AttitudeTable &table, Epoch<Utc> 
       return between_spins(a, b, h, share);
     return segment.degree > 1 ? lagrange(segment, time) : slerp(a, b, share);
   }
-  std::string spans;
-  for (std::size_t k = 0; k < table.segments.size() && k < 4; ++k)
-    spans += fmt::format("{}{} to {}", k > 0 ? ", " : "", to_iso(table.segments[k].first),
-                         to_iso(table.segments[k].last));
   return fail(ErrorCode::Physics,
-              fmt::format("the attitude of {} is not given for {}; the table holds {}{}. Shorten "
+              fmt::format("the attitude of {} is not given for {}; the table holds {}. Shorten "
                           "[time] or give a longer one.",
-                          table.name, to_iso(time), spans,
-                          table.segments.size() > 4 ? ", ..." : ""));
+                          table.name, to_iso(time), spans_text(table.segments)));
 }
 
 } // namespace umov

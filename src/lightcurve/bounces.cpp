@@ -120,7 +120,7 @@ struct Sampler {
       to = about_normal(std::sqrt(u));
     } else {
       const Vec3<Body> h = about_normal(std::pow(u, 1 / (exponent + 1)));
-      to = normalized(h * (2 * dot(from, h)) - from);
+      to = mirrored(from, h);
     }
     return {to, density(normal, from, to)};
   }

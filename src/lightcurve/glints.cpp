@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <umov/core/golden_section.h>
 #include <umov/core/quantity.h>
 #include <unordered_map>
 
@@ -93,25 +94,8 @@ private:
 
 /// The smallest angle between two times, by golden section on its square, which is smooth.
 Sample minimum(Miss &miss, double a, double b) {
-  constexpr double ratio = 0.61803398874989485;
-  double c = b - ratio * (b - a), d = a + ratio * (b - a), f_c = miss(c), f_d = miss(d);
-  while (b - a > 0.1 * time_step_min) {
-    if (f_c < f_d) {
-      b = d;
-      d = c;
-      f_d = f_c;
-      c = b - ratio * (b - a);
-      f_c = miss(c);
-    } else {
-      a = c;
-      c = d;
-      f_c = f_d;
-      d = a + ratio * (b - a);
-      f_d = miss(d);
-    }
-  }
-  const double middle = 0.5 * (a + b);
-  return {middle, miss(middle)};
+  const double at = golden_minimum(miss, a, b, 0.1 * time_step_min);
+  return {at, miss(at)};
 }
 
 double crossing(Miss &miss, double inside, double outside, double limit) {

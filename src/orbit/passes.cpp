@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <umov/core/golden_section.h>
 #include <umov/core/quantity.h>
 
 namespace umov {
@@ -72,24 +73,8 @@ double crossing(const std::function<double(double)> &f, double a, double b) {
 
 /// The largest f between a and b, where it has one maximum, by golden section.
 double maximum(const std::function<double(double)> &f, double a, double b) {
-  constexpr double ratio = 0.61803398874989485;
-  double c = b - ratio * (b - a), d = a + ratio * (b - a), f_c = f(c), f_d = f(d);
-  while (b - a > 0.05) { // flat at the top: finer steps are rounding
-    if (f_c > f_d) {
-      b = d;
-      d = c;
-      f_d = f_c;
-      c = b - ratio * (b - a);
-      f_c = f(c);
-    } else {
-      a = c;
-      c = d;
-      f_c = f_d;
-      d = a + ratio * (b - a);
-      f_d = f(d);
-    }
-  }
-  return 0.5 * (a + b);
+  constexpr double tolerance = 0.05; // flat at the top: finer steps are rounding
+  return golden_minimum([&f](double t) { return -f(t); }, a, b, tolerance);
 }
 
 /// Times on which the altitude has no more than one maximum between neighbours' neighbours.

@@ -9,6 +9,7 @@
 #include <umov/core/constants.h>
 #include <umov/core/quantity.h>
 #include <umov/frames/earth.h>
+#include <umov/time/span.h>
 
 namespace umov {
 
@@ -52,26 +53,18 @@ TemeState teme_from(const EphemerisState &s, OrbitFrame frame) {
   return {teme_from_gcrs * vec<Gcrs>(s.position_km), teme_from_gcrs * vec<Gcrs>(s.velocity_km_s)};
 }
 
-/// A tenth of a millisecond: what dates of six decimals lose on the way through Julian dates.
-constexpr double edge_s = 1e-4;
-
 const EphemerisSegment *segment_at(const OrbitEphemeris &ephemeris, Epoch<Utc> time) {
   for (const EphemerisSegment &segment : ephemeris.segments)
-    if (seconds_between(time, segment.first) >= -edge_s &&
-        seconds_between(segment.last, time) >= -edge_s)
+    if (covers(segment, time))
       return &segment;
   return nullptr;
 }
 
 tl::unexpected<Error> not_covered(const OrbitEphemeris &e, Epoch<Utc> time) {
-  std::string spans;
-  for (std::size_t k = 0; k < e.segments.size() && k < 4; ++k)
-    spans += fmt::format("{}{} to {}", k > 0 ? ", " : "", to_iso(e.segments[k].first),
-                         to_iso(e.segments[k].last));
   return fail(ErrorCode::Physics,
-              fmt::format("{}: the ephemeris does not cover {}; it holds {}{}. Shorten the span or "
+              fmt::format("{}: the ephemeris does not cover {}; it holds {}. Shorten the span or "
                           "give a longer ephemeris.",
-                          e.name, to_iso(time), spans, e.segments.size() > 4 ? ", ..." : ""));
+                          e.name, to_iso(time), spans_text(e.segments)));
 }
 
 tl::unexpected<Error> sgp4_failure(const ElementSet &set, Epoch<Utc> time, Sgp4Code code) {
@@ -105,8 +98,8 @@ Result<void> check(const OrbitEphemeris &ephemeris) {
                     fmt::format("the state of {} follows that of {}, expected a later time",
                                 to_iso(s.time, 6), to_iso(segment.states[k - 1].time, 6)));
     }
-    if (seconds_between(segment.first, segment.states.front().time) < -edge_s ||
-        seconds_between(segment.states.back().time, segment.last) < -edge_s ||
+    if (seconds_between(segment.first, segment.states.front().time) < -span_edge_s ||
+        seconds_between(segment.states.back().time, segment.last) < -span_edge_s ||
         seconds_between(segment.last, segment.first) < 0)
       return fail(ErrorCode::BadInput,
                   fmt::format("the usable span {} to {} is not within the states, {} to {}",

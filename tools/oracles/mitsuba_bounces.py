@@ -16,6 +16,7 @@ irradiance. max_depth is the number of surfaces plus one. Errors: of the mean of
 Materials: separable Smith GGX conductors, two-sided with the index and alpha of METALS; GROUPS gives each group of
 the mesh its own. tests/cli/test_bounces.py has both too.
 """
+import pathlib
 import sys
 
 import mitsuba
@@ -24,33 +25,21 @@ import numpy as np
 mitsuba.set_variant("llvm_ad_mono_polarized")
 import drjit  # noqa: E402
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bench/peers"))
+from compare import read_groups  # noqa: E402
+
 METALS = {"gold": (0.4, 2.4, 0.30), "silicon": (4.0, 0.5, 0.20), "aluminium": (0.96, 6.69, 0.25), "smooth": (0.4, 2.4, 0.15)}
 GROUPS = {"bus": "gold", "panels": "silicon", "dish": "aluminium", "tank": "smooth",
           "array_front": "silicon", "array_back": "gold", "forward_shell": "smooth", "aft_shroud": "gold"}
 RENDERINGS, SIZE, SAMPLES = 10, 192, 96
 
 
-def read_groups(path):
-    vertices, faces, group = [], {}, None
-    for line in open(path):
-        word = line.split()
-        if not word:
-            continue
-        if word[0] == "v":
-            vertices.append([float(x) for x in word[1:4]])
-        elif word[0] == "usemtl":
-            group = faces.setdefault(word[1], [])
-        elif word[0] == "f":
-            corners = [int(corner.split("/")[0]) - 1 for corner in word[1:]]
-            group.extend([corners[0], corners[k], corners[k + 1]] for k in range(1, len(corners) - 1))
-    return np.array(vertices), {name: np.array(f) for name, f in faces.items()}
-
-
-vertices, groups = read_groups(sys.argv[1])
+groups = read_groups(sys.argv[1])
+vertices = next(iter(groups.values()))[0]
 centre = (vertices.min(0) + vertices.max(0)) / 2
 radius = 1.01 * np.linalg.norm(vertices - centre, axis=1).max()
 shapes = {}
-for name, triangles in groups.items():
+for name, (_, triangles) in groups.items():
     n, k, alpha = METALS[GROUPS.get(name, "aluminium")]
     properties = mitsuba.Properties()
     properties["bsdf"] = mitsuba.load_dict({"type": "twosided", "bsdf": {

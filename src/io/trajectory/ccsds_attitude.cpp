@@ -2,9 +2,10 @@
 
 #include <umov/io/attitude_file.h>
 
+#include "io/trajectory/message_fields.h"
+
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/quantity.h>
@@ -19,21 +20,9 @@ using ccsds::Field;
 using ccsds::find;
 using ccsds::Message;
 using ccsds::Record;
+using ccsds::refuse;
 using ccsds::Segment;
-
-std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-
-tl::unexpected<Error> refuse(const Message &message, const Field &field,
-                             const std::string &expected) {
-  return fail(
-      ErrorCode::BadInput,
-      fmt::format("{} is \"{}\", expected {}", field.key, field.text.substr(0, 60), expected),
-      {message.file, field.line});
-}
+using ccsds::upper;
 
 bool is_inertial(const std::string &name) {
   constexpr std::array known{"EME2000", "J2000", "ICRF", "GCRF", "GCRS"};

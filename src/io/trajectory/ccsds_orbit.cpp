@@ -2,8 +2,9 @@
 
 #include <umov/io/trajectory_file.h>
 
+#include "io/trajectory/message_fields.h"
+
 #include <algorithm>
-#include <cctype>
 #include <fmt/format.h>
 #include <umov/core/text.h>
 #include <umov/time/time_system.h>
@@ -15,21 +16,9 @@ using ccsds::Field;
 using ccsds::find;
 using ccsds::Message;
 using ccsds::Record;
+using ccsds::refuse;
 using ccsds::Segment;
-
-std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
-}
-
-tl::unexpected<Error> refuse(const Message &message, const Field &field,
-                             const std::string &expected) {
-  return fail(
-      ErrorCode::BadInput,
-      fmt::format("{} is \"{}\", expected {}", field.key, field.text.substr(0, 60), expected),
-      {message.file, field.line});
-}
+using ccsds::upper;
 
 /// What decides about all states of a segment.
 struct Context {
