@@ -24,7 +24,7 @@ struct ShapeOptions {
   double radius = 1, length = 2, width = 1, height = 1, edge = 1, chamfer = 0.1;
   std::vector<double> semi_axes{0.25, 0.25, 1};
   int facets = 5000, sides = 48;
-  double array_angle_deg = 0, crumple = 0;
+  double array_angle_deg = 0, crumple = 0, crumple_slope = 0;
   bool two_sided = false;
   RoughSurfaceOptions rough;
 };
@@ -36,6 +36,7 @@ const std::map<std::string, Maker> &makers() {
       {"sphere",
        [](const auto &o) { return make_sphere(o.radius, static_cast<std::size_t>(o.facets)); }},
       {"plate", [](const auto &o) { return make_plate(o.width, o.height, o.two_sided); }},
+      {"mli", [](const auto &o) { return make_mli_sheet(o.width, o.crumple_slope); }},
       {"cylinder",
        [](const auto &o) {
          return make_cylinder(o.radius, o.length, static_cast<std::size_t>(o.sides));
@@ -93,7 +94,8 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
     names.push_back(name);
   names.emplace_back("rough-surface");
   verb->add_option("shape", options->shape,
-                   "sphere (--radius --facets), plate (--width --height --two-sided), cylinder "
+                   "sphere (--radius --facets), plate (--width --height --two-sided), "
+                   "mli (--width --crumple-slope), cylinder "
                    "(--radius --length --sides), chamfered-cube (--edge --chamfer), cigar "
                    "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides), "
                    "box-wing (--facets --crumple), "
@@ -124,6 +126,9 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
   verb->add_option("--crumple", options->crumple,
                    "box-wing: height of the folds of the bus's foil [m]")
       ->check(CLI::Range(0.0, 0.05))
+      ->capture_default_str();
+  verb->add_option("--crumple-slope", options->crumple_slope, "mli: rms slope of its folds")
+      ->check(CLI::Range(0.0, 3.0))
       ->capture_default_str();
   verb->add_option("--array-angle-deg", options->array_angle_deg,
                    "Turn of the solar arrays about their boom")

@@ -18,6 +18,7 @@ void add_mesh(CLI::App &app, const Exit &exit_with);
 void add_orbit(CLI::App &app, const Exit &exit_with);
 void add_orbit_show(CLI::App &orbit, const Exit &exit_with);
 void add_orbit_convert(CLI::App &orbit, const Exit &exit_with);
+void add_paper(CLI::App &app, const Exit &exit_with);
 void add_passes(CLI::App &app, const Exit &exit_with);
 void add_schema(CLI::App &app, const Exit &exit_with);
 void add_doctor(CLI::App &app, const Exit &exit_with);

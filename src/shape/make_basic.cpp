@@ -1,4 +1,5 @@
 #include <umov/shape/primitives.h>
+#include <umov/shape/rough_surface.h>
 
 #include "shape/mesh_builder.h"
 
@@ -109,6 +110,28 @@ Mesh make_plate(double width_m, double height_m, bool two_sided) {
   if (two_sided) // the same diagonal: the two faces coincide triangle by triangle
     builder.flat(builder.group("back"), {{-w, -h, 0}, {-w, h, 0}, {w, h, 0}, {w, -h, 0}});
   return builder.mesh;
+}
+
+Mesh make_mli_sheet(double side_m, double crumple_slope) {
+  if (!(crumple_slope > 0))
+    return make_plate(side_m, side_m, true);
+  constexpr std::size_t cells = 64;
+  const auto field = make_height_field({.cells = cells,
+                                        .cell_m = side_m / cells,
+                                        .slope = std::min(crumple_slope, 3.0),
+                                        .correlation_cells = cells / 8.,
+                                        .hurst = 0,
+                                        .seed = 1});
+  Mesh out = mesh_of(*field); // its options are in range
+  const Vec3<Body> middle{side_m / 2, side_m / 2, 0};
+  for (Vec3<Body> &p : out.positions)
+    p = p - middle;
+  out.groups = {"front", "back"};
+  for (Triangle &t : out.triangles) {
+    t.front = 0;
+    t.back = 1;
+  }
+  return out;
 }
 
 Mesh make_cylinder(double radius_m, double length_m, std::size_t sides) {

@@ -34,7 +34,8 @@ struct KeyFrameSample {
   std::uint32_t material = no_index; ///< into KeyFrameRaster::materials; no_index: sky
   bool is_lit = false;               ///< the Sun reaches the point
   float radiance = 0; ///< [1/sr] per unit solar irradiance, single bounce and body lobe
-  float p = 0;        ///< |Q|/I of that light; NaN where there is none
+  float p = 0;        ///< linear degree of that light; NaN where there is none
+  float q = 0, u = 0; ///< fractions of it in the scattering frame; 0 where there is none
   float facing = 0;   ///< cosine of the shown normal to the observer, 0..1
 };
 
@@ -68,6 +69,15 @@ double common_exposure(std::span<const KeyFrameRaster> rasters);
 /// in shadow. What is seen but gives no light is slate blue, the sky is near black.
 std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading,
                                 double white);
+
+/// The object in colour, from rasters of one view in three bands: red, green, blue. Each channel is
+/// grey as in Intensity, so what is white reflects all three alike. BadInput unless they fit.
+Result<std::vector<std::uint8_t>> shade_colour(std::span<const KeyFrameRaster> red_green_blue,
+                                               double white);
+
+/// What a polarizer lets through: radiance times (1 + q)/2, the field perpendicular to the
+/// scattering plane, or (1 - q)/2, the field in it.
+void apply_polarizer(KeyFrameRaster &raster, bool is_perpendicular);
 
 /// Epochs worth a picture: per pass the brightest one and others spread evenly in time, `count` per
 /// pass in all; fewer if the pass is shorter. In order of time; dark epochs are left out.

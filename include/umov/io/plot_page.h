@@ -13,6 +13,8 @@ struct PlotLine {
   std::size_t colour = 0;     ///< into the colour-blind safe list
   std::string dash = "solid"; ///< solid, dash, dot, dashdot: lines differ by more than colour
   std::vector<std::string> labels = {}; ///< of points of a sky figure, "" for none; may be empty
+  bool has_markers = false;             ///< points without a line
+  std::vector<double> z = {};           ///< of a figure in space
 };
 struct PlotFigure {
   std::string title, x_title, y_title;
@@ -20,11 +22,16 @@ struct PlotFigure {
   bool has_log_y = false;
   bool is_sky = false; ///< x: azimuth from north through east, y: altitude [deg]; drawn as the sky
                        ///< overhead, north up and east left
+  std::string z_title = {}; ///< not empty: in space, turnable; every line has z
 };
 
 /// The page: title, one card per figure (each can be saved as SVG), notes at the end. Same input,
 /// same bytes. Internal if this build has no plotting script.
 Result<std::string> make_plot_page(const std::string &title, const std::vector<PlotFigure> &figures,
                                    const std::vector<std::string> &notes);
+
+/// One figure as an SVG picture of 640 x 440, white ground; one in space as a parallel projection.
+/// Same input, same bytes.
+std::string plot_svg(const PlotFigure &figure);
 
 } // namespace umov

@@ -45,7 +45,7 @@ struct EngineOptions {
   bool is_double = false; ///< the scalar reference in double instead of the vector unit in float
   bool is_intensity_only = false; ///< leaves Q = 0: to measure what polarization costs
   /// Other materials on the same mesh that abundances must serve exactly too.
-  std::vector<Scene> hypotheses;
+  std::vector<Scene> hypotheses = {};
   unsigned threads = 0; ///< of the preparation; 0: all cores
 };
 

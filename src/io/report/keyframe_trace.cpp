@@ -129,8 +129,11 @@ void light(const Camera &camera, const std::vector<Seen> &seen, std::span<KeyFra
     const auto diffuse = s.surface->diffuse(camera.band, at, {1, 0, 0, 0});
     const double intensity = f.a * specular + diffuse.i;
     out.radiance = static_cast<float>(intensity / n_v);
-    if (intensity > 0)
-      out.p = static_cast<float>(std::hypot(f.b * specular + diffuse.q, diffuse.u) / intensity);
+    if (intensity > 0) {
+      out.q = static_cast<float>((f.b * specular + diffuse.q) / intensity);
+      out.u = static_cast<float>(diffuse.u / intensity);
+      out.p = std::hypot(out.q, out.u);
+    }
   }
 }
 

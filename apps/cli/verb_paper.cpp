@@ -1,0 +1,101 @@
+// umov paper: the paper's figures and claims, remade.
+
+#include "console.h"
+#include "verbs.h"
+
+#include <filesystem>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <umov/core/parallel.h>
+#include <umov/core/version.h>
+#include <umov/io/run_folder.h>
+#include <umov/paper/paper.h>
+
+namespace umov::cli {
+namespace {
+
+struct PaperVerb {
+  std::vector<std::string> only;
+  std::string output = "out/paper";
+};
+
+void print_figure(const PaperFigure &figure, const Common &common) {
+  if (common.quiet)
+    return;
+  std::size_t failed = 0;
+  for (const PaperCheck &check : figure.checks)
+    failed += check.holds() ? 0u : 1u;
+  fmt::print("{:<18} {}{}\n", figure.id, figure.summary,
+             failed > 0 ? fmt::format("  [{} of {} checks FAIL]", failed, figure.checks.size()) : "");
+  std::fflush(stdout);
+}
+
+/// A number that is not what it should be is an error, and says which.
+Result<void> judge(const std::vector<PaperFigure> &figures) {
+  std::string bad;
+  for (const PaperFigure &figure : figures)
+    for (const PaperCheck &check : figure.checks)
+      if (!check.holds())
+        bad += fmt::format("\n  {}: {}: {:.8g}, expected {:.8g} within {:.1g} ({})", figure.id,
+                           check.what, check.found, check.expected, check.tolerance, check.source);
+  if (!bad.empty())
+    return fail(ErrorCode::Physics, "numbers that differ from their independent values:" + bad);
+  return {};
+}
+
+Result<void> make(const PaperVerb &o, const Common &common) {
+  using namespace std::chrono;
+  const auto started = system_clock::now();
+  UMOV_ASSIGN(folder, RunFolder::open(o.output, common.force));
+  Paper paper({.threads = static_cast<unsigned>(common.threads)});
+  const std::vector<std::string> ids = o.only.empty() ? paper_figure_ids() : o.only;
+  std::vector<PaperFigure> figures;
+  ProgressBar bar("figures", common);
+  for (const std::string &id : ids) {
+    if (interrupted())
+      return fail(ErrorCode::Interrupted,
+                  fmt::format("stopped by the user after {} of {} figures; nothing was written",
+                              figures.size(), ids.size()));
+    UMOV_ASSIGN(figure, paper.make(id));
+    print_figure(figure, common);
+    figures.push_back(std::move(figure));
+    bar.update(figures.size(), ids.size());
+  }
+  const double elapsed = duration<double>(system_clock::now() - started).count();
+  UMOV_ASSIGN(files, paper_files(figures, {fmt::format("Made by umov {} in {:.0f} s on {} threads.", version, elapsed,
+                                                       resolve_threads(static_cast<unsigned>(common.threads)))}));
+  for (auto &[name, bytes] : files)
+    folder.add(name, std::move(bytes));
+  ManifestInput manifest;
+  manifest.threads = resolve_threads(static_cast<unsigned>(common.threads));
+  manifest.command_line = command_line();
+  manifest.started_utc =
+      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(system_clock::to_time_t(started)));
+  manifest.elapsed_s = elapsed;
+  folder.add("manifest.json", make_manifest(manifest));
+  UMOV_TRY(folder.commit());
+  if (!common.quiet)
+    fmt::print("written to {} in {:.0f} s: index.html has it all\n", folder.path().string(), elapsed);
+  return judge(figures);
+}
+
+} // namespace
+
+void add_paper(CLI::App &app, const Exit &exit_with) {
+  auto *verb = app.add_subcommand(
+      "paper", "The paper's figures and claims remade: data, pictures and one page, each with its check");
+  auto o = std::make_shared<PaperVerb>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("--only", o->only, "Ids, separated by commas: fig16,claim_roll")->delimiter(',');
+  verb->add_option("-o,--output", o->output, "Folder")->capture_default_str();
+  verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
+  add_threads(*verb, *common);
+  add_common(*verb, *common, false);
+  verb->callback([o, common, exit_with] {
+    watch_interrupts();
+    const auto done = make(*o, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace umov::cli

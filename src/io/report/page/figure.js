@@ -1,0 +1,71 @@
+// Draws one figure of lines and points: umovFigure(element, figure). Shared by the pages of plots.
+const umovFigure = (() => {
+  "use strict";
+  const font = { family: "system-ui, sans-serif", size: 13 };
+  const grid = { gridcolor: "#e6e9ee", zerolinecolor: "#b8bfc9" };
+  const options = (figure) => ({
+    responsive: true, displaylogo: false, toImageButtonOptions: { format: "svg", filename: figure.title },
+  });
+  const legend = () => ({ orientation: "h", yref: "container", y: 0, yanchor: "bottom", font: { size: 11 } });
+  const symbols = ["circle", "square", "diamond", "cross", "triangle-up", "x"];
+  const safe = (text) => text.replaceAll("<", "&lt;");
+  // The sky overhead: zenith in the middle, north up, east left.
+  const drawSky = (plot, figure) => {
+    plot.style.height = "640px";
+    const tracks = figure.lines.map((line) => ({
+      type: "scatterpolar", mode: line.labels.some((label) => label) ? "lines+text" : "lines", name: line.name,
+      theta: line.x, r: line.y.map((altitude) => altitude === null ? null : 90 - altitude), text: line.labels,
+      textposition: line.x.map((azimuth) => azimuth % 360 > 180 ? "middle right" : "middle left"),
+      textfont: { size: 11 }, cliponaxis: false, line: { color: line.colour, dash: line.dash, width: 3 },
+      hovertemplate: "azimuth %{theta:.1f}°, zenith distance %{r:.1f}°<extra>" + safe(line.name) + "</extra>",
+    }));
+    Plotly.newPlot(plot, tracks, {
+      autosize: true, margin: { l: 50, r: 50, t: 30, b: 40 + 17 * Math.ceil(tracks.length / 3) },
+      polar: {
+        radialaxis: { range: [0, 90], tickvals: [0, 30, 60, 90], ticktext: ["90°", "60°", "30°", ""], angle: 45, tickangle: 0, gridcolor: "#e6e9ee" },
+        angularaxis: { rotation: 90, direction: "counterclockwise", tickvals: [0, 45, 90, 135, 180, 225, 270, 315], ticktext: ["N", "NE", "E", "SE", "S", "SW", "W", "NW"], gridcolor: "#e6e9ee" },
+      },
+      legend: legend(), font,
+    }, options(figure));
+  };
+  // In space: turned with the mouse.
+  const drawSpace = (plot, figure) => {
+    plot.style.height = "560px";
+    const clouds = figure.lines.map((line, index) => ({
+      type: "scatter3d", mode: line.markers ? "markers" : "lines", name: line.name, x: line.x, y: line.y, z: line.z,
+      marker: { size: line.markers ? 2.6 : 0, color: line.colour, symbol: symbols[index % 4] },
+      line: { color: line.colour, width: 4, dash: line.dash },
+    }));
+    const axis = (title) => Object.assign({ title: { text: title } }, grid);
+    Plotly.newPlot(plot, clouds, {
+      autosize: true, margin: { l: 0, r: 0, t: 0, b: 20 + 17 * Math.ceil(clouds.length / 3) },
+      scene: { xaxis: axis(figure.x), yaxis: axis(figure.y), zaxis: axis(figure.z), aspectmode: "cube",
+               camera: { eye: { x: 1.6, y: -1.6, z: 0.9 } } },
+      legend: legend(), font,
+    }, options(figure));
+  };
+  const drawPlane = (plot, figure) => {
+    const lines = figure.lines.map((line, index) => ({
+      type: line.x.length > 2000 ? "scattergl" : "scatter", mode: line.markers ? "markers" : "lines",
+      name: line.name, x: line.x, y: line.y,
+      line: { color: line.colour, dash: line.dash, width: 2 },
+      marker: { color: line.colour, size: 4, symbol: symbols[index % symbols.length] },
+    }));
+    const axis = (title, more) => Object.assign({ title: { text: title }, automargin: true }, grid, more);
+    Plotly.newPlot(plot, lines, {
+      autosize: true,
+      margin: { l: 60, r: 12, t: 10, b: 60 + 17 * Math.ceil(lines.length / 3) },
+      xaxis: axis(figure.x, {}),
+      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power" }),
+      legend: legend(), font,
+    }, options(figure));
+    // The width of a card changes with scroll bars and columns, not with the window alone.
+    let width = 0;
+    new ResizeObserver(() => {
+      if (plot.clientWidth === width || !plot.layout) return;
+      width = plot.clientWidth;
+      Plotly.Plots.resize(plot);
+    }).observe(plot);
+  };
+  return (plot, figure) => (figure.sky ? drawSky : figure.z ? drawSpace : drawPlane)(plot, figure);
+})();
