@@ -60,6 +60,7 @@ int run(int argc, char **argv) {
   cli::add_orbit(app, exit_with);
   cli::add_passes(app, exit_with);
   cli::add_paper(app, exit_with);
+  cli::add_render(app, exit_with);
   cli::add_schema(app, exit_with);
   cli::add_doctor(app, exit_with);
   try {

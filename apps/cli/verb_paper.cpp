@@ -26,7 +26,8 @@ void print_figure(const PaperFigure &figure, const Common &common) {
   for (const PaperCheck &check : figure.checks)
     failed += check.holds() ? 0u : 1u;
   fmt::print("{:<18} {}{}\n", figure.id, figure.summary,
-             failed > 0 ? fmt::format("  [{} of {} checks FAIL]", failed, figure.checks.size()) : "");
+             failed > 0 ? fmt::format("  [{} of {} checks FAIL]", failed, figure.checks.size())
+                        : "");
   std::fflush(stdout);
 }
 
@@ -62,11 +63,16 @@ Result<void> make(const PaperVerb &o, const Common &common) {
     bar.update(figures.size(), ids.size());
   }
   const double elapsed = duration<double>(system_clock::now() - started).count();
-  UMOV_ASSIGN(files, paper_files(figures, {fmt::format("Made by umov {} in {:.0f} s on {} threads.", version, elapsed,
-                                                       resolve_threads(static_cast<unsigned>(common.threads)))}));
-  for (auto &[name, bytes] : files)
-    folder.add(name, std::move(bytes));
+  UMOV_ASSIGN(
+      files,
+      paper_files(figures,
+                  {fmt::format("Made by umov {} in {:.0f} s on {} threads.", version, elapsed,
+                               resolve_threads(static_cast<unsigned>(common.threads)))}));
   ManifestInput manifest;
+  for (auto &[name, bytes] : files) {
+    manifest.files.push_back(name);
+    folder.add(name, std::move(bytes));
+  }
   manifest.threads = resolve_threads(static_cast<unsigned>(common.threads));
   manifest.command_line = command_line();
   manifest.started_utc =
@@ -75,7 +81,8 @@ Result<void> make(const PaperVerb &o, const Common &common) {
   folder.add("manifest.json", make_manifest(manifest));
   UMOV_TRY(folder.commit());
   if (!common.quiet)
-    fmt::print("written to {} in {:.0f} s: index.html has it all\n", folder.path().string(), elapsed);
+    fmt::print("written to {} in {:.0f} s: index.html has it all\n", folder.path().string(),
+               elapsed);
   return judge(figures);
 }
 
@@ -83,7 +90,8 @@ Result<void> make(const PaperVerb &o, const Common &common) {
 
 void add_paper(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand(
-      "paper", "The paper's figures and claims remade: data, pictures and one page, each with its check");
+      "paper",
+      "The paper's figures and claims remade: data, pictures and one page, each with its check");
   auto o = std::make_shared<PaperVerb>();
   auto common = std::make_shared<Common>();
   verb->add_option("--only", o->only, "Ids, separated by commas: fig16,claim_roll")->delimiter(',');

@@ -26,16 +26,21 @@ const char *word_of(Verdict verdict) {
 
 /// A check as a line of text cells.
 std::vector<std::string> check_line(const PaperCheck &check) {
-  return {check.what, fmt::format("{:.6g}", check.found), fmt::format("{:.6g}", check.expected),
-          fmt::format("{:.1g}", check.tolerance), check.holds() ? "holds" : "FAILS", check.source};
+  return {check.what,
+          fmt::format("{:.6g}", check.found),
+          fmt::format("{:.6g}", check.expected),
+          fmt::format("{:.1g}", check.tolerance),
+          check.holds() ? "holds" : "FAILS",
+          check.source};
 }
 
 StorySection section_of(const PaperFigure &figure, std::vector<std::string> files) {
-  StorySection out{figure.id,    figure.title, word_of(figure.verdict), figure.summary,
-                   figure.claim, figure.found, figure.plots,            figure.pictures,
-                   figure.tables, std::move(files)};
+  StorySection out{
+      figure.id,    figure.title, word_of(figure.verdict), figure.summary, figure.claim,
+      figure.found, figure.plots, figure.pictures,         figure.tables,  std::move(files)};
   if (!figure.checks.empty()) {
-    StoryTable checks{"Checks", {"number", "found", "expected", "tolerance", "", "expected from"}, {}};
+    StoryTable checks{
+        "Checks", {"number", "found", "expected", "tolerance", "", "expected from"}, {}};
     for (const PaperCheck &check : figure.checks)
       checks.rows.push_back(check_line(check));
     out.tables.push_back(std::move(checks));
@@ -48,10 +53,13 @@ StorySection speed_section(const std::vector<PaperFigure> &figures) {
   StorySection out;
   out.id = "claim_speed";
   out.title = "Is it real time?";
-  out.claim = "Thousands of full three-dimensional realizations per second on a graphics card of 2008; "
-              "signatures faster than real time.";
-  StoryTable table{"Realizations (a pose or an epoch with all three bands, or a picture) after set-up",
-                   {"figure", "realizations", "seconds", "per second"}, {}};
+  out.claim =
+      "Thousands of full three-dimensional realizations per second on a graphics card of 2008; "
+      "signatures faster than real time.";
+  StoryTable table{
+      "Realizations (a pose or an epoch with all three bands, or a picture) after set-up",
+      {"figure", "realizations", "seconds", "per second"},
+      {}};
   double fastest = 0;
   for (const PaperFigure &figure : figures) {
     if (figure.realizations == 0 || figure.seconds < 1e-3)
@@ -63,9 +71,11 @@ StorySection speed_section(const std::vector<PaperFigure> &figures) {
   }
   out.verdict = "agrees";
   out.summary = fmt::format("up to {:.2g} realizations per second on this processor", fastest);
-  out.found = {"Times are of this run on this machine, whatever else it was doing. Figures 18, 20 and 23 "
-               "and most claims use prepared masks; passes and the light between surfaces use rays; "
-               "pictures cast one ray per sample of a pixel. `umov bench` has rates under stated conditions."};
+  out.found = {
+      "Times are of this run on this machine, whatever else it was doing. Figures 18, 20 and 23 "
+      "and most claims use prepared masks; passes and the light between surfaces use rays; "
+      "pictures cast one ray per sample of a pixel. `umov bench` has rates under stated "
+      "conditions."};
   out.tables = {std::move(table)};
   return out;
 }
@@ -95,7 +105,8 @@ Table check_table(const std::vector<PaperFigure> &figures) {
 }
 
 Table verdict_table(const std::vector<PaperFigure> &figures) {
-  RowTable rows({{"figure", "", "id"}, {"verdict", "", "agrees, partly, differs or shown"},
+  RowTable rows({{"figure", "", "id"},
+                 {"verdict", "", "agrees, partly, differs or shown"},
                  {"summary", "", "in one line"}});
   for (const PaperFigure &figure : figures)
     rows.row({figure.id, word_of(figure.verdict), figure.summary});
@@ -103,27 +114,40 @@ Table verdict_table(const std::vector<PaperFigure> &figures) {
 }
 
 const std::vector<std::string> introduction{
-    "\"Real Time Polarization Light Curves for Space Debris and Satellites\" models the polarization of "
-    "sunlight reflected by satellites with microfacet surfaces, and reads materials from the Stokes "
-    "parameter Q in three colours. Here is each of its figures, computed anew, and each of its claims, "
+    "\"Real Time Polarization Light Curves for Space Debris and Satellites\" models the "
+    "polarization of "
+    "sunlight reflected by satellites with microfacet surfaces, and reads materials from the "
+    "Stokes "
+    "parameter Q in three colours. Here is each of its figures, computed anew, and each of its "
+    "claims, "
     "measured.",
     "The idea in four sentences. Sunlight is unpolarized; a single reflection favours the field "
-    "perpendicular to the plane of Sun, object and observer, and Q/I says by how much. On a rough surface "
-    "every microfacet that sends light to the observer is inclined so that the angle of incidence is half "
-    "the phase angle, wherever it sits. So Q/I of one reflection depends on the material and the phase angle "
-    "alone, not on roughness, shape or attitude. What spoils this beautiful fact, and by how much, is what "
+    "perpendicular to the plane of Sun, object and observer, and Q/I says by how much. On a rough "
+    "surface "
+    "every microfacet that sends light to the observer is inclined so that the angle of incidence "
+    "is half "
+    "the phase angle, wherever it sits. So Q/I of one reflection depends on the material and the "
+    "phase angle "
+    "alone, not on roughness, shape or attitude. What spoils this beautiful fact, and by how much, "
+    "is what "
     "the claims are about.",
-    "A badge says how the paper fares: agrees, in part, differs; figures that only illustrate say shown. "
-    "Every number on this page was computed in the run that wrote it; the ones with an independent value "
+    "A badge says how the paper fares: agrees, in part, differs; figures that only illustrate say "
+    "shown. "
+    "Every number on this page was computed in the run that wrote it; the ones with an independent "
+    "value "
     "beside them are listed under Checks."};
 
 const std::vector<std::string> conventions{
-    "Q/I > 0: perpendicular to the scattering plane. The phase angle is Sun-object-observer, 0 = full. "
+    "Q/I > 0: perpendicular to the scattering plane. The phase angle is Sun-object-observer, 0 = "
+    "full. "
     "Intensity is in m2/sr per unit solar irradiance.",
-    "Materials are those of the paper's Table 1 with a Blinn-Phong exponent of 200 (the paper names none), "
+    "Materials are those of the paper's Table 1 with a Blinn-Phong exponent of 200 (the paper "
+    "names none), "
     "the Sun is a point, bands are the wavelengths 425, 550 and 650 nm.",
-    "The paper's formulas are corrected where they are misprinted; docs/theory/paper.md has the list.",
-    "Surfaces in colour pictures: red, green and blue are 650, 550 and 425 nm; one exposure per picture, "
+    "The paper's formulas are corrected where they are misprinted; docs/theory/paper.md has the "
+    "list.",
+    "Surfaces in colour pictures: red, green and blue are 650, 550 and 425 nm; one exposure per "
+    "picture, "
     "compressed so that faint light shows; slate is what no sunlight reaches."};
 
 } // namespace
@@ -144,13 +168,17 @@ paper_files(const std::vector<PaperFigure> &figures, const std::vector<std::stri
       put(fmt::format("{}_{}.svg", figure.id, k + 1), plot_svg(figure.plots[k]));
     for (std::size_t k = 0; k < figure.pictures.size(); ++k)
       put(fmt::format("{}_picture_{}.png", figure.id, k + 1), figure.pictures[k].png);
-    (figure.id.starts_with("claim") ? claims : remade).push_back(section_of(figure, std::move(names)));
+    (figure.id.starts_with("claim") ? claims : remade)
+        .push_back(section_of(figure, std::move(names)));
   }
   claims.push_back(speed_section(figures));
   out.emplace_back("speed.ecsv", to_ecsv(speed_table(figures)));
   out.emplace_back("checks.ecsv", to_ecsv(check_table(figures)));
   out.emplace_back("verdicts.ecsv", to_ecsv(verdict_table(figures)));
-  Story story{"The paper remade: polarization light curves, figure by figure", introduction, {}, conventions};
+  Story story{"The paper remade: polarization light curves, figure by figure",
+              introduction,
+              {},
+              conventions};
   if (!remade.empty())
     story.chapters.emplace_back("Figures", std::move(remade));
   story.chapters.emplace_back("Claims, as measurements", std::move(claims));

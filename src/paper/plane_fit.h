@@ -10,9 +10,9 @@ using QPoint = std::array<double, 3>;
 
 /// Best plane through points in the sense of least squares.
 struct PlaneFit {
-  QPoint centre{}, normal{};    ///< unit; its green part positive
-  std::array<double, 3> rms{};  ///< along the principal axes, largest first; the last is off plane
-  double offset = 0;            ///< normal . centre: 0 for a plane through the origin
+  QPoint centre{}, normal{};   ///< unit; its green part positive
+  std::array<double, 3> rms{}; ///< along the principal axes, largest first; the last is off plane
+  double offset = 0;           ///< normal . centre: 0 for a plane through the origin
   [[nodiscard]] double thickness() const { return rms[0] > 0 ? rms[2] / rms[0] : 0; }
   [[nodiscard]] double distance(const QPoint &p) const;
 };

@@ -23,20 +23,25 @@ template <class T> T must(Result<T> result) {
   return std::move(*result);
 }
 
-const std::map<std::string, std::string> hst_materials{
-    {"light_shield", "paper_al"}, {"forward_shell", "paper_mylar"}, {"equipment", "paper_al"},
-    {"aft_shroud", "paper_al"},   {"door", "paper_al"},             {"array_front", "paper_asi"},
-    {"array_back", "paper_mylar"}, {"array_frame", "paper_al"},     {"antenna", "paper_spectralon"},
-    {"handrail", "paper_au"}};
+const std::map<std::string, std::string> hst_materials{{"light_shield", "paper_al"},
+                                                       {"forward_shell", "paper_mylar"},
+                                                       {"equipment", "paper_al"},
+                                                       {"aft_shroud", "paper_al"},
+                                                       {"door", "paper_al"},
+                                                       {"array_front", "paper_asi"},
+                                                       {"array_back", "paper_mylar"},
+                                                       {"array_frame", "paper_al"},
+                                                       {"antenna", "paper_spectralon"},
+                                                       {"handrail", "paper_au"}};
 const std::map<std::string, std::string> agena_materials{
-    {"nozzle_titanium", "paper_al"},    {"rack_aluminium", "paper_al"},
-    {"tank_aluminium", "paper_al"},     {"paint_white", "paper_spectralon"},
-    {"paint_black", "paper_bk7"},       {"cap_gold_kapton", "paper_au"}};
+    {"nozzle_titanium", "paper_al"}, {"rack_aluminium", "paper_al"},
+    {"tank_aluminium", "paper_al"},  {"paint_white", "paper_spectralon"},
+    {"paint_black", "paper_bk7"},    {"cap_gold_kapton", "paper_au"}};
 
 AttitudeLaw attitude_of(const std::string &object) {
   if (object == "hst") // as in examples/hst_maui.toml: it looks at the Orion nebula
-    return TwoAxisLaw{{0, 0, 1}, CelestialDirection{83.8 * degree, -5.4 * degree},
-                      {1, 0, 0}, Target::Sun};
+    return TwoAxisLaw{
+        {0, 0, 1}, CelestialDirection{83.8 * degree, -5.4 * degree}, {1, 0, 0}, Target::Sun};
   return TwoAxisLaw{{0, 0, 1}, Target::Zenith, {1, 0, 0}, Target::Velocity};
 }
 
@@ -57,7 +62,9 @@ Material paper_material(const std::string &name, bool has_body) {
   return out;
 }
 
-Surface compiled(const Material &material) { return must(Surface::compile(material, paper_bands())); }
+Surface compiled(const Material &material) {
+  return must(Surface::compile(material, paper_bands()));
+}
 
 double interface_q(const Surface &surface, std::size_t band, double phase_deg) {
   const FresnelFactors f = surface.fresnel(band, std::cos(phase_deg * degree));
@@ -70,13 +77,17 @@ PaperObject paper_object(const std::string &name) {
   if (name == "cigar")
     return {make_ellipsoid(0.25, 0.25, 1, 5000), NormalMode::Smooth, {{"default", "paper_au"}}};
   if (name == "mli" || name == "mli_crumpled")
-    return {make_mli_sheet(1, name == "mli" ? 0 : 0.3), NormalMode::Flat,
+    return {make_mli_sheet(1, name == "mli" ? 0 : 0.3),
+            NormalMode::Flat,
             {{"front", "paper_au"}, {"back", "paper_al"}}};
   if (name == "agena")
     return {make_agena(), NormalMode::Smooth, agena_materials};
   if (name == "box_wing")
-    return {make_box_wing({.facets = 2000, .crumple_m = 0.01}), NormalMode::Flat,
-            {{"bus", "paper_au"}, {"panels", "paper_asi"}, {"dish", "paper_spectralon"},
+    return {make_box_wing({.facets = 2000, .crumple_m = 0.01}),
+            NormalMode::Flat,
+            {{"bus", "paper_au"},
+             {"panels", "paper_asi"},
+             {"dish", "paper_spectralon"},
              {"tank", "paper_al"}}};
   return {make_hst(), NormalMode::Smooth, hst_materials};
 }
@@ -89,8 +100,8 @@ Scene paper_scene(const PaperObject &object, const std::function<Material(Materi
         named != object.materials.end() ? named->second : object.materials.at("default"))));
   }
   Diagnostics diagnostics;
-  return must(make_scene(object.mesh, object.normals, paper_bands(), materials, materials,
-                         diagnostics));
+  return must(
+      make_scene(object.mesh, object.normals, paper_bands(), materials, materials, diagnostics));
 }
 
 std::vector<Pose> random_poses(std::uint64_t seed, std::size_t count, double phase_deg) {
@@ -138,18 +149,17 @@ StokesTable PaperWorkshop::light(const std::string &object, const std::vector<Po
 }
 
 Result<Trajectory> PaperWorkshop::orbit(const std::string &object) const {
-  const std::string_view text = object == "hst"     ? paper_tle_hst()
-                                : object == "agena" ? paper_tle_agena()
+  const std::string_view text = object == "hst"      ? paper_tle_hst()
+                                : object == "agena"  ? paper_tle_agena()
                                 : object == "goes15" ? paper_tle_goes15()
-                                                    : paper_tle_explorer27();
+                                                     : paper_tle_explorer27();
   Diagnostics diagnostics;
   UMOV_ASSIGN(sets, read_elements(text, object + ".tle", {}, diagnostics));
   return Trajectory(sets.front());
 }
 
 Result<std::vector<SitePass>> PaperWorkshop::passes(const std::string &object, std::size_t count,
-                                                    Angle altitude_min,
-                                                    double days_before) {
+                                                    Angle altitude_min, double days_before) {
   UMOV_ASSIGN(path, orbit(object));
   UMOV_ASSIGN(site, site_from("maui"));
   PassSearch search;
@@ -185,8 +195,9 @@ Result<const PaperWorkshop::LitPasses *> PaperWorkshop::lit_passes(const std::st
   for (const SitePass &pass : geometry) {
     request.start = pass.rise.time;
     request.stop = pass.set.time;
-    UMOV_ASSIGN(light, compute_light_curve(request, scene(object), integrator(object),
-                                           [](std::size_t, std::size_t) {}, false));
+    UMOV_ASSIGN(light, compute_light_curve(
+                           request, scene(object), integrator(object),
+                           [](std::size_t, std::size_t) {}, false));
     out.passes.push_back({pass, std::move(light)});
   }
   out.seconds = watch.seconds();

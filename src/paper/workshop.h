@@ -20,10 +20,15 @@ inline constexpr double degree = pi / 180;
 struct PaperMaterial {
   const char *name, *title;
 };
-inline constexpr PaperMaterial paper_materials[] = {
-    {"paper_au", "gold"},           {"paper_al", "aluminium"},
-    {"paper_bk7", "BK7"},           {"paper_asi", "amorphous silicon"},
-    {"paper_spectralon", "Spectralon"}, {"paper_mylar", "Mylar"}};
+inline constexpr PaperMaterial paper_materials[] = {{"paper_au", "gold"},
+                                                    {"paper_al", "aluminium"},
+                                                    {"paper_bk7", "BK7"},
+                                                    {"paper_asi", "amorphous silicon"},
+                                                    {"paper_spectralon", "Spectralon"},
+                                                    {"paper_mylar", "Mylar"}};
+
+/// Of the three bands in plots: blue, green, vermilion.
+inline constexpr std::size_t band_colours[] = {4, 2, 5};
 
 /// 425, 550 and 650 nm.
 const std::vector<Band> &paper_bands();
@@ -43,8 +48,9 @@ struct PaperObject {
 /// "box_wing", a made-up satellite of four of the six.
 PaperObject paper_object(const std::string &name);
 /// The scene of an object; every material through `change`.
-Scene paper_scene(const PaperObject &object,
-                  const std::function<Material(Material)> &change = [](Material m) { return m; });
+Scene paper_scene(
+    const PaperObject &object,
+    const std::function<Material(Material)> &change = [](Material m) { return m; });
 
 /// Poses `first`, `first` + 1, ... of the random stream of a seed.
 std::vector<Pose> random_poses(std::uint64_t seed, std::size_t count, double phase_deg);
@@ -77,8 +83,7 @@ public:
   /// With masks of typical error 0.2 % of I and rays for uncertain poses.
   const Engine &engine(const std::string &object);
   /// Evaluates and adds the time to the figure's.
-  StokesTable light(const std::string &object, const std::vector<Pose> &poses,
-                    PaperFigure &figure);
+  StokesTable light(const std::string &object, const std::vector<Pose> &poses, PaperFigure &figure);
   /// Consecutive passes over Maui with at least 100 s above an altitude in sunlight under a dark
   /// sky, from days before the elements to 7 days after them, the earliest first.
   Result<std::vector<SitePass>> passes(const std::string &object, std::size_t count,

@@ -123,9 +123,13 @@ Mesh make_mli_sheet(double side_m, double crumple_slope) {
                                         .hurst = 0,
                                         .seed = 1});
   Mesh out = mesh_of(*field); // its options are in range
-  const Vec3<Body> middle{side_m / 2, side_m / 2, 0};
-  for (Vec3<Body> &p : out.positions)
-    p = p - middle;
+  // A height field never shows its back from the front; a curled one does.
+  constexpr double curl = 2.5; // rad from edge to edge
+  const double radius = side_m / curl;
+  for (Vec3<Body> &p : out.positions) {
+    const double angle = (p.x - side_m / 2) / radius, r = radius - p.z;
+    p = {r * std::sin(angle), p.y - side_m / 2, radius / 2 - r * std::cos(angle)};
+  }
   out.groups = {"front", "back"};
   for (Triangle &t : out.triangles) {
     t.front = 0;

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <umov/core/result.h>
+#include <umov/io/exr.h>
 #include <umov/io/report.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/scene/articulation.h>
@@ -33,21 +34,24 @@ struct KeyFrameOptions {
 struct KeyFrameSample {
   std::uint32_t material = no_index; ///< into KeyFrameRaster::materials; no_index: sky
   bool is_lit = false;               ///< the Sun reaches the point
-  float radiance = 0; ///< [1/sr] per unit solar irradiance, single bounce and body lobe
-  float p = 0;        ///< linear degree of that light; NaN where there is none
-  float q = 0, u = 0; ///< fractions of it in the scattering frame; 0 where there is none
-  float facing = 0;   ///< cosine of the shown normal to the observer, 0..1
+  float radiance = 0;        ///< [1/sr] per unit solar irradiance, single bounce and body lobe
+  float p = 0;               ///< linear degree of that light; NaN where there is none
+  float q = 0, u = 0, v = 0; ///< fractions of it in the scattering frame; 0 where there is none
+  float facing = 0;          ///< cosine of the shown normal to the observer, 0..1
 };
 
 struct KeyFrameRaster {
   std::uint32_t side = 0; ///< samples per side: size * samples
   std::uint32_t samples = 1;
   double half_width_m = 0;
+  /// Position angle of +Q of the scattering frame in the picture, from up over left; 0 where Sun
+  /// and observer are in line.
+  double pa_scat_rad = 0;
   std::vector<std::string> materials; ///< names, in order of first use in the scene
   std::vector<KeyFrameSample> points; ///< [row * side + column], rows from the top
 };
 
-enum class KeyFrameShading { Intensity, Polarization, Material };
+enum class KeyFrameShading { Intensity, Polarization, PositionAngle, Material };
 
 /// Vector towards the celestial pole in the body frame, for KeyFrameView::up.
 Vec3<Body> celestial_north(const LightCurveEpoch &epoch);
@@ -65,15 +69,21 @@ Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occlu
 double common_exposure(std::span<const KeyFrameRaster> rasters);
 
 /// Colours of a raster, 3 size size bytes. Intensity: grey by asinh(L / (0.02 white)), so faint
-/// light stays visible; Polarization: the map of `polarization_scale`; Material: its colour, darker
+/// light stays visible; Polarization: the map of `polarization_scale`; PositionAngle: hue, once
+/// round in 180 deg from up (red) over left, paler below p = 10 %; Material: its colour, darker
 /// in shadow. What is seen but gives no light is slate blue, the sky is near black.
 std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading,
                                 double white);
 
 /// The object in colour, from rasters of one view in three bands: red, green, blue. Each channel is
-/// grey as in Intensity, so what is white reflects all three alike. BadInput unless they fit.
+/// compressed alike, so what is grey reflects all three alike. BadInput unless they fit.
 Result<std::vector<std::uint8_t>> shade_colour(std::span<const KeyFrameRaster> red_green_blue,
                                                double white);
+
+/// Channels of a raster averaged over the samples of each pixel: "I", "Q", "U", "V" [1/sr] per unit
+/// solar irradiance, +Q along the picture's up and +U 45 deg from it to the left (IAU), and "A",
+/// the share of the pixel that the object covers; names begin with `prefix`.
+std::vector<ExrChannel> stokes_channels(const KeyFrameRaster &raster, const std::string &prefix);
 
 /// What a polarizer lets through: radiance times (1 + q)/2, the field perpendicular to the
 /// scattering plane, or (1 - q)/2, the field in it.

@@ -44,6 +44,8 @@ struct ManifestInput {
   double elapsed_s = 0;
   std::vector<std::string> warnings;
   std::string stopped; ///< why the run ended early; "" = complete
+  /// Names of files besides those that every run writes: with them the folder is still ours.
+  std::vector<std::string> files;
 };
 
 /// JSON text; the key "program" marks the folder as ours.

@@ -39,7 +39,7 @@ struct PaperFigure {
   std::vector<std::string> found; ///< paragraphs: what was measured, and how
   std::vector<PlotFigure> plots;
   std::vector<StoryPicture> pictures;
-  std::vector<StoryTable> tables; ///< for the page
+  std::vector<StoryTable> tables;                  ///< for the page
   std::vector<std::pair<std::string, Table>> data; ///< name of the file without suffix, its rows
   std::vector<PaperCheck> checks;
   std::size_t realizations = 0; ///< poses, epochs or pictures times bands that were computed

@@ -11,8 +11,8 @@ Mesh make_sphere(double radius_m, std::size_t facets);
 /// `two_sided`, else one group "plate".
 Mesh make_plate(double width_m, double height_m, bool two_sided);
 /// Square sheet of multi-layer insulation about the origin, groups "front" (+z) and "back": flat,
-/// or crumpled into Gaussian folds of that rms slope per axis (an eighth of the side long; at most
-/// 3).
+/// or torn off: curled by 2.5 rad about y, front inwards, and crumpled into Gaussian folds of that
+/// rms slope per axis (an eighth of the side long; at most 3).
 Mesh make_mli_sheet(double side_m, double crumple_slope);
 /// Closed cylinder along z centred at the origin; groups "side" and "caps"; side normals radial.
 Mesh make_cylinder(double radius_m, double length_m, std::size_t sides);

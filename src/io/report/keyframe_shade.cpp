@@ -12,8 +12,8 @@ constexpr Rgb sky{10, 12, 18};
 constexpr Rgb unlit_far{26, 32, 48}, unlit_near{58, 70, 100}; // edge-on and face-on
 constexpr double knee = 0.02; // share of white where asinh turns from linear to logarithmic
 
-double tone_of(double radiance, double white) {
-  return std::min(1., std::asinh(radiance / (knee * white)) / std::asinh(1 / knee));
+double tone_of(double radiance, double white, double knee_at = knee) {
+  return std::min(1., std::asinh(radiance / (knee_at * white)) / std::asinh(1 / knee_at));
 }
 
 Rgb intensity_rgb(const KeyFrameSample &s, double white) {
@@ -23,7 +23,24 @@ Rgb intensity_rgb(const KeyFrameSample &s, double white) {
   return mix(ground, {255, 250, 240}, tone);
 }
 
-Rgb sample_rgb(const KeyFrameSample &s, KeyFrameShading shading, double white) {
+/// Colours of equal lightness round the circle (Ottosson 2020, Oklab: L = .72, chroma .12), pale
+/// where there is little polarization.
+Rgb position_angle_rgb(double pa_rad, double p) {
+  const double chroma = 0.12 * std::min(1., p / 0.1), hue = 2 * pa_rad + 29 * 3.14159265 / 180;
+  const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
+  const double l = std::pow(0.72 + 0.3963377774 * a + 0.2158037573 * b, 3);
+  const double m = std::pow(0.72 - 0.1055613458 * a - 0.0638541728 * b, 3);
+  const double s = std::pow(0.72 - 0.0894841775 * a - 1.2914855480 * b, 3);
+  const auto srgb = [](double linear) {
+    const double c = std::clamp(linear, 0., 1.);
+    return 255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055);
+  };
+  return {srgb(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+          srgb(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+          srgb(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
+
+Rgb sample_rgb(const KeyFrameSample &s, KeyFrameShading shading, double white, double pa_scat) {
   if (s.material == no_index)
     return sky;
   switch (shading) {
@@ -31,6 +48,9 @@ Rgb sample_rgb(const KeyFrameSample &s, KeyFrameShading shading, double white) {
     return intensity_rgb(s, white);
   case KeyFrameShading::Polarization:
     return std::isnan(s.p) ? mix(unlit_far, unlit_near, s.facing) : polarization_rgb(s.p);
+  case KeyFrameShading::PositionAngle:
+    return std::isnan(s.p) ? mix(unlit_far, unlit_near, s.facing)
+                           : position_angle_rgb(pa_scat + std::atan2(s.u, s.q) / 2, s.p);
   case KeyFrameShading::Material:
     break;
   }
@@ -76,8 +96,9 @@ double common_exposure(std::span<const KeyFrameRaster> rasters) {
 
 std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading,
                                 double white) {
-  return pixels(raster.side, raster.samples,
-                [&](std::size_t i) { return sample_rgb(raster.points[i], shading, white); });
+  return pixels(raster.side, raster.samples, [&](std::size_t i) {
+    return sample_rgb(raster.points[i], shading, white, raster.pa_scat_rad);
+  });
 }
 
 Result<std::vector<std::uint8_t>> shade_colour(std::span<const KeyFrameRaster> red_green_blue,
@@ -94,7 +115,8 @@ Result<std::vector<std::uint8_t>> shade_colour(std::span<const KeyFrameRaster> r
       return out;
     const Rgb ground = mix(unlit_far, unlit_near, first.points[i].facing);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double tone = tone_of(red_green_blue[k].points[i].radiance, white);
+      // A higher knee than in grey: hues survive.
+      const double tone = tone_of(red_green_blue[k].points[i].radiance, white, 0.2);
       out[k] = ground[k] * (1 - tone) + 255 * tone;
     }
     return out;

@@ -132,6 +132,7 @@ void light(const Camera &camera, const std::vector<Seen> &seen, std::span<KeyFra
     if (intensity > 0) {
       out.q = static_cast<float>((f.b * specular + diffuse.q) / intensity);
       out.u = static_cast<float>(diffuse.u / intensity);
+      out.v = static_cast<float>(diffuse.v / intensity);
       out.p = std::hypot(out.q, out.u);
     }
   }
@@ -177,6 +178,9 @@ Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occlu
   out.side = options.size * options.samples;
   out.samples = options.samples;
   out.half_width_m = camera.half_width;
+  const Vec3<Body> s = cross(v, view.pose.sun); // +Q of the scattering frame (physics: v x l)
+  if (norm(s) > 1e-12)
+    out.pa_scat_rad = std::atan2(dot(s, cross(v, camera.up)), dot(s, camera.up));
   out.materials = material_names(scene);
   for (const Surface &surface : scene.front)
     camera.front_material.push_back(material_at(out.materials, surface.material().name));

@@ -53,8 +53,8 @@ std::vector<Tick> ticks(const Range &range) {
     if (out.size() >= 2)
       return out;
     out.clear();
-    for (const double v : {std::pow(10, range.low + 0.1 * decades),
-                           std::pow(10, range.high - 0.1 * decades)})
+    for (const double v :
+         {std::pow(10, range.low + 0.1 * decades), std::pow(10, range.high - 0.1 * decades)})
       out.push_back({v, fmt::format("{:.2g}", v)});
     return out;
   }
@@ -143,8 +143,9 @@ std::string legend(const PlotFigure &figure) {
     }
     if (y > height - 4)
       break; // the page has the rest
-    out += draw(line, i, line.has_markers ? std::vector<Point>{{x + 11, y - 4}}
-                                          : std::vector<Point>{{x, y - 4}, {x + 22, y - 4}});
+    out += draw(line, i,
+                line.has_markers ? std::vector<Point>{{x + 11, y - 4}}
+                                 : std::vector<Point>{{x, y - 4}, {x + 22, y - 4}});
     out += label(x + 27, y, "start", line.name, "font-size=\"11\"");
     x += wide;
   }
@@ -180,15 +181,16 @@ std::string plane(const PlotFigure &figure) {
     std::vector<Point> points;
     for (std::size_t k = 0; k < std::min(line.x.size(), line.y.size()); ++k) {
       const bool is_shown = !y.is_log || line.y[k] > 0;
-      points.push_back({x.place(line.x[k], left, right),
-                        is_shown ? y.place(line.y[k], bottom, top)
-                                 : std::numeric_limits<double>::quiet_NaN()});
+      points.push_back(
+          {x.place(line.x[k], left, right),
+           is_shown ? y.place(line.y[k], bottom, top) : std::numeric_limits<double>::quiet_NaN()});
     }
     out += draw(line, i, points);
   }
   out += label((left + right) / 2, bottom + 36, "middle", figure.x_title);
-  out += label(0, 0, "middle", figure.y_title,
-               fmt::format("transform=\"translate(18 {}) rotate(-90)\"", (top + bottom) / 2).c_str());
+  out +=
+      label(0, 0, "middle", figure.y_title,
+            fmt::format("transform=\"translate(18 {}) rotate(-90)\"", (top + bottom) / 2).c_str());
   return out;
 }
 
@@ -205,7 +207,8 @@ std::string sky(const PlotFigure &figure) {
   for (std::size_t i = 0; i < figure.lines.size(); ++i) {
     std::vector<Point> points;
     for (std::size_t k = 0; k < figure.lines[i].x.size(); ++k) {
-      const double r = (90 - figure.lines[i].y[k]) / 90 * radius, a = figure.lines[i].x[k] * pi / 180;
+      const double r = (90 - figure.lines[i].y[k]) / 90 * radius,
+                   a = figure.lines[i].x[k] * pi / 180;
       points.push_back({x0 - r * std::sin(a), y0 - r * std::cos(a)});
     }
     out += draw(figure.lines[i], i, points);
@@ -225,10 +228,9 @@ std::string space(const PlotFigure &figure) {
   for (Range &range : axis)
     range.finish();
   constexpr double half = 0.70710678, sine = 0.37, cosine = 0.929; // elevation 21.7 deg
-  const auto project = [](double a, double b, double c) { // of -0.5..0.5
+  const auto project = [](double a, double b, double c) {          // of -0.5..0.5
     return Point{width / 2 + 220 * (half * a + half * b),
-                 (top + bottom) / 2 + 10 -
-                     220 * (cosine * c + sine * (half * b - half * a))};
+                 (top + bottom) / 2 + 10 - 220 * (cosine * c + sine * (half * b - half * a))};
   };
   const auto edge = [&](std::array<double, 3> from, std::array<double, 3> to) {
     const Point a = project(from[0], from[1], from[2]), b = project(to[0], to[1], to[2]);
@@ -265,11 +267,11 @@ std::string space(const PlotFigure &figure) {
 } // namespace
 
 std::string plot_svg(const PlotFigure &figure) {
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-      "height=\"{1}\" font-family=\"DejaVu Sans, Arial, sans-serif\" font-size=\"12\" "
-      "fill=\"#1b1f24\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      width, height);
+  std::string out =
+      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+                  "height=\"{1}\" font-family=\"DejaVu Sans, Arial, sans-serif\" font-size=\"12\" "
+                  "fill=\"#1b1f24\">\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+                  width, height);
   out += label(left, 20, "start", figure.title, "font-size=\"13\" font-weight=\"bold\"");
   out += figure.is_sky ? sky(figure) : figure.z_title.empty() ? plane(figure) : space(figure);
   return out + legend(figure) + "</svg>\n";

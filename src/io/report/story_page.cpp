@@ -26,8 +26,8 @@ Json section_json(const StorySection &section) {
   for (const PlotFigure &plot : section.plots)
     out["plots"].push_back(figure_json(plot));
   for (const StoryPicture &picture : section.pictures)
-    out["pictures"].push_back({{"caption", picture.caption},
-                               {"src", "data:image/png;base64," + base64(picture.png)}});
+    out["pictures"].push_back(
+        {{"caption", picture.caption}, {"src", "data:image/png;base64," + base64(picture.png)}});
   for (const StoryTable &table : section.tables)
     out["tables"].push_back(
         {{"caption", table.caption}, {"head", table.head}, {"rows", table.rows}});

@@ -25,13 +25,21 @@ tl::unexpected<Error> trouble(const fs::path &path, const std::string &text) {
 
 constexpr const char *complete = "complete", *stopped_early = "stopped early";
 
-/// Status of the run that umov wrote into a folder; empty for any other folder.
-std::optional<std::string> status_of(const fs::path &folder) {
+/// The manifest that umov wrote into a folder; null for any other folder.
+nlohmann::json manifest_of(const fs::path &folder) {
   const auto text = read_file(folder / "manifest.json");
   if (!text)
-    return std::nullopt;
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
+    return {};
+  auto json = nlohmann::json::parse(*text, nullptr, false);
   if (!json.is_object() || !json.contains("program") || json["program"] != program)
+    return {};
+  return json;
+}
+
+/// Status of the run that umov wrote into a folder; empty for any other folder.
+std::optional<std::string> status_of(const fs::path &folder) {
+  const auto json = manifest_of(folder);
+  if (json.is_null())
     return std::nullopt;
   const auto status = json.find("status");
   return status != json.end() && status->is_string() ? status->get<std::string>() : complete;
@@ -54,10 +62,13 @@ bool is_further_page(std::string_view name) {
 /// Something in a folder that umov did not write; empty if there is nothing.
 std::string stranger_in(const fs::path &folder) {
   std::error_code code;
+  const auto manifest = manifest_of(folder);
+  const auto listed = manifest.is_null() ? nlohmann::json::array()
+                                         : manifest.value("files", nlohmann::json::array());
   for (const auto &entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
     if (std::find(std::begin(our_files), std::end(our_files), name) == std::end(our_files) &&
-        !is_further_page(name))
+        !is_further_page(name) && std::find(listed.begin(), listed.end(), name) == listed.end())
       return name;
   }
   return {};
@@ -200,6 +211,8 @@ std::string make_manifest(const ManifestInput &input) {
   for (const auto &[path, hash] : input.inputs)
     out["inputs"].push_back({{"path", path}, {"sha256", hash}});
   out["warnings"] = input.warnings;
+  if (!input.files.empty())
+    out["files"] = input.files;
   return out.dump(2) + "\n";
 }
 

@@ -15,7 +15,6 @@
 namespace umov {
 namespace {
 
-
 /// Greatest distance of the locus of two materials from its chord, over the chord's length.
 double departure(const Surface &one, const Surface &other, double phase_deg) {
   const double c = std::cos(phase_deg * degree);
@@ -69,7 +68,8 @@ std::vector<std::vector<double>> flat_coordinates(const StokesTable &light) {
 
 /// Random mixtures of measured indices at other wavelengths.
 Result<PlaneFit> measured_plane(const std::array<double, 3> &wavelengths, double phase_deg) {
-  const char *const names[] = {"Au_Johnson", "Al_Rakic", "Cu_Johnson", "NBK7_Schott", "aSi_Pierce", "TiO2_Siefke"};
+  const char *const names[] = {"Au_Johnson",  "Al_Rakic",   "Cu_Johnson",
+                               "NBK7_Schott", "aSi_Pierce", "TiO2_Siefke"};
   std::vector<std::array<MuellerEntries, 3>> factors;
   for (const char *name : names) {
     UMOV_ASSIGN(table, find_index(name));
@@ -112,7 +112,10 @@ Result<PaperFigure> make_claim_locus(PaperWorkshop &workshop) {
   };
   // Independent evaluation, printed to three or four digits: half a unit of the last one.
   const Pair pairs[] = {
-      {"paper_au", "paper_al", "gold - aluminium", {{60, {.0216, 6e-5}}, {100, {.0202, 6e-5}}, {140, {.0244, 6e-5}}, {160, {.0489, 6e-5}}}},
+      {"paper_au",
+       "paper_al",
+       "gold - aluminium",
+       {{60, {.0216, 6e-5}}, {100, {.0202, 6e-5}}, {140, {.0244, 6e-5}}, {160, {.0489, 6e-5}}}},
       {"paper_au", "paper_bk7", "gold - BK7", {{60, {.0819, 6e-5}}, {140, {.0322, 6e-5}}}},
       {"paper_au", "paper_asi", "gold - silicon", {{60, {.0456, 6e-5}}, {140, {.0381, 6e-5}}}},
       {"paper_al", "paper_mylar", "aluminium - Mylar", {{60, {.315, 6e-4}}, {140, {.109, 6e-4}}}},
@@ -121,10 +124,12 @@ Result<PaperFigure> make_claim_locus(PaperWorkshop &workshop) {
   RowTable rows({{"pair", "", "two materials"},
                  {"phase_angle", "deg", "Sun-object-observer"},
                  {"departure", "", "largest distance from the chord over its length, in Q-RGB"}});
-  PlotFigure plot{"Bow of the locus of two materials", "phase angle [deg]", "departure / chord [%]", {}};
+  PlotFigure plot{
+      "Bow of the locus of two materials", "phase angle [deg]", "departure / chord [%]", {}};
   double largest = 0;
   for (const Pair &pair : pairs) {
-    const Surface a = compiled(paper_material(pair.a, false)), b = compiled(paper_material(pair.b, false));
+    const Surface a = compiled(paper_material(pair.a, false)),
+                  b = compiled(paper_material(pair.b, false));
     const char *const dashes[] = {"solid", "dash", "dot", "dashdot"};
     PlotLine line{pair.title, {}, {}, plot.lines.size(), dashes[plot.lines.size() % 4]};
     for (double phase = 20; phase <= 160; phase += 10) {
@@ -154,22 +159,25 @@ Result<PaperFigure> make_claim_locus(PaperWorkshop &workshop) {
   const auto box_wing = relative_singular_values(flat_coordinates(light));
   out.plots = {std::move(plot)};
   out.data = {{"claim_locus", rows.table()}};
-  out.checks.push_back({"third singular value of (I, S1) of two materials, over the first", mli[2], 0,
-                        1e-5, "rank 2 exactly; 32-bit sums"});
+  out.checks.push_back({"third singular value of (I, S1) of two materials, over the first", mli[2],
+                        0, 1e-5, "rank 2 exactly; 32-bit sums"});
   out.checks.push_back({"fifth singular value of (I, S1) of four materials, over the first",
                         box_wing[4], 0, 1e-5, "rank 4 exactly; 32-bit sums"});
   out.verdict = Verdict::Differs;
   out.summary = fmt::format("a bowed line, by up to {:.0f} % of its length", 100 * largest);
   out.found = {
-      "The coefficients of equation 22 are shares of intensity, and a material's share of intensity "
-      "differs between bands. The locus is a rational curve, straight only where two materials have "
+      "The coefficients of equation 22 are shares of intensity, and a material's share of "
+      "intensity "
+      "differs between bands. The locus is a rational curve, straight only where two materials "
+      "have "
       "the same colour.",
-      fmt::format("Exactly flat are the Stokes parameters themselves: the vectors (I, S1 in each "
-                  "band), divided by the sum of I, of k materials lie in a simplex of k - 1 "
-                  "dimensions. Crumpled insulation of two materials: third singular value {:.0e} of "
-                  "the first. Box-wing of four: {:.1e}, {:.1e}, {:.1e}, then {:.0e}. Unmixing should "
-                  "use these, not Q-RGB.",
-                  mli[2], box_wing[1], box_wing[2], box_wing[3], box_wing[4])};
+      fmt::format(
+          "Exactly flat are the Stokes parameters themselves: the vectors (I, S1 in each "
+          "band), divided by the sum of I, of k materials lie in a simplex of k - 1 "
+          "dimensions. Crumpled insulation of two materials: third singular value {:.0e} of "
+          "the first. Box-wing of four: {:.1e}, {:.1e}, {:.1e}, then {:.0e}. Unmixing should "
+          "use these, not Q-RGB.",
+          mli[2], box_wing[1], box_wing[2], box_wing[3], box_wing[4])};
   return out;
 }
 
@@ -177,8 +185,9 @@ Result<PaperFigure> make_claim_plane(PaperWorkshop &) {
   PaperFigure out;
   out.id = "claim_plane";
   out.title = "Why planes, and how do they turn with phase?";
-  out.claim = "For a given composite object all poses lie on a two-dimensional surface, a plane, since "
-              "only two of three rotations count; planes change very slowly with phase angle.";
+  out.claim =
+      "For a given composite object all poses lie on a two-dimensional surface, a plane, since "
+      "only two of three rotations count; planes change very slowly with phase angle.";
   RowTable rows({{"phase_angle", "deg", "Sun-object-observer; 0: all together"},
                  {"thickness", "", "off-plane rms over largest rms"},
                  {"offset", "", "distance of the plane from the origin"},
@@ -210,31 +219,39 @@ Result<PaperFigure> make_claim_plane(PaperWorkshop &) {
   out.data = {{"claim_plane", rows.table()}};
   const double turn = angle_between_deg(first, last);
   out.verdict = Verdict::Partly;
-  out.summary = fmt::format("planes, yes ({:.1f}-{:.1f} % thick), but from dispersion, not from counting angles",
-                            100 * thinnest, 100 * thickest);
+  out.summary = fmt::format(
+      "planes, yes ({:.1f}-{:.1f} % thick), but from dispersion, not from counting angles",
+      100 * thinnest, 100 * thickest);
   out.found = {
-      fmt::format("No object, no pose: random mixtures of the six materials lie on planes through the "
-                  "origin (within {:.4f}), normal {} at 40 deg and {} at 140 deg, a turn of {:.1f} deg, "
-                  "with a thickness of {:.1f} to {:.1f} % of their size; all phase angles together "
-                  "{:.1f} %.",
-                  offset, normal_text(first), normal_text(last), turn, 100 * thinnest, 100 * thickest,
-                  100 * together.thickness()),
+      fmt::format(
+          "No object, no pose: random mixtures of the six materials lie on planes through the "
+          "origin (within {:.4f}), normal {} at 40 deg and {} at 140 deg, a turn of {:.1f} deg, "
+          "with a thickness of {:.1f} to {:.1f} % of their size; all phase angles together "
+          "{:.1f} %.",
+          offset, normal_text(first), normal_text(last), turn, 100 * thinnest, 100 * thickest,
+          100 * together.thickness()),
       "The reason: the green Q of every material of Table 1 is nearly one and the same linear "
-      "combination of its blue and red Q. The paper's argument of two angles cannot be it: a surface "
+      "combination of its blue and red Q. The paper's argument of two angles cannot be it: a "
+      "surface "
       "of two parameters need not be flat.",
-      fmt::format("It is a property of Table 1. Six measured indices (gold, aluminium, copper, BK7, "
-                  "amorphous silicon, titania) at 100 deg make clouds {:.0f} % thick in the paper's "
-                  "bands and {:.0f} % at 380, 550 and 800 nm: no planes.",
-                  100 * measured.thickness(), 100 * wide.thickness()),
-      "So flatness is weak evidence for the number of angles that matter, and no evidence for shape."};
+      fmt::format(
+          "It is a property of Table 1. Six measured indices (gold, aluminium, copper, BK7, "
+          "amorphous silicon, titania) at 100 deg make clouds {:.0f} % thick in the paper's "
+          "bands and {:.0f} % at 380, 550 and 800 nm: no planes.",
+          100 * measured.thickness(), 100 * wide.thickness()),
+      "So flatness is weak evidence for the number of angles that matter, and no evidence for "
+      "shape."};
   const char *const source = "independent random mixtures; another draw";
   const double at40[] = {-.131, .769, -.626}, at140[] = {-.127, .766, -.631};
   const char *const names[] = {"blue", "green", "red"};
   for (std::size_t k = 0; k < 3; ++k) {
-    out.checks.push_back({fmt::format("{} part of the normal at 40 deg", names[k]), first.normal[k], at40[k], .01, source});
-    out.checks.push_back({fmt::format("{} part of the normal at 140 deg", names[k]), last.normal[k], at140[k], .01, source});
+    out.checks.push_back({fmt::format("{} part of the normal at 40 deg", names[k]), first.normal[k],
+                          at40[k], .01, source});
+    out.checks.push_back({fmt::format("{} part of the normal at 140 deg", names[k]), last.normal[k],
+                          at140[k], .01, source});
   }
-  out.checks.push_back({"thickness, all phase angles together", together.thickness(), .0087, .003, source});
+  out.checks.push_back(
+      {"thickness, all phase angles together", together.thickness(), .0087, .003, source});
   return out;
 }
 
@@ -242,20 +259,26 @@ Result<PaperFigure> make_claim_faint(PaperWorkshop &workshop) {
   PaperFigure out;
   out.id = "claim_faint";
   out.title = "Are points off the plane the faint ones?";
-  out.claim = "Some points of HST lie off the plane; they come from poses with very low signal and can "
-              "be ignored.";
-  RowTable rows({{"object", "", "name"},
-                 {"phase_angle", "deg", "Sun-object-observer"},
-                 {"off_plane_share_faint", "", "of the 5 % farthest off the plane: share below the median I"},
-                 {"rank_correlation", "", "of distance off the plane and I (Spearman)"}});
-  StoryTable shown{"Of the 5 % of poses farthest off the plane, how many are fainter than the median",
-                   {"object", "phase angle", "share", "rank correlation of distance and I"}, {}};
-  PlotFigure plot{"HST at 100 deg: distance off the plane", "I [m2/sr], log10", "off the plane", {}};
+  out.claim =
+      "Some points of HST lie off the plane; they come from poses with very low signal and can "
+      "be ignored.";
+  RowTable rows(
+      {{"object", "", "name"},
+       {"phase_angle", "deg", "Sun-object-observer"},
+       {"off_plane_share_faint", "", "of the 5 % farthest off the plane: share below the median I"},
+       {"rank_correlation", "", "of distance off the plane and I (Spearman)"}});
+  StoryTable shown{
+      "Of the 5 % of poses farthest off the plane, how many are fainter than the median",
+      {"object", "phase angle", "share", "rank correlation of distance and I"},
+      {}};
+  PlotFigure plot{
+      "HST at 100 deg: distance off the plane", "I [m2/sr], log10", "off the plane", {}};
   double lowest = 1, highest = 0;
   for (const std::size_t k : {0u, 1u})
     for (const double phase : {60., 100., 140.}) {
       const char *const title = k == 0 ? "HST" : "Agena";
-      const QCloud cloud = q_cloud(workshop.light(k == 0 ? "hst" : "agena", random_poses(23 + k, 1000, phase), out));
+      const QCloud cloud =
+          q_cloud(workshop.light(k == 0 ? "hst" : "agena", random_poses(23 + k, 1000, phase), out));
       const PlaneFit plane = fit_plane(cloud.q);
       std::vector<double> distance;
       for (const QPoint &q : cloud.q)
@@ -269,7 +292,8 @@ Result<PaperFigure> make_claim_faint(PaperWorkshop &workshop) {
         }
       const double correlation = rank_correlation(distance, cloud.intensity);
       rows.row({title, phase, faint / far, correlation});
-      shown.rows.push_back({title, fmt::format("{:g} deg", phase), fmt::format("{:.0f} %", 100 * faint / far),
+      shown.rows.push_back({title, fmt::format("{:g} deg", phase),
+                            fmt::format("{:.0f} %", 100 * faint / far),
                             fmt::format("{:+.2f}", correlation)});
       if (k == 0) {
         lowest = std::min(lowest, faint / far);
@@ -288,13 +312,17 @@ Result<PaperFigure> make_claim_faint(PaperWorkshop &workshop) {
   out.plots = {std::move(plot)};
   out.tables = {shown};
   out.data = {{"claim_faint", rows.table()}};
-  out.verdict = lowest > 0.75 ? Verdict::Agrees : highest < 0.6 ? Verdict::Differs : Verdict::Partly;
-  out.summary = fmt::format("of HST's, {:.0f} to {:.0f} % are fainter than the median (50 % by chance)",
-                            100 * lowest, 100 * highest);
-  out.found = {"Without any noise: distance off the best plane against intensity. Chance alone would "
-               "make half of the farthest points fainter than the median. Points far off the plane "
-               "are mixtures that the plane does not describe. For HST they are mostly bright ones, "
-               "glints of one part; for Agena brightness hardly matters."};
+  out.verdict = lowest > 0.75   ? Verdict::Agrees
+                : highest < 0.6 ? Verdict::Differs
+                                : Verdict::Partly;
+  out.summary =
+      fmt::format("of HST's, {:.0f} to {:.0f} % are fainter than the median (50 % by chance)",
+                  100 * lowest, 100 * highest);
+  out.found = {
+      "Without any noise: distance off the best plane against intensity. Chance alone would "
+      "make half of the farthest points fainter than the median. Points far off the plane "
+      "are mixtures that the plane does not describe. For HST they are mostly bright ones, "
+      "glints of one part; for Agena brightness hardly matters."};
   return out;
 }
 

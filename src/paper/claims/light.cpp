@@ -42,7 +42,8 @@ Result<IncidenceShare> incidence_share(const Trajectory &path, const Site &site,
 }
 
 /// Q/I of an interface in a band under an airmass of clear air over Haleakala.
-Result<double> band_q(const IndexTable &index, const Passband &band, double phase_deg, double airmass) {
+Result<double> band_q(const IndexTable &index, const Passband &band, double phase_deg,
+                      double airmass) {
   constexpr double pressure_hpa = 707, aerosol = 0.02; // 3058 m; a clean mountain site
   UMOV_ASSIGN(weights, sunlight_weights(band));
   double s0 = 0, s1 = 0;
@@ -59,7 +60,8 @@ Result<double> band_q(const IndexTable &index, const Passband &band, double phas
 }
 
 /// I and Q of a sphere at 425, 550 and 650 nm.
-Result<std::vector<PoseResult>> sphere(const Material &material, const std::vector<double> &phases, unsigned threads) {
+Result<std::vector<PoseResult>> sphere(const Material &material, const std::vector<double> &phases,
+                                       unsigned threads) {
   Diagnostics diagnostics;
   UMOV_ASSIGN(scene, make_scene(make_sphere(1, 5000), NormalMode::Smooth, paper_bands(), {material},
                                 {material}, diagnostics));
@@ -75,7 +77,8 @@ Result<PaperFigure> make_claim_reflectivity(PaperWorkshop &) {
   PaperFigure out;
   out.id = "claim_reflectivity";
   out.title = "Do BK7 and Mylar part by total reflectivity?";
-  out.claim = "BK7 and Mylar are similar in Q, but BK7 is transparent, so total reflectivity tells them apart.";
+  out.claim = "BK7 and Mylar are similar in Q, but BK7 is transparent, so total reflectivity tells "
+              "them apart.";
   UMOV_ASSIGN(pet, find_index("PET_Zhang"));
   RowTable rows({{"band", "", "spelled as in a scenario"},
                  {"phase_angle", "deg", "Sun-object-observer"},
@@ -83,19 +86,22 @@ Result<PaperFigure> make_claim_reflectivity(PaperWorkshop &) {
                  {"dq_table1", "", "Q/I of Mylar minus Q/I of BK7"},
                  {"ratio_pet", "", "I of measured PET over I of BK7"},
                  {"dq_pet", "", "Q/I of measured PET minus Q/I of BK7"}});
-  const Surface bk7 = compiled(paper_material("paper_bk7")), mylar = compiled(paper_material("paper_mylar"));
-  PlotFigure plot{"Reflected light of Mylar over that of BK7", "phase angle [deg]", "ratio of I", {}};
-  double green_low = 10, green_high = 0, dq_green = 0, pet_low = 10, pet_high = 0, dq_pet = 0, blue_low = 10;
+  const Surface bk7 = compiled(paper_material("paper_bk7")),
+                mylar = compiled(paper_material("paper_mylar"));
+  PlotFigure plot{
+      "Reflected light of Mylar over that of BK7", "phase angle [deg]", "ratio of I", {}};
+  double green_low = 10, green_high = 0, dq_green = 0, pet_low = 10, pet_high = 0, dq_pet = 0,
+         blue_low = 10;
   for (std::size_t b = 0; b < 3; ++b) {
-    const std::size_t colours[] = {0, 2, 4};
     const char *const dashes[] = {"solid", "dash", "dot"};
-    PlotLine line{paper_bands()[b].name + ", Table 1", {}, {}, colours[b], dashes[b]};
+    PlotLine line{paper_bands()[b].name + ", Table 1", {}, {}, band_colours[b], dashes[b]};
     UMOV_ASSIGN(eta, index_at(pet, paper_bands()[b].wavelength));
     for (double phase = 0; phase <= 160; phase += 10) {
       const double c = std::cos(phase * degree);
       const FresnelFactors g = bk7.fresnel(b, c), m = mylar.fresnel(b, c);
       const MuellerEntries p = Interface(eta).reflection(std::cos(phase / 2 * degree));
-      rows.row({paper_bands()[b].name, phase, m.a / g.a, m.b / m.a - g.b / g.a, p.a / g.a, p.b / p.a - g.b / g.a});
+      rows.row({paper_bands()[b].name, phase, m.a / g.a, m.b / m.a - g.b / g.a, p.a / g.a,
+                p.b / p.a - g.b / g.a});
       line.x.push_back(phase);
       line.y.push_back(m.a / g.a);
       if (b == 0)
@@ -114,17 +120,21 @@ Result<PaperFigure> make_claim_reflectivity(PaperWorkshop &) {
   out.plots = {std::move(plot)};
   out.data = {{"claim_reflectivity", rows.table()}};
   out.verdict = Verdict::Differs;
-  out.summary = fmt::format("no: the same within {:.0f} % in green; colour and measured Q do better", 100 * (1 - green_low));
+  out.summary =
+      fmt::format("no: the same within {:.0f} % in green; colour and measured Q do better",
+                  100 * (1 - green_low));
   out.found = {
-      fmt::format("In green the two reflect alike, ratio {:.2f} to {:.2f}: that BK7 transmits and Mylar "
-                  "absorbs is not seen in what a single surface reflects. Size, distance and "
-                  "attitude are not known to a few per cent. In Q they differ by up to {:.3f}, as "
-                  "little.",
-                  green_low, green_high, dq_green),
-      fmt::format("In blue Table 1 makes Mylar up to {:.0f} times darker than BK7, by its n = 1.10, which "
-                  "no polyester has. With the measured index of PET the ratio in green is {:.2f} to "
-                  "{:.2f}, and Q differs by up to {:.3f}: that can be measured.",
-                  1 / blue_low, pet_low, pet_high, dq_pet)};
+      fmt::format(
+          "In green the two reflect alike, ratio {:.2f} to {:.2f}: that BK7 transmits and Mylar "
+          "absorbs is not seen in what a single surface reflects. Size, distance and "
+          "attitude are not known to a few per cent. In Q they differ by up to {:.3f}, as "
+          "little.",
+          green_low, green_high, dq_green),
+      fmt::format(
+          "In blue Table 1 makes Mylar up to {:.0f} times darker than BK7, by its n = 1.10, which "
+          "no polyester has. With the measured index of PET the ratio in green is {:.2f} to "
+          "{:.2f}, and Q differs by up to {:.3f}: that can be measured.",
+          1 / blue_low, pet_low, pet_high, dq_pet)};
   return out;
 }
 
@@ -132,38 +142,46 @@ Result<PaperFigure> make_claim_incidence(PaperWorkshop &workshop) {
   PaperFigure out;
   out.id = "claim_incidence";
   out.title = "Is incidence above 20 degrees in LEO and for most of GEO?";
-  out.claim = "Incident angles on LEO satellites are generally above 20 deg, and for most of the orbit in GEO.";
+  out.claim = "Incident angles on LEO satellites are generally above 20 deg, and for most of the "
+              "orbit in GEO.";
   UMOV_ASSIGN(site, site_from("maui"));
   RowTable rows({{"object", "", "name"},
                  {"hours", "h", "above 20 deg, sunlit, dark sky"},
                  {"share", "", "of them with incidence above 20 deg"},
                  {"lowest_incidence", "deg", "half the smallest phase angle"}});
-  StoryTable shown{"Share of observable time (above 20 deg, sunlit, Sun below -6 deg, Maui) with incidence above 20 deg",
-                   {"object", "span", "observable", "share", "lowest incidence"}, {}};
+  StoryTable shown{"Share of observable time (above 20 deg, sunlit, Sun below -6 deg, Maui) with "
+                   "incidence above 20 deg",
+                   {"object", "span", "observable", "share", "lowest incidence"},
+                   {}};
   struct Object {
     const char *name, *title;
     double days, step_s;
   };
   double leo = 1, geo = 1;
   const Stopwatch watch;
-  for (const Object &one : {Object{"hst", "HST", 7, 10}, Object{"agena", "Agena", 7, 10},
-                            Object{"explorer27", "Explorer 27", 7, 10}, Object{"goes15", "GOES 15", 365, 600}}) {
+  for (const Object &one :
+       {Object{"hst", "HST", 7, 10}, Object{"agena", "Agena", 7, 10},
+        Object{"explorer27", "Explorer 27", 7, 10}, Object{"goes15", "GOES 15", 365, 600}}) {
     UMOV_ASSIGN(path, workshop.orbit(one.name));
-    UMOV_ASSIGN(found, incidence_share(path, site, path.elements()->epoch, one.days, one.step_s, out));
+    UMOV_ASSIGN(found,
+                incidence_share(path, site, path.elements()->epoch, one.days, one.step_s, out));
     rows.row({one.title, found.hours, found.share, found.lowest_deg});
-    shown.rows.push_back({one.title, fmt::format("{:g} days", one.days), fmt::format("{:.1f} h", found.hours),
-                          fmt::format("{:.0f} %", 100 * found.share), fmt::format("{:.1f} deg", found.lowest_deg)});
+    shown.rows.push_back(
+        {one.title, fmt::format("{:g} days", one.days), fmt::format("{:.1f} h", found.hours),
+         fmt::format("{:.0f} %", 100 * found.share), fmt::format("{:.1f} deg", found.lowest_deg)});
     (one.days > 7 ? geo : leo) = std::min(one.days > 7 ? geo : leo, found.share);
   }
   out.seconds = watch.seconds();
   out.tables = {shown};
   out.data = {{"claim_incidence", rows.table()}};
   out.verdict = leo > 0.9 && geo > 0.5 ? Verdict::Agrees : Verdict::Partly;
-  out.summary = fmt::format("{:.0f} % of the time or more in LEO, {:.0f} % in GEO", 100 * leo, 100 * geo);
-  out.found = {"Incidence on what reflects is half the phase angle. GOES 15 is followed for a year from "
-               "elements of one day: its place in the sky is good to degrees, which is enough here. Near "
-               "the equinoxes at midnight a geostationary satellite is seen at full phase, where nothing "
-               "is polarized."};
+  out.summary =
+      fmt::format("{:.0f} % of the time or more in LEO, {:.0f} % in GEO", 100 * leo, 100 * geo);
+  out.found = {
+      "Incidence on what reflects is half the phase angle. GOES 15 is followed for a year from "
+      "elements of one day: its place in the sky is good to degrees, which is enough here. Near "
+      "the equinoxes at midnight a geostationary satellite is seen at full phase, where nothing "
+      "is polarized."};
   return out;
 }
 
@@ -177,8 +195,10 @@ Result<PaperFigure> make_claim_atmosphere(PaperWorkshop &) {
                  {"airmass", "", "clear air over 3058 m"},
                  {"q_scat", "", "Q/I at a phase angle of 140 deg"},
                  {"change", "", "against no atmosphere"}});
-  StoryTable shown{"Change of Q/I by clear air at airmass 3 (phase angle 140 deg)",
-                   {"material", "1 nm at 550", "80 nm at 425", "80 nm at 550", "300 nm at 600 (unfiltered)"}, {}};
+  StoryTable shown{
+      "Change of Q/I by clear air at airmass 3 (phase angle 140 deg)",
+      {"material", "1 nm at 550", "80 nm at 425", "80 nm at 550", "300 nm at 600 (unfiltered)"},
+      {}};
   double narrow = 0, medium = 0, broad = 0;
   for (const char *name : {"Au_Johnson", "Cu_Johnson", "Al_Rakic", "NBK7_Schott"}) {
     UMOV_ASSIGN(index, find_index(name));
@@ -199,7 +219,8 @@ Result<PaperFigure> make_claim_atmosphere(PaperWorkshop &) {
       UMOV_ASSIGN(bare, band_q(index, band, 140, 0));
       for (const double airmass : {1., 3., 6.}) {
         UMOV_ASSIGN(q, band_q(index, band, 140, airmass));
-        rows.row({name, fmt::format("{:g} nm at {:g} nm", wide.width, wide.centre), airmass, q, q - bare});
+        rows.row({name, fmt::format("{:g} nm at {:g} nm", wide.width, wide.centre), airmass, q,
+                  q - bare});
         if (airmass == 3) {
           line.push_back(fmt::format("{:+.1e}", q - bare));
           *wide.largest = std::max(*wide.largest, std::abs(q - bare));
@@ -211,13 +232,16 @@ Result<PaperFigure> make_claim_atmosphere(PaperWorkshop &) {
   out.tables = {shown};
   out.data = {{"claim_atmosphere", rows.table()}};
   out.verdict = Verdict::Partly;
-  out.summary = fmt::format("true in a narrow band; {:.4f} in 80 nm, {:.3f} in 300 nm at airmass 3", medium, broad);
+  out.summary = fmt::format("true in a narrow band; {:.4f} in 80 nm, {:.3f} in 300 nm at airmass 3",
+                            medium, broad);
   out.found = {
-      fmt::format("Extinction multiplies I, Q, U and V alike at each wavelength: Q/I in 1 nm moves by "
-                  "{:.0e}. In a broad band the air takes blue light first, so it weights the band's own "
-                  "Q(wavelength) anew.",
-                  narrow),
-      "Clear air by Hansen & Travis 1974 at 707 hPa with an aerosol of optical depth .02. Left out: "
+      fmt::format(
+          "Extinction multiplies I, Q, U and V alike at each wavelength: Q/I in 1 nm moves by "
+          "{:.0e}. In a broad band the air takes blue light first, so it weights the band's own "
+          "Q(wavelength) anew.",
+          narrow),
+      "Clear air by Hansen & Travis 1974 at 707 hPa with an aerosol of optical depth .02. Left "
+      "out: "
       "polarized sky background (it must be subtracted, moonlit and twilight skies are strongly "
       "polarized), and seeing, which mixes scintillation into Q where the two polarizations are "
       "measured one after the other."};
@@ -229,20 +253,25 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
   out.id = "claim_multiple";
   out.title = "Is multiple scattering negligible?";
   out.claim = "At phase angles above 40 deg multiple surface scattering has a negligible effect.";
-  RowTable inside({{"material", "", "name in umov"},
-                   {"m", "", "Blinn-Phong exponent"},
-                   {"phase_angle", "deg", "Sun-object-observer"},
-                   {"share", "", "of I at 550 nm of a sphere that met several facets of the surface"},
-                   {"dq", "", "change of Q/I where that light is unpolarized"}});
-  RowTable between({{"object", "", "name"},
-                    {"phase_angle", "deg", "Sun-object-observer"},
-                    {"share_median", "", "of I at 550 nm that touched several surfaces, up to five"},
-                    {"share_high", "", "exceeded by one pose in ten"},
-                    {"dq_median", "", "|change of Q/I|"},
-                    {"dq_high", "", "exceeded by one pose in ten"},
-                    {"v_high", "", "|V/I|, exceeded by one pose in ten"}});
+  RowTable inside(
+      {{"material", "", "name in umov"},
+       {"m", "", "Blinn-Phong exponent"},
+       {"phase_angle", "deg", "Sun-object-observer"},
+       {"share", "", "of I at 550 nm of a sphere that met several facets of the surface"},
+       {"dq", "", "change of Q/I where that light is unpolarized"}});
+  RowTable between(
+      {{"object", "", "name"},
+       {"phase_angle", "deg", "Sun-object-observer"},
+       {"share_median", "", "of I at 550 nm that touched several surfaces, up to five"},
+       {"share_high", "", "exceeded by one pose in ten"},
+       {"dq_median", "", "|change of Q/I|"},
+       {"dq_high", "", "exceeded by one pose in ten"},
+       {"v_high", "", "|V/I|, exceeded by one pose in ten"}});
   PlotFigure within{"Within the rough surface (sphere)", "phase angle [deg]", "share of I [%]", {}},
-      among{"Between surfaces, up to five (median of 24 poses)", "phase angle [deg]", "share of I [%]", {}};
+      among{"Between surfaces, up to five (median of 24 poses)",
+            "phase angle [deg]",
+            "share of I [%]",
+            {}};
   const std::vector<double> phases{20, 40, 60, 80, 100, 120, 140, 160};
   double inside_most = 0, between_most = 0, dq_most = 0;
   for (const char *name : {"paper_au", "paper_al"})
@@ -253,8 +282,12 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
       one.interreflection = Interreflection::Unpolarized;
       UMOV_ASSIGN(all, sphere(one, phases, workshop.threads()));
       const char *const dashes[] = {"solid", "dash", "dot", "dashdot"};
-      PlotLine line{fmt::format("{}, m = {:g}", name == std::string("paper_au") ? "gold" : "aluminium", m), {}, {},
-                    name == std::string("paper_au") ? 0u : 1u, dashes[within.lines.size() % 4]};
+      PlotLine line{
+          fmt::format("{}, m = {:g}", name == std::string("paper_au") ? "gold" : "aluminium", m),
+          {},
+          {},
+          name == std::string("paper_au") ? 0u : 1u,
+          dashes[within.lines.size() % 4]};
       for (std::size_t i = 0; i < phases.size(); ++i) {
         const auto a = single[i].bands[1].stokes, b = all[i].bands[1].stokes;
         inside.row({name, m, phases[i], 1 - a.i / b.i, b.q / b.i - a.q / a.i});
@@ -275,7 +308,8 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
       options.max_points = 1u << 16;
       const auto poses = random_poses(61, 24, phase);
       std::vector<double> share, dq, v;
-      for (const PoseResult &pose : workshop.integrator(object).evaluate(poses, options, workshop.threads())) {
+      for (const PoseResult &pose :
+           workshop.integrator(object).evaluate(poses, options, workshop.threads())) {
         const auto &all = pose.bands[1].stokes, &more = pose.indirect[1];
         if (!(all.i > 0))
           continue;
@@ -285,7 +319,8 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
           dq.push_back(std::abs(all.q / all.i - (all.q - more.q) / (all.i - more.i)));
       }
       out.realizations += poses.size();
-      between.row({object, phase, quantile(share, .5), quantile(share, .9), quantile(dq, .5), quantile(dq, .9), quantile(v, .9)});
+      between.row({object, phase, quantile(share, .5), quantile(share, .9), quantile(dq, .5),
+                   quantile(dq, .9), quantile(v, .9)});
       between_most = std::max(between_most, quantile(share, .5));
       dq_most = std::max(dq_most, quantile(dq, .5));
       line.x.push_back(phase);
@@ -295,19 +330,24 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
   }
   out.seconds = watch.seconds();
   out.plots = {within, among};
-  out.data = {{"claim_multiple_inside", inside.table()}, {"claim_multiple_between", between.table()}};
+  out.data = {{"claim_multiple_inside", inside.table()},
+              {"claim_multiple_between", between.table()}};
   out.verdict = Verdict::Differs;
-  out.summary = fmt::format("inside a smooth-ish surface {:.1f} %; between surfaces {:.0f} % of I in the median",
-                            100 * inside_most, 100 * between_most);
-  out.found = {
-      fmt::format("Within the surface the paper is right for m of 50 and more: at most {:.1f} % of I from 40 "
-                  "to 140 deg. For rough surfaces (m = 4) it is not.",
-                  100 * inside_most),
-      fmt::format("Between surfaces it is wrong: light that goes from one part to another is up to {:.0f} % of "
-                  "I in the median pose of a satellite with parts that see one another, changes Q/I by up to "
-                  "{:.3f} in the median, and is the only source of circular polarization. Full Mueller paths, "
-                  "up to five surfaces, 24 poses each; docs/theory/bounces.md has more.",
-                  100 * between_most, dq_most)};
+  out.summary = fmt::format(
+      "inside a smooth-ish surface {:.1f} %; between surfaces {:.0f} % of I in the median",
+      100 * inside_most, 100 * between_most);
+  out.found = {fmt::format("Within the surface the paper is right for m of 50 and more: at most "
+                           "{:.1f} % of I from 40 "
+                           "to 140 deg. For rough surfaces (m = 4) it is not.",
+                           100 * inside_most),
+               fmt::format("Between surfaces it is wrong: light that goes from one part to another "
+                           "is up to {:.0f} % of "
+                           "I in the median pose of a satellite with parts that see one another, "
+                           "changes Q/I by up to "
+                           "{:.3f} in the median, and is the only source of circular polarization. "
+                           "Full Mueller paths, "
+                           "up to five surfaces, 24 poses each; docs/theory/bounces.md has more.",
+                           100 * between_most, dq_most)};
   return out;
 }
 

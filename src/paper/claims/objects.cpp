@@ -38,8 +38,8 @@ PaperObject dealt(const std::string &name, std::uint64_t draw) {
   PaperObject out = paper_object(name);
   std::uint64_t index = 0;
   for (auto &[group, material] : out.materials)
-    material = paper_materials[static_cast<std::size_t>(
-                                   uniform4(draw, 78, index++)[0] * std::size(paper_materials))]
+    material = paper_materials[static_cast<std::size_t>(uniform4(draw, 78, index++)[0] *
+                                                        std::size(paper_materials))]
                    .name;
   return out;
 }
@@ -93,11 +93,14 @@ Result<PaperFigure> make_claim_separation(PaperWorkshop &workshop) {
   out.id = "claim_separation";
   out.title = "Are HST and Agena apart in Q-RGB space?";
   out.claim = "The clouds of HST and Agena do not overlap (probably luck, the paper adds).";
-  RowTable rows({{"case", "", "what differs"},
-                 {"phase_angle", "deg", "Sun-object-observer"},
-                 {"confusion", "", "share of points whose nearest neighbour is of the other object"}});
-  StoryTable shown{"Points whose nearest neighbour belongs to the other object (50 %: no separation)",
-                   {"case", "60 deg", "100 deg", "140 deg"}, {}};
+  RowTable rows(
+      {{"case", "", "what differs"},
+       {"phase_angle", "deg", "Sun-object-observer"},
+       {"confusion", "", "share of points whose nearest neighbour is of the other object"}});
+  StoryTable shown{
+      "Points whose nearest neighbour belongs to the other object (50 %: no separation)",
+      {"case", "60 deg", "100 deg", "140 deg"},
+      {}};
   const auto add = [&](const std::string &name, const auto &confusion) {
     std::vector<std::string> line{name};
     for (const double phase : phases) {
@@ -133,11 +136,11 @@ Result<PaperFigure> make_claim_separation(PaperWorkshop &workshop) {
   });
   std::vector<double> dealt_values;
   for (std::uint64_t draw = 1; draw <= 4; ++draw) {
-    const Scene hst = paper_scene(dealt("hst", draw)), agena = paper_scene(dealt("agena", draw + 100));
+    const Scene hst = paper_scene(dealt("hst", draw)),
+                agena = paper_scene(dealt("agena", draw + 100));
     add(fmt::format("materials dealt out at random, draw {}", draw), [&](double phase) {
-      const double value =
-          nearest_neighbour_confusion(cloud_of(hst, 23, phase, workshop, out).q,
-                                      cloud_of(agena, 24, phase, workshop, out).q);
+      const double value = nearest_neighbour_confusion(cloud_of(hst, 23, phase, workshop, out).q,
+                                                       cloud_of(agena, 24, phase, workshop, out).q);
       dealt_values.push_back(value);
       return value;
     });
@@ -148,11 +151,14 @@ Result<PaperFigure> make_claim_separation(PaperWorkshop &workshop) {
   out.tables = {shown};
   out.data = {{"claim_separation", rows.table()}};
   out.verdict = Verdict::Differs;
-  out.summary = fmt::format("they overlap: up to {} confused, {} to {} with other materials", percent(worst),
-                            percent(quantile(dealt_values, 0)), percent(quantile(dealt_values, 1)));
+  out.summary =
+      fmt::format("they overlap: up to {} confused, {} to {} with other materials", percent(worst),
+                  percent(quantile(dealt_values, 0)), percent(quantile(dealt_values, 1)));
   out.found = {
-      "500 random poses of each. Separation comes from the two lists of materials: with materials dealt "
-      "out at random over the parts it comes and goes. Noise of a real polarimeter (.002 to .01) adds to "
+      "500 random poses of each. Separation comes from the two lists of materials: with materials "
+      "dealt "
+      "out at random over the parts it comes and goes. Noise of a real polarimeter (.002 to .01) "
+      "adds to "
       "the confusion little by little; light between surfaces widens both clouds.",
       "A single point in Q-RGB space therefore does not name the object; a light curve may."};
   return out;
@@ -167,7 +173,9 @@ Result<PaperFigure> make_claim_passes(PaperWorkshop &workshop) {
                  {"attitude", "", "how it points"},
                  {"thickness", "", "off-plane rms over largest rms"},
                  {"off_plane_rms", "", "in Q/I"}});
-  StoryTable shown{"Off-plane rms over the largest rms, all passes of figure 24", {"object", "steady pointing", "random attitude at each second"}, {}};
+  StoryTable shown{"Off-plane rms over the largest rms, all passes of figure 24",
+                   {"object", "steady pointing", "random attitude at each second"},
+                   {}};
   double steady_most = 0, random_most = 0;
   for (const char *object : {"hst", "agena"}) {
     const char *const title = object[0] == 'h' ? "HST" : "Agena";
@@ -180,21 +188,27 @@ Result<PaperFigure> make_claim_passes(PaperWorkshop &workshop) {
       for (const LightCurveEpoch &epoch : one.light.curve.epochs)
         poses.push_back(random_pose(31, poses.size(), epoch.geometry.phase_angle));
     }
-    const PlaneFit a = fit_plane(steady.q), b = fit_plane(q_cloud(workshop.light(object, poses, out)).q);
+    const PlaneFit a = fit_plane(steady.q),
+                   b = fit_plane(q_cloud(workshop.light(object, poses, out)).q);
     rows.row({title, "steady", a.thickness(), a.rms[2]});
     rows.row({title, "random at each second", b.thickness(), b.rms[2]});
-    shown.rows.push_back({title, fmt::format("{:.2g} %", 100 * a.thickness()), fmt::format("{:.2g} %", 100 * b.thickness())});
+    shown.rows.push_back({title, fmt::format("{:.2g} %", 100 * a.thickness()),
+                          fmt::format("{:.2g} %", 100 * b.thickness())});
     steady_most = std::max(steady_most, a.thickness());
     random_most = std::max(random_most, b.thickness());
   }
   out.tables = {shown};
   out.data = {{"claim_passes", rows.table()}};
   out.verdict = Verdict::Differs;
-  out.summary = fmt::format("random attitudes stay on it as well: {:.1f} % thick, steady ones {:.1f} %", 100 * random_most, 100 * steady_most);
-  out.found = {"The same seconds of the same passes, with the same phase angles, once with steady pointing "
-               "and once with a new random attitude at every second. If steady pointing were the reason, the "
-               "second cloud would fill space. It stays on a plane: dispersion is the reason, and the plane "
-               "hardly turns with phase angle."};
+  out.summary =
+      fmt::format("random attitudes stay on it as well: {:.1f} % thick, steady ones {:.1f} %",
+                  100 * random_most, 100 * steady_most);
+  out.found = {
+      "The same seconds of the same passes, with the same phase angles, once with steady pointing "
+      "and once with a new random attitude at every second. If steady pointing were the reason, "
+      "the "
+      "second cloud would fill space. It stays on a plane: dispersion is the reason, and the plane "
+      "hardly turns with phase angle."};
   return out;
 }
 
@@ -202,12 +216,15 @@ Result<PaperFigure> make_claim_roll(PaperWorkshop &workshop) {
   PaperFigure out;
   out.id = "claim_roll";
   out.title = "Does roll about the line of sight leave Q unchanged?";
-  out.claim = "Rotating an object about the line of sight does not change the mixture, so Q is the same.";
+  out.claim =
+      "Rotating an object about the line of sight does not change the mixture, so Q is the same.";
   RowTable rows({{"object", "", "name"},
                  {"roll", "deg", "about the line of sight, Sun and observer fixed"},
                  {"median", "", "of |change of Q/I| at 550 nm"},
                  {"high", "", "exceeded by one pose in ten"}});
-  StoryTable shown{"|Change of Q/I| at 550 nm, phase angle 100 deg: median / 90 %", {"roll", "HST", "Agena", "box-wing"}, {}};
+  StoryTable shown{"|Change of Q/I| at 550 nm, phase angle 100 deg: median / 90 %",
+                   {"roll", "HST", "Agena", "box-wing"},
+                   {}};
   const auto poses = random_poses(41, 2000, 100);
   std::map<std::string, StokesTable> still;
   double largest = 0, whole = 0;
@@ -238,11 +255,14 @@ Result<PaperFigure> make_claim_roll(PaperWorkshop &workshop) {
   out.tables = {shown};
   out.data = {{"claim_roll", rows.table()}};
   out.verdict = Verdict::Differs;
-  out.summary = fmt::format("a roll by 90 deg changes Q/I by {:.2f} in the median, up to {:.2f} in a tenth", whole, largest);
-  out.found = {"Roll about the line of sight turns the object against the Sun, which stays: other facets "
-               "are lit, other materials are seen. Only if the Sun turned with the object would Q in "
-               "the scattering frame stay as it is. All three rotations count, and the argument that "
-               "led the paper to two-dimensional surfaces falls with it."};
+  out.summary =
+      fmt::format("a roll by 90 deg changes Q/I by {:.2f} in the median, up to {:.2f} in a tenth",
+                  whole, largest);
+  out.found = {
+      "Roll about the line of sight turns the object against the Sun, which stays: other facets "
+      "are lit, other materials are seen. Only if the Sun turned with the object would Q in "
+      "the scattering frame stay as it is. All three rotations count, and the argument that "
+      "led the paper to two-dimensional surfaces falls with it."};
   return out;
 }
 
@@ -255,8 +275,10 @@ Result<PaperFigure> make_claim_spectral(PaperWorkshop &workshop) {
                  {"sample", "", "passes, or random poses"},
                  {"points", "", "with light"},
                  {"rank_correlation", "", "of the spectral spreads of I and of Q"}});
-  StoryTable shown{"Rank correlation of the spectral spread of I (rms of log I) and of Q (rms); complementary: -1",
-                   {"object", "eight passes", "1000 poses at 100 deg"}, {}};
+  StoryTable shown{"Rank correlation of the spectral spread of I (rms of log I) and of Q (rms); "
+                   "complementary: -1",
+                   {"object", "eight passes", "1000 poses at 100 deg"},
+                   {}};
   PlotFigure plot{"Spectral spreads on the passes", "spread of log I", "spread of Q/I", {}};
   double lowest = 1, highest = -1;
   const auto spread = [](const QPoint &v) {
@@ -304,7 +326,8 @@ Result<PaperFigure> make_claim_spectral(PaperWorkshop &workshop) {
     }
     const double on_poses = rank_correlation(pose_i, pose_q);
     rows.row({title, "random poses", static_cast<double>(pose_i.size()), on_poses});
-    shown.rows.push_back({title, fmt::format("{:+.2f}", on_passes), fmt::format("{:+.2f}", on_poses)});
+    shown.rows.push_back(
+        {title, fmt::format("{:+.2f}", on_passes), fmt::format("{:+.2f}", on_poses)});
     for (const double c : {on_passes, on_poses}) {
       lowest = std::min(lowest, c);
       highest = std::max(highest, c);
@@ -313,11 +336,16 @@ Result<PaperFigure> make_claim_spectral(PaperWorkshop &workshop) {
   out.plots = {std::move(plot)};
   out.tables = {shown};
   out.data = {{"claim_spectral", rows.table()}};
-  out.verdict = highest < -0.5 ? Verdict::Agrees : lowest > -0.2 ? Verdict::Differs : Verdict::Partly;
-  out.summary = fmt::format("rank correlations from {:+.2f} to {:+.2f}; complementary would be -1", lowest, highest);
-  out.found = {"Q does carry information that I lacks, but \"complementary\" is not what the numbers say: a "
-               "material that is coloured in I by its index (gold) is coloured in Q as well, one that is "
-               "grey (aluminium, glass) is nearly grey in both, and body light thins Q without colouring I."};
+  out.verdict = highest < -0.5  ? Verdict::Agrees
+                : lowest > -0.2 ? Verdict::Differs
+                                : Verdict::Partly;
+  out.summary = fmt::format("rank correlations from {:+.2f} to {:+.2f}; complementary would be -1",
+                            lowest, highest);
+  out.found = {
+      "Q does carry information that I lacks, but \"complementary\" is not what the numbers say: a "
+      "material that is coloured in I by its index (gold) is coloured in Q as well, one that is "
+      "grey (aluminium, glass) is nearly grey in both, and body light thins Q without colouring "
+      "I."};
   return out;
 }
 

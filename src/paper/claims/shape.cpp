@@ -61,7 +61,8 @@ Result<PaperFigure> make_claim_shape(PaperWorkshop &workshop) {
   PaperFigure out;
   out.id = "claim_shape";
   out.title = "Is Q of one material independent of shape?";
-  out.claim = "For objects of a single material the three-colour Q is independent of shape and pose.";
+  out.claim =
+      "For objects of a single material the three-colour Q is independent of shape and pose.";
   const auto interreflecting = [] {
     Material m = rough("paper_au", false, 10);
     m.interreflection = Interreflection::Unpolarized;
@@ -77,8 +78,10 @@ Result<PaperFigure> make_claim_shape(PaperWorkshop &workshop) {
       {"agena", "gold, m = 10, interface alone", [] { return rough("paper_au", false, 10); }},
       {"cube", "silicon, m = 10, interface alone", [] { return rough("paper_asi", false, 10); }},
       {"cube", "gold, m = 10, inter-reflection within the surface", interreflecting},
-      {"cube", "silicon, m = 10, unpolarized body light of .1", [] { return rough("paper_asi", true, 10); }},
-      {"cigar", "silicon, m = 10, unpolarized body light of .1", [] { return rough("paper_asi", true, 10); }},
+      {"cube", "silicon, m = 10, unpolarized body light of .1",
+       [] { return rough("paper_asi", true, 10); }},
+      {"cigar", "silicon, m = 10, unpolarized body light of .1",
+       [] { return rough("paper_asi", true, 10); }},
       {"cube", "silicon, m = 10, polarized body light of .1", polarized_body},
       {"hst", "gold, m = 200, three surfaces", [] { return rough("paper_au", false, 200); }, 3},
       {"hst", "BK7, m = 200, three surfaces", [] { return rough("paper_bk7", false, 200); }, 3}};
@@ -91,17 +94,20 @@ Result<PaperFigure> make_claim_shape(PaperWorkshop &workshop) {
                  {"q_high", "", "2.5 % of the poses above"},
                  {"q_interface", "", "of the interface"}});
   StoryTable shown{"Q/I at 550 nm over random poses: 2.5 %, median, 97.5 %",
-                   {"object", "material and light", "60 deg", "90 deg", "140 deg"}, {}};
+                   {"object", "material and light", "60 deg", "90 deg", "140 deg"},
+                   {}};
   double worst_interface = 0, widest = 0;
   for (const ShapeCase &one : cases) {
     const Material material = one.material();
-    const Scene scene = paper_scene(paper_object(one.object), [&](const Material &) { return material; });
+    const Scene scene =
+        paper_scene(paper_object(one.object), [&](const Material &) { return material; });
     std::vector<std::string> line{one.object, one.what};
     for (const double phase : {60., 90., 140.}) {
       const std::vector<double> q = q_values(scene, one, phase, workshop, out);
       const double low = quantile(q, 0.025), middle = quantile(q, 0.5), high = quantile(q, 0.975),
                    pure = interface_q(scene.front[0], 1, phase);
-      rows.row({one.object, one.what, phase, static_cast<double>(q.size()), low, middle, high, pure});
+      rows.row(
+          {one.object, one.what, phase, static_cast<double>(q.size()), low, middle, high, pure});
       line.push_back(fmt::format("{:.4f}, {:.4f}, {:.4f}", low, middle, high));
       if (std::string(one.what).ends_with("alone"))
         for (const double value : q)
@@ -109,10 +115,12 @@ Result<PaperFigure> make_claim_shape(PaperWorkshop &workshop) {
       else
         widest = std::max(widest, high - low);
       const std::map<double, double> known{{60, .090}, {90, .240}, {140, .810}};
-      if (one.object == std::string("cube") && std::string(one.what).find("unpolarized") != std::string::npos)
-        out.checks.push_back({fmt::format("median Q of the silicon cube at {:g} deg", phase), middle,
-                              known.at(phase), 0.02,
-                              "independent quadrature of 300 other random poses; the spread of a median"});
+      if (one.object == std::string("cube") &&
+          std::string(one.what).find("unpolarized") != std::string::npos)
+        out.checks.push_back(
+            {fmt::format("median Q of the silicon cube at {:g} deg", phase), middle,
+             known.at(phase), 0.02,
+             "independent quadrature of 300 other random poses; the spread of a median"});
     }
     shown.rows.push_back(std::move(line));
   }
@@ -121,17 +129,21 @@ Result<PaperFigure> make_claim_shape(PaperWorkshop &workshop) {
   out.checks.push_back({"largest departure of Q, interface alone", worst_interface, 0, 2e-5,
                         "one Mueller matrix for all facets; 32-bit sums"});
   out.verdict = Verdict::Partly;
-  out.summary = fmt::format("exact for one reflection at the interface; else Q spreads by up to {:.2f}", widest);
+  out.summary = fmt::format(
+      "exact for one reflection at the interface; else Q spreads by up to {:.2f}", widest);
   out.found = {
-      fmt::format("Where all light is reflected once at the interface, convex or not, every pose has "
-                  "the same Q (largest departure {:.0e}).",
-                  worst_interface),
+      fmt::format(
+          "Where all light is reflected once at the interface, convex or not, every pose has "
+          "the same Q (largest departure {:.0e}).",
+          worst_interface),
       "Light from below the surface breaks it: it is spread over all directions, the reflection is "
       "not, so their mixture depends on the pose. A cube of amorphous silicon, one of the paper's "
       "own materials, goes from 0 (body light alone) to the interface's Q.",
       "Light between surfaces breaks it for every material: in HST of gold or of glass alone Q "
-      "depends on the pose (60 poses each, some faint ones uncertain by .03). Off glints most of the "
-      "light has touched two parts or more. Within the rough surface inter-reflection moves Q a little."};
+      "depends on the pose (60 poses each, some faint ones uncertain by .03). Off glints most of "
+      "the "
+      "light has touched two parts or more. Within the rough surface inter-reflection moves Q a "
+      "little."};
   return out;
 }
 

@@ -17,8 +17,10 @@ struct SmoothSurface {
 };
 
 double phase_deg(std::complex<double> r) {
+  if (std::abs(r.imag()) < 1e-12 * std::abs(r)) // real: the sign of a zero means nothing
+    return r.real() < 0 ? 180 : 0;
   const double value = std::arg(r) / degree;
-  return value < -1e-6 ? value + 360 : std::abs(value);
+  return value < 0 ? value + 360 : value;
 }
 
 /// Incidence of least R_p by golden steps on a fine grid.
@@ -41,7 +43,7 @@ void add_surface(const SmoothSurface &surface, std::size_t colour, PaperFigure &
   PlotLine rs{"|r_s|", {}, {}, colour, "solid"}, rp{"|r_p|", {}, {}, colour + 1, "dash"};
   PlotLine big_s{"R_s", {}, {}, colour, "solid"}, big_p{"R_p", {}, {}, colour + 1, "dash"};
   PlotLine phase_s{"s", {}, {}, colour, "solid"}, phase_p{"p", {}, {}, colour + 1, "dash"},
-      relative{"p against s", {}, {}, 3, "dot"};
+      relative{"p against s", {}, {}, 6, "dot"};
   for (int i = 0; i < 180; ++i) {
     const double at = 0.5 * i;
     const FresnelAmplitudes r = fresnel_amplitudes(std::cos(at * degree), surface.eta);
@@ -99,12 +101,13 @@ Result<PaperFigure> make_fig1(PaperWorkshop &) {
   out.data = {{"fig1", rows.table()}};
   const double brewster = incidence_of_least_p(glass);
   out.verdict = Verdict::Partly;
-  out.summary = fmt::format("curves as in the paper; at {:.2f} deg on BK7 it is p that vanishes",
-                            brewster);
+  out.summary =
+      fmt::format("curves as in the paper; at {:.2f} deg on BK7 it is p that vanishes", brewster);
   out.found = {
-      fmt::format("R_p of BK7 vanishes at {:.3f} deg, Brewster's atan n; the paper's sentence names "
-                  "the s polarization, its curves do not.",
-                  brewster),
+      fmt::format(
+          "R_p of BK7 vanishes at {:.3f} deg, Brewster's atan n; the paper's sentence names "
+          "the s polarization, its curves do not.",
+          brewster),
       fmt::format("R_s - R_p reaches .02 at {:.1f} deg on BK7 and {:.1f} deg on gold: \"above 25 "
                   "deg\" holds for glass and is generous for a metal.",
                   incidence_of_difference(glass), incidence_of_difference(gold)),
@@ -112,12 +115,12 @@ Result<PaperFigure> make_fig1(PaperWorkshop &) {
       "and r_s then differ by 180 deg at normal incidence. The paper's r_s has the other sign, "
       "which leaves I and Q as they are and turns the retardance by 180 deg."};
   const double n = glass.real();
-  out.checks = {
-      {"incidence of R_p = 0, BK7 [deg]", brewster, std::atan(n) / degree, 2e-4, "Brewster: atan n"},
-      {"R at normal incidence, gold", std::norm(fresnel_amplitudes(1, gold).s),
-       std::norm((gold - 1.) / (gold + 1.)), 1e-12, "|(n-1)/(n+1)|^2"},
-      {"R at normal incidence, BK7", std::norm(fresnel_amplitudes(1, glass).p),
-       (n - 1) * (n - 1) / ((n + 1) * (n + 1)), 1e-12, "((n-1)/(n+1))^2"}};
+  out.checks = {{"incidence of R_p = 0, BK7 [deg]", brewster, std::atan(n) / degree, 2e-4,
+                 "Brewster: atan n"},
+                {"R at normal incidence, gold", std::norm(fresnel_amplitudes(1, gold).s),
+                 std::norm((gold - 1.) / (gold + 1.)), 1e-12, "|(n-1)/(n+1)|^2"},
+                {"R at normal incidence, BK7", std::norm(fresnel_amplitudes(1, glass).p),
+                 (n - 1) * (n - 1) / ((n + 1) * (n + 1)), 1e-12, "((n-1)/(n+1))^2"}};
   return out;
 }
 
@@ -139,7 +142,8 @@ Result<PaperFigure> make_fig12(PaperWorkshop &) {
     k.x.push_back(nm);
     k.y.push_back(eta.imag());
   }
-  PlotLine n1{"n, paper's Table 1", {}, {}, 4, "solid"}, k1{"k, paper's Table 1", {}, {}, 5, "solid"};
+  PlotLine n1{"n, paper's Table 1", {}, {}, 4, "solid"},
+      k1{"k, paper's Table 1", {}, {}, 5, "solid"};
   n1.has_markers = k1.has_markers = true;
   double largest = 0;
   for (const Band &band : paper_bands()) {

@@ -14,7 +14,8 @@ Result<PaperFigure> make_fig2(PaperWorkshop &) {
   PaperFigure out;
   out.id = "fig2";
   out.title = "Figure 2: the phase angle";
-  out.claim = "The phase angle is the angle between Sun and observer, twice the angle of incidence.";
+  out.claim =
+      "The phase angle is the angle between Sun and observer, twice the angle of incidence.";
   const auto ray = [](const char *name, double deg, std::size_t colour, const char *dash) {
     return PlotLine{name, {0, std::sin(deg * degree)}, {0, std::cos(deg * degree)}, colour, dash};
   };
@@ -23,14 +24,17 @@ Result<PaperFigure> make_fig2(PaperWorkshop &) {
     arc.x.push_back(0.4 * std::sin(deg * degree));
     arc.y.push_back(0.4 * std::cos(deg * degree));
   }
-  out.plots = {{"In the scattering plane", "along the surface", "along its normal",
+  out.plots = {{"In the scattering plane",
+                "along the surface",
+                "along its normal",
                 {ray("to the Sun", -10, 1, "solid"), ray("to the observer", 70, 0, "solid"),
                  ray("normal of the microfacet that reflects", 30, 2, "dash"),
                  PlotLine{"surface", {-1, 1}, {0, 0}, 6, "solid"}, arc}}};
   out.summary = "incidence on every contributing microfacet is half the phase angle";
-  out.found = {"One reflection from Sun to observer needs a microfacet whose normal halves the angle "
-               "between them. Its angle of incidence is half the phase angle wherever on the object "
-               "it sits and however the surface is turned: everything else follows from this."};
+  out.found = {
+      "One reflection from Sun to observer needs a microfacet whose normal halves the angle "
+      "between them. Its angle of incidence is half the phase angle wherever on the object "
+      "it sits and however the surface is turned: everything else follows from this."};
   return out;
 }
 
@@ -43,17 +47,18 @@ Result<PaperFigure> make_fig3(PaperWorkshop &) {
                  {"theta_o", "deg", "observer from the normal, mirror side positive"},
                  {"m00", "1/sr", "BRDF at 550 nm, source at 45 deg"},
                  {"q_scat", "", "Q/I"}});
-  PlotFigure lobes{"BRDF, source at 45 deg", "observer [deg], mirror side positive", "m00 [1/sr]", {}, true};
+  PlotFigure lobes{
+      "BRDF, source at 45 deg", "observer [deg], mirror side positive", "m00 [1/sr]", {}, true};
   PlotFigure polarization{"Q/I of the same", "observer [deg], mirror side positive", "Q/I [%]", {}};
   struct Case {
     const char *name, *material;
     double m;
     bool has_body;
   };
-  for (const Case &one : {Case{"smooth metal", "paper_al", 5000, false},
-                          Case{"rough metal", "paper_al", 20, false},
-                          Case{"smooth dielectric over a scatterer", "paper_asi", 5000, true},
-                          Case{"rough dielectric over a scatterer", "paper_asi", 20, true}}) {
+  for (const Case &one :
+       {Case{"smooth metal", "paper_al", 5000, false}, Case{"rough metal", "paper_al", 20, false},
+        Case{"smooth dielectric over a scatterer", "paper_asi", 5000, true},
+        Case{"rough dielectric over a scatterer", "paper_asi", 20, true}}) {
     Material material = paper_material(one.material, one.has_body);
     material.distribution = blinn_phong(one.m);
     const Surface surface = compiled(material);
@@ -75,9 +80,10 @@ Result<PaperFigure> make_fig3(PaperWorkshop &) {
   out.plots = {lobes, polarization};
   out.data = {{"fig3", rows.table()}};
   out.summary = "as lobes, with what each does to Q";
-  out.found = {"Roughness widens the lobe and leaves Q/I on one curve of the phase angle; light from "
-               "below the surface dilutes it away from the lobe. A fifth case that the paper leaves "
-               "out, light that meets several surfaces, is measured among the claims."};
+  out.found = {
+      "Roughness widens the lobe and leaves Q/I on one curve of the phase angle; light from "
+      "below the surface dilutes it away from the lobe. A fifth case that the paper leaves "
+      "out, light that meets several surfaces, is measured among the claims."};
   return out;
 }
 
@@ -121,9 +127,10 @@ Result<PaperFigure> make_fig8(PaperWorkshop &) {
   out.plots = {seen, once};
   out.data = {{"fig8", rows.table()}};
   out.summary = "as numbers: at m = 10 a ninth of the facets are hidden at 75 deg";
-  out.found = {"P(k) is exact for the distribution of normals (Smith's function). Light that is "
-               "hidden from the viewer meets another facet: at m = 200 less than 3 % of it up to 75 "
-               "deg, at m = 1 half of it at any angle."};
+  out.found = {
+      "P(k) is exact for the distribution of normals (Smith's function). Light that is "
+      "hidden from the viewer meets another facet: at m = 200 less than 3 % of it up to 75 "
+      "deg, at m = 1 half of it at any angle."};
   return out;
 }
 
@@ -167,10 +174,11 @@ Result<PaperFigure> make_fig10(PaperWorkshop &workshop) {
   out.data = {{"fig10", rows.table()}};
   out.verdict = Verdict::Agrees;
   out.summary = fmt::format("masks and rays agree to {:.2f} % in the median", 100 * median(errors));
-  out.found = {fmt::format("Two ways to decide what hides what, for HST in 200 random attitudes at a "
-                           "phase angle of 100 deg: rays to 0.1 % took {:.2g} s, prepared masks "
-                           "{:.2g} s. They differ by {:.2f} % of I and {:.1g} of Q/I in the median.",
-                           seconds_rays, out.seconds, 100 * median(errors), median(q_errors))};
+  out.found = {
+      fmt::format("Two ways to decide what hides what, for HST in 200 random attitudes at a "
+                  "phase angle of 100 deg: rays to 0.1 % took {:.2g} s, prepared masks "
+                  "{:.2g} s. They differ by {:.2f} % of I and {:.1g} of Q/I in the median.",
+                  seconds_rays, out.seconds, 100 * median(errors), median(q_errors))};
   out.checks = {{"median difference of I, masks and rays", median(errors), 0, 0.005,
                  "ray reference to 0.1 %; 0.5 % is what these masks promise"}};
   return out;

@@ -33,16 +33,14 @@ std::string eta_text(std::complex<double> eta) {
 }
 
 /// Sphere of a material with body light, at many phase angles.
-Result<std::vector<std::vector<double>>> sphere_q(const Material &material,
-                                                  const std::vector<double> &phases,
-                                                  unsigned threads) {
+Result<std::vector<std::vector<double>>>
+sphere_q(const Material &material, const std::vector<double> &phases, unsigned threads) {
   Diagnostics diagnostics;
   UMOV_ASSIGN(scene, make_scene(make_sphere(1, 20'000), NormalMode::Smooth, paper_bands(),
                                 {material}, {material}, diagnostics));
   std::vector<Pose> poses;
   for (const double phase : phases)
-    poses.push_back(
-        {{0, 0, 1}, {std::sin(phase * degree), 0, std::cos(phase * degree)}});
+    poses.push_back({{0, 0, 1}, {std::sin(phase * degree), 0, std::cos(phase * degree)}});
   IntegrationOptions options;
   options.density = 4;
   const auto found = Integrator(scene).evaluate(poses, options, threads);
@@ -70,18 +68,22 @@ Result<PaperFigure> make_table1(PaperWorkshop &) {
                  {"f_mean", "", "cosine-weighted mean reflectance of the interface"},
                  {"n_measured", "", "the library's measured table; NaN where there is none"},
                  {"k_measured", "", "the same"}});
-  StoryTable shown{"n + ik: paper, and measured (refractiveindex.info)",
-                   {"material", "425 nm", "550 nm", "650 nm", "R_sub", "measured at 425, 550, 650 nm"},
-                   {}};
+  StoryTable shown{
+      "n + ik: paper, and measured (refractiveindex.info)",
+      {"material", "425 nm", "550 nm", "650 nm", "R_sub", "measured at 425, 550, 650 nm"},
+      {}};
   // physics of the literal table, by independent quadrature: tests/data/paper/README.md
-  const std::map<std::string, std::array<double, 3>> f0{{"paper_au", {.390290, .841902, .939440}},
-                                                        {"paper_al", {.923052, .915377, .905602}},
-                                                        {"paper_bk7", {.043492, .042320, .041802}},
-                                                        {"paper_asi", {.455351, .426905, .401575}},
-                                                        {"paper_mylar", {.002268, .040000, .053254}}};
+  const std::map<std::string, std::array<double, 3>> f0{
+      {"paper_au", {.390290, .841902, .939440}},
+      {"paper_al", {.923052, .915377, .905602}},
+      {"paper_bk7", {.043492, .042320, .041802}},
+      {"paper_asi", {.455351, .426905, .401575}},
+      {"paper_mylar", {.002268, .040000, .053254}}};
   const std::map<std::string, std::array<double, 3>> mean{
-      {"paper_au", {.419613, .844380, .938314}},  {"paper_al", {.915762, .904740, .892388}},
-      {"paper_bk7", {.095728, .094415, .093830}}, {"paper_asi", {.447122, .422834, .401416}},
+      {"paper_au", {.419613, .844380, .938314}},
+      {"paper_al", {.915762, .904740, .892388}},
+      {"paper_bk7", {.095728, .094415, .093830}},
+      {"paper_asi", {.447122, .422834, .401416}},
       {"paper_mylar", {.025157, .091778, .106246}}};
   for (const PaperMaterial &one : paper_materials) {
     const Material material = paper_material(one.name);
@@ -104,7 +106,8 @@ Result<PaperFigure> make_table1(PaperWorkshop &) {
             real = *value;
           beside += (b > 0 ? ", " : "") + eta_text(real);
         }
-      const double normal = surface.fresnel(b, 1).a, average = surface.interface(b).mean_reflectance();
+      const double normal = surface.fresnel(b, 1).a,
+                   average = surface.interface(b).mean_reflectance();
       rows.row({one.name, band.name, eta.real(), eta.imag(), r_sub, normal, average, real.real(),
                 real.imag()});
       line.push_back(eta_text(eta));
@@ -125,7 +128,8 @@ Result<PaperFigure> make_table1(PaperWorkshop &) {
   out.verdict = Verdict::Partly;
   out.summary = "kept as printed; its silicon does not absorb and its blue Mylar is no plastic";
   out.found = {
-      "The table is kept to the digit, since every figure stands on it. Aluminium and BK7 are those "
+      "The table is kept to the digit, since every figure stands on it. Aluminium and BK7 are "
+      "those "
       "of the optical tables; gold is near them. Amorphous silicon with k = 0 is not: it absorbs "
       "strongly in the blue. Mylar's n = 1.10 at 425 nm is not the polymer's (1.60 measured), and "
       "gives it the outlying blue curve of Figure 16."};
@@ -142,8 +146,11 @@ Result<PaperFigure> make_fig13(PaperWorkshop &) {
                  {"theta_o", "deg", "observer from the normal, mirror side positive"},
                  {"ratio", "", "I(425 nm)/I(650 nm), source at 60 deg"},
                  {"q_scat_425", "", "Q/I at 425 nm"}});
-  PlotFigure plot{"Gold plate, source at 60 deg, single reflection", "observer [deg], mirror side positive",
-                  "I(425)/I(650)", {}, true};
+  PlotFigure plot{"Gold plate, source at 60 deg, single reflection",
+                  "observer [deg], mirror side positive",
+                  "I(425)/I(650)",
+                  {},
+                  true};
   double q_moves = 0;
   for (const double m : {10., 100., 1000.}) {
     Material rough = paper_material("paper_au");
@@ -151,10 +158,14 @@ Result<PaperFigure> make_fig13(PaperWorkshop &) {
     const Surface grey = compiled(rough);
     rough.apparent_roughness = ApparentRoughness{0.8, 550, {}};
     const Surface surface = compiled(rough);
-    PlotLine line{fmt::format("m = {:g}", m), {}, {}, out.plots.size() + plot.lines.size(),
+    PlotLine line{fmt::format("m = {:g}", m),
+                  {},
+                  {},
+                  out.plots.size() + plot.lines.size(),
                   dashes[plot.lines.size()]};
     for (double deg = -80; deg <= 80; deg += 5) {
-      const auto at = directions_from_angles(60 * degree, std::abs(deg) * degree, deg >= 0 ? pi : 0);
+      const auto at =
+          directions_from_angles(60 * degree, std::abs(deg) * degree, deg >= 0 ? pi : 0);
       const auto blue = surface.brdf(0, at), red = surface.brdf(2, at), flat = grey.brdf(0, at);
       const double value = red.m[0][0] > 0 ? blue.m[0][0] / red.m[0][0] : std::nan("");
       const double q = ratio(blue.m[1][0], blue.m[0][0]);
@@ -169,7 +180,8 @@ Result<PaperFigure> make_fig13(PaperWorkshop &) {
   out.plots = {std::move(plot)};
   out.data = {{"fig13", rows.table()}};
   out.verdict = Verdict::Agrees;
-  out.summary = fmt::format("strong colour away from the mirror direction; Q moves by {:.1g}", q_moves);
+  out.summary =
+      fmt::format("strong colour away from the mirror direction; Q moves by {:.1g}", q_moves);
   out.found = {
       "Model: a self-affine surface (Hurst exponent .8) steers light by its scales above the "
       "wavelength, so slopes grow as the fourth root of 1/wavelength. At the mirror direction the "
@@ -191,22 +203,24 @@ Result<PaperFigure> make_fig15(PaperWorkshop &) {
   RowTable curves({{"band", "", "name"},
                    {"wavelength", "nm", "in vacuum"},
                    {"response", "", "relative, photon convention"}});
-  RowTable bands({{"band", "", "name"},
-                  {"lambda_eff", "nm", "mean wavelength of detected sunlight"},
-                  {"material", "", "gold: Johnson & Christy 1972; others: Table 1"},
-                  {"q_centre", "", "Q/I at the centre, phase angle 140 deg"},
-                  {"q_band", "", "Q/I of the band at 140 deg: S0 and S1 integrated, then divided"}});
-  PlotFigure plot{"rgb_wide: Gaussians of 80 nm full width at half maximum", "wavelength [nm]",
-                  "response, sunlight", {}};
+  RowTable bands(
+      {{"band", "", "name"},
+       {"lambda_eff", "nm", "mean wavelength of detected sunlight"},
+       {"material", "", "gold: Johnson & Christy 1972; others: Table 1"},
+       {"q_centre", "", "Q/I at the centre, phase angle 140 deg"},
+       {"q_band", "", "Q/I of the band at 140 deg: S0 and S1 integrated, then divided"}});
+  PlotFigure plot{"rgb_wide: Gaussians of 80 nm full width at half maximum",
+                  "wavelength [nm]",
+                  "response, sunlight",
+                  {}};
   UMOV_ASSIGN(index, find_index("Au_Johnson"));
   const char *const names[] = {"blue", "green", "red"};
-  const std::size_t colours[] = {0, 2, 4};
   double largest = 0;
   for (std::size_t b = 0; b < 3; ++b) {
     const double centre = paper_bands()[b].wavelength.nm();
     const Passband band = gaussian_passband(names[b], centre, 80);
     UMOV_ASSIGN(weights, sunlight_weights(band));
-    PlotLine line{fmt::format("{}, {:g} nm", names[b], centre), {}, {}, colours[b], dashes[b]};
+    PlotLine line{fmt::format("{}, {:g} nm", names[b], centre), {}, {}, band_colours[b], dashes[b]};
     double s0 = 0, s1 = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const double nm = band.wavelength_nm[i];
@@ -234,7 +248,8 @@ Result<PaperFigure> make_fig15(PaperWorkshop &) {
   out.plots = {std::move(plot)};
   out.data = {{"fig15", curves.table()}, {"fig15_bands", bands.table()}};
   out.verdict = Verdict::Shown;
-  out.summary = fmt::format("a band's Q is not Q at its centre: gold differs by up to {:.3f}", largest);
+  out.summary =
+      fmt::format("a band's Q is not Q at its centre: gold differs by up to {:.3f}", largest);
   out.found = {
       "The paper draws its bands without numbers. Here: Gaussians of 80 nm full width at half "
       "maximum about 425, 550 and 650 nm, an assumption. All other figures use the three "
@@ -252,10 +267,11 @@ Result<PaperFigure> make_fig16(PaperWorkshop &workshop) {
   out.id = "fig16";
   out.title = "Figure 16: Q against phase angle";
   out.claim = "Q of the six materials in three bands against phase angle: each has its own curve.";
-  const std::vector<RowTable::Head> heads{{"material", "", "name in umov"},
-                                          {"band", "", "spelled as in a scenario"},
-                                          {"phase_angle", "deg", "Sun-object-observer"},
-                                          {"q_scat", "", "Q/I, positive perpendicular to the scattering plane"}};
+  const std::vector<RowTable::Head> heads{
+      {"material", "", "name in umov"},
+      {"band", "", "spelled as in a scenario"},
+      {"phase_angle", "deg", "Sun-object-observer"},
+      {"q_scat", "", "Q/I, positive perpendicular to the scattering plane"}};
   RowTable rows(heads), interfaces(heads);
   std::vector<double> phases;
   for (double phase = 0; phase < 180; phase += 5)
@@ -270,11 +286,13 @@ Result<PaperFigure> make_fig16(PaperWorkshop &workshop) {
       UMOV_ASSIGN(found, sphere_q(material, phases, workshop.threads()));
       sphere = std::move(found);
     }
-    PlotFigure plot{fmt::format("{}{}", one.title, sphere.empty() ? "" : ", sphere with body light"),
-                    "phase angle [deg]", "Q/I [%]", {}};
+    PlotFigure plot{
+        fmt::format("{}{}", one.title, sphere.empty() ? "" : ", sphere with body light"),
+        "phase angle [deg]",
+        "Q/I [%]",
+        {}};
     for (std::size_t b = 0; b < 3; ++b) {
-      const std::size_t colours[] = {0, 2, 4};
-      PlotLine line{paper_bands()[b].name, phases, {}, colours[b], dashes[b]};
+      PlotLine line{paper_bands()[b].name, phases, {}, band_colours[b], dashes[b]};
       for (std::size_t i = 0; i < phases.size(); ++i) {
         const double smooth = has_interface ? interface_q(surface, b, phases[i]) : 0;
         const double q = sphere.empty() ? smooth : sphere[b][i];
@@ -286,12 +304,12 @@ Result<PaperFigure> make_fig16(PaperWorkshop &workshop) {
       plot.lines.push_back(std::move(line));
       if (material.index.name != "" && has_interface) {
         UMOV_ASSIGN(eta, index_at(material.index, paper_bands()[b].wavelength));
-        if (eta.imag() == 0) { // a dielectric: Q = 1 where the reflected beam is at Brewster's angle
+        if (eta.imag() ==
+            0) { // a dielectric: Q = 1 where the reflected beam is at Brewster's angle
           const double at = 2 * std::atan(eta.real()) / degree;
-          out.checks.push_back({fmt::format("Q of {} at {:.3f} deg in {}", one.title, at,
-                                            paper_bands()[b].name),
-                                interface_q(surface, b, at), 1, 1e-9,
-                                "Brewster: phase angle 2 atan n"});
+          out.checks.push_back(
+              {fmt::format("Q of {} at {:.3f} deg in {}", one.title, at, paper_bands()[b].name),
+               interface_q(surface, b, at), 1, 1e-9, "Brewster: phase angle 2 atan n"});
         }
       }
     }

@@ -37,8 +37,9 @@ Result<PaperFigure> make_fig14(PaperWorkshop &workshop) {
   PaperFigure out;
   out.id = "fig14";
   out.title = "Figure 14: eight passes of Explorer 27";
-  out.claim = "Azimuth and elevation of eight consecutive passes, and their phase angle against the "
-              "time since illumination began.";
+  out.claim =
+      "Azimuth and elevation of eight consecutive passes, and their phase angle against the "
+      "time since illumination began.";
   UMOV_ASSIGN(passes, workshop.passes("explorer27", 8, Angle::degrees(10), 0));
   UMOV_ASSIGN(path, workshop.orbit("explorer27"));
   UMOV_ASSIGN(site, site_from("maui"));
@@ -50,7 +51,8 @@ Result<PaperFigure> make_fig14(PaperWorkshop &workshop) {
                  {"sunlit", "", "visible share of the Sun's disk"}});
   PlotFigure sky{"Sky over Maui", "azimuth [deg]", "altitude [deg]", {}};
   sky.is_sky = true;
-  PlotFigure phase{"Phase angle in sunlight", "time since illumination began [s]", "phase angle [deg]", {}};
+  PlotFigure phase{
+      "Phase angle in sunlight", "time since illumination began [s]", "phase angle [deg]", {}};
   double lowest = 180, highest = 0;
   const Stopwatch watch;
   for (std::size_t k = 0; k < passes.size(); ++k) {
@@ -97,8 +99,9 @@ Result<PaperFigure> make_fig22(PaperWorkshop &workshop) {
   PaperFigure out;
   out.id = "fig22";
   out.title = "Figure 22: one pass of Agena and of HST";
-  out.claim = "I and Q in three bands against phase angle look different and complementary: where one "
-              "shows little spectral variance the other shows much.";
+  out.claim =
+      "I and Q in three bands against phase angle look different and complementary: where one "
+      "shows little spectral variance the other shows much.";
   RowTable rows({{"object", "", "name"},
                  {"pass_id", "", "catalogue number and culmination"},
                  {"time_utc", "", "UTC"},
@@ -109,20 +112,22 @@ Result<PaperFigure> make_fig22(PaperWorkshop &workshop) {
   for (const char *object : {"agena", "hst"}) {
     UMOV_ASSIGN(found, workshop.lit_passes(object));
     const std::vector<PaperPass> &passes = found->passes;
-    const auto longest = std::max_element(
-        passes.begin(), passes.end(), [](const PaperPass &a, const PaperPass &b) {
+    const auto longest =
+        std::max_element(passes.begin(), passes.end(), [](const PaperPass &a, const PaperPass &b) {
           return a.light.curve.epochs.size() < b.light.curve.epochs.size();
         });
     const LightCurve &curve = longest->light.curve;
-    PlotFigure intensity{fmt::format("{}: intensity", title_of(object)), "phase angle [deg]", "I [m2/sr]", {}, true},
-        polarization{fmt::format("{}: polarization", title_of(object)), "phase angle [deg]", "Q/I [%]", {}};
+    PlotFigure intensity{
+        fmt::format("{}: intensity", title_of(object)), "phase angle [deg]", "I [m2/sr]", {}, true},
+        polarization{
+            fmt::format("{}: polarization", title_of(object)), "phase angle [deg]", "Q/I [%]", {}};
     for (std::size_t b = 0; b < 3; ++b) {
-      const std::size_t colours[] = {0, 2, 4};
-      PlotLine in{curve.bands[b].name, {}, {}, colours[b], dashes[b]}, q = in;
+      PlotLine in{curve.bands[b].name, {}, {}, band_colours[b], dashes[b]}, q = in;
       for (std::size_t i = 0; i < curve.epochs.size(); ++i) {
         const LightCurveSample &s = curve.samples[i * 3 + b];
         const double phase = curve.epochs[i].geometry.phase_angle.degrees();
-        rows.row({title_of(object), longest->light.passes.empty() ? "" : longest->light.passes.front().id,
+        rows.row({title_of(object),
+                  longest->light.passes.empty() ? "" : longest->light.passes.front().id,
                   to_iso(curve.epochs[i].geometry.time), curve.bands[b].name, phase, s.intensity,
                   s.scattering.q});
         in.x.push_back(phase);
@@ -135,17 +140,18 @@ Result<PaperFigure> make_fig22(PaperWorkshop &workshop) {
     }
     out.plots.push_back(std::move(intensity));
     out.plots.push_back(std::move(polarization));
-    out.found.push_back(fmt::format("{}: {} s in sunlight above 20 deg, culmination {}.", title_of(object),
-                                    curve.epochs.size(),
+    out.found.push_back(fmt::format("{}: {} s in sunlight above 20 deg, culmination {}.",
+                                    title_of(object), curve.epochs.size(),
                                     to_iso(longest->pass.culmination.time).substr(0, 16) + "Z"));
   }
   out.data = {{"fig22", rows.table()}};
   out.verdict = Verdict::Agrees;
   out.summary = "I and Q do look different; whether they are complementary is a claim below";
-  out.found.insert(out.found.begin(),
-                   "Maui, once a second, rays with 0.5 % of I. HST looks at the Orion nebula; the "
-                   "spent Agena is taken nose up. Materials are those of Table 1, as in the examples "
-                   "of umov.");
+  out.found.insert(
+      out.found.begin(),
+      "Maui, once a second, rays with 0.5 % of I. HST looks at the Orion nebula; the "
+      "spent Agena is taken nose up. Materials are those of Table 1, as in the examples "
+      "of umov.");
   return out;
 }
 
@@ -153,8 +159,9 @@ Result<PaperFigure> make_fig24(PaperWorkshop &workshop) {
   PaperFigure out;
   out.id = "fig24";
   out.title = "Figure 24: eight passes in Q-RGB space";
-  out.claim = "The points of eight consecutive passes of HST and of Agena, whose phase angle changes, "
-              "still lie on a plane.";
+  out.claim =
+      "The points of eight consecutive passes of HST and of Agena, whose phase angle changes, "
+      "still lie on a plane.";
   RowTable rows({{"object", "", "name"},
                  {"pass", "", "number"},
                  {"time_utc", "", "UTC"},
@@ -194,9 +201,12 @@ Result<PaperFigure> make_fig24(PaperWorkshop &workshop) {
     }
     real_seconds += lit_seconds(passes);
     const PlaneFit plane = fit_plane(all.q);
-    planes.row({title_of(object), static_cast<double>(all.q.size()), plane.thickness(), plane.rms[2],
-                plane.offset, plane.normal[0], plane.normal[1], plane.normal[2]});
-    PlotFigure edge{fmt::format("{}: the plane edge on", title_of(object)), "along the plane", "off the plane", {}};
+    planes.row({title_of(object), static_cast<double>(all.q.size()), plane.thickness(),
+                plane.rms[2], plane.offset, plane.normal[0], plane.normal[1], plane.normal[2]});
+    PlotFigure edge{fmt::format("{}: the plane edge on", title_of(object)),
+                    "along the plane",
+                    "off the plane",
+                    {}};
     edge.lines = {edge_line("all passes", object[0] == 'h' ? 0 : 1, all, plane)};
     out.plots.push_back(std::move(space));
     out.plots.push_back(std::move(edge));
@@ -218,7 +228,8 @@ Result<PaperFigure> make_fig24(PaperWorkshop &workshop) {
       "on planes.");
   const double speed = real_seconds / out.seconds;
   out.found.push_back(fmt::format(
-      "Computed with orbit, shadow and attitude by rays, to 0.5 % of I, in {:.1f} s for {:.0f} s of "
+      "Computed with orbit, shadow and attitude by rays, to 0.5 % of I, in {:.1f} s for {:.0f} s "
+      "of "
       "light, {:.2f} % of the passes' own duration: {:.0f} times faster than real time.",
       out.seconds, real_seconds, 100 / speed, speed));
   return out;

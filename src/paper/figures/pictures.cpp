@@ -42,8 +42,12 @@ Material satin(double along, double across, std::array<double, 3> colour) {
 }
 
 Mesh draped_sheet(double slope, std::uint64_t seed) {
-  const auto field = make_height_field({.cells = 160, .cell_m = 2. / 160, .slope = slope,
-                                        .correlation_cells = 20, .hurst = 0, .seed = seed});
+  const auto field = make_height_field({.cells = 160,
+                                        .cell_m = 2. / 160,
+                                        .slope = slope,
+                                        .correlation_cells = 20,
+                                        .hurst = 0,
+                                        .seed = seed});
   return mesh_of(*field);
 }
 
@@ -54,12 +58,12 @@ Result<PaperFigure> make_fig4(PaperWorkshop &workshop) {
   out.id = "fig4";
   out.title = "Figure 4: draped cloth";
   out.claim = "A computed picture of satin cloth over a table.";
-  UMOV_ASSIGN(scene, scene_of(draped_sheet(0.35, 4), NormalMode::Smooth,
-                              satin(6, 120, {.30, .07, .34})));
+  UMOV_ASSIGN(scene,
+              scene_of(draped_sheet(0.35, 4), NormalMode::Smooth, satin(6, 120, {.18, .02, .24})));
   UMOV_TRY(add(out, scene, view_from({0.5, -1, 1.1}, {0, 0, 1}, 55, 60), PictureStyle::Colour,
                "a draped sheet with threads along one axis", workshop.threads()));
-  UMOV_TRY(add(out, scene, view_from({0.5, -1, 1.1}, {0, 0, 1}, 55, 60),
-               PictureStyle::Polarization, "its linear polarization", workshop.threads()));
+  UMOV_TRY(add(out, scene, view_from({0.5, -1, 1.1}, {0, 0, 1}, 55, 60), PictureStyle::Polarization,
+               "its linear polarization", workshop.threads()));
   out.summary = "a satin-like sheet by an anisotropic distribution of normals";
   out.found = {"An Ashikhmin-Shirley distribution (exponents 6 along, 120 across the threads) over "
                "coloured body light. Woven cloth with its own geometry is left out."};
@@ -80,9 +84,10 @@ Result<PaperFigure> make_fig5(PaperWorkshop &workshop) {
                  m < 100 ? "frosted, m = 8" : "polished, m = 400", workshop.threads()));
   }
   out.summary = "a frosted sphere; light through the globe is left out";
-  out.found = {"The surface is that of frosted glass over a weak white scatterer. Light that goes "
-               "through the globe and out again is left out: umov traces light in vacuum, and treats "
-               "what is below a surface as its material."};
+  out.found = {
+      "The surface is that of frosted glass over a weak white scatterer. Light that goes "
+      "through the globe and out again is left out: umov traces light in vacuum, and treats "
+      "what is below a surface as its material."};
   return out;
 }
 
@@ -91,22 +96,22 @@ Result<PaperFigure> make_fig6(PaperWorkshop &workshop) {
   out.id = "fig6";
   out.title = "Figure 6: satin on a spindle";
   out.claim = "A photograph and a computed picture of purple satin tape on a spindle look alike.";
-  UMOV_ASSIGN(scene, scene_of(make_cylinder(0.4, 2, 96), NormalMode::Smooth,
-                              [] {
-                                Material out_of = satin(8, 150, {.34, .06, .30});
-                                out_of.direction = Vec3<Body>{0, 0, 1};
-                                return out_of;
-                              }()));
+  UMOV_ASSIGN(scene, scene_of(make_cylinder(0.4, 2, 96), NormalMode::Smooth, [] {
+                Material out_of = satin(8, 150, {.22, .02, .24});
+                out_of.direction = Vec3<Body>{0, 0, 1};
+                return out_of;
+              }()));
   UMOV_TRY(add(out, scene, view_from({0, -1, 0.1}, {0.4, 0, 1}, 40, 20), PictureStyle::Colour,
                "threads along the axis", workshop.threads()));
-  Material around = satin(150, 8, {.34, .06, .30});
+  Material around = satin(150, 8, {.22, .02, .24});
   around.direction = Vec3<Body>{0, 0, 1};
   UMOV_ASSIGN(other, scene_of(make_cylinder(0.4, 2, 96), NormalMode::Smooth, around));
   UMOV_TRY(add(out, other, view_from({0, -1, 0.1}, {0.4, 0, 1}, 40, 20), PictureStyle::Colour,
                "threads around the axis", workshop.threads()));
   out.summary = "the streak turns with the threads; there is no photograph to hold it against";
-  out.found = {"The bright streak runs along the spindle or around it as the threads do. The paper's "
-               "photograph is not at hand: no claim of likeness is made here."};
+  out.found = {
+      "The bright streak runs along the spindle or around it as the threads do. The paper's "
+      "photograph is not at hand: no claim of likeness is made here."};
   return out;
 }
 
@@ -115,16 +120,25 @@ Result<PaperFigure> make_fig7(PaperWorkshop &workshop) {
   out.id = "fig7";
   out.title = "Figure 7: a microfacet surface and a fractal surface";
   out.claim = "Facets with their normals, and a fractal surface of 130,000 facets.";
-  UMOV_ASSIGN(plain, make_height_field({.cells = 256, .cell_m = 1. / 256, .slope = 0.4,
-                                        .correlation_cells = 16, .hurst = 0, .seed = 7}));
-  UMOV_ASSIGN(fractal, make_height_field({.cells = 256, .cell_m = 1. / 256, .slope = 0.4,
-                                          .correlation_cells = 32, .hurst = 0.8, .seed = 7}));
+  UMOV_ASSIGN(plain, make_height_field({.cells = 256,
+                                        .cell_m = 1. / 256,
+                                        .slope = 0.4,
+                                        .correlation_cells = 16,
+                                        .hurst = 0,
+                                        .seed = 7}));
+  UMOV_ASSIGN(fractal, make_height_field({.cells = 256,
+                                          .cell_m = 1. / 256,
+                                          .slope = 0.4,
+                                          .correlation_cells = 32,
+                                          .hurst = 0.8,
+                                          .seed = 7}));
   RowTable rows({{"surface", "", "kind"},
                  {"theta", "deg", "facet normal from the mean normal, middle of the bin"},
                  {"density", "1/sr", "facet area per macroscopic area and solid angle"},
                  {"blinn_phong", "1/sr", "(m + 2)/(2 pi) cos^m, m of the same slopes"}});
   PlotFigure plot{"Distribution of facet normals", "from the mean normal [deg]", "D [1/sr]", {}};
-  for (const auto &[name, field] : {std::pair{"one scale", &plain}, {"fractal, H = 0.8", &fractal}}) {
+  for (const auto &[name, field] :
+       {std::pair{"one scale", &plain}, {"fractal, H = 0.8", &fractal}}) {
     const Mesh mesh = mesh_of(*field);
     constexpr std::size_t bins = 30;
     constexpr double width = 2 * degree;
@@ -136,12 +150,14 @@ Result<PaperFigure> make_fig7(PaperWorkshop &workshop) {
         area[bin] += norm(twice) / 2;
     }
     PlotLine line{name, {}, {}, plot.lines.size(), plot.lines.empty() ? "solid" : "dash"};
-    const double m = 2 / (2 * 0.4 * 0.4) - 2; // Walter et al. 2007: alpha^2 = 2/(m + 2), alpha = sqrt 2 slope
+    const double m =
+        2 / (2 * 0.4 * 0.4) - 2; // Walter et al. 2007: alpha^2 = 2/(m + 2), alpha = sqrt 2 slope
     for (std::size_t k = 0; k < bins; ++k) {
       const double low = static_cast<double>(k) * width, middle = low + width / 2;
       const double solid = 2 * pi * (std::cos(low) - std::cos(low + width));
       const double density = area[k] / solid;
-      rows.row({name, middle / degree, density, (m + 2) / (2 * pi) * std::pow(std::cos(middle), m)});
+      rows.row(
+          {name, middle / degree, density, (m + 2) / (2 * pi) * std::pow(std::cos(middle), m)});
       line.x.push_back(middle / degree);
       line.y.push_back(density);
     }
@@ -170,11 +186,11 @@ Result<PaperFigure> make_fig9(PaperWorkshop &workshop) {
   out.id = "fig9";
   out.title = "Figure 9: anisotropic silk";
   out.claim = "Highlights of silk depend on the direction of its threads.";
-  for (const auto &[nu, nv, caption] :
-       {std::tuple{100., 100., "even: 100 and 100"}, {10., 400., "10 along, 400 across"},
-        {400., 10., "400 along, 10 across"}}) {
-    UMOV_ASSIGN(scene, scene_of(draped_sheet(0.25, 9), NormalMode::Smooth,
-                                satin(nu, nv, {.22, .10, .30})));
+  for (const auto &[nu, nv, caption] : {std::tuple{100., 100., "even: 100 and 100"},
+                                        {10., 400., "10 along, 400 across"},
+                                        {400., 10., "400 along, 10 across"}}) {
+    UMOV_ASSIGN(
+        scene, scene_of(draped_sheet(0.25, 9), NormalMode::Smooth, satin(nu, nv, {.14, .03, .24})));
     UMOV_TRY(add(out, scene, view_from({0.2, -0.6, 1}, {0, 1, 0.3}, 50, 45), PictureStyle::Colour,
                  caption, workshop.threads()));
   }
@@ -265,9 +281,10 @@ Result<PaperFigure> make_fig21(PaperWorkshop &workshop) {
                  workshop.threads()));
   }
   out.summary = "from published dimensions, with the six materials of Table 1";
-  out.found = {"Made by `umov mesh make hst` and `umov mesh make agena`; data/mesh/README.md has the "
-               "source of each dimension. Which material stands for which part is a choice, the same "
-               "as in the examples."};
+  out.found = {
+      "Made by `umov mesh make hst` and `umov mesh make agena`; data/mesh/README.md has the "
+      "source of each dimension. Which material stands for which part is a choice, the same "
+      "as in the examples."};
   return out;
 }
 

@@ -57,20 +57,21 @@ Result<PaperFigure> make_fig18(PaperWorkshop &workshop) {
   double faintest = 1e300, brightest = 0;
   for (const char *object : {"cube", "cigar"}) {
     for (const PurePoint &pure : pure_points) {
-      const Scene scene = paper_scene(paper_object(object), [&](const Material &) {
-        return paper_material(pure.material);
-      });
+      const Scene scene = paper_scene(
+          paper_object(object), [&](const Material &) { return paper_material(pure.material); });
       const Engine engine(scene, {.visibility = Visibility::None, .threads = workshop.threads()});
       StokesTable light;
       const Stopwatch watch;
       engine.evaluate(poses, light, resolve_threads(workshop.threads()));
       out.seconds += watch.seconds();
       out.realizations += poses.size();
-      PlotFigure plot{fmt::format("{} of {}", object, pure.material == std::string("paper_au") ? "gold" : "aluminium"),
-                      "pose", "Q/I [%]", {}};
+      PlotFigure plot{fmt::format("{} of {}", object,
+                                  pure.material == std::string("paper_au") ? "gold" : "aluminium"),
+                      "pose",
+                      "Q/I [%]",
+                      {}};
       for (std::size_t b = 0; b < 3; ++b) {
-        const std::size_t colours[] = {0, 2, 4};
-        PlotLine line = cloud(paper_bands()[b].name, colours[b]);
+        PlotLine line = cloud(paper_bands()[b].name, band_colours[b]);
         for (std::size_t i = 0; i < count; ++i) {
           const auto s = light.at(i, b).stokes;
           const double q = ratio(s.q, s.i);
@@ -93,9 +94,10 @@ Result<PaperFigure> make_fig18(PaperWorkshop &workshop) {
   out.verdict = Verdict::Agrees;
   out.summary = fmt::format("every lit pose has the material's Q, to {:.0e}", worst);
   out.found = {
-      fmt::format("1000 poses of each: Q/I is the material's own value in every pose that sends "
-                  "light, cube or cigar, with a largest difference of {:.1e} (32-bit floating point).",
-                  worst),
+      fmt::format(
+          "1000 poses of each: Q/I is the material's own value in every pose that sends "
+          "light, cube or cigar, with a largest difference of {:.1e} (32-bit floating point).",
+          worst),
       fmt::format("The paper's noise on the cube is not in the physics. Flat faces send nearly all "
                   "light into glints: intensities here span from {:.0e} to {:.0e} m2/sr, and the "
                   "ratio of two sums stays right only if both keep their relative accuracy down "
@@ -113,13 +115,15 @@ Result<PaperFigure> make_fig20(PaperWorkshop &workshop) {
   out.claim = "A sheet of gold on one side and aluminium on the other jumps between two points in "
               "Q-RGB space, while the intensities are complicated.";
   RowTable rows(pose_heads());
-  PlotFigure intensity{"I-RGB, log10 [m2/sr]", "blue", "green", {}}, q_space{"Q-RGB", "Q blue", "Q green", {}},
+  PlotFigure intensity{"I-RGB, log10 [m2/sr]", "blue", "green", {}},
+      q_space{"Q-RGB", "Q blue", "Q green", {}},
       chord{"Q-RGB, blue against green", "Q blue", "Q green", {}};
   intensity.z_title = "red";
   q_space.z_title = "Q red";
   double worst_flat = 0, worst_curve = 0, departure = 0;
   const auto poses = random_poses(20, 1000, phase_deg);
-  const Surface gold = compiled(paper_material("paper_au")), al = compiled(paper_material("paper_al"));
+  const Surface gold = compiled(paper_material("paper_au")),
+                al = compiled(paper_material("paper_al"));
   // Every mixture of the two lies on one curve: weights w and 1 - w of their Stokes vectors.
   const auto mixture = [&](double w, std::size_t b) {
     const FresnelFactors f = gold.fresnel(b, std::cos(phase_deg * degree)),
@@ -142,14 +146,16 @@ Result<PaperFigure> make_fig20(PaperWorkshop &workshop) {
       if (!std::isfinite(values[0]))
         continue;
       if (intensities[1] > 1e-6)
-        add_point(in, std::log10(intensities[0]), std::log10(intensities[1]), std::log10(intensities[2]));
+        add_point(in, std::log10(intensities[0]), std::log10(intensities[1]),
+                  std::log10(intensities[2]));
       add_point(q, values[0], values[1], values[2]);
       flat_q.x.push_back(values[0]);
       flat_q.y.push_back(values[1]);
       double nearest_pure = 1;
       for (const PurePoint &pure : pure_points)
-        nearest_pure = std::min(nearest_pure, std::hypot(values[0] - pure.q[0], values[1] - pure.q[1],
-                                                         values[2] - pure.q[2]));
+        nearest_pure =
+            std::min(nearest_pure, std::hypot(values[0] - pure.q[0], values[1] - pure.q[1],
+                                              values[2] - pure.q[2]));
       if (is_flat)
         worst_flat = std::max(worst_flat, nearest_pure);
       // The mixture with the same blue Q, by bisection; green and red must follow.
@@ -189,13 +195,15 @@ Result<PaperFigure> make_fig20(PaperWorkshop &workshop) {
   out.plots = {intensity, q_space, chord};
   out.data = {{"fig20", rows.table()}};
   out.verdict = Verdict::Agrees;
-  out.summary = fmt::format("flat: two points, to {:.0e}; crumpled: a curve between them", worst_flat);
+  out.summary =
+      fmt::format("flat: two points, to {:.0e}; crumpled: a curve between them", worst_flat);
   out.found = {
-      fmt::format("The flat sheet shows one side at a time: its points are gold's and aluminium's, "
-                  "to {:.1e}. Crumpled insulation, which is what flies, shows both and fills a curve "
-                  "between the two points; a mixture formed from the two materials' Stokes vectors "
-                  "meets every pose within {:.1e}.",
-                  worst_flat, worst_curve),
+      fmt::format(
+          "The flat sheet shows one side at a time: its points are gold's and aluminium's, "
+          "to {:.1e}. Crumpled insulation, which is what flies, shows both and fills a curve "
+          "between the two points; a mixture formed from the two materials' Stokes vectors "
+          "meets every pose within {:.1e}.",
+          worst_flat, worst_curve),
       fmt::format("The curve is bowed: {:.4f} off the straight line, {:.2f} % of its length, since "
                   "the weights of equation 22 are weights of intensity and differ between bands.",
                   departure, 100 * departure / length)};
