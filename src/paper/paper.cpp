@@ -73,8 +73,8 @@ Result<PaperFigure> Paper::make(const std::string &id) {
   const auto known = paper_figure_ids();
   const auto near = nearest_name(id, known);
   return fail(ErrorCode::Usage,
-              fmt::format("unknown figure \"{}\"{}. Known: {}.", id,
-                          near ? fmt::format("; did you mean \"{}\"?", *near) : "",
+              fmt::format("unknown figure \"{}\"{} Known: {}.", id,
+                          near ? fmt::format("; did you mean \"{}\"?", *near) : ".",
                           fmt::join(known, " ")));
 }
 

@@ -58,10 +58,10 @@ TEST(Statistics, QuantilesAndRanks) {
 }
 
 TEST(Paper, AnUnknownFigureHasANearestName) {
-  const auto made = Paper({}).make("fig61");
+  const auto made = Paper({}).make("claim_rol");
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().code, ErrorCode::Usage);
-  EXPECT_NE(made.error().message.find("fig16"), std::string::npos);
+  EXPECT_NE(made.error().message.find("mean \"claim_roll\""), std::string::npos);
 }
 
 } // namespace

@@ -1,0 +1,99 @@
+"""umov render: pictures in files."""
+import struct
+import zlib
+
+from conftest import ROOT
+
+SCENE = """umov = 1
+[[object]]
+name = "sphere"
+mesh = { file = "sphere.obj", unit = "m", up = "+Z", normals = "smooth" }
+[object.materials]
+default = "paper_al"
+[bands]
+set = "paper_rgb"
+"""
+
+
+def scene(umov, tmp_path):
+    assert umov("mesh", "make", "sphere", "--facets", "2000", "-o", "sphere.obj").code == 0
+    (tmp_path / "scene.toml").write_text(SCENE)
+
+
+def chunks(png):
+    """Types and data of the chunks of a PNG, each with a right checksum."""
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    out, at = [], 8
+    while at < len(png):
+        (length,) = struct.unpack(">I", png[at:at + 4])
+        kind, data = png[at + 4:at + 8], png[at + 8:at + 8 + length]
+        assert struct.unpack(">I", png[at + 8 + length:at + 12 + length])[0] == zlib.crc32(kind + data)
+        out.append((kind.decode(), data))
+        at += 12 + length
+    return out
+
+
+def test_picture_from_directions(umov, tmp_path):
+    scene(umov, tmp_path)
+    for shade in ("I", "p", "pa", "material", "colour"):
+        done = umov("render", "scene.toml", "--sun", 1, 0, 0, "--observer", 0, 1, 0, "--size", 64,
+                    "--shade", shade, "-o", f"{shade}.png")
+        assert done.code == 0, done.err
+        kinds = dict(chunks((tmp_path / f"{shade}.png").read_bytes()))
+        assert struct.unpack(">II", kinds["IHDR"][:8]) == (64, 64)
+    pictures = {(tmp_path / f"{shade}.png").read_bytes() for shade in ("I", "p", "pa", "material")}
+    assert len(pictures) == 4
+
+
+def test_animation_of_a_pass(umov, tmp_path):
+    done = umov("render", ROOT / "examples/hst_maui.toml", "--frames", 5, "--size", 48, "--set", "time.step_s=20",
+                "-o", "pass.png")
+    assert done.code == 0, done.err
+    found = chunks((tmp_path / "pass.png").read_bytes())
+    kinds = [kind for kind, _ in found]
+    assert struct.unpack(">II", dict(found)["acTL"]) == (5, 0)
+    assert kinds.count("fcTL") == 5
+    assert kinds.index("acTL") < kinds.index("IDAT")
+    # Sequence numbers of fcTL and fdAT run from 0 without a gap (W3C PNG third edition, 11.3.6).
+    sequence = [struct.unpack(">I", data[:4])[0] for kind, data in found if kind in ("fcTL", "fdAT")]
+    assert sequence == list(range(len(sequence)))
+
+
+def test_exr_sums_to_the_signature(umov, tmp_path):
+    """Radiance summed over the picture is the intensity of `umov signature`, in the picture's axes."""
+    import OpenEXR  # the format's own reader, of PyPI
+    scene(umov, tmp_path)
+    (tmp_path / "g.csv").write_text("sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n1,0,0,0.3,1,0\n")
+    assert umov("signature", "scene.toml", "--geometry", "g.csv", "--set", "render.sun=point", "-o", "s.csv").code == 0
+    done = umov("render", "scene.toml", "--sun", 1, 0, 0, "--observer", 0.3, 1, 0, "--size", 400, "--samples", 4,
+                "--half-width", 1.02, "--set", "render.sun=point", "-o", "s.exr")
+    assert done.code == 0, done.err
+    from conftest import read_csv
+    with OpenEXR.File(str(tmp_path / "s.exr"), separate_channels=True) as file:
+        channels = {name: channel.pixels for name, channel in file.channels().items()}
+        assert file.header()["POLCCONV"] == "IAU"
+    pixel = (2 * 1.02 / 400) ** 2
+    for row in read_csv(tmp_path / "s.csv"):
+        i, q, u = (float(channels[f"{row['band']}.{name}"].sum()) * pixel for name in "IQU")
+        # 1600 x 1600 rays over a sphere of 2000 facets, steep at its glint: some parts in a thousand
+        assert abs(i / float(row["intensity"]) - 1) < 0.01
+        # Sun and observer lie in the plane z = 0 and +z is up: +Q of the scattering plane is up.
+        assert abs(q / i - float(row["q_scat"])) < 1e-4
+        assert abs(u / i) < 1e-4
+
+
+def test_what_cannot_be_drawn_is_told(umov, tmp_path):
+    scene(umov, tmp_path)
+    done = umov("render", "scene.toml", "-o", "x.png")
+    assert done.code == 3 and "orbit" in done.err
+    done = umov("render", "scene.toml", "--sun", 1, 0, 0, "-o", "x.png")
+    assert done.code == 2 and "--observer" in done.err
+    done = umov("render", "scene.toml", "--sun", 1, 0, 0, "--observer", 0, 0, 1, "-o", "x.png")
+    assert done.code == 2 and "--up" in done.err
+    done = umov("render", "scene.toml", "--sun", 1, 0, 0, "--observer", 0, 1, 0, "-o", "x.jpg")
+    assert done.code == 2 and ".png" in done.err
+    done = umov("render", "scene.toml", "--sun", 1, 0, 0, "--observer", 0, 1, 0, "--band", "nm:500", "-o", "x.png")
+    assert done.code == 2 and "nm:550" in done.err
+    done = umov("render", ROOT / "examples/hst_maui.toml", "--time", "2018-01-21T05:11:00", "-o", "x.png")
+    assert done.code == 3 or done.code == 2
+    assert not list(tmp_path.glob("x.*"))
