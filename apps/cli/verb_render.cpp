@@ -42,7 +42,8 @@ Result<Vec3<Body>> direction(const std::vector<double> &xyz, const std::string &
 /// From directions in the body frame.
 Result<std::vector<Shot>> shots_from_directions(const RenderOptions &o) {
   if (o.sun.empty() || o.observer.empty())
-    return fail(ErrorCode::Usage, "--sun and --observer go together: two directions in the body frame");
+    return fail(ErrorCode::Usage,
+                "--sun and --observer go together: two directions in the body frame");
   if (o.frames > 1 || !o.time.empty())
     return fail(ErrorCode::Usage, "--time and --frames need a scenario with an orbit; leave --sun "
                                   "and --observer out");
@@ -79,8 +80,9 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderOptions &o, const Scenari
     request.start = request.stop = time;
     request.only = {Angle::degrees(-90), {}, false};
   }
-  UMOV_ASSIGN(outcome, compute_light_curve(request, object.scene, Integrator(object.scene),
-                                           [](std::size_t, std::size_t) {}, interrupted()));
+  UMOV_ASSIGN(outcome, compute_light_curve(
+                           request, object.scene, Integrator(object.scene),
+                           [](std::size_t, std::size_t) {}, interrupted()));
   if (outcome.stopped)
     return tl::unexpected(*outcome.stopped);
   const LightCurve &curve = outcome.curve;
@@ -115,13 +117,15 @@ Result<std::size_t> band_of(const RenderOptions &o, const std::vector<Band> &ban
       return b;
     names.push_back(bands[b].name);
   }
-  return fail(ErrorCode::Usage, fmt::format("--band {}: the scene has {}", o.band, fmt::join(names, ", ")));
+  return fail(ErrorCode::Usage,
+              fmt::format("--band {}: the scene has {}", o.band, fmt::join(names, ", ")));
 }
 
 /// Rasters of one shot: of one band, or of those that the output takes.
 Result<std::vector<KeyFrameRaster>> trace(const RenderOptions &o, const LoadedObject &object,
                                           const std::vector<Joint> &joints, const Shot &shot,
-                                          const std::vector<std::size_t> &bands, const Common &common) {
+                                          const std::vector<std::size_t> &bands,
+                                          const Common &common) {
   Scene turned;
   const Scene *scene = &object.scene;
   if (!shot.joint_angles_rad.empty()) {
@@ -146,7 +150,8 @@ const std::map<std::string, KeyFrameShading> shadings{{"I", KeyFrameShading::Int
                                                       {"material", KeyFrameShading::Material}};
 
 /// 8-bit pictures, one exposure for all.
-Result<std::string> png_of(const RenderOptions &o, const std::vector<std::vector<KeyFrameRaster>> &all) {
+Result<std::string> png_of(const RenderOptions &o,
+                           const std::vector<std::vector<KeyFrameRaster>> &all) {
   std::vector<KeyFrameRaster> flat;
   for (const auto &rasters : all)
     flat.insert(flat.end(), rasters.begin(), rasters.end());
@@ -173,9 +178,11 @@ Result<std::string> exr_of(const RenderOptions &o, const std::vector<Band> &band
   const std::vector<std::pair<std::string, std::string>> notes{
       {"umov_version", version},
       {"POLCCONV", "IAU"},
-      {"frame", shot.when.empty() ? "+Q along the picture's up, +U 45 deg from it to the left"
-                                  : "+Q north-south, +U north-east to south-west; north up, east left"},
-      {"unit", "1/sr: radiance per unit solar irradiance, one reflection and body light; A: covered share"},
+      {"frame", shot.when.empty()
+                    ? "+Q along the picture's up, +U 45 deg from it to the left"
+                    : "+Q north-south, +U north-east to south-west; north up, east left"},
+      {"unit",
+       "1/sr: radiance per unit solar irradiance, one reflection and body light; A: covered share"},
       {"width_m", shortest(2 * rasters.front().half_width_m)},
       {"time_utc", shot.when}};
   return encode_exr(o.size, o.size, channels, notes);
@@ -184,7 +191,8 @@ Result<std::string> exr_of(const RenderOptions &o, const std::vector<Band> &band
 Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &diagnostics) {
   const bool is_exr = o.output.ends_with(".exr");
   if (!is_exr && !o.output.ends_with(".png"))
-    return fail(ErrorCode::Usage, "-o " + o.output + ": a name that ends in .png or .exr was expected");
+    return fail(ErrorCode::Usage,
+                "-o " + o.output + ": a name that ends in .png or .exr was expected");
   if (is_exr && o.frames > 1)
     return fail(ErrorCode::Usage, "--frames makes an animated .png; an .exr holds one picture");
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
@@ -192,7 +200,8 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
     return fail(ErrorCode::Usage, fmt::format("--object {}: the scenario has {}", o.object,
                                               counted(scenario.objects.size(), "object")));
   const ScenarioObject &named = scenario.objects[o.object - 1];
-  UMOV_ASSIGN(object, load_object(scenario, o.object - 1, {o.allow_bad_checksum, o.allow_old_elements}, diagnostics));
+  UMOV_ASSIGN(object, load_object(scenario, o.object - 1,
+                                  {o.allow_bad_checksum, o.allow_old_elements}, diagnostics));
   UMOV_ASSIGN(band, band_of(o, object.scene.bands));
   std::vector<std::size_t> bands{band};
   if (is_exr) {
@@ -201,8 +210,9 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
       bands.push_back(b);
   } else if (o.shade == "colour") {
     if (object.scene.bands.size() != 3)
-      return fail(ErrorCode::Usage, fmt::format("--shade colour takes three bands, blue to red; the scene has {}",
-                                                object.scene.bands.size()));
+      return fail(ErrorCode::Usage,
+                  fmt::format("--shade colour takes three bands, blue to red; the scene has {}",
+                              object.scene.bands.size()));
     bands = {2, 1, 0};
   }
   const bool has_directions = !o.sun.empty() || !o.observer.empty();
@@ -217,45 +227,61 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
     all.push_back(std::move(rasters));
     bar.update(all.size(), shots.size());
   }
-  UMOV_ASSIGN(bytes, is_exr ? exr_of(o, object.scene.bands, shots.front(), all.front()) : png_of(o, all));
+  UMOV_ASSIGN(bytes,
+              is_exr ? exr_of(o, object.scene.bands, shots.front(), all.front()) : png_of(o, all));
   UMOV_TRY(put(o.output, bytes));
   note(common, fmt::format("{}: {}, {:.4g} m wide{}", o.output, counted(all.size(), "picture"),
                            2 * all.front().front().half_width_m,
-                           shots.front().when.empty() ? "" : ", " + shots.front().when +
-                               (shots.size() > 1 ? " to " + shots.back().when : "")));
+                           shots.front().when.empty()
+                               ? ""
+                               : ", " + shots.front().when +
+                                     (shots.size() > 1 ? " to " + shots.back().when : "")));
   return {};
 }
 
 } // namespace
 
 void add_render(CLI::App &app, const Exit &exit_with) {
-  auto *verb = app.add_subcommand(
-      "render", "The object as the observer sees it: PNG, animated PNG of a pass, OpenEXR with Stokes channels");
+  auto *verb = app.add_subcommand("render", "The object as the observer sees it: PNG, animated PNG "
+                                            "of a pass, OpenEXR with Stokes channels");
   auto o = std::make_shared<RenderOptions>();
   auto common = std::make_shared<Common>();
   verb->add_option("scene", o->scene, "Scenario file (TOML)")->required();
-  verb->add_option("-o,--output", o->output, "File: .png, or .exr with I, Q, U, V of every band")->required();
-  verb->add_option("--shade", o->shade, "I, p, pa, material, or colour (three bands as blue, green, red)")
+  verb->add_option("-o,--output", o->output, "File: .png, or .exr with I, Q, U, V of every band")
+      ->required();
+  verb->add_option("--shade", o->shade,
+                   "I, p, pa, material, or colour (three bands as blue, green, red)")
       ->check(CLI::IsMember({"I", "p", "pa", "material", "colour"}))
       ->capture_default_str();
-  verb->add_option("--band", o->band, "Of the picture, as the scene spells it; default: the middle one");
-  verb->add_option("--time", o->time, "UTC; default: the brightest moment of the first pass in [time]");
+  verb->add_option("--band", o->band,
+                   "Of the picture, as the scene spells it; default: the middle one");
+  verb->add_option("--time", o->time,
+                   "UTC; default: the brightest moment of the first pass in [time]");
   verb->add_option("--frames", o->frames, "Pictures of the first pass, as an animated PNG")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   verb->add_option("--fps", o->frames_per_s, "Frames per second of the animation")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
-  verb->add_option("--sun", o->sun, "Direction in the body frame, instead of an orbit: X Y Z")->expected(3);
+  verb->add_option("--sun", o->sun, "Direction in the body frame, instead of an orbit: X Y Z")
+      ->expected(3);
   verb->add_option("--observer", o->observer, "The same for the observer")->expected(3);
-  verb->add_option("--up", o->up, "What is up in the picture, with --observer")->expected(3)->capture_default_str();
-  verb->add_option("--size", o->size, "Pixels per side")->check(CLI::Range(16, 4096))->capture_default_str();
-  verb->add_option("--samples", o->samples, "Rays per pixel and axis")->check(CLI::Range(1, 8))->capture_default_str();
-  verb->add_option("--half-width", o->half_width_m, "Half the picture's side [m]; default: the whole object")
+  verb->add_option("--up", o->up, "What is up in the picture, with --observer")
+      ->expected(3)
+      ->capture_default_str();
+  verb->add_option("--size", o->size, "Pixels per side")
+      ->check(CLI::Range(16, 4096))
+      ->capture_default_str();
+  verb->add_option("--samples", o->samples, "Rays per pixel and axis")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  verb->add_option("--half-width", o->half_width_m,
+                   "Half the picture's side [m]; default: the whole object")
       ->check(CLI::PositiveNumber);
   verb->add_option("--object", o->object, "Which [[object]], from 1")->capture_default_str();
   verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
-  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum, "Read elements with a bad checksum");
+  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum,
+                 "Read elements with a bad checksum");
   verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
   add_threads(*verb, *common);
   add_common(*verb, *common, false);

@@ -20,8 +20,8 @@ std::string number(std::uint32_t value, int bytes = 4) {
 /// Length, type, data, checksum (PNG third edition, section 5.3).
 std::string chunk(const std::string &type, const std::string &data) {
   const std::string checked = type + data;
-  const auto crc = crc32(0, reinterpret_cast<const Bytef *>(checked.data()),
-                         static_cast<uInt>(checked.size()));
+  const auto crc =
+      crc32(0, reinterpret_cast<const Bytef *>(checked.data()), static_cast<uInt>(checked.size()));
   return number(static_cast<std::uint32_t>(data.size())) + checked +
          number(static_cast<std::uint32_t>(crc));
 }
@@ -49,8 +49,8 @@ Result<std::string> encode_animation(std::uint32_t width, std::uint32_t height,
     return fail(ErrorCode::Internal, "an animation needs frames and a rate");
   std::string out;
   std::uint32_t sequence = 0;
-  const auto delay_ms = static_cast<std::uint32_t>(
-      std::clamp(std::lround(1000 / frames_per_s), 1L, 65'535L));
+  const auto delay_ms =
+      static_cast<std::uint32_t>(std::clamp(std::lround(1000 / frames_per_s), 1L, 65'535L));
   for (std::size_t f = 0; f < frames.size(); ++f) {
     UMOV_ASSIGN(png, encode_png(width, height, frames[f]));
     if (f == 0) {
@@ -62,9 +62,9 @@ Result<std::string> encode_animation(std::uint32_t width, std::uint32_t height,
       out += chunk("acTL", number(static_cast<std::uint32_t>(frames.size())) + number(0));
     }
     // Whole picture, no offset, replaced as it is.
-    out += chunk("fcTL", number(sequence++) + number(width) + number(height) + number(0) +
-                             number(0) + number(delay_ms, 2) + number(1000, 2) + number(0, 1) +
-                             number(0, 1));
+    out +=
+        chunk("fcTL", number(sequence++) + number(width) + number(height) + number(0) + number(0) +
+                          number(delay_ms, 2) + number(1000, 2) + number(0, 1) + number(0, 1));
     for (const std::string &data : data_of(png, "IDAT"))
       out += f == 0 ? chunk("IDAT", data) : chunk("fdAT", number(sequence++) + data);
   }

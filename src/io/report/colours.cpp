@@ -31,6 +31,10 @@ constexpr std::array<Rgb, 9> viridis{{{68, 1, 84},
 
 } // namespace
 
+std::string plot_colour(std::size_t index) {
+  return index == 3 ? "#857a00" : material_colour(index);
+}
+
 Rgb mix(Rgb a, Rgb b, double share_of_b) {
   Rgb out;
   for (std::size_t i = 0; i < 3; ++i)

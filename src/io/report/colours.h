@@ -10,6 +10,8 @@ namespace umov {
 using Rgb = std::array<double, 3>; ///< sRGB, 0..255
 
 std::string hex(Rgb colour);
+/// As material_colour, for lines on white: yellow, which would be lost there, is olive.
+std::string plot_colour(std::size_t index);
 Rgb material_rgb(std::size_t index);
 /// The map of p, linear between its nine colours; p is clamped to 0..1.
 Rgb polarization_rgb(double p);

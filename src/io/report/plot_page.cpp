@@ -1,5 +1,6 @@
 #include <umov/io/plot_page.h>
 
+#include "io/report/colours.h"
 #include "io/report/plot_json.h"
 
 #include <cmath>
@@ -32,7 +33,7 @@ Json figure_json(const PlotFigure &figure) {
     lines.push_back({{"name", line.name},
                      {"x", numbers(line.x)},
                      {"y", numbers(line.y)},
-                     {"colour", material_colour(line.colour)},
+                     {"colour", plot_colour(line.colour)},
                      {"dash", line.dash},
                      {"markers", line.has_markers},
                      {"labels", line.labels}});

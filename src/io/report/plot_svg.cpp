@@ -4,8 +4,9 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/core/constants.h>
-#include <umov/io/report.h>
+#include <umov/core/quantity.h>
+
+#include "io/report/colours.h"
 
 namespace umov {
 namespace {
@@ -49,7 +50,7 @@ std::vector<Tick> ticks(const Range &range) {
     const double decades = range.high - range.low;
     const double step = std::max(1.0, std::ceil(decades / 7));
     for (double k = std::ceil(range.low); k <= range.high; k += step)
-      out.push_back({std::pow(10, k), fmt::format("1e{:g}", k)});
+      out.push_back({std::pow(10, k), fmt::format("1e{:.0f}", k == 0 ? 0 : k)});
     if (out.size() >= 2)
       return out;
     out.clear();
@@ -112,7 +113,7 @@ std::string marker(Point p, std::size_t shape, const std::string &colour) {
 }
 
 std::string draw(const PlotLine &line, std::size_t index, const std::vector<Point> &points) {
-  const std::string colour = material_colour(line.colour);
+  const std::string colour = plot_colour(line.colour);
   std::string out;
   if (line.has_markers) {
     for (const Point p : points)

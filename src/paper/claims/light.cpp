@@ -300,7 +300,8 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
     }
   const Stopwatch watch;
   for (const char *object : {"hst", "agena", "box_wing"}) {
-    PlotLine line{object, {}, {}, among.lines.size(), "solid"};
+    const char *const dashes[] = {"solid", "dash", "dot"};
+    PlotLine line{object, {}, {}, among.lines.size(), dashes[among.lines.size()]};
     for (const double phase : {40., 80., 120., 150.}) {
       IntegrationOptions options;
       options.bounces = 5;

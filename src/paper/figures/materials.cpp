@@ -72,7 +72,8 @@ Result<PaperFigure> make_table1(PaperWorkshop &) {
       "n + ik: paper, and measured (refractiveindex.info)",
       {"material", "425 nm", "550 nm", "650 nm", "R_sub", "measured at 425, 550, 650 nm"},
       {}};
-  // physics of the literal table, by independent quadrature: src/surface/tests/data/q_tables.txt says how
+  // physics of the literal table, by independent quadrature: src/surface/tests/data/q_tables.txt
+  // says how
   const std::map<std::string, std::array<double, 3>> f0{
       {"paper_au", {.390290, .841902, .939440}},
       {"paper_al", {.923052, .915377, .905602}},

@@ -1,7 +1,7 @@
 // Pictures in files: OpenEXR read back by its own library, animations by their chunks.
 
-#include <ImfFrameBuffer.h>
 #include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStringAttribute.h>
@@ -47,7 +47,8 @@ TEST(Animation, HasItsFramesInOrder) {
   ASSERT_TRUE(bytes);
   const auto count = [&](const std::string &type) {
     std::size_t n = 0;
-    for (std::size_t at = bytes->find(type); at != std::string::npos; at = bytes->find(type, at + 1))
+    for (std::size_t at = bytes->find(type); at != std::string::npos;
+         at = bytes->find(type, at + 1))
       ++n;
     return n;
   };
