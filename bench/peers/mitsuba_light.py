@@ -2,8 +2,9 @@
 
 Mitsuba's own `render` takes one Sun and one sensor. Here every lane has its own pose: a ray from the
 observer's side through a window as tight as the body's outline, one shadow ray to the Sun, the polarized
-BRDF between the two. Points in the window are an R2 lattice (Roberts 2018), shifted per pose. Direct
-light only, as the engine's; a straight line without a loop, so that nothing is spent on paths.
+BRDF between the two. Points in the window are an R2 lattice (Roberts 2018), shifted per pose.
+`evaluate` has direct light only, as the engine's: a straight line, so that nothing is spent on paths.
+`evaluate_paths` goes on from surface to surface, with a look at the Sun at each, in one kernel too.
 
 Stokes are in m2/sr per unit irradiance (the field average of radiance times the window's area), Q > 0
 across the scattering plane, as umov has them. Mitsuba's V has the opposite sign and is 0 here.
@@ -59,7 +60,11 @@ class MitsubaScene:
         return {"type": "twosided", "bsdf": conductor}
 
     def evaluate(self, sun, observer, samples, seed=0):
-        """Stokes [pose, band, IQU] for unit vectors [pose, 3] in the body frame."""
+        """Stokes [pose, band, IQU] for unit vectors [pose, 3] in the body frame, direct light."""
+        return self.evaluate_paths(sun, observer, samples, 1, seed)
+
+    def evaluate_paths(self, sun, observer, samples, surfaces, seed=0):
+        """The same of light that touches up to `surfaces` surfaces."""
         mi, dr = self.mi, self.dr
         across = np.cross(observer, sun)
         across /= np.linalg.norm(across, axis=1, keepdims=True)
@@ -94,17 +99,31 @@ class MitsubaScene:
             waves = self.wavelengths + [self.wavelengths[-1]] * (4 - len(self.wavelengths))
             ray.wavelengths = type(ray.wavelengths)(*[mi.Float(w) for w in waves])
 
-        at = self.scene.ray_intersect(ray)
-        seen = at.is_valid()
-        light = at.to_local(to_sun)
-        bsdf = at.bsdf(ray)
-        seen &= light.z * at.wi.z > 0
-        seen &= ~self.scene.ray_test(at.spawn_ray(to_sun), seen)
-        mueller = bsdf.eval(mi.BSDFContext(), at, light, seen)
-        mueller = at.to_world_mueller(mueller, -light, at.wi)
+        sampler = mi.load_dict({"type": "independent"})
+        sampler.seed(seed, count * samples)
+        on = mi.Bool(True)
+        total, before = mi.Spectrum(0.0), None
+        for surface in range(surfaces):
+            at = self.scene.ray_intersect(ray, on)
+            on &= at.is_valid()
+            light = at.to_local(to_sun)
+            bsdf = at.bsdf(ray)
+            seen = on & (light.z * at.wi.z > 0)
+            seen &= ~self.scene.ray_test(at.spawn_ray(to_sun), seen)
+            mueller = at.to_world_mueller(bsdf.eval(mi.BSDFContext(), at, light, seen), -light, at.wi)
+            if before is not None:
+                mueller = before @ mueller
+            total += dr.select(seen, mueller, mi.Spectrum(0.0))
+            if surface + 1 < surfaces:
+                drawn, weight = bsdf.sample(mi.BSDFContext(), at, sampler.next_1d(on), sampler.next_2d(on), on)
+                on &= drawn.pdf > 0
+                weight = at.to_world_mueller(weight, -drawn.wo, at.wi)
+                before = weight if before is None else before @ weight
+                wavelengths = ray.wavelengths
+                ray = at.spawn_ray(at.to_world(drawn.wo))
+                ray.wavelengths = wavelengths
         mueller = mi.mueller.rotate_stokes_basis(
-            to_observer, mi.mueller.stokes_basis(to_observer), x) @ mueller
-        mueller = dr.select(seen, mueller, mi.Spectrum(0.0))
+            to_observer, mi.mueller.stokes_basis(to_observer), x) @ total
         sums = [dr.block_sum(mueller[row, 0][band], samples)
                 for band in range(len(self.wavelengths)) for row in range(3)]
         dr.eval(sums)

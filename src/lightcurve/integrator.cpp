@@ -1,6 +1,6 @@
 #include <umov/lightcurve/integrator.h>
 
-#include "lightcurve/bounces.h"
+#include "lightcurve/bounces/bounces.h"
 #include "lightcurve/visibility.h"
 
 #include <cmath>

@@ -48,6 +48,8 @@ METALS = {"gold": (0.4, 2.4, 0.30), "silicon": (4.0, 0.5, 0.20), "aluminium": (0
 OBJECTS = {
     "box_wing": (["box-wing", "--facets", 1000],
                  {"bus": "gold", "panels": "silicon", "dish": "aluminium", "tank": "smooth"}),
+    "box_wing_10k": (["box-wing", "--facets", 10000],
+                     {"bus": "gold", "panels": "silicon", "dish": "aluminium", "tank": "smooth"}),
     "hst": (["hst"],
             {"array_front": "silicon", "array_back": "gold", "forward_shell": "smooth", "aft_shroud": "gold",
              "antenna": "aluminium", "array_frame": "aluminium", "door": "aluminium", "equipment": "aluminium",
@@ -75,7 +77,7 @@ def test_stokes_agree_with_mitsubas_path_tracer(umov, tmp_path, which):
         (tmp_path / "g.csv").write_text(
             "\n".join([",".join(axes)] + [",".join(row[a] for a in axes) for row in rows]) + "\n")
         done = umov("signature", "s.toml", "--geometry", "g.csv", "--set", f"render.bounces={bounces}", "--visibility",
-                    "rays", "-o", "o.csv")
+                    "rays", "--accuracy", 0.002, "-o", "o.csv")
         assert done.code == 0, done.err
         ours = read_csv(tmp_path / "o.csv")
         for theirs, name in (("i", "intensity"), ("q", "stokes_q"), ("u", "stokes_u"), ("v", "stokes_v")):

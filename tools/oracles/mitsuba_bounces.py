@@ -4,7 +4,7 @@
     python3 -m venv venv && venv/bin/pip install mitsuba==3.9.1 numpy      (LLVM 19: see bench/peers/run)
     DRJIT_LIBLLVM_PATH=... venv/bin/python tools/oracles/mitsuba_bounces.py MESH.obj > .../mitsuba_box_wing.csv
 
-MESH.obj: `umov mesh make box-wing --facets 1000` (mitsuba_box_wing.csv) or `umov mesh make hst` (mitsuba_hst.csv).
+MESH.obj: `umov mesh make box-wing --facets 1000` (mitsuba_box_wing.csv), `--facets 10000` (mitsuba_box_wing_10k.csv) or `umov mesh make hst` (mitsuba_hst.csv).
 Each geometry is rendered by `path` in `stokes` (variant
 llvm_ad_mono_polarized, 550 nm) with a directional emitter of unit irradiance and an orthographic sensor whose
 window holds the object and whose vertical is the normal of the scattering plane s = (v x l)/|v x l|. The

@@ -1,6 +1,8 @@
 #pragma once
 // Private: light that has touched more than one surface before it reaches the observer.
 
+#include "lightcurve/bounces/area_choice.h"
+
 #include <umov/lightcurve/integrator.h>
 #include <umov/shape/occluder.h>
 
@@ -26,11 +28,15 @@ public:
 
 private:
   friend class PathSampler;
+  /// Neighbours in the mesh of one material and about one normal, of a 400th of the area.
+  void group_triangles();
+
   const Scene &scene_;
   std::vector<VisibleSides> sides_;
   std::vector<Vec3<Body>> normal_; ///< per triangle: unit geometric normal, zero without area
   std::vector<double> area_m2_;
   double size_m_ = 0;
+  AreaGroups groups_;
 };
 
 } // namespace umov

@@ -1,0 +1,106 @@
+#!/usr/bin/env python3
+"""umov and Mitsuba's polarized variant with light between surfaces: poses per second at equal error.
+
+    bench/peers/run bounces [--umov PATH] [--poses N] [--facets N] [--surfaces N] [--accuracy A]
+
+Both light the same box-wing (separable GGX, four metals, flat normals) by the Sun in the same random geometries, up
+to N surfaces. Errors are each program's own, from two runs with different seeds: |a - b|/(sqrt 2 I), so neither is
+the other's judge; that both compute the same is said by the median difference. Mitsuba's number of paths is chosen
+for the median error of umov, and for its 95th percentile. Times hold everything but the start: umov's whole command
+less that of a run of one pose, Mitsuba's kernel after it was compiled.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+from compare import (MATERIALS, WAVELENGTHS, index_values, machine, random_geometries, rays_for, read_groups, umov,
+                     umov_stokes, write_geometry, write_scenario)
+
+
+def two_run_errors(a, b):
+    """Median and 95th percentile of the error of I of one run, of poses above 1 % of the median light."""
+    mean = (a[:, 0, 0] + b[:, 0, 0]) / 2
+    lit = mean > 0.01 * np.median(mean[mean > 0])
+    error = np.abs(a[lit, 0, 0] - b[lit, 0, 0]) / mean[lit] / np.sqrt(2)
+    return float(np.median(error)), float(np.quantile(error, 0.95))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--umov", default="build/release/apps/cli/umov")
+    parser.add_argument("--facets", type=int, default=10_000)
+    parser.add_argument("--poses", type=int, default=200)
+    parser.add_argument("--surfaces", type=int, default=5)
+    parser.add_argument("--accuracy", type=float, default=0.005)
+    options = parser.parse_args()
+    load = os.getloadavg()[0]
+    with tempfile.TemporaryDirectory() as folder:
+        mesh = os.path.join(folder, "box-wing.obj")
+        umov(options.umov, "mesh", "make", "box-wing", "--facets", options.facets, "-o", mesh)
+        sun, observer = random_geometries(options.poses, 1)
+        geometry, one = os.path.join(folder, "geometry.csv"), os.path.join(folder, "one.csv")
+        write_geometry(geometry, sun, observer)
+        write_geometry(one, sun[:1], observer[:1])
+        scenario = write_scenario(folder, 1)
+        with open(scenario, "a") as file:
+            file.write(f'[render]\nbounces = {options.surfaces}\nsun = "point"\n')
+        more = ["--visibility", "rays", "--accuracy", options.accuracy]
+        runs, spent = [], []
+        for seed in (1, 2):
+            begin = time.perf_counter()
+            runs.append(umov_stokes(options.umov, scenario, geometry, folder, *more, "--seed", seed))
+            spent.append(time.perf_counter() - begin)
+        begin = time.perf_counter()
+        umov_stokes(options.umov, scenario, one, folder, *more)
+        start = time.perf_counter() - begin
+        rate = options.poses / (min(spent) - start)
+        wanted = two_run_errors(*runs)
+        materials = {}
+        for group, (index, alpha) in MATERIALS.items():
+            n, k = index_values(options.umov, index, WAVELENGTHS[1])
+            materials[group] = {"alpha": alpha, "n": n, "k": k}
+
+        from mitsuba_light import MitsubaScene
+        begin = time.perf_counter()
+        scene = MitsubaScene(read_groups(mesh), materials, WAVELENGTHS[1])
+        scene.evaluate_paths(sun[:8], observer[:8], 64, options.surfaces)
+        setup = time.perf_counter() - begin
+
+        def many(samples, seed):
+            """In blocks of poses that fit into memory."""
+            block = max(1, (1 << 22) // samples)
+            return np.concatenate([scene.evaluate_paths(sun[k:k + block], observer[k:k + block], samples,
+                                                        options.surfaces, seed + k)
+                                   for k in range(0, len(sun), block)])
+
+        curve = []
+        for k in range(8, 18):
+            curve.append((1 << k, two_run_errors(many(1 << k, 1000), many(1 << k, 5000))))
+            print(f"  {1 << k:7} paths: {curve[-1][1][0]:.1e} {curve[-1][1][1]:.1e}", file=sys.stderr)
+            if curve[-1][1][0] < wanted[0] and curve[-1][1][1] < wanted[1]:
+                break
+        print(f"# {machine()}, {os.cpu_count()} cores, load {load:.2f} at the start; {options.facets} triangles, "
+              f"separable GGX, up to {options.surfaces} surfaces, {options.poses} geometries, phase 15-150 deg")
+        print(f"umov     {rate:9.1f} poses/s, error of I median {wanted[0]:.1e}, 95 % {wanted[1]:.1e}, "
+              f"start {start:.2f} s")
+        for name, kind in (("median", 0), ("95 %", 1)):
+            samples = rays_for(curve, kind, wanted[kind])
+            many(samples, 1)
+            times = []
+            for repeat in range(3):
+                begin = time.perf_counter()
+                found = many(samples, 10_000 * (repeat + 1))
+                times.append(time.perf_counter() - begin)
+            theirs = options.poses / min(times)
+            difference = np.median(found[:, 0, 0] / runs[0][:, 0, 0] - 1)
+            print(f"mitsuba  {theirs:9.1f} poses/s at equal {name} ({samples} paths), set-up {setup:.1f} s: "
+                  f"ratio {rate / theirs:.1f}; median difference of I {difference:+.1e}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,66 @@
+#include "lightcurve/bounces/area_choice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umov {
+
+AreaChoice::AreaChoice(std::vector<std::uint32_t> triangles, std::span<const double> area_m2,
+                       const AreaGroups &groups)
+    : groups_(&groups), area_m2_(area_m2), triangle_(std::move(triangles)), area_(groups.count),
+      density_(groups.count), squares_(groups.count), drawn_(groups.count) {
+  for (const std::uint32_t t : triangle_)
+    area_[groups.of[t]] += area_m2[t];
+  for (const double area : area_)
+    whole_area_ += area;
+  if (!(whole_area_ > 0))
+    triangle_.clear();
+  for (std::size_t g = 0; g < groups.count; ++g)
+    density_[g] = area_[g] > 0 && whole_area_ > 0 ? 1 / whole_area_ : 0;
+  tabulate();
+}
+
+void AreaChoice::tabulate() {
+  end_.clear();
+  double sum = 0;
+  for (const std::uint32_t t : triangle_) {
+    sum += density(t) * area_m2_[t];
+    end_.push_back(sum);
+  }
+}
+
+std::uint32_t AreaChoice::at(double x) const {
+  const auto it = std::upper_bound(end_.begin(), end_.end(), x * end_.back());
+  const auto k = std::min(static_cast<std::size_t>(it - end_.begin()), triangle_.size() - 1);
+  return triangle_[k];
+}
+
+void AreaChoice::learn(std::uint32_t triangle, double light) {
+  const std::uint32_t g = groups_->of[triangle];
+  const double integrand = light * density_[g];
+  squares_[g] += integrand * integrand;
+  drawn_[g] += 1;
+}
+
+void AreaChoice::adapt() {
+  double wanted_sum = 0, drawn = 0, groups_seen = 0;
+  std::vector<double> wanted(area_.size());
+  for (std::size_t g = 0; g < area_.size(); ++g) {
+    drawn += drawn_[g];
+    groups_seen += area_[g] > 0 ? 1 : 0;
+    if (drawn_[g] > 0)
+      wanted[g] = area_[g] * std::sqrt(squares_[g] / drawn_[g]);
+    wanted_sum += wanted[g];
+  }
+  if (!(wanted_sum > 0))
+    return;
+  // Trust grows with the number of paths per group; a share by area stays, since rare bright paths
+  // make what was learnt uncertain (measured: .75 and 16 beat .5 to .95 and 1 to 4).
+  const double trust = 0.75 * drawn / (drawn + 16 * groups_seen);
+  for (std::size_t g = 0; g < area_.size(); ++g)
+    if (area_[g] > 0)
+      density_[g] = (1 - trust) / whole_area_ + trust * wanted[g] / wanted_sum / area_[g];
+  tabulate();
+}
+
+} // namespace umov

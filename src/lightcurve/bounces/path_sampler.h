@@ -1,0 +1,80 @@
+#pragma once
+// Paths of light between the surfaces of one pose.
+
+#include "lightcurve/bounces/area_choice.h"
+#include "lightcurve/bounces/bounces.h"
+#include "lightcurve/bounces/lattice.h"
+
+#include <array>
+
+namespace umov {
+
+/// A point of the surface, on the side that faces where the path came from.
+struct Vertex {
+  Vec3<Body> point{}, face{}, normal{}; ///< face: geometric, normal: shading; out of that side
+  Vec3<Body> field{};
+  const Surface *surface = nullptr;
+  std::uint32_t triangle = 0;
+};
+
+/// Draws paths from both ends; `options` and `pose` must live.
+class PathSampler {
+public:
+  using Light = Stokes<ScatteringPlane>;
+  static constexpr std::size_t surfaces_max = 64;
+
+  PathSampler(const BounceScene &of, const Occluder &occluder, const Pose &pose,
+              const IntegrationOptions &options);
+
+  [[nodiscard]] bool has_any() const { return !seen_.is_empty() && !lit_.is_empty(); }
+  /// Adds what one pair of paths carries: one from the observer, one from the Sun. `sum`: per band.
+  void add(const std::array<double, dimensions> &x, std::uint64_t stream, std::vector<Light> &sum);
+  /// From now on paths begin where those so far found light.
+  void adapt() {
+    seen_.adapt();
+    lit_.adapt();
+  }
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+private:
+  [[nodiscard]] AreaChoice facing(Vec3<Body> direction) const;
+  [[nodiscard]] Vertex vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> towards) const;
+  [[nodiscard]] Vertex vertex_at(const AreaChoice &choice, double x, double u, double v,
+                                 Vec3<Body> towards) const;
+  bool is_free(Vec3<Body> from, Vec3<Body> direction);
+  /// The next surface, if there is one that can be seen from outside.
+  bool next(const Vertex &from, Vec3<Body> direction, Vertex &to, double &distance);
+  /// f (n.in) applied to light that comes from direction `in` and leaves to `out`. The light's axes
+  /// are those of this plane, before and after.
+  [[nodiscard]] Light scattered(const Vertex &at, std::size_t band, Vec3<Body> in, Vec3<Body> out,
+                                double disk, bool is_drawn_by_mirror, const Light &light) const;
+  /// Light of the Sun that goes x[count-1] ... x[0] and then to the observer, in the pose's axes.
+  /// `step[i]`: direction from x[i] to x[i+1].
+  [[nodiscard]] Light along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
+                            std::size_t band, bool is_sun_mirrored = false) const;
+  /// How much likelier a path without mirrors is drawn from the Sun's side than from this one.
+  [[nodiscard]] double sun_over_observer(const Vertex *x, const Vec3<Body> *step,
+                                         std::size_t count) const;
+  /// Adds a path to all bands; what it adds to I of the first.
+  double add_path(const Vertex *x, const Vec3<Body> *step, std::size_t count, double weight,
+                  bool is_sun_mirrored, std::vector<Light> &sum) const;
+  /// Paths that begin at a point that the observer may see, and look at the Sun from each surface
+  /// they meet; what they added to I of the first band.
+  double from_observer(const Vertex &first, const std::array<double, dimensions> &x,
+                       std::uint64_t stream, std::vector<Light> &sum);
+  /// The same begun where the Sun may shine, with a look at the observer.
+  double from_sun(const Vertex &first, const std::array<double, dimensions> &x,
+                  std::uint64_t stream, std::vector<Light> &sum);
+
+  const BounceScene &of_;
+  const Scene &scene_;
+  const Occluder &occluder_;
+  const Pose &pose_;
+  const IntegrationOptions &options_;
+  std::size_t bands_;
+  AreaChoice seen_, lit_;
+  Vec3<Body> plane_; ///< normal of the pose's scattering plane
+  std::uint64_t rays_ = 0;
+};
+
+} // namespace umov
