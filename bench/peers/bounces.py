@@ -79,7 +79,7 @@ def main():
                                    for k in range(0, len(sun), block)])
 
         curve = []
-        for k in range(8, 18):
+        for k in range(10, 21):
             curve.append((1 << k, two_run_errors(many(1 << k, 1000), many(1 << k, 5000))))
             print(f"  {1 << k:7} paths: {curve[-1][1][0]:.1e} {curve[-1][1][1]:.1e}", file=sys.stderr)
             if curve[-1][1][0] < wanted[0] and curve[-1][1][1] < wanted[1]:

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace umov {
+namespace {
+
+constexpr std::size_t buckets = 4096;
+
+} // namespace
 
 AreaChoice::AreaChoice(std::vector<std::uint32_t> triangles, std::span<const double> area_m2,
                        const AreaGroups &groups)
@@ -27,11 +32,19 @@ void AreaChoice::tabulate() {
     sum += density(t) * area_m2_[t];
     end_.push_back(sum);
   }
+  start_.assign(buckets, 0);
+  for (std::size_t k = 0, i = 0; k < buckets; ++k) {
+    const double wanted = sum * static_cast<double>(k) / buckets;
+    while (i + 1 < end_.size() && end_[i] <= wanted)
+      ++i;
+    start_[k] = static_cast<std::uint32_t>(i);
+  }
 }
 
 std::uint32_t AreaChoice::at(double x) const {
-  const auto it = std::upper_bound(end_.begin(), end_.end(), x * end_.back());
-  const auto k = std::min(static_cast<std::size_t>(it - end_.begin()), triangle_.size() - 1);
+  std::size_t k = start_[std::min(buckets - 1, static_cast<std::size_t>(x * buckets))];
+  for (const double wanted = x * end_.back(); k + 1 < end_.size() && end_[k] <= wanted;)
+    ++k;
   return triangle_[k];
 }
 

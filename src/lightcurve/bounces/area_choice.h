@@ -41,11 +41,12 @@ private:
   const AreaGroups *groups_;
   std::span<const double> area_m2_;
   std::vector<std::uint32_t> triangle_;
-  std::vector<double> end_;     ///< probability up to and with each triangle
-  std::vector<double> area_;    ///< per group, of the triangles that can be drawn
-  std::vector<double> density_; ///< per group
-  std::vector<double> squares_; ///< per group: sum of (light times density)^2
-  std::vector<double> drawn_;   ///< per group
+  std::vector<double> end_;          ///< probability up to and with each triangle
+  std::vector<std::uint32_t> start_; ///< per even share of the distribution: where to look from
+  std::vector<double> area_;         ///< per group, of the triangles that can be drawn
+  std::vector<double> density_;      ///< per group
+  std::vector<double> squares_;      ///< per group: sum of (light times density)^2
+  std::vector<double> drawn_;        ///< per group
   double whole_area_ = 0;
 };
 

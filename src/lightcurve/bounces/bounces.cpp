@@ -33,6 +33,10 @@ BounceScene::BounceScene(const Scene &scene) : scene_(scene), sides_(visible_sid
     }
   }
   size_m_ = norm(high - low);
+  for (std::size_t g = 0; g < scene.front.size(); ++g) {
+    front_sampler_.emplace_back(scene.front[g]);
+    back_sampler_.emplace_back(scene.back[g]);
+  }
   group_triangles();
 }
 

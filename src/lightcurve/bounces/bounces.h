@@ -3,6 +3,8 @@
 
 #include "lightcurve/bounces/area_choice.h"
 
+#include "lightcurve/bounces/directions.h"
+
 #include <umov/lightcurve/integrator.h>
 #include <umov/shape/occluder.h>
 
@@ -37,6 +39,7 @@ private:
   std::vector<double> area_m2_;
   double size_m_ = 0;
   AreaGroups groups_;
+  std::vector<Sampler> front_sampler_, back_sampler_; ///< per mesh group
 };
 
 } // namespace umov

@@ -72,6 +72,7 @@ Vertex PathSampler::vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> 
   out.point += out.face * (offset_of_size * of_.size_m_);
   out.surface = side > 0 ? &scene_.front[triangle.front] : &scene_.back[triangle.back];
   out.triangle = t;
+  out.sampler = side > 0 ? &of_.front_sampler_[triangle.front] : &of_.back_sampler_[triangle.back];
   out.field = direction_field(mesh, *out.surface, t);
   return out;
 }
@@ -139,9 +140,9 @@ double PathSampler::sun_over_observer(const Vertex *x, const Vec3<Body> *step,
     const Vec3<Body> before = k == 0 ? pose_.observer : -step[k - 1];
     const Vec3<Body> after = k + 2 == count ? pose_.sun : step[k + 1];
     const double outward =
-        Sampler(*x[k].surface).density(x[k].normal, before, step[k]) * dot(x[k + 1].face, -step[k]);
-    const double inward = Sampler(*x[k + 1].surface).density(x[k + 1].normal, after, -step[k]) *
-                          dot(x[k].face, step[k]);
+        x[k].sampler->density(x[k].normal, before, step[k]) * dot(x[k + 1].face, -step[k]);
+    const double inward =
+        x[k + 1].sampler->density(x[k + 1].normal, after, -step[k]) * dot(x[k].face, step[k]);
     out *= outward > 0 ? inward / outward : INFINITY;
   }
   return out;
@@ -175,9 +176,8 @@ double PathSampler::from_observer(const Vertex &first, const std::array<double, 
       u = uniform4(options_.seed, 0xB0D + static_cast<std::uint32_t>(k), stream);
     const bool is_delta = is_mirror(*path[k].surface);
     has_mirror = has_mirror || is_delta;
-    const Direction d =
-        is_delta ? Direction{mirrored(back, path[k].normal), 1}
-                 : Sampler(*path[k].surface).draw(path[k].normal, back, u[0], u[1], u[2]);
+    const Direction d = is_delta ? Direction{mirrored(back, path[k].normal), 1}
+                                 : path[k].sampler->draw(path[k].normal, back, u[0], u[1], u[2]);
     double distance = 0;
     if (!(d.density > 0) || !next(path[k], d.to, path[k + 1], distance))
       return carried;
@@ -220,9 +220,8 @@ double PathSampler::from_sun(const Vertex &first, const std::array<double, dimen
     const bool is_delta = is_mirror(*path[at].surface);
     if (is_delta && k > 0)
       return carried;
-    const Direction d =
-        is_delta ? Direction{mirrored(back, path[at].normal), 1}
-                 : Sampler(*path[at].surface).draw(path[at].normal, back, u[0], u[1], u[2]);
+    const Direction d = is_delta ? Direction{mirrored(back, path[at].normal), 1}
+                                 : path[at].sampler->draw(path[at].normal, back, u[0], u[1], u[2]);
     double distance = 0;
     if (!(d.density > 0) || !next(path[at], d.to, path[at - 1], distance))
       return carried;

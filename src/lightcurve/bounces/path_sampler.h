@@ -14,6 +14,7 @@ struct Vertex {
   Vec3<Body> point{}, face{}, normal{}; ///< face: geometric, normal: shading; out of that side
   Vec3<Body> field{};
   const Surface *surface = nullptr;
+  const Sampler *sampler = nullptr;
   std::uint32_t triangle = 0;
 };
 
