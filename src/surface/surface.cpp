@@ -295,6 +295,12 @@ bool Surface::has_mirror() const {
          (!tables_->lobes.empty() && tables_->lobes.front().normals().is_mirror());
 }
 
+double Surface::mirror_part(std::size_t band, double n_k) const {
+  if (tables_->mirror)
+    return tables_->mirror_share(tables_->bands[band], n_k, n_k);
+  return has_mirror() ? 1 : 0;
+}
+
 bool Surface::is_anisotropic() const {
   return !tables_->lobes.empty() && !tables_->lobes.front().normals().is_isotropic();
 }

@@ -83,6 +83,9 @@ public:
   [[nodiscard]] double half_width_rad() const;
   /// Some part of the light needs a source with a size (a mirror).
   [[nodiscard]] bool has_mirror() const;
+  /// Part of the Fresnel reflection that leaves as from a mirror, into the one direction there is,
+  /// at an incidence with cosine n_k: 1 for a mirror, exp(-g) for a polished surface, else 0.
+  [[nodiscard]] double mirror_part(std::size_t band, double n_k) const;
   /// The microfacet lobe depends on the azimuth about the normal.
   [[nodiscard]] bool is_anisotropic() const;
   [[nodiscard]] const Material &material() const;

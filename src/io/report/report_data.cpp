@@ -95,17 +95,24 @@ Json band_json(const LightCurve &curve, std::size_t band, std::size_t stride) {
                   [&](std::size_t i) { return value(curve.samples[i * bands + band]); });
   };
   using S = const LightCurveSample &;
-  return {{"name", curve.bands[band].name},
-          {"wavelength_nm", curve.bands[band].wavelength.nm()},
-          {"irradiance", each([](S s) { return s.irradiance; })},
-          {"intensity", each([](S s) { return s.intensity; })},
-          {"mag", each([](S s) { return s.magnitude; })},
-          {"q", each([](S s) { return s.sky.q; })},
-          {"u", each([](S s) { return s.sky.u; })},
-          {"p", each([](S s) { return s.p; })},
-          {"pa", each([](S s) { return s.pa_deg; })},
-          {"q_scat", each([](S s) { return s.scattering.q; })},
-          {"u_scat", each([](S s) { return s.scattering.u; })}};
+  Json out{{"name", curve.bands[band].name},
+           {"wavelength_nm", curve.bands[band].wavelength.nm()},
+           {"irradiance", each([](S s) { return s.irradiance; })},
+           {"intensity", each([](S s) { return s.intensity; })},
+           {"mag", each([](S s) { return s.magnitude; })},
+           {"q", each([](S s) { return s.sky.q; })},
+           {"u", each([](S s) { return s.sky.u; })},
+           {"p", each([](S s) { return s.p; })},
+           {"pa", each([](S s) { return s.pa_deg; })},
+           {"q_scat", each([](S s) { return s.scattering.q; })},
+           {"u_scat", each([](S s) { return s.scattering.u; })}};
+  if (curve.bounces > 1) {
+    out["indirect_i"] = each([](S s) { return s.indirect.i; });
+    out["indirect_q"] = each([](S s) { return s.indirect.q; });
+    out["indirect_u"] = each([](S s) { return s.indirect.u; });
+    out["indirect_v"] = each([](S s) { return s.indirect.v; });
+  }
+  return out;
 }
 
 /// Mesh groups of one material are added up.
@@ -245,6 +252,7 @@ Result<std::string> report_data(const ReportInput &input) {
         {"lon", input.site.longitude.degrees()},
         {"alt_m", input.site.altitude_m}}},
       {"frame", frame_name(input.frame)},
+      {"bounces", curve.bounces},
       {"stride", stride},
       {"passes", passes_json(input.passes)},
       {"epochs", epochs_json(curve, stride)},

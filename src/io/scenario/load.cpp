@@ -200,13 +200,6 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   out.scene = std::move(*scene);
   for (const auto *side : {&out.scene.front, &out.scene.back})
     for (const Surface &surface : *side) {
-      if (surface.has_mirror() && scenario.bounces > 1 &&
-          (surface.has_diffuse() || surface.material().apparent_roughness))
-        return fail(ErrorCode::BadInput,
-                    fmt::format("material \"{}\" is in part a mirror; bounces > 1 take mirrors "
-                                "alone. Give it a lobe, or take bounces = 1.",
-                                surface.material().name),
-                    {scenario.file});
       if (surface.has_mirror() && !scenario.has_solar_disk && options.source_is_sun)
         return fail(
             ErrorCode::BadInput,

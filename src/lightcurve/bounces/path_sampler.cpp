@@ -103,28 +103,30 @@ bool PathSampler::next(const Vertex &from, Vec3<Body> direction, Vertex &to, dou
 }
 
 Light PathSampler::scattered(const Vertex &at, std::size_t band, Vec3<Body> in, Vec3<Body> out,
-                             double disk, bool is_drawn_by_mirror, const Light &light) const {
+                             double disk, bool is_by_mirror, const Light &light) const {
   const double cosine = dot(at.normal, in);
   if (!(cosine > 0) || !(dot(at.normal, out) > 0))
     return {};
-  if (is_drawn_by_mirror) // the one direction there is: radiance is kept but for Fresnel
-    return at.surface->mueller(band, std::clamp(dot(in, out), -1.0, 1.0)) * light;
-  const auto on =
-      directions_on(at.normal, at.field, in, out, std::clamp(dot(in, out), -1.0, 1.0), disk);
+  const double l_v = std::clamp(dot(in, out), -1.0, 1.0);
+  if (is_by_mirror) // the one direction there is: radiance is kept but for Fresnel
+    return at.surface->mueller(band, l_v) * light * at.surface->mirror_part(band, cosine);
+  const auto on = directions_on(at.normal, at.field, in, out, l_v, disk);
   return at.surface->brdf(band, on) * light * cosine;
 }
 
 Light PathSampler::along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
-                         std::size_t band, bool is_sun_mirrored) const {
+                         std::size_t band, SunEnd end) const {
   Light light = options_.source;
   Vec3<Body> axis = plane_, from = pose_.sun;
   for (std::size_t i = count; i-- > 0;) {
     const Vec3<Body> out = i == 0 ? pose_.observer : -step[i - 1];
     const Vec3<Body> plane = plane_normal(out, from);
     const bool is_last = i + 1 == count;
-    light = scattered(x[i], band, from, out, is_last ? pose_.sun_radius_rad : 0,
-                      (!is_last || is_sun_mirrored) && is_mirror(*x[i].surface),
-                      turned(light, axis, plane, -from));
+    // A mirror shows the Sun only as a disk: a point Sun leaves all but the mirror.
+    const double disk = is_last && end == SunEnd::Disk ? pose_.sun_radius_rad : 0;
+    light =
+        scattered(x[i], band, from, out, disk, is_last ? end == SunEnd::Mirror : x[i].is_by_mirror,
+                  turned(light, axis, plane, -from));
     if (light.i == 0)
       return {};
     axis = plane;
@@ -149,10 +151,10 @@ double PathSampler::sun_over_observer(const Vertex *x, const Vec3<Body> *step,
 }
 
 double PathSampler::add_path(const Vertex *x, const Vec3<Body> *step, std::size_t count,
-                             double weight, bool is_sun_mirrored, std::vector<Light> &sum) const {
+                             double weight, SunEnd end, std::vector<Light> &sum) const {
   double first = 0;
   for (std::size_t b = 0; b < bands_; ++b) {
-    const Light light = along(x, step, count, b, is_sun_mirrored) * weight;
+    const Light light = along(x, step, count, b, end) * weight;
     sum[b] += light;
     first += b == 0 ? light.i : 0;
   }
@@ -174,10 +176,9 @@ double PathSampler::from_observer(const Vertex &first, const std::array<double, 
     std::array<double, 4> u{x[3], x[4], x[5], 0};
     if (k > 0)
       u = uniform4(options_.seed, 0xB0D + static_cast<std::uint32_t>(k), stream);
-    const bool is_delta = is_mirror(*path[k].surface);
-    has_mirror = has_mirror || is_delta;
-    const Direction d = is_delta ? Direction{mirrored(back, path[k].normal), 1}
-                                 : path[k].sampler->draw(path[k].normal, back, u[0], u[1], u[2]);
+    const Direction d = path[k].sampler->draw(path[k].normal, back, u[0], u[1], u[2]);
+    path[k].is_by_mirror = d.is_by_mirror;
+    has_mirror = has_mirror || d.is_by_mirror;
     double distance = 0;
     if (!(d.density > 0) || !next(path[k], d.to, path[k + 1], distance))
       return carried;
@@ -187,15 +188,27 @@ double PathSampler::from_observer(const Vertex &first, const std::array<double, 
     const Vertex &end = path[k + 1];
     if (!(dot(end.face, pose_.sun) > 0) || !is_free(end.point, pose_.sun))
       continue;
-    const bool ends_in_mirror = is_mirror(*end.surface);
-    if (k == 0 && !is_delta && ends_in_mirror)
-      continue; // only the Sun's side meets its image
+    const auto add = [&](double factor, SunEnd what) {
+      carried += add_path(path.data(), step.data(), k + 2, weight * factor, what, sum);
+    };
+    const double mirror_share = end.sampler->mirror_share;
+    if (has_mirror) { // drawn from this side alone
+      add(1, SunEnd::Disk);
+      continue;
+    }
+    // The Sun's image in a mirror, seen by one more surface, is found from the Sun's side; behind
+    // more of them it is met by chance.
+    if (k > 0 && mirror_share > 0)
+      add(1, SunEnd::Disk);
+    if (mirror_share == 1)
+      continue;
     // The same path could have been drawn from the Sun: the balance heuristic (Veach & Guibas
-    // 1995). Those with mirrors are drawn from this side alone.
-    const double share = has_mirror || ends_in_mirror
-                             ? 1
-                             : 1 / (1 + sun_over_observer(path.data(), step.data(), k + 2));
-    carried += add_path(path.data(), step.data(), k + 2, weight * share, false, sum);
+    // 1995).
+    const double share = 1 / (1 + sun_over_observer(path.data(), step.data(), k + 2));
+    if (mirror_share == 0)
+      add(share, SunEnd::Disk);
+    else
+      add(k > 0 ? share - 1 : share, SunEnd::WithoutMirror); // all of it was in the disk's, above
   }
   return carried;
 }
@@ -217,35 +230,35 @@ double PathSampler::from_sun(const Vertex &first, const std::array<double, dimen
     std::array<double, 4> u{x[3], x[4], x[5], 0};
     if (k > 0)
       u = uniform4(options_.seed, 0xB4D + static_cast<std::uint32_t>(k), stream);
-    const bool is_delta = is_mirror(*path[at].surface);
-    if (is_delta && k > 0)
-      return carried;
-    const Direction d = is_delta ? Direction{mirrored(back, path[at].normal), 1}
-                                 : path[at].sampler->draw(path[at].normal, back, u[0], u[1], u[2]);
+    const Direction d = path[at].sampler->draw(path[at].normal, back, u[0], u[1], u[2]);
+    if (d.is_by_mirror && k > 0)
+      return carried; // from the observer's side alone
     double distance = 0;
     if (!(d.density > 0) || !next(path[at], d.to, path[at - 1], distance))
       return carried;
     --at;
     step[at] = back = -d.to; // from the surface just met to the one before
     const Vertex &end = path[at];
-    if (is_mirror(*end.surface))
+    if (end.sampler->is_mirror())
       return carried; // only the observer's side meets it
     const double leaving = dot(end.normal, pose_.observer), received = dot(end.normal, back);
     // In area measure the integrand holds the cosines at both ends of each step.
     weight *= dot(path[at + 1].face, d.to) / d.density / dot(end.face, back);
     const bool is_seen =
         dot(end.face, pose_.observer) > 0 && leaving > 0 && is_free(end.point, pose_.observer);
-    if (is_delta) { // the flux of the Sun's image: f1 without its cosine; no further surface
-      return is_seen && received > 0
-                 ? add_path(&path[at], &step[at], 2,
-                            leaving * arriving / received / lit_.density(first.triangle), true, sum)
-                 : 0;
+    if (d.is_by_mirror) { // the flux of the Sun's image: f1 without its cosine; no further surface
+      return is_seen && received > 0 ? add_path(&path[at], &step[at], 2,
+                                                leaving * arriving / received /
+                                                    lit_.density(first.triangle) / d.density,
+                                                SunEnd::Mirror, sum)
+                                     : 0;
     }
     if (!is_seen)
       continue;
     const double observer_over_sun = 1 / sun_over_observer(&path[at], &step[at], k + 2);
-    carried += add_path(&path[at], &step[at], k + 2, weight * leaving / (1 + observer_over_sun),
-                        false, sum);
+    carried +=
+        add_path(&path[at], &step[at], k + 2, weight * leaving / (1 + observer_over_sun),
+                 first.sampler->mirror_share > 0 ? SunEnd::WithoutMirror : SunEnd::Disk, sum);
   }
   return carried;
 }

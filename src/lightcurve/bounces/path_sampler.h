@@ -15,6 +15,7 @@ struct Vertex {
   Vec3<Body> field{};
   const Surface *surface = nullptr;
   const Sampler *sampler = nullptr;
+  bool is_by_mirror = false; ///< the path goes on from here (towards the Sun) as from a mirror
   std::uint32_t triangle = 0;
 };
 
@@ -38,6 +39,10 @@ public:
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
 private:
+  /// What counts of the surface that the Sun shines on: all, with the Sun as a disk; all but a
+  /// mirror; the Sun's image in a mirror alone.
+  enum class SunEnd { Disk, WithoutMirror, Mirror };
+
   [[nodiscard]] AreaChoice facing(Vec3<Body> direction) const;
   [[nodiscard]] Vertex vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> towards) const;
   [[nodiscard]] Vertex vertex_at(const AreaChoice &choice, double x, double u, double v,
@@ -48,17 +53,17 @@ private:
   /// f (n.in) applied to light that comes from direction `in` and leaves to `out`. The light's axes
   /// are those of this plane, before and after.
   [[nodiscard]] Light scattered(const Vertex &at, std::size_t band, Vec3<Body> in, Vec3<Body> out,
-                                double disk, bool is_drawn_by_mirror, const Light &light) const;
+                                double disk, bool is_by_mirror, const Light &light) const;
   /// Light of the Sun that goes x[count-1] ... x[0] and then to the observer, in the pose's axes.
   /// `step[i]`: direction from x[i] to x[i+1].
   [[nodiscard]] Light along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
-                            std::size_t band, bool is_sun_mirrored = false) const;
+                            std::size_t band, SunEnd end) const;
   /// How much likelier a path without mirrors is drawn from the Sun's side than from this one.
   [[nodiscard]] double sun_over_observer(const Vertex *x, const Vec3<Body> *step,
                                          std::size_t count) const;
   /// Adds a path to all bands; what it adds to I of the first.
   double add_path(const Vertex *x, const Vec3<Body> *step, std::size_t count, double weight,
-                  bool is_sun_mirrored, std::vector<Light> &sum) const;
+                  SunEnd end, std::vector<Light> &sum) const;
   /// Paths that begin at a point that the observer may see, and look at the Sun from each surface
   /// they meet; what they added to I of the first band.
   double from_observer(const Vertex &first, const std::array<double, dimensions> &x,

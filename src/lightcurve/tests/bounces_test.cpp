@@ -268,6 +268,70 @@ TEST(Bounces, AMirrorsImageOnALambertPlate) {
   EXPECT_NEAR(light.indirect[1].i / (rho / pi * f * c), 1, 5e-3);
 }
 
+/// Agreement of two estimates within twice their half-widths and a part of I.
+void expect_same_light(const PoseResult &a, const PoseResult &b, double part) {
+  const auto &x = a.bands[1], &y = b.bands[1];
+  const double slack = part * y.stokes.i;
+  EXPECT_NEAR(x.stokes.i, y.stokes.i, 2 * (x.half_width.i + y.half_width.i) + slack);
+  EXPECT_NEAR(x.stokes.q, y.stokes.q, 2 * (x.half_width.q + y.half_width.q) + slack);
+  EXPECT_NEAR(x.stokes.u, y.stokes.u, 2 * (x.half_width.u + y.half_width.u) + slack);
+  EXPECT_NEAR(x.stokes.v, y.stokes.v, 2 * (x.half_width.v + y.half_width.v) + slack);
+}
+
+TEST(Bounces, MirrorsWithBodyLightAreThoseOfAVeryNarrowLobe) {
+  // A lobe of m = 1e6 is 1e-3 rad wide, the Sun 4.7e-3: it throws the same light on the other
+  // plate, by paths that know nothing of mirrors. Floor and wall change roles; three surfaces.
+  Material mirror = mirror_of("paper_asi");
+  mirror.body = BodyLobe{Tabulated{{}, {0.3}}, true};
+  Material narrow = mirror;
+  narrow.distribution = blinn_phong(1e6);
+  const Material rough = interface_of("paper_au", 8);
+  IntegrationOptions options;
+  options.bounces = 3;
+  options.accuracy = 4e-3;
+  options.max_points = 1u << 18;
+  for (const bool is_floor : {true, false}) {
+    const auto plates = [&](const Material &one) {
+      return Integrator(scene_of(corner(), NormalMode::Flat,
+                                 is_floor ? std::vector<Material>{one, rough}
+                                          : std::vector<Material>{rough, one}));
+    };
+    const Pose pose{normalized(Vec3<Body>{1, 0.3, 1.2}), normalized(Vec3<Body>{1, -0.5, 0.9}),
+                    solar_radius_of_test};
+    const auto a = plates(mirror).evaluate(pose, options),
+               b = plates(narrow).evaluate(pose, options);
+    EXPECT_GT(b.indirect[1].i, 0.01 * b.bands[1].stokes.i);
+    expect_same_light(a, b, 2e-3);
+  }
+}
+
+TEST(Bounces, PolishedSurfacesLieBetweenMirrorAndLobe) {
+  // exp(-g) of the light as from a mirror, the rest by the lobe (physics.md section 5): no height
+  // is a mirror, much of it the lobe alone; in between one narrow lobe and one wide one, weighted.
+  Material polished = interface_of("paper_al", 30);
+  const auto of_height = [&](double nm) {
+    Material out = polished;
+    if (nm >= 0)
+      out.apparent_roughness = ApparentRoughness{{}, 550, nm};
+    return Integrator(scene_of(corner(), NormalMode::Flat, {out, grey(0.5)}));
+  };
+  IntegrationOptions options;
+  options.bounces = 2;
+  options.accuracy = 2e-3;
+  options.max_points = 1u << 19;
+  // Sun in the plane of incidence x z at 50 deg on the floor; the wall is Lambert.
+  const double sine = std::sin(50 * pi / 180), cosine = std::cos(50 * pi / 180);
+  const Pose pose{{sine, 0, cosine}, normalized(Vec3<Body>{1, 0.2, 0.1}), solar_radius_of_test};
+  const auto mirror = of_height(0).evaluate(pose, options);
+  const auto lobe = of_height(-1).evaluate(pose, options);
+  const auto rough = of_height(2000).evaluate(pose, options);
+  expect_same_light(rough, lobe, 1e-3);
+  const auto half = of_height(40).evaluate(pose, options);
+  EXPECT_GT(half.indirect[1].i, std::min(mirror.indirect[1].i, lobe.indirect[1].i) * 0.98);
+  EXPECT_LT(half.indirect[1].i, std::max(mirror.indirect[1].i, lobe.indirect[1].i) * 1.02);
+  EXPECT_GT(std::abs(mirror.indirect[1].i / lobe.indirect[1].i - 1), 0.05); // they do differ
+}
+
 TEST(Bounces, SameBytesForAnyThreads) {
   const Integrator hst(
       scene_of(make_hst(), NormalMode::Flat,

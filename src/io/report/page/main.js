@@ -33,7 +33,7 @@ function setTheme(name) {
 
 function fillFigures() {
   const figures = [timeFigures[0], phaseFigure, timeFigures[1], planeFigure, timeFigures[2], skyFigure,
-    contributions.length ? contributionFigure : null, rgbBands.length ? rgbFigure : null, colourPairs.length ? colourFigure : null];
+    contributions.length ? contributionFigure : null, report.bounces > 1 ? indirectFigure : null, rgbBands.length ? rgbFigure : null, colourPairs.length ? colourFigure : null];
   for (const figure of figures.filter(Boolean)) cards.push(new FigureCard(figure, byId("figures")));
   drawAll();
 }

@@ -130,6 +130,17 @@ const timeFigures = [
   },
 ];
 
+/// What light of more than one surface does to each Stokes parameter, in percent of I.
+const indirectPart = (part) => (band, i) => percent(band["indirect_" + part][i]);
+const indirectFigure = {
+  id: "indirect", title: "Light between surfaces", height: () => isNarrow() ? 420 : 520,
+  caption: "Part of I, Q, U and V from light that touched more than one surface, in percent of the whole I, up to " +
+    report.bounces + " surfaces. Q and U in the scattering frame: +Q perpendicular to the plane of Sun, object and observer.",
+  build: () => timeFigure([["i", "I"], ["q", "Q"], ["u", "U"], ["v", "V"]].map(([part, name]) =>
+    ({ title: name + " [%]", at: indirectPart(part), digits: "2f", unit: "%" }))),
+  table: () => tidyTable(["i", "q", "u", "v"].map((part) => ["indirect_" + part, "", (b, i) => b["indirect_" + part][i]])),
+};
+
 /// Differences of magnitude between neighbouring bands.
 const colourPairs = byWavelength.slice(1).map((long, k) => ({
   name: bands[byWavelength[k]].name + " − " + bands[long].name, short: bands[byWavelength[k]], long: bands[long],
