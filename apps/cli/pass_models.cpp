@@ -79,7 +79,8 @@ Result<PassModels> PassModels::make(const PassModelOptions &o, std::size_t objec
       diagnostics.warn("parts stand as in the mesh: passes do not turn them", {o.scene});
     const int norad = scene.objects[k].orbit ? scene.objects[k].orbit->norad : 0;
     UMOV_ASSIGN(object, load_object(scene, k, {.allow_old_elements = true}, diagnostics));
-    const PassLight light = PassLight::of_body(object.scene, object.attitude, objects >= many);
+    const PassLight light =
+        PassLight::of_body(object.scene, object.attitude, objects >= many, scene.bounces);
     if (norad > 0 && scene.objects.size() > 1)
       out.by_number_.insert_or_assign(norad, light);
     else

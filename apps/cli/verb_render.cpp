@@ -202,6 +202,10 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
   const ScenarioObject &named = scenario.objects[o.object - 1];
   UMOV_ASSIGN(object, load_object(scenario, o.object - 1,
                                   {o.allow_bad_checksum, o.allow_old_elements}, diagnostics));
+  if (scenario.bounces > 1)
+    diagnostics.warn(
+        "pictures show light that touched one surface: render.bounces counts in numbers",
+        {o.scene});
   UMOV_ASSIGN(band, band_of(o, object.scene.bands));
   std::vector<std::size_t> bands{band};
   if (is_exr) {

@@ -17,6 +17,7 @@ struct PassLight::State {
   // A body:
   std::optional<Integrator> integrator;
   std::optional<Engine> engine;
+  std::size_t bounces = 1;
   AttitudeLaw attitude;
   std::vector<GlintFlat> flats;
 };
@@ -24,8 +25,9 @@ struct PassLight::State {
 namespace {
 
 /// Magnitudes to a few hundredths: a range over a pass asks for no more.
-IntegrationOptions pass_accuracy() {
+IntegrationOptions pass_accuracy(std::size_t bounces) {
   IntegrationOptions out;
+  out.bounces = bounces;
   out.accuracy = 0.02;
   out.max_points = 1u << 17;
   return out;
@@ -88,13 +90,15 @@ double rate_bound(const Attitude &attitude, std::span<const ObservingGeometry> s
 
 } // namespace
 
-PassLight PassLight::of_body(const Scene &scene, const AttitudeLaw &attitude, bool is_for_many) {
+PassLight PassLight::of_body(const Scene &scene, const AttitudeLaw &attitude, bool is_for_many,
+                             std::size_t bounces) {
   auto state = std::make_shared<State>();
   state->bands = scene.bands;
   state->solar = solar_of(scene.bands);
   state->attitude = attitude;
   state->integrator.emplace(scene);
-  if (is_for_many || state->integrator->is_convex())
+  state->bounces = bounces;
+  if ((is_for_many && bounces == 1) || state->integrator->is_convex())
     state->engine.emplace(scene, EngineOptions{});
   state->flats = glint_flats(scene);
   PassLight out;
@@ -184,7 +188,8 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
   for (const Glint &glint : glints) {
     UMOV_ASSIGN(g, geometry_at(glint.seconds));
     UMOV_ASSIGN(body, attitude.at(context_of(g)));
-    const PoseResult light = state.integrator->evaluate(pose_of(body, g), pass_accuracy());
+    const PoseResult light =
+        state.integrator->evaluate(pose_of(body, g), pass_accuracy(state.bounces));
     if (!(g.sunlit > 0) || !(light.glint_share > 0.5))
       continue;
     pass.glints.push_back({g.time, glint.width_s});
@@ -200,8 +205,9 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
     state.engine->evaluate(poses, table);
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const BandResult light =
-        state.engine ? table.at(k, band)
-                     : state.integrator->evaluate(poses[k], pass_accuracy()).bands[band];
+        state.engine
+            ? table.at(k, band)
+            : state.integrator->evaluate(poses[k], pass_accuracy(state.bounces)).bands[band];
     take(light.stokes, lit[k], state.bands[band], state.solar[band], pass);
   }
   return {};

@@ -44,6 +44,39 @@ def test_signature_takes_rays_with_bounces(umov, scenario, tmp_path):
     assert done.code == 2 and "direct light alone" in done.err
 
 
+def test_passes_count_light_between_surfaces(umov, scenario, tmp_path):
+    assert umov("mesh", "make", "box-wing", "--facets", 1000, "-o", "cube.obj").code == 0
+    brightest = []
+    for bounces in (1, 3):
+        name = scenario(("[output]", f"[render]\nbounces = {bounces}\n[output]"), name=f"{bounces}.toml")
+        done = umov("passes", "--orbit", ROOT / "data/tle/hst.tle", "-s", "20.7083,-156.2578,3058", "--start",
+                    "2018-01-21T05:00:00Z", "--stop", "2018-01-21T05:20:00Z", "--scene", name, "-o", f"{bounces}.csv")
+        assert done.code == 0, done.err
+        brightest.append(float(read_csv(tmp_path / f"{bounces}.csv")[0]["mag_min"]))
+    assert brightest[1] < brightest[0] - 0.005, "three surfaces give more light than one"
+
+
+def test_a_laser_meets_several_surfaces_too(umov, scenario, tmp_path):
+    """A corner of two plates sends a laser back by two reflections: far more than one surface does off the glint."""
+    (tmp_path / "corner.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nusemtl a\nf 1 2 3\nf 1 3 4\nf 1 4 6\nf 1 6 5\n")
+    (tmp_path / "g.csv").write_text("sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n1,0,1,1,0,1\n")
+    light = []
+    for bounces in (1, 2):
+        (tmp_path / "s.toml").write_text(
+            'umov = 1\n[[object]]\nname = "corner"\nmesh = { file = "corner.obj", unit = "m", up = "+Z" }\n'
+            '[object.materials]\ndefault = "paper_al"\n[bands]\nset = ["nm:550"]\n'
+            f'[render]\nbounces = {bounces}\nsun = "point"\n')
+        done = umov("signature", "s.toml", "--geometry", "g.csv", "--source", "laser", "--state", 1, 1, 0, 0,
+                    "--visibility", "rays", "-o", "o.csv")
+        assert done.code == 0, done.err
+        light.append(read_csv(tmp_path / "o.csv")[0])
+    assert float(light[1]["intensity"]) > 1000 * float(light[0]["intensity"])
+    # Reflections by interfaces alone do not depolarize; lobes of 4 deg hardly do.
+    i, q, u, v = (float(light[1][name]) for name in ("intensity", "stokes_q", "stokes_u", "stokes_v"))
+    assert 0.95 < math.sqrt(q * q + u * u + v * v) / i < 1 + 1e-6
+
+
 METALS = {"gold": (0.4, 2.4, 0.30), "silicon": (4.0, 0.5, 0.20), "aluminium": (0.96, 6.69, 0.25), "smooth": (0.4, 2.4, 0.15)}
 OBJECTS = {
     "box_wing": (["box-wing", "--facets", 1000],

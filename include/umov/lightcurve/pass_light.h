@@ -14,8 +14,10 @@ namespace umov {
 class PassLight {
 public:
   /// A body with an attitude. `attitude` is complete. For `is_for_many` passes of a body that hides
-  /// itself masks are prepared first (seconds), else each sample is traced.
-  static PassLight of_body(const Scene &scene, const AttitudeLaw &attitude, bool is_for_many);
+  /// itself masks are prepared first (seconds), else each sample is traced. With light between
+  /// surfaces (`bounces` > 1) all samples are, to 2 % of I.
+  static PassLight of_body(const Scene &scene, const AttitudeLaw &attitude, bool is_for_many,
+                           std::size_t bounces = 1);
   /// A sphere: the same from everywhere.
   static Result<PassLight> of_sphere(double radius_m, const Material &material,
                                      const std::vector<Band> &bands);
