@@ -11,9 +11,9 @@ namespace {
 using Light = PathSampler::Light;
 
 constexpr std::size_t replicates = 16; ///< independent shifts of the lattice
-/// Paths per replicate before its half-width is believed: with fewer, rare bright paths are missed
-/// and their absence is taken for accuracy.
-constexpr std::size_t trusted_count = 256;
+/// Paths per replicate before its half-width is believed, twice in a row: with fewer, rare bright
+/// paths are missed and their absence is taken for accuracy.
+constexpr std::size_t trusted_count = 512;
 /// Two-sided 95 % quantile of Student's t with 15 degrees of freedom.
 constexpr double student_95 = 2.131449545559323;
 
@@ -98,6 +98,7 @@ IndirectLight BounceScene::light(const Occluder &occluder, const Pose &pose,
     lattices.emplace_back(options.seed, r);
   std::vector<std::vector<Light>> sums(replicates, std::vector<Light>(bands));
   std::size_t done = 0;
+  bool was_enough = false;
   const auto most = std::max(trusted_count, options.max_points / replicates);
   for (std::size_t count = 64; count <= most; count *= 2) {
     for (std::size_t r = 0; r < replicates; ++r)
@@ -111,8 +112,9 @@ IndirectLight BounceScene::light(const Occluder &occluder, const Pose &pose,
       const double whole = direct_i[b] + out.bands[b].stokes.i;
       is_enough = is_enough && out.bands[b].half_width.i <= options.accuracy * whole;
     }
-    if (is_enough)
+    if (is_enough && was_enough)
       break;
+    was_enough = is_enough;
   }
   out.rays = sampler.rays();
   return out;
