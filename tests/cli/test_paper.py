@@ -43,6 +43,7 @@ def test_every_figure_and_claim_is_there(paper):
     # A verdict states its number.
     for row in rows_of(paper, "verdicts"):
         if row["figure"] in claims:
+            assert list(paper.glob(row["figure"] + "_*.svg")), row["figure"]
             assert re.search(r"\d", row["summary"]), row
     for k in (1, 2, 7, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24):
         assert list(paper.glob(f"fig{k}_*")), k

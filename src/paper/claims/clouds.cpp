@@ -67,7 +67,8 @@ std::vector<std::vector<double>> flat_coordinates(const StokesTable &light) {
 }
 
 /// Random mixtures of measured indices at other wavelengths.
-Result<PlaneFit> measured_plane(const std::array<double, 3> &wavelengths, double phase_deg) {
+Result<std::vector<QPoint>> measured_mixtures(const std::array<double, 3> &wavelengths,
+                                              double phase_deg) {
   const char *const names[] = {"Au_Johnson",  "Al_Rakic",   "Cu_Johnson",
                                "NBK7_Schott", "aSi_Pierce", "TiO2_Siefke"};
   std::vector<std::array<MuellerEntries, 3>> factors;
@@ -95,7 +96,7 @@ Result<PlaneFit> measured_plane(const std::array<double, 3> &wavelengths, double
     }
     points.push_back(q);
   }
-  return fit_plane(points);
+  return points;
 }
 
 } // namespace
@@ -214,8 +215,15 @@ Result<PaperFigure> make_claim_plane(PaperWorkshop &) {
   const PlaneFit together = fit_plane(all);
   rows.row({0., together.thickness(), together.offset, together.normal[0], together.normal[1],
             together.normal[2], angle_between_deg(first, together)});
-  UMOV_ASSIGN(measured, measured_plane({425, 550, 650}, 100));
-  UMOV_ASSIGN(wide, measured_plane({380, 550, 800}, 100));
+  UMOV_ASSIGN(measured_points, measured_mixtures({425, 550, 650}, 100));
+  UMOV_ASSIGN(wide_points, measured_mixtures({380, 550, 800}, 100));
+  const PlaneFit measured = fit_plane(measured_points), wide = fit_plane(wide_points);
+  const QCloud table1{random_mixtures(100, 4000), {}, {}}, real{measured_points, {}, {}};
+  out.plots = {{"Random mixtures at 100 deg, each cloud edge on",
+                "along its plane",
+                "off its plane",
+                {edge_line("measured indices", 1, real, measured),
+                 edge_line("Table 1", 0, table1, fit_plane(table1.q))}}};
   out.data = {{"claim_plane", rows.table()}};
   const double turn = angle_between_deg(first, last);
   out.verdict = Verdict::Partly;

@@ -96,12 +96,22 @@ Result<PaperFigure> make_claim_shape(PaperWorkshop &workshop) {
   StoryTable shown{"Q/I at 550 nm over random poses: 2.5 %, median, 97.5 %",
                    {"object", "material and light", "60 deg", "90 deg", "140 deg"},
                    {}};
+  PlotFigure spread{"Spread of Q/I over random poses (from 2.5 to 97.5 %)",
+                    "phase angle [deg]",
+                    "spread of Q/I at 550 nm",
+                    {}};
   double worst_interface = 0, widest = 0;
   for (const ShapeCase &one : cases) {
     const Material material = one.material();
     const Scene scene =
         paper_scene(paper_object(one.object), [&](const Material &) { return material; });
     std::vector<std::string> line{one.object, one.what};
+    const char *const dashes[] = {"solid", "dash", "dot", "dashdot"};
+    PlotLine curve{fmt::format("{}: {}", one.object, one.what),
+                   {},
+                   {},
+                   spread.lines.size() % 7,
+                   dashes[spread.lines.size() % 4]};
     for (const double phase : {60., 90., 140.}) {
       const std::vector<double> q = q_values(scene, one, phase, workshop, out);
       const double low = quantile(q, 0.025), middle = quantile(q, 0.5), high = quantile(q, 0.975),
@@ -109,6 +119,8 @@ Result<PaperFigure> make_claim_shape(PaperWorkshop &workshop) {
       rows.row(
           {one.object, one.what, phase, static_cast<double>(q.size()), low, middle, high, pure});
       line.push_back(fmt::format("{:.4f}, {:.4f}, {:.4f}", low, middle, high));
+      curve.x.push_back(phase);
+      curve.y.push_back(high - low);
       if (std::string(one.what).ends_with("alone"))
         for (const double value : q)
           worst_interface = std::max(worst_interface, std::abs(value - pure));
@@ -123,7 +135,9 @@ Result<PaperFigure> make_claim_shape(PaperWorkshop &workshop) {
              "independent quadrature of 300 other random poses; the spread of a median"});
     }
     shown.rows.push_back(std::move(line));
+    spread.lines.push_back(std::move(curve));
   }
+  out.plots = {std::move(spread)};
   out.tables = {shown};
   out.data = {{"claim_shape", rows.table()}};
   out.checks.push_back({"largest departure of Q, interface alone", worst_interface, 0, 2e-5,
