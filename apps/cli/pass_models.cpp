@@ -1,5 +1,7 @@
 #include "pass_models.h"
 
+#include "scenario_jobs.h"
+
 #include <fmt/format.h>
 #include <umov/io/scenario.h>
 #include <umov/shape/primitives.h>
@@ -24,23 +26,6 @@ void add_pass_model(CLI::App &verb, PassModelOptions &o) {
       ->needs(shape);
   verb.add_option("--band", o.band, "Band of the magnitudes; default: the middle one");
 }
-
-namespace {
-
-Result<std::size_t> band_of(const PassModelOptions &o, const std::vector<Band> &bands) {
-  if (o.band.empty())
-    return bands.size() / 2;
-  std::string known;
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    if (bands[b].name == o.band)
-      return b;
-    known += (b > 0 ? ", " : "") + bands[b].name;
-  }
-  return fail(ErrorCode::Usage,
-              fmt::format("--band {}: there is none of that name; there are {}", o.band, known));
-}
-
-} // namespace
 
 Result<PassModels> PassModels::make(const PassModelOptions &o, std::size_t objects,
                                     Diagnostics &diagnostics) {
@@ -86,7 +71,7 @@ Result<PassModels> PassModels::make(const PassModelOptions &o, std::size_t objec
     else
       out.other_ = light;
   }
-  UMOV_ASSIGN(band, band_of(o, scene.bands));
+  UMOV_ASSIGN(band, band_index(o.band, scene.bands));
   out.band_ = band;
   out.description_ = fmt::format("{}, {}", o.scene, scene.bands[band].name);
   return out;

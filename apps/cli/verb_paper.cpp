@@ -1,14 +1,10 @@
 // umov paper: the paper's figures and claims, remade.
 
-#include "console.h"
+#include "scenario_jobs.h"
 #include "verbs.h"
 
-#include <filesystem>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <umov/core/parallel.h>
 #include <umov/core/version.h>
-#include <umov/io/run_folder.h>
 #include <umov/paper/paper.h>
 
 namespace umov::cli {
@@ -45,8 +41,7 @@ Result<void> judge(const std::vector<PaperFigure> &figures) {
 }
 
 Result<void> make(const PaperVerb &o, const Common &common) {
-  using namespace std::chrono;
-  const auto started = system_clock::now();
+  const auto started = std::chrono::system_clock::now();
   UMOV_ASSIGN(folder, RunFolder::open(o.output, common.force));
   Paper paper({.threads = static_cast<unsigned>(common.threads)});
   const std::vector<std::string> ids = o.only.empty() ? paper_figure_ids() : o.only;
@@ -62,27 +57,19 @@ Result<void> make(const PaperVerb &o, const Common &common) {
     figures.push_back(std::move(figure));
     bar.update(figures.size(), ids.size());
   }
-  const double elapsed = duration<double>(system_clock::now() - started).count();
-  UMOV_ASSIGN(
-      files,
-      paper_files(figures,
-                  {fmt::format("Made by umov {} in {:.0f} s on {} threads.", version, elapsed,
-                               resolve_threads(static_cast<unsigned>(common.threads)))}));
-  ManifestInput manifest;
+  ManifestInput manifest = manifest_of_command(common, started);
+  UMOV_ASSIGN(files,
+              paper_files(figures, {fmt::format("Made by umov {} in {:.0f} s on {} threads.",
+                                                version, manifest.elapsed_s, manifest.threads)}));
   for (auto &[name, bytes] : files) {
     manifest.files.push_back(name);
     folder.add(name, std::move(bytes));
   }
-  manifest.threads = resolve_threads(static_cast<unsigned>(common.threads));
-  manifest.command_line = command_line();
-  manifest.started_utc =
-      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(system_clock::to_time_t(started)));
-  manifest.elapsed_s = elapsed;
   folder.add("manifest.json", make_manifest(manifest));
   UMOV_TRY(folder.commit());
   if (!common.quiet)
     fmt::print("written to {} in {:.0f} s: index.html has it all\n", folder.path().string(),
-               elapsed);
+               manifest.elapsed_s);
   return judge(figures);
 }
 

@@ -1,6 +1,6 @@
 // umov render: the object as the observer sees it.
 
-#include "console.h"
+#include "scenario_jobs.h"
 #include "verbs.h"
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include <umov/core/version.h>
 #include <umov/io/keyframe.h>
 #include <umov/io/png.h>
-#include <umov/io/scenario.h>
 
 namespace umov::cli {
 namespace {
@@ -60,21 +59,13 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderOptions &o, const Scenari
                                            const ScenarioObject &named, const LoadedObject &object,
                                            const Common &common) {
   UMOV_TRY(check_complete_for_run(scenario));
-  LightCurveRequest request;
-  request.object = named.name;
-  request.orbit = *object.orbit;
-  request.site = *scenario.observer;
-  request.start = scenario.time->start;
-  request.stop = scenario.time->stop;
-  request.step_s = scenario.time->step_s;
-  request.only = scenario.time->only;
-  request.attitude = object.attitude;
-  request.joints = named.parts;
-  request.has_solar_disk = scenario.has_solar_disk;
+  LightCurveRequest request = light_curve_request(scenario, named, object, common);
+  request.earthshine.reset();
+  request.has_moonlight = false;
   // Enough to find the brightest moment; the pictures do not use it.
   request.integration.accuracy = 0.05;
   request.integration.max_points = 1u << 14;
-  request.threads = static_cast<unsigned>(common.threads);
+  request.integration.bounces = 1;
   if (!o.time.empty()) {
     UMOV_ASSIGN(time, utc_from_iso(o.time));
     request.start = request.stop = time;
@@ -87,15 +78,13 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderOptions &o, const Scenari
     return tl::unexpected(*outcome.stopped);
   const LightCurve &curve = outcome.curve;
   std::vector<std::size_t> chosen;
-  if (!o.time.empty() && !curve.epochs.empty())
+  if (!o.time.empty() && !curve.epochs.empty()) {
     chosen = {0};
-  else if (!curve.epochs.empty()) { // of the first pass with light
-    LightCurve first = curve;
-    const auto end = std::find_if(first.epochs.begin(), first.epochs.end(), [&](const auto &epoch) {
-      return epoch.pass_id != first.epochs.front().pass_id;
+  } else { // of the first pass with light
+    chosen = choose_key_epochs(curve, o.frames);
+    std::erase_if(chosen, [&, first = chosen.empty() ? 0 : chosen.front()](std::size_t i) {
+      return curve.epochs[i].pass_id != curve.epochs[first].pass_id;
     });
-    first.epochs.erase(end, first.epochs.end());
-    chosen = choose_key_epochs(first, o.frames);
   }
   if (chosen.empty())
     return fail(ErrorCode::Nothing, "nothing to show: no lit epoch in the span of [time]. Give "
@@ -104,42 +93,6 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderOptions &o, const Scenari
   for (const std::size_t i : chosen) {
     const LightCurveEpoch &at = curve.epochs[i];
     out.push_back({{at.pose, celestial_north(at)}, at.joint_angles_rad, to_iso(at.geometry.time)});
-  }
-  return out;
-}
-
-Result<std::size_t> band_of(const RenderOptions &o, const std::vector<Band> &bands) {
-  if (o.band.empty())
-    return bands.size() / 2;
-  std::vector<std::string> names;
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    if (bands[b].name == o.band)
-      return b;
-    names.push_back(bands[b].name);
-  }
-  return fail(ErrorCode::Usage,
-              fmt::format("--band {}: the scene has {}", o.band, fmt::join(names, ", ")));
-}
-
-/// Rasters of one shot: of one band, or of those that the output takes.
-Result<std::vector<KeyFrameRaster>> trace(const RenderOptions &o, const LoadedObject &object,
-                                          const std::vector<Joint> &joints, const Shot &shot,
-                                          const std::vector<std::size_t> &bands,
-                                          const Common &common) {
-  Scene turned;
-  const Scene *scene = &object.scene;
-  if (!shot.joint_angles_rad.empty()) {
-    turned = object.scene;
-    turned.mesh = posed(turned.mesh, joints, shot.joint_angles_rad);
-    scene = &turned;
-  }
-  const Occluder occluder(scene->mesh);
-  std::vector<KeyFrameRaster> out;
-  for (const std::size_t band : bands) {
-    UMOV_ASSIGN(raster, trace_key_frame(*scene, occluder, shot.view,
-                                        {o.size, o.samples, band, o.half_width_m,
-                                         static_cast<unsigned>(common.threads)}));
-    out.push_back(std::move(raster));
   }
   return out;
 }
@@ -206,7 +159,7 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
     diagnostics.warn(
         "pictures show light that touched one surface: render.bounces counts in numbers",
         {o.scene});
-  UMOV_ASSIGN(band, band_of(o, object.scene.bands));
+  UMOV_ASSIGN(band, band_index(o.band, object.scene.bands));
   std::vector<std::size_t> bands{band};
   if (is_exr) {
     bands.clear();
@@ -223,11 +176,14 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
   UMOV_ASSIGN(shots, has_directions ? shots_from_directions(o)
                                     : shots_from_orbit(o, scenario, named, object, common));
   std::vector<std::vector<KeyFrameRaster>> all;
+  const KeyFrameStage stage(object.scene, joints_of(named.parts));
+  const KeyFrameOptions options{o.size, o.samples, band, o.half_width_m,
+                                static_cast<unsigned>(common.threads)};
   ProgressBar bar("pictures", common);
   for (const Shot &shot : shots) {
     if (interrupted())
       return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
-    UMOV_ASSIGN(rasters, trace(o, object, joints_of(named.parts), shot, bands, common));
+    UMOV_ASSIGN(rasters, stage.trace(shot.view, shot.joint_angles_rad, options, bands));
     all.push_back(std::move(rasters));
     bar.update(all.size(), shots.size());
   }

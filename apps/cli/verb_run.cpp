@@ -1,11 +1,10 @@
 #include "console.h"
 #include "run_outputs.h"
+#include "scenario_jobs.h"
 #include "verbs.h"
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <mutex>
 #include <umov/core/parallel.h>
@@ -34,33 +33,6 @@ Result<Scenario> read_with_options(const RunOptions &o) {
   UMOV_ASSIGN(scenario, read_scenario(o.scenario, overrides));
   UMOV_TRY(check_complete_for_run(scenario));
   return scenario;
-}
-
-LightCurveRequest request_of(const Scenario &scenario, const ScenarioObject &named,
-                             const LoadedObject &object, const Common &common) {
-  LightCurveRequest request;
-  request.object = named.name.empty() ? object.orbit->name() : named.name;
-  request.orbit = *object.orbit;
-  request.site = *scenario.observer;
-  request.start = scenario.time->start;
-  request.stop = scenario.time->stop;
-  request.step_s = scenario.time->step_s;
-  request.only = scenario.time->only;
-  request.attitude = object.attitude;
-  request.joints = named.parts;
-  request.frame = scenario.frame;
-  request.earthshine = scenario.earthshine;
-  request.has_moonlight = scenario.has_moonlight;
-  request.has_refracted_shadow = scenario.has_refracted_shadow;
-  request.has_solar_disk = scenario.has_solar_disk;
-  request.integration.accuracy = scenario.accuracy;
-  request.integration.seed = scenario.seed;
-  request.integration.bounces = scenario.bounces;
-  // A sampled path costs more than a point: rows that are mostly indirect say what they reached.
-  if (scenario.bounces > 1)
-    request.integration.max_points = 1u << 19;
-  request.threads = static_cast<unsigned>(common.threads);
-  return request;
 }
 
 /// No row is a result of its own kind: it says when there will be one.
@@ -193,19 +165,13 @@ Result<void> write_folder(const Finished &run, RunFolder &folder) {
              (needed.empty() ? "" : "# This run was made with" + needed + ".\n") +
                  locked_scenario(run.scenario));
   folder.add("log.txt", log_of(run));
-  using namespace std::chrono;
-  ManifestInput manifest;
+  ManifestInput manifest = manifest_of_command(run.common, run.started);
   for (const ObjectRun &one : run.objects)
     for (const InputFile &input : one.object.inputs)
       if (const std::pair entry{input.path, input.sha256};
           std::find(manifest.inputs.begin(), manifest.inputs.end(), entry) == manifest.inputs.end())
         manifest.inputs.push_back(entry);
   manifest.seed = run.scenario.seed;
-  manifest.threads = resolve_threads(static_cast<unsigned>(run.common.threads));
-  manifest.command_line = command_line();
-  manifest.started_utc =
-      fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(system_clock::to_time_t(run.started)));
-  manifest.elapsed_s = duration<double>(system_clock::now() - run.started).count();
   for (const Warning &warning : run.diagnostics.warnings())
     manifest.warnings.push_back(warning.text());
   if (run.stopped)
@@ -220,7 +186,7 @@ Result<std::vector<ObjectRun>> load_all(const RunOptions &o, const Scenario &sce
   for (std::size_t k = 0; k < scenario.objects.size(); ++k) {
     UMOV_ASSIGN(object, load_object(scenario, k, {o.allow_bad_checksum, o.allow_old_elements},
                                     diagnostics));
-    LightCurveRequest request = request_of(scenario, scenario.objects[k], object, common);
+    LightCurveRequest request = light_curve_request(scenario, scenario.objects[k], object, common);
     if (common.verbose)
       for (const InputFile &input : object.inputs)
         note(common, fmt::format("read {} (SHA-256 {})", input.path, input.sha256));

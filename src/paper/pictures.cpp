@@ -9,21 +9,15 @@ namespace {
 /// Rasters in red, green and blue light.
 Result<std::vector<KeyFrameRaster>> trace_colours(const Scene &scene, const PictureView &view,
                                                   unsigned threads) {
-  const Occluder occluder(scene.mesh);
-  std::vector<KeyFrameRaster> out;
-  for (const std::size_t band : {2u, 1u, 0u}) {
-    KeyFrameOptions options;
-    options.size = view.size;
-    options.samples = 3;
-    options.band = band;
-    options.half_width_m = view.half_width_m;
-    options.threads = threads;
-    UMOV_ASSIGN(raster, trace_key_frame(
-                            scene, occluder,
-                            {{normalized(view.sun), normalized(view.observer)}, view.up}, options));
-    out.push_back(std::move(raster));
-  }
-  return out;
+  constexpr std::size_t red_green_blue[] = {2, 1, 0};
+  KeyFrameOptions options;
+  options.size = view.size;
+  options.samples = 3;
+  options.half_width_m = view.half_width_m;
+  options.threads = threads;
+  return trace_key_frames(scene, Occluder(scene.mesh),
+                          {{normalized(view.sun), normalized(view.observer)}, view.up}, options,
+                          red_green_blue);
 }
 
 } // namespace

@@ -63,6 +63,26 @@ std::vector<std::string> material_names(const Scene &scene);
 /// `up` along the line of sight.
 Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occluder,
                                        const KeyFrameView &view, const KeyFrameOptions &options);
+/// The same in several bands, with the rays cast once; `options.band` is not asked.
+Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const Occluder &occluder,
+                                                     const KeyFrameView &view,
+                                                     const KeyFrameOptions &options,
+                                                     std::span<const std::size_t> bands);
+
+/// A scene ready for pictures with its parts at any angles; it must outlive this.
+class KeyFrameStage {
+public:
+  explicit KeyFrameStage(const Scene &scene, std::vector<Joint> joints = {});
+  /// As trace_key_frames; no angles: as the mesh has its parts.
+  [[nodiscard]] Result<std::vector<KeyFrameRaster>>
+  trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,
+        const KeyFrameOptions &options, std::span<const std::size_t> bands) const;
+
+private:
+  const Scene &scene_;
+  std::vector<Joint> joints_;
+  Occluder still_;
+};
 
 /// The radiance shown as white: the 99th percentile over the lit points of all pictures, so that
 /// one exposure holds for a whole series and a glint does not hide the rest. 1 if nothing is lit.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <optional>
 #include <set>
 
 namespace umov {
@@ -103,24 +102,16 @@ Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const Li
                                                     std::span<const std::size_t> epochs,
                                                     const KeyFrameOptions &options,
                                                     const std::vector<Joint> &joints) {
-  const Occluder still(scene.mesh);
+  const KeyFrameStage stage(scene, joints);
   std::vector<KeyFrameRaster> rasters;
   for (const std::size_t i : epochs) {
     if (i >= curve.epochs.size())
       return fail(ErrorCode::Internal,
                   fmt::format("key frame of epoch {}; the curve has {}", i, curve.epochs.size()));
     const LightCurveEpoch &at = curve.epochs[i];
-    const KeyFrameView view{at.pose, celestial_north(at)};
-    Scene turned;
-    std::optional<Occluder> moved;
-    if (!at.joint_angles_rad.empty()) {
-      turned = scene;
-      turned.mesh = posed(scene.mesh, joints, at.joint_angles_rad);
-      moved.emplace(turned.mesh);
-    }
-    UMOV_ASSIGN(raster,
-                trace_key_frame(moved ? turned : scene, moved ? *moved : still, view, options));
-    rasters.push_back(std::move(raster));
+    UMOV_ASSIGN(one, stage.trace({at.pose, celestial_north(at)}, at.joint_angles_rad, options,
+                                 std::span(&options.band, 1)));
+    rasters.push_back(std::move(one.front()));
   }
   const double white = common_exposure(rasters);
   std::vector<ReportKeyFrame> out;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <umov/core/quantity.h>
 
 namespace umov {
 namespace {
@@ -26,7 +27,7 @@ Rgb intensity_rgb(const KeyFrameSample &s, double white) {
 /// Colours of equal lightness round the circle (Ottosson 2020, Oklab: L = .72, chroma .12), pale
 /// where there is little polarization.
 Rgb position_angle_rgb(double pa_rad, double p) {
-  const double chroma = 0.12 * std::min(1., p / 0.1), hue = 2 * pa_rad + 29 * 3.14159265 / 180;
+  const double chroma = 0.12 * std::min(1., p / 0.1), hue = 2 * pa_rad + 29 * pi / 180;
   const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
   const double l = std::pow(0.72 + 0.3963377774 * a + 0.2158037573 * b, 3);
   const double m = std::pow(0.72 - 0.1055613458 * a - 0.0638541728 * b, 3);
@@ -129,7 +130,7 @@ void apply_polarizer(KeyFrameRaster &raster, bool is_perpendicular) {
     s.radiance *= (1 + q) / 2;
     if (s.radiance > 0) {
       s.q = is_perpendicular ? 1.f : -1.f;
-      s.u = 0;
+      s.u = s.v = 0;
       s.p = 1;
     }
   }

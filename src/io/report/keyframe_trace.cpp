@@ -38,7 +38,6 @@ struct Camera {
   const Scene &scene;
   const Occluder &occluder;
   KeyFrameView view;
-  std::size_t band = 0;
   Sphere sphere;
   Vec3<Body> right, up; ///< unit; right x up points at the observer
   double half_width = 0;
@@ -104,8 +103,8 @@ std::vector<Seen> look(const Camera &camera, std::size_t row, std::span<KeyFrame
   return seen;
 }
 
-/// Shadow rays and reflected light of the seen points of a row.
-void light(const Camera &camera, const std::vector<Seen> &seen, std::span<KeyFrameSample> line) {
+/// Of the seen points of a row, those that the Sun reaches.
+std::vector<Seen> reached_by_sun(const Camera &camera, const std::vector<Seen> &seen) {
   const Vec3<Body> l = camera.view.pose.sun, v = camera.view.pose.observer;
   const double lift = 1e-5 * camera.sphere.radius; // about 50 times the float resolution of a hit
   std::vector<Vec3<Body>> origins;
@@ -113,22 +112,30 @@ void light(const Camera &camera, const std::vector<Seen> &seen, std::span<KeyFra
     origins.push_back(s.point + s.geometric * lift);
   std::vector<unsigned char> is_free(seen.size());
   camera.occluder.is_free(origins, l, is_free);
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    const Seen &s = seen[i];
-    const double n_l = dot(s.normal, l), n_v = dot(s.normal, v);
-    if (is_free[i] == 0 || dot(s.geometric, l) <= 0 || n_l <= 0 || n_v <= 0)
-      continue;
+  std::vector<Seen> out;
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (const Seen &s = seen[i];
+        is_free[i] != 0 && dot(s.geometric, l) > 0 && dot(s.normal, l) > 0 && dot(s.normal, v) > 0)
+      out.push_back(s);
+  return out;
+}
+
+/// Reflected light of the lit points of a row in a band.
+void light(const Camera &camera, std::size_t band, const std::vector<Seen> &lit,
+           std::span<KeyFrameSample> line) {
+  const Vec3<Body> l = camera.view.pose.sun, v = camera.view.pose.observer;
+  const double l_v = dot(l, v);
+  for (const Seen &s : lit) {
     KeyFrameSample &out = line[s.column];
     out.is_lit = true;
-    const double l_v = dot(l, v);
-    const FresnelFactors f = s.surface->fresnel(camera.band, l_v);
+    const FresnelFactors f = s.surface->fresnel(band, l_v);
     const SurfaceDirections at =
         directions_on(s.normal, direction_field(camera.scene.mesh, *s.surface, s.triangle), l, v,
                       l_v, camera.view.pose.sun_radius_rad);
-    const double specular = s.surface->specular(camera.band, at);
-    const auto diffuse = s.surface->diffuse(camera.band, at, {1, 0, 0, 0});
+    const double specular = s.surface->specular(band, at);
+    const auto diffuse = s.surface->diffuse(band, at, {1, 0, 0, 0});
     const double intensity = f.a * specular + diffuse.i;
-    out.radiance = static_cast<float>(intensity / n_v);
+    out.radiance = static_cast<float>(intensity / dot(s.normal, v));
     if (intensity > 0) {
       out.q = static_cast<float>((f.b * specular + diffuse.q) / intensity);
       out.u = static_cast<float>(diffuse.u / intensity);
@@ -138,15 +145,17 @@ void light(const Camera &camera, const std::vector<Seen> &seen, std::span<KeyFra
   }
 }
 
-Result<void> check(const Scene &scene, const KeyFrameOptions &options) {
+Result<void> check(const Scene &scene, const KeyFrameOptions &options,
+                   std::span<const std::size_t> bands) {
   if (options.size < 1 || options.size > 4096 || options.samples < 1 || options.samples > 8)
     return fail(ErrorCode::BadInput,
                 fmt::format("key frame of {} pixels with {} x {} rays each; the size must be 1 to "
                             "4096 and the rays 1 to 8",
                             options.size, options.samples, options.samples));
-  if (options.band >= scene.bands.size())
-    return fail(ErrorCode::BadInput, fmt::format("key frame in band {}; the scene has {} bands",
-                                                 options.band, scene.bands.size()));
+  for (const std::size_t band : bands)
+    if (band >= scene.bands.size())
+      return fail(ErrorCode::BadInput, fmt::format("key frame in band {}; the scene has {} bands",
+                                                   band, scene.bands.size()));
   return {};
 }
 
@@ -163,14 +172,22 @@ std::vector<std::string> material_names(const Scene &scene) {
 
 Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occluder,
                                        const KeyFrameView &view, const KeyFrameOptions &options) {
-  UMOV_TRY(check(scene, options));
+  UMOV_ASSIGN(rasters,
+              trace_key_frames(scene, occluder, view, options, std::span(&options.band, 1)));
+  return std::move(rasters.front());
+}
+
+Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const Occluder &occluder,
+                                                     const KeyFrameView &view,
+                                                     const KeyFrameOptions &options,
+                                                     std::span<const std::size_t> bands) {
+  UMOV_TRY(check(scene, options, bands));
   const Vec3<Body> v = view.pose.observer;
   const Vec3<Body> across = view.up - v * dot(view.up, v);
   if (!(norm(across) > 1e-9 * norm(view.up)))
     return fail(ErrorCode::BadInput,
                 "key frame: `up` lies along the line of sight; give another direction");
-  Camera camera{scene, occluder, view, options.band, bounding_sphere(scene.mesh),
-                {},    {},       0,    {},           {}};
+  Camera camera{scene, occluder, view, bounding_sphere(scene.mesh), {}, {}, 0, {}, {}};
   camera.up = normalized(across);
   camera.right = cross(camera.up, v);
   camera.half_width = options.half_width_m > 0 ? options.half_width_m : 1.04 * camera.sphere.radius;
@@ -188,11 +205,30 @@ Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occlu
     camera.back_material.push_back(material_at(out.materials, surface.material().name));
   const std::size_t side = out.side;
   out.points.resize(side * side);
+  std::vector<KeyFrameRaster> rasters(bands.size(), out);
   parallel_for(side, options.threads, [&](std::size_t row) {
-    const std::span<KeyFrameSample> line(out.points.data() + row * side, side);
-    light(camera, look(camera, row, line), line);
+    std::vector<KeyFrameSample> dark(side); // what all bands share
+    const std::vector<Seen> lit = reached_by_sun(camera, look(camera, row, dark));
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+      const std::span<KeyFrameSample> line(rasters[b].points.data() + row * side, side);
+      std::copy(dark.begin(), dark.end(), line.begin());
+      light(camera, bands[b], lit, line);
+    }
   });
-  return out;
+  return rasters;
+}
+
+KeyFrameStage::KeyFrameStage(const Scene &scene, std::vector<Joint> joints)
+    : scene_(scene), joints_(std::move(joints)), still_(scene.mesh) {}
+
+Result<std::vector<KeyFrameRaster>>
+KeyFrameStage::trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,
+                     const KeyFrameOptions &options, std::span<const std::size_t> bands) const {
+  if (joint_angles_rad.empty())
+    return trace_key_frames(scene_, still_, view, options, bands);
+  Scene turned = scene_;
+  turned.mesh = posed(scene_.mesh, joints_, joint_angles_rad);
+  return trace_key_frames(turned, Occluder(turned.mesh), view, options, bands);
 }
 
 } // namespace umov

@@ -1,6 +1,7 @@
 #include <umov/io/report.h>
 
 #include "io/report/assemble.h"
+#include "io/report/page.h"
 #include "io/report/report_data.h"
 
 #include <algorithm>
@@ -55,28 +56,6 @@ std::string page_script() {
   return out + "})();\n";
 }
 
-struct Slot {
-  std::string_view name;
-  std::string text;
-};
-
-/// Fills "@@NAME@@" marks. One pass over the template, so a text that looks like a mark stays text.
-std::string fill(std::string_view page, std::span<const Slot> slots) {
-  std::string out;
-  while (true) {
-    const std::size_t start = page.find("@@");
-    const std::size_t end = start == page.npos ? page.npos : page.find("@@", start + 2);
-    if (end == page.npos)
-      return out.append(page);
-    out.append(page.substr(0, start));
-    const std::string_view name = page.substr(start + 2, end - start - 2);
-    for (const Slot &slot : slots)
-      if (slot.name == name)
-        out += slot.text;
-    page.remove_prefix(end + 2);
-  }
-}
-
 } // namespace
 
 Result<std::string> assemble_report(const ReportInput &input, std::string_view plotting_script) {
@@ -87,7 +66,7 @@ Result<std::string> assemble_report(const ReportInput &input, std::string_view p
                 "-DUMOV_PLOTLY_JS=.../plotly/package_data/plotly.min.js, or leave \"html\" out of "
                 "[output] formats.");
   UMOV_ASSIGN(data, report_data(input));
-  const Slot slots[] = {
+  const PageSlot slots[] = {
       {"TITLE", html_text(input.title)},
       {"CSS", std::string(report_css())},
       {"DATA", std::move(data)},
@@ -95,7 +74,7 @@ Result<std::string> assemble_report(const ReportInput &input, std::string_view p
       {"PLOTLY_LICENCE", html_text(report_plotly_licence())},
       {"SCRIPT", page_script()},
   };
-  return fill(report_template(), slots);
+  return fill_page(report_template(), slots);
 }
 
 bool has_report() { return !report_plotly().empty(); }

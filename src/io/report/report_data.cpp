@@ -1,6 +1,7 @@
 #include "io/report/report_data.h"
 
 #include "io/report/base64.h"
+#include "io/report/page.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -212,23 +213,6 @@ Result<void> check(const ReportInput &input) {
   return {};
 }
 
-/// JSON that cannot end its <script> element nor start a comment: markup characters as \u escapes.
-std::string inert(const std::string &json) {
-  std::string out;
-  out.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      out += "\\u003c";
-    else if (c == '>')
-      out += "\\u003e";
-    else if (c == '&')
-      out += "\\u0026";
-    else
-      out += c;
-  }
-  return out;
-}
-
 } // namespace
 
 Result<std::string> report_data(const ReportInput &input) {
@@ -267,8 +251,7 @@ Result<std::string> report_data(const ReportInput &input) {
       {"conventions",
        input.conventions.empty() ? standard_conventions(input.frame) : input.conventions},
   };
-  // Bytes that are not UTF-8 (an old file name) become replacement characters, NaN becomes null.
-  return inert(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return inert_json(data); // NaN becomes null
 }
 
 } // namespace umov

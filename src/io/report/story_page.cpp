@@ -1,16 +1,13 @@
 #include <umov/io/story_page.h>
 
 #include "io/report/base64.h"
+#include "io/report/page.h"
 #include "io/report/plot_json.h"
 
 #include <umov/core/embedded.h>
-#include <umov/io/report.h>
 
-UMOV_EMBEDDED(report_plotly)
-UMOV_EMBEDDED(report_plotly_licence)
 UMOV_EMBEDDED(story_page_template)
 UMOV_EMBEDDED(story_page_js)
-UMOV_EMBEDDED(plot_page_figure_js)
 
 namespace umov {
 namespace {
@@ -37,9 +34,6 @@ Json section_json(const StorySection &section) {
 } // namespace
 
 Result<std::string> make_story_page(const Story &story) {
-  if (!has_report())
-    return fail(ErrorCode::Internal,
-                "this build has no plotting script: run tools/setup and build again");
   Json data{{"title", story.title},
             {"introduction", story.introduction},
             {"chapters", Json::array()},
@@ -50,13 +44,7 @@ Result<std::string> make_story_page(const Story &story) {
       chapter["sections"].push_back(section_json(section));
     data["chapters"].push_back(std::move(chapter));
   }
-  std::string page(story_page_template());
-  fill_in(page, "{{data}}", inert_json(data));
-  fill_in(page, "{{figure}}", plot_page_figure_js());
-  fill_in(page, "{{script}}", story_page_js());
-  fill_in(page, "{{licence}}", report_plotly_licence());
-  fill_in(page, "{{plotly}}", report_plotly());
-  return page;
+  return fill_plot_page(story_page_template(), data, story_page_js());
 }
 
 } // namespace umov
