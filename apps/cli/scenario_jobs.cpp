@@ -8,7 +8,7 @@
 namespace umov::cli {
 
 LightCurveRequest light_curve_request(const Scenario &scenario, const ScenarioObject &named,
-                             const LoadedObject &object, const Common &common) {
+                                      const LoadedObject &object, const Common &common) {
   LightCurveRequest request;
   request.object = named.name.empty() ? object.orbit->name() : named.name;
   request.orbit = *object.orbit;

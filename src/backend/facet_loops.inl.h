@@ -101,15 +101,7 @@ public:
   }
 
   void run() {
-    out_.specular.assign(scene_.lobes.size(), 0);
-    out_.specular_variance.assign(scene_.lobes.size(), 0);
-    out_.specular_bias.assign(scene_.lobes.size(), 0);
-    out_.product.assign(scene_.products.size(), 0);
-    out_.product_variance.assign(scene_.products.size(), 0);
-    out_.specular_linear.assign(scene_.lobes.size(), 0);
-    out_.product_linear.assign(scene_.products.size(), 0);
-    out_.seen.clear();
-    out_.is_any_seen = false;
+    out_.reset(scene_.lobes.size(), scene_.products.size());
     for (const Chunk &chunk : scene_.chunks) {
       find_facing(chunk);
       if (masks_ != nullptr)

@@ -19,11 +19,12 @@ template <class R> inline DiskVariances<R> disk_variances(R radius, R l_v) {
   return {along, along / max((R(1) + l_v) / R(2), R(1e-6))};
 }
 
-/// A direction of the disk around l, at the share `r` of its radius and the azimuth `beta` from e1
-/// towards e2; V is any vector with + and products with numbers.
-template <class V, class R> inline V disk_direction(V l, V e1, V e2, R sine_radius, R r, R beta) {
+/// A direction of the disk around l, at the share `r` of its radius and an azimuth from e1 towards
+/// e2; V is any vector with + and products with numbers.
+template <class V, class R>
+inline V disk_direction(V l, V e1, V e2, R sine_radius, R r, R cos_azimuth, R sin_azimuth) {
   const R s = r * sine_radius, c = sqrt(R(1) - s * s);
-  return c * l + (s * std::cos(beta)) * e1 + (s * std::sin(beta)) * e2;
+  return c * l + (s * cos_azimuth) * e1 + (s * sin_azimuth) * e2;
 }
 
 #include "kernel/end.h"

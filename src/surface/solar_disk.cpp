@@ -30,7 +30,8 @@ public:
   }
   /// At the share `r` of the radius (small angles) and the azimuth beta.
   [[nodiscard]] Vec3<Facet> at(double r, double beta) const {
-    const Vec3<Facet> source = kernel::disk_direction(l_, e1_, e2_, sine_, r, beta);
+    const Vec3<Facet> source =
+        kernel::disk_direction(l_, e1_, e2_, sine_, r, std::cos(beta), std::sin(beta));
     return normalized(source + v_);
   }
   /// Coordinate of the surface normal in the scattering plane, from the image's centre towards l.

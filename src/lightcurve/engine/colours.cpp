@@ -52,7 +52,6 @@ Colours::Colours(std::vector<const Surface *> surfaces,
     if (light[s]) {
       slot.has_lobe = terms[s].lobe_count > 0;
       slot.lobe = light[s]->lobe;
-      slot.is_grey = std::all_of(slot.lobe.begin(), slot.lobe.end(), [](auto l) { return l == 0; });
       slot.product_count = terms[s].product_count;
       slot.diffuse_error = light[s]->diffuse_error;
       for (std::size_t p = 0; p < slot.product_count; ++p)
@@ -64,7 +63,9 @@ Colours::Colours(std::vector<const Surface *> surfaces,
           slot.has_single_bounce = slot.has_single_bounce || by.single_bounce != 0;
         }
     }
-    slot.is_plain = slot.is_grey && slot.product_count <= 1 && !slot.has_single_bounce;
+    const bool is_grey =
+        std::all_of(slot.lobe.begin(), slot.lobe.end(), [](auto lobe) { return lobe == 0; });
+    slot.is_plain = is_grey && slot.product_count <= 1 && !slot.has_single_bounce;
     slots_.push_back(std::move(slot));
   }
   fresnel_ = FresnelTable(std::move(distinct));
@@ -74,14 +75,11 @@ void Colours::prepare(double cos_phase, bool has_plane, PhaseFactors &out) const
   const std::size_t columns = fresnel_.columns();
   out.a.resize(columns);
   out.b.resize(columns);
-  out.ratio.assign(columns, 0);
-  for (auto *room : {&out.i, &out.q, &out.dev_i, &out.dev_q, &out.bias})
+  for (auto *room : {&out.ratio, &out.dev_i, &out.dev_q})
     room->resize(bands_);
   fresnel_.at(cos_phase, out.a.data(), out.b.data());
   if (!has_plane)
     std::fill(out.b.begin(), out.b.end(), 0);
-  for (std::size_t c = 0; c < columns; ++c)
-    out.ratio[c] = out.a[c] > 0 ? out.b[c] / out.a[c] : 0;
 }
 
 /// The common case in one loop: one lobe for all bands and at most one product.
@@ -98,80 +96,80 @@ void Colours::add_plain(const Slot &slot, const SlotSums &sums, const double *__
                      *__restrict var_i = out.var_i.data(), *__restrict var_q = out.var_q.data(),
                      *__restrict bias = out.bias.data();
   for (std::size_t k = 0; k < bands_; ++k) {
-    const double diffuse = whole[k] * s_p, dev_i = a[k] * d + std::abs(whole[k]) * d_p;
+    const double diffuse = whole[k] * s_p;
     i[k] += a[k] * s + diffuse;
-    var_i[k] += dev_i * dev_i;
     bias[k] += a[k] * e + e_p * diffuse;
   }
-  for (std::size_t k = 0; !is_intensity_only_ && k < bands_; ++k) {
+  for (std::size_t k = 0; !is_intensity_only_ && k < bands_; ++k)
     q[k] += b[k] * s;
-    var_q[k] += (b[k] * d) * (b[k] * d);
+  if (!sums.varies)
+    return;
+  for (std::size_t k = 0; k < bands_; ++k) {
+    const double dev_i = a[k] * d + std::abs(whole[k]) * d_p;
+    var_i[k] += dev_i * dev_i;
   }
+  for (std::size_t k = 0; !is_intensity_only_ && k < bands_; ++k)
+    var_q[k] += (b[k] * d) * (b[k] * d);
+}
+
+/// Deviations of a slot are added before they are squared: its lobes and products share facets.
+void Colours::add_variances(const Slot &slot, const SlotSums &sums, PhaseFactors &at,
+                            BandLight &out) const {
+  const std::size_t n = bands_;
+  const double *a = at.a.data() + slot.column, *b = at.b.data() + slot.column,
+               *ratio = at.ratio.data();
+  double *__restrict dev_i = at.dev_i.data(), *__restrict dev_q = at.dev_q.data();
+  for (std::size_t k = 0; k < n; ++k) {
+    const double d = slot.has_lobe ? sums.specular_deviation[slot.lobe[k]] : 0;
+    dev_i[k] = a[k] * d;
+    dev_q[k] = std::abs(b[k]) * d;
+  }
+  for (std::size_t p = 0; p < slot.product_count; ++p) {
+    const double d = sums.product_deviation[p];
+    const double *whole = slot.whole.data() + p * n, *bounced = slot.single_bounce.data() + p * n;
+    for (std::size_t k = 0; k < n; ++k)
+      dev_i[k] += std::abs(whole[k]) * d;
+    for (std::size_t k = 0; slot.has_single_bounce && k < n; ++k)
+      dev_q[k] += std::abs(ratio[k] * bounced[k]) * d;
+  }
+  for (std::size_t k = 0; k < n; ++k)
+    out.var_i[k] += dev_i[k] * dev_i[k];
+  for (std::size_t k = 0; !is_intensity_only_ && k < n; ++k)
+    out.var_q[k] += dev_q[k] * dev_q[k];
 }
 
 void Colours::add_slot(std::size_t index, const SlotSums &sums, PhaseFactors &at,
                        BandLight &out) const {
   const Slot &slot = slots_[index];
   const std::size_t n = bands_;
-  const double *__restrict a = at.a.data() + slot.column, *__restrict b = at.b.data() + slot.column,
-                           *__restrict ratio = at.ratio.data() + slot.column;
+  const double *__restrict a = at.a.data() + slot.column, *__restrict b = at.b.data() + slot.column;
   if (slot.is_plain)
     return add_plain(slot, sums, a, b, out);
-  double *__restrict i = at.i.data(), *__restrict q = at.q.data(),
-                     *__restrict dev_i = at.dev_i.data(), *__restrict dev_q = at.dev_q.data(),
-                     *__restrict bias = at.bias.data();
+  double *__restrict i = out.i.data(), *__restrict q = out.q.data(),
+                     *__restrict bias = out.bias.data();
+  double *__restrict ratio = at.ratio.data();
   const bool has_q = !is_intensity_only_;
-  if (!slot.has_lobe) {
-    for (auto *column : {i, q, dev_i, dev_q, bias})
-      std::fill_n(column, n, 0.0);
-  } else if (slot.is_grey) {
-    const double s = sums.specular[0], d = sums.specular_deviation[0], e = sums.specular_bias[0];
-    for (std::size_t k = 0; k < n; ++k) {
-      i[k] = a[k] * s;
-      dev_i[k] = a[k] * d;
-      bias[k] = a[k] * e;
-    }
-    for (std::size_t k = 0; has_q && k < n; ++k) {
-      q[k] = b[k] * s;
-      dev_q[k] = std::abs(b[k]) * d;
-    }
-  } else {
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::uint32_t lobe = slot.lobe[k];
-      i[k] = a[k] * sums.specular[lobe];
-      q[k] = b[k] * sums.specular[lobe];
-      dev_i[k] = a[k] * sums.specular_deviation[lobe];
-      dev_q[k] = std::abs(b[k]) * sums.specular_deviation[lobe];
-      bias[k] = a[k] * sums.specular_bias[lobe];
-    }
+  for (std::size_t k = 0; slot.has_single_bounce && k < n; ++k)
+    ratio[k] = a[k] > 0 ? b[k] / a[k] : 0;
+  for (std::size_t k = 0; slot.has_lobe && k < n; ++k) {
+    const std::uint32_t lobe = slot.lobe[k];
+    i[k] += a[k] * sums.specular[lobe];
+    bias[k] += a[k] * sums.specular_bias[lobe];
+    q[k] += has_q ? b[k] * sums.specular[lobe] : 0;
   }
   for (std::size_t p = 0; p < slot.product_count; ++p) {
-    const double s = sums.product[p], d = sums.product_deviation[p], e = slot.diffuse_error;
+    const double s = sums.product[p], e = slot.diffuse_error;
     const double *__restrict whole = slot.whole.data() + p * n;
     for (std::size_t k = 0; k < n; ++k) {
-      const double value = whole[k] * s;
-      i[k] += value;
-      bias[k] += e * value;
-      dev_i[k] += std::abs(whole[k]) * d;
+      i[k] += whole[k] * s;
+      bias[k] += e * (whole[k] * s);
     }
     const double *__restrict bounced = slot.single_bounce.data() + p * n;
-    for (std::size_t k = 0; has_q && slot.has_single_bounce && k < n; ++k) {
+    for (std::size_t k = 0; has_q && slot.has_single_bounce && k < n; ++k)
       q[k] += ratio[k] * bounced[k] * s;
-      dev_q[k] += std::abs(ratio[k] * bounced[k]) * d;
-    }
   }
-  double *__restrict to_i = out.i.data(), *__restrict to_q = out.q.data(),
-                     *__restrict var_i = out.var_i.data(), *__restrict var_q = out.var_q.data(),
-                     *__restrict to_bias = out.bias.data();
-  for (std::size_t k = 0; k < n; ++k) {
-    to_i[k] += i[k];
-    var_i[k] += dev_i[k] * dev_i[k];
-    to_bias[k] += bias[k];
-  }
-  for (std::size_t k = 0; has_q && k < n; ++k) {
-    to_q[k] += q[k];
-    var_q[k] += dev_q[k] * dev_q[k];
-  }
+  if (sums.varies)
+    add_variances(slot, sums, at, out);
 }
 
 } // namespace umov

@@ -24,12 +24,13 @@ struct BandLight {
 struct SlotSums {
   const double *specular, *specular_deviation, *specular_bias;
   const double *product, *product_deviation;
+  bool varies = true; ///< some deviation is not 0
 };
 
 /// Reflection of all microfacets at one phase angle, and room to work in.
 struct PhaseFactors {
-  std::vector<double> a, b, ratio; ///< by column: M00, M10 and M10/M00; b = 0 without a plane
-  std::vector<double> i, q, dev_i, dev_q, bias;
+  std::vector<double> a, b;                ///< by column: M00, M10; b = 0 without a plane
+  std::vector<double> ratio, dev_i, dev_q; ///< of one slot: M10/M00, deviations of I and Q
 };
 
 /// What one set of materials makes of sums.
@@ -53,14 +54,17 @@ private:
   struct Slot {
     const Surface *surface = nullptr;
     std::size_t column = 0, product_count = 0;
-    bool has_lobe = false, is_grey = true;                 ///< grey: the first lobe for all bands
+    bool has_lobe = false;
     std::vector<std::uint32_t> lobe;                       ///< per band
     std::vector<double> unpolarized, single_bounce, whole; ///< [product * bands + band]
-    bool has_single_bounce = false, is_plain = false;
+    bool has_single_bounce = false;
+    bool is_plain = false; ///< one lobe for all bands and at most one product
     double diffuse_error = 0;
   };
   void add_plain(const Slot &slot, const SlotSums &sums, const double *a, const double *b,
                  BandLight &out) const;
+  void add_variances(const Slot &slot, const SlotSums &sums, PhaseFactors &at,
+                     BandLight &out) const;
   std::vector<Slot> slots_;
   FresnelTable fresnel_;
   std::size_t bands_ = 0;

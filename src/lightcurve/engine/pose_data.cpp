@@ -20,7 +20,8 @@ void put(Vec3<Body> v, double *out) {
 /// is lit for the observer.
 void put_half_vector(Vec3<Body> l, Vec3<Body> v, double *out) {
   const Vec3<Body> sum = l + v;
-  put(norm(sum) > 1e-12 ? normalized(sum) : any_perpendicular(l), out);
+  const double length = norm(sum);
+  put(length > 1e-12 ? (1 / length) * sum : any_perpendicular(l), out);
 }
 
 /// Half vectors of the ring of the disk's nodes.
@@ -30,9 +31,12 @@ void put_ring(const Pose &pose, kernel::FacetPose<double> &out) {
   const Vec3<Body> e2 = length > 1e-12 ? across / length : any_perpendicular(pose.sun);
   const Vec3<Body> e1 = cross(e2, pose.sun);
   const double sine = std::sin(pose.sun_radius_rad);
+  constexpr double half_root_3 = std::numbers::sqrt3 / 2;
+  constexpr double ring[][2] = {{1, 0},  {0.5, half_root_3},   {-0.5, half_root_3},
+                                {-1, 0}, {-0.5, -half_root_3}, {0.5, -half_root_3}};
   for (std::size_t k = 1; k < kernel::source_nodes; ++k)
     put_half_vector(kernel::disk_direction(pose.sun, e1, e2, sine, kernel::source_ring,
-                                           static_cast<double>(k - 1) * std::numbers::pi / 3),
+                                           ring[k - 1][0], ring[k - 1][1]),
                     pose.observer, out.half[k]);
 }
 

@@ -63,10 +63,11 @@ void Engine::State::add_rounding(Workspace &work) const {
 }
 
 void Engine::State::take_roots(Workspace &work, bool may_vary) const {
-  const auto root = [&](const std::vector<double> &variance, std::vector<double> &out) {
-    out.assign(variance.size(), 0);
-    if (!masks && work.sums.seen.empty() && !may_vary)
-      return; // nothing varies
+  work.varies = masks || !work.sums.seen.empty() || may_vary;
+  const auto root = [&](std::span<const double> variance, std::vector<double> &out) {
+    out.resize(variance.size());
+    if (!work.varies)
+      return;
     std::transform(variance.begin(), variance.end(), out.begin(),
                    [](double x) { return std::sqrt(x); });
   };
@@ -140,7 +141,8 @@ SlotSums Engine::State::sums_of(std::size_t slot, const Workspace &work) const {
           work.specular_deviation.data() + terms.lobe_first,
           work.sums.specular_bias.data() + terms.lobe_first,
           work.sums.product.data() + terms.product_first,
-          work.product_deviation.data() + terms.product_first};
+          work.product_deviation.data() + terms.product_first,
+          work.varies};
 }
 
 void Engine::State::colour(Workspace &work) const {

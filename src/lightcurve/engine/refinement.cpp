@@ -210,10 +210,11 @@ void Engine::State::trace(const Pose &pose, Workspace &work) const {
 
 /// Variances of the sums from those that the facets have now.
 void Engine::State::take_variances(Workspace &work) const {
-  for (auto *column : {&work.sums.specular_variance, &work.sums.product_variance,
-                       &work.sums.specular_linear, &work.sums.product_linear, &work.general.var_i,
-                       &work.general.var_q, &work.general.var_u, &work.general.var_v})
-    std::fill(column->begin(), column->end(), 0);
+  for (std::span<double> column :
+       {work.sums.specular_variance, work.sums.product_variance, work.sums.specular_linear,
+        work.sums.product_linear, std::span(work.general.var_i), std::span(work.general.var_q),
+        std::span(work.general.var_u), std::span(work.general.var_v)})
+    std::fill(column.begin(), column.end(), 0);
   for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
     const backend::SeenFacet &facet = work.uncertain[k];
     const backend::SlotTerms &terms = compiled.data.slots[facet.slot];

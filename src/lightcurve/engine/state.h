@@ -58,6 +58,7 @@ struct Engine::State {
     std::array<Prepared, 2> prepared;
     backend::PoseSums sums;
     std::vector<double> specular_deviation, product_deviation; ///< roots of the sums' variances
+    bool varies = true; ///< some of those roots are not 0; else they are not set
     PhaseFactors factors;
     BandLight light;   ///< of the whole
     BandLight general; ///< of the facets without a kernel

@@ -33,7 +33,7 @@ void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_
     return (rounding * std::abs(light.i[b]) + light.bias[b]) * scale;
   };
   const auto half_width = [&](double variance) {
-    return normal_95 * std::sqrt(std::max(variance, 0.0)) * scale;
+    return variance > 0 ? normal_95 * std::sqrt(variance) * scale : 0;
   };
   for (std::size_t b = 0; b < n; ++b) {
     out.i[first + b] = light.i[b] * scale;
