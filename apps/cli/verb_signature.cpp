@@ -147,6 +147,16 @@ struct SignatureJob {
   [[nodiscard]] double sun_radius() const {
     return is_sun && scenario.has_solar_disk ? solar_radius_rad : 0;
   }
+  [[nodiscard]] IntegrationOptions integration() const {
+    IntegrationOptions out;
+    out.accuracy = accuracy;
+    out.bounces = scenario.bounces;
+    if (out.bounces > 1)
+      out.max_points = 1u << 19;
+    out.seed = seed;
+    out.source = source;
+    return out;
+  }
   void describe(Table &table, const std::string &method) const {
     table.note("source", is_sun
                              ? (scenario.has_solar_disk ? "Sun, uniform disk of 0.2665 deg radius"
@@ -165,28 +175,22 @@ Result<void> run_with_rays(const SignatureJob &job, NumberedPoses numbered) {
   for (Pose &pose : poses)
     pose.sun_radius_rad = job.sun_radius();
   const Integrator integrator(job.object.scene);
-  IntegrationOptions options;
-  options.accuracy = job.accuracy;
-  options.bounces = job.scenario.bounces;
-  if (options.bounces > 1)
-    options.max_points = 1u << 19;
-  options.seed = job.seed;
-  options.source = job.source;
+  const IntegrationOptions options = job.integration();
   SignatureRows rows;
   ProgressBar bar("poses", job.common);
   constexpr std::size_t block = 512; // the grain of progress
   std::size_t done = 0;
   for (std::size_t begin = 0; begin < poses.size() && done == begin; begin += block) {
-    const std::size_t count = std::min(block, poses.size() - begin);
-    std::vector<std::optional<PoseResult>> results(count);
-    parallel_for(count, job.threads(), [&](std::size_t i) {
-      if (!interrupted()) // a pose may take seconds: a stop waits for those begun only
-        results[i] = integrator.evaluate(poses[begin + i], options);
-    });
-    for (std::size_t i = 0; i < count && results[i]; ++i, ++done)
+    const std::vector<Pose> part(
+        poses.begin() + static_cast<std::ptrdiff_t>(begin),
+        poses.begin() + static_cast<std::ptrdiff_t>(std::min(begin + block, poses.size())));
+    for (const PoseResult &result :
+         integrator.evaluate(part, options, job.threads(), &interrupted())) {
       for (std::size_t b = 0; b < job.object.scene.bands.size(); ++b)
         rows.add(numbered.number[done], poses[done], job.object.scene.bands[b].name,
-                 results[i]->bands[b], results[i]->is_dark);
+                 result.bands[b], result.is_dark);
+      ++done;
+    }
     bar.update(done, poses.size());
   }
   Table table = std::move(rows).table();
@@ -229,6 +233,29 @@ Result<Engine> engine_for(const SignatureJob &job, const EngineOptions &options)
   return out;
 }
 
+/// Adds light between surfaces to the direct light of a block; false if it was stopped.
+bool add_indirect(const Integrator &integrator, const SignatureJob &job,
+                  const std::vector<Pose> &poses, StokesTable &to) {
+  const auto light =
+      integrator.indirect(poses, to.i, job.integration(), job.threads(), &interrupted());
+  for (std::size_t k = 0; k < light.size(); ++k)
+    for (std::size_t b = 0; b < to.bands; ++b) {
+      const std::size_t at = k * to.bands + b;
+      const auto &[more, half_width] = light[k].bands[b];
+      to.i[at] += more.i;
+      to.q[at] += more.q;
+      to.u[at] += more.u;
+      to.v[at] += more.v;
+      to.i_err[at] = std::hypot(to.i_err[at], half_width.i);
+      to.q_err[at] = std::hypot(to.q_err[at], half_width.q);
+      to.u_err[at] = std::hypot(to.u_err[at], half_width.u);
+      to.v_err[at] = std::hypot(to.v_err[at], half_width.v);
+      if (more.i > 0)
+        to.is_dark[k] = 0;
+    }
+  return light.size() == poses.size();
+}
+
 /// Block by block with the prepared scene; files of rows are written as they come.
 Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) {
   EngineOptions options;
@@ -243,9 +270,14 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
   ProgressBar bar("poses", job.common);
   std::optional<TableStream> stream;
   const bool is_streamed_file = !job.options.output.empty() && is_streamed(job.options.output);
-  std::future<Result<void>> writing;      // ends before what it writes to
-  Table whole;                            // of what is not streamed
-  constexpr std::size_t block = 1u << 17; // many: neighbours in direction share their masks
+  std::future<Result<void>> writing; // ends before what it writes to
+  Table whole;                       // of what is not streamed
+  // Many: neighbours in direction share their masks. Light between surfaces takes longer.
+  const bool has_more = job.scenario.bounces > 1 && !facts.is_convex;
+  const std::size_t block = has_more ? 1024 : 1u << 17;
+  std::optional<Integrator> between;
+  if (has_more)
+    between.emplace(job.object.scene);
   std::size_t done = 0;
   StokesTable results;
   std::vector<Pose> poses;
@@ -262,6 +294,8 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
       }
     });
     engine.evaluate(poses, results, job.threads());
+    if (between && !add_indirect(*between, job, poses, results))
+      break;
     Table table =
         SignatureRows::of(numbers, poses, job.object.scene.bands, results, job.threads()).table();
     job.describe(table, engine_method(facts, options));
@@ -318,12 +352,9 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   const std::size_t random = o.poses * o.phases_deg.size();
   if (!o.masks.empty() && o.visibility == "rays")
     return fail(ErrorCode::Usage, "--masks goes with --visibility masks or auto");
-  if (scenario.bounces > 1 && (o.visibility == "masks" || !o.masks.empty()))
-    return fail(ErrorCode::Usage, "masks know direct light alone; take bounces = 1, or rays");
-  const bool has_engine = is_sun && scenario.bounces == 1 &&
-                          (!o.masks.empty() || o.visibility == "masks" ||
-                           (o.visibility == "auto" && random >= engine_from &&
-                            (o.accuracy > 0 ? o.accuracy : scenario.accuracy) >= 1e-3));
+  const bool has_engine = is_sun && (!o.masks.empty() || o.visibility == "masks" ||
+                                     (o.visibility == "auto" && random >= engine_from &&
+                                      (o.accuracy > 0 ? o.accuracy : scenario.accuracy) >= 1e-3));
   NumberedPoses numbered;
   if (!o.geometry.empty()) {
     UMOV_ASSIGN(table, poses_from_table(o.geometry));

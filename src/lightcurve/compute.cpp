@@ -169,25 +169,40 @@ struct RowMaker {
   const Engine *engine;
   const ArticulatedEngine *turning;
 
-  Result<PoseResult> light_of(LightCurveEpoch &epoch, const AttitudeContext &now,
-                              const Rotation<Body, Gcrs> &body_from_gcrs) const;
+  /// Where the object is, how it is turned and how it is lit and seen; gives its attitude.
+  Result<Rotation<Body, Gcrs>> place(const ObservingGeometry &geometry, const std::string &pass_id,
+                                     LightCurveEpoch &epoch) const;
+  /// The light at epochs that have been placed; Interrupted once `cancel` is true.
+  [[nodiscard]] Result<std::vector<PoseResult>> light_of(std::span<const LightCurveEpoch> epochs,
+                                                         const std::atomic<bool> &cancel) const;
+  void put(const PoseResult &light, const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
+           LightCurve &curve) const;
   void add_second_lights(const ObservingGeometry &geometry, const LightCurveEpoch &epoch,
                          const Rotation<Body, Gcrs> &body_from_gcrs, std::size_t row,
                          LightCurve &curve) const;
-  Result<void> make(const ObservingGeometry &geometry, const std::string &pass_id, std::size_t row,
-                    LightCurve &curve) const;
 };
 
-/// The mesh of an articulated object is another one at every epoch.
-Result<PoseResult> RowMaker::light_of(LightCurveEpoch &epoch, const AttitudeContext &now,
-                                      const Rotation<Body, Gcrs> &body_from_gcrs) const {
-  if (request.joints.empty())
-    return integrator.evaluate(epoch.pose, request.integration);
-  UMOV_ASSIGN(angles, joint_angles(request.joints, now, body_from_gcrs));
-  epoch.joint_angles_rad = angles;
-  Scene turned = scene;
-  turned.mesh = posed(scene.mesh, joints_of(request.joints), angles);
-  return Integrator(turned).evaluate(epoch.pose, request.integration);
+Result<std::vector<PoseResult>> RowMaker::light_of(std::span<const LightCurveEpoch> epochs,
+                                                   const std::atomic<bool> &cancel) const {
+  std::vector<PoseResult> out;
+  if (request.joints.empty()) {
+    std::vector<Pose> poses;
+    for (const LightCurveEpoch &epoch : epochs)
+      poses.push_back(epoch.pose);
+    out = integrator.evaluate(poses, request.integration, request.threads, &cancel);
+  } else { // the mesh of an articulated object is another one at every epoch
+    out.resize(epochs.size());
+    parallel_for(epochs.size(), request.threads, [&](std::size_t k) {
+      if (cancel)
+        return;
+      Scene turned = scene;
+      turned.mesh = posed(scene.mesh, joints_of(request.joints), epochs[k].joint_angles_rad);
+      out[k] = Integrator(turned).evaluate(epochs[k].pose, request.integration);
+    });
+  }
+  if (cancel)
+    return fail(ErrorCode::Interrupted, "");
+  return out;
 }
 
 /// Many directions at one epoch, by masks.
@@ -228,10 +243,10 @@ void RowMaker::add_second_lights(const ObservingGeometry &geometry, const LightC
   }
 }
 
-Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string &pass_id,
-                            std::size_t row, LightCurve &curve) const {
+Result<Rotation<Body, Gcrs>> RowMaker::place(const ObservingGeometry &geometry,
+                                             const std::string &pass_id,
+                                             LightCurveEpoch &epoch) const {
   UMOV_ASSIGN(body_from_gcrs, attitude.at(context_of(geometry)));
-  LightCurveEpoch &epoch = curve.epochs[row];
   epoch.geometry = geometry;
   epoch.body_from_gcrs = quaternion_from(body_from_gcrs);
   epoch.pose = {
@@ -241,13 +256,22 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
   epoch.airmass = airmass(geometry.altitude);
   epoch.pass_id = pass_id;
   epoch.elset_age_days = request.orbit.element_age_days(geometry.time);
-  UMOV_ASSIGN(light, light_of(epoch, context_of(geometry), body_from_gcrs));
+  if (!request.joints.empty()) {
+    UMOV_ASSIGN(angles, joint_angles(request.joints, context_of(geometry), body_from_gcrs));
+    epoch.joint_angles_rad = std::move(angles);
+  }
+  return body_from_gcrs;
+}
+
+void RowMaker::put(const PoseResult &light, const Rotation<Body, Gcrs> &body_from_gcrs,
+                   std::size_t row, LightCurve &curve) const {
+  LightCurveEpoch &epoch = curve.epochs[row];
   epoch.is_dark = light.is_dark;
   epoch.has_glint = light.glint_share > 0.5;
   const std::size_t bands = scene.bands.size();
   for (std::size_t b = 0; b < bands; ++b)
-    curve.samples[row * bands + b] =
-        sample_from(light.bands[b], scene.bands[b], solar[b], geometry, request, light.is_dark);
+    curve.samples[row * bands + b] = sample_from(light.bands[b], scene.bands[b], solar[b],
+                                                 epoch.geometry, request, light.is_dark);
   for (std::size_t b = 0; b < light.indirect.size(); ++b)
     if (light.bands[b].stokes.i > 0)
       curve.samples[row * bands + b].indirect = light.indirect[b] * (1 / light.bands[b].stokes.i);
@@ -255,8 +279,7 @@ Result<void> RowMaker::make(const ObservingGeometry &geometry, const std::string
             curve.group_intensity.begin() +
                 static_cast<std::ptrdiff_t>(row * light.group_intensity.size()));
   if (!curve.second_lights.empty())
-    add_second_lights(geometry, epoch, body_from_gcrs, row, curve);
-  return {};
+    add_second_lights(epoch.geometry, epoch, body_from_gcrs, row, curve);
 }
 
 LightCurve empty_curve(const LightCurveRequest &request, const Scene &scene, std::size_t rows) {
@@ -302,34 +325,50 @@ void count_rows(LightCurveOutcome &out) {
   std::erase_if(out.passes, [](const Pass &pass) { return pass.rows == 0; });
 }
 
+/// Fills one block of rows; how many of them before the first that cannot be placed (`stopped` says
+/// why), or none if it was cancelled.
+std::size_t fill_block(const RowMaker &maker, const Selection &selection, std::size_t begin,
+                       std::size_t count, LightCurve &curve, const std::atomic<bool> &cancel,
+                       std::optional<Error> &stopped) {
+  std::vector<std::optional<Result<Rotation<Body, Gcrs>>>> attitudes(count);
+  const unsigned threads = maker.request.threads;
+  parallel_for(count, threads, [&](std::size_t k) {
+    attitudes[k] =
+        maker.place(selection.grid[selection.kept[begin + k]].geometry,
+                    selection.passes[selection.kept_pass[begin + k]].id, curve.epochs[begin + k]);
+  });
+  std::size_t placed = 0;
+  while (placed < count && attitudes[placed]->has_value())
+    ++placed;
+  if (placed < count)
+    stopped = attitudes[placed]->error();
+  const auto light = maker.light_of(std::span(curve.epochs).subspan(begin, placed), cancel);
+  if (!light) {
+    stopped = light.error();
+    return 0;
+  }
+  parallel_for(placed, threads, [&](std::size_t k) {
+    maker.put((*light)[k], attitudes[k]->value(), begin + k, curve);
+  });
+  return placed;
+}
+
 /// Fills the rows in blocks so that a stop keeps every finished block; returns the rows kept.
 std::size_t fill_rows(const RowMaker &maker, const Selection &selection, LightCurve &curve,
                       const Progress &progress, const std::atomic<bool> &cancel,
                       std::optional<Error> &stopped) {
   const std::size_t rows = selection.kept.size();
-  constexpr std::size_t grain = 32;
+  // With light between surfaces the rows of a block share their paths.
+  const std::size_t grain = maker.request.integration.bounces > 1 ? 256 : 32;
   for (std::size_t begin = 0; begin < rows; begin += grain) {
     const std::size_t count = std::min(grain, rows - begin);
-    std::vector<std::optional<Error>> failures(count);
-    parallel_for(count, maker.request.threads, [&](std::size_t k) {
-      const std::size_t row = begin + k;
-      if (cancel) { // a row may take seconds: a stop does not wait for the whole block
-        failures[k] = Error{ErrorCode::Interrupted, "", {}};
-        return;
-      }
-      const auto made = maker.make(selection.grid[selection.kept[row]].geometry,
-                                   selection.passes[selection.kept_pass[row]].id, row, curve);
-      if (!made)
-        failures[k] = made.error();
-    });
-    for (std::size_t k = 0; k < count; ++k)
-      if (failures[k]) {
-        stopped = failures[k];
-        if (stopped->code == ErrorCode::Interrupted)
-          stopped->message =
-              fmt::format("stopped by the user after {} of {} epochs", begin + k, rows);
-        return begin + k;
-      }
+    const std::size_t done =
+        begin + fill_block(maker, selection, begin, count, curve, cancel, stopped);
+    if (stopped) {
+      if (stopped->code == ErrorCode::Interrupted)
+        stopped->message = fmt::format("stopped by the user after {} of {} epochs", done, rows);
+      return done;
+    }
     if (progress)
       progress(begin + count, rows);
   }

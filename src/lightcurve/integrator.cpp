@@ -1,10 +1,12 @@
 #include <umov/lightcurve/integrator.h>
 
-#include "lightcurve/bounces/bounces.h"
+#include "lightcurve/bounces/bounce_scene.h"
+#include "lightcurve/bounces/indirect.h"
 #include "lightcurve/visibility.h"
 
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <optional>
 #include <umov/core/parallel.h>
 #include <umov/shape/topology.h>
@@ -18,52 +20,37 @@ constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 } // namespace
 
 struct Integrator::State {
+  explicit State(const Scene &of)
+      : scene(of), is_convex(is_proven_convex(of.mesh)), sides(visible_sides(of.mesh)),
+        elements(make_elements(scene, sides)) {
+    if (!is_convex)
+      occluder.emplace(scene.mesh);
+  }
+  /// Made when it is first asked for: direct light needs none of it.
+  const BounceScene &bounces() const {
+    std::call_once(has_bounces, [&] { made_bounces.emplace(scene, sides); });
+    return *made_bounces;
+  }
+
   Scene scene;
-  bool is_convex = false;
+  bool is_convex;
+  std::vector<VisibleSides> sides;
   Elements elements;
   std::optional<Occluder> occluder; ///< none for a convex mesh
-  std::optional<BounceScene> bounces;
+
+private:
+  mutable std::once_flag has_bounces;
+  mutable std::optional<BounceScene> made_bounces;
 };
 
-Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>()) {
-  state_->scene = scene;
-  state_->is_convex = is_proven_convex(scene.mesh);
-  state_->elements = make_elements(scene, visible_sides(scene.mesh));
-  if (!state_->is_convex) {
-    state_->occluder.emplace(scene.mesh);
-    state_->bounces.emplace(state_->scene);
-  }
-}
+Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>(scene)) {}
 Integrator::~Integrator() = default;
 Integrator::Integrator(Integrator &&) noexcept = default;
 Integrator &Integrator::operator=(Integrator &&) noexcept = default;
 
 bool Integrator::is_convex() const { return state_->is_convex; }
 
-void Integrator::add_indirect(const State &state, const Pose &pose,
-                              const IntegrationOptions &options, PoseResult &out) {
-  out.indirect.assign(out.bands.size(), {});
-  if (!state.bounces)
-    return;
-  std::vector<double> direct;
-  for (const BandResult &band : out.bands)
-    direct.push_back(band.stokes.i);
-  const IndirectLight light = state.bounces->light(*state.occluder, pose, options, direct);
-  out.rays += light.rays;
-  const auto quadrature = [](double &a, double b) { a = std::hypot(a, b); };
-  for (std::size_t b = 0; b < out.bands.size(); ++b) {
-    const BandResult &more = light.bands[b];
-    out.indirect[b] = more.stokes;
-    out.bands[b].stokes += more.stokes;
-    quadrature(out.bands[b].half_width.i, more.half_width.i);
-    quadrature(out.bands[b].half_width.q, more.half_width.q);
-    quadrature(out.bands[b].half_width.u, more.half_width.u);
-    quadrature(out.bands[b].half_width.v, more.half_width.v);
-    out.is_dark = out.is_dark && !(more.stokes.i > 0);
-  }
-}
-
-PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &options) const {
+PoseResult Integrator::direct(const Pose &pose, const IntegrationOptions &options) const {
   const Scene &scene = state_->scene;
   const std::size_t bands = scene.bands.size(), groups = scene.mesh.groups.size();
   const PoseGeometry geometry = geometry_of(pose);
@@ -100,18 +87,80 @@ PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &opti
     if (!geometry.has_plane && options.source.q == 0 && options.source.u == 0)
       band.stokes.q = band.stokes.u = 0;
   }
-  if (options.bounces > 1)
-    add_indirect(*state_, pose, options, out);
   if (bands > 0 && out.bands[0].stokes.i > 0)
     out.glint_share = sums.glint / out.bands[0].stokes.i;
   return out;
 }
 
+namespace {
+
+void add(const IndirectLight &light, PoseResult &out) {
+  const double direct = out.bands.empty() ? 0 : out.bands[0].stokes.i;
+  out.rays += light.rays;
+  const auto quadrature = [](double &a, double b) { a = std::hypot(a, b); };
+  for (std::size_t b = 0; b < out.bands.size(); ++b) {
+    const BandResult &more = light.bands[b];
+    out.indirect.push_back(more.stokes);
+    out.bands[b].stokes += more.stokes;
+    quadrature(out.bands[b].half_width.i, more.half_width.i);
+    quadrature(out.bands[b].half_width.q, more.half_width.q);
+    quadrature(out.bands[b].half_width.u, more.half_width.u);
+    quadrature(out.bands[b].half_width.v, more.half_width.v);
+    out.is_dark = out.is_dark && !(more.stokes.i > 0);
+  }
+  if (direct > 0)
+    out.glint_share *= direct / out.bands[0].stokes.i;
+}
+
+} // namespace
+
+std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
+                                                std::span<const double> direct_i,
+                                                const IntegrationOptions &options, unsigned threads,
+                                                const std::atomic<bool> *cancel) const {
+  constexpr std::size_t block = 1024; // poses whose sums are held at a time
+  const std::size_t bands = state_->scene.bands.size();
+  std::vector<IndirectLight> out;
+  if (state_->is_convex || options.bounces < 2)
+    return {poses.size(), IndirectLight{std::vector<BandResult>(bands), 0}};
+  for (std::size_t begin = 0; begin < poses.size(); begin += block) {
+    const std::size_t count = std::min(block, poses.size() - begin);
+    auto part =
+        indirect_light(state_->bounces(), *state_->occluder, poses.subspan(begin, count), options,
+                       direct_i.subspan(begin * bands, count * bands), threads, cancel);
+    if (part.empty())
+      return {};
+    std::move(part.begin(), part.end(), std::back_inserter(out));
+  }
+  return out;
+}
+
+PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &options) const {
+  return std::move(evaluate(std::vector{pose}, options, 1).front());
+}
+
 std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
-                                             const IntegrationOptions &options,
-                                             unsigned threads) const {
+                                             const IntegrationOptions &options, unsigned threads,
+                                             const std::atomic<bool> *cancel) const {
   std::vector<PoseResult> out(poses.size());
-  parallel_for(poses.size(), threads, [&](std::size_t i) { out[i] = evaluate(poses[i], options); });
+  const auto is_stopped = [cancel] { return cancel != nullptr && *cancel; };
+  parallel_for(poses.size(), threads, [&](std::size_t i) {
+    if (!is_stopped()) // a pose may take seconds
+      out[i] = direct(poses[i], options);
+  });
+  if (is_stopped())
+    return {};
+  if (options.bounces < 2)
+    return out;
+  std::vector<double> direct_i;
+  for (const PoseResult &one : out)
+    for (const BandResult &band : one.bands)
+      direct_i.push_back(band.stokes.i);
+  const auto more = indirect(poses, direct_i, options, threads, cancel);
+  if (more.size() < out.size())
+    return {};
+  for (std::size_t i = 0; i < out.size(); ++i)
+    add(more[i], out[i]);
   return out;
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 // The reference path: the light of one pose, by ray-tested points, with its numerical error.
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <umov/optics/stokes.h>
 #include <umov/scene/scene.h>
 #include <vector>
@@ -42,8 +44,14 @@ struct PoseResult {
   double glint_share = 0; ///< share of I in band 0 from flats within their lobe's half width
 };
 
-/// Compiled scene. `evaluate` is pure and thread safe: the same pose gives the same bits whatever
-/// the thread and whatever was computed before.
+/// Light that has touched more than one surface before it reaches the observer, by sampled paths.
+struct IndirectLight {
+  std::vector<BandResult> bands;
+  std::uint64_t rays = 0;
+};
+
+/// Compiled scene. `evaluate` is pure and thread safe: the same poses give the same bits whatever
+/// the number of threads and whatever was computed before.
 class Integrator {
 public:
   explicit Integrator(const Scene &scene);
@@ -52,16 +60,24 @@ public:
   Integrator &operator=(Integrator &&) noexcept;
 
   [[nodiscard]] PoseResult evaluate(const Pose &pose, const IntegrationOptions &options) const;
-  /// All poses, on up to `threads` threads; the same bytes for any number of them.
+  /// All poses, on up to `threads` threads. With bounces > 1, poses that follow each other closely
+  /// share their paths: a series costs less than its poses one by one, which agree within their
+  /// half-widths. Empty if `cancel` became true.
   [[nodiscard]] std::vector<PoseResult> evaluate(const std::vector<Pose> &poses,
                                                  const IntegrationOptions &options,
-                                                 unsigned threads) const;
+                                                 unsigned threads,
+                                                 const std::atomic<bool> *cancel = nullptr) const;
+  /// The part of more than one surface alone, for direct light that comes from elsewhere:
+  /// direct_i[pose * bands + band] is what the accuracy refers to besides. Empty as above.
+  [[nodiscard]] std::vector<IndirectLight>
+  indirect(std::span<const Pose> poses, std::span<const double> direct_i,
+           const IntegrationOptions &options, unsigned threads,
+           const std::atomic<bool> *cancel = nullptr) const;
   [[nodiscard]] bool is_convex() const;
 
 private:
   struct State;
-  static void add_indirect(const State &state, const Pose &pose, const IntegrationOptions &options,
-                           PoseResult &out);
+  [[nodiscard]] PoseResult direct(const Pose &pose, const IntegrationOptions &options) const;
   std::unique_ptr<State> state_;
 };
 

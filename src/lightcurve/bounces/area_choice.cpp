@@ -13,7 +13,8 @@ constexpr std::size_t buckets = 4096;
 AreaChoice::AreaChoice(std::vector<std::uint32_t> triangles, std::span<const double> area_m2,
                        const AreaGroups &groups)
     : groups_(&groups), area_m2_(area_m2), triangle_(std::move(triangles)), area_(groups.count),
-      density_(groups.count), squares_(groups.count), drawn_(groups.count) {
+      density_(groups.count), learnt_{std::vector<double>(groups.count),
+                                      std::vector<double>(groups.count)} {
   for (const std::uint32_t t : triangle_)
     area_[groups.of[t]] += area_m2[t];
   for (const double area : area_)
@@ -51,18 +52,18 @@ std::uint32_t AreaChoice::at(double x) const {
 void AreaChoice::learn(std::uint32_t triangle, double light) {
   const std::uint32_t g = groups_->of[triangle];
   const double integrand = light * density_[g];
-  squares_[g] += integrand * integrand;
-  drawn_[g] += 1;
+  learnt_.squares[g] += integrand * integrand;
+  learnt_.drawn[g] += 1;
 }
 
 void AreaChoice::adapt() {
   double wanted_sum = 0, drawn = 0, groups_seen = 0;
   std::vector<double> wanted(area_.size());
   for (std::size_t g = 0; g < area_.size(); ++g) {
-    drawn += drawn_[g];
+    drawn += learnt_.drawn[g];
     groups_seen += area_[g] > 0 ? 1 : 0;
-    if (drawn_[g] > 0)
-      wanted[g] = area_[g] * std::sqrt(squares_[g] / drawn_[g]);
+    if (learnt_.drawn[g] > 0)
+      wanted[g] = area_[g] * std::sqrt(learnt_.squares[g] / learnt_.drawn[g]);
     wanted_sum += wanted[g];
   }
   if (!(wanted_sum > 0))
@@ -74,6 +75,17 @@ void AreaChoice::adapt() {
     if (area_[g] > 0)
       density_[g] = (1 - trust) / whole_area_ + trust * wanted[g] / wanted_sum / area_[g];
   tabulate();
+}
+
+void AreaChoice::start_from(const LearntAreas &other) {
+  constexpr double memory = 0.9;
+  if (other.drawn.empty())
+    return;
+  for (std::size_t g = 0; g < area_.size(); ++g) {
+    learnt_.squares[g] = memory * other.squares[g];
+    learnt_.drawn[g] = memory * other.drawn[g];
+  }
+  adapt();
 }
 
 } // namespace umov

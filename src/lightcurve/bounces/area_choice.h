@@ -13,6 +13,12 @@ struct AreaGroups {
   std::size_t count = 0;
 };
 
+/// What is known of where light is found.
+struct LearntAreas {
+  std::vector<double> squares; ///< per group: sum of (light times density)^2
+  std::vector<double> drawn;   ///< per group
+};
+
 /// Draws triangles of one side of a pose (those that face the Sun, or the observer) with a
 /// probability per group that is learnt, and even over the area within a group. Every triangle
 /// keeps a share by area, so that nothing is overlooked for ever.
@@ -34,6 +40,9 @@ public:
   /// From now on the probabilities follow what was learnt (Neyman 1934: a stratum's share goes with
   /// its size times the rms of the integrand).
   void adapt();
+  /// What a like pose has learnt, which counts for less and less.
+  void start_from(const LearntAreas &other);
+  [[nodiscard]] const LearntAreas &learnt() const { return learnt_; }
 
 private:
   void tabulate();
@@ -45,8 +54,7 @@ private:
   std::vector<std::uint32_t> start_; ///< per even share of the distribution: where to look from
   std::vector<double> area_;         ///< per group, of the triangles that can be drawn
   std::vector<double> density_;      ///< per group
-  std::vector<double> squares_;      ///< per group: sum of (light times density)^2
-  std::vector<double> drawn_;        ///< per group
+  LearntAreas learnt_;
   double whole_area_ = 0;
 };
 

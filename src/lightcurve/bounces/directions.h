@@ -1,8 +1,12 @@
 #pragma once
 // How paths choose where to go at a surface.
 
+#include "kernel/microfacet.inl.h"
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <umov/surface/distribution.h>
 #include <umov/surface/surface.h>
 
 namespace umov {
@@ -18,19 +22,57 @@ inline Vec3<Body> mirrored(Vec3<Body> direction, Vec3<Body> normal) {
   return normalized(normal * (2 * dot(direction, normal)) - direction);
 }
 
+/// Normals drawn in proportion to D(h) (n.h) of one of the forms that the facet kernels know.
+struct NormalSampler {
+  KernelForm form;
+  /// [1/sr] of normals at a cosine from the mean one.
+  [[nodiscard]] double density(double n_h) const {
+    switch (form.kind) {
+    case KernelForm::Kind::BlinnPhong:
+      return kernel::blinn_phong(n_h, form.shape) * n_h;
+    case KernelForm::Kind::Beckmann:
+      return kernel::beckmann(n_h, form.shape) * n_h;
+    case KernelForm::Kind::Ggx:
+      break;
+    }
+    return kernel::ggx(n_h, form.shape) * n_h;
+  }
+  /// The cosine that a part u of them stays beyond (Walter et al. 2007, Eq. 28, 35).
+  [[nodiscard]] double cosine(double u) const {
+    const double a2 = form.shape * form.shape;
+    switch (form.kind) {
+    case KernelForm::Kind::BlinnPhong:
+      return std::pow(1 - u, 1 / (form.shape + 2));
+    case KernelForm::Kind::Beckmann:
+      return 1 / std::sqrt(1 - a2 * std::log(1 - u));
+    case KernelForm::Kind::Ggx:
+      break;
+    }
+    return std::sqrt((1 - u) / (1 - u + a2 * u));
+  }
+};
+
+/// That of a surface; of a distribution without such a form, a Gaussian as wide.
+inline NormalSampler normal_sampler(const Distribution &normals) {
+  const auto form = normals.kernel_form();
+  const double slope = std::clamp(normals.width(), 1e-3, 1.0);
+  return {form ? *form : KernelForm{KernelForm::Kind::Beckmann, slope * std::numbers::sqrt2}};
+}
+
 /// How directions are drawn at a surface: the one of a mirror, Lambert's cosine, or the mirror
-/// image about a normal drawn from a lobe as wide as the surface's.
+/// image about a normal of the surface's lobe.
 struct Sampler {
   double mirror_share; ///< 0 without a mirror, 1 of a mirror alone
-  double cosine_share, exponent;
+  double cosine_share;
+  NormalSampler normals{{KernelForm::Kind::BlinnPhong, 0}};
   explicit Sampler(const Surface &surface) {
-    const Distribution *normals = surface.normals(0);
-    const bool has_lobe = normals != nullptr && !normals->is_mirror();
+    const Distribution *lobe = surface.normals(0);
+    const bool has_lobe = lobe != nullptr && !lobe->is_mirror();
     const bool has_more = has_lobe || surface.has_diffuse();
     mirror_share = surface.has_mirror() ? (has_more ? 0.5 : 1) : 0;
-    const double slope = has_lobe ? std::clamp(normals->width(), 1e-3, 1.0) : 1;
-    exponent = std::clamp(1 / (slope * slope) - 2, 0.0, 1e6);
-    cosine_share = !has_lobe ? 1 : surface.has_diffuse() ? 0.5 : 0.2;
+    cosine_share = !has_lobe ? 1 : surface.has_diffuse() ? 0.5 : 0.1;
+    if (has_lobe)
+      normals = normal_sampler(*lobe);
   }
   [[nodiscard]] bool is_mirror() const { return mirror_share == 1; }
   [[nodiscard]] double density(Vec3<Body> normal, Vec3<Body> from, Vec3<Body> to) const {
@@ -40,10 +82,10 @@ struct Sampler {
     const Vec3<Body> sum = from + to;
     const double length = norm(sum);
     double lobe = 0;
-    if (length > 1e-12) {
+    if (cosine_share < 1 && length > 1e-12) {
       const double n_h = dot(normal, sum) / length, f_h = dot(from, sum) / length;
       if (n_h > 0 && f_h > 0)
-        lobe = (exponent + 1) / (2 * pi) * std::pow(n_h, exponent) / (4 * f_h);
+        lobe = normals.density(std::min(n_h, 1.0)) / (4 * f_h);
     }
     return (1 - mirror_share) * (cosine_share * cosine / pi + (1 - cosine_share) * lobe);
   }
@@ -62,7 +104,7 @@ struct Sampler {
     if (choice < cosine_share) {
       to = about_normal(std::sqrt(u));
     } else {
-      const Vec3<Body> h = about_normal(std::pow(u, 1 / (exponent + 1)));
+      const Vec3<Body> h = about_normal(normals.cosine(u));
       to = mirrored(from, h);
     }
     return {to, density(normal, from, to)};

@@ -2,10 +2,13 @@
 // Paths of light between the surfaces of one pose.
 
 #include "lightcurve/bounces/area_choice.h"
-#include "lightcurve/bounces/bounces.h"
+#include "lightcurve/bounces/bounce_scene.h"
+#include "lightcurve/bounces/directions.h"
 #include "lightcurve/bounces/lattice.h"
 
 #include <array>
+#include <umov/lightcurve/integrator.h>
+#include <umov/shape/occluder.h>
 
 namespace umov {
 
@@ -17,6 +20,11 @@ struct Vertex {
   const Sampler *sampler = nullptr;
   bool is_by_mirror = false; ///< the path goes on from here (towards the Sun) as from a mirror
   std::uint32_t triangle = 0;
+};
+
+/// What the paths of a pose have learnt, for the next one.
+struct PathLearning {
+  LearntAreas seen, lit;
 };
 
 /// Draws paths from both ends; `options` and `pose` must live.
@@ -36,6 +44,11 @@ public:
     seen_.adapt();
     lit_.adapt();
   }
+  void start_from(const PathLearning &other) {
+    seen_.start_from(other.seen);
+    lit_.start_from(other.lit);
+  }
+  [[nodiscard]] PathLearning learnt() const { return {seen_.learnt(), lit_.learnt()}; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
 private:

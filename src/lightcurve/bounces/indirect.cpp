@@ -1,0 +1,180 @@
+#include "lightcurve/bounces/indirect.h"
+
+#include "lightcurve/bounces/path_sampler.h"
+#include "lightcurve/bounces/replicates.h"
+#include "lightcurve/bounces/smoothing.h"
+
+#include <algorithm>
+#include <array>
+#include <umov/core/parallel.h>
+
+namespace umov {
+namespace {
+
+using Light = PathSampler::Light;
+
+/// Paths per replicate of a pose at first, and those of all poses that a value rests on before its
+/// half-width is believed: twice what a single pose must have.
+constexpr std::size_t first_count = 32, trusted_draws = 1024;
+/// Poses that one thread takes in a row: what their paths have learnt goes from one to the next.
+constexpr std::size_t run_length = 32;
+/// Sum of the turns of Sun and observer in the body over which values may be mixed [rad].
+constexpr double reach_rad = 0.5;
+
+bool is_stopped(const std::atomic<bool> *cancel) { return cancel != nullptr && *cancel; }
+
+/// How far the directions have turned since the first pose.
+std::vector<double> turns(std::span<const Pose> poses) {
+  std::vector<double> out{0};
+  for (std::size_t k = 1; k < poses.size(); ++k)
+    out.push_back(out.back() + angle_between(poses[k - 1].sun, poses[k].sun) +
+                  angle_between(poses[k - 1].observer, poses[k].observer));
+  return out;
+}
+
+/// What the paths of each pose carried so far, and how many there were.
+class SeriesSums {
+public:
+  SeriesSums(std::size_t poses, std::size_t bands)
+      : poses_(poses), bands_(bands), draws_(poses), rays_(poses),
+        light_(poses * replicates, std::vector<Light>(bands)) {}
+  std::vector<Light> &of(std::size_t pose, std::size_t replicate) {
+    return light_[pose * replicates + replicate];
+  }
+  void count(std::size_t pose, std::size_t draws, std::uint64_t rays) {
+    draws_[pose] += static_cast<double>(draws);
+    rays_[pose] += rays;
+  }
+  [[nodiscard]] std::span<const double> draws() const { return draws_; }
+  [[nodiscard]] std::uint64_t rays(std::size_t pose) const { return rays_[pose]; }
+  /// Means of one Stokes parameter: [replicate * poses + pose].
+  [[nodiscard]] std::vector<double> means(std::size_t band, double Light::*part) const {
+    std::vector<double> out(replicates * poses_);
+    for (std::size_t r = 0; r < replicates; ++r)
+      for (std::size_t k = 0; k < poses_; ++k)
+        out[r * poses_ + k] = light_[k * replicates + r][band].*part / draws_[k];
+    return out;
+  }
+  [[nodiscard]] std::size_t bands() const { return bands_; }
+
+private:
+  std::size_t poses_, bands_;
+  std::vector<double> draws_; ///< per replicate
+  std::vector<std::uint64_t> rays_;
+  std::vector<std::vector<Light>> light_;
+};
+
+/// One round: each pose that is `open` draws `count` paths more per replicate. Together they take
+/// one stretch of each lattice, so that what neighbours draw completes each other.
+class Rounds {
+public:
+  Rounds(const BounceScene &scene, const Occluder &occluder, std::span<const Pose> poses,
+         const IntegrationOptions &options, unsigned threads, const std::atomic<bool> *cancel)
+      : scene_(scene), occluder_(occluder), poses_(poses), options_(options), threads_(threads),
+        cancel_(cancel), learnt_((poses.size() + run_length - 1) / run_length) {
+    for (std::size_t r = 0; r < replicates; ++r)
+      lattices_.emplace_back(options.seed, r);
+  }
+
+  void draw(std::size_t first, std::size_t count, const std::vector<char> &is_open,
+            SeriesSums &sums) {
+    parallel_for(learnt_.size(), threads_, [&](std::size_t run) {
+      const std::size_t end = std::min(poses_.size(), (run + 1) * run_length);
+      for (std::size_t k = run * run_length; k < end && !is_stopped(cancel_); ++k)
+        if (is_open[k] != 0)
+          draw_pose(k, first + k * count, count, learnt_[run], sums);
+    });
+  }
+
+private:
+  void draw_pose(std::size_t pose, std::size_t first, std::size_t count, PathLearning &learnt,
+                 SeriesSums &sums) const {
+    PathSampler sampler(scene_, occluder_, poses_[pose], options_);
+    if (sampler.has_any()) {
+      sampler.start_from(learnt);
+      for (std::size_t r = 0; r < replicates; ++r)
+        for (std::size_t i = first; i < first + count; ++i)
+          sampler.add(lattices_[r].at(i), stream_of(r, i), sums.of(pose, r));
+      learnt = sampler.learnt();
+    }
+    sums.count(pose, count, sampler.rays());
+  }
+  static std::uint64_t stream_of(std::size_t replicate, std::size_t index) {
+    return (static_cast<std::uint64_t>(replicate) << 56U) + index;
+  }
+
+  const BounceScene &scene_;
+  const Occluder &occluder_;
+  std::span<const Pose> poses_;
+  const IntegrationOptions &options_;
+  unsigned threads_;
+  const std::atomic<bool> *cancel_;
+  std::vector<Lattice> lattices_;
+  std::vector<PathLearning> learnt_; ///< per run
+};
+
+/// The series smoothed as it stands; `draws` per pose: the fewest that a value of I rests on.
+void smooth(std::span<const double> place, const SeriesSums &sums, std::vector<IndirectLight> &out,
+            std::vector<double> &draws) {
+  const LocalFits fits(place, sums.draws(), reach_rad);
+  std::fill(draws.begin(), draws.end(), INFINITY);
+  for (std::size_t b = 0; b < sums.bands(); ++b)
+    for (auto part : {&Light::i, &Light::q, &Light::u, &Light::v}) {
+      const std::vector<double> value = sums.means(b, part);
+      for (std::size_t k = 0; k < place.size(); ++k) {
+        const Smoothed found = fits.at(k, value);
+        out[k].bands[b].stokes.*part = found.mean;
+        out[k].bands[b].half_width.*part = found.half_width;
+        if (part == &Light::i)
+          draws[k] = std::min(draws[k], found.draws);
+      }
+    }
+}
+
+} // namespace
+
+std::vector<IndirectLight> indirect_light(const BounceScene &scene, const Occluder &occluder,
+                                          std::span<const Pose> poses,
+                                          const IntegrationOptions &options,
+                                          std::span<const double> direct_i, unsigned threads,
+                                          const std::atomic<bool> *cancel) {
+  if (poses.empty())
+    return {};
+  const std::size_t n = poses.size(), bands = direct_i.size() / n;
+  std::vector<IndirectLight> out(n);
+  for (IndirectLight &one : out)
+    one.bands.resize(bands);
+  const std::vector<double> place = turns(poses);
+  SeriesSums sums(n, bands);
+  Rounds rounds(scene, occluder, poses, options, threads, cancel);
+  std::vector<char> is_open(n, 1);
+  std::vector<double> draws(n);
+  const std::size_t most = std::max(trusted_draws, options.max_points / replicates);
+  // The whole lattice doubles from round to round, whichever poses draw.
+  for (std::size_t whole = first_count; whole <= most; whole *= 2) {
+    const bool is_first = whole == first_count;
+    const std::size_t count = is_first ? first_count : whole / 2;
+    rounds.draw(is_first ? 0 : n * count, count, is_open, sums);
+    if (is_stopped(cancel))
+      return {};
+    smooth(place, sums, out, draws);
+    bool is_any_open = false;
+    for (std::size_t k = 0; k < n; ++k) {
+      bool is_enough = draws[k] >= trusted_draws;
+      for (std::size_t b = 0; b < bands; ++b) {
+        const BandResult &light = out[k].bands[b];
+        is_enough = is_enough && light.half_width.i <=
+                                     options.accuracy * (direct_i[k * bands + b] + light.stokes.i);
+      }
+      is_open[k] = is_enough ? 0 : 1;
+      is_any_open = is_any_open || !is_enough;
+    }
+    if (!is_any_open)
+      break;
+  }
+  for (std::size_t k = 0; k < n; ++k)
+    out[k].rays = sums.rays(k);
+  return out;
+}
+
+} // namespace umov
