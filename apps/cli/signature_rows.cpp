@@ -75,28 +75,30 @@ SignatureRows SignatureRows::of(const std::vector<std::int64_t> &numbers,
   return out;
 }
 
-Table SignatureRows::table() && {
+Table SignatureRows::table(bool is_emitted) && {
   struct Head {
     const char *name, *unit, *text;
   };
-  constexpr std::array<Head, 18> heads{{{"phase_angle", "deg", "Sun-object-observer, 0 = full"},
-                                        {"intensity", "m2 / sr", "per unit solar irradiance"},
-                                        {"stokes_q", "m2 / sr", "scattering frame"},
-                                        {"stokes_u", "m2 / sr", "scattering frame"},
-                                        {"stokes_v", "m2 / sr", "scattering frame"},
-                                        {"q_scat", "", "Q/I, scattering frame"},
-                                        {"u_scat", "", "U/I, scattering frame"},
-                                        {"v", "", "V/I"},
-                                        {"intensity_err", "m2 / sr", "numerical 95 % half-width"},
-                                        {"stokes_q_err", "m2 / sr", "numerical 95 % half-width"},
-                                        {"stokes_u_err", "m2 / sr", "numerical 95 % half-width"},
-                                        {"stokes_v_err", "m2 / sr", "numerical 95 % half-width"},
-                                        {"sun_x", "", "direction of the Sun, body frame"},
-                                        {"sun_y", "", "direction of the Sun, body frame"},
-                                        {"sun_z", "", "direction of the Sun, body frame"},
-                                        {"obs_x", "", "direction of the observer, body frame"},
-                                        {"obs_y", "", "direction of the observer, body frame"},
-                                        {"obs_z", "", "direction of the observer, body frame"}}};
+  const char *unit = is_emitted ? "W / (nm sr)" : "m2 / sr";
+  const std::array<Head, 18> heads{
+      {{"phase_angle", "deg", "Sun-object-observer, 0 = full"},
+       {"intensity", unit, is_emitted ? "emitted" : "per unit solar irradiance"},
+       {"stokes_q", unit, "scattering frame"},
+       {"stokes_u", unit, "scattering frame"},
+       {"stokes_v", unit, "scattering frame"},
+       {"q_scat", "", "Q/I, scattering frame"},
+       {"u_scat", "", "U/I, scattering frame"},
+       {"v", "", "V/I"},
+       {"intensity_err", unit, "numerical 95 % half-width"},
+       {"stokes_q_err", unit, "numerical 95 % half-width"},
+       {"stokes_u_err", unit, "numerical 95 % half-width"},
+       {"stokes_v_err", unit, "numerical 95 % half-width"},
+       {"sun_x", "", "direction of the Sun, body frame"},
+       {"sun_y", "", "direction of the Sun, body frame"},
+       {"sun_z", "", "direction of the Sun, body frame"},
+       {"obs_x", "", "direction of the observer, body frame"},
+       {"obs_y", "", "direction of the observer, body frame"},
+       {"obs_z", "", "direction of the observer, body frame"}}};
   Table out;
   out.add("pose", "", "number of the pose", std::move(pose_));
   out.add("band", "", "band as in the scene", std::move(band_));

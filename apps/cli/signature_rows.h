@@ -17,8 +17,9 @@ public:
   static SignatureRows of(const std::vector<std::int64_t> &numbers, const std::vector<Pose> &poses,
                           const std::vector<Band> &bands, const StokesTable &results,
                           unsigned threads);
-  /// The columns with units; the notes of the project's conventions.
-  Table table() &&;
+  /// The columns with units; the notes of the project's conventions. Light that the body emits is a
+  /// spectral radiant intensity, the Sun's or a laser's a ratio to their irradiance.
+  Table table(bool is_emitted = false) &&;
 
 private:
   static constexpr std::size_t number_columns = 18;

@@ -19,7 +19,7 @@ struct RenderOptions {
   std::vector<double> sun, observer, up{0, 0, 1};
   std::size_t object = 1;
   std::uint32_t size = 512, samples = 3;
-  std::size_t frames = 1;
+  std::size_t frames = 1, paths = 16;
   double frames_per_s = 10, half_width_m = 0;
   bool allow_bad_checksum = false, allow_old_elements = false;
 };
@@ -123,7 +123,7 @@ Result<std::string> png_of(const RenderOptions &o,
 }
 
 Result<std::string> exr_of(const RenderOptions &o, const std::vector<Band> &bands, const Shot &shot,
-                           const std::vector<KeyFrameRaster> &rasters) {
+                           const std::vector<KeyFrameRaster> &rasters, std::size_t bounces) {
   std::vector<ExrChannel> channels;
   for (std::size_t b = 0; b < rasters.size(); ++b)
     for (ExrChannel &channel : stokes_channels(rasters[b], bands[b].name + "."))
@@ -135,7 +135,9 @@ Result<std::string> exr_of(const RenderOptions &o, const std::vector<Band> &band
                     ? "+Q along the picture's up, +U 45 deg from it to the left"
                     : "+Q north-south, +U north-east to south-west; north up, east left"},
       {"unit",
-       "1/sr: radiance per unit solar irradiance, one reflection and body light; A: covered share"},
+       fmt::format("1/sr: radiance per unit solar irradiance, light that touched up to {}; A: "
+                   "covered share",
+                   counted(bounces, "surface"))},
       {"width_m", shortest(2 * rasters.front().half_width_m)},
       {"time_utc", shot.when}};
   return encode_exr(o.size, o.size, channels, notes);
@@ -155,10 +157,6 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
   const ScenarioObject &named = scenario.objects[o.object - 1];
   UMOV_ASSIGN(object, load_object(scenario, o.object - 1,
                                   {o.allow_bad_checksum, o.allow_old_elements}, diagnostics));
-  if (scenario.bounces > 1)
-    diagnostics.warn(
-        "pictures show light that touched one surface: render.bounces counts in numbers",
-        {o.scene});
   UMOV_ASSIGN(band, band_index(o.band, object.scene.bands));
   std::vector<std::size_t> bands{band};
   if (is_exr) {
@@ -177,8 +175,14 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
                                     : shots_from_orbit(o, scenario, named, object, common));
   std::vector<std::vector<KeyFrameRaster>> all;
   const KeyFrameStage stage(object.scene, joints_of(named.parts));
-  const KeyFrameOptions options{o.size, o.samples, band, o.half_width_m,
-                                static_cast<unsigned>(common.threads)};
+  const KeyFrameOptions options{o.size,
+                                o.samples,
+                                band,
+                                o.half_width_m,
+                                static_cast<unsigned>(common.threads),
+                                scenario.bounces,
+                                o.paths,
+                                scenario.seed};
   ProgressBar bar("pictures", common);
   for (const Shot &shot : shots) {
     if (interrupted())
@@ -188,7 +192,8 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
     bar.update(all.size(), shots.size());
   }
   UMOV_ASSIGN(bytes,
-              is_exr ? exr_of(o, object.scene.bands, shots.front(), all.front()) : png_of(o, all));
+              is_exr ? exr_of(o, object.scene.bands, shots.front(), all.front(), scenario.bounces)
+                     : png_of(o, all));
   UMOV_TRY(put(o.output, bytes));
   note(common, fmt::format("{}: {}, {:.4g} m wide{}", o.output, counted(all.size(), "picture"),
                            2 * all.front().front().half_width_m,
@@ -234,6 +239,10 @@ void add_render(CLI::App &app, const Exit &exit_with) {
       ->capture_default_str();
   verb->add_option("--samples", o->samples, "Rays per pixel and axis")
       ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  verb->add_option("--paths", o->paths,
+                   "Per ray, of light that touched several surfaces (render.bounces > 1)")
+      ->check(CLI::Range(1, 4096))
       ->capture_default_str();
   verb->add_option("--half-width", o->half_width_m,
                    "Half the picture's side [m]; default: the whole object")

@@ -4,6 +4,7 @@
 #include "verbs.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 #include <umov/io/table_stream.h>
 #include <umov/lightcurve/engine.h>
 #include <umov/lightcurve/poses.h>
+#include <umov/lightcurve/thermal.h>
 
 namespace umov::cli {
 namespace {
@@ -31,6 +33,7 @@ struct SignatureOptions {
   std::string masks; ///< file to keep them in
   std::string source = "sun";
   std::vector<double> state{1, 0, 0, 0};
+  std::vector<std::string> temperatures; ///< K, or group=K
 };
 
 /// Radius of the Sun's disk seen from 1 au: a signature has no distance.
@@ -40,13 +43,43 @@ constexpr double solar_radius_rad = 0.2665 * pi / 180;
 Result<Stokes<ScatteringPlane>> source_of(const SignatureOptions &o) {
   const Stokes<ScatteringPlane> s{o.state[0], o.state[1], o.state[2], o.state[3]};
   const double polarized = std::sqrt(s.q * s.q + s.u * s.u + s.v * s.v);
-  if (o.source == "sun" && polarized > 0)
-    return fail(ErrorCode::Usage, "--state goes with --source laser; sunlight is unpolarized");
+  if (o.source != "laser" && polarized > 0)
+    return fail(ErrorCode::Usage, "--state goes with --source laser");
   if (!(s.i > 0) || !(polarized <= s.i * (1 + 1e-12)))
     return fail(ErrorCode::Usage,
                 fmt::format("--state {} {} {} {}: I > 0 and sqrt(Q2 + U2 + V2) <= I were expected",
                             s.i, s.q, s.u, s.v));
   return s * (1 / s.i);
+}
+
+/// [K] of each mesh group, from "300" for all and "panels=340" for one.
+Result<std::vector<double>> temperatures_of(const SignatureOptions &o, const Mesh &mesh) {
+  std::vector<double> out(mesh.groups.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const std::string &text : o.temperatures) {
+    const std::size_t equals = text.rfind('=');
+    const std::string group = equals == std::string::npos ? "" : text.substr(0, equals);
+    const std::string number = equals == std::string::npos ? text : text.substr(equals + 1);
+    double kelvin = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), kelvin);
+    if (error != std::errc() || end != number.data() + number.size() || !(kelvin >= 0) ||
+        !std::isfinite(kelvin))
+      return fail(ErrorCode::Usage,
+                  fmt::format("--temperature {}: K of all, or GROUP=K, was expected", text));
+    const auto found = std::find(mesh.groups.begin(), mesh.groups.end(), group);
+    if (!group.empty() && found == mesh.groups.end())
+      return fail(ErrorCode::Usage, fmt::format("--temperature {}: the mesh has the groups {}",
+                                                text, fmt::join(mesh.groups, ", ")));
+    for (std::size_t g = 0; g < out.size(); ++g)
+      if (group.empty() ? std::isnan(out[g]) : mesh.groups[g] == group)
+        out[g] = kelvin;
+  }
+  for (std::size_t g = 0; g < out.size(); ++g)
+    if (std::isnan(out[g]))
+      return fail(ErrorCode::Usage,
+                  fmt::format("--source thermal: how warm is \"{}\"? Give --temperature K for all "
+                              "groups, or {}=K",
+                              mesh.groups[g], mesh.groups[g]));
+  return out;
 }
 
 /// A direction of any length but 0, from three columns.
@@ -143,6 +176,7 @@ struct SignatureJob {
   double accuracy = 0;
   bool is_sun = true;
 
+  [[nodiscard]] bool is_thermal() const { return options.source == "thermal"; }
   [[nodiscard]] unsigned threads() const { return static_cast<unsigned>(common.threads); }
   [[nodiscard]] double sun_radius() const {
     return is_sun && scenario.has_solar_disk ? solar_radius_rad : 0;
@@ -158,6 +192,12 @@ struct SignatureJob {
     return out;
   }
   void describe(Table &table, const std::string &method) const {
+    if (is_thermal()) {
+      table.note("source", "the body's own heat: " +
+                               fmt::format("{}", fmt::join(options.temperatures, ", ")) + " K");
+      table.note("method", method);
+      return;
+    }
     table.note("source", is_sun
                              ? (scenario.has_solar_disk ? "Sun, uniform disk of 0.2665 deg radius"
                                                         : "Sun, a point")
@@ -176,25 +216,41 @@ Result<void> run_with_rays(const SignatureJob &job, NumberedPoses numbered) {
     pose.sun_radius_rad = job.sun_radius();
   const Integrator integrator(job.object.scene);
   const IntegrationOptions options = job.integration();
+  std::optional<ThermalEmission> emission;
+  if (job.is_thermal()) {
+    UMOV_ASSIGN(kelvin, temperatures_of(job.options, job.object.scene.mesh));
+    UMOV_ASSIGN(made, ThermalEmission::make(job.object.scene, kelvin));
+    emission = std::move(made);
+  }
   SignatureRows rows;
   ProgressBar bar("poses", job.common);
   constexpr std::size_t block = 512; // the grain of progress
   std::size_t done = 0;
+  const auto add = [&](const std::vector<BandResult> &bands, bool is_dark) {
+    for (std::size_t b = 0; b < bands.size(); ++b)
+      rows.add(numbered.number[done], poses[done], job.object.scene.bands[b].name, bands[b],
+               is_dark);
+    ++done;
+  };
   for (std::size_t begin = 0; begin < poses.size() && done == begin; begin += block) {
     const std::vector<Pose> part(
         poses.begin() + static_cast<std::ptrdiff_t>(begin),
         poses.begin() + static_cast<std::ptrdiff_t>(std::min(begin + block, poses.size())));
-    for (const PoseResult &result :
-         integrator.evaluate(part, options, job.threads(), &interrupted())) {
-      for (std::size_t b = 0; b < job.object.scene.bands.size(); ++b)
-        rows.add(numbered.number[done], poses[done], job.object.scene.bands[b].name,
-                 result.bands[b], result.is_dark);
-      ++done;
+    if (emission) {
+      for (const IndirectLight &result :
+           integrator.thermal(part, *emission, options, job.threads(), &interrupted()))
+        add(result.bands, !(result.bands.front().stokes.i > 0));
+    } else {
+      for (const PoseResult &result :
+           integrator.evaluate(part, options, job.threads(), &interrupted()))
+        add(result.bands, result.is_dark);
     }
     bar.update(done, poses.size());
   }
-  Table table = std::move(rows).table();
-  job.describe(table, integrator.is_convex() ? "none: the mesh is convex" : "rays");
+  Table table = std::move(rows).table(job.is_thermal());
+  job.describe(table, job.is_thermal()         ? "paths"
+                      : integrator.is_convex() ? "none: the mesh is convex"
+                                               : "rays");
   if (done == poses.size())
     return put_table(job.options.output, table, job.common);
   return tl::unexpected(put_partial_table(
@@ -348,7 +404,9 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   UMOV_TRY(check_phases(o));
   const bool is_sun = o.source == "sun";
   if (!is_sun && (o.visibility == "masks" || !o.masks.empty()))
-    return fail(ErrorCode::Usage, "masks are for sunlight; a laser takes rays");
+    return fail(ErrorCode::Usage, "masks are for sunlight; a laser takes rays, own heat paths");
+  if ((o.source == "thermal") != !o.temperatures.empty())
+    return fail(ErrorCode::Usage, "--source thermal and --temperature go together");
   const std::size_t random = o.poses * o.phases_deg.size();
   if (!o.masks.empty() && o.visibility == "rays")
     return fail(ErrorCode::Usage, "--masks goes with --visibility masks or auto");
@@ -411,14 +469,18 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
   geometry->excludes(poses)->excludes(phase);
   poses->needs(phase);
   phase->needs(poses);
-  verb->add_option(
-          "--source", o->source,
-          "sun, or laser: a point source of any polarization; give its wavelength as the band")
-      ->check(CLI::IsMember({"sun", "laser"}))
+  verb->add_option("--source", o->source,
+                   "sun, laser: a point source of any polarization, or thermal: the body's own "
+                   "heat; give the "
+                   "wavelength of the last two as the band")
+      ->check(CLI::IsMember({"sun", "laser", "thermal"}))
       ->capture_default_str();
   verb->add_option("--state", o->state,
                    "Laser: Stokes I Q U V of the incoming light in the scattering frame")
       ->expected(4);
+  verb->add_option("--temperature", o->temperatures,
+                   "Thermal: K of the whole body, or GROUP=K of a part; may stand several times")
+      ->allow_extra_args(false);
   auto *seed = verb->add_option("--seed", o->seed, "Of the random poses; default: the scenario's")
                    ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
   verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """umov and Mitsuba's polarized variant with light between surfaces: poses per second at equal error.
 
-    bench/peers/run bounces [--umov PATH] [--poses N] [--facets N] [--surfaces N] [--accuracy A]
+    bench/peers/run bounces [--umov PATH] [--poses N] [--facets N] [--surfaces N] [--accuracy A] [--kind K]
 
-Both light the same box-wing (separable GGX, four metals, flat normals) by the Sun in the same random geometries, up
-to N surfaces. Errors are each program's own, from two runs with different seeds: |a - b|/(sqrt 2 I), so neither is
-the other's judge; that both compute the same is said by the median difference. Mitsuba's number of paths is chosen
-for the median error of umov, and for its 95th percentile. Times hold everything but the start: umov's whole command
-less that of a run of one pose, Mitsuba's kernel after it was compiled.
+Both light the same box-wing (separable GGX, four metals, flat normals) by the Sun, up to N surfaces: in random
+geometries, and in a series, as of a body that turns by half a degree from one sample to the next. umov shares paths
+between the poses of a series; Mitsuba treats both alike, so its rate and errors are those of every eighth pose.
+Errors are each program's own, from two runs with different seeds: |a - b|/(sqrt 2 I), so neither is the other's
+judge; that both compute the same is said by the median difference. Mitsuba's number of paths is chosen for the
+median error of umov, and for its 95th percentile. Times hold everything but the start: umov's whole command less that
+of a run of one pose (which prepares the scene), Mitsuba's kernel after it was compiled.
 """
 
 import argparse
@@ -30,36 +32,99 @@ def two_run_errors(a, b):
     return float(np.median(error)), float(np.quantile(error, 0.95))
 
 
+def series_geometries(count, step_deg=0.5):
+    """Sun and observer in the frame of a body that turns about an axis, while the phase angle goes from 20 to 100 deg
+    and back."""
+    turn = np.radians(step_deg) * np.arange(count)
+    phase = np.radians(60 + 40 * np.sin(0.3 * turn))
+    axis = np.array([0.3, 0.5, 0.8]) / np.sqrt(0.98)
+    sun = np.array([1.0, 0.2, -0.3]) / np.sqrt(1.13)
+    across = np.cross(sun, [0, 0, 1.0])
+    across /= np.linalg.norm(across)
+    observer = np.cos(phase)[:, None] * sun + np.sin(phase)[:, None] * across
+
+    def turned(v):
+        c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
+        return v * c + np.cross(axis, v) * s + axis * (np.sum(v * axis, -1, keepdims=True) * (1 - c))
+
+    return turned(np.broadcast_to(sun, observer.shape)), turned(observer)
+
+
+def run_umov(options, folder, kind, sun, observer):
+    """Stokes of two runs with different seeds, poses per second, and the time to start."""
+    geometry, one = os.path.join(folder, "geometry.csv"), os.path.join(folder, "one.csv")
+    write_geometry(geometry, sun, observer)
+    write_geometry(one, sun[:1], observer[:1])
+    scenario = write_scenario(folder, 1)
+    with open(scenario, "a") as file:
+        file.write(f'[render]\nbounces = {options.surfaces}\nsun = "point"\n')
+    more = ["--visibility", "masks", "--accuracy", options.accuracy[kind == "series"]]
+    runs, spent = [], []
+    for seed in (1, 2):
+        begin = time.perf_counter()
+        runs.append(umov_stokes(options.umov, scenario, geometry, folder, *more, "--seed", seed))
+        spent.append(time.perf_counter() - begin)
+    starts = []
+    for _ in range(3):
+        begin = time.perf_counter()
+        umov_stokes(options.umov, scenario, one, folder, *more)
+        starts.append(time.perf_counter() - begin)
+    return runs, len(sun) / (min(spent) - min(starts)), min(starts)
+
+
+def compare(options, folder, scene, setup, kind):
+    count = options.poses[kind == "series"]
+    sun, observer = series_geometries(count) if kind == "series" else random_geometries(count, 1)
+    runs, rate, start = run_umov(options, folder, kind, sun, observer)
+    wanted = two_run_errors(*runs)
+    some = slice(0, None, 8 if kind == "series" else 1)
+    sun, observer = sun[some], observer[some]
+
+    def many(samples, seed):
+        """In blocks of poses that fit into memory."""
+        block = max(1, (1 << 22) // samples)
+        return np.concatenate([scene.evaluate_paths(sun[k:k + block], observer[k:k + block], samples,
+                                                    options.surfaces, seed + k)
+                               for k in range(0, len(sun), block)])
+
+    curve = []
+    for k in range(10, 21):
+        curve.append((1 << k, two_run_errors(many(1 << k, 1000), many(1 << k, 5000))))
+        print(f"  {1 << k:7} paths: {curve[-1][1][0]:.1e} {curve[-1][1][1]:.1e}", file=sys.stderr)
+        if curve[-1][1][0] < wanted[0] and curve[-1][1][1] < wanted[1]:
+            break
+    print(f"{kind}:")
+    print(f"umov     {rate:9.1f} poses/s, error of I median {wanted[0]:.1e}, 95 % {wanted[1]:.1e}, "
+          f"start {start:.2f} s")
+    for name, which in (("median", 0), ("95 %", 1)):
+        samples = rays_for(curve, which, wanted[which])
+        is_equal = curve[-1][1][which] <= wanted[which]
+        many(samples, 1)
+        times = []
+        for repeat in range(3):
+            begin = time.perf_counter()
+            found = many(samples, 10_000 * (repeat + 1))
+            times.append(time.perf_counter() - begin)
+        theirs = len(sun) / min(times)
+        difference = np.median(found[:, 0, 0] / runs[0][some, 0, 0] - 1)
+        print(f"mitsuba  {theirs:9.1f} poses/s at {'equal' if is_equal else 'no better'} {name} ({samples} paths), "
+              f"set-up {setup:.1f} s: ratio {'' if is_equal else 'above '}{rate / theirs:.1f}; "
+              f"median difference of I {difference:+.1e}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--umov", default="build/release/apps/cli/umov")
     parser.add_argument("--facets", type=int, default=10_000)
-    parser.add_argument("--poses", type=int, default=200)
+    parser.add_argument("--poses", type=int, nargs=2, default=[60, 512], help="random ones, and those of the series")
     parser.add_argument("--surfaces", type=int, default=5)
-    parser.add_argument("--accuracy", type=float, default=0.005)
+    parser.add_argument("--accuracy", type=float, nargs=2, default=[0.005, 0.02], help="of both, as umov is asked")
+    parser.add_argument("--kind", choices=["random", "series", "both"], default="both")
     options = parser.parse_args()
     load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
         mesh = os.path.join(folder, "box-wing.obj")
         umov(options.umov, "mesh", "make", "box-wing", "--facets", options.facets, "-o", mesh)
-        sun, observer = random_geometries(options.poses, 1)
-        geometry, one = os.path.join(folder, "geometry.csv"), os.path.join(folder, "one.csv")
-        write_geometry(geometry, sun, observer)
-        write_geometry(one, sun[:1], observer[:1])
-        scenario = write_scenario(folder, 1)
-        with open(scenario, "a") as file:
-            file.write(f'[render]\nbounces = {options.surfaces}\nsun = "point"\n')
-        more = ["--visibility", "rays", "--accuracy", options.accuracy]
-        runs, spent = [], []
-        for seed in (1, 2):
-            begin = time.perf_counter()
-            runs.append(umov_stokes(options.umov, scenario, geometry, folder, *more, "--seed", seed))
-            spent.append(time.perf_counter() - begin)
-        begin = time.perf_counter()
-        umov_stokes(options.umov, scenario, one, folder, *more)
-        start = time.perf_counter() - begin
-        rate = options.poses / (min(spent) - start)
-        wanted = two_run_errors(*runs)
         materials = {}
         for group, (index, alpha) in MATERIALS.items():
             n, k = index_values(options.umov, index, WAVELENGTHS[1])
@@ -68,38 +133,13 @@ def main():
         from mitsuba_light import MitsubaScene
         begin = time.perf_counter()
         scene = MitsubaScene(read_groups(mesh), materials, WAVELENGTHS[1])
-        scene.evaluate_paths(sun[:8], observer[:8], 64, options.surfaces)
+        scene.evaluate_paths(*random_geometries(8, 2), 64, options.surfaces)
         setup = time.perf_counter() - begin
-
-        def many(samples, seed):
-            """In blocks of poses that fit into memory."""
-            block = max(1, (1 << 22) // samples)
-            return np.concatenate([scene.evaluate_paths(sun[k:k + block], observer[k:k + block], samples,
-                                                        options.surfaces, seed + k)
-                                   for k in range(0, len(sun), block)])
-
-        curve = []
-        for k in range(10, 21):
-            curve.append((1 << k, two_run_errors(many(1 << k, 1000), many(1 << k, 5000))))
-            print(f"  {1 << k:7} paths: {curve[-1][1][0]:.1e} {curve[-1][1][1]:.1e}", file=sys.stderr)
-            if curve[-1][1][0] < wanted[0] and curve[-1][1][1] < wanted[1]:
-                break
         print(f"# {machine()}, {os.cpu_count()} cores, load {load:.2f} at the start; {options.facets} triangles, "
-              f"separable GGX, up to {options.surfaces} surfaces, {options.poses} geometries, phase 15-150 deg")
-        print(f"umov     {rate:9.1f} poses/s, error of I median {wanted[0]:.1e}, 95 % {wanted[1]:.1e}, "
-              f"start {start:.2f} s")
-        for name, kind in (("median", 0), ("95 %", 1)):
-            samples = rays_for(curve, kind, wanted[kind])
-            many(samples, 1)
-            times = []
-            for repeat in range(3):
-                begin = time.perf_counter()
-                found = many(samples, 10_000 * (repeat + 1))
-                times.append(time.perf_counter() - begin)
-            theirs = options.poses / min(times)
-            difference = np.median(found[:, 0, 0] / runs[0][:, 0, 0] - 1)
-            print(f"mitsuba  {theirs:9.1f} poses/s at equal {name} ({samples} paths), set-up {setup:.1f} s: "
-                  f"ratio {rate / theirs:.1f}; median difference of I {difference:+.1e}")
+              f"separable GGX, up to {options.surfaces} surfaces, phase angles 15-150 deg")
+        for kind in ("random", "series"):
+            if options.kind in (kind, "both"):
+                compare(options, folder, scene, setup, kind)
 
 
 if __name__ == "__main__":

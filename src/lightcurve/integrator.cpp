@@ -2,6 +2,7 @@
 
 #include "lightcurve/bounces/bounce_scene.h"
 #include "lightcurve/bounces/indirect.h"
+#include "lightcurve/bounces/path_sampler.h"
 #include "lightcurve/visibility.h"
 
 #include <cmath>
@@ -19,6 +20,18 @@ constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 
 } // namespace
 
+namespace {
+
+/// What paths are drawn on.
+struct PathGround {
+  PathGround(const Scene &of, const std::vector<VisibleSides> &sides)
+      : scene(of, sides), occluder(of.mesh) {}
+  BounceScene scene;
+  Occluder occluder;
+};
+
+} // namespace
+
 struct Integrator::State {
   explicit State(const Scene &of)
       : scene(of), is_convex(is_proven_convex(of.mesh)), sides(visible_sides(of.mesh)),
@@ -27,9 +40,9 @@ struct Integrator::State {
       occluder.emplace(scene.mesh);
   }
   /// Made when it is first asked for: direct light needs none of it.
-  const BounceScene &bounces() const {
-    std::call_once(has_bounces, [&] { made_bounces.emplace(scene, sides); });
-    return *made_bounces;
+  const PathGround &paths() const {
+    std::call_once(has_paths, [&] { made_paths = std::make_unique<PathGround>(scene, sides); });
+    return *made_paths;
   }
 
   Scene scene;
@@ -39,8 +52,8 @@ struct Integrator::State {
   std::optional<Occluder> occluder; ///< none for a convex mesh
 
 private:
-  mutable std::once_flag has_bounces;
-  mutable std::optional<BounceScene> made_bounces;
+  mutable std::once_flag has_paths;
+  mutable std::unique_ptr<const PathGround> made_paths;
 };
 
 Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>(scene)) {}
@@ -112,25 +125,62 @@ void add(const IndirectLight &light, PoseResult &out) {
     out.glint_share *= direct / out.bands[0].stokes.i;
 }
 
+std::vector<IndirectLight> by_paths(const PathGround &ground, std::span<const Pose> poses,
+                                    std::span<const double> direct_i,
+                                    const IntegrationOptions &options, unsigned threads,
+                                    const std::atomic<bool> *cancel,
+                                    const ThermalEmission *emission) {
+  constexpr std::size_t block = 1024; // poses whose sums are held at a time
+  const std::size_t bands = poses.empty() ? 0 : direct_i.size() / poses.size();
+  std::vector<IndirectLight> out;
+  for (std::size_t begin = 0; begin < poses.size(); begin += block) {
+    const std::size_t count = std::min(block, poses.size() - begin);
+    auto part =
+        indirect_light(ground.scene, ground.occluder, poses.subspan(begin, count), options,
+                       direct_i.subspan(begin * bands, count * bands), threads, cancel, emission);
+    if (part.empty())
+      return {};
+    std::move(part.begin(), part.end(), std::back_inserter(out));
+  }
+  return out;
+}
+
 } // namespace
 
 std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
                                                 std::span<const double> direct_i,
                                                 const IntegrationOptions &options, unsigned threads,
                                                 const std::atomic<bool> *cancel) const {
-  constexpr std::size_t block = 1024; // poses whose sums are held at a time
   const std::size_t bands = state_->scene.bands.size();
-  std::vector<IndirectLight> out;
   if (state_->is_convex || options.bounces < 2)
     return {poses.size(), IndirectLight{std::vector<BandResult>(bands), 0}};
-  for (std::size_t begin = 0; begin < poses.size(); begin += block) {
-    const std::size_t count = std::min(block, poses.size() - begin);
-    auto part =
-        indirect_light(state_->bounces(), *state_->occluder, poses.subspan(begin, count), options,
-                       direct_i.subspan(begin * bands, count * bands), threads, cancel);
-    if (part.empty())
-      return {};
-    std::move(part.begin(), part.end(), std::back_inserter(out));
+  return by_paths(state_->paths(), poses, direct_i, options, threads, cancel, nullptr);
+}
+
+std::vector<IndirectLight> Integrator::thermal(std::span<const Pose> poses,
+                                               const ThermalEmission &emission,
+                                               const IntegrationOptions &options, unsigned threads,
+                                               const std::atomic<bool> *cancel) const {
+  const std::vector<double> nothing(poses.size() * state_->scene.bands.size());
+  return by_paths(state_->paths(), poses, nothing, options, threads, cancel, &emission);
+}
+
+std::vector<Stokes<ScatteringPlane>>
+Integrator::indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
+                              const IntegrationOptions &options, std::size_t paths,
+                              std::uint64_t first) const {
+  const std::size_t bands = state_->scene.bands.size();
+  std::vector<Stokes<ScatteringPlane>> out(points.size() * bands);
+  if (state_->is_convex || options.bounces < 2)
+    return out;
+  PathSampler sampler(state_->paths().scene, state_->paths().occluder, pose, options);
+  std::vector<Stokes<ScatteringPlane>> sum(bands);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    std::fill(sum.begin(), sum.end(), Stokes<ScatteringPlane>{});
+    for (std::size_t i = 0; i < paths; ++i)
+      sampler.look(points[k], (first + k) * paths + i, sum);
+    for (std::size_t b = 0; b < bands; ++b)
+      out[k * bands + b] = sum[b] * (1 / static_cast<double>(paths));
   }
   return out;
 }

@@ -70,7 +70,11 @@ Emissivity rough_emissivity(const Surface &surface, std::size_t band, double the
         diffuse_q += w * (s.q * (2 * cosine * cosine - 1) + s.u * 2 * cosine * sine);
       }
   }
-  return {1 - i - diffuse_i, -q - diffuse_q};
+  // What leaves as from a mirror is not in the lobe: it needs a source with a size.
+  const double share = surface.mirror_part(band, c_v);
+  const Emissivity smooth =
+      share > 0 ? smooth_emissivity(surface.interface(band), c_v) : Emissivity{};
+  return {1 - i - diffuse_i - share * (1 - smooth.i), -q - diffuse_q + share * smooth.q};
 }
 
 } // namespace umov

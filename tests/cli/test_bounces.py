@@ -34,14 +34,49 @@ def test_a_convex_mesh_is_the_same_and_a_box_wing_brighter(umov, scenario, tmp_p
     assert any(float(row["indirect_i"]) > 1e-3 for row in b)
 
 
-def test_signature_takes_rays_with_bounces(umov, scenario, tmp_path):
+def test_rays_and_masks_give_the_same_whole(umov, scenario, tmp_path):
     assert umov("mesh", "make", "box-wing", "--facets", 1000, "-o", "cube.obj").code == 0
     name = scenario(("[output]", "[render]\nbounces = 2\naccuracy = 0.05\n[output]"))
     done = umov("signature", name, "--poses", 4, "--phase", 60, "-o", "s.csv")
     assert done.code == 0, done.err
-    assert len(read_csv(tmp_path / "s.csv")) == 12
     done = umov("signature", name, "--poses", 4, "--phase", 60, "--visibility", "masks", "-o", "m.csv")
-    assert done.code == 2 and "direct light alone" in done.err
+    assert done.code == 0, done.err
+    rays, masks = read_csv(tmp_path / "s.csv"), read_csv(tmp_path / "m.csv")
+    assert len(rays) == len(masks) == 12
+    for one, two in zip(rays, masks):
+        for name in ("intensity", "stokes_q", "stokes_u", "stokes_v"):
+            # The paths are the same ones, the direct parts within their errors.
+            error = float(one[f"{name}_err"]) + float(two[f"{name}_err"])
+            assert abs(float(one[name]) - float(two[name])) <= error + 1e-12
+
+
+def test_a_warm_body_shines_by_itself(umov, scenario, tmp_path):
+    """A cube is convex: what it emits is that of its faces, and other groups can be warmer."""
+    (tmp_path / "plates.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\ng floor\nf 1 2 3\nf 1 3 4\ng wall\nf 1 4 6\nf 1 6 5\n")
+    (tmp_path / "g.csv").write_text("sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n1,0,1,0,0,1\n")
+    (tmp_path / "s.toml").write_text(
+        'umov = 1\n[[object]]\nname = "plates"\nmesh = { file = "plates.obj", unit = "m", up = "+Z" }\n'
+        '[object.materials]\ndefault = "m"\n[material.m]\nindex = { n = 1.0, k = 0.0 }\n'
+        'distribution = { model = "blinn_phong", m = 10 }\nbody = { reflectance = 0.4 }\n[bands]\nset = ["nm:10000"]\n[render]\nbounces = 3\n')
+    found = []
+    for kelvin in (["300"], ["300", "wall=400"]):
+        done = umov("signature", "s.toml", "--geometry", "g.csv", "--source", "thermal", "-o", "o.csv",
+                    *(word for k in kelvin for word in ("--temperature", k)))
+        assert done.code == 0, done.err
+        found.append(float(read_csv(tmp_path / "o.csv")[0]["intensity"]))
+    # B(10 um, 300 K) = 9.924033 W m-2 sr-1 um-1 (physics of Planck's law, CODATA), e = .6, 1 m2; the wall adds what the
+    # floor reflects of it: the form factor of two squares is .200044, rho = .4.
+    planck = 9.924033e-3
+    once = 0.6 * planck * (1 + 0.4 * 0.200044 + 0.4**2 * 0.04)
+    assert abs(found[0] / once - 1) < 0.01
+    assert found[1] > found[0] * 1.05
+    for words, text in ((["--source", "thermal"], "go together"), (["--temperature", 300], "go together"),
+                        (["--source", "thermal", "--temperature", "hot"], "K of all"),
+                        (["--source", "thermal", "--temperature", "wall=300"], "floor"),
+                        (["--source", "thermal", "--temperature", "roof=300"], "floor, wall")):
+        done = umov("signature", "s.toml", "--geometry", "g.csv", "-o", "x.csv", *words)
+        assert done.code == 2 and text in done.err, done.err
 
 
 def test_passes_count_light_between_surfaces(umov, scenario, tmp_path):

@@ -1,4 +1,5 @@
 """umov render: pictures in files."""
+import math
 import struct
 import zlib
 
@@ -80,6 +81,35 @@ def test_exr_sums_to_the_signature(umov, tmp_path):
         # Sun and observer lie in the plane z = 0 and +z is up: +Q of the scattering plane is up.
         assert abs(q / i - float(row["q_scat"])) < 1e-4
         assert abs(u / i) < 1e-4
+
+
+def test_exr_with_light_between_surfaces(umov, tmp_path):
+    """Two rough plates at a right angle, up to three surfaces: the picture again sums to the signature."""
+    import OpenEXR
+    from conftest import read_csv
+    (tmp_path / "sphere.obj").write_text(
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nf 1 2 3\nf 1 3 4\nf 1 4 6\nf 1 6 5\n")
+    (tmp_path / "scene.toml").write_text(
+        SCENE.replace('normals = "smooth" ', "").replace('up = "+Z", ', 'up = "+Z" ').replace("paper_al", "m")
+        + '[material.m]\nindex = "Au_Johnson"\ndistribution = { model = "ggx", alpha = 0.3 }\n'
+        + '[render]\nbounces = 3\nsun = "point"\naccuracy = 0.003\n')
+    (tmp_path / "g.csv").write_text("sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n1,0.3,0.5,0.6,-0.2,1\n")
+    done = umov("signature", "scene.toml", "--geometry", "g.csv", "-o", "s.csv")
+    assert done.code == 0, done.err
+    one = ["--sun", 1, 0.3, 0.5, "--observer", 0.6, -0.2, 1, "--size", 200, "--samples", 3, "--half-width", 1]
+    done = umov("render", "scene.toml", *one, "-o", "s.exr")
+    assert done.code == 0, done.err
+    with OpenEXR.File(str(tmp_path / "s.exr"), separate_channels=True) as file:
+        channels = {name: channel.pixels for name, channel in file.channels().items()}
+        assert "up to 3 surfaces" in file.header()["unit"]
+    pixel = (2 * 1 / 200) ** 2
+    for row in read_csv(tmp_path / "s.csv"):
+        i, q, u, v = (float(channels[f"{row['band']}.{name}"].sum()) * pixel for name in "IQUV")
+        whole = float(row["intensity"])
+        assert abs(i / whole - 1) < 0.01
+        p = math.hypot(float(row["stokes_q"]), float(row["stokes_u"]))
+        assert abs(math.hypot(q, u) - p) < 0.01 * whole  # the axes of a picture are others
+        assert abs(v - float(row["stokes_v"])) < 0.005 * whole
 
 
 def test_what_cannot_be_drawn_is_told(umov, tmp_path):

@@ -7,6 +7,7 @@
 #include <umov/core/result.h>
 #include <umov/io/exr.h>
 #include <umov/io/report.h>
+#include <umov/lightcurve/integrator.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/scene/articulation.h>
 #include <umov/scene/scene.h>
@@ -28,14 +29,17 @@ struct KeyFrameOptions {
   std::size_t band = 0;      ///< into Scene::bands
   double half_width_m = 0;   ///< half the picture's side; 0: 1.04 bounding radii of the mesh
   unsigned threads = 0;      ///< the pixels do not depend on it
+  std::size_t bounces = 1;   ///< surfaces that the light may touch, 1..64
+  std::size_t paths = 16;    ///< per ray, of light that touched several; their noise shows
+  std::uint64_t seed = 0;    ///< of those paths
 };
 
 /// What one ray found.
 struct KeyFrameSample {
   std::uint32_t material = no_index; ///< into KeyFrameRaster::materials; no_index: sky
   bool is_lit = false;               ///< the Sun reaches the point
-  float radiance = 0;        ///< [1/sr] per unit solar irradiance, single bounce and body lobe
-  float p = 0;               ///< linear degree of that light; NaN where there is none
+  float radiance = 0;                ///< [1/sr] per unit solar irradiance
+  float p = 0;                       ///< linear degree of that light; NaN where there is none
   float q = 0, u = 0, v = 0; ///< fractions of it in the scattering frame; 0 where there is none
   float facing = 0;          ///< cosine of the shown normal to the observer, 0..1
 };
@@ -63,11 +67,13 @@ std::vector<std::string> material_names(const Scene &scene);
 /// `up` along the line of sight.
 Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occluder,
                                        const KeyFrameView &view, const KeyFrameOptions &options);
-/// The same in several bands, with the rays cast once; `options.band` is not asked.
+/// The same in several bands, with the rays cast once; `options.band` is not asked. `between`, of
+/// the same scene: finds the light that touched several surfaces; null: there is none of it.
 Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const Occluder &occluder,
                                                      const KeyFrameView &view,
                                                      const KeyFrameOptions &options,
-                                                     std::span<const std::size_t> bands);
+                                                     std::span<const std::size_t> bands,
+                                                     const Integrator *between = nullptr);
 
 /// A scene ready for pictures with its parts at any angles; it must outlive this.
 class KeyFrameStage {
@@ -82,6 +88,7 @@ private:
   const Scene &scene_;
   std::vector<Joint> joints_;
   Occluder still_;
+  Integrator still_integrator_;
 };
 
 /// The radiance shown as white: the 99th percentile over the lit points of all pictures, so that

@@ -44,11 +44,19 @@ struct PoseResult {
   double glint_share = 0; ///< share of I in band 0 from flats within their lobe's half width
 };
 
-/// Light that has touched more than one surface before it reaches the observer, by sampled paths.
+/// Light by sampled paths: that of more than one surface, or what is emitted.
 struct IndirectLight {
   std::vector<BandResult> bands;
   std::uint64_t rays = 0;
 };
+
+/// A point of a triangle, by the shares of its second and third corner.
+struct SurfacePoint {
+  std::uint32_t triangle = 0;
+  double second = 0, third = 0;
+};
+
+class ThermalEmission;
 
 /// Compiled scene. `evaluate` is pure and thread safe: the same poses give the same bits whatever
 /// the number of threads and whatever was computed before.
@@ -73,6 +81,21 @@ public:
   indirect(std::span<const Pose> poses, std::span<const double> direct_i,
            const IntegrationOptions &options, unsigned threads,
            const std::atomic<bool> *cancel = nullptr) const;
+  /// What the body emits by itself: Stokes [W sr-1 nm-1] in the scattering plane of the pose, from
+  /// up to options.bounces surfaces (1: straight from where it arises, more: seen in neighbours
+  /// too), each to options.accuracy. Empty as above.
+  [[nodiscard]] std::vector<IndirectLight> thermal(std::span<const Pose> poses,
+                                                   const ThermalEmission &emission,
+                                                   const IntegrationOptions &options,
+                                                   unsigned threads,
+                                                   const std::atomic<bool> *cancel = nullptr) const;
+  /// Radiance [1/sr] per unit irradiance that points send to the observer, who sees them, after
+  /// more than one surface, in the scattering plane: the mean of `paths` sampled paths each, [point
+  /// * bands + band]. `first`: number of the first point, so that no two draw alike.
+  [[nodiscard]] std::vector<Stokes<ScatteringPlane>>
+  indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
+                    const IntegrationOptions &options, std::size_t paths,
+                    std::uint64_t first) const;
   [[nodiscard]] bool is_convex() const;
 
 private:

@@ -49,7 +49,7 @@ struct Seen {
   std::size_t column = 0;
   Vec3<Body> point, geometric, normal;
   const Surface *surface = nullptr;
-  std::size_t triangle = 0;
+  SurfacePoint at;
 };
 
 Vec3<Body> shown_normal(const Scene &scene, const Triangle &t, const Occluder::Hit &hit,
@@ -82,7 +82,8 @@ std::vector<Seen> look(const Camera &camera, std::size_t row, std::span<KeyFrame
       continue;
     const Mesh &mesh = camera.scene.mesh;
     const Triangle &t = mesh.triangles[hit.triangle];
-    Seen s{column, {}, normalized(area_vector_doubled(mesh, t)), {}, nullptr, hit.triangle};
+    Seen s{column, {},      normalized(area_vector_doubled(mesh, t)),
+           {},     nullptr, {hit.triangle, hit.u, hit.v}};
     s.normal = shown_normal(camera.scene, t, hit, s.geometric);
     const bool is_front = dot(s.geometric, v) >= 0;
     if (!is_front) {
@@ -130,7 +131,7 @@ void light(const Camera &camera, std::size_t band, const std::vector<Seen> &lit,
     out.is_lit = true;
     const FresnelFactors f = s.surface->fresnel(band, l_v);
     const SurfaceDirections at =
-        directions_on(s.normal, direction_field(camera.scene.mesh, *s.surface, s.triangle), l, v,
+        directions_on(s.normal, direction_field(camera.scene.mesh, *s.surface, s.at.triangle), l, v,
                       l_v, camera.view.pose.sun_radius_rad);
     const double specular = s.surface->specular(band, at);
     const auto diffuse = s.surface->diffuse(band, at, {1, 0, 0, 0});
@@ -142,6 +143,24 @@ void light(const Camera &camera, std::size_t band, const std::vector<Seen> &lit,
       out.v = static_cast<float>(diffuse.v / intensity);
       out.p = std::hypot(out.q, out.u);
     }
+  }
+}
+
+/// Adds what touched several surfaces, [point * bands + band] of all bands of the scene.
+void add_indirect(const std::vector<Seen> &seen, const std::vector<Stokes<ScatteringPlane>> &light,
+                  std::size_t band, std::size_t bands, std::span<KeyFrameSample> line) {
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    KeyFrameSample &out = line[seen[k].column];
+    const auto direct = static_cast<double>(out.radiance);
+    const Stokes<ScatteringPlane> sum =
+        light[k * bands + band] + Stokes<ScatteringPlane>{1, out.q, out.u, out.v} * direct;
+    if (!(sum.i > 0))
+      continue;
+    out.radiance = static_cast<float>(sum.i);
+    out.q = static_cast<float>(sum.q / sum.i);
+    out.u = static_cast<float>(sum.u / sum.i);
+    out.v = static_cast<float>(sum.v / sum.i);
+    out.p = std::hypot(out.q, out.u);
   }
 }
 
@@ -180,7 +199,8 @@ Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occlu
 Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const Occluder &occluder,
                                                      const KeyFrameView &view,
                                                      const KeyFrameOptions &options,
-                                                     std::span<const std::size_t> bands) {
+                                                     std::span<const std::size_t> bands,
+                                                     const Integrator *between) {
   UMOV_TRY(check(scene, options, bands));
   const Vec3<Body> v = view.pose.observer;
   const Vec3<Body> across = view.up - v * dot(view.up, v);
@@ -208,27 +228,41 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
   std::vector<KeyFrameRaster> rasters(bands.size(), out);
   parallel_for(side, options.threads, [&](std::size_t row) {
     std::vector<KeyFrameSample> dark(side); // what all bands share
-    const std::vector<Seen> lit = reached_by_sun(camera, look(camera, row, dark));
+    const std::vector<Seen> seen = look(camera, row, dark);
+    const std::vector<Seen> lit = reached_by_sun(camera, seen);
+    std::vector<Stokes<ScatteringPlane>> more;
+    if (between != nullptr && options.bounces > 1) {
+      std::vector<SurfacePoint> points;
+      for (const Seen &point : seen)
+        points.push_back(point.at);
+      IntegrationOptions integration;
+      integration.bounces = options.bounces;
+      integration.seed = options.seed;
+      more = between->indirect_radiance(view.pose, points, integration, options.paths, row * side);
+    }
     for (std::size_t b = 0; b < bands.size(); ++b) {
       const std::span<KeyFrameSample> line(rasters[b].points.data() + row * side, side);
       std::copy(dark.begin(), dark.end(), line.begin());
       light(camera, bands[b], lit, line);
+      if (!more.empty())
+        add_indirect(seen, more, bands[b], scene.bands.size(), line);
     }
   });
   return rasters;
 }
 
 KeyFrameStage::KeyFrameStage(const Scene &scene, std::vector<Joint> joints)
-    : scene_(scene), joints_(std::move(joints)), still_(scene.mesh) {}
+    : scene_(scene), joints_(std::move(joints)), still_(scene.mesh), still_integrator_(scene) {}
 
 Result<std::vector<KeyFrameRaster>>
 KeyFrameStage::trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,
                      const KeyFrameOptions &options, std::span<const std::size_t> bands) const {
   if (joint_angles_rad.empty())
-    return trace_key_frames(scene_, still_, view, options, bands);
+    return trace_key_frames(scene_, still_, view, options, bands, &still_integrator_);
   Scene turned = scene_;
   turned.mesh = posed(scene_.mesh, joints_, joint_angles_rad);
-  return trace_key_frames(turned, Occluder(turned.mesh), view, options, bands);
+  const Integrator integrator(turned);
+  return trace_key_frames(turned, Occluder(turned.mesh), view, options, bands, &integrator);
 }
 
 } // namespace umov

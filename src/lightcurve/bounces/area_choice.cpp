@@ -14,7 +14,8 @@ AreaChoice::AreaChoice(std::vector<std::uint32_t> triangles, std::span<const dou
                        const AreaGroups &groups)
     : groups_(&groups), area_m2_(area_m2), triangle_(std::move(triangles)), area_(groups.count),
       density_(groups.count), learnt_{std::vector<double>(groups.count),
-                                      std::vector<double>(groups.count)} {
+                                      std::vector<double>(groups.count)},
+      before_(learnt_) {
   for (const std::uint32_t t : triangle_)
     area_[groups.of[t]] += area_m2[t];
   for (const double area : area_)
@@ -60,10 +61,11 @@ void AreaChoice::adapt() {
   double wanted_sum = 0, drawn = 0, groups_seen = 0;
   std::vector<double> wanted(area_.size());
   for (std::size_t g = 0; g < area_.size(); ++g) {
-    drawn += learnt_.drawn[g];
+    const double here = before_.drawn[g] + learnt_.drawn[g];
+    drawn += here;
     groups_seen += area_[g] > 0 ? 1 : 0;
-    if (learnt_.drawn[g] > 0)
-      wanted[g] = area_[g] * std::sqrt(learnt_.squares[g] / learnt_.drawn[g]);
+    if (here > 0)
+      wanted[g] = area_[g] * std::sqrt((before_.squares[g] + learnt_.squares[g]) / here);
     wanted_sum += wanted[g];
   }
   if (!(wanted_sum > 0))
@@ -77,14 +79,19 @@ void AreaChoice::adapt() {
   tabulate();
 }
 
-void AreaChoice::start_from(const LearntAreas &other) {
-  constexpr double memory = 0.9;
-  if (other.drawn.empty())
-    return;
-  for (std::size_t g = 0; g < area_.size(); ++g) {
-    learnt_.squares[g] = memory * other.squares[g];
-    learnt_.drawn[g] = memory * other.drawn[g];
+void LearntAreas::add(const LearntAreas &other, double share) {
+  if (drawn.empty()) {
+    squares.resize(other.drawn.size());
+    drawn.resize(other.drawn.size());
   }
+  for (std::size_t g = 0; g < other.drawn.size(); ++g) {
+    squares[g] += share * other.squares[g];
+    drawn[g] += share * other.drawn[g];
+  }
+}
+
+void AreaChoice::start_from(const LearntAreas &other) {
+  before_.add(other, 1);
   adapt();
 }
 

@@ -17,6 +17,7 @@ struct AreaGroups {
 struct LearntAreas {
   std::vector<double> squares; ///< per group: sum of (light times density)^2
   std::vector<double> drawn;   ///< per group
+  void add(const LearntAreas &other, double share);
 };
 
 /// Draws triangles of one side of a pose (those that face the Sun, or the observer) with a
@@ -37,14 +38,15 @@ public:
   }
   /// A path begun on a triangle carried `light` (0 counts too), divided by the density.
   void learn(std::uint32_t triangle, double light);
-  /// From now on the probabilities follow what was learnt (Neyman 1934: a stratum's share goes with
-  /// its size times the rms of the integrand).
-  void adapt();
-  /// What a like pose has learnt, which counts for less and less.
+  /// Takes what was learnt before, and begins anew to learn.
   void start_from(const LearntAreas &other);
+  /// Since the start.
   [[nodiscard]] const LearntAreas &learnt() const { return learnt_; }
 
 private:
+  /// The probabilities follow what was learnt (Neyman 1934: a stratum's share goes with
+  /// its size times the rms of the integrand).
+  void adapt();
   void tabulate();
 
   const AreaGroups *groups_;
@@ -54,7 +56,7 @@ private:
   std::vector<std::uint32_t> start_; ///< per even share of the distribution: where to look from
   std::vector<double> area_;         ///< per group, of the triangles that can be drawn
   std::vector<double> density_;      ///< per group
-  LearntAreas learnt_;
+  LearntAreas learnt_, before_;
   double whole_area_ = 0;
 };
 

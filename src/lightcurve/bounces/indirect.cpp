@@ -16,7 +16,9 @@ using Light = PathSampler::Light;
 /// Paths per replicate of a pose at first, and those of all poses that a value rests on before its
 /// half-width is believed: twice what a single pose must have.
 constexpr std::size_t first_count = 32, trusted_draws = 1024;
-/// Poses that one thread takes in a row: what their paths have learnt goes from one to the next.
+/// Poses closer than this find light in the same places [rad], and what was learnt of them counts
+/// for less with each pose that follows. One thread takes up to `run_length` of them in a row.
+constexpr double close_rad = 0.1, memory = 0.9;
 constexpr std::size_t run_length = 32;
 /// Sum of the turns of Sun and observer in the body over which values may be mixed [rad].
 constexpr double reach_rad = 0.5;
@@ -29,6 +31,16 @@ std::vector<double> turns(std::span<const Pose> poses) {
   for (std::size_t k = 1; k < poses.size(); ++k)
     out.push_back(out.back() + angle_between(poses[k - 1].sun, poses[k].sun) +
                   angle_between(poses[k - 1].observer, poses[k].observer));
+  return out;
+}
+
+/// Where runs of poses begin, each close to the one before; ends with their number.
+std::vector<std::size_t> runs_of(std::span<const double> place) {
+  std::vector<std::size_t> out{0};
+  for (std::size_t k = 1; k < place.size(); ++k)
+    if (place[k] - place[k - 1] > close_rad || k - out.back() >= run_length)
+      out.push_back(k);
+  out.push_back(place.size());
   return out;
 }
 
@@ -69,33 +81,39 @@ private:
 class Rounds {
 public:
   Rounds(const BounceScene &scene, const Occluder &occluder, std::span<const Pose> poses,
-         const IntegrationOptions &options, unsigned threads, const std::atomic<bool> *cancel)
-      : scene_(scene), occluder_(occluder), poses_(poses), options_(options), threads_(threads),
-        cancel_(cancel), learnt_((poses.size() + run_length - 1) / run_length) {
+         std::span<const double> place, const IntegrationOptions &options, unsigned threads,
+         const std::atomic<bool> *cancel, const ThermalEmission *emission)
+      : emission_(emission), scene_(scene), occluder_(occluder), poses_(poses), options_(options),
+        threads_(threads), cancel_(cancel), runs_(runs_of(place)), learnt_(poses.size()) {
     for (std::size_t r = 0; r < replicates; ++r)
       lattices_.emplace_back(options.seed, r);
   }
 
   void draw(std::size_t first, std::size_t count, const std::vector<char> &is_open,
             SeriesSums &sums) {
-    parallel_for(learnt_.size(), threads_, [&](std::size_t run) {
-      const std::size_t end = std::min(poses_.size(), (run + 1) * run_length);
-      for (std::size_t k = run * run_length; k < end && !is_stopped(cancel_); ++k)
+    parallel_for(runs_.size() - 1, threads_, [&](std::size_t run) {
+      PathLearning before; // of the poses before, in this round
+      for (std::size_t k = runs_[run]; k < runs_[run + 1] && !is_stopped(cancel_); ++k)
         if (is_open[k] != 0)
-          draw_pose(k, first + k * count, count, learnt_[run], sums);
+          draw_pose(k, first + k * count, count, before, sums);
     });
   }
 
 private:
-  void draw_pose(std::size_t pose, std::size_t first, std::size_t count, PathLearning &learnt,
-                 SeriesSums &sums) const {
-    PathSampler sampler(scene_, occluder_, poses_[pose], options_);
+  void draw_pose(std::size_t pose, std::size_t first, std::size_t count, PathLearning &before,
+                 SeriesSums &sums) {
+    PathSampler sampler(scene_, occluder_, poses_[pose], options_, emission_);
     if (sampler.has_any()) {
-      sampler.start_from(learnt);
+      PathLearning known;
+      known.add(before, memory);
+      known.add(learnt_[pose], 1);
+      sampler.start_from(known);
       for (std::size_t r = 0; r < replicates; ++r)
         for (std::size_t i = first; i < first + count; ++i)
           sampler.add(lattices_[r].at(i), stream_of(r, i), sums.of(pose, r));
-      learnt = sampler.learnt();
+      learnt_[pose].add(sampler.learnt(), 1);
+      known.add(sampler.learnt(), 1);
+      before = std::move(known);
     }
     sums.count(pose, count, sampler.rays());
   }
@@ -103,6 +121,7 @@ private:
     return (static_cast<std::uint64_t>(replicate) << 56U) + index;
   }
 
+  const ThermalEmission *emission_;
   const BounceScene &scene_;
   const Occluder &occluder_;
   std::span<const Pose> poses_;
@@ -110,7 +129,8 @@ private:
   unsigned threads_;
   const std::atomic<bool> *cancel_;
   std::vector<Lattice> lattices_;
-  std::vector<PathLearning> learnt_; ///< per run
+  std::vector<std::size_t> runs_;
+  std::vector<PathLearning> learnt_; ///< per pose
 };
 
 /// The series smoothed as it stands; `draws` per pose: the fewest that a value of I rests on.
@@ -133,11 +153,10 @@ void smooth(std::span<const double> place, const SeriesSums &sums, std::vector<I
 
 } // namespace
 
-std::vector<IndirectLight> indirect_light(const BounceScene &scene, const Occluder &occluder,
-                                          std::span<const Pose> poses,
-                                          const IntegrationOptions &options,
-                                          std::span<const double> direct_i, unsigned threads,
-                                          const std::atomic<bool> *cancel) {
+std::vector<IndirectLight>
+indirect_light(const BounceScene &scene, const Occluder &occluder, std::span<const Pose> poses,
+               const IntegrationOptions &options, std::span<const double> direct_i,
+               unsigned threads, const std::atomic<bool> *cancel, const ThermalEmission *emission) {
   if (poses.empty())
     return {};
   const std::size_t n = poses.size(), bands = direct_i.size() / n;
@@ -146,7 +165,7 @@ std::vector<IndirectLight> indirect_light(const BounceScene &scene, const Occlud
     one.bands.resize(bands);
   const std::vector<double> place = turns(poses);
   SeriesSums sums(n, bands);
-  Rounds rounds(scene, occluder, poses, options, threads, cancel);
+  Rounds rounds(scene, occluder, poses, place, options, threads, cancel, emission);
   std::vector<char> is_open(n, 1);
   std::vector<double> draws(n);
   const std::size_t most = std::max(trusted_draws, options.max_points / replicates);

@@ -12,6 +12,12 @@ using Light = PathSampler::Light;
 
 constexpr double offset_of_size = 1e-5;
 
+/// Streams of random numbers: one for each surface of a path from either end, and one of its own
+/// for the first step of a picture's paths (equal numbers for two steps would tie them together).
+constexpr std::uint32_t observer_stream = 0xB0D,
+                        sun_stream = observer_stream + PathSampler::surfaces_max,
+                        picture_stream = 0xB0B;
+
 /// Axis +Q of a beam that leaves towards `out` and came from direction `in`: the normal of the
 /// plane.
 Vec3<Body> plane_normal(Vec3<Body> out, Vec3<Body> in) {
@@ -28,15 +34,17 @@ Light turned(const Light &light, Vec3<Body> s, Vec3<Body> t, Vec3<Body> k) {
 } // namespace
 
 PathSampler::PathSampler(const BounceScene &of, const Occluder &occluder, const Pose &pose,
-                         const IntegrationOptions &options)
+                         const IntegrationOptions &options, const ThermalEmission *emission)
     : of_(of), scene_(of.scene_), occluder_(occluder), pose_(pose), options_(options),
       bands_(of.scene_.bands.size()), seen_(facing(pose.observer)), lit_(facing(pose.sun)),
-      plane_(plane_normal(pose.observer, pose.sun)) {}
+      emission_(emission), plane_(plane_normal(pose.observer, pose.sun)) {}
 
 void PathSampler::add(const std::array<double, dimensions> &x, std::uint64_t stream,
                       std::vector<Light> &sum) {
   const Vertex seen = vertex_at(seen_, x[0], x[1], x[2], pose_.observer);
   seen_.learn(seen.triangle, from_observer(seen, x, stream, sum));
+  if (emission_ != nullptr)
+    return;
   const Vertex lit = vertex_at(lit_, x[0], x[1], x[2], pose_.sun);
   lit_.learn(lit.triangle, from_sun(lit, x, stream, sum));
 }
@@ -72,6 +80,7 @@ Vertex PathSampler::vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> 
   out.point += out.face * (offset_of_size * of_.size_m_);
   out.surface = side > 0 ? &scene_.front[triangle.front] : &scene_.back[triangle.back];
   out.triangle = t;
+  out.is_front = side > 0;
   out.sampler = side > 0 ? &of_.front_sampler_[triangle.front] : &of_.back_sampler_[triangle.back];
   out.field = direction_field(mesh, *out.surface, t);
   return out;
@@ -114,25 +123,51 @@ Light PathSampler::scattered(const Vertex &at, std::size_t band, Vec3<Body> in, 
   return at.surface->brdf(band, on) * light * cosine;
 }
 
+Light PathSampler::carried(const Vertex *x, const Vec3<Body> *step, std::size_t count,
+                           std::size_t band, Light light, Vec3<Body> axis, Vec3<Body> beam) const {
+  for (std::size_t i = count; i-- > 0 && light.i != 0;) {
+    const Vec3<Body> out = i == 0 ? pose_.observer : -step[i - 1], from = -beam;
+    const Vec3<Body> plane = plane_normal(out, from);
+    light =
+        scattered(x[i], band, from, out, 0, x[i].is_by_mirror, turned(light, axis, plane, beam));
+    axis = plane;
+    beam = out;
+  }
+  return light.i != 0 ? turned(light, axis, plane_, pose_.observer) : Light{};
+}
+
 Light PathSampler::along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
                          std::size_t band, SunEnd end) const {
-  Light light = options_.source;
-  Vec3<Body> axis = plane_, from = pose_.sun;
-  for (std::size_t i = count; i-- > 0;) {
-    const Vec3<Body> out = i == 0 ? pose_.observer : -step[i - 1];
-    const Vec3<Body> plane = plane_normal(out, from);
-    const bool is_last = i + 1 == count;
-    // A mirror shows the Sun only as a disk: a point Sun leaves all but the mirror.
-    const double disk = is_last && end == SunEnd::Disk ? pose_.sun_radius_rad : 0;
-    light =
-        scattered(x[i], band, from, out, disk, is_last ? end == SunEnd::Mirror : x[i].is_by_mirror,
-                  turned(light, axis, plane, -from));
-    if (light.i == 0)
-      return {};
-    axis = plane;
-    from = -out; // the next surface sees it coming from here
+  const std::size_t last = count - 1;
+  const Vec3<Body> out = last == 0 ? pose_.observer : -step[last - 1];
+  const Vec3<Body> plane = plane_normal(out, pose_.sun);
+  // A mirror shows the Sun only as a disk: a point Sun leaves all but the mirror.
+  const double disk = end == SunEnd::Disk ? pose_.sun_radius_rad : 0;
+  const Light light = scattered(x[last], band, pose_.sun, out, disk, end == SunEnd::Mirror,
+                                turned(options_.source, plane_, plane, -pose_.sun));
+  return carried(x, step, last, band, light, plane, out);
+}
+
+Light PathSampler::emitted(const Vertex *x, const Vec3<Body> *step, std::size_t last,
+                           std::size_t band) const {
+  const Vec3<Body> out = last == 0 ? pose_.observer : -step[last - 1];
+  const Vertex &at = x[last];
+  const Triangle &triangle = scene_.mesh.triangles[at.triangle];
+  const auto radiance = emission_->radiance(at.is_front ? triangle.front : triangle.back,
+                                            at.is_front, band, dot(at.normal, out));
+  return carried(x, step, last, band, {radiance.i, radiance.q, 0, 0}, plane_normal(at.normal, out),
+                 out);
+}
+
+double PathSampler::add_emitted(const Vertex *x, const Vec3<Body> *step, std::size_t last,
+                                double weight, std::vector<Light> &sum) const {
+  double first = 0;
+  for (std::size_t b = 0; b < bands_; ++b) {
+    const Light light = emitted(x, step, last, b) * weight;
+    sum[b] += light;
+    first += b == 0 ? light.i : 0;
   }
-  return turned(light, axis, plane_, pose_.observer);
+  return first;
 }
 
 double PathSampler::sun_over_observer(const Vertex *x, const Vec3<Body> *step,
@@ -163,36 +198,52 @@ double PathSampler::add_path(const Vertex *x, const Vec3<Body> *step, std::size_
 
 double PathSampler::from_observer(const Vertex &first, const std::array<double, dimensions> &x,
                                   std::uint64_t stream, std::vector<Light> &sum) {
+  const double leaving = dot(first.normal, pose_.observer);
+  if (!(leaving > 0) || !is_free(first.point, pose_.observer))
+    return 0;
+  return go_on(first, leaving / seen_.density(first.triangle), false, x, stream, sum);
+}
+
+void PathSampler::look(const SurfacePoint &at, std::uint64_t stream, std::vector<Light> &sum) {
+  const auto u = uniform4(options_.seed, picture_stream, stream);
+  const Vertex first = vertex_on(at.triangle, at.second, at.third, pose_.observer);
+  if (dot(first.normal, pose_.observer) > 0)
+    go_on(first, 1, true, {0, 0, 0, u[0], u[1], u[2]}, stream, sum);
+}
+
+double PathSampler::go_on(const Vertex &first, double weight, bool is_alone,
+                          const std::array<double, dimensions> &x, std::uint64_t stream,
+                          std::vector<Light> &sum) {
   std::array<Vertex, surfaces_max> path;
   std::array<Vec3<Body>, surfaces_max> step;
   path[0] = first;
-  const double leaving = dot(path[0].normal, pose_.observer);
-  if (!(leaving > 0) || !is_free(path[0].point, pose_.observer))
-    return 0;
-  double weight = leaving / seen_.density(path[0].triangle), carried = 0;
+  double found = emission_ != nullptr ? add_emitted(path.data(), step.data(), 0, weight, sum) : 0;
   Vec3<Body> back = pose_.observer;
-  bool has_mirror = false;
   for (std::size_t k = 0; k + 1 < std::min(options_.bounces, surfaces_max); ++k) {
     std::array<double, 4> u{x[3], x[4], x[5], 0};
     if (k > 0)
-      u = uniform4(options_.seed, 0xB0D + static_cast<std::uint32_t>(k), stream);
+      u = uniform4(options_.seed, observer_stream + static_cast<std::uint32_t>(k), stream);
     const Direction d = path[k].sampler->draw(path[k].normal, back, u[0], u[1], u[2]);
     path[k].is_by_mirror = d.is_by_mirror;
-    has_mirror = has_mirror || d.is_by_mirror;
+    is_alone = is_alone || d.is_by_mirror; // the Sun's side does not go by mirrors
     double distance = 0;
     if (!(d.density > 0) || !next(path[k], d.to, path[k + 1], distance))
-      return carried;
+      return found;
     weight /= d.density;
     step[k] = d.to;
     back = -d.to;
+    if (emission_ != nullptr) {
+      found += add_emitted(path.data(), step.data(), k + 1, weight, sum);
+      continue;
+    }
     const Vertex &end = path[k + 1];
     if (!(dot(end.face, pose_.sun) > 0) || !is_free(end.point, pose_.sun))
       continue;
     const auto add = [&](double factor, SunEnd what) {
-      carried += add_path(path.data(), step.data(), k + 2, weight * factor, what, sum);
+      found += add_path(path.data(), step.data(), k + 2, weight * factor, what, sum);
     };
     const double mirror_share = end.sampler->mirror_share;
-    if (has_mirror) { // drawn from this side alone
+    if (is_alone) {
       add(1, SunEnd::Disk);
       continue;
     }
@@ -210,7 +261,7 @@ double PathSampler::from_observer(const Vertex &first, const std::array<double, 
     else
       add(k > 0 ? share - 1 : share, SunEnd::WithoutMirror); // all of it was in the disk's, above
   }
-  return carried;
+  return found;
 }
 
 double PathSampler::from_sun(const Vertex &first, const std::array<double, dimensions> &x,
@@ -224,23 +275,23 @@ double PathSampler::from_sun(const Vertex &first, const std::array<double, dimen
   const double arriving = dot(first.normal, pose_.sun);
   if (!(arriving > 0) || !is_free(first.point, pose_.sun))
     return 0;
-  double weight = 1 / lit_.density(first.triangle), carried = 0;
+  double weight = 1 / lit_.density(first.triangle), found = 0;
   Vec3<Body> back = pose_.sun;
   for (std::size_t k = 0; k + 1 < most; ++k) {
     std::array<double, 4> u{x[3], x[4], x[5], 0};
     if (k > 0)
-      u = uniform4(options_.seed, 0xB4D + static_cast<std::uint32_t>(k), stream);
+      u = uniform4(options_.seed, sun_stream + static_cast<std::uint32_t>(k), stream);
     const Direction d = path[at].sampler->draw(path[at].normal, back, u[0], u[1], u[2]);
     if (d.is_by_mirror && k > 0)
-      return carried; // from the observer's side alone
+      return found; // from the observer's side alone
     double distance = 0;
     if (!(d.density > 0) || !next(path[at], d.to, path[at - 1], distance))
-      return carried;
+      return found;
     --at;
     step[at] = back = -d.to; // from the surface just met to the one before
     const Vertex &end = path[at];
     if (end.sampler->is_mirror())
-      return carried; // only the observer's side meets it
+      return found; // only the observer's side meets it
     const double leaving = dot(end.normal, pose_.observer), received = dot(end.normal, back);
     // In area measure the integrand holds the cosines at both ends of each step.
     weight *= dot(path[at + 1].face, d.to) / d.density / dot(end.face, back);
@@ -256,11 +307,10 @@ double PathSampler::from_sun(const Vertex &first, const std::array<double, dimen
     if (!is_seen)
       continue;
     const double observer_over_sun = 1 / sun_over_observer(&path[at], &step[at], k + 2);
-    carried +=
-        add_path(&path[at], &step[at], k + 2, weight * leaving / (1 + observer_over_sun),
-                 first.sampler->mirror_share > 0 ? SunEnd::WithoutMirror : SunEnd::Disk, sum);
+    found += add_path(&path[at], &step[at], k + 2, weight * leaving / (1 + observer_over_sun),
+                      first.sampler->mirror_share > 0 ? SunEnd::WithoutMirror : SunEnd::Disk, sum);
   }
-  return carried;
+  return found;
 }
 
 } // namespace umov

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <umov/lightcurve/integrator.h>
+#include <umov/lightcurve/thermal.h>
 #include <umov/shape/occluder.h>
 
 namespace umov {
@@ -20,11 +21,16 @@ struct Vertex {
   const Sampler *sampler = nullptr;
   bool is_by_mirror = false; ///< the path goes on from here (towards the Sun) as from a mirror
   std::uint32_t triangle = 0;
+  bool is_front = true;
 };
 
 /// What the paths of a pose have learnt, for the next one.
 struct PathLearning {
   LearntAreas seen, lit;
+  void add(const PathLearning &other, double share) {
+    seen.add(other.seen, share);
+    lit.add(other.lit, share);
+  }
 };
 
 /// Draws paths from both ends; `options` and `pose` must live.
@@ -33,17 +39,20 @@ public:
   using Light = Stokes<ScatteringPlane>;
   static constexpr std::size_t surfaces_max = 64;
 
+  /// With `emission` the light is what the surfaces send out by themselves, not the Sun's.
   PathSampler(const BounceScene &of, const Occluder &occluder, const Pose &pose,
-              const IntegrationOptions &options);
+              const IntegrationOptions &options, const ThermalEmission *emission = nullptr);
 
-  [[nodiscard]] bool has_any() const { return !seen_.is_empty() && !lit_.is_empty(); }
-  /// Adds what one pair of paths carries: one from the observer, one from the Sun. `sum`: per band.
-  void add(const std::array<double, dimensions> &x, std::uint64_t stream, std::vector<Light> &sum);
-  /// From now on paths begin where those so far found light.
-  void adapt() {
-    seen_.adapt();
-    lit_.adapt();
+  [[nodiscard]] bool has_any() const {
+    return !seen_.is_empty() && (emission_ != nullptr || !lit_.is_empty());
   }
+  /// Adds what one pair of paths carries: one from the observer, one from the Sun, who has none of
+  /// emitted light. `sum`: per band.
+  void add(const std::array<double, dimensions> &x, std::uint64_t stream, std::vector<Light> &sum);
+  /// Adds the radiance that one path finds at a point that the observer sees; the Sun's side has no
+  /// part in it.
+  void look(const SurfacePoint &at, std::uint64_t stream, std::vector<Light> &sum);
+  /// From now on paths begin where others, of this pose or a like one, found light.
   void start_from(const PathLearning &other) {
     seen_.start_from(other.seen);
     lit_.start_from(other.lit);
@@ -67,6 +76,16 @@ private:
   /// are those of this plane, before and after.
   [[nodiscard]] Light scattered(const Vertex &at, std::size_t band, Vec3<Body> in, Vec3<Body> out,
                                 double disk, bool is_by_mirror, const Light &light) const;
+  /// Light that travels along `beam` to x[count-1] with its axis +Q, then on to x[0] and to the
+  /// observer, in the pose's axes.
+  [[nodiscard]] Light carried(const Vertex *x, const Vec3<Body> *step, std::size_t count,
+                              std::size_t band, Light light, Vec3<Body> axis,
+                              Vec3<Body> beam) const;
+  /// Light that x[last] emits.
+  [[nodiscard]] Light emitted(const Vertex *x, const Vec3<Body> *step, std::size_t last,
+                              std::size_t band) const;
+  double add_emitted(const Vertex *x, const Vec3<Body> *step, std::size_t last, double weight,
+                     std::vector<Light> &sum) const;
   /// Light of the Sun that goes x[count-1] ... x[0] and then to the observer, in the pose's axes.
   /// `step[i]`: direction from x[i] to x[i+1].
   [[nodiscard]] Light along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
@@ -81,6 +100,10 @@ private:
   /// they meet; what they added to I of the first band.
   double from_observer(const Vertex &first, const std::array<double, dimensions> &x,
                        std::uint64_t stream, std::vector<Light> &sum);
+  /// Their way from there on; `is_alone`: they are not drawn from the Sun's side as well.
+  double go_on(const Vertex &first, double weight, bool is_alone,
+               const std::array<double, dimensions> &x, std::uint64_t stream,
+               std::vector<Light> &sum);
   /// The same begun where the Sun may shine, with a look at the observer.
   double from_sun(const Vertex &first, const std::array<double, dimensions> &x,
                   std::uint64_t stream, std::vector<Light> &sum);
@@ -92,6 +115,7 @@ private:
   const IntegrationOptions &options_;
   std::size_t bands_;
   AreaChoice seen_, lit_;
+  const ThermalEmission *emission_;
   Vec3<Body> plane_; ///< normal of the pose's scattering plane
   std::uint64_t rays_ = 0;
 };
