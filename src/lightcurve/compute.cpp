@@ -366,7 +366,9 @@ std::size_t fill_rows(const RowMaker &maker, const Selection &selection, LightCu
         begin + fill_block(maker, selection, begin, count, curve, cancel, stopped);
     if (stopped) {
       if (stopped->code == ErrorCode::Interrupted)
-        stopped->message = fmt::format("stopped by the user after {} of {} epochs", done, rows);
+        stopped->message =
+            done == 0 ? "stopped before the first row"
+                      : fmt::format("stopped by the user after {} of {} epochs", done, rows);
       return done;
     }
     if (progress)

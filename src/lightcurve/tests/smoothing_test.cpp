@@ -57,7 +57,8 @@ TEST(LocalFits, AverageNoiseAndSayHowMuchIsLeft) {
     squares += std::pow(at.mean - truth(of.place[k]), 2);
   }
   const double alone = 0.1 / std::sqrt(static_cast<double>(replicates));
-  // 1/7.6 where every window is the widest; by chance some stop before (1/2.5 when this was written).
+  // 1/7.6 where every window is the widest; by chance some stop before (1/2.5 when this was
+  // written).
   EXPECT_LT(std::sqrt(squares / 301), alone / 2);
   EXPECT_GT(inside, 0.9 * 301);
 }

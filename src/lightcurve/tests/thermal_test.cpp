@@ -62,8 +62,8 @@ double planck_of_test() { return planck_radiance(Wavelength::nm(550), kelvin_of_
 TEST(Thermal, APlateShinesAsItsSurfaceDoes) {
   // By `rough_emissivity`, which src/surface/tests holds to Kirchhoff's law; its axis n x v is
   // across the pose's plane here.
-  const Scene scene = scene_with(floor_and_wall(), {interface_of("paper_al", 30), grey(0)},
-                                 {grey(0), grey(0)});
+  const Scene scene =
+      scene_with(floor_and_wall(), {interface_of("paper_al", 30), grey(0)}, {grey(0), grey(0)});
   const double theta = 60 * pi / 180;
   const Pose pose{{0, 0, 1}, {std::sin(theta), 0, std::cos(theta)}};
   const BandResult light = thermal_light(scene, {kelvin_of_test, 0}, pose, 1, 1e-3);
@@ -79,8 +79,7 @@ TEST(Thermal, AMirrorShowsItsWarmNeighbour) {
   // The black floor, warm, is seen itself and in the cold wall of gold at 45 deg: B A cos45
   // (1 + F), Q of the image alone, across the plane, from Fresnel's formulae.
   const Material gold = mirror_of("paper_au");
-  const Scene scene =
-      scene_with(floor_and_wall(), {grey(0), gold}, {grey(0), gold});
+  const Scene scene = scene_with(floor_and_wall(), {grey(0), gold}, {grey(0), gold});
   const Pose pose{{0, 0, 1}, normalized(Vec3<Body>{1, 0, 1})};
   const BandResult light = thermal_light(scene, {kelvin_of_test, 0}, pose, 2, 2e-3);
   const Complex eta = index_at(gold.index, Wavelength::nm(550)).value();
@@ -122,18 +121,16 @@ TEST(Thermal, ACavityOfOneTemperatureComesToBeBlack) {
     if (n != 1 && n != 3 && n != 12)
       continue;
     const BandResult light = thermal_light(scene, {kelvin_of_test}, pose, n, 5e-3);
-    const double expected =
-        planck_of_test() * (1 - rho) * sum * dot(opening, pose.observer);
+    const double expected = planck_of_test() * (1 - rho) * sum * dot(opening, pose.observer);
     EXPECT_NEAR(light.stokes.i / expected, 1, 1.2e-2) << n; // twice the half-width, and chords
   }
   EXPECT_GT((1 - rho) * sum, 0.9); // nearly black
 }
 
 TEST(Thermal, AWarmSphereIsUnpolarized) {
-  const Scene scene = scene_of(make_sphere(1, 2000), NormalMode::Smooth,
-                               {interface_of("paper_au", 50)});
-  const BandResult light =
-      thermal_light(scene, {kelvin_of_test}, random_pose(3), 1, 2e-3);
+  const Scene scene =
+      scene_of(make_sphere(1, 2000), NormalMode::Smooth, {interface_of("paper_au", 50)});
+  const BandResult light = thermal_light(scene, {kelvin_of_test}, random_pose(3), 1, 2e-3);
   EXPECT_GT(light.stokes.i, 0);
   EXPECT_NEAR(light.stokes.q, 0, light.half_width.q + 2e-3 * light.stokes.i);
   EXPECT_NEAR(light.stokes.u, 0, light.half_width.u + 2e-3 * light.stokes.i);
