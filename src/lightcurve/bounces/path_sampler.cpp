@@ -214,8 +214,8 @@ void PathSampler::look(const SurfacePoint &at, std::uint64_t stream, std::vector
 double PathSampler::go_on(const Vertex &first, double weight, bool is_alone,
                           const std::array<double, dimensions> &x, std::uint64_t stream,
                           std::vector<Light> &sum) {
-  std::array<Vertex, surfaces_max> path;
-  std::array<Vec3<Body>, surfaces_max> step;
+  auto &path = path_;
+  auto &step = step_;
   path[0] = first;
   double found = emission_ != nullptr ? add_emitted(path.data(), step.data(), 0, weight, sum) : 0;
   Vec3<Body> back = pose_.observer;
@@ -268,8 +268,8 @@ double PathSampler::from_sun(const Vertex &first, const std::array<double, dimen
                              std::uint64_t stream, std::vector<Light> &sum) {
   const std::size_t most = std::min(options_.bounces, surfaces_max);
   // Filled from the end: path[at] is the surface that the observer is asked to see.
-  std::array<Vertex, surfaces_max> path;
-  std::array<Vec3<Body>, surfaces_max> step;
+  auto &path = path_;
+  auto &step = step_;
   std::size_t at = most - 1;
   path[at] = first;
   const double arriving = dot(first.normal, pose_.sun);

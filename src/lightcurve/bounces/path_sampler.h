@@ -118,6 +118,10 @@ private:
   const ThermalEmission *emission_;
   Vec3<Body> plane_; ///< normal of the pose's scattering plane
   std::uint64_t rays_ = 0;
+  // The path at hand. Room for it on the stack would be set to zero for each: a seventh of the
+  // time.
+  std::array<Vertex, surfaces_max> path_;
+  std::array<Vec3<Body>, surfaces_max> step_;
 };
 
 } // namespace umov
