@@ -200,15 +200,17 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
     UMOV_ASSIGN(body, attitude.at(context_of(g)));
     poses.push_back(pose_of(body, g));
   }
-  StokesTable table;
-  if (state.engine)
+  const auto take_all = [&](const auto &stokes_of) {
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      take(stokes_of(k), lit[k], state.bands[band], state.solar[band], pass);
+  };
+  if (state.engine) {
+    StokesTable table;
     state.engine->evaluate(poses, table);
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const BandResult light =
-        state.engine
-            ? table.at(k, band)
-            : state.integrator->evaluate(poses[k], pass_accuracy(state.bounces)).bands[band];
-    take(light.stokes, lit[k], state.bands[band], state.solar[band], pass);
+    take_all([&](std::size_t k) { return table.at(k, band).stokes; });
+  } else {
+    const auto light = state.integrator->evaluate(poses, pass_accuracy(state.bounces), 1);
+    take_all([&](std::size_t k) { return light[k].bands[band].stokes; });
   }
   return {};
 }

@@ -133,22 +133,46 @@ private:
   std::vector<PathLearning> learnt_; ///< per pose
 };
 
+constexpr std::array stokes_parts{&Light::i, &Light::q, &Light::u, &Light::v};
+
+bool is_light(const Light &s) {
+  return s.i >= 0 && s.q * s.q + s.u * s.u + s.v * s.v <= s.i * s.i * (1 + 1e-9);
+}
+
+/// One band of one pose, from means of each Stokes parameter. Each has a window of its own; where
+/// together they are no light (a parabola may fall below 0), narrower ones: a pose's own paths are.
+/// Returns how many draws I rests on.
+double smooth_pose(const LocalFits &fits, std::size_t pose,
+                   const std::array<std::vector<double>, 4> &means, BandResult &out) {
+  std::size_t widest = LocalFits::no_limit;
+  for (;;) {
+    std::size_t used = 0;
+    double draws = 0;
+    for (std::size_t p = 0; p < stokes_parts.size(); ++p) {
+      const Smoothed found = fits.at(pose, means[p], widest);
+      out.stokes.*stokes_parts[p] = found.mean;
+      out.half_width.*stokes_parts[p] = found.half_width;
+      used = std::max(used, found.window);
+      draws = p == 0 ? found.draws : draws;
+    }
+    if (used == 0 || is_light(out.stokes))
+      return draws;
+    widest = used - 1;
+  }
+}
+
 /// The series smoothed as it stands; `draws` per pose: the fewest that a value of I rests on.
 void smooth(std::span<const double> place, const SeriesSums &sums, std::vector<IndirectLight> &out,
             std::vector<double> &draws) {
   const LocalFits fits(place, sums.draws(), reach_rad);
   std::fill(draws.begin(), draws.end(), INFINITY);
-  for (std::size_t b = 0; b < sums.bands(); ++b)
-    for (auto part : {&Light::i, &Light::q, &Light::u, &Light::v}) {
-      const std::vector<double> value = sums.means(b, part);
-      for (std::size_t k = 0; k < place.size(); ++k) {
-        const Smoothed found = fits.at(k, value);
-        out[k].bands[b].stokes.*part = found.mean;
-        out[k].bands[b].half_width.*part = found.half_width;
-        if (part == &Light::i)
-          draws[k] = std::min(draws[k], found.draws);
-      }
-    }
+  for (std::size_t b = 0; b < sums.bands(); ++b) {
+    std::array<std::vector<double>, 4> means;
+    for (std::size_t p = 0; p < stokes_parts.size(); ++p)
+      means[p] = sums.means(b, stokes_parts[p]);
+    for (std::size_t k = 0; k < place.size(); ++k)
+      draws[k] = std::min(draws[k], smooth_pose(fits, k, means, out[k].bands[b]));
+  }
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace umov {
 namespace {
@@ -21,6 +22,13 @@ constexpr double choice = 1.3;
 std::vector<double> parabola_weights(std::span<const double> place, std::span<const double> draws,
                                      double centre) {
   const double scale = std::max(std::abs(place.front() - centre), std::abs(place.back() - centre));
+  if (!(scale > 0)) { // all at one place: their mean
+    const double all = std::accumulate(draws.begin(), draws.end(), 0.0);
+    std::vector<double> out(draws.begin(), draws.end());
+    for (double &weight : out)
+      weight /= all;
+    return out;
+  }
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   std::vector<Eigen::Vector3d> row;
   for (std::size_t j = 0; j < place.size(); ++j) {
@@ -66,11 +74,12 @@ LocalFits::LocalFits(std::span<const double> place, std::span<const double> draw
   }
 }
 
-Smoothed LocalFits::at(std::size_t k, std::span<const double> value) const {
+Smoothed LocalFits::at(std::size_t k, std::span<const double> value, std::size_t widest) const {
   Smoothed out;
   double low = -INFINITY, high = INFINITY;
   std::vector<double> means(value.size() / places_);
-  for (const Window &window : windows_[k]) {
+  for (std::size_t w = 0; w < windows_[k].size() && w <= widest; ++w) {
+    const Window &window = windows_[k][w];
     for (std::size_t r = 0; r < means.size(); ++r) {
       means[r] = 0;
       for (std::size_t j = 0; j < window.weight.size(); ++j)
@@ -82,7 +91,7 @@ Smoothed LocalFits::at(std::size_t k, std::span<const double> value) const {
     if (low > high)
       break;
     const double widening = window.weight.size() > 1 ? choice : 1;
-    out = {mean, widening * student_95 * deviation, window.draws};
+    out = {mean, widening * student_95 * deviation, window.draws, w};
   }
   return out;
 }

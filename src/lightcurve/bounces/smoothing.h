@@ -11,6 +11,7 @@ namespace umov {
 struct Smoothed {
   double mean = 0, half_width = 0; ///< 95 %
   double draws = 0;                ///< per replicate, of all places that were used
+  std::size_t window = 0;          ///< the one that was taken; 0: the value alone
 };
 
 /// The windows around places along a line, and the weights that fit a parabola to what they hold:
@@ -22,8 +23,11 @@ public:
 
   /// The value at place k: the widest window whose estimate agrees with those of all narrower ones
   /// (the intersection of confidence intervals: Goldenshluger & Nemirovski 1997).
-  /// value[replicate * places + place], of independent replicates.
-  [[nodiscard]] Smoothed at(std::size_t k, std::span<const double> value) const;
+  /// value[replicate * places + place], of independent replicates; `widest`: no wider one than
+  /// that.
+  [[nodiscard]] Smoothed at(std::size_t k, std::span<const double> value,
+                            std::size_t widest = no_limit) const;
+  static constexpr std::size_t no_limit = 64;
 
 private:
   struct Window {

@@ -381,6 +381,9 @@ TEST(Bounces, PosesOfASeriesShareTheirPaths) {
     held(&Stokes<ScatteringPlane>::v, 3);
     // The direct part and the other, each to the accuracy.
     EXPECT_LE(a.half_width.i, options.accuracy * a.stokes.i * std::sqrt(2.001));
+    const Stokes<ScatteringPlane> &more = series[k].indirect[0];
+    EXPECT_GE(more.i, 0);
+    EXPECT_LE(std::hypot(more.q, more.u, more.v), more.i * (1 + 1e-6));
     ++compared;
   }
   ASSERT_EQ(compared, 32);
@@ -389,6 +392,24 @@ TEST(Bounces, PosesOfASeriesShareTheirPaths) {
     EXPECT_GE(n, 26);
   EXPECT_LE(far, 3);
   EXPECT_LT(3 * rays, rays_alone); // 4.5 when this was written
+}
+
+TEST(Bounces, EqualPosesShareTheirPathsToo) {
+  Material rough = builtin_material("paper_al").value();
+  rough.distribution = {"ggx", {{"alpha", 0.2}}, {}, {}};
+  const Integrator hst(scene_of(make_hst(), NormalMode::Flat, {rough}));
+  IntegrationOptions options;
+  options.bounces = 2;
+  options.accuracy = 0.01;
+  const Pose pose = turning(1, 0).front();
+  const PoseResult alone = hst.evaluate(pose, options);
+  std::uint64_t rays = 0;
+  for (const PoseResult &one : hst.evaluate(std::vector<Pose>(20, pose), options, 2)) {
+    const BandResult &a = one.bands[0], &b = alone.bands[0];
+    EXPECT_NEAR(a.stokes.i, b.stokes.i, 2 * (a.half_width.i + b.half_width.i));
+    rays += one.rays;
+  }
+  EXPECT_LT(rays, 20 * alone.rays);
 }
 
 TEST(Bounces, ASeriesStopsWhenAsked) {

@@ -71,6 +71,17 @@ TEST(LocalFits, DoNotSmearAStep) {
     EXPECT_NEAR(fits.at(k, of.value).mean, truth(of.place[k]), 0.08) << k;
 }
 
+TEST(LocalFits, TakeTheMeanAtOnePlace) {
+  const std::vector<double> place(9, 0.3), draws(9, 32);
+  std::vector<double> value;
+  for (std::size_t r = 0; r < replicates; ++r)
+    for (std::size_t k = 0; k < 9; ++k)
+      value.push_back(2 + 0.01 * noise(5, r * 9 + k));
+  const Smoothed at = LocalFits(place, draws, 0.5).at(4, value);
+  EXPECT_NEAR(at.mean, 2, at.half_width);
+  EXPECT_TRUE(std::isfinite(at.half_width));
+}
+
 TEST(LocalFits, KeepToTheirReach) {
   const std::vector<double> place{0, 10, 20, 30, 40, 50}, draws(6, 32);
   std::vector<double> value;
