@@ -16,7 +16,7 @@ constexpr std::array<std::size_t, 7> halves{0, 2, 4, 8, 16, 32, 64};
 /// Standard deviations within which estimates agree.
 constexpr double agreement = 1.3;
 /// What choosing the window by the values adds to a half-width (measured: docs/theory/bounces.md).
-constexpr double choice = 1.3;
+constexpr double choice = 1.5;
 
 /// Weights of the values for that of a parabola at `centre`; empty if they do not determine one.
 std::vector<double> parabola_weights(std::span<const double> place, std::span<const double> draws,
