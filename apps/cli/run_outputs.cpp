@@ -98,10 +98,13 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
   std::vector<std::size_t> epochs = choose_key_epochs(outcome.curve, per_pass);
   if (epochs.size() > 12)
     epochs.resize(12);
-  UMOV_ASSIGN(frames,
-              make_key_frames(object.scene, outcome.curve, epochs,
-                              {.band = object.scene.bands.size() / 2, .threads = request.threads},
-                              joints_of(request.joints)));
+  UMOV_ASSIGN(frames, make_key_frames(object.scene, outcome.curve, epochs,
+                                      {.band = object.scene.bands.size() / 2,
+                                       .threads = request.threads,
+                                       .bounces = request.integration.bounces,
+                                       .paths = 4,
+                                       .seed = request.integration.seed},
+                                      joints_of(request.joints)));
   input.key_frames = std::move(frames);
   input.key_frame_materials = material_names(object.scene);
   input.manifest = manifest_lines(scenario, object);

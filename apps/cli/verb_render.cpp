@@ -174,7 +174,7 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
   UMOV_ASSIGN(shots, has_directions ? shots_from_directions(o)
                                     : shots_from_orbit(o, scenario, named, object, common));
   std::vector<std::vector<KeyFrameRaster>> all;
-  const KeyFrameStage stage(object.scene, joints_of(named.parts));
+  const KeyFrameStage stage(object.scene, joints_of(named.parts), scenario.bounces);
   const KeyFrameOptions options{o.size,
                                 o.samples,
                                 band,

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <future>
 #include <optional>
+#include <set>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
 #include <umov/io/scenario.h>
@@ -55,6 +56,7 @@ Result<Stokes<ScatteringPlane>> source_of(const SignatureOptions &o) {
 /// [K] of each mesh group, from "300" for all and "panels=340" for one.
 Result<std::vector<double>> temperatures_of(const SignatureOptions &o, const Mesh &mesh) {
   std::vector<double> out(mesh.groups.size(), std::numeric_limits<double>::quiet_NaN());
+  std::set<std::string> told;
   for (const std::string &text : o.temperatures) {
     const std::size_t equals = text.rfind('=');
     const std::string group = equals == std::string::npos ? "" : text.substr(0, equals);
@@ -62,13 +64,16 @@ Result<std::vector<double>> temperatures_of(const SignatureOptions &o, const Mes
     double kelvin = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), kelvin);
     if (error != std::errc() || end != number.data() + number.size() || !(kelvin >= 0) ||
-        !std::isfinite(kelvin))
+        !std::isfinite(kelvin) || equals == 0)
       return fail(ErrorCode::Usage,
                   fmt::format("--temperature {}: K of all, or GROUP=K, was expected", text));
     const auto found = std::find(mesh.groups.begin(), mesh.groups.end(), group);
     if (!group.empty() && found == mesh.groups.end())
       return fail(ErrorCode::Usage, fmt::format("--temperature {}: the mesh has the groups {}",
                                                 text, fmt::join(mesh.groups, ", ")));
+    if (!told.insert(group).second)
+      return fail(ErrorCode::Usage,
+                  fmt::format("--temperature {}: that was said before; once was expected", text));
     for (std::size_t g = 0; g < out.size(); ++g)
       if (group.empty() ? std::isnan(out[g]) : mesh.groups[g] == group)
         out[g] = kelvin;
@@ -239,7 +244,8 @@ Result<void> run_with_rays(const SignatureJob &job, NumberedPoses numbered) {
     if (emission) {
       for (const IndirectLight &result :
            integrator.thermal(part, *emission, options, job.threads(), &interrupted()))
-        add(result.bands, !(result.bands.front().stokes.i > 0));
+        add(result.bands, std::none_of(result.bands.begin(), result.bands.end(),
+                                       [](const BandResult &band) { return band.stokes.i > 0; }));
     } else {
       for (const PoseResult &result :
            integrator.evaluate(part, options, job.threads(), &interrupted()))

@@ -348,8 +348,13 @@ std::size_t fill_block(const RowMaker &maker, const Selection &selection, std::s
     return 0;
   }
   parallel_for(placed, threads, [&](std::size_t k) {
-    maker.put((*light)[k], attitudes[k]->value(), begin + k, curve);
+    if (!cancel) // light of the Earth takes its time
+      maker.put((*light)[k], attitudes[k]->value(), begin + k, curve);
   });
+  if (cancel) {
+    stopped = Error{ErrorCode::Interrupted, "", {}};
+    return 0;
+  }
   return placed;
 }
 
@@ -362,9 +367,11 @@ std::size_t fill_rows(const RowMaker &maker, const Selection &selection, LightCu
   const std::size_t grain = maker.request.integration.bounces > 1 ? 256 : 32;
   for (std::size_t begin = 0; begin < rows; begin += grain) {
     const std::size_t count = std::min(grain, rows - begin);
+    std::optional<Error> here; // the selection may have stopped before, at a later row
     const std::size_t done =
-        begin + fill_block(maker, selection, begin, count, curve, cancel, stopped);
-    if (stopped) {
+        begin + fill_block(maker, selection, begin, count, curve, cancel, here);
+    if (here) {
+      stopped = here;
       if (stopped->code == ErrorCode::Interrupted)
         stopped->message =
             done == 0 ? "stopped before the first row"

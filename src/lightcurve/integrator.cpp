@@ -171,16 +171,20 @@ Integrator::indirect_radiance(const Pose &pose, std::span<const SurfacePoint> po
                               std::uint64_t first) const {
   const std::size_t bands = state_->scene.bands.size();
   std::vector<Stokes<ScatteringPlane>> out(points.size() * bands);
-  if (state_->is_convex || options.bounces < 2)
+  if (state_->is_convex || options.bounces < 2 || points.empty())
     return out;
-  PathSampler sampler(state_->paths().scene, state_->paths().occluder, pose, options);
+  PathSampler sampler(state_->paths().scene, state_->paths().occluder, pose, options, nullptr,
+                      false);
   std::vector<Stokes<ScatteringPlane>> sum(bands);
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::fill(sum.begin(), sum.end(), Stokes<ScatteringPlane>{});
     for (std::size_t i = 0; i < paths; ++i)
       sampler.look(points[k], (first + k) * paths + i, sum);
-    for (std::size_t b = 0; b < bands; ++b)
+    for (std::size_t b = 0; b < bands; ++b) {
       out[k * bands + b] = sum[b] * (1 / static_cast<double>(paths));
+      if (!has_plane(pose))
+        out[k * bands + b].q = out[k * bands + b].u = 0;
+    }
   }
   return out;
 }

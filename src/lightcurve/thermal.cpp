@@ -16,6 +16,15 @@ namespace {
 constexpr std::size_t steps = 90;
 constexpr double last_rad = 89.9 * pi / 180;
 
+/// Emissivity of a surface over the angle, band after band.
+std::vector<Emissivity> emissivities(const Surface &surface) {
+  std::vector<Emissivity> out;
+  for (std::size_t band = 0; band < surface.band_count(); ++band)
+    for (std::size_t k = 0; k <= steps; ++k)
+      out.push_back(rough_emissivity(surface, band, last_rad * static_cast<double>(k) / steps));
+  return out;
+}
+
 } // namespace
 
 Result<ThermalEmission> ThermalEmission::make(const Scene &scene,
@@ -27,6 +36,7 @@ Result<ThermalEmission> ThermalEmission::make(const Scene &scene,
   ThermalEmission out;
   out.bands_ = scene.bands.size();
   std::vector<Table> tables;
+  std::vector<std::pair<const Surface *, std::vector<Emissivity>>> known; // groups share materials
   for (std::size_t group = 0; group < temperature_k.size(); ++group) {
     const double kelvin = temperature_k[group];
     if (!(kelvin >= 0) || !std::isfinite(kelvin))
@@ -39,12 +49,17 @@ Result<ThermalEmission> ThermalEmission::make(const Scene &scene,
                     "material \"" + surface->material().name +
                         "\" reflects differently along and across its grain; emission is known of "
                         "isotropic surfaces alone");
+      const auto same = std::find_if(known.begin(), known.end(), [&](const auto &other) {
+        return other.first->is_same(*surface);
+      });
+      const std::vector<Emissivity> &of =
+          same != known.end() ? same->second
+                              : known.emplace_back(surface, emissivities(*surface)).second;
       for (std::size_t band = 0; band < out.bands_; ++band) {
         const double planck = planck_radiance(scene.bands[band].wavelength, kelvin);
         Table &table = tables.emplace_back();
         for (std::size_t k = 0; k <= steps; ++k) {
-          const double angle = last_rad * static_cast<double>(k) / steps;
-          const Emissivity e = rough_emissivity(*surface, band, angle);
+          const Emissivity &e = of[band * (steps + 1) + k];
           table.i.push_back(planck * e.i);
           table.q.push_back(planck * e.q);
         }

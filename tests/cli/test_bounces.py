@@ -73,6 +73,8 @@ def test_a_warm_body_shines_by_itself(umov, scenario, tmp_path):
     assert found[1] > found[0] * 1.05
     for words, text in ((["--source", "thermal"], "go together"), (["--temperature", 300], "go together"),
                         (["--source", "thermal", "--temperature", "hot"], "K of all"),
+                        (["--source", "thermal", "--temperature", "=300"], "K of all"),
+                        (["--source", "thermal", "--temperature", "300", "--temperature", "310"], "said before"),
                         (["--source", "thermal", "--temperature", "wall=300"], "floor"),
                         (["--source", "thermal", "--temperature", "roof=300"], "floor, wall")):
         done = umov("signature", "s.toml", "--geometry", "g.csv", "-o", "x.csv", *words)

@@ -2,6 +2,7 @@
 // Pictures of the object as the observer sees it: parallel rays, celestial north up, east left.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <umov/core/result.h>
@@ -78,7 +79,9 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
 /// A scene ready for pictures with its parts at any angles; it must outlive this.
 class KeyFrameStage {
 public:
-  explicit KeyFrameStage(const Scene &scene, std::vector<Joint> joints = {});
+  /// `bounces`: as in the options of the pictures to come; above 1 more has to be made ready.
+  explicit KeyFrameStage(const Scene &scene, std::vector<Joint> joints = {},
+                         std::size_t bounces = 1);
   /// As trace_key_frames; no angles: as the mesh has its parts.
   [[nodiscard]] Result<std::vector<KeyFrameRaster>>
   trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,
@@ -88,7 +91,7 @@ private:
   const Scene &scene_;
   std::vector<Joint> joints_;
   Occluder still_;
-  Integrator still_integrator_;
+  std::optional<Integrator> between_; ///< of the mesh as it is
 };
 
 /// The radiance shown as white: the 99th percentile over the lit points of all pictures, so that

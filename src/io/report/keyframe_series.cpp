@@ -102,7 +102,7 @@ Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const Li
                                                     std::span<const std::size_t> epochs,
                                                     const KeyFrameOptions &options,
                                                     const std::vector<Joint> &joints) {
-  const KeyFrameStage stage(scene, joints);
+  const KeyFrameStage stage(scene, joints, options.bounces);
   std::vector<KeyFrameRaster> rasters;
   for (const std::size_t i : epochs) {
     if (i >= curve.epochs.size())

@@ -251,18 +251,24 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
   return rasters;
 }
 
-KeyFrameStage::KeyFrameStage(const Scene &scene, std::vector<Joint> joints)
-    : scene_(scene), joints_(std::move(joints)), still_(scene.mesh), still_integrator_(scene) {}
+KeyFrameStage::KeyFrameStage(const Scene &scene, std::vector<Joint> joints, std::size_t bounces)
+    : scene_(scene), joints_(std::move(joints)), still_(scene.mesh) {
+  if (bounces > 1)
+    between_.emplace(scene);
+}
 
 Result<std::vector<KeyFrameRaster>>
 KeyFrameStage::trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,
                      const KeyFrameOptions &options, std::span<const std::size_t> bands) const {
   if (joint_angles_rad.empty())
-    return trace_key_frames(scene_, still_, view, options, bands, &still_integrator_);
+    return trace_key_frames(scene_, still_, view, options, bands, between_ ? &*between_ : nullptr);
   Scene turned = scene_;
   turned.mesh = posed(scene_.mesh, joints_, joint_angles_rad);
-  const Integrator integrator(turned);
-  return trace_key_frames(turned, Occluder(turned.mesh), view, options, bands, &integrator);
+  std::optional<Integrator> between;
+  if (between_)
+    between.emplace(turned);
+  return trace_key_frames(turned, Occluder(turned.mesh), view, options, bands,
+                          between ? &*between : nullptr);
 }
 
 } // namespace umov

@@ -31,19 +31,26 @@ void BounceScene::group_triangles() {
   for (const double area : area_m2_)
     whole += area;
   constexpr double groups_wanted = 400;
-  const Triangle *last = nullptr;
-  double area = 0;
-  for (std::size_t t = 0; t < area_m2_.size(); ++t) {
-    const Triangle &triangle = scene_.mesh.triangles[t];
-    const bool is_new = last == nullptr || triangle.front != last->front ||
-                        dot(normal_[t], normal_[t - 1]) < 0.8 || area > whole / groups_wanted;
-    if (is_new) {
-      ++groups_.count;
-      area = 0;
+  constexpr std::size_t groups_max = 2000;
+  // Crumpled or mixed meshes turn at every triangle: there, by area alone.
+  for (const bool is_by_normal : {true, false}) {
+    groups_ = {};
+    const Triangle *last = nullptr;
+    double area = 0;
+    for (std::size_t t = 0; t < area_m2_.size(); ++t) {
+      const Triangle &triangle = scene_.mesh.triangles[t];
+      const bool is_other =
+          last == nullptr || triangle.front != last->front || dot(normal_[t], normal_[t - 1]) < 0.8;
+      if (last == nullptr || (is_by_normal && is_other) || area > whole / groups_wanted) {
+        ++groups_.count;
+        area = 0;
+      }
+      area += area_m2_[t];
+      groups_.of.push_back(static_cast<std::uint32_t>(groups_.count - 1));
+      last = &triangle;
     }
-    area += area_m2_[t];
-    groups_.of.push_back(static_cast<std::uint32_t>(groups_.count - 1));
-    last = &triangle;
+    if (groups_.count <= groups_max)
+      return;
   }
 }
 

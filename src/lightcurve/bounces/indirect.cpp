@@ -13,9 +13,7 @@ namespace {
 
 using Light = PathSampler::Light;
 
-/// Paths per replicate of a pose at first, and those of all poses that a value rests on before its
-/// half-width is believed: twice what a single pose must have.
-constexpr std::size_t first_count = 32, trusted_draws = 1024;
+constexpr std::size_t first_count = 32; ///< paths per replicate of a pose at first
 /// Poses closer than this find light in the same places [rad], and what was learnt of them counts
 /// for less with each pose that follows. One thread takes up to `run_length` of them in a row.
 constexpr double close_rad = 0.1, memory = 0.9;
@@ -215,8 +213,12 @@ indirect_light(const BounceScene &scene, const Occluder &occluder, std::span<con
     if (!is_any_open)
       break;
   }
-  for (std::size_t k = 0; k < n; ++k)
+  for (std::size_t k = 0; k < n; ++k) {
     out[k].rays = sums.rays(k);
+    if (!has_plane(poses[k]) && options.source.q == 0 && options.source.u == 0)
+      for (BandResult &band : out[k].bands)
+        band.stokes.q = band.stokes.u = band.half_width.q = band.half_width.u = 0;
+  }
   return out;
 }
 

@@ -34,9 +34,12 @@ Light turned(const Light &light, Vec3<Body> s, Vec3<Body> t, Vec3<Body> k) {
 } // namespace
 
 PathSampler::PathSampler(const BounceScene &of, const Occluder &occluder, const Pose &pose,
-                         const IntegrationOptions &options, const ThermalEmission *emission)
+                         const IntegrationOptions &options, const ThermalEmission *emission,
+                         bool has_ends)
     : of_(of), scene_(of.scene_), occluder_(occluder), pose_(pose), options_(options),
-      bands_(of.scene_.bands.size()), seen_(facing(pose.observer)), lit_(facing(pose.sun)),
+      bands_(of.scene_.bands.size()),
+      seen_(has_ends ? facing(pose.observer) : AreaChoice({}, of.area_m2_, of.groups_)),
+      lit_(has_ends ? facing(pose.sun) : AreaChoice({}, of.area_m2_, of.groups_)),
       emission_(emission), plane_(plane_normal(pose.observer, pose.sun)) {}
 
 void PathSampler::add(const std::array<double, dimensions> &x, std::uint64_t stream,

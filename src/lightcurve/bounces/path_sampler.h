@@ -33,15 +33,21 @@ struct PathLearning {
   }
 };
 
+/// Sun and observer are not in line: there is a scattering plane. Without it light that has no Q or
+/// U by its source has none, by definition.
+inline bool has_plane(const Pose &pose) { return norm(cross(pose.observer, pose.sun)) > 1e-14; }
+
 /// Draws paths from both ends; `options` and `pose` must live.
 class PathSampler {
 public:
   using Light = Stokes<ScatteringPlane>;
   static constexpr std::size_t surfaces_max = 64;
 
-  /// With `emission` the light is what the surfaces send out by themselves, not the Sun's.
+  /// With `emission` the light is what the surfaces send out by themselves, not the Sun's. Without
+  /// ends it can only `look`.
   PathSampler(const BounceScene &of, const Occluder &occluder, const Pose &pose,
-              const IntegrationOptions &options, const ThermalEmission *emission = nullptr);
+              const IntegrationOptions &options, const ThermalEmission *emission = nullptr,
+              bool has_ends = true);
 
   [[nodiscard]] bool has_any() const {
     return !seen_.is_empty() && (emission_ != nullptr || !lit_.is_empty());

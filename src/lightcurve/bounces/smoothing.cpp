@@ -59,7 +59,9 @@ LocalFits::LocalFits(std::span<const double> place, std::span<const double> draw
       while (last + 1 < places_ && last - k < half && place[last + 1] - place[k] <= reach)
         ++last;
       const std::size_t count = last - first + 1;
-      if (half > 0 && (count <= of.back().weight.size() || count < 4))
+      if (half > 0 && count < 4) // an end: wider ones hold more on the other side
+        continue;
+      if (half > 0 && count <= of.back().weight.size())
         break;
       Window window{first, {1}, 0};
       if (half > 0)
@@ -86,8 +88,11 @@ Smoothed LocalFits::at(std::size_t k, std::span<const double> value, std::size_t
         means[r] += window.weight[j] * value[r * places_ + window.first + j];
     }
     const auto [mean, deviation] = mean_of_replicates(means);
-    low = std::max(low, mean - agreement * deviation);
-    high = std::min(high, mean + agreement * deviation);
+    // Few draws that found nothing at all do not say that there is nothing.
+    if (mean != 0 || deviation != 0 || window.draws >= trusted_draws) {
+      low = std::max(low, mean - agreement * deviation);
+      high = std::min(high, mean + agreement * deviation);
+    }
     if (low > high)
       break;
     const double widening = window.weight.size() > 1 ? choice : 1;

@@ -8,6 +8,10 @@
 
 namespace umov {
 
+/// Draws per replicate from which an estimate is believed: with fewer, rare bright ones are missed
+/// and their absence is taken for accuracy.
+inline constexpr std::size_t trusted_draws = 1024;
+
 struct Smoothed {
   double mean = 0, half_width = 0; ///< 95 %
   double draws = 0;                ///< per replicate, of all places that were used

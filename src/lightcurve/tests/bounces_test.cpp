@@ -412,6 +412,19 @@ TEST(Bounces, EqualPosesShareTheirPathsToo) {
   EXPECT_LT(rays, 20 * alone.rays);
 }
 
+TEST(Bounces, WithoutAPlaneThereIsNoQOrU) {
+  const Integrator hst(scene_of(make_hst(), NormalMode::Flat, {interface_of("paper_al", 30)}));
+  IntegrationOptions options;
+  options.bounces = 3;
+  options.accuracy = 0.02;
+  const Vec3<Body> v = normalized(Vec3<Body>{1, 2, -1});
+  for (const Pose &pose : {Pose{v, v}, Pose{v, -v}}) {
+    const BandResult light = hst.evaluate(pose, options).bands[0];
+    EXPECT_EQ(light.stokes.q, 0);
+    EXPECT_EQ(light.stokes.u, 0);
+  }
+}
+
 TEST(Bounces, ASeriesStopsWhenAsked) {
   const Integrator hst(
       scene_of(make_hst(), NormalMode::Flat, {builtin_material("paper_al").value()}));

@@ -82,6 +82,31 @@ TEST(LocalFits, TakeTheMeanAtOnePlace) {
   EXPECT_TRUE(std::isfinite(at.half_width));
 }
 
+TEST(LocalFits, SmoothTheEndsToo) {
+  const Noisy of = noisy(40, 0.1, [](double x) { return 1 + x; });
+  const LocalFits fits(of.place, of.draws, 1);
+  for (const std::size_t k : {std::size_t{0}, of.place.size() - 1}) {
+    const Smoothed at = fits.at(k, of.value);
+    EXPECT_GT(at.draws, 4 * 32);
+    EXPECT_NEAR(at.mean, 1 + of.place[k], 2 * at.half_width);
+  }
+}
+
+TEST(LocalFits, DoNotTakeFewEmptyDrawsForDarkness) {
+  // The paths of one place have met nothing, where all around there is light.
+  std::vector<double> place, draws, value;
+  for (std::size_t k = 0; k < 17; ++k) {
+    place.push_back(0.001 * static_cast<double>(k));
+    draws.push_back(32);
+  }
+  for (std::size_t r = 0; r < replicates; ++r)
+    for (std::size_t k = 0; k < 17; ++k)
+      value.push_back(k != 8 && uniform4(9, 0, r * 17 + k)[0] < 0.1 ? 10 : 0); // rare and bright
+  const Smoothed at = LocalFits(place, draws, 1).at(8, value);
+  EXPECT_GT(at.mean, 0.3);
+  EXPECT_GT(at.half_width, 0.1);
+}
+
 TEST(LocalFits, KeepToTheirReach) {
   const std::vector<double> place{0, 10, 20, 30, 40, 50}, draws(6, 32);
   std::vector<double> value;
