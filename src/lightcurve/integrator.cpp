@@ -18,16 +18,10 @@ namespace {
 /// Rounding of a sum of positive terms, in parts of the sum: some units in the last place.
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
 
-} // namespace
-
-namespace {
-
 /// What paths are drawn on.
 struct PathGround {
-  PathGround(const Scene &of, const std::vector<VisibleSides> &sides)
-      : scene(of, sides), occluder(of.mesh) {}
-  BounceScene scene;
-  Occluder occluder;
+  const BounceScene &scene;
+  const Occluder &occluder;
 };
 
 } // namespace
@@ -39,21 +33,26 @@ struct Integrator::State {
     if (!is_convex)
       occluder.emplace(scene.mesh);
   }
-  /// Made when it is first asked for: direct light needs none of it.
-  const PathGround &paths() const {
-    std::call_once(has_paths, [&] { made_paths = std::make_unique<PathGround>(scene, sides); });
-    return *made_paths;
+  /// Made when it is first asked for: direct light needs none of it. A convex body, of which
+  /// nothing is hidden, has ray tests from then on.
+  PathGround paths() const {
+    std::call_once(has_bounces, [&] {
+      if (!occluder)
+        occluder.emplace(scene.mesh);
+      bounces.emplace(scene, sides);
+    });
+    return {*bounces, *occluder};
   }
 
   Scene scene;
   bool is_convex;
   std::vector<VisibleSides> sides;
   Elements elements;
-  std::optional<Occluder> occluder; ///< none for a convex mesh
+  mutable std::optional<Occluder> occluder; ///< direct light of a convex mesh does not ask for it
 
 private:
-  mutable std::once_flag has_paths;
-  mutable std::unique_ptr<const PathGround> made_paths;
+  mutable std::once_flag has_bounces;
+  mutable std::optional<BounceScene> bounces;
 };
 
 Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>(scene)) {}
@@ -173,8 +172,8 @@ Integrator::indirect_radiance(const Pose &pose, std::span<const SurfacePoint> po
   std::vector<Stokes<ScatteringPlane>> out(points.size() * bands);
   if (state_->is_convex || options.bounces < 2 || points.empty())
     return out;
-  PathSampler sampler(state_->paths().scene, state_->paths().occluder, pose, options, nullptr,
-                      false);
+  const PathGround ground = state_->paths();
+  PathSampler sampler(ground.scene, ground.occluder, pose, options, nullptr, false);
   std::vector<Stokes<ScatteringPlane>> sum(bands);
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::fill(sum.begin(), sum.end(), Stokes<ScatteringPlane>{});
@@ -197,12 +196,11 @@ std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
                                              const IntegrationOptions &options, unsigned threads,
                                              const std::atomic<bool> *cancel) const {
   std::vector<PoseResult> out(poses.size());
-  const auto is_stopped = [cancel] { return cancel != nullptr && *cancel; };
   parallel_for(poses.size(), threads, [&](std::size_t i) {
-    if (!is_stopped()) // a pose may take seconds
+    if (!is_stopped(cancel)) // a pose may take seconds
       out[i] = direct(poses[i], options);
   });
-  if (is_stopped())
+  if (is_stopped(cancel))
     return {};
   if (options.bounces < 2)
     return out;

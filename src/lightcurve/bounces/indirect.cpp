@@ -21,8 +21,6 @@ constexpr std::size_t run_length = 32;
 /// Sum of the turns of Sun and observer in the body over which values may be mixed [rad].
 constexpr double reach_rad = 0.5;
 
-bool is_stopped(const std::atomic<bool> *cancel) { return cancel != nullptr && *cancel; }
-
 /// How far the directions have turned since the first pose.
 std::vector<double> turns(std::span<const Pose> poses) {
   std::vector<double> out{0};

@@ -12,6 +12,8 @@
 
 namespace umov {
 
+inline bool is_stopped(const std::atomic<bool> *cancel) { return cancel != nullptr && *cancel; }
+
 /// Light by paths of 2 to options.bounces surfaces for each of a number of poses, drawn until the
 /// half-width of I falls below options.accuracy times the whole, direct_i[pose * bands + band]
 /// included, or options.max_points paths are spent on a pose. Poses that follow each other closely

@@ -3,6 +3,7 @@
 // allow.
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -31,7 +32,7 @@ public:
   /// that.
   [[nodiscard]] Smoothed at(std::size_t k, std::span<const double> value,
                             std::size_t widest = no_limit) const;
-  static constexpr std::size_t no_limit = 64;
+  static constexpr std::size_t no_limit = std::numeric_limits<std::size_t>::max();
 
 private:
   struct Window {

@@ -72,7 +72,8 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
       weight[l] = narrow_weight(terms.lobe_first + l, directions(pose, at, facet));
   const double *none = work.nothing.data();
   work.part.reset(bands());
-  compiled.colours.add_slot(facet.slot, {weight, none, none, weight + terms.lobe_count, none},
+  compiled.colours.add_slot(facet.slot,
+                            {weight, none, none, weight + terms.lobe_count, none, false},
                             work.factors, work.part);
   for (std::size_t b = 0; b < bands(); ++b)
     light[b] = {work.part.i[b], work.part.q[b], 0, 0};

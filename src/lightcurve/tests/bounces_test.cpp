@@ -18,51 +18,12 @@ Material black() { // n = 1 and nothing below: all light is gone
   return out;
 }
 
-Material grey(double reflectance) {
-  Material out = white_lambert();
-  out.body->reflectance.value = {reflectance};
-  return out;
-}
-
-/// A sphere with the triangles about +z taken out; the share of its area that is missing.
-struct Cavity {
-  Mesh mesh;
-  double hole_area = 0, whole_area = 0;
-  Vec3<Body> opening{}; ///< vector area of the hole: along a direction, what one looks through
-};
-Cavity cavity(double opening_deg) {
-  Cavity out;
-  out.mesh = make_sphere(1, 20000);
-  std::vector<Triangle> kept;
-  for (const Triangle &t : out.mesh.triangles) {
-    const double area = 0.5 * norm(area_vector_doubled(out.mesh, t));
-    Vec3<Body> middle{};
-    for (const std::uint32_t v : t.vertex)
-      middle += out.mesh.positions[v] / 3;
-    out.whole_area += area;
-    if (middle.z > std::cos(Angle::degrees(opening_deg).radians()) * norm(middle)) {
-      out.hole_area += area;
-      out.opening += area_vector_doubled(out.mesh, t) * 0.5;
-    } else
-      kept.push_back(t);
-  }
-  out.mesh.triangles = kept;
-  return out;
-}
-
-Scene scene_of_sides(const Mesh &mesh, const Material &front, const Material &back) {
-  Diagnostics diagnostics;
-  auto scene = make_scene(mesh, NormalMode::Flat, three_bands(), {front}, {back}, diagnostics);
-  EXPECT_TRUE(scene) << scene.error().text();
-  return *scene;
-}
-
 TEST(Bounces, WhiteCavityThroughItsHole) {
   // Inside a sphere each point sees all others alike: the light of k surfaces comes out with
   // J_k = phi rho^k (1 - f)^(k - 2) A_hole cos v / (pi A), phi what enters, f = A_hole/A, k >= 2.
-  const Cavity c = cavity(50);
+  const Cavity c = cavity(20'000, 50);
   const double rho = 0.8, f = c.hole_area / c.whole_area;
-  const Integrator integrator(scene_of_sides(c.mesh, black(), grey(rho)));
+  const Integrator integrator(scene_of_sides(c.mesh, {black()}, {grey(rho)}));
   const Pose pose{normalized(Vec3<Body>{0.2, 0, 1}), normalized(Vec3<Body>{-0.1, 0.2, 1})};
   IntegrationOptions options;
   options.accuracy = 0.002;
@@ -95,19 +56,6 @@ TEST(Bounces, AConvexMeshHasDirectLightAlone) {
     EXPECT_EQ(a.bands[1].stokes.i, b.bands[1].stokes.i);
     EXPECT_EQ(a.bands[1].stokes.q, b.bands[1].stokes.q);
   }
-}
-
-/// Two square plates at a right angle, their inner sides facing each other.
-Mesh corner() {
-  Mesh mesh;
-  mesh.groups = {"floor", "wall"};
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}};
-  const std::array<std::uint32_t, 3> none{no_index, no_index, no_index};
-  mesh.triangles = {{{0, 1, 2}, none, 0, 0},
-                    {{0, 2, 3}, none, 0, 0},
-                    {{0, 3, 5}, none, 1, 1},
-                    {{0, 5, 4}, none, 1, 1}};
-  return mesh;
 }
 
 TEST(Bounces, TwoLambertPlatesByTheirFormFactor) {
@@ -149,13 +97,6 @@ TEST(Bounces, ShinyPlatesAgreeFromBothEnds) {
     EXPECT_GT(a.stokes.i, 0);
     EXPECT_LE(std::hypot(a.stokes.q, a.stokes.u, a.stokes.v), a.stokes.i * (1 + 1e-9));
   }
-}
-
-Material mirror_of(const std::string &name) {
-  Material out = builtin_material(name).value();
-  out.distribution = {"mirror", {}, {}, {}};
-  out.body.reset();
-  return out;
 }
 
 using Complex = std::complex<double>;

@@ -30,6 +30,67 @@ inline Material white_lambert() {
   return out;
 }
 
+inline Material grey(double reflectance) {
+  Material out = white_lambert();
+  out.body->reflectance.value = {reflectance};
+  return out;
+}
+
+inline Material mirror_of(const std::string &name) {
+  Material out = builtin_material(name).value();
+  out.distribution = {"mirror", {}, {}, {}};
+  out.body.reset();
+  return out;
+}
+
+/// Front and back of each group with materials of their own; flat normals.
+inline Scene scene_of_sides(const Mesh &mesh, const std::vector<Material> &front,
+                            const std::vector<Material> &back) {
+  Diagnostics diagnostics;
+  auto scene = make_scene(mesh, NormalMode::Flat, three_bands(), front, back, diagnostics);
+  EXPECT_TRUE(scene) << scene.error().text();
+  return *scene;
+}
+
+/// A sphere with the triangles about +z taken out; the share of its area that is missing.
+struct Cavity {
+  Mesh mesh;
+  double hole_area = 0, whole_area = 0;
+  Vec3<Body> opening{}; ///< vector area of the hole: along a direction, what one looks through
+};
+inline Cavity cavity(std::size_t facets, double opening_deg) {
+  Cavity out;
+  out.mesh = make_sphere(1, facets);
+  std::vector<Triangle> kept;
+  for (const Triangle &t : out.mesh.triangles) {
+    const double area = 0.5 * norm(area_vector_doubled(out.mesh, t));
+    Vec3<Body> middle{};
+    for (const std::uint32_t v : t.vertex)
+      middle += out.mesh.positions[v] / 3;
+    out.whole_area += area;
+    if (middle.z > std::cos(Angle::degrees(opening_deg).radians()) * norm(middle)) {
+      out.hole_area += area;
+      out.opening += area_vector_doubled(out.mesh, t) * 0.5;
+    } else
+      kept.push_back(t);
+  }
+  out.mesh.triangles = kept;
+  return out;
+}
+
+/// A square floor of 1 m2 and a wall along its edge at x = 0, their inner sides facing each other.
+inline Mesh corner(double height = 1) {
+  Mesh mesh;
+  mesh.groups = {"floor", "wall"};
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, height}, {0, 1, height}};
+  const std::array<std::uint32_t, 3> none{no_index, no_index, no_index};
+  mesh.triangles = {{{0, 1, 2}, none, 0, 0},
+                    {{0, 2, 3}, none, 0, 0},
+                    {{0, 3, 5}, none, 1, 1},
+                    {{0, 5, 4}, none, 1, 1}};
+  return mesh;
+}
+
 /// The first material on the first group and so on, over and over.
 inline Scene scene_of(const Mesh &mesh, NormalMode normals,
                       const std::vector<Material> &materials) {

@@ -12,40 +12,6 @@ namespace {
 using namespace cases;
 using Complex = std::complex<double>;
 
-Scene scene_with(const Mesh &mesh, const std::vector<Material> &front,
-                 const std::vector<Material> &back) {
-  Diagnostics diagnostics;
-  auto scene = make_scene(mesh, NormalMode::Flat, three_bands(), front, back, diagnostics);
-  EXPECT_TRUE(scene) << scene.error().text();
-  return *scene;
-}
-
-Material grey(double reflectance) {
-  Material out = white_lambert();
-  out.body->reflectance.value = {reflectance};
-  return out;
-}
-
-Material mirror_of(const std::string &name) {
-  Material out = builtin_material(name).value();
-  out.distribution = {"mirror", {}, {}, {}};
-  out.body.reset();
-  return out;
-}
-
-/// A floor of 1 m2 about the x axis, and a high wall along its edge at x = 0.
-Mesh floor_and_wall() {
-  Mesh mesh;
-  mesh.groups = {"floor", "wall"};
-  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 2}, {0, 1, 2}};
-  const std::array<std::uint32_t, 3> none{no_index, no_index, no_index};
-  mesh.triangles = {{{0, 1, 2}, none, 0, 0},
-                    {{0, 2, 3}, none, 0, 0},
-                    {{0, 3, 5}, none, 1, 1},
-                    {{0, 5, 4}, none, 1, 1}};
-  return mesh;
-}
-
 BandResult thermal_light(const Scene &scene, const std::vector<double> &kelvin, const Pose &pose,
                          std::size_t bounces, double accuracy) {
   const auto emission = ThermalEmission::make(scene, kelvin);
@@ -63,7 +29,7 @@ TEST(Thermal, APlateShinesAsItsSurfaceDoes) {
   // By `rough_emissivity`, which src/surface/tests holds to Kirchhoff's law; its axis n x v is
   // across the pose's plane here.
   const Scene scene =
-      scene_with(floor_and_wall(), {interface_of("paper_al", 30), grey(0)}, {grey(0), grey(0)});
+      scene_of_sides(corner(2), {interface_of("paper_al", 30), grey(0)}, {grey(0), grey(0)});
   const double theta = 60 * pi / 180;
   const Pose pose{{0, 0, 1}, {std::sin(theta), 0, std::cos(theta)}};
   const BandResult light = thermal_light(scene, {kelvin_of_test, 0}, pose, 1, 1e-3);
@@ -79,7 +45,7 @@ TEST(Thermal, AMirrorShowsItsWarmNeighbour) {
   // The black floor, warm, is seen itself and in the cold wall of gold at 45 deg: B A cos45
   // (1 + F), Q of the image alone, across the plane, from Fresnel's formulae.
   const Material gold = mirror_of("paper_au");
-  const Scene scene = scene_with(floor_and_wall(), {grey(0), gold}, {grey(0), gold});
+  const Scene scene = scene_of_sides(corner(2), {grey(0), gold}, {grey(0), gold});
   const Pose pose{{0, 0, 1}, normalized(Vec3<Body>{1, 0, 1})};
   const BandResult light = thermal_light(scene, {kelvin_of_test, 0}, pose, 2, 2e-3);
   const Complex eta = index_at(gold.index, Wavelength::nm(550)).value();
@@ -95,25 +61,10 @@ TEST(Thermal, AMirrorShowsItsWarmNeighbour) {
 TEST(Thermal, ACavityOfOneTemperatureComesToBeBlack) {
   // Inside a sphere each point sees all others alike. With n surfaces the hole sends out
   // B e sum_{k<n} (rho (1 - f))^k, e = 1 - rho, f the hole's part; the cold outside nothing.
-  Mesh mesh = make_sphere(1, 8000);
-  std::vector<Triangle> kept;
-  double hole = 0, whole = 0;
-  Vec3<Body> opening{};
-  for (const Triangle &t : mesh.triangles) {
-    const Vec3<Body> doubled = area_vector_doubled(mesh, t);
-    const double area = norm(doubled) / 2;
-    whole += area;
-    if (doubled.z > std::cos(30 * pi / 180) * norm(doubled)) {
-      hole += area;
-      opening += doubled * 0.5;
-    } else {
-      kept.push_back(t);
-    }
-  }
-  mesh.triangles = kept;
-  const double rho = 0.6, f = hole / whole;
+  const Cavity c = cavity(8000, 30);
+  const double rho = 0.6, f = c.hole_area / c.whole_area;
   // Group by group both sides are equally warm: a white outside sends nothing.
-  const Scene scene = scene_with(mesh, {grey(1)}, {grey(rho)});
+  const Scene scene = scene_of_sides(c.mesh, {grey(1)}, {grey(rho)});
   const Pose pose{{0, 0, 1}, normalized(Vec3<Body>{0.1, 0.2, 1})};
   double sum = 0;
   for (std::size_t n = 1; n <= 12; ++n) {
@@ -121,7 +72,7 @@ TEST(Thermal, ACavityOfOneTemperatureComesToBeBlack) {
     if (n != 1 && n != 3 && n != 12)
       continue;
     const BandResult light = thermal_light(scene, {kelvin_of_test}, pose, n, 5e-3);
-    const double expected = planck_of_test() * (1 - rho) * sum * dot(opening, pose.observer);
+    const double expected = planck_of_test() * (1 - rho) * sum * dot(c.opening, pose.observer);
     EXPECT_NEAR(light.stokes.i / expected, 1, 1.2e-2) << n; // twice the half-width, and chords
   }
   EXPECT_GT((1 - rho) * sum, 0.9); // nearly black
@@ -137,7 +88,7 @@ TEST(Thermal, AWarmSphereIsUnpolarized) {
 }
 
 TEST(Thermal, RefusesWhatIsNoTemperature) {
-  const Scene scene = scene_of(floor_and_wall(), NormalMode::Flat, {grey(0.5)});
+  const Scene scene = scene_of(corner(2), NormalMode::Flat, {grey(0.5)});
   for (const std::vector<double> &bad : std::vector<std::vector<double>>{
            {300}, {300, -1}, {300, std::nan("")}, {300, INFINITY}, {}}) {
     const auto made = ThermalEmission::make(scene, bad);
@@ -147,7 +98,7 @@ TEST(Thermal, RefusesWhatIsNoTemperature) {
 }
 
 TEST(Thermal, MirrorsEmitWhatTheyDoNotReflect) {
-  const Scene scene = scene_of(floor_and_wall(), NormalMode::Flat, {mirror_of("paper_al")});
+  const Scene scene = scene_of(corner(2), NormalMode::Flat, {mirror_of("paper_al")});
   for (const double theta : {0.0, 30.0, 60.0, 80.0}) {
     const Emissivity smooth =
         smooth_emissivity(scene.front[0].interface(1), std::cos(theta * pi / 180));
