@@ -2,7 +2,7 @@
 // The standard cases of `umov bench`.
 
 #include <string>
-#include <umov/lightcurve/engine.h>
+#include <umov/light/engine.h>
 #include <vector>
 
 namespace umov::cli {

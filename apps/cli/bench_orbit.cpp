@@ -5,7 +5,7 @@
 #include <limits>
 #include <umov/core/files.h>
 #include <umov/io/elements_file.h>
-#include <umov/lightcurve/engine.h>
+#include <umov/light/engine.h>
 #include <umov/orbit/sgp4.h>
 
 namespace umov::cli {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
-#include <umov/io/keyframe.h>
 #include <umov/io/report.h>
+#include <umov/io/report_frames.h>
 
 namespace umov::cli {
 namespace {

@@ -2,8 +2,8 @@
 // The rows of `umov signature`: one per pose and band.
 
 #include <umov/io/table.h>
-#include <umov/lightcurve/engine.h>
-#include <umov/lightcurve/integrator.h>
+#include <umov/light/engine.h>
+#include <umov/light/integrator.h>
 
 namespace umov::cli {
 

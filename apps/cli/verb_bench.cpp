@@ -14,8 +14,8 @@
 #include <map>
 #include <thread>
 #include <umov/core/version.h>
-#include <umov/lightcurve/engine_audit.h>
-#include <umov/lightcurve/poses.h>
+#include <umov/light/engine_audit.h>
+#include <umov/light/poses.h>
 
 namespace umov::cli {
 namespace {

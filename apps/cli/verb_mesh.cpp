@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <umov/core/files.h>
+#include <umov/core/quantity.h>
 #include <umov/io/obj.h>
 #include <umov/shape/primitives.h>
 #include <umov/shape/rough_surface.h>

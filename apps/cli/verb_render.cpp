@@ -7,8 +7,9 @@
 #include <fmt/format.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
-#include <umov/io/keyframe.h>
+#include <umov/io/exr.h>
 #include <umov/io/png.h>
+#include <umov/io/report_frames.h>
 
 namespace umov::cli {
 namespace {
@@ -124,9 +125,9 @@ Result<std::string> png_of(const RenderOptions &o,
 
 Result<std::string> exr_of(const RenderOptions &o, const std::vector<Band> &bands, const Shot &shot,
                            const std::vector<KeyFrameRaster> &rasters, std::size_t bounces) {
-  std::vector<ExrChannel> channels;
+  std::vector<PictureChannel> channels;
   for (std::size_t b = 0; b < rasters.size(); ++b)
-    for (ExrChannel &channel : stokes_channels(rasters[b], bands[b].name + "."))
+    for (PictureChannel &channel : stokes_channels(rasters[b], bands[b].name + "."))
       channels.push_back(std::move(channel));
   const std::vector<std::pair<std::string, std::string>> notes{
       {"umov_version", version},

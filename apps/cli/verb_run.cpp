@@ -9,9 +9,9 @@
 #include <mutex>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
+#include <umov/io/light_curve_table.h>
 #include <umov/io/run_folder.h>
 #include <umov/io/scenario.h>
-#include <umov/io/table.h>
 
 namespace umov::cli {
 namespace {

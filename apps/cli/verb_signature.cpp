@@ -15,9 +15,9 @@
 #include <umov/core/parallel.h>
 #include <umov/io/scenario.h>
 #include <umov/io/table_stream.h>
-#include <umov/lightcurve/engine.h>
-#include <umov/lightcurve/poses.h>
-#include <umov/lightcurve/thermal.h>
+#include <umov/light/engine.h>
+#include <umov/light/poses.h>
+#include <umov/light/thermal.h>
 
 namespace umov::cli {
 namespace {

@@ -9,8 +9,8 @@
 #include <umov/core/constants.h>
 #include <umov/core/parallel.h>
 #include <umov/frames/sky.h>
-#include <umov/lightcurve/articulated_engine.h>
-#include <umov/lightcurve/engine.h>
+#include <umov/light/articulated_engine.h>
+#include <umov/light/engine.h>
 #include <umov/photometry/radiometry.h>
 #include <umov/photometry/refracted_shadow.h>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <umov/core/constants.h>
-#include <umov/lightcurve/engine.h>
+#include <umov/light/engine.h>
 #include <umov/photometry/radiometry.h>
 #include <umov/shape/primitives.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 #include "paper/workshop.h"
 
-#include <umov/io/keyframe.h>
+#include <umov/picture/keyframe.h>
 
 namespace umov {
 

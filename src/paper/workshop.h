@@ -5,9 +5,9 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <umov/light/engine.h>
+#include <umov/light/poses.h>
 #include <umov/lightcurve/compute.h>
-#include <umov/lightcurve/engine.h>
-#include <umov/lightcurve/poses.h>
 #include <umov/orbit/passes.h>
 #include <umov/paper/paper.h>
 #include <umov/scene/scene.h>

@@ -69,11 +69,4 @@ Result<std::string> make_report(const ReportInput &input);
 /// the first of that name counts). Materials whose interface reflects nothing (n = 1) have none.
 std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> surfaces);
 
-/// "#rrggbb" of the i-th material in pictures and plots: Okabe & Ito (2008), lighter again after
-/// seven.
-std::string material_colour(std::size_t index);
-
-/// Colours of p = 0, 1/8, ... 1 ("#rrggbb"): viridis (Smith & van der Walt 2015, CC0).
-std::vector<std::string> polarization_scale();
-
 } // namespace umov

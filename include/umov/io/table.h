@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 #include <umov/core/result.h>
-#include <umov/lightcurve/compute.h>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -78,10 +77,5 @@ Result<Table> read_csv(std::string_view text, const std::string &file,
 
 /// Puts what every output of the project says into the header: versions and conventions.
 void note_conventions(Table &table);
-
-/// The columns of a light curve, one row per epoch and band, and the 95 % half-widths.
-Table light_curve_table(const LightCurve &curve, PolarizationFrame frame);
-/// One row per pass: rise, culmination, set, number of epochs kept.
-Table passes_table(const std::vector<Pass> &passes, const LightCurve &curve);
 
 } // namespace umov

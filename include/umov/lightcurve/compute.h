@@ -6,9 +6,9 @@
 #include <optional>
 #include <umov/attitude/attitude.h>
 #include <umov/core/diagnostics.h>
-#include <umov/lightcurve/articulated.h>
 #include <umov/lightcurve/earth_light.h>
 #include <umov/lightcurve/light_curve.h>
+#include <umov/observation/moving_joints.h>
 #include <umov/orbit/trajectory.h>
 
 namespace umov {

@@ -3,7 +3,7 @@
 
 #include <functional>
 #include <umov/attitude/attitude.h>
-#include <umov/lightcurve/integrator.h>
+#include <umov/light/integrator.h>
 #include <umov/optics/stokes.h>
 #include <umov/orbit/ephemeris.h>
 

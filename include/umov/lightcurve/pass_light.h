@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 #include <umov/attitude/attitude.h>
-#include <umov/lightcurve/glints.h>
+#include <umov/light/glints.h>
 #include <umov/orbit/passes.h>
 #include <umov/scene/scene.h>
 

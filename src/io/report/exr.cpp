@@ -36,10 +36,10 @@ private:
 } // namespace
 
 Result<std::string> encode_exr(std::uint32_t width, std::uint32_t height,
-                               std::span<const ExrChannel> channels,
+                               std::span<const PictureChannel> channels,
                                std::span<const std::pair<std::string, std::string>> notes) {
   const std::size_t pixels = std::size_t{width} * height;
-  for (const ExrChannel &channel : channels)
+  for (const PictureChannel &channel : channels)
     if (pixels == 0 || channel.values.size() != pixels)
       return fail(ErrorCode::Internal,
                   fmt::format("channel {} has {} values, expected {} x {}", channel.name,
@@ -50,7 +50,7 @@ Result<std::string> encode_exr(std::uint32_t width, std::uint32_t height,
     for (const auto &[key, value] : notes)
       header.insert(key.c_str(), Imf::StringAttribute(value));
     Imf::FrameBuffer buffer;
-    for (const ExrChannel &channel : channels) {
+    for (const PictureChannel &channel : channels) {
       header.channels().insert(channel.name.c_str(), Imf::Channel(Imf::FLOAT));
       // OpenEXR reads through a pointer that is not to const.
       auto *first = const_cast<char *>(reinterpret_cast<const char *>(channel.values.data()));

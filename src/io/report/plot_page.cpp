@@ -1,8 +1,8 @@
 #include <umov/io/plot_page.h>
 
-#include "io/report/colours.h"
 #include "io/report/page.h"
 #include "io/report/plot_json.h"
+#include <umov/picture/colours.h>
 
 #include <cmath>
 #include <umov/core/embedded.h>

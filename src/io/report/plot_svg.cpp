@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <umov/core/quantity.h>
 
-#include "io/report/colours.h"
+#include <umov/picture/colours.h>
 
 namespace umov {
 namespace {

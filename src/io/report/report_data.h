@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 #include <umov/io/report.h>
+#include <umov/picture/colours.h>
 
 namespace umov {
 

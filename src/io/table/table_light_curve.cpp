@@ -1,4 +1,4 @@
-#include <umov/io/table.h>
+#include <umov/io/light_curve_table.h>
 
 #include <cmath>
 #include <limits>

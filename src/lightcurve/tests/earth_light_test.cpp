@@ -2,11 +2,11 @@
 
 #include <umov/lightcurve/earth_light.h>
 
-#include "lightcurve/tests/integrator_cases.h"
+#include "light/tests/integrator_cases.h"
 
 #include <cmath>
 #include <umov/frames/sky.h>
-#include <umov/lightcurve/engine.h>
+#include <umov/light/engine.h>
 #include <umov/orbit/moon.h>
 #include <umov/photometry/earthshine.h>
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <umov/core/parallel.h>
 #include <umov/io/index_file.h>
-#include <umov/lightcurve/integrator.h>
+#include <umov/light/integrator.h>
 #include <umov/photometry/passband.h>
 #include <umov/shape/primitives.h>
 

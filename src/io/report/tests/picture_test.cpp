@@ -9,17 +9,18 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <umov/io/keyframe.h>
 #include <umov/io/plot_page.h>
+#include <umov/io/exr.h>
 #include <umov/io/png.h>
+#include <umov/picture/keyframe.h>
 
 namespace umov {
 namespace {
 
 TEST(Exr, ChannelsComeBackAsTheyWere) {
-  const ExrChannel i{"nm:550.I", {1.f, 2.5f, 3.f, 1e-20f, 5.f, 6.f}},
+  const PictureChannel i{"nm:550.I", {1.f, 2.5f, 3.f, 1e-20f, 5.f, 6.f}},
       q{"nm:550.Q", {-.1f, 0, .3f, 0, -5.f, 6.f}};
-  const std::vector<ExrChannel> channels{i, q};
+  const std::vector<PictureChannel> channels{i, q};
   const std::vector<std::pair<std::string, std::string>> notes{{"POLCCONV", "IAU"}};
   const auto bytes = encode_exr(3, 2, channels, notes);
   ASSERT_TRUE(bytes) << bytes.error().message;
@@ -27,7 +28,7 @@ TEST(Exr, ChannelsComeBackAsTheyWere) {
   std::ofstream(path, std::ios::binary) << *bytes;
   Imf::InputFile file(path.c_str());
   EXPECT_EQ(file.header().typedAttribute<Imf::StringAttribute>("POLCCONV").value(), "IAU");
-  for (const ExrChannel &channel : channels) {
+  for (const PictureChannel &channel : channels) {
     std::vector<float> read(6);
     Imf::FrameBuffer buffer;
     buffer.insert(channel.name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char *>(read.data()),

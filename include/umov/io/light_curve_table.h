@@ -1,0 +1,14 @@
+#pragma once
+// Light curves and their passes as tables.
+
+#include <umov/io/table.h>
+#include <umov/lightcurve/compute.h>
+
+namespace umov {
+
+/// The columns of a light curve, one row per epoch and band, and the 95 % half-widths.
+Table light_curve_table(const LightCurve &curve, PolarizationFrame frame);
+/// One row per pass: rise, culmination, set, number of epochs kept.
+Table passes_table(const std::vector<Pass> &passes, const LightCurve &curve);
+
+} // namespace umov

@@ -1,0 +1,106 @@
+#pragma once
+// The fast path: a scene prepared once, then hundreds of thousands of poses per second and core.
+// docs/theory/engine.md
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <umov/light/abundances.h>
+#include <umov/light/stokes_table.h>
+#include <umov/scene/scene.h>
+#include <vector>
+
+namespace umov {
+
+/// How hiding is decided.
+enum class Visibility {
+  None, ///< nothing hides anything: right for a proven convex mesh only
+  Masks ///< looked up between directions for which rays were traced beforehand
+};
+
+/// How finely masks sample the surface and the directions.
+struct MaskQuality {
+  std::size_t points = 0;       ///< over the whole surface, shared out by area
+  std::size_t narrow_cells = 0; ///< directions: (cells + 1)^2 for small classes, even
+  std::size_t wide_cells = 0;   ///< the same for large flat ones, even
+  /// Poses whose half-width of I is larger than this part of I are mended by rays, class by class,
+  /// the most uncertain first; 0: never.
+  double refine_above = 0;
+};
+/// Typical error of I 0.2-0.5 %, a few seconds and tens of megabytes.
+inline constexpr MaskQuality fast_masks{60'000, 64, 64, 0.03};
+/// Typical error of I 0.1 %, up to half a minute and 300 MB.
+inline constexpr MaskQuality fine_masks{240'000, 96, 128, 0.01};
+
+/// The masks for a wanted typical error of I, and rays for poses twenty times worse.
+MaskQuality masks_for(double accuracy);
+
+struct EngineOptions {
+  Visibility visibility = Visibility::Masks; ///< a proven convex mesh takes None by itself
+  MaskQuality masks = fast_masks;
+  /// Facets of one material whose normals differ by less are joined [rad]; the error goes into the
+  /// half-widths. 0: only those that are equal to 1e-5.
+  double cluster_rad = 0;
+  bool is_double = false; ///< the scalar reference in double instead of the vector unit in float
+  bool is_intensity_only = false; ///< leaves Q = 0: to measure what polarization costs
+  /// Other materials on the same mesh that abundances must serve exactly too.
+  std::vector<Scene> hypotheses = {};
+  unsigned threads = 0; ///< of the preparation; 0: all cores
+};
+
+/// What was prepared.
+struct EngineFacts {
+  std::size_t triangles = 0, classes = 0, groups = 0; ///< groups of 16 classes
+  std::size_t general_classes = 0; ///< lit one by one: their surface has no kernel
+  std::size_t mask_bytes = 0, scene_bytes = 0;
+  double setup_s = 0;
+  bool is_convex = false;
+};
+
+/// A scene ready for sunlight from any direction. Evaluation is thread safe, and gives the same
+/// bits for any number of threads and any split of the poses.
+class Engine {
+public:
+  Engine(const Scene &scene, const EngineOptions &options);
+  /// The same with masks that `save_masks` has written for this very mesh, material groups and
+  /// quality. BadInput if the file is none, is damaged or was made for something else.
+  static Result<Engine> with_masks(const std::filesystem::path &file, const Scene &scene,
+                                   const EngineOptions &options);
+  /// Writes the masks, whole or not at all (nothing for a convex mesh: Usage). Device if it fails.
+  [[nodiscard]] Result<void> save_masks(const std::filesystem::path &file) const;
+  ~Engine();
+  Engine(Engine &&) noexcept;
+  Engine &operator=(Engine &&) noexcept;
+
+  /// Stokes of every pose. `out` is resized.
+  void evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads = 1) const;
+
+  /// Sums of every pose before any colour. BadInput if a material has none (measured or
+  /// anisotropic surfaces, polarized body light: they are lit facet by facet).
+  Result<void> abundances(std::span<const Pose> poses, AbundanceTable &out,
+                          unsigned threads = 1) const;
+  /// What other materials and bands (of a scene with the same mesh groups) make of this engine's
+  /// sums. Their roughness and shadowing must be those of the engine's own or of its hypotheses;
+  /// BadInput says which is not. Body light of others is expressed in the profiles that there are:
+  /// see MaterialTables::diffuse_error.
+  [[nodiscard]] Result<MaterialTables> tables_for(const Scene &materials) const;
+
+  [[nodiscard]] const EngineFacts &facts() const;
+  [[nodiscard]] std::size_t band_count() const;
+
+private:
+  friend class ArticulatedEngine;
+  struct State;
+  explicit Engine(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Name of the instruction set in use, as Highway has it ("AVX3_DL": AVX-512 with its later parts).
+const char *engine_instruction_set();
+/// Restricts the engine, for tests and benchmarks: "best", "avx512", "avx2", "sse4" or "baseline".
+/// False, and nothing changed, if this machine lacks it or there is none of that name. Not while
+/// another thread evaluates.
+bool restrict_engine(std::string_view instruction_set);
+
+} // namespace umov

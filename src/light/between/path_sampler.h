@@ -1,0 +1,133 @@
+#pragma once
+// Paths of light between the surfaces of one pose.
+
+#include "light/between/area_choice.h"
+#include "light/between/bounce_scene.h"
+#include "light/between/directions.h"
+#include "light/between/lattice.h"
+
+#include <array>
+#include <umov/light/integrator.h>
+#include <umov/light/thermal.h>
+#include <umov/shape/occluder.h>
+
+namespace umov {
+
+/// A point of the surface, on the side that faces where the path came from.
+struct Vertex {
+  Vec3<Body> point{}, face{}, normal{}; ///< face: geometric, normal: shading; out of that side
+  Vec3<Body> field{};
+  const Surface *surface = nullptr;
+  const Sampler *sampler = nullptr;
+  bool is_by_mirror = false; ///< the path goes on from here (towards the Sun) as from a mirror
+  std::uint32_t triangle = 0;
+  bool is_front = true;
+};
+
+/// What the paths of a pose have learnt, for the next one.
+struct PathLearning {
+  LearntAreas seen, lit;
+  void add(const PathLearning &other, double share) {
+    seen.add(other.seen, share);
+    lit.add(other.lit, share);
+  }
+};
+
+/// Sun and observer are not in line: there is a scattering plane. Without it light that has no Q or
+/// U by its source has none, by definition.
+inline bool has_plane(const Pose &pose) { return norm(cross(pose.observer, pose.sun)) > 1e-14; }
+
+/// Draws paths from both ends; `options` and `pose` must live.
+class PathSampler {
+public:
+  using Light = Stokes<ScatteringPlane>;
+  static constexpr std::size_t surfaces_max = 64;
+
+  /// With `emission` the light is what the surfaces send out by themselves, not the Sun's. Without
+  /// ends it can only `look`.
+  PathSampler(const BounceScene &of, const Occluder &occluder, const Pose &pose,
+              const IntegrationOptions &options, const ThermalEmission *emission = nullptr,
+              bool has_ends = true);
+
+  [[nodiscard]] bool has_any() const {
+    return !seen_.is_empty() && (emission_ != nullptr || !lit_.is_empty());
+  }
+  /// Adds what one pair of paths carries: one from the observer, one from the Sun, who has none of
+  /// emitted light. `sum`: per band.
+  void add(const std::array<double, dimensions> &x, std::uint64_t stream, std::vector<Light> &sum);
+  /// Adds the radiance that one path finds at a point that the observer sees; the Sun's side has no
+  /// part in it.
+  void look(const SurfacePoint &at, std::uint64_t stream, std::vector<Light> &sum);
+  /// From now on paths begin where others, of this pose or a like one, found light.
+  void start_from(const PathLearning &other) {
+    seen_.start_from(other.seen);
+    lit_.start_from(other.lit);
+  }
+  [[nodiscard]] PathLearning learnt() const { return {seen_.learnt(), lit_.learnt()}; }
+  [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+private:
+  /// What counts of the surface that the Sun shines on: all, with the Sun as a disk; all but a
+  /// mirror; the Sun's image in a mirror alone.
+  enum class SunEnd { Disk, WithoutMirror, Mirror };
+
+  [[nodiscard]] AreaChoice facing(Vec3<Body> direction) const;
+  [[nodiscard]] Vertex vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> towards) const;
+  [[nodiscard]] Vertex vertex_at(const AreaChoice &choice, double x, double u, double v,
+                                 Vec3<Body> towards) const;
+  bool is_free(Vec3<Body> from, Vec3<Body> direction);
+  /// The next surface, if there is one that can be seen from outside.
+  bool next(const Vertex &from, Vec3<Body> direction, Vertex &to, double &distance);
+  /// f (n.in) applied to light that comes from direction `in` and leaves to `out`. The light's axes
+  /// are those of this plane, before and after.
+  [[nodiscard]] Light scattered(const Vertex &at, std::size_t band, Vec3<Body> in, Vec3<Body> out,
+                                double disk, bool is_by_mirror, const Light &light) const;
+  /// Light that travels along `beam` to x[count-1] with its axis +Q, then on to x[0] and to the
+  /// observer, in the pose's axes.
+  [[nodiscard]] Light carried(const Vertex *x, const Vec3<Body> *step, std::size_t count,
+                              std::size_t band, Light light, Vec3<Body> axis,
+                              Vec3<Body> beam) const;
+  /// Light that x[last] emits.
+  [[nodiscard]] Light emitted(const Vertex *x, const Vec3<Body> *step, std::size_t last,
+                              std::size_t band) const;
+  double add_emitted(const Vertex *x, const Vec3<Body> *step, std::size_t last, double weight,
+                     std::vector<Light> &sum) const;
+  /// Light of the Sun that goes x[count-1] ... x[0] and then to the observer, in the pose's axes.
+  /// `step[i]`: direction from x[i] to x[i+1].
+  [[nodiscard]] Light along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
+                            std::size_t band, SunEnd end) const;
+  /// How much likelier a path without mirrors is drawn from the Sun's side than from this one.
+  [[nodiscard]] double sun_over_observer(const Vertex *x, const Vec3<Body> *step,
+                                         std::size_t count) const;
+  /// Adds a path to all bands; what it adds to I of the first.
+  double add_path(const Vertex *x, const Vec3<Body> *step, std::size_t count, double weight,
+                  SunEnd end, std::vector<Light> &sum) const;
+  /// Paths that begin at a point that the observer may see, and look at the Sun from each surface
+  /// they meet; what they added to I of the first band.
+  double from_observer(const Vertex &first, const std::array<double, dimensions> &x,
+                       std::uint64_t stream, std::vector<Light> &sum);
+  /// Their way from there on; `is_alone`: they are not drawn from the Sun's side as well.
+  double go_on(const Vertex &first, double weight, bool is_alone,
+               const std::array<double, dimensions> &x, std::uint64_t stream,
+               std::vector<Light> &sum);
+  /// The same begun where the Sun may shine, with a look at the observer.
+  double from_sun(const Vertex &first, const std::array<double, dimensions> &x,
+                  std::uint64_t stream, std::vector<Light> &sum);
+
+  const BounceScene &of_;
+  const Scene &scene_;
+  const Occluder &occluder_;
+  const Pose &pose_;
+  const IntegrationOptions &options_;
+  std::size_t bands_;
+  AreaChoice seen_, lit_;
+  const ThermalEmission *emission_;
+  Vec3<Body> plane_; ///< normal of the pose's scattering plane
+  std::uint64_t rays_ = 0;
+  // The path at hand. Room for it on the stack would be set to zero for each: a seventh of the
+  // time.
+  std::array<Vertex, surfaces_max> path_;
+  std::array<Vec3<Body>, surfaces_max> step_;
+};
+
+} // namespace umov

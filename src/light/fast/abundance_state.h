@@ -1,0 +1,22 @@
+#pragma once
+// Private: sums as tables, and materials applied to them.
+
+#include "light/fast/compile.h"
+
+#include <span>
+#include <umov/light/abundances.h>
+
+namespace umov {
+
+/// Columns and room for poses, all dark.
+void begin_abundances(const CompiledScene &scene, const Mesh &mesh, std::span<const Pose> poses,
+                      AbundanceTable &out);
+/// Writes one pose's sums to its row.
+void put_abundances(const CompiledScene &scene, const backend::PoseSums &sums, std::size_t row,
+                    AbundanceTable &out);
+
+/// BadInput if a material does not fit the sums, or the mesh groups differ.
+Result<MaterialTables> make_material_tables(const Scene &materials, const CompiledScene &sums,
+                                            const Mesh &mesh, bool is_intensity_only);
+
+} // namespace umov

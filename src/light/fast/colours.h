@@ -1,0 +1,74 @@
+#pragma once
+// Private: colour and polarization, applied to the sums of a pose.
+
+#include "backend/scene_data.h"
+#include "light/fast/fresnel_table.h"
+#include "light/fast/surface_fit.h"
+
+namespace umov {
+
+/// Light of a pose in all bands per unit of `sum_area`, and squared standard deviations.
+struct BandLight {
+  std::vector<double> i, q, u, v;
+  std::vector<double> var_i, var_q, var_u, var_v;
+  std::vector<double> bias; ///< bound of what is known to be left out of I
+  /// Zeros; U and V only if something gives them: kernels do not.
+  void reset(std::size_t bands, bool has_u_or_v = false);
+  void add(const BandLight &other);
+  /// The same with the other's unit of area changed into this one's.
+  void add_scaled(const BandLight &other, double scale);
+  [[nodiscard]] std::size_t size() const { return i.size(); }
+};
+
+/// Sums of a slot over the facets, with their standard deviations.
+struct SlotSums {
+  const double *specular, *specular_deviation, *specular_bias;
+  const double *product, *product_deviation;
+  bool varies = true; ///< some deviation is not 0
+};
+
+/// Reflection of all microfacets at one phase angle, and room to work in.
+struct PhaseFactors {
+  std::vector<double> a, b;                ///< by column: M00, M10; b = 0 without a plane
+  std::vector<double> ratio, dev_i, dev_q; ///< of one slot: M10/M00, deviations of I and Q
+};
+
+/// What one set of materials makes of sums.
+class Colours {
+public:
+  Colours() = default;
+  /// `light` per slot, empty where a slot has no kernel. With `is_intensity_only` all Q are left 0.
+  Colours(std::vector<const Surface *> surfaces, std::vector<std::optional<SurfaceLight>> light,
+          const std::vector<backend::SlotTerms> &terms, bool is_intensity_only = false);
+
+  void prepare(double cos_phase, bool has_plane, PhaseFactors &out) const;
+  /// Adds the light of one slot with kernels.
+  void add_slot(std::size_t slot, const SlotSums &sums, PhaseFactors &at, BandLight &out) const;
+
+  [[nodiscard]] std::size_t band_count() const { return bands_; }
+  [[nodiscard]] const Surface &surface(std::size_t slot) const { return *slots_[slot].surface; }
+  /// First column of a slot in PhaseFactors.
+  [[nodiscard]] std::size_t column(std::size_t slot) const { return slots_[slot].column; }
+
+private:
+  struct Slot {
+    const Surface *surface = nullptr;
+    std::size_t column = 0, product_count = 0;
+    bool has_lobe = false;
+    std::vector<std::uint32_t> lobe;                       ///< per band
+    std::vector<double> unpolarized, single_bounce, whole; ///< [product * bands + band]
+    bool has_single_bounce = false;
+    bool is_plain = false; ///< one lobe for all bands and at most one product
+    double diffuse_error = 0;
+  };
+  void add_plain(const Slot &slot, const SlotSums &sums, const double *a, const double *b,
+                 BandLight &out) const;
+  void add_variances(const Slot &slot, const SlotSums &sums, PhaseFactors &at,
+                     BandLight &out) const;
+  std::vector<Slot> slots_;
+  FresnelTable fresnel_;
+  std::size_t bands_ = 0;
+  bool is_intensity_only_ = false;
+};
+
+} // namespace umov

@@ -1,0 +1,48 @@
+#pragma once
+// Private: a scene flattened for the facet loops.
+
+#include "backend/scene_data.h"
+#include "light/fast/colours.h"
+#include "light/fast/mask_points.h"
+#include "light/fast/shared_materials.h"
+
+namespace umov {
+
+/// A scene as sums over facets and what colours them.
+struct CompiledScene {
+  backend::SceneData<double> data; ///< areas in parts of `area_m2`
+  double area_m2 = 1;              ///< of all classes
+  /// Slots of the scene (elements.h) that share their material, as data.slots.
+  std::vector<std::vector<std::uint32_t>> slots;
+  std::vector<std::optional<SurfaceFit>> fits; ///< as data.slots; empty: no kernel
+  std::vector<double> widths;                  ///< per lobe
+  /// Per lobe: a surface that has it, and in which band.
+  struct LobeSource {
+    const Surface *surface;
+    std::size_t band;
+  };
+  std::vector<LobeSource> lobe_sources;
+  /// Per lobe: what single precision costs on its flanks.
+  struct Rounding {
+    double per_peak; ///< 1 over the largest value of D G2/4, that of a Gaussian
+    double per_root; ///< relative error per sqrt(2 x) where the lobe has fallen to exp(-x)
+  };
+  std::vector<Rounding> rounding;
+  Colours colours;
+  std::size_t general_classes = 0;
+};
+
+/// Groups by plan, surfaces by fit: those of `scene`, and of `hypotheses`, other materials on the
+/// same mesh that the sums are to serve too. `cluster_rad` > 0 adds the error of joined normals.
+CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypotheses,
+                            const SharedSlots &shared, const FacetClasses &classes,
+                            const GroupPlan &plan, double cluster_rad, bool is_intensity_only);
+
+/// What a scene's materials make of the sums. BadInput if they were not made for one of them.
+Result<Colours> colours_of(const Scene &scene, const CompiledScene &sums, bool is_intensity_only,
+                           double &diffuse_error);
+
+/// The same in single precision.
+backend::SceneData<float> round_scene(const backend::SceneData<double> &from);
+
+} // namespace umov

@@ -1,0 +1,197 @@
+#include <umov/light/engine.h>
+
+#include "light/fast/abundance_state.h"
+#include "light/fast/mask_file.h"
+#include "light/fast/pose_data.h"
+#include "light/fast/pose_order.h"
+#include "light/fast/state.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <umov/core/parallel.h>
+#include <umov/shape/topology.h>
+
+namespace umov {
+namespace {
+
+double cos_phase_of(const Pose &pose) {
+  return std::clamp(dot(pose.sun, pose.observer), -1.0, 1.0);
+}
+
+constexpr std::size_t ordered_from = 2048; ///< fewer poses are not worth sorting
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Poses that one thread takes at a time.
+constexpr std::size_t poses_per_task_min = 64, poses_per_task_max = 16'384;
+
+} // namespace
+
+MaskQuality masks_for(double accuracy) {
+  MaskQuality out = accuracy >= 0.004 ? fast_masks : fine_masks;
+  out.refine_above = std::max(20 * accuracy, 0.01);
+  return out;
+}
+
+Engine::State::Workspace::Workspace(const State &of) {
+  if (of.occluder)
+    tracer.emplace(*of.occluder);
+}
+
+std::size_t Engine::State::terms_max() const {
+  std::size_t most = 0;
+  for (const backend::SlotTerms &terms : compiled.data.slots)
+    most = std::max<std::size_t>(most, terms.lobe_count + terms.product_count);
+  return most;
+}
+
+void Engine::State::prepare(const Pose &pose, Prepared &out) const {
+  out.cos_phase = cos_phase_of(pose);
+  prepare_pose(pose, out.cos_phase, compiled.data.lobes, compiled.widths, hiding(), out.pose);
+  if (!options.is_double)
+    round_pose(out.pose, out.single);
+  if (masks)
+    backend::prefetch(*masks, out.pose.narrow_sun, out.pose.narrow_observer, out.pose.wide_sun,
+                      out.pose.wide_observer);
+}
+
+template <class Body>
+void Engine::State::for_each(std::span<const Pose> poses, unsigned threads,
+                             const Body &body) const {
+  std::vector<std::uint32_t> order(poses.size());
+  if (masks && poses.size() >= ordered_from)
+    order = order_for_masks(poses, masks->narrow.directions(),
+                            facts.mask_bytes / masks->narrow.directions());
+  else
+    std::iota(order.begin(), order.end(), 0u);
+  const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(threads)) + 1,
+                                      poses_per_task_min, poses_per_task_max);
+  parallel_for((poses.size() + size - 1) / size, threads, [&](std::size_t task) {
+    Workspace work(*this);
+    const std::size_t begin = task * size, end = std::min(poses.size(), begin + size);
+    prepare(poses[order[begin]], work.prepared[0]);
+    for (std::size_t k = begin; k < end; ++k) {
+      if (k + 1 < end)
+        prepare(poses[order[k + 1]], work.prepared[(k + 1 - begin) % 2]);
+      body(order[k], poses[order[k]], work.prepared[(k - begin) % 2], work);
+    }
+  });
+}
+
+bool Engine::State::has_masks() const {
+  return options.visibility == Visibility::Masks && !facts.is_convex;
+}
+
+MaskSize Engine::State::mask_size() const {
+  const auto even = [](std::size_t cells) { return std::max<std::size_t>(cells / 2 * 2, 2); };
+  return {even(options.masks.narrow_cells), even(options.masks.wide_cells)};
+}
+
+/// Everything but the masks.
+Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), options(with) {
+  facts.is_convex = is_proven_convex(scene.mesh);
+  elements = make_elements(scene, visible_sides(scene.mesh));
+  const SharedSlots shared = share_materials(scene, options.hypotheses, elements);
+  classes = join_facets(elements, options.cluster_rad);
+  plan = plan_groups(classes, has_masks() ? std::max<std::size_t>(options.masks.points, 1) : 0);
+  compiled = compile_scene(scene, options.hypotheses, shared, classes, plan, options.cluster_rad,
+                           options.is_intensity_only);
+  single = round_scene(compiled.data);
+  facts.triangles = scene.mesh.triangles.size();
+  facts.classes = classes.list.size();
+  facts.groups = plan.groups.size();
+  facts.general_classes = compiled.general_classes;
+  facts.scene_bytes = compiled.data.groups.size() *
+                      (sizeof(backend::FacetGroup<double>) + sizeof(backend::FacetGroup<float>));
+}
+
+void Engine::State::take_masks(std::optional<backend::Masks> ready) {
+  if (!has_masks())
+    return;
+  occluder.emplace(scene.mesh);
+  masks =
+      ready ? std::move(*ready)
+            : build_masks(scene, elements, classes, plan, *occluder, mask_size(), options.threads);
+  if (options.masks.refine_above > 0)
+    refine_points = RefinePoints(scene, elements, classes, plan, *occluder, options.threads);
+  facts.mask_bytes = memory_of(*masks) + refine_points.bytes();
+}
+
+Engine::Engine(const Scene &scene, const EngineOptions &options) {
+  const auto start = std::chrono::steady_clock::now();
+  state_ = std::make_unique<State>(scene, options);
+  state_->take_masks({});
+  state_->facts.setup_s = seconds_since(start);
+}
+
+Engine::Engine(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Result<Engine> Engine::with_masks(const std::filesystem::path &file, const Scene &scene,
+                                  const EngineOptions &options) {
+  const auto start = std::chrono::steady_clock::now();
+  auto state = std::make_unique<State>(scene, options);
+  if (state->has_masks()) {
+    UMOV_ASSIGN(masks, read_masks(file, mask_key(state->scene.mesh, state->classes, state->plan,
+                                                 state->mask_size())));
+    state->take_masks(std::move(masks));
+  }
+  state->facts.setup_s = seconds_since(start);
+  return Engine(std::move(state));
+}
+
+Result<void> Engine::save_masks(const std::filesystem::path &file) const {
+  const State &s = *state_;
+  if (!s.masks)
+    return fail(ErrorCode::Usage, "nothing hides anything here: there are no masks to keep");
+  return write_masks(file, *s.masks, mask_key(s.scene.mesh, s.classes, s.plan, s.mask_size()));
+}
+
+Engine::~Engine() = default;
+Engine::Engine(Engine &&) noexcept = default;
+Engine &Engine::operator=(Engine &&) noexcept = default;
+
+const EngineFacts &Engine::facts() const { return state_->facts; }
+std::size_t Engine::band_count() const { return state_->scene.bands.size(); }
+
+void Engine::evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads) const {
+  const State &s = *state_;
+  out.resize(poses.size(), band_count());
+  const bool has_u_or_v = s.compiled.general_classes > 0;
+  s.for_each(
+      poses, threads,
+      [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
+        if (!s.sum(pose, at, work))
+          return put_darkness(row, out);
+        s.colour(work);
+        put_light(work.light, s.compiled.area_m2, has_scattering_plane(pose), has_u_or_v, row, out);
+      });
+}
+
+Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out,
+                                unsigned threads) const {
+  const State &s = *state_;
+  for (std::size_t slot = 0; slot < s.compiled.slots.size(); ++slot)
+    if (s.compiled.data.slots[slot].is_general)
+      return fail(ErrorCode::BadInput, "material \"" +
+                                           s.compiled.colours.surface(slot).material().name +
+                                           "\" is lit facet by facet and has no sums");
+  begin_abundances(s.compiled, s.scene.mesh, poses, out);
+  s.for_each(
+      poses, threads,
+      [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
+        out.is_dark[row] = s.sum(pose, at, work) ? 0 : 1;
+        if (out.is_dark[row] == 0)
+          put_abundances(s.compiled, work.sums, row, out);
+      });
+  return {};
+}
+
+Result<MaterialTables> Engine::tables_for(const Scene &materials) const {
+  return make_material_tables(materials, state_->compiled, state_->scene.mesh,
+                              state_->options.is_intensity_only);
+}
+
+} // namespace umov

@@ -1,0 +1,74 @@
+#include "light/fast/fresnel_table.h"
+
+#include "kernel/microfacet.inl.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umov {
+namespace {
+
+constexpr std::size_t steps = 1024; ///< in the cosine of incidence, from 0 to 1
+constexpr double tolerance = 1e-7;
+
+/// Reflection at an incidence, from the phase angle that has it.
+MuellerEntries reflection(const Surface &surface, std::size_t band, double cosine) {
+  return surface.interface(band).reflection(std::clamp(cosine, 0.0, 1.0));
+}
+
+} // namespace
+
+FresnelTable::FresnelTable(std::vector<const Surface *> surfaces) : surfaces_(std::move(surfaces)) {
+  for (const Surface *surface : surfaces_)
+    columns_ += surface->band_count();
+  rows_ = steps + 1;
+  values_.resize(rows_ * 2 * columns_);
+  std::size_t column = 0;
+  for (std::size_t s = 0; s < surfaces_.size(); ++s)
+    for (std::size_t band = 0; band < surfaces_[s]->band_count(); ++band, ++column) {
+      for (std::size_t row = 0; row < rows_; ++row) {
+        const auto m = reflection(*surfaces_[s], band, static_cast<double>(row) / steps);
+        values_[row * 2 * columns_ + column] = m.a;
+        values_[row * 2 * columns_ + columns_ + column] = m.b;
+      }
+      double error = 0;
+      for (std::size_t row = 0; row < steps; ++row) {
+        const std::size_t first = std::clamp<std::size_t>(row, 1, steps - 2) - 1;
+        const double x = static_cast<double>(row) + 0.5;
+        const auto c = kernel::cubic_weights(x - static_cast<double>(first + 1));
+        const auto m = reflection(*surfaces_[s], band, x / steps);
+        double a = 0, b = 0;
+        for (std::size_t k = 0; k < 4; ++k) {
+          a += c.w[k] * values_[(first + k) * 2 * columns_ + column];
+          b += c.w[k] * values_[(first + k) * 2 * columns_ + columns_ + column];
+        }
+        error = std::max({error, std::abs(a - m.a), std::abs(b - m.b)});
+      }
+      if (!(error <= tolerance))
+        exact_.push_back({column, s, band});
+    }
+}
+
+void FresnelTable::at(double cos_phase, double *a, double *b) const {
+  const double cosine = std::sqrt(std::clamp(0.5 * (1 + cos_phase), 0.0, 1.0));
+  const double x = cosine * steps;
+  const std::size_t first = std::clamp<std::size_t>(static_cast<std::size_t>(x), 1, steps - 2) - 1;
+  const auto c = kernel::cubic_weights(x - static_cast<double>(first + 1));
+  const double *row[4];
+  for (std::size_t k = 0; k < 4; ++k)
+    row[k] = values_.data() + (first + k) * 2 * columns_;
+  const auto mix = [&](std::size_t i) {
+    return c.w[0] * row[0][i] + c.w[1] * row[1][i] + c.w[2] * row[2][i] + c.w[3] * row[3][i];
+  };
+  for (std::size_t i = 0; i < columns_; ++i) {
+    a[i] = mix(i);
+    b[i] = mix(columns_ + i);
+  }
+  for (const Exact &e : exact_) {
+    const auto m = reflection(*surfaces_[e.surface], e.band, cosine);
+    a[e.column] = m.a;
+    b[e.column] = m.b;
+  }
+}
+
+} // namespace umov

@@ -1,0 +1,205 @@
+#include "light/fast/mask_file.h"
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string>
+#include <umov/core/files.h>
+
+namespace umov {
+namespace {
+
+/// Fowler, Noll & Vo's hash over words of eight bytes: tells files apart, does not keep secrets.
+class Hash {
+public:
+  void add(const void *data, std::size_t bytes) {
+    const char *p = static_cast<const char *>(data);
+    for (; bytes >= 8; bytes -= 8, p += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, p, 8);
+      value_ = (value_ ^ word) * 0x100000001B3ull;
+      value_ ^= value_ >> 29; // what is high would never reach down
+    }
+    for (; bytes > 0; --bytes, ++p)
+      value_ = (value_ ^ static_cast<unsigned char>(*p)) * 0x100000001B3ull;
+  }
+  template <class T> void add(const T &one) { add(&one, sizeof one); }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+private:
+  std::uint64_t value_ = 0xCBF29CE484222325ull;
+};
+
+/// Everything of fixed size, in front.
+struct Header {
+  char magic[8] = {'u', 'm', 'o', 'v', 'm', 's', 'k', '1'};
+  std::uint64_t byte_order = 0x0102030405060708ull; ///< the machine's own
+  std::uint64_t key = 0, checksum = 0;              ///< of everything else in the file
+  std::uint64_t groups = 0, blocks = 0, longest = 0;
+  struct Table {
+    std::uint64_t cells = 0, entries = 0, offsets = 0, rows = 0;
+  } narrow, wide;
+};
+
+/// A part of the file as bytes.
+template <class List> std::span<char> bytes_of(List &list) {
+  return {reinterpret_cast<char *>(list.data()), list.size() * sizeof(*list.data())};
+}
+
+/// All lists, in the order of the file.
+template <class F> void for_each_list(backend::Masks &masks, const F &f) {
+  f(bytes_of(masks.groups));
+  for (backend::MaskTable *table : {&masks.narrow, &masks.wide}) {
+    f(bytes_of(table->offset));
+    f(bytes_of(table->row));
+  }
+  f(bytes_of(masks.pool));
+}
+
+std::uint64_t checksum_of(Header header, backend::Masks &masks) {
+  Hash hash;
+  header.checksum = 0;
+  hash.add(header);
+  for_each_list(masks, [&](std::span<char> part) { hash.add(part.data(), part.size()); });
+  return hash.value();
+}
+
+/// Blocks of each entry of a table; empty if a group points outside.
+std::vector<std::uint32_t> entry_blocks(const backend::Masks &masks, bool is_wide) {
+  std::vector<std::uint32_t> out((is_wide ? masks.wide : masks.narrow).entries, 0);
+  for (const backend::GroupMask &group : masks.groups) {
+    if (group.is_wide != is_wide)
+      continue;
+    const std::size_t count = is_wide ? backend::lanes : 1;
+    if (group.entry + count > out.size())
+      return {};
+    std::fill_n(out.begin() + group.entry, count,
+                std::uint32_t{group.words} / (is_wide ? std::uint32_t{backend::lanes} : 1u));
+  }
+  return out;
+}
+
+/// Offsets and rows stay within the pool, whoever wrote the file.
+bool is_consistent(const backend::Masks &masks, bool is_wide) {
+  const backend::MaskTable &table = is_wide ? masks.wide : masks.narrow;
+  const auto blocks = entry_blocks(masks, is_wide);
+  const std::size_t directions = table.entries > 0 ? table.directions() : 0;
+  if (blocks.size() != table.entries || table.offset.size() != directions * table.entries ||
+      table.row.size() != directions + 1)
+    return false;
+  for (std::size_t k = 0; k < table.offset.size(); ++k)
+    if (std::size_t{table.offset[k]} + blocks[k % table.entries] > masks.pool.size())
+      return false;
+  return std::all_of(table.row.begin(), table.row.end(),
+                     [&](std::uint32_t row) { return row <= masks.pool.size(); }) &&
+         std::all_of(blocks.begin(), blocks.end(),
+                     [&](std::uint32_t n) { return n <= masks.longest; }) &&
+         masks.pool.size() >= std::size_t{2} * masks.longest;
+}
+
+} // namespace
+
+std::uint64_t mask_key(const Mesh &mesh, const FacetClasses &classes, const GroupPlan &plan,
+                       const MaskSize &size) {
+  Hash hash;
+  for (const Vec3<Body> &p : mesh.positions)
+    for (const double x : {p.x, p.y, p.z})
+      hash.add(x);
+  for (const Triangle &t : mesh.triangles)
+    hash.add(t.vertex.data(), sizeof t.vertex);
+  for (const FacetClass &c : classes.list) {
+    for (const double x : {c.normal.x, c.normal.y, c.normal.z, c.area_m2})
+      hash.add(x);
+    hash.add(c.slot);
+    hash.add(c.count);
+  }
+  for (const GroupPlan::Group &group : plan.groups) {
+    hash.add(group.member.data(), sizeof group.member);
+    hash.add(std::uint32_t{group.words});
+    hash.add(std::uint32_t{group.is_wide ? 1u : 0u});
+  }
+  hash.add(std::uint64_t{size.narrow_cells});
+  hash.add(std::uint64_t{size.wide_cells});
+  return hash.value();
+}
+
+Result<void> write_masks(const std::filesystem::path &path, const backend::Masks &masks,
+                         std::uint64_t key) {
+  auto &all = const_cast<backend::Masks &>(masks); // the lists are only read
+  Header header;
+  header.key = key;
+  header.groups = masks.groups.size();
+  header.blocks = masks.pool.size();
+  header.longest = masks.longest;
+  const auto put = [](Header::Table &to, const backend::MaskTable &from) {
+    to = {from.cells, from.entries, from.offset.size(), from.row.size()};
+  };
+  put(header.narrow, masks.narrow);
+  put(header.wide, masks.wide);
+  header.checksum = checksum_of(header, all);
+  UMOV_ASSIGN(file, FileInProgress::open(path));
+  UMOV_TRY(file.write({reinterpret_cast<const char *>(&header), sizeof header}));
+  Result<void> done;
+  for_each_list(all, [&](std::span<char> part) {
+    if (done)
+      done = file.write({part.data(), part.size()});
+  });
+  UMOV_TRY(std::move(done));
+  return file.commit();
+}
+
+Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64_t key) {
+  const auto refuse = [&](const std::string &what) {
+    return fail(ErrorCode::BadInput, what + ". Remove it to have it made anew.", {path.string()});
+  };
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+    return fail(ErrorCode::BadInput, "cannot be read", {path.string()});
+  std::error_code unknown;
+  const std::uint64_t size = std::filesystem::file_size(path, unknown);
+  Header header;
+  const Header wanted;
+  if (unknown || size < sizeof header ||
+      !stream.read(reinterpret_cast<char *>(&header), sizeof header) ||
+      std::memcmp(header.magic, wanted.magic, sizeof header.magic) != 0)
+    return refuse("is not a file of masks of this version");
+  if (header.byte_order != wanted.byte_order)
+    return refuse("was made on a machine with another byte order");
+  if (header.key != key)
+    return refuse("was made for another mesh, other material groups or another accuracy");
+  // Sizes are believed only if they add up to the file's: nothing is reserved on a lie's word.
+  const std::uint64_t most = size;
+  for (const std::uint64_t count :
+       {header.groups, header.blocks, header.narrow.offsets, header.narrow.rows,
+        header.wide.offsets, header.wide.rows, header.longest})
+    if (count > most)
+      return refuse("is damaged");
+  const std::uint64_t words =
+      header.narrow.offsets + header.narrow.rows + header.wide.offsets + header.wide.rows;
+  if (sizeof header + header.groups * sizeof(backend::GroupMask) +
+          header.blocks * sizeof(backend::MaskBlock) + words * sizeof(std::uint32_t) !=
+      size)
+    return refuse("is damaged or cut short");
+  backend::Masks out;
+  out.groups.resize(header.groups);
+  out.pool.resize(header.blocks);
+  out.longest = static_cast<std::uint32_t>(header.longest);
+  const auto take = [](const Header::Table &from, backend::MaskTable &to) {
+    to.cells = from.cells;
+    to.entries = from.entries;
+    to.offset.resize(from.offsets);
+    to.row.resize(from.rows);
+  };
+  take(header.narrow, out.narrow);
+  take(header.wide, out.wide);
+  for_each_list(out, [&](std::span<char> part) {
+    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+  });
+  if (!stream || checksum_of(header, out) != header.checksum || !is_consistent(out, false) ||
+      !is_consistent(out, true))
+    return refuse("is damaged");
+  return out;
+}
+
+} // namespace umov

@@ -1,0 +1,19 @@
+#pragma once
+// Private: a pose made ready for the facet loops.
+
+#include "backend/scene_data.h"
+
+#include <umov/light/integrator.h>
+
+namespace umov {
+
+/// Directions and, for each lobe of that width, what the Sun's size makes of it. Grid directions
+/// are filled in where there are masks.
+void prepare_pose(const Pose &pose, double cos_phase,
+                  const std::vector<kernel::LobeConstants<double>> &lobes,
+                  const std::vector<double> &widths, const backend::Masks *masks,
+                  backend::PoseData<double> &out);
+/// The same constants in single precision.
+void round_pose(const backend::PoseData<double> &from, backend::PoseData<float> &to);
+
+} // namespace umov

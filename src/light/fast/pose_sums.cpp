@@ -1,0 +1,157 @@
+// What a pose sums up to: by kernels, and facet by facet where there is none.
+
+#include "light/fast/state.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+namespace umov {
+bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) const {
+  if (options.is_double)
+    backend::sum_facets(compiled.data, hiding(), mask_error, at.pose, work.sums);
+  else
+    backend::sum_facets(single, hiding(), mask_error, at.single, work.sums);
+  if (!work.sums.is_any_seen)
+    return false;
+  compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
+  work.general.reset(compiled.general_classes > 0 ? bands() : 0, true);
+  if (!work.sums.seen.empty())
+    add_narrow_and_general(pose, at, work);
+  take_roots(work);
+  if (!options.is_double)
+    add_rounding(work);
+  if (masks && options.masks.refine_above > 0 && is_uncertain(work))
+    refine(pose, at, work);
+  return true;
+}
+
+namespace {
+
+/// sqrt(2 x) of what has fallen to 2^-n = exp(-x) of its peak.
+const std::array<double, 128> &flank_roots() {
+  static const std::array<double, 128> roots = [] {
+    std::array<double, 128> out{};
+    for (std::size_t n = 0; n < out.size(); ++n)
+      out[n] = std::sqrt(2 * 0.7 * static_cast<double>(n)); // ln 2, rounded up
+    return out;
+  }();
+  return roots;
+}
+
+/// The n with 2^-n below x, for x between 0 and 1; 0 above.
+std::size_t halvings(double x) {
+  constexpr int bias = 1023, mantissa_bits = 52;
+  const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(x) >> mantissa_bits) - bias;
+  return static_cast<std::size_t>(std::clamp(-exponent, 0, 127));
+}
+
+} // namespace
+
+/// On the flank of a lobe, exp(-m |n - h|^2/2), the rounding of n and h to single precision is
+/// multiplied by m |n - h|, which is sqrt(2 m x) where the lobe has fallen to exp(-x): by that of
+/// the whole sum at most. Below 2^-126 of the peak nothing is left.
+void Engine::State::add_rounding(Workspace &work) const {
+  constexpr double least = 1.2e-38;
+  for (std::size_t lobe = 0; lobe < compiled.data.lobes.size(); ++lobe) {
+    const CompiledScene::Rounding &of = compiled.rounding[lobe];
+    const double sum = work.sums.specular[lobe];
+    work.sums.specular_bias[lobe] +=
+        sum * of.per_root * flank_roots()[halvings(sum * of.per_peak)] + least / of.per_peak;
+  }
+}
+
+void Engine::State::take_roots(Workspace &work, bool may_vary) const {
+  work.varies = masks || !work.sums.seen.empty() || may_vary;
+  const auto root = [&](std::span<const double> variance, std::vector<double> &out) {
+    out.resize(variance.size());
+    if (!work.varies)
+      return;
+    std::transform(variance.begin(), variance.end(), out.begin(),
+                   [](double x) { return std::sqrt(x); });
+  };
+  root(work.sums.specular_variance, work.specular_deviation);
+  root(work.sums.product_variance, work.product_deviation);
+}
+
+SurfaceDirections Engine::State::directions(const Pose &pose, const Prepared &at,
+                                            const backend::SeenFacet &facet) const {
+  const FacetClass &c = classes.list[plan.groups[facet.group].member[facet.lane]];
+  const Element &e = elements.list[classes.element[c.first]];
+  return directions_on(
+      c.normal, direction_field(scene.mesh, compiled.colours.surface(facet.slot), e.triangle),
+      pose.sun, pose.observer, at.cos_phase, pose.sun_radius_rad);
+}
+
+double Engine::State::narrow_weight(std::size_t lobe, const SurfaceDirections &at) const {
+  const auto &source = compiled.lobe_sources[lobe];
+  return source.surface->specular(source.band, at);
+}
+
+void Engine::State::light_of_general(const Pose &pose, const Prepared &at,
+                                     const backend::SeenFacet &facet, const Workspace &work,
+                                     Stokes<ScatteringPlane> *bands) const {
+  const Stokes<ScatteringPlane> sunlight{1, 0, 0, 0};
+  const Surface &surface = compiled.colours.surface(facet.slot);
+  const std::size_t column = compiled.colours.column(facet.slot);
+  const SurfaceDirections on = directions(pose, at, facet);
+  for (std::size_t b = 0; b < this->bands(); ++b) {
+    const double w = surface.specular(b, on);
+    bands[b] = {work.factors.a[column + b] * w, work.factors.b[column + b] * w, 0, 0};
+    if (surface.has_diffuse())
+      bands[b] += surface.diffuse(b, on, sunlight);
+  }
+}
+
+void Engine::State::add_narrow_and_general(const Pose &pose, const Prepared &at,
+                                           Workspace &work) const {
+  work.facet_light.resize(bands());
+  for (const backend::SeenFacet &seen : work.sums.seen) {
+    const backend::SlotTerms &terms = compiled.data.slots[seen.slot];
+    if (!terms.is_general) {
+      const SurfaceDirections on = directions(pose, at, seen);
+      for (std::size_t lobe = terms.lobe_first; lobe < terms.lobe_first + terms.lobe_count; ++lobe)
+        if (at.pose.is_narrow[lobe]) {
+          const double w = narrow_weight(lobe, on);
+          work.sums.specular[lobe] += w * seen.area;
+          work.sums.specular_variance[lobe] += w * w * seen.variance;
+        }
+      continue;
+    }
+    light_of_general(pose, at, seen, work, work.facet_light.data());
+    BandLight &to = work.general;
+    for (std::size_t b = 0; b < bands(); ++b) {
+      const auto &s = work.facet_light[b];
+      to.i[b] += s.i * seen.area;
+      to.q[b] += s.q * seen.area;
+      to.u[b] += s.u * seen.area;
+      to.v[b] += s.v * seen.area;
+      to.var_i[b] += s.i * s.i * seen.variance;
+      to.var_q[b] += s.q * s.q * seen.variance;
+      to.var_u[b] += s.u * s.u * seen.variance;
+      to.var_v[b] += s.v * s.v * seen.variance;
+    }
+  }
+}
+
+SlotSums Engine::State::sums_of(std::size_t slot, const Workspace &work) const {
+  const backend::SlotTerms &terms = compiled.data.slots[slot];
+  return {work.sums.specular.data() + terms.lobe_first,
+          work.specular_deviation.data() + terms.lobe_first,
+          work.sums.specular_bias.data() + terms.lobe_first,
+          work.sums.product.data() + terms.product_first,
+          work.product_deviation.data() + terms.product_first,
+          work.varies};
+}
+
+void Engine::State::colour(Workspace &work) const {
+  work.light.reset(bands(), compiled.general_classes > 0);
+  for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot)
+    if (!compiled.data.slots[slot].is_general)
+      compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.light);
+  if (compiled.general_classes > 0)
+    work.light.add(work.general);
+}
+
+} // namespace umov

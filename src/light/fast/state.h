@@ -1,0 +1,116 @@
+#pragma once
+// Private: what an engine holds, and how a pose goes through it.
+
+#include "light/fast/compile.h"
+#include "light/fast/masks.h"
+#include "light/fast/refine_points.h"
+
+#include <array>
+#include <optional>
+#include <umov/light/engine.h>
+
+namespace umov {
+
+inline constexpr double normal_95 = 1.959963984540054; ///< two-sided quantile of the normal law
+
+/// Calibrated against dense runs (tests/engine_errors_test.cpp).
+inline constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F, 4e-3F};
+
+/// There is a Q: Sun and observer are not in line.
+inline bool has_scattering_plane(const Pose &pose) {
+  return !(pose.sun == pose.observer) && !(pose.sun == -pose.observer);
+}
+
+/// Writes a pose's light to its row, times `scale`. Q and U are 0 without a scattering plane.
+void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_or_v,
+               std::size_t row, StokesTable &out);
+void put_darkness(std::size_t row, StokesTable &out);
+
+struct Engine::State {
+  State(const Scene &of, const EngineOptions &with);
+  /// Masks read from a file, or made.
+  void take_masks(std::optional<backend::Masks> ready);
+  [[nodiscard]] bool has_masks() const;
+  [[nodiscard]] MaskSize mask_size() const;
+
+  Scene scene;
+  EngineOptions options;
+  EngineFacts facts;
+  Elements elements;
+  FacetClasses classes;
+  GroupPlan plan;
+  CompiledScene compiled;
+  backend::SceneData<float> single;
+  std::optional<backend::Masks> masks;
+  std::optional<Occluder> occluder;
+  RefinePoints refine_points;
+
+  /// A pose made ready; the next one is while this one is summed.
+  struct Prepared {
+    double cos_phase = 1;
+    backend::PoseData<double> pose;
+    backend::PoseData<float> single;
+  };
+
+  /// What one thread needs besides.
+  struct Workspace {
+    explicit Workspace(const State &of);
+    std::array<Prepared, 2> prepared;
+    backend::PoseSums sums;
+    std::vector<double> specular_deviation, product_deviation; ///< roots of the sums' variances
+    bool varies = true; ///< some of those roots are not 0; else they are not set
+    PhaseFactors factors;
+    BandLight light;   ///< of the whole
+    BandLight general; ///< of the facets without a kernel
+    BandLight part;
+    // Of `is_uncertain` and `refine`:
+    std::vector<double> band_room, nothing;
+    std::vector<backend::SeenFacet> uncertain;
+    std::vector<double> weights;                      ///< [uncertain * terms_max + term]
+    std::vector<Stokes<ScatteringPlane>> facet_light; ///< [uncertain * bands + band], per area
+    std::vector<std::uint32_t> order;
+    std::vector<char> is_traced; ///< per uncertain facet
+    std::optional<RefineTracer> tracer;
+  };
+
+  [[nodiscard]] const backend::Masks *hiding() const { return masks ? &*masks : nullptr; }
+  [[nodiscard]] std::size_t bands() const { return scene.bands.size(); }
+  [[nodiscard]] std::size_t terms_max() const; ///< lobes and products of a slot, at most
+
+  void prepare(const Pose &pose, Prepared &out) const;
+  /// All sums of a pose, and the light that has none; false if nothing is both lit and seen.
+  bool sum(const Pose &pose, const Prepared &at, Workspace &work) const;
+  /// work.light from the sums.
+  void colour(Workspace &work) const;
+  /// Runs `body(row, pose, prepared, workspace)` for all poses, in an order that suits the masks.
+  template <class Body>
+  void for_each(std::span<const Pose> poses, unsigned threads, const Body &body) const;
+
+  // pose_sums.cpp
+  void add_narrow_and_general(const Pose &pose, const Prepared &at, Workspace &work) const;
+  /// `may_vary`: something has added variances besides masks and listed facets.
+  void take_roots(Workspace &work, bool may_vary = false) const;
+  void add_rounding(Workspace &work) const;
+  void light_of_general(const Pose &pose, const Prepared &at, const backend::SeenFacet &facet,
+                        const Workspace &work, Stokes<ScatteringPlane> *bands) const;
+  [[nodiscard]] SurfaceDirections directions(const Pose &pose, const Prepared &at,
+                                             const backend::SeenFacet &facet) const;
+  [[nodiscard]] double narrow_weight(std::size_t lobe, const SurfaceDirections &at) const;
+  [[nodiscard]] SlotSums sums_of(std::size_t slot, const Workspace &work) const;
+
+  // refinement.cpp
+  [[nodiscard]] bool is_uncertain(Workspace &work) const;
+  void refine(const Pose &pose, const Prepared &at, Workspace &work) const;
+  void list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const;
+  void weigh(const Pose &pose, const Prepared &at, std::size_t k, Workspace &work) const;
+  struct Left;
+  void order_by_error(Workspace &work) const;
+  void trace(const Pose &pose, Workspace &work) const;
+  void trace_facet(const Pose &pose, std::size_t k, double wanted, Workspace &work) const;
+  void change_area(std::size_t k, double change, Workspace &work) const;
+  /// A variance of the seen area of work.uncertain[k] besides what the sums hold.
+  void add_variance(std::size_t k, double variance, Workspace &work) const;
+  void take_variances(Workspace &work) const;
+};
+
+} // namespace umov

@@ -1,0 +1,58 @@
+#include "light/fast/state.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umov {
+namespace {
+
+/// Rounding of the sums, in parts of I: docs/theory/engine.md has the measured agreement.
+constexpr double rounding = 2e-6;
+
+} // namespace
+
+void StokesTable::resize(std::size_t poses, std::size_t band_count) {
+  bands = band_count;
+  for (auto *column : {&i, &q, &i_err, &q_err})
+    column->resize(poses * band_count);
+  for (auto *column : {&u, &v, &u_err, &v_err}) // most poses have neither
+    column->assign(poses * band_count, 0);
+  is_dark.resize(poses);
+}
+
+BandResult StokesTable::at(std::size_t pose, std::size_t band) const {
+  const std::size_t k = pose * bands + band;
+  return {{i[k], q[k], u[k], v[k]}, {i_err[k], q_err[k], u_err[k], v_err[k]}};
+}
+
+void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_or_v,
+               std::size_t row, StokesTable &out) {
+  const std::size_t n = light.size(), first = row * n;
+  out.is_dark[row] = 0;
+  const auto floor = [&](std::size_t b) {
+    return (rounding * std::abs(light.i[b]) + light.bias[b]) * scale;
+  };
+  const auto half_width = [&](double variance) {
+    return variance > 0 ? normal_95 * std::sqrt(variance) * scale : 0;
+  };
+  for (std::size_t b = 0; b < n; ++b) {
+    out.i[first + b] = light.i[b] * scale;
+    out.q[first + b] = has_plane ? light.q[b] * scale : 0;
+    out.i_err[first + b] = half_width(light.var_i[b]) + floor(b);
+    out.q_err[first + b] = half_width(light.var_q[b]) + floor(b);
+  }
+  for (std::size_t b = 0; has_u_or_v && b < n; ++b) {
+    out.u[first + b] = has_plane ? light.u[b] * scale : 0;
+    out.v[first + b] = light.v[b] * scale;
+    out.u_err[first + b] = half_width(light.var_u[b]) + floor(b);
+    out.v_err[first + b] = half_width(light.var_v[b]) + floor(b);
+  }
+}
+
+void put_darkness(std::size_t row, StokesTable &out) {
+  out.is_dark[row] = 1;
+  for (auto *column : {&out.i, &out.q, &out.i_err, &out.q_err})
+    std::fill_n(column->begin() + static_cast<std::ptrdiff_t>(row * out.bands), out.bands, 0);
+}
+
+} // namespace umov

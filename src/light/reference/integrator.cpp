@@ -1,0 +1,219 @@
+#include <umov/light/integrator.h>
+
+#include "light/between/bounce_scene.h"
+#include "light/between/indirect.h"
+#include "light/between/path_sampler.h"
+#include "light/reference/visibility.h"
+
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <umov/core/parallel.h>
+#include <umov/shape/topology.h>
+
+namespace umov {
+namespace {
+
+/// Rounding of a sum of positive terms, in parts of the sum: some units in the last place.
+constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+
+/// What paths are drawn on.
+struct PathGround {
+  const BounceScene &scene;
+  const Occluder &occluder;
+};
+
+} // namespace
+
+struct Integrator::State {
+  explicit State(const Scene &of)
+      : scene(of), is_convex(is_proven_convex(of.mesh)), sides(visible_sides(of.mesh)),
+        elements(make_elements(scene, sides)) {
+    if (!is_convex)
+      occluder.emplace(scene.mesh);
+  }
+  /// Made when it is first asked for: direct light needs none of it. A convex body, of which
+  /// nothing is hidden, has ray tests from then on.
+  PathGround paths() const {
+    std::call_once(has_bounces, [&] {
+      if (!occluder)
+        occluder.emplace(scene.mesh);
+      bounces.emplace(scene, sides);
+    });
+    return {*bounces, *occluder};
+  }
+
+  Scene scene;
+  bool is_convex;
+  std::vector<VisibleSides> sides;
+  Elements elements;
+  mutable std::optional<Occluder> occluder; ///< direct light of a convex mesh does not ask for it
+
+private:
+  mutable std::once_flag has_bounces;
+  mutable std::optional<BounceScene> bounces;
+};
+
+Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>(scene)) {}
+Integrator::~Integrator() = default;
+Integrator::Integrator(Integrator &&) noexcept = default;
+Integrator &Integrator::operator=(Integrator &&) noexcept = default;
+
+bool Integrator::is_convex() const { return state_->is_convex; }
+
+PoseResult Integrator::direct(const Pose &pose, const IntegrationOptions &options) const {
+  const Scene &scene = state_->scene;
+  const std::size_t bands = scene.bands.size(), groups = scene.mesh.groups.size();
+  const PoseGeometry geometry = geometry_of(pose);
+  const LitElements lit = light_elements(scene, state_->elements, geometry, options.source);
+  const VisibleSums sums =
+      state_->is_convex
+          ? sum_unhidden(scene, lit)
+          : sum_visible(scene, state_->elements, *state_->occluder, geometry, lit, options);
+  PoseResult out;
+  out.rays = sums.rays;
+  out.is_dark = !sums.is_any_seen;
+  out.bands.resize(bands);
+  out.group_intensity.assign(groups * bands, 0);
+  for (std::size_t b = 0; b < bands; ++b) {
+    BandResult &band = out.bands[b];
+    for (std::size_t slot = 0; slot < 2 * groups; ++slot) {
+      const Stokes<ScatteringPlane> light =
+          lit.fresnel[slot * bands + b] * sums.specular[slot * lit.lobes + lit.lobe_of(b)] +
+          sums.diffuse[slot * bands + b];
+      band.stokes += light;
+      out.group_intensity[group_of_slot(static_cast<std::uint32_t>(slot)) * bands + b] += light.i;
+    }
+    const double floor = rounding * band.stokes.i;
+    const Stokes<ScatteringPlane> &rule = sums.rule_variance[b];
+    band.half_width = sums.half_width[b];
+    band.half_width += Stokes<ScatteringPlane>{std::sqrt(rule.i), std::sqrt(rule.q),
+                                               std::sqrt(rule.u), std::sqrt(rule.v)};
+    band.half_width.i += floor;
+    band.half_width.q += floor;
+    if (lit.has_u_or_v) {
+      band.half_width.u += floor;
+      band.half_width.v += floor;
+    }
+    if (!geometry.has_plane && options.source.q == 0 && options.source.u == 0)
+      band.stokes.q = band.stokes.u = 0;
+  }
+  if (bands > 0 && out.bands[0].stokes.i > 0)
+    out.glint_share = sums.glint / out.bands[0].stokes.i;
+  return out;
+}
+
+namespace {
+
+void add(const IndirectLight &light, PoseResult &out) {
+  const double direct = out.bands.empty() ? 0 : out.bands[0].stokes.i;
+  out.rays += light.rays;
+  const auto quadrature = [](double &a, double b) { a = std::hypot(a, b); };
+  for (std::size_t b = 0; b < out.bands.size(); ++b) {
+    const BandResult &more = light.bands[b];
+    out.indirect.push_back(more.stokes);
+    out.bands[b].stokes += more.stokes;
+    quadrature(out.bands[b].half_width.i, more.half_width.i);
+    quadrature(out.bands[b].half_width.q, more.half_width.q);
+    quadrature(out.bands[b].half_width.u, more.half_width.u);
+    quadrature(out.bands[b].half_width.v, more.half_width.v);
+    out.is_dark = out.is_dark && !(more.stokes.i > 0);
+  }
+  if (direct > 0)
+    out.glint_share *= direct / out.bands[0].stokes.i;
+}
+
+std::vector<IndirectLight> by_paths(const PathGround &ground, std::span<const Pose> poses,
+                                    std::span<const double> direct_i,
+                                    const IntegrationOptions &options, unsigned threads,
+                                    const std::atomic<bool> *cancel,
+                                    const ThermalEmission *emission) {
+  constexpr std::size_t block = 1024; // poses whose sums are held at a time
+  const std::size_t bands = poses.empty() ? 0 : direct_i.size() / poses.size();
+  std::vector<IndirectLight> out;
+  for (std::size_t begin = 0; begin < poses.size(); begin += block) {
+    const std::size_t count = std::min(block, poses.size() - begin);
+    auto part =
+        indirect_light(ground.scene, ground.occluder, poses.subspan(begin, count), options,
+                       direct_i.subspan(begin * bands, count * bands), threads, cancel, emission);
+    if (part.empty())
+      return {};
+    std::move(part.begin(), part.end(), std::back_inserter(out));
+  }
+  return out;
+}
+
+} // namespace
+
+std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
+                                                std::span<const double> direct_i,
+                                                const IntegrationOptions &options, unsigned threads,
+                                                const std::atomic<bool> *cancel) const {
+  const std::size_t bands = state_->scene.bands.size();
+  if (state_->is_convex || options.bounces < 2)
+    return {poses.size(), IndirectLight{std::vector<BandResult>(bands), 0}};
+  return by_paths(state_->paths(), poses, direct_i, options, threads, cancel, nullptr);
+}
+
+std::vector<IndirectLight> Integrator::thermal(std::span<const Pose> poses,
+                                               const ThermalEmission &emission,
+                                               const IntegrationOptions &options, unsigned threads,
+                                               const std::atomic<bool> *cancel) const {
+  const std::vector<double> nothing(poses.size() * state_->scene.bands.size());
+  return by_paths(state_->paths(), poses, nothing, options, threads, cancel, &emission);
+}
+
+std::vector<Stokes<ScatteringPlane>>
+Integrator::indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
+                              const IntegrationOptions &options, std::size_t paths,
+                              std::uint64_t first) const {
+  const std::size_t bands = state_->scene.bands.size();
+  std::vector<Stokes<ScatteringPlane>> out(points.size() * bands);
+  if (state_->is_convex || options.bounces < 2 || points.empty())
+    return out;
+  const PathGround ground = state_->paths();
+  PathSampler sampler(ground.scene, ground.occluder, pose, options, nullptr, false);
+  std::vector<Stokes<ScatteringPlane>> sum(bands);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    std::fill(sum.begin(), sum.end(), Stokes<ScatteringPlane>{});
+    for (std::size_t i = 0; i < paths; ++i)
+      sampler.look(points[k], (first + k) * paths + i, sum);
+    for (std::size_t b = 0; b < bands; ++b) {
+      out[k * bands + b] = sum[b] * (1 / static_cast<double>(paths));
+      if (!has_plane(pose))
+        out[k * bands + b].q = out[k * bands + b].u = 0;
+    }
+  }
+  return out;
+}
+
+PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &options) const {
+  return std::move(evaluate(std::vector{pose}, options, 1).front());
+}
+
+std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
+                                             const IntegrationOptions &options, unsigned threads,
+                                             const std::atomic<bool> *cancel) const {
+  std::vector<PoseResult> out(poses.size());
+  parallel_for(poses.size(), threads, [&](std::size_t i) {
+    if (!is_stopped(cancel)) // a pose may take seconds
+      out[i] = direct(poses[i], options);
+  });
+  if (is_stopped(cancel))
+    return {};
+  if (options.bounces < 2)
+    return out;
+  std::vector<double> direct_i;
+  for (const PoseResult &one : out)
+    for (const BandResult &band : one.bands)
+      direct_i.push_back(band.stokes.i);
+  const auto more = indirect(poses, direct_i, options, threads, cancel);
+  if (more.size() < out.size())
+    return {};
+  for (std::size_t i = 0; i < out.size(); ++i)
+    add(more[i], out[i]);
+  return out;
+}
+
+} // namespace umov

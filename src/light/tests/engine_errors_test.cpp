@@ -1,0 +1,47 @@
+// Masks against rays: the size of the errors, and whether the half-widths tell it.
+
+#include "light/tests/engine_cases.h"
+
+#include <umov/light/engine_audit.h>
+
+namespace umov::cases {
+namespace {
+
+EngineErrors errors_of(const Mesh &mesh, const std::vector<Material> &materials,
+                       const MaskQuality &quality) {
+  const Scene scene = scene_of(mesh, NormalMode::Flat, materials);
+  EngineOptions options;
+  options.masks = quality;
+  const Engine engine(scene, options);
+  const Integrator integrator(scene);
+  const auto poses = random_poses(200, solar_radius);
+  IntegrationOptions exact;
+  exact.accuracy = 5e-4;
+  return compare(evaluated(engine, poses), integrator.evaluate(poses, exact, 0), 1);
+}
+
+void expect_fast(const EngineErrors &found, const char *name) {
+  // The bounds for the fast masks; 90 to 99.5 % of 200 leaves one pose in reserve.
+  EXPECT_GT(found.poses, 150u) << name;
+  EXPECT_LE(found.i_median, 5e-3) << name;
+  EXPECT_LE(found.i_p95, 2e-2) << name;
+  EXPECT_LE(found.q_p95, 1e-3) << name;
+  EXPECT_GE(found.covered, 0.90) << name;
+  EXPECT_LE(found.covered, 0.995) << name;
+  EXPECT_GE(found.i_median, 0.1 * found.estimate_median) << name;
+}
+
+TEST(EngineErrors, BoxWing) {
+  expect_fast(errors_of(make_box_wing(), four_materials(), {60'000, 64, 64, 0}), "box-wing");
+}
+
+TEST(EngineErrors, HstAndAgenaWithRaysWhereMasksAreUncertain) {
+  std::vector<Material> materials;
+  for (const std::string &name : builtin_material_names())
+    materials.push_back(builtin_material(name).value());
+  expect_fast(errors_of(make_hst(), materials, fast_masks), "hst");
+  expect_fast(errors_of(make_agena(), materials, fast_masks), "agena");
+}
+
+} // namespace
+} // namespace umov::cases
