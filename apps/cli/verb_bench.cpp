@@ -28,7 +28,7 @@ struct BenchOptions {
   double seconds = 2;
 };
 
-constexpr double solar_radius_rad = 0.2665 * pi / 180;
+constexpr double solar_radius_rad = sun_radius_at_1au_rad;
 constexpr int repetitions = 5; ///< the best counts: the others were disturbed
 
 double now_s() {

@@ -8,13 +8,14 @@
 #include <umov/core/files.h>
 #include <umov/io/scenario.h>
 #include <umov/io/table.h>
+#include <umov/scene/pose.h>
 #include <umov/surface/surface.h>
 
 namespace umov::cli {
 namespace {
 
 /// Radius of the disk that a mirror shows, as seen from 1 au.
-constexpr double solar_radius_rad = 0.2665 * pi / 180;
+constexpr double solar_radius_rad = sun_radius_at_1au_rad;
 
 struct BrdfOptions {
   std::string material, batch, output;

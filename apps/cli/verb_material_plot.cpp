@@ -8,6 +8,7 @@
 #include <umov/io/plot_page.h>
 #include <umov/io/scenario.h>
 #include <umov/optics/fresnel.h>
+#include <umov/scene/pose.h>
 
 namespace umov::cli {
 namespace {
@@ -111,7 +112,7 @@ SurfaceDirections in_plane(const Subject &s, double theta_i_deg, double deg) {
   // Positive angles on the mirror side.
   SurfaceDirections at =
       directions_from_angles(theta_i_deg * rad, std::abs(deg) * rad, deg >= 0 ? pi : 0);
-  at.disk_rad = s.surface.has_mirror() ? 0.2665 * rad : 0;
+  at.disk_rad = s.surface.has_mirror() ? sun_radius_at_1au_rad : 0;
   return at;
 }
 

@@ -5,13 +5,14 @@
 #include <umov/core/constants.h>
 #include <umov/frames/sky.h>
 #include <umov/orbit/moon.h>
+#include <umov/scene/pose.h>
 
 namespace umov {
 namespace {
 
 /// Of a source, for mirrors: as the Sun's, though a patch is larger. Lobes narrower than a patch
 /// see the patches one by one.
-constexpr double patch_radius_rad = 0.2665 * pi / 180;
+constexpr double patch_radius_rad = sun_radius_at_1au_rad;
 
 /// A part of the Earth's disk as the object sees it.
 struct Patch {

@@ -11,9 +11,6 @@ namespace {
 
 double half_angle_cosine(double l_v) { return std::sqrt(std::clamp((1 + l_v) / 2, 0.0, 1.0)); }
 
-/// At phase 0 and 180 (within rounding of the cosine) there is no scattering plane.
-bool has_plane(double l_v) { return std::abs(l_v) < 1 - 1e-15; }
-
 /// What one band of a compiled material holds.
 struct BandTables {
   Interface interface { 1.0 };
@@ -198,7 +195,7 @@ Stokes<ScatteringPlane> Surface::diffuse(std::size_t band, const SurfaceDirectio
 
 FresnelFactors Surface::fresnel(std::size_t band, double l_v) const {
   const MuellerEntries f = tables_->bands[band].interface.reflection(half_angle_cosine(l_v));
-  return {f.a, has_plane(l_v) ? f.b : 0};
+  return {f.a, f.b};
 }
 
 Mueller<ScatteringPlane, ScatteringPlane> Surface::mueller(std::size_t band, double l_v) const {

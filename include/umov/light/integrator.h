@@ -6,16 +6,11 @@
 #include <memory>
 #include <span>
 #include <umov/optics/stokes.h>
+#include <umov/scene/pose.h>
 #include <umov/scene/scene.h>
 #include <vector>
 
 namespace umov {
-
-/// Directions from the object, unit vectors in the body frame.
-struct Pose {
-  Vec3<Body> sun, observer;
-  double sun_radius_rad = 0; ///< of the Sun's uniform disk; 0: a point
-};
 
 struct IntegrationOptions {
   double accuracy = 0.005; ///< wanted relative 95 % half-width of I

@@ -213,7 +213,8 @@ indirect_light(const BounceScene &scene, const Occluder &occluder, std::span<con
   }
   for (std::size_t k = 0; k < n; ++k) {
     out[k].rays = sums.rays(k);
-    if (!has_plane(poses[k]) && options.source.q == 0 && options.source.u == 0)
+    // Light that has no Q or U by its source has none without a plane, by definition.
+    if (!has_scattering_plane(poses[k]) && options.source.q == 0 && options.source.u == 0)
       for (BandResult &band : out[k].bands)
         band.stokes.q = band.stokes.u = band.half_width.q = band.half_width.u = 0;
   }

@@ -33,10 +33,6 @@ struct PathLearning {
   }
 };
 
-/// Sun and observer are not in line: there is a scattering plane. Without it light that has no Q or
-/// U by its source has none, by definition.
-inline bool has_plane(const Pose &pose) { return norm(cross(pose.observer, pose.sun)) > 1e-14; }
-
 /// Draws paths from both ends; `options` and `pose` must live.
 class PathSampler {
 public:

@@ -31,7 +31,7 @@ void begin_abundances(const CompiledScene &scene, const Mesh &mesh, std::span<co
   out.cos_phase.clear();
   out.has_plane.clear();
   for (const Pose &pose : poses) {
-    out.cos_phase.push_back(std::clamp(dot(pose.sun, pose.observer), -1.0, 1.0));
+    out.cos_phase.push_back(cos_phase(pose));
     out.has_plane.push_back(has_scattering_plane(pose) ? 1 : 0);
   }
 }

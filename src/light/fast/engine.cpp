@@ -16,10 +16,6 @@
 namespace umov {
 namespace {
 
-double cos_phase_of(const Pose &pose) {
-  return std::clamp(dot(pose.sun, pose.observer), -1.0, 1.0);
-}
-
 constexpr std::size_t ordered_from = 2048; ///< fewer poses are not worth sorting
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -49,7 +45,7 @@ std::size_t Engine::State::terms_max() const {
 }
 
 void Engine::State::prepare(const Pose &pose, Prepared &out) const {
-  out.cos_phase = cos_phase_of(pose);
+  out.cos_phase = cos_phase(pose);
   prepare_pose(pose, out.cos_phase, compiled.data.lobes, compiled.widths, hiding(), out.pose);
   if (!options.is_double)
     round_pose(out.pose, out.single);

@@ -16,11 +16,6 @@ inline constexpr double normal_95 = 1.959963984540054; ///< two-sided quantile o
 /// Calibrated against dense runs (tests/engine_errors_test.cpp).
 inline constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F, 4e-3F};
 
-/// There is a Q: Sun and observer are not in line.
-inline bool has_scattering_plane(const Pose &pose) {
-  return !(pose.sun == pose.observer) && !(pose.sun == -pose.observer);
-}
-
 /// Writes a pose's light to its row, times `scale`. Q and U are 0 without a scattering plane.
 void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_or_v,
                std::size_t row, StokesTable &out);

@@ -9,10 +9,6 @@
 namespace umov {
 namespace {
 
-/// Radius of the Sun's disk seen from 1 au [rad]; in half-vector space it is half as large. A flat
-/// is in glint or not whether or not the disk enters the integral.
-constexpr double solar_radius_rad = 0.2665 * pi / 180;
-
 /// Part of the whole light below which an element is left out: far under the rounding of the sum.
 constexpr double negligible = 1e-25;
 
@@ -251,7 +247,7 @@ private:
     if (!(dot(pose_.half, pose_.half) > 0))
       return false;
     return angle_between(side * e.normal[0], pose_.half) <=
-           surface.half_width_rad() + 0.5 * solar_radius_rad;
+           surface.half_width_rad() + 0.5 * sun_radius_at_1au_rad;
   }
 
   void finish() {
@@ -286,8 +282,8 @@ PoseGeometry geometry_of(const Pose &pose) {
   out.sun = pose.sun;
   out.observer = pose.observer;
   out.sun_radius_rad = pose.sun_radius_rad;
-  out.has_plane = !(pose.sun == pose.observer) && !(pose.sun == -pose.observer);
-  out.cos_phase = std::clamp(dot(pose.sun, pose.observer), -1.0, 1.0);
+  out.has_plane = has_scattering_plane(pose);
+  out.cos_phase = cos_phase(pose);
   const Vec3<Body> sum = pose.sun + pose.observer;
   // Below this the half vector is rounding; nothing can face both directions there anyway.
   if (norm(sum) > 1e-12)

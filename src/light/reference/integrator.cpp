@@ -181,7 +181,7 @@ Integrator::indirect_radiance(const Pose &pose, std::span<const SurfacePoint> po
       sampler.look(points[k], (first + k) * paths + i, sum);
     for (std::size_t b = 0; b < bands; ++b) {
       out[k * bands + b] = sum[b] * (1 / static_cast<double>(paths));
-      if (!has_plane(pose))
+      if (!has_scattering_plane(pose))
         out[k * bands + b].q = out[k * bands + b].u = 0;
     }
   }
