@@ -24,8 +24,8 @@ struct MaskQuality {
   std::size_t points = 0;       ///< over the whole surface, shared out by area
   std::size_t narrow_cells = 0; ///< directions: (cells + 1)^2 for small classes, even
   std::size_t wide_cells = 0;   ///< the same for large flat ones, even
-  /// Poses whose half-width of I is larger than this part of I are mended by rays, class by class,
-  /// the most uncertain first; 0: never.
+  /// Poses whose half-width of I is larger than this part of I (or of EngineOptions::floor_i) are
+  /// mended by rays, class by class, the most uncertain first; 0: never.
   double refine_above = 0;
 };
 /// Typical error of I 0.2-0.5 %, a few seconds and tens of megabytes.
@@ -39,6 +39,10 @@ MaskQuality masks_for(double accuracy);
 struct EngineOptions {
   Visibility visibility = Visibility::Masks; ///< a proven convex mesh takes None by itself
   MaskQuality masks = fast_masks;
+  /// Per band [m2/sr]: below it I need not be known any better than at it; empty: 0.
+  std::vector<double> floor_i = {};
+  /// Part of `refine_above` that is asked of Q/I.
+  double q_part = 0.06;
   /// Facets of one material whose normals differ by less are joined [rad]; the error goes into the
   /// half-widths. 0: only those that are equal to 1e-5.
   double cluster_rad = 0;

@@ -112,8 +112,8 @@ void Engine::State::take_masks(std::optional<backend::Masks> ready) {
       ready ? std::move(*ready)
             : build_masks(scene, elements, classes, plan, *occluder, mask_size(), options.threads);
   if (options.masks.refine_above > 0)
-    refine_points = RefinePoints(scene, elements, classes, plan, *occluder, options.threads);
-  facts.mask_bytes = memory_of(*masks) + refine_points.bytes();
+    refine_points = RefinePoints(scene, elements, classes, plan, *occluder);
+  facts.mask_bytes = memory_of(*masks);
 }
 
 Engine::Engine(const Scene &scene, const EngineOptions &options) {

@@ -1,45 +1,37 @@
 #include "light/fast/refine_points.h"
 
 #include <algorithm>
-#include <umov/core/parallel.h>
 
 namespace umov {
 namespace {
 
 /// Points of a class of which the masks hold 32 `words`.
-std::size_t count_for(const GroupPlan::Group &group) {
+std::size_t coarse_count(const GroupPlan::Group &group) {
   return std::clamp<std::size_t>(std::size_t{4} * 32 * group.words, 256, 2048);
 }
+std::size_t fine_count(const GroupPlan::Group &group) { return 8 * coarse_count(group); }
 
 } // namespace
 
 RefinePoints::RefinePoints(const Scene &scene, const Elements &elements,
                            const FacetClasses &classes, const GroupPlan &plan,
-                           const Occluder &occluder, unsigned threads) {
-  first_.assign(plan.groups.size() * backend::lanes + 1, 0);
-  for (std::size_t g = 0; g < plan.groups.size(); ++g)
-    for (std::size_t lane = 0; lane < backend::lanes; ++lane)
-      first_[g * backend::lanes + lane + 1] =
-          first_[g * backend::lanes + lane] +
-          (plan.groups[g].member[lane] == no_index ? 0 : count_for(plan.groups[g]));
-  origin_.resize(first_.back());
-  parallel_for(plan.groups.size(), threads, [&](std::size_t g) {
-    for (std::size_t lane = 0; lane < backend::lanes; ++lane) {
-      const std::size_t at = first_[g * backend::lanes + lane];
-      const std::size_t count = first_[g * backend::lanes + lane + 1] - at;
-      if (count == 0)
-        continue;
-      const ClassPoints points =
-          spread_points(scene, elements, classes, plan.groups[g].member[lane], count, occluder);
-      std::copy(points.origin.begin(), points.origin.end(),
-                origin_.begin() + static_cast<std::ptrdiff_t>(at));
-    }
-  });
-}
+                           const Occluder &occluder)
+    : source_{&scene, &elements, &classes, &plan, &occluder},
+      points_(std::make_unique<Points[]>(plan.groups.size() * backend::lanes)) {}
 
-std::span<const Occluder::Point> RefinePoints::of(std::uint32_t group, std::uint32_t lane) const {
-  const std::size_t i = group * backend::lanes + lane;
-  return {origin_.data() + first_[i], first_[i + 1] - first_[i]};
+std::span<const Occluder::Point> RefinePoints::of(std::uint32_t group, std::uint32_t lane,
+                                                  std::size_t wanted) const {
+  const GroupPlan::Group &of = source_.plan->groups[group];
+  const bool is_fine = wanted > coarse_count(of);
+  Points &both = points_[group * backend::lanes + lane];
+  Grade &grade = is_fine ? both.fine : both.coarse;
+  std::call_once(grade.is_made, [&] {
+    grade.origin =
+        spread_points(*source_.scene, *source_.elements, *source_.classes, of.member[lane],
+                      is_fine ? fine_count(of) : coarse_count(of), *source_.occluder)
+            .origin;
+  });
+  return grade.origin;
 }
 
 void RefineTracer::trace(Vec3<Body> direction) {

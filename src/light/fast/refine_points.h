@@ -4,22 +4,41 @@
 #include "backend/scene_data.h"
 #include "light/fast/mask_points.h"
 
-#include <umov/light/integrator.h>
+#include <memory>
+#include <mutex>
+#include <umov/scene/pose.h>
 
 namespace umov {
 
-/// Denser points of every class, made once: what the masks hold is too few to trace anew.
+/// Denser points of the classes, in two grades: what the masks hold is too few to trace anew. Made
+/// when first asked for, since most classes are never uncertain; thread safe. What it was made from
+/// must live.
 class RefinePoints {
 public:
   RefinePoints() = default;
   RefinePoints(const Scene &scene, const Elements &elements, const FacetClasses &classes,
-               const GroupPlan &plan, const Occluder &occluder, unsigned threads);
-  [[nodiscard]] std::span<const Occluder::Point> of(std::uint32_t group, std::uint32_t lane) const;
-  [[nodiscard]] std::size_t bytes() const { return origin_.size() * sizeof(Occluder::Point); }
+               const GroupPlan &plan, const Occluder &occluder);
+  /// At least `wanted` points of a class, or as many as there ever are.
+  [[nodiscard]] std::span<const Occluder::Point> of(std::uint32_t group, std::uint32_t lane,
+                                                    std::size_t wanted) const;
 
 private:
-  std::vector<std::size_t> first_; ///< [group * lanes + lane], and the end
-  std::vector<Occluder::Point> origin_;
+  struct Grade {
+    std::once_flag is_made;
+    std::vector<Occluder::Point> origin;
+  };
+  struct Points {
+    Grade coarse, fine;
+  };
+  struct Source {
+    const Scene *scene;
+    const Elements *elements;
+    const FacetClasses *classes;
+    const GroupPlan *plan;
+    const Occluder *occluder;
+  };
+  Source source_{};
+  std::unique_ptr<Points[]> points_; ///< [group * lanes + lane]
 };
 
 /// Part of `points` that is lit and seen in the pose, and how many there are.

@@ -9,22 +9,30 @@
 namespace umov {
 namespace {
 
-/// Part of the accuracy asked of I that is asked of Q/I.
-constexpr double polarization_part = 0.06;
-
-/// Points that bring the error of a class down to a third of what may be left, if its whole light
-/// is `weight` times that: sampling leaves 0.6 n^-3/4 at worst.
-std::size_t points_for(double weight) {
+/// The first look at a class: enough points to bring its error down to a third of what may be left,
+/// if its whole light is `weight` times that; sampling leaves 0.6 n^-3/4 at worst.
+std::size_t first_points(double weight) {
   constexpr double fewest = 32, most = 4096;
   return static_cast<std::size_t>(std::clamp(std::pow(3 * 0.6 * weight, 4.0 / 3), fewest, most));
 }
 
-/// What an area error of a facet does to Q/I, times I and in units of what is allowed of I.
-double polarized(const Stokes<ScatteringPlane> &facet, const BandLight &all, std::size_t b) {
-  return all.i[b] > 0 ? (facet.q - facet.i * all.q[b] / all.i[b]) / polarization_part : 0;
+constexpr double points_most = 16'384; ///< of a class
+
+/// Variance of the share of a class of which `points` found `share` to be lit and seen. One
+/// pseudo-disagreement stands for slivers that no point has found.
+double share_variance(double share, double points) {
+  const double unsure = std::clamp(share, 0.5 / points, 1 - 0.5 / points);
+  return static_cast<double>(mask_error.points) * unsure * (1 - unsure) /
+         (points * std::sqrt(points));
 }
 
 } // namespace
+
+/// What a relative error refers to: I, or the floor below which I need not be known as well.
+double Engine::State::reference(const BandLight &all, std::size_t b) const {
+  const double floor = options.floor_i.empty() ? 0 : options.floor_i[b] / compiled.area_m2;
+  return std::max({all.i[b], floor, 1e-300});
+}
 
 /// Some band misses the accuracy from which on rays are traced, in I or in Q/I. What a slot lacks
 /// of its light changes Q/I by how far its own is from that of the whole.
@@ -33,7 +41,7 @@ bool Engine::State::is_uncertain(Workspace &work) const {
   const double most = options.masks.refine_above / normal_95;
   const BandLight &all = work.light;
   for (std::size_t b = 0; b < bands(); ++b)
-    if (all.var_i[b] > most * most * all.i[b] * all.i[b])
+    if (all.var_i[b] > std::pow(most * reference(all, b), 2))
       return true;
   std::vector<double> &variance = work.band_room;
   variance.assign(bands(), 0);
@@ -51,7 +59,7 @@ bool Engine::State::is_uncertain(Workspace &work) const {
   }
   bool is_any = false;
   for (std::size_t b = 0; b < bands(); ++b) {
-    const double allowed = polarization_part * most * all.i[b];
+    const double allowed = options.q_part * most * reference(all, b);
     is_any = is_any || variance[b] > allowed * allowed;
   }
   return is_any;
@@ -91,68 +99,30 @@ void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspa
     weigh(pose, at, k, work);
 }
 
-/// What is left of the error: variances of I and of Q at constant Q/I, and deviations of I added
-/// up, per band.
-struct Engine::State::Left {
-  std::vector<double> i, q, linear;
-  explicit Left(std::size_t bands) : i(bands, 0), q(bands, 0), linear(bands, 0) {}
-  void add(const Workspace &work, std::size_t k, double sign) {
-    const double variance = work.uncertain[k].variance;
-    for (std::size_t b = 0; b < i.size(); ++b) {
-      const auto &light = work.facet_light[k * i.size() + b];
-      i[b] += sign * light.i * light.i * variance;
-      q[b] += sign * std::pow(polarized(light, work.light, b), 2) * variance;
-      linear[b] += sign * light.i * std::sqrt(variance);
-    }
-  }
-  [[nodiscard]] bool is_enough(const BandLight &all, double wanted) const {
-    for (std::size_t b = 0; b < i.size(); ++b) {
-      const double allowed = wanted * all.i[b];
-      const double common = static_cast<double>(mask_error.alike) * linear[b] * linear[b];
-      if (std::max(i[b] + common, q[b]) > allowed * allowed)
-        return false;
-    }
-    return true;
-  }
-};
-
-/// Uncertain facets, those that make most of the error first.
-void Engine::State::order_by_error(Workspace &work) const {
-  std::vector<double> importance(work.uncertain.size(), 0);
+/// Error of I, or of Q at constant Q/I, per area of each uncertain facet, in parts of the light of
+/// the whole: of the band where it is worst.
+void Engine::State::weigh_errors(Workspace &work) const {
+  const BandLight &all = work.light;
+  work.error_per_area.assign(work.uncertain.size(), 0);
   for (std::size_t k = 0; k < work.uncertain.size(); ++k)
     for (std::size_t b = 0; b < bands(); ++b) {
       const auto &light = work.facet_light[k * bands() + b];
-      const double q = polarized(light, work.light, b), total = work.light.i[b];
-      if (total > 0)
-        importance[k] += (light.i * light.i + q * q) * work.uncertain[k].variance / (total * total);
+      const double own_q = all.i[b] > 0 ? light.i * all.q[b] / all.i[b] : 0;
+      const double worst = std::max(light.i, std::abs(light.q - own_q) / options.q_part);
+      work.error_per_area[k] = std::max(work.error_per_area[k], worst / reference(all, b));
     }
-  work.order.resize(work.uncertain.size());
-  std::iota(work.order.begin(), work.order.end(), 0u);
-  std::sort(work.order.begin(), work.order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(-importance[a], a) < std::pair(-importance[b], b);
-  });
 }
 
 /// Puts the share of a facet's area that rays find in place of the looked-up one.
-void Engine::State::trace_facet(const Pose &pose, std::size_t k, double wanted,
+void Engine::State::trace_facet(const Pose &pose, std::size_t k, std::size_t points,
                                 Workspace &work) const {
   backend::SeenFacet &facet = work.uncertain[k];
   const double whole = compiled.data.groups[facet.group].area[facet.lane];
-  double weight = 0; // of the class's whole light against what may be left
-  for (std::size_t b = 0; b < bands(); ++b) {
-    const auto &light = work.facet_light[k * bands() + b];
-    weight = std::max(weight, std::max(light.i, std::abs(polarized(light, work.light, b))) * whole /
-                                  (wanted * std::max(work.light.i[b], 1e-300)));
-  }
   const TracedShare traced =
-      work.tracer->trace(refine_points.of(facet.group, facet.lane), points_for(weight), pose);
-  const double points = static_cast<double>(traced.points);
-  // One pseudo-disagreement stands for slivers that no point has found.
-  const double share = std::clamp(traced.share, 0.5 / points, 1 - 0.5 / points);
+      work.tracer->trace(refine_points.of(facet.group, facet.lane, points), points, pose);
   change_area(k, whole * traced.share - facet.area, work);
-  facet.variance = whole * whole * static_cast<double>(mask_error.points) * share * (1 - share) /
-                   (points * std::sqrt(points));
-  work.is_traced[k] = 1;
+  facet.variance = whole * whole * share_variance(traced.share, static_cast<double>(traced.points));
+  work.points[k] = traced.points;
 }
 
 void Engine::State::change_area(std::size_t k, double change, Workspace &work) const {
@@ -192,21 +162,77 @@ void Engine::State::add_variance(std::size_t k, double variance, Workspace &work
   }
 }
 
-/// Traces the classes that make the error, the worst first, until the rest is well below what is
-/// allowed.
-void Engine::State::trace(const Pose &pose, Workspace &work) const {
-  const double wanted = 0.7 * options.masks.refine_above / normal_95;
-  Left left(bands());
-  for (std::size_t k = 0; k < work.uncertain.size(); ++k)
-    left.add(work, k, 1);
-  order_by_error(work);
-  work.is_traced.assign(work.uncertain.size(), 0);
-  for (const std::uint32_t k : work.order) {
-    if (left.is_enough(work.light, wanted))
-      break;
-    left.add(work, k, -1);
-    trace_facet(pose, k, wanted, work);
+/// Traces the classes that make most of the error, the worst first, until what the others leave is
+/// well below what is allowed; gives the variance that these leave, in parts of the light's square.
+double Engine::State::trace_worst(const Pose &pose, double wanted, Workspace &work) const {
+  double variance = 0, linear = 0; // of what is still looked up
+  const auto relative = [&](std::size_t k) {
+    return work.error_per_area[k] * work.error_per_area[k] * work.uncertain[k].variance;
+  };
+  for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
+    variance += relative(k);
+    linear += std::sqrt(relative(k));
   }
+  work.order.resize(work.uncertain.size());
+  std::iota(work.order.begin(), work.order.end(), 0u);
+  std::sort(work.order.begin(), work.order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::pair(-relative(a), a) < std::pair(-relative(b), b);
+  });
+  const auto left = [&] {
+    return variance + static_cast<double>(mask_error.alike) * linear * linear;
+  };
+  for (const std::uint32_t k : work.order) {
+    if (left() <= 0.5 * wanted * wanted)
+      break;
+    variance = std::max(variance - relative(k), 0.0);
+    linear = std::max(linear - std::sqrt(relative(k)), 0.0);
+    const double whole = compiled.data.groups[work.uncertain[k].group].area[work.uncertain[k].lane];
+    trace_facet(pose, k, first_points(work.error_per_area[k] * whole / wanted), work);
+  }
+  return left();
+}
+
+/// More points for the traced classes, where what the first look found says that they are needed:
+/// their variance falls with the 3/2 power of their number, so the fewest points for a given sum of
+/// variances go with the 2/5 power of each (Neyman 1934).
+bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work) const {
+  double now = 0, growth = 0; // at equal marginal gain
+  const auto variance = [&](std::size_t k) {
+    return work.error_per_area[k] * work.error_per_area[k] * work.uncertain[k].variance;
+  };
+  // Variance of one point: c = v n^1.5; n_k = s c_k^0.4 leaves the sum of c_k^0.4 s^-1.5.
+  for (std::size_t k = 0; k < work.uncertain.size(); ++k)
+    if (work.points[k] > 0) {
+      now += variance(k);
+      growth += std::pow(variance(k) * std::pow(static_cast<double>(work.points[k]), 1.5), 0.4);
+    }
+  if (now <= allowed || !(allowed > 0))
+    return false;
+  const double scale = std::pow(growth / (0.8 * allowed), 2.0 / 3);
+  bool is_any = false;
+  for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
+    if (work.points[k] == 0)
+      continue;
+    const double n = static_cast<double>(work.points[k]);
+    const double wanted =
+        std::min(scale * std::pow(variance(k) * std::pow(n, 1.5), 0.4), points_most);
+    if (wanted < 1.2 * n)
+      continue;
+    trace_facet(pose, k, static_cast<std::size_t>(wanted), work);
+    is_any = is_any || static_cast<double>(work.points[k]) > n;
+  }
+  return is_any;
+}
+
+void Engine::State::trace(const Pose &pose, Workspace &work) const {
+  const double wanted = 0.9 * options.masks.refine_above / normal_95;
+  constexpr int looks_max = 3;
+  work.points.assign(work.uncertain.size(), 0);
+  weigh_errors(work);
+  const double left = trace_worst(pose, wanted, work);
+  for (int look = 1; look < looks_max; ++look)
+    if (!trace_more(pose, wanted * wanted - left, work))
+      break;
 }
 
 /// Variances of the sums from those that the facets have now.
@@ -223,7 +249,7 @@ void Engine::State::take_variances(Workspace &work) const {
                  deviation = std::sqrt(facet.variance);
     const auto add = [&](double weight, double &variance, double &linear) {
       variance += weight * weight * facet.variance;
-      linear += work.is_traced[k] != 0 ? 0 : std::abs(weight) * deviation;
+      linear += work.points[k] != 0 ? 0 : std::abs(weight) * deviation;
     };
     for (std::size_t l = 0; l < terms.lobe_count; ++l)
       add(weights[l], work.sums.specular_variance[terms.lobe_first + l],

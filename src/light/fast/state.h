@@ -64,7 +64,8 @@ struct Engine::State {
     std::vector<double> weights;                      ///< [uncertain * terms_max + term]
     std::vector<Stokes<ScatteringPlane>> facet_light; ///< [uncertain * bands + band], per area
     std::vector<std::uint32_t> order;
-    std::vector<char> is_traced; ///< per uncertain facet
+    std::vector<double> error_per_area; ///< per uncertain facet, in parts of the whole light
+    std::vector<std::size_t> points;    ///< per uncertain facet: traced; 0: looked up
     std::optional<RefineTracer> tracer;
   };
 
@@ -98,10 +99,12 @@ struct Engine::State {
   void refine(const Pose &pose, const Prepared &at, Workspace &work) const;
   void list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const;
   void weigh(const Pose &pose, const Prepared &at, std::size_t k, Workspace &work) const;
-  struct Left;
-  void order_by_error(Workspace &work) const;
+  [[nodiscard]] double reference(const BandLight &all, std::size_t b) const;
+  void weigh_errors(Workspace &work) const;
   void trace(const Pose &pose, Workspace &work) const;
-  void trace_facet(const Pose &pose, std::size_t k, double wanted, Workspace &work) const;
+  double trace_worst(const Pose &pose, double wanted, Workspace &work) const;
+  bool trace_more(const Pose &pose, double allowed, Workspace &work) const;
+  void trace_facet(const Pose &pose, std::size_t k, std::size_t points, Workspace &work) const;
   void change_area(std::size_t k, double change, Workspace &work) const;
   /// A variance of the seen area of work.uncertain[k] besides what the sums hold.
   void add_variance(std::size_t k, double variance, Workspace &work) const;
