@@ -137,18 +137,21 @@ public:
     }
   }
 
-  /// Facets whose share is uncertain.
-  void list_uncertain(std::vector<backend::SeenFacet> &out) {
+  /// All facets that face both directions, with the area of each that is looked up as free and how
+  /// uncertain it is. One pseudo-disagreement stands for slivers that no point has found: what is
+  /// looked up as wholly free or wholly hidden may still be a little of the other.
+  void list_facing(std::vector<backend::SeenFacet> &out) {
     out.clear();
+    std::uint32_t facing[backend::groups_per_chunk];
+    T whole[backend::groups_per_chunk][lanes];
     for (const Chunk &chunk : scene_.chunks) {
       find_facing(chunk);
-      if (masks_ != nullptr)
-        hide();
-      for (std::size_t k = 0; k < count_; ++k)
-        for (std::uint32_t j = 0; j < lanes && !is_exact_[k]; ++j)
-          if (deviation_[k][j] > 0)
-            out.push_back({group_[k], j, chunk.slot, static_cast<double>(area_[k][j]),
-                           square(static_cast<double>(deviation_[k][j]))});
+      const std::size_t all = count_;
+      std::copy_n(group_, all, facing);
+      for (std::size_t k = 0; k < all; ++k)
+        std::copy_n(area_[k], lanes, whole[k]);
+      for (std::size_t k = 0; k < all; ++k)
+        list_group(facing[k], whole[k], chunk.slot, out);
     }
   }
 
@@ -213,6 +216,25 @@ private:
   }
 
   static double square(double x) { return x * x; }
+
+  void list_group(std::uint32_t group, const T *whole, std::uint32_t slot,
+                  std::vector<backend::SeenFacet> &out) {
+    const GroupMask &mask = masks_->groups[group];
+    count_ = 0;
+    group_[0] = group;
+    std::copy_n(whole, lanes, area_[0]);
+    is_exact_[0] = true;
+    const bool is_any = mask.is_wide ? hide_wide(mask) : hide_narrow(mask);
+    const double points = 32.0 * mask.words, unsure = 0.5 / points * (1 - 0.5 / points);
+    const double pseudo =
+        static_cast<double>(model_.points) * unsure / (points * std::sqrt(points));
+    for (std::uint32_t j = 0; j < lanes; ++j)
+      if (whole[j] > 0)
+        out.push_back(
+            {group, j, slot, is_any ? static_cast<double>(area_[0][j]) : 0,
+             (is_any && !is_exact_[0] ? square(static_cast<double>(deviation_[0][j])) : 0) +
+                 square(static_cast<double>(whole[j])) * pseudo});
+  }
 
   /// Makes room for a deviation where there was none.
   void clear_deviation() {

@@ -188,11 +188,10 @@ void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskEr
 void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
                 const PoseData<float> &pose, PoseSums &out);
 
-/// Facets of a pose of which a part is hidden, with their seen areas; `out` is emptied first.
-void list_uncertain(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
-                    const PoseData<double> &pose, std::vector<SeenFacet> &out);
-void list_uncertain(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
-                    const PoseData<float> &pose, std::vector<SeenFacet> &out);
+/// All facets of a pose that face Sun and observer, with the areas that the masks give and how
+/// uncertain these are; `out` is emptied first.
+void list_facing(const SceneData<double> &scene, const Masks &masks, const MaskErrorModel &model,
+                 const PoseData<double> &pose, std::vector<SeenFacet> &out);
 
 /// Facets of which something is both lit and seen, without variances.
 void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,

@@ -53,10 +53,10 @@ void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskEr
   kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, out).run();
 }
 
-void list_uncertain(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
-                    const PoseData<double> &pose, std::vector<SeenFacet> &out) {
+void list_facing(const SceneData<double> &scene, const Masks &masks, const MaskErrorModel &model,
+                 const PoseData<double> &pose, std::vector<SeenFacet> &out) {
   PoseSums unused;
-  kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_uncertain(out);
+  kernel::FacetLoops<ScalarMachine>(scene, &masks, model, pose, unused).list_facing(out);
 }
 
 void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,

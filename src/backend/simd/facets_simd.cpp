@@ -82,13 +82,6 @@ void sum_facets_here(const SceneData<float> &scene, const Masks *masks, const Ma
   FacetLoops<SimdMachine>(scene, masks, model, pose, out).run();
 }
 
-void list_uncertain_here(const SceneData<float> &scene, const Masks *masks,
-                         const MaskErrorModel &model, const PoseData<float> &pose,
-                         std::vector<backend::SeenFacet> &out) {
-  PoseSums unused;
-  FacetLoops<SimdMachine>(scene, masks, model, pose, unused).list_uncertain(out);
-}
-
 #include "kernel/end.h"
 
 #if HWY_ONCE
@@ -96,7 +89,6 @@ void list_uncertain_here(const SceneData<float> &scene, const Masks *masks,
 
 namespace umov::kernel {
 HWY_EXPORT(sum_facets_here);
-HWY_EXPORT(list_uncertain_here);
 } // namespace umov::kernel
 
 namespace umov::backend {
@@ -105,12 +97,6 @@ void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErr
                 const PoseData<float> &pose, PoseSums &out) {
   using namespace kernel; // the table of HWY_EXPORT stands there
   HWY_DYNAMIC_DISPATCH(sum_facets_here)(scene, masks, model, pose, out);
-}
-
-void list_uncertain(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
-                    const PoseData<float> &pose, std::vector<SeenFacet> &out) {
-  using namespace kernel;
-  HWY_DYNAMIC_DISPATCH(list_uncertain_here)(scene, masks, model, pose, out);
 }
 
 bool choose_instruction_set(InstructionSet set) {

@@ -88,10 +88,7 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
 }
 
 void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
-  if (options.is_double)
-    backend::list_uncertain(compiled.data, hiding(), mask_error, at.pose, work.uncertain);
-  else
-    backend::list_uncertain(single, hiding(), mask_error, at.single, work.uncertain);
+  backend::list_facing(compiled.data, *masks, mask_error, at.pose, work.uncertain);
   work.nothing.assign(terms_max(), 0);
   work.facet_light.assign(work.uncertain.size() * bands(), {});
   work.weights.assign(work.uncertain.size() * terms_max(), 0);
