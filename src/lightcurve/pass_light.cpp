@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <umov/core/constants.h>
-#include <umov/light/engine.h>
+#include <umov/light/light_model.h>
+#include <umov/observation/track.h>
 #include <umov/photometry/radiometry.h>
 #include <umov/shape/primitives.h>
 
@@ -13,11 +13,10 @@ struct PassLight::State {
   std::vector<Band> bands;
   std::vector<double> solar; ///< irradiance at 1 au per band
   // A sphere:
-  std::vector<BandResult> by_phase; ///< [step * bands + band], steps of half a degree
+  std::vector<Stokes<ScatteringPlane>> by_phase; ///< [step * bands + band], steps of half a degree
   // A body:
-  std::optional<Integrator> integrator;
-  std::optional<Engine> engine;
-  std::size_t bounces = 1;
+  std::unique_ptr<LightModel> light;  ///< for all samples
+  std::unique_ptr<LightModel> glints; ///< for those that say whether a flat gives most of the light
   AttitudeLaw attitude;
   std::vector<GlintFlat> flats;
 };
@@ -25,8 +24,9 @@ struct PassLight::State {
 namespace {
 
 /// Magnitudes to a few hundredths: a range over a pass asks for no more.
-IntegrationOptions pass_accuracy(std::size_t bounces) {
-  IntegrationOptions out;
+LightOptions pass_accuracy(LightMethod method, std::size_t bounces) {
+  LightOptions out;
+  out.method = method;
   out.bounces = bounces;
   out.accuracy = 0.02;
   out.max_points = 1u << 17;
@@ -36,70 +36,21 @@ IntegrationOptions pass_accuracy(std::size_t bounces) {
 constexpr double phase_step_deg = 0.5;
 constexpr std::size_t phase_steps = 361;
 
-AttitudeContext context_of(const ObservingGeometry &g) {
-  return {g.time, g.gcrs_km, g.gcrs_velocity_km_s, g.to_sun, g.to_observer};
-}
-
-double solar_radius(const ObservingGeometry &g) {
-  return std::asin(constants::sun_radius_km / g.sun_distance_km);
-}
-
-Pose pose_of(const Rotation<Body, Gcrs> &body, const ObservingGeometry &g) {
-  return {normalized(body * g.to_sun), normalized(body * g.to_observer), solar_radius(g)};
-}
-
-Result<Attitude> attitude_of(const AttitudeLaw &law, const Trajectory &orbit, const Site &site,
-                             ShadowModel shadow) {
-  return Attitude::make(law, [&](Epoch<Utc> time) {
-    return orbit.at(time).map(
-        [&](const TemeState &state) { return context_of(observe(state, time, site, shadow)); });
-  });
-}
-
-std::vector<double> solar_of(const std::vector<Band> &bands) {
-  std::vector<double> out;
-  for (const Band &band : bands)
-    out.push_back(solar_irradiance(band.wavelength).value_or(0));
-  return out;
-}
-
-/// Largest rate at which the half vector moves in the body [rad/s]: how fast the body can turn by
-/// itself, and how fast orbit and Earth turn the view (measured between samples, with a margin).
-double rate_bound(const Attitude &attitude, std::span<const ObservingGeometry> samples) {
-  double half = 0, pointing = 0;
-  std::optional<Rotation<Body, Gcrs>> before;
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto body = attitude.at(context_of(samples[k]));
-    if (k > 0) {
-      const ObservingGeometry &a = samples[k - 1], &b = samples[k];
-      const double dt = std::max(std::abs(seconds_between(b.time, a.time)), 1e-3);
-      const Vec3<Gcrs> h0 = a.to_sun + a.to_observer, h1 = b.to_sun + b.to_observer;
-      if (norm(h0) > 1e-3 && norm(h1) > 1e-3)
-        half = std::max(half, angle_between(h0, h1) / dt);
-      if (body && before)
-        for (int axis = 0; axis < 3; ++axis)
-          pointing = std::max(pointing, angle_between(body->row(axis), before->row(axis)) / dt);
-    }
-    if (body)
-      before = *body;
-  }
-  constexpr double margin = 2;
-  const AttitudeRates rates = attitude.rates();
-  return margin * half + rates.own_rad_s + (rates.follows_orbit ? margin * 1.5 * pointing : 0);
-}
-
 } // namespace
 
-PassLight PassLight::of_body(const Scene &scene, const AttitudeLaw &attitude, bool is_for_many,
-                             std::size_t bounces) {
+Result<PassLight> PassLight::of_body(const Scene &scene, const AttitudeLaw &attitude,
+                                     LightMethod method, std::size_t bounces) {
   auto state = std::make_shared<State>();
   state->bands = scene.bands;
-  state->solar = solar_of(scene.bands);
+  UMOV_ASSIGN(solar, solar_irradiances(scene.bands));
+  state->solar = std::move(solar);
   state->attitude = attitude;
-  state->integrator.emplace(scene);
-  state->bounces = bounces;
-  if ((is_for_many && bounces == 1) || state->integrator->is_convex())
-    state->engine.emplace(scene, EngineOptions{});
+  UMOV_ASSIGN(light, make_light(scene, {}, pass_accuracy(method, bounces)));
+  state->light = std::move(light);
+  if (method == LightMethod::Masks) {
+    UMOV_ASSIGN(glints, make_light(scene, {}, pass_accuracy(LightMethod::Rays, bounces)));
+    state->glints = std::move(glints);
+  }
   state->flats = glint_flats(scene);
   PassLight out;
   out.state_ = std::move(state);
@@ -111,16 +62,21 @@ Result<PassLight> PassLight::of_sphere(double radius_m, const Material &material
   Diagnostics unused;
   UMOV_ASSIGN(scene, make_scene(make_sphere(radius_m, 5000), NormalMode::Smooth, bands, {material},
                                 {material}, unused));
-  const Integrator integrator(scene);
   auto state = std::make_shared<State>();
   state->bands = bands;
-  state->solar = solar_of(bands);
+  UMOV_ASSIGN(solar, solar_irradiances(bands));
+  state->solar = std::move(solar);
+  std::vector<Pose> poses;
   for (std::size_t k = 0; k < phase_steps; ++k) {
     const double phase = Angle::degrees(phase_step_deg * static_cast<double>(k)).radians();
-    Pose pose{{std::cos(phase), std::sin(phase), 0}, {1, 0, 0}, 0.2665 * pi / 180};
-    const PoseResult light = integrator.evaluate(pose, {});
-    state->by_phase.insert(state->by_phase.end(), light.bands.begin(), light.bands.end());
+    poses.push_back({{std::cos(phase), std::sin(phase), 0}, {1, 0, 0}, sun_radius_at_1au_rad});
   }
+  UMOV_ASSIGN(light, make_light(scene, {}, {.method = LightMethod::Rays}));
+  StokesTable table;
+  (void)light->evaluate(poses, table);
+  for (std::size_t k = 0; k < phase_steps; ++k)
+    for (std::size_t b = 0; b < bands.size(); ++b)
+      state->by_phase.push_back(table.at(k, b).stokes);
   PassLight out;
   out.state_ = std::move(state);
   return out;
@@ -133,11 +89,11 @@ namespace {
 /// Takes one sample of light into the pass's ranges.
 void take(const Stokes<ScatteringPlane> &s, const ObservingGeometry &g, const Band &band,
           double solar, SitePass &pass) {
-  const double irradiance =
-      irradiance_at_observer(s.i, solar, g.sun_distance_km, g.sunlit, g.range_km);
-  if (!(irradiance > 0))
+  const ObservedLight observed =
+      observed_light(s.i, band, solar, {g.sun_distance_km, g.range_km, g.sunlit});
+  if (!(observed.irradiance > 0))
     return;
-  const double magnitude = ab_magnitude(irradiance, band.wavelength);
+  const double magnitude = observed.magnitude;
   // fmin and fmax take the number where one of the two is none.
   pass.magnitude_min = std::fmin(pass.magnitude_min, magnitude);
   pass.magnitude_max = std::fmax(pass.magnitude_max, magnitude);
@@ -145,6 +101,31 @@ void take(const Stokes<ScatteringPlane> &s, const ObservingGeometry &g, const Ba
 }
 
 } // namespace
+
+/// Glints of flats that give more than half of the light then; their geometries join `lit`.
+Result<void> PassLight::add_glints(const State &state, const Track &track,
+                                   std::vector<ObservingGeometry> &lit, SitePass &pass) {
+  const Epoch<Utc> origin = lit.front().time;
+  const GlintPath path = [&](double seconds) -> Result<GlintView> {
+    UMOV_ASSIGN(point, track.at(plus_seconds(origin, seconds)));
+    return GlintView{point.pose.sun, point.pose.observer};
+  };
+  UMOV_ASSIGN(glints, find_glints(state.flats, path, 0, seconds_between(lit.back().time, origin),
+                                  track.half_vector_rate(lit), 0.5 * sun_radius_rad(lit.front())));
+  LightTask task;
+  task.has_glints = true;
+  task.threads = 1;
+  for (const Glint &glint : glints) {
+    UMOV_ASSIGN(point, track.at(plus_seconds(origin, glint.seconds)));
+    StokesTable table;
+    (void)(state.glints ? state.glints : state.light)->evaluate({&point.pose, 1}, table, task);
+    if (!(point.geometry.sunlit > 0) || !(table.glint_share[0] > 0.5))
+      continue;
+    pass.glints.push_back({point.geometry.time, glint.width_s});
+    lit.push_back(point.geometry);
+  }
+  return {};
+}
 
 Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
                                  std::size_t band, std::span<const ObservingGeometry> samples,
@@ -161,57 +142,25 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
       const double at = g.phase_angle.degrees() / phase_step_deg;
       const auto k = std::min(static_cast<std::size_t>(at), phase_steps - 2);
       const double share = at - static_cast<double>(k);
-      const auto &a = state.by_phase[k * state.bands.size() + band].stokes,
-                 &b = state.by_phase[(k + 1) * state.bands.size() + band].stokes;
+      const auto &a = state.by_phase[k * state.bands.size() + band],
+                 &b = state.by_phase[(k + 1) * state.bands.size() + band];
       take(a * (1 - share) + b * share, g, state.bands[band], state.solar[band], pass);
     }
     return {};
   }
-  UMOV_ASSIGN(attitude, attitude_of(state.attitude, orbit, site, shadow));
-  // Glints first: their peaks count for the range of magnitudes.
-  const Epoch<Utc> origin = lit.front().time;
-  const auto geometry_at = [&](double seconds) -> Result<ObservingGeometry> {
-    const Epoch<Utc> time = plus_seconds(origin, seconds);
-    return orbit.at(time).map(
-        [&](const TemeState &teme) { return observe(teme, time, site, shadow); });
-  };
-  UMOV_ASSIGN(glints, find_glints(
-                          state.flats,
-                          [&](double seconds) -> Result<GlintView> {
-                            UMOV_ASSIGN(g, geometry_at(seconds));
-                            UMOV_ASSIGN(body, attitude.at(context_of(g)));
-                            const Pose pose = pose_of(body, g);
-                            return GlintView{pose.sun, pose.observer};
-                          },
-                          0, seconds_between(lit.back().time, origin), rate_bound(attitude, lit),
-                          0.5 * solar_radius(lit.front())));
-  for (const Glint &glint : glints) {
-    UMOV_ASSIGN(g, geometry_at(glint.seconds));
-    UMOV_ASSIGN(body, attitude.at(context_of(g)));
-    const PoseResult light =
-        state.integrator->evaluate(pose_of(body, g), pass_accuracy(state.bounces));
-    if (!(g.sunlit > 0) || !(light.glint_share > 0.5))
-      continue;
-    pass.glints.push_back({g.time, glint.width_s});
-    lit.push_back(g);
-  }
+  UMOV_ASSIGN(track, Track::make({orbit, site, shadow, state.attitude, {}, true}));
+  UMOV_TRY(add_glints(state, track, lit, pass)); // first: their peaks count for the magnitudes
   std::vector<Pose> poses;
   for (const ObservingGeometry &g : lit) {
-    UMOV_ASSIGN(body, attitude.at(context_of(g)));
-    poses.push_back(pose_of(body, g));
+    UMOV_ASSIGN(point, track.place(g));
+    poses.push_back(point.pose);
   }
-  const auto take_all = [&](const auto &stokes_of) {
-    for (std::size_t k = 0; k < poses.size(); ++k)
-      take(stokes_of(k), lit[k], state.bands[band], state.solar[band], pass);
-  };
-  if (state.engine) {
-    StokesTable table;
-    state.engine->evaluate(poses, table);
-    take_all([&](std::size_t k) { return table.at(k, band).stokes; });
-  } else {
-    const auto light = state.integrator->evaluate(poses, pass_accuracy(state.bounces), 1);
-    take_all([&](std::size_t k) { return light[k].bands[band].stokes; });
-  }
+  StokesTable table;
+  LightTask task;
+  task.threads = 1; // objects are side by side
+  (void)state.light->evaluate(poses, table, task);
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    take(table.at(k, band).stokes, lit[k], state.bands[band], state.solar[band], pass);
   return {};
 }
 

@@ -22,6 +22,22 @@ double ab_magnitude(double irradiance, Wavelength wavelength) {
   return -2.5 * std::log10(f_nu / zero_point);
 }
 
+ObservedLight observed_light(double intensity, const Band &band, double solar_irradiance,
+                             const LightPath &path) {
+  const double irradiance = irradiance_at_observer(
+      intensity, solar_irradiance, path.sun_distance_km, path.sunlit, path.range_km);
+  return {irradiance, ab_magnitude(irradiance, band.wavelength)};
+}
+
+Result<std::vector<double>> solar_irradiances(const std::vector<Band> &bands) {
+  std::vector<double> out;
+  for (const Band &band : bands) {
+    UMOV_ASSIGN(value, solar_irradiance(band.wavelength));
+    out.push_back(value);
+  }
+  return out;
+}
+
 double airmass(Angle altitude) {
   const double h = altitude.degrees();
   if (h < 0)

@@ -180,15 +180,6 @@ Result<void> check(const Scene &scene, const KeyFrameOptions &options,
 
 } // namespace
 
-std::vector<std::string> material_names(const Scene &scene) {
-  std::vector<std::string> names;
-  for (const auto *side : {&scene.front, &scene.back})
-    for (const Surface &surface : *side)
-      if (std::find(names.begin(), names.end(), surface.material().name) == names.end())
-        names.push_back(surface.material().name);
-  return names;
-}
-
 Result<KeyFrameRaster> trace_key_frame(const Scene &scene, const Occluder &occluder,
                                        const KeyFrameView &view, const KeyFrameOptions &options) {
   UMOV_ASSIGN(rasters,

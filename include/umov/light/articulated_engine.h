@@ -24,6 +24,11 @@ public:
   /// safe; the same bits for any number of threads and any split of the poses.
   void evaluate(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
                 unsigned threads = 1) const;
+  /// The same with the columns that `task` asks for, as Engine::evaluate. False if cancelled.
+  [[nodiscard]] bool evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
+                              StokesTable &out, const LightTask &task,
+                              std::span<const std::uint32_t> material_of = {}) const;
+  [[nodiscard]] std::size_t mask_bytes() const;
 
 private:
   struct State;

@@ -7,7 +7,9 @@
 #include <span>
 #include <string_view>
 #include <umov/light/abundances.h>
+#include <umov/light/light_task.h>
 #include <umov/light/stokes_table.h>
+#include <umov/scene/pose.h>
 #include <umov/scene/scene.h>
 #include <vector>
 
@@ -79,6 +81,10 @@ public:
 
   /// Stokes of every pose. `out` is resized.
   void evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads = 1) const;
+  /// The same with the columns that `task` asks for; material_i counts the surfaces of the scene,
+  /// fronts then backs, by `material_of` (2 * groups). False if it was cancelled.
+  [[nodiscard]] bool evaluate(std::span<const Pose> poses, StokesTable &out, const LightTask &task,
+                              std::span<const std::uint32_t> material_of = {}) const;
 
   /// Sums of every pose before any colour. BadInput if a material has none (measured or
   /// anisotropic surfaces, polarized body light: they are lit facet by facet).

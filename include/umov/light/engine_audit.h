@@ -2,6 +2,7 @@
 // How far the fast engine is from the reference path.
 
 #include <umov/light/engine.h>
+#include <umov/light/integrator.h>
 
 namespace umov {
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <umov/light/stokes_table.h>
 #include <umov/optics/stokes.h>
 #include <umov/scene/pose.h>
 #include <umov/scene/scene.h>
@@ -19,22 +20,18 @@ struct IntegrationOptions {
   /// Light of the source per unit irradiance, in the scattering plane: sunlight, or a laser's.
   Stokes<ScatteringPlane> source{1, 0, 0, 0};
   std::size_t max_points = 1u << 22; ///< per pose; past that the error is reported as it is
+  /// Per band [m2/sr]: below it I need not be known any better than at it; empty: 0.
+  std::vector<double> floor_i = {};
   /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
   /// Up to 64. Convex meshes have direct light alone.
   std::size_t bounces = 1;
 };
 
-/// Result in one band.
-struct BandResult {
-  Stokes<ScatteringPlane> stokes;     ///< [m2/sr] per unit solar irradiance
-  Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths of I, Q, U, V
-};
-
 struct PoseResult {
   std::vector<BandResult> bands;
-  bool is_dark = true;                 ///< nothing is both lit and seen: I = 0, q and u undefined
-  std::vector<double> group_intensity; ///< [group * band_count + band], share of I by mesh group
-  std::uint64_t rays = 0;              ///< 0 for a convex mesh
+  bool is_dark = true;        ///< nothing is both lit and seen: I = 0, q and u undefined
+  std::vector<double> slot_i; ///< [slot * band_count + band]: direct I by mesh group and side
+  std::uint64_t rays = 0;     ///< 0 for a convex mesh
   std::vector<Stokes<ScatteringPlane>> indirect; ///< per band, part of `bands`; with bounces > 1
   double glint_share = 0; ///< share of I in band 0 from flats within their lobe's half width
 };

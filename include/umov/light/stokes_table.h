@@ -1,9 +1,26 @@
 #pragma once
 #include <cstddef>
-#include <umov/light/integrator.h>
+#include <cstdint>
+#include <umov/optics/stokes.h>
 #include <vector>
 
 namespace umov {
+
+/// Result in one band.
+struct BandResult {
+  Stokes<ScatteringPlane> stokes;     ///< [m2/sr] per unit solar irradiance
+  Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths of I, Q, U, V
+};
+/// Adds light of its own error: half-widths in quadrature.
+void add(const BandResult &more, BandResult &to);
+
+/// How a pose was lit.
+enum class PoseMethod : std::uint8_t {
+  Exact,  ///< nothing hides anything
+  Masks,  ///< looked up
+  Mended, ///< looked up, with rays for the classes that were uncertain
+  Rays
+};
 
 /// Results of many poses: [pose * bands + band], in the scattering plane, [m2/sr] per unit solar
 /// irradiance, with 95 % half-widths.
@@ -11,9 +28,16 @@ struct StokesTable {
   std::size_t bands = 0;
   std::vector<double> i, q, u, v;
   std::vector<double> i_err, q_err, u_err, v_err;
-  std::vector<char> is_dark; ///< per pose: nothing is both lit and seen
+  std::vector<char> is_dark;      ///< per pose: nothing is both lit and seen
+  std::vector<PoseMethod> method; ///< per pose
+  // Only where they are asked for, else empty:
+  std::vector<Stokes<ScatteringPlane>> indirect; ///< of more than one surface, part of I, Q, U, V
+  std::vector<double> glint_share; ///< per pose: of direct I in band 0 from flats within their lobe
+  std::vector<double> material_i;  ///< [(pose * materials + material) * bands + band], direct light
   void resize(std::size_t poses, std::size_t band_count);
+  [[nodiscard]] std::size_t poses() const { return is_dark.size(); }
   [[nodiscard]] BandResult at(std::size_t pose, std::size_t band) const;
+  void put(std::size_t pose, std::size_t band, const BandResult &result);
 };
 
 } // namespace umov

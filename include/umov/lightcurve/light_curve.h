@@ -3,7 +3,7 @@
 
 #include <string>
 #include <umov/attitude/attitude.h>
-#include <umov/light/integrator.h>
+#include <umov/light/light_model.h>
 #include <umov/optics/stokes.h>
 #include <umov/orbit/ephemeris.h>
 #include <vector>
@@ -21,6 +21,7 @@ struct LightCurveEpoch {
   double elset_age_days = 0;            ///< time minus element epoch
   bool has_glint = false;
   bool is_dark = true; ///< nothing lit and seen
+  PoseMethod method = PoseMethod::Rays;
 };
 
 /// One band at one epoch.
@@ -50,12 +51,12 @@ struct LightCurve {
   std::size_t bounces = 1; ///< surfaces that the light may have touched
   int norad_cat_id = 0;
   std::vector<Band> bands;
-  std::vector<std::string> groups;    ///< mesh groups, for the contribution per material
-  std::vector<std::string> materials; ///< material of each group
+  LightMethod method = LightMethod::Rays; ///< of the whole; rows say theirs
+  std::vector<std::string> materials;     ///< in order of first use in the scene
   std::vector<LightCurveEpoch> epochs;
   std::vector<LightCurveSample> samples;  ///< [epoch * bands.size() + band]
   std::vector<SecondLight> second_lights; ///< those asked for
-  std::vector<double> group_intensity;    ///< [(epoch * groups + group) * bands + band]
+  std::vector<double> material_i; ///< direct light: [(epoch * materials + material) * bands + band]
 };
 
 } // namespace umov

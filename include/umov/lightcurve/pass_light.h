@@ -5,6 +5,8 @@
 #include <optional>
 #include <umov/attitude/attitude.h>
 #include <umov/light/glints.h>
+#include <umov/light/light_model.h>
+#include <umov/observation/track.h>
 #include <umov/orbit/passes.h>
 #include <umov/scene/scene.h>
 
@@ -13,11 +15,9 @@ namespace umov {
 /// What an object is made of and how it moves; ready for many passes.
 class PassLight {
 public:
-  /// A body with an attitude. `attitude` is complete. For `is_for_many` passes of a body that hides
-  /// itself masks are prepared first (seconds), else each sample is traced. With light between
-  /// surfaces (`bounces` > 1) all samples are, to 2 % of I.
-  static PassLight of_body(const Scene &scene, const AttitudeLaw &attitude, bool is_for_many,
-                           std::size_t bounces = 1);
+  /// A body with an attitude, lit by `method` (rays: to 2 % of I). `attitude` is complete.
+  static Result<PassLight> of_body(const Scene &scene, const AttitudeLaw &attitude,
+                                   LightMethod method, std::size_t bounces = 1);
   /// A sphere: the same from everywhere.
   static Result<PassLight> of_sphere(double radius_m, const Material &material,
                                      const std::vector<Band> &bands);
@@ -31,6 +31,8 @@ public:
 
 private:
   struct State;
+  static Result<void> add_glints(const State &state, const Track &track,
+                                 std::vector<ObservingGeometry> &lit, SitePass &pass);
   std::shared_ptr<const State> state_;
 };
 

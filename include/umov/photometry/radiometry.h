@@ -2,6 +2,9 @@
 // From the object's intensity to what arrives at the observer.
 
 #include <umov/core/quantity.h>
+#include <umov/core/result.h>
+#include <umov/optics/band.h>
+#include <vector>
 
 namespace umov {
 
@@ -14,6 +17,27 @@ double irradiance_at_observer(double intensity, double solar_irradiance, double 
 /// AB magnitude of a spectral irradiance [W m-2 nm-1]: -2.5 log10(f_nu / 3631 Jy) (Oke & Gunn
 /// 1983). NaN where the irradiance is not positive.
 double ab_magnitude(double irradiance, Wavelength wavelength);
+
+/// What arrives at an observer in one band.
+struct ObservedLight {
+  double irradiance = 0; ///< [W m-2 nm-1] above the atmosphere
+  double magnitude = 0;  ///< AB; NaN where the irradiance is not positive
+};
+
+/// How far the light has come, and how much of the Sun there was.
+struct LightPath {
+  double sun_distance_km = 0; ///< Sun to object
+  double range_km = 0;        ///< object to observer, > 0
+  double sunlit = 1;          ///< sunlight at the object in parts of that outside all shadows
+};
+
+/// Intensity [m2/sr] of an object in a band as irradiance and magnitude at the observer, by
+/// `irradiance_at_observer` and `ab_magnitude`. solar_irradiance: of the band at 1 au.
+ObservedLight observed_light(double intensity, const Band &band, double solar_irradiance,
+                             const LightPath &path);
+
+/// Solar irradiance at 1 au of each band [W m-2 nm-1]; BadInput outside the solar spectrum.
+Result<std::vector<double>> solar_irradiances(const std::vector<Band> &bands);
 
 /// Relative air mass at an altitude above the horizon (Kasten & Young 1989, Eq. 3); NaN below it.
 double airmass(Angle altitude);

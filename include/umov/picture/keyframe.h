@@ -7,6 +7,7 @@
 #include <string>
 #include <umov/core/result.h>
 #include <umov/light/integrator.h>
+#include <umov/light/light_model.h>
 #include <umov/picture/channel.h>
 #include <umov/scene/articulation.h>
 #include <umov/scene/scene.h>
@@ -55,9 +56,6 @@ struct KeyFrameRaster {
 };
 
 enum class KeyFrameShading { Intensity, Polarization, PositionAngle, Material };
-
-/// Names of all materials of a scene in order of first use (fronts, then backs).
-std::vector<std::string> material_names(const Scene &scene);
 
 /// Casts the rays of one picture. BadInput for sizes out of range, a band that is not there or an
 /// `up` along the line of sight.

@@ -5,6 +5,7 @@
 
 #include <span>
 #include <umov/light/abundances.h>
+#include <umov/scene/pose.h>
 
 namespace umov {
 

@@ -122,10 +122,16 @@ struct ArticulatedEngine::State {
     std::vector<Vec3<Body>> points;
     std::vector<Occluder::Point> origins, directions;
     std::vector<unsigned char> free;
+    BandLight left;                                   ///< after what parts hide of each other
+    bool is_mended = false;                           ///< rays were traced for some part
+    std::vector<std::vector<std::uint32_t>> material; ///< [part][slot]
+    std::size_t materials = 0;                        ///< 0: none are asked for
   };
 
   void evaluate(const Pose &pose, const std::vector<double> &angles, Workspace &work,
                 std::size_t row, StokesTable &out) const;
+  void light_parts(const std::vector<PartMotion> &motions, std::size_t row, Workspace &work,
+                   StokesTable &out) const;
   void hide(std::size_t which, const std::vector<PartMotion> &to_part, Workspace &work) const;
   [[nodiscard]] std::size_t points_for(const Engine::State &engine,
                                        const Engine::State::Workspace &own, std::size_t k,
@@ -296,8 +302,17 @@ void ArticulatedEngine::State::evaluate(const Pose &pose, const std::vector<doub
   }
   if (std::find(work.is_seen.begin(), work.is_seen.end(), 1) == work.is_seen.end())
     return put_darkness(row, out);
-  BandLight left;
-  left.reset(bands, true);
+  light_parts(motions, row, work, out);
+  put_light(work.left, 1, has_scattering_plane(pose), has_u_or_v, row, out);
+  out.method[row] = work.is_mended ? PoseMethod::Mended : PoseMethod::Masks;
+}
+
+/// The light of all parts after what they hide of each other, and the columns asked for.
+void ArticulatedEngine::State::light_parts(const std::vector<PartMotion> &motions, std::size_t row,
+                                           Workspace &work, StokesTable &out) const {
+  work.left.reset(bands, true);
+  work.is_mended = false;
+  double glint = 0;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (work.is_seen[p] == 0)
       continue;
@@ -305,10 +320,21 @@ void ArticulatedEngine::State::evaluate(const Pose &pose, const std::vector<doub
     for (std::size_t q = 0; q < parts.size(); ++q)
       to_part.push_back(motions[motion_of[q]].inverse() * motions[motion_of[p]]);
     hide(p, to_part, work);
-    parts[p].engine->colour(work.parts[p]);
-    left.add_scaled(work.parts[p].light, parts[p].engine->compiled.area_m2);
+    const Engine::State &engine = *parts[p].engine;
+    Engine::State::Workspace &own = work.parts[p];
+    if (work.materials > 0)
+      engine.colour_by_material(work.material[p],
+                                out.material_i.data() + row * work.materials * bands, own);
+    else
+      engine.colour(own);
+    work.left.add_scaled(own.light, engine.compiled.area_m2);
+    work.is_mended = work.is_mended || own.is_mended;
+    if (!out.glint_share.empty())
+      glint += engine.glint_share(work.pose[p], work.prepared[p], own) * own.light.i[0] *
+               engine.compiled.area_m2;
   }
-  put_light(left, 1, has_scattering_plane(pose), has_u_or_v, row, out);
+  if (!out.glint_share.empty() && work.left.i[0] > 0)
+    out.glint_share[row] = glint / work.left.i[0];
 }
 
 ArticulatedEngine::ArticulatedEngine(const Scene &scene, const std::vector<Joint> &joints,
@@ -334,22 +360,50 @@ ArticulatedEngine &ArticulatedEngine::operator=(ArticulatedEngine &&) noexcept =
 
 void ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
                                  StokesTable &out, unsigned threads) const {
+  LightTask task;
+  task.threads = threads;
+  (void)evaluate(poses, angles_rad, out, task);
+}
+
+std::size_t ArticulatedEngine::mask_bytes() const {
+  std::size_t bytes = 0;
+  for (const State::Part &part : state_->parts)
+    bytes += part.engine->facts.mask_bytes;
+  return bytes;
+}
+
+bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
+                                 StokesTable &out, const LightTask &task,
+                                 std::span<const std::uint32_t> material_of) const {
   const State &s = *state_;
   out.resize(poses.size(), s.bands);
+  if (task.has_glints)
+    out.glint_share.assign(poses.size(), 0);
+  const std::size_t materials =
+      task.has_materials ? *std::max_element(material_of.begin(), material_of.end()) + 1 : 0;
+  out.material_i.assign(poses.size() * materials * s.bands, 0);
   constexpr std::size_t block = 64;
-  parallel_for((poses.size() + block - 1) / block, threads, [&](std::size_t task) {
+  parallel_for((poses.size() + block - 1) / block, task.threads, [&](std::size_t begin) {
     State::Workspace work;
-    for (const State::Part &part : s.parts)
+    work.materials = materials;
+    for (const State::Part &part : s.parts) {
       work.parts.emplace_back(*part.engine);
+      work.material.emplace_back();
+      for (std::size_t slot = 0; materials > 0 && slot < part.engine->compiled.slots.size(); ++slot)
+        work.material.back().push_back(material_of[part.engine->compiled.slots[slot].front()]);
+    }
     work.prepared.resize(s.parts.size());
     work.pose.resize(s.parts.size());
     std::vector<double> angles(s.joints.size());
-    for (std::size_t k = task * block; k < std::min(poses.size(), (task + 1) * block); ++k) {
+    for (std::size_t k = begin * block; k < std::min(poses.size(), (begin + 1) * block); ++k) {
+      if (task.cancel != nullptr && *task.cancel)
+        return;
       std::copy_n(angles_rad.begin() + static_cast<std::ptrdiff_t>(k * angles.size()),
                   angles.size(), angles.begin());
       s.evaluate(poses[k], angles, work, k, out);
     }
   });
+  return task.cancel == nullptr || !*task.cancel;
 }
 
 } // namespace umov

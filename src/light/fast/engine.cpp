@@ -96,6 +96,7 @@ Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), op
   compiled = compile_scene(scene, options.hypotheses, shared, classes, plan, options.cluster_rad,
                            options.is_intensity_only);
   single = round_scene(compiled.data);
+  flats = find_flats();
   facts.triangles = scene.mesh.triangles.size();
   facts.classes = classes.list.size();
   facts.groups = plan.groups.size();
@@ -153,17 +154,44 @@ const EngineFacts &Engine::facts() const { return state_->facts; }
 std::size_t Engine::band_count() const { return state_->scene.bands.size(); }
 
 void Engine::evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads) const {
+  LightTask task;
+  task.threads = threads;
+  (void)evaluate(poses, out, task);
+}
+
+bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const LightTask &task,
+                      std::span<const std::uint32_t> material_of) const {
   const State &s = *state_;
   out.resize(poses.size(), band_count());
+  if (task.has_glints)
+    out.glint_share.assign(poses.size(), 0);
+  std::vector<std::uint32_t> material; // per slot
+  for (std::size_t slot = 0; task.has_materials && slot < s.compiled.slots.size(); ++slot)
+    material.push_back(material_of[s.compiled.slots[slot].front()]);
+  const std::size_t materials =
+      material.empty() ? 0 : *std::max_element(material_of.begin(), material_of.end()) + 1;
+  out.material_i.assign(poses.size() * materials * band_count(), 0);
   const bool has_u_or_v = s.compiled.general_classes > 0;
   s.for_each(
-      poses, threads,
+      poses, task.threads,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
+        if (task.cancel != nullptr && *task.cancel)
+          return;
         if (!s.sum(pose, at, work))
           return put_darkness(row, out);
-        s.colour(work);
+        if (materials > 0)
+          s.colour_by_material(material, out.material_i.data() + row * materials * band_count(),
+                               work);
+        else
+          s.colour(work);
+        out.method[row] = !s.masks         ? PoseMethod::Exact
+                          : work.is_mended ? PoseMethod::Mended
+                                           : PoseMethod::Masks;
         put_light(work.light, s.compiled.area_m2, has_scattering_plane(pose), has_u_or_v, row, out);
+        if (task.has_glints)
+          out.glint_share[row] = s.glint_share(pose, at, work);
       });
+  return task.cancel == nullptr || !*task.cancel;
 }
 
 Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out,

@@ -17,12 +17,14 @@ bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) c
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
   work.general.reset(compiled.general_classes > 0 ? bands() : 0, true);
+  work.general_i.assign(compiled.general_classes > 0 ? compiled.slots.size() * bands() : 0, 0);
   if (!work.sums.seen.empty())
     add_narrow_and_general(pose, at, work);
   take_roots(work);
   if (!options.is_double)
     add_rounding(work);
-  if (masks && options.masks.refine_above > 0 && is_uncertain(work))
+  work.is_mended = masks && options.masks.refine_above > 0 && is_uncertain(work);
+  if (work.is_mended)
     refine(pose, at, work);
   return true;
 }
@@ -124,6 +126,7 @@ void Engine::State::add_narrow_and_general(const Pose &pose, const Prepared &at,
     for (std::size_t b = 0; b < bands(); ++b) {
       const auto &s = work.facet_light[b];
       to.i[b] += s.i * seen.area;
+      work.general_i[seen.slot * bands() + b] += s.i * seen.area;
       to.q[b] += s.q * seen.area;
       to.u[b] += s.u * seen.area;
       to.v[b] += s.v * seen.area;
@@ -143,6 +146,26 @@ SlotSums Engine::State::sums_of(std::size_t slot, const Workspace &work) const {
           work.sums.product.data() + terms.product_first,
           work.product_deviation.data() + terms.product_first,
           work.varies};
+}
+
+void Engine::State::colour_by_material(std::span<const std::uint32_t> material, double *intensity,
+                                       Workspace &work) const {
+  work.light.reset(bands(), compiled.general_classes > 0);
+  for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
+    if (compiled.data.slots[slot].is_general)
+      continue;
+    const std::vector<double> before = work.light.i;
+    compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.light);
+    for (std::size_t b = 0; b < bands(); ++b)
+      intensity[material[slot] * bands() + b] += (work.light.i[b] - before[b]) * compiled.area_m2;
+  }
+  if (compiled.general_classes == 0)
+    return;
+  work.light.add(work.general);
+  for (std::size_t slot = 0; slot < work.general_i.size() / bands(); ++slot)
+    for (std::size_t b = 0; b < bands(); ++b)
+      intensity[material[slot] * bands() + b] +=
+          work.general_i[slot * bands() + b] * compiled.area_m2;
 }
 
 void Engine::State::colour(Workspace &work) const {

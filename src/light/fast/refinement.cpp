@@ -134,6 +134,7 @@ void Engine::State::change_area(std::size_t k, double change, Workspace &work) c
   for (std::size_t b = 0; terms.is_general && b < bands(); ++b) {
     const auto &light = work.facet_light[k * bands() + b];
     work.general.i[b] += light.i * change;
+    work.general_i[facet.slot * bands() + b] += light.i * change;
     work.general.q[b] += light.q * change;
     work.general.u[b] += light.u * change;
     work.general.v[b] += light.v * change;

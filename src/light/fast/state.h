@@ -39,6 +39,14 @@ struct Engine::State {
   std::optional<backend::Masks> masks;
   std::optional<Occluder> occluder;
   RefinePoints refine_points;
+  /// Flat classes: where each is, and how near the half vector must be.
+  struct Flat {
+    Vec3<Body> normal;
+    double cosine;
+    std::uint32_t group, lane;
+  };
+  std::vector<Flat> flats;
+  [[nodiscard]] std::vector<Flat> find_flats() const;
 
   /// A pose made ready; the next one is while this one is summed.
   struct Prepared {
@@ -67,6 +75,9 @@ struct Engine::State {
     std::vector<double> error_per_area; ///< per uncertain facet, in parts of the whole light
     std::vector<std::size_t> points;    ///< per uncertain facet: traced; 0: looked up
     std::optional<RefineTracer> tracer;
+    bool is_mended = false;        ///< rays were traced for this pose
+    std::vector<double> general_i; ///< [slot * bands + band], of the facets without a kernel
+    std::vector<backend::SeenFacet> seen;
   };
 
   [[nodiscard]] const backend::Masks *hiding() const { return masks ? &*masks : nullptr; }
@@ -78,6 +89,12 @@ struct Engine::State {
   bool sum(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// work.light from the sums.
   void colour(Workspace &work) const;
+  /// The same, with I of each slot's material added to intensity[material * bands + band].
+  void colour_by_material(std::span<const std::uint32_t> material, double *intensity,
+                          Workspace &work) const;
+  /// Part of I in band 0 that flats reflect whose normal is within their lobe's half width of the
+  /// half vector.
+  double glint_share(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// Runs `body(row, pose, prepared, workspace)` for all poses, in an order that suits the masks.
   template <class Body>
   void for_each(std::span<const Pose> poses, unsigned threads, const Body &body) const;

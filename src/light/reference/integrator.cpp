@@ -75,7 +75,7 @@ PoseResult Integrator::direct(const Pose &pose, const IntegrationOptions &option
   out.rays = sums.rays;
   out.is_dark = !sums.is_any_seen;
   out.bands.resize(bands);
-  out.group_intensity.assign(groups * bands, 0);
+  out.slot_i.assign(2 * groups * bands, 0);
   for (std::size_t b = 0; b < bands; ++b) {
     BandResult &band = out.bands[b];
     for (std::size_t slot = 0; slot < 2 * groups; ++slot) {
@@ -83,7 +83,7 @@ PoseResult Integrator::direct(const Pose &pose, const IntegrationOptions &option
           lit.fresnel[slot * bands + b] * sums.specular[slot * lit.lobes + lit.lobe_of(b)] +
           sums.diffuse[slot * bands + b];
       band.stokes += light;
-      out.group_intensity[group_of_slot(static_cast<std::uint32_t>(slot)) * bands + b] += light.i;
+      out.slot_i[slot * bands + b] = light.i;
     }
     const double floor = rounding * band.stokes.i;
     const Stokes<ScatteringPlane> &rule = sums.rule_variance[b];
@@ -109,15 +109,10 @@ namespace {
 void add(const IndirectLight &light, PoseResult &out) {
   const double direct = out.bands.empty() ? 0 : out.bands[0].stokes.i;
   out.rays += light.rays;
-  const auto quadrature = [](double &a, double b) { a = std::hypot(a, b); };
   for (std::size_t b = 0; b < out.bands.size(); ++b) {
     const BandResult &more = light.bands[b];
     out.indirect.push_back(more.stokes);
-    out.bands[b].stokes += more.stokes;
-    quadrature(out.bands[b].half_width.i, more.half_width.i);
-    quadrature(out.bands[b].half_width.q, more.half_width.q);
-    quadrature(out.bands[b].half_width.u, more.half_width.u);
-    quadrature(out.bands[b].half_width.v, more.half_width.v);
+    umov::add(more, out.bands[b]);
     out.is_dark = out.is_dark && !(more.stokes.i > 0);
   }
   if (direct > 0)

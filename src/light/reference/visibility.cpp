@@ -22,14 +22,21 @@ constexpr double agreeing_variance = 0.01;
 /// the root of all: the variance of a place falls with the 3/2 power of its cells.
 constexpr double decay = 1.5;
 
-/// Largest half-width of I relative to I over the bands; infinite if nothing is seen.
-double worst_relative(const VisibleSums &sums) {
+/// What a relative error of a band refers to: I, or the floor below which it need not be known as
+/// well.
+double reference(const IntegrationOptions &options, const VisibleSums &sums, std::size_t band) {
+  return std::max(sums.intensity[band], options.floor_i.empty() ? 0 : options.floor_i[band]);
+}
+
+/// Largest half-width of I relative to that over the bands; infinite if nothing is seen.
+double worst_relative(const IntegrationOptions &options, const VisibleSums &sums) {
   double worst = 0;
   for (std::size_t b = 0; b < sums.intensity.size(); ++b) {
     if (sums.half_width[b].i <= 0)
       continue;
-    worst = std::max(worst, sums.intensity[b] > 0 ? sums.half_width[b].i / sums.intensity[b]
-                                                  : std::numeric_limits<double>::infinity());
+    const double refers_to = reference(options, sums, b);
+    worst = std::max(worst, refers_to > 0 ? sums.half_width[b].i / refers_to
+                                          : std::numeric_limits<double>::infinity());
   }
   return worst;
 }
@@ -110,7 +117,7 @@ public:
       const bool is_spent =
           static_cast<double>(last.sums.points) * 1.5 > static_cast<double>(options_.max_points);
       const bool is_stuck = static_cast<double>(last.sums.points) / 2 <= cells_before * 1.01;
-      if (worst_relative(last.sums) <= options_.accuracy || is_spent || is_stuck)
+      if (worst_relative(options_, last.sums) <= options_.accuracy || is_spent || is_stuck)
         break;
     }
     if (options_.density != 1)
@@ -132,10 +139,11 @@ private:
 
   /// Sets the cells of the next look; false if there is no room for more points, or not for enough.
   bool refine(const Measurement &last, double at_least, bool must_suffice) {
-    double visible = 1; // least part of the unhidden light that is seen, over the bands
+    // Least part of the unhidden light that is seen, over the bands: what the accuracy refers to.
+    double visible = options_.floor_i.empty() ? 1 : std::numeric_limits<double>::infinity();
     for (std::size_t b = 0; b < lit_.total.size(); ++b)
       if (lit_.total[b] > 0)
-        visible = std::min(visible, last.sums.intensity[b] / lit_.total[b]);
+        visible = std::min(visible, reference(options_, last.sums, b) / lit_.total[b]);
     constexpr double dark = 0.02; // a dark pose is looked at as if this part of it were seen
     const double wanted = margin * options_.accuracy * std::max(visible, dark) / student_95(30);
     const double room = static_cast<double>(options_.max_points) / 2;

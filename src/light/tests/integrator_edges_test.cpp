@@ -80,8 +80,8 @@ TEST(IntegratorEdges, ShadowAndMaskOfAPlateAreJoinedAtTheSamePoint) {
     const double left = 144 - union_area(1, 1, 3 * (u[0] - u[2]), 3 * (u[1] - u[3]));
     const double per_area = sun.z * observer.z / pi;
     const PoseResult result = integrator.evaluate({sun, observer}, fine);
-    EXPECT_NEAR(result.group_intensity[3 + 1], per_area, 1e-12); // the roof is hidden by nothing
-    const double difference = std::abs(result.group_intensity[1] - left * per_area);
+    EXPECT_NEAR(result.slot_i[2 * 3 + 1], per_area, 1e-12); // the roof is hidden by nothing
+    const double difference = std::abs(result.slot_i[1] - left * per_area);
     // Twice the half-width is 3.9 standard errors: 4e-3 to happen once in 40 poses.
     EXPECT_LT(difference, 2 * result.bands[1].half_width.i) << i;
     EXPECT_LE(result.bands[1].half_width.i, 3e-4 * result.bands[1].stokes.i);

@@ -11,20 +11,6 @@ constexpr double rounding = 2e-6;
 
 } // namespace
 
-void StokesTable::resize(std::size_t poses, std::size_t band_count) {
-  bands = band_count;
-  for (auto *column : {&i, &q, &i_err, &q_err})
-    column->resize(poses * band_count);
-  for (auto *column : {&u, &v, &u_err, &v_err}) // most poses have neither
-    column->assign(poses * band_count, 0);
-  is_dark.resize(poses);
-}
-
-BandResult StokesTable::at(std::size_t pose, std::size_t band) const {
-  const std::size_t k = pose * bands + band;
-  return {{i[k], q[k], u[k], v[k]}, {i_err[k], q_err[k], u_err[k], v_err[k]}};
-}
-
 void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_or_v,
                std::size_t row, StokesTable &out) {
   const std::size_t n = light.size(), first = row * n;

@@ -1,0 +1,114 @@
+#pragma once
+// The one way from poses to Stokes: for every command, every language and every machine.
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <umov/core/result.h>
+#include <umov/light/light_task.h>
+#include <umov/light/stokes_table.h>
+#include <umov/scene/articulation.h>
+#include <umov/scene/pose.h>
+#include <umov/scene/scene.h>
+#include <vector>
+
+namespace umov {
+
+/// How it is decided what is lit and seen. A convex body hides nothing: it is lit without rays and
+/// without masks whatever is asked.
+enum class LightMethod : std::uint8_t {
+  Rays,  ///< each pose by rays, to the accuracy asked: the reference
+  Masks, ///< looked up between directions traced beforehand: microseconds; half-widths say how good
+  Auto ///< masks where their half-width meets the accuracy, rays where it does not: class by class
+       ///< first, whole poses last
+};
+
+struct LightOptions {
+  LightMethod method = LightMethod::Auto;
+  double accuracy = 0.005; ///< wanted relative 95 % half-width of I
+  /// In parts of the object's typical light (`typical_light`): below it I need not be known any
+  /// better than at it. 0: every pose to `accuracy` of its own I.
+  double accuracy_floor = 0;
+  /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
+  /// Up to 64.
+  std::size_t bounces = 1;
+  std::uint64_t seed = 0; ///< of point sets and paths; results depend on it within the error only
+  /// Light of the source per unit irradiance, in the scattering plane: sunlight, or a laser's
+  /// (which takes rays).
+  Stokes<ScatteringPlane> source{1, 0, 0, 0};
+  /// Ray-tested points per pose, past which the error is reported as it is; 0: as the light needs
+  /// (2^22, and 2^19 with bounces, whose paths cost more).
+  std::size_t max_points = 0;
+  /// File to keep the masks in: read if it exists (BadInput unless it fits), made if not.
+  std::filesystem::path mask_file;
+  /// Folder of masks of earlier jobs; empty: none are kept. What is damaged is made anew.
+  std::filesystem::path mask_cache;
+  unsigned threads = 0; ///< of the preparation; 0: all cores
+};
+
+/// What was made ready.
+struct LightFacts {
+  LightMethod method = LightMethod::Rays; ///< what Auto means here
+  bool is_convex = false;
+  std::size_t triangles = 0, classes = 0;
+  std::size_t mask_bytes = 0;
+  double setup_s = 0;
+  std::string visibility;      ///< how hiding is decided, in words for a file's header
+  std::string instruction_set; ///< "scalar double" for rays
+};
+
+/// A scene, its parts free to turn, ready to be lit from any direction. Thread safe. A pose's light
+/// depends on the pose alone, not on which or how many others are asked for with it (light between
+/// surfaces apart: neighbours in a series share their paths, within the half-widths).
+class LightModel {
+public:
+  virtual ~LightModel() = default;
+  LightModel(const LightModel &) = delete;
+  LightModel &operator=(const LightModel &) = delete;
+
+  /// Stokes of every pose, directions in the body; joint angles [pose * joints + joint] [rad];
+  /// `out` is resized. False if `task.cancel` became true: the table is then of no use.
+  [[nodiscard]] bool evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
+                              StokesTable &out, const LightTask &task = {}) const;
+  /// The same for parts that stand as the mesh has them.
+  [[nodiscard]] bool evaluate(std::span<const Pose> poses, StokesTable &out,
+                              const LightTask &task = {}) const;
+
+  [[nodiscard]] const Scene &scene() const { return scene_; }
+  [[nodiscard]] const std::vector<Joint> &joints() const { return joints_; }
+  [[nodiscard]] const LightFacts &facts() const { return facts_; }
+  /// Names that material_i counts: fronts in the order of the mesh groups, then backs.
+  [[nodiscard]] const std::vector<std::string> &materials() const { return materials_; }
+  /// Keeps what was learnt of the masks for later jobs (LightOptions::mask_cache or mask_file).
+  /// Device if the file that was asked for cannot be written; the cache fails in silence.
+  [[nodiscard]] virtual Result<void> keep_masks() const { return {}; }
+
+protected:
+  LightModel(const Scene &scene, std::vector<Joint> joints);
+  LightFacts facts_;
+
+private:
+  virtual bool light(std::span<const Pose> poses, std::span<const double> angles_rad,
+                     StokesTable &out, const LightTask &task) const = 0;
+  Scene scene_;
+  std::vector<Joint> joints_;
+  std::vector<std::string> materials_;
+};
+
+/// The model for a scene: the one place that decides how it is lit. `joints` have passed
+/// check_joints. BadInput for a mask file that does not fit.
+Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
+                                               const LightOptions &options);
+
+/// Per band [m2/sr]: the median over 256 random poses (phase angles spread evenly over 30 to 150
+/// deg) of I if nothing hid anything. A property of the object, so that no row's accuracy depends
+/// on which other rows are asked for.
+std::vector<double> typical_light(const Scene &scene);
+
+/// Names of all materials of a scene in order of first use (fronts, then backs).
+std::vector<std::string> material_names(const Scene &scene);
+
+} // namespace umov

@@ -1,0 +1,62 @@
+// The one place that decides how a scene is lit.
+
+#include "light/model/models.h"
+
+#include <algorithm>
+#include <umov/light/poses.h>
+#include <umov/shape/topology.h>
+
+namespace umov {
+
+std::vector<double> typical_light(const Scene &scene) {
+  constexpr std::size_t count = 256;
+  constexpr std::uint64_t seed = 0; // of the object alone
+  std::vector<Pose> poses;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double phase = 30 + 120 * (static_cast<double>(k) + 0.5) / count;
+    poses.push_back(random_pose(seed, k, Angle::degrees(phase)));
+    poses.back().sun_radius_rad = sun_radius_at_1au_rad;
+  }
+  StokesTable table;
+  Engine(scene, {.visibility = Visibility::None, .threads = 1}).evaluate(poses, table);
+  std::vector<double> out;
+  for (std::size_t b = 0; b < table.bands; ++b) {
+    std::vector<double> light;
+    for (std::size_t k = 0; k < count; ++k)
+      light.push_back(table.i[k * table.bands + b]);
+    std::nth_element(light.begin(), light.begin() + count / 2, light.end());
+    out.push_back(light[count / 2]);
+  }
+  return out;
+}
+
+namespace {
+
+bool is_sunlight(const Stokes<ScatteringPlane> &source) {
+  return source.i == 1 && source.q == 0 && source.u == 0 && source.v == 0;
+}
+
+/// Masks hold for sunlight. A convex body needs no rays: its light by the reference is exact, where
+/// the engine's joined normals err by more than their half-widths tell.
+bool takes_rays(const Scene &scene, const std::vector<Joint> &joints, const LightOptions &options) {
+  if (options.method == LightMethod::Rays || !is_sunlight(options.source))
+    return true;
+  return options.method == LightMethod::Auto && joints.empty() && is_proven_convex(scene.mesh);
+}
+
+} // namespace
+
+Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
+                                               const LightOptions &options) {
+  std::vector<double> floor_i;
+  if (options.accuracy_floor > 0) {
+    floor_i = typical_light(scene);
+    for (double &floor : floor_i)
+      floor *= options.accuracy_floor;
+  }
+  if (!takes_rays(scene, joints, options))
+    return MasksLight::make(scene, std::move(joints), options, std::move(floor_i));
+  return std::make_unique<RaysLight>(scene, std::move(joints), options, std::move(floor_i));
+}
+
+} // namespace umov

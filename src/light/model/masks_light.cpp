@@ -1,0 +1,111 @@
+#include "light/model/models.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fmt/format.h>
+
+namespace umov {
+namespace {
+
+/// How hiding is decided, for the header of a file.
+std::string in_words(const LightFacts &facts, const MaskQuality &masks) {
+  if (facts.is_convex)
+    return "none: the mesh is convex";
+  const auto directions = [](std::size_t cells) { return (cells + 1) * (cells + 1); };
+  std::string out = fmt::format("direction masks, {} points, {} and {} directions", masks.points,
+                                directions(masks.narrow_cells), directions(masks.wide_cells));
+  if (masks.refine_above > 0)
+    out += fmt::format("; rays where the half-width of I exceeds {:g} of it", masks.refine_above);
+  return out;
+}
+
+} // namespace
+
+MasksLight::MasksLight(const Scene &of, std::vector<Joint> turning, const LightOptions &options,
+                       std::vector<double> floor_i)
+    : LightModel(of, std::move(turning)), options_(options), floor_i_(std::move(floor_i)),
+      material_of_(material_of_slots(scene(), materials())) {}
+
+Result<std::unique_ptr<LightModel>> MasksLight::make(const Scene &scene, std::vector<Joint> joints,
+                                                     const LightOptions &options,
+                                                     std::vector<double> floor_i) {
+  std::unique_ptr<MasksLight> out(
+      new MasksLight(scene, std::move(joints), options, std::move(floor_i)));
+  UMOV_TRY(out->prepare());
+  return out;
+}
+
+Result<void> MasksLight::prepare() {
+  const auto start = std::chrono::steady_clock::now();
+  const bool is_auto = options_.method == LightMethod::Auto;
+  EngineOptions with;
+  with.threads = options_.threads;
+  // What masks lack, rays add: finer masks cost more to make than they save.
+  with.masks = is_auto ? fast_masks : masks_for(options_.accuracy);
+  with.masks.refine_above = is_auto ? options_.accuracy : 0;
+  with.q_part = 1; // Q in parts of I, to the accuracy of I
+  with.floor_i = floor_i_;
+  if (joints().empty() && !options_.mask_file.empty() &&
+      std::filesystem::exists(options_.mask_file)) {
+    UMOV_ASSIGN(read, Engine::with_masks(options_.mask_file, scene(), with));
+    engine_.emplace(std::move(read));
+  } else if (joints().empty()) {
+    engine_.emplace(scene(), with);
+  } else {
+    turning_.emplace(scene(), joints(), with);
+  }
+  facts_.method = options_.method;
+  facts_.instruction_set = engine_instruction_set();
+  facts_.is_convex = engine_ && engine_->facts().is_convex;
+  facts_.classes = engine_ ? engine_->facts().classes : 0;
+  facts_.mask_bytes = engine_ ? engine_->facts().mask_bytes : turning_->mask_bytes();
+  facts_.visibility = in_words(facts_, with.masks);
+  IntegrationOptions rays = integration_of(options_, floor_i_);
+  if (options_.bounces > 1 && !facts_.is_convex)
+    between_.emplace(scene(), joints(), rays, materials());
+  rays.bounces = 1;
+  if (is_auto)
+    direct_.emplace(scene(), joints(), rays, materials());
+  facts_.setup_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {};
+}
+
+Result<void> MasksLight::keep_masks() const {
+  if (options_.mask_file.empty() || !engine_ || facts_.is_convex ||
+      std::filesystem::exists(options_.mask_file))
+    return {};
+  return engine_->save_masks(options_.mask_file);
+}
+
+/// Poses that miss the accuracy for all that was mended.
+std::vector<std::size_t> MasksLight::inaccurate(const StokesTable &table) const {
+  constexpr double slack = 1.001; // rounding of what was mended to the very accuracy
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < table.poses(); ++k)
+    for (std::size_t b = 0; b < table.bands; ++b) {
+      const std::size_t at = k * table.bands + b;
+      const double refers_to = std::max(table.i[at], floor_i_.empty() ? 0 : floor_i_[b]);
+      if (table.i_err[at] > slack * options_.accuracy * refers_to) {
+        out.push_back(k);
+        break;
+      }
+    }
+  return out;
+}
+
+bool MasksLight::light(std::span<const Pose> poses, std::span<const double> angles_rad,
+                       StokesTable &out, const LightTask &task) const {
+  const bool is_done = engine_ ? engine_->evaluate(poses, out, task, material_of_)
+                               : turning_->evaluate(poses, angles_rad, out, task, material_of_);
+  if (!is_done)
+    return false;
+  if (direct_) {
+    const std::vector<std::size_t> left = inaccurate(out);
+    if (!left.empty() && !direct_->light(poses, angles_rad, left, out, task))
+      return false;
+  }
+  return !between_ || between_->add_indirect(poses, angles_rad, out, task);
+}
+
+} // namespace umov

@@ -1,0 +1,48 @@
+#pragma once
+// Private: the models that make_light chooses from.
+
+#include "light/model/ray_tracer.h"
+
+#include <umov/light/articulated_engine.h>
+#include <umov/light/engine.h>
+
+namespace umov {
+
+/// Each pose by rays, with light between surfaces where it is asked for.
+class RaysLight final : public LightModel {
+public:
+  RaysLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
+            std::vector<double> floor_i);
+
+private:
+  bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
+             const LightTask &task) const override;
+  RayTracer rays_;
+};
+
+/// Masks; with LightMethod::Auto mended by rays, class by class and pose by pose.
+class MasksLight final : public LightModel {
+public:
+  static Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> joints,
+                                                  const LightOptions &options,
+                                                  std::vector<double> floor_i);
+  [[nodiscard]] Result<void> keep_masks() const override;
+
+private:
+  MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
+             std::vector<double> floor_i);
+  Result<void> prepare();
+  bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
+             const LightTask &task) const override;
+  [[nodiscard]] std::vector<std::size_t> inaccurate(const StokesTable &table) const;
+
+  LightOptions options_;
+  std::vector<double> floor_i_;
+  std::vector<std::uint32_t> material_of_;
+  std::optional<Engine> engine_;             ///< of a body whose parts do not turn
+  std::optional<ArticulatedEngine> turning_; ///< of one whose parts do
+  std::optional<RayTracer> direct_;          ///< for poses that miss the accuracy
+  std::optional<RayTracer> between_;         ///< for light of more than one surface
+};
+
+} // namespace umov

@@ -1,0 +1,133 @@
+#include "light/model/ray_tracer.h"
+
+#include "light/reference/elements.h"
+
+#include <algorithm>
+#include <umov/core/parallel.h>
+
+namespace umov {
+
+IntegrationOptions integration_of(const LightOptions &options, std::vector<double> floor_i) {
+  IntegrationOptions out;
+  out.accuracy = options.accuracy;
+  out.seed = options.seed;
+  out.source = options.source;
+  out.bounces = options.bounces;
+  out.floor_i = std::move(floor_i);
+  if (options.max_points > 0)
+    out.max_points = options.max_points;
+  else if (options.bounces > 1) // a sampled path costs more than a point
+    out.max_points = 1u << 19;
+  return out;
+}
+
+std::vector<std::uint32_t> material_of_slots(const Scene &scene,
+                                             const std::vector<std::string> &names) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t slot = 0; slot < 2 * scene.mesh.groups.size(); ++slot) {
+    const std::string &name = surface_of_slot(scene, slot).material().name;
+    out.push_back(
+        static_cast<std::uint32_t>(std::find(names.begin(), names.end(), name) - names.begin()));
+  }
+  return out;
+}
+
+RayTracer::RayTracer(const Scene &scene, const std::vector<Joint> &joints,
+                     IntegrationOptions options, const std::vector<std::string> &materials)
+    : scene_(scene), joints_(joints), options_(std::move(options)),
+      material_of_(material_of_slots(scene, materials)), materials_(materials.size()) {
+  if (joints_.empty())
+    integrator_.emplace(scene_);
+}
+
+/// The mesh of an object whose parts turn is another one at every pose.
+Scene RayTracer::turned(std::span<const double> angles_rad, std::size_t pose) const {
+  const auto first = angles_rad.begin() + static_cast<std::ptrdiff_t>(pose * joints_.size());
+  Scene out = scene_;
+  out.mesh =
+      posed(scene_.mesh, joints_, {first, first + static_cast<std::ptrdiff_t>(joints_.size())});
+  return out;
+}
+
+void RayTracer::put(const PoseResult &result, std::size_t row, StokesTable &out) const {
+  out.is_dark[row] = result.is_dark ? 1 : 0;
+  out.method[row] = result.rays > 0 ? PoseMethod::Rays : PoseMethod::Exact;
+  for (std::size_t b = 0; b < out.bands; ++b)
+    out.put(row, b, result.bands[b]);
+  for (std::size_t b = 0; b < result.indirect.size(); ++b)
+    out.indirect[row * out.bands + b] = result.indirect[b];
+  if (!out.glint_share.empty())
+    out.glint_share[row] = result.glint_share;
+  if (out.material_i.empty())
+    return;
+  double *to = out.material_i.data() + row * materials_ * out.bands;
+  std::fill_n(to, materials_ * out.bands, 0);
+  for (std::size_t slot = 0; slot < material_of_.size(); ++slot)
+    for (std::size_t b = 0; b < out.bands; ++b)
+      to[material_of_[slot] * out.bands + b] += result.slot_i[slot * out.bands + b];
+}
+
+bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angles_rad,
+                      std::span<const std::size_t> which, StokesTable &out,
+                      const LightTask &task) const {
+  std::vector<Pose> chosen;
+  for (const std::size_t k : which)
+    chosen.push_back(poses[k]);
+  std::vector<PoseResult> found;
+  if (integrator_) {
+    found = integrator_->evaluate(chosen, options_, task.threads, task.cancel);
+  } else {
+    found.resize(which.size());
+    parallel_for(which.size(), task.threads, [&](std::size_t k) {
+      if (!is_cancelled(task))
+        found[k] = Integrator(turned(angles_rad, which[k])).evaluate(chosen[k], options_);
+    });
+  }
+  if (is_cancelled(task) || found.size() < which.size())
+    return false;
+  if (options_.bounces > 1)
+    out.indirect.resize(out.i.size());
+  for (std::size_t k = 0; k < which.size(); ++k)
+    put(found[k], which[k], out);
+  return true;
+}
+
+bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double> angles_rad,
+                             StokesTable &out, const LightTask &task) const {
+  // The accuracy refers to the whole light, or to the floor.
+  std::vector<double> direct = out.i;
+  for (std::size_t at = 0; at < direct.size() && !options_.floor_i.empty(); ++at)
+    direct[at] = std::max(direct[at], options_.floor_i[at % out.bands]);
+  std::vector<IndirectLight> more;
+  if (integrator_) {
+    more = integrator_->indirect(poses, direct, options_, task.threads, task.cancel);
+  } else {
+    more.resize(poses.size());
+    parallel_for(poses.size(), task.threads, [&](std::size_t k) {
+      if (!is_cancelled(task))
+        more[k] = Integrator(turned(angles_rad, k))
+                      .indirect(poses.subspan(k, 1),
+                                std::span(direct).subspan(k * out.bands, out.bands), options_, 1)
+                      .front();
+    });
+  }
+  if (is_cancelled(task) || more.size() < poses.size())
+    return false;
+  out.indirect.resize(out.i.size());
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const double before = out.i[k * out.bands];
+    for (std::size_t b = 0; b < out.bands; ++b) {
+      BandResult whole = out.at(k, b);
+      add(more[k].bands[b], whole);
+      out.put(k, b, whole);
+      out.indirect[k * out.bands + b] = more[k].bands[b].stokes;
+      if (more[k].bands[b].stokes.i > 0)
+        out.is_dark[k] = 0;
+    }
+    if (!out.glint_share.empty() && before > 0)
+      out.glint_share[k] *= before / out.i[k * out.bands];
+  }
+  return true;
+}
+
+} // namespace umov

@@ -1,0 +1,45 @@
+#pragma once
+// Private: the reference path as models use it.
+
+#include <optional>
+#include <umov/light/integrator.h>
+#include <umov/light/light_model.h>
+
+namespace umov {
+
+/// What all rays of a model share: its options as the reference takes them.
+IntegrationOptions integration_of(const LightOptions &options, std::vector<double> floor_i);
+
+/// Index into `names` of the surface of each slot of a scene.
+std::vector<std::uint32_t> material_of_slots(const Scene &scene,
+                                             const std::vector<std::string> &names);
+
+inline bool is_cancelled(const LightTask &task) { return task.cancel != nullptr && *task.cancel; }
+
+/// Poses by the reference path, some of a batch or all of it. `scene` and `joints` must live.
+class RayTracer {
+public:
+  RayTracer(const Scene &scene, const std::vector<Joint> &joints, IntegrationOptions options,
+            const std::vector<std::string> &materials);
+  /// Fills the rows `which` of a table of all poses; false if it was cancelled.
+  [[nodiscard]] bool light(std::span<const Pose> poses, std::span<const double> angles_rad,
+                           std::span<const std::size_t> which, StokesTable &out,
+                           const LightTask &task) const;
+  /// Adds the light of more than one surface to direct light in `out`; false if it was cancelled.
+  [[nodiscard]] bool add_indirect(std::span<const Pose> poses, std::span<const double> angles_rad,
+                                  StokesTable &out, const LightTask &task) const;
+  [[nodiscard]] bool is_convex() const { return integrator_ && integrator_->is_convex(); }
+
+private:
+  [[nodiscard]] Scene turned(std::span<const double> angles_rad, std::size_t pose) const;
+  void put(const PoseResult &result, std::size_t row, StokesTable &out) const;
+
+  const Scene &scene_;
+  const std::vector<Joint> &joints_;
+  IntegrationOptions options_;
+  std::vector<std::uint32_t> material_of_;
+  std::size_t materials_;
+  std::optional<Integrator> integrator_; ///< of a body whose parts do not turn
+};
+
+} // namespace umov
