@@ -282,7 +282,8 @@ std::string make_manifest(const ManifestInput &input) {
   out["warnings"] = input.warnings;
   if (!input.files.empty())
     out["files"] = input.files;
-  return out.dump(2) + "\n";
+  // Names of files are bytes, not always UTF-8: hours of work must not end here.
+  return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 } // namespace umov

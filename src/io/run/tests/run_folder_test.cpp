@@ -50,6 +50,14 @@ TEST_F(RunFolderTest, LeavesAForeignFolderAlone) {
   EXPECT_EQ(entries(), 2u);
 }
 
+// Names are bytes: a Latin-1 one must not end a run that is done.
+TEST(Manifest, TakesNamesThatAreNotUtf8) {
+  ManifestInput input;
+  input.inputs = {{"caf\xE9.toml", "00"}};
+  input.command_line = {"umov", "run", "caf\xE9.toml"};
+  EXPECT_NE(make_manifest(input).find("caf\xEF\xBF\xBD.toml"), std::string::npos);
+}
+
 TEST_F(RunFolderTest, NothingIsLeftWithoutCommit) {
   {
     auto folder = RunFolder::open(base_ / "out", false);
