@@ -87,6 +87,11 @@ Result<std::string> read_file(const fs::path &path, std::size_t limit_bytes) {
                   {path.string()});
     bytes.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }
+  if (stream.bad()) // not the end: what was read so far would look like a shorter file
+    return fail(ErrorCode::Device,
+                std::string("cannot be read to its end: ") + std::strerror(errno) + ", after " +
+                    std::to_string(bytes.size()) + " bytes. Check the disk, or copy the file anew.",
+                {path.string()});
   return bytes;
 }
 

@@ -10,7 +10,7 @@
 namespace umov {
 
 /// Contents of a file; a missing one, a folder or one larger than `limit_bytes` is BadInput and is
-/// refused before anything is read.
+/// refused before anything is read. Device where reading breaks off before the end.
 Result<std::string> read_file(const std::filesystem::path &path,
                               std::size_t limit_bytes = 256u << 20);
 

@@ -114,6 +114,16 @@ TEST(Files, MissingInputIsBadInputAndUnwritableOutputIsDevice) {
   EXPECT_EQ(write_file_atomically("/no/such/folder/a", "x").error().code, ErrorCode::Device);
 }
 
+// Reading one's own memory from address zero gives an input/output error, as a bad disk does.
+TEST(Files, AReadErrorIsNotTheEndOfTheFile) {
+  const auto read = read_file("/proc/self/mem");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, ErrorCode::Device);
+  EXPECT_NE(read.error().message.find("cannot be read to its end: Input/output error"),
+            std::string::npos)
+      << read.error().text();
+}
+
 TEST(Files, RefusesWhatIsOverTheLimit) {
   const fs::path path = fs::path(testing::TempDir()) / "umov_limit_test";
   ASSERT_TRUE(write_file_atomically(path, std::string(100, 'x')));
