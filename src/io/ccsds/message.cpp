@@ -1,6 +1,7 @@
 #include "io/ccsds/keywords.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <set>
 #include <umov/core/text.h>
@@ -156,6 +157,56 @@ Result<void> check_segment(const Message &message, const Segment &segment) {
 
 } // namespace
 
+namespace {
+
+/// Words of letters, digits and signs that neither form takes for something else.
+bool is_keyword(std::string_view key) {
+  return !key.empty() && std::isalpha(static_cast<unsigned char>(key.front())) != 0 &&
+         std::all_of(key.begin(), key.end(), [](char c) {
+           return (c & 0x80) == 0 && (std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                                      c == '_' || c == '-' || c == '.');
+         });
+}
+
+/// What terminals obey, what ends a line of KVN and what is no UTF-8, in texts of any form.
+Result<void> clean(std::vector<Field> &fields, const std::string &file, Where &changed) {
+  for (Field &field : fields) {
+    if (!is_keyword(field.key))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("\"{}\" is no keyword; letters, digits and _ were expected",
+                              printable(field.key.substr(0, 60))),
+                  {file, field.line});
+    for (std::string *text : {&field.text, &field.unit}) {
+      std::replace_if(
+          text->begin(), text->end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; },
+          ' '); // XML may break a text into lines
+      bool is_changed = false;
+      *text = printable(*text, &is_changed);
+      if (is_changed && changed.file.empty())
+        changed = {file, field.line};
+    }
+  }
+  return {};
+}
+
+Result<void> clean(Message &message, Diagnostics &diagnostics) {
+  Where changed; // the first place
+  message.version = printable(message.version);
+  UMOV_TRY(clean(message.header, message.file, changed));
+  for (Segment &segment : message.segments) {
+    UMOV_TRY(clean(segment.metadata, message.file, changed));
+    for (Record &record : segment.data)
+      UMOV_TRY(clean(record.fields, message.file, changed));
+  }
+  if (!changed.file.empty())
+    diagnostics.warn("a text holds bytes that are not printable UTF-8; they are replaced by '?', "
+                     "here and in what follows.",
+                     changed);
+  return {};
+}
+
+} // namespace
+
 Result<void> check_message(const Message &message, Diagnostics &diagnostics) {
   UMOV_TRY(check_fields(message.header, message.file, false));
   for (const char *key : {"CREATION_DATE", "ORIGINATOR"}) // many operators leave them out
@@ -192,6 +243,7 @@ Result<Message> read_message(std::string_view text, const std::string &file,
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_xml = begin != std::string_view::npos && text[begin] == '<';
   UMOV_ASSIGN(message, is_xml ? read_xml(text, file) : read_kvn(text, file));
+  UMOV_TRY(clean(message, diagnostics));
   UMOV_TRY(check_message(message, diagnostics));
   return message;
 }

@@ -281,6 +281,23 @@ void expect_whole(const std::string &text) {
     }
 }
 
+// A text of XML must not become another line of KVN, nor a keyword of KVN an element of XML.
+TEST(CcsdsMessages, TextsAndKeywordsStayWhatTheyAre) {
+  const std::string xml = *read_file(folder + "oem.xml"), kvn = *read_file(folder + "oem.kvn");
+  const std::string broken = replaced(xml, "ISS (ZARYA)", "ISS\nCENTER_NAME = MARS &#27;[31m");
+  Diagnostics diagnostics;
+  const auto message = read_message(broken, "m", diagnostics);
+  ASSERT_TRUE(message) << message.error().text();
+  EXPECT_EQ(find(message->segments[0].metadata, "OBJECT_NAME")->text,
+            "ISS CENTER_NAME = MARS ?[31m");
+  EXPECT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_EQ(
+      find(read(*write_message(*message, Form::Kvn)).segments[0].metadata, "CENTER_NAME")->text,
+      "EARTH");
+  EXPECT_NE(refusal(replaced(kvn, "META_STOP", "A><evil/><B = 1\nMETA_STOP")).find("is no keyword"),
+            std::string::npos);
+}
+
 // What happens to files on their way: a line is lost, doubled or changes places with the next.
 TEST(CcsdsMessages, LinesLostDoubledOrExchangedNeverCrash) {
   for (const std::string &name : samples()) {
