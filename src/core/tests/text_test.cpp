@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <umov/core/diagnostics.h>
 #include <umov/core/text.h>
 #include <vector>
 
@@ -50,6 +51,14 @@ TEST(Printable, KeepsUtf8AndReplacesTheRestByteByByte) {
     EXPECT_EQ(printable(text, &is_changed), expected);
     EXPECT_TRUE(is_changed);
   }
+}
+
+TEST(Diagnostics, AreLimited) {
+  Diagnostics diagnostics;
+  for (int k = 0; k < 20'000; ++k)
+    diagnostics.warn("again");
+  ASSERT_EQ(diagnostics.warnings().size(), Diagnostics::most + 1);
+  EXPECT_NE(diagnostics.warnings().back().message.find("left out"), std::string::npos);
 }
 
 TEST(Shortest, ReadsBackToTheSameDouble) {
