@@ -308,6 +308,12 @@ TEST(Elements, ATleSaysWhatItCannotHold) {
   set.norad_cat_id = 340'000;
   EXPECT_NE(write_elements({set}, ElementsForm::Tle, now, said).error().message.find("Z9999"),
             std::string::npos);
+  set.mean_motion_dot = 1.25;
+  EXPECT_NE(write_elements({set}, ElementsForm::Tle, now, said).error().message.find("Z9999"),
+            std::string::npos);
+  set.norad_cat_id = 270'123;
+  EXPECT_NE(write_elements({set}, ElementsForm::Tle, now, said).error().message.find("1.25 rev"),
+            std::string::npos);
   // The other forms hold all of it.
   for (const ElementsForm form :
        {ElementsForm::OmmKvn, ElementsForm::OmmXml, ElementsForm::OmmJson, ElementsForm::OmmCsv})
