@@ -1,10 +1,12 @@
 #include "console.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <fmt/format.h>
 #include <iostream>
 #include <umov/core/files.h>
+#include <umov/core/text.h>
 #include <unistd.h>
 
 namespace umov::cli {
@@ -31,12 +33,29 @@ void add_threads(CLI::App &verb, Common &common) {
       ->capture_default_str();
 }
 
+namespace {
+
+/// Messages quote files, which may hold what a terminal obeys. Line breaks are the messages' own.
+std::string safe(const std::string &text) {
+  std::string out;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    out += printable(text.substr(begin, end - begin));
+    if (end < text.size())
+      out += '\n';
+    begin = end + 1;
+  }
+  return out;
+}
+
+} // namespace
+
 int report(const Error &error) {
   const bool nothing = error.code == ErrorCode::Nothing;
   const bool colour = may_colour(stderr);
   const std::string word = nothing ? "no result" : "error";
   fmt::print(stderr, "{}{}:{} {}\n", colour ? (nothing ? "\033[33m" : "\033[31m") : "", word,
-             colour ? "\033[0m" : "", error.text());
+             colour ? "\033[0m" : "", safe(error.text()));
   return static_cast<int>(error.code);
 }
 
@@ -46,7 +65,7 @@ void report(const Diagnostics &diagnostics, const Common &common) {
   const bool colour = may_colour(stderr);
   for (const Warning &warning : diagnostics.warnings())
     fmt::print(stderr, "{}warning:{} {}\n", colour ? "\033[33m" : "", colour ? "\033[0m" : "",
-               warning.text());
+               safe(warning.text()));
 }
 
 void note(const Common &common, const std::string &text) {

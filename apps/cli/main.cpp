@@ -4,6 +4,8 @@
 #include <csignal>
 #include <exception>
 #include <fmt/format.h>
+#include <new>
+#include <system_error>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 
@@ -73,6 +75,13 @@ int run(int argc, char **argv) {
   return code;
 }
 
+int report_bug(const std::exception &bug) {
+  return cli::report(Error{ErrorCode::Internal,
+                           std::string("this is a bug of umov: ") + bug.what() +
+                               ". Please report it with the command line.",
+                           {}});
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
@@ -82,10 +91,16 @@ int main(int argc, char **argv) {
     return run(argc, argv);
   } catch (const std::bad_alloc &) {
     return cli::report(Error{ErrorCode::Device, "out of memory; ask for less at once", {}});
+  } catch (const Failure &failure) {
+    return cli::report(failure.error());
+  } catch (const std::system_error &problem) {
+    return problem.code() == std::errc::resource_unavailable_try_again
+               ? cli::report(Error{ErrorCode::Device,
+                                   "no thread could be made; allow more processes (ulimit -u) or "
+                                   "memory, or ask for fewer with --threads",
+                                   {}})
+               : report_bug(problem);
   } catch (const std::exception &bug) {
-    return cli::report(Error{ErrorCode::Internal,
-                             std::string("this is a bug of umov: ") + bug.what() +
-                                 ". Please report it with the command line.",
-                             {}});
+    return report_bug(bug);
   }
 }

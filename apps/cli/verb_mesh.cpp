@@ -217,7 +217,7 @@ std::string to_json(const Mesh &mesh, const MeshReport &m) {
     out["materials"].push_back({{"name", mesh.groups[g]},
                                 {"triangles", m.group_triangles[g]},
                                 {"area_m2", m.group_area_m2[g]}});
-  return out.dump(2) + "\n";
+  return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 Result<void> describe_file(const ReadOptions &options, const Common &common, bool check,

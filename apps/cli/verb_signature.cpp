@@ -367,7 +367,7 @@ Result<void> run_with_engine(const SignatureJob &job, const PoseSource &source) 
     } else if (stream) { // the disk works while the next block is computed
       if (writing.valid())
         UMOV_TRY(writing.get());
-      writing = std::async(std::launch::async,
+      writing = std::async(std::launch::async | std::launch::deferred,
                            [&stream, rows = std::move(table)] { return stream->append(rows); });
     } else {
       whole.append(std::move(table));

@@ -1,7 +1,12 @@
+#include "core/output_place.h"
+
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <random>
+#include <sstream>
 #include <sys/stat.h>
 #include <umov/core/files.h>
 #include <unistd.h>
@@ -36,6 +41,25 @@ tl::unexpected<Error> device_error(const fs::path &path, const std::string &acti
               {path.string()});
 }
 
+/// In the folder of the file, so that a rename puts it in place; different for every process, also
+/// where containers share a folder and number their processes alike.
+fs::path temporary_name(const fs::path &path) {
+  static std::atomic<unsigned> count{0};
+  std::random_device random;
+  std::ostringstream out;
+  out << path.string() << ".part-" << ::getpid() << '-' << std::hex << random() << ++count;
+  return out.str();
+}
+
+/// A file that is replaced keeps who may read it, and whose it is as far as we may say so.
+void keep_access(const fs::path &path, int descriptor) {
+  struct stat old {};
+  if (::stat(path.c_str(), &old) != 0 || !S_ISREG(old.st_mode))
+    return;
+  [[maybe_unused]] const int owner = ::fchown(descriptor, old.st_uid, old.st_gid);
+  [[maybe_unused]] const int mode = ::fchmod(descriptor, old.st_mode & 0777);
+}
+
 } // namespace
 
 Result<std::string> read_file(const fs::path &path, std::size_t limit_bytes) {
@@ -63,24 +87,53 @@ Result<std::string> read_file(const fs::path &path, std::size_t limit_bytes) {
                   {path.string()});
     bytes.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }
+  if (stream.bad()) // not the end: what was read so far would look like a shorter file
+    return fail(ErrorCode::Device,
+                std::string("cannot be read to its end: ") + std::strerror(errno) + ", after " +
+                    std::to_string(bytes.size()) + " bytes. Check the disk, or copy the file anew.",
+                {path.string()});
   return bytes;
 }
 
 Result<FileInProgress> FileInProgress::open(const fs::path &path) {
-  if (std::error_code code; fs::is_directory(path, code))
-    return fail(ErrorCode::Device, "this is a folder; the name of a file was expected",
-                {path.string()});
-  FileInProgress out = for_library(path);
-  out.descriptor_ = ::open(out.temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (out.descriptor_ < 0)
+  UMOV_ASSIGN(place, output_place(path));
+  FileInProgress out;
+  out.path_ = place.path;
+  if (place.kind != OutputPlace::Kind::File) {
+    out.is_direct_ = true;
+    out.descriptor_ = place.kind == OutputPlace::Kind::Descriptor
+                          ? ::fcntl(place.descriptor, F_DUPFD_CLOEXEC, 0)
+                          : ::open(place.path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    if (out.descriptor_ < 0)
+      return device_error(path, "write here");
+    return out;
+  }
+  struct stat old {};
+  const mode_t mode = ::stat(place.path.c_str(), &old) == 0 ? 0600 : 0644;
+  // Not mkostemp, whose 0600 knows nothing of the umask; a name that is taken is never opened.
+  for (int attempt = 0; attempt < 100 && out.descriptor_ < 0; ++attempt) {
+    out.temporary_ = temporary_name(place.path);
+    out.descriptor_ =
+        ::open(out.temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+    if (out.descriptor_ < 0 && errno != EEXIST)
+      break;
+  }
+  if (out.descriptor_ < 0) {
+    out.temporary_.clear(); // nothing of ours to remove
     return device_error(path, "write here");
+  }
   return out;
 }
 
-FileInProgress FileInProgress::for_library(const fs::path &path) {
+Result<FileInProgress> FileInProgress::for_library(const fs::path &path) {
+  UMOV_ASSIGN(place, output_place(path));
+  if (place.kind != OutputPlace::Kind::File)
+    return fail(ErrorCode::Device,
+                "is no regular file, which this format needs. Choose the name of a file.",
+                {path.string()});
   FileInProgress out;
-  out.path_ = path;
-  out.temporary_ = path.string() + ".part-" + std::to_string(::getpid());
+  out.path_ = place.path;
+  out.temporary_ = temporary_name(place.path);
   return out;
 }
 
@@ -91,6 +144,7 @@ FileInProgress &FileInProgress::operator=(FileInProgress &&other) noexcept {
     path_ = std::move(other.path_);
     temporary_ = std::exchange(other.temporary_, {});
     descriptor_ = std::exchange(other.descriptor_, -1);
+    is_direct_ = other.is_direct_;
   }
   return *this;
 }
@@ -120,10 +174,17 @@ Result<void> FileInProgress::write(std::string_view bytes) {
 Result<void> FileInProgress::commit() { return commit_as(path_); }
 
 Result<void> FileInProgress::commit_as(const fs::path &path) {
+  if (is_direct_) { // pipes and most devices cannot be flushed to disk: harmless
+    const bool is_lost = ::fsync(descriptor_) != 0 && (errno == EIO || errno == ENOSPC);
+    const int closed = ::close(std::exchange(descriptor_, -1));
+    return is_lost || closed != 0 ? Result<void>(device_error(path, "write")) : Result<void>();
+  }
   if (descriptor_ < 0)
-    descriptor_ = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0 || ::fsync(descriptor_) != 0 ||
-      ::rename(temporary_.c_str(), path.c_str()) != 0)
+    descriptor_ = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor_ < 0)
+    return device_error(path, "finish the file");
+  keep_access(path, descriptor_);
+  if (::fsync(descriptor_) != 0 || ::rename(temporary_.c_str(), path.c_str()) != 0)
     return device_error(path, "finish the file");
   ::close(std::exchange(descriptor_, -1));
   temporary_.clear();

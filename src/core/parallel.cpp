@@ -2,6 +2,8 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <umov/core/parallel.h>
 #include <vector>
@@ -37,8 +39,15 @@ void parallel_for(std::size_t count, unsigned threads,
     }
   };
   std::vector<std::thread> helpers;
-  for (unsigned t = 1; t < used; ++t)
-    helpers.emplace_back(work);
+  // A container or the user may allow fewer threads (ulimit -u) or less memory for their stacks:
+  // those there are do all of the work. Leaving with joinable threads would end the program.
+  try {
+    helpers.reserve(used - 1);
+    for (unsigned t = 1; t < used; ++t)
+      helpers.emplace_back(work);
+  } catch (const std::system_error &) {
+  } catch (const std::bad_alloc &) {
+  }
   work();
   for (std::thread &helper : helpers)
     helper.join();

@@ -106,6 +106,56 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+namespace {
+
+/// Bytes of the UTF-8 character at the start of `text` (RFC 3629, section 4: neither overlong forms
+/// nor surrogates), else 0.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned lead = byte(0);
+  const std::size_t length = lead < 0x80                   ? 1
+                             : lead >= 0xC2 && lead < 0xE0 ? 2
+                             : lead >= 0xE0 && lead < 0xF0 ? 3
+                             : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                           : 0;
+  if (length == 0 || length > text.size())
+    return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xC0) != 0x80)
+      return 0;
+  const bool is_wrong =
+      length > 2 && ((lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xED && byte(1) >= 0xA0) ||
+                     (lead == 0xF0 && byte(1) < 0x90) || (lead == 0xF4 && byte(1) >= 0x90));
+  return is_wrong ? 0 : length;
+}
+
+/// Control characters of ASCII and of ISO 6429 (U+0080 to U+009F), which terminals obey.
+bool is_control(std::string_view character) {
+  const auto first = static_cast<unsigned char>(character[0]);
+  return first < 0x20 || first == 0x7F ||
+         (first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0);
+}
+
+} // namespace
+
+std::string printable(std::string_view text, bool *is_changed) {
+  std::string out;
+  bool is_other = false;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const bool is_fine = length > 0 && !is_control(text.substr(0, length));
+    if (is_fine)
+      out += text.substr(0, length);
+    else
+      out += '?';
+    is_other = is_other || !is_fine;
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  if (is_changed != nullptr)
+    *is_changed = is_other;
+  return out;
+}
+
 std::string sha256_hex(std::string_view bytes) {
   std::array<unsigned char, 32> digest{};
   unsigned length = 0;

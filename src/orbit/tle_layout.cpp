@@ -191,46 +191,11 @@ Result<LineNotes> check_line(const Line &line, Kind kind, const std::string &fil
   return notes;
 }
 
-namespace {
-
-/// Bytes of the valid UTF-8 character at the start of `text`, else 0 (RFC 3629, without checking
-/// surrogates).
-std::size_t utf8_length(std::string_view text) {
-  const auto lead = static_cast<unsigned char>(text[0]);
-  const std::size_t length = lead < 0x80                   ? 1
-                             : lead >= 0xC2 && lead < 0xE0 ? 2
-                             : lead >= 0xE0 && lead < 0xF0 ? 3
-                             : lead >= 0xF0 && lead < 0xF5 ? 4
-                                                           : 0;
-  if (length == 0 || length > text.size())
-    return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80)
-      return 0;
-  return length;
-}
-
-} // namespace
-
 std::string clean_name(std::string_view text, bool &is_changed) {
   text = trimmed(text);
   if (text.starts_with("0 "))
     text = trimmed(text.substr(2));
-  std::string out;
-  is_changed = false;
-  while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
-    const auto first = static_cast<unsigned char>(text[0]);
-    if (length == 0 || first < 0x20 || first == 0x7F) {
-      out += '?';
-      is_changed = true;
-      text.remove_prefix(1);
-    } else {
-      out += text.substr(0, length);
-      text.remove_prefix(length);
-    }
-  }
-  return out;
+  return printable(text, &is_changed);
 }
 
 } // namespace umov::tle

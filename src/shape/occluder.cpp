@@ -4,7 +4,11 @@
 #include <array>
 #include <cmath>
 #include <embree3/rtcore.h>
+#include <fmt/format.h>
 #include <limits>
+#include <type_traits>
+#include <umov/core/result.h>
+#include <umov/core/text.h>
 
 namespace umov {
 
@@ -53,6 +57,37 @@ Box bounds(const Mesh &mesh) {
   return {(low + high) / 2, std::max(norm(high - low) / 2, 1e-300)};
 }
 
+const char *cause(RTCError code) {
+  switch (code) {
+  case RTC_ERROR_OUT_OF_MEMORY:
+    return "out of memory; free some, or simplify the mesh";
+  case RTC_ERROR_UNSUPPORTED_CPU:
+    return "this processor is not supported by Embree (SSE2 is needed)";
+  default:
+    return "Embree refused";
+  }
+}
+
+/// Embree tells of errors only if asked. `made` is what the call before returned.
+void check(RTCDevice device, const Mesh &mesh, const void *made) {
+  const RTCError code = rtcGetDeviceError(device);
+  if (code == RTC_ERROR_NONE && made != nullptr)
+    return;
+  throw Failure(Error{ErrorCode::Device,
+                      fmt::format("no ray tests against the {}: {} (code {}).",
+                                  counted(mesh.triangles.size(), "triangle"), cause(code),
+                                  static_cast<int>(code)),
+                      {}});
+}
+void check(RTCDevice device, const Mesh &mesh) { check(device, mesh, device); }
+
+using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, void (*)(RTCGeometry)>;
+Geometry new_geometry(RTCDevice device, const Mesh &mesh) {
+  Geometry out(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), rtcReleaseGeometry);
+  check(device, mesh, out.get());
+  return out;
+}
+
 } // namespace
 
 Occluder::Occluder(const Mesh &mesh) : state_(std::make_unique<State>()) {
@@ -60,14 +95,17 @@ Occluder::Occluder(const Mesh &mesh) : state_(std::make_unique<State>()) {
   state_->centre = box.centre;
   state_->scale = 1 / box.half;
   state_->device = rtcNewDevice("threads=1"); // the same tree on every machine
+  check(state_->device, mesh);
   state_->scene = rtcNewScene(state_->device);
+  check(state_->device, mesh, state_->scene);
   rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_HIGH);
   rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
   if (!mesh.triangles.empty()) {
-    RTCGeometry geometry = rtcNewGeometry(state_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const auto geometry = new_geometry(state_->device, mesh);
     auto *vertices = static_cast<float *>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                 3 * sizeof(float), mesh.positions.size()));
+    check(state_->device, mesh, vertices);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
       const Vec3<Body> p = state_->to_model(mesh.positions[i]);
       vertices[3 * i] = static_cast<float>(p.x);
@@ -75,15 +113,16 @@ Occluder::Occluder(const Mesh &mesh) : state_(std::make_unique<State>()) {
       vertices[3 * i + 2] = static_cast<float>(p.z);
     }
     auto *indices = static_cast<unsigned *>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+        rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                 3 * sizeof(unsigned), mesh.triangles.size()));
+    check(state_->device, mesh, indices);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
       std::copy_n(mesh.triangles[i].vertex.begin(), 3, indices + 3 * i);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(state_->scene, geometry);
-    rtcReleaseGeometry(geometry);
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometry(state_->scene, geometry.get());
   }
   rtcCommitScene(state_->scene);
+  check(state_->device, mesh); // a scene that failed here would let every ray through
 }
 
 Occluder::~Occluder() = default;

@@ -14,10 +14,19 @@ struct Warning {
   [[nodiscard]] std::string text() const { return to_text(where) + message; }
 };
 
-/// Collects warnings; a function that can warn takes a `Diagnostics &`.
+/// Collects warnings; a function that can warn takes a `Diagnostics &`. A file with a fault in
+/// every line gives `most` of them, and one more that says so.
 class Diagnostics {
 public:
+  static constexpr std::size_t most = 1000;
+
   void warn(std::string message, Where where = {}) {
+    if (warnings_.size() > most)
+      return;
+    if (warnings_.size() == most) {
+      message = "there are more warnings, which are left out.";
+      where = Where();
+    }
     warnings_.push_back({std::move(where), std::move(message)});
   }
   [[nodiscard]] const std::vector<Warning> &warnings() const { return warnings_; }

@@ -10,12 +10,14 @@
 namespace umov {
 
 /// Contents of a file; a missing one, a folder or one larger than `limit_bytes` is BadInput and is
-/// refused before anything is read.
+/// refused before anything is read. Device where reading breaks off before the end.
 Result<std::string> read_file(const std::filesystem::path &path,
                               std::size_t limit_bytes = 256u << 20);
 
 /// Writes through a temporary file in the same folder, fsync, rename and fsync of the folder: the
-/// target is always absent, the complete old or the complete new file. Failure is Device.
+/// target is always absent, the complete old or the complete new file. Links are followed, and a
+/// file that is replaced keeps its permissions. What is no regular file (a pipe, /dev/stdout) is
+/// written to as it stands. Failure is Device.
 Result<void> write_file_atomically(const std::filesystem::path &path, std::string_view bytes);
 
 /// A file that grows piece by piece and is there under its name only when it is complete: written
@@ -30,8 +32,11 @@ public:
 
   Result<void> write(std::string_view bytes);
   /// For a library that makes and fills the file by its name: where it goes. No `write` then.
-  static FileInProgress for_library(const std::filesystem::path &path);
+  /// Device where a pipe or a device stands.
+  static Result<FileInProgress> for_library(const std::filesystem::path &path);
   [[nodiscard]] const std::filesystem::path &temporary() const { return temporary_; }
+  /// Where it will stand, behind all links.
+  [[nodiscard]] const std::filesystem::path &path() const { return path_; }
   /// Flushes to disk and renames to `path`, or to another name in the same folder.
   Result<void> commit();
   Result<void> commit_as(const std::filesystem::path &path);
@@ -41,6 +46,7 @@ private:
   void discard();
   std::filesystem::path path_, temporary_;
   int descriptor_ = -1;
+  bool is_direct_ = false; ///< no temporary file: a pipe, a device
 };
 
 } // namespace umov

@@ -2,6 +2,7 @@
 // Errors are values: what happened, where it was read, and which exit code it means.
 
 #include <cstddef>
+#include <exception>
 #include <string>
 #include <tl/expected.hpp>
 #include <utility>
@@ -36,6 +37,18 @@ struct Error {
 
   /// Place and message in one line, without the word "error".
   [[nodiscard]] std::string text() const { return to_text(where) + message; }
+};
+
+/// A failure where no Result can be returned: in a constructor.
+class Failure : public std::exception {
+public:
+  explicit Failure(Error error) : error_(std::move(error)), text_(error_.text()) {}
+  [[nodiscard]] const Error &error() const noexcept { return error_; }
+  [[nodiscard]] const char *what() const noexcept override { return text_.c_str(); }
+
+private:
+  Error error_;
+  std::string text_;
 };
 
 template <class T> using Result = tl::expected<T, Error>;

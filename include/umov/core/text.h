@@ -33,6 +33,10 @@ std::string degrees_text(Angle angle);
 /// `text` without blanks and tabs at both ends.
 std::string_view trimmed(std::string_view text);
 
+/// `text` with '?' for every byte that is no part of printable UTF-8: safe on a terminal, in a line
+/// of a file and in JSON. `is_changed` tells of replaced bytes.
+std::string printable(std::string_view text, bool *is_changed = nullptr);
+
 /// SHA-256 of `bytes`, 64 lower-case hexadecimal digits.
 std::string sha256_hex(std::string_view bytes);
 

@@ -1,7 +1,7 @@
 #pragma once
 // CCSDS navigation data messages as they are written: OPM, OEM (502.0-B-3), AEM (504.0-B-2) and
 // TDM (503.0-B-2), as KVN and XML. Texts are kept as they stand, so that nothing is lost on the
-// way from one form to the other.
+// way from one form to the other; line breaks of XML become blanks, and what is not printable '?'.
 
 #include <string>
 #include <string_view>

@@ -23,11 +23,14 @@ public:
   /// For the rows of a run that stopped early: what stands in the target stays there, unless it is
   /// the rest of such a run itself; the files then go to "<target>.partial".
   void spare_complete_run();
-  /// Writes everything. On failure the target is as it was.
+  /// Writes everything. On failure the target is as it was. What the user put into the folder while
+  /// the run went on stays in it; if it is no longer umov's, the files go to "<target>.new".
   Result<void> commit();
   [[nodiscard]] const std::filesystem::path &path() const { return target_; }
 
 private:
+  void step_aside(const std::string &suffix);
+
   std::filesystem::path target_; ///< as the user named it
   std::filesystem::path real_;   ///< where that is
   bool is_foreign_ = false;

@@ -8,6 +8,7 @@ namespace umov {
 /// Ray tests against a mesh (both sides of every face stop a ray). Thread safe after construction.
 class Occluder {
 public:
+  /// Throws `Failure` (Device) where the tree cannot be built: out of memory, unknown processor.
   explicit Occluder(const Mesh &mesh);
   ~Occluder();
   Occluder(Occluder &&) noexcept;

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <umov/core/diagnostics.h>
 #include <umov/core/text.h>
 #include <vector>
 
@@ -25,6 +26,39 @@ TEST(NearestName, FindsASlipAndKeepsQuietOtherwise) {
 TEST(Sha256, MatchesThePublishedVector) {
   // FIPS 180-2, appendix B.1.
   EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Printable, KeepsUtf8AndReplacesTheRestByteByByte) {
+  bool is_changed = true;
+  // Two, three and four bytes: Latin, euro sign, emoji.
+  for (const char *fine : {"", "HST", "caf\xC3\xA9", "\xE2\x82\xAC", "\xF0\x9F\x9B\xB0"}) {
+    EXPECT_EQ(printable(fine, &is_changed), fine);
+    EXPECT_FALSE(is_changed);
+  }
+  const std::pair<const char *, const char *> others[] = {{"caf\xE9", "caf?"},
+                                                          {"\x1B[31mred", "?[31mred"},
+                                                          {"a\nb", "a?b"},
+                                                          {"\xC3", "?"},
+                                                          {"\xC0\xAF", "??"},
+                                                          {"\xE0\x80\xAF", "???"},
+                                                          {"\xED\xA0\x80", "???"},
+                                                          {"\xF4\x90\x80\x80", "????"},
+                                                          {"\xC2\x9B"
+                                                           "31m",
+                                                           "?31m"},
+                                                          {"\x7F", "?"}};
+  for (const auto &[text, expected] : others) {
+    EXPECT_EQ(printable(text, &is_changed), expected);
+    EXPECT_TRUE(is_changed);
+  }
+}
+
+TEST(Diagnostics, AreLimited) {
+  Diagnostics diagnostics;
+  for (int k = 0; k < 20'000; ++k)
+    diagnostics.warn("again");
+  ASSERT_EQ(diagnostics.warnings().size(), Diagnostics::most + 1);
+  EXPECT_NE(diagnostics.warnings().back().message.find("left out"), std::string::npos);
 }
 
 TEST(Shortest, ReadsBackToTheSameDouble) {

@@ -79,6 +79,30 @@ std::string_view opm_record(std::string_view key) {
   return {};
 }
 
+bool is_record(Kind kind, std::string_view name) {
+  if (name == "comment")
+    return true;
+  switch (kind) {
+  case Kind::Opm:
+    return name == "covarianceMatrix" || name == "userDefinedParameters" ||
+           std::any_of(opm_records().begin(), opm_records().end(),
+                       [&](const RecordKeys &one) { return name == one.record; });
+  case Kind::Oem:
+    return name == "stateVector" || name == "covarianceMatrix";
+  case Kind::Aem:
+    return name == "attitudeState";
+  case Kind::Tdm:
+    return name == "observation";
+  }
+  return false;
+}
+
+std::string with_article(std::string_view name) {
+  constexpr std::string_view vowels = "AEOaeo";
+  const bool is_vowel = !name.empty() && vowels.find(name.front()) != std::string_view::npos;
+  return (is_vowel ? "an " : "a ") + std::string(name);
+}
+
 const std::vector<std::string> &state_columns() {
   static const std::vector<std::string> all{"X",     "Y",      "Z",      "X_DOT", "Y_DOT",
                                             "Z_DOT", "X_DDOT", "Y_DDOT", "Z_DDOT"};
@@ -178,6 +202,24 @@ const Field *find(const std::vector<Field> &fields, std::string_view key) {
     if (it->key == key)
       return &*it;
   return nullptr;
+}
+
+Result<const Field *> needed_field(const Message &message, const Record &record,
+                                   std::string_view key) {
+  if (const Field *field = find(record.fields, key))
+    return field;
+  return fail(ErrorCode::BadInput,
+              record.name + " has no " + std::string(key) + ", which was expected",
+              {message.file, record.line});
+}
+
+Result<const AttitudeForm *> needed_form(const Message &message, const Segment &segment) {
+  const Field *type = find(segment.metadata, "ATTITUDE_TYPE");
+  if (const AttitudeForm *form = type == nullptr ? nullptr : attitude_form(type->text))
+    return form;
+  return fail(ErrorCode::BadInput,
+              "the metadata of attitudes have no ATTITUDE_TYPE that is known, which was expected",
+              {message.file, type == nullptr ? 0 : type->line});
 }
 
 } // namespace umov::ccsds

@@ -24,6 +24,12 @@ bool is_metadata_key(Kind kind, std::string_view key);
 /// The record that a keyword of an OPM's data belongs to; "" if unknown.
 std::string_view opm_record(std::string_view key);
 
+/// True if a kind has records of this name.
+bool is_record(Kind kind, std::string_view name);
+
+/// "an OEM", "a TDM".
+std::string with_article(std::string_view name);
+
 /// Six state columns, then three accelerations where a line has them.
 const std::vector<std::string> &state_columns();
 /// Lower triangle, row by row: CX_X, CY_X, CY_Y, ...
@@ -49,7 +55,13 @@ std::string_view standard_unit(std::string_view key);
 /// True where KVN has the field in a data line, which has no room for a unit.
 bool is_in_data_line(Kind kind, std::string_view record);
 
-/// Checks that hold for every form: mandatory keywords, numbers where numbers belong, duplicates.
+/// The field that a writer needs; BadInput where the message was put together without it.
+Result<const Field *> needed_field(const Message &message, const Record &record,
+                                   std::string_view key);
+Result<const AttitudeForm *> needed_form(const Message &message, const Segment &segment);
+
+/// Checks that hold for every form: records and keywords that are known, mandatory ones, numbers
+/// where numbers belong, duplicates.
 Result<void> check_message(const Message &message, Diagnostics &diagnostics);
 
 Result<Message> read_kvn(std::string_view text, const std::string &file);

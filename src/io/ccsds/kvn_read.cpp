@@ -2,6 +2,7 @@
 
 #include "io/ccsds/keywords.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <optional>
 #include <umov/core/text.h>
@@ -40,6 +41,31 @@ std::vector<std::string_view> words(std::string_view line) {
 
 enum class Place { Header, Metadata, Data, Covariance };
 
+/// Lines that open and close the parts of a segment, and where each may stand. A lost or doubled
+/// one would put what follows into a part that is not there.
+struct Mark {
+  const char *key;
+  std::vector<Place> after; ///< the parts that it may end
+  Place next;
+  const char *expected;
+};
+
+const Mark *find_mark(std::string_view key) {
+  static const std::vector<Mark> all{
+      {"META_START",
+       {Place::Header, Place::Data},
+       Place::Metadata,
+       "the META_STOP or COVARIANCE_STOP of what stands before"},
+      {"META_STOP", {Place::Metadata}, Place::Data, "META_START"},
+      {"DATA_START", {Place::Data}, Place::Data, "META_START and META_STOP"},
+      {"DATA_STOP", {Place::Data}, Place::Data, "META_START and META_STOP"},
+      {"COVARIANCE_START", {Place::Data}, Place::Covariance, "META_START and META_STOP"},
+      {"COVARIANCE_STOP", {Place::Covariance}, Place::Data, "COVARIANCE_START"}};
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Mark &mark) { return key == mark.key; });
+  return found == all.end() ? nullptr : &*found;
+}
+
 class KvnReader {
 public:
   explicit KvnReader(const std::string &file) { out_.file = file; }
@@ -77,27 +103,8 @@ private:
     const std::string key(trimmed(line.substr(0, equals)));
     if (!has_kind_)
       return take_version(key, equals == std::string_view::npos ? "" : line.substr(equals + 1));
-    if (key == "META_START")
-      return begin_metadata();
-    if (key == "META_STOP" || key == "DATA_START") {
-      place_ = Place::Data;
-      return {};
-    }
-    if (key == "DATA_STOP") {
-      end_record();
-      put_comments_alone();
-      return {};
-    }
-    if (key == "COVARIANCE_START") {
-      end_record();
-      place_ = Place::Covariance;
-      return {};
-    }
-    if (key == "COVARIANCE_STOP") {
-      end_record();
-      place_ = Place::Data;
-      return {};
-    }
+    if (const Mark *mark = find_mark(key))
+      return take_mark(*mark);
     if (place_ == Place::Covariance)
       return equals == std::string_view::npos ? take_covariance_row(line)
                                               : take_covariance_key(key, line.substr(equals + 1));
@@ -124,11 +131,22 @@ private:
     return {};
   }
 
-  Result<void> begin_metadata() {
+  Result<void> take_mark(const Mark &mark) {
+    const std::string_view key = mark.key;
+    if (std::find(mark.after.begin(), mark.after.end(), place_) == mark.after.end())
+      return refuse(fmt::format("{} was found, {} was expected before it. Put the missing line in, "
+                                "or remove this one.",
+                                key, mark.expected));
+    if (key == "COVARIANCE_START" && out_.kind != Kind::Oem)
+      return refuse(fmt::format("COVARIANCE_START was found; only an OEM has such a block, this is "
+                                "{}. Remove the block.",
+                                with_article(to_text(out_.kind))));
     end_record();
-    put_comments_alone();
-    out_.segments.emplace_back();
-    place_ = Place::Metadata;
+    if (key == "META_START" || key == "DATA_STOP")
+      put_comments_alone();
+    if (key == "META_START")
+      out_.segments.emplace_back();
+    place_ = mark.next;
     return {};
   }
 
@@ -225,28 +243,36 @@ private:
   Result<void> take_covariance_key(const std::string &key, std::string_view value) {
     if (key == "EPOCH")
       begin_record("covarianceMatrix");
+    else if (key != "COV_REF_FRAME")
+      return refuse(fmt::format("\"{}\" was found in a block of covariances; EPOCH, COV_REF_FRAME "
+                                "and rows of numbers were expected",
+                                key.substr(0, 60)));
     else if (!record_)
-      return refuse(key + " stands before the EPOCH of a covariance matrix");
+      return refuse("COV_REF_FRAME stands before the EPOCH of a covariance matrix");
     record_->fields.push_back(field_of(key, value, line_));
     return {};
   }
 
   Result<void> take_covariance_row(std::string_view line) {
+    if (!record_)
+      return refuse("a row of a covariance matrix stands before its EPOCH");
     const auto parts = words(line);
-    std::size_t have = 0;
-    if (record_)
-      for (const Field &field : record_->fields)
-        have += field.key.starts_with("C") && field.key != "COV_REF_FRAME" && field.key != "COMMENT"
-                    ? 1u
-                    : 0u;
+    const auto &keys = covariance_keys();
+    auto have = static_cast<std::size_t>(
+        std::count_if(record_->fields.begin(), record_->fields.end(), [&](const Field &field) {
+          return std::find(keys.begin(), keys.end(), field.key) != keys.end();
+        }));
     std::size_t row = 0;
     while ((row + 1) * (row + 2) / 2 <= have)
       ++row;
-    if (!record_ || row > 5 || parts.size() != row + 1)
-      return refuse(fmt::format("a row of a covariance matrix has {}, expected {}",
-                                counted(parts.size(), "number"), record_ ? row + 1 : 0));
+    if (have == keys.size())
+      return refuse("a covariance matrix has more than 6 rows; EPOCH of the next one or "
+                    "COVARIANCE_STOP was expected");
+    if (parts.size() != row + 1)
+      return refuse(fmt::format("row {} of a covariance matrix has {}, expected {}", row + 1,
+                                counted(parts.size(), "number"), row + 1));
     for (const std::string_view part : parts)
-      record_->fields.push_back({covariance_keys()[have++], std::string(part), "", line_});
+      record_->fields.push_back({keys[have++], std::string(part), "", line_});
     return {};
   }
 

@@ -19,19 +19,27 @@ void put_comments(std::string &out, const Record &record) {
       put(out, field);
 }
 
+/// A data line has no room for a unit.
+Result<void> check_unit(const Message &message, const Field &field) {
+  const std::string_view standard = standard_unit(field.key);
+  if (field.unit.empty() || field.unit == standard)
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("{} is in {}; a data line of KVN holds {}", field.key, field.unit,
+                          standard.empty() ? "no unit" : std::string(standard) + " only"),
+              {message.file, field.line});
+}
+
 Result<void> put_line(std::string &out, const Message &message, const Record &record,
                       const std::vector<std::string> &columns) {
   put_comments(out, record);
-  out += find(record.fields, "EPOCH")->text;
+  UMOV_ASSIGN(epoch, needed_field(message, record, "EPOCH"));
+  out += epoch->text;
   for (const std::string &column : columns) {
-    const Field *field = find(record.fields, column);
-    if (field == nullptr)
-      continue; // accelerations
-    if (!field->unit.empty())
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} is in {}; a data line of KVN holds {} only", column, field->unit,
-                              standard_unit(column)),
-                  {message.file, field->line});
+    if (column.ends_with("_DDOT") && find(record.fields, column) == nullptr)
+      continue; // accelerations are there or not
+    UMOV_ASSIGN(field, needed_field(message, record, column));
+    UMOV_TRY(check_unit(message, *field));
     out += " " + field->text;
   }
   out += "\n";
@@ -45,15 +53,24 @@ Result<void> put_covariance(std::string &out, const Message &message, const Reco
   std::size_t k = 0;
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column <= row; ++column, ++k) {
-      const Field *field = find(record.fields, covariance_keys()[k]);
-      if (!field->unit.empty())
-        return fail(ErrorCode::BadInput,
-                    fmt::format("{} is in {}; a data line of KVN holds {} only", field->key,
-                                field->unit, standard_unit(field->key)),
-                    {message.file, field->line});
+      UMOV_ASSIGN(field, needed_field(message, record, covariance_keys()[k]));
+      UMOV_TRY(check_unit(message, *field));
       out += (column == 0 ? "" : " ") + field->text;
     }
     out += "\n";
+  }
+  return {};
+}
+
+/// One line per value of an observation: KEYWORD = epoch value.
+Result<void> put_observation(std::string &out, const Message &message, const Record &record) {
+  put_comments(out, record);
+  UMOV_ASSIGN(epoch, needed_field(message, record, "EPOCH"));
+  for (const Field &field : record.fields) {
+    if (field.key == "COMMENT" || field.key == "EPOCH")
+      continue;
+    UMOV_TRY(check_unit(message, field));
+    out += fmt::format("{:<20} = {} {}\n", field.key, epoch->text, field.text);
   }
   return {};
 }
@@ -66,20 +83,20 @@ Result<void> put_record(std::string &out, const Message &message, const Segment 
   }
   if (message.kind == Kind::Oem)
     return put_line(out, message, record, state_columns());
-  if (message.kind == Kind::Aem)
-    return put_line(
-        out, message, record,
-        attitude_columns(*attitude_form(find(segment.metadata, "ATTITUDE_TYPE")->text), segment));
-  if (message.kind == Kind::Tdm) {
-    put_comments(out, record);
-    for (const Field &field : record.fields)
-      if (field.key != "COMMENT" && field.key != "EPOCH")
-        out += fmt::format("{:<20} = {} {}\n", field.key, find(record.fields, "EPOCH")->text,
-                           field.text);
-    return {};
+  if (message.kind == Kind::Aem) {
+    UMOV_ASSIGN(form, needed_form(message, segment));
+    return put_line(out, message, record, attitude_columns(*form, segment));
   }
+  if (message.kind == Kind::Tdm)
+    return put_observation(out, message, record);
+  // Readers take a comment and the epoch of a manoeuvre as the begin of a block.
+  constexpr std::string_view first = "MAN_EPOCH_IGNITION";
+  put_comments(out, record);
+  if (const Field *field = find(record.fields, first))
+    put(out, *field);
   for (const Field &field : record.fields)
-    put(out, field);
+    if (field.key != "COMMENT" && field.key != first)
+      put(out, field);
   return {};
 }
 

@@ -1,6 +1,7 @@
 #include "io/ccsds/keywords.h"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <set>
 #include <umov/core/text.h>
@@ -35,8 +36,15 @@ Result<void> check_fields(const std::vector<Field> &fields, const std::string &f
 /// Keywords that a record must have.
 std::vector<std::string> mandatory(const Message &message, const Segment &segment,
                                    const Record &record) {
-  if (record.name == "stateVector")
-    return {"EPOCH", "X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT"};
+  if (record.name == "stateVector") {
+    std::vector<std::string> out{"EPOCH"};
+    const auto &columns = state_columns();
+    const bool has_acceleration =
+        std::any_of(columns.begin() + 6, columns.end(),
+                    [&](const std::string &key) { return find(record.fields, key) != nullptr; });
+    out.insert(out.end(), columns.begin(), columns.begin() + (has_acceleration ? 9 : 6));
+    return out;
+  }
   if (record.name == "attitudeState") {
     std::vector<std::string> out{"EPOCH"};
     if (const Field *type = find(segment.metadata, "ATTITUDE_TYPE"))
@@ -51,21 +59,81 @@ std::vector<std::string> mandatory(const Message &message, const Segment &segmen
       out.insert(out.begin(), "EPOCH");
     return out;
   }
-  if (record.name == "observation" || record.name == "comment")
-    return {};
+  if (record.name == "observation")
+    return {"EPOCH"};
   if (record.name == "maneuverParameters")
     return {"MAN_EPOCH_IGNITION", "MAN_DURATION"};
   return {};
+}
+
+/// Keywords of observations are many (503.0-B, section 3.5) and free here; those of other records
+/// are the mandatory ones and few more.
+bool is_known_key(Kind kind, const Record &record, const std::vector<std::string> &needed,
+                  std::string_view key) {
+  if (key == "COMMENT" || record.name == "observation")
+    return true;
+  if (kind == Kind::Opm)
+    return opm_record(key) == record.name;
+  return std::find(needed.begin(), needed.end(), key) != needed.end() ||
+         (record.name == "covarianceMatrix" && key == "COV_REF_FRAME");
+}
+
+Result<void> check_observation(const Message &message, const Record &record) {
+  bool has_value = false;
+  for (const Field &field : record.fields) {
+    if (field.key == "COMMENT" || field.key == "EPOCH")
+      continue;
+    has_value = true;
+    if (field.text.empty())
+      return fail(ErrorCode::BadInput, field.key + " of an observation is empty, expected a value",
+                  {message.file, field.line});
+  }
+  if (!has_value)
+    return fail(ErrorCode::BadInput, "an observation has an EPOCH and no value",
+                {message.file, record.line});
+  return {};
+}
+
+/// A record by itself: known, whole, and such that both forms can say it.
+Result<void> check_record(const Message &message, const Segment &segment, const Record &record) {
+  const Where where{message.file, record.line};
+  if (!is_record(message.kind, record.name))
+    return fail(ErrorCode::BadInput,
+                fmt::format("<{}> was found among the data, where {} has none. Remove it, or "
+                            "correct its name.",
+                            record.name.substr(0, 60), with_article(to_text(message.kind))),
+                where);
+  UMOV_TRY(check_fields(record.fields, message.file, message.kind != Kind::Tdm));
+  const std::vector<std::string> needed = mandatory(message, segment, record);
+  for (const Field &field : record.fields)
+    if (!is_known_key(message.kind, record, needed, field.key))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("\"{}\" is no keyword of {}. Remove it, or correct its name.",
+                              field.key.substr(0, 60), with_article(record.name)),
+                  {message.file, field.line});
+  for (const std::string &key : needed)
+    if (find(record.fields, key) == nullptr)
+      return fail(ErrorCode::BadInput, fmt::format("{} has no {}", with_article(record.name), key),
+                  where);
+  const Field *epoch = find(record.fields, "EPOCH");
+  if (epoch != nullptr &&
+      (epoch->text.empty() || epoch->text.find_first_of(" \t\r\n") != std::string::npos))
+    return fail(ErrorCode::BadInput,
+                fmt::format("EPOCH is \"{}\", expected a date without blanks, such as "
+                            "2018-01-20T00:00:00",
+                            epoch->text.substr(0, 60)),
+                {message.file, epoch->line});
+  return record.name == "observation" ? check_observation(message, record) : Result<void>{};
 }
 
 Result<void> check_segment(const Message &message, const Segment &segment) {
   UMOV_TRY(check_fields(segment.metadata, message.file, false));
   for (const std::string &key : mandatory_metadata(message.kind))
     if (const Field *field = find(segment.metadata, key); field == nullptr)
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("the metadata have no {}, which a {} must have", key, to_text(message.kind)),
-          {message.file, segment.metadata.empty() ? 0 : segment.metadata.front().line});
+      return fail(ErrorCode::BadInput,
+                  fmt::format("the metadata have no {}, which {} must have", key,
+                              with_article(to_text(message.kind))),
+                  {message.file, segment.metadata.empty() ? 0 : segment.metadata.front().line});
   if (const Field *type = find(segment.metadata, "ATTITUDE_TYPE");
       message.kind == Kind::Aem && attitude_form(type->text) == nullptr)
     return fail(ErrorCode::BadInput,
@@ -74,13 +142,8 @@ Result<void> check_segment(const Message &message, const Segment &segment) {
                             "SPIN or SPIN/NUTATION",
                             type->text),
                 {message.file, type->line});
-  for (const Record &record : segment.data) {
-    UMOV_TRY(check_fields(record.fields, message.file, message.kind != Kind::Tdm));
-    for (const std::string &key : mandatory(message, segment, record))
-      if (find(record.fields, key) == nullptr)
-        return fail(ErrorCode::BadInput, fmt::format("a {} has no {}", record.name, key),
-                    {message.file, record.line});
-  }
+  for (const Record &record : segment.data)
+    UMOV_TRY(check_record(message, segment, record));
   const auto has = [&](std::string_view name) {
     return std::any_of(segment.data.begin(), segment.data.end(),
                        [&](const Record &record) { return record.name == name; });
@@ -89,6 +152,56 @@ Result<void> check_segment(const Message &message, const Segment &segment) {
     return fail(ErrorCode::BadInput, "a segment has no state vector", {message.file});
   if (message.kind == Kind::Aem && !has("attitudeState"))
     return fail(ErrorCode::BadInput, "a segment has no attitude", {message.file});
+  return {};
+}
+
+} // namespace
+
+namespace {
+
+/// Words of letters, digits and signs that neither form takes for something else.
+bool is_keyword(std::string_view key) {
+  return !key.empty() && std::isalpha(static_cast<unsigned char>(key.front())) != 0 &&
+         std::all_of(key.begin(), key.end(), [](char c) {
+           return (c & 0x80) == 0 && (std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                                      c == '_' || c == '-' || c == '.');
+         });
+}
+
+/// What terminals obey, what ends a line of KVN and what is no UTF-8, in texts of any form.
+Result<void> clean(std::vector<Field> &fields, const std::string &file, Where &changed) {
+  for (Field &field : fields) {
+    if (!is_keyword(field.key))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("\"{}\" is no keyword; letters, digits and _ were expected",
+                              printable(field.key.substr(0, 60))),
+                  {file, field.line});
+    for (std::string *text : {&field.text, &field.unit}) {
+      std::replace_if(
+          text->begin(), text->end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; },
+          ' '); // XML may break a text into lines
+      bool is_changed = false;
+      *text = printable(*text, &is_changed);
+      if (is_changed && changed.file.empty())
+        changed = {file, field.line};
+    }
+  }
+  return {};
+}
+
+Result<void> clean(Message &message, Diagnostics &diagnostics) {
+  Where changed; // the first place
+  message.version = printable(message.version);
+  UMOV_TRY(clean(message.header, message.file, changed));
+  for (Segment &segment : message.segments) {
+    UMOV_TRY(clean(segment.metadata, message.file, changed));
+    for (Record &record : segment.data)
+      UMOV_TRY(clean(record.fields, message.file, changed));
+  }
+  if (!changed.file.empty())
+    diagnostics.warn("a text holds bytes that are not printable UTF-8; they are replaced by '?', "
+                     "here and in what follows.",
+                     changed);
   return {};
 }
 
@@ -130,6 +243,7 @@ Result<Message> read_message(std::string_view text, const std::string &file,
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   const bool is_xml = begin != std::string_view::npos && text[begin] == '<';
   UMOV_ASSIGN(message, is_xml ? read_xml(text, file) : read_kvn(text, file));
+  UMOV_TRY(clean(message, diagnostics));
   UMOV_TRY(check_message(message, diagnostics));
   return message;
 }

@@ -41,8 +41,9 @@ void put_rotation(pugi::xml_node parent, const Field &field, std::size_t number)
   node.append_child(pugi::node_pcdata).set_value(field.text.c_str());
 }
 
-void put_attitude(pugi::xml_node state, const Segment &segment, const Record &record) {
-  const AttitudeForm *form = attitude_form(find(segment.metadata, "ATTITUDE_TYPE")->text);
+Result<void> put_attitude(pugi::xml_node state, const Message &message, const Segment &segment,
+                          const Record &record) {
+  UMOV_ASSIGN(form, needed_form(message, segment));
   pugi::xml_node node = state.append_child(form->element);
   for (const Field &field : record.fields)
     if (field.key == "COMMENT" || field.key == "EPOCH")
@@ -52,16 +53,17 @@ void put_attitude(pugi::xml_node state, const Segment &segment, const Record &re
     pugi::xml_node below = name.empty() ? node : node.append_child(group.element);
     std::size_t number = 0;
     for (const std::string &key : group.keys) {
-      const Field *field = find(record.fields, key);
+      UMOV_ASSIGN(field, needed_field(message, record, key));
       if (name == "rotationAngles" || name == "rotationRates")
         put_rotation(below, *field, ++number);
       else
         put(below, *field, field->unit);
     }
   }
+  return {};
 }
 
-void put_data(pugi::xml_node data, const Message &message, const Segment &segment) {
+Result<void> put_data(pugi::xml_node data, const Message &message, const Segment &segment) {
   for (const Record &record : segment.data) {
     if (record.name == "comment") {
       put(data, record.fields);
@@ -78,13 +80,14 @@ void put_data(pugi::xml_node data, const Message &message, const Segment &segmen
     if (message.kind == Kind::Aem) {
       Record plain = record;
       std::erase_if(plain.fields, [](const Field &field) { return field.key == "COMMENT"; });
-      put_attitude(node, segment, plain);
+      UMOV_TRY(put_attitude(node, message, segment, plain));
       continue;
     }
     for (const Field &field : record.fields)
       if (!(is_line && field.key == "COMMENT"))
         put(node, field, unit_of(message, record, field));
   }
+  return {};
 }
 
 } // namespace
@@ -102,7 +105,7 @@ Result<std::string> write_xml(const Message &message) {
   for (const Segment &segment : message.segments) {
     pugi::xml_node node = body.append_child("segment");
     put(node.append_child("metadata"), segment.metadata);
-    put_data(node.append_child("data"), message, segment);
+    UMOV_TRY(put_data(node.append_child("data"), message, segment));
   }
   std::ostringstream out;
   document.save(out, "  ");

@@ -27,11 +27,16 @@ Result<std::vector<ElementSet>> read_messages(Reader reader, omm::Metadata metad
                                               const TleOptions &options, Diagnostics &diagnostics) {
   constexpr std::size_t warnings_max = 100;
   std::vector<ElementSet> out;
-  std::size_t bad = 0;
+  std::size_t bad = 0, renamed = 0;
   UMOV_TRY(reader(text, file, [&](Result<omm::Message> message) -> Result<void> {
     auto set = message ? omm::elements_of(*message, file, metadata)
                        : Result<ElementSet>(tl::unexpected(message.error()));
     if (set) {
+      const omm::Field &name = message->fields.at("OBJECT_NAME");
+      if (name.text != set->name && ++renamed == 1)
+        diagnostics.warn("OBJECT_NAME holds bytes that are not printable UTF-8; they are replaced "
+                         "by '?', here and in what follows.",
+                         {file, name.line});
       out.push_back(std::move(*set));
       return {};
     }

@@ -2,6 +2,7 @@
 
 #include "io/elements/omm_message.h"
 
+#include <algorithm>
 #include <optional>
 #include <umov/core/text.h>
 
@@ -45,10 +46,13 @@ Result<void> read_csv(std::string_view text, const std::string &file, const Sink
     line = trimmed(line.substr(0, line.find_last_not_of('\r') + 1));
     if (line.empty() || line.starts_with('#'))
       continue;
-    auto cells = cells_of(line);
     const auto refuse = [&](const std::string &what) {
       return fail(ErrorCode::BadInput, what, {file, line_number});
     };
+    constexpr std::ptrdiff_t cells_max = 10'000; // an OMM has some 50 keywords
+    if (std::count(line.begin(), line.end(), ',') >= cells_max)
+      return refuse("more than " + std::to_string(cells_max) + " cells; is it a list of OMM?");
+    auto cells = cells_of(line);
     if (keys.empty()) {
       if (!cells)
         return refuse("a quote is not closed");

@@ -143,8 +143,8 @@ Result<ElementSet> elements_of(const Message &message, const std::string &file, 
   for (const char *key : {"OBJECT_NAME", "OBJECT_ID"})
     if (fields.find(key) == nullptr)
       return fields.refuse(key, "a name");
-  out.name = fields.text("OBJECT_NAME");
-  out.international_designator = fields.text("OBJECT_ID");
+  out.name = printable(fields.text("OBJECT_NAME"));
+  out.international_designator = printable(fields.text("OBJECT_ID"));
   UMOV_TRY(read_epoch(fields, out));
   constexpr double huge = 1e30;
   UMOV_ASSIGN(motion,
@@ -178,8 +178,9 @@ Result<ElementSet> elements_of(const Message &message, const std::string &file, 
   out.element_number = set_number;
   out.revolution = revolution;
   out.ephemeris_type = type;
-  const std::string classification = fields.text("CLASSIFICATION_TYPE");
-  out.classification = classification.empty() ? 'U' : classification[0];
+  const std::string classification = printable(fields.text("CLASSIFICATION_TYPE"));
+  if (!classification.empty()) // a letter, of which KVN and TLE write one byte
+    out.classification = (classification[0] & 0x80) == 0 ? classification[0] : '?';
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "io/elements/omm_message.h"
 
 #include <nlohmann/json.hpp>
+#include <set>
 #include <umov/core/text.h>
 
 namespace umov::omm {
@@ -50,7 +51,7 @@ Result<void> read_json(std::string_view text, const std::string &file, const Sin
     return fail(ErrorCode::BadInput, "is nested deeper than any list of element sets",
                 {file, line});
   // The parser keeps the last of two equal keys: they are caught as they pass.
-  std::vector<std::string> keys;
+  std::set<std::string> keys; // a list would take a hostile object's keys squared
   std::string twice;
   const auto watch = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json &parsed) {
     using Event = nlohmann::json::parse_event_t;
@@ -58,9 +59,8 @@ Result<void> read_json(std::string_view text, const std::string &file, const Sin
       keys.clear();
     if (event == Event::key && depth <= 2) {
       const auto key = parsed.get<std::string>();
-      if (std::find(keys.begin(), keys.end(), key) != keys.end() && twice.empty())
+      if (!keys.insert(key).second && twice.empty())
         twice = key;
-      keys.push_back(key);
     }
     return true;
   };

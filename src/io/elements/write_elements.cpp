@@ -115,6 +115,11 @@ std::string xml_of(const std::vector<ElementSet> &sets, const std::string &creat
   return out + "</ndm>\n";
 }
 
+/// Names given by a program may hold anything; what is no UTF-8 must not stop the writing.
+std::string json_text(const std::string &text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 std::string json_of(const std::vector<ElementSet> &sets) {
   std::string out = "[";
   for (const ElementSet &set : sets) {
@@ -122,7 +127,7 @@ std::string json_of(const std::vector<ElementSet> &sets) {
     bool is_first = true;
     for (const Item &item : all_of(set)) {
       out += fmt::format("{}\"{}\":{}", is_first ? "" : ",", item.key,
-                         item.is_number ? item.text : nlohmann::json(item.text).dump());
+                         item.is_number ? item.text : json_text(item.text));
       is_first = false;
     }
     out += '}';

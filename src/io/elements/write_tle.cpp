@@ -109,6 +109,11 @@ Result<std::string> tle_of(const std::vector<ElementSet> &sets, Diagnostics &dia
                   fmt::format("catalogue number {} does not fit a TLE, whose five columns end at "
                               "Z9999 = {}. Write OMM instead (.json, .xml, .kvn or .csv).",
                               set.norad_cat_id, alpha5_max));
+    if (!(std::abs(set.mean_motion_dot) < 0.999999995)) // the columns begin with the point
+      return fail(ErrorCode::BadInput,
+                  fmt::format("the first derivative of the mean motion of {} is {:g} rev/d2; a TLE "
+                              "holds less than 1. Write OMM instead (.json, .xml, .kvn or .csv).",
+                              set.norad_cat_id, set.mean_motion_dot));
     out += lines_of(set);
   }
   Diagnostics of_own;

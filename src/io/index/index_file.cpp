@@ -173,6 +173,11 @@ Result<IndexTable> read_index_text(const std::string &text, const std::string &f
     if (!data || !data.IsSequence() || data.size() == 0)
       return fail(ErrorCode::BadInput, "no list DATA; a page of refractiveindex.info was expected",
                   {file});
+    // A page has a few entries; an alias (*name) costs a hostile one nothing and us a table each.
+    constexpr std::size_t entries_max = 16;
+    if (data.size() > entries_max)
+      return reader.problem(
+          data, fmt::format("DATA has {} entries; at most {} are read", data.size(), entries_max));
     bool has_n = false;
     for (const YAML::Node &entry : data) {
       if (!entry.IsMap())

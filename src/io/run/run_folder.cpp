@@ -8,10 +8,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
 #include <stdio.h>
 #include <umov/core/files.h>
 #include <umov/core/version.h>
 #include <unistd.h>
+#include <utility>
+#include <vector>
 
 namespace umov {
 namespace {
@@ -59,8 +62,9 @@ bool is_further_page(std::string_view name) {
   return name.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Something in a folder that umov did not write; empty if there is nothing.
-std::string stranger_in(const fs::path &folder) {
+/// What a folder holds that umov did not write.
+std::vector<std::string> strangers_in(const fs::path &folder) {
+  std::vector<std::string> out;
   std::error_code code;
   const auto manifest = manifest_of(folder);
   const auto listed = manifest.is_null() ? nlohmann::json::array()
@@ -69,9 +73,15 @@ std::string stranger_in(const fs::path &folder) {
     const std::string name = entry.path().filename().string();
     if (std::find(std::begin(our_files), std::end(our_files), name) == std::end(our_files) &&
         !is_further_page(name) && std::find(listed.begin(), listed.end(), name) == listed.end())
-      return name;
+      out.push_back(name);
   }
-  return {};
+  return out;
+}
+
+/// Something in a folder that umov did not write; empty if there is nothing.
+std::string stranger_in(const fs::path &folder) {
+  const auto all = strangers_in(folder);
+  return all.empty() ? std::string() : all.front();
 }
 
 bool is_free(const fs::path &folder) {
@@ -98,6 +108,79 @@ struct Temporary {
       fs::remove_all(path, code);
   }
 };
+
+/// A new folder beside another one, with its permissions.
+Result<fs::path> make_beside(const fs::path &folder) {
+  std::error_code code;
+  std::random_device random;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const fs::path out =
+        folder.parent_path() /
+        fmt::format(".{}.part-{}-{:x}", folder.filename().string(), ::getpid(), random());
+    if (fs::create_directory(out, code)) { // false if somebody has it
+      std::error_code unknown;
+      if (const auto old = fs::status(folder, unknown); fs::is_directory(old))
+        fs::permissions(out, old.permissions(), unknown);
+      return out;
+    }
+    if (code)
+      break;
+  }
+  return trouble(folder.parent_path(), "no folder can be made here: " + code.message());
+}
+
+/// Asked again when the run is over: hours may lie between, in which the folder is the user's.
+bool is_replaceable(const fs::path &folder) {
+  std::error_code code;
+  const auto status = fs::symlink_status(folder, code);
+  if (!fs::exists(status))
+    return true;
+  return fs::is_directory(status) && (fs::is_empty(folder, code) || status_of(folder));
+}
+
+/// What the user put into the old folder moves to the new one; if it cannot, the old folder stays.
+Result<void> bring_back_strangers(Temporary &old, const fs::path &full) {
+  for (const std::string &name : strangers_in(old.path)) {
+    const fs::path from = old.path / name, to = full / name;
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0)
+      continue;
+    std::error_code code;
+    if (errno == EINVAL && !fs::exists(fs::symlink_status(to, code))) // no such flag here
+      if (fs::rename(from, to, code); !code)
+        continue;
+    const fs::path kept = std::exchange(old.path, {});
+    return trouble(full, fmt::format("is written, but \"{}\", which umov did not write, could not "
+                                     "be kept in it. It is in {}: move it.",
+                                     name, kept.string()));
+  }
+  return {};
+}
+
+/// Exchanges a new folder with the one that stands there, if any.
+Result<void> put_in_place(Temporary &fresh, const fs::path &full) {
+  std::error_code code;
+  if (!fs::exists(full, code)) {
+    fs::rename(fresh.path, full, code);
+    if (code)
+      return trouble(full, "cannot be put in place: " + code.message());
+    fresh.path.clear();
+    return {};
+  }
+  if (::renameat2(AT_FDCWD, fresh.path.c_str(), AT_FDCWD, full.c_str(), RENAME_EXCHANGE) != 0) {
+    // A file system without exchange: the old folder steps aside first.
+    const fs::path old = fresh.path.string() + "-old";
+    fs::rename(full, old, code);
+    if (!code) {
+      fs::rename(fresh.path, full, code);
+      if (std::error_code unknown; code)
+        fs::rename(old, full, unknown); // as it was
+    }
+    if (code)
+      return trouble(full, "cannot be replaced: " + code.message());
+    fresh.path = old;
+  } // after an exchange the temporary name holds the old folder, which goes
+  return bring_back_strangers(fresh, full);
+}
 
 } // namespace
 
@@ -139,9 +222,12 @@ Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
 }
 
 void RunFolder::spare_complete_run() {
-  if (is_free(target_))
-    return;
-  const std::string base = (target_ == "." ? real_ : target_).string() + ".partial";
+  if (!is_free(target_))
+    step_aside(".partial");
+}
+
+void RunFolder::step_aside(const std::string &suffix) {
+  const std::string base = (target_ == "." ? real_ : target_).string() + suffix;
   target_ = base;
   for (int k = 2; !is_free(target_); ++k)
     target_ = base + std::to_string(k);
@@ -151,38 +237,21 @@ void RunFolder::spare_complete_run() {
 }
 
 Result<void> RunFolder::commit() {
-  std::error_code code;
   if (is_foreign_) {
     for (const auto &[name, bytes] : files_)
       UMOV_TRY(write_file_atomically(real_ / name, bytes));
     return {};
   }
-  const fs::path &full = real_;
-  fs::create_directories(full.parent_path(), code);
-  Temporary fresh{full.parent_path() /
-                  ("." + full.filename().string() + ".part-" + std::to_string(::getpid()))};
-  fs::remove_all(fresh.path, code);
-  if (!fs::create_directory(fresh.path, code))
-    return trouble(full.parent_path(), "no folder can be made here: " + code.message());
+  std::error_code code;
+  fs::create_directories(real_.parent_path(), code);
+  UMOV_ASSIGN(made, make_beside(real_));
+  Temporary fresh{made};
   for (const auto &[name, bytes] : files_)
     UMOV_TRY(write_file_atomically(fresh.path / name, bytes));
-  if (!fs::exists(full, code)) {
-    fs::rename(fresh.path, full, code);
-    if (code)
-      return trouble(full, "cannot be put in place: " + code.message());
-    fresh.path.clear();
-  } else if (::renameat2(AT_FDCWD, fresh.path.c_str(), AT_FDCWD, full.c_str(), RENAME_EXCHANGE) !=
-             0) {
-    // A file system without exchange: the old folder steps aside first.
-    const fs::path old = fresh.path.string() + "-old";
-    fs::rename(full, old, code);
-    if (!code)
-      fs::rename(fresh.path, full, code);
-    if (code)
-      return trouble(full, "cannot be replaced: " + code.message());
-    fresh.path = old;
-  } // after an exchange the temporary name holds the old folder, which goes
-  if (const int fd = ::open(full.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (!is_replaceable(real_)) // somebody put something of his own there while the run went on
+    step_aside(".new");
+  UMOV_TRY(put_in_place(fresh, real_));
+  if (const int fd = ::open(real_.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
       fd >= 0) {
     ::fsync(fd);
     ::close(fd);
@@ -213,7 +282,8 @@ std::string make_manifest(const ManifestInput &input) {
   out["warnings"] = input.warnings;
   if (!input.files.empty())
     out["files"] = input.files;
-  return out.dump(2) + "\n";
+  // Names of files are bytes, not always UTF-8: hours of work must not end here.
+  return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 } // namespace umov

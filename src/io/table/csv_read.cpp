@@ -52,6 +52,12 @@ public:
       const std::string_view content = trimmed(line.substr(0, line.find_last_not_of('\r') + 1));
       if (content.empty() || content.front() == '#')
         continue;
+      // Each cell costs many times its one byte, so they are counted before they are made.
+      constexpr std::ptrdiff_t columns_max = 10'000;
+      if (std::count(line.begin(), line.end(), ',') >= columns_max)
+        return fail(ErrorCode::BadInput,
+                    fmt::format("more than {} cells in this row; is it a table?", columns_max),
+                    {file_, line_});
       const auto cells = split(line.substr(0, line.find_last_not_of('\r') + 1));
       if (!cells)
         return fail(ErrorCode::BadInput, "a quote is not closed in this row; close it with \"",

@@ -17,7 +17,6 @@ constexpr std::size_t rows_per_task = 4096;
 
 struct TableStream::Writer {
   FileInProgress file;
-  std::filesystem::path path;
   std::optional<FitsTable> fits; ///< absent: CSV
   unsigned threads = 1;
 
@@ -53,13 +52,13 @@ Result<TableStream> TableStream::open(const std::filesystem::path &path, const T
                 path.string() + ": a name that ends in .csv or .fits was expected");
   TableStream out;
   if (path.extension() == ".fits") {
-    FileInProgress file = FileInProgress::for_library(path);
+    UMOV_ASSIGN(file, FileInProgress::for_library(path));
     UMOV_ASSIGN(fits, FitsTable::create(file.temporary(), first));
-    out.writer_ = std::make_unique<Writer>(Writer{std::move(file), path, std::move(fits), threads});
+    out.writer_ = std::make_unique<Writer>(Writer{std::move(file), std::move(fits), threads});
   } else {
     UMOV_ASSIGN(file, FileInProgress::open(path));
     UMOV_TRY(file.write(csv_header(first)));
-    out.writer_ = std::make_unique<Writer>(Writer{std::move(file), path, {}, threads});
+    out.writer_ = std::make_unique<Writer>(Writer{std::move(file), {}, threads});
   }
   UMOV_TRY(out.append(first));
   return out;
@@ -77,7 +76,7 @@ Result<void> TableStream::commit() {
 }
 
 Result<std::filesystem::path> TableStream::commit_partial(const std::string &why) {
-  std::filesystem::path path = writer_->path;
+  std::filesystem::path path = writer_->file.path(); // in the folder of the temporary file
   path.replace_extension(".partial" + path.extension().string());
   if (writer_->fits) {
     UMOV_TRY(writer_->fits->note("status: " + why));

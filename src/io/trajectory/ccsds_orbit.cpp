@@ -5,6 +5,7 @@
 #include "io/trajectory/message_fields.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <umov/core/text.h>
 #include <umov/time/time_system.h>
@@ -104,7 +105,7 @@ Result<void> read_interpolation(const Message &message, const Segment &segment,
   }
   if (const Field *degree = find(segment.metadata, "INTERPOLATION_DEGREE")) {
     const auto value = parse_number(degree->text);
-    if (!value || *value != static_cast<int>(*value) || *value < 1 || *value > 31)
+    if (!value || !(*value >= 1 && *value <= 31) || *value != std::floor(*value))
       return refuse(message, *degree, "a whole number, 1 to 31");
     out.degree = static_cast<int>(*value);
   }

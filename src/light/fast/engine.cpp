@@ -131,8 +131,9 @@ Result<Engine> Engine::with_masks(const std::filesystem::path &file, const Scene
   const auto start = std::chrono::steady_clock::now();
   auto state = std::make_unique<State>(scene, options);
   if (state->has_masks()) {
-    UMOV_ASSIGN(masks, read_masks(file, mask_key(state->scene.mesh, state->classes, state->plan,
-                                                 state->mask_size())));
+    const std::uint64_t key =
+        mask_key(state->scene.mesh, state->classes, state->plan, state->mask_size());
+    UMOV_ASSIGN(masks, read_masks(file, key, state->plan, state->mask_size()));
     state->take_masks(std::move(masks));
   }
   state->facts.setup_s = seconds_since(start);

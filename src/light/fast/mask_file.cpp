@@ -1,6 +1,7 @@
 #include "light/fast/mask_file.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
 #include <span>
@@ -57,6 +58,11 @@ template <class F> void for_each_list(backend::Masks &masks, const F &f) {
   f(bytes_of(masks.pool));
 }
 
+/// Blocks of one entry of a group.
+std::uint32_t blocks_of(const backend::GroupMask &group) {
+  return group.words / (group.is_wide ? std::uint32_t{backend::lanes} : 1u);
+}
+
 std::uint64_t checksum_of(Header header, backend::Masks &masks) {
   Hash hash;
   header.checksum = 0;
@@ -65,37 +71,62 @@ std::uint64_t checksum_of(Header header, backend::Masks &masks) {
   return hash.value();
 }
 
-/// Blocks of each entry of a table; empty if a group points outside.
-std::vector<std::uint32_t> entry_blocks(const backend::Masks &masks, bool is_wide) {
-  std::vector<std::uint32_t> out((is_wide ? masks.wide : masks.narrow).entries, 0);
-  for (const backend::GroupMask &group : masks.groups) {
-    if (group.is_wide != is_wide)
-      continue;
-    const std::size_t count = is_wide ? backend::lanes : 1;
-    if (group.entry + count > out.size())
-      return {};
-    std::fill_n(out.begin() + group.entry, count,
-                std::uint32_t{group.words} / (is_wide ? std::uint32_t{backend::lanes} : 1u));
+/// All that the plan decides (as build_masks lays it out): groups, entries, cells, the sizes of the
+/// lists. A file may only fill it in.
+backend::Masks layout_of(const GroupPlan &plan, const MaskSize &size) {
+  backend::Masks out;
+  for (const GroupPlan::Group &group : plan.groups) {
+    backend::MaskTable &table = group.is_wide ? out.wide : out.narrow;
+    out.groups.push_back({static_cast<std::uint32_t>(table.entries), group.words, group.is_wide});
+    table.entries += group.is_wide ? backend::lanes : 1;
+    out.longest = std::max(out.longest, blocks_of(out.groups.back()));
+  }
+  out.narrow.cells = size.narrow_cells;
+  out.wide.cells = size.wide_cells;
+  for (backend::MaskTable *table : {&out.narrow, &out.wide}) {
+    const std::size_t directions = table->entries > 0 ? table->directions() : 0;
+    table->offset.resize(directions * table->entries);
+    table->row.resize(directions + 1);
   }
   return out;
+}
+
+Header header_of(const backend::Masks &masks, std::uint64_t key) {
+  Header out;
+  out.key = key;
+  out.groups = masks.groups.size();
+  out.blocks = masks.pool.size();
+  out.longest = masks.longest;
+  const auto put = [](Header::Table &to, const backend::MaskTable &from) {
+    to = {from.cells, from.entries, from.offset.size(), from.row.size()};
+  };
+  put(out.narrow, masks.narrow);
+  put(out.wide, masks.wide);
+  return out;
+}
+
+bool is_same(const Header::Table &a, const Header::Table &b) {
+  return a.cells == b.cells && a.entries == b.entries && a.offsets == b.offsets && a.rows == b.rows;
+}
+
+/// The groups of a file, byte by byte: a bool of a file may hold anything. What follows it is
+/// padding.
+bool is_same(const backend::GroupMask &a, const backend::GroupMask &b) {
+  return std::memcmp(&a, &b, offsetof(backend::GroupMask, is_wide) + 1) == 0;
 }
 
 /// Offsets and rows stay within the pool, whoever wrote the file.
 bool is_consistent(const backend::Masks &masks, bool is_wide) {
   const backend::MaskTable &table = is_wide ? masks.wide : masks.narrow;
-  const auto blocks = entry_blocks(masks, is_wide);
-  const std::size_t directions = table.entries > 0 ? table.directions() : 0;
-  if (blocks.size() != table.entries || table.offset.size() != directions * table.entries ||
-      table.row.size() != directions + 1)
-    return false;
+  std::vector<std::size_t> blocks(table.entries, 0);
+  for (const backend::GroupMask &group : masks.groups)
+    if (group.is_wide == is_wide)
+      std::fill_n(blocks.begin() + group.entry, is_wide ? backend::lanes : 1, blocks_of(group));
   for (std::size_t k = 0; k < table.offset.size(); ++k)
-    if (std::size_t{table.offset[k]} + blocks[k % table.entries] > masks.pool.size())
+    if (table.offset[k] + blocks[k % table.entries] > masks.pool.size())
       return false;
   return std::all_of(table.row.begin(), table.row.end(),
-                     [&](std::uint32_t row) { return row <= masks.pool.size(); }) &&
-         std::all_of(blocks.begin(), blocks.end(),
-                     [&](std::uint32_t n) { return n <= masks.longest; }) &&
-         masks.pool.size() >= std::size_t{2} * masks.longest;
+                     [&](std::uint32_t row) { return row <= masks.pool.size(); });
 }
 
 } // namespace
@@ -127,16 +158,7 @@ std::uint64_t mask_key(const Mesh &mesh, const FacetClasses &classes, const Grou
 Result<void> write_masks(const std::filesystem::path &path, const backend::Masks &masks,
                          std::uint64_t key) {
   auto &all = const_cast<backend::Masks &>(masks); // the lists are only read
-  Header header;
-  header.key = key;
-  header.groups = masks.groups.size();
-  header.blocks = masks.pool.size();
-  header.longest = masks.longest;
-  const auto put = [](Header::Table &to, const backend::MaskTable &from) {
-    to = {from.cells, from.entries, from.offset.size(), from.row.size()};
-  };
-  put(header.narrow, masks.narrow);
-  put(header.wide, masks.wide);
+  Header header = header_of(masks, key);
   header.checksum = checksum_of(header, all);
   UMOV_ASSIGN(file, FileInProgress::open(path));
   UMOV_TRY(file.write({reinterpret_cast<const char *>(&header), sizeof header}));
@@ -149,7 +171,8 @@ Result<void> write_masks(const std::filesystem::path &path, const backend::Masks
   return file.commit();
 }
 
-Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64_t key) {
+Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64_t key,
+                                  const GroupPlan &plan, const MaskSize &size) {
   const auto refuse = [&](const std::string &what) {
     return fail(ErrorCode::BadInput, what + ". Remove it to have it made anew.", {path.string()});
   };
@@ -157,10 +180,11 @@ Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64
   if (!stream)
     return fail(ErrorCode::BadInput, "cannot be read", {path.string()});
   std::error_code unknown;
-  const std::uint64_t size = std::filesystem::file_size(path, unknown);
+  const std::uint64_t bytes = std::filesystem::file_size(path, unknown);
   Header header;
-  const Header wanted;
-  if (unknown || size < sizeof header ||
+  backend::Masks out = layout_of(plan, size);
+  const Header wanted = header_of(out, key);
+  if (unknown || bytes < sizeof header ||
       !stream.read(reinterpret_cast<char *>(&header), sizeof header) ||
       std::memcmp(header.magic, wanted.magic, sizeof header.magic) != 0)
     return refuse("is not a file of masks of this version");
@@ -168,36 +192,26 @@ Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64
     return refuse("was made on a machine with another byte order");
   if (header.key != key)
     return refuse("was made for another mesh, other material groups or another accuracy");
-  // Sizes are believed only if they add up to the file's: nothing is reserved on a lie's word.
-  const std::uint64_t most = size;
-  for (const std::uint64_t count :
-       {header.groups, header.blocks, header.narrow.offsets, header.narrow.rows,
-        header.wide.offsets, header.wide.rows, header.longest})
-    if (count > most)
-      return refuse("is damaged");
-  const std::uint64_t words =
-      header.narrow.offsets + header.narrow.rows + header.wide.offsets + header.wide.rows;
-  if (sizeof header + header.groups * sizeof(backend::GroupMask) +
-          header.blocks * sizeof(backend::MaskBlock) + words * sizeof(std::uint32_t) !=
-      size)
+  // The key tells files apart and keeps no secrets: sizes and places are the plan's, and the file's
+  // have to be the same. Nothing is reserved on a lie's word.
+  if (header.groups != wanted.groups || header.longest != wanted.longest ||
+      !is_same(header.narrow, wanted.narrow) || !is_same(header.wide, wanted.wide))
+    return refuse("is damaged: its groups or directions are not those of this mesh");
+  std::uint64_t fixed = sizeof header;
+  for_each_list(out, [&](std::span<char> part) { fixed += part.size(); });
+  if (header.blocks < std::uint64_t{2} * out.longest ||
+      header.blocks > bytes / sizeof(backend::MaskBlock) ||
+      fixed + header.blocks * sizeof(backend::MaskBlock) != bytes)
     return refuse("is damaged or cut short");
-  backend::Masks out;
-  out.groups.resize(header.groups);
+  const std::vector<backend::GroupMask> groups = out.groups;
   out.pool.resize(header.blocks);
-  out.longest = static_cast<std::uint32_t>(header.longest);
-  const auto take = [](const Header::Table &from, backend::MaskTable &to) {
-    to.cells = from.cells;
-    to.entries = from.entries;
-    to.offset.resize(from.offsets);
-    to.row.resize(from.rows);
-  };
-  take(header.narrow, out.narrow);
-  take(header.wide, out.wide);
   for_each_list(out, [&](std::span<char> part) {
     stream.read(part.data(), static_cast<std::streamsize>(part.size()));
   });
-  if (!stream || checksum_of(header, out) != header.checksum || !is_consistent(out, false) ||
-      !is_consistent(out, true))
+  if (!stream || checksum_of(header, out) != header.checksum ||
+      !std::equal(groups.begin(), groups.end(), out.groups.begin(),
+                  [](const auto &a, const auto &b) { return is_same(a, b); }) ||
+      !is_consistent(out, false) || !is_consistent(out, true))
     return refuse("is damaged");
   return out;
 }

@@ -17,7 +17,9 @@ std::uint64_t mask_key(const Mesh &mesh, const FacetClasses &classes, const Grou
 /// Whole or not at all. Device if it cannot be written.
 Result<void> write_masks(const std::filesystem::path &path, const backend::Masks &masks,
                          std::uint64_t key);
-/// BadInput for a file that is none, is damaged, or was made with another key.
-Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64_t key);
+/// BadInput for a file that is none, is damaged, was made with another key, or does not hold the
+/// groups and directions of the plan.
+Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64_t key,
+                                  const GroupPlan &plan, const MaskSize &size);
 
 } // namespace umov

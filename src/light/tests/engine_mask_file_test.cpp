@@ -2,6 +2,8 @@
 
 #include "light/tests/engine_cases.h"
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <umov/core/files.h>
 
@@ -58,6 +60,98 @@ TEST_F(MaskFile, IsRefusedForAnythingElse) {
   // A convex body has none to keep.
   const Scene ball = scene_of(make_sphere(1, 100), NormalMode::Flat, four_materials());
   EXPECT_FALSE(Engine(ball, options_).save_masks(file_));
+}
+
+/// A file of masks with a right checksum, whatever else it says. Header: words of 8 bytes.
+class Forgery {
+public:
+  enum Word {
+    checksum = 3,
+    groups = 4,
+    longest = 6,
+    narrow_cells = 7,
+    narrow_entries = 8,
+    narrow_offsets = 9,
+    narrow_rows = 10,
+    wide_cells = 11,
+    wide_entries = 12,
+    wide_offsets = 13,
+    wide_rows = 14,
+    words = 15
+  };
+  explicit Forgery(std::string bytes) : bytes_(std::move(bytes)) {}
+  [[nodiscard]] std::uint64_t get(Word word) const {
+    std::uint64_t out = 0;
+    std::memcpy(&out, bytes_.data() + 8 * word, 8);
+    return out;
+  }
+  void set(Word word, std::uint64_t value) { std::memcpy(bytes_.data() + 8 * word, &value, 8); }
+  void set_half(std::size_t at, std::uint32_t value) { std::memcpy(bytes_.data() + at, &value, 4); }
+  void erase(std::size_t at, std::size_t count) { bytes_.erase(at, count); }
+  static constexpr std::size_t header = 8 * words;
+  [[nodiscard]] std::size_t end_of_groups() const { return header + 8 * get(groups); }
+
+  /// The bytes with their checksum.
+  std::string done() {
+    set(checksum, 0);
+    value_ = 0xCBF29CE484222325ull;
+    add(0, header);
+    std::size_t at = header;
+    const auto part = [&](std::size_t size) {
+      size = std::min(size, bytes_.size() - at);
+      add(at, size);
+      at += size;
+    };
+    part(8 * get(groups));
+    for (const Word list : {narrow_offsets, narrow_rows, wide_offsets, wide_rows})
+      part(4 * get(list));
+    part(bytes_.size() - at);
+    set(checksum, value_);
+    return bytes_;
+  }
+
+private:
+  void add(std::size_t at, std::size_t count) {
+    for (; count >= 8; count -= 8, at += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes_.data() + at, 8);
+      value_ = (value_ ^ word) * 0x100000001B3ull;
+      value_ ^= value_ >> 29;
+    }
+    for (; count > 0; --count, ++at)
+      value_ = (value_ ^ static_cast<unsigned char>(bytes_[at])) * 0x100000001B3ull;
+  }
+  std::string bytes_;
+  std::uint64_t value_ = 0;
+};
+
+// The checksum has no key: who writes it right must not lead the sums out of their memory.
+TEST_F(MaskFile, AForgedFileIsRefused) {
+  const Scene plain = scene_of(make_box_wing({1000, 0}), NormalMode::Flat, {white_lambert()});
+  options_.masks.refine_above = 0;
+  ASSERT_TRUE(Engine(plain, options_).save_masks(file_));
+  const std::string good = read_file(file_).value();
+  const auto refused = [&](auto change) {
+    Forgery file(good);
+    change(file);
+    EXPECT_TRUE(write_file_atomically(file_, file.done()));
+    return refusal(plain, options_);
+  };
+  EXPECT_EQ(refused([](Forgery &) {}), ""); // the checksum of this test is the engine's
+  EXPECT_NE(refused([](Forgery &file) {
+              file.erase(Forgery::header, file.end_of_groups() - Forgery::header);
+              file.set(Forgery::groups, 0);
+            }),
+            "");
+  for (const Forgery::Word word : {Forgery::longest, Forgery::narrow_cells, Forgery::wide_cells,
+                                   Forgery::narrow_entries, Forgery::wide_entries})
+    for (const std::uint64_t value : {std::uint64_t{0}, std::uint64_t{1} << 40, ~std::uint64_t{0}})
+      EXPECT_NE(refused([&](Forgery &file) { file.set(word, file.get(word) ^ value ^ 2); }), "")
+          << word << " " << value;
+  // Places within the file: an entry of a group, what follows it, an offset.
+  EXPECT_NE(refused([](Forgery &file) { file.set_half(Forgery::header, 1u << 30); }), "");
+  EXPECT_NE(refused([](Forgery &file) { file.set_half(Forgery::header + 4, 0x02FFFFFF); }), "");
+  EXPECT_NE(refused([](Forgery &file) { file.set_half(file.end_of_groups(), 0xFFFFFF00); }), "");
 }
 
 TEST_F(MaskFile, DamageIsFoundWhereverItIs) {

@@ -1,13 +1,19 @@
 // After the list of Embree's own verification: what rays must survive.
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
+#include <sys/resource.h>
 #include <umov/core/parallel.h>
 #include <umov/core/quantity.h>
 #include <umov/core/random.h>
+#include <umov/core/result.h>
 #include <umov/shape/occluder.h>
 #include <umov/shape/primitives.h>
+#include <unistd.h>
 
 namespace umov {
 namespace {
@@ -55,6 +61,32 @@ TEST(Occluder, NonFiniteRaysAreNeverFree) {
     EXPECT_EQ(free[1], 0);
     EXPECT_EQ(occluder.nearest({0, 0, bad}, {0, 0, 1}).triangle, no_index);
   }
+}
+
+// In a process of its own, which the limit stays in. A tree that is not there must not be taken for
+// one that hides nothing.
+TEST(OccluderDeathTest, OutOfMemoryIsAFailureAndNotAFreeSky) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "address sanitizer needs the address space";
+#endif
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  const auto build = [] {
+    const Mesh mesh = make_sphere(1, 400000);
+    const Occluder small(make_sphere(1, 100)); // threads and caches of Embree are there
+    std::size_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    const std::size_t bytes = pages * static_cast<std::size_t>(::getpagesize()) + (24u << 20);
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_AS, &limit);
+    try {
+      const Occluder big(mesh);
+    } catch (const Failure &failure) {
+      std::fprintf(stderr, "%s\n", failure.what());
+      std::_Exit(static_cast<int>(failure.error().code));
+    }
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(build(), testing::ExitedWithCode(6), "triangles: out of memory");
 }
 
 TEST(Occluder, AnEmptyMeshHidesNothing) {

@@ -166,5 +166,167 @@ TEST(CcsdsMessages, RefusesWithPlaceAndKeyword) {
   }
 }
 
+std::string without(std::string text, const std::string &line) { return replaced(text, line, ""); }
+
+TEST(CcsdsMessages, RefusesPartsThatDoNotStandWhereTheyBelong) {
+  const std::string oem = *read_file(folder + "oem.kvn"),
+                    covariances = *read_file(folder + "oem_cov.kvn"),
+                    opm = *read_file(folder + "opm.kvn");
+  const std::string row = "2018-01-20T00:00:00 1 2 3 4 5 6\n";
+  const std::tuple<std::string, const char *> cases[] = {
+      {"CCSDS_OEM_VERS = 2.0\nMETA_STOP\n" + row, "m:2: META_STOP was found, META_START"},
+      {"CCSDS_OEM_VERS = 2.0\nDATA_START\n" + row, "m:2: DATA_START was found, META_START"},
+      {"CCSDS_AEM_VERS = 1.0\nMETA_STOP\n" + row, "m:2: META_STOP was found"},
+      {"CCSDS_AEM_VERS = 1.0\nDATA_START\n" + row, "m:2: DATA_START was found"},
+      {"CCSDS_OEM_VERS = 2.0\nDATA_STOP\n", "m:2: DATA_STOP was found"},
+      {"CCSDS_OEM_VERS = 2.0\nCOVARIANCE_START\nEPOCH = 2018-01-20T00:00:00\n1\nCOVARIANCE_STOP\n",
+       "m:2: COVARIANCE_START was found, META_START and META_STOP"},
+      {replaced(oem, "META_START\n", "META_START\nMETA_START\n"), "META_START was found"},
+      {replaced(oem, "META_STOP\n", "META_STOP\nMETA_STOP\n"), "META_STOP was found"},
+      {without(covariances, "COVARIANCE_START\n"), "stands among the data lines"},
+      {replaced(covariances, "COVARIANCE_STOP\n", "META_START\n"),
+       "COVARIANCE_STOP of what stands"},
+      {replaced(opm, "X_DOT ", "COVARIANCE_START\nX_DOT "), "COVARIANCE_START was found"},
+  };
+  for (const auto &[text, expected] : cases) {
+    const std::string message = refusal(text);
+    EXPECT_NE(message.find(expected), std::string::npos) << expected << ": " << message;
+  }
+}
+
+TEST(CcsdsMessages, RefusesCovariancesOfAnotherShape) {
+  const std::string head = "CCSDS_OEM_VERS = 2.0\nMETA_START\nMETA_STOP\nCOVARIANCE_START\n";
+  const std::string epoch = "EPOCH = 2018-01-20T00:00:00\n";
+  const std::string rows = "1\n1 2\n1 2 3\n1 2 3 4\n1 2 3 4 5\n1 2 3 4 5 6\n";
+  const std::tuple<std::string, const char *> cases[] = {
+      // Two keywords that begin with C would move every row by two elements, past the last one.
+      {head + epoch + "CA = 1\nCB = 1\n" + rows.substr(2), "m:6: \"CA\" was found in a block of"},
+      {head + epoch + rows + "1\n", "m:12: a covariance matrix has more than 6 rows"},
+      {head + epoch + "1\n1 2 3\n", "m:7: row 2 of a covariance matrix has 3 numbers, expected 2"},
+      {head + rows, "m:5: a row of a covariance matrix stands before its EPOCH"},
+      {head + "COV_REF_FRAME = RTN\n", "m:5: COV_REF_FRAME stands before the EPOCH"},
+  };
+  for (const auto &[text, expected] : cases) {
+    const std::string message = refusal(text);
+    EXPECT_NE(message.find(expected), std::string::npos) << expected << ": " << message;
+  }
+}
+
+TEST(CcsdsMessages, RefusesRecordsThatTheKindDoesNotHave) {
+  const std::string oem = *read_file(folder + "oem.xml"), tdm = *read_file(folder + "tdm.xml"),
+                    opm = *read_file(folder + "opm.xml");
+  const std::tuple<std::string, const char *> cases[] = {
+      {replaced(tdm, "<EPOCH>2008-09-20T18:16:03.690790</EPOCH>", ""),
+       "an observation has no EPOCH"},
+      {replaced(tdm, "<RANGE>4304.325558</RANGE>", ""), "an observation has an EPOCH and no value"},
+      {replaced(tdm, "4304.325558", ""), "RANGE of an observation is empty"},
+      {replaced(tdm, "2008-09-20T18:16:03.690790</EPOCH>", "2008-09-20 18:16</EPOCH>"), "blanks"},
+      {replaced(oem, "<data>", "<data><extra><X>1</X></extra>"),
+       "<extra> was found among the data"},
+      {replaced(oem, "<data>", "<data><comment><X>1</X></comment>"),
+       "\"X\" is no keyword of a comment"},
+      {replaced(oem, "<stateVector>", "<stateVector><X_DDOT>1</X_DDOT>"), "has no Y_DDOT"},
+      {replaced(oem, "<stateVector>", "<stateVector><MASS>1</MASS>"), "\"MASS\" is no keyword"},
+      {replaced(opm, "<stateVector>", "<stateVector><MASS>1</MASS>"), "\"MASS\" is no keyword"},
+  };
+  for (const auto &[text, expected] : cases) {
+    const std::string message = refusal(text);
+    EXPECT_NE(message.find(expected), std::string::npos) << expected << ": " << message;
+  }
+  const std::string aem =
+      *write_message(read(std::string(aem_head) + "ATTITUDE_TYPE = EULER_ANGLE\nMETA_STOP\n"
+                                                  "DATA_START\n2018-01-21T00:00:00 1 2 3\n"
+                                                  "2018-01-21T00:01:00 1 2 3\nDATA_STOP\n"),
+                     Form::Xml);
+  EXPECT_NE(refusal(replaced(aem, "<data>", "<data><extra><X>1</X></extra>"))
+                .find("<extra> was found among the data, where an AEM"),
+            std::string::npos);
+}
+
+// Messages made by hand may lack anything: an error, no crash.
+TEST(CcsdsMessages, WritersNameWhatIsMissing) {
+  const Record empty{"stateVector", {{"X", "1", "", 0}}, 7};
+  for (const Kind kind : {Kind::Oem, Kind::Aem, Kind::Tdm}) {
+    Message message;
+    message.kind = kind;
+    message.file = "m";
+    message.segments.push_back({{}, {empty}});
+    const auto text = write_message(message, Form::Kvn);
+    ASSERT_FALSE(text);
+    EXPECT_NE(text.error().message.find(kind == Kind::Aem ? "no ATTITUDE_TYPE" : "has no EPOCH"),
+              std::string::npos)
+        << text.error().text();
+  }
+  Message message;
+  message.kind = Kind::Aem;
+  message.segments.push_back({{{"ATTITUDE_TYPE", "QUATERNION", "", 0}}, {empty}});
+  for (const Form form : {Form::Kvn, Form::Xml})
+    EXPECT_FALSE(write_message(message, form));
+  message.kind = Kind::Oem;
+  message.segments[0].data[0] = {"covarianceMatrix", {{"EPOCH", "2018-01-20T00:00:00", "", 0}}, 0};
+  EXPECT_NE(write_message(message, Form::Kvn).error().message.find("has no CX_X"),
+            std::string::npos);
+}
+
+/// Refused, or written in both forms and read again.
+void expect_whole(const std::string &text) {
+  Diagnostics diagnostics;
+  const auto message = read_message(text, "m", diagnostics);
+  if (!message)
+    return;
+  for (const Form form : {Form::Kvn, Form::Xml})
+    if (const auto written = write_message(*message, form)) {
+      const auto again = read_message(*written, "w", diagnostics);
+      EXPECT_TRUE(again) << again.error().text() << "\n" << text.substr(0, 2000);
+    }
+}
+
+// A text of XML must not become another line of KVN, nor a keyword of KVN an element of XML.
+TEST(CcsdsMessages, TextsAndKeywordsStayWhatTheyAre) {
+  const std::string xml = *read_file(folder + "oem.xml"), kvn = *read_file(folder + "oem.kvn");
+  const std::string broken = replaced(xml, "ISS (ZARYA)", "ISS\nCENTER_NAME = MARS &#27;[31m");
+  Diagnostics diagnostics;
+  const auto message = read_message(broken, "m", diagnostics);
+  ASSERT_TRUE(message) << message.error().text();
+  EXPECT_EQ(find(message->segments[0].metadata, "OBJECT_NAME")->text,
+            "ISS CENTER_NAME = MARS ?[31m");
+  EXPECT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_EQ(
+      find(read(*write_message(*message, Form::Kvn)).segments[0].metadata, "CENTER_NAME")->text,
+      "EARTH");
+  EXPECT_NE(refusal(replaced(kvn, "META_STOP", "A><evil/><B = 1\nMETA_STOP")).find("is no keyword"),
+            std::string::npos);
+}
+
+// What happens to files on their way: a line is lost, doubled or changes places with the next.
+TEST(CcsdsMessages, LinesLostDoubledOrExchangedNeverCrash) {
+  for (const std::string &name : samples()) {
+    SCOPED_TRACE(name);
+    const std::string text = *read_file(folder + name);
+    std::vector<std::string> lines;
+    for (std::size_t begin = 0; begin < text.size();) {
+      const std::size_t end = std::min(text.find('\n', begin), text.size() - 1) + 1;
+      lines.push_back(text.substr(begin, end - begin));
+      begin = end;
+    }
+    // The first 60 lines have every part of a message; after them the same kind of line repeats.
+    for (std::size_t k = 0; k < std::min<std::size_t>(lines.size(), 60); ++k)
+      for (const int change : {0, 1, 2}) {
+        std::vector<std::string> list = lines;
+        const auto at = list.begin() + static_cast<std::ptrdiff_t>(k);
+        if (change == 0)
+          list.erase(at);
+        else if (change == 1)
+          list.insert(at, lines[k]);
+        else if (k + 1 < list.size())
+          std::iter_swap(at, at + 1);
+        std::string changed;
+        for (const std::string &line : list)
+          changed += line;
+        expect_whole(changed);
+      }
+  }
+}
+
 } // namespace
 } // namespace umov::ccsds

@@ -308,10 +308,36 @@ TEST(Elements, ATleSaysWhatItCannotHold) {
   set.norad_cat_id = 340'000;
   EXPECT_NE(write_elements({set}, ElementsForm::Tle, now, said).error().message.find("Z9999"),
             std::string::npos);
+  set.mean_motion_dot = 1.25;
+  EXPECT_NE(write_elements({set}, ElementsForm::Tle, now, said).error().message.find("Z9999"),
+            std::string::npos);
+  set.norad_cat_id = 270'123;
+  EXPECT_NE(write_elements({set}, ElementsForm::Tle, now, said).error().message.find("1.25 rev"),
+            std::string::npos);
   // The other forms hold all of it.
   for (const ElementsForm form :
        {ElementsForm::OmmKvn, ElementsForm::OmmXml, ElementsForm::OmmJson, ElementsForm::OmmCsv})
     expect_equal(read_text(*write_elements({set}, form, now, said))->front(), set);
+}
+
+// A Latin-1 byte and an escape sequence: a warning, and every form can be written.
+TEST(Elements, NamesThatAreNotPrintableAreReplacedWithAWarning) {
+  std::string text = *read_file(folder + "omm.kvn");
+  const std::string name = "ISS (ZARYA)";
+  text.replace(text.find(name), name.size(), "CAF\xE9 \x1B[31m");
+  Diagnostics said;
+  const auto sets = read_elements(text, "sets", {}, said);
+  ASSERT_TRUE(sets) << sets.error().text();
+  EXPECT_EQ(sets->front().name, "CAF? ?[31m");
+  ASSERT_EQ(said.warnings().size(), 1u);
+  EXPECT_NE(said.warnings()[0].text().find("OBJECT_NAME holds bytes"), std::string::npos);
+  for (const ElementsForm form : all_forms)
+    EXPECT_EQ(read_text(*write_elements(*sets, form, sets->front().epoch, said))->front().name,
+              sets->front().name);
+  // A set that a program made: the writer must not throw either.
+  ElementSet set = sets->front();
+  set.name = "CAF\xE9";
+  EXPECT_TRUE(write_elements({set}, ElementsForm::OmmJson, set.epoch, said));
 }
 
 TEST(Elements, NamesWithEverySignSurvive) {

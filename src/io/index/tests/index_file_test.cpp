@@ -61,6 +61,18 @@ TEST(IndexFile, RefusesWhatIsNoPage) {
   EXPECT_TRUE(says("DATA:\n  - type: tabulated k\n    data: |\n        0.4 1\n", "no n"));
 }
 
+TEST(IndexFile, ManyEntriesAreRefusedAtOnce) {
+  std::string text = "DATA:\n  - &a\n    type: tabulated nk\n    data: |\n";
+  for (int k = 1; k <= 20'000; ++k)
+    text += "        " + std::to_string(k / 1000.0) + " 1.5 0\n";
+  for (int k = 0; k < 2'000; ++k)
+    text += "  - *a\n";
+  const auto table = read_index_text(text, "many.yml");
+  ASSERT_FALSE(table);
+  EXPECT_NE(table.error().message.find("DATA has 2001 entries"), std::string::npos)
+      << table.error().text();
+}
+
 TEST(IndexLibrary, NamesTheNearestAndWhatCovers) {
   const auto wrong = find_index("Au_Jonson");
   ASSERT_FALSE(wrong);

@@ -50,6 +50,14 @@ TEST_F(RunFolderTest, LeavesAForeignFolderAlone) {
   EXPECT_EQ(entries(), 2u);
 }
 
+// Names are bytes: a Latin-1 one must not end a run that is done.
+TEST(Manifest, TakesNamesThatAreNotUtf8) {
+  ManifestInput input;
+  input.inputs = {{"caf\xE9.toml", "00"}};
+  input.command_line = {"umov", "run", "caf\xE9.toml"};
+  EXPECT_NE(make_manifest(input).find("caf\xEF\xBF\xBD.toml"), std::string::npos);
+}
+
 TEST_F(RunFolderTest, NothingIsLeftWithoutCommit) {
   {
     auto folder = RunFolder::open(base_ / "out", false);
@@ -57,6 +65,58 @@ TEST_F(RunFolderTest, NothingIsLeftWithoutCommit) {
     folder->add("a.txt", "a");
   }
   EXPECT_EQ(entries(), 0u);
+}
+
+// Hours may lie between the begin of a run and its end.
+TEST_F(RunFolderTest, WhatComesInWhileTheRunGoesOnStays) {
+  const fs::path out = base_ / "out";
+  for (const char *round : {"first", "second"}) {
+    auto folder = RunFolder::open(out, false);
+    ASSERT_TRUE(folder);
+    folder->add("manifest.json", make_manifest({}));
+    folder->add("lightcurve.csv", round);
+    if (fs::exists(out)) {
+      ASSERT_TRUE(write_file_atomically(out / "notes.txt", "mine"));
+      fs::create_directories(out / "figures");
+      ASSERT_TRUE(write_file_atomically(out / "figures/a.txt", "mine too"));
+    }
+    ASSERT_TRUE(folder->commit());
+  }
+  EXPECT_EQ(*read_file(out / "lightcurve.csv"), "second");
+  EXPECT_EQ(*read_file(out / "notes.txt"), "mine");
+  EXPECT_EQ(*read_file(out / "figures/a.txt"), "mine too");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(RunFolderTest, AFolderOrFileThatTookTheNameMeanwhileStays) {
+  const fs::path out = base_ / "out";
+  for (const bool is_file : {true, false}) {
+    auto folder = RunFolder::open(out, false);
+    ASSERT_TRUE(folder);
+    folder->add("log.txt", "ours");
+    if (!is_file)
+      fs::create_directory(out);
+    const fs::path theirs = is_file ? out : out / "log.txt";
+    ASSERT_TRUE(write_file_atomically(theirs, "mine"));
+    ASSERT_TRUE(folder->commit());
+    EXPECT_EQ(*read_file(theirs), "mine");
+    EXPECT_EQ(folder->path(), base_ / "out.new");
+    EXPECT_EQ(*read_file(base_ / "out.new/log.txt"), "ours");
+    fs::remove_all(out);
+    fs::remove_all(base_ / "out.new");
+  }
+}
+
+TEST_F(RunFolderTest, AReplacedFolderKeepsItsPermissions) {
+  const fs::path out = base_ / "out";
+  for (int round = 0; round < 2; ++round) {
+    auto folder = RunFolder::open(out, false);
+    ASSERT_TRUE(folder);
+    folder->add("manifest.json", make_manifest({}));
+    ASSERT_TRUE(folder->commit());
+    fs::permissions(out, round == 0 ? fs::perms::owner_all : fs::status(out).permissions());
+  }
+  EXPECT_EQ(fs::status(out).permissions(), fs::perms::owner_all);
 }
 
 TEST_F(RunFolderTest, AFileInTheWayIsRefused) {

@@ -45,6 +45,12 @@ TEST(Table, JsonHasNullForUndefined) {
   EXPECT_EQ(json[0]["flag"], true);
 }
 
+TEST(ReadCsv, CountsCellsBeforeItMakesThem) {
+  const auto table = read_csv("a,b\n" + std::string(1'000'000, ',') + "\n", "t.csv", {"a"}, {});
+  ASSERT_FALSE(table);
+  EXPECT_NE(table.error().text().find("t.csv:2: more than 10000 cells"), std::string::npos);
+}
+
 TEST(ReadCsv, SaysWhatIsWrongWhere) {
   const struct {
     const char *text;

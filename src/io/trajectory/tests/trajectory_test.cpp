@@ -203,6 +203,7 @@ TEST(Trajectory, RefusesWithTheReason) {
       {replaced(oem, "= UTC", "= MRT"), "TIME_SYSTEM is \"MRT\""},
       {replaced(oem, "= LAGRANGE", "= SPLINE"), "INTERPOLATION is \"SPLINE\""},
       {replaced(oem, "= 8", "= 0"), "INTERPOLATION_DEGREE is \"0\""},
+      {replaced(oem, "= 8", "= 1e30"), "INTERPOLATION_DEGREE is \"1e30\""},
       {replaced(oem, "2008-09-20T12:28:40.104192 ", "2008-09-20T12:20:40.104192 "),
        "expected a later time"},
       {replaced(oem, "STOP_TIME            = 2008-09-20T14",
