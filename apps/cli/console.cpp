@@ -33,6 +33,11 @@ void add_threads(CLI::App &verb, Common &common) {
       ->capture_default_str();
 }
 
+void add_cache(CLI::App &verb, Common &common) {
+  verb.add_flag("--no-cache", common.no_cache,
+                "Neither read masks from the cache folder nor keep them there; see umov doctor");
+}
+
 namespace {
 
 /// Messages quote files, which may hold what a terminal obeys. Line breaks are the messages' own.

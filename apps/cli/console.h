@@ -19,11 +19,14 @@ struct Common {
   bool json = false;
   int threads = 0; ///< 0: all cores
   bool force = false;
+  bool no_cache = false; ///< masks are neither read from nor kept in the cache folder
 };
 
 /// Adds -q and, where the verb prints a table, --json.
 void add_common(CLI::App &verb, Common &common, bool prints_table);
 void add_threads(CLI::App &verb, Common &common);
+/// --no-cache, for verbs that light an object.
+void add_cache(CLI::App &verb, Common &common);
 
 /// "error: ..." on stderr; returns the exit code.
 int report(const Error &error);

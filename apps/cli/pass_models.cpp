@@ -1,6 +1,6 @@
 #include "pass_models.h"
 
-#include "scenario_jobs.h"
+#include <umov/jobs/requests.h>
 
 #include <fmt/format.h>
 #include <umov/io/scenario.h>
@@ -27,11 +27,9 @@ void add_pass_model(CLI::App &verb, PassModelOptions &o) {
   verb.add_option("--band", o.band, "Band of the magnitudes; default: the middle one");
 }
 
-Result<PassModels> PassModels::make(const PassModelOptions &o, std::size_t objects,
-                                    Diagnostics &diagnostics) {
+Result<PassModels> PassModels::make(const PassModelOptions &o, Diagnostics &diagnostics) {
   PassModels out;
   std::vector<Band> bands;
-  constexpr std::size_t many = 10; // objects, from which on masks are worth their preparation
   if (!o.shape.empty()) {
     if (o.material.empty())
       return fail(ErrorCode::Usage,
@@ -45,7 +43,8 @@ Result<PassModels> PassModels::make(const PassModelOptions &o, std::size_t objec
     } else {
       UMOV_ASSIGN(scene, make_scene(make_chamfered_cube(o.size_m, 0.1 * o.size_m), NormalMode::Flat,
                                     bands, {material}, {material}, diagnostics));
-      out.other_ = PassLight::of_body(scene, TwoAxisLaw{}, true);
+      UMOV_ASSIGN(cube, PassLight::of_body(scene, TwoAxisLaw{}, LightMethod::Auto));
+      out.other_ = cube;
     }
     out.description_ =
         fmt::format("{} of {:g} m, {}, {}", o.shape, o.size_m, o.material, bands.front().name);
@@ -64,14 +63,14 @@ Result<PassModels> PassModels::make(const PassModelOptions &o, std::size_t objec
       diagnostics.warn("parts stand as in the mesh: passes do not turn them", {o.scene});
     const int norad = scene.objects[k].orbit ? scene.objects[k].orbit->norad : 0;
     UMOV_ASSIGN(object, load_object(scene, k, {.allow_old_elements = true}, diagnostics));
-    const PassLight light =
-        PassLight::of_body(object.scene, object.attitude, objects >= many, scene.bounces);
+    UMOV_ASSIGN(light, PassLight::of_body(object.scene, object.attitude, scene.light.method,
+                                          scene.light.bounces));
     if (norad > 0 && scene.objects.size() > 1)
       out.by_number_.insert_or_assign(norad, light);
     else
       out.other_ = light;
   }
-  UMOV_ASSIGN(band, band_index(o.band, scene.bands));
+  UMOV_ASSIGN(band, jobs::band_index(o.band, scene.bands));
   out.band_ = band;
   out.description_ = fmt::format("{}, {}", o.scene, scene.bands[band].name);
   return out;

@@ -17,8 +17,7 @@ void add_pass_model(CLI::App &verb, PassModelOptions &options);
 /// Objects of a scenario by their catalogue number, and one model for all others.
 class PassModels {
 public:
-  static Result<PassModels> make(const PassModelOptions &options, std::size_t objects,
-                                 Diagnostics &diagnostics);
+  static Result<PassModels> make(const PassModelOptions &options, Diagnostics &diagnostics);
   /// Null: nothing is said about that object's light.
   [[nodiscard]] const PassLight *of(int norad) const;
   [[nodiscard]] std::size_t band() const { return band_; }

@@ -54,7 +54,7 @@ Result<EphemerisRows> compute_ephemeris(const OrbitOptions &o, const Trajectory 
   UMOV_ASSIGN(site, make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m));
   UMOV_ASSIGN(start, utc_from_iso(o.start));
   UMOV_ASSIGN(stop, utc_from_iso(o.stop));
-  UMOV_ASSIGN(times, time_grid(start, stop, o.step_s));
+  UMOV_ASSIGN(times, time_grid({start, stop, o.step_s}));
   const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
   std::vector<TemeState> states(times.size());
   const std::size_t count = orbit.at(times, states); // the rows before the first gap are good

@@ -171,7 +171,7 @@ Result<ccsds::Message> sampled_orbit(const ElementsOptions &o, const std::string
     return fail(ErrorCode::Usage, "an ephemeris needs --start and --stop (and --step-s)");
   UMOV_ASSIGN(start, utc_from_iso(o.start));
   UMOV_ASSIGN(stop, utc_from_iso(o.stop));
-  UMOV_ASSIGN(times, time_grid(start, stop, o.step_s));
+  UMOV_ASSIGN(times, time_grid({start, stop, o.step_s}));
   UMOV_ASSIGN(orbit,
               read_trajectory(text, o.orbit,
                               {o.norad, start, stop, o.allow_bad_checksum, o.keep_going, true},

@@ -1,6 +1,6 @@
 // umov paper: the paper's figures and claims, remade.
 
-#include "scenario_jobs.h"
+#include "job_console.h"
 #include "verbs.h"
 
 #include <fmt/format.h>

@@ -325,7 +325,7 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   UMOV_ASSIGN(chosen, read_orbits(o, text, start, stop, diagnostics));
   warn_if_beyond_leap_seconds(stop, diagnostics);
   warn_if_outside_eop(start, stop, diagnostics);
-  UMOV_ASSIGN(models, PassModels::make(o.model, chosen.size(), diagnostics));
+  UMOV_ASSIGN(models, PassModels::make(o.model, diagnostics));
   const Search search = search_all(o, chosen, models, site, start, stop, common, diagnostics);
   Table table = passes_table(search.found, chosen);
   table.note("model", models.description());

@@ -1,6 +1,6 @@
 // umov render: the object as the observer sees it.
 
-#include "scenario_jobs.h"
+#include "job_console.h"
 #include "verbs.h"
 
 #include <algorithm>
@@ -60,21 +60,21 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderOptions &o, const Scenari
                                            const ScenarioObject &named, const LoadedObject &object,
                                            const Common &common) {
   UMOV_TRY(check_complete_for_run(scenario));
-  LightCurveRequest request = light_curve_request(scenario, named, object, common);
+  LightCurveRequest request =
+      jobs::light_curve_request(scenario, named, object, job_options(common));
   request.earthshine.reset();
   request.has_moonlight = false;
   // Enough to find the brightest moment; the pictures do not use it.
-  request.integration.accuracy = 0.05;
-  request.integration.max_points = 1u << 14;
-  request.integration.bounces = 1;
+  request.light.accuracy = 0.05;
+  request.light.max_points = 1u << 14;
+  request.light.bounces = 1;
   if (!o.time.empty()) {
     UMOV_ASSIGN(time, utc_from_iso(o.time));
-    request.start = request.stop = time;
+    request.span.start = request.span.stop = time;
     request.only = {Angle::degrees(-90), {}, false};
   }
   UMOV_ASSIGN(outcome, compute_light_curve(
-                           request, object.scene, Integrator(object.scene),
-                           [](std::size_t, std::size_t) {}, interrupted()));
+                           request, object.scene, [](std::size_t, std::size_t) {}, interrupted()));
   if (outcome.stopped)
     return tl::unexpected(*outcome.stopped);
   const LightCurve &curve = outcome.curve;
@@ -158,7 +158,7 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
   const ScenarioObject &named = scenario.objects[o.object - 1];
   UMOV_ASSIGN(object, load_object(scenario, o.object - 1,
                                   {o.allow_bad_checksum, o.allow_old_elements}, diagnostics));
-  UMOV_ASSIGN(band, band_index(o.band, object.scene.bands));
+  UMOV_ASSIGN(band, jobs::band_index(o.band, object.scene.bands));
   std::vector<std::size_t> bands{band};
   if (is_exr) {
     bands.clear();
@@ -175,15 +175,11 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
   UMOV_ASSIGN(shots, has_directions ? shots_from_directions(o)
                                     : shots_from_orbit(o, scenario, named, object, common));
   std::vector<std::vector<KeyFrameRaster>> all;
-  const KeyFrameStage stage(object.scene, joints_of(named.parts), scenario.bounces);
-  const KeyFrameOptions options{o.size,
-                                o.samples,
-                                band,
-                                o.half_width_m,
-                                static_cast<unsigned>(common.threads),
-                                scenario.bounces,
-                                o.paths,
-                                scenario.seed};
+  const std::size_t bounces = scenario.light.bounces;
+  const KeyFrameStage stage(object.scene, joints_of(named.parts), bounces);
+  const KeyFrameOptions options{
+      o.size,  o.samples, band,         o.half_width_m, static_cast<unsigned>(common.threads),
+      bounces, o.paths,   scenario.seed};
   ProgressBar bar("pictures", common);
   for (const Shot &shot : shots) {
     if (interrupted())
@@ -192,9 +188,8 @@ Result<void> render(const RenderOptions &o, const Common &common, Diagnostics &d
     all.push_back(std::move(rasters));
     bar.update(all.size(), shots.size());
   }
-  UMOV_ASSIGN(bytes,
-              is_exr ? exr_of(o, object.scene.bands, shots.front(), all.front(), scenario.bounces)
-                     : png_of(o, all));
+  UMOV_ASSIGN(bytes, is_exr ? exr_of(o, object.scene.bands, shots.front(), all.front(), bounces)
+                            : png_of(o, all));
   UMOV_TRY(put(o.output, bytes));
   note(common, fmt::format("{}: {}, {:.4g} m wide{}", o.output, counted(all.size(), "picture"),
                            2 * all.front().front().half_width_m,

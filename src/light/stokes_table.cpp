@@ -12,6 +12,20 @@ void add(const BandResult &more, BandResult &to) {
   to.half_width.v = std::hypot(to.half_width.v, more.half_width.v);
 }
 
+const char *name_of(PoseMethod method) {
+  switch (method) {
+  case PoseMethod::Exact:
+    return "exact";
+  case PoseMethod::Masks:
+    return "masks";
+  case PoseMethod::Mended:
+    return "mended";
+  case PoseMethod::Rays:
+    return "rays";
+  }
+  return "";
+}
+
 void StokesTable::resize(std::size_t poses, std::size_t band_count) {
   bands = band_count;
   for (auto *column : {&i, &q, &i_err, &q_err})

@@ -270,9 +270,7 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
   UMOV_ASSIGN(light, make_light(scene, joints, options));
   std::unique_ptr<LightModel> many;
   if (request.earthshine || request.has_moonlight) {
-    options.method = LightMethod::Masks;
-    options.bounces = 1;
-    UMOV_ASSIGN(made, make_light(scene, joints, options));
+    UMOV_ASSIGN(made, make_light_for_many(scene, joints, options));
     many = std::move(made);
   }
   return compute_light_curve(request, *light, many.get(), progress, cancel);

@@ -127,6 +127,13 @@ const Integrator &PaperWorkshop::integrator(const std::string &object) {
   return *out;
 }
 
+const LightModel &PaperWorkshop::rays(const std::string &object) {
+  auto &out = rays_[object];
+  if (!out)
+    out = must(make_light(scene(object), {}, {.method = LightMethod::Rays, .threads = threads()}));
+  return *out;
+}
+
 const Engine &PaperWorkshop::engine(const std::string &object) {
   auto &out = engines_[object];
   if (!out) {
@@ -183,22 +190,21 @@ Result<const PaperWorkshop::LitPasses *> PaperWorkshop::lit_passes(const std::st
   UMOV_ASSIGN(site, site_from("maui"));
   LightCurveRequest request;
   request.object = object;
-  request.orbit = path;
-  request.site = site;
+  request.track.orbit = path;
+  request.track.site = site;
   request.only = {Angle::degrees(20), Angle::degrees(-6), true};
-  request.attitude = attitude_of(object);
+  request.track.attitude = attitude_of(object);
   request.frame = PolarizationFrame::Scattering;
-  request.has_solar_disk = false;
+  request.track.has_solar_disk = false;
   request.threads = threads();
-  integrator(object); // set-up: not part of the time
+  const std::atomic<bool> never{false};
+  const LightModel &light = rays(object); // set-up: not part of the time
   const Stopwatch watch;
   for (const SitePass &pass : geometry) {
-    request.start = pass.rise.time;
-    request.stop = pass.set.time;
-    UMOV_ASSIGN(light, compute_light_curve(
-                           request, scene(object), integrator(object),
-                           [](std::size_t, std::size_t) {}, false));
-    out.passes.push_back({pass, std::move(light)});
+    request.span.start = pass.rise.time;
+    request.span.stop = pass.set.time;
+    UMOV_ASSIGN(found, compute_light_curve(request, light, nullptr, {}, never));
+    out.passes.push_back({pass, std::move(found)});
   }
   out.seconds = watch.seconds();
   return &out;

@@ -80,6 +80,7 @@ public:
   [[nodiscard]] unsigned threads() const { return options_.threads; }
   const Scene &scene(const std::string &object);
   const Integrator &integrator(const std::string &object);
+  const LightModel &rays(const std::string &object);
   /// With masks of typical error 0.2 % of I and rays for uncertain poses.
   const Engine &engine(const std::string &object);
   /// Evaluates and adds the time to the figure's.
@@ -100,6 +101,7 @@ private:
   PaperOptions options_;
   std::map<std::string, Scene> scenes_;
   std::map<std::string, std::unique_ptr<Integrator>> integrators_;
+  std::map<std::string, std::unique_ptr<LightModel>> rays_;
   std::map<std::string, std::unique_ptr<Engine>> engines_;
   std::map<std::string, LitPasses> lit_passes_;
 };

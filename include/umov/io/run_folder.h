@@ -47,6 +47,11 @@ struct ManifestInput {
   double elapsed_s = 0;
   std::vector<std::string> warnings;
   std::string stopped; ///< why the run ended early; "" = complete
+  /// How an object was lit: what was really used, not what was asked.
+  struct Light {
+    std::string object, method, visibility, instruction_set;
+  };
+  std::vector<Light> light;
   /// Names of files besides those that every run writes: with them the folder is still ours.
   std::vector<std::string> files;
 };

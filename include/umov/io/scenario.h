@@ -61,8 +61,7 @@ struct Scenario {
   std::map<std::string, Material> own_materials; ///< the [material.NAME] tables
   std::vector<std::string> band_set{"paper_rgb"};
   std::vector<Band> bands;
-  double accuracy = 0.005;
-  std::size_t bounces = 1; ///< surfaces that the light may touch
+  LightOptions light; ///< method, accuracy and its floor, bounces
   std::optional<EarthshineOptions> earthshine;
   bool has_moonlight = false, has_refracted_shadow = false;
   bool has_solar_disk = true;              ///< false: a point Sun

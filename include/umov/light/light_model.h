@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <umov/core/result.h>
@@ -30,8 +31,8 @@ struct LightOptions {
   LightMethod method = LightMethod::Auto;
   double accuracy = 0.005; ///< wanted relative 95 % half-width of I
   /// In parts of the object's typical light (`typical_light`): below it I need not be known any
-  /// better than at it. 0: every pose to `accuracy` of its own I.
-  double accuracy_floor = 0;
+  /// better than at it. 0: every pose to `accuracy` of its own I. Absent: 0.1 for Auto, else 0.
+  std::optional<double> accuracy_floor = {};
   /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
   /// Up to 64.
   std::size_t bounces = 1;
@@ -56,6 +57,7 @@ struct LightFacts {
   std::size_t triangles = 0, classes = 0;
   std::size_t mask_bytes = 0;
   double setup_s = 0;
+  std::vector<double> floor_i; ///< per band [m2/sr]: the accuracy refers to it at least; empty: 0
   std::string visibility;      ///< how hiding is decided, in words for a file's header
   std::string instruction_set; ///< "scalar double" for rays
 };
@@ -98,10 +100,26 @@ private:
   std::vector<std::string> materials_;
 };
 
+/// "rays", "masks" or "auto".
+const char *name_of(LightMethod method);
+/// The floor that holds where none is given.
+double default_accuracy_floor(LightMethod method);
+
 /// The model for a scene: the one place that decides how it is lit. `joints` have passed
 /// check_joints. BadInput for a mask file that does not fit.
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
                                                const LightOptions &options);
+
+/// The same for hundreds of directions at each epoch, as light of the Earth asks for: direct light
+/// by masks alone.
+Result<std::unique_ptr<LightModel>>
+make_light_for_many(const Scene &scene, std::vector<Joint> joints, LightOptions options);
+
+/// What the body emits by itself at temperatures [K] of its mesh groups: Stokes [W sr-1 nm-1], from
+/// up to options.bounces surfaces. BadInput as ThermalEmission::make.
+Result<std::unique_ptr<LightModel>> make_thermal_light(const Scene &scene,
+                                                       std::span<const double> temperature_k,
+                                                       const LightOptions &options);
 
 /// Per band [m2/sr]: the median over 256 random poses (phase angles spread evenly over 30 to 150
 /// deg) of I if nothing hid anything. A property of the object, so that no row's accuracy depends

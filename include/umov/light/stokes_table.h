@@ -22,6 +22,9 @@ enum class PoseMethod : std::uint8_t {
   Rays
 };
 
+/// "exact", "masks", "mended" or "rays".
+const char *name_of(PoseMethod method);
+
 /// Results of many poses: [pose * bands + band], in the scattering plane, [m2/sr] per unit solar
 /// irradiance, with 95 % half-widths.
 struct StokesTable {

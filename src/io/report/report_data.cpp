@@ -116,24 +116,22 @@ Json band_json(const LightCurve &curve, std::size_t band, std::size_t stride) {
   return out;
 }
 
-/// Mesh groups of one material are added up.
+/// Direct light of each material.
 Json contributions_json(const ReportInput &input, std::size_t stride) {
   const LightCurve &curve = input.curve;
   Json out = Json::array();
-  const std::size_t bands = curve.bands.size(), groups = curve.groups.size();
+  const std::size_t bands = curve.bands.size(), materials = curve.materials.size();
   const std::vector<std::string> names = colour_order(input);
   for (std::size_t m = 0; m < names.size(); ++m) {
     Json per_band = Json::array();
+    const auto at = static_cast<std::size_t>(
+        std::find(curve.materials.begin(), curve.materials.end(), names[m]) -
+        curve.materials.begin());
+    const bool is_used = at < materials;
     for (std::size_t b = 0; b < bands; ++b)
       per_band.push_back(column(curve.epochs.size(), stride, [&](std::size_t i) {
-        double sum = 0;
-        for (std::size_t g = 0; g < groups; ++g)
-          if (curve.materials[g] == names[m])
-            sum += curve.group_intensity[(i * groups + g) * bands + b];
-        return sum;
+        return is_used ? curve.material_i[(i * materials + at) * bands + b] : 0;
       }));
-    const bool is_used = std::find(curve.materials.begin(), curve.materials.end(), names[m]) !=
-                         curve.materials.end();
     out.push_back({{"material", names[m]},
                    {"colour", material_colour(m)},
                    {"intensity", is_used ? std::move(per_band) : Json::array()}});
@@ -196,13 +194,12 @@ Json key_frames_json(const std::vector<ReportKeyFrame> &frames) {
 Result<void> check(const ReportInput &input) {
   const LightCurve &c = input.curve;
   const std::size_t rows = c.epochs.size() * c.bands.size();
-  if (c.samples.size() != rows || c.materials.size() != c.groups.size() ||
-      c.group_intensity.size() != rows * c.groups.size())
+  if (c.samples.size() != rows || c.material_i.size() != rows * c.materials.size())
     return fail(ErrorCode::Internal,
-                fmt::format("report: {} epochs, {} bands and {} groups do not fit {} samples, {} "
-                            "materials and {} contributions",
-                            c.epochs.size(), c.bands.size(), c.groups.size(), c.samples.size(),
-                            c.materials.size(), c.group_intensity.size()));
+                fmt::format("report: {} epochs, {} bands and {} materials do not fit {} samples "
+                            "and {} contributions",
+                            c.epochs.size(), c.bands.size(), c.materials.size(), c.samples.size(),
+                            c.material_i.size()));
   for (const PureMaterialCurve &pure : input.pure_materials)
     if (pure.band >= c.bands.size() || pure.phase_deg.size() != pure.q_scat.size())
       return fail(ErrorCode::Internal,

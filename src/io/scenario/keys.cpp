@@ -1,7 +1,9 @@
 #include "io/scenario/keys.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <umov/core/text.h>
 #include <umov/io/scenario.h>
 #include <umov/surface/distribution.h>
 
@@ -27,6 +29,7 @@ std::vector<Key> with_distributions(std::vector<Key> keys) {
 
 const std::vector<Key> &keys() {
   using enum Kind;
+  const LightOptions light; // its defaults are told once, where they stand
   static const std::vector<Key> all = with_distributions({
       {"", "umov", Integer, "", "version of the scenario's form: 1"},
       {"", "title", String, "\"\"", "heading of the report"},
@@ -111,10 +114,16 @@ const std::vector<Key> &keys() {
       {"sides", "front", String, "", "material of the side that the winding faces"},
       {"sides", "back", String, "", "material of the other side"},
       {"bands", "set", Any, "\"paper_rgb\"", "\"paper_rgb\" or a list of \"nm:NUMBER\""},
-      {"render", "bounces", Integer, "1",
+      {"render", "bounces", Integer, fmt::format("{}", light.bounces),
        "surfaces that the light may touch, 1 to 64; 1: direct light"},
       {"render", "sun", String, "\"disk\"", "disk (695,700 km at its distance) or point"},
-      {"render", "accuracy", Number, "0.005", "relative 95 % half-width asked of I"},
+      {"render", "method", String, fmt::format("\"{}\"", name_of(light.method)),
+       "how hiding is decided: rays, masks, or auto: masks mended by rays to the accuracy asked"},
+      {"render", "accuracy", Number, shortest(light.accuracy),
+       "relative 95 % half-width asked of I"},
+      {"render", "accuracy_floor", Number, shortest(default_accuracy_floor(light.method)),
+       "in parts of the object's typical light: below it I need not be known any better than at "
+       "it; 0 with rays and masks"},
       {"render", "earthshine", Table, "",
        "light of the Earth, in columns of its own; absent: none"},
       {"render", "moonlight", Boolean, "false", "light of the Moon, in columns of its own"},
@@ -247,7 +256,7 @@ nlohmann::ordered_json schema_of(std::string_view table) {
     case Kind::Any:
       break;
     }
-    if (*key.fallback != '\0' && *key.fallback != '{')
+    if (!key.fallback.empty() && key.fallback[0] != '{')
       entry["default"] = nlohmann::ordered_json::parse(key.fallback);
     out["properties"][key.name] = std::move(entry);
   }

@@ -13,7 +13,7 @@ struct Key {
   const char *table; ///< "" top level, "time.only", "material", ...
   const char *name;
   Kind kind;
-  const char *fallback; ///< as TOML; "" = required or absent
+  std::string fallback; ///< as TOML; "" = required or absent
   const char *text;     ///< meaning with unit
 };
 

@@ -105,8 +105,12 @@ std::string locked_scenario(const Scenario &s) {
   for (const ScenarioObject &one : s.objects)
     out += object(one);
   out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));
-  out += fmt::format("\n[render]\nbounces = {}\nsun = \"{}\"\naccuracy = {}\n", s.bounces,
-                     s.has_solar_disk ? "disk" : "point", shortest(s.accuracy));
+  out += fmt::format(
+      "\n[render]\nmethod = \"{}\"\nbounces = {}\nsun = \"{}\"\naccuracy = {}\n"
+      "accuracy_floor = {}\n",
+      name_of(s.light.method), s.light.bounces, s.has_solar_disk ? "disk" : "point",
+      shortest(s.light.accuracy),
+      shortest(s.light.accuracy_floor.value_or(default_accuracy_floor(s.light.method))));
   out += fmt::format("moonlight = {}\nshadow_edge = \"{}\"\n", s.has_moonlight,
                      s.has_refracted_shadow ? "refracted" : "geometric");
   if (s.earthshine)

@@ -101,7 +101,7 @@ Result<void> read_time(const Node &top, Scenario &out) {
     return fail(ErrorCode::BadInput,
                 fmt::format("step_s = {}; a positive number was expected", time.step_s),
                 node.where("step_s"));
-  if (auto grid = time_grid(start, stop, time.step_s); !grid)
+  if (auto grid = time_grid({start, stop, time.step_s}); !grid)
     return fail(ErrorCode::BadInput, grid.error().message, node.where("stop"));
   if (node.has("only")) {
     UMOV_ASSIGN(only, node.child("only"));
@@ -290,6 +290,26 @@ Result<void> read_bands(const Node &top, Scenario &out) {
   return {};
 }
 
+Result<void> read_method(const Node &render, LightOptions &out) {
+  UMOV_ASSIGN(method, render.choice("method", name_of(out.method), {"auto", "rays", "masks"}));
+  out.method = method == "rays"    ? LightMethod::Rays
+               : method == "masks" ? LightMethod::Masks
+                                   : LightMethod::Auto;
+  out.accuracy = render.number("accuracy", out.accuracy);
+  if (!(out.accuracy >= 1e-6 && out.accuracy <= 1))
+    return fail(ErrorCode::BadInput,
+                fmt::format("accuracy = {}; 1e-6 to 1 was expected", out.accuracy),
+                render.where("accuracy"));
+  if (!render.has("accuracy_floor"))
+    return {};
+  out.accuracy_floor = render.number("accuracy_floor", 0);
+  if (!(*out.accuracy_floor >= 0 && *out.accuracy_floor <= 10))
+    return fail(ErrorCode::BadInput,
+                fmt::format("accuracy_floor = {}; 0 to 10 was expected", *out.accuracy_floor),
+                render.where("accuracy_floor"));
+  return {};
+}
+
 Result<void> read_render(const Node &top, Scenario &out) {
   if (top.has("render")) {
     UMOV_ASSIGN(node, top.child("render"));
@@ -297,7 +317,8 @@ Result<void> read_render(const Node &top, Scenario &out) {
     if (bounces < 1 || bounces > 64)
       return fail(ErrorCode::BadInput, fmt::format("bounces = {}; 1 to 64 was expected", bounces),
                   node.where("bounces"));
-    out.bounces = static_cast<std::size_t>(bounces);
+    out.light.bounces = static_cast<std::size_t>(bounces);
+    UMOV_TRY(read_method(node, out.light));
     out.has_moonlight = node.boolean("moonlight", false);
     UMOV_ASSIGN(edge, node.choice("shadow_edge", "geometric", {"geometric", "refracted"}));
     out.has_refracted_shadow = edge == "refracted";
@@ -319,11 +340,6 @@ Result<void> read_render(const Node &top, Scenario &out) {
     }
     UMOV_ASSIGN(sun, node.choice("sun", "disk", {"disk", "point"}));
     out.has_solar_disk = sun == "disk";
-    out.accuracy = node.number("accuracy", 0.005);
-    if (!(out.accuracy >= 1e-6 && out.accuracy <= 1))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("accuracy = {}; 1e-6 to 1 was expected", out.accuracy),
-                  node.where("accuracy"));
   }
   if (top.has("detector")) {
     UMOV_ASSIGN(node, top.child("detector"));

@@ -137,6 +137,9 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
                 [](S s) { return s.indirect.u; });
     t.of_sample("indirect_v", "", "its V over the whole I", [](S s) { return s.indirect.v; });
   }
+  if (curve.method != LightMethod::Rays)
+    t.add<std::string>("method", "", "how hiding was decided: exact, masks, mended or rays",
+                       [](E e, S, const Band &) { return std::string(name_of(e.method)); });
   for (const SecondLight &light : curve.second_lights)
     add_second_light(table, light);
   t.of_epoch("qw", "", "attitude body_from_gcrs, scalar", [](E e) { return e.body_from_gcrs.w; });

@@ -46,17 +46,39 @@ bool takes_rays(const Scene &scene, const std::vector<Joint> &joints, const Ligh
 
 } // namespace
 
+const char *name_of(LightMethod method) {
+  switch (method) {
+  case LightMethod::Rays:
+    return "rays";
+  case LightMethod::Masks:
+    return "masks";
+  case LightMethod::Auto:
+    return "auto";
+  }
+  return "";
+}
+
+double default_accuracy_floor(LightMethod method) { return method == LightMethod::Auto ? 0.1 : 0; }
+
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
                                                const LightOptions &options) {
+  const double part = options.accuracy_floor.value_or(default_accuracy_floor(options.method));
   std::vector<double> floor_i;
-  if (options.accuracy_floor > 0) {
+  if (part > 0) {
     floor_i = typical_light(scene);
     for (double &floor : floor_i)
-      floor *= options.accuracy_floor;
+      floor *= part;
   }
   if (!takes_rays(scene, joints, options))
     return MasksLight::make(scene, std::move(joints), options, std::move(floor_i));
   return std::make_unique<RaysLight>(scene, std::move(joints), options, std::move(floor_i));
+}
+
+Result<std::unique_ptr<LightModel>>
+make_light_for_many(const Scene &scene, std::vector<Joint> joints, LightOptions options) {
+  options.method = LightMethod::Masks;
+  options.bounces = 1;
+  return make_light(scene, std::move(joints), options);
 }
 
 } // namespace umov

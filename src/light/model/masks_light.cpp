@@ -56,6 +56,7 @@ Result<void> MasksLight::prepare() {
     turning_.emplace(scene(), joints(), with);
   }
   facts_.method = options_.method;
+  facts_.floor_i = floor_i_;
   facts_.instruction_set = engine_instruction_set();
   facts_.is_convex = engine_ && engine_->facts().is_convex;
   facts_.classes = engine_ ? engine_->facts().classes : 0;

@@ -82,21 +82,20 @@ TEST(Report, DarkEpochsHaveNoPolarizationAndZeroIntensity) {
   EXPECT_GT(dark, 5);
 }
 
-TEST(Report, GroupsOfOneMaterialAreAddedUp) {
+TEST(Report, EachMaterialHasItsContribution) {
   const LightCurve curve = test::synthetic_curve();
   const auto data = data_of(page_of(input_of(curve)));
   ASSERT_EQ(data["contributions"].size(), 2U);
   EXPECT_EQ(data["contributions"][1]["material"], "paper_al");
   const std::size_t row = 30, band = 2;
-  const double expected = curve.group_intensity[(row * 3 + 1) * 3 + band] +
-                          curve.group_intensity[(row * 3 + 2) * 3 + band];
+  const double expected = curve.material_i[(row * 2 + 1) * 3 + band];
   EXPECT_EQ(data["contributions"][1]["intensity"][band][row].get<double>(), expected);
 }
 
 TEST(Report, TextsOfTheUserAreInert) {
   LightCurve curve = test::synthetic_curve(10);
   const std::string bad = "</script><script>alert(1)</script><img src=x onerror=alert(2)> & \"'";
-  curve.object = curve.groups[0] = curve.materials[0] = curve.epochs[0].pass_id = bad;
+  curve.object = curve.materials[0] = curve.epochs[0].pass_id = bad;
   ReportInput input = input_of(curve);
   input.title = input.site.name = bad;
   input.passes[0].id = bad;

@@ -57,8 +57,7 @@ LightCurve synthetic_curve(std::size_t rows_per_pass) {
   LightCurve c;
   c.object = "HST";
   c.norad_cat_id = 20580;
-  c.groups = {"array_front", "tube", "door"};
-  c.materials = {"paper_asi", "paper_al", "paper_al"};
+  c.materials = {"paper_asi", "paper_al"};
   for (const double nm : wavelengths_nm)
     c.bands.push_back({"nm:" + std::to_string(static_cast<int>(nm)), Wavelength::nm(nm)});
   for (int pass = 0; pass < 2; ++pass)
@@ -69,9 +68,9 @@ LightCurve synthetic_curve(std::size_t rows_per_pass) {
       for (std::size_t b = 0; b < c.bands.size(); ++b)
         c.samples.push_back(sample_at(c.epochs.back(), t, b));
       const double share = 0.5 + 0.4 * std::sin(9 * t);
-      for (const double part : {share, 0.7 * (1 - share), 0.3 * (1 - share)})
+      for (const double part : {share, 1 - share})
         for (std::size_t b = 0; b < c.bands.size(); ++b)
-          c.group_intensity.push_back(part * c.samples[first + b].intensity);
+          c.material_i.push_back(part * c.samples[first + b].intensity);
     }
   return c;
 }

@@ -4,7 +4,7 @@
 namespace umov::test {
 
 /// A made-up light curve for looking at the page: two passes eleven hours apart, three bands, two
-/// groups of one material and one of another, a dark stretch and an umbra stretch in the first
+/// materials, a dark stretch and an umbra stretch in the first
 /// pass, a glint, a position angle that goes round. Not physics: smooth functions of the row.
 LightCurve synthetic_curve(std::size_t rows_per_pass = 240);
 

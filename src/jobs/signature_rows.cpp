@@ -1,10 +1,10 @@
-#include "signature_rows.h"
+#include "jobs/signature_rows.h"
 
 #include <array>
 #include <limits>
 #include <umov/core/parallel.h>
 
-namespace umov::cli {
+namespace umov::jobs {
 
 void SignatureRows::reserve(std::size_t rows) {
   pose_.reserve(rows);
@@ -108,4 +108,4 @@ Table SignatureRows::table(bool is_emitted) && {
   return out;
 }
 
-} // namespace umov::cli
+} // namespace umov::jobs

@@ -1,4 +1,4 @@
-#include "run_outputs.h"
+#include "jobs/run_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,9 @@
 #include <umov/core/version.h>
 #include <umov/io/report.h>
 #include <umov/io/report_frames.h>
+#include <umov/jobs/run.h>
 
-namespace umov::cli {
+namespace umov::jobs {
 namespace {
 
 /// The whole passage above the altitude limit, in the Earth's shadow too.
@@ -21,10 +22,10 @@ std::vector<SkyTrackPoint> sky_track(const LightCurveRequest &request,
     const double length = seconds_between(pass.set, pass.rise);
     for (double k = 0; k <= points_per_pass; ++k) {
       const Epoch<Utc> time = plus_seconds(pass.rise, length * k / points_per_pass);
-      const auto state = request.orbit.at(time);
+      const auto state = request.track.orbit.at(time);
       if (!state)
         continue;
-      const ObservingGeometry g = observe(*state, time, request.site, request.shadow);
+      const ObservingGeometry g = observe(*state, time, request.track.site, request.track.shadow);
       out.push_back({time, pass.id, g.azimuth, g.altitude, g.sunlit});
     }
   }
@@ -37,7 +38,7 @@ std::vector<std::pair<std::string, std::string>> manifest_lines(const Scenario &
   std::vector<std::pair<std::string, std::string>> out{
       {"umov", fmt::format("{} ({})", version, source_revision)},
       {"seed", fmt::format("{}", scenario.seed)},
-      {"accuracy", fmt::format("{}", scenario.accuracy)}};
+      {"accuracy", fmt::format("{}", scenario.light.accuracy)}};
   for (const InputFile &input : object.inputs)
     out.emplace_back(std::filesystem::path(input.path).filename().string(), input.sha256);
   return out;
@@ -88,7 +89,7 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
                                     const Diagnostics &diagnostics) {
   ReportInput input{.curve = outcome.curve,
                     .title = title_of(scenario, request),
-                    .site = request.site,
+                    .site = request.track.site,
                     .frame = request.frame,
                     .passes = outcome.passes};
   input.sky_track = sky_track(request, outcome.passes);
@@ -101,10 +102,10 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
   UMOV_ASSIGN(frames, make_key_frames(object.scene, outcome.curve, epochs,
                                       {.band = object.scene.bands.size() / 2,
                                        .threads = request.threads,
-                                       .bounces = request.integration.bounces,
+                                       .bounces = request.light.bounces,
                                        .paths = 4,
-                                       .seed = request.integration.seed},
-                                      joints_of(request.joints)));
+                                       .seed = request.light.seed},
+                                      joints_of(request.track.joints)));
   input.key_frames = std::move(frames);
   input.key_frame_materials = material_names(object.scene);
   input.manifest = manifest_lines(scenario, object);
@@ -142,4 +143,4 @@ std::string summarize(const LightCurveOutcome &outcome) {
   return out;
 }
 
-} // namespace umov::cli
+} // namespace umov::jobs

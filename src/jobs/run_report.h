@@ -1,14 +1,12 @@
 #pragma once
-// What a run writes besides its tables: the report and the summary on the terminal.
+// Private: the report of a run.
 
 #include <string>
 #include <umov/core/diagnostics.h>
 #include <umov/io/scenario.h>
 #include <umov/lightcurve/compute.h>
-#include <utility>
-#include <vector>
 
-namespace umov::cli {
+namespace umov::jobs {
 
 /// The page with key frames and pure-material curves.
 Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject &object,
@@ -16,7 +14,4 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
                                     const LightCurveOutcome &outcome,
                                     const Diagnostics &diagnostics);
 
-/// Passes with brightness and polarization, as lines for a person.
-std::string summarize(const LightCurveOutcome &outcome);
-
-} // namespace umov::cli
+} // namespace umov::jobs

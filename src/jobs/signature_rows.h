@@ -2,10 +2,11 @@
 // The rows of `umov signature`: one per pose and band.
 
 #include <umov/io/table.h>
-#include <umov/light/engine.h>
-#include <umov/light/integrator.h>
+#include <umov/light/stokes_table.h>
+#include <umov/scene/pose.h>
+#include <umov/scene/scene.h>
 
-namespace umov::cli {
+namespace umov::jobs {
 
 /// Columns that grow by one row per pose and band.
 class SignatureRows {
@@ -30,4 +31,4 @@ private:
   std::vector<std::vector<double>> numbers_{number_columns};
 };
 
-} // namespace umov::cli
+} // namespace umov::jobs

@@ -1,0 +1,38 @@
+#pragma once
+// Jobs on a terminal: their progress, their log, and where their tables go.
+
+#include "console.h"
+
+#include <memory>
+#include <optional>
+#include <umov/io/run_folder.h>
+#include <umov/io/table_sink.h>
+#include <umov/jobs/monitor.h>
+#include <umov/jobs/requests.h>
+
+namespace umov::cli {
+
+/// Draws the progress of a job; lives as long as the job runs.
+class JobConsole {
+public:
+  explicit JobConsole(const Common &common) : common_(common) {}
+  /// `with_remarks`: lines of the job's log are shown too.
+  jobs::Monitor monitor(bool with_remarks);
+
+private:
+  const Common &common_;
+  std::string what_;
+  std::optional<ProgressBar> bar_;
+};
+
+/// Threads and cache as the command line asks for them.
+jobs::JobOptions job_options(const Common &common);
+
+/// Where a table goes: a file by the suffix of `path`, or stdout as text or JSON.
+std::unique_ptr<TableSink> sink_for(const std::string &path, const Common &common);
+
+/// What every manifest says of the command: its line, threads, begin and duration until now.
+ManifestInput manifest_of_command(const Common &common,
+                                  std::chrono::system_clock::time_point started);
+
+} // namespace umov::cli

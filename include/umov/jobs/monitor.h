@@ -1,0 +1,32 @@
+#pragma once
+// Who watches a job: a terminal, a notebook, a service, or nobody.
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace umov::jobs {
+
+/// All may be empty. What is called is called from the thread that runs the job, one call at a
+/// time.
+struct Monitor {
+  /// What is being done, and how much of it: "poses", 1024, 5000.
+  std::function<void(const std::string &what, std::size_t done, std::size_t total)> progress;
+  /// A line of the log.
+  std::function<void(const std::string &text)> remark;
+  /// Set to true from any thread to have the job stop soon, with what is complete kept.
+  const std::atomic<bool> *cancel = nullptr;
+
+  void tell(const std::string &text) const {
+    if (remark)
+      remark(text);
+  }
+  void advance(const std::string &what, std::size_t done, std::size_t total) const {
+    if (progress)
+      progress(what, done, total);
+  }
+  [[nodiscard]] bool is_cancelled() const { return cancel != nullptr && *cancel; }
+};
+
+} // namespace umov::jobs

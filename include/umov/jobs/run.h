@@ -1,0 +1,43 @@
+#pragma once
+// The main job: light curves of the objects of a scenario, and the folder that tells of them.
+
+#include <optional>
+#include <umov/io/run_folder.h>
+#include <umov/jobs/monitor.h>
+#include <umov/jobs/requests.h>
+#include <umov/lightcurve/compute.h>
+
+namespace umov::jobs {
+
+/// One object of the run: what it is, what was asked and what came of it.
+struct ObjectRun {
+  LoadedObject object;
+  LightCurveRequest request;
+  LightCurveOutcome outcome;
+  LightFacts light; ///< how it was lit
+};
+
+struct RunResult {
+  std::vector<ObjectRun> objects; ///< those with rows
+  std::optional<Error> stopped;   ///< Physics or Interrupted: rows before it are complete
+};
+
+/// Reads what the scenario names and checks it; nothing is computed.
+Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptions &options,
+                                        const Monitor &monitor, Diagnostics &diagnostics);
+
+/// Object after object; the first stop ends it, with the rows so far kept. Nothing if there is no
+/// row at all, with the next pass that would give one; warnings tell of rows that missed the
+/// accuracy.
+Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &scenario,
+                              const Monitor &monitor, Diagnostics &diagnostics);
+
+/// Tables, reports, locked scenario, log and manifest (`manifest` holds what the caller knows of
+/// the command; inputs, seed, warnings and method are added), put in place at once.
+Result<void> write_run(const RunResult &run, const Scenario &scenario, const JobOptions &options,
+                       ManifestInput manifest, const Diagnostics &diagnostics, RunFolder &folder);
+
+/// Passes with brightness and polarization, as lines for a person.
+std::string summarize(const LightCurveOutcome &outcome);
+
+} // namespace umov::jobs

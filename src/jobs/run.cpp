@@ -1,0 +1,146 @@
+#include <umov/jobs/run.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov::jobs {
+namespace {
+
+/// No row is a result of its own kind: it says when there will be one.
+Result<Error> nothing_found(const LightCurveRequest &request) {
+  UMOV_ASSIGN(track, Track::make(request.track));
+  const EpochSpan &span = request.span;
+  const double span_days = seconds_between(span.stop, span.start) / 86400;
+  if (const auto missed = find_next_pass(track, request.only, span.start, span_days))
+    return Error{
+        ErrorCode::Nothing,
+        fmt::format("no epoch of the grid falls in a pass, but there is one near {}Z, max alt "
+                    "{:.0f}: step_s = {:g} is longer than the pass. Take a shorter step.",
+                    to_iso(missed->first_row).substr(0, 16), missed->altitude_max.degrees(),
+                    span.step_s),
+        {}};
+  std::string text = fmt::format(
+      "no {}pass of {} above {:g} deg{} from \"{}\" in that span.",
+      request.only.sunlit ? "sunlit " : "", request.track.orbit.id(),
+      request.only.altitude_min.degrees(),
+      request.only.sun_altitude_max
+          ? fmt::format(" with the Sun below {:g} deg", request.only.sun_altitude_max->degrees())
+          : "",
+      request.track.site.name);
+  constexpr double days = 14; // beyond it the elements say little
+  if (const auto next = find_next_pass(track, request.only, span.stop, days))
+    text += fmt::format(" The next one: {}Z, max alt {:.0f}.",
+                        to_iso(next->first_row).substr(0, 16), next->altitude_max.degrees());
+  else
+    text += fmt::format(" None in the next {:.0f} days either.", days);
+  return Error{ErrorCode::Nothing, text, {}};
+}
+
+/// Rows whose numerical error stayed above what was asked are told, not hidden.
+void warn_of_accuracy(const LightCurveOutcome &outcome, const LightOptions &light,
+                      const std::vector<double> &floor_i, Diagnostics &diagnostics) {
+  const double accuracy = light.accuracy;
+  const LightCurve &curve = outcome.curve;
+  const std::size_t bands = curve.bands.size();
+  std::size_t count = 0;
+  double worst = 0;
+  for (std::size_t i = 0; i < curve.epochs.size(); ++i) {
+    double error = 0;
+    for (std::size_t b = 0; b < bands; ++b)
+      if (const LightCurveSample &s = curve.samples[i * bands + b]; s.intensity > 0)
+        error = std::max(error,
+                         s.half_width.i / std::max(s.intensity, floor_i.empty() ? 0 : floor_i[b]));
+    count += error > 1.001 * accuracy ? 1u : 0u;
+    worst = std::max(worst, error);
+  }
+  if (count > 0)
+    diagnostics.warn(fmt::format("{} of {} epochs did not reach the accuracy {} asked of I (worst "
+                                 "{:.2g}); they are faint. See intensity_err.",
+                                 count, curve.epochs.size(), accuracy, worst));
+}
+
+Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, const Monitor &monitor) {
+  static const std::atomic<bool> never{false};
+  const std::string what = is_alone ? "light curve" : one.request.object;
+  const LightCurveRequest &request = one.request;
+  LightOptions options = request.light;
+  const std::vector<Joint> joints = joints_of(request.track.joints);
+  UMOV_ASSIGN(light, make_light(one.object.scene, joints, options));
+  one.light = light->facts();
+  std::unique_ptr<LightModel> many;
+  if (request.earthshine || request.has_moonlight) {
+    UMOV_ASSIGN(made, make_light_for_many(one.object.scene, joints, options));
+    many = std::move(made);
+  }
+  auto out = compute_light_curve(
+      request, *light, many.get(),
+      [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
+      monitor.cancel != nullptr ? *monitor.cancel : never);
+  UMOV_TRY(light->keep_masks());
+  return out;
+}
+
+} // namespace
+
+Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptions &options,
+                                        const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_TRY(check_complete_for_run(scenario));
+  std::vector<ObjectRun> out;
+  for (std::size_t k = 0; k < scenario.objects.size(); ++k) {
+    UMOV_ASSIGN(object,
+                load_object(scenario, k, {options.allow_bad_checksum, options.allow_old_elements},
+                            diagnostics));
+    LightCurveRequest request = light_curve_request(scenario, scenario.objects[k], object, options);
+    for (const InputFile &input : object.inputs)
+      monitor.tell(fmt::format("read {} (SHA-256 {})", input.path, input.sha256));
+    out.push_back({std::move(object), std::move(request), {}, {}});
+  }
+  if (constexpr double long_step_s = 300; scenario.time->step_s > long_step_s)
+    diagnostics.warn(
+        fmt::format("step_s = {:g} is long against a pass: passes may be missed or joined",
+                    scenario.time->step_s));
+  warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);
+  warn_if_outside_eop(scenario.time->start, scenario.time->stop, diagnostics);
+  return out;
+}
+
+Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &scenario,
+                              const Monitor &monitor, Diagnostics &diagnostics) {
+  RunResult out;
+  std::size_t with_rows = 0;
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    auto outcome = compute(objects[k], objects.size() == 1, monitor);
+    if (!outcome && objects.size() == 1)
+      return tl::unexpected(outcome.error());
+    if (outcome) {
+      objects[k].outcome = std::move(*outcome);
+      out.stopped = objects[k].outcome.stopped;
+    } else {
+      out.stopped = outcome.error();
+    }
+    const bool is_empty = objects[k].outcome.curve.epochs.empty();
+    with_rows += is_empty ? 0u : 1u;
+    if (!is_empty)
+      warn_of_accuracy(objects[k].outcome, scenario.light, objects[k].light.floor_i, diagnostics);
+    if (out.stopped) {
+      objects.resize(k + 1);
+      break;
+    }
+    if (is_empty && objects.size() > 1) {
+      UMOV_ASSIGN(nothing, nothing_found(objects[k].request));
+      diagnostics.warn(nothing.message);
+    }
+  }
+  if (with_rows == 0) {
+    if (out.stopped)
+      return tl::unexpected(*out.stopped);
+    UMOV_ASSIGN(nothing, nothing_found(objects.front().request));
+    return tl::unexpected(nothing);
+  }
+  std::erase_if(objects, [](const ObjectRun &one) { return one.outcome.curve.epochs.empty(); });
+  out.objects = std::move(objects);
+  return out;
+}
+
+} // namespace umov::jobs

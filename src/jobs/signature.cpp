@@ -1,0 +1,155 @@
+#include <umov/jobs/signature.h>
+
+#include "jobs/signature_rows.h"
+#include "jobs/temperatures.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/core/parallel.h>
+
+namespace umov::jobs {
+namespace {
+
+using Source = SignatureRequest::Source;
+
+/// Where the model of an active source falls short (explicit rough surfaces, docs/theory/lobes.md).
+constexpr const char *laser_limits =
+    "One reflection keeps the degree of polarization; light between microfacets is depolarized or "
+    "keeps the single-bounce form, while explicit rough surfaces (slope 0.6, backscatter) "
+    "depolarize "
+    "circular light about twice as fast as linear. For very rough metals near retro-reflection the "
+    "double bounce is understated.";
+
+/// Stokes vector of the source per unit irradiance.
+Result<Stokes<ScatteringPlane>> source_of(const SignatureRequest &request) {
+  const Stokes<ScatteringPlane> &s = request.state;
+  const double polarized = std::sqrt(s.q * s.q + s.u * s.u + s.v * s.v);
+  if (request.source != Source::Laser && polarized > 0)
+    return fail(ErrorCode::Usage, "--state goes with --source laser");
+  if (!(s.i > 0) || !(polarized <= s.i * (1 + 1e-12)))
+    return fail(ErrorCode::Usage,
+                fmt::format("--state {} {} {} {}: I > 0 and sqrt(Q2 + U2 + V2) <= I were expected",
+                            s.i, s.q, s.u, s.v));
+  return s * (1 / s.i);
+}
+
+/// What the options say against each other.
+Result<void> check_request(const Scenario &scenario, const SignatureRequest &request) {
+  if (scenario.objects.size() > 1)
+    return fail(ErrorCode::BadInput,
+                fmt::format("holds {} objects; a signature is of one. Keep one [[object]].",
+                            scenario.objects.size()),
+                {scenario.file});
+  const bool has_masks = request.method == LightMethod::Masks || !request.mask_file.empty();
+  if (request.source != Source::Sun && has_masks)
+    return fail(ErrorCode::Usage, "masks are for sunlight; a laser takes rays, own heat paths");
+  if ((request.source == Source::Thermal) != !request.temperatures.empty())
+    return fail(ErrorCode::Usage, "--source thermal and --temperature go together");
+  if (!request.mask_file.empty() && request.method == LightMethod::Rays)
+    return fail(ErrorCode::Usage, "--masks goes with --visibility masks or auto");
+  return {};
+}
+
+Result<std::unique_ptr<LightModel>> light_of(const Scene &scene, const SignatureRequest &request,
+                                             const LightOptions &options) {
+  if (request.source != Source::Thermal)
+    return make_light(scene, {}, options);
+  UMOV_ASSIGN(kelvin, temperatures_of(request.temperatures, scene.mesh));
+  return make_thermal_light(scene, kelvin, options);
+}
+
+/// What the header says of the source and of how hiding was decided.
+void describe(const SignatureRequest &request, const Stokes<ScatteringPlane> &source, bool has_disk,
+              const std::string &visibility, Table &table) {
+  if (request.source == Source::Thermal) {
+    table.note("source", "the body's own heat: " +
+                             fmt::format("{}", fmt::join(request.temperatures, ", ")) + " K");
+    table.note("method", visibility);
+    return;
+  }
+  table.note("source", request.source == Source::Sun
+                           ? (has_disk ? "Sun, uniform disk of 0.2665 deg radius" : "Sun, a point")
+                           : fmt::format("laser, Stokes {} {} {} {} in the scattering frame",
+                                         source.i, source.q, source.u, source.v));
+  if (request.source == Source::Laser)
+    table.note("limits", laser_limits);
+  table.note("visibility", visibility);
+}
+
+/// Poses that are lit together. Light between surfaces is shared by the poses of a block, so that
+/// its size must not depend on anything that may change.
+std::size_t block_of(const LightFacts &facts, std::size_t bounces) {
+  if (bounces > 1 || facts.method == LightMethod::Rays)
+    return 512;
+  return facts.method == LightMethod::Auto ? 4096 : 1u << 17;
+}
+
+} // namespace
+
+Result<void> signature(const Scenario &scenario, const PoseList &poses,
+                       const SignatureRequest &request, TableSink &sink, const JobOptions &options,
+                       const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(source, source_of(request));
+  UMOV_TRY(check_request(scenario, request));
+  if (!scenario.objects.front().parts.empty())
+    diagnostics.warn("parts stand as in the mesh: without a time nothing turns", {scenario.file});
+  const bool is_sun = request.source == Source::Sun;
+  UMOV_ASSIGN(
+      object,
+      load_object(scenario, 0, {.allow_old_elements = true, .source_is_sun = is_sun}, diagnostics));
+  LightOptions light = light_options(scenario, options);
+  light.method = request.method.value_or(light.method);
+  light.accuracy = request.accuracy.value_or(light.accuracy);
+  light.seed = request.seed.value_or(scenario.seed);
+  light.source = source;
+  light.mask_file = request.mask_file;
+  monitor.tell("preparing the scene ...");
+  UMOV_ASSIGN(model, light_of(object.scene, request, light));
+  const LightFacts &facts = model->facts();
+  if (facts.mask_bytes > 0)
+    monitor.tell(fmt::format("{} triangles in {} classes, {:.0f} MB of masks, {:.1f} s",
+                             facts.triangles, facts.classes,
+                             static_cast<double>(facts.mask_bytes) / 1e6, facts.setup_s));
+  const bool has_disk = is_sun && scenario.has_solar_disk;
+  const std::size_t block = block_of(facts, light.bounces);
+  LightTask task;
+  task.threads = options.threads;
+  task.cancel = monitor.cancel;
+  StokesTable results;
+  std::vector<Pose> part;
+  std::vector<std::int64_t> numbers;
+  std::size_t done = 0;
+  while (done < poses.count && !monitor.is_cancelled()) {
+    const std::size_t count = std::min(block, poses.count - done);
+    part.resize(count);
+    numbers.resize(count);
+    parallel_for((count + 1023) / 1024, options.threads, [&](std::size_t of) {
+      for (std::size_t i = of * 1024; i < std::min(count, (of + 1) * 1024); ++i) {
+        part[i] = poses.at(done + i);
+        part[i].sun_radius_rad = has_disk ? sun_radius_at_1au_rad : 0;
+        numbers[i] = poses.number(done + i);
+      }
+    });
+    if (!model->evaluate(part, results, task))
+      break;
+    Table table = SignatureRows::of(numbers, part, object.scene.bands, results, options.threads)
+                      .table(request.source == Source::Thermal);
+    describe(request, source, has_disk, facts.visibility, table);
+    UMOV_TRY(sink.add(std::move(table)));
+    done += count;
+    monitor.advance("poses", done, poses.count);
+  }
+  if (done < poses.count)
+    return tl::unexpected(
+        sink.stop({ErrorCode::Interrupted,
+                   fmt::format("stopped by the user after {} of {} poses", done, poses.count),
+                   {}}));
+  UMOV_TRY(model->keep_masks());
+  if (!request.mask_file.empty())
+    monitor.tell(facts.is_convex ? "a convex body needs no masks: nothing is kept in " +
+                                       request.mask_file.string()
+                                 : "masks are kept in " + request.mask_file.string());
+  return sink.finish();
+}
+
+} // namespace umov::jobs
