@@ -29,35 +29,13 @@ std::optional<kernel::LobeConstants<double>> fit_lobe(const Distribution &normal
   if (!form)
     return {};
   kernel::LobeConstants<double> out;
+  out.kind = form->kind;
+  out.joint = shadowing;
   out.shape = form->shape;
   out.per_width2 = 1 / (normals.width() * normals.width());
-  switch (form->kind) {
-  case KernelForm::Kind::BlinnPhong:
-    out.kind = kernel::LobeKind::BlinnPhong;
+  if (out.kind == LobeKind::BlinnPhong)
     out.peak = kernel::blinn_phong_peak(form->shape);
-    break;
-  case KernelForm::Kind::Beckmann:
-    out.kind = kernel::LobeKind::Beckmann;
-    break;
-  case KernelForm::Kind::Ggx:
-    out.kind = kernel::LobeKind::Ggx;
-    break;
-  }
-  switch (shadowing) {
-  case Shadowing::Ashikhmin:
-    out.joint = kernel::JointMasking::Ashikhmin;
-    break;
-  case Shadowing::Smith:
-    out.joint = kernel::JointMasking::Smith;
-    break;
-  case Shadowing::SmithDirectional:
-    out.joint = kernel::JointMasking::SmithDirectional;
-    break;
-  case Shadowing::Separable:
-    out.joint = kernel::JointMasking::Separable;
-    break;
-  }
-  if (out.kind == kernel::LobeKind::Ggx)
+  if (out.kind == LobeKind::Ggx)
     return out; // its masking is closed
   out.masking_limit = masking_limit(normals);
   out.masking_scale = 2 / out.masking_limit;
@@ -122,7 +100,7 @@ fit_family(const std::vector<kernel::LobeConstants<double>> &lobes, Shadowing sh
     return {};
   double low = HUGE_VAL, high = 0;
   for (const auto &lobe : lobes) {
-    if (lobe.kind != kernel::LobeKind::BlinnPhong || !(lobe.shape > 0))
+    if (lobe.kind != LobeKind::BlinnPhong || !(lobe.shape > 0))
       return {};
     low = std::min(low, lobe.shape);
     high = std::max(high, lobe.shape);

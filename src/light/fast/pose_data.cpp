@@ -62,7 +62,7 @@ void prepare_pose(const Pose &pose, double cos_phase,
     const double q = widths[k] > 0 ? kappa.across / (widths[k] * widths[k]) : HUGE_VAL;
     out.is_narrow[k] =
         pose.sun_radius_rad > 0 ? (q < kernel::nodes_max ? 0 : 1) : (widths[k] > 0 ? 0 : 1);
-    if (lobes[k].kind == kernel::LobeKind::BlinnPhong && q < kernel::closed_form_max) {
+    if (lobes[k].kind == LobeKind::BlinnPhong && q < kernel::closed_form_max) {
       const auto by = kernel::blinn_phong_spread(lobes[k].shape, kappa.along, kappa.across);
       at = {true, false, lobes[k].peak * by.scale, by.along * std::numbers::log2e,
             by.across * std::numbers::log2e};
