@@ -13,6 +13,7 @@
 struct SimdMachine {
   using R = Lanes;
   using T = float;
+  using S = double;
   static constexpr std::size_t width = hn::MaxLanes(FloatTag());
   static HWY_INLINE Lanes load(const float *p) { return hn::Load(FloatTag(), p); }
   static HWY_INLINE void store(Lanes x, float *p) { hn::Store(x.v, FloatTag(), p); }
@@ -78,14 +79,14 @@ struct SimdMachine {
 };
 
 void sum_facets_here(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
-                     const PoseData<float> &pose, PoseSums &out) {
+                     const PoseData<float> &pose, backend::PoseSums &out) {
   FacetLoops<SimdMachine>(scene, masks, model, pose, out).run();
 }
 
 void list_uncertain_here(const SceneData<float> &scene, const Masks *masks,
                          const MaskErrorModel &model, const PoseData<float> &pose,
-                         std::vector<backend::SeenFacet> &out) {
-  PoseSums unused;
+                         backend::SeenList &out) {
+  backend::PoseSums unused;
   FacetLoops<SimdMachine>(scene, masks, model, pose, unused).list_uncertain(out);
 }
 
@@ -102,13 +103,13 @@ HWY_EXPORT(list_uncertain_here);
 namespace umov::backend {
 
 void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
-                const PoseData<float> &pose, PoseSums &out) {
+                const PoseData<float> &pose, backend::PoseSums &out) {
   using namespace kernel; // the table of HWY_EXPORT stands there
   HWY_DYNAMIC_DISPATCH(sum_facets_here)(scene, masks, model, pose, out);
 }
 
 void list_uncertain(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
-                    const PoseData<float> &pose, std::vector<SeenFacet> &out) {
+                    const PoseData<float> &pose, SeenList &out) {
   using namespace kernel;
   HWY_DYNAMIC_DISPATCH(list_uncertain_here)(scene, masks, model, pose, out);
 }
