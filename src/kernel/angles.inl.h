@@ -80,6 +80,13 @@ template <class R> UMOV_KERNEL SineCosine<R> sine_cosine(R x) {
   return {turn * select(is_odd, c, s), turn * select(is_odd, -s, c)};
 }
 
+// Double has the C library's, which is right to the last bit; in float that of graphics processors
+// takes double for the turns of large angles.
+UMOV_KERNEL double sin(double x) { return std::sin(x); }
+UMOV_KERNEL double cos(double x) { return std::cos(x); }
+UMOV_KERNEL float sin(float x) { return sine_cosine(x).sine; }
+UMOV_KERNEL float cos(float x) { return sine_cosine(x).cosine; }
+
 /// The angle of (x, y) from the x axis, in [-pi, pi]; 0 for the origin and within 1e-37 of
 /// it. Absolute error below 5e-16 (float: 4e-7).
 /// Polynomial: minimax fit of (atan t - t)/t^3 in t^2, |t| <= tan(pi/8).

@@ -7,6 +7,7 @@
 #define UMOV_KERNEL_FILMS_INL_H
 #endif
 
+#include "kernel/angles.inl.h"
 #include "kernel/fresnel.inl.h"
 
 #include <cstddef>

@@ -15,13 +15,11 @@
 using std::abs;
 using std::acos;
 using std::atan;
-using std::cos;
 using std::erfc;
 using std::exp;
 using std::exp2;
 using std::log;
 using std::log1p;
-using std::sin;
 using std::sqrt;
 
 template <class R> UMOV_KERNEL R select(bool condition, R yes, R no) {

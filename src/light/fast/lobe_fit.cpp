@@ -59,15 +59,13 @@ std::optional<kernel::LobeConstants<double>> fit_lobe(const Distribution &normal
 namespace {
 
 /// Weights of Lagrange's polynomial through `nodes` at x, over 4: the factor of G2 in the BRDF.
-std::array<double, backend::family_nodes_max> lagrange(const std::vector<double> &nodes, double x) {
-  std::array<double, backend::family_nodes_max> out{};
+void put_lagrange(const std::vector<double> &nodes, double x, double *out) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     out[i] = 0.25;
     for (std::size_t j = 0; j < nodes.size(); ++j)
       if (j != i)
         out[i] *= (x - nodes[j]) / (nodes[i] - nodes[j]);
   }
-  return out;
 }
 
 /// Largest relative error of the interpolated shadowing of one lobe.
@@ -119,9 +117,9 @@ fit_family(const std::vector<kernel::LobeConstants<double>> &lobes, Shadowing sh
       out.node[n] = *lobe;
     }
     double error = high > low ? 0 : HUGE_VAL;
-    for (const auto &lobe : lobes) {
-      out.weight.push_back(lagrange(nodes, std::log(lobe.shape)));
-      error = std::max(error, family_error(out, out.weight.size() - 1, lobe));
+    for (std::size_t k = 0; k < lobes.size(); ++k) {
+      put_lagrange(nodes, std::log(lobes[k].shape), out.weight[k]);
+      error = std::max(error, family_error(out, k, lobes[k]));
     }
     if (error <= tolerance)
       return out;

@@ -33,13 +33,13 @@ private:
 
 /// Everything of fixed size, in front.
 struct Header {
-  char magic[8] = {'u', 'm', 'o', 'v', 'm', 's', 'k', '1'};
+  char magic[8] = {'u', 'm', 'o', 'v', 'm', 's', 'k', '2'};
   std::uint64_t byte_order = 0x0102030405060708ull; ///< the machine's own
   std::uint64_t key = 0, checksum = 0;              ///< of everything else in the file
   std::uint64_t groups = 0, blocks = 0, longest = 0;
   struct Table {
     std::uint64_t cells = 0, entries = 0, offsets = 0, rows = 0;
-  } narrow, wide;
+  } small, large;
 };
 
 /// A part of the file as bytes.
@@ -48,16 +48,16 @@ template <class List> std::span<char> bytes_of(List &list) {
 }
 
 /// All lists, in the order of the file.
-template <class F> void for_each_list(backend::Masks &masks, const F &f) {
+template <class F> void for_each_list(MaskStore &masks, const F &f) {
   f(bytes_of(masks.groups));
-  for (backend::MaskTable *table : {&masks.narrow, &masks.wide}) {
+  for (MaskTableStore *table : {&masks.small, &masks.large}) {
     f(bytes_of(table->offset));
     f(bytes_of(table->row));
   }
   f(bytes_of(masks.pool));
 }
 
-std::uint64_t checksum_of(Header header, backend::Masks &masks) {
+std::uint64_t checksum_of(Header header, MaskStore &masks) {
   Hash hash;
   header.checksum = 0;
   hash.add(header);
@@ -66,33 +66,35 @@ std::uint64_t checksum_of(Header header, backend::Masks &masks) {
 }
 
 /// Blocks of each entry of a table; empty if a group points outside.
-std::vector<std::uint32_t> entry_blocks(const backend::Masks &masks, bool is_wide) {
-  std::vector<std::uint32_t> out((is_wide ? masks.wide : masks.narrow).entries, 0);
+std::vector<std::uint32_t> entry_blocks(const MaskStore &masks, bool is_large) {
+  std::vector<std::uint32_t> out((is_large ? masks.large : masks.small).entries, 0);
   for (const backend::GroupMask &group : masks.groups) {
-    if (group.is_wide != is_wide)
+    if (group.is_large != is_large)
       continue;
-    const std::size_t count = is_wide ? backend::lanes : 1;
+    const std::size_t count = is_large ? backend::lanes : 1;
     if (group.entry + count > out.size())
       return {};
     std::fill_n(out.begin() + group.entry, count,
-                std::uint32_t{group.words} / (is_wide ? std::uint32_t{backend::lanes} : 1u));
+                std::uint32_t{group.words} / (is_large ? std::uint32_t{backend::lanes} : 1u));
   }
   return out;
 }
 
 /// Offsets and rows stay within the pool, whoever wrote the file.
-bool is_consistent(const backend::Masks &masks, bool is_wide) {
-  const backend::MaskTable &table = is_wide ? masks.wide : masks.narrow;
-  const auto blocks = entry_blocks(masks, is_wide);
+bool is_consistent(const MaskStore &masks, bool is_large) {
+  const MaskTableStore &table = is_large ? masks.large : masks.small;
+  const auto blocks = entry_blocks(masks, is_large);
   const std::size_t directions = table.entries > 0 ? table.directions() : 0;
   if (blocks.size() != table.entries || table.offset.size() != directions * table.entries ||
-      table.row.size() != directions + 1)
+      table.row.size() != directions)
     return false;
   for (std::size_t k = 0; k < table.offset.size(); ++k)
     if (std::size_t{table.offset[k]} + blocks[k % table.entries] > masks.pool.size())
       return false;
   return std::all_of(table.row.begin(), table.row.end(),
-                     [&](std::uint32_t row) { return row <= masks.pool.size(); }) &&
+                     [&](const backend::MaskRow &row) {
+                       return std::size_t{row.first} + row.count <= masks.pool.size();
+                     }) &&
          std::all_of(blocks.begin(), blocks.end(),
                      [&](std::uint32_t n) { return n <= masks.longest; }) &&
          masks.pool.size() >= std::size_t{2} * masks.longest;
@@ -117,26 +119,26 @@ std::uint64_t mask_key(const Mesh &mesh, const FacetClasses &classes, const Grou
   for (const GroupPlan::Group &group : plan.groups) {
     hash.add(group.member.data(), sizeof group.member);
     hash.add(std::uint32_t{group.words});
-    hash.add(std::uint32_t{group.is_wide ? 1u : 0u});
+    hash.add(std::uint32_t{group.is_large ? 1u : 0u});
   }
-  hash.add(std::uint64_t{size.narrow_cells});
-  hash.add(std::uint64_t{size.wide_cells});
+  hash.add(std::uint64_t{size.small_cells});
+  hash.add(std::uint64_t{size.large_cells});
   return hash.value();
 }
 
-Result<void> write_masks(const std::filesystem::path &path, const backend::Masks &masks,
+Result<void> write_masks(const std::filesystem::path &path, const MaskStore &masks,
                          std::uint64_t key) {
-  auto &all = const_cast<backend::Masks &>(masks); // the lists are only read
+  auto &all = const_cast<MaskStore &>(masks); // the lists are only read
   Header header;
   header.key = key;
   header.groups = masks.groups.size();
   header.blocks = masks.pool.size();
   header.longest = masks.longest;
-  const auto put = [](Header::Table &to, const backend::MaskTable &from) {
+  const auto put = [](Header::Table &to, const MaskTableStore &from) {
     to = {from.cells, from.entries, from.offset.size(), from.row.size()};
   };
-  put(header.narrow, masks.narrow);
-  put(header.wide, masks.wide);
+  put(header.small, masks.small);
+  put(header.large, masks.large);
   header.checksum = checksum_of(header, all);
   UMOV_ASSIGN(file, FileInProgress::open(path));
   UMOV_TRY(file.write({reinterpret_cast<const char *>(&header), sizeof header}));
@@ -149,7 +151,7 @@ Result<void> write_masks(const std::filesystem::path &path, const backend::Masks
   return file.commit();
 }
 
-Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64_t key) {
+Result<MaskStore> read_masks(const std::filesystem::path &path, std::uint64_t key) {
   const auto refuse = [&](const std::string &what) {
     return fail(ErrorCode::BadInput, what + ". Remove it to have it made anew.", {path.string()});
   };
@@ -171,28 +173,29 @@ Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64
   // Sizes are believed only if they add up to the file's: nothing is reserved on a lie's word.
   const std::uint64_t most = size;
   for (const std::uint64_t count :
-       {header.groups, header.blocks, header.narrow.offsets, header.narrow.rows,
-        header.wide.offsets, header.wide.rows, header.longest})
+       {header.groups, header.blocks, header.small.offsets, header.small.rows, header.large.offsets,
+        header.large.rows, header.longest})
     if (count > most)
       return refuse("is damaged");
-  const std::uint64_t words =
-      header.narrow.offsets + header.narrow.rows + header.wide.offsets + header.wide.rows;
+  const std::uint64_t tables =
+      (header.small.offsets + header.large.offsets) * sizeof(std::uint32_t) +
+      (header.small.rows + header.large.rows) * sizeof(backend::MaskRow);
   if (sizeof header + header.groups * sizeof(backend::GroupMask) +
-          header.blocks * sizeof(backend::MaskBlock) + words * sizeof(std::uint32_t) !=
+          header.blocks * sizeof(backend::MaskBlock) + tables !=
       size)
     return refuse("is damaged or cut short");
-  backend::Masks out;
+  MaskStore out;
   out.groups.resize(header.groups);
   out.pool.resize(header.blocks);
   out.longest = static_cast<std::uint32_t>(header.longest);
-  const auto take = [](const Header::Table &from, backend::MaskTable &to) {
+  const auto take = [](const Header::Table &from, MaskTableStore &to) {
     to.cells = from.cells;
     to.entries = from.entries;
     to.offset.resize(from.offsets);
     to.row.resize(from.rows);
   };
-  take(header.narrow, out.narrow);
-  take(header.wide, out.wide);
+  take(header.small, out.small);
+  take(header.large, out.large);
   for_each_list(out, [&](std::span<char> part) {
     stream.read(part.data(), static_cast<std::streamsize>(part.size()));
   });

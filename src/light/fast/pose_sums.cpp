@@ -8,11 +8,19 @@
 #include <cmath>
 
 namespace umov {
-bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) const {
+
+void Engine::State::sum_facets(const Prepared &at, SumsStore &out) const {
+  out.reset(views.whole);
   if (options.is_double)
-    backend::sum_facets(compiled.data, hiding(), mask_error, at.pose, work.sums);
+    backend::sum_facets(views.whole, hiding(), mask_error, at.pose, out);
   else
-    backend::sum_facets(single, hiding(), mask_error, at.single, work.sums);
+    backend::sum_facets(views.single, hiding(), mask_error, at.single, out);
+  if (masks)
+    add_alike(out);
+}
+
+bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) const {
+  sum_facets(at, work.sums);
   if (!work.sums.is_any_seen)
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);

@@ -66,7 +66,7 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
   if (terms.is_general)
     return light_of_general(pose, at, facet, work, light);
   double *weight = work.weights.data() + k * terms_max();
-  backend::weigh_facet(compiled.data, at.pose, facet, weight);
+  backend::weigh_facet(views.whole, at.pose, facet, weight);
   for (std::size_t l = 0; l < terms.lobe_count; ++l)
     if (at.pose.is_narrow[terms.lobe_first + l])
       weight[l] = narrow_weight(terms.lobe_first + l, directions(pose, at, facet));
@@ -80,10 +80,11 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
 }
 
 void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
+  work.uncertain.reset(views.whole.groups.size() * backend::lanes);
   if (options.is_double)
-    backend::list_uncertain(compiled.data, hiding(), mask_error, at.pose, work.uncertain);
+    backend::list_uncertain(views.whole, hiding(), mask_error, at.pose, work.uncertain);
   else
-    backend::list_uncertain(single, hiding(), mask_error, at.single, work.uncertain);
+    backend::list_uncertain(views.single, hiding(), mask_error, at.single, work.uncertain);
   work.nothing.assign(terms_max(), 0);
   work.facet_light.assign(work.uncertain.size() * bands(), {});
   work.weights.assign(work.uncertain.size() * terms_max(), 0);
@@ -108,7 +109,7 @@ struct Engine::State::Left {
   [[nodiscard]] bool is_enough(const BandLight &all, double wanted) const {
     for (std::size_t b = 0; b < i.size(); ++b) {
       const double allowed = wanted * all.i[b];
-      const double common = static_cast<double>(mask_error.alike) * linear[b] * linear[b];
+      const double common = mask_alike * linear[b] * linear[b];
       if (std::max(i[b] + common, q[b]) > allowed * allowed)
         return false;
     }
@@ -211,10 +212,11 @@ void Engine::State::trace(const Pose &pose, Workspace &work) const {
 
 /// Variances of the sums from those that the facets have now.
 void Engine::State::take_variances(Workspace &work) const {
-  for (std::span<double> column :
+  for (const backend::View<double> column :
        {work.sums.specular_variance, work.sums.product_variance, work.sums.specular_linear,
-        work.sums.product_linear, std::span(work.general.var_i), std::span(work.general.var_q),
-        std::span(work.general.var_u), std::span(work.general.var_v)})
+        work.sums.product_linear, backend::View<double>(work.general.var_i),
+        backend::View<double>(work.general.var_q), backend::View<double>(work.general.var_u),
+        backend::View<double>(work.general.var_v)})
     std::fill(column.begin(), column.end(), 0);
   for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
     const backend::SeenFacet &facet = work.uncertain[k];
@@ -239,7 +241,7 @@ void Engine::State::take_variances(Workspace &work) const {
       work.general.var_v[b] += s.v * s.v * facet.variance;
     }
   }
-  backend::add_alike(mask_error, work.sums);
+  add_alike(work.sums);
 }
 
 void Engine::State::refine(const Pose &pose, const Prepared &at, Workspace &work) const {
