@@ -4,6 +4,7 @@
 #include "backend/scene_data.h"
 #include "light/fast/huge_pages.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -58,6 +59,8 @@ template <class T> struct PoseStore : backend::PoseData<T> {
   PoseStore(PoseStore &&) noexcept = default;
   PoseStore &operator=(PoseStore &&) noexcept = default;
   void resize(std::size_t count) {
+    if (count == lobe_room.size())
+      return;
     lobe_room.resize(count);
     narrow_room.resize(count);
     this->lobes = lobe_room;
@@ -90,8 +93,17 @@ struct SumsStore : backend::PoseSums {
 
   /// Zeros, in one piece of memory: a pose is summed in less than a microsecond.
   template <class T> void reset(const backend::SceneData<T> &scene) {
-    const std::size_t lobes = scene.lobes.size(), products = scene.products.size();
-    room_.assign(4 * lobes + 3 * products, 0);
+    if (specular.size() != scene.lobes.size() || product.size() != scene.products.size() ||
+        lanes_ != scene.groups.size() * backend::lanes)
+      make_room(scene.lobes.size(), scene.products.size(), scene.groups.size() * backend::lanes);
+    std::fill(room_.begin(), room_.end(), 0.0);
+    seen.clear();
+    is_any_seen = false;
+  }
+
+private:
+  void make_room(std::size_t lobes, std::size_t products, std::size_t lanes) {
+    room_.resize(4 * lobes + 3 * products);
     double *next = room_.data();
     const auto take = [&](backend::View<double> &column, std::size_t size) {
       column = {next, size};
@@ -101,13 +113,12 @@ struct SumsStore : backend::PoseSums {
       take(*column, lobes);
     for (auto *column : {&product, &product_variance, &product_linear})
       take(*column, products);
-    seen_room_.reset(scene.groups.size() * backend::lanes);
+    lanes_ = lanes;
+    seen_room_.reset(lanes);
     seen = seen_room_;
-    is_any_seen = false;
   }
-
-private:
   std::vector<double> room_;
+  std::size_t lanes_ = 0;
   SeenStore seen_room_;
 };
 
