@@ -22,8 +22,9 @@ using backend::MaskErrorModel;
 using backend::Masks;
 using backend::MaskTable;
 using backend::PoseData;
-using backend::PoseSums;
+using backend::PoseSumsOf;
 using backend::SceneData;
+using backend::SeenListOf;
 using backend::SlotTerms;
 
 /// The blocks of one entry in the three directions around one.
@@ -32,8 +33,8 @@ struct EntryLook {
   bool is_free = false, is_hidden = false;
 };
 
-inline EntryLook look_up(const Masks &masks, const MaskTable &table, const GridLook &look,
-                         std::uint32_t entry) {
+UMOV_KERNEL EntryLook look_up(const Masks &masks, const MaskTable &table, const GridLook &look,
+                              std::uint32_t entry) {
   EntryLook out;
   std::uint32_t offset[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -46,19 +47,17 @@ inline EntryLook look_up(const Masks &masks, const MaskTable &table, const GridL
   return out;
 }
 
-/// (n.k) p(n.k) of a slot's profiles towards both directions.
+/// (n.k) p(n.k) of a slot's profiles, of which there are some, towards both directions.
 template <class R> struct ProfileValues {
   R in[backend::profiles_max], out[backend::profiles_max];
-  template <class T> R product(const backend::Product &p) const {
+  template <class T> UMOV_KERNEL R product(const backend::Product &p) const {
     return R(T(0.5)) * (in[p.first] * out[p.second] + in[p.second] * out[p.first]);
   }
 };
 template <class R, class T>
-inline ProfileValues<R> profile_values(const SceneData<T> &scene, const SlotTerms &slot, R n_l,
-                                       R n_v) {
+UMOV_KERNEL ProfileValues<R> profile_values(const SceneData<T> &scene, const SlotTerms &slot, R n_l,
+                                            R n_v) {
   ProfileValues<R> out;
-  if (slot.profile_count == 0)
-    return out;
   if (slot.profile_count == 1 && scene.profiles[slot.profile_first].degree == 0) { // Lambert's
     out.in[0] = n_l * R(scene.profiles[slot.profile_first].c[0]);
     out.out[0] = n_v * R(scene.profiles[slot.profile_first].c[0]);
@@ -83,25 +82,26 @@ inline ProfileValues<R> profile_values(const SceneData<T> &scene, const SlotTerm
   return out;
 }
 
-/// Sums of one pose. `Machine` names the lane type R, the scalar T and how to load and count.
+/// Sums of one pose. `Machine` names the lane type R, the scalar T, what sums are held
+/// in, S, and how to load and count.
 template <class Machine> class FacetLoops {
   using R = typename Machine::R;
   using T = typename Machine::T;
+  using S = typename Machine::S;
   static constexpr std::size_t lanes = backend::lanes, width = Machine::width;
 
 public:
-  FacetLoops(const SceneData<T> &scene, const Masks *masks, const MaskErrorModel &model,
-             const PoseData<T> &pose, PoseSums &out)
+  UMOV_KERNEL FacetLoops(const SceneData<T> &scene, const Masks *masks, const MaskErrorModel &model,
+                         const PoseData<T> &pose, PoseSumsOf<S> &out)
       : scene_(scene), masks_(masks), model_(model), pose_(pose), out_(out) {
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b) {
-        narrow_weight_[3 * a + b] = pose.narrow_sun.weight[a] * pose.narrow_observer.weight[b];
-        wide_weight_[3 * a + b] = pose.wide_sun.weight[a] * pose.wide_observer.weight[b];
+        small_weight_[3 * a + b] = pose.small_sun.weight[a] * pose.small_observer.weight[b];
+        large_weight_[3 * a + b] = pose.large_sun.weight[a] * pose.large_observer.weight[b];
       }
   }
 
-  void run() {
-    out_.reset(scene_.lobes.size(), scene_.products.size());
+  UMOV_KERNEL void run() {
     for (const Chunk &chunk : scene_.chunks) {
       find_facing(chunk);
       if (masks_ != nullptr)
@@ -119,12 +119,10 @@ public:
       if (slot.product_count > 0 && !slot.is_general)
         shade_products(slot);
     }
-    if (masks_ != nullptr)
-      backend::add_alike(model_, out_);
   }
 
   /// Facets of which something is both lit and seen.
-  void list_seen(std::vector<backend::SeenFacet> &out) {
+  UMOV_KERNEL void list_seen(SeenListOf<S> &out) {
     out.clear();
     for (const Chunk &chunk : scene_.chunks) {
       find_facing(chunk);
@@ -133,23 +131,25 @@ public:
       for (std::size_t k = 0; k < count_; ++k)
         for (std::uint32_t j = 0; j < lanes; ++j)
           if (area_[k][j] > 0)
-            out.push_back({group_[k], j, chunk.slot, static_cast<double>(area_[k][j]), 0});
+            out.push({group_[k], j, chunk.slot, static_cast<S>(area_[k][j]), 0});
     }
   }
 
   /// All facets that face both directions, with the area of each that is looked up as free and how
   /// uncertain it is. One pseudo-disagreement stands for slivers that no point has found: what is
   /// looked up as wholly free or wholly hidden may still be a little of the other.
-  void list_facing(std::vector<backend::SeenFacet> &out) {
+  void list_facing(SeenListOf<S> &out) {
     out.clear();
     std::uint32_t facing[backend::groups_per_chunk];
     T whole[backend::groups_per_chunk][lanes];
     for (const Chunk &chunk : scene_.chunks) {
       find_facing(chunk);
       const std::size_t all = count_;
-      std::copy_n(group_, all, facing);
-      for (std::size_t k = 0; k < all; ++k)
-        std::copy_n(area_[k], lanes, whole[k]);
+      for (std::size_t k = 0; k < all; ++k) {
+        facing[k] = group_[k];
+        for (std::size_t j = 0; j < lanes; ++j)
+          whole[k][j] = area_[k][j];
+      }
       for (std::size_t k = 0; k < all; ++k)
         list_group(facing[k], whole[k], chunk.slot, out);
     }
@@ -159,15 +159,15 @@ private:
   /// Directions in lanes, loaded once for a loop.
   struct Directions {
     R lx, ly, lz, vx, vy, vz;
-    explicit Directions(const FacetPose<T> &p)
+    UMOV_KERNEL explicit Directions(const FacetPose<T> &p)
         : lx(R(p.sun[0])), ly(R(p.sun[1])), lz(R(p.sun[2])), vx(R(p.observer[0])),
           vy(R(p.observer[1])), vz(R(p.observer[2])) {}
   };
   struct Cosines {
     R n_l, n_v;
   };
-  static Cosines cosines(const Directions &d, const FacetGroup<T> &f, std::size_t s, R &x, R &y,
-                         R &z) {
+  UMOV_KERNEL static Cosines cosines(const Directions &d, const FacetGroup<T> &f, std::size_t s,
+                                     R &x, R &y, R &z) {
     x = Machine::load(f.nx + s);
     y = Machine::load(f.ny + s);
     z = Machine::load(f.nz + s);
@@ -176,7 +176,7 @@ private:
 
   /// Lists the groups some of which face both directions, with the area that does. Without a
   /// branch: whether the next group is among them is as good as random.
-  void find_facing(const Chunk &chunk) {
+  UMOV_KERNEL void find_facing(const Chunk &chunk) {
     const Directions d(pose_.facet);
     const FacetGroup<T> *const groups = scene_.groups.data() + chunk.first;
     const std::uint32_t first = chunk.first, all = chunk.count;
@@ -194,12 +194,13 @@ private:
       group_[count] = first + g;
       count += is_any ? 1 : 0;
     }
-    std::fill_n(is_exact_, count, true);
+    for (std::size_t k = 0; k < count; ++k)
+      is_exact_[k] = true;
     count_ = count;
   }
 
   /// Multiplies the areas by what is both lit and seen; groups of which nothing is are dropped.
-  void hide() {
+  UMOV_KERNEL void hide() {
     const std::size_t facing = count_;
     count_ = 0;
     for (std::size_t k = 0; k < facing; ++k) {
@@ -210,34 +211,32 @@ private:
         group_[count_] = group_[k];
         is_exact_[count_] = true;
       }
-      if (mask.is_wide ? hide_wide(mask) : hide_narrow(mask))
+      if (mask.is_large ? hide_large(mask) : hide_small(mask))
         ++count_;
     }
   }
 
-  static double square(double x) { return x * x; }
+  UMOV_KERNEL static S square(S x) { return x * x; }
 
-  void list_group(std::uint32_t group, const T *whole, std::uint32_t slot,
-                  std::vector<backend::SeenFacet> &out) {
+  void list_group(std::uint32_t group, const T *whole, std::uint32_t slot, SeenListOf<S> &out) {
     const GroupMask &mask = masks_->groups[group];
     count_ = 0;
     group_[0] = group;
-    std::copy_n(whole, lanes, area_[0]);
+    for (std::size_t j = 0; j < lanes; ++j)
+      area_[0][j] = whole[j];
     is_exact_[0] = true;
-    const bool is_any = mask.is_wide ? hide_wide(mask) : hide_narrow(mask);
+    const bool is_any = mask.is_large ? hide_large(mask) : hide_small(mask);
     const double points = 32.0 * mask.words, unsure = 0.5 / points * (1 - 0.5 / points);
-    const double pseudo =
-        static_cast<double>(model_.points) * unsure / (points * std::sqrt(points));
+    const double pseudo = static_cast<double>(model_.points) * unsure / (points * sqrt(points));
     for (std::uint32_t j = 0; j < lanes; ++j)
       if (whole[j] > 0)
-        out.push_back(
-            {group, j, slot, is_any ? static_cast<double>(area_[0][j]) : 0,
-             (is_any && !is_exact_[0] ? square(static_cast<double>(deviation_[0][j])) : 0) +
-                 square(static_cast<double>(whole[j])) * pseudo});
+        out.push({group, j, slot, is_any ? static_cast<S>(area_[0][j]) : S(0),
+                  (is_any && !is_exact_[0] ? square(static_cast<S>(deviation_[0][j])) : S(0)) +
+                      square(static_cast<S>(whole[j])) * static_cast<S>(pseudo)});
   }
 
   /// Makes room for a deviation where there was none.
-  void clear_deviation() {
+  UMOV_KERNEL void clear_deviation() {
     for (std::size_t s = 0; is_exact_[count_] && s < lanes; s += width)
       Machine::store(R(T(0)), deviation_[count_] + s);
     is_exact_[count_] = false;
@@ -245,9 +244,9 @@ private:
 
   /// Many classes with few points each. Where all directions around one are free, three counts tell
   /// what nine would. False if nothing of them is left.
-  bool hide_narrow(const GroupMask &mask) {
-    const EntryLook sun = look_up(*masks_, masks_->narrow, pose_.narrow_sun, mask.entry);
-    const EntryLook seen = look_up(*masks_, masks_->narrow, pose_.narrow_observer, mask.entry);
+  UMOV_KERNEL bool hide_small(const GroupMask &mask) {
+    const EntryLook sun = look_up(*masks_, masks_->small, pose_.small_sun, mask.entry);
+    const EntryLook seen = look_up(*masks_, masks_->small, pose_.small_observer, mask.entry);
     if (sun.is_hidden || seen.is_hidden)
       return false;
     if (sun.is_free && seen.is_free)
@@ -258,13 +257,13 @@ private:
     for (std::size_t s = 0; s < lanes; s += width) {
       R mean, mean_square;
       if (seen.is_free)
-        Machine::template count_lanes<3, 1>(sun, seen, mask.words, s,
-                                            pose_.narrow_sun.weight.data(), mean, mean_square);
+        Machine::template count_lanes<3, 1>(sun, seen, mask.words, s, pose_.small_sun.weight, mean,
+                                            mean_square);
       else if (sun.is_free)
-        Machine::template count_lanes<1, 3>(sun, seen, mask.words, s,
-                                            pose_.narrow_observer.weight.data(), mean, mean_square);
+        Machine::template count_lanes<1, 3>(sun, seen, mask.words, s, pose_.small_observer.weight,
+                                            mean, mean_square);
       else
-        Machine::template count_lanes<3, 3>(sun, seen, mask.words, s, narrow_weight_, mean,
+        Machine::template count_lanes<3, 3>(sun, seen, mask.words, s, small_weight_, mean,
                                             mean_square);
       is_any =
           apply(s, mean * R(T(1) / points), mean_square * R(T(1) / (points * points)), points) ||
@@ -274,7 +273,7 @@ private:
   }
 
   /// Multiplies areas by their visible shares, of nine whose mean square is given.
-  bool apply(std::size_t s, R share, R mean_square, T points) {
+  UMOV_KERNEL bool apply(std::size_t s, R share, R mean_square, T points) {
     const R area = Machine::load(area_[count_] + s);
     const R visible = area * share;
     const R sampling =
@@ -286,7 +285,7 @@ private:
   }
 
   /// Few classes with many points each.
-  bool hide_wide(const GroupMask &mask) {
+  UMOV_KERNEL bool hide_large(const GroupMask &mask) {
     bool is_any = false;
     const T points = T(32) * T(mask.words);
     for (std::size_t j = 0; j < lanes; ++j) {
@@ -294,8 +293,8 @@ private:
       if (!(area > 0))
         continue;
       const auto entry = static_cast<std::uint32_t>(mask.entry + j);
-      const EntryLook sun = look_up(*masks_, masks_->wide, pose_.wide_sun, entry);
-      const EntryLook seen = look_up(*masks_, masks_->wide, pose_.wide_observer, entry);
+      const EntryLook sun = look_up(*masks_, masks_->large, pose_.large_sun, entry);
+      const EntryLook seen = look_up(*masks_, masks_->large, pose_.large_observer, entry);
       if (sun.is_hidden || seen.is_hidden) {
         area = 0;
         continue;
@@ -308,7 +307,7 @@ private:
       Machine::count_long(sun, seen, mask.words, count);
       T share = 0, mean_square = 0;
       for (std::size_t k = 0; k < 9; ++k) {
-        const T f = T(count[k]) / points, w = T(wide_weight_[k]);
+        const T f = T(count[k]) / points, w = T(large_weight_[k]);
         share += w * f;
         mean_square += w * f * f;
       }
@@ -322,7 +321,7 @@ private:
   }
 
   /// One lobe after the other; those too narrow for a kernel go back to the caller.
-  void shade_lobes(const SlotTerms &slot, std::uint32_t index) {
+  UMOV_KERNEL void shade_lobes(const SlotTerms &slot, std::uint32_t index) {
     bool is_any_narrow = false;
     for (std::uint32_t k = slot.lobe_first; k < slot.lobe_first + slot.lobe_count; ++k)
       if (pose_.is_narrow[k])
@@ -333,14 +332,14 @@ private:
       hand_back(index);
   }
 
-  [[nodiscard]] bool is_closed_family(const SlotTerms &slot) const {
+  [[nodiscard]] UMOV_KERNEL bool is_closed_family(const SlotTerms &slot) const {
     bool is_closed = slot.family != backend::no_family && scene_.cluster_error.empty();
     for (std::uint32_t k = 0; is_closed && k < slot.lobe_count; ++k)
       is_closed = pose_.lobes[slot.lobe_first + k].has_closed_form;
     return is_closed;
   }
 
-  void shade_family(const SlotTerms &slot) {
+  UMOV_KERNEL void shade_family(const SlotTerms &slot) {
     const backend::LobeFamily<T> &family = scene_.families[slot.family];
     const Directions d(pose_.facet);
     R sum[backend::family_lobes_max], variance[backend::family_lobes_max],
@@ -359,7 +358,7 @@ private:
         const R area = Machine::load(area_[k] + s);
         const R deviation = is_exact_[k] ? R(T(0)) : Machine::load(deviation_[k] + s);
         for (std::size_t b = 0; b < slot.lobe_count; ++b) {
-          const T *weight = family.weight[b].data();
+          const T *weight = family.weight[b];
           R shadowing = g[0] * R(weight[0]);
           for (std::size_t n = 1; n < family.node_count; ++n)
             shadowing = shadowing + g[n] * R(weight[n]);
@@ -378,7 +377,7 @@ private:
     }
   }
 
-  void shade_lobe(std::size_t lobe) {
+  UMOV_KERNEL void shade_lobe(std::size_t lobe) {
     const Directions d(pose_.facet);
     R sum = R(T(0)), variance = R(T(0)), linear = R(T(0)), bias = R(T(0));
     const bool is_clustered = !scene_.cluster_error.empty();
@@ -410,7 +409,7 @@ private:
 
   /// Relative error of the lobe from unlike normals in a class: m spread^2 / 2 at the peak, more on
   /// its flanks as (n - h)^2 m. Neighbours err to the same side, so the errors add up.
-  R cluster_error(std::size_t lobe, std::size_t k, std::size_t s, R x, R y, R z) const {
+  UMOV_KERNEL R cluster_error(std::size_t lobe, std::size_t k, std::size_t s, R x, R y, R z) const {
     const auto &h = pose_.facet.half[0];
     const R dx = x - R(h[0]), dy = y - R(h[1]), dz = z - R(h[2]);
     return Machine::load(scene_.cluster_error[group_[k]].value + s) *
@@ -418,7 +417,7 @@ private:
   }
 
   /// The number of products is known to the compiler where it is small: sums stay in registers.
-  void shade_products(const SlotTerms &slot) {
+  UMOV_KERNEL void shade_products(const SlotTerms &slot) {
     switch (slot.product_count) {
     case 1:
       return shade_products_of<1>(slot);
@@ -434,7 +433,7 @@ private:
   }
 
   /// `known` products; 0: as many as the slot has.
-  template <std::size_t known> void shade_products_of(const SlotTerms &slot) {
+  template <std::size_t known> UMOV_KERNEL void shade_products_of(const SlotTerms &slot) {
     const std::size_t count = known > 0 ? known : slot.product_count;
     constexpr std::size_t room = known > 0 ? known : backend::products_max;
     const Directions d(pose_.facet);
@@ -464,20 +463,20 @@ private:
     }
   }
 
-  void hand_back(std::uint32_t slot) {
+  UMOV_KERNEL void hand_back(std::uint32_t slot) {
     for (std::size_t k = 0; k < count_; ++k)
       for (std::uint32_t j = 0; j < lanes; ++j)
         if (area_[k][j] > 0)
-          out_.seen.push_back({group_[k], j, slot, static_cast<double>(area_[k][j]),
-                               is_exact_[k] ? 0 : square(static_cast<double>(deviation_[k][j]))});
+          out_.seen.push({group_[k], j, slot, static_cast<S>(area_[k][j]),
+                          is_exact_[k] ? 0 : square(static_cast<S>(deviation_[k][j]))});
   }
 
   const SceneData<T> &scene_;
   const Masks *masks_;
   const MaskErrorModel &model_;
   const PoseData<T> &pose_;
-  PoseSums &out_;
-  float narrow_weight_[9]{}, wide_weight_[9]{};
+  PoseSumsOf<S> &out_;
+  float small_weight_[9]{}, large_weight_[9]{};
   std::size_t count_ = 0; ///< groups of the chunk that are lit and seen
   std::uint32_t group_[backend::groups_per_chunk];
   bool is_exact_[backend::groups_per_chunk]; ///< no deviation: nothing of it is partly hidden

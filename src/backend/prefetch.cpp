@@ -15,21 +15,21 @@ void prefetch_row(const Masks &masks, const MaskTable &table, const GridLook &lo
     const std::uint32_t *offset = table.offset.data() + direction * table.entries;
     for (std::size_t i = 0; i < table.entries; i += line / sizeof(std::uint32_t))
       __builtin_prefetch(offset + i);
-    const std::size_t end =
-        std::min<std::size_t>(table.row[direction + 1], table.row[direction] + lines_max);
-    for (std::size_t block = table.row[direction]; block < end; ++block)
-      __builtin_prefetch(masks.pool.data() + block);
+    const MaskRow row = table.row[direction];
+    const std::size_t count = std::min<std::size_t>(row.count, lines_max);
+    for (std::size_t block = 0; block < count; ++block)
+      __builtin_prefetch(masks.pool.data() + row.first + block);
   }
 }
 
 } // namespace
 
-void prefetch(const Masks &masks, const GridLook &narrow_sun, const GridLook &narrow_observer,
-              const GridLook &wide_sun, const GridLook &wide_observer) {
-  prefetch_row(masks, masks.narrow, narrow_sun);
-  prefetch_row(masks, masks.narrow, narrow_observer);
-  prefetch_row(masks, masks.wide, wide_sun);
-  prefetch_row(masks, masks.wide, wide_observer);
+void prefetch(const Masks &masks, const GridLook &small_sun, const GridLook &small_observer,
+              const GridLook &large_sun, const GridLook &large_observer) {
+  prefetch_row(masks, masks.small, small_sun);
+  prefetch_row(masks, masks.small, small_observer);
+  prefetch_row(masks, masks.large, large_sun);
+  prefetch_row(masks, masks.large, large_observer);
 }
 
 } // namespace umov::backend

@@ -1,15 +1,13 @@
 #pragma once
-// Private to the light curve: a scene flattened to what the facet loops read. T is float for the
-// vector units and double for the scalar reference.
+// Private to src/light: a scene flattened to what the facet loops read, as views; src/light/fast
+// holds the numbers (stores.h). T is float for the vector units and double for the scalar
+// reference.
 
-#include "backend/huge_pages.h"
+#include "backend/view.h"
 #include "kernel/facet_constants.h"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 namespace umov::backend {
 
@@ -51,7 +49,7 @@ inline constexpr std::size_t family_nodes_max = 6, family_lobes_max = 64;
 template <class T> struct LobeFamily {
   std::uint32_t node_count = 0;
   kernel::LobeConstants<T> node[family_nodes_max];
-  std::vector<std::array<T, family_nodes_max>> weight; ///< per lobe: Lagrange's, over 4
+  T weight[family_lobes_max][family_nodes_max]{}; ///< per lobe: Lagrange's, over 4
 };
 
 /// What is summed over the facets of one side of a material.
@@ -64,21 +62,24 @@ struct SlotTerms {
   bool is_general = false; ///< nothing is summed here: its seen facets are handed back
 };
 
+/// Where the blocks of one direction stand in the pool: rows may follow each other in any order.
+struct MaskRow {
+  std::uint32_t first = 0, count = 0;
+};
+
 /// Bits of points that are free in a direction, for a grid of directions on the octahedron.
 struct MaskTable {
-  std::size_t cells = 0;   ///< per edge of the unfolded octahedron
-  std::size_t entries = 0; ///< blocks per direction
-  /// [direction * entries + entry], in units of 64 bytes
-  std::vector<std::uint32_t, HugePageAllocator<std::uint32_t>> offset;
-  std::vector<std::uint32_t> row; ///< first block of each direction in the pool, and the end
-  [[nodiscard]] std::size_t directions() const { return (cells + 1) * (cells + 1); }
+  std::size_t cells = 0;            ///< per edge of the unfolded octahedron
+  std::size_t entries = 0;          ///< per direction
+  View<const std::uint32_t> offset; ///< [direction * entries + entry], in units of 64 bytes
+  View<const MaskRow> row;          ///< per direction
 };
 
 /// How the visible share of a group is looked up.
 struct GroupMask {
   std::uint32_t entry = 0; ///< first entry of its table
   std::uint16_t words = 0; ///< per lane (32 points each)
-  bool is_wide = false;    ///< an entry per lane, whose words are contiguous, in the second table
+  bool is_large = false;   ///< an entry per lane, whose words are contiguous, in the second table
 };
 
 /// 64 bytes.
@@ -86,103 +87,94 @@ struct alignas(64) MaskBlock {
   std::uint32_t word[lanes];
 };
 
+/// Offsets of entries all of which is hidden, or free, in the pool: it begins with `longest` blocks
+/// of zeros and as many of ones.
 struct Masks {
-  MaskTable narrow, wide;
-  std::vector<GroupMask> groups;
-  /// Begins with `longest` blocks of zeros and as many of ones.
-  std::vector<MaskBlock, HugePageAllocator<MaskBlock>> pool;
+  MaskTable small, large; ///< for small classes, 16 together, and for large ones
+  View<const GroupMask> groups;
+  View<const MaskBlock> pool;
   std::uint32_t longest = 0; ///< blocks of the longest entry
-  [[nodiscard]] std::uint32_t hidden() const { return 0; }
-  [[nodiscard]] std::uint32_t free() const { return longest; }
+  [[nodiscard]] UMOV_KERNEL std::uint32_t hidden() const { return 0; }
+  [[nodiscard]] UMOV_KERNEL std::uint32_t free() const { return longest; }
 };
 
 template <class T> struct SceneData {
-  std::vector<FacetGroup<T>> groups;
-  std::vector<Chunk> chunks;
-  std::vector<SlotTerms> slots;
-  std::vector<kernel::LobeConstants<T>> lobes;
-  std::vector<LobeFamily<T>> families;
-  std::vector<Profile<T>> profiles;
-  std::vector<Product> products;
+  View<const FacetGroup<T>> groups;
+  View<const Chunk> chunks;
+  View<const SlotTerms> slots;
+  View<const kernel::LobeConstants<T>> lobes;
+  View<const LobeFamily<T>> families;
+  View<const Profile<T>> profiles;
+  View<const Product> products;
   /// Per group and lane: relative error of the area's light from joining unlike normals.
-  std::vector<LaneNumbers<T>> cluster_error; ///< empty: none
+  View<const LaneNumbers<T>> cluster_error; ///< empty: none
 };
 
 /// Three directions of a grid around one, with their weights.
 struct GridLook {
-  std::array<std::uint32_t, 3> direction{};
-  std::array<float, 3> weight{};
+  std::uint32_t direction[3]{};
+  float weight[3]{};
 };
 
 /// One pose made ready: constants of the directions and of each lobe.
 template <class T> struct PoseData {
   kernel::FacetPose<T> facet;
-  std::vector<kernel::LobeAtPose<T>> lobes;
-  std::vector<char> is_narrow; ///< per lobe: too narrow for the kernels at this pose
-  GridLook narrow_sun, narrow_observer, wide_sun, wide_observer;
+  View<const kernel::LobeAtPose<T>> lobes;
+  View<const char> is_narrow; ///< per lobe: too narrow for the kernels at this pose
+  GridLook small_sun, small_observer, large_sun, large_observer; ///< by table of masks
 };
 
-/// A facet whose light the caller computes.
-struct SeenFacet {
+/// A facet whose light the caller computes. S is what sums are held in.
+template <class S> struct SeenFacetOf {
   std::uint32_t group = 0, lane = 0, slot = 0;
-  double area = 0, variance = 0; ///< seen area [m2] and the variance of that [m4]
+  S area = 0, variance = 0; ///< seen area [m2] and the variance of that [m4]
 };
+using SeenFacet = SeenFacetOf<double>;
 
-struct PoseSums {
-  std::span<double> specular, specular_variance;     ///< per lobe [m2/sr]
-  std::span<double> specular_bias;                   ///< error from joined normals, added up
-  std::span<double> product, product_variance;       ///< per product [m2]
-  std::span<double> specular_linear, product_linear; ///< standard deviations, added up
-  std::vector<SeenFacet> seen;                       ///< of general slots and narrow lobes
-  bool is_any_seen = false;
-
-  PoseSums() = default;
-  PoseSums(PoseSums &&) = default;
-  PoseSums &operator=(PoseSums &&) = default;
-  /// Zeros, in one piece of memory: a pose is summed in less than a microsecond.
-  void reset(std::size_t lobes, std::size_t products) {
-    room_.assign(4 * lobes + 3 * products, 0);
-    double *next = room_.data();
-    const auto take = [&](std::span<double> &column, std::size_t size) {
-      column = {next, size};
-      next += size;
-    };
-    for (auto *column : {&specular, &specular_variance, &specular_bias, &specular_linear})
-      take(*column, lobes);
-    for (auto *column : {&product, &product_variance, &product_linear})
-      take(*column, products);
-    seen.clear();
-    is_any_seen = false;
-  }
+/// Facets in room that is enough for all lanes of a scene.
+template <class S> class SeenListOf {
+public:
+  SeenListOf() = default;
+  UMOV_KERNEL explicit SeenListOf(View<SeenFacetOf<S>> room) : room_(room) {}
+  UMOV_KERNEL void clear() { size_ = 0; }
+  UMOV_KERNEL void push(const SeenFacetOf<S> &facet) { room_[size_++] = facet; }
+  UMOV_KERNEL SeenFacetOf<S> &operator[](std::size_t i) const { return room_[i]; }
+  [[nodiscard]] UMOV_KERNEL std::size_t size() const { return size_; }
+  [[nodiscard]] UMOV_KERNEL bool empty() const { return size_ == 0; }
+  [[nodiscard]] UMOV_KERNEL SeenFacetOf<S> *begin() const { return room_.begin(); }
+  [[nodiscard]] UMOV_KERNEL SeenFacetOf<S> *end() const { return room_.begin() + size_; }
+  /// Leaves the first ones.
+  UMOV_KERNEL void truncate(std::size_t size) { size_ = size; }
 
 private:
-  std::vector<double> room_;
+  View<SeenFacetOf<S>> room_;
+  std::size_t size_ = 0;
 };
+using SeenList = SeenListOf<double>;
+
+template <class S> struct PoseSumsOf {
+  View<S> specular, specular_variance;     ///< per lobe [m2/sr]
+  View<S> specular_bias;                   ///< error from joined normals, added up
+  View<S> product, product_variance;       ///< per product [m2]
+  View<S> specular_linear, product_linear; ///< standard deviations, added up
+  SeenListOf<S> seen;                      ///< of general slots and narrow lobes
+  bool is_any_seen = false;
+};
+using PoseSums = PoseSumsOf<double>;
 
 /// Error of the looked-up shares: sampling `points` of f (1 - f) / n^1.5, and `grid` of the
-/// variance among the directions around; `alike` of the square of all standard deviations together
-/// stands for what neighbouring classes have in common: the same shadow's edge crosses many
-/// (docs/theory/engine.md).
+/// variance among the directions around (docs/theory/engine.md).
 struct MaskErrorModel {
-  float points = 1, grid = 1, alike = 0;
+  float points = 1, grid = 1;
 };
-
-/// Adds to the variances what the classes' errors have in common.
-inline void add_alike(const MaskErrorModel &model, PoseSums &sums) {
-  const auto add = [&](std::span<const double> linear, std::span<double> variance) {
-    for (std::size_t k = 0; k < linear.size(); ++k)
-      variance[k] += static_cast<double>(model.alike) * linear[k] * linear[k];
-  };
-  add(sums.specular_linear, sums.specular_variance);
-  add(sums.product_linear, sums.product_variance);
-}
 
 /// Asks the processor for what the masks hold around the directions of a pose that comes soon:
 /// random poses would wait for memory most of their time.
-void prefetch(const Masks &masks, const GridLook &narrow_sun, const GridLook &narrow_observer,
-              const GridLook &wide_sun, const GridLook &wide_observer);
+void prefetch(const Masks &masks, const GridLook &small_sun, const GridLook &small_observer,
+              const GridLook &large_sun, const GridLook &large_observer);
 
-/// Sums over all facets of a pose. `masks` may be null: nothing hides anything.
+/// Adds the sums over all facets of a pose to `out`, which holds zeros. `masks` may be null:
+/// nothing hides anything.
 void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
                 const PoseData<double> &pose, PoseSums &out);
 void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
@@ -191,11 +183,11 @@ void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErr
 /// All facets of a pose that face Sun and observer, with the areas that the masks give and how
 /// uncertain these are; `out` is emptied first.
 void list_facing(const SceneData<double> &scene, const Masks &masks, const MaskErrorModel &model,
-                 const PoseData<double> &pose, std::vector<SeenFacet> &out);
+                 const PoseData<double> &pose, SeenList &out);
 
 /// Facets of which something is both lit and seen, without variances.
 void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
-               const PoseData<double> &pose, std::vector<SeenFacet> &out);
+               const PoseData<double> &pose, SeenList &out);
 /// Light of one facet per unit area without its colour: per lobe of its slot, then per product.
 /// `weight` has room for all of them.
 void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,

@@ -9,13 +9,14 @@
 
 #include "kernel/facet_constants.h"
 #include "kernel/microfacet.inl.h"
+#include "kernel/solar_nodes.inl.h"
 
 #include "kernel/begin.h"
 
 /// 1 - n.h as |n - h|^2 / 2, which keeps in single precision what the rounding of n.h would cost:
 /// 6e-8 m.
 template <class R, class T>
-inline R one_minus_cosine(const FacetPose<T> &pose, std::size_t node, R nx, R ny, R nz) {
+UMOV_KERNEL R one_minus_cosine(const FacetPose<T> &pose, std::size_t node, R nx, R ny, R nz) {
   const R x = nx - R(pose.half[node][0]), y = ny - R(pose.half[node][1]),
           z = nz - R(pose.half[node][2]);
   return (x * x + y * y + z * z) * R(T(0.5));
@@ -24,23 +25,23 @@ inline R one_minus_cosine(const FacetPose<T> &pose, std::size_t node, R nx, R ny
 /// The normal against the half vector: what all Blinn-Phong lobes of a facet share.
 template <class R> struct FromHalf { R log2_cosine, x2, y2; };
 template <class R, class T>
-inline FromHalf<R> from_half(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+UMOV_KERNEL FromHalf<R> from_half(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
   const R d = one_minus_cosine(pose, 0, nx, ny, nz);
   const R x = (n_l - n_v) * R(pose.along_scale), x2 = x * x;
   return {log2_of_one_minus(d), x2, max(R(T(0)), d * (R(T(2)) - d) - x2)};
 }
 /// Mean of Blinn-Phong's D over the disk, in closed form.
 template <class R, class T>
-inline R closed_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
-                        const FromHalf<R> &from) {
+UMOV_KERNEL R closed_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
+                             const FromHalf<R> &from) {
   return R(at.peak) *
          exp2(R(lobe.shape) * from.log2_cosine + R(at.along) * from.x2 + R(at.across) * from.y2);
 }
 
 /// Mean of D over the half vectors of the source.
 template <class R, class T>
-inline R lobe_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
-                      const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+UMOV_KERNEL R lobe_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
+                           const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
   if (at.has_closed_form)
     return closed_density(lobe, at, from_half(pose, nx, ny, nz, n_l, n_v));
   const auto density = [&](std::size_t node) {
@@ -54,47 +55,31 @@ inline R lobe_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
   };
   if (!at.uses_nodes)
     return density(0);
-  R sum = density(0) * R(T(source_node_weights[0]));
+  R sum = density(0) * R(source_node_weight<T>(0));
   for (std::size_t k = 1; k < source_nodes; ++k)
-    sum = sum + density(k) * R(T(source_node_weights[k]));
+    sum = sum + density(k) * R(source_node_weight<T>(k));
   return sum;
 }
 
 /// P(k) of one direction above the horizon.
-template <class R, class T> inline R lobe_masking(const LobeConstants<T> &lobe, R n_k) {
+template <class R, class T> UMOV_KERNEL R lobe_masking(const LobeConstants<T> &lobe, R n_k) {
   if (lobe.kind == LobeKind::Ggx)
     return ggx_masking(min(n_k, R(T(1))), R(lobe.shape));
   const R t = min(n_k, R(lobe.masking_limit)) * R(lobe.masking_scale) - R(T(1));
   return min(R(T(1)), n_k * polynomial(lobe.masking, polynomial_degree, t));
 }
 
-/// G2 of both directions.
-template <class R, class T>
-inline R joint_masking(JointMasking joint, const FacetPose<T> &pose, R p_l, R p_v, R n_l, R n_v) {
-  switch (joint) {
-  case JointMasking::Ashikhmin:
-    return ashikhmin(p_l, p_v, cos_azimuth(n_l, n_v, R(pose.cos_phase)));
-  case JointMasking::Smith:
-    return smith(p_l, p_v);
-  case JointMasking::SmithDirectional:
-    return smith_directional(p_l, p_v, cos_azimuth(n_l, n_v, R(pose.cos_phase)));
-  case JointMasking::Separable:
-    break;
-  }
-  return separable(p_l, p_v);
-}
-
 /// G2 of a facet that faces both directions.
 template <class R, class T>
-inline R lobe_shadowing(const LobeConstants<T> &lobe, const FacetPose<T> &pose, R n_l, R n_v) {
-  return joint_masking(lobe.joint, pose, lobe_masking(lobe, n_l), lobe_masking(lobe, n_v), n_l,
-                       n_v);
+UMOV_KERNEL R lobe_shadowing(const LobeConstants<T> &lobe, const FacetPose<T> &pose, R n_l, R n_v) {
+  return joint_masking(lobe.joint, lobe_masking(lobe, n_l), lobe_masking(lobe, n_v), n_l, n_v,
+                       R(pose.cos_phase));
 }
 
 /// w (n.l)(n.v) = D G2/4 [1/sr] of a facet that faces both directions.
 template <class R, class T>
-inline R lobe_weight(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
-                     const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+UMOV_KERNEL R lobe_weight(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
+                          const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
   const R g = lobe_shadowing(lobe, pose, n_l, n_v);
   return lobe_density(lobe, at, pose, nx, ny, nz, n_l, n_v) * g * R(T(0.25));
 }

@@ -2,12 +2,9 @@
 // Constants of the facet kernel, plain numbers: per material, and per material and pose.
 
 #include <cstddef>
-#include <cstdint>
+#include <umov/kernel/lobe.h>
 
 namespace umov::kernel {
-
-enum class LobeKind : std::uint8_t { BlinnPhong, Beckmann, Ggx };
-enum class JointMasking : std::uint8_t { Ashikhmin, Smith, SmithDirectional, Separable };
 
 /// Degree of the polynomials that stand for tabulated functions of a cosine.
 inline constexpr std::size_t polynomial_degree = 12;
@@ -15,8 +12,6 @@ inline constexpr std::size_t polynomial_degree = 12;
 /// fifth power (Stroud 1971, S2 5-1).
 inline constexpr std::size_t source_nodes = 7;
 inline constexpr double source_ring = 0.81649658092772603; ///< sqrt(2/3) of the radius
-inline constexpr double source_node_weights[source_nodes] = {0.25,  0.125, 0.125, 0.125,
-                                                             0.125, 0.125, 0.125};
 /// Variance of the disk's image over that of the lobe, up to which a closed form is taken: it
 /// leaves out fourth moments, of the order q^2/8; and up to which seven nodes are.
 inline constexpr double closed_form_max = 1e-2, nodes_max = 3e-2;
@@ -24,7 +19,7 @@ inline constexpr double closed_form_max = 1e-2, nodes_max = 3e-2;
 /// One isotropic lobe.
 template <class T> struct LobeConstants {
   LobeKind kind = LobeKind::BlinnPhong;
-  JointMasking joint = JointMasking::Ashikhmin;
+  Shadowing joint = Shadowing::Ashikhmin;
   T shape = 0;                        ///< m of Blinn-Phong, alpha of the others
   T peak = 0;                         ///< D at the normal, of Blinn-Phong
   T per_width2 = 0;                   ///< 1 / variance of the slope

@@ -1,23 +1,29 @@
-#pragma once
 // Plane films: amplitudes of a coherent stack and the incoherent sum over a thick layer
 // (Born & Wolf 1999, section 1.6). Field directions as in kernel/fresnel.inl.h.
+#if defined(UMOV_KERNEL_FILMS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef UMOV_KERNEL_FILMS_INL_H
+#undef UMOV_KERNEL_FILMS_INL_H
+#else
+#define UMOV_KERNEL_FILMS_INL_H
+#endif
 
+#include "kernel/angles.inl.h"
 #include "kernel/fresnel.inl.h"
 
 #include <cstddef>
 
-namespace umov::kernel {
+#include "kernel/begin.h"
 
-template <class R> inline Complex<R> add(Complex<R> a, Complex<R> b) {
+template <class R> UMOV_KERNEL Complex<R> add(Complex<R> a, Complex<R> b) {
   return {a.re + b.re, a.im + b.im};
 }
-template <class R> inline Complex<R> subtract(Complex<R> a, Complex<R> b) {
+template <class R> UMOV_KERNEL Complex<R> subtract(Complex<R> a, Complex<R> b) {
   return {a.re - b.re, a.im - b.im};
 }
 /// exp(i z).
-template <class R> inline Complex<R> exponential_i(Complex<R> z) {
-  const R size = std::exp(-z.im);
-  return {size * std::cos(z.re), size * std::sin(z.re)};
+template <class R> UMOV_KERNEL Complex<R> exponential_i(Complex<R> z) {
+  const R size = exp(-z.im);
+  return {size * cos(z.re), size * sin(z.re)};
 }
 
 template <class R> struct Film {
@@ -35,16 +41,16 @@ template <class R> struct StackAmplitudes {
 /// Admittances of both polarizations: q and q/eta^2.
 template <class R> struct Admittance { Complex<R> s, p, q; };
 
-template <class R> inline Admittance<R> admittance(Complex<R> eta, R sine_squared) {
+template <class R> UMOV_KERNEL Admittance<R> admittance(Complex<R> eta, R sine_squared) {
   const Complex<R> square = multiply(eta, eta);
   const Complex<R> q = square_root(Complex<R>{square.re - sine_squared, square.im});
   return {q, divide(q, square), q};
 }
 
 /// (a - b)/(a + b), 0 where both vanish (equal media at grazing incidence).
-template <class R> inline Complex<R> step_reflection(Complex<R> a, Complex<R> b) {
+template <class R> UMOV_KERNEL Complex<R> step_reflection(Complex<R> a, Complex<R> b) {
   const Complex<R> sum = add(a, b);
-  const bool is_void = sum.re == R(0) && sum.im == R(0);
+  const auto is_void = (sum.re == R(0)) & (sum.im == R(0));
   const R guard = select(is_void, R(1), R(0));
   const Complex<R> out = divide(subtract(a, b), Complex<R>{sum.re + guard, sum.im});
   return {select(is_void, R(0), out.re), select(is_void, R(0), out.im)};
@@ -52,7 +58,7 @@ template <class R> inline Complex<R> step_reflection(Complex<R> a, Complex<R> b)
 
 /// One polarization, one more film above: r = (r_j + r e^{2i d})/(1 + r_j r e^{2i d}).
 template <class R>
-inline void add_film(Complex<R> r_j, Complex<R> phase, Complex<R> &r, Complex<R> &t) {
+UMOV_KERNEL void add_film(Complex<R> r_j, Complex<R> phase, Complex<R> &r, Complex<R> &t) {
   const Complex<R> one{R(1), R(0)};
   const Complex<R> below = multiply(r, multiply(phase, phase));
   const Complex<R> ring = add(one, multiply(r_j, below));
@@ -63,8 +69,8 @@ inline void add_film(Complex<R> r_j, Complex<R> phase, Complex<R> &r, Complex<R>
 /// Light from the medium `above` at (eta_above sin)^2 = sine_squared onto `count` films, the first
 /// one on top, over the medium `below`. `sine_squared` may exceed what `above` allows: evanescent.
 template <class R>
-inline StackAmplitudes<R> stack(Complex<R> above, R sine_squared, const Film<R> *films,
-                                std::size_t count, Complex<R> below) {
+UMOV_KERNEL StackAmplitudes<R> stack(Complex<R> above, R sine_squared, const Film<R> *films,
+                                     std::size_t count, Complex<R> below) {
   const R two_pi = R(6.283185307179586);
   Admittance<R> lower = admittance(below, sine_squared);
   const Admittance<R> last = lower;
@@ -81,7 +87,7 @@ inline StackAmplitudes<R> stack(Complex<R> above, R sine_squared, const Film<R> 
     }
     lower = upper;
   }
-  const R top_s = std::max(lower.s.re, R(1e-30)), top_p = std::max(lower.p.re, R(1e-30));
+  const R top_s = max(lower.s.re, R(1e-30)), top_p = max(lower.p.re, R(1e-30));
   return {{r_s, r_p}, {t_s, t_p}, last.s.re / top_s, last.p.re / top_p};
 }
 
@@ -92,10 +98,11 @@ template <class R> struct Powers {
   Complex<R> z;
 };
 
-template <class R> inline Powers<R> powers(Amplitudes<R> a, R factor_s = R(1), R factor_p = R(1)) {
+template <class R>
+UMOV_KERNEL Powers<R> powers(Amplitudes<R> a, R factor_s = R(1), R factor_p = R(1)) {
   const R s = a.s.re * a.s.re + a.s.im * a.s.im, p = a.p.re * a.p.re + a.p.im * a.p.im;
   const Complex<R> z = multiply(Complex<R>{a.s.re, -a.s.im}, a.p);
-  const R both = std::sqrt(std::max(R(0), factor_s * factor_p));
+  const R both = sqrt(max(R(0), factor_s * factor_p));
   return {factor_s * s, factor_p * p, {both * z.re, both * z.im}};
 }
 
@@ -104,8 +111,8 @@ template <class R> inline Powers<R> powers(Amplitudes<R> a, R factor_s = R(1), R
 /// is reflected by what lies beneath. Sum over all passes without interference: R = R_top + T_down
 /// T_up tau^2 R_b/(1 - R_in R_b tau^2), the cross terms alike.
 template <class R>
-inline Powers<R> thick_layer(Powers<R> top, Powers<R> down, Powers<R> up, Powers<R> inside, R tau,
-                             Powers<R> beneath) {
+UMOV_KERNEL Powers<R> thick_layer(Powers<R> top, Powers<R> down, Powers<R> up, Powers<R> inside,
+                                  R tau, Powers<R> beneath) {
   const R t2 = tau * tau;
   const Complex<R> one{R(1), R(0)};
   const auto loop = multiply(inside.z, beneath.z);
@@ -117,8 +124,9 @@ inline Powers<R> thick_layer(Powers<R> top, Powers<R> down, Powers<R> up, Powers
 }
 
 /// The distinct entries of the reflection Mueller matrix from powers.
-template <class R> inline Reflection<R> reflection(Powers<R> r) {
+template <class R> UMOV_KERNEL Reflection<R> reflection(Powers<R> r) {
   return {(r.s + r.p) / R(2), (r.s - r.p) / R(2), r.z};
 }
 
-} // namespace umov::kernel
+#include "kernel/end.h"
+#endif

@@ -1,5 +1,6 @@
 // SGP4 and SDP4: the state of an object at a time, stage by stage. Sources H, V, S as in
-// sgp4_numbers.h. R is double or double lanes; all give the same bits.
+// sgp4_numbers.h. R is double, double lanes, which give the
+// same bits, or a dual number.
 #if defined(UMOV_KERNEL_SGP4_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef UMOV_KERNEL_SGP4_INL_H
 #undef UMOV_KERNEL_SGP4_INL_H
@@ -16,11 +17,11 @@
 template <class R> struct Sgp4State { R x, y, z, vx, vy, vz, code; };
 
 /// The first condition that fails names the code.
-template <class R, class M> inline void require(M holds, double number, R &code) {
+template <class R, class M> UMOV_KERNEL void require(M holds, double number, R &code) {
   code = select(holds | (code > R(0.5)), code, R(number));
 }
 
-template <class R> inline InclinationTerms<R> inclination_terms(R inclination) {
+template <class R> UMOV_KERNEL InclinationTerms<R> inclination_terms(R inclination) {
   const SineCosine<R> i = sine_cosine(inclination);
   const R c2 = i.cosine * i.cosine;
   // The J3 term of the longitude is singular at 180 deg; the reference holds the divisor at
@@ -40,15 +41,27 @@ template <class R> inline InclinationTerms<R> inclination_terms(R inclination) {
 
 template <class R> struct ResonanceDerivatives { R angle_rate, motion_rate, motion_second; };
 
-template <class R, std::size_t N>
-inline ResonanceDerivatives<R>
-resonance_derivatives(const std::array<ResonanceHarmonic, N> &harmonics, const Sgp4Numbers<R> &c,
-                      const ResonanceNode<R> &at) {
+UMOV_KERNEL std::size_t harmonic_count(Resonance kind) {
+  return kind == Resonance::OneDay ? 3 : resonance_terms_max;
+}
+UMOV_KERNEL ResonanceHarmonic resonance_harmonic(Resonance kind, std::size_t i) {
+  static constexpr ResonanceHarmonic one_day[] = {
+      {0, 1, 0.13130908}, {0, 2, 2 * 2.8843198}, {0, 3, 3 * 0.37448087}};
+  static constexpr ResonanceHarmonic half_day[] = {
+      {2, 1, 5.7686396}, {0, 1, 5.7686396}, {1, 1, 0.95240898}, {-1, 1, 0.95240898},
+      {2, 2, 1.8014998}, {0, 2, 1.8014998}, {1, 1, 1.0508330},  {-1, 1, 1.0508330},
+      {1, 2, 4.4108898}, {-1, 2, 4.4108898}};
+  return kind == Resonance::OneDay ? one_day[i] : half_day[i];
+}
+
+template <class R>
+UMOV_KERNEL ResonanceDerivatives<R> resonance_derivatives(Resonance kind, const Sgp4Numbers<R> &c,
+                                                          const ResonanceNode<R> &at) {
   // One-day terms do not hold the perigee.
   const R perigee = c.epoch.perigee + c.rates.perigee * at.minutes;
   ResonanceDerivatives<R> d{at.motion + c.resonance.rate0, R(0), R(0)};
-  for (std::size_t i = 0; i < N; ++i) {
-    const ResonanceHarmonic &h = harmonics[i];
+  for (std::size_t i = 0; i < harmonic_count(kind); ++i) {
+    const ResonanceHarmonic h = resonance_harmonic(kind, i);
     const SineCosine<R> wave =
         sine_cosine(R(h.perigee_multiple) * perigee + R(h.angle_multiple) * at.angle - R(h.phase));
     const R amplitude = c.resonance.amplitude[i];
@@ -61,11 +74,9 @@ resonance_derivatives(const std::array<ResonanceHarmonic, N> &harmonics, const S
 
 /// A Taylor step (Euler-Maclaurin) of the resonance angle and motion.
 template <class R>
-inline ResonanceNode<R> resonance_step(Resonance kind, const Sgp4Numbers<R> &c,
-                                       const ResonanceNode<R> &at, R step) {
-  const ResonanceDerivatives<R> d = kind == Resonance::OneDay
-                                        ? resonance_derivatives(one_day_harmonics, c, at)
-                                        : resonance_derivatives(half_day_harmonics, c, at);
+UMOV_KERNEL ResonanceNode<R> resonance_step(Resonance kind, const Sgp4Numbers<R> &c,
+                                            const ResonanceNode<R> &at, R step) {
+  const ResonanceDerivatives<R> d = resonance_derivatives(kind, c, at);
   const R half_square = step * step * R(0.5);
   return {at.minutes + step, at.angle + d.angle_rate * step + d.motion_rate * half_square,
           at.motion + d.motion_rate * step + d.motion_second * half_square};
@@ -82,7 +93,8 @@ template <class R> struct Drifted {
 };
 
 /// Secular gravity and drag (H section 6, "secular effects").
-template <class R> inline Drifted<R> secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c, R t) {
+template <class R>
+UMOV_KERNEL Drifted<R> secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c, R t) {
   const DragTerms<R> &d = c.drag;
   const R t2 = t * t;
   Drifted<R> out;
@@ -110,8 +122,8 @@ template <class R> inline Drifted<R> secular(const Sgp4Kind &kind, const Sgp4Num
 
 /// Lunar-solar secular rates, and the resonance from its `node` on.
 template <class R>
-inline void deep_space_secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c,
-                               const ResonanceNode<R> &node, R t, MeanElements<R> &m) {
+UMOV_KERNEL void deep_space_secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c,
+                                    const ResonanceNode<R> &node, R t, MeanElements<R> &m) {
   m.eccentricity = m.eccentricity + c.third.eccentricity * t;
   m.inclination = m.inclination + c.third.inclination * t;
   m.perigee = m.perigee + c.third.perigee * t;
@@ -128,7 +140,7 @@ inline void deep_space_secular(const Sgp4Kind &kind, const Sgp4Numbers<R> &c,
 }
 
 /// x^(2/3) for x > 0, near 1 by nature: Newton's method for the cube root.
-template <class R> inline R two_thirds_power(R x) {
+template <class R> UMOV_KERNEL R two_thirds_power(R x) {
   R y = R(1) + (x - R(1)) * R(1.0 / 3.0);
   R step = R(1);
   for (int i = 0; i < 60; ++i) {
@@ -143,8 +155,8 @@ template <class R> inline R two_thirds_power(R x) {
 
 /// Applies drag to the axis [Earth radii] and the longitude and brings the angles into one turn.
 template <class R>
-inline void apply_drag(const Sgp4Kind &kind, const Sgp4Numbers<R> &c, Drifted<R> &drifted, R &axis,
-                       R &code) {
+UMOV_KERNEL void apply_drag(const Sgp4Kind &kind, const Sgp4Numbers<R> &c, Drifted<R> &drifted,
+                            R &axis, R &code) {
   MeanElements<R> &m = drifted.mean;
   require(m.motion > R(0), 2, code);
   R axis0 = c.axis0;
@@ -170,7 +182,7 @@ template <class R> struct LunarSolar { R eccentricity, inclination, longitude, p
 
 /// Adds one body's terms; `perigee` and `node` are still multiplied by sin i.
 template <class R>
-inline void add_third_body(const ThirdBodyPeriodics<R> &b, R t, LunarSolar<R> &sum) {
+UMOV_KERNEL void add_third_body(const ThirdBodyPeriodics<R> &b, R t, LunarSolar<R> &sum) {
   const R mean = b.anomaly0 + b.rate * t;
   const R anomaly = mean + R(2) * b.eccentricity * sine_cosine(mean).sine;
   const SineCosine<R> a = sine_cosine(anomaly);
@@ -184,7 +196,8 @@ inline void add_third_body(const ThirdBodyPeriodics<R> &b, R t, LunarSolar<R> &s
 }
 
 /// Lyddane's form for small inclinations: node and inclination as a vector.
-template <class R> inline MeanElements<R> with_lyddane(const LunarSolar<R> &p, MeanElements<R> m) {
+template <class R>
+UMOV_KERNEL MeanElements<R> with_lyddane(const LunarSolar<R> &p, MeanElements<R> m) {
   const SineCosine<R> i = sine_cosine(m.inclination), n = sine_cosine(m.node);
   const R x = i.sine * n.sine + p.node * n.cosine + p.inclination * i.cosine * n.sine;
   const R y = i.sine * n.cosine - p.node * n.sine + p.inclination * i.cosine * n.cosine;
@@ -200,7 +213,7 @@ template <class R> inline MeanElements<R> with_lyddane(const LunarSolar<R> &p, M
 }
 
 template <class R>
-inline void deep_space_periodics(const Sgp4Numbers<R> &c, R t, MeanElements<R> &m) {
+UMOV_KERNEL void deep_space_periodics(const Sgp4Numbers<R> &c, R t, MeanElements<R> &m) {
   LunarSolar<R> p{R(0), R(0), R(0), R(0), R(0)};
   add_third_body(c.sun, t, p);
   add_third_body(c.moon, t, p);
@@ -236,8 +249,8 @@ template <class R> struct Nonsingular {
 };
 
 template <class R>
-inline Nonsingular<R> long_period_periodics(const MeanElements<R> &m, R axis,
-                                            const InclinationTerms<R> &inc) {
+UMOV_KERNEL Nonsingular<R> long_period_periodics(const MeanElements<R> &m, R axis,
+                                                 const InclinationTerms<R> &inc) {
   const R e = m.eccentricity;
   const R inverse_p = R(1) / (axis * (R(1) - e * e));
   const SineCosine<R> omega = sine_cosine(m.perigee);
@@ -250,7 +263,7 @@ inline Nonsingular<R> long_period_periodics(const MeanElements<R> &m, R axis,
 
 /// Kepler's equation for E + omega by Newton's method, its step held to 0.95 rad (V). Returns the
 /// sine and cosine that the last step was made from.
-template <class R> inline SineCosine<R> solve_kepler(const Nonsingular<R> &o) {
+template <class R> UMOV_KERNEL SineCosine<R> solve_kepler(const Nonsingular<R> &o) {
   R angle = o.longitude, step = R(1);
   SineCosine<R> out{R(0), R(1)};
   for (int i = 0; i < 10; ++i) {
@@ -279,9 +292,9 @@ template <class R> struct Osculating {
 
 /// Preliminary quantities and short-period J2 terms (H section 6, last blocks).
 template <class R>
-inline Osculating<R> short_periodics(const MeanElements<R> &m, R axis, const Nonsingular<R> &o,
-                                     const SineCosine<R> &e, const InclinationTerms<R> &inc,
-                                     R &code) {
+UMOV_KERNEL Osculating<R> short_periodics(const MeanElements<R> &m, R axis, const Nonsingular<R> &o,
+                                          const SineCosine<R> &e, const InclinationTerms<R> &inc,
+                                          R &code) {
   const R e_cos = o.ex * e.cosine + o.ey * e.sine;
   const R e_sin = o.ex * e.sine - o.ey * e.cosine;
   const R e2 = o.ex * o.ex + o.ey * o.ey;
@@ -313,7 +326,7 @@ inline Osculating<R> short_periodics(const MeanElements<R> &m, R axis, const Non
   return out;
 }
 
-template <class R> inline Sgp4State<R> to_state(const Osculating<R> &o, R code) {
+template <class R> UMOV_KERNEL Sgp4State<R> to_state(const Osculating<R> &o, R code) {
   const SineCosine<R> u = o.latitude_argument, n = sine_cosine(o.node),
                       i = sine_cosine(o.inclination);
   const R sn_ci = n.sine * i.cosine, cn_ci = n.cosine * i.cosine;
@@ -331,8 +344,8 @@ template <class R> inline Sgp4State<R> to_state(const Osculating<R> &o, R code) 
 /// the epoch and less than one from `t` (unused without resonance). On failure the numbers mean
 /// nothing.
 template <class R>
-inline Sgp4State<R> sgp4_state(const Sgp4Kind &kind, const Sgp4Numbers<R> &c,
-                               const ResonanceNode<R> &node, R t) {
+UMOV_KERNEL Sgp4State<R> sgp4_state(const Sgp4Kind &kind, const Sgp4Numbers<R> &c,
+                                    const ResonanceNode<R> &node, R t) {
   R code = R(0), axis = R(1);
   Drifted<R> drifted = secular(kind, c, t);
   MeanElements<R> &m = drifted.mean;

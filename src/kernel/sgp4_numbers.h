@@ -6,7 +6,6 @@
 //   V  Vallado, Crawford, Hujsak & Kelso 2006, AIAA 2006-6753 (corrections, "improved" mode)
 //   S  Hoots, Schumacher & Glover 2004, J. Guidance 27(2), 174 (the equations in one notation)
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -63,7 +62,7 @@ inline constexpr std::size_t resonance_terms_max = 10;
 template <class R> struct ResonanceNumbers {
   R angle0; ///< resonance angle at the epoch
   R rate0;  ///< its secular rate without the mean motion
-  std::array<R, resonance_terms_max> amplitude;
+  R amplitude[resonance_terms_max];
 };
 
 template <class R> struct Sgp4Numbers {
@@ -96,18 +95,6 @@ struct Sgp4Kind {
 struct ResonanceHarmonic {
   double perigee_multiple, angle_multiple, phase;
 };
-inline constexpr std::array<ResonanceHarmonic, 3> one_day_harmonics{
-    {{0, 1, 0.13130908}, {0, 2, 2 * 2.8843198}, {0, 3, 3 * 0.37448087}}};
-inline constexpr std::array<ResonanceHarmonic, 10> half_day_harmonics{{{2, 1, 5.7686396},
-                                                                       {0, 1, 5.7686396},
-                                                                       {1, 1, 0.95240898},
-                                                                       {-1, 1, 0.95240898},
-                                                                       {2, 2, 1.8014998},
-                                                                       {0, 2, 1.8014998},
-                                                                       {1, 1, 1.0508330},
-                                                                       {-1, 1, 1.0508330},
-                                                                       {1, 2, 4.4108898},
-                                                                       {-1, 2, 4.4108898}}};
 
 /// Resonance angle and mean motion at a time.
 template <class R> struct ResonanceNode { R minutes, angle, motion; };

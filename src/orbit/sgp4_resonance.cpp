@@ -5,7 +5,9 @@
 #include "kernel/sgp4.inl.h"
 #include "orbit/sgp4_model.h"
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace umov::sgp4 {
 
@@ -86,6 +88,11 @@ InclinationFunctions inclination_functions(double s, double c) {
   return f;
 }
 
+/// In the order of kernel::resonance_harmonic.
+void set_amplitudes(std::initializer_list<double> values, Numbers &out) {
+  std::copy(values.begin(), values.end(), out.resonance.amplitude);
+}
+
 void add_half_day(Constants &c, double inverse_axis) {
   Numbers &n = c.numbers;
   const MeanElements &m = n.epoch;
@@ -96,13 +103,12 @@ void add_half_day(Constants &c, double inverse_axis) {
   const double degree4 = degree3 * inverse_axis;
   const double degree5 = degree4 * inverse_axis;
   c.kind.resonance = Resonance::HalfDay;
-  // In the order of half_day_harmonics.
-  n.resonance.amplitude = {
-      degree2 * root22 * f.f220 * g.g201,     degree2 * root22 * f.f221 * g.g211,
-      degree3 * root32 * f.f321 * g.g310,     degree3 * root32 * f.f322 * g.g322,
-      2 * degree4 * root44 * f.f441 * g.g410, 2 * degree4 * root44 * f.f442 * g.g422,
-      degree5 * root52 * f.f522 * g.g520,     degree5 * root52 * f.f523 * g.g532,
-      2 * degree5 * root54 * f.f542 * g.g521, 2 * degree5 * root54 * f.f543 * g.g533};
+  set_amplitudes({degree2 * root22 * f.f220 * g.g201, degree2 * root22 * f.f221 * g.g211,
+                  degree3 * root32 * f.f321 * g.g310, degree3 * root32 * f.f322 * g.g322,
+                  2 * degree4 * root44 * f.f441 * g.g410, 2 * degree4 * root44 * f.f442 * g.g422,
+                  degree5 * root52 * f.f522 * g.g520, degree5 * root52 * f.f523 * g.g532,
+                  2 * degree5 * root54 * f.f542 * g.g521, 2 * degree5 * root54 * f.f543 * g.g533},
+                 n);
   n.resonance.angle0 = std::fmod(m.anomaly + 2 * m.node - 2 * n.greenwich, two_pi);
   n.resonance.rate0 =
       n.rates.anomaly + n.third.anomaly + 2 * (n.rates.node + n.third.node - earth_rate) - m.motion;
@@ -122,9 +128,9 @@ void add_one_day(Constants &c, double inverse_axis) {
   const double degree2 = 3 * m.motion * m.motion * inverse_axis * inverse_axis;
   const double degree3 = degree2 * inverse_axis;
   c.kind.resonance = Resonance::OneDay;
-  // In the order of one_day_harmonics.
-  n.resonance.amplitude = {degree3 * f311 * g310 * q31, 2 * degree2 * f220 * g200 * q22,
-                           3 * degree3 * f330 * g300 * q33};
+  set_amplitudes({degree3 * f311 * g310 * q31, 2 * degree2 * f220 * g200 * q22,
+                  3 * degree3 * f330 * g300 * q33},
+                 n);
   n.resonance.angle0 = std::fmod(m.anomaly + m.node + m.perigee - n.greenwich, two_pi);
   n.resonance.rate0 = n.rates.anomaly + n.rates.perigee + n.rates.node - earth_rate +
                       n.third.anomaly + n.third.perigee + n.third.node - m.motion;

@@ -14,21 +14,6 @@ Vec3<Facet> tilted(double cosine) {
 
 } // namespace
 
-double MicrofacetLobe::joint_masking(double p_l, double p_v, double n_l, double n_v,
-                                     double l_v) const {
-  switch (shadowing_) {
-  case Shadowing::Ashikhmin:
-    return kernel::ashikhmin(p_l, p_v, kernel::cos_azimuth(n_l, n_v, l_v));
-  case Shadowing::Smith:
-    return kernel::smith(p_l, p_v);
-  case Shadowing::SmithDirectional:
-    return kernel::smith_directional(p_l, p_v, kernel::cos_azimuth(n_l, n_v, l_v));
-  case Shadowing::Separable:
-    return kernel::separable(p_l, p_v);
-  }
-  return 0;
-}
-
 double MicrofacetLobe::operator()(Vec3<Facet> l, Vec3<Facet> v, double l_v,
                                   double disk_radius_rad) const {
   if (!(l.z > 0 && v.z > 0))
@@ -37,8 +22,8 @@ double MicrofacetLobe::operator()(Vec3<Facet> l, Vec3<Facet> v, double l_v,
   if (!(d > 0))
     return 0;
   return d *
-         joint_masking(normals_->masking(l), normals_->masking(v), std::min(l.z, 1.0),
-                       std::min(v.z, 1.0), l_v) /
+         kernel::joint_masking(shadowing_, normals_->masking(l), normals_->masking(v),
+                               std::min(l.z, 1.0), std::min(v.z, 1.0), l_v) /
          4;
 }
 
@@ -47,8 +32,8 @@ double MicrofacetLobe::isotropic(double n_l, double n_v, double l_v, double n_h)
     return 0;
   const double d = normals_->density(tilted(n_h));
   return d *
-         joint_masking(normals_->masking(tilted(n_l)), normals_->masking(tilted(n_v)), n_l, n_v,
-                       l_v) /
+         kernel::joint_masking(shadowing_, normals_->masking(tilted(n_l)),
+                               normals_->masking(tilted(n_v)), n_l, n_v, l_v) /
          4;
 }
 

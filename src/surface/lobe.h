@@ -22,8 +22,6 @@ public:
   [[nodiscard]] Shadowing shadowing() const { return shadowing_; }
 
 private:
-  [[nodiscard]] double joint_masking(double p_l, double p_v, double n_l, double n_v,
-                                     double l_v) const;
   std::shared_ptr<const Distribution> normals_;
   Shadowing shadowing_;
 };

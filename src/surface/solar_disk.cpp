@@ -54,10 +54,10 @@ Nearest DiskImage::nearest_edge() const {
 
 /// Degree 5 on the disk with seven nodes.
 double by_nodes(const Distribution &normals, const DiskImage &image) {
-  double sum = normals.density(image.at(0, 0)) * kernel::source_node_weights[0];
+  double sum = normals.density(image.at(0, 0)) * kernel::source_node_weight<double>(0);
   for (std::size_t k = 1; k < kernel::source_nodes; ++k)
     sum += normals.density(image.at(kernel::source_ring, static_cast<double>(k - 1) * pi / 3)) *
-           kernel::source_node_weights[k];
+           kernel::source_node_weight<double>(k);
   return sum;
 }
 

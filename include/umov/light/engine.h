@@ -43,6 +43,9 @@ struct EngineOptions {
   MaskQuality masks = fast_masks;
   /// Per band [m2/sr]: below it I need not be known any better than at it; empty: 0.
   std::vector<double> floor_i = {};
+  /// With `refine_above` > 0: half-widths count every facet that could be seen, also where the masks
+  /// know of none; each pose costs tens of microseconds more.
+  bool doubts_all = false;
   /// Part of `refine_above` that is asked of Q/I.
   double q_part = 0.06;
   /// Facets of one material whose normals differ by less are joined [rad]; the error goes into the

@@ -7,6 +7,7 @@
 #include <string>
 #include <umov/core/result.h>
 #include <umov/core/vec3.h>
+#include <umov/kernel/lobe.h>
 #include <vector>
 
 namespace umov {
@@ -23,7 +24,7 @@ DistributionChoice blinn_phong(double m);
 
 /// A distribution that the facet kernels know (src/kernel/facet.inl.h), with its one number.
 struct KernelForm {
-  enum class Kind { BlinnPhong, Beckmann, Ggx } kind;
+  LobeKind kind;
   double shape; ///< m of Blinn-Phong, alpha of the others
 };
 

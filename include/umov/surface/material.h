@@ -7,15 +7,13 @@
 #include <umov/core/quantity.h>
 #include <umov/core/result.h>
 #include <umov/core/vec3.h>
+#include <umov/kernel/lobe.h>
 #include <umov/optics/index.h>
 #include <umov/surface/distribution.h>
 #include <umov/surface/measured.h>
 #include <vector>
 
 namespace umov {
-
-/// Combination of the masking of both directions (physics.md section 3).
-enum class Shadowing { Ashikhmin, Smith, SmithDirectional, Separable };
 
 /// Light that meets several microfacets before it leaves.
 enum class Interreflection {

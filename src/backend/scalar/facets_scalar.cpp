@@ -2,6 +2,7 @@
 
 #include "backend/facet_loops.inl.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace umov::backend {
@@ -10,6 +11,7 @@ namespace {
 struct ScalarMachine {
   using R = double;
   using T = double;
+  using S = double;
   static constexpr std::size_t width = 1;
   static double load(const double *p) { return *p; }
   static void store(double x, double *p) { *p = x; }
@@ -54,13 +56,13 @@ void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskEr
 }
 
 void list_facing(const SceneData<double> &scene, const Masks &masks, const MaskErrorModel &model,
-                 const PoseData<double> &pose, std::vector<SeenFacet> &out) {
+                 const PoseData<double> &pose, SeenList &out) {
   PoseSums unused;
   kernel::FacetLoops<ScalarMachine>(scene, &masks, model, pose, unused).list_facing(out);
 }
 
 void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
-               const PoseData<double> &pose, std::vector<SeenFacet> &out) {
+               const PoseData<double> &pose, SeenList &out) {
   PoseSums unused;
   kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_seen(out);
 }
@@ -77,6 +79,8 @@ void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
   for (std::size_t k = 0; k < slot.lobe_count; ++k)
     *weight++ = kernel::lobe_weight(scene.lobes[slot.lobe_first + k],
                                     pose.lobes[slot.lobe_first + k], pose.facet, x, y, z, n_l, n_v);
+  if (slot.product_count == 0)
+    return;
   const auto values = kernel::profile_values<double, double>(scene, slot, n_l, n_v);
   for (std::size_t p = 0; p < slot.product_count; ++p)
     *weight++ = values.product<double>(scene.products[slot.product_first + p]);

@@ -13,6 +13,7 @@
 struct SimdMachine {
   using R = Lanes;
   using T = float;
+  using S = double;
   static constexpr std::size_t width = hn::MaxLanes(FloatTag());
   static HWY_INLINE Lanes load(const float *p) { return hn::Load(FloatTag(), p); }
   static HWY_INLINE void store(Lanes x, float *p) { hn::Store(x.v, FloatTag(), p); }
@@ -78,7 +79,7 @@ struct SimdMachine {
 };
 
 void sum_facets_here(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
-                     const PoseData<float> &pose, PoseSums &out) {
+                     const PoseData<float> &pose, backend::PoseSums &out) {
   FacetLoops<SimdMachine>(scene, masks, model, pose, out).run();
 }
 
@@ -94,7 +95,7 @@ HWY_EXPORT(sum_facets_here);
 namespace umov::backend {
 
 void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
-                const PoseData<float> &pose, PoseSums &out) {
+                const PoseData<float> &pose, backend::PoseSums &out) {
   using namespace kernel; // the table of HWY_EXPORT stands there
   HWY_DYNAMIC_DISPATCH(sum_facets_here)(scene, masks, model, pose, out);
 }

@@ -28,11 +28,11 @@ struct NormalSampler {
   /// [1/sr] of normals at a cosine from the mean one.
   [[nodiscard]] double density(double n_h) const {
     switch (form.kind) {
-    case KernelForm::Kind::BlinnPhong:
+    case LobeKind::BlinnPhong:
       return kernel::blinn_phong(n_h, form.shape) * n_h;
-    case KernelForm::Kind::Beckmann:
+    case LobeKind::Beckmann:
       return kernel::beckmann(n_h, form.shape) * n_h;
-    case KernelForm::Kind::Ggx:
+    case LobeKind::Ggx:
       break;
     }
     return kernel::ggx(n_h, form.shape) * n_h;
@@ -41,11 +41,11 @@ struct NormalSampler {
   [[nodiscard]] double cosine(double u) const {
     const double a2 = form.shape * form.shape;
     switch (form.kind) {
-    case KernelForm::Kind::BlinnPhong:
+    case LobeKind::BlinnPhong:
       return std::pow(1 - u, 1 / (form.shape + 2));
-    case KernelForm::Kind::Beckmann:
+    case LobeKind::Beckmann:
       return 1 / std::sqrt(1 - a2 * std::log(1 - u));
-    case KernelForm::Kind::Ggx:
+    case LobeKind::Ggx:
       break;
     }
     return std::sqrt((1 - u) / (1 - u + a2 * u));
@@ -56,7 +56,7 @@ struct NormalSampler {
 inline NormalSampler normal_sampler(const Distribution &normals) {
   const auto form = normals.kernel_form();
   const double slope = std::clamp(normals.width(), 1e-3, 1.0);
-  return {form ? *form : KernelForm{KernelForm::Kind::Beckmann, slope * std::numbers::sqrt2}};
+  return {form ? *form : KernelForm{LobeKind::Beckmann, slope * std::numbers::sqrt2}};
 }
 
 /// How directions are drawn at a surface: the one of a mirror, Lambert's cosine, or the mirror
@@ -64,7 +64,7 @@ inline NormalSampler normal_sampler(const Distribution &normals) {
 struct Sampler {
   double mirror_share; ///< 0 without a mirror, 1 of a mirror alone
   double cosine_share;
-  NormalSampler normals{{KernelForm::Kind::BlinnPhong, 0}};
+  NormalSampler normals{{LobeKind::BlinnPhong, 0}};
   explicit Sampler(const Surface &surface) {
     const Distribution *lobe = surface.normals(0);
     const bool has_lobe = lobe != nullptr && !lobe->is_mirror();

@@ -215,17 +215,20 @@ void ArticulatedEngine::State::hide(std::size_t which, const std::vector<PartMot
     for (const Sphere &sphere : parts[q].cover)
       if (q != which)
         others[q].push_back({to_part[q].inverse().place(sphere.centre), sphere.radius});
-  backend::list_seen(engine.compiled.data, engine.hiding(), mask_error, prepared.pose,
-                     own.uncertain);
+  own.uncertain.reset(engine.views.whole.groups.size() * backend::lanes);
+  backend::list_seen(engine.views.whole, engine.hiding(), mask_error, prepared.pose, own.uncertain);
   // Those that another part may come before.
-  std::erase_if(own.uncertain, [&](const backend::SeenFacet &facet) {
+  const auto is_apart = [&](const backend::SeenFacet &facet) {
     const Sphere &bounds = part.bounds[facet.group * backend::lanes + facet.lane];
     for (const auto &spheres : others)
       for (const Sphere &other : spheres)
         if (may_hide(bounds, other, pose.sun) || may_hide(bounds, other, pose.observer))
           return false;
     return true;
-  });
+  };
+  own.uncertain.truncate(static_cast<std::size_t>(
+      std::remove_if(own.uncertain.begin(), own.uncertain.end(), is_apart) -
+      own.uncertain.begin()));
   own.nothing.assign(engine.terms_max(), 0);
   own.facet_light.assign(own.uncertain.size() * bands, {});
   own.weights.assign(own.uncertain.size() * engine.terms_max(), 0);

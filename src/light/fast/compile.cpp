@@ -156,9 +156,9 @@ kernel::LobeConstants<float> round_lobe(const kernel::LobeConstants<double> &fro
 
 } // namespace
 
-backend::SceneData<float> round_scene(const backend::SceneData<double> &from) {
+SceneStore<float> round_scene(const SceneStore<double> &from) {
   const auto f = [](double x) { return static_cast<float>(x); };
-  backend::SceneData<float> out;
+  SceneStore<float> out;
   out.chunks = from.chunks;
   out.slots = from.slots;
   out.products = from.products;
@@ -180,8 +180,9 @@ backend::SceneData<float> round_scene(const backend::SceneData<double> &from) {
     auto &to = out.families.emplace_back();
     to.node_count = family.node_count;
     std::transform(std::begin(family.node), std::end(family.node), to.node, round_lobe);
-    for (const auto &weight : family.weight)
-      std::transform(weight.begin(), weight.end(), to.weight.emplace_back().begin(), f);
+    for (std::size_t lobe = 0; lobe < backend::family_lobes_max; ++lobe)
+      std::transform(std::begin(family.weight[lobe]), std::end(family.weight[lobe]),
+                     to.weight[lobe], f);
   }
   for (const auto &profile : from.profiles) {
     auto &to = out.profiles.emplace_back();

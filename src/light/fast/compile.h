@@ -1,17 +1,17 @@
 #pragma once
 // Private: a scene flattened for the facet loops.
 
-#include "backend/scene_data.h"
 #include "light/fast/colours.h"
 #include "light/fast/mask_points.h"
 #include "light/fast/shared_materials.h"
+#include "light/fast/stores.h"
 
 namespace umov {
 
 /// A scene as sums over facets and what colours them.
 struct CompiledScene {
-  backend::SceneData<double> data; ///< areas in parts of `area_m2`
-  double area_m2 = 1;              ///< of all classes
+  SceneStore<double> data; ///< areas in parts of `area_m2`
+  double area_m2 = 1;      ///< of all classes
   /// Slots of the scene (elements.h) that share their material, as data.slots.
   std::vector<std::vector<std::uint32_t>> slots;
   std::vector<std::optional<SurfaceFit>> fits; ///< as data.slots; empty: no kernel
@@ -43,6 +43,6 @@ Result<Colours> colours_of(const Scene &scene, const CompiledScene &sums, bool i
                            double &diffuse_error);
 
 /// The same in single precision.
-backend::SceneData<float> round_scene(const backend::SceneData<double> &from);
+SceneStore<float> round_scene(const SceneStore<double> &from);
 
 } // namespace umov

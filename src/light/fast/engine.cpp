@@ -50,8 +50,8 @@ void Engine::State::prepare(const Pose &pose, Prepared &out) const {
   if (!options.is_double)
     round_pose(out.pose, out.single);
   if (masks)
-    backend::prefetch(*masks, out.pose.narrow_sun, out.pose.narrow_observer, out.pose.wide_sun,
-                      out.pose.wide_observer);
+    backend::prefetch(*views.masks, out.pose.small_sun, out.pose.small_observer, out.pose.large_sun,
+                      out.pose.large_observer);
 }
 
 template <class Body>
@@ -59,8 +59,8 @@ void Engine::State::for_each(std::span<const Pose> poses, unsigned threads,
                              const Body &body) const {
   std::vector<std::uint32_t> order(poses.size());
   if (masks && poses.size() >= ordered_from)
-    order = order_for_masks(poses, masks->narrow.directions(),
-                            facts.mask_bytes / masks->narrow.directions());
+    order = order_for_masks(poses, masks->small.directions(),
+                            facts.mask_bytes / masks->small.directions());
   else
     std::iota(order.begin(), order.end(), 0u);
   const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(threads)) + 1,
@@ -97,6 +97,8 @@ Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), op
                            options.is_intensity_only);
   single = round_scene(compiled.data);
   flats = find_flats();
+  views.whole = compiled.data.view();
+  views.single = single.view();
   facts.triangles = scene.mesh.triangles.size();
   facts.classes = classes.list.size();
   facts.groups = plan.groups.size();
@@ -105,13 +107,14 @@ Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), op
                       (sizeof(backend::FacetGroup<double>) + sizeof(backend::FacetGroup<float>));
 }
 
-void Engine::State::take_masks(std::optional<backend::Masks> ready) {
+void Engine::State::take_masks(std::optional<MaskStore> ready) {
   if (!has_masks())
     return;
   occluder.emplace(scene.mesh);
   masks =
       ready ? std::move(*ready)
             : build_masks(scene, elements, classes, plan, *occluder, mask_size(), options.threads);
+  views.masks = masks->view();
   if (options.masks.refine_above > 0)
     refine_points = RefinePoints(scene, elements, classes, plan, *occluder);
   facts.mask_bytes = memory_of(*masks);

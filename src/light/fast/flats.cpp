@@ -33,7 +33,8 @@ double Engine::State::glint_share(const Pose &pose, const Prepared &at, Workspac
   const auto is_near = [&](const Flat &flat) { return dot(flat.normal, half) >= flat.cosine; };
   if (std::none_of(flats.begin(), flats.end(), is_near))
     return 0;
-  backend::list_seen(compiled.data, hiding(), mask_error, at.pose, work.seen);
+  work.seen.reset(views.whole.groups.size() * backend::lanes);
+  backend::list_seen(views.whole, hiding(), mask_error, at.pose, work.seen);
   double light = 0;
   for (const Flat &flat : flats)
     if (is_near(flat))

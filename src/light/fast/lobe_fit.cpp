@@ -29,35 +29,13 @@ std::optional<kernel::LobeConstants<double>> fit_lobe(const Distribution &normal
   if (!form)
     return {};
   kernel::LobeConstants<double> out;
+  out.kind = form->kind;
+  out.joint = shadowing;
   out.shape = form->shape;
   out.per_width2 = 1 / (normals.width() * normals.width());
-  switch (form->kind) {
-  case KernelForm::Kind::BlinnPhong:
-    out.kind = kernel::LobeKind::BlinnPhong;
+  if (out.kind == LobeKind::BlinnPhong)
     out.peak = kernel::blinn_phong_peak(form->shape);
-    break;
-  case KernelForm::Kind::Beckmann:
-    out.kind = kernel::LobeKind::Beckmann;
-    break;
-  case KernelForm::Kind::Ggx:
-    out.kind = kernel::LobeKind::Ggx;
-    break;
-  }
-  switch (shadowing) {
-  case Shadowing::Ashikhmin:
-    out.joint = kernel::JointMasking::Ashikhmin;
-    break;
-  case Shadowing::Smith:
-    out.joint = kernel::JointMasking::Smith;
-    break;
-  case Shadowing::SmithDirectional:
-    out.joint = kernel::JointMasking::SmithDirectional;
-    break;
-  case Shadowing::Separable:
-    out.joint = kernel::JointMasking::Separable;
-    break;
-  }
-  if (out.kind == kernel::LobeKind::Ggx)
+  if (out.kind == LobeKind::Ggx)
     return out; // its masking is closed
   out.masking_limit = masking_limit(normals);
   out.masking_scale = 2 / out.masking_limit;
@@ -81,15 +59,13 @@ std::optional<kernel::LobeConstants<double>> fit_lobe(const Distribution &normal
 namespace {
 
 /// Weights of Lagrange's polynomial through `nodes` at x, over 4: the factor of G2 in the BRDF.
-std::array<double, backend::family_nodes_max> lagrange(const std::vector<double> &nodes, double x) {
-  std::array<double, backend::family_nodes_max> out{};
+void put_lagrange(const std::vector<double> &nodes, double x, double *out) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     out[i] = 0.25;
     for (std::size_t j = 0; j < nodes.size(); ++j)
       if (j != i)
         out[i] *= (x - nodes[j]) / (nodes[i] - nodes[j]);
   }
-  return out;
 }
 
 /// Largest relative error of the interpolated shadowing of one lobe.
@@ -122,7 +98,7 @@ fit_family(const std::vector<kernel::LobeConstants<double>> &lobes, Shadowing sh
     return {};
   double low = HUGE_VAL, high = 0;
   for (const auto &lobe : lobes) {
-    if (lobe.kind != kernel::LobeKind::BlinnPhong || !(lobe.shape > 0))
+    if (lobe.kind != LobeKind::BlinnPhong || !(lobe.shape > 0))
       return {};
     low = std::min(low, lobe.shape);
     high = std::max(high, lobe.shape);
@@ -141,9 +117,9 @@ fit_family(const std::vector<kernel::LobeConstants<double>> &lobes, Shadowing sh
       out.node[n] = *lobe;
     }
     double error = high > low ? 0 : HUGE_VAL;
-    for (const auto &lobe : lobes) {
-      out.weight.push_back(lagrange(nodes, std::log(lobe.shape)));
-      error = std::max(error, family_error(out, out.weight.size() - 1, lobe));
+    for (std::size_t k = 0; k < lobes.size(); ++k) {
+      put_lagrange(nodes, std::log(lobes[k].shape), out.weight[k]);
+      error = std::max(error, family_error(out, k, lobes[k]));
     }
     if (error <= tolerance)
       return out;

@@ -34,13 +34,13 @@ private:
 
 /// Everything of fixed size, in front.
 struct Header {
-  char magic[8] = {'u', 'm', 'o', 'v', 'm', 's', 'k', '1'};
+  char magic[8] = {'u', 'm', 'o', 'v', 'm', 's', 'k', '2'};
   std::uint64_t byte_order = 0x0102030405060708ull; ///< the machine's own
   std::uint64_t key = 0, checksum = 0;              ///< of everything else in the file
   std::uint64_t groups = 0, blocks = 0, longest = 0;
   struct Table {
     std::uint64_t cells = 0, entries = 0, offsets = 0, rows = 0;
-  } narrow, wide;
+  } small, large;
 };
 
 /// A part of the file as bytes.
@@ -49,9 +49,9 @@ template <class List> std::span<char> bytes_of(List &list) {
 }
 
 /// All lists, in the order of the file.
-template <class F> void for_each_list(backend::Masks &masks, const F &f) {
+template <class F> void for_each_list(MaskStore &masks, const F &f) {
   f(bytes_of(masks.groups));
-  for (backend::MaskTable *table : {&masks.narrow, &masks.wide}) {
+  for (MaskTableStore *table : {&masks.small, &masks.large}) {
     f(bytes_of(table->offset));
     f(bytes_of(table->row));
   }
@@ -60,10 +60,10 @@ template <class F> void for_each_list(backend::Masks &masks, const F &f) {
 
 /// Blocks of one entry of a group.
 std::uint32_t blocks_of(const backend::GroupMask &group) {
-  return group.words / (group.is_wide ? std::uint32_t{backend::lanes} : 1u);
+  return group.words / (group.is_large ? std::uint32_t{backend::lanes} : 1u);
 }
 
-std::uint64_t checksum_of(Header header, backend::Masks &masks) {
+std::uint64_t checksum_of(Header header, MaskStore &masks) {
   Hash hash;
   header.checksum = 0;
   hash.add(header);
@@ -73,35 +73,35 @@ std::uint64_t checksum_of(Header header, backend::Masks &masks) {
 
 /// All that the plan decides (as build_masks lays it out): groups, entries, cells, the sizes of the
 /// lists. A file may only fill it in.
-backend::Masks layout_of(const GroupPlan &plan, const MaskSize &size) {
-  backend::Masks out;
+MaskStore layout_of(const GroupPlan &plan, const MaskSize &size) {
+  MaskStore out;
   for (const GroupPlan::Group &group : plan.groups) {
-    backend::MaskTable &table = group.is_wide ? out.wide : out.narrow;
-    out.groups.push_back({static_cast<std::uint32_t>(table.entries), group.words, group.is_wide});
-    table.entries += group.is_wide ? backend::lanes : 1;
+    MaskTableStore &table = group.is_large ? out.large : out.small;
+    out.groups.push_back({static_cast<std::uint32_t>(table.entries), group.words, group.is_large});
+    table.entries += group.is_large ? backend::lanes : 1;
     out.longest = std::max(out.longest, blocks_of(out.groups.back()));
   }
-  out.narrow.cells = size.narrow_cells;
-  out.wide.cells = size.wide_cells;
-  for (backend::MaskTable *table : {&out.narrow, &out.wide}) {
+  out.small.cells = size.small_cells;
+  out.large.cells = size.large_cells;
+  for (MaskTableStore *table : {&out.small, &out.large}) {
     const std::size_t directions = table->entries > 0 ? table->directions() : 0;
     table->offset.resize(directions * table->entries);
-    table->row.resize(directions + 1);
+    table->row.resize(directions);
   }
   return out;
 }
 
-Header header_of(const backend::Masks &masks, std::uint64_t key) {
+Header header_of(const MaskStore &masks, std::uint64_t key) {
   Header out;
   out.key = key;
   out.groups = masks.groups.size();
   out.blocks = masks.pool.size();
   out.longest = masks.longest;
-  const auto put = [](Header::Table &to, const backend::MaskTable &from) {
+  const auto put = [](Header::Table &to, const MaskTableStore &from) {
     to = {from.cells, from.entries, from.offset.size(), from.row.size()};
   };
-  put(out.narrow, masks.narrow);
-  put(out.wide, masks.wide);
+  put(out.small, masks.small);
+  put(out.large, masks.large);
   return out;
 }
 
@@ -112,21 +112,22 @@ bool is_same(const Header::Table &a, const Header::Table &b) {
 /// The groups of a file, byte by byte: a bool of a file may hold anything. What follows it is
 /// padding.
 bool is_same(const backend::GroupMask &a, const backend::GroupMask &b) {
-  return std::memcmp(&a, &b, offsetof(backend::GroupMask, is_wide) + 1) == 0;
+  return std::memcmp(&a, &b, offsetof(backend::GroupMask, is_large) + 1) == 0;
 }
 
 /// Offsets and rows stay within the pool, whoever wrote the file.
-bool is_consistent(const backend::Masks &masks, bool is_wide) {
-  const backend::MaskTable &table = is_wide ? masks.wide : masks.narrow;
+bool is_consistent(const MaskStore &masks, bool is_large) {
+  const MaskTableStore &table = is_large ? masks.large : masks.small;
   std::vector<std::size_t> blocks(table.entries, 0);
   for (const backend::GroupMask &group : masks.groups)
-    if (group.is_wide == is_wide)
-      std::fill_n(blocks.begin() + group.entry, is_wide ? backend::lanes : 1, blocks_of(group));
+    if (group.is_large == is_large)
+      std::fill_n(blocks.begin() + group.entry, is_large ? backend::lanes : 1, blocks_of(group));
   for (std::size_t k = 0; k < table.offset.size(); ++k)
     if (table.offset[k] + blocks[k % table.entries] > masks.pool.size())
       return false;
-  return std::all_of(table.row.begin(), table.row.end(),
-                     [&](std::uint32_t row) { return row <= masks.pool.size(); });
+  return std::all_of(table.row.begin(), table.row.end(), [&](const backend::MaskRow &row) {
+    return std::size_t{row.first} + row.count <= masks.pool.size();
+  });
 }
 
 } // namespace
@@ -148,16 +149,16 @@ std::uint64_t mask_key(const Mesh &mesh, const FacetClasses &classes, const Grou
   for (const GroupPlan::Group &group : plan.groups) {
     hash.add(group.member.data(), sizeof group.member);
     hash.add(std::uint32_t{group.words});
-    hash.add(std::uint32_t{group.is_wide ? 1u : 0u});
+    hash.add(std::uint32_t{group.is_large ? 1u : 0u});
   }
-  hash.add(std::uint64_t{size.narrow_cells});
-  hash.add(std::uint64_t{size.wide_cells});
+  hash.add(std::uint64_t{size.small_cells});
+  hash.add(std::uint64_t{size.large_cells});
   return hash.value();
 }
 
-Result<void> write_masks(const std::filesystem::path &path, const backend::Masks &masks,
+Result<void> write_masks(const std::filesystem::path &path, const MaskStore &masks,
                          std::uint64_t key) {
-  auto &all = const_cast<backend::Masks &>(masks); // the lists are only read
+  auto &all = const_cast<MaskStore &>(masks); // the lists are only read
   Header header = header_of(masks, key);
   header.checksum = checksum_of(header, all);
   UMOV_ASSIGN(file, FileInProgress::open(path));
@@ -171,8 +172,8 @@ Result<void> write_masks(const std::filesystem::path &path, const backend::Masks
   return file.commit();
 }
 
-Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64_t key,
-                                  const GroupPlan &plan, const MaskSize &size) {
+Result<MaskStore> read_masks(const std::filesystem::path &path, std::uint64_t key,
+                             const GroupPlan &plan, const MaskSize &size) {
   const auto refuse = [&](const std::string &what) {
     return fail(ErrorCode::BadInput, what + ". Remove it to have it made anew.", {path.string()});
   };
@@ -182,7 +183,7 @@ Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64
   std::error_code unknown;
   const std::uint64_t bytes = std::filesystem::file_size(path, unknown);
   Header header;
-  backend::Masks out = layout_of(plan, size);
+  MaskStore out = layout_of(plan, size);
   const Header wanted = header_of(out, key);
   if (unknown || bytes < sizeof header ||
       !stream.read(reinterpret_cast<char *>(&header), sizeof header) ||
@@ -195,7 +196,7 @@ Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64
   // The key tells files apart and keeps no secrets: sizes and places are the plan's, and the file's
   // have to be the same. Nothing is reserved on a lie's word.
   if (header.groups != wanted.groups || header.longest != wanted.longest ||
-      !is_same(header.narrow, wanted.narrow) || !is_same(header.wide, wanted.wide))
+      !is_same(header.small, wanted.small) || !is_same(header.large, wanted.large))
     return refuse("is damaged: its groups or directions are not those of this mesh");
   std::uint64_t fixed = sizeof header;
   for_each_list(out, [&](std::span<char> part) { fixed += part.size(); });

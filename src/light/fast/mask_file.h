@@ -1,7 +1,6 @@
 #pragma once
 // Private: masks on disk, as their preparation may take minutes.
 
-#include "backend/scene_data.h"
 #include "light/fast/mask_points.h"
 #include "light/fast/masks.h"
 
@@ -15,11 +14,11 @@ std::uint64_t mask_key(const Mesh &mesh, const FacetClasses &classes, const Grou
                        const MaskSize &size);
 
 /// Whole or not at all. Device if it cannot be written.
-Result<void> write_masks(const std::filesystem::path &path, const backend::Masks &masks,
+Result<void> write_masks(const std::filesystem::path &path, const MaskStore &masks,
                          std::uint64_t key);
 /// BadInput for a file that is none, is damaged, was made with another key, or does not hold the
 /// groups and directions of the plan.
-Result<backend::Masks> read_masks(const std::filesystem::path &path, std::uint64_t key,
-                                  const GroupPlan &plan, const MaskSize &size);
+Result<MaskStore> read_masks(const std::filesystem::path &path, std::uint64_t key,
+                             const GroupPlan &plan, const MaskSize &size);
 
 } // namespace umov

@@ -11,14 +11,14 @@ namespace umov {
 namespace {
 
 /// From so many points on a class has words of its own instead of sharing them with 15 others.
-constexpr double wide_from = 256;
-constexpr std::size_t words_wide = 16; ///< a class's words come in whole blocks of 512 points
+constexpr double large_from = 256;
+constexpr std::size_t words_large = 16; ///< a class's words come in whole blocks of 512 points
 
 struct Plan {
   std::uint32_t of;
   std::uint32_t slot;
   std::uint16_t words;
-  bool is_wide;
+  bool is_large;
   std::uint32_t order;
 };
 
@@ -27,10 +27,10 @@ Plan plan_of(const FacetClass &c, std::uint32_t index, double points_per_area, s
   if (points == 0)
     return out;
   const double wanted = c.area_m2 * points_per_area;
-  out.is_wide = wanted >= wide_from;
-  if (out.is_wide) {
-    const double blocks = std::min(std::ceil(wanted / (32.0 * words_wide)), 512.0);
-    out.words = static_cast<std::uint16_t>(words_wide * static_cast<std::size_t>(blocks));
+  out.is_large = wanted >= large_from;
+  if (out.is_large) {
+    const double blocks = std::min(std::ceil(wanted / (32.0 * words_large)), 512.0);
+    out.words = static_cast<std::uint16_t>(words_large * static_cast<std::size_t>(blocks));
   } else {
     out.words = 1;
     while (32.0 * out.words < wanted)
@@ -73,20 +73,20 @@ GroupPlan plan_groups(const FacetClasses &classes, std::size_t points) {
   for (std::uint32_t i = 0; i < classes.list.size(); ++i)
     plans.push_back(plan_of(classes.list[i], i, per_area, points));
   std::stable_sort(plans.begin(), plans.end(), [](const Plan &a, const Plan &b) {
-    return std::tie(a.slot, a.is_wide, a.words, a.order) <
-           std::tie(b.slot, b.is_wide, b.words, b.order);
+    return std::tie(a.slot, a.is_large, a.words, a.order) <
+           std::tie(b.slot, b.is_large, b.words, b.order);
   });
   GroupPlan out;
   std::size_t lane = backend::lanes;
   for (const Plan &p : plans) {
     const bool is_same = !out.groups.empty() && out.groups.back().slot == p.slot &&
-                         out.groups.back().is_wide == p.is_wide &&
+                         out.groups.back().is_large == p.is_large &&
                          out.groups.back().words == p.words;
     if (lane == backend::lanes || !is_same) {
       GroupPlan::Group group;
       group.slot = p.slot;
       group.words = p.words;
-      group.is_wide = p.is_wide;
+      group.is_large = p.is_large;
       group.member.fill(no_index);
       out.groups.push_back(group);
       lane = 0;

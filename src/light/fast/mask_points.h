@@ -14,7 +14,7 @@ struct GroupPlan {
     std::uint32_t slot = 0;
     std::array<std::uint32_t, backend::lanes> member{}; ///< class, or no_index
     std::uint16_t words = 0;                            ///< per lane: 32 points each
-    bool is_wide = false;
+    bool is_large = false;
   };
   std::vector<Group> groups; ///< by slot, then by number of points, then by normal
 };

@@ -17,8 +17,8 @@ constexpr double least_sine = 0.002;
 /// Points of the lanes of an entry: a whole group, or one class with words of its own.
 struct Entry {
   std::size_t blocks = 0; ///< of 64 bytes
-  bool is_wide = false;
-  std::vector<Vec3<Body>> normal;  ///< per lane; one for a wide entry
+  bool is_large = false;
+  std::vector<Vec3<Body>> normal;  ///< per lane; one for a large one
   std::vector<ClassPoints> points; ///< per lane
 };
 
@@ -76,14 +76,14 @@ public:
 private:
   void set(const Entry &entry, std::size_t lane, std::size_t i) {
     const std::size_t word = i / 32;
-    if (entry.is_wide)
+    if (entry.is_large)
       block_[word / backend::lanes].word[word % backend::lanes] |= 1u << (i % 32);
     else
       block_[word].word[lane] |= 1u << (i % 32);
   }
   void fill_lane(const Entry &entry, std::size_t lane) {
     for (backend::MaskBlock &b : block_) {
-      if (entry.is_wide)
+      if (entry.is_large)
         std::memset(b.word, 0xFF, sizeof b.word);
       else
         b.word[lane] = 0xFFFFFFFFu;
@@ -98,7 +98,7 @@ private:
 };
 
 /// Traces a table's entries in all directions and appends the blocks to the pool.
-void fill_table(backend::Masks &masks, backend::MaskTable &table, std::size_t cells,
+void fill_table(MaskStore &masks, MaskTableStore &table, std::size_t cells,
                 const std::vector<Entry> &entries, const Occluder &occluder, unsigned threads) {
   table.cells = cells;
   table.entries = entries.size();
@@ -109,6 +109,7 @@ void fill_table(backend::Masks &masks, backend::MaskTable &table, std::size_t ce
     for (const Entry &entry : entries)
       tracer.add(entry, grid_direction(cells, d), rows[d]);
   });
+  const backend::Masks known = masks.view();
   std::size_t blocks = masks.pool.size();
   for (const Row &row : rows)
     blocks += row.blocks.size();
@@ -116,59 +117,59 @@ void fill_table(backend::Masks &masks, backend::MaskTable &table, std::size_t ce
   table.offset.reserve(directions * entries.size());
   for (Row &row : rows) {
     const auto base = static_cast<std::uint32_t>(masks.pool.size());
-    table.row.push_back(base);
+    table.row.push_back({base, static_cast<std::uint32_t>(row.blocks.size())});
     for (const std::uint32_t o : row.offset)
-      table.offset.push_back(o == all_hidden ? masks.hidden()
-                             : o == all_free ? masks.free()
+      table.offset.push_back(o == all_hidden ? known.hidden()
+                             : o == all_free ? known.free()
                                              : base + o);
     masks.pool.insert(masks.pool.end(), row.blocks.begin(), row.blocks.end());
     row = {};
   }
-  table.row.push_back(static_cast<std::uint32_t>(masks.pool.size()));
 }
 
 } // namespace
 
-backend::Masks build_masks(const Scene &scene, const Elements &elements,
-                           const FacetClasses &classes, const GroupPlan &plan,
-                           const Occluder &occluder, const MaskSize &size, unsigned threads) {
-  backend::Masks out;
-  std::vector<Entry> narrow, wide;
+MaskStore build_masks(const Scene &scene, const Elements &elements, const FacetClasses &classes,
+                      const GroupPlan &plan, const Occluder &occluder, const MaskSize &size,
+                      unsigned threads) {
+  MaskStore out;
+  std::vector<Entry> small, large;
   for (const GroupPlan::Group &group : plan.groups) {
     backend::GroupMask mask;
     mask.words = group.words;
-    mask.is_wide = group.is_wide;
-    mask.entry = static_cast<std::uint32_t>(group.is_wide ? wide.size() : narrow.size());
+    mask.is_large = group.is_large;
+    mask.entry = static_cast<std::uint32_t>(group.is_large ? large.size() : small.size());
     Entry entry;
-    entry.is_wide = group.is_wide;
-    entry.blocks = group.is_wide ? group.words / backend::lanes : group.words;
+    entry.is_large = group.is_large;
+    entry.blocks = group.is_large ? group.words / backend::lanes : group.words;
     for (const std::uint32_t of : group.member) {
       entry.normal.push_back(of == no_index ? Vec3<Body>{} : classes.list[of].normal);
       entry.points.push_back(of == no_index
                                  ? ClassPoints{}
                                  : spread_points(scene, elements, classes, of,
                                                  std::size_t{32} * group.words, occluder));
-      if (group.is_wide) {
-        wide.push_back(std::move(entry));
-        entry = {wide.back().blocks, true, {}, {}};
+      if (group.is_large) {
+        large.push_back(std::move(entry));
+        entry = {large.back().blocks, true, {}, {}};
       }
     }
-    if (!group.is_wide)
-      narrow.push_back(std::move(entry));
+    if (!group.is_large)
+      small.push_back(std::move(entry));
     out.groups.push_back(mask);
-    out.longest = std::max(
-        out.longest, static_cast<std::uint32_t>(group.is_wide ? wide.back().blocks : group.words));
+    out.longest =
+        std::max(out.longest,
+                 static_cast<std::uint32_t>(group.is_large ? large.back().blocks : group.words));
   }
   out.pool.assign(std::size_t{2} * out.longest, backend::MaskBlock{});
   std::memset(out.pool.data() + out.longest, 0xFF, out.longest * sizeof(backend::MaskBlock));
-  fill_table(out, out.narrow, size.narrow_cells, narrow, occluder, threads);
-  fill_table(out, out.wide, size.wide_cells, wide, occluder, threads);
+  fill_table(out, out.small, size.small_cells, small, occluder, threads);
+  fill_table(out, out.large, size.large_cells, large, occluder, threads);
   return out;
 }
 
-std::size_t memory_of(const backend::Masks &masks) {
+std::size_t memory_of(const MaskStore &masks) {
   return masks.pool.size() * sizeof(backend::MaskBlock) +
-         (masks.narrow.offset.size() + masks.wide.offset.size()) * sizeof(std::uint32_t) +
+         (masks.small.offset.size() + masks.large.offset.size()) * sizeof(std::uint32_t) +
          masks.groups.size() * sizeof(backend::GroupMask);
 }
 

@@ -4,6 +4,7 @@
 #include "kernel/solar_nodes.inl.h"
 #include "light/fast/octahedron.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -45,7 +46,7 @@ void put_ring(const Pose &pose, kernel::FacetPose<double> &out) {
 void prepare_pose(const Pose &pose, double cos_phase,
                   const std::vector<kernel::LobeConstants<double>> &lobes,
                   const std::vector<double> &widths, const backend::Masks *masks,
-                  backend::PoseData<double> &out) {
+                  PoseStore<double> &out) {
   put(pose.sun, out.facet.sun);
   put(pose.observer, out.facet.observer);
   out.facet.cos_phase = cos_phase;
@@ -54,15 +55,14 @@ void prepare_pose(const Pose &pose, double cos_phase,
   put_half_vector(pose.sun, pose.observer, out.facet.half[0]);
   bool needs_ring = false;
   const auto kappa = kernel::disk_variances(pose.sun_radius_rad, cos_phase);
-  out.lobes.resize(lobes.size());
-  out.is_narrow.assign(lobes.size(), 0);
+  out.resize(lobes.size());
   for (std::size_t k = 0; k < lobes.size(); ++k) {
-    kernel::LobeAtPose<double> &at = out.lobes[k];
+    kernel::LobeAtPose<double> &at = out.lobe_room[k];
     at = {};
     const double q = widths[k] > 0 ? kappa.across / (widths[k] * widths[k]) : HUGE_VAL;
-    out.is_narrow[k] =
+    out.narrow_room[k] =
         pose.sun_radius_rad > 0 ? (q < kernel::nodes_max ? 0 : 1) : (widths[k] > 0 ? 0 : 1);
-    if (lobes[k].kind == kernel::LobeKind::BlinnPhong && q < kernel::closed_form_max) {
+    if (lobes[k].kind == LobeKind::BlinnPhong && q < kernel::closed_form_max) {
       const auto by = kernel::blinn_phong_spread(lobes[k].shape, kappa.along, kappa.across);
       at = {true, false, lobes[k].peak * by.scale, by.along * std::numbers::log2e,
             by.across * std::numbers::log2e};
@@ -74,19 +74,19 @@ void prepare_pose(const Pose &pose, double cos_phase,
   if (needs_ring)
     put_ring(pose, out.facet);
   if (masks != nullptr) {
-    out.narrow_sun = look_around(masks->narrow.cells, pose.sun);
-    out.narrow_observer = look_around(masks->narrow.cells, pose.observer);
-    if (masks->wide.cells == masks->narrow.cells) {
-      out.wide_sun = out.narrow_sun;
-      out.wide_observer = out.narrow_observer;
+    out.small_sun = look_around(masks->small.cells, pose.sun);
+    out.small_observer = look_around(masks->small.cells, pose.observer);
+    if (masks->large.cells == masks->small.cells) {
+      out.large_sun = out.small_sun;
+      out.large_observer = out.small_observer;
     } else {
-      out.wide_sun = look_around(masks->wide.cells, pose.sun);
-      out.wide_observer = look_around(masks->wide.cells, pose.observer);
+      out.large_sun = look_around(masks->large.cells, pose.sun);
+      out.large_observer = look_around(masks->large.cells, pose.observer);
     }
   }
 }
 
-void round_pose(const backend::PoseData<double> &from, backend::PoseData<float> &to) {
+void round_pose(const backend::PoseData<double> &from, PoseStore<float> &to) {
   const auto f = [](double x) { return static_cast<float>(x); };
   for (std::size_t k = 0; k < 3; ++k) {
     to.facet.sun[k] = f(from.facet.sun[k]);
@@ -96,16 +96,16 @@ void round_pose(const backend::PoseData<double> &from, backend::PoseData<float> 
   }
   to.facet.cos_phase = f(from.facet.cos_phase);
   to.facet.along_scale = f(from.facet.along_scale);
-  to.lobes.resize(from.lobes.size());
+  to.resize(from.lobes.size());
   for (std::size_t k = 0; k < from.lobes.size(); ++k) {
     const auto &l = from.lobes[k];
-    to.lobes[k] = {l.has_closed_form, l.uses_nodes, f(l.peak), f(l.along), f(l.across)};
+    to.lobe_room[k] = {l.has_closed_form, l.uses_nodes, f(l.peak), f(l.along), f(l.across)};
   }
-  to.is_narrow = from.is_narrow;
-  to.narrow_sun = from.narrow_sun;
-  to.narrow_observer = from.narrow_observer;
-  to.wide_sun = from.wide_sun;
-  to.wide_observer = from.wide_observer;
+  std::copy(from.is_narrow.begin(), from.is_narrow.end(), to.narrow_room.begin());
+  to.small_sun = from.small_sun;
+  to.small_observer = from.small_observer;
+  to.large_sun = from.large_sun;
+  to.large_observer = from.large_observer;
 }
 
 } // namespace umov

@@ -1,7 +1,7 @@
 #pragma once
 // Private: a pose made ready for the facet loops.
 
-#include "backend/scene_data.h"
+#include "light/fast/stores.h"
 
 #include <umov/light/integrator.h>
 
@@ -12,8 +12,8 @@ namespace umov {
 void prepare_pose(const Pose &pose, double cos_phase,
                   const std::vector<kernel::LobeConstants<double>> &lobes,
                   const std::vector<double> &widths, const backend::Masks *masks,
-                  backend::PoseData<double> &out);
+                  PoseStore<double> &out);
 /// The same constants in single precision.
-void round_pose(const backend::PoseData<double> &from, backend::PoseData<float> &to);
+void round_pose(const backend::PoseData<double> &from, PoseStore<float> &to);
 
 } // namespace umov

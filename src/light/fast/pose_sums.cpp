@@ -8,12 +8,22 @@
 #include <cmath>
 
 namespace umov {
-bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) const {
+
+void Engine::State::sum_facets(const Prepared &at, SumsStore &out) const {
+  out.reset(views.whole);
   if (options.is_double)
-    backend::sum_facets(compiled.data, hiding(), mask_error, at.pose, work.sums);
+    backend::sum_facets(views.whole, hiding(), mask_error, at.pose, out);
   else
-    backend::sum_facets(single, hiding(), mask_error, at.single, work.sums);
-  if (!work.sums.is_any_seen)
+    backend::sum_facets(views.single, hiding(), mask_error, at.single, out);
+  if (masks)
+    add_alike(out);
+}
+
+bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) const {
+  sum_facets(at, work.sums);
+  const bool may_mend = masks && options.masks.refine_above > 0;
+  work.is_mended = false;
+  if (!work.sums.is_any_seen && !(may_mend && options.doubts_all))
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
   work.general.reset(compiled.general_classes > 0 ? bands() : 0, true);
@@ -23,10 +33,9 @@ bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) c
   take_roots(work);
   if (!options.is_double)
     add_rounding(work);
-  work.is_mended = masks && options.masks.refine_above > 0 && is_uncertain(work);
-  if (work.is_mended)
-    refine(pose, at, work);
-  return true;
+  if (may_mend && (options.doubts_all || is_uncertain(work)))
+    mend(pose, at, work);
+  return work.sums.is_any_seen || work.is_mended;
 }
 
 namespace {

@@ -74,7 +74,7 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
   if (terms.is_general)
     return light_of_general(pose, at, facet, work, light);
   double *weight = work.weights.data() + k * terms_max();
-  backend::weigh_facet(compiled.data, at.pose, facet, weight);
+  backend::weigh_facet(views.whole, at.pose, facet, weight);
   for (std::size_t l = 0; l < terms.lobe_count; ++l)
     if (at.pose.is_narrow[terms.lobe_first + l])
       weight[l] = narrow_weight(terms.lobe_first + l, directions(pose, at, facet));
@@ -88,7 +88,8 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
 }
 
 void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
-  backend::list_facing(compiled.data, *masks, mask_error, at.pose, work.uncertain);
+  work.uncertain.reset(views.whole.groups.size() * backend::lanes);
+  backend::list_facing(views.whole, *views.masks, mask_error, at.pose, work.uncertain);
   work.nothing.assign(terms_max(), 0);
   work.facet_light.assign(work.uncertain.size() * bands(), {});
   work.weights.assign(work.uncertain.size() * terms_max(), 0);
@@ -176,9 +177,7 @@ double Engine::State::trace_worst(const Pose &pose, double wanted, Workspace &wo
   std::sort(work.order.begin(), work.order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return std::pair(-relative(a), a) < std::pair(-relative(b), b);
   });
-  const auto left = [&] {
-    return variance + static_cast<double>(mask_error.alike) * linear * linear;
-  };
+  const auto left = [&] { return variance + mask_alike * linear * linear; };
   for (const std::uint32_t k : work.order) {
     if (left() <= 0.5 * wanted * wanted)
       break;
@@ -225,7 +224,6 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
 void Engine::State::trace(const Pose &pose, Workspace &work) const {
   const double wanted = 0.9 * options.masks.refine_above / normal_95;
   constexpr int looks_max = 3;
-  work.points.assign(work.uncertain.size(), 0);
   weigh_errors(work);
   const double left = trace_worst(pose, wanted, work);
   for (int look = 1; look < looks_max; ++look)
@@ -235,10 +233,11 @@ void Engine::State::trace(const Pose &pose, Workspace &work) const {
 
 /// Variances of the sums from those that the facets have now.
 void Engine::State::take_variances(Workspace &work) const {
-  for (std::span<double> column :
+  for (const backend::View<double> column :
        {work.sums.specular_variance, work.sums.product_variance, work.sums.specular_linear,
-        work.sums.product_linear, std::span(work.general.var_i), std::span(work.general.var_q),
-        std::span(work.general.var_u), std::span(work.general.var_v)})
+        work.sums.product_linear, backend::View<double>(work.general.var_i),
+        backend::View<double>(work.general.var_q), backend::View<double>(work.general.var_u),
+        backend::View<double>(work.general.var_v)})
     std::fill(column.begin(), column.end(), 0);
   for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
     const backend::SeenFacet &facet = work.uncertain[k];
@@ -263,11 +262,20 @@ void Engine::State::take_variances(Workspace &work) const {
       work.general.var_v[b] += s.v * s.v * facet.variance;
     }
   }
-  backend::add_alike(mask_error, work.sums);
+  add_alike(work.sums);
 }
 
-void Engine::State::refine(const Pose &pose, const Prepared &at, Workspace &work) const {
+/// Variances of every facet that could be seen, in place of those of the sums, which know nothing
+/// of what is looked up as wholly free or hidden; rays for those that make the error, if there is
+/// too much of it.
+void Engine::State::mend(const Pose &pose, const Prepared &at, Workspace &work) const {
   list_uncertain(pose, at, work);
+  work.points.assign(work.uncertain.size(), 0);
+  take_variances(work);
+  take_roots(work);
+  work.is_mended = is_uncertain(work);
+  if (!work.is_mended)
+    return;
   trace(pose, work);
   take_variances(work);
   take_roots(work);

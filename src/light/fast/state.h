@@ -2,6 +2,7 @@
 // Private: what an engine holds, and how a pose goes through it.
 
 #include "light/fast/compile.h"
+#include "light/fast/mask_errors.h"
 #include "light/fast/masks.h"
 #include "light/fast/refine_points.h"
 
@@ -13,9 +14,6 @@ namespace umov {
 
 inline constexpr double normal_95 = 1.959963984540054; ///< two-sided quantile of the normal law
 
-/// Calibrated against dense runs (tests/engine_errors_test.cpp).
-inline constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F, 4e-3F};
-
 /// Writes a pose's light to its row, times `scale`. Q and U are 0 without a scattering plane.
 void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_or_v,
                std::size_t row, StokesTable &out);
@@ -23,8 +21,10 @@ void put_darkness(std::size_t row, StokesTable &out);
 
 struct Engine::State {
   State(const Scene &of, const EngineOptions &with);
+  State(const State &) = delete; // `views` point into it
+  State &operator=(const State &) = delete;
   /// Masks read from a file, or made.
-  void take_masks(std::optional<backend::Masks> ready);
+  void take_masks(std::optional<MaskStore> ready);
   [[nodiscard]] bool has_masks() const;
   [[nodiscard]] MaskSize mask_size() const;
 
@@ -35,8 +35,14 @@ struct Engine::State {
   FacetClasses classes;
   GroupPlan plan;
   CompiledScene compiled;
-  backend::SceneData<float> single;
-  std::optional<backend::Masks> masks;
+  SceneStore<float> single;
+  std::optional<MaskStore> masks;
+  /// Of `compiled`, `single` and `masks`, for the loops.
+  struct Views {
+    backend::SceneData<double> whole;
+    backend::SceneData<float> single;
+    std::optional<backend::Masks> masks;
+  } views;
   std::optional<Occluder> occluder;
   RefinePoints refine_points;
   /// Flat classes: where each is, and how near the half vector must be.
@@ -51,15 +57,15 @@ struct Engine::State {
   /// A pose made ready; the next one is while this one is summed.
   struct Prepared {
     double cos_phase = 1;
-    backend::PoseData<double> pose;
-    backend::PoseData<float> single;
+    PoseStore<double> pose;
+    PoseStore<float> single;
   };
 
   /// What one thread needs besides.
   struct Workspace {
     explicit Workspace(const State &of);
     std::array<Prepared, 2> prepared;
-    backend::PoseSums sums;
+    SumsStore sums;
     std::vector<double> specular_deviation, product_deviation; ///< roots of the sums' variances
     bool varies = true; ///< some of those roots are not 0; else they are not set
     PhaseFactors factors;
@@ -68,7 +74,7 @@ struct Engine::State {
     BandLight part;
     // Of `is_uncertain` and `refine`:
     std::vector<double> band_room, nothing;
-    std::vector<backend::SeenFacet> uncertain;
+    SeenStore uncertain;
     std::vector<double> weights;                      ///< [uncertain * terms_max + term]
     std::vector<Stokes<ScatteringPlane>> facet_light; ///< [uncertain * bands + band], per area
     std::vector<std::uint32_t> order;
@@ -77,10 +83,12 @@ struct Engine::State {
     std::optional<RefineTracer> tracer;
     bool is_mended = false;        ///< rays were traced for this pose
     std::vector<double> general_i; ///< [slot * bands + band], of the facets without a kernel
-    std::vector<backend::SeenFacet> seen;
+    SeenStore seen;
   };
 
-  [[nodiscard]] const backend::Masks *hiding() const { return masks ? &*masks : nullptr; }
+  [[nodiscard]] const backend::Masks *hiding() const {
+    return views.masks ? &*views.masks : nullptr;
+  }
   [[nodiscard]] std::size_t bands() const { return scene.bands.size(); }
   [[nodiscard]] std::size_t terms_max() const; ///< lobes and products of a slot, at most
 
@@ -100,6 +108,7 @@ struct Engine::State {
   void for_each(std::span<const Pose> poses, unsigned threads, const Body &body) const;
 
   // pose_sums.cpp
+  void sum_facets(const Prepared &at, SumsStore &out) const; ///< by kernels
   void add_narrow_and_general(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// `may_vary`: something has added variances besides masks and listed facets.
   void take_roots(Workspace &work, bool may_vary = false) const;
@@ -113,7 +122,7 @@ struct Engine::State {
 
   // refinement.cpp
   [[nodiscard]] bool is_uncertain(Workspace &work) const;
-  void refine(const Pose &pose, const Prepared &at, Workspace &work) const;
+  void mend(const Pose &pose, const Prepared &at, Workspace &work) const;
   void list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const;
   void weigh(const Pose &pose, const Prepared &at, std::size_t k, Workspace &work) const;
   [[nodiscard]] double reference(const BandLight &all, std::size_t b) const;

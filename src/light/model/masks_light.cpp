@@ -44,6 +44,7 @@ Result<void> MasksLight::prepare() {
   // What masks lack, rays add: finer masks cost more to make than they save.
   with.masks = is_auto ? fast_masks : masks_for(options_.accuracy);
   with.masks.refine_above = is_auto ? options_.accuracy : 0;
+  with.doubts_all = is_auto;
   with.q_part = 1; // Q in parts of I, to the accuracy of I
   with.floor_i = floor_i_;
   if (joints().empty() && !options_.mask_file.empty() &&

@@ -40,7 +40,7 @@ public:
     return kernel::beckmann_beyond(std::clamp(cos_theta, 0.0, 1.0), alpha_);
   }
   std::optional<KernelForm> kernel_form() const override {
-    return KernelForm{KernelForm::Kind::Beckmann, alpha_};
+    return KernelForm{LobeKind::Beckmann, alpha_};
   }
 
 private:

@@ -34,7 +34,7 @@ public:
     return kernel::blinn_phong(n_h, m_) * by.scale * std::exp(by.along * x2 + by.across * y2);
   }
   std::optional<KernelForm> kernel_form() const override {
-    return KernelForm{KernelForm::Kind::BlinnPhong, m_};
+    return KernelForm{LobeKind::BlinnPhong, m_};
   }
 
 private:

@@ -35,7 +35,7 @@ public:
     return kernel::ggx_beyond(std::clamp(cos_theta, 0.0, 1.0), alpha_);
   }
   std::optional<KernelForm> kernel_form() const override {
-    return KernelForm{KernelForm::Kind::Ggx, alpha_};
+    return KernelForm{LobeKind::Ggx, alpha_};
   }
 
 private:

@@ -9,7 +9,7 @@
 #include <sys/mman.h>
 #endif
 
-namespace umov::backend {
+namespace umov {
 
 /// Allocates in whole huge pages and asks the system to use them; without such a system, aligned
 /// memory like any other.
@@ -35,4 +35,4 @@ template <class T> struct HugePageAllocator {
   template <class U> bool operator==(const HugePageAllocator<U> &) const { return true; }
 };
 
-} // namespace umov::backend
+} // namespace umov

@@ -1,0 +1,188 @@
+// The loops in lanes of float against the reference in double, on a heap of random facets behind
+// random masks.
+
+#include "backend/scene_data.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+namespace umov::backend {
+namespace {
+
+using kernel::LobeAtPose;
+using kernel::LobeConstants;
+
+constexpr std::size_t group_count = 150, directions = 9, words = 2;
+
+/// One slot with three lobes and two products of two profiles.
+template <class T> struct Heap {
+  std::vector<FacetGroup<T>> groups;
+  std::vector<Chunk> chunks;
+  std::vector<SlotTerms> slots;
+  std::vector<LobeConstants<T>> lobes;
+  std::vector<Profile<T>> profiles;
+  std::vector<Product> products{{0, 0}, {0, 1}};
+  std::vector<LobeAtPose<T>> at;
+  std::vector<char> is_narrow{0, 0, 0};
+  PoseData<T> pose;
+
+  Heap() {
+    std::mt19937 random(7); // NOLINT: the same heap every time
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    for (std::size_t g = 0; g < group_count; ++g) {
+      FacetGroup<T> &group = groups.emplace_back();
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const float x = uniform(random), y = uniform(random), z = uniform(random);
+        const T length = std::sqrt(T(x) * T(x) + T(y) * T(y) + T(z) * T(z));
+        group.nx[lane] = T(x) / length;
+        group.ny[lane] = T(y) / length;
+        group.nz[lane] = T(z) / length;
+        group.area[lane] = T(1.5F + uniform(random)) / 4096;
+      }
+    }
+    for (std::uint32_t g = 0; g < group_count; g += groups_per_chunk)
+      chunks.push_back({g, std::min<std::uint32_t>(groups_per_chunk, group_count - g), 0});
+    SlotTerms &slot = slots.emplace_back();
+    slot.lobe_count = 3;
+    slot.profile_count = slot.product_count = 2;
+    for (const auto &[kind, joint, shape] :
+         {std::tuple(LobeKind::BlinnPhong, Shadowing::Ashikhmin, T(60)),
+          std::tuple(LobeKind::Beckmann, Shadowing::Smith, T(0.25)),
+          std::tuple(LobeKind::Ggx, Shadowing::Separable, T(0.125))}) {
+      LobeConstants<T> &lobe = lobes.emplace_back();
+      lobe.kind = kind;
+      lobe.joint = joint;
+      lobe.shape = shape;
+      lobe.peak = T(9.75);
+      lobe.masking[0] = T(1.5);
+      lobe.masking[1] = T(-0.25);
+    }
+    for (const T second : {T(0.5), T(-0.25)}) {
+      Profile<T> &profile = profiles.emplace_back();
+      profile.c[0] = T(1);
+      profile.c[1] = second;
+      profile.degree = 1;
+    }
+    at.resize(lobes.size());
+    at[0] = {true, false, T(9.5), T(0.5), T(0.25)};
+    const T direction[3] = {T(0.6), T(0), T(0.8)};
+    for (std::size_t k = 0; k < 3; ++k) {
+      pose.facet.sun[k] = direction[k];
+      pose.facet.observer[k] = k == 0 ? -direction[k] : direction[k];
+    }
+    pose.facet.cos_phase = T(0.28);
+    pose.facet.along_scale = T(1 / 1.2);
+    pose.facet.half[0][2] = T(1);
+    pose.lobes = at;
+    pose.is_narrow = is_narrow;
+    pose.small_sun = {{0, 1, 3}, {0.5F, 0.25F, 0.25F}};
+    pose.small_observer = {{4, 5, 7}, {0.125F, 0.625F, 0.25F}};
+  }
+  [[nodiscard]] SceneData<T> scene() const {
+    return {groups, chunks, slots, lobes, {}, profiles, products, {}};
+  }
+};
+
+/// Every fourth entry of a direction is free, every other fourth hidden.
+struct RandomMasks {
+  std::vector<MaskBlock> pool;
+  std::vector<std::uint32_t> offset;
+  std::vector<MaskRow> row;
+  std::vector<GroupMask> groups;
+  Masks view;
+
+  RandomMasks() {
+    std::mt19937 random(11); // NOLINT
+    pool.resize(2 * words);
+    for (std::size_t k = words; k < 2 * words; ++k)
+      for (std::uint32_t &word : pool[k].word)
+        word = ~0u;
+    for (std::size_t d = 0; d < directions; ++d) {
+      const auto first = static_cast<std::uint32_t>(pool.size());
+      for (std::uint32_t g = 0; g < group_count; ++g) {
+        if (g % 4 < 2) {
+          offset.push_back(g % 4 == 0 ? words : 0);
+          continue;
+        }
+        offset.push_back(static_cast<std::uint32_t>(pool.size()));
+        for (std::size_t k = 0; k < words; ++k)
+          for (std::uint32_t &word : pool.emplace_back().word)
+            word = static_cast<std::uint32_t>(random()) | static_cast<std::uint32_t>(random());
+      }
+      row.push_back({first, static_cast<std::uint32_t>(pool.size()) - first});
+    }
+    for (std::uint32_t g = 0; g < group_count; ++g)
+      groups.push_back({g, words, false});
+    view.small = {2, group_count, offset, row};
+    view.groups = groups;
+    view.pool = pool;
+    view.longest = words;
+  }
+};
+
+struct Summed {
+  std::vector<double> room = std::vector<double>(3 * 4 + 2 * 3, 0.0);
+  PoseSums sums;
+  Summed() {
+    double *next = room.data();
+    for (auto *column :
+         {&sums.specular, &sums.specular_variance, &sums.specular_bias, &sums.specular_linear}) {
+      *column = {next, 3};
+      next += 3;
+    }
+    for (auto *column : {&sums.product, &sums.product_variance, &sums.product_linear}) {
+      *column = {next, 2};
+      next += 2;
+    }
+  }
+};
+
+TEST(FacetLoops, LanesAgreeWithTheReference) {
+  const Heap<double> exact;
+  const Heap<float> single;
+  const RandomMasks masks;
+  const MaskErrorModel model{1.5F, 0.25F};
+  for (const Masks *hiding : {static_cast<const Masks *>(nullptr), &masks.view}) {
+    Summed wanted;
+    sum_facets(exact.scene(), hiding, model, exact.pose, wanted.sums);
+    EXPECT_TRUE(wanted.sums.is_any_seen);
+    EXPECT_GT(wanted.sums.specular[2], 0);
+    EXPECT_EQ(wanted.sums.product_variance[0] > 0, hiding != nullptr);
+    for (const auto set : {InstructionSet::Baseline, InstructionSet::Sse4, InstructionSet::Avx2,
+                           InstructionSet::Avx512}) {
+      if (!choose_instruction_set(set))
+        continue; // this machine lacks it
+      Summed found;
+      sum_facets(single.scene(), hiding, model, single.pose, found.sums);
+      for (std::size_t k = 0; k < wanted.room.size(); ++k)
+        // Rounded facets on the flanks of lobes; sums of 64 groups in single precision.
+        EXPECT_NEAR(found.room[k], wanted.room[k], 2e-5 * std::abs(wanted.room[k]))
+            << "number " << k << ", " << instruction_set_name();
+    }
+    choose_instruction_set(InstructionSet::Best);
+  }
+}
+
+/// What is handed back: the facets of a general slot, in the order of the groups.
+TEST(FacetLoops, GeneralSlotsAreHandedBack) {
+  Heap<float> heap;
+  heap.slots[0].is_general = true;
+  std::vector<SeenFacet> room(group_count * lanes);
+  Summed out;
+  out.sums.seen = SeenList(room);
+  sum_facets(heap.scene(), nullptr, {}, heap.pose, out.sums);
+  std::size_t facing = 0;
+  for (const FacetGroup<float> &g : heap.groups)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const float across = 0.6F * g.nx[lane], up = 0.8F * g.nz[lane];
+      facing += std::min(up + across, up - across) > 0 ? 1u : 0u;
+    }
+  EXPECT_EQ(out.sums.seen.size(), facing);
+  EXPECT_GT(facing, 100u);
+  EXPECT_EQ(out.sums.specular[0], 0);
+}
+
+} // namespace
+} // namespace umov::backend

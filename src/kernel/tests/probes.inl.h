@@ -1,0 +1,197 @@
+// One call of every kernel, for any number type: the contract's test compares what types give. T is
+// the scalar that constants are stored in. Inputs are 1/64ths, the same in every type.
+#if defined(UMOV_KERNEL_PROBES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef UMOV_KERNEL_PROBES_INL_H
+#undef UMOV_KERNEL_PROBES_INL_H
+#else
+#define UMOV_KERNEL_PROBES_INL_H
+#endif
+
+#include "kernel/angles.inl.h"
+#include "kernel/body.inl.h"
+#include "kernel/facet.inl.h"
+#include "kernel/films.inl.h"
+#include "kernel/fresnel.inl.h"
+#include "kernel/microfacet.inl.h"
+#include "kernel/solar_nodes.inl.h"
+
+#include "kernel/begin.h"
+
+/// Calls put(value) for each of the results; x lies in (0, 1), away from every kink.
+template <class R, class Put> UMOV_KERNEL void probe_math(R x, const Put &put) {
+  put(power(x, R(7)));
+  put(log2_of_one_minus(x));
+  put(exp2(R(-3) * x));
+  put(inverse_sqrt(x));
+  put(clamped(R(3) * x, R(-1), R(4)));
+  const R c[3] = {R(1), R(-2), R(0.5)};
+  put(polynomial(c, 2, x));
+  put(select(x > R(2), x, R(1) - x));
+}
+
+template <class R, class Put> UMOV_KERNEL void probe_angles(R x, const Put &put) {
+  const SineCosine<R> wave = sine_cosine(R(9) * x);
+  put(wave.sine);
+  put(wave.cosine);
+  put(arc_tangent(x, R(-0.3)));
+  put(arc_tangent(-x, x * x));
+  put(within_turn(R(7) * x + R(7)));
+  put(rest_of_turn(R(6) * x + R(7)));
+}
+
+template <class R, class Put>
+UMOV_KERNEL void probe_reflection(const Reflection<R> &r, const Put &put) {
+  put(r.a);
+  put(r.b);
+  put(r.z.re);
+  put(r.z.im);
+}
+template <class R, class Put> UMOV_KERNEL void probe_fresnel(R x, const Put &put) {
+  probe_reflection(reflection(fresnel(x, Complex<R>{R(1.5), R(0)})), put);
+  probe_reflection(reflection(fresnel(x, Complex<R>{R(0.75), R(4)})), put);
+  probe_reflection(reflection(fresnel(x, Complex<R>{R(1), R(0)})), put); // no interface
+}
+
+template <class R, class Put> UMOV_KERNEL void probe_films(R x, const Put &put) {
+  const Complex<R> air{R(1), R(0)}, glass{R(1.5), R(0)}, metal{R(1.25), R(6)};
+  const Film<R> films[2] = {{{R(1.375), R(0)}, R(0.25)}, {{R(2.25), R(0.125)}, R(0.5)}};
+  const StackAmplitudes<R> down = stack(air, R(1) - x * x, films, 2, glass);
+  const StackAmplitudes<R> below = stack(glass, R(1) - x * x, films, 1, metal);
+  const Powers<R> top = powers(down.r), through = powers(down.t, down.power_s, down.power_p);
+  probe_reflection(reflection(top), put);
+  probe_reflection(reflection(thick_layer(top, through, through, top, R(0.75), powers(below.r))),
+                   put);
+}
+
+template <class R, class Put> UMOV_KERNEL void probe_body(R x, const Put &put) {
+  const R z = sqrt(R(1) - x * x);
+  const EmissionPlanes<R> planes = emission_planes(x, R(0), z, R(0.28), R(0.75), R(0.6));
+  put(planes.cos_in);
+  put(planes.sin_in);
+  put(planes.cos_out);
+  put(planes.sin_out);
+}
+
+template <class R, class Put> UMOV_KERNEL void probe_microfacet(R x, const Put &put) {
+  put(blinn_phong(x, R(12)));
+  const Spread<R> by = blinn_phong_spread(R(12), x, R(0.5) * x);
+  put(by.scale);
+  put(by.along);
+  put(by.across);
+  put(beckmann(x, R(0.5)));
+  put(beckmann_masking(x, R(0.5)));
+  put(beckmann_beyond(x, R(0.5)));
+  put(beckmann_beyond(x, R(0.0625)));
+  put(ggx(x, R(0.5)));
+  put(ggx_masking(x, R(0.5)));
+  put(ggx_beyond(x, R(0.5)));
+  put(ggx_beyond(x, R(2)));
+  put(ashikhmin_shirley(x, R(0.5) * (R(1) - x * x), R(0.25), R(10), R(40)));
+  const R v[4] = {R(1), x, R(0.5), R(2)};
+  put(cubic(v, x));
+  put(mean_cosine(R(10) * x));
+  put(half_cosine(x, R(0.5), R(0.25)));
+  for (const Shadowing joint :
+       {Shadowing::Ashikhmin, Shadowing::Smith, Shadowing::SmithDirectional, Shadowing::Separable})
+    put(joint_masking(joint, x, R(0.7), R(0.75) * x, R(0.5), R(0.25)));
+}
+
+template <class R> struct ProbeVector { R x, y, z; };
+template <class R>
+UMOV_KERNEL ProbeVector<R> operator+(const ProbeVector<R> &a, const ProbeVector<R> &b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class R> UMOV_KERNEL ProbeVector<R> operator*(R s, const ProbeVector<R> &a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+template <class R, class Put> UMOV_KERNEL void probe_solar_nodes(R x, const Put &put) {
+  const DiskVariances<R> kappa = disk_variances(R(0.125), x);
+  put(kappa.along);
+  put(kappa.across);
+  const ProbeVector<R> e1{R(1), R(0), R(0)}, e2{R(0), R(1), R(0)}, l{R(0), R(0), R(1)};
+  const ProbeVector<R> at = disk_direction(l, e1, e2, R(0.125), x, R(0.6), R(0.8));
+  put(at.x);
+  put(at.y);
+  put(at.z);
+  put(source_node_weight<R>(0));
+  put(source_node_weight<R>(6));
+}
+
+/// Sun and observer in the x z plane, 0.6 and -0.6 from the normal of the plane, and a facet that
+/// leans by x from it.
+template <class R, class T, class Put> UMOV_KERNEL void probe_facet(R x, const Put &put) {
+  FacetPose<T> pose;
+  const T sun[3] = {T(0.6), T(0), T(0.8)}, ring[2] = {T(0.02), T(0.0346)};
+  for (std::size_t k = 0; k < 3; ++k) {
+    pose.sun[k] = sun[k];
+    pose.observer[k] = k == 0 ? -sun[k] : sun[k];
+  }
+  pose.cos_phase = T(0.28);
+  pose.along_scale = T(1 / 1.2);
+  for (std::size_t node = 0; node < source_nodes; ++node) {
+    pose.half[node][0] = node % 2 == 0 ? T(0) : ring[0];
+    pose.half[node][1] = node < 3 ? T(0) : ring[1];
+    pose.half[node][2] = T(1);
+  }
+  const R nx = R(0.3) * x, ny = R(0.2) * x, nz = sqrt(R(1) - nx * nx - ny * ny);
+  const R n_l = nx * R(pose.sun[0]) + nz * R(pose.sun[2]),
+          n_v = nx * R(pose.observer[0]) + nz * R(pose.observer[2]);
+  LobeConstants<T> lobe;
+  lobe.masking[0] = T(1.5);
+  lobe.masking[1] = T(-0.25);
+  for (const LobeKind kind : {LobeKind::BlinnPhong, LobeKind::Beckmann, LobeKind::Ggx})
+    for (const Shadowing joint : {Shadowing::Ashikhmin, Shadowing::SmithDirectional}) {
+      lobe.kind = kind;
+      lobe.joint = joint;
+      lobe.shape = kind == LobeKind::BlinnPhong ? T(40) : T(0.25);
+      lobe.peak = T(6.5);
+      LobeAtPose<T> at;
+      put(lobe_weight(lobe, at, pose, nx, ny, nz, n_l, n_v));
+      at.uses_nodes = true;
+      put(lobe_weight(lobe, at, pose, nx, ny, nz, n_l, n_v));
+    }
+  LobeAtPose<T> closed;
+  closed.has_closed_form = true;
+  closed.peak = T(6);
+  closed.along = T(0.5);
+  closed.across = T(0.25);
+  put(lobe_weight(lobe, closed, pose, nx, ny, nz, n_l, n_v));
+}
+
+/// Families of kernels, and how far a type of single precision may be from double, of the value
+/// plus one.
+inline constexpr std::size_t probe_families = 8;
+struct ProbeFamily {
+  const char *name;
+  double single;
+};
+inline ProbeFamily probe_family(std::size_t family) {
+  constexpr ProbeFamily all[probe_families] = {
+      {"math", 2e-6}, {"angles", 2e-6},     {"fresnel", 3e-6},     {"films", 3e-5},
+      {"body", 1e-5}, {"microfacet", 2e-4}, {"solar_nodes", 1e-6}, {"facet", 1e-4}};
+  return all[family];
+}
+template <class R, class T, class Put>
+UMOV_KERNEL void probe(std::size_t family, R x, const Put &put) {
+  switch (family) {
+  case 0:
+    return probe_math(x, put);
+  case 1:
+    return probe_angles(x, put);
+  case 2:
+    return probe_fresnel(x, put);
+  case 3:
+    return probe_films(x, put);
+  case 4:
+    return probe_body(x, put);
+  case 5:
+    return probe_microfacet(x, put);
+  case 6:
+    return probe_solar_nodes(x, put);
+  default:
+    return probe_facet<R, T>(x, put);
+  }
+}
+
+#include "kernel/end.h"
+#endif

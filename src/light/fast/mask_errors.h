@@ -1,0 +1,24 @@
+#pragma once
+// Private: errors of looked-up visibility (docs/theory/engine.md), calibrated against dense runs
+// (tests/engine_errors_test.cpp).
+
+#include "backend/scene_data.h"
+
+namespace umov {
+
+inline constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F};
+/// Part of the square of all standard deviations together that stands for what neighbouring classes
+/// have in common: the same shadow's edge crosses many.
+inline constexpr double mask_alike = 4e-3F;
+
+/// Adds to the variances what the classes' errors have in common.
+inline void add_alike(backend::PoseSums &sums) {
+  const auto add = [](backend::View<double> linear, backend::View<double> variance) {
+    for (std::size_t k = 0; k < linear.size(); ++k)
+      variance[k] += mask_alike * linear[k] * linear[k];
+  };
+  add(sums.specular_linear, sums.specular_variance);
+  add(sums.product_linear, sums.product_variance);
+}
+
+} // namespace umov
