@@ -15,11 +15,11 @@ namespace umov {
 struct Joint {
   std::string name;
   std::vector<std::string> groups;
-  std::vector<std::string> nodes; ///< names of nodes, or ends of their paths ("bus/wing")
-  Vec3<Body> axis{0, 1, 0};       ///< unit; right-handed angles
-  Vec3<Body> pivot_m{};           ///< a point of the axis
-  Vec3<Body> face{0, 0, 1};       ///< what is turned towards a target
-  std::string on;                 ///< the joint that carries this one; "" the body
+  Vec3<Body> axis{0, 1, 0};         ///< unit; right-handed angles
+  Vec3<Body> pivot_m{};             ///< a point of the axis
+  Vec3<Body> face{0, 0, 1};         ///< what is turned towards a target
+  std::string on;                   ///< the joint that carries this one; "" the body
+  std::vector<std::string> nodes{}; ///< names of nodes, or ends of their paths ("bus/wing")
 };
 
 /// BadInput for a group that the mesh lacks or that two joints claim, a node that is not in its

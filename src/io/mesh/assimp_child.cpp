@@ -11,6 +11,7 @@
 #include <csignal>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fstream>
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -24,6 +25,15 @@ constexpr char is_scene = 'S', is_refusal = 'R';
 void limit(decltype(RLIMIT_CPU) what, std::size_t value) {
   const struct rlimit both { value, value };
   setrlimit(what, &both);
+}
+
+/// Bytes that the process has already, which it inherited: Linux counts them as its own.
+std::size_t inherited() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t pages = 0;
+  for (int field = 0; field < 6 && file; ++field) // the sixth: data and stack
+    file >> pages;
+  return file ? pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) : 0;
 }
 
 void send(int pipe, const std::string &bytes) {
@@ -42,7 +52,7 @@ void send(int pipe, const std::string &bytes) {
     std::signal(signal, SIG_DFL);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.seconds);
-  limit(RLIMIT_DATA, limits.memory);
+  limit(RLIMIT_DATA, inherited() + limits.memory);
   if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) {
     ::dup2(nowhere, STDOUT_FILENO);
     ::dup2(nowhere, STDERR_FILENO);

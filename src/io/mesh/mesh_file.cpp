@@ -89,8 +89,10 @@ Result<MeshFile> read_mesh(const fs::path &path, const MeshFileOptions &options,
                            Diagnostics &diagnostics) {
   UMOV_ASSIGN(bytes, read_file(path));
   const Kind kind = kind_of(bytes, suffix_of(path));
-  if (kind == Kind::Obj)
+  if (kind == Kind::Obj) {
+    bytes = std::string(); // not twice in memory
     return read_obj(path, options, diagnostics);
+  }
   MeshFileOptions filled = options;
   UMOV_ASSIGN(out, read_kind(kind, std::move(bytes), path, filled, diagnostics));
   UMOV_TRY(mesh_io::to_body_frame(out, filled, path.string(), diagnostics));

@@ -253,7 +253,7 @@ Result<void> to_body_frame(MeshFile &read, const MeshFileOptions &options, const
   for (Vec3<Body> &t : mesh.tangents)
     t = turned(t, options.up);
   for (MeshNode &node : read.nodes)
-    node.origin_m = turned(node.origin_m * metres, options.up);
+    node.origin_m = turned(node.origin_m * metres, options.up) + Vec3<Body>{}; // -0 becomes 0
   turn_normals(mesh, options.up);
   if (largest < 1e-3 || largest > 1e4)
     diagnostics.warn(

@@ -95,14 +95,16 @@ Result<std::optional<std::uint32_t>> Reader::index(std::string_view text, const 
   }
   if (size == 0)
     return fail(ErrorCode::BadInput,
-                fmt::format("{} index \"{}\" in \"{}\", but no {} precedes this line", what, text,
-                            word.text.substr(0, 40), what),
+                fmt::format("{} index \"{}\" in \"{}\", but no {} precedes this line", what,
+                            mesh_io::clean_name(text.substr(0, 40)),
+                            mesh_io::clean_name(word.text.substr(0, 40)), what),
                 lines_.where(word));
   return fail(
       ErrorCode::BadInput,
       fmt::format("{} index \"{}\" in \"{}\"; 1 to {} (or -1 to -{}) was expected, since {} "
                   "{}{} precede this line",
-                  what, text, word.text.substr(0, 40), size, size, size,
+                  what, mesh_io::clean_name(text.substr(0, 40)),
+                  mesh_io::clean_name(word.text.substr(0, 40)), size, size, size,
                   what == std::string_view("vertex") ? "vertices" : what,
                   what == std::string_view("vertex") ? "" : "s"),
       lines_.where(word));
@@ -116,10 +118,10 @@ Result<Corner> Reader::corner(const Word &word) {
     const std::size_t slash = rest.find('/');
     more = slash != std::string_view::npos;
     if (count == 3 || (more && slash + 1 == rest.size()))
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("corner \"{}\"; v, v/t, v//n or v/t/n was expected", word.text.substr(0, 40)),
-          lines_.where(word));
+      return fail(ErrorCode::BadInput,
+                  fmt::format("corner \"{}\"; v, v/t, v//n or v/t/n was expected",
+                              mesh_io::clean_name(word.text.substr(0, 40))),
+                  lines_.where(word));
     parts[count] = rest.substr(0, slash);
     rest = more ? rest.substr(slash + 1) : std::string_view();
   }
