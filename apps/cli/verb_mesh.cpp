@@ -86,6 +86,21 @@ Result<void> make(const ShapeOptions &options) {
   return write_mesh(path, mesh, diagnostics);
 }
 
+void add_rough_surface(CLI::App &verb, RoughSurfaceOptions &rough) {
+  verb.add_option("--cells", rough.cells, "rough-surface: cells per side")->capture_default_str();
+  verb.add_option("--cell", rough.cell_m, "rough-surface: side of a cell [m]")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->capture_default_str();
+  verb.add_option("--slope", rough.slope, "rough-surface: rms slope along an axis")
+      ->capture_default_str();
+  verb.add_option("--correlation", rough.correlation_cells,
+                  "rough-surface: correlation length [cells]")
+      ->capture_default_str();
+  verb.add_option("--hurst", rough.hurst, "rough-surface: Hurst exponent; 0: one scale")
+      ->capture_default_str();
+  verb.add_option("--seed", rough.seed, "rough-surface: of the heights")->capture_default_str();
+}
+
 void add_make(CLI::App &mesh, const Exit &exit_with) {
   auto *verb = mesh.add_subcommand("make", "Make a shape as OBJ and MTL, in metres, +Z up");
   auto options = std::make_shared<ShapeOptions>();
@@ -134,20 +149,7 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
   verb->add_option("--array-angle-deg", options->array_angle_deg,
                    "Turn of the solar arrays about their boom")
       ->capture_default_str();
-  verb->add_option("--cells", options->rough.cells, "rough-surface: cells per side")
-      ->capture_default_str();
-  verb->add_option("--cell", options->rough.cell_m, "rough-surface: side of a cell [m]")
-      ->check(length)
-      ->capture_default_str();
-  verb->add_option("--slope", options->rough.slope, "rough-surface: rms slope along an axis")
-      ->capture_default_str();
-  verb->add_option("--correlation", options->rough.correlation_cells,
-                   "rough-surface: correlation length [cells]")
-      ->capture_default_str();
-  verb->add_option("--hurst", options->rough.hurst, "rough-surface: Hurst exponent; 0: one scale")
-      ->capture_default_str();
-  verb->add_option("--seed", options->rough.seed, "rough-surface: of the heights")
-      ->capture_default_str();
+  add_rough_surface(*verb, options->rough);
   verb->add_flag("--two-sided", options->two_sided, "Materials \"front\" and \"back\"");
   add_common(*verb, *common, false);
   verb->callback([options, exit_with] {
@@ -276,7 +278,7 @@ Result<void> describe_file(const ReadOptions &options, const Common &common, boo
 
 Result<void> look(const ReadOptions &options, const Common &common, bool check) {
   Diagnostics diagnostics;
-  const auto done = describe_file(options, common, check, diagnostics);
+  auto done = describe_file(options, common, check, diagnostics);
   report(diagnostics, common); // also where the file could not be read: they may say why
   return done;
 }

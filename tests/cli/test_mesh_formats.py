@@ -291,7 +291,7 @@ def test_gltf_says_unit_and_axis_itself(umov, tmp_path):
     info = json.loads(umov("mesh", "info", "a.glb", "--unit", "mm", "--up", "+Z", "--json").out)
     own = json.loads(umov("mesh", "info", "a.glb", "--json").out)
     assert own["format"] == "glTF" and own["closed"] and {one["path"] for one in own["nodes"]} == {
-        "world/node_" + name for name in groups}
+        "node_" + name for name in groups}
     assert info["upper_m"][1] == pytest.approx(own["upper_m"][2] / 1000)
 
 
@@ -336,7 +336,7 @@ def test_nodes_turn_as_groups_do(umov, scenario, tmp_path):
     assert [one["name"] for one in info["materials"]] == ["bus", "cells"]
     assert info["closed"] and info["inward_parts"] == 0 and info["inconsistent_edges"] == 0
     assert info["volume_m3"] == pytest.approx(8 + 2 * 0.45, rel=1e-6)
-    assert {one["path"]: one["origin_m"] for one in info["nodes"]}["world/bus/wing_left"] == [-3, 0, 0.5]
+    assert {one["path"]: one["origin_m"] for one in info["nodes"]}["bus/wing_left"] == [-3, 0, 0.5]
     curves = []
     for file, keys in (("craft.obj", ['groups = ["left"]', 'groups = ["right"]']),
                        ("craft.glb", ['nodes = ["wing_left"]', 'nodes = ["bus/wing_right"]'])):
@@ -350,7 +350,7 @@ def test_nodes_turn_as_groups_do(umov, scenario, tmp_path):
         assert (tmp_path / "again/lightcurve.csv").read_text().splitlines()[-1] == (
             tmp_path / "out/lightcurve.csv").read_text().splitlines()[-1]
     assert len(curves[0]) > 3 and curves[1] == pytest.approx(curves[0], rel=5e-3)
-    for nodes, words in (("wing", 'no node "wing" with faces; it has world/bus, world/bus/wing_left'),
+    for nodes, words in (("wing", 'no node "wing" with faces; it has bus, bus/wing_left'),
                          ("bus", 'part "b"')):
         parts = PART.format("a", f'nodes = ["{nodes}"]') + PART.format("b", 'nodes = ["nothing"]')
         done = umov("run", scenario(("cube.obj", "craft.glb"), ("[bands]", parts + "[bands]")), "--force")

@@ -61,6 +61,7 @@ Result<MeshFile> read_with_assimp(const std::filesystem::path &path, MeshFileOpt
 
 std::vector<std::string> other_mesh_suffixes() {
   std::vector<std::string> out;
+  out.reserve(mesh_io::formats.size());
   for (const mesh_io::Format &one : mesh_io::formats)
     out.emplace_back(one.suffix);
   return out;

@@ -30,7 +30,7 @@ public:
       std::string name = clean_name(node.mChildren[i]->mName.C_Str());
       if (name.empty())
         name = fmt::format("node_{}", i);
-      this->node(*node.mChildren[i], here, path.empty() ? name : path + "/" + name, depth + 1);
+      this->node(*node.mChildren[i], here, joined_path(path, name), depth + 1);
     }
   }
 

@@ -58,7 +58,7 @@ Kind kind_of(std::string_view bytes, const std::string &suffix) {
   return named == Kind::Unknown && looks_like_obj(bytes) ? Kind::Obj : named;
 }
 
-Result<MeshFile> read_kind(Kind kind, std::string bytes, const fs::path &path,
+Result<MeshFile> read_kind(Kind kind, const std::string &bytes, const fs::path &path,
                            MeshFileOptions &options, Diagnostics &diagnostics) {
   switch (kind) {
   case Kind::Stl:
@@ -68,7 +68,7 @@ Result<MeshFile> read_kind(Kind kind, std::string bytes, const fs::path &path,
   case Kind::Gltf: { // its specification fixes both; who says otherwise knows the file better
     options.unit = options.unit.empty() ? "m" : options.unit;
     options.up = options.up.empty() ? "+Y" : options.up;
-    return mesh_io::read_gltf(std::move(bytes), path, options, diagnostics);
+    return mesh_io::read_gltf(bytes, path, options, diagnostics);
   }
   case Kind::Other:
     return mesh_io::read_with_assimp(path, options, diagnostics);
@@ -94,7 +94,7 @@ Result<MeshFile> read_mesh(const fs::path &path, const MeshFileOptions &options,
     return read_obj(path, options, diagnostics);
   }
   MeshFileOptions filled = options;
-  UMOV_ASSIGN(out, read_kind(kind, std::move(bytes), path, filled, diagnostics));
+  UMOV_ASSIGN(out, read_kind(kind, bytes, path, filled, diagnostics));
   UMOV_TRY(mesh_io::to_body_frame(out, filled, path.string(), diagnostics));
   return std::move(out);
 }

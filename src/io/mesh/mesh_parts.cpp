@@ -147,6 +147,10 @@ std::string clean_name(std::string_view name) {
   return out;
 }
 
+std::string joined_path(const std::string &parent, const std::string &name) {
+  return parent.empty() ? name : fmt::format("{}/{}", parent, name);
+}
+
 std::uint32_t GroupIndex::of(const std::string &name) {
   const auto [entry, is_new] = known_.emplace(std::pair{name, std::string()},
                                               static_cast<std::uint32_t>(mesh_.groups.size()));

@@ -22,6 +22,9 @@ bool leaves_folder(const std::string &name);
 /// A name of a file as one line: control characters become '_', blanks at the ends are dropped.
 std::string clean_name(std::string_view name);
 
+/// The path of a node with that name below another one ("": the root).
+std::string joined_path(const std::string &parent, const std::string &name);
+
 /// Numbers of the groups of a mesh, one for each pair of name and node.
 class GroupIndex {
 public:

@@ -215,7 +215,7 @@ Result<void> Reader::read_list(const Property &property, const Element &element,
                 fmt::format("{} {} of {}: a list of {} values; the file has {} more bytes. {}",
                             element.name, row + 1, element.count, count, values_.left(), again),
                 values_.where());
-  for (double left = count; left > 0; --left) {
+  for (auto left = static_cast<std::size_t>(count); left > 0; --left) {
     double value = 0;
     if (!values_.next(property.type, value))
       return broken(element, row);

@@ -18,7 +18,7 @@ Result<MeshFile> read_stl(std::string_view bytes, const std::string &file,
 Result<MeshFile> read_ply(std::string_view bytes, const std::string &file,
                           const MeshFileOptions &options, Diagnostics &diagnostics);
 /// glTF 2.0 as JSON or GLB; `path` says where external buffers are looked for.
-Result<MeshFile> read_gltf(std::string bytes, const std::filesystem::path &path,
+Result<MeshFile> read_gltf(std::string_view bytes, const std::filesystem::path &path,
                            const MeshFileOptions &options, Diagnostics &diagnostics);
 /// What Assimp reads. Fills in unit and up where the format states them and `options` does not.
 Result<MeshFile> read_with_assimp(const std::filesystem::path &path, MeshFileOptions &options,

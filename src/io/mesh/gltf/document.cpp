@@ -71,8 +71,8 @@ tl::unexpected<Error> Document::bad(const std::string &place, const std::string 
 }
 
 std::size_t Document::size(const char *list) const {
-  const auto found = json_.find(list);
-  return found == json_.end() ? 0 : found->size();
+  const auto found = json().find(list);
+  return found == json().end() ? 0 : found->size();
 }
 
 Result<std::size_t> Document::whole(const Json &from, const char *key, const std::string &place,
@@ -146,7 +146,7 @@ Result<void> Document::parse(std::string_view text, bool is_glb) {
                             found.values, found.deepest, most_values, deepest),
                 {file_});
   try {
-    json_ = Json::parse(text);
+    json_ = std::make_shared<const Json>(Json::parse(text));
   } catch (const Json::parse_error &problem) {
     std::string why = problem.what();
     why = why.substr(why.find("] ") == std::string::npos ? 0 : why.find("] ") + 2);
@@ -160,15 +160,15 @@ Result<void> Document::parse(std::string_view text, bool is_glb) {
                 "expected. Export or fetch it again.",
                 {file_});
   }
-  if (!json_.is_object())
-    return bad("the JSON", shown(json_), "an object with \"asset\"");
+  if (!json().is_object())
+    return bad("the JSON", shown(json()), "an object with \"asset\"");
   return {};
 }
 
 Result<void> Document::check_lists() const {
   for (const char *name : lists) {
-    const auto list = json_.find(name);
-    if (list == json_.end())
+    const auto list = json().find(name);
+    if (list == json().end())
       continue;
     if (!list->is_array())
       return bad(name, shown(*list), "a list");
@@ -180,8 +180,8 @@ Result<void> Document::check_lists() const {
 }
 
 Result<void> Document::check_version() const {
-  const auto asset = json_.find("asset");
-  const bool has_version = asset != json_.end() && asset->is_object() &&
+  const auto asset = json().find("asset");
+  const bool has_version = asset != json().end() && asset->is_object() &&
                            asset->contains("version") && (*asset)["version"].is_string();
   if (!has_version)
     return fail(ErrorCode::BadInput,
@@ -191,8 +191,8 @@ Result<void> Document::check_version() const {
   const std::string version = (*asset)["version"].get<std::string>();
   if (!version.starts_with("2."))
     return bad("asset.version", "\"" + clean_name(version) + "\"", "2.0");
-  const auto extensions = json_.find("extensionsRequired");
-  if (extensions == json_.end())
+  const auto extensions = json().find("extensionsRequired");
+  if (extensions == json().end())
     return {};
   if (!extensions->is_array())
     return bad("extensionsRequired", shown(*extensions), "a list");
@@ -214,7 +214,7 @@ Result<void> Document::check_version() const {
   return {};
 }
 
-Result<Document> Document::open(std::string bytes, const std::filesystem::path &path,
+Result<Document> Document::open(std::string_view bytes, const std::filesystem::path &path,
                                 std::size_t max_elements) {
   Document out;
   out.file_ = path.string();

@@ -45,15 +45,15 @@ private:
 class Document {
 public:
   /// Takes JSON or GLB apart. `path`: for messages, and the folder of external buffers.
-  static Result<Document> open(std::string bytes, const std::filesystem::path &path,
+  static Result<Document> open(std::string_view bytes, const std::filesystem::path &path,
                                std::size_t max_elements);
 
   [[nodiscard]] const std::string &file() const { return file_; }
   /// The number of entries of a list of the document, such as "nodes".
   [[nodiscard]] std::size_t size(const char *list) const;
   /// Entry of a list; `i` lies below `size`. Entries that are no objects are refused in `open`.
-  [[nodiscard]] const Json &entry(const char *list, std::size_t i) const { return json_[list][i]; }
-  [[nodiscard]] const Json &json() const { return json_; }
+  [[nodiscard]] const Json &entry(const char *list, std::size_t i) const { return json()[list][i]; }
+  [[nodiscard]] const Json &json() const { return *json_; }
   /// The accessor of that number, checked when first asked for.
   Result<const Accessor *> accessor(std::size_t i);
   /// Index of an entry of `list` under a key, if the key is there.
@@ -84,7 +84,7 @@ private:
   std::string file_;
   std::filesystem::path folder_;
   std::size_t max_elements_ = 0;
-  Json json_;
+  std::shared_ptr<const Json> json_;
   std::optional<std::string> chunk_; ///< the second part of a GLB
   std::map<std::size_t, std::shared_ptr<const std::string>> buffers_;
   std::map<std::size_t, std::shared_ptr<const Accessor>> accessors_;

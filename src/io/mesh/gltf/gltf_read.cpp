@@ -109,7 +109,7 @@ Result<void> Reader::push(const std::vector<std::size_t> &nodes, const Placement
       name += fmt::format("#{}", node);
       names.insert(name);
     }
-    found.push_back({node, depth, parent, path.empty() ? name : path + "/" + name});
+    found.push_back({node, depth, parent, joined_path(path, name)});
     if (found.back().path.size() > longest_path || depth > deepest_node)
       return document_.bad(fmt::format("nodes[{}]", node),
                            fmt::format("{} deep in the tree", depth),
@@ -220,10 +220,10 @@ Result<MeshFile> Reader::read(Diagnostics &diagnostics) {
 
 } // namespace
 
-Result<MeshFile> read_gltf(std::string bytes, const std::filesystem::path &path,
+Result<MeshFile> read_gltf(std::string_view bytes, const std::filesystem::path &path,
                            const MeshFileOptions &options, Diagnostics &diagnostics) {
   const std::size_t max_elements = 3 * options.max_triangles;
-  UMOV_ASSIGN(document, Document::open(std::move(bytes), path, max_elements));
+  UMOV_ASSIGN(document, Document::open(bytes, path, max_elements));
   return Reader(document, options.max_triangles).read(diagnostics);
 }
 
