@@ -3,6 +3,7 @@
 
 #include "tables.h"
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
@@ -79,11 +80,26 @@ Result<void> make(const ShapeOptions &options) {
     return put("", write_obj(mesh, options.shape, MtlUse::None).obj);
   const fs::path path = options.output;
   if (path.extension() != ".obj")
-    return fail(ErrorCode::Usage,
-                "-o " + options.output + ": a name that ends in .obj was expected");
-  const ObjText text = write_obj(mesh, path.stem().string());
-  UMOV_TRY(write_file_atomically(fs::path(path).replace_extension(".mtl"), text.mtl));
-  return write_file_atomically(path, text.obj);
+    return fail(ErrorCode::Usage, "-o " + options.output +
+                                      ": a name that ends in .obj was expected (umov mesh convert "
+                                      "makes other formats of it)");
+  Diagnostics diagnostics;
+  return write_mesh(path, mesh, diagnostics);
+}
+
+void add_rough_surface(CLI::App &verb, RoughSurfaceOptions &rough) {
+  verb.add_option("--cells", rough.cells, "rough-surface: cells per side")->capture_default_str();
+  verb.add_option("--cell", rough.cell_m, "rough-surface: side of a cell [m]")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->capture_default_str();
+  verb.add_option("--slope", rough.slope, "rough-surface: rms slope along an axis")
+      ->capture_default_str();
+  verb.add_option("--correlation", rough.correlation_cells,
+                  "rough-surface: correlation length [cells]")
+      ->capture_default_str();
+  verb.add_option("--hurst", rough.hurst, "rough-surface: Hurst exponent; 0: one scale")
+      ->capture_default_str();
+  verb.add_option("--seed", rough.seed, "rough-surface: of the heights")->capture_default_str();
 }
 
 void add_make(CLI::App &mesh, const Exit &exit_with) {
@@ -134,20 +150,7 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
   verb->add_option("--array-angle-deg", options->array_angle_deg,
                    "Turn of the solar arrays about their boom")
       ->capture_default_str();
-  verb->add_option("--cells", options->rough.cells, "rough-surface: cells per side")
-      ->capture_default_str();
-  verb->add_option("--cell", options->rough.cell_m, "rough-surface: side of a cell [m]")
-      ->check(length)
-      ->capture_default_str();
-  verb->add_option("--slope", options->rough.slope, "rough-surface: rms slope along an axis")
-      ->capture_default_str();
-  verb->add_option("--correlation", options->rough.correlation_cells,
-                   "rough-surface: correlation length [cells]")
-      ->capture_default_str();
-  verb->add_option("--hurst", options->rough.hurst, "rough-surface: Hurst exponent; 0: one scale")
-      ->capture_default_str();
-  verb->add_option("--seed", options->rough.seed, "rough-surface: of the heights")
-      ->capture_default_str();
+  add_rough_surface(*verb, options->rough);
   verb->add_flag("--two-sided", options->two_sided, "Materials \"front\" and \"back\"");
   add_common(*verb, *common, false);
   verb->callback([options, exit_with] {
@@ -162,7 +165,7 @@ void add_make(CLI::App &mesh, const Exit &exit_with) {
 
 struct ReadOptions {
   std::string file;
-  ObjOptions obj;
+  MeshFileOptions frame;
   bool require_closed = false;
 };
 
@@ -178,9 +181,29 @@ Table group_table(const Mesh &mesh, const MeshReport &found) {
   return table;
 }
 
-void describe(const MeshReport &m) {
-  fmt::print("bounding box  {:.6g} x {:.6g} x {:.6g} m\n", m.upper.x - m.lower.x,
-             m.upper.y - m.lower.y, m.upper.z - m.lower.z);
+/// Nodes of the file's tree: the parts of a scenario may name them.
+Table node_table(const std::vector<MeshNode> &nodes) {
+  Table table;
+  std::vector<std::string> paths;
+  std::vector<std::int64_t> triangles;
+  std::array<std::vector<double>, 3> origin;
+  for (const MeshNode &node : nodes) {
+    paths.push_back(node.path);
+    triangles.push_back(static_cast<std::int64_t>(node.triangles));
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      origin[axis].push_back(std::array{node.origin_m.x, node.origin_m.y, node.origin_m.z}[axis]);
+  }
+  table.add("node", "", "path in the tree of the file", std::move(paths));
+  table.add("triangles", "", "number of triangles", std::move(triangles));
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    table.add(std::string("origin_") + "xyz"[axis], "m", "origin of the node, body axes",
+              std::move(origin[axis]));
+  return table;
+}
+
+void describe(const MeshReport &m, const std::string &format) {
+  fmt::print("format        {}\nbounding box  {:.6g} x {:.6g} x {:.6g} m\n", format,
+             m.upper.x - m.lower.x, m.upper.y - m.lower.y, m.upper.z - m.lower.z);
   fmt::print("vertices      {}\ntriangles     {} in {} parts\narea          {:.6g} m2\n",
              m.vertices, m.triangles, m.parts, m.area_m2);
   if (m.is_closed)
@@ -193,9 +216,10 @@ void describe(const MeshReport &m) {
              m.opposite_pairs);
 }
 
-std::string to_json(const Mesh &mesh, const MeshReport &m) {
+std::string to_json(const Mesh &mesh, const MeshReport &m, const MeshFile &file) {
   const auto vector = [](Vec3<Body> v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
-  nlohmann::ordered_json out{{"lower_m", vector(m.lower)},
+  nlohmann::ordered_json out{{"format", file.format},
+                             {"lower_m", vector(m.lower)},
                              {"upper_m", vector(m.upper)},
                              {"vertices", m.vertices},
                              {"triangles", m.triangles},
@@ -217,13 +241,16 @@ std::string to_json(const Mesh &mesh, const MeshReport &m) {
     out["materials"].push_back({{"name", mesh.groups[g]},
                                 {"triangles", m.group_triangles[g]},
                                 {"area_m2", m.group_area_m2[g]}});
+  for (const MeshNode &node : file.nodes)
+    out["nodes"].push_back(
+        {{"path", node.path}, {"triangles", node.triangles}, {"origin_m", vector(node.origin_m)}});
   return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 Result<void> describe_file(const ReadOptions &options, const Common &common, bool check,
                            Diagnostics &diagnostics) {
-  UMOV_ASSIGN(read, read_obj(options.file, options.obj, diagnostics));
-  Mesh mesh = std::move(read.mesh);
+  UMOV_ASSIGN(read, read_mesh(options.file, options.frame, diagnostics));
+  Mesh mesh = with_joined_groups(read.mesh);
   const MeshReport raw = inspect(mesh);
   if (check) { // what is left when a scene is made of it
     UMOV_ASSIGN(cleaned, clean(mesh, diagnostics, options.file));
@@ -234,10 +261,12 @@ Result<void> describe_file(const ReadOptions &options, const Common &common, boo
   found.duplicate = raw.duplicate;
   found.opposite_pairs = raw.opposite_pairs;
   if (common.json) {
-    UMOV_TRY(put("", to_json(mesh, found)));
+    UMOV_TRY(put("", to_json(mesh, found, read)));
   } else {
-    describe(found);
+    describe(found, read.format);
     UMOV_TRY(put("", to_text(group_table(mesh, found))));
+    if (!read.nodes.empty())
+      UMOV_TRY(put("", "\n" + to_text(node_table(read.nodes))));
   }
   if (options.require_closed && !found.is_closed)
     return fail(ErrorCode::BadInput,
@@ -250,9 +279,45 @@ Result<void> describe_file(const ReadOptions &options, const Common &common, boo
 
 Result<void> look(const ReadOptions &options, const Common &common, bool check) {
   Diagnostics diagnostics;
-  const auto done = describe_file(options, common, check, diagnostics);
+  auto done = describe_file(options, common, check, diagnostics);
   report(diagnostics, common); // also where the file could not be read: they may say why
   return done;
+}
+
+void add_input(CLI::App &verb, ReadOptions &options) {
+  verb.add_option("file", options.file,
+                  "Mesh: OBJ, glTF, GLB, STL, PLY, COLLADA (.dae), 3DS or OFF")
+      ->required();
+  verb.add_option("--unit", options.frame.unit,
+                  "Unit of the file: m, cm, mm, km, in, ft; glTF and COLLADA state it");
+  verb.add_option("--up", options.frame.up,
+                  "Axis of the file that becomes body +Z, such as +Y; glTF and COLLADA state it");
+}
+
+Result<void> convert(const ReadOptions &options, const std::string &output,
+                     Diagnostics &diagnostics) {
+  UMOV_ASSIGN(read, read_mesh(options.file, options.frame, diagnostics));
+  return write_mesh(output, read.mesh, diagnostics);
+}
+
+void add_convert(CLI::App &mesh, const Exit &exit_with) {
+  auto *verb = mesh.add_subcommand("convert", "Write a mesh in another format, in metres, +Z up "
+                                              "(glTF: +Y up)");
+  auto options = std::make_shared<ReadOptions>();
+  auto common = std::make_shared<Common>();
+  auto output = std::make_shared<std::string>();
+  add_input(*verb, *options);
+  verb->add_option("-o,--output", *output,
+                   "File to write; the suffix says how: .obj (its MTL beside it), .glb, .gltf, "
+                   ".stl, .ply")
+      ->required();
+  add_common(*verb, *common, false);
+  verb->callback([options, common, output, exit_with] {
+    Diagnostics diagnostics;
+    const auto done = convert(*options, *output, diagnostics);
+    report(diagnostics, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
 }
 
 void add_look(CLI::App &mesh, const Exit &exit_with, bool check) {
@@ -261,9 +326,7 @@ void add_look(CLI::App &mesh, const Exit &exit_with, bool check) {
                                          : "Bounding box, parts, area per material");
   auto options = std::make_shared<ReadOptions>();
   auto common = std::make_shared<Common>();
-  verb->add_option("file", options->file, "OBJ file")->required();
-  verb->add_option("--unit", options->obj.unit, "Unit of the file: m, cm, mm, km, in, ft");
-  verb->add_option("--up", options->obj.up, "Axis of the file that becomes body +Z, such as +Y");
+  add_input(*verb, *options);
   if (check)
     verb->add_flag("--require-closed", options->require_closed, "Fail if the mesh is not closed");
   add_common(*verb, *common, true);
@@ -276,11 +339,12 @@ void add_look(CLI::App &mesh, const Exit &exit_with, bool check) {
 } // namespace
 
 void add_mesh(CLI::App &app, const Exit &exit_with) {
-  auto *mesh = app.add_subcommand("mesh", "Make, describe and check meshes");
+  auto *mesh = app.add_subcommand("mesh", "Make, describe, check and convert meshes");
   mesh->require_subcommand(1);
   add_make(*mesh, exit_with);
   add_look(*mesh, exit_with, false);
   add_look(*mesh, exit_with, true);
+  add_convert(*mesh, exit_with);
 }
 
 } // namespace umov::cli

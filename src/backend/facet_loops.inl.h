@@ -226,7 +226,7 @@ private:
       area_[0][j] = whole[j];
     is_exact_[0] = true;
     const bool is_any = mask.is_large ? hide_large(mask) : hide_small(mask);
-    const double points = 32.0 * mask.words, unsure = 0.5 / points * (1 - 0.5 / points);
+    const double points = 32.0 * mask.words, unsure = 1 / points * (1 - 1 / points);
     const double pseudo = static_cast<double>(model_.points) * unsure / (points * sqrt(points));
     for (std::uint32_t j = 0; j < lanes; ++j)
       if (whole[j] > 0)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <set>
 #include <umov/core/rotation.h>
 
 namespace umov {
@@ -42,24 +43,85 @@ Rotation<Body, Body> carrier_turn(const std::vector<Joint> &joints, std::size_t 
                                   : motion_of(joints, carrier_of(joints, which), angles).turn;
 }
 
+/// Where the path of the outermost node that `name` means ends in the path of a group; 0: nowhere.
+/// A name stands for a node or for the end of its path.
+std::size_t node_end(const std::string &path, const std::string &name) {
+  for (std::size_t at = path.find(name); at != std::string::npos; at = path.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    if ((at == 0 || path[at - 1] == '/') && (end == path.size() || path[end] == '/'))
+      return name.empty() ? 0 : end;
+  }
+  return 0;
+}
+
+/// The joints that claim a group. One that names the group itself wins over those that name nodes,
+/// and of these the one whose node is deepest.
+std::vector<std::size_t> claims(const Mesh &mesh, std::size_t group,
+                                const std::vector<Joint> &joints) {
+  constexpr std::size_t by_name = std::string::npos;
+  std::vector<std::size_t> out;
+  std::size_t strongest = 1;
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    const auto &names = joints[k].groups;
+    std::size_t strength =
+        std::find(names.begin(), names.end(), mesh.groups[group]) != names.end() ? by_name : 0;
+    if (!mesh.nodes.empty())
+      for (const std::string &node : joints[k].nodes)
+        strength = std::max(strength, node_end(mesh.nodes[group], node));
+    if (strength > strongest)
+      out.clear();
+    if (strength >= strongest)
+      out.push_back(k);
+    strongest = std::max(strongest, strength);
+  }
+  return out;
+}
+
+/// A joint's node must be there, and be one.
+Result<void> check_node(const Joint &joint, const std::string &node, const Mesh &mesh) {
+  std::set<std::string> meant, all;
+  for (const std::string &path : mesh.nodes) {
+    all.insert(path);
+    if (const std::size_t end = node_end(path, node); end > 0)
+      meant.insert(path.substr(0, end));
+  }
+  if (meant.empty())
+    return fail(ErrorCode::BadInput,
+                mesh.nodes.empty()
+                    ? fmt::format("part \"{}\" names node \"{}\", but this mesh has no tree of "
+                                  "nodes (glTF has); use groups",
+                                  joint.name, node)
+                    : fmt::format("part \"{}\": the mesh has no node \"{}\" with faces; it has {}",
+                                  joint.name, node, fmt::join(all, ", ")));
+  if (meant.size() > 1)
+    return fail(ErrorCode::BadInput,
+                fmt::format("part \"{}\": node \"{}\" may be any of {}; write more of its path",
+                            joint.name, node, fmt::join(meant, ", ")));
+  return {};
+}
+
+/// Names of a joint that the mesh has, each once.
+Result<void> check_names(const Joint &joint, const Mesh &mesh) {
+  if (joint.groups.empty() && joint.nodes.empty())
+    return fail(ErrorCode::BadInput, fmt::format("part \"{}\" has no groups", joint.name));
+  for (const std::string &group : joint.groups)
+    if (std::find(mesh.groups.begin(), mesh.groups.end(), group) == mesh.groups.end())
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format(
+              "part \"{}\": the mesh has no group \"{}\"; it has {}", joint.name, group,
+              fmt::join(std::set<std::string>(mesh.groups.begin(), mesh.groups.end()), ", ")));
+  for (const std::string &node : joint.nodes)
+    UMOV_TRY(check_node(joint, node, mesh));
+  return {};
+}
+
 } // namespace
 
 Result<void> check_joints(const std::vector<Joint> &joints, const Mesh &mesh) {
-  std::map<std::string, std::string> owner;
   for (std::size_t k = 0; k < joints.size(); ++k) {
     const Joint &joint = joints[k];
-    if (joint.groups.empty())
-      return fail(ErrorCode::BadInput, fmt::format("part \"{}\" has no groups", joint.name));
-    for (const std::string &group : joint.groups) {
-      if (std::find(mesh.groups.begin(), mesh.groups.end(), group) == mesh.groups.end())
-        return fail(ErrorCode::BadInput,
-                    fmt::format("part \"{}\": the mesh has no group \"{}\"; it has {}", joint.name,
-                                group, fmt::join(mesh.groups, ", ")));
-      if (const auto [it, is_new] = owner.emplace(group, joint.name); !is_new)
-        return fail(ErrorCode::BadInput,
-                    fmt::format("group \"{}\" is of part \"{}\" and of part \"{}\"", group,
-                                it->second, joint.name));
-    }
+    UMOV_TRY(check_names(joint, mesh));
     if (!joint.on.empty() && carrier_of(joints, k) == joints.size())
       return fail(ErrorCode::BadInput,
                   fmt::format("part \"{}\" is carried by \"{}\", which does not stand before it",
@@ -73,6 +135,13 @@ Result<void> check_joints(const std::vector<Joint> &joints, const Mesh &mesh) {
                               "towards anything",
                               joint.name));
   }
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g)
+    if (const auto owners = claims(mesh, g, joints); owners.size() > 1)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} \"{}\" is of part \"{}\" and of part \"{}\"",
+                              mesh.nodes.empty() ? "group" : "node",
+                              mesh.nodes.empty() ? mesh.groups[g] : mesh.nodes[g],
+                              joints[owners[0]].name, joints[owners[1]].name));
   return {};
 }
 
@@ -100,10 +169,9 @@ std::vector<PartMotion> part_motions(const std::vector<Joint> &joints,
 
 std::vector<std::size_t> joint_of_groups(const Mesh &mesh, const std::vector<Joint> &joints) {
   std::vector<std::size_t> out(mesh.groups.size(), joints.size());
-  for (std::size_t k = 0; k < joints.size(); ++k)
-    for (const std::string &group : joints[k].groups)
-      out[static_cast<std::size_t>(std::find(mesh.groups.begin(), mesh.groups.end(), group) -
-                                   mesh.groups.begin())] = k;
+  for (std::size_t g = 0; g < out.size(); ++g)
+    if (const auto owners = claims(mesh, g, joints); !owners.empty())
+      out[g] = owners.front();
   return out;
 }
 

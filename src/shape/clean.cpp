@@ -95,6 +95,7 @@ Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string
   out.positions = mesh.positions;
   out.normals = mesh.normals;
   out.groups = mesh.groups;
+  out.nodes = mesh.nodes;
   std::vector<std::uint32_t> place(mesh.triangles.size(), no_index);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     if (skip[i])

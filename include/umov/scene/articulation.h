@@ -10,18 +10,21 @@
 
 namespace umov {
 
-/// Mesh groups that turn together about an axis; everything as it stands in the mesh, body axes.
+/// Parts of a mesh that turn together about an axis: groups by name, and whatever hangs below nodes
+/// of the file's tree; everything as it stands in the mesh, body axes.
 struct Joint {
   std::string name;
   std::vector<std::string> groups;
-  Vec3<Body> axis{0, 1, 0}; ///< unit; right-handed angles
-  Vec3<Body> pivot_m{};     ///< a point of the axis
-  Vec3<Body> face{0, 0, 1}; ///< what is turned towards a target
-  std::string on;           ///< the joint that carries this one; "" the body
+  Vec3<Body> axis{0, 1, 0};         ///< unit; right-handed angles
+  Vec3<Body> pivot_m{};             ///< a point of the axis
+  Vec3<Body> face{0, 0, 1};         ///< what is turned towards a target
+  std::string on;                   ///< the joint that carries this one; "" the body
+  std::vector<std::string> nodes{}; ///< names of nodes, or ends of their paths ("bus/wing")
 };
 
-/// BadInput for a group that the mesh lacks or that two joints claim, a carrier that does not stand
-/// before, an axis without length, or a face along the axis.
+/// BadInput for a group that the mesh lacks or that two joints claim, a node that is not in its
+/// tree or whose name means several (a joint of a node further down wins), a carrier that does not
+/// stand before, an axis without length, or a face along the axis.
 Result<void> check_joints(const std::vector<Joint> &joints, const Mesh &mesh);
 
 /// The angle [rad] that brings the face as near as possible to a direction, for a joint whose

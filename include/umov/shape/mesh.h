@@ -26,6 +26,9 @@ struct Mesh {
   /// Per triangle: direction of the texture's first coordinate; empty without texture coordinates.
   std::vector<Vec3<Body>> tangents;
   std::vector<std::string> groups; ///< names of mesh materials, in order of first use
+  /// Per group: path in the tree of the file ("craft/bus/wing"); empty without a tree. With one,
+  /// groups of several nodes may share a name.
+  std::vector<std::string> nodes;
 };
 
 /// Twice the area times the unit geometric normal, by the right-hand rule over the winding.

@@ -32,6 +32,10 @@ MeshReport inspect(const Mesh &mesh);
 /// BadInput if a coordinate is not finite, an index is out of range or nothing is left.
 Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file = {});
 
+/// The mesh with all groups of one name and one `kind` (a number per group; none: all alike) made
+/// one, which keeps the node of the first.
+Mesh with_joined_groups(const Mesh &mesh, const std::vector<std::size_t> &kind = {});
+
 /// Vertex normals for `normals = "smooth"` where the mesh has none: the mean over the
 /// faces that meet at a vertex within `crease_rad` of each other and belong to one group, weighted
 /// after Max (1999), which is exact on a sphere.

@@ -1,5 +1,7 @@
 #include "io/mesh/obj_lines.h"
 
+#include "io/mesh/mesh_parts.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/text.h>
@@ -51,7 +53,7 @@ Result<double> number(const Lines &lines, const Word &word) {
   if (word.text.size() <= 64) // longer than any double is printed: a broken file
     if (const auto value = parse_number(word.text))
       return *value;
-  const std::string shown(word.text.substr(0, 40));
+  const std::string shown = mesh_io::clean_name(word.text.substr(0, 40));
   const bool has_comma = word.text.find(',') != std::string_view::npos;
   return fail(ErrorCode::BadInput,
               fmt::format("\"{}\" is not a finite decimal number{}", shown,

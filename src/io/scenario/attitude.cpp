@@ -344,8 +344,14 @@ Result<MovingJoint> read_part(const Node &node) {
   MovingJoint out;
   out.joint.name = node.text("name", "");
   out.joint.on = node.text("on", "");
-  UMOV_ASSIGN(groups, node.strings("groups"));
-  out.joint.groups = groups;
+  if (!node.has("nodes"))
+    UMOV_TRY(node.require("groups"));
+  for (const auto &[key, list] :
+       {std::pair{"groups", &out.joint.groups}, {"nodes", &out.joint.nodes}})
+    if (node.has(key)) {
+      UMOV_ASSIGN(names, node.strings(key));
+      *list = names;
+    }
   UMOV_ASSIGN(axis, read_axis(node, "axis", out.joint.axis));
   UMOV_ASSIGN(face, read_axis(node, "face", out.joint.face));
   out.joint.axis = axis;
@@ -391,14 +397,18 @@ Result<MovingJoint> read_part(const Node &node) {
 }
 
 std::string part_toml(const MovingJoint &part) {
-  std::string groups;
-  for (const std::string &group : part.joint.groups)
-    groups += (groups.empty() ? "" : ", ") + quoted(group);
+  const auto list = [](const std::vector<std::string> &names) {
+    std::string out;
+    for (const std::string &name : names)
+      out += (out.empty() ? "" : ", ") + quoted(name);
+    return out;
+  };
   std::string out =
-      fmt::format("name = {}\ngroups = [{}]\naxis = {}\npivot_m = {}\nface = {}\n"
+      fmt::format("name = {}\ngroups = [{}]\nnodes = [{}]\naxis = {}\npivot_m = {}\nface = {}\n"
                   "on = {}\n",
-                  quoted(part.joint.name), groups, axis_toml(part.joint.axis),
-                  axis_toml(part.joint.pivot_m), axis_toml(part.joint.face), quoted(part.joint.on));
+                  quoted(part.joint.name), list(part.joint.groups), list(part.joint.nodes),
+                  axis_toml(part.joint.axis), axis_toml(part.joint.pivot_m),
+                  axis_toml(part.joint.face), quoted(part.joint.on));
   if (const auto *direction = std::get_if<Direction>(&part.motion))
     return out + "toward = " + direction_toml(*direction) + "\n";
   if (const auto *angle = std::get_if<double>(&part.motion))

@@ -6,7 +6,7 @@
 #include <umov/core/text.h>
 #include <umov/io/attitude_file.h>
 #include <umov/io/index_file.h>
-#include <umov/io/obj.h>
+#include <umov/io/mesh_file.h>
 #include <umov/io/trajectory_file.h>
 #include <umov/shape/topology.h>
 
@@ -97,12 +97,13 @@ Result<void> check_material_keys(const Named &of, const Mesh &mesh) {
     if (name == "default" ||
         std::find(mesh.groups.begin(), mesh.groups.end(), name) != mesh.groups.end())
       continue;
-    const auto near = nearest_name(name, mesh.groups);
+    const std::vector<std::string> groups = with_joined_groups(mesh).groups;
+    const auto near = nearest_name(name, groups);
     return fail(ErrorCode::BadInput,
                 fmt::format("\"{}\" is no material of {}.{} It has {}.", name,
                             of.object.mesh.file.string(),
                             near ? fmt::format(" Did you mean \"{}\"?", *near) : "",
-                            fmt::join(mesh.groups, ", ")),
+                            fmt::join(groups, ", ")),
                 of.place("materials." + name));
   }
   return {};
@@ -124,7 +125,7 @@ Result<MaterialNames> names_of(const Named &of, const Mesh &mesh, const MeshRepo
 
 /// A material that the mesh uses but no MTL file defines is only a name: an error where the
 /// scenario does not map every material by name.
-Result<void> check_mtl(const Named &of, const ObjMesh &read) {
+Result<void> check_mtl(const Named &of, const MeshFile &read) {
   if (!read.lacks_mtl)
     return {};
   for (const std::string &group : read.mesh.groups)
@@ -168,8 +169,8 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   const Named of{scenario, scenario.objects[which], which};
   UMOV_TRY(load_orbit(of, options, diagnostics, out));
   UMOV_TRY(read_input(of.object.mesh.file, of.place("mesh"), out));
-  UMOV_ASSIGN(read, read_obj(of.object.mesh.file,
-                             {.unit = of.object.mesh.unit, .up = of.object.mesh.up}, diagnostics));
+  UMOV_ASSIGN(read, read_mesh(of.object.mesh.file,
+                              {.unit = of.object.mesh.unit, .up = of.object.mesh.up}, diagnostics));
   for (const auto &file : read.files) {
     UMOV_ASSIGN(text, read_file(file));
     out.inputs.push_back({file.string(), sha256_hex(text)});
@@ -177,8 +178,10 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   UMOV_TRY(check_mtl(of, read));
   UMOV_TRY(check_material_keys(of, read.mesh));
   UMOV_TRY(load_attitude(of, read.mesh, diagnostics, out));
-  if (auto checked = check_joints(joints_of(of.object.parts), read.mesh); !checked)
+  const std::vector<Joint> joints = joints_of(of.object.parts);
+  if (auto checked = check_joints(joints, read.mesh); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("part"));
+  read.mesh = with_joined_groups(read.mesh, joint_of_groups(read.mesh, joints));
   const MeshReport report = inspect(read.mesh);
   std::vector<Material> front, back;
   for (std::size_t i = 0; i < read.mesh.groups.size(); ++i) {

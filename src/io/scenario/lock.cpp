@@ -83,10 +83,14 @@ std::string object(const ScenarioObject &o) {
   std::string out = fmt::format("\n[[object]]\nname = {}\n", quoted(o.name));
   if (o.orbit)
     out += orbit_toml(*o.orbit);
+  // Absent where the format states them: what they are is only known when the file is read.
+  std::string frame;
+  for (const auto &[key, value] : {std::pair{"unit", o.mesh.unit}, {"up", o.mesh.up}})
+    if (!value.empty())
+      frame += fmt::format("{} = {}, ", key, quoted(value));
   out += fmt::format(
-      "mesh = {{ file = {}, unit = {}, up = {}, normals = \"{}\", crease_deg = {} }}\n",
-      absolute_path(o.mesh.file), quoted(o.mesh.unit), quoted(o.mesh.up),
-      o.mesh.normals == NormalMode::Smooth ? "smooth" : "flat", shortest(o.mesh.crease_deg));
+      "mesh = {{ file = {}, {}normals = \"{}\", crease_deg = {} }}\n", absolute_path(o.mesh.file),
+      frame, o.mesh.normals == NormalMode::Smooth ? "smooth" : "flat", shortest(o.mesh.crease_deg));
   out += "attitude = " + scenario::attitude_toml(o.attitude) + "\n\n[object.materials]\n";
   for (const auto &[name, sides] : o.materials)
     out += fmt::format("{} = {{ front = {}, back = {} }}\n", quoted(name), quoted(sides.front),

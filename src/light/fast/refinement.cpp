@@ -21,7 +21,7 @@ constexpr double points_most = 16'384; ///< of a class
 /// Variance of the share of a class of which `points` found `share` to be lit and seen. One
 /// pseudo-disagreement stands for slivers that no point has found.
 double share_variance(double share, double points) {
-  const double unsure = std::clamp(share, 0.5 / points, 1 - 0.5 / points);
+  const double unsure = std::clamp(share, 1 / points, 1 - 1 / points);
   return static_cast<double>(mask_error.points) * unsure * (1 - unsure) /
          (points * std::sqrt(points));
 }

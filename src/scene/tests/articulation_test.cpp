@@ -94,6 +94,50 @@ TEST(Articulation, ACarriedPartGoesWithItsCarrier) {
   EXPECT_LT(norm(out.positions[out.triangles[1].vertex[2]] - Vec3<Body>{-1, 1, 1}), 1e-15);
 }
 
+/// Three panels of one material in the tree body, body/wing, body/wing/tip.
+Mesh tree() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.groups = {"foil", "foil", "foil"};
+  mesh.nodes = {"body", "body/wing", "body/wing/tip"};
+  for (std::uint32_t g = 0; g < 3; ++g)
+    mesh.triangles.push_back({{0, 1, 2}, {no_index, no_index, no_index}, g, g});
+  return mesh;
+}
+
+TEST(Articulation, NodesTurnWithAllBelowThem) {
+  const Mesh mesh = tree();
+  Joint wing{"w", {}, {0, 0, 1}, {}, {1, 0, 0}, ""}, tip = wing;
+  wing.nodes = {"wing"};
+  tip.name = "t";
+  tip.on = "w";
+  tip.nodes = {"wing/tip"};
+  ASSERT_TRUE(check_joints({wing, tip}, mesh));
+  EXPECT_EQ(joint_of_groups(mesh, {wing}), (std::vector<std::size_t>{1, 0, 0}));
+  EXPECT_EQ(joint_of_groups(mesh, {wing, tip}),
+            (std::vector<std::size_t>{2, 0, 1})); // deepest wins
+  Joint all = wing;
+  all.nodes.clear();
+  all.groups = {"foil"};
+  EXPECT_EQ(joint_of_groups(mesh, {all}), (std::vector<std::size_t>{0, 0, 0})); // a name, all nodes
+}
+
+TEST(Articulation, RefusesNodesThatAreNoneOrSeveral) {
+  Mesh mesh = tree();
+  Joint joint{"w", {}, {0, 0, 1}, {}, {1, 0, 0}, ""};
+  const auto refused = [&](const char *node, const char *words) {
+    joint.nodes = {node};
+    const auto checked = check_joints({joint}, mesh);
+    ASSERT_FALSE(checked) << words;
+    EXPECT_NE(checked.error().message.find(words), std::string::npos) << checked.error().message;
+  };
+  refused("win", "no node \"win\" with faces; it has body, body/wing, body/wing/tip");
+  mesh.nodes = {"left/wing", "right/wing", "right/wing/tip"};
+  refused("wing", "may be any of left/wing, right/wing; write more of its path");
+  mesh.nodes.clear();
+  refused("wing", "has no tree of nodes");
+}
+
 TEST(Articulation, RefusesWhatCannotTurn) {
   const Mesh mesh = body_with_panel();
   const Joint fine{"p", {"panel"}, {0, 1, 0}, {}, {0, 0, 1}, ""};

@@ -8,10 +8,10 @@
 namespace umov {
 namespace {
 
-const ObjOptions metres{.unit = "m", .up = "+Z"};
+const MeshFileOptions metres{.unit = "m", .up = "+Z"};
 
-Result<ObjMesh> read(const std::string &text, Diagnostics &diagnostics,
-                     const ObjOptions &options = metres) {
+Result<MeshFile> read(const std::string &text, Diagnostics &diagnostics,
+                      const MeshFileOptions &options = metres) {
   const MtlLoader none = [](const std::string &) -> Result<std::string> {
     return fail(ErrorCode::BadInput, "none");
   };
@@ -176,7 +176,7 @@ TEST(ObjReader, TurnsTheUpAxisProperly) {
 
 TEST(ObjReader, RefusesTooManyTriangles) {
   Diagnostics diagnostics;
-  ObjOptions few = metres;
+  MeshFileOptions few = metres;
   few.max_triangles = 1;
   EXPECT_FALSE(read(square + "f 1 2 3 4\n", diagnostics, few));
 }
