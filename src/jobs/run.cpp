@@ -78,6 +78,8 @@ Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, const Monitor &
       [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
       monitor.cancel != nullptr ? *monitor.cancel : never);
   UMOV_TRY(light->keep_masks());
+  if (many)
+    UMOV_TRY(many->keep_masks());
   return out;
 }
 

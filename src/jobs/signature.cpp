@@ -106,10 +106,6 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   monitor.tell("preparing the scene ...");
   UMOV_ASSIGN(model, light_of(object.scene, request, light));
   const LightFacts &facts = model->facts();
-  if (facts.mask_bytes > 0)
-    monitor.tell(fmt::format("{} triangles in {} classes, {:.0f} MB of masks, {:.1f} s",
-                             facts.triangles, facts.classes,
-                             static_cast<double>(facts.mask_bytes) / 1e6, facts.setup_s));
   const bool has_disk = is_sun && scenario.has_solar_disk;
   const std::size_t block = block_of(facts, light.bounces);
   LightTask task;
@@ -145,6 +141,9 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
                    fmt::format("stopped by the user after {} of {} poses", done, poses.count),
                    {}}));
   UMOV_TRY(model->keep_masks());
+  if (model->mask_bytes() > 0)
+    monitor.tell(fmt::format("{} triangles in {} classes, {:.0f} MB of masks", facts.triangles,
+                             facts.classes, static_cast<double>(model->mask_bytes()) / 1e6));
   if (!request.mask_file.empty())
     monitor.tell(facts.is_convex ? "a convex body needs no masks: nothing is kept in " +
                                        request.mask_file.string()

@@ -29,6 +29,8 @@ public:
                               StokesTable &out, const LightTask &task,
                               std::span<const std::uint32_t> material_of = {}) const;
   [[nodiscard]] std::size_t mask_bytes() const;
+  /// As Engine::keep_masks, for each part.
+  void keep_masks() const;
 
 private:
   struct State;

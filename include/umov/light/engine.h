@@ -43,8 +43,8 @@ struct EngineOptions {
   MaskQuality masks = fast_masks;
   /// Per band [m2/sr]: below it I need not be known any better than at it; empty: 0.
   std::vector<double> floor_i = {};
-  /// With `refine_above` > 0: half-widths count every facet that could be seen, also where the masks
-  /// know of none; each pose costs tens of microseconds more.
+  /// With `refine_above` > 0: half-widths count every facet that could be seen, also where the
+  /// masks know of none; each pose costs tens of microseconds more.
   bool doubts_all = false;
   /// Part of `refine_above` that is asked of Q/I.
   double q_part = 0.06;
@@ -53,6 +53,11 @@ struct EngineOptions {
   double cluster_rad = 0;
   bool is_double = false; ///< the scalar reference in double instead of the vector unit in float
   bool is_intensity_only = false; ///< leaves Q = 0: to measure what polarization costs
+  /// Rows of the masks are traced when a pose first asks for their direction, not all at once
+  /// before: a short series asks for few.
+  bool is_lazy = false;
+  /// Folder of masks of earlier jobs; empty: none are kept. See Engine::keep_masks.
+  std::filesystem::path mask_cache = {};
   /// Other materials on the same mesh that abundances must serve exactly too.
   std::vector<Scene> hypotheses = {};
   unsigned threads = 0; ///< of the preparation; 0: all cores
@@ -78,6 +83,13 @@ public:
                                    const EngineOptions &options);
   /// Writes the masks, whole or not at all (nothing for a convex mesh: Usage). Device if it fails.
   [[nodiscard]] Result<void> save_masks(const std::filesystem::path &file) const;
+  /// Puts what was traced into EngineOptions::mask_cache, if that has grown. In silence: whatever
+  /// goes wrong, the masks are made anew.
+  void keep_masks() const;
+  /// Bytes of the masks as they are now.
+  [[nodiscard]] std::size_t mask_bytes() const;
+  /// Rows were traced since the masks were read.
+  [[nodiscard]] bool has_new_masks() const;
   ~Engine();
   Engine(Engine &&) noexcept;
   Engine &operator=(Engine &&) noexcept;

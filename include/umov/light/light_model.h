@@ -55,7 +55,6 @@ struct LightFacts {
   LightMethod method = LightMethod::Rays; ///< what Auto means here
   bool is_convex = false;
   std::size_t triangles = 0, classes = 0;
-  std::size_t mask_bytes = 0;
   double setup_s = 0;
   std::vector<double> floor_i; ///< per band [m2/sr]: the accuracy refers to it at least; empty: 0
   std::string visibility;      ///< how hiding is decided, in words for a file's header
@@ -87,6 +86,8 @@ public:
   /// Keeps what was learnt of the masks for later jobs (LightOptions::mask_cache or mask_file).
   /// Device if the file that was asked for cannot be written; the cache fails in silence.
   [[nodiscard]] virtual Result<void> keep_masks() const { return {}; }
+  /// Bytes of the masks as they are now: rows are traced when they are first asked for.
+  [[nodiscard]] virtual std::size_t mask_bytes() const { return 0; }
 
 protected:
   LightModel(const Scene &scene, std::vector<Joint> joints);

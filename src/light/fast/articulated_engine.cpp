@@ -80,6 +80,14 @@ bool may_hide(const Sphere &from, const Sphere &other, Vec3<Body> direction) {
   return ahead > -reach && dot(w, w) - ahead * ahead < reach * reach;
 }
 
+/// A pose as a part sees it that has moved.
+Pose seen_from(const PartMotion &motion, Pose pose) {
+  const PartMotion own = motion.inverse();
+  pose.sun = normalized(own.turn * pose.sun);
+  pose.observer = normalized(own.turn * pose.observer);
+  return pose;
+}
+
 /// The triangles of one rigid part.
 Scene part_of(const Scene &scene, const std::vector<std::size_t> &joint_of, std::size_t which) {
   Scene out = scene;
@@ -130,6 +138,9 @@ struct ArticulatedEngine::State {
 
   void evaluate(const Pose &pose, const std::vector<double> &angles, Workspace &work,
                 std::size_t row, StokesTable &out) const;
+  [[nodiscard]] std::vector<LazyMasks::Lock> hold_masks(std::span<const Pose> poses,
+                                                        std::span<const double> angles_rad,
+                                                        unsigned threads) const;
   void light_parts(const std::vector<PartMotion> &motions, std::size_t row, Workspace &work,
                    StokesTable &out) const;
   void hide(std::size_t which, const std::vector<PartMotion> &to_part, Workspace &work) const;
@@ -291,10 +302,7 @@ void ArticulatedEngine::State::evaluate(const Pose &pose, const std::vector<doub
   work.total.reset(bands, true);
   work.is_seen.assign(parts.size(), 0);
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    const PartMotion own = motions[motion_of[p]].inverse();
-    work.pose[p] = pose;
-    work.pose[p].sun = normalized(own.turn * pose.sun);
-    work.pose[p].observer = normalized(own.turn * pose.observer);
+    work.pose[p] = seen_from(motions[motion_of[p]], pose);
     const Engine::State &engine = *parts[p].engine;
     engine.prepare(work.pose[p], work.prepared[p]);
     if (!engine.sum(work.pose[p], work.prepared[p], work.parts[p]))
@@ -308,6 +316,26 @@ void ArticulatedEngine::State::evaluate(const Pose &pose, const std::vector<doub
   light_parts(motions, row, work, out);
   put_light(work.left, 1, has_scattering_plane(pose), has_u_or_v, row, out);
   out.method[row] = work.is_mended ? PoseMethod::Mended : PoseMethod::Masks;
+}
+
+/// Masks of all parts, in the directions that these see.
+std::vector<LazyMasks::Lock>
+ArticulatedEngine::State::hold_masks(std::span<const Pose> poses,
+                                     std::span<const double> angles_rad, unsigned threads) const {
+  std::vector<std::vector<Pose>> by_part(parts.size());
+  std::vector<double> angles(joints.size());
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    std::copy_n(angles_rad.begin() + static_cast<std::ptrdiff_t>(k * angles.size()), angles.size(),
+                angles.begin());
+    std::vector<PartMotion> motions = part_motions(joints, angles);
+    motions.emplace_back(); // what stands still
+    for (std::size_t p = 0; p < parts.size(); ++p)
+      by_part[p].push_back(seen_from(motions[motion_of[p]], poses[k]));
+  }
+  std::vector<LazyMasks::Lock> out;
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    out.push_back(parts[p].engine->hold_masks(by_part[p], threads));
+  return out;
 }
 
 /// The light of all parts after what they hide of each other, and the columns asked for.
@@ -371,8 +399,13 @@ void ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const do
 std::size_t ArticulatedEngine::mask_bytes() const {
   std::size_t bytes = 0;
   for (const State::Part &part : state_->parts)
-    bytes += part.engine->facts.mask_bytes;
+    bytes += part.engine->masks ? part.engine->masks->bytes() : 0;
   return bytes;
+}
+
+void ArticulatedEngine::keep_masks() const {
+  for (const State::Part &part : state_->parts)
+    part.engine->keep_masks();
 }
 
 bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
@@ -385,6 +418,7 @@ bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const do
   const std::size_t materials =
       task.has_materials ? *std::max_element(material_of.begin(), material_of.end()) + 1 : 0;
   out.material_i.assign(poses.size() * materials * s.bands, 0);
+  const std::vector<LazyMasks::Lock> held = s.hold_masks(poses, angles_rad, task.threads);
   constexpr std::size_t block = 64;
   parallel_for((poses.size() + block - 1) / block, task.threads, [&](std::size_t begin) {
     State::Workspace work;

@@ -1,7 +1,7 @@
 #include <umov/light/engine.h>
 
 #include "light/fast/abundance_state.h"
-#include "light/fast/mask_file.h"
+#include "light/fast/mask_cache.h"
 #include "light/fast/pose_data.h"
 #include "light/fast/pose_order.h"
 #include "light/fast/state.h"
@@ -50,7 +50,7 @@ void Engine::State::prepare(const Pose &pose, Prepared &out) const {
   if (!options.is_double)
     round_pose(out.pose, out.single);
   if (masks)
-    backend::prefetch(*views.masks, out.pose.small_sun, out.pose.small_observer, out.pose.large_sun,
+    backend::prefetch(*hiding(), out.pose.small_sun, out.pose.small_observer, out.pose.large_sun,
                       out.pose.large_observer);
 }
 
@@ -58,11 +58,12 @@ template <class Body>
 void Engine::State::for_each(std::span<const Pose> poses, unsigned threads,
                              const Body &body) const {
   std::vector<std::uint32_t> order(poses.size());
-  if (masks && poses.size() >= ordered_from)
-    order = order_for_masks(poses, masks->small.directions(),
-                            facts.mask_bytes / masks->small.directions());
-  else
+  if (masks && poses.size() >= ordered_from) {
+    const std::size_t cells = mask_size().small_cells, directions = (cells + 1) * (cells + 1);
+    order = order_for_masks(poses, directions, masks->bytes() / directions);
+  } else
     std::iota(order.begin(), order.end(), 0u);
+  const LazyMasks::Lock held = hold_masks(poses, threads);
   const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(threads)) + 1,
                                       poses_per_task_min, poses_per_task_max);
   parallel_for((poses.size() + size - 1) / size, threads, [&](std::size_t task) {
@@ -111,13 +112,29 @@ void Engine::State::take_masks(std::optional<MaskStore> ready) {
   if (!has_masks())
     return;
   occluder.emplace(scene.mesh);
-  masks =
-      ready ? std::move(*ready)
-            : build_masks(scene, elements, classes, plan, *occluder, mask_size(), options.threads);
-  views.masks = masks->view();
+  if (!ready)
+    ready = read_cached_masks(options.mask_cache, key_of_masks(), plan, mask_size());
+  masks = std::make_unique<LazyMasks>(ready ? std::move(*ready) : empty_masks(plan, mask_size()),
+                                      MaskTracer(scene, elements, classes, plan, *occluder));
+  if (!options.is_lazy)
+    masks->ensure_all(options.threads);
   if (options.masks.refine_above > 0)
     refine_points = RefinePoints(scene, elements, classes, plan, *occluder);
-  facts.mask_bytes = memory_of(*masks);
+  facts.mask_bytes = masks->bytes();
+}
+
+LazyMasks::Lock Engine::State::hold_masks(std::span<const Pose> poses, unsigned threads) const {
+  return masks ? masks->ensure(poses, threads) : LazyMasks::Lock();
+}
+
+std::uint64_t Engine::State::key_of_masks() const {
+  return mask_key(scene.mesh, classes, plan, mask_size());
+}
+
+void Engine::State::keep_masks() const {
+  if (masks && masks->has_grown())
+    masks->read(
+        [&](const MaskStore &store) { cache_masks(options.mask_cache, key_of_masks(), store); });
 }
 
 Engine::Engine(const Scene &scene, const EngineOptions &options) {
@@ -147,8 +164,15 @@ Result<void> Engine::save_masks(const std::filesystem::path &file) const {
   const State &s = *state_;
   if (!s.masks)
     return fail(ErrorCode::Usage, "nothing hides anything here: there are no masks to keep");
-  return write_masks(file, *s.masks, mask_key(s.scene.mesh, s.classes, s.plan, s.mask_size()));
+  return s.masks->read(
+      [&](const MaskStore &store) { return write_masks(file, store, s.key_of_masks()); });
 }
+
+void Engine::keep_masks() const { state_->keep_masks(); }
+
+std::size_t Engine::mask_bytes() const { return state_->masks ? state_->masks->bytes() : 0; }
+
+bool Engine::has_new_masks() const { return state_->masks && state_->masks->has_grown(); }
 
 Engine::~Engine() = default;
 Engine::Engine(Engine &&) noexcept = default;

@@ -58,37 +58,12 @@ template <class F> void for_each_list(MaskStore &masks, const F &f) {
   f(bytes_of(masks.pool));
 }
 
-/// Blocks of one entry of a group.
-std::uint32_t blocks_of(const backend::GroupMask &group) {
-  return group.words / (group.is_large ? std::uint32_t{backend::lanes} : 1u);
-}
-
 std::uint64_t checksum_of(Header header, MaskStore &masks) {
   Hash hash;
   header.checksum = 0;
   hash.add(header);
   for_each_list(masks, [&](std::span<char> part) { hash.add(part.data(), part.size()); });
   return hash.value();
-}
-
-/// All that the plan decides (as build_masks lays it out): groups, entries, cells, the sizes of the
-/// lists. A file may only fill it in.
-MaskStore layout_of(const GroupPlan &plan, const MaskSize &size) {
-  MaskStore out;
-  for (const GroupPlan::Group &group : plan.groups) {
-    MaskTableStore &table = group.is_large ? out.large : out.small;
-    out.groups.push_back({static_cast<std::uint32_t>(table.entries), group.words, group.is_large});
-    table.entries += group.is_large ? backend::lanes : 1;
-    out.longest = std::max(out.longest, blocks_of(out.groups.back()));
-  }
-  out.small.cells = size.small_cells;
-  out.large.cells = size.large_cells;
-  for (MaskTableStore *table : {&out.small, &out.large}) {
-    const std::size_t directions = table->entries > 0 ? table->directions() : 0;
-    table->offset.resize(directions * table->entries);
-    table->row.resize(directions);
-  }
-  return out;
 }
 
 Header header_of(const MaskStore &masks, std::uint64_t key) {
@@ -126,7 +101,7 @@ bool is_consistent(const MaskStore &masks, bool is_large) {
     if (table.offset[k] + blocks[k % table.entries] > masks.pool.size())
       return false;
   return std::all_of(table.row.begin(), table.row.end(), [&](const backend::MaskRow &row) {
-    return std::size_t{row.first} + row.count <= masks.pool.size();
+    return row.first == untraced || std::size_t{row.first} + row.count <= masks.pool.size();
   });
 }
 
@@ -183,7 +158,7 @@ Result<MaskStore> read_masks(const std::filesystem::path &path, std::uint64_t ke
   std::error_code unknown;
   const std::uint64_t bytes = std::filesystem::file_size(path, unknown);
   Header header;
-  MaskStore out = layout_of(plan, size);
+  MaskStore out = empty_masks(plan, size);
   const Header wanted = header_of(out, key);
   if (unknown || bytes < sizeof header ||
       !stream.read(reinterpret_cast<char *>(&header), sizeof header) ||

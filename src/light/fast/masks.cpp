@@ -14,14 +14,6 @@ namespace {
 /// interpolation down at grazing directions.
 constexpr double least_sine = 0.002;
 
-/// Points of the lanes of an entry: a whole group, or one class with words of its own.
-struct Entry {
-  std::size_t blocks = 0; ///< of 64 bytes
-  bool is_large = false;
-  std::vector<Vec3<Body>> normal;  ///< per lane; one for a large one
-  std::vector<ClassPoints> points; ///< per lane
-};
-
 /// Blocks of one direction and where each entry's are: hidden, free, or counted from the first.
 struct Row {
   std::vector<backend::MaskBlock> blocks;
@@ -37,7 +29,7 @@ class RowTracer {
 public:
   RowTracer(const Occluder &occluder, double reach) : occluder_(occluder), reach_(reach) {}
 
-  void add(const Entry &entry, Vec3<Body> direction, Row &row) {
+  void add(const MaskEntry &entry, Vec3<Body> direction, Row &row) {
     block_.assign(entry.blocks, backend::MaskBlock{});
     bool is_all_free = true, is_all_hidden = true;
     for (std::size_t lane = 0; lane < entry.normal.size(); ++lane) {
@@ -74,14 +66,14 @@ public:
   }
 
 private:
-  void set(const Entry &entry, std::size_t lane, std::size_t i) {
+  void set(const MaskEntry &entry, std::size_t lane, std::size_t i) {
     const std::size_t word = i / 32;
     if (entry.is_large)
       block_[word / backend::lanes].word[word % backend::lanes] |= 1u << (i % 32);
     else
       block_[word].word[lane] |= 1u << (i % 32);
   }
-  void fill_lane(const Entry &entry, std::size_t lane) {
+  void fill_lane(const MaskEntry &entry, std::size_t lane) {
     for (backend::MaskBlock &b : block_) {
       if (entry.is_large)
         std::memset(b.word, 0xFF, sizeof b.word);
@@ -97,49 +89,33 @@ private:
   std::vector<unsigned char> free_;
 };
 
-/// Traces a table's entries in all directions and appends the blocks to the pool.
-void fill_table(MaskStore &masks, MaskTableStore &table, std::size_t cells,
-                const std::vector<Entry> &entries, const Occluder &occluder, unsigned threads) {
-  table.cells = cells;
-  table.entries = entries.size();
-  const std::size_t directions = entries.empty() ? 0 : table.directions();
-  std::vector<Row> rows(directions);
-  parallel_for(directions, threads, [&](std::size_t d) {
-    RowTracer tracer(occluder, grid_reach(cells));
-    for (const Entry &entry : entries)
-      tracer.add(entry, grid_direction(cells, d), rows[d]);
-  });
-  const backend::Masks known = masks.view();
-  std::size_t blocks = masks.pool.size();
-  for (const Row &row : rows)
-    blocks += row.blocks.size();
-  masks.pool.reserve(blocks);
-  table.offset.reserve(directions * entries.size());
-  for (Row &row : rows) {
-    const auto base = static_cast<std::uint32_t>(masks.pool.size());
-    table.row.push_back({base, static_cast<std::uint32_t>(row.blocks.size())});
-    for (const std::uint32_t o : row.offset)
-      table.offset.push_back(o == all_hidden ? known.hidden()
-                             : o == all_free ? known.free()
-                                             : base + o);
-    masks.pool.insert(masks.pool.end(), row.blocks.begin(), row.blocks.end());
-    row = {};
-  }
-}
-
 } // namespace
 
-MaskStore build_masks(const Scene &scene, const Elements &elements, const FacetClasses &classes,
-                      const GroupPlan &plan, const Occluder &occluder, const MaskSize &size,
-                      unsigned threads) {
+MaskStore empty_masks(const GroupPlan &plan, const MaskSize &size) {
   MaskStore out;
-  std::vector<Entry> small, large;
   for (const GroupPlan::Group &group : plan.groups) {
-    backend::GroupMask mask;
-    mask.words = group.words;
-    mask.is_large = group.is_large;
-    mask.entry = static_cast<std::uint32_t>(group.is_large ? large.size() : small.size());
-    Entry entry;
+    MaskTableStore &table = group.is_large ? out.large : out.small;
+    out.groups.push_back({static_cast<std::uint32_t>(table.entries), group.words, group.is_large});
+    table.entries += group.is_large ? backend::lanes : 1;
+    out.longest = std::max(out.longest, blocks_of(out.groups.back()));
+  }
+  out.small.cells = size.small_cells;
+  out.large.cells = size.large_cells;
+  for (MaskTableStore *table : {&out.small, &out.large}) {
+    const std::size_t directions = table->entries > 0 ? table->directions() : 0;
+    table->offset.assign(directions * table->entries, 0);
+    table->row.assign(directions, {untraced, 0});
+  }
+  out.pool.assign(std::size_t{2} * out.longest, backend::MaskBlock{});
+  std::memset(out.pool.data() + out.longest, 0xFF, out.longest * sizeof(backend::MaskBlock));
+  return out;
+}
+
+MaskTracer::MaskTracer(const Scene &scene, const Elements &elements, const FacetClasses &classes,
+                       const GroupPlan &plan, const Occluder &occluder)
+    : occluder_(occluder) {
+  for (const GroupPlan::Group &group : plan.groups) {
+    MaskEntry entry;
     entry.is_large = group.is_large;
     entry.blocks = group.is_large ? group.words / backend::lanes : group.words;
     for (const std::uint32_t of : group.member) {
@@ -149,22 +125,43 @@ MaskStore build_masks(const Scene &scene, const Elements &elements, const FacetC
                                  : spread_points(scene, elements, classes, of,
                                                  std::size_t{32} * group.words, occluder));
       if (group.is_large) {
-        large.push_back(std::move(entry));
-        entry = {large.back().blocks, true, {}, {}};
+        large_.push_back(std::move(entry));
+        entry = {large_.back().blocks, true, {}, {}};
       }
     }
     if (!group.is_large)
-      small.push_back(std::move(entry));
-    out.groups.push_back(mask);
-    out.longest =
-        std::max(out.longest,
-                 static_cast<std::uint32_t>(group.is_large ? large.back().blocks : group.words));
+      small_.push_back(std::move(entry));
   }
-  out.pool.assign(std::size_t{2} * out.longest, backend::MaskBlock{});
-  std::memset(out.pool.data() + out.longest, 0xFF, out.longest * sizeof(backend::MaskBlock));
-  fill_table(out, out.small, size.small_cells, small, occluder, threads);
-  fill_table(out, out.large, size.large_cells, large, occluder, threads);
-  return out;
+}
+
+void MaskTracer::trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
+                       MaskStore &masks) const {
+  MaskTableStore &table = is_large ? masks.large : masks.small;
+  const std::vector<MaskEntry> &entries = is_large ? large_ : small_;
+  std::vector<Row> rows(directions.size());
+  parallel_for(directions.size(), threads, [&](std::size_t k) {
+    RowTracer tracer(occluder_, grid_reach(table.cells));
+    for (const MaskEntry &entry : entries)
+      tracer.add(entry, grid_direction(table.cells, directions[k]), rows[k]);
+  });
+  const backend::Masks known = masks.view();
+  std::size_t blocks = masks.pool.size();
+  for (const Row &row : rows)
+    blocks += row.blocks.size();
+  if (blocks > masks.pool.capacity()) // a series asks for few rows at a time
+    masks.pool.reserve(std::max(blocks, 2 * masks.pool.capacity()));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const auto base = static_cast<std::uint32_t>(masks.pool.size());
+    table.row[directions[k]] = {base, static_cast<std::uint32_t>(rows[k].blocks.size())};
+    for (std::size_t e = 0; e < entries.size(); ++e) {
+      const std::uint32_t o = rows[k].offset[e];
+      table.offset[directions[k] * entries.size() + e] = o == all_hidden ? known.hidden()
+                                                         : o == all_free ? known.free()
+                                                                         : base + o;
+    }
+    masks.pool.insert(masks.pool.end(), rows[k].blocks.begin(), rows[k].blocks.end());
+    rows[k] = {};
+  }
 }
 
 std::size_t memory_of(const MaskStore &masks) {

@@ -10,11 +10,35 @@ struct MaskSize {
   std::size_t small_cells = 64, large_cells = 64; ///< per edge of the octahedron's square, even
 };
 
-/// Traces every point towards every direction that its class can face. The same bytes for any
-/// number of threads.
-MaskStore build_masks(const Scene &scene, const Elements &elements, const FacetClasses &classes,
-                      const GroupPlan &plan, const Occluder &occluder, const MaskSize &size,
-                      unsigned threads);
+/// All that the plan decides: groups, entries, cells, the sizes of the lists. No direction is
+/// traced: everything is hidden.
+MaskStore empty_masks(const GroupPlan &plan, const MaskSize &size);
+
+/// Where a row begins that has not been traced.
+inline constexpr std::uint32_t untraced = 0xFFFFFFFF;
+
+/// Points of the lanes of an entry: a whole group, or one class with words of its own.
+struct MaskEntry {
+  std::size_t blocks = 0; ///< of 64 bytes
+  bool is_large = false;
+  std::vector<Vec3<Body>> normal;  ///< per lane; one for a large entry
+  std::vector<ClassPoints> points; ///< per lane
+};
+
+/// Traces every point towards directions of a grid, as far as its class can face them. The same
+/// bytes of a row for any number of threads and any order of the rows. `occluder` must live.
+class MaskTracer {
+public:
+  MaskTracer(const Scene &scene, const Elements &elements, const FacetClasses &classes,
+             const GroupPlan &plan, const Occluder &occluder);
+  /// Adds the rows of directions that have none yet.
+  void trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
+             MaskStore &masks) const;
+
+private:
+  std::vector<MaskEntry> small_, large_;
+  const Occluder &occluder_;
+};
 
 /// Bytes that the masks hold.
 std::size_t memory_of(const MaskStore &masks);

@@ -89,7 +89,7 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
 
 void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
   work.uncertain.reset(views.whole.groups.size() * backend::lanes);
-  backend::list_facing(views.whole, *views.masks, mask_error, at.pose, work.uncertain);
+  backend::list_facing(views.whole, *hiding(), mask_error, at.pose, work.uncertain);
   work.nothing.assign(terms_max(), 0);
   work.facet_light.assign(work.uncertain.size() * bands(), {});
   work.weights.assign(work.uncertain.size() * terms_max(), 0);

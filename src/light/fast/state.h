@@ -2,8 +2,8 @@
 // Private: what an engine holds, and how a pose goes through it.
 
 #include "light/fast/compile.h"
+#include "light/fast/lazy_masks.h"
 #include "light/fast/mask_errors.h"
-#include "light/fast/masks.h"
 #include "light/fast/refine_points.h"
 
 #include <array>
@@ -36,12 +36,11 @@ struct Engine::State {
   GroupPlan plan;
   CompiledScene compiled;
   SceneStore<float> single;
-  std::optional<MaskStore> masks;
-  /// Of `compiled`, `single` and `masks`, for the loops.
+  std::unique_ptr<LazyMasks> masks;
+  /// Of `compiled` and `single`, for the loops.
   struct Views {
     backend::SceneData<double> whole;
     backend::SceneData<float> single;
-    std::optional<backend::Masks> masks;
   } views;
   std::optional<Occluder> occluder;
   RefinePoints refine_points;
@@ -86,9 +85,11 @@ struct Engine::State {
     SeenStore seen;
   };
 
-  [[nodiscard]] const backend::Masks *hiding() const {
-    return views.masks ? &*views.masks : nullptr;
-  }
+  [[nodiscard]] const backend::Masks *hiding() const { return masks ? &masks->view() : nullptr; }
+  /// Masks for these poses, as long as what is returned is held.
+  [[nodiscard]] LazyMasks::Lock hold_masks(std::span<const Pose> poses, unsigned threads) const;
+  [[nodiscard]] std::uint64_t key_of_masks() const;
+  void keep_masks() const;
   [[nodiscard]] std::size_t bands() const { return scene.bands.size(); }
   [[nodiscard]] std::size_t terms_max() const; ///< lobes and products of a slot, at most
 

@@ -50,6 +50,11 @@ struct MaskStore {
   }
 };
 
+/// Blocks of one entry of a group.
+inline std::uint32_t blocks_of(const backend::GroupMask &group) {
+  return group.words / (group.is_large ? std::uint32_t{backend::lanes} : 1u);
+}
+
 /// A pose with its own room. Moving it leaves the views right, as the room stays where it is.
 template <class T> struct PoseStore : backend::PoseData<T> {
   std::vector<kernel::LobeAtPose<T>> lobe_room;

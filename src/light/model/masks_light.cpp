@@ -45,6 +45,8 @@ Result<void> MasksLight::prepare() {
   with.masks = is_auto ? fast_masks : masks_for(options_.accuracy);
   with.masks.refine_above = is_auto ? options_.accuracy : 0;
   with.doubts_all = is_auto;
+  with.is_lazy = true;
+  with.mask_cache = options_.mask_file.empty() ? options_.mask_cache : "";
   with.q_part = 1; // Q in parts of I, to the accuracy of I
   with.floor_i = floor_i_;
   if (joints().empty() && !options_.mask_file.empty() &&
@@ -61,7 +63,6 @@ Result<void> MasksLight::prepare() {
   facts_.instruction_set = engine_instruction_set();
   facts_.is_convex = engine_ && engine_->facts().is_convex;
   facts_.classes = engine_ ? engine_->facts().classes : 0;
-  facts_.mask_bytes = engine_ ? engine_->facts().mask_bytes : turning_->mask_bytes();
   facts_.visibility = in_words(facts_, with.masks);
   IntegrationOptions rays = integration_of(options_, floor_i_);
   if (options_.bounces > 1 && !facts_.is_convex)
@@ -74,10 +75,17 @@ Result<void> MasksLight::prepare() {
 }
 
 Result<void> MasksLight::keep_masks() const {
-  if (options_.mask_file.empty() || !engine_ || facts_.is_convex ||
-      std::filesystem::exists(options_.mask_file))
-    return {};
-  return engine_->save_masks(options_.mask_file);
+  if (turning_)
+    turning_->keep_masks();
+  else if (options_.mask_file.empty())
+    engine_->keep_masks();
+  else if (engine_->has_new_masks())
+    return engine_->save_masks(options_.mask_file);
+  return {};
+}
+
+std::size_t MasksLight::mask_bytes() const {
+  return engine_ ? engine_->mask_bytes() : turning_->mask_bytes();
 }
 
 /// Poses that miss the accuracy for all that was mended.

@@ -27,6 +27,7 @@ public:
                                                   const LightOptions &options,
                                                   std::vector<double> floor_i);
   [[nodiscard]] Result<void> keep_masks() const override;
+  [[nodiscard]] std::size_t mask_bytes() const override;
 
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,

@@ -1,0 +1,85 @@
+#include "light/fast/lazy_masks.h"
+
+#include "light/fast/octahedron.h"
+
+#include <mutex>
+#include <umov/core/parallel.h>
+
+namespace umov {
+namespace {
+
+const MaskTableStore &table_of(const MaskStore &masks, bool is_large) {
+  return is_large ? masks.large : masks.small;
+}
+
+} // namespace
+
+LazyMasks::LazyMasks(MaskStore known, MaskTracer tracer)
+    : store_(std::move(known)), tracer_(std::move(tracer)), view_(store_.view()) {
+  is_complete_ = missing(false).empty() && missing(true).empty();
+}
+
+std::size_t LazyMasks::bytes() const {
+  return read([](const MaskStore &store) { return memory_of(store); });
+}
+
+std::vector<std::uint32_t> LazyMasks::missing(bool is_large) const {
+  const auto &rows = table_of(store_, is_large).row;
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t d = 0; d < rows.size(); ++d)
+    if (rows[d].first == untraced)
+      out.push_back(d);
+  return out;
+}
+
+/// Directions around those of the poses that have no row.
+std::vector<std::uint32_t> LazyMasks::missing(std::span<const Pose> poses, bool is_large,
+                                              unsigned threads) const {
+  const MaskTableStore &table = table_of(store_, is_large);
+  std::vector<std::uint32_t> out;
+  if (table.entries == 0)
+    return out;
+  std::vector<char> is_wanted(table.row.size(), 0);
+  constexpr std::size_t block = 1024;
+  parallel_for((poses.size() + block - 1) / block, threads, [&](std::size_t task) {
+    for (std::size_t i = task * block; i < std::min(poses.size(), (task + 1) * block); ++i)
+      for (const Vec3<Body> &direction : {poses[i].sun, poses[i].observer})
+        for (const std::uint32_t d : look_around(table.cells, direction).direction)
+          if (table.row[d].first == untraced) // whoever writes writes the same
+            std::atomic_ref(is_wanted[d]).store(1, std::memory_order_relaxed);
+  });
+  for (std::uint32_t d = 0; d < is_wanted.size(); ++d)
+    if (is_wanted[d] != 0)
+      out.push_back(d);
+  return out;
+}
+
+void LazyMasks::trace(const std::vector<std::uint32_t> &small,
+                      const std::vector<std::uint32_t> &large, unsigned threads) {
+  tracer_.trace(small, false, threads, store_);
+  tracer_.trace(large, true, threads, store_);
+  view_ = store_.view();
+  has_grown_ = true;
+  is_complete_ = missing(false).empty() && missing(true).empty();
+}
+
+LazyMasks::Lock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads) {
+  if (is_complete_)
+    return Lock(mutex_);
+  for (;;) {
+    {
+      Lock lock(mutex_);
+      if (missing(poses, false, threads).empty() && missing(poses, true, threads).empty())
+        return lock;
+    }
+    const std::unique_lock lock(mutex_);
+    trace(missing(poses, false, threads), missing(poses, true, threads), threads);
+  }
+}
+
+void LazyMasks::ensure_all(unsigned threads) {
+  const std::unique_lock lock(mutex_);
+  trace(missing(false), missing(true), threads);
+}
+
+} // namespace umov

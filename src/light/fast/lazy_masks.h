@@ -1,0 +1,49 @@
+#pragma once
+// Private: masks whose rows are traced when a pose first asks for their direction.
+
+#include "light/fast/masks.h"
+
+#include <atomic>
+#include <shared_mutex>
+#include <umov/scene/pose.h>
+
+namespace umov {
+
+/// A short series asks for few directions, a million random poses for all: each is traced once.
+/// What a row holds does not depend on when it was traced. Thread safe.
+class LazyMasks {
+public:
+  /// `known`: empty_masks, or what a file held.
+  LazyMasks(MaskStore known, MaskTracer tracer);
+
+  using Lock = std::shared_lock<std::shared_mutex>;
+  /// Traces what poses lack. As long as the lock is held `view` stays as it is.
+  [[nodiscard]] Lock ensure(std::span<const Pose> poses, unsigned threads);
+  void ensure_all(unsigned threads);
+
+  /// What the loops read: it holds for poses that were ensured, while their lock is held.
+  [[nodiscard]] const backend::Masks &view() const { return view_; }
+  [[nodiscard]] std::size_t bytes() const;
+  /// Rows were traced since the masks were made or read.
+  [[nodiscard]] bool has_grown() const { return has_grown_; }
+  /// Runs `body(const MaskStore &)` while nobody changes it.
+  template <class Body> auto read(const Body &body) const {
+    const Lock lock(mutex_);
+    return body(store_);
+  }
+
+private:
+  [[nodiscard]] std::vector<std::uint32_t> missing(std::span<const Pose> poses, bool is_large,
+                                                   unsigned threads) const;
+  [[nodiscard]] std::vector<std::uint32_t> missing(bool is_large) const;
+  void trace(const std::vector<std::uint32_t> &small, const std::vector<std::uint32_t> &large,
+             unsigned threads);
+
+  MaskStore store_;
+  MaskTracer tracer_;
+  backend::Masks view_;
+  mutable std::shared_mutex mutex_;
+  std::atomic<bool> is_complete_{false}, has_grown_{false};
+};
+
+} // namespace umov
