@@ -11,6 +11,12 @@ inline constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F};
 /// have in common: the same shadow's edge crosses many.
 inline constexpr double mask_alike = 4e-3F;
 
+/// Poses of a series look up the same few directions and err together, so that what is off stays
+/// off for many of them: variances of single looked-up facets are taken so much larger, for
+/// half-widths to cover nine in ten of a series too (HST, Agena, box-wing and crumpled foil against
+/// dense rays).
+inline constexpr double mask_series = 2;
+
 /// Adds to the variances what the classes' errors have in common.
 inline void add_alike(backend::PoseSums &sums) {
   const auto add = [](backend::View<double> linear, backend::View<double> variance) {

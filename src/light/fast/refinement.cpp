@@ -90,6 +90,8 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
 void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
   work.uncertain.reset(views.whole.groups.size() * backend::lanes);
   backend::list_facing(views.whole, *hiding(), mask_error, at.pose, work.uncertain);
+  for (backend::SeenFacet &facet : work.uncertain)
+    facet.variance *= mask_series;
   work.nothing.assign(terms_max(), 0);
   work.facet_light.assign(work.uncertain.size() * bands(), {});
   work.weights.assign(work.uncertain.size() * terms_max(), 0);

@@ -46,6 +46,15 @@ bool takes_rays(const Scene &scene, const std::vector<Joint> &joints, const Ligh
 
 } // namespace
 
+std::vector<double> floor_of(const LightOptions &options, const std::vector<double> &typical_i) {
+  const double part = options.accuracy_floor.value_or(default_accuracy_floor(options.method));
+  std::vector<double> out;
+  if (part > 0)
+    for (const double light : typical_i)
+      out.push_back(part * light);
+  return out;
+}
+
 const char *name_of(LightMethod method) {
   switch (method) {
   case LightMethod::Rays:
@@ -62,16 +71,12 @@ double default_accuracy_floor(LightMethod method) { return method == LightMethod
 
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
                                                const LightOptions &options) {
-  const double part = options.accuracy_floor.value_or(default_accuracy_floor(options.method));
-  std::vector<double> floor_i;
-  if (part > 0) {
-    floor_i = typical_light(scene);
-    for (double &floor : floor_i)
-      floor *= part;
-  }
+  std::vector<double> typical_i;
+  if (options.method == LightMethod::Auto || options.accuracy_floor.value_or(0) > 0)
+    typical_i = typical_light(scene);
   if (!takes_rays(scene, joints, options))
-    return MasksLight::make(scene, std::move(joints), options, std::move(floor_i));
-  return std::make_unique<RaysLight>(scene, std::move(joints), options, std::move(floor_i));
+    return MasksLight::make(scene, std::move(joints), options, std::move(typical_i));
+  return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i);
 }
 
 Result<std::unique_ptr<LightModel>>

@@ -8,11 +8,14 @@
 
 namespace umov {
 
+/// What the accuracy of each band refers to at least, from the typical light; empty: 0.
+std::vector<double> floor_of(const LightOptions &options, const std::vector<double> &typical_i);
+
 /// Each pose by rays, with light between surfaces where it is asked for.
 class RaysLight final : public LightModel {
 public:
   RaysLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-            std::vector<double> floor_i);
+            const std::vector<double> &typical_i);
 
 private:
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
@@ -25,20 +28,21 @@ class MasksLight final : public LightModel {
 public:
   static Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> joints,
                                                   const LightOptions &options,
-                                                  std::vector<double> floor_i);
+                                                  std::vector<double> typical_i);
   [[nodiscard]] Result<void> keep_masks() const override;
   [[nodiscard]] std::size_t mask_bytes() const override;
 
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-             std::vector<double> floor_i);
+             std::vector<double> typical_i);
   Result<void> prepare();
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override;
+  void add_allowance(StokesTable &table) const;
   [[nodiscard]] std::vector<std::size_t> inaccurate(const StokesTable &table) const;
 
   LightOptions options_;
-  std::vector<double> floor_i_;
+  std::vector<double> typical_i_; ///< per band
   std::vector<std::uint32_t> material_of_;
   std::optional<Engine> engine_;             ///< of a body whose parts do not turn
   std::optional<ArticulatedEngine> turning_; ///< of one whose parts do

@@ -5,10 +5,10 @@
 namespace umov {
 
 RaysLight::RaysLight(const Scene &of, std::vector<Joint> turning, const LightOptions &options,
-                     std::vector<double> floor_i)
+                     const std::vector<double> &typical_i)
     : LightModel(of, std::move(turning)),
-      rays_(scene(), joints(), integration_of(options, floor_i), materials()) {
-  facts_.floor_i = std::move(floor_i);
+      rays_(scene(), joints(), integration_of(options, floor_of(options, typical_i)), materials()) {
+  facts_.floor_i = floor_of(options, typical_i);
   facts_.method = LightMethod::Rays;
   facts_.is_convex = rays_.is_convex();
   facts_.instruction_set = "scalar double";
