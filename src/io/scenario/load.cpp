@@ -179,7 +179,7 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   UMOV_TRY(load_attitude(of, read.mesh, diagnostics, out));
   if (auto checked = check_joints(joints_of(of.object.parts), read.mesh); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("part"));
-  const MeshReport report = inspect(read.mesh);
+  const MeshReport report = inspect(read.mesh, false);
   std::vector<Material> front, back;
   for (std::size_t i = 0; i < read.mesh.groups.size(); ++i) {
     UMOV_ASSIGN(names, names_of(of, read.mesh, report, i));
