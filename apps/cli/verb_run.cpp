@@ -81,6 +81,30 @@ void warn_of_accuracy(const LightCurveOutcome &outcome, double accuracy, Diagnos
                                  count, curve.epochs.size(), accuracy, worst));
 }
 
+/// The same of the Earth's light, whose patches are cut up to a bound.
+void warn_of_earth(const LightCurveOutcome &outcome, const EarthshineOptions &options,
+                   Diagnostics &diagnostics) {
+  std::size_t count = 0;
+  double worst = 0;
+  const std::size_t bands = outcome.curve.bands.size();
+  for (const SecondLight &light : outcome.curve.second_lights)
+    for (std::size_t i = 0; light.name == "earth" && i < outcome.curve.epochs.size(); ++i) {
+      double error = 0;
+      for (std::size_t b = 0; b < bands; ++b)
+        if (const double full = light.intensity[i * bands + b].i; full > 0)
+          error = std::max(error, light.half_width[i * bands + b].i / full);
+      count += error > 1.5 * options.accuracy ? 1u : 0u; // the mask's own error comes on top
+      worst = std::max(worst, error);
+    }
+  if (count > 0)
+    diagnostics.warn(
+        fmt::format("{} of {} epochs did not reach the accuracy {} asked of earth_I with {} "
+                    "sources (worst {:.2g}); see earth_I_err. A larger patches in earthshine "
+                    "raises the bound, which is {} times as many.",
+                    count, outcome.curve.epochs.size(), options.accuracy,
+                    patches_bound * options.patches, worst, patches_bound));
+}
+
 bool wants(const Scenario &scenario, const char *format) {
   return std::find(scenario.formats.begin(), scenario.formats.end(), format) !=
          scenario.formats.end();
@@ -227,6 +251,8 @@ Result<std::optional<Error>> compute_all(std::vector<ObjectRun> &objects, const 
     with_rows += is_empty ? 0u : 1u;
     if (!is_empty)
       warn_of_accuracy(objects[k].outcome, scenario.accuracy, diagnostics);
+    if (!is_empty && scenario.earthshine)
+      warn_of_earth(objects[k].outcome, *scenario.earthshine, diagnostics);
     if (stopped) {
       objects.resize(k + 1);
       break;

@@ -230,15 +230,17 @@ void RowMaker::add_second_lights(const ObservingGeometry &geometry, const LightC
                            : request.frame == PolarizationFrame::AltAz
                                ? geometry.zenith
                                : scattering_normal(geometry.to_observer, geometry.to_sun);
+  EarthshineOptions earth = request.earthshine.value_or(EarthshineOptions{});
+  earth.narrowest_lobe = narrowest_lobe(scene);
   for (SecondLight &second : curve.second_lights) {
-    const auto sum =
-        second.name == "moon"
-            ? moon_light(geometry, body_from_gcrs, north, bands, light)
-            : earth_light(geometry, body_from_gcrs, north, *request.earthshine, bands, light);
+    const auto sum = second.name == "moon"
+                         ? moon_light(geometry, body_from_gcrs, north, bands, light)
+                         : earth_light(geometry, body_from_gcrs, north, earth, bands, light);
     for (std::size_t b = 0; b < bands; ++b) {
-      second.intensity[row * bands + b] = sum[b];
+      second.intensity[row * bands + b] = sum.stokes[b];
+      second.half_width[row * bands + b] = sum.half_width[b];
       second.irradiance[row * bands + b] = irradiance_at_observer(
-          sum[b].i, solar[b], geometry.sun_distance_km, 1, geometry.range_km);
+          sum.stokes[b].i, solar[b], geometry.sun_distance_km, 1, geometry.range_km);
     }
   }
 }
@@ -295,11 +297,12 @@ LightCurve empty_curve(const LightCurveRequest &request, const Scene &scene, std
   curve.samples.resize(rows * scene.bands.size());
   curve.group_intensity.resize(rows * scene.mesh.groups.size() * scene.bands.size());
   if (request.earthshine)
-    curve.second_lights.push_back({"earth", {}, {}});
+    curve.second_lights.push_back({"earth", {}, {}, {}});
   if (request.has_moonlight)
-    curve.second_lights.push_back({"moon", {}, {}});
+    curve.second_lights.push_back({"moon", {}, {}, {}});
   for (SecondLight &second : curve.second_lights) {
     second.intensity.resize(curve.samples.size());
+    second.half_width.resize(curve.samples.size());
     second.irradiance.resize(curve.samples.size());
   }
   return curve;
@@ -311,6 +314,7 @@ void truncate(LightCurve &curve, std::size_t rows) {
   curve.group_intensity.resize(curve.group_intensity.size() / before * rows);
   for (SecondLight &second : curve.second_lights) {
     second.intensity.resize(second.intensity.size() / before * rows);
+    second.half_width.resize(second.half_width.size() / before * rows);
     second.irradiance.resize(second.irradiance.size() / before * rows);
   }
   curve.epochs.resize(rows);
