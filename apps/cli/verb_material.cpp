@@ -198,6 +198,9 @@ Result<void> check_materials(const CheckOptions &o, const Common &common) {
   table.add("energy_gap", "", "diffuse light against its promise", std::move(gap));
   table.add("p_max", "", "largest polarization of sunlight in the sample", std::move(p));
   UMOV_TRY(put_table(o.output, table, common));
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (const std::string &remark : materials[i].remarks)
+      fmt::print(stderr, "remark: {}: {}\n", names[i], remark);
   if (bad > 0)
     return fail(ErrorCode::Physics,
                 fmt::format("{} of {} not physical; see the table", bad,

@@ -256,7 +256,7 @@ Result<void> describe_file(const ReadOptions &options, const Common &common, boo
     UMOV_ASSIGN(cleaned, clean(mesh, diagnostics, options.file));
     mesh = std::move(cleaned);
   }
-  MeshReport found = inspect(mesh);
+  MeshReport found = inspect(mesh, false);
   found.degenerate = raw.degenerate;
   found.duplicate = raw.duplicate;
   found.opposite_pairs = raw.opposite_pairs;

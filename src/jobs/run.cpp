@@ -60,6 +60,30 @@ void warn_of_accuracy(const LightCurveOutcome &outcome, const LightOptions &ligh
                                  count, curve.epochs.size(), accuracy, worst));
 }
 
+/// The same of the Earth's light, whose patches are cut up to a bound.
+void warn_of_earth(const LightCurveOutcome &outcome, const EarthshineOptions &options,
+                   Diagnostics &diagnostics) {
+  std::size_t count = 0;
+  double worst = 0;
+  const std::size_t bands = outcome.curve.bands.size();
+  for (const SecondLight &light : outcome.curve.second_lights)
+    for (std::size_t i = 0; light.name == "earth" && i < outcome.curve.epochs.size(); ++i) {
+      double error = 0;
+      for (std::size_t b = 0; b < bands; ++b)
+        if (const double full = light.intensity[i * bands + b].i; full > 0)
+          error = std::max(error, light.half_width[i * bands + b].i / full);
+      count += error > 1.5 * options.accuracy ? 1u : 0u; // the mask's own error comes on top
+      worst = std::max(worst, error);
+    }
+  if (count > 0)
+    diagnostics.warn(
+        fmt::format("{} of {} epochs did not reach the accuracy {} asked of earth_I with {} "
+                    "sources (worst {:.2g}); see earth_I_err. A larger patches in earthshine "
+                    "raises the bound, which is {} times as many.",
+                    count, outcome.curve.epochs.size(), options.accuracy,
+                    patches_bound * options.patches, worst, patches_bound));
+}
+
 Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, const Monitor &monitor) {
   static const std::atomic<bool> never{false};
   const std::string what = is_alone ? "light curve" : one.request.object;
@@ -125,6 +149,8 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
     with_rows += is_empty ? 0u : 1u;
     if (!is_empty)
       warn_of_accuracy(objects[k].outcome, scenario.light, objects[k].light.floor_i, diagnostics);
+    if (!is_empty && scenario.earthshine)
+      warn_of_earth(objects[k].outcome, *scenario.earthshine, diagnostics);
     if (out.stopped) {
       objects.resize(k + 1);
       break;

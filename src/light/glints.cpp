@@ -182,7 +182,7 @@ std::vector<GlintFlat> glint_flats(const Scene &scene, double least_share, doubl
     if (sides[t].front)
       add(normal, area, triangle.front, scene.front[triangle.front], false);
     if (sides[t].back)
-      add(-normal, area, triangle.back, scene.back[triangle.back], true);
+      add(-normal, area, triangle.back, surface_of_side(scene, triangle, false), true);
   }
   std::vector<GlintFlat> out;
   double largest = 0;

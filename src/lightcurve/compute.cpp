@@ -91,15 +91,17 @@ void RowMaker::add_second_lights(const TrackPoint &point, std::size_t row) {
                            : request.frame == PolarizationFrame::AltAz
                                ? geometry.zenith
                                : scattering_normal(geometry.to_observer, geometry.to_sun);
+  EarthshineOptions earth = request.earthshine.value_or(EarthshineOptions{});
+  earth.narrowest_lobe = narrowest_lobe(light_.scene());
   for (SecondLight &second : curve.second_lights) {
-    const auto sum =
-        second.name == "moon"
-            ? moon_light(geometry, body_from_gcrs, north, bands, light)
-            : earth_light(geometry, body_from_gcrs, north, *request.earthshine, bands, light);
+    const auto sum = second.name == "moon"
+                         ? moon_light(geometry, body_from_gcrs, north, bands, light)
+                         : earth_light(geometry, body_from_gcrs, north, earth, bands, light);
     for (std::size_t b = 0; b < bands; ++b) {
-      second.intensity[row * bands + b] = sum[b];
+      second.intensity[row * bands + b] = sum.stokes[b];
+      second.half_width[row * bands + b] = sum.half_width[b];
       second.irradiance[row * bands + b] = irradiance_at_observer(
-          sum[b].i, solar[b], geometry.sun_distance_km, 1, geometry.range_km);
+          sum.stokes[b].i, solar[b], geometry.sun_distance_km, 1, geometry.range_km);
     }
   }
 }
@@ -208,11 +210,12 @@ LightCurve empty_curve(const LightCurveRequest &request, const LightModel &light
   curve.samples.resize(rows * curve.bands.size());
   curve.material_i.resize(curve.samples.size() * curve.materials.size());
   if (request.earthshine)
-    curve.second_lights.push_back({"earth", {}, {}});
+    curve.second_lights.push_back({"earth", {}, {}, {}});
   if (request.has_moonlight)
-    curve.second_lights.push_back({"moon", {}, {}});
+    curve.second_lights.push_back({"moon", {}, {}, {}});
   for (SecondLight &second : curve.second_lights) {
     second.intensity.resize(curve.samples.size());
+    second.half_width.resize(curve.samples.size());
     second.irradiance.resize(curve.samples.size());
   }
   return curve;
@@ -224,6 +227,7 @@ void truncate(LightCurve &curve, std::size_t rows) {
   curve.material_i.resize(samples * curve.materials.size());
   for (SecondLight &second : curve.second_lights) {
     second.intensity.resize(samples);
+    second.half_width.resize(samples);
     second.irradiance.resize(samples);
   }
   curve.epochs.resize(rows);

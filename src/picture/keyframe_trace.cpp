@@ -94,7 +94,7 @@ std::vector<Seen> look(const Camera &camera, std::size_t row, std::span<KeyFrame
     const double a = hit.u, b = hit.v;
     s.point = mesh.positions[t.vertex[0]] * (1 - a - b) + mesh.positions[t.vertex[1]] * a +
               mesh.positions[t.vertex[2]] * b;
-    s.surface = is_front ? &camera.scene.front[t.front] : &camera.scene.back[t.back];
+    s.surface = &surface_of_side(camera.scene, t, is_front);
     line[column].material =
         is_front ? camera.front_material[t.front] : camera.back_material[t.back];
     line[column].facing = static_cast<float>(std::clamp(dot(s.normal, v), 0., 1.));

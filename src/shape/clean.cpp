@@ -4,51 +4,11 @@
 #include "shape/weld.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
-#include <map>
 #include <umov/core/text.h>
 
 namespace umov {
-
-FacePairs find_pairs(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                     const std::vector<bool> &skip) {
-  FacePairs out;
-  out.partner.resize(mesh.triangles.size());
-  out.is_opposite.assign(mesh.triangles.size(), false);
-  struct Seen {
-    std::uint32_t forward = no_index, backward = no_index;
-  };
-  std::map<std::array<std::uint32_t, 3>, Seen> seen;
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    out.partner[i] = i;
-    if (skip[i])
-      continue;
-    std::array<std::uint32_t, 3> key{};
-    for (std::size_t k = 0; k < 3; ++k)
-      key[k] = welded[mesh.triangles[i].vertex[k]];
-    // Even permutations of the sorted corners wind one way, odd ones the other.
-    std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
-    const bool forward = key[1] < key[2];
-    std::sort(key.begin(), key.end());
-    Seen &entry = seen[key];
-    std::uint32_t &same = forward ? entry.forward : entry.backward;
-    const std::uint32_t other = forward ? entry.backward : entry.forward;
-    if (same != no_index) {
-      out.partner[i] = same;
-      ++out.duplicates;
-    } else if (other != no_index) {
-      out.partner[i] = other;
-      out.is_opposite[i] = true;
-      ++out.opposites;
-      same = i;
-    } else {
-      same = i;
-    }
-  }
-  return out;
-}
 
 namespace {
 
@@ -79,6 +39,35 @@ void warn_count(Diagnostics &diagnostics, const std::string &file, std::size_t c
     diagnostics.warn(counted(count, singular, plural), {file});
 }
 
+/// Overlaps that have no clear meaning, by their materials.
+void warn_of_rest(const Mesh &mesh, const Coincidence &found, Diagnostics &diagnostics,
+                  const std::string &file) {
+  constexpr std::size_t most = 5;
+  for (std::size_t k = 0; k < std::min(most, found.rest.size()); ++k) {
+    const Coincidence::Rest &r = found.rest[k];
+    const std::string &a = mesh.groups[r.first_group], &b = mesh.groups[r.second_group];
+    const std::string of = r.first_group == r.second_group
+                               ? fmt::format("faces of \"{}\"", a)
+                               : fmt::format("faces of \"{}\" and \"{}\"", a, b);
+    diagnostics.warn(
+        fmt::format("{} lie upon each other in one plane over {:.4g} m2, {}: their light may count "
+                    "twice there. {}.",
+                    of, r.area_m2, r.is_opposite ? "facing opposite ways" : "facing the same way",
+                    r.is_opposite ? "Give both the same outline (they become one two-sided face) "
+                                    "or cut one of them away"
+                                  : "Cut the one out of the other or take it away"),
+        {file});
+  }
+  if (found.rest.size() > most)
+    diagnostics.warn(fmt::format("faces of {} overlap in one plane too",
+                                 counted(found.rest.size() - most, "other pair of materials",
+                                         "other pairs of materials")),
+                     {file});
+  warn_count(diagnostics, file, found.not_searched,
+             "triangle lies in too dense a crowd to look for faces that lie upon it",
+             "triangles lie in too dense a crowd to look for faces that lie upon them");
+}
+
 } // namespace
 
 Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file) {
@@ -90,32 +79,32 @@ Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string
     skip[i] = is_degenerate(mesh, mesh.triangles[i], welded);
     degenerate += skip[i] ? 1u : 0u;
   }
-  const FacePairs pairs = find_pairs(mesh, welded, skip);
+  const Coincidence found = find_coincidence(mesh, welded, skip);
   Mesh out;
   out.positions = mesh.positions;
   out.normals = mesh.normals;
   out.groups = mesh.groups;
   out.nodes = mesh.nodes;
-  std::vector<std::uint32_t> place(mesh.triangles.size(), no_index);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (skip[i])
+    if (skip[i] || found.is_dropped[i])
       continue;
-    if (pairs.partner[i] == i) {
-      place[i] = static_cast<std::uint32_t>(out.triangles.size());
-      out.triangles.push_back(mesh.triangles[i]);
-      if (!mesh.tangents.empty())
-        out.tangents.push_back(mesh.tangents[i]);
-    } else if (pairs.is_opposite[i]) {
-      out.triangles[place[pairs.partner[i]]].back = mesh.triangles[i].front;
-    }
+    out.triangles.push_back(mesh.triangles[i]);
+    if (found.back[i] != no_index)
+      out.triangles.back().back = found.back[i];
+    if (!mesh.tangents.empty())
+      out.tangents.push_back(mesh.tangents[i]);
   }
   warn_count(diagnostics, file, degenerate, "triangle without area was dropped",
              "triangles without area were dropped");
-  warn_count(diagnostics, file, pairs.duplicates, "triangle that repeats another one was dropped",
+  warn_count(diagnostics, file, found.duplicates, "triangle that repeats another one was dropped",
              "triangles that repeat another one were dropped");
-  warn_count(diagnostics, file, pairs.opposites,
+  warn_count(diagnostics, file, found.other_group,
+             "dropped triangle was of another material than what it repeats, which stays",
+             "dropped triangles were of another material than what they repeat, which stays");
+  warn_count(diagnostics, file, found.opposites,
              "pair of coincident opposite faces became one two-sided face",
              "pairs of coincident opposite faces became one two-sided face each");
+  warn_of_rest(mesh, found, diagnostics, file);
   if (out.triangles.empty())
     return fail(ErrorCode::BadInput, "no face with an area; a mesh of triangles was expected",
                 {file});

@@ -105,7 +105,7 @@ void count_parts(const Work &work, MeshReport &out) {
 /// than a full turn of face angles: then the surface bounds a convex body (van Heijenoort 1952).
 bool is_convex(const Work &work, const MeshReport &found) {
   if (!found.is_closed || found.parts != 1 || found.inconsistent_edges > 0 ||
-      !(found.volume_m3 > 0) || found.duplicate + found.opposite_pairs > 0)
+      !(found.volume_m3 > 0)) // repeated or opposite faces leave no such edges or no volume
     return false;
   const Mesh &mesh = work.mesh;
   std::vector<double> turn(mesh.positions.size(), 0);
@@ -157,7 +157,7 @@ bool is_flat_sheet(const Mesh &mesh) {
 
 } // namespace
 
-MeshReport inspect(const Mesh &mesh) {
+MeshReport inspect(const Mesh &mesh, bool with_coincidence) {
   MeshReport out;
   Work work{mesh,
             mesh_size(mesh),
@@ -171,21 +171,25 @@ MeshReport inspect(const Mesh &mesh) {
   work.edges = sorted_edges(mesh, work.welded, work.skip);
   count_edges(work, out);
   count_parts(work, out);
-  const FacePairs pairs = find_pairs(mesh, work.welded, work.skip);
-  out.duplicate = pairs.duplicates;
-  out.opposite_pairs = pairs.opposites;
+  if (with_coincidence) {
+    const Coincidence found = find_coincidence(mesh, work.welded, work.skip);
+    out.duplicate = found.duplicates;
+    out.opposite_pairs = found.opposites;
+  }
   out.is_closed = out.triangles > out.degenerate && out.open_edges + out.non_manifold_edges == 0;
   out.is_convex = is_convex(work, out);
   return out;
 }
 
-bool is_proven_convex(const Mesh &mesh) { return is_flat_sheet(mesh) || inspect(mesh).is_convex; }
+bool is_proven_convex(const Mesh &mesh) {
+  return is_flat_sheet(mesh) || inspect(mesh, false).is_convex;
+}
 
 double silhouette_upper_bound(const Mesh &mesh, Vec3<Body> direction) {
   double sum = 0;
   for (const Triangle &t : mesh.triangles)
     sum += std::abs(dot(area_vector_doubled(mesh, t), direction)) / 2;
-  return inspect(mesh).is_closed ? sum / 2 : sum;
+  return inspect(mesh, false).is_closed ? sum / 2 : sum;
 }
 
 } // namespace umov

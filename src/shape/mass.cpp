@@ -44,7 +44,7 @@ private:
 Result<MassProperties> mass_properties(const Mesh &mesh, MassModel model) {
   Moments sum;
   const bool is_solid = model == MassModel::Solid;
-  if (is_solid && !inspect(mesh).is_closed)
+  if (is_solid && !inspect(mesh, false).is_closed)
     return fail(ErrorCode::BadInput,
                 "the mesh is not closed and has no inside; take the inertia of "
                 "its shell, or give numbers");

@@ -198,6 +198,7 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
     return fail(ErrorCode::BadInput, trouble + ". Pass --accept (or accept = true) to take it.");
   if (!trouble.empty())
     remarks.push_back("accepted although " + trouble);
+  out.remark_on_grid(remarks);
   return out;
 }
 

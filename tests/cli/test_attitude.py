@@ -201,6 +201,9 @@ def test_earthshine_has_columns_of_its_own(umov, scenario, tmp_path):
         assert "earth_I" not in one and one["I"] == two["I"]
         assert 0 <= float(two["earth_I"])
         if two["earth_q"]:
+            # What was asked of it (0.02 unless said), and the light's own accuracy.
+            assert 0 < float(two["earth_I_err"]) < 0.03 * float(two["earth_I"])
+            assert 0 <= float(two["earth_q_err"]) < 0.03 and 0 <= float(two["earth_u_err"]) < 0.03
             assert float(two["earth_q"]) ** 2 + float(two["earth_u"]) ** 2 <= 1
     part = '[[object.part]]\ngroups = ["cube"]\naxis = "+X"\nangle_deg = 0\n'
     turned = light_curve(umov, scenario(("[output]", "[render]\nearthshine = { albedo = 0.3 }\n[output]"),
@@ -209,6 +212,8 @@ def test_earthshine_has_columns_of_its_own(umov, scenario, tmp_path):
         assert float(one["earth_I"]) == pytest.approx(float(two["earth_I"]), rel=1e-3, abs=1e-30)
     done = umov("run", scenario(("[output]", "[render]\nearthshine = { albedo = 3 }\n[output]")))
     assert done.code == 3 and "albedo = 3; 0 to 1 was expected" in done.err
+    done = umov("run", scenario(("[output]", "[render]\nearthshine = { accuracy = 2 }\n[output]")))
+    assert done.code == 3 and "accuracy = 2; 1e-4 to 1 was expected" in done.err
 
 
 def test_the_shadows_edge_bent_and_reddened(umov, scenario, tmp_path):

@@ -41,9 +41,10 @@ struct LightCurveSample {
 /// Light of the object by another source than the Sun, not in I; [epoch * bands + band], in the sky
 /// axes of the curve.
 struct SecondLight {
-  std::string name;                        ///< "earth" or "moon": begins its columns
-  std::vector<Stokes<SkyNorth>> intensity; ///< [m2/sr] per unit solar irradiance
-  std::vector<double> irradiance;          ///< I at the observer [W m-2 nm-1]
+  std::string name;                         ///< "earth" or "moon": begins its columns
+  std::vector<Stokes<SkyNorth>> intensity;  ///< [m2/sr] per unit solar irradiance
+  std::vector<Stokes<SkyNorth>> half_width; ///< numerical 95 % half-widths of `intensity`
+  std::vector<double> irradiance;           ///< I at the observer [W m-2 nm-1]
 };
 
 struct LightCurve {

@@ -52,4 +52,12 @@ struct VisibleSides {
 /// are joined if their coordinates agree within 1e-6 of the size. A part must not cut itself.
 std::vector<VisibleSides> visible_sides(const Mesh &mesh);
 
+/// The surface of one side of a triangle. Where two opposite faces were merged into one (its back is of
+/// another group), the back shows the front surface of the other face.
+inline const Surface &surface_of_side(const Scene &scene, const Triangle &t, bool is_front) {
+  if (is_front)
+    return scene.front[t.front];
+  return t.back == t.front ? scene.back[t.back] : scene.front[t.back];
+}
+
 } // namespace umov

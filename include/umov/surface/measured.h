@@ -19,14 +19,16 @@ struct BrdfSample {
 /// A table of samples on a full grid of wavelength, theta_i, theta_o and phi, interpolated so that
 /// reciprocity holds exactly: each value is the mean of the table's at (i, o) and, transposed, at
 /// (o, i), with multilinear weights. Outside the grid: no light below the horizon, the nearest
-/// angle inside it, and no wavelength beyond the ends.
+/// angle where neither way was measured (the one known of them alone otherwise), and no wavelength
+/// beyond the ends.
 class MeasuredBrdf {
 public:
   /// A plain table with the azimuths 0 and 180 only (in plane) is read in the coordinates in which
   /// lobes keep their shape, tilt of the half vector and incidence on it (Rusinkiewicz 1998), and
   /// taken to be isotropic about the normal: the same tilt to any side gives the same. BadInput if
   /// the grid has holes; if a table is not reciprocal within 5 % of its largest value, or any
-  /// gives more than it gets, and `accept` is false, with the numbers.
+  /// gives more than it gets, and `accept` is false, with the numbers. `remarks` says where the
+  /// grid is too coarse, ends too early or holds the floor of an instrument.
   static Result<MeasuredBrdf> from(std::vector<BrdfSample> samples, bool has_polarization,
                                    bool accept, std::vector<std::string> &remarks);
 
@@ -35,6 +37,15 @@ public:
                                                   double theta_o_rad, double phi_rad) const;
   /// Directional albedo at an incidence.
   [[nodiscard]] double albedo(double wavelength_nm, double theta_i_rad) const;
+  /// How far off values between the nodes may be, estimated from half the nodes against the others,
+  /// in parts of the larger value; where, and whether along phi.
+  struct GridError {
+    double share = 0, theta_i_deg = 0, theta_o_deg = 0, phi_deg = 0;
+    bool is_phi = false;
+  };
+  [[nodiscard]] GridError grid_error() const;
+  /// First theta_o whose values look like the floor of an instrument; 90 if none do.
+  [[nodiscard]] double floor_from_deg() const;
   /// Largest difference of f(i, o) and f(o, i) in the table, in parts of its largest value.
   [[nodiscard]] double worst_asymmetry() const { return asymmetry_; }
   [[nodiscard]] bool has_polarization() const { return has_polarization_; }
@@ -42,6 +53,10 @@ public:
   [[nodiscard]] double last_nm() const { return axes_[0].back(); }
 
 private:
+  template <class Take> void for_each_node(Take take) const;
+  /// The same table with some of its nodes only.
+  [[nodiscard]] MeasuredBrdf on_nodes(const std::array<std::vector<double>, 4> &axes) const;
+  void remark_on_grid(std::vector<std::string> &remarks) const;
   /// The table can say what the way back of a sample gives.
   [[nodiscard]] bool is_partner_known(const BrdfSample &sample) const;
   [[nodiscard]] double in_plane(double nm, double tilt_rad, double incidence_rad) const;

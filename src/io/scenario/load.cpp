@@ -182,7 +182,7 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   if (auto checked = check_joints(joints, read.mesh); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("part"));
   read.mesh = with_joined_groups(read.mesh, joint_of_groups(read.mesh, joints));
-  const MeshReport report = inspect(read.mesh);
+  const MeshReport report = inspect(read.mesh, false);
   std::vector<Material> front, back;
   for (std::size_t i = 0; i < read.mesh.groups.size(); ++i) {
     UMOV_ASSIGN(names, names_of(of, read.mesh, report, i));

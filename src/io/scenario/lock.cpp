@@ -118,8 +118,9 @@ std::string locked_scenario(const Scenario &s) {
   out += fmt::format("moonlight = {}\nshadow_edge = \"{}\"\n", s.has_moonlight,
                      s.has_refracted_shadow ? "refracted" : "geometric");
   if (s.earthshine)
-    out += fmt::format("earthshine = {{ albedo = {}, patches = {} }}\n",
-                       shortest(s.earthshine->albedo), s.earthshine->patches);
+    out += fmt::format("earthshine = {{ albedo = {}, patches = {}, accuracy = {} }}\n",
+                       shortest(s.earthshine->albedo), s.earthshine->patches,
+                       shortest(s.earthshine->accuracy));
   out += "\n[detector]\nmodel = \"ideal\"\n";
   out += fmt::format("\n[output]\ndir = {}\nformats = {}\npol_frame = \"{}\"\n",
                      quoted(s.output_dir.string()), list(s.formats), frame_name(s.frame));

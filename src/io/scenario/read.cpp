@@ -336,6 +336,11 @@ Result<void> read_render(const Node &top, Scenario &out) {
                     fmt::format("patches = {}; 10 to 100000 was expected", patches),
                     earth.where("patches"));
       options.patches = static_cast<std::size_t>(patches);
+      options.accuracy = earth.number("accuracy", options.accuracy);
+      if (!(options.accuracy >= 1e-4 && options.accuracy <= 1))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("accuracy = {}; 1e-4 to 1 was expected", options.accuracy),
+                    earth.where("accuracy"));
       out.earthshine = options;
     }
     UMOV_ASSIGN(sun, node.choice("sun", "disk", {"disk", "point"}));

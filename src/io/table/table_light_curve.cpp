@@ -118,6 +118,22 @@ void add_second_light(Table &table, const SecondLight &light) {
   add("_q", "Q/I in the sky frame of ", &Stokes<SkyNorth>::q);
   add("_u", "U/I in the sky frame of ", &Stokes<SkyNorth>::u);
   add("_v", "V/I of ", &Stokes<SkyNorth>::v);
+  std::vector<double> irradiance; // of the half-width: in the ratio that I has to its intensity
+  for (std::size_t k = 0; k < light.intensity.size(); ++k)
+    irradiance.push_back(light.intensity[k].i > 0
+                             ? light.half_width[k].i / light.intensity[k].i * light.irradiance[k]
+                             : 0);
+  table.add(light.name + "_I_err", "W / (m2 nm)", "numerical 95 % half-width", irradiance);
+  const auto add_error = [&](const char *name, double Stokes<SkyNorth>::*part) {
+    std::vector<double> values;
+    for (std::size_t k = 0; k < light.intensity.size(); ++k)
+      values.push_back(light.intensity[k].i > 0 ? light.half_width[k].*part / light.intensity[k].i
+                                                : std::numeric_limits<double>::quiet_NaN());
+    table.add(light.name + name, "", "numerical 95 % half-width, over I", std::move(values));
+  };
+  add_error("_q_err", &Stokes<SkyNorth>::q);
+  add_error("_u_err", &Stokes<SkyNorth>::u);
+  add_error("_v_err", &Stokes<SkyNorth>::v);
 }
 
 } // namespace

@@ -81,10 +81,12 @@ Vertex PathSampler::vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> 
   if (is_smooth && norm(bent) > 0)
     out.normal = normalized(dot(bent, out.face) < 0 ? -bent : bent);
   out.point += out.face * (offset_of_size * of_.size_m_);
-  out.surface = side > 0 ? &scene_.front[triangle.front] : &scene_.back[triangle.back];
+  out.surface = &surface_of_side(scene_, triangle, side > 0);
   out.triangle = t;
   out.is_front = side > 0;
-  out.sampler = side > 0 ? &of_.front_sampler_[triangle.front] : &of_.back_sampler_[triangle.back];
+  const bool is_own_back = side <= 0 && triangle.back == triangle.front;
+  out.sampler = is_own_back ? &of_.back_sampler_[triangle.back]
+                            : &of_.front_sampler_[side > 0 ? triangle.front : triangle.back];
   out.field = direction_field(mesh, *out.surface, t);
   return out;
 }

@@ -1,6 +1,9 @@
 #include "surface/tests/surface_cases.h"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <string>
 #include <umov/core/random.h>
 #include <umov/surface/measured.h>
 
@@ -19,6 +22,63 @@ std::vector<BrdfSample> sampled_in_plane(const Surface &surface) {
   return out;
 }
 
+/// The white paint of examples/panel_brdf.csv on any grid.
+Material paint() {
+  Material out;
+  out.index = constant_index(1.5);
+  out.distribution = {"beckmann", {{"alpha", .3}}, {}, {}, {}};
+  out.body = BodyLobe{{{}, {.8}}, true};
+  return out;
+}
+
+std::vector<BrdfSample> sampled(const Surface &surface, const std::vector<double> &theta_i,
+                                const std::vector<double> &theta_o,
+                                const std::vector<double> &phi) {
+  std::vector<BrdfSample> out;
+  for (const double i : theta_i)
+    for (const double o : theta_o)
+      for (const double p : phi)
+        out.push_back({550,
+                       i,
+                       o,
+                       p,
+                       {surface.brdf(0, directions_from_angles(i * degree, o * degree, p * degree))
+                            .m[0][0]}});
+  return out;
+}
+
+std::vector<double> steps(double last, double step) {
+  std::vector<double> out;
+  for (int k = 0; k * step <= last + 1e-9; ++k)
+    out.push_back(k * step);
+  return out;
+}
+
+/// What a table in place of its surface gets wrong, at most, in parts of the larger value.
+double true_error(const MeasuredBrdf &table, const Surface &surface, double last) {
+  double worst = 0, largest = 0;
+  for (int pass = 0; pass < 2; ++pass)
+    for (double i = 1.2; i < last; i += 2.3)
+      for (double o = 0.7; o < last; o += 2.1)
+        for (double phi = 1.1; phi < 180; phi += 6.1) {
+          const double truth =
+              surface.brdf(0, directions_from_angles(i * degree, o * degree, phi * degree)).m[0][0];
+          const double ours = table(550, i * degree, o * degree, phi * degree)[0];
+          const double larger = std::max(truth, ours);
+          const double light = larger * std::cos(i * degree) * std::cos(o * degree);
+          largest = std::max(largest, light);
+          if (pass == 1 && light > 0.01 * largest)
+            worst = std::max(worst, std::abs(truth - ours) / larger);
+        }
+  return worst;
+}
+
+bool says(const std::vector<std::string> &remarks, const std::string &words) {
+  return std::any_of(remarks.begin(), remarks.end(), [&](const std::string &remark) {
+    return remark.find(words) != std::string::npos;
+  });
+}
+
 TEST(Measured, ALobeSampledInThePlaneComesBackOutOfIt) {
   // Beckmann, alpha .15, on a conductor: its BRDF depends on the tilt of h mostly, on the rest
   // slowly.
@@ -29,7 +89,9 @@ TEST(Measured, ALobeSampledInThePlaneComesBackOutOfIt) {
   std::vector<std::string> remarks;
   const auto measured = MeasuredBrdf::from(sampled_in_plane(surface), false, false, remarks);
   ASSERT_TRUE(measured) << measured.error().message;
-  EXPECT_EQ(remarks.size(), 1u);
+  // Of what one plane says about all, and of the lobe at grazing angles between steps of 10 deg.
+  EXPECT_EQ(remarks.size(), 2u);
+  EXPECT_NEAR(measured->grid_error().share, true_error(*measured, surface, 85), .2);
   EXPECT_NEAR(measured->albedo(550, 30 * degree),
               surface.specular_albedo(0, tilted(std::cos(30 * degree))), .02);
   double worst = 0, peak = 0;
@@ -81,6 +143,75 @@ TEST(Measured, AMuellerTableIsReciprocalToTheLastBit) {
       for (std::size_t c = 0; c < 4; ++c)
         EXPECT_NEAR(back[r][c], ((r == 2) != (c == 2) ? -1 : 1) * there[c][r], 1e-12 * there[0][0]);
   }
+}
+
+TEST(Measured, ACoarseGridSaysHowFarOffItIs) {
+  const Surface surface = compiled(paint(), "nm:550");
+  const std::vector<double> coarse{0, 15, 30, 45, 60, 75, 85}; // examples/panel_brdf.csv
+  std::vector<std::string> remarks;
+  const auto few =
+      MeasuredBrdf::from(sampled(surface, coarse, coarse, steps(180, 30)), false, false, remarks);
+  ASSERT_TRUE(few) << few.error().message;
+  EXPECT_TRUE(says(remarks, "between its nodes the table may be off by"));
+  const double truth = true_error(*few, surface, 85);
+  EXPECT_GT(truth, 0.5);
+  EXPECT_NEAR(few->grid_error().share, truth, 0.25 * truth);
+  EXPECT_TRUE(few->grid_error().is_phi);
+
+  // Steps of 2.5 degrees up to 80 follow every lobe of it.
+  remarks.clear();
+  const auto many = MeasuredBrdf::from(
+      sampled(surface, steps(80, 2.5), steps(80, 2.5), steps(180, 2.5)), false, false, remarks);
+  ASSERT_TRUE(many) << many.error().message;
+  EXPECT_LT(true_error(*many, surface, 80), 0.15);
+  for (const std::string &remark : remarks)
+    ADD_FAILURE() << remark << " (true error " << true_error(*many, surface, 80) << ")";
+}
+
+TEST(Measured, TheEndOfTheIncidencesIsTold) {
+  const Surface surface = compiled(paint(), "nm:550");
+  std::vector<std::string> remarks;
+  const auto table = MeasuredBrdf::from(
+      sampled(surface, steps(60, 2.5), steps(80, 2.5), steps(180, 2.5)), false, false, remarks);
+  ASSERT_TRUE(table) << table.error().message;
+  ASSERT_EQ(remarks.size(), 1u) << remarks[0];
+  EXPECT_TRUE(says(remarks, "both directions lie beyond 60 deg, or one of them beyond 80 deg"));
+  // Known from the way back: 75 deg in, 50 deg out.
+  const double truth =
+      surface.brdf(0, directions_from_angles(75 * degree, 50 * degree, 180 * degree)).m[0][0];
+  EXPECT_NEAR((*table)(550, 75 * degree, 50 * degree, 180 * degree)[0] / truth, 1, 1e-9);
+  // Held: 75 in, 75 out is what 60 gives.
+  EXPECT_EQ((*table)(550, 75 * degree, 75 * degree, 0)[0],
+            ((*table)(550, 60 * degree, 75 * degree, 0)[0]));
+}
+
+TEST(Measured, TheFloorOfAnInstrumentIsTold) {
+  const Surface surface = compiled(paint(), "nm:550");
+  const auto grid = [&] {
+    return sampled(surface, steps(60, 5), {0, 10, 20, 30, 40, 50, 60, 65, 70, 75, 80, 85, 88, 89},
+                   steps(180, 15));
+  };
+  const auto floor_of = [](std::vector<BrdfSample> samples) {
+    std::vector<std::string> remarks;
+    const auto table = MeasuredBrdf::from(std::move(samples), false, true, remarks);
+    EXPECT_TRUE(table);
+    EXPECT_EQ(says(remarks, "floor of an instrument"), table->floor_from_deg() < 90);
+    return table->floor_from_deg();
+  };
+  EXPECT_EQ(floor_of(grid()), 90);
+  auto clamped = grid(); // a least value that the instrument gives at the end of its arm
+  for (BrdfSample &s : clamped)
+    if (s.theta_o_deg >= 88)
+      s.mueller[0] = 1e-4;
+  EXPECT_EQ(floor_of(clamped), 88);
+  auto dark = grid(); // a dark signal of 1 % of the signal at normal incidence
+  for (BrdfSample &s : dark)
+    s.mueller[0] += 0.01 * 0.25 / std::cos(s.theta_o_deg * degree);
+  EXPECT_LE(floor_of(dark), 89);
+  auto lambert = grid();
+  for (BrdfSample &s : lambert)
+    s.mueller[0] = 0.2;
+  EXPECT_EQ(floor_of(lambert), 90);
 }
 
 } // namespace
