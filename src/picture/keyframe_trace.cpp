@@ -95,8 +95,10 @@ std::vector<Seen> look(const Camera &camera, std::size_t row, std::span<KeyFrame
     s.point = mesh.positions[t.vertex[0]] * (1 - a - b) + mesh.positions[t.vertex[1]] * a +
               mesh.positions[t.vertex[2]] * b;
     s.surface = &surface_of_side(camera.scene, t, is_front);
-    line[column].material =
-        is_front ? camera.front_material[t.front] : camera.back_material[t.back];
+    line[column].material = is_front ? camera.front_material[t.front]
+                            : t.back == t.front
+                                ? camera.back_material[t.back]
+                                : camera.front_material[t.back]; // as surface_of_side
     line[column].facing = static_cast<float>(std::clamp(dot(s.normal, v), 0., 1.));
     line[column].p = nan;
     seen.push_back(s);

@@ -159,6 +159,7 @@ Result<MaskStore> read_masks(const std::filesystem::path &path, std::uint64_t ke
   const std::uint64_t bytes = std::filesystem::file_size(path, unknown);
   Header header;
   MaskStore out = empty_masks(plan, size);
+  out.pool.clear(); // comes from the file
   const Header wanted = header_of(out, key);
   if (unknown || bytes < sizeof header ||
       !stream.read(reinterpret_cast<char *>(&header), sizeof header) ||

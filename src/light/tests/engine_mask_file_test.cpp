@@ -104,7 +104,7 @@ public:
     };
     part(8 * get(groups));
     for (const Word list : {narrow_offsets, narrow_rows, wide_offsets, wide_rows})
-      part(4 * get(list));
+      part((list == narrow_rows || list == wide_rows ? 8 : 4) * get(list));
     part(bytes_.size() - at);
     set(checksum, value_);
     return bytes_;
