@@ -103,6 +103,8 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   light.seed = request.seed.value_or(scenario.seed);
   light.source = source;
   light.mask_file = request.mask_file;
+  std::error_code unknown;
+  const bool has_file = std::filesystem::exists(request.mask_file, unknown);
   monitor.tell("preparing the scene ...");
   UMOV_ASSIGN(model, light_of(object.scene, request, light));
   const LightFacts &facts = model->facts();
@@ -144,7 +146,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   if (model->mask_bytes() > 0)
     monitor.tell(fmt::format("{} triangles in {} classes, {:.0f} MB of masks", facts.triangles,
                              facts.classes, static_cast<double>(model->mask_bytes()) / 1e6));
-  if (!request.mask_file.empty())
+  if (!request.mask_file.empty() && !has_file)
     monitor.tell(facts.is_convex ? "a convex body needs no masks: nothing is kept in " +
                                        request.mask_file.string()
                                  : "masks are kept in " + request.mask_file.string());

@@ -108,7 +108,7 @@ def test_masks_are_kept_and_read_again(umov, wing, tmp_path):
 
 
 @pytest.mark.parametrize("arguments, words", [
-    (("--accuracy", 0.002), ["other.masks", "made for another", "Remove it"]),
+    (("--visibility", "masks", "--accuracy", 0.002), ["other.masks", "made for another", "Remove it"]),
     (("--visibility", "rays"), ["--masks goes with"]),
     (("--source", "laser", "--set", 'bands.set=["nm:550"]'), ["masks are for sunlight"]),
 ])

@@ -125,7 +125,8 @@ def test_an_interrupt_keeps_what_is_done(scenario, tmp_path):
     import time
     from conftest import UMOV
     # Ray-traced HST at 50 epochs a second: a minute of work.
-    name = scenario(("step_s = 20", "step_s = 0.02"), ("cube.obj", f"{ROOT}/data/mesh/hst.obj"))
+    name = scenario(("step_s = 20", "step_s = 0.02"), ("cube.obj", f"{ROOT}/data/mesh/hst.obj"),
+                    ("[bands]", '[render]\nmethod = "rays"\n[bands]'))
     process = subprocess.Popen([UMOV, "run", name, "--threads", "1"], cwd=tmp_path, text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     time.sleep(2)

@@ -1,0 +1,179 @@
+// The one way from poses to Stokes: methods against each other, rows that do not know their
+// neighbours, masks on demand and on disk.
+
+#include "light/tests/integrator_cases.h"
+
+#include <filesystem>
+#include <umov/core/files.h>
+#include <umov/light/light_model.h>
+#include <umov/light/poses.h>
+
+namespace umov {
+namespace {
+
+using namespace cases;
+
+Scene box_wing() {
+  return scene_of(make_box_wing({1000, 0}), NormalMode::Flat,
+                  {interface_of("paper_al", 30), white_lambert(), interface_of("paper_au", 50)});
+}
+
+std::vector<Pose> poses_of(std::size_t count) {
+  std::vector<Pose> out;
+  for (std::size_t k = 0; k < count; ++k) {
+    out.push_back(random_pose(3, k, Angle::degrees(40 + 80.0 * static_cast<double>(k % 10) / 10)));
+    out.back().sun_radius_rad = sun_radius_at_1au_rad;
+  }
+  return out;
+}
+
+StokesTable lit(const LightModel &light, const std::vector<Pose> &poses, unsigned threads = 2) {
+  StokesTable out;
+  LightTask task{true, true, threads, nullptr};
+  EXPECT_TRUE(light.evaluate(poses, out, task));
+  return out;
+}
+
+std::unique_ptr<LightModel> model(LightOptions options) {
+  auto made = make_light(box_wing(), {}, options);
+  EXPECT_TRUE(made) << made.error().text();
+  return std::move(*made);
+}
+
+TEST(LightModel, RaysAreTheReferenceToTheBit) {
+  const Scene scene = box_wing();
+  const auto poses = poses_of(6);
+  const auto table = lit(*model({.method = LightMethod::Rays}), poses);
+  const auto reference = Integrator(scene).evaluate(poses, {}, 1);
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    for (std::size_t b = 0; b < 3; ++b) {
+      EXPECT_EQ(table.i[k * 3 + b], reference[k].bands[b].stokes.i);
+      EXPECT_EQ(table.q_err[k * 3 + b], reference[k].bands[b].half_width.q);
+    }
+}
+
+// The half-widths are 95 % ones: of 120 rows 114 are expected inside, fewer than 105 with a chance
+// of 1e-4 if rows were independent.
+TEST(LightModel, AutoMeetsTheAccuracyAndItsHalfWidthsCoverRays) {
+  const auto poses = poses_of(120);
+  const auto fast = lit(*model({}), poses);
+  const auto dense = lit(*model({.method = LightMethod::Rays, .accuracy = 5e-4}), poses);
+  const std::vector<double> floor = model({})->facts().floor_i;
+  ASSERT_EQ(floor.size(), 3U);
+  std::size_t covered = 0, accurate = 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const std::size_t at = k * 3 + 1;
+    covered += std::abs(fast.i[at] - dense.i[at]) <= fast.i_err[at] + dense.i_err[at] ? 1u : 0u;
+    accurate += fast.i_err[at] <= 0.005 * 1.002 * std::max(fast.i[at], floor[1]) ? 1u : 0u;
+  }
+  EXPECT_GE(covered, 105U);
+  EXPECT_GE(accurate, 118U);
+}
+
+TEST(LightModel, ARowDoesNotKnowItsNeighbours) {
+  const auto poses = poses_of(40);
+  for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks, LightMethod::Auto}) {
+    LightOptions options;
+    options.method = method;
+    options.accuracy = 0.02;
+    const auto all = lit(*model(options), poses, 3);
+    const auto light = model(options);
+    for (const std::size_t k : {std::size_t{31}, std::size_t{0}, std::size_t{17}}) {
+      const auto one = lit(*light, {poses[k]}, 1);
+      for (std::size_t b = 0; b < 3; ++b) {
+        EXPECT_EQ(one.i[b], all.i[k * 3 + b]) << name_of(method) << " " << k;
+        EXPECT_EQ(one.q_err[b], all.q_err[k * 3 + b]) << name_of(method) << " " << k;
+      }
+      EXPECT_EQ(one.method[0], all.method[k]);
+    }
+  }
+}
+
+TEST(LightModel, MaterialsAddUpToDirectLight) {
+  const auto poses = poses_of(20);
+  for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks, LightMethod::Auto}) {
+    const auto light = model({.method = method});
+    const std::size_t materials = light->materials().size();
+    const auto table = lit(*light, poses);
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      for (std::size_t b = 0; b < 3; ++b) {
+        double sum = 0;
+        for (std::size_t m = 0; m < materials; ++m)
+          sum += table.material_i[(k * materials + m) * 3 + b];
+        EXPECT_NEAR(sum, table.i[k * 3 + b], 1e-9 * table.i[k * 3 + b]) << name_of(method);
+      }
+  }
+}
+
+// Flats within their lobe's half width of the half vector: the same poses by both ways.
+TEST(LightModel, MasksTellGlintsAsRaysDo) {
+  std::vector<Pose> poses;
+  for (int k = 0; k < 30; ++k) { // the half vector passes over the panels' normal
+    const double a = Angle::degrees(-8 + 0.5 * k).radians(), half = Angle::degrees(30).radians();
+    poses.push_back({{std::sin(a + half), 0, std::cos(a + half)},
+                     {std::sin(a - half), 0, std::cos(a - half)},
+                     sun_radius_at_1au_rad});
+  }
+  const auto rays = lit(*model({.method = LightMethod::Rays}), poses);
+  const auto masks = lit(*model({.method = LightMethod::Masks}), poses);
+  std::size_t glints = 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    EXPECT_NEAR(rays.glint_share[k], masks.glint_share[k], 0.03) << k; // errors of I in both
+    glints += rays.glint_share[k] > 0.1 ? 1u : 0u;
+  }
+  EXPECT_GT(glints, 3U);
+}
+
+TEST(LightModel, CacheGivesTheSameBytesAndSurvivesDamage) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "umov_mask_cache";
+  std::filesystem::remove_all(folder);
+  const auto poses = poses_of(10);
+  LightOptions options;
+  options.mask_cache = folder;
+  const auto fresh = model(options);
+  const auto first = lit(*fresh, poses);
+  ASSERT_TRUE(fresh->keep_masks());
+  ASSERT_FALSE(std::filesystem::is_empty(folder));
+  EXPECT_EQ(lit(*model(options), poses).i, first.i);
+  for (const auto &entry : std::filesystem::directory_iterator(folder)) {
+    std::string bytes = *read_file(entry.path());
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+    ASSERT_TRUE(write_file_atomically(entry.path(), bytes));
+  }
+  const auto mended = model(options);
+  EXPECT_EQ(lit(*mended, poses).i, first.i);
+  ASSERT_TRUE(mended->keep_masks());
+  EXPECT_EQ(lit(*model(options), poses).i_err, first.i_err);
+}
+
+TEST(LightModel, FewPosesTraceFewDirections) {
+  const auto light = model({.method = LightMethod::Masks});
+  const std::size_t before = light->mask_bytes();
+  (void)lit(*light, poses_of(2));
+  const std::size_t few = light->mask_bytes() - before;
+  (void)lit(*light, poses_of(400));
+  EXPECT_GT(few, 0U);
+  EXPECT_GT(light->mask_bytes() - before, 20 * few);
+}
+
+TEST(LightModel, TypicalLightOfASphereIsKnown) { // Lambert: (2/3) [sin a + (pi - a) cos a] / pi
+  const Scene ball = scene_of(make_sphere(1, 20'000), NormalMode::Smooth, {white_lambert()});
+  std::vector<double> light;
+  for (int k = 0; k < 256; ++k) {
+    const double a = Angle::degrees(30 + 120 * (k + 0.5) / 256).radians();
+    light.push_back(2.0 / 3 * (std::sin(a) + (pi - a) * std::cos(a)) / pi);
+  }
+  std::nth_element(light.begin(), light.begin() + 128, light.end());
+  EXPECT_NEAR(typical_light(ball)[1], light[128], 5e-3 * light[128]); // facets for a sphere
+}
+
+TEST(LightModel, StopsWhenAsked) {
+  const std::atomic<bool> stop{true};
+  for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks, LightMethod::Auto}) {
+    StokesTable out;
+    EXPECT_FALSE(model({.method = method})->evaluate(poses_of(5), out, {false, false, 1, &stop}));
+  }
+}
+
+} // namespace
+} // namespace umov
