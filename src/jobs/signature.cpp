@@ -1,5 +1,6 @@
 #include <umov/jobs/signature.h>
 
+#include "jobs/part_angles.h"
 #include "jobs/signature_rows.h"
 #include "jobs/temperatures.h"
 
@@ -50,10 +51,11 @@ Result<void> check_request(const Scenario &scenario, const SignatureRequest &req
   return {};
 }
 
-Result<std::unique_ptr<LightModel>> light_of(const Scene &scene, const SignatureRequest &request,
+Result<std::unique_ptr<LightModel>> light_of(const Scene &scene, const std::vector<Joint> &joints,
+                                             const SignatureRequest &request,
                                              const LightOptions &options) {
   if (request.source != Source::Thermal)
-    return make_light(scene, {}, options);
+    return make_light(scene, joints, options);
   UMOV_ASSIGN(kelvin, temperatures_of(request.temperatures, scene.mesh));
   return make_thermal_light(scene, kelvin, options);
 }
@@ -91,8 +93,6 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
                        const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(source, source_of(request));
   UMOV_TRY(check_request(scenario, request));
-  if (!scenario.objects.front().parts.empty())
-    diagnostics.warn("parts stand as in the mesh: without a time nothing turns", {scenario.file});
   const bool is_sun = request.source == Source::Sun;
   UMOV_ASSIGN(
       object,
@@ -106,7 +106,8 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   std::error_code unknown;
   const bool has_file = std::filesystem::exists(request.mask_file, unknown);
   monitor.tell("preparing the scene ...");
-  UMOV_ASSIGN(model, light_of(object.scene, request, light));
+  const PartAngles parts(scenario.objects.front().parts, is_sun, scenario.file, diagnostics);
+  UMOV_ASSIGN(model, light_of(object.scene, parts.joints(), request, light));
   const LightFacts &facts = model->facts();
   const bool has_disk = is_sun && scenario.has_solar_disk;
   const std::size_t block = block_of(facts, light.bounces);
@@ -128,7 +129,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
         numbers[i] = poses.number(done + i);
       }
     });
-    if (!model->evaluate(part, results, task))
+    if (!model->evaluate(part, parts.of(part), results, task))
       break;
     Table table = SignatureRows::of(numbers, part, object.scene.bands, results, options.threads)
                       .table(request.source == Source::Thermal);

@@ -1,7 +1,9 @@
 """Attitudes, moving parts and several objects in one scenario."""
 import math
 
+import numpy as np
 import pytest
+from astropy.table import Table
 
 from conftest import ROOT, read_csv
 
@@ -237,3 +239,28 @@ def test_the_shadows_edge_bent_and_reddened(umov, scenario, tmp_path):
     penumbra = [k for k, row in enumerate(blue) if 0.05 < row[0] < 0.6]
     assert penumbra and all(blue[k][1] / blue[k][2] < red[k][1] / red[k][2] for k in penumbra)
     assert any(row[0] == 0 and row[1] > 0 for row in red)  # into the umbra
+
+
+def test_a_panel_follows_the_sun_in_a_signature(umov, scenario, tmp_path):
+    """Directions alone are enough for a part that follows the Sun: a plate turned about +Y towards a Sun in
+    the plane across +Y is lit and seen as one that the directions themselves were turned for."""
+    assert umov("mesh", "make", "plate", "-o", "plate.obj").code == 0
+    group = next(line.split()[1] for line in (tmp_path / "plate.obj").read_text().splitlines()
+                 if line.startswith("usemtl"))
+    part = (f'[[object.part]]\nname = "panel"\ngroups = ["{group}"]\naxis = "+Y"\nface = "+Z"\n'
+            '[render]\nmethod = "rays"\n[bands]')
+    plain = '[render]\nmethod = "rays"\n[bands]'
+    a, b = np.radians(35), np.radians(20)
+    # In the body: the Sun 35 deg from +Z about +Y, the observer 20 deg beyond it.
+    (tmp_path / "turned.csv").write_text(
+        "sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n"
+        f"{np.sin(a)},0,{np.cos(a)},{np.sin(a + b)},0,{np.cos(a + b)}\n")
+    # The same from the plate: the Sun at +Z, the observer 20 deg from it.
+    (tmp_path / "plain.csv").write_text("sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n"
+                                        f"0,0,1,{np.sin(b)},0,{np.cos(b)}\n")
+    cube = ('"cube.obj"', '"plate.obj"')
+    turned = umov("signature", scenario(cube, ("[bands]", part)), "--geometry", "turned.csv", "-o", "a.csv")
+    still = umov("signature", scenario(cube, ("[bands]", plain)), "--geometry", "plain.csv", "-o", "b.csv")
+    assert turned.code == still.code == 0, turned.err + still.err
+    one, two = (Table.read(tmp_path / name, format="ascii.csv", comment="#") for name in ("a.csv", "b.csv"))
+    assert np.allclose(one["intensity"], two["intensity"], rtol=1e-9) and two["intensity"][0] > 0

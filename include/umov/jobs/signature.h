@@ -42,8 +42,9 @@ struct SignatureRequest {
 };
 
 /// Rows of all poses into `sink`, block by block: memory does not grow with their number. The
-/// scenario's orbit, time and observer are not used; parts stand as in the mesh, with a warning.
-/// Usage for what does not go together; Interrupted after a stop, with the finished rows kept.
+/// scenario's orbit, time and observer are not used; parts that follow the Sun or the observer, or
+/// stand at an angle, do so, others stand as in the mesh, with a warning. Usage for what does not
+/// go together; Interrupted after a stop, with the finished rows kept.
 Result<void> signature(const Scenario &scenario, const PoseList &poses,
                        const SignatureRequest &request, TableSink &sink, const JobOptions &options,
                        const Monitor &monitor, Diagnostics &diagnostics);
