@@ -30,7 +30,7 @@ void add_file_options(CLI::App &verb, OrbitOptions &o) {
   verb.add_option("--orbit", o.orbit, "TLE, 3LE or OMM (KVN, XML, JSON, CSV) file")->required();
   verb.add_flag("--allow-bad-checksum", o.allow_bad_checksum, "Read lines with a wrong checksum");
   verb.add_flag("--keep-going", o.keep_going, "Report bad sets and keep the others");
-  verb.add_option("-o,--output", o.output, "Table: .csv, .ecsv or .json by its suffix");
+  add_table_output(verb, o.output);
 }
 
 Result<std::vector<ElementSet>> read_sets(const OrbitOptions &o, Diagnostics &diagnostics) {
