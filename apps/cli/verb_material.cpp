@@ -31,7 +31,7 @@ std::string lobe_text(const Material &m) {
   return out;
 }
 
-Result<void> list_materials(const Common &common) {
+Result<void> list_materials(const std::string &output, const Common &common) {
   std::vector<std::string> names, polarizes, ranges, lobes, texts;
   for (const std::string &name : material_library()) {
     UMOV_ASSIGN(material, read_material(name));
@@ -47,10 +47,10 @@ Result<void> list_materials(const Common &common) {
   table.add("lobe", "", "distribution of microfacet normals", std::move(lobes));
   table.add("polarization", "", "what it does to sunlight", std::move(polarizes));
   table.add("what", "", "description", std::move(texts));
-  return put_table("", table, common);
+  return put_table(output, table, common);
 }
 
-Result<void> list_models(const Common &common) {
+Result<void> list_models(const std::string &output, const Common &common) {
   std::vector<std::string> models, parameters, texts;
   for (const DistributionModel *model : distribution_models()) {
     std::string numbers = model->takes_table ? "file" : "";
@@ -65,7 +65,7 @@ Result<void> list_models(const Common &common) {
   table.add("model", "", "name", std::move(models));
   table.add("takes", "", "its numbers", std::move(parameters));
   table.add("what", "", "description", std::move(texts));
-  return put_table("", table, common);
+  return put_table(output, table, common);
 }
 
 /// Wavelengths of the paper where the material has them, else the middle of its range.
@@ -82,25 +82,47 @@ std::vector<Band> bands_for(const Material &material) {
   return out;
 }
 
-Result<void> show(const std::string &name) {
-  UMOV_ASSIGN(material, read_material(name));
+/// What the interface and the whole surface do, band by band.
+Result<Table> optics_table(const Material &material) {
   const auto bands = bands_for(material);
   UMOV_ASSIGN(surface, Surface::compile(material, bands));
-  fmt::print("{}\n", material_as_toml(material));
-  fmt::print("wavelengths   {} nm\npolarization  {}\n", range_text(range_of(material)),
-             describe_polarization(material));
-  for (const std::string &remark : material.remarks)
-    fmt::print("remark        {}\n", remark);
-  fmt::print("\n{:>8}  {:>9}  {:>9}  {:>9}  {:>9}  {:>9}\n", "band", "n", "k", "R(0)", "albedo 0",
-             "albedo 60");
+  std::vector<std::string> names;
+  std::array<std::vector<double>, 5> values;
   for (std::size_t b = 0; b < bands.size(); ++b) {
     const Vec3<Facet> up{0, 0, 1}, aslant{std::sqrt(0.75), 0, 0.5};
     const auto eta = surface.interface(b).substrate();
-    fmt::print("{:>8}  {:>9.5f}  {:>9.5f}  {:>9.5f}  {:>9.5f}  {:>9.5f}\n", bands[b].name,
-               eta.real(), eta.imag(), surface.interface(b).reflection(1).a, surface.albedo(b, up),
-               surface.albedo(b, aslant));
+    const std::array row{eta.real(), eta.imag(), surface.interface(b).reflection(1).a,
+                         surface.albedo(b, up), surface.albedo(b, aslant)};
+    names.push_back(bands[b].name);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      values[i].push_back(row[i]);
   }
-  return {};
+  Table out;
+  out.add("band", "", "as a scenario spells it", std::move(names));
+  out.add("n", "", "index of the substrate", std::move(values[0]));
+  out.add("k", "", "its absorption", std::move(values[1]));
+  out.add("reflectance_0", "", "of the interface at normal incidence", std::move(values[2]));
+  out.add("albedo_0", "", "of the surface, lit from the normal", std::move(values[3]));
+  out.add("albedo_60", "", "the same, lit from 60 deg", std::move(values[4]));
+  return out;
+}
+
+Result<void> show(const std::string &name, const std::string &output, const Common &common) {
+  UMOV_TRY(check_output(output));
+  UMOV_ASSIGN(material, read_material(name));
+  UMOV_ASSIGN(table, optics_table(material));
+  table.note("material", material_as_toml(material));
+  table.note("wavelengths_nm", range_text(range_of(material)));
+  table.note("polarization", describe_polarization(material));
+  for (const std::string &remark : material.remarks)
+    table.note("remark", remark);
+  if (common.json || !output.empty())
+    return put_table(output, table, common);
+  fmt::print("{}\nwavelengths   {} nm\npolarization  {}\n", material_as_toml(material),
+             range_text(range_of(material)), describe_polarization(material));
+  for (const std::string &remark : material.remarks)
+    fmt::print("remark        {}\n", remark);
+  return put("", "\n" + to_text(table));
 }
 
 struct IndexOptions {
@@ -211,7 +233,7 @@ struct ImportOptions {
 };
 
 /// A page of refractiveindex.info or a measured BRDF, checked, as a material file beside it.
-Result<void> import_file(const ImportOptions &o) {
+Result<void> import_file(const ImportOptions &o, const Common &common) {
   namespace fs = std::filesystem;
   const fs::path source = o.file;
   const std::string name = o.name.empty() ? source.stem().string() : o.name;
@@ -227,7 +249,7 @@ Result<void> import_file(const ImportOptions &o) {
                        name, measured.has_polarization() ? "Mueller" : "brightness only", beside,
                        o.accept ? "accept = true\n" : "");
     for (const std::string &remark : remarks)
-      fmt::print(stderr, "remark: {}\n", remark);
+      note(common, "remark: " + remark);
   } else {
     UMOV_ASSIGN(index, read_index_file(source));
     text =
@@ -240,7 +262,8 @@ Result<void> import_file(const ImportOptions &o) {
     return fail(ErrorCode::Device, "stands there already; name another file with -o",
                 {target.string()});
   UMOV_TRY(write_file_atomically(target, text));
-  fmt::print("written to {}; umov material show {}\n", target.string(), target.string());
+  if (!common.quiet)
+    fmt::print("written to {}; umov material show {}\n", target.string(), target.string());
   return {};
 }
 
@@ -262,7 +285,7 @@ void add_check(CLI::App &material, const Exit &exit_with) {
       ->check(CLI::Range(1, 100'000'000))
       ->capture_default_str();
   verb->add_option("--seed", o->seed, "Of the geometries")->capture_default_str();
-  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv or .json by its suffix");
+  add_table_output(*verb, o->output);
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
   auto explicit_surface = add_explicit_options(*verb);
@@ -281,7 +304,7 @@ void add_index(CLI::App &material, const Exit &exit_with) {
                  ->delimiter(',')
                  ->check(CLI::Range(1.0, 1e7));
   nm->needs(name);
-  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv or .json by its suffix");
+  add_table_output(*verb, o->output);
   add_common(*verb, *common, true);
   verb->callback(finishing(exit_with, [o, common, nm]() -> Result<void> {
     if (!o->name.empty() && nm->count() == 0)
@@ -290,37 +313,57 @@ void add_index(CLI::App &material, const Exit &exit_with) {
   }));
 }
 
+void add_list(CLI::App &material, const Exit &exit_with) {
+  auto *verb = material.add_subcommand("list", "Materials, and whether and how they polarize");
+  auto common = std::make_shared<Common>();
+  auto output = std::make_shared<std::string>();
+  auto models = std::make_shared<bool>(false);
+  verb->add_flag("--models", *models, "Distributions of normals and their numbers instead");
+  add_table_output(*verb, *output);
+  add_common(*verb, *common, true);
+  verb->callback(finishing(exit_with, [common, output, models] {
+    return *models ? list_models(*output, *common) : list_materials(*output, *common);
+  }));
+}
+
+void add_show(CLI::App &material, const Exit &exit_with) {
+  auto *verb = material.add_subcommand("show", "Everything about one material");
+  auto common = std::make_shared<Common>();
+  auto name = std::make_shared<std::string>();
+  auto output = std::make_shared<std::string>();
+  verb->add_option("material", *name, "Name or TOML file")->required();
+  add_table_output(*verb, *output);
+  add_common(*verb, *common, true);
+  verb->callback(
+      finishing(exit_with, [name, output, common] { return show(*name, *output, *common); }));
+}
+
+void add_import(CLI::App &material, const Exit &exit_with) {
+  auto *verb = material.add_subcommand(
+      "import",
+      "Check a page of refractiveindex.info (.yml) or a measured BRDF (.csv), as a material");
+  auto o = std::make_shared<ImportOptions>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("file", o->file, "Input")->required();
+  verb->add_option("--name", o->name, "Name of the material; default: that of the file");
+  verb->add_option("-o,--output", o->output, "TOML file; default: beside the input");
+  verb->add_flag("--accept", o->accept,
+                 "Take a measured table that is not physical, with a warning");
+  add_common(*verb, *common, false);
+  verb->callback(finishing(exit_with, [o, common] { return import_file(*o, *common); }));
+}
+
 } // namespace
 
 void add_material(CLI::App &app, const Exit &exit_with) {
   auto *material = app.add_subcommand("material", "Materials that umov knows");
   material->require_subcommand(1);
-  auto *list = material->add_subcommand("list", "Materials, and whether and how they polarize");
-  auto common = std::make_shared<Common>();
-  auto models = std::make_shared<bool>(false);
-  list->add_flag("--models", *models, "Distributions of normals and their numbers instead");
-  add_common(*list, *common, true);
-  list->callback(finishing(exit_with, [common, models] {
-    return *models ? list_models(*common) : list_materials(*common);
-  }));
-  auto *shown = material->add_subcommand("show", "Everything about one material");
-  auto name = std::make_shared<std::string>();
-  shown->add_option("material", *name, "Name or TOML file")->required();
-  shown->callback(finishing(exit_with, [name] { return show(*name); }));
+  add_list(*material, exit_with);
+  add_show(*material, exit_with);
   add_index(*material, exit_with);
   add_check(*material, exit_with);
   add_plot(*material, exit_with);
-  auto *import = material->add_subcommand(
-      "import",
-      "Check a page of refractiveindex.info (.yml) or a measured BRDF (.csv), as a material");
-  auto o = std::make_shared<ImportOptions>();
-  import->add_option("file", o->file, "Input")->required();
-  import->add_option("--name", o->name, "Name of the material; default: that of the file");
-  import->add_option("-o,--output", o->output, "TOML file; default: beside the input");
-  import->add_flag("--accept", o->accept,
-                   "Take a measured table that is not physical, with a warning");
-  import->callback(finishing(exit_with, [o] { return import_file(*o);
-}));
-} // namespace umov::cli
+  add_import(*material, exit_with);
+}
 
 } // namespace umov::cli

@@ -22,6 +22,8 @@ void add_paper(CLI::App &app, const Exit &exit_with);
 void add_passes(CLI::App &app, const Exit &exit_with);
 void add_render(CLI::App &app, const Exit &exit_with);
 void add_schema(CLI::App &app, const Exit &exit_with);
+void add_completion(CLI::App &app, const Exit &exit_with);
+void add_man(CLI::App &app, const Exit &exit_with);
 void add_doctor(CLI::App &app, const Exit &exit_with);
 
 } // namespace umov::cli

@@ -150,3 +150,17 @@ def test_a_site_by_name_in_a_scenario(umov, scenario, tmp_path):
     assert done.code == 0, done.err
     lock = (tmp_path / "out/scenario.lock.toml").read_text()
     assert "lat_deg = 20.7083" in lock and "alt_m = 3058" in lock
+
+
+def test_keys_of_the_scene_can_be_set(umov, scenario, tmp_path):
+    ask = ("passes", "--orbit", HST, "-s", SITE, *DAY, "--scene", scenario())
+    rows = {}
+    for method in ("rays", "masks"):
+        done = umov(*ask, "--set", f"render.method={method}", "-o", f"{method}.csv")
+        assert done.code == 0, done.err
+        rows[method] = read_csv(tmp_path / f"{method}.csv")
+    lit = [(float(a["mag_min"]), float(b["mag_min"])) for a, b in zip(rows["rays"], rows["masks"])
+           if a["mag_min"]]
+    assert lit and all(abs(a - b) < 0.01 for a, b in lit)
+    assert umov(*ask, "--set", "render.methd=rays").code == 3
+    assert umov("passes", "--orbit", HST, "-s", SITE, *DAY, "--set", "render.method=rays").code == 2
