@@ -1,23 +1,22 @@
 // umov passes: when the objects of a file pass over a site.
 
 #include "job_console.h"
+#include "site_options.h"
 #include "tables.h"
 #include "verbs.h"
 
-#include <umov/io/sites.h>
 #include <umov/jobs/passes.h>
 
 namespace umov::cli {
 namespace {
 
 struct PassesOptions {
-  std::string orbit, output, site, start, stop, shadow = "ellipsoid", chart;
+  SiteOptions site;
+  std::string orbit, output, start, stop, shadow = "ellipsoid", chart;
   std::string scene, body, material, band;
   std::vector<std::string> overrides;
   std::vector<int> norad;
-  double size_m = 1;
-  double latitude_deg = 0, longitude_deg = 0, altitude_m = 0, altitude_min_deg = 10,
-         sun_altitude_max_deg = -6;
+  double size_m = 1, altitude_min_deg = 10, sun_altitude_max_deg = -6;
   bool is_visible_only = false, allow_bad_checksum = false, keep_going = false,
        allow_old_elements = false;
 };
@@ -38,8 +37,7 @@ Result<jobs::PassModel> model_of(const PassesOptions &o) {
 
 Result<jobs::PassesRequest> request_of(const PassesOptions &o) {
   jobs::PassesRequest out;
-  UMOV_ASSIGN(site, o.site.empty() ? make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m)
-                                   : site_from(o.site));
+  UMOV_ASSIGN(site, site_of(o.site));
   UMOV_ASSIGN(start, utc_from_iso(o.start));
   UMOV_ASSIGN(stop, utc_from_iso(o.stop));
   UMOV_ASSIGN(model, model_of(o));
@@ -103,16 +101,7 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--orbit", o->orbit, "TLE, 3LE, OMM, OEM or OPM file")->required();
   verb->add_option("--norad", o->norad, "Catalogue numbers, separated by commas; else all")
       ->delimiter(',');
-  auto *site =
-      verb->add_option("-s,--site", o->site,
-                       "A known site such as maui or paranal, or latitude,longitude,altitude: deg "
-                       "north, deg east, m");
-  auto *latitude =
-      verb->add_option("--lat-deg", o->latitude_deg, "Geodetic latitude, north positive");
-  auto *longitude = verb->add_option("--lon-deg", o->longitude_deg, "Longitude, east positive");
-  auto *altitude = verb->add_option("--alt-m", o->altitude_m, "Height above the WGS 84 ellipsoid");
-  for (auto *one : {latitude, longitude, altitude})
-    one->excludes(site);
+  add_site(*verb, o->site);
   verb->add_option("--start", o->start, "Begin, such as 2018-01-21T04:00:00Z")->required();
   verb->add_option("--stop", o->stop, "End")->required();
   verb->add_option("--alt-min-deg", o->altitude_min_deg, "Rise and set are at this altitude")
@@ -135,14 +124,6 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
   verb->callback([=] {
-    if (site->count() == 0 &&
-        (latitude->count() == 0 || longitude->count() == 0 || altitude->count() == 0)) {
-      exit_with(report(
-          Error{ErrorCode::Usage,
-                "where? Give --site NAME or LAT,LON,ALT, or --lat-deg, --lon-deg and --alt-m",
-                {}}));
-      return;
-    }
     watch_interrupts();
     Diagnostics diagnostics;
     const auto done = run_passes(*o, *common, diagnostics);
