@@ -96,8 +96,9 @@ def test_a_panel_follows_the_sun(umov, scenario, tmp_path):
                               'attitude = { point = "+X", at = "velocity", then = "+Z", toward = "sun" }')),
         tmp_path)
     assert len(plain) == len(turned) == len(still) > 0
+    # Parts that turn are lit by masks, in numbers of 32 bits; a plate at rest by the reference.
     for one, two in zip(turned, still):
-        assert float(one["intensity"]) == pytest.approx(float(two["intensity"]), rel=1e-9)
+        assert float(one["intensity"]) == pytest.approx(float(two["intensity"]), rel=1e-5)
 
 
 def test_two_objects_make_one_table(umov, scenario, tmp_path):
