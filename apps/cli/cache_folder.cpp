@@ -13,4 +13,22 @@ std::filesystem::path cache_folder() {
   return {};
 }
 
+FolderFacts facts_of(const std::filesystem::path &folder) {
+  namespace fs = std::filesystem;
+  FolderFacts out;
+  std::error_code code;
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator at(folder, options, code), end; !code && at != end;
+       at.increment(code)) {
+    std::error_code gone; // another run may clear the folder meanwhile
+    if (!at->is_regular_file(gone))
+      continue;
+    if (const std::uintmax_t bytes = at->file_size(gone); !gone) {
+      ++out.files;
+      out.bytes += bytes;
+    }
+  }
+  return out;
+}
+
 } // namespace umov::cli

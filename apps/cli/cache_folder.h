@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <filesystem>
 
 namespace umov::cli {
@@ -6,5 +7,12 @@ namespace umov::cli {
 /// Where umov keeps what can be made anew: $XDG_CACHE_HOME/umov, else ~/.cache/umov; empty if there
 /// is neither.
 std::filesystem::path cache_folder();
+
+/// What lies in a folder and below it; nothing where there is none.
+struct FolderFacts {
+  std::size_t files = 0;
+  std::uintmax_t bytes = 0;
+};
+FolderFacts facts_of(const std::filesystem::path &folder);
 
 } // namespace umov::cli

@@ -9,6 +9,7 @@
 #include <string>
 #include <umov/core/diagnostics.h>
 #include <umov/core/result.h>
+#include <vector>
 
 namespace umov::cli {
 
@@ -60,6 +61,9 @@ inline std::string sentence_end(const std::string &text) { return text.ends_with
 
 /// The command line as it was given, for manifests.
 std::vector<std::string> &command_line();
+
+/// What --device takes beside "auto": what this build computes on.
+const std::vector<std::string> &device_names();
 
 /// True if stdout or stderr may be coloured (a terminal, NO_COLOR unset).
 bool may_colour(std::FILE *stream);

@@ -65,6 +65,8 @@ int run(int argc, char **argv) {
   cli::add_render(app, exit_with);
   cli::add_schema(app, exit_with);
   cli::add_doctor(app, exit_with);
+  cli::add_completion(app, exit_with);
+  cli::add_man(app, exit_with);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success &done) { // --help, --version

@@ -1,285 +1,29 @@
-#include "bench_cases.h"
-#include "bench_orbit.h"
-#include "console.h"
+#include "job_console.h"
 #include "tables.h"
 #include "verbs.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdlib>
-#include <fmt/format.h>
-#include <fstream>
-#include <limits>
-#include <map>
-#include <thread>
-#include <umov/core/version.h>
-#include <umov/light/engine_audit.h>
-#include <umov/light/poses.h>
+#include <umov/bench/bench.h>
 
 namespace umov::cli {
 namespace {
 
 struct BenchOptions {
-  std::string output;
-  std::vector<std::string> meshes;
-  std::string only, orbit;
-  std::size_t geometries = 200;
-  double seconds = 2;
+  std::string output, orbit;
+  bench::LightRequest light;
 };
-
-constexpr double solar_radius_rad = sun_radius_at_1au_rad;
-constexpr int repetitions = 5; ///< the best counts: the others were disturbed
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// Random attitudes, phase angles even between 15 and 150 deg.
-std::vector<Pose> bench_poses(std::uint64_t seed, std::size_t count) {
-  std::vector<Pose> out;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double share = std::fmod(0.5 + 0.6180339887498949 * static_cast<double>(i), 1.0);
-    out.push_back(random_pose(seed, i, Angle::degrees(15 + 135 * share)));
-    out.back().sun_radius_rad = solar_radius_rad;
-  }
-  return out;
-}
-
-std::string first_line_with(const char *file, const std::string &key) {
-  std::ifstream stream(file);
-  for (std::string line; std::getline(stream, line);)
-    if (line.starts_with(key))
-      return line.substr(std::min(line.size(), line.find(':') + 2));
-  return "unknown";
-}
-
-std::string load_average() {
-  double load[1] = {0};
-  return getloadavg(load, 1) == 1 ? fmt::format("{:.2f}", load[0]) : "unknown";
-}
-
-void add_machine(Table &table, const std::string &load_before) {
-  table.note("umov_version", version);
-  table.note("machine", first_line_with("/proc/cpuinfo", "model name"));
-  table.note("cores", std::to_string(std::thread::hardware_concurrency()));
-  table.note("load_average", load_before + " before, " + load_average() + " after");
-  table.note("compiler", __VERSION__);
-}
-
-/// What one case measured.
-struct BenchResult {
-  EngineFacts facts;
-  std::size_t bands = 0;
-  std::string instruction_set;
-  double rate = 0, latency_us = std::numeric_limits<double>::quiet_NaN();
-  EngineErrors errors;
-  bool has_errors = false;
-};
-
-double best_time(const Engine &engine, const std::vector<Pose> &poses, unsigned threads,
-                 double seconds) {
-  StokesTable table;
-  engine.evaluate(poses, table, threads); // caches warm
-  double best = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < repetitions; ++k) {
-    double spent = 0;
-    std::size_t rounds = 0;
-    while (spent < seconds / repetitions || rounds == 0) {
-      const double begin = now_s();
-      engine.evaluate(poses, table, threads);
-      spent += now_s() - begin;
-      ++rounds;
-    }
-    best = std::min(best, spent / static_cast<double>(rounds * poses.size()));
-  }
-  return best;
-}
-
-double latency(const Engine &engine, const std::vector<Pose> &poses) {
-  StokesTable table;
-  std::vector<double> times;
-  for (const Pose &pose : poses) {
-    const double begin = now_s();
-    engine.evaluate({&pose, 1}, table, 1);
-    times.push_back(now_s() - begin);
-  }
-  std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2),
-                   times.end());
-  return times[times.size() / 2];
-}
-
-/// Preparations of cases that differ in load or instruction set alone are shared.
-class Bench {
-public:
-  explicit Bench(const BenchOptions &options) : options_(options) {}
-
-  Result<BenchResult> run(const BenchCase &one, Diagnostics &diagnostics) {
-    BenchResult out;
-    out.bands = one.bands;
-    const std::string key = fmt::format(
-        "{} {} {} {} {} {} {} {} {} {}", one.mesh, one.facets, one.bands, one.has_own_roughness,
-        static_cast<int>(one.visibility), one.masks.points, one.masks.narrow_cells,
-        one.masks.refine_above, one.cluster_rad, one.is_intensity_only);
-    if (key != key_) {
-      engine_.reset();
-      UMOV_ASSIGN(scene, bench_scene(one, diagnostics));
-      scene_.emplace(std::move(scene));
-      EngineOptions options;
-      options.visibility = one.visibility;
-      options.masks = one.masks;
-      options.cluster_rad = one.cluster_rad;
-      options.is_intensity_only = one.is_intensity_only;
-      engine_.emplace(*scene_, options);
-      key_ = key;
-    }
-    out.facts = engine_->facts();
-    if (!restrict_engine(one.instruction_set))
-      return fail(ErrorCode::Device, "this machine has no " + one.instruction_set);
-    out.instruction_set = engine_instruction_set();
-    const auto probe = bench_poses(1, 64);
-    const double guess = best_time(*engine_, probe, 1, 0.01);
-    const auto count = static_cast<std::size_t>(
-        std::clamp(options_.seconds / repetitions / guess, 256.0, 300'000.0));
-    const auto poses = bench_poses(2, count);
-    if (one.is_single_pose)
-      out.latency_us = 1e6 * latency(*engine_, poses);
-    else
-      out.rate = 1 / best_time(*engine_, poses, one.threads, options_.seconds);
-    if (one.has_errors && options_.geometries > 0) {
-      const auto few = bench_poses(3, options_.geometries);
-      IntegrationOptions exact;
-      exact.accuracy = 5e-4;
-      const std::string mesh = fmt::format("{} {}", one.mesh, one.facets);
-      if (mesh != reference_of_) {
-        reference_ = Integrator(*scene_).evaluate(few, exact, 0);
-        reference_of_ = mesh;
-      }
-      StokesTable table;
-      engine_->evaluate(few, table, 0);
-      out.errors = compare(table, reference_, one.bands / 2);
-      out.has_errors = true;
-    }
-    restrict_engine("best");
-    return out;
-  }
-
-private:
-  const BenchOptions &options_;
-  std::string key_, reference_of_;
-  std::optional<Scene> scene_;
-  std::optional<Engine> engine_;
-  std::vector<PoseResult> reference_;
-};
-
-struct BenchTable {
-  std::vector<std::string> name, mesh, set;
-  std::vector<std::int64_t> triangles, classes, bands, threads;
-  std::map<std::string, std::vector<double>> numbers;
-
-  void add(const BenchCase &one, const BenchResult &r) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    name.push_back(one.name);
-    mesh.push_back(one.mesh);
-    set.push_back(r.instruction_set);
-    triangles.push_back(static_cast<std::int64_t>(r.facts.triangles));
-    classes.push_back(static_cast<std::int64_t>(r.facts.classes));
-    bands.push_back(static_cast<std::int64_t>(r.bands));
-    threads.push_back(one.threads);
-    const auto or_nan = [&](double x) { return r.has_errors ? x : nan; };
-    numbers["setup_s"].push_back(r.facts.setup_s);
-    numbers["memory_mb"].push_back(static_cast<double>(r.facts.mask_bytes + r.facts.scene_bytes) /
-                                   1e6);
-    numbers["poses_per_s"].push_back(one.is_single_pose ? nan : r.rate);
-    numbers["latency_us"].push_back(r.latency_us);
-    numbers["i_err_median"].push_back(or_nan(r.errors.i_median));
-    numbers["i_err_p95"].push_back(or_nan(r.errors.i_p95));
-    numbers["i_err_max"].push_back(or_nan(r.errors.i_max));
-    numbers["q_err_p95"].push_back(or_nan(r.errors.q_p95));
-    numbers["covered"].push_back(or_nan(r.errors.covered));
-    numbers["estimate_median"].push_back(or_nan(r.errors.estimate_median));
-  }
-
-  Table table() && {
-    Table out;
-    out.add("case", "", "what was run", std::move(name));
-    out.add("mesh", "", "mesh", std::move(mesh));
-    out.add("triangles", "", "of the mesh", std::move(triangles));
-    out.add("classes", "", "of equal normal and material: what a pose costs", std::move(classes));
-    out.add("bands", "", "bands", std::move(bands));
-    out.add("threads", "", "of the timed evaluation", std::move(threads));
-    out.add("instruction_set", "", "as Highway names it", std::move(set));
-    const auto move = [&](const char *key, const char *unit, const char *text) {
-      out.add(key, unit, text, std::move(numbers[key]));
-    };
-    move("setup_s", "s", "preparation, all cores");
-    move("memory_mb", "Mbyte", "masks, points and classes");
-    move("poses_per_s", "1 / s", "best of five");
-    move("latency_us", "us", "median of one pose alone");
-    move("i_err_median", "", "|I/I_ref - 1|, poses above 1 % of the median light");
-    move("i_err_p95", "", "the same, 95th percentile");
-    move("i_err_max", "", "the same, worst");
-    move("q_err_p95", "", "|Q/I - (Q/I)_ref|, 95th percentile");
-    move("covered", "", "share of all poses within their half-widths");
-    move("estimate_median", "", "half-width of I over I, median");
-    return out;
-  }
-};
-
-void print_outliers(const Common &common, const BenchCase &one, const BenchResult &r) {
-  if (!r.has_errors || common.quiet)
-    return;
-  std::string text;
-  for (const EngineOutlier &o : r.errors.outliers)
-    text += fmt::format("  pose {}: {:.2g} (said {:.2g}, light {:.2g} of the median)", o.pose,
-                        o.error, o.estimate, o.light);
-  note(common, fmt::format("{} {}, worst poses:{}", one.mesh, one.name, text));
-}
 
 Result<void> run_bench(const BenchOptions &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
-  const std::string load_before = load_average();
   if (!o.orbit.empty()) {
-    UMOV_ASSIGN(table, bench_orbit(o.orbit, diagnostics));
-    add_machine(table, load_before);
+    UMOV_ASSIGN(table, bench::orbit(o.orbit, diagnostics));
     return put_table(o.output, table, common);
   }
-  std::vector<BenchCase> cases;
-  for (const std::string &mesh : o.meshes)
-    for (BenchCase &one : cases_for_mesh(mesh))
-      cases.push_back(std::move(one));
-  if (cases.empty())
-    cases = standard_cases();
-  std::erase_if(cases, [&](const BenchCase &one) {
-    return one.name.find(o.only) == std::string::npos || !restrict_engine(one.instruction_set);
-  });
-  restrict_engine("best");
-  if (cases.empty())
-    return fail(ErrorCode::Usage, "--only " + o.only + ": no case has that in its name");
-  Bench bench(o);
-  BenchTable rows;
-  ProgressBar bar("cases", common);
-  std::size_t done = 0;
-  for (const BenchCase &one : cases) {
-    if (interrupted())
-      break;
-    UMOV_ASSIGN(result, bench.run(one, diagnostics));
-    rows.add(one, result);
-    print_outliers(common, one, result);
-    bar.update(++done, cases.size());
-  }
-  Table table = std::move(rows).table();
-  add_machine(table, load_before);
-  table.note("poses", fmt::format("random attitudes, phase 15-150 deg, solar disk; errors from {} "
-                                  "of them against rays at 5e-4",
-                                  o.geometries));
-  if (done == cases.size())
-    return put_table(o.output, table, common);
-  return tl::unexpected(put_partial_table(
-      o.output, std::move(table), common,
-      {ErrorCode::Interrupted,
-       fmt::format("stopped by the user after {} of {} cases", done, cases.size()),
-       {}}));
+  JobConsole console(common);
+  UMOV_ASSIGN(report, bench::light(o.light, console.monitor(true), diagnostics));
+  if (report.stopped)
+    return tl::unexpected(
+        put_partial_table(o.output, std::move(report.table), common, *report.stopped));
+  return put_table(o.output, report.table, common);
 }
 
 } // namespace
@@ -289,16 +33,16 @@ void add_bench(CLI::App &app, const Exit &exit_with) {
       app.add_subcommand("bench", "Speed and accuracy of the engine on this machine, side by side");
   auto o = std::make_shared<BenchOptions>();
   auto common = std::make_shared<Common>();
-  verb->add_option("--mesh", o->meshes, "OBJ files (m, +Z up) instead of the standard cases");
+  verb->add_option("--mesh", o->light.meshes, "OBJ files (m, +Z up) instead of the standard cases");
   verb->add_option("--orbit", o->orbit, "Catalogue of elements: rates of SGP4 instead");
-  verb->add_option("--only", o->only, "Cases with this in their name");
-  verb->add_option("--geometries", o->geometries, "Poses compared with rays; 0: none")
+  verb->add_option("--only", o->light.only, "Cases with this in their name");
+  verb->add_option("--geometries", o->light.geometries, "Poses compared with rays; 0: none")
       ->check(CLI::Range(0, 100'000))
       ->capture_default_str();
-  verb->add_option("--seconds", o->seconds, "Time spent on each rate")
+  verb->add_option("--seconds", o->light.seconds, "Time spent on each rate")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
-  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv, .fits or .json by its suffix");
+  add_table_output(*verb, o->output);
   add_common(*verb, *common, true);
   verb->callback([o, common, exit_with] {
     watch_interrupts();

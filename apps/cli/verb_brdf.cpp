@@ -155,7 +155,7 @@ void add_brdf(CLI::App &app, const Exit &exit_with) {
   for (CLI::Option *option : single)
     batch->excludes(option);
   verb->add_flag("--terms", o->terms, "Add the parts of m00");
-  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv or .json by its suffix");
+  add_table_output(*verb, o->output);
   add_common(*verb, *common, true);
   verb->callback([o, common, exit_with] {
     const auto done = run_brdf(*o, *common);

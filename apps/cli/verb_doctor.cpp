@@ -1,12 +1,23 @@
+// umov doctor: what this build and machine can do, each fact asked of the part that knows it.
+
+#include "cache_folder.h"
 #include "console.h"
+#include "tables.h"
 #include "verbs.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
+#include <umov/bench/bench.h>
 #include <umov/core/parallel.h>
+#include <umov/core/text.h>
 #include <umov/core/version.h>
+#include <umov/io/index_file.h>
+#include <umov/io/mesh_file.h>
 #include <umov/io/report.h>
-#include <umov/surface/material.h>
+#include <umov/io/scenario.h>
+#include <umov/io/sites.h>
+#include <umov/surface/distribution.h>
 #include <umov/time/epoch.h>
 
 namespace umov::cli {
@@ -17,35 +28,69 @@ struct Finding {
   std::string what, found;
 };
 
-std::string instruction_sets() {
-  std::string out = "x86-64";
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2"))
-    out += ", avx2";
-  if (__builtin_cpu_supports("avx512f"))
-    out += ", avx512";
-#else
-  out = "generic";
-#endif
-  return out + " (this version computes in scalar double)";
+std::string day_of(Epoch<Utc> time) { return to_iso(time).substr(0, 10); }
+
+std::string cache_text() {
+  const std::filesystem::path folder = cache_folder();
+  if (folder.empty())
+    return "none: neither XDG_CACHE_HOME nor HOME is set";
+  const FolderFacts facts = facts_of(folder);
+  return fmt::format("{}: {}, {:.1f} MB", folder.string(), counted(facts.files, "file"),
+                     static_cast<double>(facts.bytes) / 1e6);
+}
+
+void add_machine(std::vector<Finding> &out) {
+  const bench::Machine machine = bench::machine();
+  out.push_back({true, "version", fmt::format("umov {} ({})", version, source_revision)});
+  out.push_back({true, "processor", machine.processor});
+  out.push_back({true, "threads", fmt::format("{}", resolve_threads(0))});
+  out.push_back({true, "instruction set", machine.instruction_set});
+  out.push_back({true, "devices", fmt::format("{}", fmt::join(device_names(), ", "))});
+  out.push_back({true, "cache folder", cache_text()});
+}
+
+void add_library(std::vector<Finding> &out) {
+  const auto count = [&](const char *what, std::size_t number) {
+    out.push_back({number > 0, what, fmt::format("{}", number)});
+  };
+  count("materials", material_library().size());
+  count("index tables", index_names().size());
+  count("distributions", distribution_models().size());
+  count("sites", site_names().size());
+}
+
+void add_tables_of_time(std::vector<Finding> &out) {
+  const EarthTables tables = earth_tables();
+  // Known answers through the whole of time and Earth orientation (IERS: UT1-UTC on 2018-01-21).
+  const auto time = utc_from_iso("2018-01-21T00:00:00Z");
+  const bool is_fine =
+      time && earth_orientation(*time).is_covered && to_iso(*time) == "2018-01-21T00:00:00.000Z";
+  const std::string broken = is_fine ? "" : "; broken: build again";
+  out.push_back({is_fine, "leap seconds",
+                 fmt::format("until {}{}", day_of(tables.leap_seconds_expire), broken)});
+  out.push_back({is_fine, "Earth orientation",
+                 fmt::format("{} to {}{}", day_of(tables.orientation_first),
+                             day_of(tables.orientation_last), broken)});
+}
+
+void add_formats(std::vector<Finding> &out) {
+  out.push_back(
+      {true, "meshes",
+       fmt::format(".obj, .gltf, .glb, .stl, .ply, {}", fmt::join(other_mesh_suffixes(), ", "))});
+  out.push_back({true, "orbits", "TLE, 3LE, OMM, OPM, OEM"});
+  out.push_back({true, "tables", fmt::format("{}", fmt::join(table_suffixes(), ", "))});
+  out.push_back({true, "pictures", ".png, .exr"});
+  out.push_back({has_report(), "report",
+                 has_report() ? "plotting script is built in"
+                              : "no plotting script in this build: run tools/setup, build again"});
 }
 
 std::vector<Finding> examine() {
   std::vector<Finding> out;
-  out.push_back({true, "version", fmt::format("umov {} ({})", version, source_revision)});
-  out.push_back({true, "threads", fmt::format("{}", resolve_threads(0))});
-  out.push_back({true, "instruction sets", instruction_sets()});
-  out.push_back({true, "device", "cpu (no other backend in this version)"});
-  out.push_back({true, "materials", fmt::format("{}", builtin_material_names().size())});
-  // Known answers through the whole of time and Earth orientation (IERS: UT1-UTC on 2018-01-21).
-  const auto time = utc_from_iso("2018-01-21T00:00:00Z");
-  const bool clock =
-      time && earth_orientation(*time).is_covered && to_iso(*time) == "2018-01-21T00:00:00.000Z";
-  out.push_back({clock, "time tables",
-                 clock ? "leap seconds and Earth orientation are there" : "broken: build again"});
-  out.push_back({has_report(), "report",
-                 has_report() ? "plotting script is built in"
-                              : "no plotting script in this build: run tools/setup, build again"});
+  add_machine(out);
+  add_library(out);
+  add_tables_of_time(out);
+  add_formats(out);
   return out;
 }
 

@@ -5,8 +5,28 @@
 #include "verbs.h"
 
 #include <memory>
+#include <umov/optics/band.h>
+#include <umov/surface/material.h>
 
 namespace umov::cli {
+
+std::string range_text(WavelengthRange range);
+/// Wavelengths of the paper where the material has them, else the middle of its range.
+std::vector<Band> bands_for(const Material &material);
+
+/// What a verb does when it is called.
+template <class F> auto finishing(const Exit &exit_with, F run) {
+  return [exit_with, run] {
+    const Result<void> done = run();
+    exit_with(done ? 0 : report(done.error()));
+  };
+}
+
+/// `umov material check`.
+void add_check(CLI::App &material, const Exit &exit_with);
+
+/// `umov material import`.
+void add_import(CLI::App &material, const Exit &exit_with);
 
 /// `umov material check --explicit`: a ray-traced height field against the statistical model.
 struct ExplicitOptions {

@@ -184,7 +184,7 @@ Result<std::vector<Subject>> subjects_of(const PlotOptions &o) {
   return out;
 }
 
-Result<void> plot(const PlotOptions &o) {
+Result<void> plot(const PlotOptions &o, const Common &common) {
   if (!o.output.ends_with(".html"))
     return fail(ErrorCode::Usage, "-o " + o.output + ": a name that ends in .html was expected");
   UMOV_ASSIGN(subjects, subjects_of(o));
@@ -210,7 +210,8 @@ Result<void> plot(const PlotOptions &o) {
   }
   UMOV_ASSIGN(page, make_plot_page(title, figures, notes));
   UMOV_TRY(put(o.output, page));
-  fmt::print("written to {}\n", o.output);
+  if (!common.quiet)
+    fmt::print("written to {}\n", o.output);
   return {};
 }
 
@@ -220,6 +221,7 @@ void add_plot(CLI::App &material, const Exit &exit_with) {
   auto *verb = material.add_subcommand(
       "plot", "Fresnel curves, Q against phase, n and k, lobes and colour ratio, as one HTML page");
   auto o = std::make_shared<PlotOptions>();
+  auto common = std::make_shared<Common>();
   o->wavelengths = {425, 550, 650};
   verb->add_option("material", o->names, "Names or TOML files")->required();
   verb->add_option("--wavelength", o->wavelengths, "[nm], separated by commas")
@@ -231,8 +233,9 @@ void add_plot(CLI::App &material, const Exit &exit_with) {
       ->check(CLI::Range(0.0, 89.0))
       ->capture_default_str();
   verb->add_option("-o,--output", o->output, "HTML file")->required();
-  verb->callback([o, exit_with] {
-    const auto done = plot(*o);
+  add_common(*verb, *common, false);
+  verb->callback([o, common, exit_with] {
+    const auto done = plot(*o, *common);
     exit_with(done ? 0 : report(done.error()));
   });
 }

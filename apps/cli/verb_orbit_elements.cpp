@@ -232,7 +232,7 @@ void add_orbit_show(CLI::App &orbit, const Exit &exit_with) {
   auto o = std::make_shared<ElementsOptions>();
   auto common = std::make_shared<Common>();
   add_options(*verb, *o);
-  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv, .fits or .json by its suffix");
+  add_table_output(*verb, o->output);
   add_common(*verb, *common, true);
   verb->callback([o, common, exit_with] { exit_with(run_show(*o, *common)); });
 }

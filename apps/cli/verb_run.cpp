@@ -1,7 +1,9 @@
 #include "job_console.h"
 #include "verbs.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/jobs/run.h>
@@ -85,7 +87,9 @@ void add_run(CLI::App &app, const Exit &exit_with) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
   verb->add_option("--accuracy", o->accuracy, "Relative 95 % half-width asked of I")
       ->check(CLI::Range(1e-6, 1.0));
-  verb->add_option("--device", o->device, "cpu or auto")->capture_default_str();
+  verb->add_option("--device", o->device,
+                   fmt::format("{} or auto", fmt::join(device_names(), ", ")))
+      ->capture_default_str();
   verb->add_flag("--dry-run", o->dry_run, "Read and check everything, compute nothing");
   verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
   verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum,
@@ -96,7 +100,8 @@ void add_run(CLI::App &app, const Exit &exit_with) {
   add_cache(*verb, *common);
   add_common(*verb, *common, false);
   verb->callback([o, common, exit_with] {
-    if (o->device != "cpu" && o->device != "auto") {
+    if (o->device != "auto" &&
+        std::ranges::find(device_names(), o->device) == device_names().end()) {
       exit_with(
           report(Error{ErrorCode::Device,
                        "--device " + o->device +

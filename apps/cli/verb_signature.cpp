@@ -115,7 +115,7 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--masks", o->masks,
                    "File to keep the masks in: read if it exists, made if not. For one mesh, its "
                    "material groups and one accuracy");
-  verb->add_option("-o,--output", o->output, "Table: .csv, .ecsv, .fits or .json by its suffix");
+  add_table_output(*verb, o->output);
   add_threads(*verb, *common);
   add_cache(*verb, *common);
   add_common(*verb, *common, true);

@@ -15,6 +15,7 @@ void add_bench(CLI::App &app, const Exit &exit_with);
 void add_brdf(CLI::App &app, const Exit &exit_with);
 void add_material(CLI::App &app, const Exit &exit_with);
 void add_mesh(CLI::App &app, const Exit &exit_with);
+void add_mesh_make(CLI::App &mesh, const Exit &exit_with);
 void add_orbit(CLI::App &app, const Exit &exit_with);
 void add_orbit_show(CLI::App &orbit, const Exit &exit_with);
 void add_orbit_convert(CLI::App &orbit, const Exit &exit_with);
@@ -22,6 +23,8 @@ void add_paper(CLI::App &app, const Exit &exit_with);
 void add_passes(CLI::App &app, const Exit &exit_with);
 void add_render(CLI::App &app, const Exit &exit_with);
 void add_schema(CLI::App &app, const Exit &exit_with);
+void add_completion(CLI::App &app, const Exit &exit_with);
+void add_man(CLI::App &app, const Exit &exit_with);
 void add_doctor(CLI::App &app, const Exit &exit_with);
 
 } // namespace umov::cli

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/embedded.h>
-#include <umov/core/parallel.h>
 #include <umov/io/elements_file.h>
 #include <umov/io/sites.h>
 #include <umov/shape/primitives.h>
@@ -120,39 +119,35 @@ const Scene &PaperWorkshop::scene(const std::string &object) {
   return found->second;
 }
 
-const Integrator &PaperWorkshop::integrator(const std::string &object) {
-  auto &out = integrators_[object];
-  if (!out)
-    out = std::make_unique<Integrator>(scene(object));
-  return *out;
+std::unique_ptr<LightModel> PaperWorkshop::model(const Scene &scene, LightOptions options) const {
+  options.threads = threads();
+  return must(make_light(scene, {}, options));
 }
 
 const LightModel &PaperWorkshop::rays(const std::string &object) {
   auto &out = rays_[object];
   if (!out)
-    out = must(make_light(scene(object), {}, {.method = LightMethod::Rays, .threads = threads()}));
+    out = model(scene(object), {.method = LightMethod::Rays});
   return *out;
 }
 
-const Engine &PaperWorkshop::engine(const std::string &object) {
-  auto &out = engines_[object];
-  if (!out) {
-    EngineOptions options;
-    options.threads = threads();
-    out = std::make_unique<Engine>(scene(object), options);
-  }
-  return *out;
+StokesTable PaperWorkshop::light(const LightModel &model, const std::vector<Pose> &poses,
+                                 PaperFigure &figure) const {
+  StokesTable out;
+  const Stopwatch watch;
+  if (!model.evaluate(poses, out, {.threads = threads()}))
+    throw std::logic_error("paper: stopped by nobody");
+  figure.seconds += watch.seconds();
+  figure.realizations += poses.size();
+  return out;
 }
 
 StokesTable PaperWorkshop::light(const std::string &object, const std::vector<Pose> &poses,
                                  PaperFigure &figure) {
-  const Engine &prepared = engine(object);
-  StokesTable out;
-  const Stopwatch watch;
-  prepared.evaluate(poses, out, resolve_threads(threads()));
-  figure.seconds += watch.seconds();
-  figure.realizations += poses.size();
-  return out;
+  auto &masks = masks_[object];
+  if (!masks)
+    masks = model(scene(object), {.method = LightMethod::Masks});
+  return light(*masks, poses, figure);
 }
 
 Result<Trajectory> PaperWorkshop::orbit(const std::string &object) const {

@@ -1,11 +1,10 @@
 #pragma once
-// What the figures share: the paper's materials and objects, engines, orbits, a stopwatch.
+// What the figures share: the paper's materials and objects, their light, orbits, a stopwatch.
 
 #include <chrono>
 #include <map>
 #include <memory>
 #include <span>
-#include <umov/light/engine.h>
 #include <umov/light/poses.h>
 #include <umov/lightcurve/compute.h>
 #include <umov/orbit/passes.h>
@@ -79,11 +78,13 @@ public:
   explicit PaperWorkshop(const PaperOptions &options) : options_(options) {}
   [[nodiscard]] unsigned threads() const { return options_.threads; }
   const Scene &scene(const std::string &object);
-  const Integrator &integrator(const std::string &object);
   const LightModel &rays(const std::string &object);
-  /// With masks of typical error 0.2 % of I and rays for uncertain poses.
-  const Engine &engine(const std::string &object);
-  /// Evaluates and adds the time to the figure's.
+  /// Made anew, with the paper's threads.
+  [[nodiscard]] std::unique_ptr<LightModel> model(const Scene &scene, LightOptions options) const;
+  /// Evaluates; the poses and their time, without preparation, are added to the figure's.
+  StokesTable light(const LightModel &model, const std::vector<Pose> &poses,
+                    PaperFigure &figure) const;
+  /// The same for an object by masks of typical error 0.2 % of I, with rays for uncertain poses.
   StokesTable light(const std::string &object, const std::vector<Pose> &poses, PaperFigure &figure);
   /// Consecutive passes over Maui with at least 100 s above an altitude in sunlight under a dark
   /// sky, from days before the elements to 7 days after them, the earliest first.
@@ -100,9 +101,7 @@ public:
 private:
   PaperOptions options_;
   std::map<std::string, Scene> scenes_;
-  std::map<std::string, std::unique_ptr<Integrator>> integrators_;
-  std::map<std::string, std::unique_ptr<LightModel>> rays_;
-  std::map<std::string, std::unique_ptr<Engine>> engines_;
+  std::map<std::string, std::unique_ptr<LightModel>> rays_, masks_;
   std::map<std::string, LitPasses> lit_passes_;
 };
 

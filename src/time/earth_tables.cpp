@@ -74,6 +74,11 @@ double parse_expiry() {
   return out;
 }
 
+double leap_second_expiry() {
+  static const double expiry = parse_expiry();
+  return expiry;
+}
+
 } // namespace
 
 EarthOrientation earth_orientation(Epoch<Utc> time) {
@@ -92,9 +97,13 @@ EarthOrientation earth_orientation(Epoch<Utc> time) {
           (a.y_arcsec + t * (b.y_arcsec - a.y_arcsec)) * arcsec, true};
 }
 
+EarthTables earth_tables() {
+  const auto at = [](double days) { return Epoch<Utc>{2400000.5, days}; };
+  return {at(eop_rows().front().mjd), at(eop_rows().back().mjd), at(leap_second_expiry())};
+}
+
 void warn_if_beyond_leap_seconds(Epoch<Utc> time, Diagnostics &diagnostics) {
-  static const double expiry = parse_expiry();
-  if (mjd(time) > expiry)
+  if (mjd(time) > leap_second_expiry())
     diagnostics.warn(fmt::format("{} is past the end of the leap-second table; a leap second after "
                                  "it would shift times by 1 s",
                                  to_iso(time)));

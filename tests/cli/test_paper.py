@@ -186,7 +186,8 @@ def test_fig22_and_24_are_light_curves_of_the_product(paper, tmp_path):
     done = subprocess.run(
         [UMOV, "run", ROOT / "examples/hst_maui.toml", "-q", "--seed", "0", "--set", f"time.start={first}",
          "--set", f"time.stop={first}", "--set", "time.only={ alt_min_deg = 20, sun_alt_max_deg = -6, sunlit = true }",
-         "--set", "render.sun=point", "--set", f"output.dir={tmp_path / 'out'}"],
+         "--set", "render.sun=point", "--set", "render.method=rays", "--set",
+         f"output.dir={tmp_path / 'out'}"],
         text=True, capture_output=True, cwd=tmp_path, timeout=300)
     assert done.returncode == 0, done.stderr
     for row in read_csv(tmp_path / "out/lightcurve.csv"):

@@ -150,3 +150,28 @@ def test_a_site_by_name_in_a_scenario(umov, scenario, tmp_path):
     assert done.code == 0, done.err
     lock = (tmp_path / "out/scenario.lock.toml").read_text()
     assert "lat_deg = 20.7083" in lock and "alt_m = 3058" in lock
+
+
+def test_keys_of_the_scene_can_be_set(umov, scenario, tmp_path):
+    ask = ("passes", "--orbit", HST, "-s", SITE, *DAY, "--scene", scenario())
+    rows = {}
+    for method in ("rays", "masks"):
+        done = umov(*ask, "--set", f"render.method={method}", "-o", f"{method}.csv")
+        assert done.code == 0, done.err
+        rows[method] = read_csv(tmp_path / f"{method}.csv")
+    lit = [(float(a["mag_min"]), float(b["mag_min"])) for a, b in zip(rows["rays"], rows["masks"])
+           if a["mag_min"]]
+    assert lit and all(abs(a - b) < 0.01 for a, b in lit)
+    assert umov(*ask, "--set", "render.methd=rays").code == 3
+    assert umov("passes", "--orbit", HST, "-s", SITE, *DAY, "--set", "render.method=rays").code == 2
+
+
+def test_the_ephemeris_takes_sites_as_passes_do(umov):
+    ask = ("orbit", "ephemeris", "--orbit", HST, "--start", "2018-01-21T05:00:00Z", "--stop",
+           "2018-01-21T05:01:00Z", "--json")
+    by_name = umov(*ask, "-s", SITE)
+    assert by_name.code == 0, by_name.err
+    by_numbers = umov(*ask, "--lat-deg", 20.7083, "--lon-deg", -156.2578, "--alt-m", 3058)
+    assert by_name.out == by_numbers.out
+    for where in ((), ("--lat-deg", 20.7083), ("-s", SITE, "--alt-m", 0)):
+        assert umov(*ask, *where).code == 2

@@ -51,4 +51,11 @@ EarthOrientation earth_orientation(Epoch<Utc> time);
 /// Warns once if a span leaves the Earth orientation table, with the size of the error.
 void warn_if_outside_eop(Epoch<Utc> first, Epoch<Utc> last, Diagnostics &diagnostics);
 
+/// How far the tables reach that are compiled in.
+struct EarthTables {
+  Epoch<Utc> orientation_first, orientation_last;
+  Epoch<Utc> leap_seconds_expire; ///< after it one more leap second may have come
+};
+EarthTables earth_tables();
+
 } // namespace umov

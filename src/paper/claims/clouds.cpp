@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/core/parallel.h>
 #include <umov/core/random.h>
 #include <umov/io/index_file.h>
 
@@ -154,10 +153,9 @@ Result<PaperFigure> make_claim_locus(PaperWorkshop &workshop) {
       m = paper_material("paper_mylar");
     return m;
   });
-  const Engine engine(four, {.threads = workshop.threads()});
-  StokesTable light;
-  engine.evaluate(random_poses(21, 1000, 140), light, resolve_threads(workshop.threads()));
-  const auto box_wing = relative_singular_values(flat_coordinates(light));
+  const auto model = workshop.model(four, {.method = LightMethod::Masks});
+  const auto box_wing = relative_singular_values(
+      flat_coordinates(workshop.light(*model, random_poses(21, 1000, 140), out)));
   out.plots = {std::move(plot)};
   out.data = {{"claim_locus", rows.table()}};
   out.checks.push_back({"third singular value of (I, S1) of two materials, over the first", mli[2],

@@ -62,15 +62,15 @@ Result<double> band_q(const IndexTable &index, const Passband &band, double phas
 }
 
 /// I and Q of a sphere at 425, 550 and 650 nm.
-Result<std::vector<PoseResult>> sphere(const Material &material, const std::vector<double> &phases,
-                                       unsigned threads) {
+Result<StokesTable> sphere(const Material &material, const std::vector<double> &phases,
+                           PaperWorkshop &workshop, PaperFigure &figure) {
   Diagnostics diagnostics;
   UMOV_ASSIGN(scene, make_scene(make_sphere(1, 5000), NormalMode::Smooth, paper_bands(), {material},
                                 {material}, diagnostics));
   std::vector<Pose> poses;
   for (const double phase : phases)
     poses.push_back({{0, 0, 1}, {std::sin(phase * degree), 0, std::cos(phase * degree)}});
-  return Integrator(scene).evaluate(poses, {}, threads);
+  return workshop.light(*workshop.model(scene, {.method = LightMethod::Rays}), poses, figure);
 }
 
 } // namespace
@@ -305,9 +305,9 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
     for (const double m : {4., 10., 50., 200.}) {
       Material one = paper_material(name);
       one.distribution = blinn_phong(m);
-      UMOV_ASSIGN(single, sphere(one, phases, workshop.threads()));
+      UMOV_ASSIGN(single, sphere(one, phases, workshop, out));
       one.interreflection = Interreflection::Unpolarized;
-      UMOV_ASSIGN(all, sphere(one, phases, workshop.threads()));
+      UMOV_ASSIGN(all, sphere(one, phases, workshop, out));
       const char *const dashes[] = {"solid", "dash", "dot", "dashdot"};
       PlotLine line{
           fmt::format("{}, m = {:g}", name == std::string("paper_au") ? "gold" : "aluminium", m),
@@ -316,7 +316,7 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
           name == std::string("paper_au") ? 0u : 1u,
           dashes[within.lines.size() % 4]};
       for (std::size_t i = 0; i < phases.size(); ++i) {
-        const auto a = single[i].bands[1].stokes, b = all[i].bands[1].stokes;
+        const auto a = single.at(i, 1).stokes, b = all.at(i, 1).stokes;
         inside.row({name, m, phases[i], 1 - a.i / b.i, b.q / b.i - a.q / a.i});
         line.x.push_back(phases[i]);
         line.y.push_back(100 * (1 - a.i / b.i));
@@ -325,20 +325,18 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
       }
       within.lines.push_back(std::move(line));
     }
-  const Stopwatch watch;
   for (const char *object : {"hst", "agena", "box_wing"}) {
     const char *const dashes[] = {"solid", "dash", "dot"};
     PlotLine line{object, {}, {}, among.lines.size(), dashes[among.lines.size()]};
+    const auto model = workshop.model(
+        workshop.scene(object),
+        {.method = LightMethod::Rays, .accuracy = 0.01, .bounces = 5, .max_points = 1u << 16});
     for (const double phase : {40., 80., 120., 150.}) {
-      IntegrationOptions options;
-      options.bounces = 5;
-      options.accuracy = 0.01;
-      options.max_points = 1u << 16;
       const auto poses = random_poses(61, 24, phase);
       std::vector<double> share, dq, v;
-      for (const PoseResult &pose :
-           workshop.integrator(object).evaluate(poses, options, workshop.threads())) {
-        const auto &all = pose.bands[1].stokes, &more = pose.indirect[1];
+      const StokesTable light = workshop.light(*model, poses, out);
+      for (std::size_t k = 0; k < poses.size(); ++k) {
+        const auto all = light.at(k, 1).stokes, more = light.indirect[k * light.bands + 1];
         if (!(all.i > 0))
           continue;
         share.push_back(more.i / all.i);
@@ -346,7 +344,6 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
         if (all.i - more.i > 0)
           dq.push_back(std::abs(all.q / all.i - (all.q - more.q) / (all.i - more.i)));
       }
-      out.realizations += poses.size();
       between.row({object, phase, quantile(share, .5), quantile(share, .9), quantile(dq, .5),
                    quantile(dq, .9), quantile(v, .9)});
       between_most = std::max(between_most, quantile(share, .5));
@@ -356,7 +353,6 @@ Result<PaperFigure> make_claim_multiple(PaperWorkshop &workshop) {
     }
     among.lines.push_back(std::move(line));
   }
-  out.seconds = watch.seconds();
   out.plots = {within, among};
   out.data = {{"claim_multiple_inside", inside.table()},
               {"claim_multiple_between", between.table()}};

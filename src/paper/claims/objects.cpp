@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/core/parallel.h>
 #include <umov/core/random.h>
 
 namespace umov {
@@ -46,36 +45,16 @@ PaperObject dealt(const std::string &name, std::uint64_t draw) {
 
 QCloud cloud_of(const Scene &scene, std::uint64_t seed, double phase, PaperWorkshop &workshop,
                 PaperFigure &figure) {
-  const Engine engine(scene, {.threads = workshop.threads()});
-  StokesTable light;
-  const auto poses = random_poses(seed, 500, phase);
-  const Stopwatch watch;
-  engine.evaluate(poses, light, resolve_threads(workshop.threads()));
-  figure.seconds += watch.seconds();
-  figure.realizations += poses.size();
-  return q_cloud(light);
+  const auto model = workshop.model(scene, {.method = LightMethod::Masks});
+  return q_cloud(workshop.light(*model, random_poses(seed, 500, phase), figure));
 }
 
 QCloud cloud_with_bounces(const std::string &object, std::uint64_t seed, double phase,
                           PaperWorkshop &workshop, PaperFigure &figure) {
-  IntegrationOptions options;
-  options.bounces = 3;
-  options.max_points = 1u << 14; // errors of a few thousandths in Q: below the spacing of points
-  const auto poses = random_poses(seed, 150, phase);
-  const auto found = workshop.integrator(object).evaluate(poses, options, workshop.threads());
-  figure.realizations += poses.size();
-  QCloud out;
-  for (const PoseResult &pose : found) {
-    QPoint q{};
-    bool is_lit = true;
-    for (std::size_t b = 0; b < 3; ++b) {
-      is_lit = is_lit && pose.bands[b].stokes.i > 0;
-      q[b] = pose.bands[b].stokes.q / pose.bands[b].stokes.i;
-    }
-    if (is_lit)
-      out.q.push_back(q);
-  }
-  return out;
+  // Errors of a few thousandths in Q: below the spacing of points.
+  const auto model = workshop.model(
+      workshop.scene(object), {.method = LightMethod::Rays, .bounces = 3, .max_points = 1u << 14});
+  return q_cloud(workshop.light(*model, random_poses(seed, 150, phase), figure));
 }
 
 /// Turned about a unit axis, right-handed (Rodrigues).

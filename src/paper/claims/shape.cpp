@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/core/parallel.h>
 #include <umov/shape/primitives.h>
 
 namespace umov {
@@ -26,32 +25,17 @@ Material rough(const char *name, bool has_body, double m) {
 /// Q at 550 nm of lit poses.
 std::vector<double> q_values(const Scene &scene, const ShapeCase &one, double phase_deg,
                              PaperWorkshop &workshop, PaperFigure &figure) {
+  const bool is_direct = one.bounces == 1;
+  const auto model = is_direct ? workshop.model(scene, {.method = LightMethod::Masks})
+                               : workshop.model(scene, {.method = LightMethod::Rays,
+                                                        .bounces = one.bounces,
+                                                        .max_points = 1u << 16});
+  const auto poses = random_poses(3, is_direct ? 1000 : 60, phase_deg);
+  const StokesTable light = workshop.light(*model, poses, figure);
   std::vector<double> out;
-  if (one.bounces > 1) {
-    IntegrationOptions options;
-    options.bounces = one.bounces;
-    options.max_points = 1u << 16;
-    const auto poses = random_poses(3, 60, phase_deg);
-    const Integrator integrator(scene);
-    const Stopwatch watch;
-    const auto found = integrator.evaluate(poses, options, workshop.threads());
-    figure.seconds += watch.seconds();
-    for (const PoseResult &pose : found)
-      if (pose.bands[1].stokes.i > 0)
-        out.push_back(pose.bands[1].stokes.q / pose.bands[1].stokes.i);
-    figure.realizations += poses.size();
-  } else {
-    const Engine engine(scene, {.threads = workshop.threads()});
-    StokesTable light;
-    const auto poses = random_poses(3, 1000, phase_deg);
-    const Stopwatch watch;
-    engine.evaluate(poses, light, resolve_threads(workshop.threads()));
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      if (const auto s = light.at(i, 1).stokes; s.i > 0)
-        out.push_back(s.q / s.i);
-    figure.realizations += poses.size();
-    figure.seconds += watch.seconds();
-  }
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (const auto s = light.at(i, 1).stokes; s.i > 0)
+      out.push_back(s.q / s.i);
   return out;
 }
 

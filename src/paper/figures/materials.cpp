@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/core/parallel.h>
 #include <umov/io/index_file.h>
 #include <umov/light/integrator.h>
 #include <umov/photometry/passband.h>
@@ -33,21 +32,21 @@ std::string eta_text(std::complex<double> eta) {
 }
 
 /// Sphere of a material with body light, at many phase angles.
-Result<std::vector<std::vector<double>>>
-sphere_q(const Material &material, const std::vector<double> &phases, unsigned threads) {
+Result<std::vector<std::vector<double>>> sphere_q(const Material &material,
+                                                  const std::vector<double> &phases,
+                                                  PaperWorkshop &workshop, PaperFigure &figure) {
   Diagnostics diagnostics;
   UMOV_ASSIGN(scene, make_scene(make_sphere(1, 20'000), NormalMode::Smooth, paper_bands(),
                                 {material}, {material}, diagnostics));
   std::vector<Pose> poses;
   for (const double phase : phases)
     poses.push_back({{0, 0, 1}, {std::sin(phase * degree), 0, std::cos(phase * degree)}});
-  IntegrationOptions options;
-  options.density = 4;
-  const auto found = Integrator(scene).evaluate(poses, options, threads);
+  const auto model = workshop.model(scene, {.method = LightMethod::Rays, .accuracy = 0.001});
+  const StokesTable found = workshop.light(*model, poses, figure);
   std::vector<std::vector<double>> out(paper_bands().size());
   for (std::size_t b = 0; b < out.size(); ++b)
-    for (const PoseResult &pose : found)
-      out[b].push_back(ratio(pose.bands[b].stokes.q, pose.bands[b].stokes.i));
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      out[b].push_back(ratio(found.at(k, b).stokes.q, found.at(k, b).stokes.i));
   return out;
 }
 
@@ -284,7 +283,7 @@ Result<PaperFigure> make_fig16(PaperWorkshop &workshop) {
     const bool has_interface = surface.fresnel(1, 1).a > 0;
     std::vector<std::vector<double>> sphere;
     if (material.body && has_interface) {
-      UMOV_ASSIGN(found, sphere_q(material, phases, workshop.threads()));
+      UMOV_ASSIGN(found, sphere_q(material, phases, workshop, out));
       sphere = std::move(found);
     }
     PlotFigure plot{

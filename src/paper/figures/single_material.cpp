@@ -5,7 +5,6 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/core/parallel.h>
 
 namespace umov {
 namespace {
@@ -59,12 +58,8 @@ Result<PaperFigure> make_fig18(PaperWorkshop &workshop) {
     for (const PurePoint &pure : pure_points) {
       const Scene scene = paper_scene(
           paper_object(object), [&](const Material &) { return paper_material(pure.material); });
-      const Engine engine(scene, {.visibility = Visibility::None, .threads = workshop.threads()});
-      StokesTable light;
-      const Stopwatch watch;
-      engine.evaluate(poses, light, resolve_threads(workshop.threads()));
-      out.seconds += watch.seconds();
-      out.realizations += poses.size();
+      const auto model = workshop.model(scene, {.method = LightMethod::Masks});
+      const StokesTable light = workshop.light(*model, poses, out);
       PlotFigure plot{fmt::format("{} of {}", object,
                                   pure.material == std::string("paper_au") ? "gold" : "aluminium"),
                       "pose",

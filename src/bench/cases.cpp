@@ -1,10 +1,10 @@
-#include "bench_cases.h"
+#include "bench/cases.h"
 
 #include <fmt/format.h>
 #include <umov/io/obj.h>
 #include <umov/shape/primitives.h>
 
-namespace umov::cli {
+namespace umov::bench {
 namespace {
 
 constexpr MaskQuality without_rays(MaskQuality quality) {
@@ -35,7 +35,7 @@ Mesh panel(std::size_t n) {
   return mesh;
 }
 
-Result<Mesh> bench_mesh(const BenchCase &of, Diagnostics &diagnostics) {
+Result<Mesh> case_mesh(const BenchCase &of, Diagnostics &diagnostics) {
   if (of.mesh == "box-wing")
     return make_box_wing({of.facets, 0});
   if (of.mesh == "foil")
@@ -146,8 +146,8 @@ std::vector<BenchCase> cases_for_mesh(const std::string &file) {
   return out;
 }
 
-Result<Scene> bench_scene(const BenchCase &of, Diagnostics &diagnostics) {
-  UMOV_ASSIGN(mesh, bench_mesh(of, diagnostics));
+Result<Scene> case_scene(const BenchCase &of, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(mesh, case_mesh(of, diagnostics));
   std::vector<Band> bands;
   for (std::size_t b = 0; b < of.bands; ++b) { // within Table 1 of the paper
     const double nm = of.bands == 1
@@ -168,4 +168,4 @@ Result<Scene> bench_scene(const BenchCase &of, Diagnostics &diagnostics) {
   return make_scene(mesh, of.normals, bands, materials, materials, diagnostics);
 }
 
-} // namespace umov::cli
+} // namespace umov::bench

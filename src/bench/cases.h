@@ -1,16 +1,16 @@
 #pragma once
-// The standard cases of `umov bench`.
+// Private: the standard cases of `umov bench`.
 
 #include <string>
 #include <umov/light/engine.h>
 #include <vector>
 
-namespace umov::cli {
+namespace umov::bench {
 
 /// One line of the report.
 struct BenchCase {
   std::string name;
-  std::string mesh = "box-wing"; ///< what `bench_mesh` knows, or an OBJ file in metres, +Z up
+  std::string mesh = "box-wing"; ///< what `case_mesh` knows, or an OBJ file in metres, +Z up
   std::size_t facets = 10'000;
   std::size_t bands = 3;
   bool has_own_roughness = false; ///< per band
@@ -32,6 +32,6 @@ std::vector<BenchCase> cases_for_mesh(const std::string &file);
 
 /// The scene of a case: four materials (foil m = 200, cells 1000, white 20, metal 50) over its
 /// groups.
-Result<Scene> bench_scene(const BenchCase &of, Diagnostics &diagnostics);
+Result<Scene> case_scene(const BenchCase &of, Diagnostics &diagnostics);
 
-} // namespace umov::cli
+} // namespace umov::bench

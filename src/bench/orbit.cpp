@@ -1,22 +1,18 @@
-#include "bench_orbit.h"
+#include <umov/bench/bench.h>
+
+#include "bench/machine.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <umov/core/files.h>
 #include <umov/io/elements_file.h>
 #include <umov/light/engine.h>
 #include <umov/orbit/sgp4.h>
 
-namespace umov::cli {
+namespace umov::bench {
 namespace {
 
-constexpr int repetitions = 5; ///< the best counts: the others were disturbed
 constexpr std::size_t steps = 1440;
-
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 struct Catalogue {
   std::vector<Sgp4> objects;
@@ -82,7 +78,8 @@ double largest_difference(const Catalogue &c) {
 
 } // namespace
 
-Result<Table> bench_orbit(const std::string &file, Diagnostics &diagnostics) {
+Result<Table> orbit(const std::string &file, Diagnostics &diagnostics) {
+  const std::string load_before = load_average();
   UMOV_ASSIGN(text, read_file(file));
   TleOptions options;
   options.keep_going = true;
@@ -118,7 +115,8 @@ Result<Table> bench_orbit(const std::string &file, Diagnostics &diagnostics) {
   out.add("difference", "km", "largest against one by one", std::move(difference));
   out.note("catalogue", std::to_string(sets.size()) + " objects, " + std::to_string(deep) +
                             " of them deep space, one day in 1440 steps");
+  add_machine(out, load_before);
   return out;
 }
 
-} // namespace umov::cli
+} // namespace umov::bench

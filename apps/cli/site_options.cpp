@@ -1,0 +1,28 @@
+#include "site_options.h"
+
+#include <umov/io/sites.h>
+
+namespace umov::cli {
+
+void add_site(CLI::App &verb, SiteOptions &o) {
+  auto *site = verb.add_option("-s,--site", o.site,
+                               "A known site such as maui or paranal, or "
+                               "latitude,longitude,altitude: deg north, deg east, m");
+  o.latitude = verb.add_option("--lat-deg", o.latitude_deg, "Geodetic latitude, north positive");
+  o.longitude = verb.add_option("--lon-deg", o.longitude_deg, "Longitude, east positive");
+  o.altitude = verb.add_option("--alt-m", o.altitude_m, "Height above the WGS 84 ellipsoid");
+  for (auto *one : {o.latitude, o.longitude, o.altitude})
+    one->excludes(site);
+}
+
+Result<Site> site_of(const SiteOptions &o) {
+  if (!o.site.empty())
+    return site_from(o.site);
+  for (const auto *one : {o.latitude, o.longitude, o.altitude})
+    if (one->count() == 0)
+      return fail(ErrorCode::Usage,
+                  "where? Give --site NAME or LAT,LON,ALT, or --lat-deg, --lon-deg and --alt-m");
+  return make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m);
+}
+
+} // namespace umov::cli

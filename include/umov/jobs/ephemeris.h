@@ -1,0 +1,47 @@
+#pragma once
+// Where objects stand: one as seen from a site, or all of a catalogue.
+
+#include <optional>
+#include <string>
+#include <umov/core/diagnostics.h>
+#include <umov/io/table.h>
+#include <umov/jobs/monitor.h>
+#include <umov/jobs/requests.h>
+#include <umov/orbit/ephemeris.h>
+#include <vector>
+
+namespace umov::jobs {
+
+/// Rows, and why there are not more or not better ones.
+struct TableOutcome {
+  Table table;
+  bool is_partial = false;    ///< rows are missing, for the reason that `error` gives
+  std::optional<Error> error; ///< of a whole table: no row of it is good
+};
+
+struct EphemerisRequest {
+  std::string orbit; ///< file of elements or of an ephemeris
+  int norad = 0;     ///< 0: the only object of the file
+  Site site;
+  Epoch<Utc> start{}, stop{};
+  double step_s = 60;
+  ShadowModel shadow = ShadowModel::Ellipsoid;
+  bool keep_going = false; ///< bad sets of the file are reported, the others kept
+};
+
+/// One object from a site, a row per epoch. Partial after a stop, and where the orbit ends.
+Result<TableOutcome> ephemeris(const EphemerisRequest &request, const JobOptions &options,
+                               const Monitor &monitor, Diagnostics &diagnostics);
+
+struct StatesRequest {
+  std::string orbit; ///< file of elements
+  std::vector<Epoch<Utc>> times;
+  bool keep_going = false; ///< bad sets of the file are reported, the others kept
+};
+
+/// TEME states of every object at every time, object by object; those that SGP4 cannot give are
+/// empty, with its code. Partial after a stop; Physics with a whole table if every one failed.
+Result<TableOutcome> catalogue_states(const StatesRequest &request, const JobOptions &options,
+                                      const Monitor &monitor, Diagnostics &diagnostics);
+
+} // namespace umov::jobs

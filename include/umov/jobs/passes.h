@@ -1,0 +1,64 @@
+#pragma once
+// When the objects of a file pass over a site, and in which light.
+
+#include <optional>
+#include <string>
+#include <umov/core/diagnostics.h>
+#include <umov/io/table.h>
+#include <umov/jobs/monitor.h>
+#include <umov/jobs/requests.h>
+#include <umov/orbit/passes.h>
+#include <vector>
+
+namespace umov::jobs {
+
+/// What the objects are taken for: those of a scene by their catalogue number, or all the same
+/// simple body. Neither: nothing is said about their light.
+struct PassModel {
+  enum class Body { None, Sphere, Cube }; ///< a cube flies in nadir attitude
+  std::optional<Scenario> scene;          ///< an object without orbit stands for all others
+  Body body = Body::None;
+  double size_m = 1;    ///< of the body: radius, or edge
+  std::string material; ///< of the body: a name or a file
+  std::string band;     ///< of the magnitudes; "": the middle one
+};
+
+struct PassesRequest {
+  std::string orbit;      ///< file of elements or of an ephemeris
+  std::vector<int> norad; ///< empty: all objects of the file
+  Site site;
+  Epoch<Utc> start{}, stop{};
+  Angle altitude_min = Angle::degrees(10);
+  Angle sun_altitude_max = Angle::degrees(-6); ///< the sky is dark below it
+  ShadowModel shadow = ShadowModel::Ellipsoid;
+  bool is_visible_only = false; ///< sunlit in a dark sky for some time
+  bool keep_going = false;      ///< bad sets of the file are reported, the others kept
+  PassModel model;
+};
+
+/// A pass and whose it is.
+struct ObjectPass {
+  std::size_t object = 0; ///< into PassesResult::orbits
+  SitePass pass;
+};
+
+struct PassesResult {
+  std::vector<Trajectory> orbits; ///< of the objects that were to be searched
+  std::vector<ObjectPass> found;  ///< by the time of rise
+  std::string model;              ///< what the objects were taken for, in words
+  std::optional<Error> stopped;   ///< Interrupted: passes of some objects are not there
+};
+
+/// Searches all objects side by side. Nothing if there is no pass; Physics if every orbit ends
+/// within the span; warnings tell of old elements and of objects that failed.
+Result<PassesResult> passes(const PassesRequest &request, const JobOptions &options,
+                            const Monitor &monitor, Diagnostics &diagnostics);
+
+/// A row per pass, with what was asked in the header.
+Table passes_table(const PassesRequest &request, const PassesResult &result);
+
+/// A page with the tracks over the site's sky, sunlit parts full and shadowed ones dotted, times at
+/// both ends. Internal if this build has no plotting script.
+Result<std::string> sky_chart(const PassesRequest &request, const PassesResult &result);
+
+} // namespace umov::jobs

@@ -1,0 +1,159 @@
+#include <umov/jobs/ephemeris.h>
+
+#include "jobs/columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <umov/core/files.h>
+#include <umov/core/parallel.h>
+#include <umov/core/text.h>
+#include <umov/io/elements_file.h>
+#include <umov/orbit/sgp4.h>
+
+namespace umov::jobs {
+namespace {
+
+struct CatalogueRow {
+  bool is_done = false; ///< not where a stop came first
+  int norad_cat_id = 0;
+  Epoch<Utc> time{};
+  Sgp4Code code = Sgp4Code::Ok;
+  TemeState state;
+};
+
+Table catalogue_table(const std::vector<CatalogueRow> &rows) {
+  using R = const CatalogueRow &;
+  Table t;
+  std::vector<std::int64_t> ids, codes;
+  std::vector<std::string> times;
+  for (R row : rows) {
+    ids.push_back(row.norad_cat_id);
+    codes.push_back(static_cast<int>(row.code));
+    times.push_back(to_iso(row.time));
+  }
+  t.add("norad_cat_id", "", "catalogue number", std::move(ids));
+  t.add("time_utc", "", "UTC", std::move(times));
+  t.add("error", "", "0, or the SGP4 code with which the object failed", std::move(codes));
+  const auto add = [&](const char *name, const char *unit, const char *text, auto take) {
+    add_numbers(t, rows, name, unit, text, [&](R row) {
+      return row.code == Sgp4Code::Ok ? take(row.state) : std::numeric_limits<double>::quiet_NaN();
+    });
+  };
+  using S = const TemeState &;
+  add("teme_x", "km", "position, TEME", [](S s) { return s.position_km.x; });
+  add("teme_y", "km", "position, TEME", [](S s) { return s.position_km.y; });
+  add("teme_z", "km", "position, TEME", [](S s) { return s.position_km.z; });
+  add("teme_vx", "km / s", "velocity, TEME", [](S s) { return s.velocity_km_s.x; });
+  add("teme_vy", "km / s", "velocity, TEME", [](S s) { return s.velocity_km_s.y; });
+  add("teme_vz", "km / s", "velocity, TEME", [](S s) { return s.velocity_km_s.z; });
+  return t;
+}
+
+/// Objects by times, object by object; whole blocks of objects are missing after a stop.
+std::vector<CatalogueRow> propagate_all(const std::vector<ElementSet> &sets,
+                                        const std::vector<Epoch<Utc>> &times, unsigned threads,
+                                        const Monitor &monitor) {
+  std::vector<CatalogueRow> rows(sets.size() * times.size());
+  constexpr std::size_t block = 256; // objects side by side in lanes
+  parallel_for((sets.size() + block - 1) / block, threads, [&](std::size_t b) {
+    const std::size_t first = b * block, count = std::min(block, sets.size() - first);
+    std::vector<Sgp4> models;
+    for (std::size_t i = 0; i < count; ++i)
+      models.emplace_back(sets[first + i]);
+    std::vector<double> minutes(count);
+    std::vector<TemeState> states(count);
+    std::vector<Sgp4Code> codes(count);
+    for (std::size_t k = 0; k < times.size() && !monitor.is_cancelled(); ++k) {
+      for (std::size_t i = 0; i < count; ++i)
+        minutes[i] = clock_days_between(times[k], sets[first + i].epoch) * 1440;
+      propagate_objects(models, minutes, states, codes);
+      for (std::size_t i = 0; i < count; ++i) {
+        const bool can_start = models[i].init_code() == Sgp4Code::Ok;
+        rows[(first + i) * times.size() + k] = {true, sets[first + i].norad_cat_id, times[k],
+                                                can_start ? codes[i] : models[i].init_code(),
+                                                can_start ? states[i] : TemeState{}};
+      }
+    }
+  });
+  return rows;
+}
+
+/// A catalogue has many ages: one line for all that are too old to trust, and a refusal only where
+/// none is better.
+Result<void> check_ages(const StatesRequest &request, bool allow_old,
+                        const std::vector<ElementSet> &sets, Diagnostics &diagnostics) {
+  std::size_t doubtful = 0, old = 0;
+  const ElementSet *oldest = nullptr;
+  double age_max = 0;
+  for (const ElementSet &set : sets) {
+    double age = 0;
+    for (const Epoch<Utc> time : request.times)
+      age = std::max(age, std::abs(clock_days_between(time, set.epoch)));
+    doubtful += age > 7 ? 1u : 0u;
+    old += age > 30 ? 1u : 0u;
+    if (age > age_max) {
+      age_max = age;
+      oldest = &set;
+    }
+  }
+  if (doubtful == 0)
+    return {};
+  const std::string worst =
+      fmt::format("the farthest are those of {}, {:.1f} d", oldest->norad_cat_id, age_max);
+  if (old == sets.size() && !allow_old)
+    return fail(ErrorCode::BadInput,
+                fmt::format("all elements are more than 30 d from the epochs asked for ({}). Give "
+                            "newer ones or pass --allow-old-elements.",
+                            worst),
+                {request.orbit, oldest->line});
+  diagnostics.warn(
+      fmt::format("{} of {} element sets lie more than 7 d from the epochs asked for ({}); expect "
+                  "kilometres of error along the track",
+                  doubtful, sets.size(), worst),
+      {request.orbit, oldest->line});
+  return {};
+}
+
+/// Warns of the first states that failed; how many did.
+std::size_t tell_of_failures(const std::vector<CatalogueRow> &rows, Diagnostics &diagnostics) {
+  constexpr std::size_t told_max = 10;
+  std::size_t failed = 0;
+  for (const CatalogueRow &row : rows)
+    if (row.code != Sgp4Code::Ok && failed++ < told_max)
+      diagnostics.warn(fmt::format("{}: SGP4 fails at {} (code {}, {})", row.norad_cat_id,
+                                   to_iso(row.time), static_cast<int>(row.code),
+                                   to_text(row.code)));
+  if (failed > told_max)
+    diagnostics.warn(fmt::format("{} more states failed; see the column error", failed - told_max));
+  return failed;
+}
+
+} // namespace
+
+Result<TableOutcome> catalogue_states(const StatesRequest &request, const JobOptions &options,
+                                      const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(text, read_file(request.orbit));
+  UMOV_ASSIGN(sets, read_elements(text, request.orbit,
+                                  {options.allow_bad_checksum, request.keep_going}, diagnostics));
+  UMOV_TRY(check_ages(request, options.allow_old_elements, sets, diagnostics));
+  for (const Epoch<Utc> time : request.times)
+    warn_if_beyond_leap_seconds(time, diagnostics);
+  auto rows = propagate_all(sets, request.times, options.threads, monitor);
+  const std::size_t all = rows.size();
+  std::erase_if(rows, [](const CatalogueRow &row) { return !row.is_done; });
+  const std::size_t failed = tell_of_failures(rows, diagnostics);
+  TableOutcome out{catalogue_table(rows), rows.size() < all, {}};
+  if (out.is_partial)
+    out.error =
+        Error{ErrorCode::Interrupted,
+              fmt::format("stopped by the user after {} of {}", rows.size(), counted(all, "state")),
+              {}};
+  else if (failed == rows.size())
+    out.error = Error{
+        ErrorCode::Physics, "SGP4 failed for every object; give newer elements", {request.orbit}};
+  return out;
+}
+
+} // namespace umov::jobs

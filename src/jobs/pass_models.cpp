@@ -1,0 +1,69 @@
+#include "jobs/pass_models.h"
+
+#include <fmt/format.h>
+#include <umov/shape/primitives.h>
+
+namespace umov::jobs {
+
+Result<PassModels> PassModels::of_body(const PassModel &wanted, Diagnostics &diagnostics) {
+  PassModels out;
+  if (wanted.material.empty())
+    return fail(ErrorCode::Usage,
+                "--model needs --material: nothing is guessed; see umov material list");
+  UMOV_ASSIGN(material, read_material(wanted.material));
+  UMOV_ASSIGN(bands, bands_from({wanted.band.empty() ? "nm:550" : wanted.band}));
+  const bool is_sphere = wanted.body == PassModel::Body::Sphere;
+  if (is_sphere) {
+    UMOV_ASSIGN(sphere, PassLight::of_sphere(wanted.size_m, material, bands));
+    out.other_ = sphere;
+  } else {
+    UMOV_ASSIGN(scene, make_scene(make_chamfered_cube(wanted.size_m, 0.1 * wanted.size_m),
+                                  NormalMode::Flat, bands, {material}, {material}, diagnostics));
+    UMOV_ASSIGN(cube, PassLight::of_body(scene, TwoAxisLaw{}, LightMethod::Auto));
+    out.other_ = cube;
+  }
+  out.description_ = fmt::format("{} of {:g} m, {}, {}", is_sphere ? "sphere" : "cube",
+                                 wanted.size_m, wanted.material, bands.front().name);
+  return out;
+}
+
+Result<PassModels> PassModels::of_scene(const PassModel &wanted, Diagnostics &diagnostics) {
+  PassModels out;
+  Scenario scene = *wanted.scene;
+  scene.time.reset(); // orbits come from the file of the passes
+  for (std::size_t k = 0; k < scene.objects.size(); ++k) {
+    if (!scene.objects[k].parts.empty())
+      diagnostics.warn("parts stand as in the mesh: passes do not turn them", {scene.file});
+    const int norad = scene.objects[k].orbit ? scene.objects[k].orbit->norad : 0;
+    UMOV_ASSIGN(object, load_object(scene, k, {.allow_old_elements = true}, diagnostics));
+    UMOV_ASSIGN(light, PassLight::of_body(object.scene, object.attitude, scene.light.method,
+                                          scene.light.bounces));
+    if (norad > 0 && scene.objects.size() > 1)
+      out.by_number_.insert_or_assign(norad, light);
+    else
+      out.other_ = light;
+  }
+  UMOV_ASSIGN(band, band_index(wanted.band, scene.bands));
+  out.band_ = band;
+  out.description_ = fmt::format("{}, {}", scene.file, scene.bands[band].name);
+  return out;
+}
+
+Result<PassModels> PassModels::make(const PassModel &wanted, Diagnostics &diagnostics) {
+  if (wanted.body != PassModel::Body::None)
+    return of_body(wanted, diagnostics);
+  if (wanted.scene)
+    return of_scene(wanted, diagnostics);
+  if (!wanted.band.empty())
+    return fail(ErrorCode::Usage, "--band needs --scene or --model");
+  return PassModels{};
+}
+
+const PassLight *PassModels::of(int norad) const {
+  const auto found = by_number_.find(norad);
+  if (found != by_number_.end())
+    return &found->second;
+  return other_ ? &*other_ : nullptr;
+}
+
+} // namespace umov::jobs

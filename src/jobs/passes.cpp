@@ -1,0 +1,176 @@
+#include <umov/jobs/passes.h>
+
+#include "jobs/pass_models.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <mutex>
+#include <umov/core/files.h>
+#include <umov/core/parallel.h>
+#include <umov/core/text.h>
+#include <umov/io/elements_file.h>
+#include <umov/io/trajectory_file.h>
+#include <umov/orbit/select.h>
+
+namespace umov::jobs {
+namespace {
+
+constexpr double doubtful_days = 7, old_days = 30; ///< ages of elements
+
+/// Of each object wanted, its best set for the span's begin.
+Result<std::vector<ElementSet>> best_sets(const PassesRequest &request,
+                                          std::vector<ElementSet> sets) {
+  std::vector<int> wanted = request.norad;
+  if (wanted.empty())
+    for (const ElementSet &set : sets)
+      wanted.push_back(set.norad_cat_id);
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  // By number, so that each object is chosen from its own sets.
+  std::ranges::stable_sort(sets, {}, &ElementSet::norad_cat_id);
+  std::vector<ElementSet> out;
+  for (const int norad : wanted) {
+    const auto own = std::ranges::equal_range(sets, norad, {}, &ElementSet::norad_cat_id);
+    UMOV_ASSIGN(set,
+                choose_elements({own.begin(), own.end()}, norad, request.start, request.orbit));
+    out.push_back(set);
+  }
+  return out;
+}
+
+/// Orbits of the objects wanted whose elements are not too old for the span.
+Result<std::vector<Trajectory>> choose(const PassesRequest &request, std::vector<ElementSet> sets,
+                                       bool allow_old, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(chosen, best_sets(request, std::move(sets)));
+  std::vector<Trajectory> out;
+  std::size_t doubtful = 0, old = 0;
+  for (const ElementSet &set : chosen) {
+    const double age = std::max(std::abs(clock_days_between(request.start, set.epoch)),
+                                std::abs(clock_days_between(request.stop, set.epoch)));
+    doubtful += age > doubtful_days ? 1u : 0u;
+    if (age > old_days && !allow_old)
+      ++old;
+    else
+      out.emplace_back(set);
+  }
+  if (out.empty())
+    return fail(ErrorCode::BadInput,
+                fmt::format("all elements are more than {:g} d from the span. Give newer ones or "
+                            "pass --allow-old-elements.",
+                            old_days),
+                {request.orbit});
+  if (old > 0)
+    diagnostics.warn(fmt::format("{} with elements more than {:g} d from the span are left out; "
+                                 "--allow-old-elements takes them",
+                                 counted(old, "object"), old_days),
+                     {request.orbit});
+  if (doubtful > old)
+    diagnostics.warn(fmt::format("elements of {} are more than {:g} d from the span; passes may be "
+                                 "seconds off",
+                                 counted(doubtful - old, "object"), doubtful_days),
+                     {request.orbit});
+  return out;
+}
+
+Result<std::vector<Trajectory>> read_orbits(const PassesRequest &request, const JobOptions &options,
+                                            Diagnostics &diagnostics) {
+  UMOV_ASSIGN(text, read_file(request.orbit));
+  if (!ccsds::is_message(text)) {
+    UMOV_ASSIGN(sets, read_elements(text, request.orbit,
+                                    {options.allow_bad_checksum, request.keep_going}, diagnostics));
+    return choose(request, std::move(sets), options.allow_old_elements, diagnostics);
+  }
+  TrajectoryRequest wanted;
+  wanted.norad = request.norad.size() == 1 ? request.norad[0] : 0;
+  wanted.first = request.start;
+  wanted.last = request.stop;
+  UMOV_ASSIGN(orbit, read_trajectory(text, request.orbit, wanted, diagnostics));
+  return std::vector<Trajectory>{orbit};
+}
+
+/// Of one object; empty where the job was stopped before its turn.
+using Found = std::optional<Result<std::vector<SitePass>>>;
+
+std::vector<Found> search_all(const PassesRequest &request, const std::vector<Trajectory> &orbits,
+                              const PassModels &models, unsigned threads, const Monitor &monitor) {
+  std::vector<Found> out(orbits.size());
+  std::mutex lock;
+  std::size_t done = 0;
+  parallel_for(orbits.size(), threads, [&](std::size_t i) {
+    if (monitor.is_cancelled())
+      return;
+    PassSearch search{request.altitude_min, request.sun_altitude_max, request.shadow, {}};
+    if (const PassLight *light = models.of(orbits[i].norad_cat_id()))
+      search.on_pass = [&, light](SitePass &pass, std::span<const ObservingGeometry> samples) {
+        return light->describe(orbits[i], request.site, request.shadow, models.band(), samples,
+                               pass);
+      };
+    out[i] = find_passes(orbits[i], request.site, request.start, request.stop, search);
+    const std::scoped_lock guard(lock);
+    monitor.advance("objects", ++done, orbits.size());
+  });
+  return out;
+}
+
+struct Tally {
+  std::size_t searched = 0, failed = 0;
+};
+
+/// Passes of all objects by the time of rise; warnings for the first objects that failed.
+Tally gather(const PassesRequest &request, std::vector<Found> &&all, PassesResult &out,
+             Diagnostics &diagnostics) {
+  constexpr std::size_t told_max = 10;
+  Tally tally;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!all[i])
+      continue;
+    ++tally.searched;
+    if (!*all[i]) {
+      if (tally.failed++ < told_max)
+        diagnostics.warn(all[i]->error().message);
+      continue;
+    }
+    for (SitePass &pass : **all[i])
+      if (!request.is_visible_only || pass.visible_s > 0)
+        out.found.push_back({i, std::move(pass)});
+  }
+  if (tally.failed > told_max)
+    diagnostics.warn(fmt::format("{} more objects failed", tally.failed - told_max));
+  std::ranges::stable_sort(out.found, [](const ObjectPass &a, const ObjectPass &b) {
+    return seconds_between(a.pass.rise.time, b.pass.rise.time) < 0;
+  });
+  return tally;
+}
+
+} // namespace
+
+Result<PassesResult> passes(const PassesRequest &request, const JobOptions &options,
+                            const Monitor &monitor, Diagnostics &diagnostics) {
+  if (seconds_between(request.stop, request.start) < 0)
+    return fail(ErrorCode::Usage, "--stop lies before --start");
+  PassesResult out;
+  UMOV_ASSIGN(orbits, read_orbits(request, options, diagnostics));
+  out.orbits = std::move(orbits);
+  warn_if_beyond_leap_seconds(request.stop, diagnostics);
+  warn_if_outside_eop(request.start, request.stop, diagnostics);
+  UMOV_ASSIGN(models, PassModels::make(request.model, diagnostics));
+  out.model = models.description();
+  const Tally tally = gather(
+      request, search_all(request, out.orbits, models, options.threads, monitor), out, diagnostics);
+  if (tally.searched < out.orbits.size())
+    out.stopped = Error{ErrorCode::Interrupted,
+                        fmt::format("stopped by the user after {} of {} objects", tally.searched,
+                                    out.orbits.size()),
+                        {}};
+  else if (tally.failed == out.orbits.size())
+    return fail(ErrorCode::Physics, "the orbit of every object ends within the span",
+                {request.orbit});
+  else if (out.found.empty())
+    return fail(ErrorCode::Nothing, fmt::format("no {}pass above {:g} deg in this span",
+                                                request.is_visible_only ? "visible " : "",
+                                                request.altitude_min.degrees()));
+  return out;
+}
+
+} // namespace umov::jobs

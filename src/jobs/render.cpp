@@ -1,0 +1,213 @@
+#include <umov/jobs/render.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+#include <umov/core/version.h>
+#include <umov/io/exr.h>
+#include <umov/io/png.h>
+#include <umov/io/report_frames.h>
+
+namespace umov::jobs {
+namespace {
+
+using Shade = RenderRequest::Shade;
+
+/// One picture to take: the mesh may have turned parts.
+struct Shot {
+  KeyFrameView view;
+  std::vector<double> joint_angles_rad;
+  std::string when; ///< UTC, "" without an orbit
+};
+
+/// What is rendered, read and checked.
+struct Subject {
+  LoadedObject object;
+  std::vector<std::size_t> bands; ///< in the order of the channels
+  std::vector<Shot> shots;
+};
+
+/// Which epochs of a light curve are shown: of the first pass with light, or the one time.
+std::vector<std::size_t> epochs_to_show(const RenderRequest &request, const LightCurve &curve) {
+  if (request.time && !curve.epochs.empty())
+    return {0};
+  std::vector<std::size_t> out = choose_key_epochs(curve, request.frames);
+  std::erase_if(out, [&, first = out.empty() ? 0 : out.front()](std::size_t i) {
+    return curve.epochs[i].pass_id != curve.epochs[first].pass_id;
+  });
+  return out;
+}
+
+/// Epochs of the scenario's orbit, celestial north up.
+Result<std::vector<Shot>> shots_from_orbit(const RenderRequest &request, const Scenario &scenario,
+                                           const LoadedObject &object, const JobOptions &options,
+                                           const Monitor &monitor) {
+  UMOV_TRY(check_complete_for_run(scenario));
+  LightCurveRequest wanted =
+      light_curve_request(scenario, scenario.objects[request.object], object, options);
+  wanted.earthshine.reset();
+  wanted.has_moonlight = false;
+  // Enough to find the brightest moment; the pictures do not use it.
+  wanted.light.accuracy = 0.05;
+  wanted.light.max_points = 1u << 14;
+  wanted.light.bounces = 1;
+  if (request.time) {
+    wanted.span.start = wanted.span.stop = *request.time;
+    wanted.only = {Angle::degrees(-90), {}, false};
+  }
+  const std::atomic<bool> never{false};
+  UMOV_ASSIGN(outcome, compute_light_curve(
+                           wanted, object.scene, [](std::size_t, std::size_t) {},
+                           monitor.cancel != nullptr ? *monitor.cancel : never));
+  if (outcome.stopped)
+    return tl::unexpected(*outcome.stopped);
+  std::vector<Shot> out;
+  for (const std::size_t i : epochs_to_show(request, outcome.curve)) {
+    const LightCurveEpoch &at = outcome.curve.epochs[i];
+    out.push_back({{at.pose, celestial_north(at)}, at.joint_angles_rad, to_iso(at.geometry.time)});
+  }
+  if (out.empty())
+    return fail(ErrorCode::Nothing, "nothing to show: no lit epoch in the span of [time]. Give "
+                                    "--time, or --sun and --observer.");
+  return out;
+}
+
+/// Which bands are traced, in the order in which the file takes them.
+Result<std::vector<std::size_t>> bands_of(const RenderRequest &request, std::size_t band,
+                                          std::size_t count) {
+  if (request.is_exr) {
+    std::vector<std::size_t> all(count);
+    for (std::size_t b = 0; b < count; ++b)
+      all[b] = b;
+    return all;
+  }
+  if (request.shade != Shade::Colour)
+    return std::vector<std::size_t>{band};
+  if (count != 3)
+    return fail(
+        ErrorCode::Usage,
+        fmt::format("--shade colour takes three bands, blue to red; the scene has {}", count));
+  return std::vector<std::size_t>{2, 1, 0};
+}
+
+Result<void> check(const RenderRequest &request, const Scenario &scenario) {
+  if (request.is_exr && request.frames > 1)
+    return fail(ErrorCode::Usage, "--frames makes an animated .png; an .exr holds one picture");
+  if (request.object >= scenario.objects.size())
+    return fail(ErrorCode::Usage,
+                fmt::format("--object {}: the scenario has {}", request.object + 1,
+                            counted(scenario.objects.size(), "object")));
+  if (request.view && (request.frames > 1 || request.time))
+    return fail(ErrorCode::Usage, "--time and --frames need a scenario with an orbit; leave --sun "
+                                  "and --observer out");
+  if (request.view && norm(cross(request.view->up, request.view->pose.observer)) < 1e-6)
+    return fail(ErrorCode::Usage, "--up lies along the line of sight; give another direction");
+  return {};
+}
+
+KeyFrameShading shading_of(Shade shade) {
+  switch (shade) {
+  case Shade::Polarization:
+    return KeyFrameShading::Polarization;
+  case Shade::PositionAngle:
+    return KeyFrameShading::PositionAngle;
+  case Shade::Material:
+    return KeyFrameShading::Material;
+  case Shade::Intensity:
+  case Shade::Colour: // has its own way
+    break;
+  }
+  return KeyFrameShading::Intensity;
+}
+
+using Rasters = std::vector<KeyFrameRaster>; ///< of one shot, a band each
+
+/// 8-bit pictures, one exposure for all.
+Result<std::string> png_of(const RenderRequest &request, const std::vector<Rasters> &all) {
+  Rasters flat;
+  for (const Rasters &rasters : all)
+    flat.insert(flat.end(), rasters.begin(), rasters.end());
+  const double white = common_exposure(flat);
+  std::vector<std::vector<std::uint8_t>> frames;
+  for (const Rasters &rasters : all) {
+    if (request.shade == Shade::Colour) {
+      UMOV_ASSIGN(rgb, shade_colour(rasters, white));
+      frames.push_back(std::move(rgb));
+    } else {
+      frames.push_back(shade(rasters.front(), shading_of(request.shade), white));
+    }
+  }
+  return frames.size() == 1
+             ? encode_png(request.side, request.side, frames.front())
+             : encode_animation(request.side, request.side, frames, request.frames_per_s);
+}
+
+Result<std::string> exr_of(const RenderRequest &request, const std::vector<Band> &bands,
+                           const Shot &shot, const Rasters &rasters, std::size_t bounces) {
+  std::vector<PictureChannel> channels;
+  for (std::size_t b = 0; b < rasters.size(); ++b)
+    for (PictureChannel &channel : stokes_channels(rasters[b], bands[b].name + "."))
+      channels.push_back(std::move(channel));
+  const std::vector<std::pair<std::string, std::string>> notes{
+      {"umov_version", version},
+      {"POLCCONV", "IAU"},
+      {"frame", shot.when.empty()
+                    ? "+Q along the picture's up, +U 45 deg from it to the left"
+                    : "+Q north-south, +U north-east to south-west; north up, east left"},
+      {"unit",
+       fmt::format("1/sr: radiance per unit solar irradiance, light that touched up to {}; A: "
+                   "covered share",
+                   counted(bounces, "surface"))},
+      {"width_m", shortest(2 * rasters.front().half_width_m)},
+      {"time_utc", shot.when}};
+  return encode_exr(request.side, request.side, channels, notes);
+}
+
+/// Of each shot the rasters of its bands.
+Result<std::vector<Rasters>> trace(const RenderRequest &request, const Scenario &scenario,
+                                   const Subject &subject, const KeyFrameOptions &how,
+                                   const Monitor &monitor) {
+  const KeyFrameStage stage(subject.object.scene, joints_of(scenario.objects[request.object].parts),
+                            how.bounces);
+  std::vector<Rasters> out;
+  for (const Shot &shot : subject.shots) {
+    if (monitor.is_cancelled())
+      return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+    UMOV_ASSIGN(rasters, stage.trace(shot.view, shot.joint_angles_rad, how, subject.bands));
+    out.push_back(std::move(rasters));
+    monitor.advance("pictures", out.size(), subject.shots.size());
+  }
+  return out;
+}
+
+} // namespace
+
+Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
+                        const JobOptions &options, const Monitor &monitor,
+                        Diagnostics &diagnostics) {
+  UMOV_TRY(check(request, scenario));
+  UMOV_ASSIGN(object,
+              load_object(scenario, request.object,
+                          {options.allow_bad_checksum, options.allow_old_elements}, diagnostics));
+  const std::vector<Band> &bands = object.scene.bands;
+  UMOV_ASSIGN(band, band_index(request.band, bands));
+  UMOV_ASSIGN(traced, bands_of(request, band, bands.size()));
+  Subject subject{std::move(object), std::move(traced), {}};
+  if (request.view) {
+    subject.shots.push_back({*request.view, {}, {}});
+  } else {
+    UMOV_ASSIGN(shots, shots_from_orbit(request, scenario, subject.object, options, monitor));
+    subject.shots = std::move(shots);
+  }
+  const KeyFrameOptions how{request.side,         request.samples, band,
+                            request.half_width_m, options.threads, scenario.light.bounces,
+                            request.paths,        scenario.seed};
+  UMOV_ASSIGN(all, trace(request, scenario, subject, how, monitor));
+  UMOV_ASSIGN(bytes, request.is_exr ? exr_of(request, subject.object.scene.bands,
+                                             subject.shots.front(), all.front(), how.bounces)
+                                    : png_of(request, all));
+  return Rendered{std::move(bytes), all.size(), 2 * all.front().front().half_width_m,
+                  subject.shots.front().when, subject.shots.back().when};
+}
+
+} // namespace umov::jobs
