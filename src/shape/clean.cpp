@@ -81,7 +81,7 @@ void warn_count(Diagnostics &diagnostics, const std::string &file, std::size_t c
 
 } // namespace
 
-Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file) {
+Result<Mesh> clean_mesh(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file) {
   UMOV_TRY(check_numbers(mesh));
   const auto welded = weld(mesh, weld_distance(mesh));
   std::vector<bool> skip(mesh.triangles.size());

@@ -135,7 +135,7 @@ private:
 /// Checks what a law says on its own: finite numbers, axes of a length, `point` and `then` not
 /// parallel within 1e-9 rad, unit quaternion within 1e-6, a finite rate, an inertia that a rigid
 /// body can have, pieces in order of time. BadInput otherwise.
-Result<void> check(const AttitudeLaw &law);
+Result<void> check_attitude(const AttitudeLaw &law);
 
 /// True if some law within wants the inertia of the mesh.
 bool needs_mesh(const AttitudeLaw &law);

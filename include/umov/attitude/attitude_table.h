@@ -37,7 +37,7 @@ struct AttitudeTable {
 };
 
 /// BadInput unless states are in order of time, finite and at least two per segment.
-Result<void> check(const AttitudeTable &table);
+Result<void> check_attitude_table(const AttitudeTable &table);
 
 /// Bound on the rate of turning [rad/s]: twice the largest mean rate between neighbours, and the
 /// spins' own.

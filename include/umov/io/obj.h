@@ -28,7 +28,7 @@ struct ObjText {
   std::string obj, mtl;
 };
 /// The mesh in metres, +Z up; `name` is the stem of the files. Two-sided faces become two opposite
-/// ones, which `clean` joins again. Reading it gives the same numbers, bit for bit.
+/// ones, which `clean_mesh` joins again. Reading it gives the same numbers, bit for bit.
 ObjText write_obj(const Mesh &mesh, const std::string &name, MtlUse mtl = MtlUse::Named);
 
 } // namespace umov

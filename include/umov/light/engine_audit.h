@@ -26,7 +26,7 @@ struct EngineErrors {
   std::vector<EngineOutlier> outliers; ///< the five worst, the worst first
 };
 
-EngineErrors compare(const StokesTable &fast, const std::vector<PoseResult> &reference,
-                     std::size_t band);
+EngineErrors compare_with_reference(const StokesTable &fast,
+                                    const std::vector<PoseResult> &reference, std::size_t band);
 
 } // namespace umov

@@ -58,7 +58,7 @@ Result<double> value_at(const Tabulated &table, Wavelength wavelength, const std
 
 /// Increasing wavelengths that are plausible in nm, as many values, n > 0, k >= 0, a formula that
 /// is known with as many coefficients as it takes. BadInput says what was found and how to mend it.
-Result<void> check(const IndexTable &table);
-Result<void> check(const Tabulated &table, const std::string &what);
+Result<void> check_index(const IndexTable &table);
+Result<void> check_tabulated(const Tabulated &table, const std::string &what);
 
 } // namespace umov

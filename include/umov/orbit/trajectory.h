@@ -44,14 +44,14 @@ struct OrbitEphemeris {
 
 /// BadInput unless every segment has at least two states of finite numbers in order of time and a
 /// usable span within them.
-Result<void> check(const OrbitEphemeris &ephemeris);
+Result<void> check_ephemeris(const OrbitEphemeris &ephemeris);
 
 /// An orbit that can be asked at any time it covers. Cheap to copy, thread safe.
 class Trajectory {
 public:
   Trajectory() = default; ///< none: nothing may be asked of it
   explicit Trajectory(const ElementSet &elements);
-  /// `ephemeris` has passed `check`.
+  /// `ephemeris` has passed `check_ephemeris`.
   explicit Trajectory(OrbitEphemeris ephemeris);
 
   [[nodiscard]] const std::string &name() const;

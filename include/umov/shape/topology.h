@@ -30,7 +30,7 @@ MeshReport inspect(const Mesh &mesh);
 /// Drops zero-area triangles and exact duplicates, merges coincident faces of opposite winding into
 /// one two-sided face (front and back groups from the two); each with a counted warning.
 /// BadInput if a coordinate is not finite, an index is out of range or nothing is left.
-Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file = {});
+Result<Mesh> clean_mesh(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file = {});
 
 /// The mesh with all groups of one name and one `kind` (a number per group; none: all alike) made
 /// one, which keeps the node of the first.

@@ -18,6 +18,6 @@ struct SurfaceAudit {
 };
 
 /// `geometries` uniform pairs of directions from the stream of `seed`, per band.
-SurfaceAudit audit(const Surface &surface, std::uint64_t geometries, std::uint64_t seed);
+SurfaceAudit audit_surface(const Surface &surface, std::uint64_t geometries, std::uint64_t seed);
 
 } // namespace umov
