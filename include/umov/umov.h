@@ -110,3 +110,8 @@
 #include <umov/time/span.h>
 #include <umov/time/time_system.h>
 // clang-format on
+
+/// Light of satellites, from mesh, material, orbit and attitude to Stokes vectors over time.
+namespace umov {}
+/// Whole jobs: what the commands do, for any program.
+namespace umov::jobs {}
