@@ -27,6 +27,7 @@ struct CelestialDirection {
 struct GroundTarget {
   Site site;
 };
+/// Anything that an axis can be pointed at.
 using Direction = std::variant<Target, CelestialDirection, GroundTarget>;
 
 /// Turns about the body's own axes after a law has been obeyed: yaw about +Z first, then pitch
@@ -124,6 +125,7 @@ public:
   /// towards the Earth's centre; the orbit normal is position x velocity.
   [[nodiscard]] Result<Rotation<Body, Gcrs>> at(const AttitudeContext &now) const;
 
+  /// How fast it can turn, at any time.
   [[nodiscard]] AttitudeRates rates() const;
 
   class Model;

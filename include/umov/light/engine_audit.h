@@ -26,6 +26,7 @@ struct EngineErrors {
   std::vector<EngineOutlier> outliers; ///< the five worst, the worst first
 };
 
+/// Errors of a fast table against the reference of the same poses, in one band.
 EngineErrors compare_with_reference(const StokesTable &fast,
                                     const std::vector<PoseResult> &reference, std::size_t band);
 

@@ -9,6 +9,7 @@
 
 namespace umov {
 
+/// Normals of the triangles, or of the vertices in between.
 enum class NormalMode { Flat, Smooth };
 
 /// One object ready to be lit: a cleaned mesh, a compiled surface for each mesh group and the

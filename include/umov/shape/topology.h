@@ -10,6 +10,7 @@
 
 namespace umov {
 
+/// What was found out about a mesh.
 struct MeshReport {
   Vec3<Body> lower{}, upper{};       ///< bounding box [m]
   std::vector<double> group_area_m2; ///< one-sided area of each group
