@@ -20,11 +20,25 @@ endif()
 
 function(umov_module name)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  # Flags, and header-only libraries that no public header includes: needed to build umov, not to
+  # use it.
+  set(private $<BUILD_INTERFACE:umov_flags>)
+  foreach(library IN LISTS arg_PRIVATE)
+    if(library MATCHES "^(Boost::boost|Eigen3::Eigen|nlohmann_json::nlohmann_json)$")
+      set(library $<BUILD_INTERFACE:${library}>)
+    endif()
+    list(APPEND private ${library})
+  endforeach()
   add_library(umov_${name} STATIC ${arg_SOURCES})
   add_library(umov::${name} ALIAS umov_${name})
-  target_include_directories(umov_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include
-                             PRIVATE ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(umov_${name} PUBLIC ${arg_PUBLIC} PRIVATE umov_flags ${arg_PRIVATE})
+  set_target_properties(umov_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY UMOV_MODULES ${name})
+  target_compile_features(umov_${name} PUBLIC cxx_std_20)
+  target_include_directories(
+    umov_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(umov_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${private})
 endfunction()
 
 function(umov_tests name)

@@ -33,7 +33,7 @@ Result<void> check_materials(const CheckOptions &o, const Common &common) {
   parallel_for(names.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
     const auto surface = Surface::compile(materials[i], bands_for(materials[i]));
     if (surface)
-      found[i] = audit(*surface, o.geometries, o.seed);
+      found[i] = audit_surface(*surface, o.geometries, o.seed);
     else
       failures[i] = surface.error();
   });

@@ -102,7 +102,7 @@ Result<void> describe_file(const ReadOptions &options, const Common &common, boo
   Mesh mesh = with_joined_groups(read.mesh);
   const MeshReport raw = inspect(mesh);
   if (check) { // what is left when a scene is made of it
-    UMOV_ASSIGN(cleaned, clean(mesh, diagnostics, options.file));
+    UMOV_ASSIGN(cleaned, clean_mesh(mesh, diagnostics, options.file));
     mesh = std::move(cleaned);
   }
   MeshReport found = inspect(mesh, false);

@@ -103,7 +103,7 @@ Rotation<Body, Gcrs> between_spins(const AttitudeState &a, const AttitudeState &
 
 } // namespace
 
-Result<void> check(const AttitudeTable &table) {
+Result<void> check_attitude_table(const AttitudeTable &table) {
   const auto refuse = [](const std::string &text) { return fail(ErrorCode::BadInput, text); };
   if (table.segments.empty())
     return refuse("the attitude table has no segment");

@@ -88,7 +88,7 @@ Result<void> check_law(const TumbleLaw &law) {
 
 Result<void> check_law(const TableLaw &law) {
   if (law.table)
-    UMOV_TRY(umov::check(*law.table));
+    UMOV_TRY(check_attitude_table(*law.table));
   return {};
 }
 
@@ -96,7 +96,7 @@ Result<void> check_law(const PiecewiseLaw &law) {
   if (law.pieces.empty())
     return fail(ErrorCode::BadInput, "an attitude of pieces has none");
   for (std::size_t k = 0; k < law.pieces.size(); ++k) {
-    UMOV_TRY(umov::check(*law.pieces[k].law));
+    UMOV_TRY(check_attitude(*law.pieces[k].law));
     if (k > 0 && !(seconds_between(law.pieces[k].from, law.pieces[k - 1].from) > 0))
       return fail(ErrorCode::BadInput,
                   fmt::format("the piece from {} follows that from {}, expected a later time",
@@ -106,7 +106,7 @@ Result<void> check_law(const PiecewiseLaw &law) {
 }
 
 Result<void> check_law(const LibrationLaw &law) {
-  UMOV_TRY(umov::check(*law.law));
+  UMOV_TRY(check_attitude(*law.law));
   if (!(law.rms_rad >= 0 && law.rms_rad <= 0.5))
     return fail(ErrorCode::BadInput, "the libration is " +
                                          degrees_text(Angle::radians(law.rms_rad)) +
@@ -119,7 +119,7 @@ Result<void> check_law(const LibrationLaw &law) {
 
 } // namespace
 
-Result<void> check(const AttitudeLaw &law) {
+Result<void> check_attitude(const AttitudeLaw &law) {
   return std::visit([](const auto &one) { return check_law(one); }, law);
 }
 

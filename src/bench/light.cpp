@@ -117,7 +117,7 @@ public:
       }
       StokesTable table;
       engine_->evaluate(few, table, 0);
-      out.errors = compare(table, reference_, one.bands / 2);
+      out.errors = compare_with_reference(table, reference_, one.bands / 2);
       out.has_errors = true;
     }
     restrict_engine("best");

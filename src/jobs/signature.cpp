@@ -86,6 +86,18 @@ std::size_t block_of(const LightFacts &facts, std::size_t bounces) {
   return facts.method == LightMethod::Auto ? 4096 : 1u << 17;
 }
 
+/// What the request says goes over what the scenario says.
+LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &request,
+                             const Stokes<ScatteringPlane> &source, const JobOptions &options) {
+  LightOptions out = light_options(scenario, options);
+  out.method = request.method.value_or(out.method);
+  out.accuracy = request.accuracy.value_or(out.accuracy);
+  out.seed = request.seed.value_or(scenario.seed);
+  out.source = source;
+  out.mask_file = request.mask_file;
+  return out;
+}
+
 } // namespace
 
 Result<void> signature(const Scenario &scenario, const PoseList &poses,
@@ -97,12 +109,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_ASSIGN(
       object,
       load_object(scenario, 0, {.allow_old_elements = true, .source_is_sun = is_sun}, diagnostics));
-  LightOptions light = light_options(scenario, options);
-  light.method = request.method.value_or(light.method);
-  light.accuracy = request.accuracy.value_or(light.accuracy);
-  light.seed = request.seed.value_or(scenario.seed);
-  light.source = source;
-  light.mask_file = request.mask_file;
+  const LightOptions light = light_asked_for(scenario, request, source, options);
   std::error_code unknown;
   const bool has_file = std::filesystem::exists(request.mask_file, unknown);
   monitor.tell("preparing the scene ...");

@@ -71,7 +71,9 @@ Result<PassLight> PassLight::of_sphere(double radius_m, const Material &material
     const double phase = Angle::degrees(phase_step_deg * static_cast<double>(k)).radians();
     poses.push_back({{std::cos(phase), std::sin(phase), 0}, {1, 0, 0}, sun_radius_at_1au_rad});
   }
-  UMOV_ASSIGN(light, make_light(scene, {}, {.method = LightMethod::Rays}));
+  LightOptions options;
+  options.method = LightMethod::Rays;
+  UMOV_ASSIGN(light, make_light(scene, {}, options));
   StokesTable table;
   (void)light->evaluate(poses, table);
   for (std::size_t k = 0; k < phase_steps; ++k)

@@ -18,8 +18,8 @@ struct EpochGeometry {
 };
 
 EpochGeometry geometry_at(const Track &track, Epoch<Utc> time) {
-  auto geometry = track.observe(time);
-  return geometry ? EpochGeometry{true, std::move(*geometry)} : EpochGeometry{};
+  const auto geometry = track.observe(time);
+  return geometry ? EpochGeometry{true, *geometry} : EpochGeometry{};
 }
 
 bool is_above(const EpochGeometry &epoch, const EpochFilter &only) {

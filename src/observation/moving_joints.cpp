@@ -23,6 +23,7 @@ double angle_in(const AngleTable &table, Epoch<Utc> time) {
 
 std::vector<Joint> joints_of(const std::vector<MovingJoint> &moving) {
   std::vector<Joint> out;
+  out.reserve(moving.size());
   for (const MovingJoint &one : moving)
     out.push_back(one.joint);
   return out;

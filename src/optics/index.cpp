@@ -148,7 +148,7 @@ Result<std::complex<double>> index_at(const IndexTable &table, Wavelength wavele
   return std::complex<double>(n, interpolate(table.k, nm));
 }
 
-Result<void> check(const Tabulated &table, const std::string &what) {
+Result<void> check_tabulated(const Tabulated &table, const std::string &what) {
   const auto &nm = table.wavelength_nm;
   if (table.value.empty() ||
       (nm.empty() ? table.value.size() != 1 : nm.size() != table.value.size()))
@@ -200,17 +200,17 @@ Result<void> check_formula(const DispersionFormula &formula) {
 
 } // namespace
 
-Result<void> check(const IndexTable &table) {
+Result<void> check_index(const IndexTable &table) {
   if (const auto *formula = std::get_if<DispersionFormula>(&table.n)) {
     UMOV_TRY(check_formula(*formula));
   } else {
     const auto &n = std::get<Tabulated>(table.n);
-    UMOV_TRY(check(n, "n"));
+    UMOV_TRY(check_tabulated(n, "n"));
     for (const double value : n.value)
       if (!(value > 0))
         return problem(fmt::format("n = {:g}; a positive number was expected", value));
   }
-  UMOV_TRY(check(table.k, "k"));
+  UMOV_TRY(check_tabulated(table.k, "k"));
   for (const double value : table.k.value)
     if (!(value >= 0))
       return problem(

@@ -78,7 +78,7 @@ tl::unexpected<Error> sgp4_failure(const ElementSet &set, Epoch<Utc> time, Sgp4C
 
 } // namespace
 
-Result<void> check(const OrbitEphemeris &ephemeris) {
+Result<void> check_ephemeris(const OrbitEphemeris &ephemeris) {
   if (ephemeris.segments.empty())
     return fail(ErrorCode::BadInput, "the ephemeris has no segment");
   for (const EphemerisSegment &segment : ephemeris.segments) {

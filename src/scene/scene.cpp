@@ -58,7 +58,7 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
                             front.size(), back.size(), mesh.groups.size()));
   if (bands.empty())
     return fail(ErrorCode::BadInput, "the scene has no band; name at least one, such as nm:550");
-  UMOV_ASSIGN(cleaned, clean(mesh, diagnostics, file));
+  UMOV_ASSIGN(cleaned, clean_mesh(mesh, diagnostics, file));
   Scene scene;
   scene.mesh = std::move(cleaned);
   scene.normals = normals;

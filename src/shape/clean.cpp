@@ -70,7 +70,7 @@ void warn_of_rest(const Mesh &mesh, const Coincidence &found, Diagnostics &diagn
 
 } // namespace
 
-Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file) {
+Result<Mesh> clean_mesh(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file) {
   UMOV_TRY(check_numbers(mesh));
   const auto welded = weld(mesh, weld_distance(mesh));
   std::vector<bool> skip(mesh.triangles.size());

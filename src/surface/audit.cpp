@@ -61,7 +61,7 @@ bool SurfaceAudit::is_fine() const {
          (!promises_energy || energy_gap <= 1e-3);
 }
 
-SurfaceAudit audit(const Surface &surface, std::uint64_t geometries, std::uint64_t seed) {
+SurfaceAudit audit_surface(const Surface &surface, std::uint64_t geometries, std::uint64_t seed) {
   SurfaceAudit out;
   const Material &material = surface.material();
   out.promises_energy = !material.measured && surface.has_diffuse();

@@ -22,7 +22,8 @@ Result<void> named(const Material &material, const Result<void> &done, const std
 Result<void> check_body(const Material &material) {
   if (!material.body)
     return {};
-  UMOV_TRY(named(material, check(material.body->reflectance, "the body reflectance"), ""));
+  UMOV_TRY(
+      named(material, check_tabulated(material.body->reflectance, "the body reflectance"), ""));
   for (const double r : material.body->reflectance.value)
     if (!(r >= 0 && r <= 1))
       return problem(material, fmt::format("body reflectance {}; 0 to 1 was expected", r));
@@ -31,7 +32,7 @@ Result<void> check_body(const Material &material) {
 
 Result<void> check_layers(const Material &material) {
   for (const Layer &layer : material.layers) {
-    UMOV_TRY(named(material, check(layer.index), "layer " + layer.index.name));
+    UMOV_TRY(named(material, check_index(layer.index), "layer " + layer.index.name));
     if (!(layer.thickness_nm >= 0 && layer.thickness_nm <= 1e9))
       return problem(material, fmt::format("layer {}: thickness {:g} nm; 0 to 1e9 was expected",
                                            layer.index.name, layer.thickness_nm));
@@ -67,10 +68,10 @@ void narrow(WavelengthRange &range, WavelengthRange by) {
 
 } // namespace
 
-Result<void> check(const Material &material) {
+Result<void> check_material(const Material &material) {
   if (material.measured)
     return {};
-  UMOV_TRY(named(material, check(material.index), ""));
+  UMOV_TRY(named(material, check_index(material.index), ""));
   UMOV_TRY(check_layers(material));
   const auto normals = make_distribution(material.distribution);
   if (!normals)

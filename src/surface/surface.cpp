@@ -77,7 +77,7 @@ FacetReflectance reflectance_of(const Interface &interface) {
 } // namespace
 
 Result<Surface> Surface::compile(const Material &material, const std::vector<Band> &bands) {
-  UMOV_TRY(check(material));
+  UMOV_TRY(check_material(material));
   auto tables = std::make_shared<Tables>();
   tables->material = material;
   if (material.measured) {

@@ -27,6 +27,7 @@ struct CelestialDirection {
 struct GroundTarget {
   Site site;
 };
+/// Anything that an axis can be pointed at.
 using Direction = std::variant<Target, CelestialDirection, GroundTarget>;
 
 /// Turns about the body's own axes after a law has been obeyed: yaw about +Z first, then pitch
@@ -124,6 +125,7 @@ public:
   /// towards the Earth's centre; the orbit normal is position x velocity.
   [[nodiscard]] Result<Rotation<Body, Gcrs>> at(const AttitudeContext &now) const;
 
+  /// How fast it can turn, at any time.
   [[nodiscard]] AttitudeRates rates() const;
 
   class Model;
@@ -135,7 +137,7 @@ private:
 /// Checks what a law says on its own: finite numbers, axes of a length, `point` and `then` not
 /// parallel within 1e-9 rad, unit quaternion within 1e-6, a finite rate, an inertia that a rigid
 /// body can have, pieces in order of time. BadInput otherwise.
-Result<void> check(const AttitudeLaw &law);
+Result<void> check_attitude(const AttitudeLaw &law);
 
 /// True if some law within wants the inertia of the mesh.
 bool needs_mesh(const AttitudeLaw &law);

@@ -16,6 +16,7 @@ struct SpinState {
   double right_ascension_rad = 0, declination_rad = 0, angle_rad = 0, rate_rad_s = 0;
 };
 
+/// One line of a table of attitudes.
 struct AttitudeState {
   Epoch<Utc> time{};
   Quaternion body_from_gcrs;
@@ -31,13 +32,14 @@ struct AttitudeSegment {
   std::vector<AttitudeState> states;
 };
 
+/// Attitudes of an object in pieces that need not meet.
 struct AttitudeTable {
   std::string name; ///< for messages
   std::vector<AttitudeSegment> segments;
 };
 
 /// BadInput unless states are in order of time, finite and at least two per segment.
-Result<void> check(const AttitudeTable &table);
+Result<void> check_attitude_table(const AttitudeTable &table);
 
 /// Bound on the rate of turning [rad/s]: twice the largest mean rate between neighbours, and the
 /// spins' own.

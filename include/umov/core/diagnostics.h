@@ -11,6 +11,7 @@ struct Warning {
   Where where;
   std::string message;
 
+  /// Place and message in one line.
   [[nodiscard]] std::string text() const { return to_text(where) + message; }
 };
 
@@ -20,6 +21,7 @@ class Diagnostics {
 public:
   static constexpr std::size_t most = 1000;
 
+  /// Adds a warning.
   void warn(std::string message, Where where = {}) {
     if (warnings_.size() > most)
       return;
@@ -29,7 +31,9 @@ public:
     }
     warnings_.push_back({std::move(where), std::move(message)});
   }
+  /// All warnings so far, in order.
   [[nodiscard]] const std::vector<Warning> &warnings() const { return warnings_; }
+  /// There was no warning.
   [[nodiscard]] bool empty() const { return warnings_.empty(); }
 
 private:

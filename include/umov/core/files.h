@@ -30,15 +30,18 @@ public:
   FileInProgress &operator=(FileInProgress &&other) noexcept;
   ~FileInProgress();
 
+  /// Appends bytes. Device if they cannot be written.
   Result<void> write(std::string_view bytes);
   /// For a library that makes and fills the file by its name: where it goes. No `write` then.
   /// Device where a pipe or a device stands.
   static Result<FileInProgress> for_library(const std::filesystem::path &path);
+  /// Name of the file while it grows.
   [[nodiscard]] const std::filesystem::path &temporary() const { return temporary_; }
   /// Where it will stand, behind all links.
   [[nodiscard]] const std::filesystem::path &path() const { return path_; }
   /// Flushes to disk and renames to `path`, or to another name in the same folder.
   Result<void> commit();
+  /// As `commit`, under another name in the same folder.
   Result<void> commit_as(const std::filesystem::path &path);
 
 private:

@@ -11,9 +11,13 @@ inline constexpr double pi = std::numbers::pi;
 class Angle {
 public:
   constexpr Angle() = default;
+  /// From radians.
   static constexpr Angle radians(double value) { return Angle(value); }
+  /// From degrees.
   static constexpr Angle degrees(double value) { return Angle(value * (pi / 180)); }
+  /// In radians.
   [[nodiscard]] constexpr double radians() const { return value_; }
+  /// In degrees.
   [[nodiscard]] constexpr double degrees() const { return value_ * (180 / pi); }
 
 private:
@@ -25,8 +29,11 @@ private:
 class Wavelength {
 public:
   constexpr Wavelength() = default;
+  /// From nanometres.
   static constexpr Wavelength nm(double value) { return Wavelength(value); }
+  /// In nanometres.
   [[nodiscard]] constexpr double nm() const { return value_; }
+  /// In metres.
   [[nodiscard]] constexpr double metres() const { return value_ * 1e-9; }
 
 private:

@@ -30,6 +30,7 @@ struct Where {
 /// "file:line:column: " as far as known, else "".
 std::string to_text(const Where &where);
 
+/// What went wrong: its kind, a sentence for the user, and the place in an input.
 struct Error {
   ErrorCode code = ErrorCode::Internal;
   std::string message; ///< what was found, what was expected, what to do
@@ -42,8 +43,11 @@ struct Error {
 /// A failure where no Result can be returned: in a constructor.
 class Failure : public std::exception {
 public:
+  /// Wraps an error.
   explicit Failure(Error error) : error_(std::move(error)), text_(error_.text()) {}
+  /// The error itself.
   [[nodiscard]] const Error &error() const noexcept { return error_; }
+  /// The error's text.
   [[nodiscard]] const char *what() const noexcept override { return text_.c_str(); }
 
 private:
@@ -51,6 +55,7 @@ private:
   std::string text_;
 };
 
+/// A value, or the error that stands in its place.
 template <class T> using Result = tl::expected<T, Error>;
 
 /// Shorthand for returning a failure: `return fail(ErrorCode::BadInput, "...", {file, line, col});`

@@ -18,16 +18,19 @@ public:
   /// Rows: the axes of `To` expressed in `From`.
   constexpr Rotation(Vec3<From> x, Vec3<From> y, Vec3<From> z) : rows_{x, y, z} {}
 
+  /// Components in `To` of a vector given in `From`.
   constexpr Vec3<To> operator*(Vec3<From> v) const {
     return {dot(rows_[0], v), dot(rows_[1], v), dot(rows_[2], v)};
   }
   /// Axis i of `To`, in `From` components.
   [[nodiscard]] constexpr Vec3<From> row(int i) const { return rows_[static_cast<std::size_t>(i)]; }
+  /// The way back: the transposed matrix.
   [[nodiscard]] constexpr Rotation<From, To> inverse() const {
     const auto &r = rows_;
     return {Vec3<To>{r[0].x, r[1].x, r[2].x}, Vec3<To>{r[0].y, r[1].y, r[2].y},
             Vec3<To>{r[0].z, r[1].z, r[2].z}};
   }
+  /// First the right one, then this one; frames in the middle must meet.
   template <class Start>
   constexpr Rotation<To, Start> operator*(const Rotation<From, Start> &first) const {
     const auto t = first.inverse(); // rows of t: axes of From seen from Start, transposed
@@ -54,6 +57,7 @@ template <class To, class From> constexpr Rotation<To, From> rotation_from(Quate
 
 /// Quaternion of a rotation, with w >= 0 (Shepperd 1978: the largest component first).
 Quaternion quaternion_from_rows(const std::array<std::array<double, 3>, 3> &rows);
+/// Quaternion of a rotation, with w >= 0.
 template <class To, class From> Quaternion quaternion_from(const Rotation<To, From> &r) {
   std::array<std::array<double, 3>, 3> rows{};
   for (int i = 0; i < 3; ++i)

@@ -13,6 +13,7 @@ struct Enu {};   ///< east, north, up at a site
 struct Body {};  ///< fixed in the object
 struct Facet {}; ///< fixed in a surface element, z along its normal
 
+/// Components of a vector along the axes of a frame.
 template <class Frame> struct Vec3 {
   double x = 0, y = 0, z = 0;
 
@@ -25,13 +26,17 @@ template <class Frame> struct Vec3 {
   friend constexpr bool operator==(Vec3 a, Vec3 b) {
     return a.x == b.x && a.y == b.y && a.z == b.z;
   }
+  /// Adds a vector of the same frame.
   constexpr Vec3 &operator+=(Vec3 b) { return *this = *this + b; }
+  /// Subtracts a vector of the same frame.
   constexpr Vec3 &operator-=(Vec3 b) { return *this = *this - b; }
 };
 
+/// Scalar product.
 template <class F> constexpr double dot(Vec3<F> a, Vec3<F> b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
+/// Vector product, right-handed.
 template <class F> constexpr Vec3<F> cross(Vec3<F> a, Vec3<F> b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

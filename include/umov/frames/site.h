@@ -17,6 +17,7 @@ struct Site {
 /// Checks ranges: |latitude| <= 90 deg, |longitude| <= 360 deg, altitude -500 m .. 100 km.
 Result<Site> make_site(std::string name, double latitude_deg, double longitude_deg,
                        double altitude_m);
+/// Earth-fixed position of a site [km].
 Vec3<Itrs> itrs_position_km(const Site &site);
 /// Axes east, north and up of the ellipsoid's normal.
 Rotation<Enu, Itrs> enu_from_itrs(const Site &site);

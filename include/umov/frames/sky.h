@@ -6,12 +6,14 @@
 
 namespace umov {
 
+/// A direction among the stars, GCRS axes.
 struct SkyDirection {
   Angle right_ascension; ///< [0, 360) deg
   Angle declination;
 };
 /// Of a non-zero vector.
 SkyDirection sky_direction(Vec3<Gcrs> v);
+/// Unit vector towards a direction.
 Vec3<Gcrs> unit_vector(SkyDirection direction);
 
 /// Position angle [0, 180) deg of the axis `s` as seen by the observer, from `north` through east.

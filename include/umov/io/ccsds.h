@@ -26,6 +26,7 @@ struct Record {
   std::size_t line = 0;
 };
 
+/// One segment of a message: its metadata, then its data.
 struct Segment {
   std::vector<Field> metadata;
   std::vector<Record> data;
@@ -34,6 +35,7 @@ struct Segment {
 enum class Kind { Opm, Oem, Aem, Tdm };
 enum class Form { Kvn, Xml };
 
+/// A CCSDS navigation message as it was read, field by field.
 struct Message {
   Kind kind = Kind::Oem;
   std::string version, file;

@@ -9,6 +9,7 @@
 
 namespace umov {
 
+/// Forms of a file of mean elements.
 enum class ElementsForm { Tle, OmmKvn, OmmXml, OmmJson, OmmCsv };
 
 /// By content, never by name: TLE is what nothing else is.

@@ -13,6 +13,7 @@ namespace umov {
 /// formula 1 to 9; wavelengths in um). BadInput with file and line for an unknown type or formula,
 /// wavelengths that are not increasing or look like nm, k < 0, n <= 0.
 Result<IndexTable> read_index_text(const std::string &text, const std::string &file);
+/// The same from a file.
 Result<IndexTable> read_index_file(const std::filesystem::path &path);
 
 /// Names of the compiled-in tables (stems of data/nk, and paper_au and so on), sorted.

@@ -19,6 +19,7 @@ Result<MeasuredBrdf> read_measured_file(const std::filesystem::path &path, bool 
 struct NormalsTable {
   std::vector<double> angle_deg, density;
 };
+/// Reads such a table. BadInput with the line of what is wrong.
 Result<NormalsTable> read_normals_file(const std::filesystem::path &path);
 
 } // namespace umov

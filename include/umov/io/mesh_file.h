@@ -11,6 +11,7 @@
 
 namespace umov {
 
+/// What a file of a mesh does not say about itself.
 struct MeshFileOptions {
   std::string unit;                      ///< m, cm, mm, km, in, ft: what one unit of the file is
   std::string up;                        ///< "+X" to "-Z": the file's axis that becomes body +Z
@@ -25,6 +26,7 @@ struct MeshNode {
   friend bool operator==(const MeshNode &, const MeshNode &) = default;
 };
 
+/// A mesh and what its file told besides.
 struct MeshFile {
   Mesh mesh;                        ///< metres, body axes; groups in order of first use
   std::string format;               ///< "OBJ", "STL", "PLY", "glTF" or the name of another one

@@ -7,6 +7,7 @@
 
 namespace umov {
 
+/// One line, or set of points, of a figure.
 struct PlotLine {
   std::string name;
   std::vector<double> x, y;   ///< NaN breaks the line
@@ -16,6 +17,7 @@ struct PlotLine {
   bool has_markers = false;             ///< points without a line
   std::vector<double> z = {};           ///< of a figure in space
 };
+/// One figure: its axes and lines.
 struct PlotFigure {
   std::string title, x_title, y_title;
   std::vector<PlotLine> lines;

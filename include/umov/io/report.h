@@ -18,6 +18,7 @@ struct PureMaterialCurve {
   std::vector<double> phase_deg, q_scat;
 };
 
+/// A picture of a key frame and what it shows.
 struct ReportPicture {
   std::string label; ///< "brightness"
   std::string png;   ///< bytes of the file
@@ -40,6 +41,7 @@ struct SkyTrackPoint {
   double sunlit = 1;
 };
 
+/// All that the report shows.
 struct ReportInput {
   const LightCurve &curve;
   std::string title;

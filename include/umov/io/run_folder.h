@@ -19,6 +19,7 @@ public:
   /// Refuses (Device) what it must not or cannot write to, before any work is done.
   static Result<RunFolder> open(const std::filesystem::path &target, bool force);
 
+  /// A file of the folder, written at the end with all others.
   void add(std::string name, std::string bytes) { files_[std::move(name)] = std::move(bytes); }
   /// For the rows of a run that stopped early: what stands in the target stays there, unless it is
   /// the rest of such a run itself; the files then go to "<target>.partial".
@@ -26,6 +27,7 @@ public:
   /// Writes everything. On failure the target is as it was. What the user put into the folder while
   /// the run went on stays in it; if it is no longer umov's, the files go to "<target>.new".
   Result<void> commit();
+  /// Where the folder will stand.
   [[nodiscard]] const std::filesystem::path &path() const { return target_; }
 
 private:

@@ -15,6 +15,7 @@
 
 namespace umov {
 
+/// [time]: the span and which of its epochs are kept.
 struct ScenarioTime {
   Epoch<Utc> start{}, stop{};
   double step_s = 1;
@@ -28,6 +29,7 @@ struct ScenarioOrbit {
   std::optional<StateVector> state;
 };
 
+/// The mesh of an object, as its file has it.
 struct ScenarioMesh {
   std::filesystem::path file;
   std::string unit, up;
@@ -75,6 +77,7 @@ struct Scenario {
 /// counts as a string). BadInput names file, line and column, what was read, what was expected.
 Result<Scenario> read_scenario(const std::filesystem::path &path,
                                const std::vector<std::string> &overrides);
+/// The same from a text that stands for the file `path`.
 Result<Scenario> read_scenario_text(const std::string &text, const std::filesystem::path &path,
                                     const std::vector<std::string> &overrides);
 
@@ -100,6 +103,7 @@ struct InputFile {
   std::string path, sha256;
 };
 
+/// An object of a scenario with all its files read.
 struct LoadedObject {
   std::optional<Trajectory> orbit; ///< absent for a scene
   AttitudeLaw attitude;            ///< complete: tables read, inertia taken from the mesh
@@ -107,6 +111,7 @@ struct LoadedObject {
   std::vector<InputFile> inputs;
 };
 
+/// What is tolerated in inputs.
 struct LoadOptions {
   bool allow_bad_checksum = false, allow_old_elements = false;
   bool source_is_sun = true; ///< false: a laser, for which a mirror is no matter of the disk

@@ -10,6 +10,7 @@
 
 namespace umov {
 
+/// A picture with its caption.
 struct StoryPicture {
   std::string caption, png; ///< bytes of the file
 };
@@ -20,6 +21,7 @@ struct StoryTable {
   std::vector<std::vector<std::string>> rows;
 };
 
+/// One claim or figure of the story.
 struct StorySection {
   std::string id, title;
   std::string verdict;            ///< "agrees", "partly", "differs" or "shown": colours its badge
@@ -32,6 +34,7 @@ struct StorySection {
   std::vector<std::string> files; ///< beside the page
 };
 
+/// The whole page.
 struct Story {
   std::string title;
   std::vector<std::string> introduction;

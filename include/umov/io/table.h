@@ -15,6 +15,7 @@ namespace umov {
 using Cells = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>,
                            std::vector<bool>>;
 
+/// A named column with its unit.
 struct Column {
   std::string name;
   std::string unit;        ///< as astropy spells it ("W / (m2 nm)"); "" = dimensionless
@@ -33,8 +34,11 @@ public:
   /// Adds one line of the header ("object" -> "HST").
   void note(std::string key, std::string value);
 
+  /// Number of rows.
   [[nodiscard]] std::size_t rows() const { return rows_; }
+  /// All columns, in order.
   [[nodiscard]] const std::vector<Column> &columns() const { return columns_; }
+  /// Lines of the header, in order.
   [[nodiscard]] const std::vector<std::pair<std::string, std::string>> &notes() const {
     return notes_;
   }
@@ -61,6 +65,7 @@ std::string to_csv(const Table &table);
 Result<std::string> to_fits(const Table &table);
 /// Its two parts: everything above the rows, and rows [begin, end).
 std::string csv_header(const Table &table);
+/// Rows [begin, end) of the CSV, appended to `out`.
 void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std::string &out);
 /// An array of objects; NaN is null.
 std::string to_json(const Table &table);

@@ -21,6 +21,7 @@ public:
 
   /// Rows with the same columns in the same order.
   Result<void> append(const Table &rows);
+  /// Puts the complete file in place. Device if that fails.
   Result<void> commit();
   /// Under the name "stem.partial.suffix", for what was stopped early; a note says so where the
   /// format has room for it after the rows (FITS: the header). Returns the name.

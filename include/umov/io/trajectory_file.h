@@ -17,6 +17,7 @@ Result<OrbitEphemeris> ephemeris_from_oem(const ccsds::Message &message);
 /// refused: an orbit across one is not built.
 Result<StateVector> state_from_opm(const ccsds::Message &message);
 
+/// Which object of a file, over which span, and what is tolerated.
 struct TrajectoryRequest {
   int norad = 0; ///< 0: the only object of the file
   Epoch<Utc> first{}, last{};

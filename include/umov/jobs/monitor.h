@@ -18,14 +18,17 @@ struct Monitor {
   /// Set to true from any thread to have the job stop soon, with what is complete kept.
   const std::atomic<bool> *cancel = nullptr;
 
+  /// A line of the log, if anybody listens.
   void tell(const std::string &text) const {
     if (remark)
       remark(text);
   }
+  /// Progress, if anybody listens.
   void advance(const std::string &what, std::size_t done, std::size_t total) const {
     if (progress)
       progress(what, done, total);
   }
+  /// The job is to stop soon.
   [[nodiscard]] bool is_cancelled() const { return cancel != nullptr && *cancel; }
 };
 

@@ -8,6 +8,7 @@
 
 namespace umov::jobs {
 
+/// How a job runs, apart from what its scenario says.
 struct JobOptions {
   unsigned threads = 0;             ///< 0: all cores; the bytes do not depend on it
   std::filesystem::path mask_cache; ///< folder of masks of earlier jobs; empty: none are kept

@@ -17,6 +17,7 @@ struct ObjectRun {
   LightFacts light; ///< how it was lit
 };
 
+/// What a run computed.
 struct RunResult {
   std::vector<ObjectRun> objects; ///< those with rows
   std::optional<Error> stopped;   ///< Physics or Interrupted: rows before it are complete

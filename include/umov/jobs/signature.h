@@ -28,7 +28,9 @@ Result<PoseList> random_poses(std::size_t per_phase, const std::vector<double> &
 /// with a row per band, gives its poses back.
 Result<PoseList> poses_from_file(const std::string &path);
 
+/// What lights the object, and how well.
 struct SignatureRequest {
+  /// What the light comes from.
   enum class Source { Sun, Laser, Thermal };
   Source source = Source::Sun;
   /// Laser: Stokes of the incoming light per unit irradiance, in the scattering frame.

@@ -13,6 +13,7 @@ namespace umov {
 
 /// What one column of the sums is.
 struct AbundanceColumn {
+  /// What is summed.
   enum class Kind {
     Specular, ///< sum of area D G2/4 over lit and seen facets [m2/sr], of one microfacet lobe
     Diffuse   ///< sum of area (n.l)(n.v) p(n.l) p'(n.v) [m2], of two profiles of the body light
@@ -35,6 +36,7 @@ struct AbundanceTable {
   std::vector<double> cos_phase; ///< per pose
   std::vector<char> has_plane;   ///< per pose: there is a scattering plane, and so a Q
   std::vector<char> is_dark;     ///< per pose: nothing is both lit and seen
+  /// Number of poses.
   [[nodiscard]] std::size_t poses() const { return cos_phase.size(); }
 };
 
@@ -46,12 +48,14 @@ public:
   /// resized. The same bits as Engine::evaluate gives for the engine's own materials, but for
   /// rounding.
   void apply(const AbundanceTable &from, StokesTable &out, unsigned threads = 1) const;
+  /// Bands of the materials.
   [[nodiscard]] std::size_t band_count() const;
   /// Largest relative error of the diffuse light from sums made for other materials; it is in the
   /// half-widths.
   [[nodiscard]] double diffuse_error() const;
 
   struct State;
+  /// For Engine::tables_for, which makes them.
   explicit MaterialTables(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 
 private:

@@ -28,6 +28,7 @@ public:
   [[nodiscard]] bool evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
                               StokesTable &out, const LightTask &task,
                               std::span<const std::uint32_t> material_of = {}) const;
+  /// Memory of the masks of all parts.
   [[nodiscard]] std::size_t mask_bytes() const;
   /// As Engine::keep_masks, for each part.
   void keep_masks() const;

@@ -38,6 +38,7 @@ inline constexpr MaskQuality fine_masks{240'000, 96, 128, 0.01};
 /// The masks for a wanted typical error of I, and rays for poses twenty times worse.
 MaskQuality masks_for(double accuracy);
 
+/// How a fast engine is prepared.
 struct EngineOptions {
   Visibility visibility = Visibility::Masks; ///< a proven convex mesh takes None by itself
   MaskQuality masks = fast_masks;
@@ -76,6 +77,7 @@ struct EngineFacts {
 /// bits for any number of threads and any split of the poses.
 class Engine {
 public:
+  /// Compiles a scene and traces its masks.
   Engine(const Scene &scene, const EngineOptions &options);
   /// The same with masks that `save_masks` has written for this very mesh, material groups and
   /// quality. BadInput if the file is none, is damaged or was made for something else.
@@ -111,7 +113,9 @@ public:
   /// see MaterialTables::diffuse_error.
   [[nodiscard]] Result<MaterialTables> tables_for(const Scene &materials) const;
 
+  /// What was prepared.
   [[nodiscard]] const EngineFacts &facts() const;
+  /// Bands of the scene.
   [[nodiscard]] std::size_t band_count() const;
 
 private:

@@ -26,7 +26,8 @@ struct EngineErrors {
   std::vector<EngineOutlier> outliers; ///< the five worst, the worst first
 };
 
-EngineErrors compare(const StokesTable &fast, const std::vector<PoseResult> &reference,
-                     std::size_t band);
+/// Errors of a fast table against the reference of the same poses, in one band.
+EngineErrors compare_with_reference(const StokesTable &fast,
+                                    const std::vector<PoseResult> &reference, std::size_t band);
 
 } // namespace umov

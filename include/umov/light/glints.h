@@ -28,6 +28,7 @@ struct GlintView {
 /// The view at seconds from some origin.
 using GlintPath = std::function<Result<GlintView>(double seconds)>;
 
+/// A stretch of time in which a flat mirrors the Sun to the observer.
 struct Glint {
   double seconds = 0;   ///< when normal and half vector are nearest
   double miss_rad = 0;  ///< their angle then

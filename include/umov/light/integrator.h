@@ -13,6 +13,7 @@
 
 namespace umov {
 
+/// How well a pose is to be known.
 struct IntegrationOptions {
   double accuracy = 0.005; ///< wanted relative 95 % half-width of I
   std::uint64_t seed = 0;  ///< of the point sets; the result depends on it within the error only
@@ -27,6 +28,7 @@ struct IntegrationOptions {
   std::size_t bounces = 1;
 };
 
+/// Light of one pose in all bands.
 struct PoseResult {
   std::vector<BandResult> bands;
   bool is_dark = true;        ///< nothing is both lit and seen: I = 0, q and u undefined
@@ -54,11 +56,13 @@ class ThermalEmission;
 /// the number of threads and whatever was computed before.
 class Integrator {
 public:
+  /// Compiles a scene.
   explicit Integrator(const Scene &scene);
   ~Integrator();
   Integrator(Integrator &&) noexcept;
   Integrator &operator=(Integrator &&) noexcept;
 
+  /// One pose.
   [[nodiscard]] PoseResult evaluate(const Pose &pose, const IntegrationOptions &options) const;
   /// All poses, on up to `threads` threads. With bounces > 1, poses that follow each other closely
   /// share their paths: a series costs less than its poses one by one, which agree within their
@@ -88,6 +92,7 @@ public:
   indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
                     const IntegrationOptions &options, std::size_t paths,
                     std::uint64_t first) const;
+  /// Nothing of the body can hide anything else of it.
   [[nodiscard]] bool is_convex() const;
 
 private:

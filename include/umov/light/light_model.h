@@ -27,6 +27,7 @@ enum class LightMethod : std::uint8_t {
        ///< first, whole poses last
 };
 
+/// How an object is to be lit.
 struct LightOptions {
   LightMethod method = LightMethod::Auto;
   double accuracy = 0.005; ///< wanted relative 95 % half-width of I
@@ -78,8 +79,11 @@ public:
   [[nodiscard]] bool evaluate(std::span<const Pose> poses, StokesTable &out,
                               const LightTask &task = {}) const;
 
+  /// What is lit.
   [[nodiscard]] const Scene &scene() const { return scene_; }
+  /// Its parts that turn.
   [[nodiscard]] const std::vector<Joint> &joints() const { return joints_; }
+  /// What was made ready.
   [[nodiscard]] const LightFacts &facts() const { return facts_; }
   /// Names that material_i counts: fronts in the order of the mesh groups, then backs.
   [[nodiscard]] const std::vector<std::string> &materials() const { return materials_; }
@@ -90,6 +94,7 @@ public:
   [[nodiscard]] virtual std::size_t mask_bytes() const { return 0; }
 
 protected:
+  /// For the models that `make_light` chooses from.
   LightModel(const Scene &scene, std::vector<Joint> joints);
   LightFacts facts_;
 

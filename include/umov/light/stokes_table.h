@@ -37,9 +37,13 @@ struct StokesTable {
   std::vector<Stokes<ScatteringPlane>> indirect; ///< of more than one surface, part of I, Q, U, V
   std::vector<double> glint_share; ///< per pose: of direct I in band 0 from flats within their lobe
   std::vector<double> material_i;  ///< [(pose * materials + material) * bands + band], direct light
+  /// Makes room for poses and bands; optional columns stay empty.
   void resize(std::size_t poses, std::size_t band_count);
+  /// Number of poses.
   [[nodiscard]] std::size_t poses() const { return is_dark.size(); }
+  /// One pose in one band.
   [[nodiscard]] BandResult at(std::size_t pose, std::size_t band) const;
+  /// Sets one pose in one band.
   void put(std::size_t pose, std::size_t band, const BandResult &result);
 };
 

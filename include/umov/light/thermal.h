@@ -23,6 +23,7 @@ public:
   struct Radiance {
     double i = 0, q = 0;
   };
+  /// Of one side of a mesh group in a band, at its temperature.
   [[nodiscard]] Radiance radiance(std::uint32_t group, bool is_front, std::size_t band,
                                   double cosine) const;
 

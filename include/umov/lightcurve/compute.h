@@ -13,6 +13,7 @@ namespace umov {
 /// Axes that q, u and pa refer to.
 enum class PolarizationFrame { Equatorial, AltAz, Scattering };
 
+/// What a light curve is asked of.
 struct LightCurveRequest {
   std::string object;
   TrackRequest track;
@@ -28,6 +29,7 @@ struct LightCurveRequest {
   unsigned threads = 0;
 };
 
+/// A light curve, its passes, and why it ended early if it did.
 struct LightCurveOutcome {
   LightCurve curve;
   std::vector<Pass> passes;     ///< those with at least one kept epoch

@@ -47,6 +47,7 @@ struct SecondLight {
   std::vector<double> irradiance;           ///< I at the observer [W m-2 nm-1]
 };
 
+/// Epochs, and the light of each in every band.
 struct LightCurve {
   std::string object;
   std::size_t bounces = 1; ///< surfaces that the light may have touched

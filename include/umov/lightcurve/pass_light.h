@@ -27,6 +27,7 @@ public:
   Result<void> describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
                         std::size_t band, std::span<const ObservingGeometry> samples,
                         SitePass &pass) const;
+  /// Bands that `describe` can be asked for.
   [[nodiscard]] const std::vector<Band> &bands() const;
 
 private:

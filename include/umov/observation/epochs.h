@@ -24,6 +24,7 @@ struct Pass {
   std::size_t rows = 0;                                  ///< epochs kept by the filter
 };
 
+/// A stretch of time in even steps.
 struct EpochSpan {
   Epoch<Utc> start{}, stop{};
   double step_s = 1; ///< > 0; `stop` is included and may equal `start`
@@ -52,6 +53,7 @@ struct NextPass {
   Epoch<Utc> first_row{};
   Angle altitude_max;
 };
+/// Looks for it as told above.
 std::optional<NextPass> find_next_pass(const Track &track, const EpochFilter &only, Epoch<Utc> from,
                                        double days);
 

@@ -11,6 +11,7 @@
 
 namespace umov {
 
+/// Everything that says where an object is and how it is turned.
 struct TrackRequest {
   Trajectory orbit;
   Site site;
@@ -43,12 +44,14 @@ public:
   [[nodiscard]] Result<ObservingGeometry> observe(Epoch<Utc> time) const;
   /// Physics where the attitude or a joint cannot be had.
   [[nodiscard]] Result<TrackPoint> place(const ObservingGeometry &geometry) const;
+  /// Both at once: `place` of `observe`.
   [[nodiscard]] Result<TrackPoint> at(Epoch<Utc> time) const;
 
   /// Largest rate at which the half vector between Sun and observer moves in the body [rad/s]: how
   /// fast the body can turn by itself, and how fast orbit and Earth turn the view (measured between
   /// neighbouring samples, with a margin of two).
   [[nodiscard]] double half_vector_rate(std::span<const ObservingGeometry> samples) const;
+  /// What the track was made from.
   [[nodiscard]] const TrackRequest &request() const { return *request_; }
 
 private:

@@ -38,6 +38,7 @@ struct IndexTable {
   bool operator==(const IndexTable &) const = default;
 };
 
+/// An index that is the same at every wavelength.
 IndexTable constant_index(std::complex<double> eta);
 /// n and k at the same wavelengths.
 IndexTable tabulated_index(std::string name, std::vector<double> wavelength_nm,
@@ -47,6 +48,7 @@ IndexTable tabulated_index(std::string name, std::vector<double> wavelength_nm,
 struct WavelengthRange {
   double first_nm = 0, last_nm = 0;
 };
+/// The range of a table.
 WavelengthRange range_of(const IndexTable &table);
 
 /// eta at a wavelength; BadInput outside the table (no extrapolation) and where a formula has no
@@ -58,7 +60,8 @@ Result<double> value_at(const Tabulated &table, Wavelength wavelength, const std
 
 /// Increasing wavelengths that are plausible in nm, as many values, n > 0, k >= 0, a formula that
 /// is known with as many coefficients as it takes. BadInput says what was found and how to mend it.
-Result<void> check(const IndexTable &table);
-Result<void> check(const Tabulated &table, const std::string &what);
+Result<void> check_index(const IndexTable &table);
+/// The wavelengths alone: increasing, and as many values; `what` names the table in messages.
+Result<void> check_tabulated(const Tabulated &table, const std::string &what);
 
 } // namespace umov

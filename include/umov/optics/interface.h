@@ -20,6 +20,7 @@ struct OpticalLayer {
 struct MuellerEntries {
   double a = 0, b = 0;
   std::complex<double> z;
+  /// All sixteen entries.
   [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> matrix() const;
 };
 
@@ -29,7 +30,9 @@ struct MuellerEntries {
 /// physically realisable. Directions of fields: docs/conventions.md.
 class Interface {
 public:
+  /// A bare boundary.
   explicit Interface(std::complex<double> substrate);
+  /// With layers, the first on top, at one wavelength.
   Interface(std::complex<double> substrate, std::vector<OpticalLayer> layers,
             Wavelength wavelength);
 
@@ -42,6 +45,7 @@ public:
   [[nodiscard]] double mean_reflectance() const;
   /// True where nothing is there: n = 1 and no layer.
   [[nodiscard]] bool is_void() const;
+  /// Index of the substrate.
   [[nodiscard]] std::complex<double> substrate() const { return substrate_; }
 
 private:
@@ -54,6 +58,7 @@ private:
 /// internal transmittance `tau` per pass. Clear (tau = 1): R = 2 R1/(1 + R1), T = (1 - R1)/(1 + R1)
 /// for each polarization.
 MuellerEntries slab_reflection(std::complex<double> eta, double cos_incidence, double tau);
+/// What passes through such a slab.
 MuellerEntries slab_transmission(std::complex<double> eta, double cos_incidence, double tau);
 
 } // namespace umov

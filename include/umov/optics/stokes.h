@@ -23,6 +23,7 @@ template <class Basis> struct Stokes {
   friend constexpr Stokes operator*(Stokes a, double k) {
     return {a.i * k, a.q * k, a.u * k, a.v * k};
   }
+  /// Adds light of the same basis, incoherently.
   constexpr Stokes &operator+=(Stokes b) { return *this = *this + b; }
 };
 

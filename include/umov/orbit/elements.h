@@ -28,6 +28,7 @@ struct ElementSet {
   std::size_t line = 0; ///< line of its first element line in the file
 };
 
+/// What is tolerated in a file of elements.
 struct TleOptions {
   bool allow_bad_checksum = false;
   bool keep_going = false;             ///< report a bad set as a warning and keep the others

@@ -40,6 +40,7 @@ struct SitePass {
   std::vector<PassGlint> glints; ///< in order
 };
 
+/// What counts as a pass.
 struct PassSearch {
   Angle altitude_min = Angle::degrees(10);
   Angle sun_altitude_max = Angle::degrees(-6); ///< of `visible_s`

@@ -7,6 +7,7 @@
 
 namespace umov {
 
+/// Position and velocity as SGP4 gives them.
 struct TemeState {
   Vec3<Teme> position_km;
   Vec3<Teme> velocity_km_s;
@@ -33,6 +34,7 @@ class Sgp4 {
 public:
   /// Initialises; the code tells whether the elements can be propagated at all.
   explicit Sgp4(const ElementSet &elements);
+  /// Ok if the elements can be propagated.
   [[nodiscard]] Sgp4Code init_code() const;
   /// State `minutes` after the epoch (UTC clock). On failure the state is zero.
   Sgp4Code propagate(double minutes, TemeState &state) const;
@@ -40,6 +42,7 @@ public:
   /// the other overload gives. The three spans have one length.
   void propagate(std::span<const double> minutes, std::span<TemeState> states,
                  std::span<Sgp4Code> codes) const;
+  /// Period of 225 min or more: SDP4, with Sun, Moon and resonances.
   [[nodiscard]] bool is_deep_space() const;
 
 private:

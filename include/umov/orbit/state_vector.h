@@ -5,6 +5,7 @@
 
 namespace umov {
 
+/// One state of an object, to integrate from.
 struct StateVector {
   std::string name, object_id;
   int norad_cat_id = 0;

@@ -17,6 +17,7 @@ namespace umov {
 
 /// Frame of an ephemeris. EME2000 is GCRS but for a bias of 0.02 arcsec, which is applied.
 enum class OrbitFrame : std::uint8_t { Gcrs, Eme2000, Teme, Itrs };
+/// What lies between two states.
 enum class Interpolation : std::uint8_t { Linear, Lagrange, Hermite };
 
 /// A state in the frame of its segment; in Itrs the velocity is relative to the turning Earth.
@@ -36,6 +37,7 @@ struct EphemerisSegment {
   std::vector<EphemerisState> states;
 };
 
+/// States of an object in segments that need not meet.
 struct OrbitEphemeris {
   std::string name, object_id; ///< international designator
   int norad_cat_id = 0;        ///< 0: not known
@@ -44,17 +46,20 @@ struct OrbitEphemeris {
 
 /// BadInput unless every segment has at least two states of finite numbers in order of time and a
 /// usable span within them.
-Result<void> check(const OrbitEphemeris &ephemeris);
+Result<void> check_ephemeris(const OrbitEphemeris &ephemeris);
 
 /// An orbit that can be asked at any time it covers. Cheap to copy, thread safe.
 class Trajectory {
 public:
   Trajectory() = default; ///< none: nothing may be asked of it
+  /// Propagated by SGP4.
   explicit Trajectory(const ElementSet &elements);
-  /// `ephemeris` has passed `check`.
+  /// `ephemeris` has passed `check_ephemeris`.
   explicit Trajectory(OrbitEphemeris ephemeris);
 
+  /// Name of the object, or "".
   [[nodiscard]] const std::string &name() const;
+  /// Catalogue number; 0 if it is not known.
   [[nodiscard]] int norad_cat_id() const;
   /// Catalogue number, or the designator of an object without one; begins names of passes.
   [[nodiscard]] std::string id() const;

@@ -18,6 +18,7 @@ struct PaperCheck {
   std::string what;
   double found = 0, expected = 0, tolerance = 0; ///< absolute
   std::string source;                            ///< of `expected`
+  /// What was found is within the tolerance of what was expected.
   [[nodiscard]] bool holds() const;
 };
 
@@ -46,6 +47,7 @@ struct PaperFigure {
   double seconds = 0;           ///< for these, after set-up
 };
 
+/// How the paper is remade.
 struct PaperOptions {
   unsigned threads = 0;
 };
@@ -59,6 +61,7 @@ class PaperWorkshop;
 /// Makes figures one after another.
 class Paper {
 public:
+  /// Nothing is computed before it is asked for.
   explicit Paper(const PaperOptions &options);
   ~Paper();
   /// One figure. Usage, with the nearest name, if there is none of that id.

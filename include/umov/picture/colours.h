@@ -20,9 +20,11 @@ std::string material_colour(std::size_t index);
 std::vector<std::string> polarization_scale();
 /// As material_colour, for lines on white: yellow, which would be lost there, is olive.
 std::string plot_colour(std::size_t index);
+/// As material_colour, in numbers.
 Rgb material_rgb(std::size_t index);
 /// The map of p, linear between its nine colours; p is clamped to 0..1.
 Rgb polarization_rgb(double p);
+/// Between two colours, linear in sRGB.
 Rgb mix(Rgb a, Rgb b, double share_of_b);
 
 } // namespace umov

@@ -23,6 +23,7 @@ struct KeyFrameView {
   Vec3<Body> up;
 };
 
+/// Which band, how fine, and how well lit.
 struct KeyFrameOptions {
   std::uint32_t size = 320;  ///< pixels per side, 1..4096
   std::uint32_t samples = 2; ///< rays per pixel and axis, 1..8
@@ -44,6 +45,7 @@ struct KeyFrameSample {
   float facing = 0;          ///< cosine of the shown normal to the observer, 0..1
 };
 
+/// The picture's pixels before any shading.
 struct KeyFrameRaster {
   std::uint32_t side = 0; ///< samples per side: size * samples
   std::uint32_t samples = 1;
@@ -55,6 +57,7 @@ struct KeyFrameRaster {
   std::vector<KeyFrameSample> points; ///< [row * side + column], rows from the top
 };
 
+/// What the colours of a picture tell.
 enum class KeyFrameShading { Intensity, Polarization, PositionAngle, Material };
 
 /// Casts the rays of one picture. BadInput for sizes out of range, a band that is not there or an

@@ -42,7 +42,9 @@ struct PartMotion {
   Rotation<Body, Body> turn;
   Vec3<Body> shift_m{};
 
+  /// Where a point goes.
   [[nodiscard]] Vec3<Body> place(Vec3<Body> p) const { return turn * p + shift_m; }
+  /// The motion back.
   [[nodiscard]] PartMotion inverse() const {
     const Rotation<Body, Body> back = turn.inverse();
     return {back, back * (-1 * shift_m)};

@@ -9,6 +9,7 @@
 
 namespace umov {
 
+/// Normals of the triangles, or of the vertices in between.
 enum class NormalMode { Flat, Smooth };
 
 /// One object ready to be lit: a cleaned mesh, a compiled surface for each mesh group and the
@@ -52,8 +53,8 @@ struct VisibleSides {
 /// are joined if their coordinates agree within 1e-6 of the size. A part must not cut itself.
 std::vector<VisibleSides> visible_sides(const Mesh &mesh);
 
-/// The surface of one side of a triangle. Where two opposite faces were merged into one (its back is of
-/// another group), the back shows the front surface of the other face.
+/// The surface of one side of a triangle. Where two opposite faces were merged into one (its back
+/// is of another group), the back shows the front surface of the other face.
 inline const Surface &surface_of_side(const Scene &scene, const Triangle &t, bool is_front) {
   if (is_front)
     return scene.front[t.front];

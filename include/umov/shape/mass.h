@@ -16,6 +16,7 @@ struct Inertia {
 /// Shell: even mass per area of the triangles. Solid: even density inside a closed mesh.
 enum class MassModel { Shell, Solid };
 
+/// Inertia, centre and size of a body of even density.
 struct MassProperties {
   Inertia inertia; ///< per unit mass [m2], about the centre of mass
   Vec3<Body> center{};
@@ -33,6 +34,7 @@ struct PrincipalAxes {
   std::array<double, 3> moment{};
   std::array<Vec3<Body>, 3> axis{};
 };
+/// The axes about which a body turns evenly. BadInput for an inertia that none can have.
 Result<PrincipalAxes> principal_axes(const Inertia &inertia);
 
 } // namespace umov

@@ -11,6 +11,7 @@ namespace umov {
 
 inline constexpr std::uint32_t no_index = 0xFFFFFFFF;
 
+/// Three corners and the group that they belong to.
 struct Triangle {
   std::array<std::uint32_t, 3> vertex{}; ///< into Mesh::positions, counter-clockwise from outside
   std::array<std::uint32_t, 3> normal{no_index, no_index, no_index}; ///< into Mesh::normals

@@ -23,7 +23,9 @@ public:
   struct Point {
     float x, y, z;
   };
+  /// A point of the body in the occluder's own coordinates.
   [[nodiscard]] Point to_point(Vec3<Body> p) const;
+  /// And back.
   [[nodiscard]] Vec3<Body> from_point(Point p) const;
   /// As above for one direction (unit) per origin.
   void is_free(std::span<const Point> origins, std::span<const Point> directions,
@@ -35,6 +37,7 @@ public:
     float u = 0, v = 0;
     double distance_m = 0;
   };
+  /// The first triangle along a ray, if there is one.
   [[nodiscard]] Hit nearest(Vec3<Body> origin, Vec3<Body> direction) const;
 
 private:

@@ -28,11 +28,13 @@ struct HstOptions {
   double door_angle_rad = 105 * 3.14159265358979323846 / 180; ///< 0: closed
   std::size_t sides = 48;
 };
+/// The telescope as its options say.
 Mesh make_hst(const HstOptions &options = {});
 /// Agena D upper stage from published overall dimensions; +z forward, z = 0 the nozzle exit.
 struct AgenaOptions {
   std::size_t sides = 48;
 };
+/// The stage as its options say.
 Mesh make_agena(const AgenaOptions &options = {});
 /// The benchmark's satellite: bus, two panels on yokes, dish (a shell), tower and tank, 4.2 m
 /// across, at least `facets` triangles, most of them dividing flat faces. Groups: bus, panels,
@@ -41,6 +43,7 @@ struct BoxWingOptions {
   std::size_t facets = 10'000;
   double crumple_m = 0; ///< height of the folds of the bus's foil; 0: flat faces
 };
+/// The satellite as its options say.
 Mesh make_box_wing(const BoxWingOptions &options = {});
 
 } // namespace umov

@@ -8,6 +8,7 @@
 
 namespace umov {
 
+/// A random rough surface: its size and statistics.
 struct RoughSurfaceOptions {
   std::size_t cells = 256;      ///< per side, each two triangles (256: 131,072)
   double cell_m = 1;            ///< side of a cell
@@ -22,9 +23,11 @@ struct HeightField {
   std::size_t cells = 0;
   double cell_m = 1;
   std::vector<double> height_m;
+  /// Height of a grid point; the surface repeats itself.
   [[nodiscard]] double at(std::size_t x, std::size_t y) const { // periodic
     return height_m[(y % cells) * cells + x % cells];
   }
+  /// Length of a side.
   [[nodiscard]] double side_m() const { return static_cast<double>(cells) * cell_m; }
 };
 

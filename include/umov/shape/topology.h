@@ -10,6 +10,7 @@
 
 namespace umov {
 
+/// What was found out about a mesh.
 struct MeshReport {
   Vec3<Body> lower{}, upper{};       ///< bounding box [m]
   std::vector<double> group_area_m2; ///< one-sided area of each group
@@ -34,7 +35,7 @@ MeshReport inspect(const Mesh &mesh, bool with_coincidence = true);
 /// triangles; each with a counted warning. Overlaps in one plane that are left because the outlines
 /// differ are named with their groups and area.
 /// BadInput if a coordinate is not finite, an index is out of range or nothing is left.
-Result<Mesh> clean(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file = {});
+Result<Mesh> clean_mesh(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file = {});
 
 /// The mesh with all groups of one name and one `kind` (a number per group; none: all alike) made
 /// one, which keeps the node of the first.

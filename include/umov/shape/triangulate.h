@@ -7,6 +7,7 @@
 
 namespace umov {
 
+/// Triangles of a polygon.
 struct Triangulation {
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< corners as indices into the polygon
   bool is_convex = true;

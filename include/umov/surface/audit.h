@@ -14,10 +14,11 @@ struct SurfaceAudit {
   double energy_gap = 0;        ///< |integral of the diffuse light - what the model promises|
   double polarization_max = 0;  ///< largest p of reflected sunlight
   bool promises_energy = false; ///< the model says what its diffuse lobes send out
+  /// All numbers are within what is wanted of them.
   [[nodiscard]] bool is_fine() const;
 };
 
 /// `geometries` uniform pairs of directions from the stream of `seed`, per band.
-SurfaceAudit audit(const Surface &surface, std::uint64_t geometries, std::uint64_t seed);
+SurfaceAudit audit_surface(const Surface &surface, std::uint64_t geometries, std::uint64_t seed);
 
 } // namespace umov

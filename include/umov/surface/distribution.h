@@ -20,6 +20,7 @@ struct DistributionChoice {
   std::string file = {};                  ///< where they come from
   bool operator==(const DistributionChoice &) const = default;
 };
+/// Blinn-Phong with exponent m.
 DistributionChoice blinn_phong(double m);
 
 /// A distribution that the facet kernels know (src/kernel/facet.inl.h), with its one number.

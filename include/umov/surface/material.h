@@ -69,7 +69,7 @@ struct Material {
 };
 
 /// Checks numbers and lists. BadInput says what was found and expected.
-Result<void> check(const Material &material);
+Result<void> check_material(const Material &material);
 
 /// "polarizes", "depolarizes" and how, in a few words, for `umov material list`.
 std::string describe_polarization(const Material &material);

@@ -48,8 +48,11 @@ public:
   [[nodiscard]] double floor_from_deg() const;
   /// Largest difference of f(i, o) and f(o, i) in the table, in parts of its largest value.
   [[nodiscard]] double worst_asymmetry() const { return asymmetry_; }
+  /// The table has whole Mueller matrices.
   [[nodiscard]] bool has_polarization() const { return has_polarization_; }
+  /// First wavelength of the table.
   [[nodiscard]] double first_nm() const { return axes_[0].front(); }
+  /// Last wavelength of the table.
   [[nodiscard]] double last_nm() const { return axes_[0].back(); }
 
 private:

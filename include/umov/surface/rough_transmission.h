@@ -16,6 +16,7 @@ struct RoughTransmission {
   double t_s = 0, t_p = 0; ///< power transmittances of the microfacet
   double cross = 0;        ///< sqrt(t_s t_p): both amplitudes are real between clear media
 };
+/// Light through a rough boundary in one direction.
 RoughTransmission rough_transmission(const Distribution &normals, Shadowing shadowing,
                                      Vec3<Facet> l, Vec3<Facet> v, double n_i, double n_o);
 

@@ -52,6 +52,7 @@ public:
   /// measured surfaces), for the incoming light `in` per unit irradiance.
   [[nodiscard]] Stokes<ScatteringPlane> diffuse(std::size_t band, const SurfaceDirections &at,
                                                 const Stokes<ScatteringPlane> &in) const;
+  /// There is any such light.
   [[nodiscard]] bool has_diffuse() const;
 
   /// Fresnel reflection of every contributing microfacet (incidence = half the phase angle).
@@ -66,6 +67,7 @@ public:
   struct Terms {
     double specular = 0, body = 0, interreflection = 0, measured = 0;
   };
+  /// The parts in a band, for unpolarized light.
   [[nodiscard]] Terms terms(std::size_t band, const SurfaceDirections &at) const;
 
   /// Directional albedo of the microfacet lobe alone, Fresnel included (R(k) of physics.md section
@@ -88,9 +90,11 @@ public:
   [[nodiscard]] double mirror_part(std::size_t band, double n_k) const;
   /// The microfacet lobe depends on the azimuth about the normal.
   [[nodiscard]] bool is_anisotropic() const;
+  /// What it was compiled from.
   [[nodiscard]] const Material &material() const;
   /// Both are copies of one compiled surface.
   [[nodiscard]] bool is_same(const Surface &other) const { return tables_ == other.tables_; }
+  /// Number of bands it was compiled for.
   [[nodiscard]] std::size_t band_count() const;
   /// Normals of the microfacet lobe of a band; null for a measured surface.
   [[nodiscard]] const Distribution *normals(std::size_t band) const;

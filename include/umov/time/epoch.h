@@ -24,10 +24,14 @@ Result<Epoch<Utc>> utc_from_iso(std::string_view text);
 std::string to_iso(Epoch<Utc> time, int digits = 3);
 /// With as many digits (3, 6 or 9) as it takes to read the same time back.
 std::string to_iso_exact(Epoch<Utc> time);
+/// Modified Julian date, UTC.
 double mjd(Epoch<Utc> time);
 
+/// UTC to TAI by the table of leap seconds.
 Epoch<Tai> tai_from(Epoch<Utc> time);
+/// TAI to UTC.
 Epoch<Utc> utc_from(Epoch<Tai> time);
+/// UTC to TT: TAI and 32.184 s.
 Epoch<Tt> tt_from(Epoch<Utc> time);
 /// `time` plus SI seconds (through TAI, so leap seconds count).
 Epoch<Utc> plus_seconds(Epoch<Utc> time, double seconds);
@@ -46,6 +50,7 @@ struct EarthOrientation {
   double x_p_rad = 0, y_p_rad = 0;
   bool is_covered = true; ///< false: outside the table; zeros, |UT1-UTC| < 0.9 s
 };
+/// Linear between the days of the table, the jump of a leap second apart.
 EarthOrientation earth_orientation(Epoch<Utc> time);
 
 /// Warns once if a span leaves the Earth orientation table, with the size of the error.

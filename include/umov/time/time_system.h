@@ -8,6 +8,7 @@
 
 namespace umov {
 
+/// Time scales that messages may name.
 enum class TimeSystem { Utc, Tai, Tt, Gps, Tdb, Ut1 };
 
 /// "UTC", "TAI", "TT" ("TDT"), "GPS", "TDB", "UT1"; empty for another.

@@ -43,7 +43,7 @@ TEST(AttitudeTable, EvenTurnsBetweenQuaternions) {
   }
   segment.first = start;
   segment.last = plus_seconds(start, 100);
-  ASSERT_TRUE(check(table));
+  ASSERT_TRUE(check_attitude_table(table));
   for (double t = 0; t <= 100; t += 1.7) {
     const auto exact = rotation_from<Body, Gcrs>(about({1, 2, -1}, 0.03 * t));
     segment.degree = 1;
@@ -57,7 +57,8 @@ TEST(AttitudeTable, EvenTurnsBetweenQuaternions) {
             std::string::npos)
       << outside.error().message;
   std::swap(segment.states[3], segment.states[4]);
-  EXPECT_NE(check(table).error().message.find("expected a later time"), std::string::npos);
+  EXPECT_NE(check_attitude_table(table).error().message.find("expected a later time"),
+            std::string::npos);
 }
 
 /// The spin example of CCSDS 504.0-B (figures of the Blue Book, ST5): -110 deg/s in steps of
@@ -98,15 +99,15 @@ TEST(AttitudeLaws, PiecesFollowEachOther) {
                 {plus_seconds(start, 20),
                  std::make_shared<AttitudeLaw>(
                      SpinLaw{InertialLaw{}, {0, 0, 1}, 0.1, plus_seconds(start, 20)})}};
-  ASSERT_TRUE(check(law));
+  ASSERT_TRUE(check_attitude(law));
   const auto ready = Attitude::make(law, context);
   ASSERT_TRUE(ready);
   EXPECT_EQ(ready->at(at(5)).error().code, ErrorCode::Physics);
   EXPECT_LT(norm(ready->at(at(12))->row(2) - Vec3<Gcrs>{-1, 0, 0}), 1e-15); // nadir
   EXPECT_LT(norm(ready->at(at(20 + 5 * pi))->row(0) - Vec3<Gcrs>{0, 1, 0}), 1e-6);
   std::swap(law.pieces[0], law.pieces[1]);
-  EXPECT_FALSE(check(law));
-  EXPECT_FALSE(check(PiecewiseLaw{}));
+  EXPECT_FALSE(check_attitude(law));
+  EXPECT_FALSE(check_attitude(PiecewiseLaw{}));
 }
 
 TEST(AttitudeLaws, LibrationHasItsSize) {
@@ -121,7 +122,7 @@ TEST(AttitudeLaws, LibrationHasItsSize) {
     sum += std::pow(0.5 * (r.row(0).y - r.row(1).x), 2);
   }
   EXPECT_NEAR(std::sqrt(sum / count), 0.01, 3e-4); // 1/sqrt of 1,200 periods
-  EXPECT_FALSE(check(LibrationLaw{law.law, 0.01, 0, 7}));
+  EXPECT_FALSE(check_attitude(LibrationLaw{law.law, 0.01, 0, 7}));
 }
 
 TEST(AttitudeLaws, AimsAtAPlaceOnTheEarth) {

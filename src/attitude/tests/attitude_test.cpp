@@ -222,9 +222,9 @@ TEST(Spin, StartsFromTheAttitudeFrozenAtTheEpoch) {
 // --- check -----------------------------------------------------------------------------------
 
 TEST(CheckLaw, AcceptsTheDefaults) {
-  EXPECT_TRUE(check(TwoAxisLaw{}).has_value());
-  EXPECT_TRUE(check(InertialLaw{}).has_value());
-  EXPECT_TRUE(check(quarter_per_second()).has_value());
+  EXPECT_TRUE(check_attitude(TwoAxisLaw{}).has_value());
+  EXPECT_TRUE(check_attitude(InertialLaw{}).has_value());
+  EXPECT_TRUE(check_attitude(quarter_per_second()).has_value());
 }
 
 TEST(CheckLaw, RefusesWithFoundExpectedAndHint) {
@@ -247,7 +247,7 @@ TEST(CheckLaw, RefusesWithFoundExpectedAndHint) {
       {no_axis, "\"axis\""},
       {endless, "spin rate"}};
   for (const auto &row : rows) {
-    const auto r = check(row.law);
+    const auto r = check_attitude(row.law);
     ASSERT_FALSE(r.has_value()) << row.piece;
     EXPECT_EQ(r.error().code, ErrorCode::BadInput);
     EXPECT_NE(r.error().message.find(row.piece), std::string::npos) << r.error().message;

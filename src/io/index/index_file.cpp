@@ -194,7 +194,7 @@ Result<IndexTable> read_index_text(const std::string &text, const std::string &f
                 {file, static_cast<std::size_t>(problem.mark.line + 1),
                  static_cast<std::size_t>(problem.mark.column + 1)});
   }
-  if (auto checked = check(out); !checked)
+  if (auto checked = check_index(out); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, {file});
   return out;
 }

@@ -331,7 +331,7 @@ Result<AttitudeLaw> read_attitude(const Node &node, const std::filesystem::path 
   };
   UMOV_ASSIGN(plain, read());
   UMOV_ASSIGN(law, with_libration(node, plain, seed));
-  if (auto checked = umov::check(law); !checked)
+  if (auto checked = check_attitude(law); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, node.where());
   return law;
 }

@@ -85,7 +85,7 @@ Result<void> load_attitude(const Named &of, const Mesh &mesh, Diagnostics &diagn
   if (!law)
     return fail(law.error().code, law.error().message,
                 law.error().where.file.empty() ? of.place("attitude") : law.error().where);
-  if (auto checked = umov::check(*law); !checked)
+  if (auto checked = check_attitude(*law); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("attitude"));
   out.attitude = *law;
   return {};

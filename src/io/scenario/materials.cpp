@@ -179,7 +179,7 @@ Result<Material> read_material_table(const Node &node, const std::string &name) 
   if (node.has("table"))
     return read_measured(node, out);
   UMOV_TRY(read_scattering(node, out));
-  if (auto checked = umov::check(out); !checked)
+  if (auto checked = check_material(out); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, node.where());
   return out;
 }

@@ -181,7 +181,7 @@ Result<AttitudeTable> read_attitude_table(std::string_view text, const std::stri
                                  "divided by it",
                                  worst),
                      {file});
-  if (const auto checked = check(out); !checked)
+  if (const auto checked = check_attitude_table(out); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, {file});
   return out;
 }

@@ -155,7 +155,7 @@ Result<OrbitEphemeris> ephemeris_from_oem(const Message &message) {
     UMOV_ASSIGN(one, segment_of(message, segment));
     out.segments.push_back(std::move(one));
   }
-  if (const auto checked = check(out); !checked)
+  if (const auto checked = check_ephemeris(out); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, {message.file});
   return out;
 }

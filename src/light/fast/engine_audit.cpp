@@ -15,8 +15,8 @@ double quantile(std::vector<double> &sorted, double share) {
 
 } // namespace
 
-EngineErrors compare(const StokesTable &fast, const std::vector<PoseResult> &reference,
-                     std::size_t band) {
+EngineErrors compare_with_reference(const StokesTable &fast,
+                                    const std::vector<PoseResult> &reference, std::size_t band) {
   EngineErrors out;
   std::vector<double> light;
   for (const PoseResult &r : reference)

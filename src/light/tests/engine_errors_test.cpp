@@ -17,7 +17,7 @@ EngineErrors errors_of(const Mesh &mesh, const std::vector<Material> &materials,
   const auto poses = random_poses(200, solar_radius);
   IntegrationOptions exact;
   exact.accuracy = 5e-4;
-  return compare(evaluated(engine, poses), integrator.evaluate(poses, exact, 0), 1);
+  return compare_with_reference(evaluated(engine, poses), integrator.evaluate(poses, exact, 0), 1);
 }
 
 void expect_fast(const EngineErrors &found, const char *name) {

@@ -60,7 +60,7 @@ TEST(Index, EndsWhereNOrKEnds) {
 
 TEST(Index, RefusesWhatIsNoTable) {
   const auto says = [](const IndexTable &table, const char *word) {
-    const auto done = check(table);
+    const auto done = check_index(table);
     return !done && done.error().message.find(word) != std::string::npos;
   };
   EXPECT_TRUE(says(tabulated_index("t", {500, 400}, {{1, 0}, {1, 0}}), "increasing"));

@@ -64,7 +64,7 @@ void expect_one_sheet(const Mesh &mesh, const Outline &outline, std::uint32_t fr
   Mesh single = with_groups(mesh.groups.size());
   add_face(single, outline, front);
   Diagnostics diagnostics;
-  const auto cleaned = clean(mesh, diagnostics);
+  const auto cleaned = clean_mesh(mesh, diagnostics);
   ASSERT_TRUE(cleaned) << what;
   EXPECT_NEAR(area_of(*cleaned), area_of(single), 1e-5 * area_of(single)) << what;
   EXPECT_FALSE(inspect(*cleaned).is_closed) << what;
@@ -119,7 +119,7 @@ TEST(Coincidence, ConcaveFacesAndFacesOfManyPieces) {
   add_face(mesh, {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}, 1);
   add_face(mesh, {{1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 0, 0}}, 2);
   Diagnostics diagnostics;
-  const auto cleaned = clean(mesh, diagnostics);
+  const auto cleaned = clean_mesh(mesh, diagnostics);
   ASSERT_TRUE(cleaned);
   EXPECT_NEAR(area_of(*cleaned), 2, 1e-12);
   EXPECT_FALSE(says(diagnostics, "lie upon each other"));
@@ -146,7 +146,7 @@ TEST(Coincidence, BentPolygonsOfOneOutlineAreOneSheet) {
   add_face(wedge, {edge[0], low[0], high[0]}, 0);
   add_face(wedge, {edge[1], high[1], low[1]}, 0);
   Diagnostics diagnostics;
-  const auto cleaned = clean(wedge, diagnostics);
+  const auto cleaned = clean_mesh(wedge, diagnostics);
   ASSERT_TRUE(cleaned);
   EXPECT_EQ(cleaned->triangles.size(), wedge.triangles.size());
   EXPECT_TRUE(diagnostics.empty());
@@ -164,7 +164,7 @@ TEST(Coincidence, RepeatedPolygonsAreDroppedWithACount) {
   EXPECT_EQ(inspect(mesh).duplicate, 8u);
   EXPECT_EQ(inspect(mesh).opposite_pairs, 4u);
   Diagnostics diagnostics;
-  ASSERT_TRUE(clean(mesh, diagnostics));
+  ASSERT_TRUE(clean_mesh(mesh, diagnostics));
   EXPECT_TRUE(says(diagnostics, "8 triangles that repeat"));
   EXPECT_TRUE(says(diagnostics, "4 dropped triangles were of another material"));
 }
@@ -177,7 +177,7 @@ TEST(Coincidence, OverlapsThatRemainAreNamedWithMaterialsAndArea) {
     add_face(mesh, square, 0);
     add_face(mesh, is_opposite ? backwards(part) : part, 1);
     Diagnostics diagnostics;
-    const auto cleaned = clean(mesh, diagnostics);
+    const auto cleaned = clean_mesh(mesh, diagnostics);
     ASSERT_TRUE(cleaned);
     EXPECT_EQ(cleaned->triangles.size(), 4u);
     EXPECT_TRUE(
@@ -190,7 +190,7 @@ TEST(Coincidence, OverlapsThatRemainAreNamedWithMaterialsAndArea) {
   add_face(mesh, {{2, 0, 0}, {3, 0, 0}, {3, 1, 0}, {2, 1, 0}}, 1);
   add_face(mesh, {{0, 0, 1e-4}, {2, 0, 1e-4}, {2, 1, 1e-4}, {0, 1, 1e-4}}, 1);
   Diagnostics diagnostics;
-  ASSERT_TRUE(clean(mesh, diagnostics));
+  ASSERT_TRUE(clean_mesh(mesh, diagnostics));
   EXPECT_TRUE(diagnostics.empty());
 }
 
@@ -208,7 +208,7 @@ TEST(Coincidence, SolidsInContactAreLeftAlone) {
     mesh.triangles.push_back(t);
   }
   Diagnostics diagnostics;
-  const auto cleaned = clean(mesh, diagnostics);
+  const auto cleaned = clean_mesh(mesh, diagnostics);
   ASSERT_TRUE(cleaned);
   EXPECT_EQ(cleaned->triangles.size(), mesh.triangles.size());
   EXPECT_TRUE(diagnostics.empty());
@@ -219,7 +219,7 @@ TEST(Coincidence, ShippedShapesHaveNone) {
   for (const Mesh &mesh : {make_hst(), make_agena(), make_sphere(1, 5000), make_cylinder(1, 2, 512),
                            make_box_wing({}), make_chamfered_cube(1, 0.1)}) {
     Diagnostics diagnostics;
-    const auto cleaned = clean(mesh, diagnostics);
+    const auto cleaned = clean_mesh(mesh, diagnostics);
     ASSERT_TRUE(cleaned);
     EXPECT_EQ(cleaned->triangles.size(), mesh.triangles.size());
     for (const Warning &w : diagnostics.warnings())

@@ -70,7 +70,7 @@ TEST(Topology, CleaningCountsMergesAndRefuses) {
   EXPECT_EQ(r.duplicate, 1u);
   EXPECT_EQ(r.degenerate, 1u);
   Diagnostics diagnostics;
-  const auto cleaned = clean(mesh, diagnostics);
+  const auto cleaned = clean_mesh(mesh, diagnostics);
   ASSERT_TRUE(cleaned);
   EXPECT_EQ(cleaned->triangles.size(), 2u);
   EXPECT_EQ(cleaned->triangles[0].front, 0u);
@@ -79,13 +79,13 @@ TEST(Topology, CleaningCountsMergesAndRefuses) {
 
   Mesh bad = mesh;
   bad.positions[0].x = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(clean(bad, diagnostics));
+  EXPECT_FALSE(clean_mesh(bad, diagnostics));
   bad = mesh;
   bad.triangles[0].vertex[0] = 1000;
-  EXPECT_FALSE(clean(bad, diagnostics));
+  EXPECT_FALSE(clean_mesh(bad, diagnostics));
   bad = mesh;
   bad.triangles.clear();
-  EXPECT_FALSE(clean(bad, diagnostics));
+  EXPECT_FALSE(clean_mesh(bad, diagnostics));
 }
 
 TEST(Topology, FarVerticesThatNoFaceUsesDoNoHarm) {
@@ -97,7 +97,7 @@ TEST(Topology, FarVerticesThatNoFaceUsesDoNoHarm) {
   point.groups = {"a"};
   point.triangles.push_back({});
   Diagnostics diagnostics;
-  EXPECT_FALSE(clean(point, diagnostics));
+  EXPECT_FALSE(clean_mesh(point, diagnostics));
 }
 
 TEST(Topology, CreasesStaySharpAndCurvesBecomeRound) {

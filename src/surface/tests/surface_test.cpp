@@ -190,13 +190,13 @@ TEST(Material, IsRefusedOutsideItsTableAndWhenWrong) {
   EXPECT_NE(typo.error().message.find("Did you mean \"paper_au\"?"), std::string::npos);
   Material bad = *builtin_material("paper_au");
   bad.index.k.value[1] = -0.1;
-  EXPECT_FALSE(check(bad));
+  EXPECT_FALSE(check_material(bad));
   bad = *builtin_material("paper_au");
   bad.distribution = blinn_phong(-1);
-  EXPECT_FALSE(check(bad));
+  EXPECT_FALSE(check_material(bad));
   bad = *builtin_material("paper_au");
   std::get<Tabulated>(bad.index.n).wavelength_nm = {0.425, 0.55, 0.65};
-  EXPECT_NE(check(bad).error().message.find("um"), std::string::npos);
+  EXPECT_NE(check_material(bad).error().message.find("um"), std::string::npos);
 }
 
 } // namespace

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <umov/io/plot_page.h>
 #include <umov/io/exr.h>
+#include <umov/io/plot_page.h>
 #include <umov/io/png.h>
 #include <umov/picture/keyframe.h>
 

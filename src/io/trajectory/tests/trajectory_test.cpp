@@ -65,7 +65,7 @@ TEST(Trajectory, InterpolatesAKeplerOrbit) {
     segment.first = segment.states.front().time;
     segment.last = segment.states.back().time;
     ephemeris.segments.push_back(segment);
-    ASSERT_TRUE(check(ephemeris));
+    ASSERT_TRUE(check_ephemeris(ephemeris));
     const Trajectory orbit(ephemeris);
     for (int k = 20; k < 80; ++k) {
       const double t = one.step_s * (k + 0.37);
@@ -135,7 +135,7 @@ TEST(Trajectory, FramesOfAnEphemerisAgree) {
                                 {position.x, position.y, position.z},
                                 {velocity.x, velocity.y, velocity.z}});
     OrbitEphemeris out{"a", "b", 0, {segment}};
-    EXPECT_TRUE(check(out));
+    EXPECT_TRUE(check_ephemeris(out));
     return Trajectory(out);
   };
   const TemeState gcrs = *orbit_of(OrbitFrame::Gcrs, r, v).at(time),

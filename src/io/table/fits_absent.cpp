@@ -1,0 +1,37 @@
+// In the place of fits_table.cpp where umov is built without CFITSIO.
+#include "io/table/fits_table.h"
+
+namespace umov {
+namespace {
+
+tl::unexpected<Error> absent(const std::filesystem::path &path = {}) {
+  return fail(ErrorCode::Device,
+              "this build has no FITS: write .csv or .ecsv, or build with -DUMOV_WITH_FITS=ON",
+              {path.string()});
+}
+
+} // namespace
+
+FitsTable::Memory::~Memory() = default;
+FitsTable::FitsTable(FitsTable &&other) noexcept = default;
+FitsTable &FitsTable::operator=(FitsTable &&other) noexcept = default;
+FitsTable::~FitsTable() = default;
+
+Result<FitsTable> FitsTable::create(const std::filesystem::path &path, const Table & /*columns*/) {
+  return absent(path);
+}
+Result<FitsTable> FitsTable::create_in_memory(const Table & /*columns*/) { return absent(); }
+Result<void> FitsTable::encode(const Table & /*table*/, std::size_t /*begin*/, std::size_t /*end*/,
+                               std::string & /*out*/) const {
+  return absent();
+}
+Result<void> FitsTable::append(std::size_t /*rows*/, const std::string & /*bytes*/) {
+  return absent();
+}
+Result<void> FitsTable::note(const std::string & /*text*/) { return absent(); }
+Result<void> FitsTable::close() { return absent(); }
+Result<std::string> FitsTable::take() { return absent(); }
+
+Result<std::string> to_fits(const Table & /*table*/) { return absent(); }
+
+} // namespace umov

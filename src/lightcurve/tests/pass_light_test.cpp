@@ -1,0 +1,88 @@
+// Brightness along a pass, against closed forms.
+
+#include <umov/lightcurve/pass_light.h>
+
+#include "light/tests/integrator_cases.h"
+#include "observation/tests/straight_line.h"
+
+#include <umov/photometry/radiometry.h>
+
+namespace umov {
+namespace {
+
+using namespace cases;
+
+const StraightLine line("2018-03-20T06:30:00.5Z");
+
+const std::vector<Band> bands{three_bands()[1]};
+
+/// Made once: it is lit at 361 phase angles.
+const PassLight &white_sphere() {
+  static const PassLight sphere = PassLight::of_sphere(2, white_lambert(), bands).value();
+  return sphere;
+}
+
+std::vector<ObservingGeometry> samples() {
+  const Track track = Track::make(line.request()).value();
+  std::vector<ObservingGeometry> out;
+  for (double s = 0; s <= 600; s += 10)
+    out.push_back(track.observe(plus_seconds(line.start, s)).value());
+  return out;
+}
+
+SitePass described(const PassLight &light, const std::vector<ObservingGeometry> &at) {
+  SitePass pass;
+  const auto done =
+      light.describe(line.trajectory(), origin_site, ShadowModel::Ellipsoid, 0, at, pass);
+  EXPECT_TRUE(done) << done.error().text();
+  return pass;
+}
+
+/// A white Lambert sphere: J = 2/(3 pi) r^2 (sin a + (pi - a) cos a) (Russell 1916).
+double sphere_magnitude(double radius_m, const ObservingGeometry &g, const Band &band) {
+  const double a = g.phase_angle.radians();
+  const double intensity =
+      2 / (3 * pi) * radius_m * radius_m * (std::sin(a) + (pi - a) * std::cos(a));
+  const LightPath path{g.sun_distance_km, g.range_km, g.sunlit};
+  return observed_light(intensity, band, solar_irradiances({band})->front(), path).magnitude;
+}
+
+TEST(PassLight, ALambertSphereFollowsItsPhaseFunction) {
+  const auto at = samples();
+  double low = 1e9, high = -1e9;
+  for (const ObservingGeometry &g : at) {
+    low = std::min(low, sphere_magnitude(2, g, bands[0]));
+    high = std::max(high, sphere_magnitude(2, g, bands[0]));
+  }
+  const SitePass pass = described(white_sphere(), at);
+  // 5000 facets and steps of half a degree: 2 % of I.
+  EXPECT_NEAR(pass.magnitude_min, low, 0.02);
+  EXPECT_NEAR(pass.magnitude_max, high, 0.02);
+  EXPECT_NEAR(pass.p_max, 0, 1e-6); // Lambert's light has no polarization
+  EXPECT_TRUE(pass.glints.empty());
+}
+
+TEST(PassLight, ABodyThatIsASphereIsLitLikeOne) {
+  const auto at = samples();
+  Diagnostics diagnostics;
+  const auto scene = make_scene(make_sphere(2, 5000), NormalMode::Smooth, bands, {white_lambert()},
+                                {white_lambert()}, diagnostics);
+  ASSERT_TRUE(scene) << scene.error().text();
+  const auto body = PassLight::of_body(*scene, {TwoAxisLaw{}}, LightMethod::Rays);
+  ASSERT_TRUE(body) << body.error().text();
+  const SitePass a = described(*body, at), b = described(white_sphere(), at);
+  EXPECT_NEAR(a.magnitude_min, b.magnitude_min, 0.03);
+  EXPECT_NEAR(a.magnitude_max, b.magnitude_max, 0.03);
+}
+
+TEST(PassLight, WhatIsNeverLitHasNoMagnitude) {
+  auto at = samples();
+  for (ObservingGeometry &g : at)
+    g.sunlit = 0;
+  const SitePass pass = described(white_sphere(), at);
+  EXPECT_TRUE(std::isnan(pass.magnitude_min));
+  EXPECT_TRUE(std::isnan(pass.p_max));
+}
+
+} // namespace
+} // namespace umov
