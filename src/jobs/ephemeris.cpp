@@ -50,6 +50,7 @@ Table ephemeris_table(const std::vector<ObservingGeometry> &rows, ShadowModel sh
   using G = const ObservingGeometry &;
   Table t;
   std::vector<std::string> times;
+  times.reserve(rows.size());
   for (G row : rows)
     times.push_back(to_iso(row.time));
   t.add("time_utc", "", "UTC", std::move(times));

@@ -28,12 +28,17 @@ Result<std::vector<ElementSet>> best_sets(const PassesRequest &request,
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   // By number, so that each object is chosen from its own sets.
-  std::ranges::stable_sort(sets, {}, &ElementSet::norad_cat_id);
+  std::stable_sort(sets.begin(), sets.end(), [](const ElementSet &a, const ElementSet &b) {
+    return a.norad_cat_id < b.norad_cat_id;
+  });
   std::vector<ElementSet> out;
   for (const int norad : wanted) {
-    const auto own = std::ranges::equal_range(sets, norad, {}, &ElementSet::norad_cat_id);
-    UMOV_ASSIGN(set,
-                choose_elements({own.begin(), own.end()}, norad, request.start, request.orbit));
+    const auto first =
+        std::partition_point(sets.begin(), sets.end(),
+                             [norad](const ElementSet &set) { return set.norad_cat_id < norad; });
+    const auto last = std::partition_point(
+        first, sets.end(), [norad](const ElementSet &set) { return set.norad_cat_id <= norad; });
+    UMOV_ASSIGN(set, choose_elements({first, last}, norad, request.start, request.orbit));
     out.push_back(set);
   }
   return out;
@@ -137,9 +142,10 @@ Tally gather(const PassesRequest &request, std::vector<Found> &&all, PassesResul
   }
   if (tally.failed > told_max)
     diagnostics.warn(fmt::format("{} more objects failed", tally.failed - told_max));
-  std::ranges::stable_sort(out.found, [](const ObjectPass &a, const ObjectPass &b) {
-    return seconds_between(a.pass.rise.time, b.pass.rise.time) < 0;
-  });
+  std::stable_sort(out.found.begin(), out.found.end(),
+                   [](const ObjectPass &a, const ObjectPass &b) {
+                     return seconds_between(a.pass.rise.time, b.pass.rise.time) < 0;
+                   });
   return tally;
 }
 

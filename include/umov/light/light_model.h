@@ -45,9 +45,9 @@ struct LightOptions {
   /// (2^22, and 2^19 with bounces, whose paths cost more).
   std::size_t max_points = 0;
   /// File to keep the masks in: read if it exists (BadInput unless it fits), made if not.
-  std::filesystem::path mask_file;
+  std::filesystem::path mask_file = {};
   /// Folder of masks of earlier jobs; empty: none are kept. What is damaged is made anew.
-  std::filesystem::path mask_cache;
+  std::filesystem::path mask_cache = {};
   unsigned threads = 0; ///< of the preparation; 0: all cores
 };
 

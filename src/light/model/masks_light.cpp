@@ -68,8 +68,8 @@ Result<void> MasksLight::prepare() {
   if (options_.bounces > 1 && !facts_.is_convex)
     between_.emplace(scene(), joints(), rays, materials());
   rays.bounces = 1;
-  // What masks and rays by class could not settle is slivers: four times the points would halve their
-  // half-width at best, and most would miss the accuracy all the same.
+  // What masks and rays by class could not settle is slivers: four times the points would halve
+  // their half-width at best, and most would miss the accuracy all the same.
   if (options_.max_points == 0)
     rays.max_points = 1u << 20;
   if (is_auto)
