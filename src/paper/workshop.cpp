@@ -38,7 +38,7 @@ const std::map<std::string, std::string> agena_materials{
     {"paint_black", "paper_bk7"},    {"cap_gold_kapton", "paper_au"}};
 
 AttitudeLaw attitude_of(const std::string &object) {
-  if (object == "hst") // as in examples/hst_maui.toml: it looks at the Orion nebula
+  if (object == "hst") // as in examples/hst_paper.toml: it looks at the Orion nebula
     return TwoAxisLaw{
         {0, 0, 1}, CelestialDirection{83.8 * degree, -5.4 * degree}, {1, 0, 0}, Target::Sun};
   return TwoAxisLaw{{0, 0, 1}, Target::Zenith, {1, 0, 0}, Target::Velocity};

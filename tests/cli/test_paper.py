@@ -184,7 +184,7 @@ def test_fig22_and_24_are_light_curves_of_the_product(paper, tmp_path):
     rows = [row for row in rows_of(paper, "fig22") if row["object"] == "HST"]
     first = min(row["time_utc"] for row in rows)
     done = subprocess.run(
-        [UMOV, "run", ROOT / "examples/hst_maui.toml", "-q", "--seed", "0", "--set", f"time.start={first}",
+        [UMOV, "run", ROOT / "examples/hst_paper.toml", "-q", "--seed", "0", "--set", f"time.start={first}",
          "--set", f"time.stop={first}", "--set", "time.only={ alt_min_deg = 20, sun_alt_max_deg = -6, sunlit = true }",
          "--set", "render.sun=point", "--set", "render.method=rays", "--set",
          f"output.dir={tmp_path / 'out'}"],
@@ -200,7 +200,7 @@ def test_fig22_and_24_are_light_curves_of_the_product(paper, tmp_path):
 
 def test_fig23_is_the_signature_of_the_product(paper, tmp_path):
     done = subprocess.run(
-        [UMOV, "signature", ROOT / "examples/hst_maui.toml", "--poses", "25", "--phase", "100", "--seed", "23",
+        [UMOV, "signature", ROOT / "examples/hst_paper.toml", "--poses", "25", "--phase", "100", "--seed", "23",
          "--visibility", "rays", "--accuracy", "0.001", "--set", "render.sun=point", "-o", "s.csv"],
         text=True, capture_output=True, cwd=tmp_path, timeout=300)
     assert done.returncode == 0, done.stderr

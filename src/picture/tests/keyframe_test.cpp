@@ -135,8 +135,8 @@ TEST(KeyFrame, EachSideOfASheetShowsItsOwnMaterialAndHidesTheSun) {
     t.back = 1;
     sheet.triangles.push_back(t);
   }
-  const Scene scene =
-      scene_of(sheet, {"paper_au", "paper_au"}, {"paper_spectralon", "paper_spectralon"});
+  // Two faces merged into one: its back shows the front of the other face, as in the light.
+  const Scene scene = scene_of(sheet, {"paper_au", "paper_spectralon"}, {"paper_asi", "paper_asi"});
   const auto centre = [&](Vec3<Body> observer, Vec3<Body> sun) {
     const KeyFrameRaster r = trace(scene, {{sun, observer}, {0, 0, 1}}, small());
     const KeyFrameSample s = r.points[(r.side / 2) * r.side + r.side / 2];
