@@ -1,5 +1,6 @@
 """Runs the built command as its users do."""
 import csv
+import os
 import pathlib
 import subprocess
 
@@ -7,6 +8,12 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 UMOV = ROOT / "build/release/apps/cli/umov"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def cache_of_its_own(tmp_path_factory):
+    """Masks of the tests stay out of the user's cache."""
+    os.environ["XDG_CACHE_HOME"] = str(tmp_path_factory.mktemp("cache"))
 
 
 class Outcome:
