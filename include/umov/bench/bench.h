@@ -18,6 +18,7 @@ struct Machine {
 };
 Machine machine();
 
+/// What of the benchmark of light is measured, and for how long.
 struct LightRequest {
   std::vector<std::string> meshes; ///< OBJ files (m, +Z up) instead of the standard cases
   std::string only;                ///< cases with this in their name

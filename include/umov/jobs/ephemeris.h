@@ -19,6 +19,7 @@ struct TableOutcome {
   std::optional<Error> error; ///< of a whole table: no row of it is good
 };
 
+/// One object, a site and a span.
 struct EphemerisRequest {
   std::string orbit; ///< file of elements or of an ephemeris
   int norad = 0;     ///< 0: the only object of the file
@@ -33,6 +34,7 @@ struct EphemerisRequest {
 Result<TableOutcome> ephemeris(const EphemerisRequest &request, const JobOptions &options,
                                const Monitor &monitor, Diagnostics &diagnostics);
 
+/// A catalogue and the times at which its states are wanted.
 struct StatesRequest {
   std::string orbit; ///< file of elements
   std::vector<Epoch<Utc>> times;

@@ -15,14 +15,16 @@ namespace umov::jobs {
 /// What the objects are taken for: those of a scene by their catalogue number, or all the same
 /// simple body. Neither: nothing is said about their light.
 struct PassModel {
-  enum class Body { None, Sphere, Cube }; ///< a cube flies in nadir attitude
-  std::optional<Scenario> scene;          ///< an object without orbit stands for all others
+  /// A simple body that stands for every object; a cube flies in nadir attitude.
+  enum class Body { None, Sphere, Cube };
+  std::optional<Scenario> scene; ///< an object without orbit stands for all others
   Body body = Body::None;
   double size_m = 1;    ///< of the body: radius, or edge
   std::string material; ///< of the body: a name or a file
   std::string band;     ///< of the magnitudes; "": the middle one
 };
 
+/// Orbits, a site, a span, and what a pass is.
 struct PassesRequest {
   std::string orbit;      ///< file of elements or of an ephemeris
   std::vector<int> norad; ///< empty: all objects of the file
@@ -42,6 +44,7 @@ struct ObjectPass {
   SitePass pass;
 };
 
+/// Passes found, and how the search ended.
 struct PassesResult {
   std::vector<Trajectory> orbits; ///< of the objects that were to be searched
   std::vector<ObjectPass> found;  ///< by the time of rise

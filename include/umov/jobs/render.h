@@ -10,7 +10,9 @@
 
 namespace umov::jobs {
 
+/// What is shown of a scenario, from where, and how large.
 struct RenderRequest {
+  /// What a pixel tells.
   enum class Shade { Intensity, Polarization, PositionAngle, Material, Colour };
   /// What is shown: one band's, or three bands as blue, green, red (Colour).
   Shade shade = Shade::Intensity;
@@ -28,6 +30,7 @@ struct RenderRequest {
   double half_width_m = 0;   ///< of the picture; 0: the whole object
 };
 
+/// A picture, or several of them in one file.
 struct Rendered {
   std::string bytes; ///< the file
   std::size_t pictures = 0;

@@ -43,6 +43,7 @@ public:
     double share = 0, theta_i_deg = 0, theta_o_deg = 0, phi_deg = 0;
     bool is_phi = false;
   };
+  /// The worst place of the table by that estimate.
   [[nodiscard]] GridError grid_error() const;
   /// First theta_o whose values look like the floor of an instrument; 90 if none do.
   [[nodiscard]] double floor_from_deg() const;

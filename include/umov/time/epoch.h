@@ -61,6 +61,7 @@ struct EarthTables {
   Epoch<Utc> orientation_first, orientation_last;
   Epoch<Utc> leap_seconds_expire; ///< after it one more leap second may have come
 };
+/// The spans of the tables of Earth orientation and leap seconds in this build.
 EarthTables earth_tables();
 
 } // namespace umov

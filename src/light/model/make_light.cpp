@@ -1,22 +1,56 @@
 // The one place that decides how a scene is lit.
 
 #include "light/model/models.h"
+#include "light/reference/elements_lit.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <umov/core/parallel.h>
 #include <umov/light/poses.h>
 #include <umov/shape/topology.h>
 
 namespace umov {
 
-std::vector<double> typical_light(const Scene &scene) {
-  constexpr std::size_t count = 256;
-  constexpr std::uint64_t seed = 0; // of the object alone
+namespace {
+
+/// Random poses that belong to the object alone, phase angles even over 30 to 150 deg.
+std::vector<Pose> typical_poses(std::size_t count) {
+  constexpr std::uint64_t seed = 0;
   std::vector<Pose> poses;
   for (std::size_t k = 0; k < count; ++k) {
-    const double phase = 30 + 120 * (static_cast<double>(k) + 0.5) / count;
+    const double phase = 30 + 120 * (static_cast<double>(k) + 0.5) / static_cast<double>(count);
     poses.push_back(random_pose(seed, k, Angle::degrees(phase)));
     poses.back().sun_radius_rad = sun_radius_at_1au_rad;
   }
+  return poses;
+}
+
+} // namespace
+
+double curved_error(const Scene &scene, const std::vector<double> &typical_i) {
+  constexpr double least = 1e-4;
+  if (scene.normals != NormalMode::Smooth)
+    return least;
+  const std::vector<Pose> poses = typical_poses(24);
+  StokesTable fast;
+  Engine(scene, {.visibility = Visibility::None, .threads = 1}).evaluate(poses, fast);
+  const Elements elements = make_elements(scene, visible_sides(scene.mesh));
+  std::vector<double> errors(poses.size(), 0);
+  parallel_for(poses.size(), 0, [&](std::size_t k) {
+    const LitElements lit =
+        light_elements(scene, elements, geometry_of(poses[k]), Stokes<ScatteringPlane>{1, 0, 0, 0});
+    for (std::size_t b = 0; b < fast.bands; ++b)
+      errors[k] = std::max(errors[k], std::abs(fast.i[k * fast.bands + b] - lit.total[b]) /
+                                          std::max(lit.total[b], typical_i[b]));
+  });
+  std::nth_element(errors.begin(), errors.begin() + 1, errors.end(), std::greater<>());
+  return std::max(errors[1], least);
+}
+
+std::vector<double> typical_light(const Scene &scene) {
+  constexpr std::size_t count = 256;
+  const std::vector<Pose> poses = typical_poses(count);
   StokesTable table;
   Engine(scene, {.visibility = Visibility::None, .threads = 1}).evaluate(poses, table);
   std::vector<double> out;

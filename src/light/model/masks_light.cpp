@@ -44,7 +44,11 @@ Result<void> MasksLight::prepare() {
   with.threads = options_.threads;
   // What masks lack, rays add: finer masks cost more to make than they save.
   with.masks = is_auto ? fast_masks : masks_for(options_.accuracy);
-  with.masks.refine_above = is_auto ? 0.8 * options_.accuracy : 0; // and the allowance besides
+  if (is_auto)
+    curved_error_ = curved_error(scene(), typical_i_);
+  // The allowance for curved elements comes on top of what sampling leaves.
+  const double left = std::clamp(0.95 - curved_error_ / options_.accuracy, 0.4, 0.9);
+  with.masks.refine_above = is_auto ? left * options_.accuracy : 0;
   with.doubts_all = is_auto;
   with.is_lazy = true;
   with.mask_cache = options_.mask_file.empty() ? options_.mask_cache : "";
@@ -92,13 +96,12 @@ std::size_t MasksLight::mask_bytes() const {
   return engine_ ? engine_->mask_bytes() : turning_->mask_bytes();
 }
 
-/// Curved elements are lit by their middle: in faint poses, which live on the flanks of lobes, that
-/// may miss or add some 1e-4 of the typical light (Agena against rays; half as much for HST).
+/// What light by the middle of curved elements may miss.
 void MasksLight::add_allowance(StokesTable &table) const {
-  constexpr double part = 1e-4;
   for (std::size_t at = 0; at < table.i.size(); ++at) {
-    table.i_err[at] += part * typical_i_[at % table.bands];
-    table.q_err[at] += part * typical_i_[at % table.bands];
+    const double more = curved_error_ * std::max(table.i[at], typical_i_[at % table.bands]);
+    table.i_err[at] += more;
+    table.q_err[at] += more;
   }
 }
 

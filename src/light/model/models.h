@@ -11,6 +11,11 @@ namespace umov {
 /// What the accuracy of each band refers to at least, from the typical light; empty: 0.
 std::vector<double> floor_of(const LightOptions &options, const std::vector<double> &typical_i);
 
+/// What the engine errs by lighting curved elements by their middle: the second largest of 24
+/// random poses (95 %) of its difference from the reference, nothing hidden, in parts of the larger
+/// of I and the typical light; at least 1e-4, which is all where every facet is flat.
+double curved_error(const Scene &scene, const std::vector<double> &typical_i);
+
 /// Each pose by rays, with light between surfaces where it is asked for.
 class RaysLight final : public LightModel {
 public:
@@ -43,6 +48,7 @@ private:
 
   LightOptions options_;
   std::vector<double> typical_i_; ///< per band
+  double curved_error_ = 0;       ///< of I, in parts of it or of the typical light
   std::vector<std::uint32_t> material_of_;
   std::optional<Engine> engine_;             ///< of a body whose parts do not turn
   std::optional<ArticulatedEngine> turning_; ///< of one whose parts do
