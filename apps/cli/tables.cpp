@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/ranges.h>
-#include <umov/io/table_stream.h>
+#include <umov/io/table_sink.h>
 
 namespace umov::cli {
 namespace {
@@ -29,18 +29,7 @@ void add_table_output(CLI::App &verb, std::string &path) {
 Result<void> put_table(const std::string &path, const Table &table, const Common &common) {
   if (path.empty() || path == "-")
     return put(path, common.json ? to_json(table) : to_text(table));
-  const std::string suffix = std::filesystem::path(path).extension().string();
-  if (suffix == ".csv")
-    return put(path, to_csv(table));
-  if (suffix == ".ecsv")
-    return put(path, to_ecsv(table));
-  if (suffix == ".json")
-    return put(path, to_json(table));
-  if (suffix == ".fits") {
-    UMOV_ASSIGN(stream, TableStream::open(path, table));
-    return stream.commit();
-  }
-  return fail(ErrorCode::Usage, wrong_suffix(path));
+  return write_table(path, table);
 }
 
 Result<void> check_output(const std::string &path) {
