@@ -35,7 +35,7 @@ inline constexpr MaskQuality fast_masks{60'000, 64, 64, 0.03};
 /// Typical error of I 0.1 %, up to half a minute and 300 MB.
 inline constexpr MaskQuality fine_masks{240'000, 96, 128, 0.01};
 
-/// The masks for a wanted typical error of I, and rays for poses twenty times worse.
+/// The masks for a wanted typical error of I; nothing is mended by rays.
 MaskQuality masks_for(double accuracy);
 
 /// How a fast engine is prepared.

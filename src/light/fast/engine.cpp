@@ -28,7 +28,7 @@ constexpr std::size_t poses_per_task_min = 64, poses_per_task_max = 16'384;
 
 MaskQuality masks_for(double accuracy) {
   MaskQuality out = accuracy >= 0.004 ? fast_masks : fine_masks;
-  out.refine_above = std::max(20 * accuracy, 0.01);
+  out.refine_above = 0;
   return out;
 }
 

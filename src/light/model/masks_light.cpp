@@ -44,11 +44,11 @@ Result<void> MasksLight::prepare() {
   with.threads = options_.threads;
   // What masks lack, rays add: finer masks cost more to make than they save.
   with.masks = is_auto ? fast_masks : masks_for(options_.accuracy);
-  if (is_auto)
+  if (is_auto) { // the allowance for curved elements comes on top of what sampling leaves
     curved_error_ = curved_error(scene(), typical_i_);
-  // The allowance for curved elements comes on top of what sampling leaves.
-  const double left = std::clamp(0.95 - curved_error_ / options_.accuracy, 0.4, 0.9);
-  with.masks.refine_above = is_auto ? left * options_.accuracy : 0;
+    const double left = std::clamp(0.95 - curved_error_ / options_.accuracy, 0.4, 0.9);
+    with.masks.refine_above = left * options_.accuracy;
+  }
   with.doubts_all = is_auto;
   with.is_lazy = true;
   with.mask_cache = options_.mask_file.empty() ? options_.mask_cache : "";
