@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/core/golden_section.h>
 #include <umov/core/parallel.h>
+#include <umov/orbit/passes.h>
 
 namespace umov {
 namespace {
@@ -36,94 +36,6 @@ bool is_kept(const EpochGeometry &epoch, const EpochFilter &only) {
   return !only.sunlit || epoch.geometry.sunlit > 0;
 }
 
-/// Consecutive epochs above the altitude limit, [first, last] into the grid.
-struct GridPass {
-  std::size_t first = 0, last = 0;
-};
-
-std::vector<GridPass> group_passes(const std::vector<EpochGeometry> &grid,
-                                   const EpochFilter &only) {
-  std::vector<GridPass> passes;
-  for (std::size_t i = 0; i < grid.size(); ++i) {
-    if (!is_above(grid[i], only))
-      continue;
-    if (i > 0 && is_above(grid[i - 1], only))
-      passes.back().last = i;
-    else
-      passes.push_back({i, i});
-  }
-  return passes;
-}
-
-/// Highest point of a passage: seconds after `from`, where the altitude is greatest near [low,
-/// high].
-struct Summit {
-  double seconds, altitude_rad;
-};
-
-class Climb {
-public:
-  Climb(const Track &track, Epoch<Utc> origin) : track_(track), origin_(origin) {}
-
-  /// Walks on while the altitude grows; returns where it no longer does.
-  [[nodiscard]] double walk(double from, double step) const {
-    constexpr double longest_s = 21'600; // what still climbs after that hardly moves: no summit
-    double best = from, highest = altitude(from);
-    for (double next; (next = altitude(best + step)) > highest; highest = next)
-      if (std::abs((best += step) - from) > longest_s)
-        return from;
-    return best;
-  }
-  /// To a millisecond, so that the name of a pass does not depend on the step.
-  [[nodiscard]] Summit refine(double low, double high) const {
-    const double top = golden_minimum([&](double s) { return -altitude(s); }, low, high, 1e-3);
-    return {top, altitude(top)};
-  }
-
-private:
-  [[nodiscard]] double altitude(double seconds) const {
-    const auto at = track_.observe(plus_seconds(origin_, seconds));
-    return at ? at->altitude.radians() : -pi;
-  }
-  const Track &track_;
-  Epoch<Utc> origin_;
-};
-
-/// Name, culmination (refined between epochs to 1 ms) and limits of a pass.
-Pass describe_pass(const GridPass &pass, const std::vector<EpochGeometry> &grid,
-                   const Track &track) {
-  std::size_t top = pass.first;
-  for (std::size_t i = pass.first; i <= pass.last; ++i)
-    if (grid[i].geometry.altitude.radians() > grid[top].geometry.altitude.radians())
-      top = i;
-  Pass out;
-  out.rise = grid[pass.first].geometry.time;
-  out.set = grid[pass.last].geometry.time;
-  out.is_open_at_start = pass.first == 0;
-  out.is_open_at_end = pass.last + 1 == grid.size();
-  const Epoch<Utc> origin = grid[top].geometry.time;
-  const Climb climb(track, origin);
-  constexpr double stride_s = 10; // shorter than any passage above the horizon
-  double low = -stride_s, high = stride_s;
-  if (top > pass.first)
-    low = seconds_between(grid[top - 1].geometry.time, origin);
-  else if (const double summit = climb.walk(0, -stride_s); summit < 0) {
-    low = summit - stride_s; // the span cuts the pass: it keeps the name that it has as a whole
-    high = summit + stride_s;
-  }
-  if (top < pass.last)
-    high = seconds_between(grid[top + 1].geometry.time, origin);
-  else if (const double summit = climb.walk(0, stride_s); summit > 0) {
-    low = summit - stride_s;
-    high = summit + stride_s;
-  }
-  const Summit summit = climb.refine(low, high);
-  out.culmination = plus_seconds(origin, summit.seconds);
-  out.culmination_altitude = Angle::radians(summit.altitude_rad);
-  out.id = pass_id(track.request().orbit, out.culmination);
-  return out;
-}
-
 /// A scenario calls the span [time].
 Error in_scenario_words(Error error) {
   constexpr std::string_view plain = "Shorten the span";
@@ -132,8 +44,121 @@ Error in_scenario_words(Error error) {
   return error;
 }
 
+/// Epochs [first, behind) of a grid that lie in a pass.
+struct GridPass {
+  PassSpan span;
+  std::size_t first = 0, behind = 0;
+};
+
+/// The passes of a grid: no epoch outside them is above the altitude limit.
+struct GridPasses {
+  std::vector<GridPass> passes;
+  std::optional<Error> stopped; ///< where the orbit ends
+  std::size_t behind = 0;       ///< epochs before that
+};
+
+/// Ends the grid at an epoch if the orbit cannot be had there.
+void stop_in_gap(GridPasses &grid, const Trajectory &orbit, const std::vector<Epoch<Utc>> &times,
+                 std::size_t epoch) {
+  const auto state = orbit.at(times[epoch]);
+  if (state)
+    return;
+  grid.stopped = in_scenario_words(state.error());
+  grid.behind = epoch;
+  std::erase_if(grid.passes, [epoch](const GridPass &pass) { return pass.first >= epoch; });
+  for (GridPass &pass : grid.passes)
+    pass.behind = std::min(pass.behind, epoch);
+}
+
+/// Where an orbit has gaps, the search goes on behind them, unless an epoch lies in one.
+GridPasses find_on_grid(const TrackRequest &track, const std::vector<Epoch<Utc>> &times,
+                        Angle altitude_min) {
+  constexpr double slack_s = 2e-3; // crossings are good to a millisecond
+  const auto index = [&times](Epoch<Utc> time) {
+    const auto at = std::partition_point(times.begin(), times.end(), [time](Epoch<Utc> one) {
+      return seconds_between(one, time) < 0;
+    });
+    return static_cast<std::size_t>(at - times.begin());
+  };
+  GridPasses out{{}, {}, times.size()};
+  for (std::size_t from = 0; from < times.size();) {
+    auto found =
+        find_pass_spans(track.orbit, track.site, times[from], times.back(), altitude_min);
+    for (const PassSpan &span : found.spans)
+      out.passes.push_back({span, std::max(from, index(plus_seconds(span.rise, -slack_s))),
+                            index(plus_seconds(span.set, slack_s))});
+    if (!found.end)
+      break;
+    from = std::max(from, index(plus_seconds(found.end->last, slack_s)));
+    if (from < times.size())
+      stop_in_gap(out, track.orbit, times, from);
+    if (out.stopped)
+      break;
+  }
+  return out;
+}
+
 /// Epochs per work unit.
 constexpr std::size_t block = 256;
+
+/// Geometry at all epochs of all passes, pass after pass. A gap of the orbit that is shorter than
+/// the search's step ends the grid too.
+std::vector<EpochGeometry> observe_grid(const Track &track, const std::vector<Epoch<Utc>> &times,
+                                        GridPasses &found, unsigned threads,
+                                        const std::atomic<bool> &cancel) {
+  std::vector<std::size_t> wanted;
+  for (const GridPass &pass : found.passes)
+    for (std::size_t i = pass.first; i < pass.behind; ++i)
+      wanted.push_back(i);
+  std::vector<EpochGeometry> out(wanted.size());
+  parallel_for((out.size() + block - 1) / block, threads, [&](std::size_t b) {
+    for (std::size_t k = b * block; !cancel && k < std::min((b + 1) * block, out.size()); ++k)
+      out[k] = geometry_at(track, times[wanted[k]]);
+  });
+  const auto gap = std::find_if(out.begin(), out.end(), [](const auto &e) { return !e.is_there; });
+  if (gap != out.end() && !cancel)
+    stop_in_gap(found, track.request().orbit, times,
+                wanted[static_cast<std::size_t>(gap - out.begin())]);
+  return out;
+}
+
+/// Name, culmination (whole, whatever the span cuts) and limits of a pass.
+Pass describe_pass(const Track &track, const PassSpan &span, Epoch<Utc> first, Epoch<Utc> last) {
+  const auto &request = track.request();
+  Pass out;
+  out.rise = first;
+  out.set = last;
+  out.culmination = culmination_near(request.orbit, request.site, span.culmination);
+  if (const auto state = request.orbit.at(out.culmination))
+    out.culmination_altitude = topocentric_altitude(*state, out.culmination, request.site);
+  out.id = pass_id(request.orbit, out.culmination);
+  return out;
+}
+
+/// Adds what the filter keeps of the epochs of one pass, from `grid` on.
+void add_pass(KeptEpochs &out, const Track &track, const GridPass &pass,
+              std::span<const EpochGeometry> grid, std::size_t behind, const EpochFilter &only) {
+  const auto above = [&only](const EpochGeometry &epoch) { return is_above(epoch, only); };
+  const auto first = std::find_if(grid.begin(), grid.end(), above);
+  if (first == grid.end())
+    return;
+  ++out.passes_seen;
+  const std::size_t before = out.geometry.size();
+  for (const EpochGeometry &epoch : grid)
+    if (is_kept(epoch, only)) {
+      out.geometry.push_back(epoch.geometry);
+      out.pass.push_back(out.passes.size());
+    }
+  if (out.geometry.size() == before)
+    return;
+  const auto last = std::find_if(grid.rbegin(), grid.rend(), above);
+  out.passes.push_back(
+      describe_pass(track, pass.span, first->geometry.time, last->geometry.time));
+  Pass &described = out.passes.back();
+  described.is_open_at_start = pass.first == 0 && first == grid.begin();
+  described.is_open_at_end = pass.behind == behind && last == grid.rbegin();
+  described.rows = out.geometry.size() - before;
+}
 
 } // namespace
 
@@ -168,32 +193,17 @@ Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &of) {
 Result<KeptEpochs> keep_epochs(const Track &track, const EpochSpan &span, const EpochFilter &only,
                                unsigned threads, const std::atomic<bool> &cancel) {
   UMOV_ASSIGN(times, time_grid(span));
-  std::vector<EpochGeometry> grid(times.size());
-  const std::size_t blocks = (times.size() + block - 1) / block;
-  parallel_for(blocks, threads, [&](std::size_t b) {
-    for (std::size_t i = b * block; !cancel && i < std::min((b + 1) * block, times.size()); ++i)
-      grid[i] = geometry_at(track, times[i]);
-  });
+  GridPasses found = find_on_grid(track.request(), times, only.altitude_min);
+  const auto grid = observe_grid(track, times, found, threads, cancel);
   if (cancel)
     return fail(ErrorCode::Interrupted, "stopped before the first row");
   KeptEpochs out;
-  for (std::size_t i = 0; i < grid.size() && !out.stopped; ++i)
-    if (!grid[i].is_there) {
-      out.stopped = in_scenario_words(track.request().orbit.at(times[i]).error());
-      grid.resize(i);
-    }
-  for (const GridPass &pass : group_passes(grid, only)) {
-    ++out.passes_seen;
-    const std::size_t before = out.geometry.size();
-    for (std::size_t i = pass.first; i <= pass.last; ++i)
-      if (is_kept(grid[i], only)) {
-        out.geometry.push_back(grid[i].geometry);
-        out.pass.push_back(out.passes.size());
-      }
-    if (out.geometry.size() == before)
-      continue;
-    out.passes.push_back(describe_pass(pass, grid, track));
-    out.passes.back().rows = out.geometry.size() - before;
+  out.stopped = std::move(found.stopped);
+  std::size_t at = 0; // passes that a gap shortens leave the rest of the grid unread
+  for (const GridPass &pass : found.passes) {
+    const std::size_t count = pass.behind - pass.first;
+    add_pass(out, track, pass, std::span(grid).subspan(at, count), found.behind, only);
+    at += count;
   }
   return out;
 }
@@ -201,19 +211,23 @@ Result<KeptEpochs> keep_epochs(const Track &track, const EpochSpan &span, const 
 std::optional<NextPass> find_next_pass(const Track &track, const EpochFilter &only, Epoch<Utc> from,
                                        double days) {
   constexpr double step_s = 20; // shorter than any useful pass; the time is told to the minute
-  std::optional<NextPass> found;
-  for (double s = 0; s <= days * 86400; s += step_s) {
-    const EpochGeometry at = geometry_at(track, plus_seconds(from, s));
-    if (!at.is_there)
-      return found;
-    if (!found && is_kept(at, only))
-      found = NextPass{at.geometry.time, at.geometry.altitude};
-    else if (found && !is_above(at, only))
-      return found;
-    if (found && at.geometry.altitude.radians() > found->altitude_max.radians())
-      found->altitude_max = at.geometry.altitude;
+  const auto &request = track.request();
+  const PassSpans found = find_pass_spans(request.orbit, request.site, from,
+                                          plus_seconds(from, days * 86400), only.altitude_min);
+  for (const PassSpan &span : found.spans) {
+    std::optional<NextPass> next;
+    for (double s = 0; s <= seconds_between(span.set, span.rise); s += step_s) {
+      const EpochGeometry at = geometry_at(track, plus_seconds(span.rise, s));
+      if (!next && is_kept(at, only))
+        next = NextPass{at.geometry.time, at.geometry.altitude};
+      else if (next && at.is_there)
+        next->altitude_max =
+            Angle::radians(std::max(next->altitude_max.radians(), at.geometry.altitude.radians()));
+    }
+    if (next)
+      return next;
   }
-  return found;
+  return {};
 }
 
 } // namespace umov

@@ -47,8 +47,9 @@ Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &span);
 Result<KeptEpochs> keep_epochs(const Track &track, const EpochSpan &span, const EpochFilter &only,
                                unsigned threads, const std::atomic<bool> &cancel);
 
-/// First pass after `from` that the filter would keep, looked for over `days` in steps of 20 s; for
-/// the message when a span has none. Empty if there is none or the orbit cannot be propagated.
+/// First pass after `from` that the filter would keep, looked for over `days`, along each pass in
+/// steps of 20 s from its rise; for the message when a span has none. Empty if there is none before
+/// the orbit ends.
 struct NextPass {
   Epoch<Utc> first_row{};
   Angle altitude_max;

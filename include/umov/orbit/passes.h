@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <umov/core/diagnostics.h>
 #include <umov/orbit/ephemeris.h>
@@ -10,6 +11,37 @@
 #include <vector>
 
 namespace umov {
+
+/// When an object stands above an altitude, within a span of time.
+struct PassSpan {
+  Epoch<Utc> rise{}, set{};  ///< where it crosses the altitude, to 1 ms
+  Epoch<Utc> culmination{};  ///< highest point within the span, to 0.05 s
+  bool is_rise_cut = false,  ///< above already when the span begins
+      is_set_cut = false;    ///< above still when it ends
+};
+
+/// Where an orbit can no longer be had.
+struct OrbitEnd {
+  Epoch<Utc> last{}; ///< the last time at which it can, to 1 ms
+  Error error;       ///< what is wrong after it
+};
+
+/// The passes between two times, in order.
+struct PassSpans {
+  std::vector<PassSpan> spans;
+  std::optional<OrbitEnd> end; ///< the search went no further
+};
+
+/// Every stretch of time in which an object stands above `altitude_min` at a site: the altitude on
+/// a grid as coarse as the orbit allows (Trajectory::search_step_s), its tops and crossings
+/// refined. This is the one search for passes; all other functions on passes build on it.
+PassSpans find_pass_spans(const Trajectory &orbit, const Site &site, Epoch<Utc> start,
+                          Epoch<Utc> stop, Angle altitude_min);
+
+/// Time of culmination to 1 ms of the pass that is above the horizon at `near`, beyond the ends of
+/// any span: the altitude is followed uphill from `near`. `near` itself where the altitude goes on
+/// growing for six hours, or hardly changes.
+Epoch<Utc> culmination_near(const Trajectory &orbit, const Site &site, Epoch<Utc> near);
 
 /// The middle of the penumbra: half of the Sun's disk is behind the Earth.
 struct ShadowCrossing {
@@ -23,7 +55,7 @@ struct PassGlint {
   double width_s = 0; ///< for which the half vector is within the lobe
 };
 
-/// A stretch above an altitude, as seen from a site.
+/// A pass as seen from a site, described.
 struct SitePass {
   ObservingGeometry rise, culmination, set; ///< rise and set: where it crosses the altitude
   bool is_rise_cut = false,
@@ -49,8 +81,8 @@ struct PassSearch {
   std::function<Result<void>(SitePass &, std::span<const ObservingGeometry>)> on_pass;
 };
 
-/// All passes of an object between two times, in order; times are good to 1 ms of the model.
-/// Physics if the orbit ends on the way (decay, end of an ephemeris), with the time.
+/// All passes of an object between two times, in order, described; times as find_pass_spans has
+/// them. Physics if the orbit ends on the way (decay, end of an ephemeris), with the time.
 Result<std::vector<SitePass>> find_passes(const Trajectory &orbit, const Site &site,
                                           Epoch<Utc> start, Epoch<Utc> stop,
                                           const PassSearch &search);

@@ -28,13 +28,14 @@ std::vector<Pose> typical_poses(std::size_t count) {
 
 } // namespace
 
-double curved_error(const Scene &scene, const std::vector<double> &typical_i) {
+double curved_error(const Scene &scene, const Engine &unhidden,
+                    const std::vector<double> &typical_i) {
   constexpr double least = 1e-4;
   if (scene.normals != NormalMode::Smooth)
     return least;
   const std::vector<Pose> poses = typical_poses(24);
   StokesTable fast;
-  Engine(scene, {.visibility = Visibility::None, .threads = 1}).evaluate(poses, fast);
+  unhidden.evaluate(poses, fast);
   const Elements elements = make_elements(scene, visible_sides(scene.mesh));
   std::vector<double> errors(poses.size(), 0);
   parallel_for(poses.size(), 0, [&](std::size_t k) {
@@ -48,11 +49,17 @@ double curved_error(const Scene &scene, const std::vector<double> &typical_i) {
   return std::max(errors[1], least);
 }
 
-std::vector<double> typical_light(const Scene &scene) {
+namespace {
+
+Engine unhidden_engine(const Scene &scene) {
+  return Engine(scene, {.visibility = Visibility::None, .threads = 1});
+}
+
+std::vector<double> typical_light(const Engine &unhidden) {
   constexpr std::size_t count = 256;
   const std::vector<Pose> poses = typical_poses(count);
   StokesTable table;
-  Engine(scene, {.visibility = Visibility::None, .threads = 1}).evaluate(poses, table);
+  unhidden.evaluate(poses, table);
   std::vector<double> out;
   for (std::size_t b = 0; b < table.bands; ++b) {
     std::vector<double> light;
@@ -63,8 +70,6 @@ std::vector<double> typical_light(const Scene &scene) {
   }
   return out;
 }
-
-namespace {
 
 bool is_sunlight(const Stokes<ScatteringPlane> &source) {
   return source.i == 1 && source.q == 0 && source.u == 0 && source.v == 0;
@@ -79,6 +84,10 @@ bool takes_rays(const Scene &scene, const std::vector<Joint> &joints, const Ligh
 }
 
 } // namespace
+
+std::vector<double> typical_light(const Scene &scene) {
+  return typical_light(unhidden_engine(scene));
+}
 
 std::vector<double> floor_of(const LightOptions &options, const std::vector<double> &typical_i) {
   const double part = options.accuracy_floor.value_or(default_accuracy_floor(options.method));
@@ -105,12 +114,15 @@ double default_accuracy_floor(LightMethod method) { return method == LightMethod
 
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
                                                const LightOptions &options) {
+  const bool is_auto = options.method == LightMethod::Auto;
   std::vector<double> typical_i;
-  if (options.method == LightMethod::Auto || options.accuracy_floor.value_or(0) > 0)
-    typical_i = typical_light(scene);
-  if (!takes_rays(scene, joints, options))
-    return MasksLight::make(scene, std::move(joints), options, std::move(typical_i));
-  return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i);
+  std::optional<Engine> unhidden;
+  if (is_auto || options.accuracy_floor.value_or(0) > 0)
+    typical_i = typical_light(unhidden.emplace(unhidden_engine(scene)));
+  if (takes_rays(scene, joints, options))
+    return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i);
+  const double missed = is_auto ? curved_error(scene, *unhidden, typical_i) : 0;
+  return MasksLight::make(scene, std::move(joints), options, std::move(typical_i), missed);
 }
 
 Result<std::unique_ptr<LightModel>>

@@ -23,15 +23,16 @@ std::string in_words(const LightFacts &facts, const MaskQuality &masks) {
 } // namespace
 
 MasksLight::MasksLight(const Scene &of, std::vector<Joint> turning, const LightOptions &options,
-                       std::vector<double> typical_i)
+                       std::vector<double> typical_i, double curved_error)
     : LightModel(of, std::move(turning)), options_(options), typical_i_(std::move(typical_i)),
-      material_of_(material_of_slots(scene(), materials())) {}
+      curved_error_(curved_error), material_of_(material_of_slots(scene(), materials())) {}
 
 Result<std::unique_ptr<LightModel>> MasksLight::make(const Scene &scene, std::vector<Joint> joints,
                                                      const LightOptions &options,
-                                                     std::vector<double> typical_i) {
-  std::unique_ptr<MasksLight> out(
-      new MasksLight(scene, std::move(joints), options, std::move(typical_i)));
+                                                     std::vector<double> typical_i,
+                                                     double curved_error) {
+  std::unique_ptr<MasksLight> out(new MasksLight(scene, std::move(joints), options,
+                                                 std::move(typical_i), curved_error));
   UMOV_TRY(out->prepare());
   return out;
 }
@@ -45,7 +46,6 @@ Result<void> MasksLight::prepare() {
   // What masks lack, rays add: finer masks cost more to make than they save.
   with.masks = is_auto ? fast_masks : masks_for(options_.accuracy);
   if (is_auto) { // the allowance for curved elements comes on top of what sampling leaves
-    curved_error_ = curved_error(scene(), typical_i_);
     const double left = std::clamp(0.95 - curved_error_ / options_.accuracy, 0.4, 0.9);
     with.masks.refine_above = left * options_.accuracy;
   }

@@ -13,8 +13,10 @@ std::vector<double> floor_of(const LightOptions &options, const std::vector<doub
 
 /// What the engine errs by lighting curved elements by their middle: the second largest of 24
 /// random poses (95 %) of its difference from the reference, nothing hidden, in parts of the larger
-/// of I and the typical light; at least 1e-4, which is all where every facet is flat.
-double curved_error(const Scene &scene, const std::vector<double> &typical_i);
+/// of I and the typical light; at least 1e-4, which is all where every facet is flat. `unhidden` is
+/// the scene's engine without visibility.
+double curved_error(const Scene &scene, const Engine &unhidden,
+                    const std::vector<double> &typical_i);
 
 /// Each pose by rays, with light between surfaces where it is asked for.
 class RaysLight final : public LightModel {
@@ -33,13 +35,14 @@ class MasksLight final : public LightModel {
 public:
   static Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> joints,
                                                   const LightOptions &options,
-                                                  std::vector<double> typical_i);
+                                                  std::vector<double> typical_i,
+                                                  double curved_error);
   [[nodiscard]] Result<void> keep_masks() const override;
   [[nodiscard]] std::size_t mask_bytes() const override;
 
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-             std::vector<double> typical_i);
+             std::vector<double> typical_i, double curved_error);
   Result<void> prepare();
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override;
@@ -48,7 +51,7 @@ private:
 
   LightOptions options_;
   std::vector<double> typical_i_; ///< per band
-  double curved_error_ = 0;       ///< of I, in parts of it or of the typical light
+  double curved_error_;           ///< of I, in parts of it or of the typical light
   std::vector<std::uint32_t> material_of_;
   std::optional<Engine> engine_;             ///< of a body whose parts do not turn
   std::optional<ArticulatedEngine> turning_; ///< of one whose parts do

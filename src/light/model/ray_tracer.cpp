@@ -35,9 +35,11 @@ std::vector<std::uint32_t> material_of_slots(const Scene &scene,
 RayTracer::RayTracer(const Scene &scene, const std::vector<Joint> &joints,
                      IntegrationOptions options, const std::vector<std::string> &materials)
     : scene_(scene), joints_(joints), options_(std::move(options)),
-      material_of_(material_of_slots(scene, materials)), materials_(materials.size()) {
-  if (joints_.empty())
-    integrator_.emplace(scene_);
+      material_of_(material_of_slots(scene, materials)), materials_(materials.size()) {}
+
+const Integrator &RayTracer::integrator() const {
+  std::call_once(is_made_, [this] { integrator_ = std::make_unique<const Integrator>(scene_); });
+  return *integrator_;
 }
 
 /// The mesh of an object whose parts turn is another one at every pose.
@@ -74,8 +76,8 @@ bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angle
   for (const std::size_t k : which)
     chosen.push_back(poses[k]);
   std::vector<PoseResult> found;
-  if (integrator_) {
-    found = integrator_->evaluate(chosen, options_, task.threads, task.cancel);
+  if (joints_.empty()) {
+    found = integrator().evaluate(chosen, options_, task.threads, task.cancel);
   } else {
     found.resize(which.size());
     parallel_for(which.size(), task.threads, [&](std::size_t k) {
@@ -99,8 +101,8 @@ bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double
   for (std::size_t at = 0; at < direct.size() && !options_.floor_i.empty(); ++at)
     direct[at] = std::max(direct[at], options_.floor_i[at % out.bands]);
   std::vector<IndirectLight> more;
-  if (integrator_) {
-    more = integrator_->indirect(poses, direct, options_, task.threads, task.cancel);
+  if (joints_.empty()) {
+    more = integrator().indirect(poses, direct, options_, task.threads, task.cancel);
   } else {
     more.resize(poses.size());
     parallel_for(poses.size(), task.threads, [&](std::size_t k) {

@@ -1,7 +1,8 @@
 #pragma once
 // Private: the reference path as models use it.
 
-#include <optional>
+#include <memory>
+#include <mutex>
 #include <umov/light/integrator.h>
 #include <umov/light/light_model.h>
 
@@ -28,9 +29,12 @@ public:
   /// Adds the light of more than one surface to direct light in `out`; false if it was cancelled.
   [[nodiscard]] bool add_indirect(std::span<const Pose> poses, std::span<const double> angles_rad,
                                   StokesTable &out, const LightTask &task) const;
-  [[nodiscard]] bool is_convex() const { return integrator_ && integrator_->is_convex(); }
+  [[nodiscard]] bool is_convex() const { return joints_.empty() && integrator().is_convex(); }
 
 private:
+  /// Of a body whose parts do not turn; made when a pose first needs it: ray tree and elements cost
+  /// more than all poses of a job that masks light.
+  [[nodiscard]] const Integrator &integrator() const;
   [[nodiscard]] Scene turned(std::span<const double> angles_rad, std::size_t pose) const;
   void put(const PoseResult &result, std::size_t row, StokesTable &out) const;
 
@@ -39,7 +43,8 @@ private:
   IntegrationOptions options_;
   std::vector<std::uint32_t> material_of_;
   std::size_t materials_;
-  std::optional<Integrator> integrator_; ///< of a body whose parts do not turn
+  mutable std::once_flag is_made_;
+  mutable std::unique_ptr<const Integrator> integrator_;
 };
 
 } // namespace umov

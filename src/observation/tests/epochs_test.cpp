@@ -118,6 +118,45 @@ TEST(KeptEpochs, WhereTheOrbitEndsTheEpochsBeforeStay) {
   EXPECT_EQ(kept->geometry.size(), 121u);
 }
 
+TEST(KeptEpochs, TwoPassesBetweenWhichNoEpochFallsStayTwo) {
+  // Neighbours on the grid, 250 s and 850 s, both above; the object set between them.
+  const EpochSpan coarse{plus_seconds(by_day.start, 250), plus_seconds(by_day.start, 1100), 600};
+  const auto kept = keep_epochs(track_of(by_day), coarse, above_30_deg(), 1, no_cancel);
+  ASSERT_TRUE(kept);
+  ASSERT_EQ(kept->passes.size(), 2u);
+  EXPECT_EQ(kept->passes[0].id, "7-20180320T120500Z");
+  EXPECT_EQ(kept->passes[1].id, "7-20180320T121500Z");
+}
+
+TEST(KeptEpochs, AGapShorterThanTheSearchEndsThemIfAnEpochFallsIntoIt) {
+  OrbitEphemeris broken{"line", "2018-001A", 7, {}};
+  for (const auto &[from, to] : {std::pair{0.0, 303.0}, std::pair{307.0, 600.0}}) {
+    EphemerisSegment segment;
+    segment.frame = OrbitFrame::Itrs;
+    segment.interpolation = Interpolation::Linear;
+    segment.degree = 1;
+    segment.first = plus_seconds(by_day.start, from);
+    segment.last = plus_seconds(by_day.start, to);
+    for (const double s : {from, to})
+      segment.states.push_back({plus_seconds(by_day.start, s),
+                                {6378.137 + StraightLine::height_km, StraightLine::east_km(s),
+                                 StraightLine::north_km},
+                                {0, StraightLine::speed_km_s, 0}});
+    broken.segments.push_back(segment);
+  }
+  TrackRequest request = by_day.request();
+  request.orbit = Trajectory(broken);
+  const Track track = Track::make(request).value();
+  // The search looks every 20 s and misses the gap; 305 s lies in it, 310 s does not.
+  const auto met = keep_epochs(track, by_day.span(600, 5), {}, 1, no_cancel);
+  ASSERT_TRUE(met && met->stopped);
+  EXPECT_EQ(met->geometry.size(), 61u);
+  const auto missed = keep_epochs(track, by_day.span(600, 10), {}, 1, no_cancel);
+  ASSERT_TRUE(missed);
+  EXPECT_FALSE(missed->stopped);
+  EXPECT_EQ(missed->geometry.size(), 61u);
+}
+
 TEST(KeptEpochs, StopWhenCancelled) {
   const std::atomic<bool> cancel = true;
   const auto kept = keep_epochs(track_of(by_day), by_day.span(1200, 10), {}, 1, cancel);
@@ -130,9 +169,11 @@ TEST(NextPass, IsTheFirstThatTheFilterKeeps) {
   const auto next =
       find_next_pass(track_of(by_day), only, plus_seconds(by_day.start, 500), 600. / 86400);
   ASSERT_TRUE(next);
-  // 30 deg is reached at 726.8 s; the search goes in steps of 20 s from 500 s.
-  EXPECT_NEAR(seconds_between(next->first_row, by_day.start), 740, 1e-3);
-  EXPECT_NEAR(next->altitude_max.radians(), StraightLine::altitude_rad(900), 1e-6);
+  // tan 30 deg = 1000 km / hypot(east, 500 km), at 10 km/s; crossings are good to a millisecond.
+  // The top lies between steps of 20 s.
+  const double east = std::sqrt(3 * 1000. * 1000. - 500. * 500.);
+  EXPECT_NEAR(seconds_between(next->first_row, by_day.start), 900 - east / 10, 2e-3);
+  EXPECT_NEAR(next->altitude_max.radians(), StraightLine::altitude_rad(900), 0.01);
   EXPECT_FALSE(find_next_pass(track_of(by_night), {}, by_night.start, 0.01)); // never lit
 }
 
