@@ -62,6 +62,11 @@ void keep_access(const fs::path &path, int descriptor) {
 
 } // namespace
 
+bool file_exists(const fs::path &path) {
+  std::error_code unknown;
+  return fs::exists(path, unknown);
+}
+
 Result<std::string> read_file(const fs::path &path, std::size_t limit_bytes) {
   std::error_code code;
   const auto status = fs::status(path, code);

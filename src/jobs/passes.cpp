@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <mutex>
 #include <umov/core/files.h>
+#include <umov/core/locks.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/io/elements_file.h>
@@ -100,7 +100,7 @@ using Found = std::optional<Result<std::vector<SitePass>>>;
 std::vector<Found> search_all(const PassesRequest &request, const std::vector<Trajectory> &orbits,
                               const PassModels &models, unsigned threads, const Monitor &monitor) {
   std::vector<Found> out(orbits.size());
-  std::mutex lock;
+  Mutex lock;
   std::size_t done = 0;
   parallel_for(orbits.size(), threads, [&](std::size_t i) {
     if (monitor.is_cancelled())
@@ -112,7 +112,7 @@ std::vector<Found> search_all(const PassesRequest &request, const std::vector<Tr
                                pass);
       };
     out[i] = find_passes(orbits[i], request.site, request.start, request.stop, search);
-    const std::scoped_lock guard(lock);
+    const WriteLock guard(lock);
     monitor.advance("objects", ++done, orbits.size());
   });
   return out;

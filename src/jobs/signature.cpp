@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/core/files.h>
 #include <umov/core/parallel.h>
 
 namespace umov::jobs {
@@ -110,8 +111,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
       object,
       load_object(scenario, 0, {.allow_old_elements = true, .source_is_sun = is_sun}, diagnostics));
   const LightOptions light = light_asked_for(scenario, request, source, options);
-  std::error_code unknown;
-  const bool has_file = std::filesystem::exists(request.mask_file, unknown);
+  const bool has_file = file_exists(request.mask_file);
   monitor.tell("preparing the scene ...");
   const PartAngles parts(scenario.objects.front().parts, is_sun, scenario.file, diagnostics);
   UMOV_ASSIGN(model, light_of(object.scene, parts.joints(), request, light));

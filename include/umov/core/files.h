@@ -9,6 +9,9 @@
 
 namespace umov {
 
+/// Whether something stands at a path; false also where that cannot be told.
+[[nodiscard]] bool file_exists(const std::filesystem::path &path);
+
 /// Contents of a file; a missing one, a folder or one larger than `limit_bytes` is BadInput and is
 /// refused before anything is read. Device where reading breaks off before the end.
 Result<std::string> read_file(const std::filesystem::path &path,

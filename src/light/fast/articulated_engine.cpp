@@ -138,9 +138,9 @@ struct ArticulatedEngine::State {
 
   void evaluate(const Pose &pose, const std::vector<double> &angles, Workspace &work,
                 std::size_t row, StokesTable &out) const;
-  [[nodiscard]] std::vector<LazyMasks::Lock> hold_masks(std::span<const Pose> poses,
-                                                        std::span<const double> angles_rad,
-                                                        unsigned threads) const;
+  [[nodiscard]] std::vector<ReadLock> hold_masks(std::span<const Pose> poses,
+                                                 std::span<const double> angles_rad,
+                                                 unsigned threads) const;
   void light_parts(const std::vector<PartMotion> &motions, std::size_t row, Workspace &work,
                    StokesTable &out) const;
   void hide(std::size_t which, const std::vector<PartMotion> &to_part, Workspace &work) const;
@@ -319,9 +319,9 @@ void ArticulatedEngine::State::evaluate(const Pose &pose, const std::vector<doub
 }
 
 /// Masks of all parts, in the directions that these see.
-std::vector<LazyMasks::Lock>
-ArticulatedEngine::State::hold_masks(std::span<const Pose> poses,
-                                     std::span<const double> angles_rad, unsigned threads) const {
+std::vector<ReadLock> ArticulatedEngine::State::hold_masks(std::span<const Pose> poses,
+                                                           std::span<const double> angles_rad,
+                                                           unsigned threads) const {
   std::vector<std::vector<Pose>> by_part(parts.size());
   std::vector<double> angles(joints.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {
@@ -332,7 +332,7 @@ ArticulatedEngine::State::hold_masks(std::span<const Pose> poses,
     for (std::size_t p = 0; p < parts.size(); ++p)
       by_part[p].push_back(seen_from(motions[motion_of[p]], poses[k]));
   }
-  std::vector<LazyMasks::Lock> out;
+  std::vector<ReadLock> out;
   for (std::size_t p = 0; p < parts.size(); ++p)
     out.push_back(parts[p].engine->hold_masks(by_part[p], threads));
   return out;
@@ -418,7 +418,7 @@ bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const do
   const std::size_t materials =
       task.has_materials ? *std::max_element(material_of.begin(), material_of.end()) + 1 : 0;
   out.material_i.assign(poses.size() * materials * s.bands, 0);
-  const std::vector<LazyMasks::Lock> held = s.hold_masks(poses, angles_rad, task.threads);
+  const std::vector<ReadLock> held = s.hold_masks(poses, angles_rad, task.threads);
   constexpr std::size_t block = 64;
   parallel_for((poses.size() + block - 1) / block, task.threads, [&](std::size_t begin) {
     State::Workspace work;

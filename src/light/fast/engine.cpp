@@ -63,7 +63,7 @@ void Engine::State::for_each(std::span<const Pose> poses, unsigned threads,
     order = order_for_masks(poses, directions, masks->bytes() / directions);
   } else
     std::iota(order.begin(), order.end(), 0u);
-  const LazyMasks::Lock held = hold_masks(poses, threads);
+  const ReadLock held = hold_masks(poses, threads);
   const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(threads)) + 1,
                                       poses_per_task_min, poses_per_task_max);
   parallel_for((poses.size() + size - 1) / size, threads, [&](std::size_t task) {
@@ -123,8 +123,8 @@ void Engine::State::take_masks(std::optional<MaskStore> ready) {
   facts.mask_bytes = masks->bytes();
 }
 
-LazyMasks::Lock Engine::State::hold_masks(std::span<const Pose> poses, unsigned threads) const {
-  return masks ? masks->ensure(poses, threads) : LazyMasks::Lock();
+ReadLock Engine::State::hold_masks(std::span<const Pose> poses, unsigned threads) const {
+  return masks ? masks->ensure(poses, threads) : ReadLock();
 }
 
 std::uint64_t Engine::State::key_of_masks() const {

@@ -23,8 +23,13 @@ template <class T> struct HugePageAllocator {
     const std::size_t bytes = count * sizeof(T);
     const std::size_t align = bytes >= page ? page : 64;
     void *p = std::aligned_alloc(align, (bytes + align - 1) / align * align);
-    if (p == nullptr)
+    if (p == nullptr) {
+#ifdef __cpp_exceptions
       throw std::bad_alloc();
+#else
+      std::abort();
+#endif
+    }
 #if defined(__linux__)
     if (bytes >= page)
       madvise(p, (bytes + align - 1) / align * align, MADV_HUGEPAGE); // a wish: may be refused

@@ -2,7 +2,6 @@
 
 #include "light/fast/octahedron.h"
 
-#include <mutex>
 #include <umov/core/parallel.h>
 
 namespace umov {
@@ -63,22 +62,22 @@ void LazyMasks::trace(const std::vector<std::uint32_t> &small,
   is_complete_ = missing(false).empty() && missing(true).empty();
 }
 
-LazyMasks::Lock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads) {
+ReadLock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads) {
   if (is_complete_)
-    return Lock(mutex_);
+    return ReadLock(mutex_);
   for (;;) {
     {
-      Lock lock(mutex_);
+      ReadLock lock(mutex_);
       if (missing(poses, false, threads).empty() && missing(poses, true, threads).empty())
         return lock;
     }
-    const std::unique_lock lock(mutex_);
+    const WriteLock lock(mutex_);
     trace(missing(poses, false, threads), missing(poses, true, threads), threads);
   }
 }
 
 void LazyMasks::ensure_all(unsigned threads) {
-  const std::unique_lock lock(mutex_);
+  const WriteLock lock(mutex_);
   trace(missing(false), missing(true), threads);
 }
 

@@ -4,7 +4,7 @@
 #include "light/fast/masks.h"
 
 #include <atomic>
-#include <shared_mutex>
+#include <umov/core/locks.h>
 #include <umov/scene/pose.h>
 
 namespace umov {
@@ -16,9 +16,8 @@ public:
   /// `known`: empty_masks, or what a file held.
   LazyMasks(MaskStore known, MaskTracer tracer);
 
-  using Lock = std::shared_lock<std::shared_mutex>;
   /// Traces what poses lack. As long as the lock is held `view` stays as it is.
-  [[nodiscard]] Lock ensure(std::span<const Pose> poses, unsigned threads);
+  [[nodiscard]] ReadLock ensure(std::span<const Pose> poses, unsigned threads);
   void ensure_all(unsigned threads);
 
   /// What the loops read: it holds for poses that were ensured, while their lock is held.
@@ -28,7 +27,7 @@ public:
   [[nodiscard]] bool has_grown() const { return has_grown_; }
   /// Runs `body(const MaskStore &)` while nobody changes it.
   template <class Body> auto read(const Body &body) const {
-    const Lock lock(mutex_);
+    const ReadLock lock(mutex_);
     return body(store_);
   }
 
@@ -42,7 +41,7 @@ private:
   MaskStore store_;
   MaskTracer tracer_;
   backend::Masks view_;
-  mutable std::shared_mutex mutex_;
+  mutable Mutex mutex_;
   std::atomic<bool> is_complete_{false}, has_grown_{false};
 };
 

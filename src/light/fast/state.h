@@ -87,7 +87,7 @@ struct Engine::State {
 
   [[nodiscard]] const backend::Masks *hiding() const { return masks ? &masks->view() : nullptr; }
   /// Masks for these poses, as long as what is returned is held.
-  [[nodiscard]] LazyMasks::Lock hold_masks(std::span<const Pose> poses, unsigned threads) const;
+  [[nodiscard]] ReadLock hold_masks(std::span<const Pose> poses, unsigned threads) const;
   [[nodiscard]] std::uint64_t key_of_masks() const;
   void keep_masks() const;
   [[nodiscard]] std::size_t bands() const { return scene.bands.size(); }

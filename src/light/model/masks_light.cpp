@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <fmt/format.h>
+#include <umov/core/files.h>
 
 namespace umov {
 namespace {
@@ -31,8 +31,8 @@ Result<std::unique_ptr<LightModel>> MasksLight::make(const Scene &scene, std::ve
                                                      const LightOptions &options,
                                                      std::vector<double> typical_i,
                                                      double curved_error) {
-  std::unique_ptr<MasksLight> out(new MasksLight(scene, std::move(joints), options,
-                                                 std::move(typical_i), curved_error));
+  std::unique_ptr<MasksLight> out(
+      new MasksLight(scene, std::move(joints), options, std::move(typical_i), curved_error));
   UMOV_TRY(out->prepare());
   return out;
 }
@@ -54,8 +54,7 @@ Result<void> MasksLight::prepare() {
   with.mask_cache = options_.mask_file.empty() ? options_.mask_cache : "";
   with.q_part = 1; // Q in parts of I, to the accuracy of I
   with.floor_i = facts_.floor_i;
-  if (joints().empty() && !options_.mask_file.empty() &&
-      std::filesystem::exists(options_.mask_file)) {
+  if (joints().empty() && !options_.mask_file.empty() && file_exists(options_.mask_file)) {
     UMOV_ASSIGN(read, Engine::with_masks(options_.mask_file, scene(), with));
     engine_.emplace(std::move(read));
   } else if (joints().empty()) {

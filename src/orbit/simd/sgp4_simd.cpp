@@ -1,5 +1,8 @@
 // SGP4 over lanes, for each instruction set of the processor family, chosen when the program runs.
 
+#ifdef __wasm__
+#define HWY_COMPILE_ONLY_SCALAR // Highway 1.0.3 has no doubles there
+#endif
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "orbit/simd/sgp4_simd.cpp"
 #include <hwy/foreach_target.h>

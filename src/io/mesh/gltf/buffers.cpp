@@ -223,10 +223,10 @@ Result<Accessor> Document::read_accessor(std::size_t i) {
   out.count_ = count;
   constexpr std::array<std::string_view, 4> kinds{"SCALAR", "VEC2", "VEC3", "VEC4"};
   const std::string kind = json["type"].is_string() ? json["type"].get<std::string>() : "";
-  const auto *const found = std::find(kinds.begin(), kinds.end(), kind);
-  if (found == kinds.end())
+  const auto at = std::find(kinds.begin(), kinds.end(), kind) - kinds.begin();
+  if (at == std::ssize(kinds))
     return bad(place + ".type", "\"" + clean_name(kind) + "\"", "SCALAR, VEC2, VEC3 or VEC4");
-  out.components_ = static_cast<std::size_t>(found - kinds.begin()) + 1;
+  out.components_ = static_cast<std::size_t>(at) + 1;
   out.is_normalized_ = json.contains("normalized") && json["normalized"].is_boolean() &&
                        json["normalized"].get<bool>();
   UMOV_ASSIGN(run_of_values,
