@@ -82,8 +82,7 @@ GridPasses find_on_grid(const TrackRequest &track, const std::vector<Epoch<Utc>>
   };
   GridPasses out{{}, {}, times.size()};
   for (std::size_t from = 0; from < times.size();) {
-    auto found =
-        find_pass_spans(track.orbit, track.site, times[from], times.back(), altitude_min);
+    auto found = find_pass_spans(track.orbit, track.site, times[from], times.back(), altitude_min);
     for (const PassSpan &span : found.spans)
       out.passes.push_back({span, std::max(from, index(plus_seconds(span.rise, -slack_s))),
                             index(plus_seconds(span.set, slack_s))});
@@ -152,8 +151,7 @@ void add_pass(KeptEpochs &out, const Track &track, const GridPass &pass,
   if (out.geometry.size() == before)
     return;
   const auto last = std::find_if(grid.rbegin(), grid.rend(), above);
-  out.passes.push_back(
-      describe_pass(track, pass.span, first->geometry.time, last->geometry.time));
+  out.passes.push_back(describe_pass(track, pass.span, first->geometry.time, last->geometry.time));
   Pass &described = out.passes.back();
   described.is_open_at_start = pass.first == 0 && first == grid.begin();
   described.is_open_at_end = pass.behind == behind && last == grid.rbegin();

@@ -14,10 +14,10 @@ namespace umov {
 
 /// When an object stands above an altitude, within a span of time.
 struct PassSpan {
-  Epoch<Utc> rise{}, set{};  ///< where it crosses the altitude, to 1 ms
-  Epoch<Utc> culmination{};  ///< highest point within the span, to 0.05 s
-  bool is_rise_cut = false,  ///< above already when the span begins
-      is_set_cut = false;    ///< above still when it ends
+  Epoch<Utc> rise{}, set{}; ///< where it crosses the altitude, to 1 ms
+  Epoch<Utc> culmination{}; ///< highest point within the span, to 0.05 s
+  bool is_rise_cut = false, ///< above already when the span begins
+      is_set_cut = false;   ///< above still when it ends
 };
 
 /// Where an orbit can no longer be had.

@@ -31,8 +31,8 @@ Result<std::unique_ptr<LightModel>> MasksLight::make(const Scene &scene, std::ve
                                                      const LightOptions &options,
                                                      std::vector<double> typical_i,
                                                      double curved_error) {
-  std::unique_ptr<MasksLight> out(new MasksLight(scene, std::move(joints), options,
-                                                 std::move(typical_i), curved_error));
+  std::unique_ptr<MasksLight> out(
+      new MasksLight(scene, std::move(joints), options, std::move(typical_i), curved_error));
   UMOV_TRY(out->prepare());
   return out;
 }

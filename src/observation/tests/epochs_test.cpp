@@ -138,10 +138,10 @@ TEST(KeptEpochs, AGapShorterThanTheSearchEndsThemIfAnEpochFallsIntoIt) {
     segment.first = plus_seconds(by_day.start, from);
     segment.last = plus_seconds(by_day.start, to);
     for (const double s : {from, to})
-      segment.states.push_back({plus_seconds(by_day.start, s),
-                                {6378.137 + StraightLine::height_km, StraightLine::east_km(s),
-                                 StraightLine::north_km},
-                                {0, StraightLine::speed_km_s, 0}});
+      segment.states.push_back(
+          {plus_seconds(by_day.start, s),
+           {6378.137 + StraightLine::height_km, StraightLine::east_km(s), StraightLine::north_km},
+           {0, StraightLine::speed_km_s, 0}});
     broken.segments.push_back(segment);
   }
   TrackRequest request = by_day.request();
