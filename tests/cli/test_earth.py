@@ -9,7 +9,7 @@ from astropy.coordinates import GCRS, ITRS, CartesianRepresentation
 from astropy.time import Time
 from astropy.utils import iers
 
-from conftest import ROOT, read_csv
+from conftest import read_csv
 
 FINALS = Path(astropy_iers_data.__file__).parent / "data/finals2000A.all"
 POINT_KM = (20000.0, 30000.0, 10000.0)
