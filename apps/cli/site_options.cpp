@@ -13,6 +13,12 @@ void add_site(CLI::App &verb, SiteOptions &o) {
   o.altitude = verb.add_option("--alt-m", o.altitude_m, "Height above the WGS 84 ellipsoid");
   for (auto *one : {o.latitude, o.longitude, o.altitude})
     one->excludes(site);
+  add_earth_orientation(verb, o.earth_orientation);
+}
+
+void add_earth_orientation(CLI::App &verb, std::string &file) {
+  verb.add_option("--eop", file,
+                  "Table of Earth orientation (IERS finals2000A) in place of the compiled-in one");
 }
 
 Result<Site> site_of(const SiteOptions &o) {

@@ -5,13 +5,16 @@
 
 namespace umov::cli {
 
-/// Where the observer stands: a site by name or by three numbers.
+/// Where the observer stands: a site by name or by three numbers; how the Earth turns under it.
 struct SiteOptions {
-  std::string site;
+  std::string site, earth_orientation;
   double latitude_deg = 0, longitude_deg = 0, altitude_m = 0;
   CLI::Option *latitude = nullptr, *longitude = nullptr, *altitude = nullptr;
 };
 void add_site(CLI::App &verb, SiteOptions &options);
+
+/// A table of Earth orientation in place of the compiled-in one.
+void add_earth_orientation(CLI::App &verb, std::string &file);
 
 /// Usage where nothing, or not all of it, is said.
 Result<Site> site_of(const SiteOptions &options);

@@ -18,7 +18,7 @@
 #include <umov/io/scenario.h>
 #include <umov/io/sites.h>
 #include <umov/surface/distribution.h>
-#include <umov/time/epoch.h>
+#include <umov/time/earth_orientation.h>
 
 namespace umov::cli {
 namespace {
@@ -60,17 +60,21 @@ void add_library(std::vector<Finding> &out) {
 }
 
 void add_tables_of_time(std::vector<Finding> &out) {
-  const EarthTables tables = earth_tables();
   // Known answers through the whole of time and Earth orientation (IERS: UT1-UTC on 2018-01-21).
   const auto time = utc_from_iso("2018-01-21T00:00:00Z");
   const bool is_fine =
       time && earth_orientation(*time).is_covered && to_iso(*time) == "2018-01-21T00:00:00.000Z";
   const std::string broken = is_fine ? "" : "; broken: build again";
-  out.push_back({is_fine, "leap seconds",
-                 fmt::format("until {}{}", day_of(tables.leap_seconds_expire), broken)});
+  out.push_back(
+      {is_fine, "leap seconds", fmt::format("until {}{}", day_of(leap_seconds_expire()), broken)});
+  const EarthOrientationTable table = earth_orientation_table();
+  const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+  constexpr double unix_mjd = 40587;
+  const double age_d = unix_mjd + now.count() / 86400 - mjd(table.measured_last);
   out.push_back({is_fine, "Earth orientation",
-                 fmt::format("{} to {}{}", day_of(tables.orientation_first),
-                             day_of(tables.orientation_last), broken)});
+                 fmt::format("{} to {}, measured until {} ({:.0f} d ago), then predicted{}",
+                             day_of(table.first), day_of(table.last), day_of(table.measured_last),
+                             std::max(age_d, 0.0), broken)});
 }
 
 void add_formats(std::vector<Finding> &out) {

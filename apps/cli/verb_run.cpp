@@ -1,4 +1,5 @@
 #include "job_console.h"
+#include "site_options.h"
 #include "verbs.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace umov::cli {
 namespace {
 
 struct RunOptions {
-  std::string scenario, output, device = "auto";
+  std::string scenario, output, earth_orientation, device = "auto";
   std::vector<std::string> overrides;
   std::int64_t seed = -1;
   double accuracy = 0;
@@ -28,6 +29,8 @@ Result<Scenario> read_with_options(const RunOptions &o) {
   UMOV_ASSIGN(scenario, read_scenario(o.scenario, overrides));
   if (!o.output.empty())
     scenario.output_dir = o.output;
+  if (!o.earth_orientation.empty())
+    scenario.earth_orientation = o.earth_orientation;
   UMOV_TRY(check_complete_for_run(scenario));
   return scenario;
 }
@@ -90,6 +93,7 @@ void add_run(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--device", o->device,
                    fmt::format("{} or auto", fmt::join(device_names(), ", ")))
       ->capture_default_str();
+  add_earth_orientation(*verb, o->earth_orientation);
   verb->add_flag("--dry-run", o->dry_run, "Read and check everything, compute nothing");
   verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
   verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum,

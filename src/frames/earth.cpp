@@ -1,6 +1,7 @@
 #include <umov/frames/earth.h>
 
 #include <erfa.h>
+#include <umov/time/earth_orientation.h>
 
 namespace umov {
 namespace {

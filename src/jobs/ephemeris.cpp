@@ -9,6 +9,7 @@
 #include <umov/core/text.h>
 #include <umov/io/trajectory_file.h>
 #include <umov/observation/epochs.h>
+#include <umov/time/earth_orientation.h>
 
 namespace umov::jobs {
 namespace {

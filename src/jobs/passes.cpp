@@ -12,6 +12,7 @@
 #include <umov/io/elements_file.h>
 #include <umov/io/trajectory_file.h>
 #include <umov/orbit/select.h>
+#include <umov/time/earth_orientation.h>
 
 namespace umov::jobs {
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/text.h>
+#include <umov/time/earth_orientation.h>
 
 namespace umov::jobs {
 namespace {
@@ -124,7 +125,7 @@ Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptio
   }
   if (constexpr double long_step_s = 300; scenario.time->step_s > long_step_s)
     diagnostics.warn(
-        fmt::format("step_s = {:g} is long against a pass: passes may be missed or joined",
+        fmt::format("step_s = {:g} is long against a pass: passes between two epochs are left out",
                     scenario.time->step_s));
   warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);
   warn_if_outside_eop(scenario.time->start, scenario.time->stop, diagnostics);

@@ -59,7 +59,8 @@ struct Scenario {
   std::uint64_t seed = 0;
   std::optional<Site> observer;
   std::optional<ScenarioTime> time;
-  std::vector<ScenarioObject> objects;           ///< at least one
+  std::filesystem::path earth_orientation; ///< table in place of the compiled-in one; empty: that
+  std::vector<ScenarioObject> objects;     ///< at least one
   std::map<std::string, Material> own_materials; ///< the [material.NAME] tables
   std::vector<std::string> band_set{"paper_rgb"};
   std::vector<Band> bands;

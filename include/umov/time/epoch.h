@@ -44,24 +44,7 @@ double clock_days_between(Epoch<Utc> a, Epoch<Utc> b);
 /// Warns once if a time is past the leap-second table's expiry (`what` names its place).
 void warn_if_beyond_leap_seconds(Epoch<Utc> time, Diagnostics &diagnostics);
 
-/// Earth orientation at a time: UT1-UTC and polar motion (IERS finals2000A, compiled in).
-struct EarthOrientation {
-  double dut1_s = 0;
-  double x_p_rad = 0, y_p_rad = 0;
-  bool is_covered = true; ///< false: outside the table; zeros, |UT1-UTC| < 0.9 s
-};
-/// Linear between the days of the table, the jump of a leap second apart.
-EarthOrientation earth_orientation(Epoch<Utc> time);
-
-/// Warns once if a span leaves the Earth orientation table, with the size of the error.
-void warn_if_outside_eop(Epoch<Utc> first, Epoch<Utc> last, Diagnostics &diagnostics);
-
-/// How far the tables reach that are compiled in.
-struct EarthTables {
-  Epoch<Utc> orientation_first, orientation_last;
-  Epoch<Utc> leap_seconds_expire; ///< after it one more leap second may have come
-};
-/// The spans of the tables of Earth orientation and leap seconds in this build.
-EarthTables earth_tables();
+/// Where the table of leap seconds ends that is compiled in: after it one more may have come.
+Epoch<Utc> leap_seconds_expire();
 
 } // namespace umov

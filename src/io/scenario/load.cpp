@@ -9,6 +9,7 @@
 #include <umov/io/mesh_file.h>
 #include <umov/io/trajectory_file.h>
 #include <umov/shape/topology.h>
+#include <umov/time/earth_orientation.h>
 
 namespace umov {
 namespace {
@@ -40,6 +41,14 @@ struct Named {
     return umov::place(scenario, fmt::format("object.{}.{}", number, key));
   }
 };
+
+/// For the whole process, as Earth orientation is.
+Result<void> load_earth(const Scenario &scenario, LoadedObject &out) {
+  if (scenario.earth_orientation.empty())
+    return {};
+  UMOV_ASSIGN(text, read_input(scenario.earth_orientation, place(scenario, "earth.eop"), out));
+  return use_earth_orientation(text, scenario.earth_orientation.string());
+}
 
 Result<void> load_orbit(const Named &of, const LoadOptions &options, Diagnostics &diagnostics,
                         LoadedObject &out) {
@@ -167,6 +176,8 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
                                  const LoadOptions &options, Diagnostics &diagnostics) {
   LoadedObject out;
   const Named of{scenario, scenario.objects[which], which};
+  if (which == 0)
+    UMOV_TRY(load_earth(scenario, out));
   UMOV_TRY(load_orbit(of, options, diagnostics, out));
   UMOV_TRY(read_input(of.object.mesh.file, of.place("mesh"), out));
   UMOV_ASSIGN(read, read_mesh(of.object.mesh.file,

@@ -106,6 +106,8 @@ std::string locked_scenario(const Scenario &s) {
   std::string out = "# Every default filled in; running this file repeats the run.\n";
   out += fmt::format("umov = 1\ntitle = {}\nseed = {}\n", quoted(s.title), s.seed);
   out += observer_and_time(s);
+  if (!s.earth_orientation.empty())
+    out += fmt::format("\n[earth]\neop = {}\n", absolute_path(s.earth_orientation));
   for (const ScenarioObject &one : s.objects)
     out += object(one);
   out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));

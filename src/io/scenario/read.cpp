@@ -87,6 +87,16 @@ Result<void> read_observer(const Node &top, Scenario &out) {
   return {};
 }
 
+Result<void> read_earth(const Node &top, const fs::path &folder, Scenario &out) {
+  if (!top.has("earth"))
+    return {};
+  UMOV_ASSIGN(node, top.child("earth"));
+  if (node.has("eop"))
+    out.earth_orientation = folder / node.text("eop", "");
+  out.places["earth.eop"] = node.where("eop");
+  return {};
+}
+
 Result<void> read_time(const Node &top, Scenario &out) {
   if (!top.has("time"))
     return {};
@@ -397,6 +407,7 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   out.seed = static_cast<std::uint64_t>(seed);
   out.title = top.text("title", "");
   UMOV_TRY(read_observer(top, out));
+  UMOV_TRY(read_earth(top, path.parent_path(), out));
   UMOV_TRY(read_time(top, out));
   UMOV_TRY(read_bands(top, out));
   UMOV_TRY(read_render(top, out));

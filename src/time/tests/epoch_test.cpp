@@ -52,18 +52,6 @@ TEST(Epoch, ElementSetEpochs) {
   EXPECT_NEAR(clock_days_between(at("2017-01-01T12:00:00Z"), at("2016-12-31T12:00:00Z")), 1, 1e-12);
 }
 
-TEST(EarthOrientation, GivesTheIersTable) {
-  // finals2000A, MJD 60309 (2023-12-31): x .138971, y .201880 arcsec, UT1-UTC .0089604 s.
-  const EarthOrientation eo = earth_orientation(at("2023-12-31T00:00:00Z"));
-  EXPECT_TRUE(eo.is_covered);
-  EXPECT_NEAR(eo.dut1_s, .0089604, 1e-12);
-  EXPECT_NEAR(eo.x_p_rad * 206264.806247, .138971, 1e-9);
-  // Up to the leap second at the end of 2016 UT1-UTC stays near -.41; after it, near +.59.
-  EXPECT_LT(earth_orientation(at("2016-12-31T23:59:00Z")).dut1_s, -0.4);
-  EXPECT_GT(earth_orientation(at("2017-01-01T00:00:00Z")).dut1_s, 0.5);
-  EXPECT_FALSE(earth_orientation(at("2030-01-01T00:00:00Z")).is_covered);
-}
-
 TEST(LeapSeconds, WarnPastTheTable) {
   Diagnostics quiet, warned;
   warn_if_beyond_leap_seconds(at("2026-01-01T00:00:00Z"), quiet);
