@@ -19,7 +19,8 @@ Result<PassModels> PassModels::of_body(const PassModel &wanted, Diagnostics &dia
   } else {
     UMOV_ASSIGN(scene, make_scene(make_chamfered_cube(wanted.size_m, 0.1 * wanted.size_m),
                                   NormalMode::Flat, bands, {material}, {material}, diagnostics));
-    UMOV_ASSIGN(cube, PassLight::of_body(scene, TwoAxisLaw{}, LightMethod::Auto));
+    UMOV_ASSIGN(cube,
+                PassLight::of_body({std::move(scene), TwoAxisLaw{}, {}}, pass_light_options()));
     out.other_ = cube;
   }
   out.description_ = fmt::format("{} of {:g} m, {}, {}", is_sphere ? "sphere" : "cube",
@@ -27,18 +28,35 @@ Result<PassModels> PassModels::of_body(const PassModel &wanted, Diagnostics &dia
   return out;
 }
 
-Result<PassModels> PassModels::of_scene(const PassModel &wanted, Diagnostics &diagnostics) {
+namespace {
+
+/// [render] of a scenario; where it asks for no accuracy, that of ranges over a pass.
+LightOptions options_of(const Scenario &scene, const JobOptions &job) {
+  LightOptions out = pass_light_options();
+  if (scene.places.contains("render.accuracy"))
+    out = light_options(scene, job);
+  out.method = scene.light.method;
+  out.accuracy_floor = scene.light.accuracy_floor;
+  out.bounces = scene.light.bounces;
+  out.threads = job.threads;
+  out.mask_cache = job.mask_cache;
+  return out;
+}
+
+} // namespace
+
+Result<PassModels> PassModels::of_scene(const PassModel &wanted, const JobOptions &options,
+                                        Diagnostics &diagnostics) {
   PassModels out;
   Scenario scene = *wanted.scene;
   scene.time.reset(); // orbits come from the file of the passes
   for (std::size_t k = 0; k < scene.objects.size(); ++k) {
-    if (!scene.objects[k].parts.empty())
-      diagnostics.warn("parts stand as in the mesh: passes do not turn them", {scene.file});
     const int norad = scene.objects[k].orbit ? scene.objects[k].orbit->norad : 0;
     UMOV_ASSIGN(object, load_object(scene, k, {.allow_old_elements = true}, diagnostics));
-    UMOV_ASSIGN(light, PassLight::of_body(object.scene, object.attitude, scene.light.method,
-                                          scene.light.bounces));
-    if (norad > 0 && scene.objects.size() > 1)
+    UMOV_ASSIGN(light, PassLight::of_body({std::move(object.scene), object.attitude,
+                                           scene.objects[k].parts, scene.has_solar_disk},
+                                          options_of(scene, options)));
+    if (norad > 0)
       out.by_number_.insert_or_assign(norad, light);
     else
       out.other_ = light;
@@ -49,14 +67,21 @@ Result<PassModels> PassModels::of_scene(const PassModel &wanted, Diagnostics &di
   return out;
 }
 
-Result<PassModels> PassModels::make(const PassModel &wanted, Diagnostics &diagnostics) {
+Result<PassModels> PassModels::make(const PassModel &wanted, const JobOptions &options,
+                                    Diagnostics &diagnostics) {
   if (wanted.body != PassModel::Body::None)
     return of_body(wanted, diagnostics);
   if (wanted.scene)
-    return of_scene(wanted, diagnostics);
+    return of_scene(wanted, options, diagnostics);
   if (!wanted.band.empty())
     return fail(ErrorCode::Usage, "--band needs --scene or --model");
   return PassModels{};
+}
+
+Result<void> PassModels::keep_masks() const {
+  for (const auto &[norad, light] : by_number_)
+    UMOV_TRY(light.keep_masks());
+  return other_ ? other_->keep_masks() : Result<void>();
 }
 
 const PassLight *PassModels::of(int norad) const {

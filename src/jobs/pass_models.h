@@ -11,15 +11,20 @@ namespace umov::jobs {
 /// Objects of a scenario by their catalogue number, and one model for all others.
 class PassModels {
 public:
-  static Result<PassModels> make(const PassModel &wanted, Diagnostics &diagnostics);
+  static Result<PassModels> make(const PassModel &wanted, const JobOptions &options,
+                                 Diagnostics &diagnostics);
   /// Null: nothing is said about that object's light.
   [[nodiscard]] const PassLight *of(int norad) const;
+  /// There is light for some objects; those without are to be told.
+  [[nodiscard]] bool is_by_number() const { return !by_number_.empty() && !other_; }
+  [[nodiscard]] Result<void> keep_masks() const;
   [[nodiscard]] std::size_t band() const { return band_; }
   [[nodiscard]] const std::string &description() const { return description_; }
 
 private:
   static Result<PassModels> of_body(const PassModel &wanted, Diagnostics &diagnostics);
-  static Result<PassModels> of_scene(const PassModel &wanted, Diagnostics &diagnostics);
+  static Result<PassModels> of_scene(const PassModel &wanted, const JobOptions &options,
+                                     Diagnostics &diagnostics);
 
   std::map<int, PassLight> by_number_;
   std::optional<PassLight> other_;

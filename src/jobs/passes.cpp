@@ -96,7 +96,7 @@ Result<std::vector<Trajectory>> read_orbits(const PassesRequest &request, const 
 }
 
 /// Of one object; empty where the job was stopped before its turn.
-using Found = std::optional<Result<std::vector<SitePass>>>;
+using Found = std::optional<Result<SitePasses>>;
 
 std::vector<Found> search_all(const PassesRequest &request, const std::vector<Trajectory> &orbits,
                               const PassModels &models, unsigned threads, const Monitor &monitor) {
@@ -119,6 +119,34 @@ std::vector<Found> search_all(const PassesRequest &request, const std::vector<Tr
   return out;
 }
 
+/// A scene that names its objects by number says nothing of others.
+void warn_of_unknown(const std::vector<Trajectory> &orbits, const PassModels &models,
+                     Diagnostics &diagnostics) {
+  if (!models.is_by_number())
+    return;
+  std::size_t count = 0;
+  std::string first;
+  for (const Trajectory &orbit : orbits)
+    if (models.of(orbit.norad_cat_id()) == nullptr && count++ == 0)
+      first = orbit.id();
+  if (count > 0)
+    diagnostics.warn(
+        fmt::format("--scene has no object of norad {}{}: no magnitudes. An [[object]] "
+                    "without orbit.norad stands for all others.",
+                    first, count > 1 ? fmt::format(" and {} more", count - 1) : ""));
+}
+
+/// What was not searched of one object's span, or "".
+std::string problem_of(const Result<SitePasses> &found) {
+  if (!found)
+    return found.error().message;
+  std::string out = found->end ? found->end->error.message : "";
+  for (const OrbitGap &gap : found->gaps)
+    out += fmt::format("{}the ephemeris does not cover {} to {}", out.empty() ? "" : "; ",
+                       to_iso(gap.last), to_iso(gap.next));
+  return out;
+}
+
 struct Tally {
   std::size_t searched = 0, failed = 0;
 };
@@ -132,17 +160,17 @@ Tally gather(const PassesRequest &request, std::vector<Found> &&all, PassesResul
     if (!all[i])
       continue;
     ++tally.searched;
-    if (!*all[i]) {
+    if (const std::string problem = problem_of(*all[i]); !problem.empty())
       if (tally.failed++ < told_max)
-        diagnostics.warn(all[i]->error().message);
+        diagnostics.warn(problem);
+    if (!*all[i])
       continue;
-    }
-    for (SitePass &pass : **all[i])
+    for (SitePass &pass : all[i]->value().passes)
       if (!request.is_visible_only || pass.visible_s > 0)
         out.found.push_back({i, std::move(pass)});
   }
   if (tally.failed > told_max)
-    diagnostics.warn(fmt::format("{} more objects failed", tally.failed - told_max));
+    diagnostics.warn(fmt::format("{} more objects like these", tally.failed - told_max));
   std::stable_sort(out.found.begin(), out.found.end(),
                    [](const ObjectPass &a, const ObjectPass &b) {
                      return seconds_between(a.pass.rise.time, b.pass.rise.time) < 0;
@@ -161,17 +189,19 @@ Result<PassesResult> passes(const PassesRequest &request, const JobOptions &opti
   out.orbits = std::move(orbits);
   warn_if_beyond_leap_seconds(request.stop, diagnostics);
   warn_if_outside_eop(request.start, request.stop, diagnostics);
-  UMOV_ASSIGN(models, PassModels::make(request.model, diagnostics));
+  UMOV_ASSIGN(models, PassModels::make(request.model, options, diagnostics));
   out.model = models.description();
+  warn_of_unknown(out.orbits, models, diagnostics);
   const Tally tally = gather(
       request, search_all(request, out.orbits, models, options.threads, monitor), out, diagnostics);
+  UMOV_TRY(models.keep_masks());
   if (tally.searched < out.orbits.size())
     out.stopped = Error{ErrorCode::Interrupted,
                         fmt::format("stopped by the user after {} of {} objects", tally.searched,
                                     out.orbits.size()),
                         {}};
-  else if (tally.failed == out.orbits.size())
-    return fail(ErrorCode::Physics, "the orbit of every object ends within the span",
+  else if (tally.failed == out.orbits.size() && out.found.empty())
+    return fail(ErrorCode::Physics, "no pass before the orbit of every object ends",
                 {request.orbit});
   else if (out.found.empty())
     return fail(ErrorCode::Nothing, fmt::format("no {}pass above {:g} deg in this span",

@@ -68,8 +68,8 @@ void PassColumns::add_names() {
   text("name", "as in the file", [](E e, P) { return e.name(); });
   table.add("norad_cat_id", "", "catalogue number",
             values<std::int64_t>([](E e, P) { return e.norad_cat_id(); }));
-  text("pass_id", "number and time of culmination",
-       [](E e, P p) { return pass_id(e, p.culmination.time); });
+  text("pass_id", "number and time of culmination, of the whole pass",
+       [](E e, P p) { return pass_id(e, p.whole_culmination); });
 }
 
 void PassColumns::add_way() {

@@ -56,9 +56,13 @@ void warn_of_accuracy(const LightCurveOutcome &outcome, const LightOptions &ligh
     worst = std::max(worst, error);
   }
   if (count > 0)
-    diagnostics.warn(fmt::format("{} of {} epochs did not reach the accuracy {} asked of I (worst "
-                                 "{:.2g}); they are faint. See intensity_err.",
-                                 count, curve.epochs.size(), accuracy, worst));
+    diagnostics.warn(fmt::format(
+        "{} of {} epochs did not reach the accuracy {:g} asked of I (worst {:.3g}){}. See "
+        "intensity_err.",
+        count, curve.epochs.size(), accuracy, worst,
+        light.method == LightMethod::Masks
+            ? ": masks alone are as good as they are; render.method = \"auto\" mends them by rays"
+            : ": most points per pose were reached"));
 }
 
 /// The same of the Earth's light, whose patches are cut up to a bound.
@@ -150,6 +154,9 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
     with_rows += is_empty ? 0u : 1u;
     if (!is_empty)
       warn_of_accuracy(objects[k].outcome, scenario.light, objects[k].light.floor_i, diagnostics);
+    if (const std::size_t gaps = objects[k].outcome.epochs_in_gaps; gaps > 0)
+      diagnostics.warn(fmt::format("{} of the span in gaps of the ephemeris: no rows",
+                                   counted(gaps, "epoch") + (gaps > 1 ? " lie" : " lies")));
     if (!is_empty && scenario.earthshine)
       warn_of_earth(objects[k].outcome, *scenario.earthshine, diagnostics);
     if (out.stopped) {

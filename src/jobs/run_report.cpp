@@ -44,9 +44,14 @@ std::vector<std::pair<std::string, std::string>> manifest_lines(const Scenario &
   return out;
 }
 
+/// I is three times its half-width: below that a magnitude or a degree of polarization says
+/// nothing.
+bool is_known(const LightCurveSample &s) { return s.intensity > 3 * s.half_width.i; }
+
 struct PassNumbers {
   double brightest = std::numeric_limits<double>::infinity(), faintest = -brightest;
   double p_max = 0, phase_min = 180, phase_max = 0;
+  bool has_unknown = false; ///< samples fainter than can be told
 };
 
 PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
@@ -60,11 +65,12 @@ PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
     out.phase_max = std::max(out.phase_max, phase);
     for (std::size_t b = 0; b < bands; ++b) {
       const LightCurveSample &s = curve.samples[i * bands + b];
-      if (!std::isnan(s.magnitude)) {
-        out.brightest = std::min(out.brightest, s.magnitude);
-        out.faintest = std::max(out.faintest, s.magnitude);
-      }
-      if (!std::isnan(s.p))
+      out.has_unknown = out.has_unknown || !is_known(s);
+      if (!is_known(s) || std::isnan(s.magnitude))
+        continue;
+      out.brightest = std::min(out.brightest, s.magnitude);
+      out.faintest = std::max(out.faintest, s.magnitude);
+      if (!std::isnan(s.p) && std::hypot(s.half_width.q, s.half_width.u) < 0.1 * s.intensity)
         out.p_max = std::max(out.p_max, s.p);
     }
   }
@@ -125,14 +131,14 @@ std::string summarize(const LightCurveOutcome &outcome) {
       outcome.stopped ? ", PARTIAL: the run stopped early" : "");
   for (const Pass &pass : outcome.passes) {
     const PassNumbers n = numbers_of(curve, pass.id);
-    out += fmt::format("  {}  max alt {:.0f} deg  phase {:.0f}-{:.0f} deg", pass.id,
-                       pass.culmination_altitude.degrees(), n.phase_min, n.phase_max);
-    if (seconds_between(pass.culmination, pass.rise) < 0 ||
-        seconds_between(pass.set, pass.culmination) < 0)
-      out += " (outside the span)";
+    const bool is_outside = seconds_between(pass.culmination, pass.rise) < 0 ||
+                            seconds_between(pass.set, pass.culmination) < 0;
+    out += fmt::format("  {}  max alt {:.0f} deg{}  phase {:.0f}-{:.0f} deg", pass.id,
+                       pass.culmination_altitude.degrees(), is_outside ? " (outside the span)" : "",
+                       n.phase_min, n.phase_max);
     if (std::isfinite(n.brightest))
-      out += fmt::format("  mag {:.1f} to {:.1f} AB  p up to {:.0f} %", n.brightest, n.faintest,
-                         100 * n.p_max);
+      out += fmt::format("  mag {:.1f} to {:.1f} AB{}  p up to {:.0f} %", n.brightest, n.faintest,
+                         n.has_unknown ? " and fainter" : "", 100 * n.p_max);
     out += "\n";
   }
   const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),

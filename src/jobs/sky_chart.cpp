@@ -20,7 +20,7 @@ bool has_any(const PlotLine &line) {
 /// The sunlit and the dark part of a pass, each with gaps where the other is.
 void add_pass(const Trajectory &orbit, const SitePass &pass, const Site &site, ShadowModel shadow,
               std::size_t colour, PlotFigure &figure) {
-  const std::string id = pass_id(orbit, pass.culmination.time);
+  const std::string id = pass_id(orbit, pass.whole_culmination);
   PlotLine lit{id, {}, {}, colour, "solid", {}}, dark{"", {}, {}, colour, "dot", {}};
   constexpr int points = 120;
   const double length = seconds_between(pass.set.time, pass.rise.time);

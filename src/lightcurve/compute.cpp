@@ -258,6 +258,7 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
   out.curve = empty_curve(request, light, kept.geometry.size());
   out.passes = kept.passes;
   out.passes_seen = kept.passes_seen;
+  out.epochs_in_gaps = kept.epochs_in_gaps;
   out.stopped = kept.stopped;
   RowMaker maker(request, light, many_directions, track, kept, std::move(solar), out.curve, cancel);
   truncate(out.curve, maker.fill(progress, out.stopped));
@@ -277,7 +278,11 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
     UMOV_ASSIGN(made, make_light_for_many(scene, joints, options));
     many = std::move(made);
   }
-  return compute_light_curve(request, *light, many.get(), progress, cancel);
+  auto out = compute_light_curve(request, *light, many.get(), progress, cancel);
+  UMOV_TRY(light->keep_masks());
+  if (many)
+    UMOV_TRY(many->keep_masks());
+  return out;
 }
 
 } // namespace umov

@@ -15,43 +15,43 @@ struct PassLight::State {
   // A sphere:
   std::vector<Stokes<ScatteringPlane>> by_phase; ///< [step * bands + band], steps of half a degree
   // A body:
-  std::unique_ptr<LightModel> light;  ///< for all samples
-  std::unique_ptr<LightModel> glints; ///< for those that say whether a flat gives most of the light
+  std::unique_ptr<LightModel> light;
   AttitudeLaw attitude;
-  std::vector<GlintFlat> flats;
+  std::vector<MovingJoint> joints;
+  bool has_solar_disk = true;
+  std::vector<std::vector<GlintFlat>> flats; ///< of each joint's part, then of what stands still
 };
 
 namespace {
-
-/// Magnitudes to a few hundredths: a range over a pass asks for no more.
-LightOptions pass_accuracy(LightMethod method, std::size_t bounces) {
-  LightOptions out;
-  out.method = method;
-  out.bounces = bounces;
-  out.accuracy = 0.02;
-  out.max_points = 1u << 17;
-  return out;
-}
 
 constexpr double phase_step_deg = 0.5;
 constexpr std::size_t phase_steps = 361;
 
 } // namespace
 
-Result<PassLight> PassLight::of_body(const Scene &scene, const AttitudeLaw &attitude,
-                                     LightMethod method, std::size_t bounces) {
+LightOptions pass_light_options(LightMethod method) {
+  LightOptions out;
+  out.method = method;
+  out.accuracy = 0.02;
+  out.max_points = 1u << 17;
+  return out;
+}
+
+Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options) {
   auto state = std::make_shared<State>();
-  state->bands = scene.bands;
-  UMOV_ASSIGN(solar, solar_irradiances(scene.bands));
+  state->bands = body.scene.bands;
+  UMOV_ASSIGN(solar, solar_irradiances(body.scene.bands));
   state->solar = std::move(solar);
-  state->attitude = attitude;
-  UMOV_ASSIGN(light, make_light(scene, {}, pass_accuracy(method, bounces)));
+  state->attitude = body.attitude;
+  state->has_solar_disk = body.has_solar_disk;
+  const std::vector<Joint> joints = joints_of(body.joints);
+  const std::vector<std::size_t> part_of = joint_of_groups(body.scene.mesh, joints);
+  state->flats.resize(joints.size() + 1);
+  for (const GlintFlat &flat : glint_flats(body.scene))
+    state->flats[part_of[flat.group]].push_back(flat);
+  state->joints = std::move(body.joints);
+  UMOV_ASSIGN(light, make_light(body.scene, joints, options));
   state->light = std::move(light);
-  if (method == LightMethod::Masks) {
-    UMOV_ASSIGN(glints, make_light(scene, {}, pass_accuracy(LightMethod::Rays, bounces)));
-    state->glints = std::move(glints);
-  }
-  state->flats = glint_flats(scene);
   PassLight out;
   out.state_ = std::move(state);
   return out;
@@ -86,20 +86,26 @@ Result<PassLight> PassLight::of_sphere(double radius_m, const Material &material
 
 const std::vector<Band> &PassLight::bands() const { return state_->bands; }
 
+Result<void> PassLight::keep_masks() const {
+  return state_->light ? state_->light->keep_masks() : Result<void>();
+}
+
 namespace {
 
-/// Takes one sample of light into the pass's ranges.
-void take(const Stokes<ScatteringPlane> &s, const ObservingGeometry &g, const Band &band,
-          double solar, SitePass &pass) {
+/// Takes one sample of light into the pass's ranges, as far as it is known.
+void take(const BandResult &light, const ObservingGeometry &g, const Band &band, double solar,
+          SitePass &pass) {
+  const auto &[s, half_width] = light;
   const ObservedLight observed =
       observed_light(s.i, band, solar, {g.sun_distance_km, g.range_km, g.sunlit});
-  if (!(observed.irradiance > 0))
+  if (!(observed.irradiance > 0) || !(s.i > 3 * half_width.i))
     return;
   const double magnitude = observed.magnitude;
   // fmin and fmax take the number where one of the two is none.
   pass.magnitude_min = std::fmin(pass.magnitude_min, magnitude);
   pass.magnitude_max = std::fmax(pass.magnitude_max, magnitude);
-  pass.p_max = std::fmax(pass.p_max, std::hypot(s.q, s.u) / s.i);
+  if (std::hypot(half_width.q, half_width.u) + half_width.i < 0.1 * s.i)
+    pass.p_max = std::fmax(pass.p_max, std::hypot(s.q, s.u) / s.i);
 }
 
 } // namespace
@@ -108,19 +114,32 @@ void take(const Stokes<ScatteringPlane> &s, const ObservingGeometry &g, const Ba
 Result<void> PassLight::add_glints(const State &state, const Track &track,
                                    std::vector<ObservingGeometry> &lit, SitePass &pass) {
   const Epoch<Utc> origin = lit.front().time;
-  const GlintPath path = [&](double seconds) -> Result<GlintView> {
-    UMOV_ASSIGN(point, track.at(plus_seconds(origin, seconds)));
-    return GlintView{point.pose.sun, point.pose.observer};
-  };
-  UMOV_ASSIGN(glints, find_glints(state.flats, path, 0, seconds_between(lit.back().time, origin),
-                                  track.half_vector_rate(lit), 0.5 * sun_radius_rad(lit.front())));
+  const std::vector<Joint> joints = joints_of(state.joints);
+  const double last_s = seconds_between(lit.back().time, origin);
+  const double rate = track.half_vector_rate(lit), half_disk = 0.5 * sun_radius_rad(lit.front());
+  std::vector<Glint> all;
+  for (std::size_t part = 0; part < state.flats.size(); ++part) {
+    if (state.flats[part].empty())
+      continue;
+    const GlintPath path = [&, part](double seconds) -> Result<GlintView> {
+      UMOV_ASSIGN(point, track.at(plus_seconds(origin, seconds)));
+      if (part == joints.size())
+        return GlintView{point.pose.sun, point.pose.observer};
+      const auto back = part_motions(joints, point.joint_angles_rad)[part].turn.inverse();
+      return GlintView{back * point.pose.sun, back * point.pose.observer};
+    };
+    UMOV_ASSIGN(found, find_glints(state.flats[part], path, 0, last_s, rate, half_disk));
+    all.insert(all.end(), found.begin(), found.end());
+  }
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Glint &a, const Glint &b) { return a.seconds < b.seconds; });
   LightTask task;
   task.has_glints = true;
   task.threads = 1;
-  for (const Glint &glint : glints) {
+  for (const Glint &glint : all) {
     UMOV_ASSIGN(point, track.at(plus_seconds(origin, glint.seconds)));
     StokesTable table;
-    (void)(state.glints ? state.glints : state.light)->evaluate({&point.pose, 1}, table, task);
+    (void)state.light->evaluate({&point.pose, 1}, point.joint_angles_rad, table, task);
     if (!(point.geometry.sunlit > 0) || !(table.glint_share[0] > 0.5))
       continue;
     pass.glints.push_back({point.geometry.time, glint.width_s});
@@ -146,23 +165,26 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
       const double share = at - static_cast<double>(k);
       const auto &a = state.by_phase[k * state.bands.size() + band],
                  &b = state.by_phase[(k + 1) * state.bands.size() + band];
-      take(a * (1 - share) + b * share, g, state.bands[band], state.solar[band], pass);
+      take({a * (1 - share) + b * share, {}}, g, state.bands[band], state.solar[band], pass);
     }
     return {};
   }
-  UMOV_ASSIGN(track, Track::make({orbit, site, shadow, state.attitude, {}, true}));
+  UMOV_ASSIGN(track, Track::make({orbit, site, shadow, state.attitude, state.joints,
+                                  state.has_solar_disk}));
   UMOV_TRY(add_glints(state, track, lit, pass)); // first: their peaks count for the magnitudes
   std::vector<Pose> poses;
+  std::vector<double> angles;
   for (const ObservingGeometry &g : lit) {
     UMOV_ASSIGN(point, track.place(g));
     poses.push_back(point.pose);
+    angles.insert(angles.end(), point.joint_angles_rad.begin(), point.joint_angles_rad.end());
   }
   StokesTable table;
   LightTask task;
   task.threads = 1; // objects are side by side
-  (void)state.light->evaluate(poses, table, task);
+  (void)state.light->evaluate(poses, angles, table, task);
   for (std::size_t k = 0; k < poses.size(); ++k)
-    take(table.at(k, band).stokes, lit[k], state.bands[band], state.solar[band], pass);
+    take(table.at(k, band), lit[k], state.bands[band], state.solar[band], pass);
   return {};
 }
 

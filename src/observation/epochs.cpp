@@ -53,46 +53,36 @@ struct GridPass {
 /// The passes of a grid: no epoch outside them is above the altitude limit.
 struct GridPasses {
   std::vector<GridPass> passes;
-  std::optional<Error> stopped; ///< where the orbit ends
+  std::size_t in_gaps = 0;      ///< epochs that the orbit does not cover, though it does later ones
+  std::optional<Error> stopped; ///< at the first epoch after the orbit's end
   std::size_t behind = 0;       ///< epochs before that
 };
 
-/// Ends the grid at an epoch if the orbit cannot be had there.
-void stop_in_gap(GridPasses &grid, const Trajectory &orbit, const std::vector<Epoch<Utc>> &times,
-                 std::size_t epoch) {
-  const auto state = orbit.at(times[epoch]);
-  if (state)
-    return;
-  grid.stopped = in_scenario_words(state.error());
-  grid.behind = epoch;
-  std::erase_if(grid.passes, [epoch](const GridPass &pass) { return pass.first >= epoch; });
-  for (GridPass &pass : grid.passes)
-    pass.behind = std::min(pass.behind, epoch);
-}
-
-/// Where an orbit has gaps, the search goes on behind them, unless an epoch lies in one.
 GridPasses find_on_grid(const TrackRequest &track, const std::vector<Epoch<Utc>> &times,
                         Angle altitude_min) {
-  constexpr double slack_s = 2e-3; // crossings are good to a millisecond
+  constexpr double slack_s = 2e-3; // crossings and edges are good to a millisecond
   const auto index = [&times](Epoch<Utc> time) {
     const auto at = std::partition_point(times.begin(), times.end(), [time](Epoch<Utc> one) {
       return seconds_between(one, time) < 0;
     });
     return static_cast<std::size_t>(at - times.begin());
   };
-  GridPasses out{{}, {}, times.size()};
-  for (std::size_t from = 0; from < times.size();) {
-    auto found = find_pass_spans(track.orbit, track.site, times[from], times.back(), altitude_min);
-    for (const PassSpan &span : found.spans)
-      out.passes.push_back({span, std::max(from, index(plus_seconds(span.rise, -slack_s))),
-                            index(plus_seconds(span.set, slack_s))});
-    if (!found.end)
-      break;
-    from = std::max(from, index(plus_seconds(found.end->last, slack_s)));
-    if (from < times.size())
-      stop_in_gap(out, track.orbit, times, from);
-    if (out.stopped)
-      break;
+  const PassSpans found =
+      find_pass_spans(track.orbit, track.site, times.front(), times.back(), altitude_min);
+  GridPasses out{{}, 0, {}, times.size()};
+  for (const PassSpan &span : found.spans)
+    out.passes.push_back(
+        {span, index(plus_seconds(span.rise, -slack_s)), index(plus_seconds(span.set, slack_s))});
+  for (const OrbitGap &gap : found.gaps)
+    out.in_gaps += index(plus_seconds(gap.next, -slack_s)) - index(plus_seconds(gap.last, slack_s));
+  if (!found.end)
+    return out;
+  const std::size_t first = index(plus_seconds(found.end->last, slack_s));
+  const std::size_t ended = track.orbit.at(times.front()) ? first : 0;
+  if (ended < times.size()) {
+    const auto state = track.orbit.at(times[ended]);
+    out.stopped = in_scenario_words(state ? found.end->error : state.error());
+    out.behind = ended;
   }
   return out;
 }
@@ -100,13 +90,12 @@ GridPasses find_on_grid(const TrackRequest &track, const std::vector<Epoch<Utc>>
 /// Epochs per work unit.
 constexpr std::size_t block = 256;
 
-/// Geometry at all epochs of all passes, pass after pass. A gap of the orbit that is shorter than
-/// the search's step ends the grid too.
+/// Geometry at all epochs of all passes, pass after pass.
 std::vector<EpochGeometry> observe_grid(const Track &track, const std::vector<Epoch<Utc>> &times,
-                                        GridPasses &found, unsigned threads,
+                                        const std::vector<GridPass> &passes, unsigned threads,
                                         const std::atomic<bool> &cancel) {
   std::vector<std::size_t> wanted;
-  for (const GridPass &pass : found.passes)
+  for (const GridPass &pass : passes)
     for (std::size_t i = pass.first; i < pass.behind; ++i)
       wanted.push_back(i);
   std::vector<EpochGeometry> out(wanted.size());
@@ -114,10 +103,6 @@ std::vector<EpochGeometry> observe_grid(const Track &track, const std::vector<Ep
     for (std::size_t k = b * block; !cancel && k < std::min((b + 1) * block, out.size()); ++k)
       out[k] = geometry_at(track, times[wanted[k]]);
   });
-  const auto gap = std::find_if(out.begin(), out.end(), [](const auto &e) { return !e.is_there; });
-  if (gap != out.end() && !cancel)
-    stop_in_gap(found, track.request().orbit, times,
-                wanted[static_cast<std::size_t>(gap - out.begin())]);
   return out;
 }
 
@@ -192,12 +177,16 @@ Result<KeptEpochs> keep_epochs(const Track &track, const EpochSpan &span, const 
                                unsigned threads, const std::atomic<bool> &cancel) {
   UMOV_ASSIGN(times, time_grid(span));
   GridPasses found = find_on_grid(track.request(), times, only.altitude_min);
-  const auto grid = observe_grid(track, times, found, threads, cancel);
+  const auto grid = observe_grid(track, times, found.passes, threads, cancel);
   if (cancel)
     return fail(ErrorCode::Interrupted, "stopped before the first row");
   KeptEpochs out;
   out.stopped = std::move(found.stopped);
-  std::size_t at = 0; // passes that a gap shortens leave the rest of the grid unread
+  // Gaps shorter than the search's step are met here, if an epoch falls into them.
+  const auto missed = std::count_if(grid.begin(), grid.end(),
+                                    [](const EpochGeometry &epoch) { return !epoch.is_there; });
+  out.epochs_in_gaps = found.in_gaps + static_cast<std::size_t>(missed);
+  std::size_t at = 0;
   for (const GridPass &pass : found.passes) {
     const std::size_t count = pass.behind - pass.first;
     add_pass(out, track, pass, std::span(grid).subspan(at, count), found.behind, only);

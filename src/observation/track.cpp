@@ -48,11 +48,39 @@ Result<TrackPoint> Track::at(Epoch<Utc> time) const {
   return place(geometry);
 }
 
+namespace {
+
+/// Largest rate of a joint between samples [rad/s]; a table's own steps may be shorter than theirs.
+double joint_rate(const MovingJoint &joint, std::size_t which,
+                  const std::vector<std::vector<double>> &angles,
+                  std::span<const ObservingGeometry> samples) {
+  double out = 0;
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    if (angles[k].empty() || angles[k - 1].empty())
+      continue;
+    const double turn = std::remainder(angles[k][which] - angles[k - 1][which], 2 * pi);
+    const double dt = std::abs(seconds_between(samples[k].time, samples[k - 1].time));
+    out = std::max(out, std::abs(turn) / std::max(dt, 1e-3));
+  }
+  if (const auto *table = std::get_if<AngleTable>(&joint.motion))
+    for (std::size_t k = 1; k < table->time.size(); ++k) {
+      const double turn = table->angle_rad[k] - table->angle_rad[k - 1];
+      out = std::max(out, std::abs(turn / seconds_between(table->time[k], table->time[k - 1])));
+    }
+  return out;
+}
+
+} // namespace
+
 double Track::half_vector_rate(std::span<const ObservingGeometry> samples) const {
   double half = 0, pointing = 0;
   std::optional<Rotation<Body, Gcrs>> before;
+  std::vector<std::vector<double>> angles(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const auto body = attitude_.at(context_of(samples[k]));
+    if (body)
+      if (auto now = joint_angles(request_->joints, context_of(samples[k]), *body))
+        angles[k] = std::move(*now);
     if (k > 0) {
       const ObservingGeometry &a = samples[k - 1], &b = samples[k];
       const double dt = std::max(std::abs(seconds_between(b.time, a.time)), 1e-3);
@@ -68,7 +96,11 @@ double Track::half_vector_rate(std::span<const ObservingGeometry> samples) const
   }
   constexpr double margin = 2;
   const AttitudeRates rates = attitude_.rates();
-  return margin * half + rates.own_rad_s + (rates.follows_orbit ? margin * 1.5 * pointing : 0);
+  double parts = 0; // a joint on a joint turns with both
+  for (std::size_t j = 0; j < request_->joints.size(); ++j)
+    parts += joint_rate(request_->joints[j], j, angles, samples);
+  return margin * (half + parts) + rates.own_rad_s +
+         (rates.follows_orbit ? margin * 1.5 * pointing : 0);
 }
 
 } // namespace umov

@@ -15,6 +15,7 @@ struct Stretch {
 /// What stands above, and where the orbit ends if it does.
 struct Found {
   std::vector<Stretch> stretches;
+  std::vector<OrbitGap> gaps;
   std::optional<OrbitEnd> end;
 };
 

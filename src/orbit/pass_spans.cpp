@@ -70,31 +70,34 @@ struct Samples {
   std::vector<double> time, above; ///< [s], [rad]
 };
 
-/// The last time with an orbit, between one that has it and one that has not.
-double last_time(const Altitude &altitude, double good, double bad) {
-  while (bad - good > crossing_tolerance_s) {
+/// Where an orbit begins or ends to be there, between one time that has it and one that has not:
+/// the time on the side that has it.
+double edge(const Altitude &altitude, double good, double bad) {
+  while (std::abs(bad - good) > crossing_tolerance_s) {
     const double middle = 0.5 * (good + bad);
     (altitude.is_there(middle) ? good : bad) = middle;
   }
   return good;
 }
 
-/// The grid up to where the orbit ends.
-Samples sample(const Altitude &altitude, const std::vector<double> &grid, double altitude_min,
-               std::optional<OrbitEnd> &end) {
-  Samples out{grid, altitude(grid)};
+/// The grid from its index `first`, where the orbit is there, to where it no longer is.
+Samples sample(const Altitude &altitude, const std::vector<double> &grid, std::size_t first) {
+  Samples out;
+  out.time.assign(grid.begin() + static_cast<std::ptrdiff_t>(first), grid.end());
+  out.above = altitude(out.time);
   const std::size_t count = out.above.size();
+  const auto put = [&](double time, bool is_front) {
+    out.time.insert(is_front ? out.time.begin() : out.time.end(), time);
+    out.above.insert(is_front ? out.above.begin() : out.above.end(), altitude(time));
+  };
   out.time.resize(count);
-  if (count < grid.size()) {
-    const double last = count > 0 ? last_time(altitude, grid[count - 1], grid[count]) : grid[0];
-    end = OrbitEnd{altitude.time(last), altitude.error(grid[count])};
-    if (count > 0 && last > grid[count - 1]) {
-      out.time.push_back(last);
-      out.above.push_back(altitude(last));
-    }
-  }
-  for (double &value : out.above)
-    value -= altitude_min;
+  if (const std::size_t behind = first + count; behind < grid.size())
+    if (const double last = edge(altitude, out.time.back(), grid[behind]); last > out.time.back())
+      put(last, false);
+  if (first > 0)
+    if (const double next = edge(altitude, out.time.front(), grid[first - 1]);
+        next < out.time.front())
+      put(next, true);
   return out;
 }
 
@@ -172,9 +175,30 @@ Found search(const Trajectory &orbit, const Site &site, Epoch<Utc> start, Epoch<
   const Function above = [&](double seconds) { return altitude(seconds) - wanted; };
   Found out;
   const auto grid = coarse_times(orbit, std::max(0.0, seconds_between(stop, start)));
-  Samples samples = sample(altitude, grid, wanted, out.end);
-  put_tops(samples, above);
-  out.stretches = stretches(samples, above);
+  const bool may_resume = orbit.elements() == nullptr; // what has decayed has decayed
+  std::optional<double> last;
+  for (std::size_t k = 0; k < grid.size();) {
+    if (!altitude.is_there(grid[k])) {
+      if (!out.end)
+        out.end = OrbitEnd{altitude.time(last.value_or(grid[0])), altitude.error(grid[k])};
+      if (!may_resume)
+        break;
+      ++k;
+      continue;
+    }
+    Samples samples = sample(altitude, grid, k);
+    if (last)
+      out.gaps.push_back({altitude.time(*last), altitude.time(samples.time.front())});
+    out.end.reset();
+    last = samples.time.back();
+    while (k < grid.size() && grid[k] <= *last)
+      ++k;
+    for (double &value : samples.above)
+      value -= wanted;
+    put_tops(samples, above);
+    const auto found = stretches(samples, above);
+    out.stretches.insert(out.stretches.end(), found.begin(), found.end());
+  }
   return out;
 }
 
@@ -183,7 +207,7 @@ Found search(const Trajectory &orbit, const Site &site, Epoch<Utc> start, Epoch<
 PassSpans find_pass_spans(const Trajectory &orbit, const Site &site, Epoch<Utc> start,
                           Epoch<Utc> stop, Angle altitude_min) {
   auto found = passes::search(orbit, site, start, stop, altitude_min);
-  PassSpans out{{}, std::move(found.end)};
+  PassSpans out{{}, std::move(found.gaps), std::move(found.end)};
   for (const Stretch &one : found.stretches)
     out.spans.push_back({.rise = plus_seconds(start, one.rise_s),
                          .set = plus_seconds(start, one.set_s),

@@ -17,27 +17,23 @@ public:
   View(const Trajectory &orbit, const Site &site, Epoch<Utc> start, ShadowModel shadow)
       : orbit_(orbit), site_(site), start_(start), shadow_(shadow) {}
 
-  /// Zeros where the orbit cannot be had; `failed` tells the first time.
-  ObservingGeometry operator()(double seconds) {
+  /// Zeros where the orbit cannot be had.
+  ObservingGeometry operator()(double seconds) const {
     const Epoch<Utc> time = plus_seconds(start_, seconds);
     const auto state = orbit_.at(time);
-    if (!state && !failed_)
-      failed_ = state.error();
     return state ? observe(*state, time, site_, shadow_) : ObservingGeometry{};
   }
-  [[nodiscard]] const std::optional<Error> &failed() const { return failed_; }
 
 private:
   const Trajectory &orbit_;
   const Site &site_;
   Epoch<Utc> start_;
   ShadowModel shadow_;
-  std::optional<Error> failed_;
 };
 
 /// Everything along a pass that needs samples: shadow, phase, range. Returns them if they are
 /// wanted.
-std::vector<ObservingGeometry> describe(View &view, const Stretch &stretch,
+std::vector<ObservingGeometry> describe(const View &view, const Stretch &stretch,
                                         const PassSearch &search, SitePass &out) {
   std::vector<ObservingGeometry> samples;
   constexpr double step_max = 5;
@@ -51,6 +47,8 @@ std::vector<ObservingGeometry> describe(View &view, const Stretch &stretch,
   for (std::size_t k = 0; k <= steps; ++k) {
     const double t = stretch.rise_s + length * static_cast<double>(k) / static_cast<double>(steps);
     const ObservingGeometry at = view(t);
+    if (!(at.range_km > 0)) // a gap that the search did not meet
+      continue;
     if (search.on_pass)
       samples.push_back(at);
     const double now = at.sunlit - 0.5;
@@ -78,27 +76,23 @@ std::vector<ObservingGeometry> describe(View &view, const Stretch &stretch,
 
 } // namespace
 
-Result<std::vector<SitePass>> find_passes(const Trajectory &orbit, const Site &site,
-                                          Epoch<Utc> start, Epoch<Utc> stop,
-                                          const PassSearch &search) {
-  const passes::Found found = passes::search(orbit, site, start, stop, search.altitude_min);
-  if (found.end)
-    return tl::unexpected(found.end->error);
-  View view(orbit, site, start, search.shadow);
-  std::vector<SitePass> out;
+Result<SitePasses> find_passes(const Trajectory &orbit, const Site &site, Epoch<Utc> start,
+                               Epoch<Utc> stop, const PassSearch &search) {
+  passes::Found found = passes::search(orbit, site, start, stop, search.altitude_min);
+  const View view(orbit, site, start, search.shadow);
+  SitePasses out{{}, std::move(found.gaps), std::move(found.end)};
   for (const Stretch &stretch : found.stretches) {
     SitePass pass;
     pass.rise = view(stretch.rise_s);
     pass.culmination = view(stretch.top_s);
     pass.set = view(stretch.set_s);
+    pass.whole_culmination = culmination_near(orbit, site, pass.culmination.time);
     pass.is_rise_cut = stretch.is_rise_cut;
     pass.is_set_cut = stretch.is_set_cut;
     const auto along = describe(view, stretch, search, pass);
-    if (const auto &failed = view.failed())
-      return tl::unexpected(*failed);
     if (search.on_pass)
       UMOV_TRY(search.on_pass(pass, along));
-    out.push_back(std::move(pass));
+    out.passes.push_back(std::move(pass));
   }
   return out;
 }

@@ -9,6 +9,8 @@ namespace umov {
 namespace {
 
 std::string list_objects(const std::vector<ElementSet> &sets) {
+  if (sets.empty())
+    return "other objects";
   std::map<int, std::string> objects;
   for (const ElementSet &set : sets)
     objects.emplace(set.norad_cat_id, set.name);

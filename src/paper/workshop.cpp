@@ -167,8 +167,9 @@ Result<std::vector<SitePass>> PaperWorkshop::passes(const std::string &object, s
   PassSearch search;
   search.altitude_min = altitude_min;
   const Epoch<Utc> epoch = path.elements()->epoch;
-  UMOV_ASSIGN(all, find_passes(path, site, plus_seconds(epoch, -86400 * days_before),
-                               plus_seconds(epoch, 86400 * elements_days), search));
+  UMOV_ASSIGN(found, find_passes(path, site, plus_seconds(epoch, -86400 * days_before),
+                                 plus_seconds(epoch, 86400 * elements_days), search));
+  std::vector<SitePass> all = std::move(found.passes);
   constexpr double shortest_s = 100;
   std::erase_if(all, [](const SitePass &pass) { return !(pass.visible_s >= shortest_s); });
   if (all.size() > count)

@@ -81,7 +81,8 @@ Result<Days> parse(std::string_view text, const std::string &name) {
       const bool is_head = out.all.empty() || line.empty() || line.front() == '#';
       if (is_head || (!is_csv && trimmed(line.size() < 68 ? "" : line.substr(58, 10)).empty()))
         continue;
-      return fail(ErrorCode::BadInput, fmt::format("no day can be read here; {} was expected", expected_form), place);
+      return fail(ErrorCode::BadInput,
+                  fmt::format("no day can be read here; {} was expected", expected_form), place);
     }
     if (!is_plausible(*day) || (!out.all.empty() && day->mjd != out.all.back().mjd + 1))
       return fail(ErrorCode::BadInput,
@@ -92,14 +93,15 @@ Result<Days> parse(std::string_view text, const std::string &name) {
     out.all.push_back(*day);
   }
   if (out.all.size() < 2)
-    return fail(ErrorCode::BadInput, fmt::format("no table of Earth orientation; {} was expected", expected_form),
+    return fail(ErrorCode::BadInput,
+                fmt::format("no table of Earth orientation; {} was expected", expected_form),
                 {name, 1, 0});
   return out;
 }
 
 const std::shared_ptr<const Days> &built_in() {
-  static const auto days = std::make_shared<const Days>(
-      parse(eop(), "IERS finals2000A, compiled in").value());
+  static const auto days =
+      std::make_shared<const Days>(parse(eop(), "IERS finals2000A, compiled in").value());
   return days;
 }
 
@@ -168,7 +170,8 @@ void warn_if_outside_eop(Epoch<Utc> first, Epoch<Utc> last, Diagnostics &diagnos
     const bool is_after = mjd(time) > mjd(table.last);
     const double error_s = is_after ? error_after_s(mjd(time) - mjd(table.last)) : 0.9;
     diagnostics.warn(fmt::format(
-        "{} is {} the table of Earth orientation ({} to {}): UT1-UTC and polar motion are {}, which "
+        "{} is {} the table of Earth orientation ({} to {}): UT1-UTC and polar motion are {}, "
+        "which "
         "is off by up to {:.2g} s or {:.0f} m at the equator. A newer finals2000A of the IERS can "
         "be given as [earth] eop or --eop.",
         to_iso(time), is_after ? "after" : "before", to_iso(table.first).substr(0, 10),

@@ -8,8 +8,7 @@
 
 namespace umov::jobs {
 
-/// All may be empty. What is called is called from the thread that runs the job, one call at a
-/// time.
+/// All may be empty. What is called is called from any thread of the job, one call at a time.
 struct Monitor {
   /// What is being done, and how much of it: "poses", 1024, 5000.
   std::function<void(const std::string &what, std::size_t done, std::size_t total)> progress;

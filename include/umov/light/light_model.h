@@ -42,7 +42,7 @@ struct LightOptions {
   /// (which takes rays).
   Stokes<ScatteringPlane> source{1, 0, 0, 0};
   /// Ray-tested points per pose, past which the error is reported as it is; 0: as the light needs
-  /// (2^22, and 2^19 with bounces, whose paths cost more).
+  /// (2^22 for rays, 2^20 for what Auto leaves to them, 2^19 paths with bounces, which cost more).
   std::size_t max_points = 0;
   /// File to keep the masks in: read if it exists (BadInput unless it fits), made if not.
   std::filesystem::path mask_file = {};
@@ -53,7 +53,7 @@ struct LightOptions {
 
 /// What was made ready.
 struct LightFacts {
-  LightMethod method = LightMethod::Rays; ///< what Auto means here
+  LightMethod method = LightMethod::Rays; ///< Rays where Auto takes nothing else
   bool is_convex = false;
   std::size_t triangles = 0, classes = 0;
   double setup_s = 0;

@@ -3,7 +3,8 @@
 
 namespace umov {
 
-/// Which optional columns of the table are filled, and with what.
+/// How a batch of poses is lit: which optional columns of the table are filled, on how many
+/// threads, and when to stop.
 struct LightTask {
   bool has_glints = false;    ///< StokesTable::glint_share
   bool has_materials = false; ///< StokesTable::material_i

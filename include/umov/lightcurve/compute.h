@@ -32,9 +32,10 @@ struct LightCurveRequest {
 /// A light curve, its passes, and why it ended early if it did.
 struct LightCurveOutcome {
   LightCurve curve;
-  std::vector<Pass> passes;     ///< those with at least one kept epoch
-  std::size_t passes_seen = 0;  ///< above the altitude limit, kept or not
-  std::optional<Error> stopped; ///< Physics or Interrupted: rows before it are complete
+  std::vector<Pass> passes;       ///< those with at least one kept epoch
+  std::size_t passes_seen = 0;    ///< above the altitude limit, kept or not
+  std::size_t epochs_in_gaps = 0; ///< that an ephemeris with gaps does not cover: no rows
+  std::optional<Error> stopped;   ///< Physics or Interrupted: rows before it are complete
 };
 
 /// Called with the number of finished and of all epochs.

@@ -12,21 +12,35 @@
 
 namespace umov {
 
+/// A body, how it is turned and how its parts move.
+struct PassBody {
+  Scene scene;
+  AttitudeLaw attitude;            ///< complete
+  std::vector<MovingJoint> joints; ///< checked against the mesh
+  bool has_solar_disk = true;      ///< the Sun as a uniform disk at its distance, or a point
+};
+
+/// Light for ranges over a pass: magnitudes to a few hundredths, so accuracy .02.
+LightOptions pass_light_options(LightMethod method = LightMethod::Auto);
+
 /// What an object is made of and how it moves; ready for many passes.
 class PassLight {
 public:
-  /// A body with an attitude, lit by `method` (rays: to 2 % of I). `attitude` is complete.
-  static Result<PassLight> of_body(const Scene &scene, const AttitudeLaw &attitude,
-                                   LightMethod method, std::size_t bounces = 1);
+  /// A body with an attitude.
+  static Result<PassLight> of_body(PassBody body, const LightOptions &options);
   /// A sphere: the same from everywhere.
   static Result<PassLight> of_sphere(double radius_m, const Material &material,
                                      const std::vector<Band> &bands);
 
   /// Fills magnitudes, largest p and glints of a pass from its samples (those with sunlight), in
-  /// one band. Glints: candidates of flats that give more than half of the light at their time.
+  /// one band. Samples whose I is not three times its half-width count for neither magnitude, those
+  /// whose p is not known to 0.1 not for p. Glints: candidates of flats, of parts that turn too,
+  /// that give more than half of the light at their time.
   Result<void> describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
                         std::size_t band, std::span<const ObservingGeometry> samples,
                         SitePass &pass) const;
+  /// LightModel::keep_masks.
+  [[nodiscard]] Result<void> keep_masks() const;
   /// Bands that `describe` can be asked for.
   [[nodiscard]] const std::vector<Band> &bands() const;
 

@@ -33,10 +33,11 @@ struct EpochSpan {
 /// The epochs of a span that pass a filter, in order, with their passes.
 struct KeptEpochs {
   std::vector<ObservingGeometry> geometry;
-  std::vector<std::size_t> pass; ///< per epoch, into passes
-  std::vector<Pass> passes;      ///< those with at least one kept epoch
-  std::size_t passes_seen = 0;   ///< above the altitude limit, kept or not
-  std::optional<Error> stopped;  ///< Physics: where the orbit ends; the epochs before it are there
+  std::vector<std::size_t> pass;  ///< per epoch, into passes
+  std::vector<Pass> passes;       ///< those with at least one kept epoch
+  std::size_t passes_seen = 0;    ///< above the altitude limit, kept or not
+  std::size_t epochs_in_gaps = 0; ///< that an ephemeris with gaps does not cover: no rows
+  std::optional<Error> stopped;   ///< Physics: where the orbit ends; the epochs before it are there
 };
 
 /// Epochs start, start + step, ... up to `stop`; BadInput if step <= 0, stop < start or more than

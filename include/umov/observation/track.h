@@ -47,9 +47,10 @@ public:
   /// Both at once: `place` of `observe`.
   [[nodiscard]] Result<TrackPoint> at(Epoch<Utc> time) const;
 
-  /// Largest rate at which the half vector between Sun and observer moves in the body [rad/s]: how
-  /// fast the body can turn by itself, and how fast orbit and Earth turn the view (measured between
-  /// neighbouring samples, with a margin of two).
+  /// Largest rate at which the half vector between Sun and observer moves in the body, or in a part
+  /// of it that turns [rad/s]: how fast the body can turn by itself, and how fast orbit and Earth
+  /// turn the view and joints their parts (measured between neighbouring samples, with a margin of
+  /// two).
   [[nodiscard]] double half_vector_rate(std::span<const ObservingGeometry> samples) const;
   /// What the track was made from.
   [[nodiscard]] const TrackRequest &request() const { return *request_; }

@@ -26,10 +26,17 @@ struct OrbitEnd {
   Error error;       ///< what is wrong after it
 };
 
-/// The passes between two times, in order.
+/// A stretch that an ephemeris does not cover, between two that it does.
+struct OrbitGap {
+  Epoch<Utc> last{}, next{}; ///< the nearest times that it covers, to 1 ms
+};
+
+/// The passes between two times, in order. An end of the orbit or of an ephemeris cuts a pass as
+/// the ends of the search do.
 struct PassSpans {
   std::vector<PassSpan> spans;
-  std::optional<OrbitEnd> end; ///< the search went no further
+  std::vector<OrbitGap> gaps;  ///< those longer than Trajectory::search_step_s, and some shorter
+  std::optional<OrbitEnd> end; ///< nothing follows it
 };
 
 /// Every stretch of time in which an object stands above `altitude_min` at a site: the altitude on
@@ -58,6 +65,8 @@ struct PassGlint {
 /// A pass as seen from a site, described.
 struct SitePass {
   ObservingGeometry rise, culmination, set; ///< rise and set: where it crosses the altitude
+  /// Highest point of the whole pass, beyond the span's ends too, to 1 ms: what it is named by.
+  Epoch<Utc> whole_culmination{};
   bool is_rise_cut = false,
        is_set_cut = false;            ///< it is above already, or still, at the span's end
   std::vector<ShadowCrossing> shadow; ///< between rise and set, in order
@@ -81,10 +90,16 @@ struct PassSearch {
   std::function<Result<void>(SitePass &, std::span<const ObservingGeometry>)> on_pass;
 };
 
-/// All passes of an object between two times, in order, described; times as find_pass_spans has
-/// them. Physics if the orbit ends on the way (decay, end of an ephemeris), with the time.
-Result<std::vector<SitePass>> find_passes(const Trajectory &orbit, const Site &site,
-                                          Epoch<Utc> start, Epoch<Utc> stop,
-                                          const PassSearch &search);
+/// Passes described, in order, and how far the orbit goes.
+struct SitePasses {
+  std::vector<SitePass> passes;
+  std::vector<OrbitGap> gaps;
+  std::optional<OrbitEnd> end;
+};
+
+/// All passes of an object between two times, described; times, gaps and end as find_pass_spans has
+/// them. The error of PassSearch::on_pass.
+Result<SitePasses> find_passes(const Trajectory &orbit, const Site &site, Epoch<Utc> start,
+                               Epoch<Utc> stop, const PassSearch &search);
 
 } // namespace umov

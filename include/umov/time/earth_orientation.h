@@ -12,9 +12,9 @@ namespace umov {
 
 /// Earth orientation at a time. Polar motion as IERS Conventions (2010), section 5.4.1.
 struct EarthOrientation {
-  double dut1_s = 0;                ///< UT1-UTC [s]
-  double x_p_rad = 0, y_p_rad = 0;  ///< of the pole in the ITRS [rad]
-  bool is_covered = true;           ///< false: outside the table, whose nearest day is held
+  double dut1_s = 0;               ///< UT1-UTC [s]
+  double x_p_rad = 0, y_p_rad = 0; ///< of the pole in the ITRS [rad]
+  bool is_covered = true;          ///< false: outside the table, whose nearest day is held
 };
 
 /// Linear between the days of the table, the jump of a leap second apart. After its last day that

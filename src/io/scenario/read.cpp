@@ -329,6 +329,8 @@ Result<void> read_render(const Node &top, Scenario &out) {
                   node.where("bounces"));
     out.light.bounces = static_cast<std::size_t>(bounces);
     UMOV_TRY(read_method(node, out.light));
+    if (node.has("accuracy"))
+      out.places["render.accuracy"] = node.where("accuracy");
     out.has_moonlight = node.boolean("moonlight", false);
     UMOV_ASSIGN(edge, node.choice("shadow_edge", "geometric", {"geometric", "refracted"}));
     out.has_refracted_shadow = edge == "refracted";

@@ -68,7 +68,8 @@ TEST(PassLight, ABodyThatIsASphereIsLitLikeOne) {
   const auto scene = make_scene(make_sphere(2, 5000), NormalMode::Smooth, bands, {white_lambert()},
                                 {white_lambert()}, diagnostics);
   ASSERT_TRUE(scene) << scene.error().text();
-  const auto body = PassLight::of_body(*scene, {TwoAxisLaw{}}, LightMethod::Rays);
+  const auto body =
+      PassLight::of_body({*scene, {TwoAxisLaw{}}, {}}, pass_light_options(LightMethod::Rays));
   ASSERT_TRUE(body) << body.error().text();
   const SitePass a = described(*body, at), b = described(white_sphere(), at);
   EXPECT_NEAR(a.magnitude_min, b.magnitude_min, 0.03);

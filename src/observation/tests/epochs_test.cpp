@@ -128,7 +128,7 @@ TEST(KeptEpochs, TwoPassesBetweenWhichNoEpochFallsStayTwo) {
   EXPECT_EQ(kept->passes[1].id, "7-20180320T121500Z");
 }
 
-TEST(KeptEpochs, AGapShorterThanTheSearchEndsThemIfAnEpochFallsIntoIt) {
+TEST(KeptEpochs, AnEpochInAGapIsARowThatIsNotThere) {
   OrbitEphemeris broken{"line", "2018-001A", 7, {}};
   for (const auto &[from, to] : {std::pair{0.0, 303.0}, std::pair{307.0, 600.0}}) {
     EphemerisSegment segment;
@@ -148,13 +148,28 @@ TEST(KeptEpochs, AGapShorterThanTheSearchEndsThemIfAnEpochFallsIntoIt) {
   request.orbit = Trajectory(broken);
   const Track track = Track::make(request).value();
   // The search looks every 20 s and misses the gap; 305 s lies in it, 310 s does not.
-  const auto met = keep_epochs(track, by_day.span(600, 5), {}, 1, no_cancel);
-  ASSERT_TRUE(met && met->stopped);
-  EXPECT_EQ(met->geometry.size(), 61u);
-  const auto missed = keep_epochs(track, by_day.span(600, 10), {}, 1, no_cancel);
-  ASSERT_TRUE(missed);
-  EXPECT_FALSE(missed->stopped);
-  EXPECT_EQ(missed->geometry.size(), 61u);
+  for (const double step : {5.0, 10.0}) {
+    const auto kept = keep_epochs(track, by_day.span(600, step), {}, 1, no_cancel);
+    ASSERT_TRUE(kept);
+    EXPECT_FALSE(kept->stopped);
+    EXPECT_EQ(kept->epochs_in_gaps, step < 10 ? 1u : 0u);
+    EXPECT_EQ(kept->geometry.size(), step < 10 ? 120u : 61u);
+  }
+}
+
+TEST(KeptEpochs, WhatLiesBehindAGapIsFound) {
+  OrbitEphemeris broken{"line", "2018-001A", 7, {}};
+  for (const auto &[from, to] : {std::pair{0.0, 320.0}, std::pair{410.0, 600.0}})
+    broken.segments.push_back(by_day.segment(from, to));
+  TrackRequest request = by_day.request();
+  request.orbit = Trajectory(broken);
+  const auto kept =
+      keep_epochs(Track::make(request).value(), by_day.span(700, 10), {}, 1, no_cancel);
+  ASSERT_TRUE(kept && kept->stopped);  // nothing follows 600 s
+  EXPECT_EQ(kept->epochs_in_gaps, 8u); // 330 s to 400 s
+  EXPECT_EQ(kept->geometry.size(), 33u + 20u);
+  ASSERT_EQ(kept->passes.size(), 2u);
+  EXPECT_NEAR(seconds_between(kept->passes[1].rise, by_day.start), 410, 1e-6);
 }
 
 TEST(KeptEpochs, StopWhenCancelled) {

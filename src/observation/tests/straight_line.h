@@ -37,6 +37,20 @@ struct StraightLine {
     OrbitEphemeris out{"line", "2018-001A", 7, {segment}};
     return Trajectory(out);
   }
+  /// What of the first leg lies between two times, at most 600 s after the start.
+  [[nodiscard]] EphemerisSegment segment(double from_s, double to_s) const {
+    EphemerisSegment out;
+    out.frame = OrbitFrame::Itrs;
+    out.interpolation = Interpolation::Linear;
+    out.degree = 1;
+    out.first = plus_seconds(start, from_s);
+    out.last = plus_seconds(start, to_s);
+    for (const double s : {from_s, to_s})
+      out.states.push_back({plus_seconds(start, s),
+                            {6378.137 + height_km, east_km(s), north_km},
+                            {0, speed_km_s, 0}});
+    return out;
+  }
   [[nodiscard]] TrackRequest request() const {
     return {.orbit = trajectory(), .site = origin_site, .attitude = {TwoAxisLaw{}}, .joints = {}};
   }
