@@ -48,7 +48,9 @@ endif()
 configure_file(cmake/umov.pc.in ${PROJECT_BINARY_DIR}/umov.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/umov.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-install(FILES LICENSE README.md CHANGELOG.md docs/conventions.md DESTINATION ${documents})
+install(FILES LICENSE THIRD_PARTY.md README.md CHANGELOG.md docs/conventions.md
+        data/solar/LICENSE-sbpy.txt DESTINATION ${documents})
+install(DIRECTORY LICENSES DESTINATION ${documents})
 install(DIRECTORY examples DESTINATION ${documents})
 # What the scenarios of examples read.
 install(DIRECTORY data/tle data/mesh DESTINATION ${documents}/data)

@@ -61,19 +61,18 @@ TEST(AttitudeTable, EvenTurnsBetweenQuaternions) {
             std::string::npos);
 }
 
-/// The spin example of CCSDS 504.0-B (figures of the Blue Book, ST5): -110 deg/s in steps of
-/// 0.125 s. Half the rows give the other half.
+/// A spin of -110 deg/s whose axis nods by .005 rad, once in 2 pi s.
+SpinState nodding_spin(double t) {
+  return {4.7 + 0.005 * std::sin(t), 1.2 + 0.005 * std::cos(t), 2.8 - 1.92 * t + 0.01 * std::sin(t),
+          -1.92 + 0.01 * std::cos(t)};
+}
+
+/// Half the rows give the other half.
 TEST(AttitudeTable, SpinsBetweenTheirPhases) {
-  const double alpha[] = {268.62511, 268.63990, 268.64591, 268.63697, 268.61072};
-  const double delta[] = {68.448486, 68.432197, 68.412960, 68.392049, 68.371266};
-  const double angle[] = {159.69509, 145.93720, 132.18766, 118.45280, 104.73305};
-  const double rate[] = {-109.96528, -109.96493, -109.96455, -109.96402, -109.96370};
   AttitudeTable all{"a", {{}}}, half{"a", {{}}};
   for (int k = 0; k < 5; ++k) {
-    const double d = pi / 180;
-    const AttitudeState state{plus_seconds(start, 0.125 * k),
-                              {},
-                              SpinState{alpha[k] * d, delta[k] * d, angle[k] * d, rate[k] * d}};
+    const double t = 0.125 * k;
+    const AttitudeState state{plus_seconds(start, t), {}, nodding_spin(t)};
     all.segments[0].states.push_back(state);
     if (k % 2 == 0)
       half.segments[0].states.push_back(state);
@@ -84,12 +83,14 @@ TEST(AttitudeTable, SpinsBetweenTheirPhases) {
   }
   for (const int k : {1, 3}) {
     const Epoch<Utc> time = plus_seconds(start, 0.125 * k);
-    // The nutation of the axis bends by 0.005 deg between rows.
-    EXPECT_LT(difference(*attitude_in(all, time), *attitude_in(half, time)), 2e-4);
-    const double d = pi / 180;
-    const Vec3<Gcrs> axis{std::cos(delta[k] * d) * std::cos(alpha[k] * d),
-                          std::cos(delta[k] * d) * std::sin(alpha[k] * d), std::sin(delta[k] * d)};
-    EXPECT_LT(norm(attitude_in(all, time)->row(2) - axis), 1e-7);
+    // The axis is taken to move evenly over .25 s: off by .25^2/8 of .005 rad/s2 in each angle,
+    // 4e-5, and the cubic of the phase by .25^4/384 of .01 rad/s4, 1e-7.
+    EXPECT_LT(difference(*attitude_in(all, time), *attitude_in(half, time)), 1e-4);
+    const SpinState spin = nodding_spin(0.125 * k);
+    const Vec3<Gcrs> axis{std::cos(spin.declination_rad) * std::cos(spin.right_ascension_rad),
+                          std::cos(spin.declination_rad) * std::sin(spin.right_ascension_rad),
+                          std::sin(spin.declination_rad)};
+    EXPECT_LT(norm(attitude_in(all, time)->row(2) - axis), 1e-12);
   }
 }
 
