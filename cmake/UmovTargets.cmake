@@ -1,21 +1,35 @@
 # One grammar for all modules:
 #   umov_module(NAME SOURCES a.cpp ... PUBLIC umov::core ... PRIVATE fmt::fmt ...)
 #   umov_tests(NAME SOURCES a_test.cpp ... LABEL unit LIBRARIES umov::optics ...)
+#   umov_fuzz_target(NAME LIBRARIES umov::io_mesh ... SEEDS data/mesh ...)
 #   umov_embed(TARGET SYMBOL FILE): the bytes of FILE in the binary, read with umov/core/embedded.h
 
 option(UMOV_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
-option(UMOV_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
+set(UMOV_SANITIZE "" CACHE STRING "address (with undefined behaviour) or thread; empty: none")
+set(UMOV_SANITIZE_MODULES "" CACHE STRING
+    "Only these modules with the sanitizer, all others as fast as they compile; empty: all of them")
+option(UMOV_FUZZ "Build tests/fuzz as fuzzers (clang): libFuzzer, coverage of the readers" OFF)
 
+# umov_plain: without sanitizers, for modules that need none.
+add_library(umov_plain INTERFACE)
 add_library(umov_flags INTERFACE)
-target_compile_options(
-  umov_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+foreach(flags IN ITEMS umov_plain umov_flags)
+  target_compile_options(
+    ${flags} INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
                        -Wno-restrict # false alarms of g++ 12 on std::string (GCC bug 105651)
                        # Same results for every thread count and build: no silent contraction.
                        -ffp-contract=off $<$<BOOL:${UMOV_WARNINGS_AS_ERRORS}>:-Werror>)
+endforeach()
 if(UMOV_SANITIZE)
-  target_compile_options(umov_flags INTERFACE -fsanitize=address,undefined
-                                              -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_link_options(umov_flags INTERFACE -fsanitize=address,undefined)
+  string(REGEX REPLACE "^address$" "address,undefined" sanitizers ${UMOV_SANITIZE})
+  target_compile_options(umov_flags INTERFACE -fsanitize=${sanitizers} -fno-sanitize-recover=all
+                                              -fno-omit-frame-pointer)
+  target_link_options(umov_flags INTERFACE -fsanitize=${sanitizers})
+endif()
+if(UMOV_FUZZ)
+  target_compile_options(umov_flags INTERFACE -fsanitize=fuzzer-no-link -fprofile-instr-generate
+                                              -fcoverage-mapping)
+  target_link_options(umov_flags INTERFACE -fprofile-instr-generate)
 endif()
 
 function(umov_module name)
@@ -23,6 +37,10 @@ function(umov_module name)
   # Flags, and header-only libraries that no public header includes: needed to build umov, not to
   # use it.
   set(private $<BUILD_INTERFACE:umov_flags>)
+  if(UMOV_SANITIZE_MODULES AND NOT name IN_LIST UMOV_SANITIZE_MODULES)
+    set(private $<BUILD_INTERFACE:umov_plain>)
+    set(quick_options -O0)
+  endif()
   foreach(library IN LISTS arg_PRIVATE)
     if(library MATCHES "^(Boost::boost|Eigen3::Eigen|nlohmann_json::nlohmann_json)$")
       set(library $<BUILD_INTERFACE:${library}>)
@@ -34,6 +52,7 @@ function(umov_module name)
   set_target_properties(umov_${name} PROPERTIES EXPORT_NAME ${name})
   set_property(GLOBAL APPEND PROPERTY UMOV_MODULES ${name})
   target_compile_features(umov_${name} PUBLIC cxx_std_20)
+  target_compile_options(umov_${name} PRIVATE ${quick_options})
   target_include_directories(
     umov_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
@@ -54,6 +73,33 @@ function(umov_tests name)
   include(GoogleTest)
   gtest_discover_tests(${target} TEST_PREFIX ${name}. DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS ${arg_LABEL})
+endfunction()
+
+# tests/fuzz/NAME.cpp: a fuzzer with UMOV_FUZZ, else a program that runs over the files named. Its test
+# replays the corpus and the further SEEDS (files or folders of the project). READS: the sources
+# whose coverage tools/fuzz tells; DICTIONARY: of tests/fuzz/dictionaries.
+function(umov_fuzz_target name)
+  cmake_parse_arguments(arg "" "DICTIONARY" "LIBRARIES;SEEDS;READS" ${ARGN})
+  set(target fuzz_${name})
+  add_executable(${target} ${name}.cpp)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${target} PRIVATE umov_flags ${arg_LIBRARIES} fmt::fmt)
+  set(seeds ${CMAKE_CURRENT_SOURCE_DIR}/corpus/${name})
+  foreach(seed IN LISTS arg_SEEDS)
+    list(APPEND seeds ${PROJECT_SOURCE_DIR}/${seed})
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY UMOV_FUZZ_TARGETS ${target})
+  list(JOIN seeds " " seed_words)
+  list(JOIN arg_READS " " read_words)
+  set_property(GLOBAL APPEND_STRING PROPERTY UMOV_FUZZ_LIST
+               "${name}|${arg_DICTIONARY}|${seed_words}|${read_words}\n")
+  if(UMOV_FUZZ)
+    target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+  else()
+    target_sources(${target} PRIVATE replay.cpp)
+    add_test(NAME corpus.${name} COMMAND ${target} ${seeds})
+    set_tests_properties(corpus.${name} PROPERTIES LABELS corpus)
+  endif()
 endfunction()
 
 function(umov_embed target symbol file)

@@ -3,6 +3,7 @@
 #include "verbs.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <umov/core/parallel.h>
@@ -20,6 +21,23 @@ struct RunOptions {
   bool dry_run = false, allow_bad_checksum = false, allow_old_elements = false;
 };
 
+/// A scenario may come from others: a folder that it names outside the working folder is made, but
+/// what stands there is replaced only if the user names it too.
+Result<void> check_folder_of_file(const Scenario &scenario) {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  const fs::path inside = fs::absolute(scenario.output_dir, code)
+                              .lexically_normal()
+                              .lexically_relative(fs::current_path(code));
+  if (inside.empty() || *inside.begin() != ".." || !fs::exists(scenario.output_dir, code))
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("output.dir = \"{0}\" is outside the working folder and is there "
+                          "already. To replace it name it yourself: -o {0}",
+                          scenario.output_dir.string()),
+              {scenario.file});
+}
+
 Result<Scenario> read_with_options(const RunOptions &o) {
   std::vector<std::string> overrides = o.overrides;
   if (o.seed >= 0)
@@ -27,10 +45,16 @@ Result<Scenario> read_with_options(const RunOptions &o) {
   if (o.accuracy > 0)
     overrides.push_back(fmt::format("render.accuracy={:.17g}", o.accuracy));
   UMOV_ASSIGN(scenario, read_scenario(o.scenario, overrides));
+  const bool is_named = !o.output.empty() || std::any_of(o.overrides.begin(), o.overrides.end(),
+                                                         [](const std::string &one) {
+                                                           return one.starts_with("output");
+                                                         });
   if (!o.output.empty())
     scenario.output_dir = o.output;
   if (!o.earth_orientation.empty())
     scenario.earth_orientation = o.earth_orientation;
+  if (!is_named)
+    UMOV_TRY(check_folder_of_file(scenario));
   UMOV_TRY(check_complete_for_run(scenario));
   return scenario;
 }

@@ -33,6 +33,7 @@
 #include <umov/io/obj.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
+#include <umov/io/poses_file.h>
 #include <umov/io/report.h>
 #include <umov/io/report_frames.h>
 #include <umov/io/run_folder.h>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace umov {
 namespace {
@@ -22,6 +23,25 @@ Triangulation fan(std::size_t count) {
   Triangulation out;
   for (std::uint32_t i = 1; i + 1 < count; ++i)
     out.triangles.push_back({0, i, i + 1});
+  return out;
+}
+
+/// Halves of halves of a convex polygon. A fan of a thousand slivers has boxes that all overlap,
+/// and whatever searches among them takes their number squared.
+Triangulation halved(std::size_t count) {
+  Triangulation out;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> open{
+      {0, static_cast<std::uint32_t>(count - 1)}};
+  while (!open.empty()) {
+    const auto [first, last] = open.back();
+    open.pop_back();
+    if (last - first < 2)
+      continue;
+    const std::uint32_t middle = first + (last - first) / 2;
+    out.triangles.push_back({first, middle, last});
+    open.emplace_back(middle, last);
+    open.emplace_back(first, middle);
+  }
   return out;
 }
 
@@ -123,6 +143,9 @@ Triangulation triangulate(std::span<const Vec3<Body>> corners) {
       out.triangles = fan(count).triangles;
   }
   out.is_convex = is_convex && out.is_simple;
+  constexpr std::size_t largest_fan = 64;
+  if (out.is_convex && count > largest_fan)
+    out.triangles = halved(count).triangles;
   out.is_planar = height <= 1e-3 * size;
   return out;
 }

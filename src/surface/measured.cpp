@@ -134,16 +134,16 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
     for (std::size_t k = 0; k < 4; ++k)
       axes[k].push_back(keys[k]);
   }
-  std::size_t size = 1;
+  double size = 1; // a product of whole numbers could wrap around to the number of rows
   for (std::size_t k = 0; k < 4; ++k) {
     out.axes_[k] = distinct(axes[k]);
-    size *= out.axes_[k].size();
+    size *= static_cast<double>(out.axes_[k].size());
   }
-  if (size != samples.size())
+  if (size != static_cast<double>(samples.size()))
     return fail(
         ErrorCode::BadInput,
         fmt::format("{} rows do not fill the grid of {} wavelengths x {} theta_i x {} theta_o "
-                    "x {} phi = {}; every combination once was expected",
+                    "x {} phi = {:.16g}; every combination once was expected",
                     samples.size(), out.axes_[0].size(), out.axes_[1].size(), out.axes_[2].size(),
                     out.axes_[3].size(), size));
   std::sort(samples.begin(), samples.end(), [](const BrdfSample &a, const BrdfSample &b) {

@@ -1,5 +1,7 @@
 #include <umov/time/epoch.h>
 
+#include "time/bounds.h"
+
 #include <array>
 #include <cmath>
 #include <erfa.h>
@@ -125,7 +127,11 @@ Result<Epoch<Utc>> utc_from_iso(std::string_view text) {
                               ? "has a second that this minute does not have (60 only in a leap "
                                 "second)"
                               : "is not in the calendar; check month, day, hour and minute");
-  return c.offset_min == 0 ? out : plus_seconds(out, -60.0 * c.offset_min);
+  if (c.offset_min != 0)
+    out = plus_seconds(out, -60.0 * c.offset_min);
+  if (const std::string why = outside_dates(out); !why.empty())
+    return bad_time(text, why);
+  return out;
 }
 
 std::string to_iso(Epoch<Utc> time, int digits) {

@@ -1,5 +1,7 @@
 #include <umov/time/time_system.h>
 
+#include "time/bounds.h"
+
 #include <array>
 #include <cmath>
 #include <erfa.h>
@@ -108,11 +110,13 @@ Result<Epoch<Utc>> utc_from_calendar(std::string_view text, TimeSystem system) {
   if (system == TimeSystem::Utc)
     return reading;
   const Epoch<Tai> even = as_even_days(reading);
-  if (system != TimeSystem::Ut1)
-    return utc_from(tai_from(even, system));
   Epoch<Utc> out;
-  // UT1-UTC changes by 2 ms a day: that of the same reading serves.
-  eraUt1utc(even.jd1, even.jd2, earth_orientation(reading).dut1_s, &out.jd1, &out.jd2);
+  if (system != TimeSystem::Ut1)
+    out = utc_from(tai_from(even, system));
+  else // UT1-UTC changes by 2 ms a day: that of the same reading serves.
+    eraUt1utc(even.jd1, even.jd2, earth_orientation(reading).dut1_s, &out.jd1, &out.jd2);
+  if (const std::string why = outside_dates(out); !why.empty())
+    return fail(ErrorCode::BadInput, fmt::format("\"{}\" {}", text, why));
   return out;
 }
 

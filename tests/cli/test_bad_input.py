@@ -131,9 +131,11 @@ def test_an_impossible_folder_is_found_before_any_work(umov, scenario):
 @pytest.mark.parametrize("row, words", [
     ("0,0,0,1,0,0", ["g.csv:2", "sun_x", "0"]),
     ("1,0,x,1,0,0", ["g.csv:2:5", "sun_z"]),
+    ("1,0,0,0,1,0,1e30", ["g.csv:2", "1e+30", "whole number"]),
 ])
 def test_directions(umov, scenario, tmp_path, row, words):
-    (tmp_path / "g.csv").write_text("sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n" + row + "\n")
+    names = ["sun_x", "sun_y", "sun_z", "obs_x", "obs_y", "obs_z", "pose"][:row.count(",") + 1]
+    (tmp_path / "g.csv").write_text(",".join(names) + "\n" + row + "\n")
     done = umov("signature", scenario(), "--geometry", "g.csv")
     assert done.code == 3, done.err
     for word in words:

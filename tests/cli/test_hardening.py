@@ -79,3 +79,24 @@ def test_fewer_threads_than_asked_for_do_the_work(scenario, tmp_path):
     rows = [[line for line in (tmp_path / name).read_text().splitlines() if not line.startswith("#")]
             for name in ("one.csv", "many.csv")]
     assert len(rows[0]) > 3000 and rows[0] == rows[1]
+
+
+def test_a_folder_elsewhere_is_replaced_only_if_the_user_names_it(umov, scenario, tmp_path):
+    elsewhere = tmp_path / "elsewhere"
+    work = tmp_path / "work"
+    work.mkdir()
+    name = scenario(('dir = "out"', f'dir = "{elsewhere}"'))
+    (work / name).write_text((tmp_path / name).read_text().replace("cube.obj", "../cube.obj"))
+
+    def run(*more):
+        return subprocess.run([UMOV, "run", name, "--accuracy", "0.5", *more], cwd=work, text=True,
+                              capture_output=True)
+
+    first = run()
+    assert first.returncode == 0, first.stderr
+    manifest = (elsewhere / "manifest.json").read_bytes()
+    second = run()
+    assert second.returncode == 3 and "name it yourself" in second.stderr, second.stderr
+    assert (elsewhere / "manifest.json").read_bytes() == manifest
+    assert run("-o", str(elsewhere)).returncode == 0
+    assert (elsewhere / "manifest.json").read_bytes() != manifest

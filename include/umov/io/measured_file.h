@@ -15,11 +15,17 @@ namespace umov {
 Result<MeasuredBrdf> read_measured_file(const std::filesystem::path &path, bool accept,
                                         std::vector<std::string> &remarks);
 
+/// The same from a text; `file` is for messages.
+Result<MeasuredBrdf> read_measured(std::string_view text, const std::string &file, bool accept,
+                                   std::vector<std::string> &remarks);
+
 /// Density of normals: CSV with columns theta_deg (from 0, increasing) and density (any unit).
 struct NormalsTable {
   std::vector<double> angle_deg, density;
 };
 /// Reads such a table. BadInput with the line of what is wrong.
 Result<NormalsTable> read_normals_file(const std::filesystem::path &path);
+/// The same from a text.
+Result<NormalsTable> read_normals(std::string_view text, const std::string &file);
 
 } // namespace umov

@@ -26,6 +26,12 @@ struct MeshNode {
   friend bool operator==(const MeshNode &, const MeshNode &) = default;
 };
 
+/// A further file that belongs to a mesh, and the hash of what was read.
+struct MeshPart {
+  std::filesystem::path path;
+  std::string sha256;
+};
+
 /// A mesh and what its file told besides.
 struct MeshFile {
   Mesh mesh;                        ///< metres, body axes; groups in order of first use
@@ -33,7 +39,7 @@ struct MeshFile {
   std::vector<MeshNode> nodes;      ///< empty where the format has no tree
   std::vector<std::string> defined; ///< OBJ: materials that the MTL files define
   bool lacks_mtl = false;           ///< OBJ: a named MTL file could not be read
-  std::vector<std::filesystem::path> files; ///< further files that were read (MTL, glTF buffers)
+  std::vector<MeshPart> files;      ///< further files that were read (MTL, glTF buffers)
 };
 
 /// Reads a mesh: OBJ, STL (text and binary), PLY, glTF and GLB with readers of our own, and what
@@ -46,6 +52,11 @@ struct MeshFile {
 /// no file, however broken, ends the program, and none is believed about its size.
 Result<MeshFile> read_mesh(const std::filesystem::path &path, const MeshFileOptions &options,
                            Diagnostics &diagnostics);
+
+/// The same from the bytes of the file `path`, beside which further files are looked for. Assimp
+/// reads for itself: BadInput where it can no longer have found these bytes.
+Result<MeshFile> read_mesh_bytes(std::string_view bytes, const std::filesystem::path &path,
+                                 const MeshFileOptions &options, Diagnostics &diagnostics);
 
 /// Suffixes (with the point) of the formats that Assimp reads for us.
 std::vector<std::string> other_mesh_suffixes();

@@ -59,7 +59,7 @@ private:
 /// rows, NaN as "nan". Every column but text and truth values carries a unit.
 std::string to_ecsv(const Table &table);
 /// RFC 4180 with LF; notes as "# key: value", then "# unit: ..." above the header; NaN is an empty
-/// cell.
+/// cell; a ' stands before a text that spreadsheets would compute as a formula.
 std::string to_csv(const Table &table);
 /// A binary table of a FITS file (standard 4.0). BadInput for text that a column cannot hold.
 Result<std::string> to_fits(const Table &table);

@@ -16,7 +16,8 @@ struct Triangulation {
 };
 
 /// Splits a polygon with three or more corners, convex or not, into triangles with its winding (ear
-/// clipping: Meisters 1975; convex ones become a fan). n - 2 triangles always.
+/// clipping: Meisters 1975; convex ones become a fan, halves of halves past 64 corners). n - 2
+/// triangles always.
 Triangulation triangulate(std::span<const Vec3<Body>> corners);
 
 } // namespace umov

@@ -94,6 +94,13 @@ Result<void> check_observation(const Message &message, const Record &record) {
   return {};
 }
 
+/// One word of the signs of dates: KVN begins lines with it, and would take others for keywords or
+/// columns.
+bool is_like_a_date(std::string_view text) {
+  return !text.empty() && text.front() >= '0' && text.front() <= '9' &&
+         text.find_first_not_of("0123456789-:.TZ+") == std::string_view::npos;
+}
+
 /// A record by itself: known, whole, and such that both forms can say it.
 Result<void> check_record(const Message &message, const Segment &segment, const Record &record) {
   const Where where{message.file, record.line};
@@ -116,11 +123,9 @@ Result<void> check_record(const Message &message, const Segment &segment, const 
       return fail(ErrorCode::BadInput, fmt::format("{} has no {}", with_article(record.name), key),
                   where);
   const Field *epoch = find(record.fields, "EPOCH");
-  if (epoch != nullptr &&
-      (epoch->text.empty() || epoch->text.find_first_of(" \t\r\n") != std::string::npos))
+  if (epoch != nullptr && !is_like_a_date(epoch->text))
     return fail(ErrorCode::BadInput,
-                fmt::format("EPOCH is \"{}\", expected a date without blanks, such as "
-                            "2018-01-20T00:00:00",
+                fmt::format("EPOCH is \"{}\", expected a date such as 2018-01-20T00:00:00",
                             epoch->text.substr(0, 60)),
                 {message.file, epoch->line});
   return record.name == "observation" ? check_observation(message, record) : Result<void>{};

@@ -58,7 +58,17 @@ Kind kind_of(std::string_view bytes, const std::string &suffix) {
   return named == Kind::Unknown && looks_like_obj(bytes) ? Kind::Obj : named;
 }
 
-Result<MeshFile> read_kind(Kind kind, const std::string &bytes, const fs::path &path,
+/// Assimp opens the file itself, also those beside it: it must be the one whose bytes are known.
+Result<MeshFile> read_other(std::string_view bytes, const fs::path &path, MeshFileOptions &options,
+                            Diagnostics &diagnostics) {
+  UMOV_ASSIGN(out, mesh_io::read_with_assimp(path, options, diagnostics));
+  UMOV_ASSIGN(now, read_file(path));
+  if (now != bytes)
+    return fail(ErrorCode::BadInput, "changed while it was read; start again", {path.string()});
+  return std::move(out);
+}
+
+Result<MeshFile> read_kind(Kind kind, std::string_view bytes, const fs::path &path,
                            MeshFileOptions &options, Diagnostics &diagnostics) {
   switch (kind) {
   case Kind::Stl:
@@ -71,7 +81,7 @@ Result<MeshFile> read_kind(Kind kind, const std::string &bytes, const fs::path &
     return mesh_io::read_gltf(bytes, path, options, diagnostics);
   }
   case Kind::Other:
-    return mesh_io::read_with_assimp(path, options, diagnostics);
+    return read_other(bytes, path, options, diagnostics);
   case Kind::Obj:
   case Kind::Unknown:
     break;
@@ -88,11 +98,14 @@ Result<MeshFile> read_kind(Kind kind, const std::string &bytes, const fs::path &
 Result<MeshFile> read_mesh(const fs::path &path, const MeshFileOptions &options,
                            Diagnostics &diagnostics) {
   UMOV_ASSIGN(bytes, read_file(path));
+  return read_mesh_bytes(bytes, path, options, diagnostics);
+}
+
+Result<MeshFile> read_mesh_bytes(std::string_view bytes, const fs::path &path,
+                                 const MeshFileOptions &options, Diagnostics &diagnostics) {
   const Kind kind = kind_of(bytes, suffix_of(path));
-  if (kind == Kind::Obj) {
-    bytes = std::string(); // not twice in memory
-    return read_obj(path, options, diagnostics);
-  }
+  if (kind == Kind::Obj)
+    return mesh_io::read_obj_bytes(bytes, path, options, diagnostics);
   MeshFileOptions filled = options;
   UMOV_ASSIGN(out, read_kind(kind, bytes, path, filled, diagnostics));
   UMOV_TRY(mesh_io::to_body_frame(out, filled, path.string(), diagnostics));

@@ -203,6 +203,11 @@ Result<void> PolygonMaker::add(std::span<const Corner> corners, std::uint32_t gr
     ++short_faces_;
     return {};
   }
+  if (corners.size() > corners_max)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("a polygon of more than {} corners; split it into smaller ones", corners_max),
+        where);
   if (mesh_.triangles.size() + corners.size() - 2 > max_triangles_)
     return too_many_triangles(max_triangles_, where);
   std::vector<Vec3<Body>> points;

@@ -42,6 +42,9 @@ private:
 Vec3<Body> texture_tangent(const std::array<Vec3<Body>, 3> &at,
                            const std::array<std::array<double, 2>, 3> &uv);
 
+/// Corners of a polygon: cutting ears takes their number squared.
+inline constexpr std::size_t corners_max = 10'000;
+
 /// A corner of a polygon: indices into the positions and normals of the mesh and the texture
 /// coordinates of the maker.
 struct Corner {
@@ -54,7 +57,8 @@ public:
   PolygonMaker(Mesh &mesh, std::size_t max_triangles)
       : mesh_(mesh), max_triangles_(max_triangles) {}
 
-  /// BadInput where the mesh grows beyond its limit. Fewer than three corners are counted only.
+  /// BadInput where the mesh or the polygon is beyond its limit. Fewer than three corners are
+  /// counted only.
   Result<void> add(std::span<const Corner> corners, std::uint32_t group, const Where &where);
   /// Tells of polygons that were skipped or odd.
   void warn(Diagnostics &diagnostics, const Where &file) const;

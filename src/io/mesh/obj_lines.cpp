@@ -40,7 +40,10 @@ bool Lines::next(std::vector<Word> &words) {
       line = line.substr(0, last);
     for (std::size_t at = line.find_first_not_of(" \t"); at != std::string_view::npos;) {
       const std::size_t stop = std::min(line.find_first_of(" \t", at), line.size());
-      words.push_back({line.substr(at, stop - at), line_, at + 1});
+      if (words.size() < words_max)
+        words.push_back({line.substr(at, stop - at), line_, at + 1});
+      else if (cut_line_ == 0)
+        cut_line_ = line_;
       at = line.find_first_not_of(" \t", stop);
     }
     if (!goes_on && !words.empty())

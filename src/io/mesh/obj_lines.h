@@ -14,6 +14,10 @@ struct Word {
   std::size_t line = 0, column = 0; ///< from 1
 };
 
+/// Words of one line that are kept: twice what the largest polygon has, so that a longer one is
+/// seen to be too long, and a line of millions of words takes no memory.
+inline constexpr std::size_t words_max = 20'000;
+
 /// Walks a text line by line: LF, CR LF or CR ends; a byte order mark, comments and a backslash at
 /// the end of a line (continuation) are understood.
 class Lines {
@@ -23,11 +27,13 @@ public:
   bool next(std::vector<Word> &words);
   [[nodiscard]] Where where(const Word &word) const { return {file_, word.line, word.column}; }
   [[nodiscard]] const std::string &file() const { return file_; }
+  /// The first line that has more words than were kept; 0 if there is none.
+  [[nodiscard]] std::size_t cut_line() const { return cut_line_; }
 
 private:
   std::string_view rest_;
   std::string file_;
-  std::size_t line_ = 0;
+  std::size_t line_ = 0, cut_line_ = 0;
 };
 
 /// A finite number; the message tells of commas, hexadecimal digits, NaN and overflow.

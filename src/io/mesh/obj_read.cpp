@@ -2,6 +2,7 @@
 
 #include "io/mesh/mesh_parts.h"
 #include "io/mesh/obj_lines.h"
+#include "io/mesh/readers.h"
 
 #include <algorithm>
 #include <array>
@@ -52,6 +53,8 @@ private:
                                              std::size_t count, const char *what);
   Result<void> take_mtl(const std::vector<Word> &words);
   Result<void> read_mtl(const std::string &name, const Word &statement);
+  Result<bool> takes_mtl(const std::string &name, const Word &statement);
+  std::string name_of(const std::vector<Word> &words);
   Result<void> finish();
   std::uint32_t group();
 
@@ -65,7 +68,9 @@ private:
   std::string material_, object_;
   bool has_material_ = false;
   std::map<std::string, Word, std::less<>> unknown_; ///< statements that are none, where first seen
+  std::map<std::string, bool> mtl_; ///< files that were asked for, and whether they could be read
   std::size_t skipped_ = 0;
+  bool has_odd_names_ = false;
 };
 
 Result<Vec3<Body>> Reader::vector(const std::vector<Word> &words, const char *what) {
@@ -167,9 +172,15 @@ Result<void> Reader::take_mtl(const std::vector<Word> &words) {
   // One name with blanks in it, or several names: the format leaves it open.
   const std::string whole = obj::name_from(words, 1);
   std::vector<std::string> names{whole};
-  if (words.size() > 2 && (leaves_folder(whole) || !load_mtl_(whole))) {
-    names.clear();
-    for (std::size_t i = 1; i < words.size(); ++i)
+  if (words.size() > 2) {
+    bool is_one = !leaves_folder(whole);
+    if (is_one) {
+      UMOV_ASSIGN(is_there, takes_mtl(whole, words[0]));
+      is_one = is_there;
+    }
+    if (!is_one)
+      names.clear();
+    for (std::size_t i = 1; !is_one && i < words.size(); ++i)
       names.emplace_back(words[i].text);
   }
   for (const std::string &name : names) {
@@ -178,7 +189,7 @@ Result<void> Reader::take_mtl(const std::vector<Word> &words) {
           ErrorCode::BadInput,
           fmt::format("mtllib \"{}\" leaves the folder of the mesh; put the MTL file beside "
                       "the OBJ file",
-                      name),
+                      printable(name)),
           lines_.where(words[1]));
     UMOV_TRY(read_mtl(name, words[0]));
   }
@@ -186,18 +197,43 @@ Result<void> Reader::take_mtl(const std::vector<Word> &words) {
 }
 
 Result<void> Reader::read_mtl(const std::string &name, const Word &statement) {
-  const auto text = load_mtl_(name);
-  if (!text) {
-    out_.lacks_mtl = true;
-    diagnostics_.warn(fmt::format("mtllib \"{}\" cannot be read", name), lines_.where(statement));
+  UMOV_ASSIGN(is_there, takes_mtl(name, statement));
+  if (is_there)
     return {};
-  }
-  out_.files.emplace_back(name);
+  out_.lacks_mtl = true;
+  diagnostics_.warn(fmt::format("mtllib \"{}\" cannot be read", printable(name)),
+                    lines_.where(statement));
+  return {};
+}
+
+/// Reads a file of materials, once however often it is named; false if it cannot be read.
+Result<bool> Reader::takes_mtl(const std::string &name, const Word &statement) {
+  constexpr std::size_t most = 1000;
+  const auto [known, is_new] = mtl_.emplace(fs::path(name).lexically_normal().string(), false);
+  if (!is_new)
+    return known->second;
+  if (mtl_.size() > most)
+    return fail(ErrorCode::BadInput,
+                fmt::format("more than {} MTL files; join them into one", most),
+                lines_.where(statement));
+  const auto text = load_mtl_(name);
+  if (!text)
+    return false;
+  known->second = true;
+  out_.files.push_back({name, sha256_hex(*text)});
   Lines lines(*text, name);
   for (std::vector<Word> mtl; lines.next(mtl);)
     if (mtl[0].text == "newmtl")
-      out_.defined.push_back(obj::name_from(mtl, 1));
-  return {};
+      out_.defined.push_back(name_of(mtl));
+  return true;
+}
+
+/// The name that a statement gives: what would work on a terminal or in a page becomes '?'.
+std::string Reader::name_of(const std::vector<Word> &words) {
+  bool is_changed = false;
+  std::string out = printable(obj::name_from(words, 1), &is_changed);
+  has_odd_names_ = has_odd_names_ || is_changed;
+  return out;
 }
 
 Result<void> Reader::take(const std::vector<Word> &words) {
@@ -220,12 +256,12 @@ Result<void> Reader::take(const std::vector<Word> &words) {
   } else if (key == "f") {
     return take_face(words);
   } else if (key == "usemtl") {
-    material_ = obj::name_from(words, 1);
+    material_ = name_of(words);
     has_material_ = !material_.empty();
   } else if (key == "mtllib") {
     return take_mtl(words);
   } else if (key == "o" || key == "g") {
-    object_ = obj::name_from(words, 1);
+    object_ = name_of(words);
   } else if (key == "l" || key == "p") {
     ++skipped_;
   } else if (std::find(std::begin(harmless), std::end(harmless), key) == std::end(harmless)) {
@@ -253,6 +289,9 @@ Result<void> Reader::finish() {
   if (skipped_ > 0)
     diagnostics_.warn(fmt::format("{} points or lines were skipped: they have no area", skipped_),
                       file);
+  if (has_odd_names_)
+    diagnostics_.warn("names hold bytes that are no printable UTF-8; each of them became '?'",
+                      file);
   polygons_.warn(diagnostics_, file);
   return {};
 }
@@ -272,16 +311,21 @@ Result<MeshFile> read_obj_text(std::string_view text, const std::string &file,
   return Reader(text, file, options, load_mtl, diagnostics).read();
 }
 
-Result<MeshFile> read_obj(const fs::path &path, const MeshFileOptions &options,
-                          Diagnostics &diagnostics) {
-  UMOV_ASSIGN(text, read_file(path));
+Result<MeshFile> mesh_io::read_obj_bytes(std::string_view bytes, const fs::path &path,
+                                         const MeshFileOptions &options, Diagnostics &diagnostics) {
   const MtlLoader loader = [&](const std::string &name) {
     return read_file(path.parent_path() / name);
   };
-  UMOV_ASSIGN(out, read_obj_text(text, path.string(), options, loader, diagnostics));
-  for (fs::path &file : out.files)
-    file = path.parent_path() / file;
+  UMOV_ASSIGN(out, read_obj_text(bytes, path.string(), options, loader, diagnostics));
+  for (MeshPart &file : out.files)
+    file.path = path.parent_path() / file.path;
   return std::move(out);
+}
+
+Result<MeshFile> read_obj(const fs::path &path, const MeshFileOptions &options,
+                          Diagnostics &diagnostics) {
+  UMOV_ASSIGN(text, read_file(path));
+  return mesh_io::read_obj_bytes(text, path, options, diagnostics);
 }
 
 } // namespace umov

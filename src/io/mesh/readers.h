@@ -13,6 +13,9 @@ bool is_binary_stl(std::string_view bytes);
 /// True if a text begins as STL does and has facets.
 bool is_text_stl(std::string_view bytes);
 
+/// OBJ; `path` says where MTL files are looked for.
+Result<MeshFile> read_obj_bytes(std::string_view bytes, const std::filesystem::path &path,
+                                const MeshFileOptions &options, Diagnostics &diagnostics);
 Result<MeshFile> read_stl(std::string_view bytes, const std::string &file,
                           const MeshFileOptions &options, Diagnostics &diagnostics);
 Result<MeshFile> read_ply(std::string_view bytes, const std::string &file,

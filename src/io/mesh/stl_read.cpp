@@ -31,6 +31,7 @@ public:
   Result<MeshFile> read(Diagnostics &diagnostics);
 
 private:
+  Result<void> read_solids(Diagnostics &diagnostics);
   /// The next word of the body, or an empty one at the end.
   Word word();
   Result<void> expect(const char *wanted);
@@ -114,7 +115,7 @@ Result<void> TextReader::facet(const Word &begin) {
   return expect("endfacet");
 }
 
-Result<MeshFile> TextReader::read(Diagnostics &diagnostics) {
+Result<void> TextReader::read_solids(Diagnostics &diagnostics) {
   bool is_open = false;
   for (Word at = word(); !at.text.empty(); at = word()) {
     const std::string key = lower(at.text);
@@ -137,6 +138,17 @@ Result<MeshFile> TextReader::read(Diagnostics &diagnostics) {
   if (is_open)
     diagnostics.warn("the last solid has no \"endsolid\"; was the file cut off?",
                      lines_.where(last_));
+  return {};
+}
+
+Result<MeshFile> TextReader::read(Diagnostics &diagnostics) {
+  const auto done = read_solids(diagnostics);
+  if (lines_.cut_line() > 0)
+    return fail(ErrorCode::BadInput,
+                fmt::format("a line of more than {} words; write each vertex on a line of its own",
+                            obj::words_max),
+                {lines_.file(), lines_.cut_line()});
+  UMOV_TRY(done);
   polygons_.finish();
   polygons_.warn(diagnostics, {lines_.file()});
   return std::move(out_);

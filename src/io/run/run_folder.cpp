@@ -1,5 +1,7 @@
 #include <umov/io/run_folder.h>
 
+#include "io/run/manifest_read.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
@@ -28,24 +30,17 @@ tl::unexpected<Error> trouble(const fs::path &path, const std::string &text) {
 
 constexpr const char *complete = "complete", *stopped_early = "stopped early";
 
-/// The manifest that umov wrote into a folder; null for any other folder.
-nlohmann::json manifest_of(const fs::path &folder) {
-  const auto text = read_file(folder / "manifest.json");
-  if (!text)
-    return {};
-  auto json = nlohmann::json::parse(*text, nullptr, false);
-  if (!json.is_object() || !json.contains("program") || json["program"] != program)
-    return {};
-  return json;
+/// The manifest that umov wrote into a folder; empty for any other folder.
+std::optional<OldManifest> manifest_of(const fs::path &folder) {
+  constexpr std::size_t limit = 16u << 20; // ours have some KB, a name for each file of the folder
+  const auto text = read_file(folder / "manifest.json", limit);
+  return text ? read_manifest(*text) : std::nullopt;
 }
 
 /// Status of the run that umov wrote into a folder; empty for any other folder.
 std::optional<std::string> status_of(const fs::path &folder) {
-  const auto json = manifest_of(folder);
-  if (json.is_null())
-    return std::nullopt;
-  const auto status = json.find("status");
-  return status != json.end() && status->is_string() ? status->get<std::string>() : complete;
+  const auto manifest = manifest_of(folder);
+  return manifest ? std::optional(manifest->status) : std::nullopt;
 }
 
 /// What a run writes: a folder with anything else in it is never replaced as a whole.
@@ -67,8 +62,7 @@ std::vector<std::string> strangers_in(const fs::path &folder) {
   std::vector<std::string> out;
   std::error_code code;
   const auto manifest = manifest_of(folder);
-  const auto listed = manifest.is_null() ? nlohmann::json::array()
-                                         : manifest.value("files", nlohmann::json::array());
+  const auto listed = manifest ? manifest->files : std::vector<std::string>();
   for (const auto &entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
     if (std::find(std::begin(our_files), std::end(our_files), name) == std::end(our_files) &&

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <umov/core/text.h>
 #include <umov/io/scenario.h>
@@ -30,7 +31,7 @@ std::vector<Key> with_distributions(std::vector<Key> keys) {
 const std::vector<Key> &keys() {
   using enum Kind;
   const LightOptions light; // its defaults are told once, where they stand
-  static const std::vector<Key> all = with_distributions({
+  static const Key own[] = {
       {"", "umov", Integer, "", "version of the scenario's form: 1"},
       {"", "title", String, "\"\"", "heading of the report"},
       {"", "seed", Integer, "0", "of every random stream"},
@@ -183,7 +184,8 @@ const std::vector<Key> &keys() {
       {"material.distribution", "model", String, "", "see umov material list --models"},
       {"material.distribution", "file", String, "",
        "model table: CSV with columns theta_deg, density"},
-  });
+  };
+  static const std::vector<Key> all = with_distributions({std::begin(own), std::end(own)});
   return all;
 }
 

@@ -100,6 +100,17 @@ Result<void> load_attitude(const Named &of, const Mesh &mesh, Diagnostics &diagn
   return {};
 }
 
+/// The mesh of the very bytes whose hashes are kept.
+Result<MeshFile> load_mesh(const Named &of, Diagnostics &diagnostics, LoadedObject &out) {
+  const ScenarioMesh &mesh = of.object.mesh;
+  UMOV_ASSIGN(bytes, read_input(mesh.file, of.place("mesh"), out));
+  UMOV_ASSIGN(read,
+              read_mesh_bytes(bytes, mesh.file, {.unit = mesh.unit, .up = mesh.up}, diagnostics));
+  for (const MeshPart &file : read.files)
+    out.inputs.push_back({file.path.string(), file.sha256});
+  return std::move(read);
+}
+
 /// Every key of [object.materials] must mean some material of the mesh.
 Result<void> check_material_keys(const Named &of, const Mesh &mesh) {
   for (const auto &[name, sides] : of.object.materials) {
@@ -179,13 +190,7 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   if (which == 0)
     UMOV_TRY(load_earth(scenario, out));
   UMOV_TRY(load_orbit(of, options, diagnostics, out));
-  UMOV_TRY(read_input(of.object.mesh.file, of.place("mesh"), out));
-  UMOV_ASSIGN(read, read_mesh(of.object.mesh.file,
-                              {.unit = of.object.mesh.unit, .up = of.object.mesh.up}, diagnostics));
-  for (const auto &file : read.files) {
-    UMOV_ASSIGN(text, read_file(file));
-    out.inputs.push_back({file.string(), sha256_hex(text)});
-  }
+  UMOV_ASSIGN(read, load_mesh(of, diagnostics, out));
   UMOV_TRY(check_mtl(of, read));
   UMOV_TRY(check_material_keys(of, read.mesh));
   UMOV_TRY(load_attitude(of, read.mesh, diagnostics, out));

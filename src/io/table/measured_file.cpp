@@ -16,12 +16,11 @@ std::vector<std::string> mueller_names() {
 
 } // namespace
 
-Result<MeasuredBrdf> read_measured_file(const std::filesystem::path &path, bool accept,
-                                        std::vector<std::string> &remarks) {
-  UMOV_ASSIGN(text, read_file(path));
+Result<MeasuredBrdf> read_measured(std::string_view text, const std::string &file, bool accept,
+                                   std::vector<std::string> &remarks) {
   const std::vector<std::string> others = mueller_names();
   UMOV_ASSIGN(table,
-              read_csv(text, path.string(),
+              read_csv(text, file,
                        {"wavelength_nm", "theta_i_deg", "theta_o_deg", "phi_deg", "m00"}, others));
   std::size_t there = 0;
   for (const std::string &name : others)
@@ -31,7 +30,7 @@ Result<MeasuredBrdf> read_measured_file(const std::filesystem::path &path, bool 
                 fmt::format("has {} of the columns m01 to m33; all 15 (a Mueller table) or none (a "
                             "plain BRDF) were expected",
                             there),
-                {path.string()});
+                {file});
   std::vector<BrdfSample> samples(table.rows());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     BrdfSample &s = samples[i];
@@ -45,13 +44,23 @@ Result<MeasuredBrdf> read_measured_file(const std::filesystem::path &path, bool 
   }
   auto made = MeasuredBrdf::from(std::move(samples), there != 0, accept, remarks);
   if (!made)
-    return fail(ErrorCode::BadInput, made.error().message, {path.string()});
+    return fail(ErrorCode::BadInput, made.error().message, {file});
   return made;
+}
+
+Result<MeasuredBrdf> read_measured_file(const std::filesystem::path &path, bool accept,
+                                        std::vector<std::string> &remarks) {
+  UMOV_ASSIGN(text, read_file(path));
+  return read_measured(text, path.string(), accept, remarks);
 }
 
 Result<NormalsTable> read_normals_file(const std::filesystem::path &path) {
   UMOV_ASSIGN(text, read_file(path));
-  UMOV_ASSIGN(table, read_csv(text, path.string(), {"theta_deg", "density"}));
+  return read_normals(text, path.string());
+}
+
+Result<NormalsTable> read_normals(std::string_view text, const std::string &file) {
+  UMOV_ASSIGN(table, read_csv(text, file, {"theta_deg", "density"}));
   NormalsTable out;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     out.angle_deg.push_back(table.number("theta_deg", i));

@@ -29,6 +29,16 @@ std::string quoted_csv(const std::string &text, char delimiter) {
   return out + '"';
 }
 
+/// Text of a file that a spreadsheet would take for a formula and compute, with a ' before it,
+/// which they take for "text". A sign alone ("+X", "-2 deg") calls and refers to nothing.
+std::string without_formula(const std::string &text) {
+  const bool is_formula = text.starts_with('=') || text.starts_with('@') ||
+                          text.starts_with('\t') ||
+                          ((text.starts_with('+') || text.starts_with('-')) &&
+                           text.find_first_of("(!|") != std::string::npos);
+  return is_formula ? "'" + text : text;
+}
+
 const char *type_name(const Cells &cells) {
   constexpr const char *names[] = {"float64", "int64", "string", "bool"};
   return names[cells.index()];
@@ -117,7 +127,7 @@ void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std
         if (!std::isnan((*numbers)[row]))
           out += shortest((*numbers)[row]);
       } else if (const auto *text = std::get_if<std::vector<std::string>>(&column.cells)) {
-        out += quoted_csv((*text)[row], ',');
+        out += quoted_csv(without_formula((*text)[row]), ',');
       } else {
         out += quoted_csv(table.text(column.name, row), ',');
       }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <umov/core/quantity.h>
@@ -44,6 +45,23 @@ TEST(Triangulate, StarOf10000CornersIsFast) {
   EXPECT_EQ(t.triangles.size(), star.size() - 2);
   EXPECT_TRUE(t.is_simple);
   EXPECT_NEAR(signed_area(star, t), 10000 * 0.5 * 0.7 * std::sin(2 * pi / 10000), 1e-9);
+}
+
+TEST(Triangulate, LargeDiscsAreCutIntoTrianglesThatLieApart) {
+  Corners disc;
+  for (int i = 0; i < 1000; ++i)
+    disc.push_back({std::cos(2 * pi * i / 1000), std::sin(2 * pi * i / 1000), 0});
+  const Triangulation t = triangulate(disc);
+  ASSERT_EQ(t.triangles.size(), disc.size() - 2);
+  // The area of a regular polygon, n / 2 sin(2 pi / n); the sum rounds some 1000 times.
+  EXPECT_NEAR(signed_area(disc, t), 500 * std::sin(2 * pi / 1000), 1e-12);
+  double boxes = 0; // a fan has some 500
+  for (const auto &[i, j, k] : t.triangles) {
+    const auto [left, right] = std::minmax({disc[i].x, disc[j].x, disc[k].x});
+    const auto [low, high] = std::minmax({disc[i].y, disc[j].y, disc[k].y});
+    boxes += (right - left) * (high - low);
+  }
+  EXPECT_LT(boxes, 20);
 }
 
 TEST(Triangulate, TellsOfCrossingAndBentOutlines) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <umov/time/epoch.h>
+#include <umov/time/time_system.h>
 
 namespace umov {
 namespace {
@@ -58,6 +59,14 @@ TEST(LeapSeconds, WarnPastTheTable) {
   warn_if_beyond_leap_seconds(at("2040-01-01T00:00:00Z"), warned);
   EXPECT_TRUE(quiet.empty());
   EXPECT_EQ(warned.warnings().size(), 1u);
+}
+
+TEST(Calendar, RefusesWhatLeavesTheCalendarOnTheWayToUtc) { // TAI was 10 s ahead on 1972-01-01
+  EXPECT_FALSE(utc_from_calendar("1972-01-01T00:00:09.9", TimeSystem::Tai));
+  EXPECT_TRUE(utc_from_calendar("1972-01-01T00:00:10", TimeSystem::Tai));
+  EXPECT_FALSE(utc_from_iso("1972-01-01T00:00:00+14:00"));
+  EXPECT_TRUE(utc_from_iso("1972-01-01T14:00:00+14:00"));
+  EXPECT_FALSE(utc_from_iso("9999-12-31T23:00:00-14:00"));
 }
 
 } // namespace

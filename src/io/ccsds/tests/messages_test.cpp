@@ -328,5 +328,24 @@ TEST(CcsdsMessages, LinesLostDoubledOrExchangedNeverCrash) {
   }
 }
 
+TEST(Messages, EpochsOfXmlAreDates) { // in KVN the second line would be a comment, and lost
+  const std::string state =
+      "<X>7000</X><Y>0</Y><Z>0</Z><X_DOT>0</X_DOT><Y_DOT>7.5</Y_DOT><Z_DOT>0</Z_DOT>";
+  const auto message = [&](const std::string &epoch) {
+    return "<oem id=\"CCSDS_OEM_VERS\" version=\"2.0\"><header><CREATION_DATE>2018-01-21T00:00:00"
+           "</CREATION_DATE><ORIGINATOR>u</ORIGINATOR></header><body><segment><metadata>"
+           "<OBJECT_NAME>A</OBJECT_NAME><OBJECT_ID>2018-001A</OBJECT_ID><CENTER_NAME>EARTH</"
+           "CENTER_NAME>"
+           "<REF_FRAME>GCRF</REF_FRAME><TIME_SYSTEM>UTC</"
+           "TIME_SYSTEM><START_TIME>2018-01-20T00:00:00"
+           "</START_TIME><STOP_TIME>2018-01-20T00:01:00</STOP_TIME></"
+           "metadata><data><stateVector><EPOCH>" +
+           epoch + "</EPOCH>" + state + "</stateVector></data></segment></body></oem>";
+  };
+  EXPECT_EQ(refusal(message("2018-020T00:00:00.5Z")), "");
+  for (const char *epoch : {"COMMENT2018-01-20T00:00:00", "META_STOP", "2018-01-20 00:00:00", ""})
+    EXPECT_NE(refusal(message(epoch)), "") << epoch;
+}
+
 } // namespace
 } // namespace umov::ccsds

@@ -9,6 +9,7 @@
 #include <array>
 #include <fmt/format.h>
 #include <umov/core/files.h>
+#include <umov/core/text.h>
 
 namespace umov::mesh_io::gltf {
 namespace {
@@ -106,7 +107,7 @@ Result<std::string> Document::load_uri(const std::string &uri, const std::string
                             "file.",
                             place, bytes.error().text()),
                 {file_});
-  files_.push_back(folder_ / *name);
+  files_.push_back({folder_ / *name, sha256_hex(*bytes)});
   return bytes;
 }
 

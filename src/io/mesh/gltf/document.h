@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <umov/core/result.h>
+#include <umov/io/mesh_file.h>
 #include <vector>
 
 namespace umov::mesh_io::gltf {
@@ -65,7 +66,7 @@ public:
   [[nodiscard]] tl::unexpected<Error> bad(const std::string &place, const std::string &found,
                                           const std::string &expected) const;
   /// Buffers read from files.
-  [[nodiscard]] const std::vector<std::filesystem::path> &files() const { return files_; }
+  [[nodiscard]] const std::vector<MeshPart> &files() const { return files_; }
 
 private:
   Result<void> split_glb(std::string_view bytes, std::string_view &json);
@@ -89,7 +90,7 @@ private:
   std::map<std::size_t, std::shared_ptr<const std::string>> buffers_;
   std::map<std::size_t, std::shared_ptr<const Accessor>> accessors_;
   std::size_t bytes_read_ = 0;
-  std::vector<std::filesystem::path> files_;
+  std::vector<MeshPart> files_;
 };
 
 } // namespace umov::mesh_io::gltf

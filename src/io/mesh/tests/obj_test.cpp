@@ -93,6 +93,46 @@ TEST(ObjReader, SplitsLargePolygons) {
   }
 }
 
+TEST(ObjReader, RefusesPolygonsBeyondTheLimit) {
+  std::string face = square + "f";
+  for (int i = 0; i < 10'001; ++i)
+    face += " " + std::to_string(1 + i % 4);
+  Diagnostics diagnostics;
+  const auto result = read(face, diagnostics);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().where.line, 5u);
+  EXPECT_NE(result.error().message.find("more than 10000 corners"), std::string::npos);
+}
+
+TEST(ObjReader, ReadsAnMtlFileOnce) {
+  int asked = 0;
+  const MtlLoader loader = [&](const std::string &name) -> Result<std::string> {
+    ++asked;
+    if (name == "a.mtl")
+      return std::string("newmtl red\n");
+    return fail(ErrorCode::BadInput, "none");
+  };
+  std::string text;
+  for (int i = 0; i < 100; ++i)
+    text += "mtllib a.mtl\nmtllib ./a.mtl\nmtllib b.mtl\nmtllib b.mtl a.mtl\n";
+  Diagnostics diagnostics;
+  const auto result =
+      read_obj_text(text + square + "f 1 2 3\n", "a.obj", metres, loader, diagnostics);
+  ASSERT_TRUE(result) << result.error().text();
+  EXPECT_EQ(asked, 3); // "a.mtl", "b.mtl", "b.mtl a.mtl"
+  EXPECT_EQ(result->defined, (std::vector<std::string>{"red"}));
+}
+
+TEST(ObjReader, NamesArePrintable) {
+  Diagnostics diagnostics;
+  const auto result = read(square + "usemtl a\x1b[2J\nf 1 2 3\nusemtl b\xE9\nf 1 3 4\n"
+                                    "usemtl c\xC3\xA9\nf 1 2 4\n",
+                           diagnostics);
+  ASSERT_TRUE(result) << result.error().text();
+  EXPECT_EQ(result->mesh.groups, (std::vector<std::string>{"a?[2J", "b?", "c\xC3\xA9"}));
+  EXPECT_EQ(diagnostics.warnings().size(), 1u);
+}
+
 TEST(ObjReader, WarnsOfWhatItSkips) {
   Diagnostics diagnostics;
   const auto result = read(square + "f 1 2 3\nl 1\nf 1 2\n", diagnostics);

@@ -8,12 +8,13 @@ const umovFigure = (() => {
   });
   const legend = () => ({ orientation: "h", yref: "container", y: 0, yanchor: "bottom", font: { size: 11 } });
   const symbols = ["circle", "square", "diamond", "cross", "triangle-up", "x"];
-  const safe = (text) => text.replaceAll("<", "&lt;");
+  // Plotly takes some HTML in names: they are shown as they stand.
+  const safe = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
   // The sky overhead: zenith in the middle, north up, east left.
   const drawSky = (plot, figure) => {
     plot.style.height = "640px";
     const tracks = figure.lines.map((line) => ({
-      type: "scatterpolar", mode: line.labels.some((label) => label) ? "lines+text" : "lines", name: line.name,
+      type: "scatterpolar", mode: line.labels.some((label) => label) ? "lines+text" : "lines", name: safe(line.name),
       theta: line.x, r: line.y.map((altitude) => altitude === null ? null : 90 - altitude), text: line.labels,
       textposition: line.x.map((azimuth) => azimuth % 360 > 180 ? "middle right" : "middle left"),
       textfont: { size: 11 }, cliponaxis: false, line: { color: line.colour, dash: line.dash, width: 3 },
@@ -32,7 +33,7 @@ const umovFigure = (() => {
   const drawSpace = (plot, figure) => {
     plot.style.height = "560px";
     const clouds = figure.lines.map((line, index) => ({
-      type: "scatter3d", mode: line.markers ? "markers" : "lines", name: line.name, x: line.x, y: line.y, z: line.z,
+      type: "scatter3d", mode: line.markers ? "markers" : "lines", name: safe(line.name), x: line.x, y: line.y, z: line.z,
       marker: { size: line.markers ? 2.6 : 0, color: line.colour, symbol: symbols[index % 4] },
       line: { color: line.colour, width: 4, dash: line.dash },
     }));
@@ -47,7 +48,7 @@ const umovFigure = (() => {
   const drawPlane = (plot, figure) => {
     const lines = figure.lines.map((line, index) => ({
       type: line.x.length > 2000 ? "scattergl" : "scatter", mode: line.markers ? "markers" : "lines",
-      name: line.name, x: line.x, y: line.y,
+      name: safe(line.name), x: line.x, y: line.y,
       line: { color: line.colour, dash: line.dash, width: 2 },
       marker: { color: line.colour, size: 4, symbol: symbols[index % symbols.length] },
     }));

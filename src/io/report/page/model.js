@@ -5,6 +5,9 @@ const epochs = report.epochs;
 const bands = report.bands;
 const epochCount = epochs.time.length;
 
+/// Plotly takes some HTML (links, line breaks) in names and texts: those of files stand as they are.
+const plain = (name) => name.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+
 // Okabe & Ito (2008); the first three follow the wavelength from blue to red.
 const threeBandColours = ["#0072b2", "#009e73", "#d55e00"];
 const manyBandColours = ["#0072b2", "#56b4e9", "#009e73", "#e69f00", "#d55e00", "#cc79a7", "#000000"];

@@ -34,14 +34,14 @@ function pureTraces(data, plan, shownBand) {
     if (shownBand !== "all" && curve.band !== shownBand) return;
     const m = pureMaterials.indexOf(curve.material);
     data.push({
-      type: "scatter", mode: "lines", x: curve.phase, y: curve.q_scat.map(percent), name: curve.material,
+      type: "scatter", mode: "lines", x: curve.phase, y: curve.q_scat.map(percent), name: plain(curve.material),
       legendgroup: "pure " + curve.material, showlegend: false, opacity: 0.55,
       line: { color: shownBand === "all" ? bands[curve.band].colour : theme.soft, dash: dashes[m % dashes.length], width: 1.2 },
-      hovertemplate: "%{y:.1f} % at %{x}°<extra>" + curve.material + " " + bands[curve.band].name + "</extra>",
+      hovertemplate: "%{y:.1f} % at %{x}°<extra>" + plain(curve.material + " " + bands[curve.band].name) + "</extra>",
     });
     if (shownBand !== "all") {
       const at = pureLabel(curve, m);
-      plan.annotations.push({ x: at.x, y: at.y, text: curve.material, showarrow: false, yshift: 8, font: { size: 10, color: theme.soft }, bgcolor: theme.card, opacity: 0.85, borderpad: 1 });
+      plan.annotations.push({ x: at.x, y: at.y, text: plain(curve.material), showarrow: false, yshift: 8, font: { size: 10, color: theme.soft }, bgcolor: theme.card, opacity: 0.85, borderpad: 1 });
     }
   });
   if (shownBand === "all") // one grey line per material explains the dashes
@@ -64,9 +64,9 @@ const phaseFigure = {
     byWavelength.filter((b) => state.band === "all" || state.band === b).forEach((b) => {
       const line = joined((i) => epochs.phase[i], (i) => percent(bands[b].q_scat[i]));
       data.push({
-        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, text: line.row.map((i) => epochs.time[i]), name: bands[b].name,
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, text: line.row.map((i) => epochs.time[i]), name: plain(bands[b].name),
         line: { color: bands[b].colour, width: 2 }, marker: { color: bands[b].colour, symbol: bands[b].symbol, size: 7, maxdisplayed: 40 },
-        hovertemplate: "%{y:.2f} % at %{x:.2f}°<br>%{text}<extra>" + bands[b].name + "</extra>",
+        hovertemplate: "%{y:.2f} % at %{x:.2f}°<br>%{text}<extra>" + plain(bands[b].name) + "</extra>",
       });
     });
     return { data, layout: plan };
@@ -89,15 +89,15 @@ const planeFigure = {
     const data = byWavelength.filter((b) => state.band === "all" || state.band === b).map((b) => {
       const line = joined((i) => percent(bands[b].q[i]), (i) => percent(bands[b].u[i]));
       return {
-        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: bands[b].name, showlegend: false, text: line.row.map((i) => epochs.time[i]),
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: plain(bands[b].name), showlegend: false, text: line.row.map((i) => epochs.time[i]),
         line: { color: theme.line, width: 0.8 }, customdata: line.row.map((i) => epochs.phase[i]),
         marker: { color: line.row.map((i) => epochs.phase[i]), coloraxis: "coloraxis", symbol: bands[b].symbol, size: 7, line: { width: 0.5, color: theme.soft } },
-        hovertemplate: "q %{x:.2f} %, u %{y:.2f} %<br>phase %{customdata:.2f}°<br>%{text}<extra>" + bands[b].name + "</extra>",
+        hovertemplate: "q %{x:.2f} %, u %{y:.2f} %<br>phase %{customdata:.2f}°<br>%{text}<extra>" + plain(bands[b].name) + "</extra>",
       };
     });
     // The legend explains the shapes; a marker coloured by phase has no colour of its own.
     byWavelength.filter((b) => state.band === "all" || state.band === b).forEach((b) => data.push({
-      type: "scatter", mode: "markers", x: [null], y: [null], name: bands[b].name, hoverinfo: "skip",
+      type: "scatter", mode: "markers", x: [null], y: [null], name: plain(bands[b].name), hoverinfo: "skip",
       marker: { symbol: bands[b].symbol, size: 9, color: theme.soft } }));
     return { data, layout: layout({
       hovermode: "closest", coloraxis: phaseAxis(), margin: { l: 50, r: 14, t: 8, b: 90 },
@@ -139,7 +139,7 @@ const rgbFigure = {
         line: { color: manyBandColours[m % 7], width: 4, dash: m >= 7 ? "dash" : "solid" }, hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %" });
     });
     data.push({
-      type: "scatter3d", mode: "markers", name: report.object || "object", showlegend: false, text: rows.map((i) => epochs.time[i]),
+      type: "scatter3d", mode: "markers", name: plain(report.object || "object"), showlegend: false, text: rows.map((i) => epochs.time[i]),
       x: rows.map((i) => percent(bands[rgbBands[0]].q_scat[i])), y: rows.map((i) => percent(bands[rgbBands[1]].q_scat[i])), z: rows.map((i) => percent(bands[rgbBands[2]].q_scat[i])),
       marker: { size: 3.5, color: rows.map((i) => epochs.phase[i]), coloraxis: "coloraxis" },
       hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %<br>%{text}",
@@ -148,7 +148,7 @@ const rgbFigure = {
     const side = (b) => {
       const [low, high] = range(rows.map((i) => percent(bands[b].q_scat[i]))) || [0, 1];
       const pad = Math.max(0.5, 0.35 * (high - low));
-      return axis({ title: { text: bands[b].name + " [%]" }, backgroundcolor: theme.card, range: [low - pad, high + pad], nticks: 5 });
+      return axis({ title: { text: plain(bands[b].name) + " [%]" }, backgroundcolor: theme.card, range: [low - pad, high + pad], nticks: 5 });
     };
     return { data, layout: layout({
       coloraxis: phaseAxis({ y: -0.02 }), margin: { l: 0, r: 0, t: 8, b: 60 }, dragmode: "turntable",

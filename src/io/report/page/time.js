@@ -82,7 +82,7 @@ function timeFigure(rows) {
       const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
       data.push({
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, customdata: line.row.map((i) => epochs.phase[i]),
-        xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: curve.name, legendgroup: curve.name,
+        xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: plain(curve.name), legendgroup: curve.name,
         showlegend: r === 0 && k === 0, connectgaps: false,
         line: { color: curve.colour, width: 1.6 }, marker: { color: curve.colour, symbol: curve.symbol, size: 6, maxdisplayed: 24 },
         hovertemplate: "%{y:." + row.digits + "} " + (row.unit || "") + " (phase %{customdata:.1f}°)",
@@ -198,7 +198,7 @@ const contributionFigure = {
       contributions.forEach((part) => data.push({
         type: "scatter", mode: run.length === 1 ? "markers" : "lines", stackgroup: "stack" + stack, x: run.map((i) => times[i]),
         y: run.map((i) => part.intensity[state.band][i] * (isShare ? 100 / bands[state.band].intensity[i] : 1)),
-        xaxis: "x" + (k ? k + 1 : ""), yaxis: "y", name: part.material, legendgroup: part.material, showlegend: stack === 1,
+        xaxis: "x" + (k ? k + 1 : ""), yaxis: "y", name: plain(part.material), legendgroup: part.material, showlegend: stack === 1,
         line: { width: 0.5, color: part.colour }, fillcolor: part.colour,
         hovertemplate: isShare ? "%{y:.1f} %" : "%{y:.3e}",
       }));

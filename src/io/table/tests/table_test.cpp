@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <umov/io/poses_file.h>
 #include <umov/io/table.h>
 
 namespace umov {
@@ -23,6 +24,30 @@ TEST(Table, CsvCarriesUnitsAndLeavesUndefinedCellsEmpty) {
   EXPECT_NE(csv.find("m2 / sr"), std::string::npos);
   EXPECT_NE(csv.find("\"b, \"\"c\"\"\""), std::string::npos) << csv;
   EXPECT_NE(csv.find("\n,-2,"), std::string::npos) << csv;
+}
+
+TEST(Table, CsvHasNoFormulas) {
+  Table table;
+  table.add("name", "", "",
+            std::vector<std::string>{"=1+1", "@SUM(A1)", "+cmd|' /C calc'!A0", "-HYPERLINK(\"x\")",
+                                     "+X", "-2 deg", "a=1"});
+  EXPECT_EQ(to_csv(table), "# unit: \nname\n'=1+1\n'@SUM(A1)\n\"'+cmd|' /C calc'!A0\"\n"
+                           "\"'-HYPERLINK(\"\"x\"\")\"\n+X\n\"-2 deg\"\na=1\n");
+}
+
+TEST(Poses, HaveWholeNumbers) {
+  const std::string header = "pose,sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n";
+  const auto fine =
+      read_poses(header + "7,1,0,0,0,2,0\n7,1,0,0,0,1,0\n-9,5e-324,0,0,0,0,1e308\n", "p.csv");
+  ASSERT_TRUE(fine) << fine.error().text();
+  EXPECT_EQ(fine->number, (std::vector<std::int64_t>{7, -9}));
+  EXPECT_EQ(norm(fine->poses[1].sun), 1);
+  for (const char *number : {"1e30", "0.5", "-1e19"}) {
+    const auto bad = read_poses(header + number + ",1,0,0,0,1,0\n", "p.csv");
+    ASSERT_FALSE(bad) << number;
+    EXPECT_EQ(bad.error().where.line, 2u);
+    EXPECT_NE(bad.error().message.find("whole number"), std::string::npos);
+  }
 }
 
 TEST(Table, NumbersReadBackBitForBit) {
