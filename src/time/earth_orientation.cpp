@@ -60,7 +60,9 @@ std::optional<Day> day_of_csv(std::string_view line) {
 
 bool is_plausible(const Day &day) {
   constexpr double pole_arcsec = 2, ut1_s = 1; // IERS: it stays below 0.7 arcsec and 0.9 s
-  return std::abs(day.x_arcsec) <= pole_arcsec && std::abs(day.y_arcsec) <= pole_arcsec &&
+  constexpr double mjd_max = 1e6;              // beyond, a day later would not be another number
+  return day.mjd == std::floor(day.mjd) && std::abs(day.mjd) < mjd_max &&
+         std::abs(day.x_arcsec) <= pole_arcsec && std::abs(day.y_arcsec) <= pole_arcsec &&
          std::abs(day.dut1_s) <= ut1_s;
 }
 
