@@ -1,7 +1,8 @@
-"""The conventions are normative: every line of a table names a test, and the test exists."""
+"""What the pages say holds: conventions name tests that exist, walks through umov can be walked."""
 import re
+import subprocess
 
-from conftest import ROOT
+from conftest import ROOT, UMOV
 
 
 def test_every_convention_names_a_test_that_exists():
@@ -19,3 +20,25 @@ def test_every_convention_names_a_test_that_exists():
             else:
                 suite, case = name.split(".")
                 assert re.search(rf"TEST(_F|_P)?\(\s*{suite},\s*{case}\)", sources), name
+
+
+def test_my_satellite_in_five_steps(tmp_path):
+    """Every block of the page, in one shell, from a folder that looks like the project's."""
+    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "docs/my_satellite.md").read_text(), re.DOTALL)
+    assert len(blocks) == 5
+    for name in ("data", ".deps"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/umov").symlink_to(UMOV)
+    script = 'set -e\nPATH="$PWD/bin:$PATH"\n' + "\n".join(blocks)
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "warning" not in done.stderr and "mag" in done.stdout.splitlines()[-1], done.stdout
+    assert (tmp_path / "out/mysat/light/lightcurve.csv").exists()
+
+
+def test_links_of_the_pages_lead_somewhere():
+    pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")]
+    for page in pages:
+        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text()):
+            assert target.startswith("http") or (page.parent / target).exists(), f"{page}: {target}"
