@@ -61,7 +61,8 @@ private:
   std::optional<Error> failed_;
 };
 
-/// Where f changes sign between a and b, by bisection.
+/// Where f changes sign between a and b, by bisection: the visible part of the Sun is 0 or 1 on
+/// nearly all of the way, where root finders that follow slopes gain nothing.
 double crossing(const std::function<double(double)> &f, double a, double b) {
   const bool is_up = f(b) > 0;
   while (b - a > time_tolerance_s) {
