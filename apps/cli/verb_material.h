@@ -5,14 +5,8 @@
 #include "verbs.h"
 
 #include <memory>
-#include <umov/optics/band.h>
-#include <umov/surface/material.h>
 
 namespace umov::cli {
-
-std::string range_text(WavelengthRange range);
-/// Wavelengths of the paper where the material has them, else the middle of its range.
-std::vector<Band> bands_for(const Material &material);
 
 /// What a verb does when it is called.
 template <class F> auto finishing(const Exit &exit_with, F run) {

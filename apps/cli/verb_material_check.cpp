@@ -6,6 +6,7 @@
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/io/scenario.h>
+#include <umov/jobs/material_tables.h>
 #include <umov/surface/audit.h>
 
 namespace umov::cli {
@@ -31,7 +32,7 @@ Result<void> check_materials(const CheckOptions &o, const Common &common) {
   std::vector<SurfaceAudit> found(names.size());
   std::vector<std::optional<Error>> failures(names.size());
   parallel_for(names.size(), static_cast<unsigned>(common.threads), [&](std::size_t i) {
-    const auto surface = Surface::compile(materials[i], bands_for(materials[i]));
+    const auto surface = Surface::compile(materials[i], jobs::bands_for(materials[i]));
     if (surface)
       found[i] = audit_surface(*surface, o.geometries, o.seed);
     else

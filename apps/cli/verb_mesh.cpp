@@ -2,12 +2,9 @@
 #include "verbs.h"
 
 #include "tables.h"
-#include <algorithm>
-#include <array>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <umov/io/mesh_file.h>
-#include <umov/shape/topology.h>
+#include <umov/jobs/mesh_description.h>
 
 namespace umov::cli {
 namespace {
@@ -18,40 +15,9 @@ struct ReadOptions {
   bool require_closed = false;
 };
 
-Table group_table(const Mesh &mesh, const MeshReport &found) {
-  Table table;
-  std::vector<std::string> names = mesh.groups;
-  std::vector<std::int64_t> triangles;
-  for (const std::size_t count : found.group_triangles)
-    triangles.push_back(static_cast<std::int64_t>(count));
-  table.add("material", "", "mesh material", std::move(names));
-  table.add("triangles", "", "number of triangles", std::move(triangles));
-  table.add("area", "m2", "area of one side", found.group_area_m2);
-  return table;
-}
-
-/// Nodes of the file's tree: the parts of a scenario may name them.
-Table node_table(const std::vector<MeshNode> &nodes) {
-  Table table;
-  std::vector<std::string> paths;
-  std::vector<std::int64_t> triangles;
-  std::array<std::vector<double>, 3> origin;
-  for (const MeshNode &node : nodes) {
-    paths.push_back(node.path);
-    triangles.push_back(static_cast<std::int64_t>(node.triangles));
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      origin[axis].push_back(std::array{node.origin_m.x, node.origin_m.y, node.origin_m.z}[axis]);
-  }
-  table.add("node", "", "path in the tree of the file", std::move(paths));
-  table.add("triangles", "", "number of triangles", std::move(triangles));
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    table.add(std::string("origin_") + "xyz"[axis], "m", "origin of the node, body axes",
-              std::move(origin[axis]));
-  return table;
-}
-
-void describe(const MeshReport &m, const std::string &format) {
-  fmt::print("format        {}\nbounding box  {:.6g} x {:.6g} x {:.6g} m\n", format,
+void print(const jobs::MeshDescription &mesh) {
+  const MeshReport &m = mesh.report;
+  fmt::print("format        {}\nbounding box  {:.6g} x {:.6g} x {:.6g} m\n", mesh.format,
              m.upper.x - m.lower.x, m.upper.y - m.lower.y, m.upper.z - m.lower.z);
   fmt::print("vertices      {}\ntriangles     {} in {} parts\narea          {:.6g} m2\n",
              m.vertices, m.triangles, m.parts, m.area_m2);
@@ -65,58 +31,19 @@ void describe(const MeshReport &m, const std::string &format) {
              m.opposite_pairs);
 }
 
-std::string to_json(const Mesh &mesh, const MeshReport &m, const MeshFile &file) {
-  const auto vector = [](Vec3<Body> v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
-  nlohmann::ordered_json out{{"format", file.format},
-                             {"lower_m", vector(m.lower)},
-                             {"upper_m", vector(m.upper)},
-                             {"vertices", m.vertices},
-                             {"triangles", m.triangles},
-                             {"parts", m.parts},
-                             {"area_m2", m.area_m2},
-                             {"closed", m.is_closed},
-                             {"convex", m.is_convex},
-                             {"volume_m3", nullptr},
-                             {"open_edges", m.open_edges},
-                             {"non_manifold_edges", m.non_manifold_edges},
-                             {"inconsistent_edges", m.inconsistent_edges},
-                             {"inward_parts", m.inward_parts},
-                             {"degenerate", m.degenerate},
-                             {"duplicates", m.duplicate},
-                             {"opposite_pairs", m.opposite_pairs}};
-  if (m.is_closed)
-    out["volume_m3"] = m.volume_m3;
-  for (std::size_t g = 0; g < mesh.groups.size(); ++g)
-    out["materials"].push_back({{"name", mesh.groups[g]},
-                                {"triangles", m.group_triangles[g]},
-                                {"area_m2", m.group_area_m2[g]}});
-  for (const MeshNode &node : file.nodes)
-    out["nodes"].push_back(
-        {{"path", node.path}, {"triangles", node.triangles}, {"origin_m", vector(node.origin_m)}});
-  return out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
 Result<void> describe_file(const ReadOptions &options, const Common &common, bool check,
                            Diagnostics &diagnostics) {
-  UMOV_ASSIGN(read, read_mesh(options.file, options.frame, diagnostics));
-  Mesh mesh = with_joined_groups(read.mesh);
-  const MeshReport raw = inspect(mesh);
-  if (check) { // what is left when a scene is made of it
-    UMOV_ASSIGN(cleaned, clean_mesh(mesh, diagnostics, options.file));
-    mesh = std::move(cleaned);
-  }
-  MeshReport found = inspect(mesh, false);
-  found.degenerate = raw.degenerate;
-  found.duplicate = raw.duplicate;
-  found.opposite_pairs = raw.opposite_pairs;
+  const auto how = check ? jobs::MeshLook::Cleaned : jobs::MeshLook::AsRead;
+  UMOV_ASSIGN(mesh, jobs::describe_mesh(options.file, options.frame, how, diagnostics));
   if (common.json) {
-    UMOV_TRY(put("", to_json(mesh, found, read)));
+    UMOV_TRY(put("", jobs::to_json(mesh)));
   } else {
-    describe(found, read.format);
-    UMOV_TRY(put("", to_text(group_table(mesh, found))));
-    if (!read.nodes.empty())
-      UMOV_TRY(put("", "\n" + to_text(node_table(read.nodes))));
+    print(mesh);
+    UMOV_TRY(put("", to_text(jobs::group_table(mesh))));
+    if (!mesh.nodes.empty())
+      UMOV_TRY(put("", "\n" + to_text(jobs::node_table(mesh))));
   }
+  const MeshReport &found = mesh.report;
   if (options.require_closed && !found.is_closed)
     return fail(ErrorCode::BadInput,
                 fmt::format("not closed: {} open and {} non-manifold edges. Mend the mesh or leave "

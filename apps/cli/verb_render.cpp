@@ -11,13 +11,11 @@ namespace umov::cli {
 namespace {
 
 struct RenderOptions {
-  std::string scene, output, shade = "I", band, time;
+  jobs::RenderRequest request;
+  std::string scene, output, shade = "I", time;
   std::vector<std::string> overrides;
   std::vector<double> sun, observer, up{0, 0, 1};
   std::size_t object = 1;
-  std::uint32_t size = 512, samples = 3;
-  std::size_t frames = 1, paths = 16;
-  double frames_per_s = 10, half_width_m = 0;
   bool allow_bad_checksum = false, allow_old_elements = false;
 };
 
@@ -40,7 +38,7 @@ Result<KeyFrameView> view_of(const RenderOptions &o) {
 
 Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
   using Shade = jobs::RenderRequest::Shade;
-  jobs::RenderRequest out;
+  jobs::RenderRequest out = o.request;
   out.is_exr = o.output.ends_with(".exr");
   if (!out.is_exr && !o.output.ends_with(".png"))
     return fail(ErrorCode::Usage,
@@ -60,14 +58,7 @@ Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
     UMOV_ASSIGN(time, utc_from_iso(o.time));
     out.time = time;
   }
-  out.band = o.band;
   out.object = o.object - 1;
-  out.frames = o.frames;
-  out.frames_per_s = o.frames_per_s;
-  out.side = o.size;
-  out.samples = o.samples;
-  out.paths = o.paths;
-  out.half_width_m = o.half_width_m;
   return out;
 }
 
@@ -96,14 +87,14 @@ void add_what(CLI::App &verb, RenderOptions &o) {
                   "I, p, pa, material, or colour (three bands as blue, green, red)")
       ->check(CLI::IsMember({"I", "p", "pa", "material", "colour"}))
       ->capture_default_str();
-  verb.add_option("--band", o.band,
+  verb.add_option("--band", o.request.band,
                   "Of the picture, as the scene spells it; default: the middle one");
   verb.add_option("--time", o.time,
                   "UTC; default: the brightest moment of the first pass in [time]");
-  verb.add_option("--frames", o.frames, "Pictures of the first pass, as an animated PNG")
+  verb.add_option("--frames", o.request.frames, "Pictures of the first pass, as an animated PNG")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  verb.add_option("--fps", o.frames_per_s, "Frames per second of the animation")
+  verb.add_option("--fps", o.request.frames_per_s, "Frames per second of the animation")
       ->check(CLI::Range(0.1, 60.0))
       ->capture_default_str();
   verb.add_option("--sun", o.sun, "Direction in the body frame, instead of an orbit: X Y Z")
@@ -119,17 +110,17 @@ void add_what(CLI::App &verb, RenderOptions &o) {
 }
 
 void add_picture(CLI::App &verb, RenderOptions &o) {
-  verb.add_option("--size", o.size, "Pixels per side")
+  verb.add_option("--size", o.request.side, "Pixels per side")
       ->check(CLI::Range(16, 4096))
       ->capture_default_str();
-  verb.add_option("--samples", o.samples, "Rays per pixel and axis")
+  verb.add_option("--samples", o.request.samples, "Rays per pixel and axis")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
-  verb.add_option("--paths", o.paths,
+  verb.add_option("--paths", o.request.paths,
                   "Per ray, of light that touched several surfaces (render.bounces > 1)")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  verb.add_option("--half-width", o.half_width_m,
+  verb.add_option("--half-width", o.request.half_width_m,
                   "Half the picture's side [m]; default: the whole object")
       ->check(CLI::PositiveNumber);
 }

@@ -44,8 +44,13 @@
 #include <umov/io/table_sink.h>
 #include <umov/io/table_stream.h>
 #include <umov/io/trajectory_file.h>
+#include <umov/jobs/brdf.h>
 #include <umov/jobs/ephemeris.h>
+#include <umov/jobs/material_page.h>
+#include <umov/jobs/material_tables.h>
+#include <umov/jobs/mesh_description.h>
 #include <umov/jobs/monitor.h>
+#include <umov/jobs/orbit_files.h>
 #include <umov/jobs/passes.h>
 #include <umov/jobs/render.h>
 #include <umov/jobs/requests.h>

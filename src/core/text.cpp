@@ -106,6 +106,27 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
+std::optional<std::vector<CsvCell>> csv_cells(std::string_view line) {
+  std::vector<CsvCell> cells(1);
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (is_quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back().text += line[i++];
+    else if (c == '"')
+      is_quoted = !is_quoted;
+    else if (c == ',' && !is_quoted)
+      cells.push_back({"", i + 2});
+    else
+      cells.back().text += c;
+  }
+  if (is_quoted)
+    return std::nullopt;
+  for (CsvCell &cell : cells)
+    cell.text = std::string(trimmed(cell.text));
+  return cells;
+}
+
 namespace {
 
 /// Bytes of the UTF-8 character at the start of `text` (RFC 3629, section 4: neither overlong forms

@@ -1,5 +1,7 @@
 #pragma once
-// Private: Gauss-Legendre quadrature.
+// Private: Gauss-Legendre quadrature. Boost.Math's `gauss` integrates one function; double sums
+// over nodes and weights (masking, albedos, measured tables) want both halves of a rule in plain
+// arrays.
 
 #include <array>
 #include <cmath>

@@ -17,7 +17,7 @@ template <class R> UMOV_KERNEL R source_node_weight(std::size_t node) {
 }
 
 /// Per-axis variances of the image of a uniform disk: halved in angle by the half vector; across
-/// the scattering plane the image is longer by 1/cos(phase/2) (physics.md section 8).
+/// the scattering plane the image is longer by 1/cos(phase/2) (lobes.md, Eq. 4).
 template <class R> struct DiskVariances { R along, across; };
 template <class R> UMOV_KERNEL DiskVariances<R> disk_variances(R radius, R l_v) {
   const R along = radius * radius / R(16);

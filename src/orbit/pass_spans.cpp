@@ -159,6 +159,8 @@ double walk_uphill(const Altitude &altitude, double step_s) {
 
 namespace passes {
 
+// By bisection: the visible part of the Sun is 0 or 1 on nearly all of the way, where root finders
+// that follow slopes gain nothing.
 double crossing(const Function &f, double a, double b) {
   const bool is_up = f(b) > 0;
   while (b - a > crossing_tolerance_s) {

@@ -117,6 +117,9 @@ DragTerms drag_terms(const MeanElements &m, const InclinationTerms &inc, double 
 
 } // namespace
 
+// Not ERFA's eraGmst82 and eraCal2jd: one double for the date and this order of the sum are what
+// the reference program has, whose last digits the tests hold this to
+// (src/orbit/tests/sgp4_test.cpp).
 double julian_date_of_year_day(int year, int day) {
   // Days of the Gregorian calendar before 1 January of `year`; 1 January 1 is JD 1721425.5.
   const int y = year - 1;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
+#include <umov/time/time_system.h>
 
 namespace umov::tle {
 
@@ -83,15 +84,13 @@ Result<int> catalogue_number(const Line &line, const std::string &file) {
   return (static_cast<int>(letter) + 10) * 10000 + *low;
 }
 
-bool is_leap(int year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
-
 Result<void> read_epoch(const Line &line, const std::string &file, ElementSet &set,
                         LineNotes &notes) {
   UMOV_ASSIGN(two_digits, Field(line, file, 19, 20, "the epoch's year").whole(false));
   // Two digits turn over at 57: the first satellite flew in 1957.
   set.epoch_year = two_digits < 57 ? 2000 + two_digits : 1900 + two_digits;
   const Field day(line, file, 21, 32, "the epoch's day of year");
-  const int days = is_leap(set.epoch_year) ? 366 : 365;
+  const int days = is_leap_year(set.epoch_year) ? 366 : 365;
   const std::string expected = "1.0 to below " + std::to_string(days + 1) + " in " +
                                std::to_string(set.epoch_year) + " (1.0 is 1 January, 0h)";
   UMOV_ASSIGN(value, day.number(expected));

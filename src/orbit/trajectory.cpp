@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <erfa.h>
+#include <erfam.h>
 #include <fmt/format.h>
 #include <limits>
 #include <umov/core/constants.h>
@@ -28,12 +30,12 @@ template <class Frame> Vec3<Frame> vec(const std::array<double, 3> &v) {
 }
 
 /// EME2000 to GCRS: the frame bias of the mean equator and equinox of J2000 (IERS 2010, section
-/// 5.4.4), small angles.
+/// 5.4.4).
 Vec3<Gcrs> gcrs_from_eme2000(const std::array<double, 3> &v) {
-  constexpr double arcsec = pi / 648000;
-  constexpr double xi = -0.016617 * arcsec, eta = -0.0068192 * arcsec, alpha = -0.0146 * arcsec;
-  return {v[0] - alpha * v[1] + xi * v[2], v[1] + alpha * v[0] + eta * v[2],
-          v[2] - xi * v[0] - eta * v[1]};
+  double bias[3][3], precession[3][3], both[3][3], in[3] = {v[0], v[1], v[2]}, out[3];
+  eraBp00(ERFA_DJ00, 0, bias, precession, both); // bias: from GCRS to EME2000
+  eraTrxp(bias, in, out);
+  return {out[0], out[1], out[2]};
 }
 
 TemeState teme_from(const EphemerisState &s, OrbitFrame frame) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t cells = 2048;
 
-/// Integral over azimuth of max(a + b cos phi, 0); closed (physics of P, section 3).
+/// Integral over azimuth of max(a + b cos phi, 0); closed (of g in microfacet.md, Eq. 4).
 double azimuth_integral(double a, double b) {
   if (a >= b)
     return 2 * pi * a;

@@ -40,7 +40,7 @@ Result<Interface> make_interface(const Material &material, const Band &band) {
   return Interface(*eta, std::move(layers), band.wavelength);
 }
 
-/// Slopes seen at a wavelength over those at the reference (physics.md section 5, model A).
+/// Slopes seen at a wavelength over those at the reference (lobes.md, Eq. 10).
 double slope_factor(const Material &material, Wavelength wavelength) {
   if (!material.apparent_roughness || !material.apparent_roughness->hurst)
     return 1;
@@ -58,7 +58,7 @@ struct Surface::Tables {
   std::vector<BandTables> bands;
   bool has_diffuse = false;
 
-  /// Part of the light that meets a polished surface as a mirror (physics.md section 5, model B).
+  /// Part of the light that meets a polished surface as a mirror (lobes.md, Eq. 11).
   [[nodiscard]] double mirror_share(const BandTables &band, double n_l, double n_v) const {
     if (!mirror)
       return 0;

@@ -11,8 +11,6 @@
 namespace umov {
 namespace {
 
-bool is_leap(int year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
-
 /// Three digits as a number, or -1.
 int three_digits(std::string_view text) {
   int value = 0;
@@ -33,10 +31,10 @@ std::string with_month(std::string_view text) {
   if (thousands < 0 || units < 0 || units > 9)
     return std::string(text);
   const int year = 10 * thousands + units;
-  if (day < 1 || day > (is_leap(year) ? 366 : 365))
+  if (day < 1 || day > (is_leap_year(year) ? 366 : 365))
     return std::string(text);
-  const std::array<int, 12> days{31, is_leap(year) ? 29 : 28, 31, 30, 31, 30, 31, 31, 30, 31, 30,
-                                 31};
+  const std::array<int, 12> days{
+      31, is_leap_year(year) ? 29 : 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
   int rest = day;
   std::size_t month = 0;
   while (rest > days[month])
@@ -81,6 +79,8 @@ Epoch<Tai> tai_from(Epoch<Tai> date, TimeSystem system) {
 }
 
 } // namespace
+
+bool is_leap_year(int year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
 
 std::optional<TimeSystem> time_system_from(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, TimeSystem>, 7> known{

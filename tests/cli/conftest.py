@@ -40,6 +40,12 @@ def read_csv(path):
     return list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
 
+def anchors(name):
+    """Rows of a table that tools/anchors makes from the formulas of docs/theory."""
+    lines = (ROOT / f"tests/data/anchors/{name}.csv").read_text().splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
 SCENARIO = """umov = 1
 seed = 1
 [observer]

@@ -7,7 +7,7 @@ import re
 import subprocess
 
 import pytest
-from conftest import ROOT, UMOV, read_csv
+from conftest import ROOT, UMOV, anchors, read_csv
 
 
 @pytest.fixture(scope="module")
@@ -76,12 +76,16 @@ def test_fig1_fresnel(paper):
 
 
 def q_tables():
-    """Independent evaluation, four digits (src/surface/tests/data)."""
+    """Four digits at 0, 5, ... 175 deg."""
+    return {(row.pop("material"), "nm:" + row.pop("nm")): [float(q) for q in row.values()]
+            for row in anchors("q_tables")}
+
+
+def points_at_140():
+    """Q of one material in three bands, six digits."""
     out = {}
-    for line in (ROOT / "src/surface/tests/data/q_tables.txt").read_text().splitlines():
-        if not line.startswith("#"):
-            name, nm, *values = line.split()
-            out[name, f"nm:{nm}"] = [float(v) for v in values]
+    for row in anchors("q_140"):
+        out.setdefault(row["material"], []).append(float(row["q"]))
     return out
 
 
@@ -106,16 +110,13 @@ def test_fig16_all_rows(paper):
 
 
 def test_fig13_table(paper):
-    """I(425)/I(650), source at 60 deg, ashikhmin, one reflection: independent quadrature."""
-    expected = {10: [.47938, .39373, .35646, .35184, .35589, .36841, .38959],
-                100: [7.13268, 1.27008, .47792, .38082, .36047, .40684, .54931],
-                1000: [3.6e12, 1.5e5, 8.40154, .77763, .36047, .83079, 9.70956]}
+    """I(425)/I(650), source at 60 deg, ashikhmin, one reflection."""
     rows = {(row["m"], row["theta_o"]): row["ratio"] for row in rows_of(paper, "fig13")}
-    for m, values in expected.items():
-        for theta, value in zip((0, 20, 40, 50, 60, 70, 80), values):
-            # printed to five decimals, the two largest to two digits
-            tolerance = 0.04 * value if value > 1e3 else 0.6e-5 + 2e-6 * value
-            assert rows[m, theta] == pytest.approx(value, abs=tolerance), (m, theta)
+    for row in anchors("rough_gold_colour"):
+        m, theta, value = float(row["m"]), float(row["theta_v_deg"]), float(row["ratio"])
+        # five decimals, the two largest six digits
+        tolerance = 1e-5 * value if value > 1e3 else 0.6e-5 + 2e-6 * value
+        assert rows[m, theta] == pytest.approx(value, abs=tolerance), (m, theta)
 
 
 def test_fig14_against_the_reference_ephemeris(paper):
@@ -145,7 +146,7 @@ def test_fig14_against_the_reference_ephemeris(paper):
 
 
 def test_fig18_shape_and_pose_do_not_matter(paper):
-    expected = {"paper_au": (.588949, .117662, .048246), "paper_al": (.082308, .098945, .115130)}
+    expected = points_at_140()
     bands = ("nm:425", "nm:550", "nm:650")
     rows = rows_of(paper, "fig18")
     assert len(rows) == 2 * 2 * 3 * 1000
@@ -156,7 +157,7 @@ def test_fig18_shape_and_pose_do_not_matter(paper):
 
 
 def test_fig20_two_points_and_the_curve_between(paper):
-    gold, aluminium = (.588949, .117662, .048246), (.082308, .098945, .115130)
+    gold, aluminium = points_at_140()["paper_au"], points_at_140()["paper_al"]
     poses = {}
     for row in rows_of(paper, "fig20"):
         poses.setdefault((row["object"], row["pose"]), []).append(row["q_scat"])
@@ -170,7 +171,7 @@ def test_fig20_two_points_and_the_curve_between(paper):
             assert any(near), q
             seen.add(near.index(True))
         else:
-            # Equal weights give (.254076, .108104, .080434): the curve is above the chord in green.
+            # Equal weights give tests/data/anchors/half_gold.csv: the curve is above the chord in green.
             assert aluminium[0] - 1e-5 <= q[0] <= gold[0] + 1e-5
             between += aluminium[0] + .01 < q[0] < gold[0] - .01
             chord = aluminium[1] + (q[0] - aluminium[0]) / (gold[0] - aluminium[0]) * (gold[1] - aluminium[1])

@@ -4,7 +4,8 @@
 namespace umov {
 
 /// The place of the least `f` between a < b, to `tolerance`, where f has one minimum there. One
-/// call per step (golden section; Kiefer 1953).
+/// call per step (golden section; Kiefer 1953). Not Boost.Math's brent_find_minima: its tolerance
+/// is relative to the place, which here is a time since an arbitrary start.
 template <typename F> double golden_minimum(F &&f, double a, double b, double tolerance) {
   constexpr double ratio = 0.61803398874989485;
   double c = b - ratio * (b - a), d = a + ratio * (b - a), f_c = f(c), f_d = f(d);

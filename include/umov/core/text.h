@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <umov/core/quantity.h>
+#include <vector>
 
 namespace umov {
 
@@ -32,6 +33,16 @@ std::string degrees_text(Angle angle);
 
 /// `text` without blanks and tabs at both ends.
 std::string_view trimmed(std::string_view text);
+
+/// One cell of a line of comma-separated values.
+struct CsvCell {
+  std::string text;       ///< without quotes and the blanks around it
+  std::size_t column = 1; ///< first character, counted from 1
+};
+
+/// The cells of one line; quotes as in RFC 4180, no line break inside them. Empty if a quote stays
+/// open.
+std::optional<std::vector<CsvCell>> csv_cells(std::string_view line);
 
 /// `text` with '?' for every byte that is no part of printable UTF-8: safe on a terminal, in a line
 /// of a file and in JSON. `is_changed` tells of replaced bytes.

@@ -57,7 +57,8 @@ public:
 
   /// Fresnel reflection of every contributing microfacet (incidence = half the phase angle).
   [[nodiscard]] FresnelFactors fresnel(std::size_t band, double l_v) const;
-  /// The whole Mueller matrix of one reflection at that phase angle (physics.md section 2).
+  /// The whole Mueller matrix of one reflection at that phase angle (docs/theory/microfacet.md, Eq.
+  /// 2).
   [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> mueller(std::size_t band,
                                                                   double l_v) const;
   /// Mueller BRDF [1/sr] of all lobes. Grazing and back directions give zeros.
@@ -70,8 +71,8 @@ public:
   /// The parts in a band, for unpolarized light.
   [[nodiscard]] Terms terms(std::size_t band, const SurfaceDirections &at) const;
 
-  /// Directional albedo of the microfacet lobe alone, Fresnel included (R(k) of physics.md section
-  /// 3), towards a direction in the facet frame.
+  /// Directional albedo of the microfacet lobe alone, Fresnel included (R(k) of
+  /// docs/theory/microfacet.md, Eq. 6), towards a direction in the facet frame.
   [[nodiscard]] double specular_albedo(std::size_t band, Vec3<Facet> k) const;
   /// Directional albedo of everything, for unpolarized light.
   [[nodiscard]] double albedo(std::size_t band, Vec3<Facet> k) const;

@@ -67,5 +67,17 @@ TEST(Shortest, ReadsBackToTheSameDouble) {
   EXPECT_EQ(shortest(std::numeric_limits<double>::quiet_NaN()), "nan");
 }
 
+TEST(CsvCells, QuotesBlanksAndColumns) { // RFC 4180, section 2
+  const auto cells = csv_cells(R"(a, "b, c" ,"say ""yes""",)");
+  ASSERT_TRUE(cells);
+  ASSERT_EQ(cells->size(), 4u);
+  EXPECT_EQ((*cells)[1].text, "b, c");
+  EXPECT_EQ((*cells)[1].column, 3u);
+  EXPECT_EQ((*cells)[2].text, R"(say "yes")");
+  EXPECT_EQ((*cells)[3].text, "");
+  EXPECT_FALSE(csv_cells("a,\"b"));
+  EXPECT_EQ(csv_cells("")->size(), 1u);
+}
+
 } // namespace
 } // namespace umov

@@ -3,38 +3,9 @@
 #include "io/elements/omm_message.h"
 
 #include <algorithm>
-#include <optional>
 #include <umov/core/text.h>
 
 namespace umov::omm {
-namespace {
-
-/// Cells of a line; quotes as in RFC 4180. Empty if a quote is not closed.
-std::optional<std::vector<std::string>> cells_of(std::string_view line) {
-  std::vector<std::string> out(1);
-  bool is_quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (is_quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"') {
-      out.back() += c;
-      ++i;
-    } else if (c == '"') {
-      is_quoted = !is_quoted;
-    } else if (c == ',' && !is_quoted) {
-      out.emplace_back();
-    } else {
-      out.back() += c;
-    }
-  }
-  if (is_quoted)
-    return {};
-  for (std::string &cell : out)
-    cell = trimmed(cell);
-  return out;
-}
-
-} // namespace
-
 Result<void> read_csv(std::string_view text, const std::string &file, const Sink &sink) {
   std::vector<std::string> keys;
   std::size_t line_number = 0, messages = 0;
@@ -52,11 +23,12 @@ Result<void> read_csv(std::string_view text, const std::string &file, const Sink
     constexpr std::ptrdiff_t cells_max = 10'000; // an OMM has some 50 keywords
     if (std::count(line.begin(), line.end(), ',') >= cells_max)
       return refuse("more than " + std::to_string(cells_max) + " cells; is it a list of OMM?");
-    auto cells = cells_of(line);
+    const auto cells = csv_cells(line);
     if (keys.empty()) {
       if (!cells)
         return refuse("a quote is not closed");
-      keys = std::move(*cells);
+      for (const CsvCell &cell : *cells)
+        keys.push_back(cell.text);
       continue;
     }
     Message message{{}, line_number, ++messages};
@@ -66,7 +38,7 @@ Result<void> read_csv(std::string_view text, const std::string &file, const Sink
                                 std::to_string(keys.size()) + " as in the line of keywords"
                           : std::string("a quote is not closed"));
     for (std::size_t k = 0; done && k < keys.size(); ++k)
-      done = put(message, file, keys[k], {(*cells)[k], "", line_number});
+      done = put(message, file, keys[k], {(*cells)[k].text, "", line_number});
     if (done)
       UMOV_TRY(sink(std::move(message)));
     else

@@ -8,6 +8,8 @@
 #include <cctype>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+#include <sstream>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
 #include <umov/time/epoch.h>
@@ -19,7 +21,7 @@ namespace {
 std::string revolutions_text(double rad_per_min) {
   const double exact = rad_per_min / (2 * pi / 1440);
   for (int digits = 1; digits < 17; ++digits) {
-    const std::string text = fmt::format("{:.{}g}", exact, digits);
+    std::string text = fmt::format("{:.{}g}", exact, digits);
     if (parse_number(text).value_or(0) * (2 * pi / 1440) == rad_per_min)
       return text;
   }
@@ -85,34 +87,37 @@ std::string kvn_of(const std::vector<ElementSet> &sets, const std::string &creat
   return out;
 }
 
-std::string escaped(const std::string &text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-  return out;
-}
-std::string xml_of(const std::vector<ElementSet> &sets, const std::string &created) {
-  std::string out = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<ndm>\n";
-  const auto put = [&](const std::vector<Item> &items) {
-    for (const Item &item : items)
-      out += fmt::format("        <{0}{1}>{2}</{0}>\n", item.key,
-                         *item.unit != 0 ? fmt::format(" units=\"{}\"", item.unit) : std::string(),
-                         escaped(item.text));
-  };
-  for (const ElementSet &set : sets) {
-    out +=
-        fmt::format("  <omm id=\"CCSDS_OMM_VERS\" version=\"2.0\">\n    <header><CREATION_DATE>{}"
-                    "</CREATION_DATE><ORIGINATOR>umov</ORIGINATOR></header>\n"
-                    "    <body><segment>\n      <metadata>\n",
-                    created);
-    put(metadata_of(set));
-    out += "      </metadata>\n      <data><meanElements>\n";
-    put(elements_of(set));
-    out += "      </meanElements><tleParameters>\n";
-    put(tle_parameters_of(set));
-    out += "      </tleParameters></data>\n    </segment></body>\n  </omm>\n";
+void put(pugi::xml_node parent, const std::vector<Item> &items) {
+  for (const Item &item : items) {
+    pugi::xml_node node = parent.append_child(item.key);
+    if (*item.unit != 0)
+      node.append_attribute("units") = item.unit;
+    node.text() = item.text.c_str();
   }
-  return out + "</ndm>\n";
+}
+
+std::string xml_of(const std::vector<ElementSet> &sets, const std::string &created) {
+  pugi::xml_document document;
+  pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+  declaration.append_attribute("version") = "1.0";
+  declaration.append_attribute("encoding") = "UTF-8";
+  pugi::xml_node ndm = document.append_child("ndm");
+  for (const ElementSet &set : sets) {
+    pugi::xml_node omm = ndm.append_child("omm");
+    omm.append_attribute("id") = "CCSDS_OMM_VERS";
+    omm.append_attribute("version") = "2.0";
+    pugi::xml_node header = omm.append_child("header");
+    header.append_child("CREATION_DATE").text() = created.c_str();
+    header.append_child("ORIGINATOR").text() = "umov";
+    pugi::xml_node segment = omm.append_child("body").append_child("segment");
+    put(segment.append_child("metadata"), metadata_of(set));
+    pugi::xml_node data = segment.append_child("data");
+    put(data.append_child("meanElements"), elements_of(set));
+    put(data.append_child("tleParameters"), tle_parameters_of(set));
+  }
+  std::ostringstream out;
+  document.save(out, "  ");
+  return out.str();
 }
 
 /// Names given by a program may hold anything; what is no UTF-8 must not stop the writing.
@@ -145,7 +150,9 @@ std::string csv_of(const std::vector<ElementSet> &sets) {
           cell.insert(i, 1, '"');
         cell = "\"" + cell + "\"";
       }
-      out += (k > 0 ? "," : "") + cell;
+      if (k > 0)
+        out += ',';
+      out += cell;
     }
     out += '\n';
   };

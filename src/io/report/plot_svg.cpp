@@ -8,6 +8,10 @@
 
 #include <umov/picture/colours.h>
 
+// Drawn here and not by a plotting library: figures of `umov paper` and docs/pictures come out of
+// the binary alone and the same to the byte on every machine; plotly's own SVG export wants a
+// browser.
+
 namespace umov {
 namespace {
 

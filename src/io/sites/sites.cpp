@@ -11,28 +11,17 @@ UMOV_EMBEDDED(sites)
 namespace umov {
 namespace {
 
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> out;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    out.emplace_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return out;
-}
-
 std::vector<Site> known_sites() {
   std::vector<Site> out;
   std::string_view text = sites();
   for (bool is_header = true; !text.empty(); is_header = false) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const auto cells = cells_of(text.substr(0, end));
+    const auto cells = csv_cells(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (is_header || cells.size() != 4)
+    if (is_header || !cells || cells->size() != 4)
       continue;
-    out.push_back(make_site(cells[0], parse_number(cells[1]).value(),
-                            parse_number(cells[2]).value(), parse_number(cells[3]).value())
-                      .value());
+    const auto number = [&](std::size_t k) { return parse_number((*cells)[k].text).value(); };
+    out.push_back(make_site((*cells)[0].text, number(1), number(2), number(3)).value());
   }
   return out;
 }
@@ -56,10 +45,9 @@ std::vector<std::string> site_names() {
 }
 
 Result<Site> site_from(const std::string &text) {
-  const auto cells = cells_of(text);
-  if (cells.size() == 3 && parse_number(cells[0])) {
-    const auto lat = parse_number(cells[0]), lon = parse_number(cells[1]),
-               alt = parse_number(cells[2]);
+  if (const auto cells = csv_cells(text); cells && cells->size() == 3) {
+    const auto lat = parse_number((*cells)[0].text), lon = parse_number((*cells)[1].text),
+               alt = parse_number((*cells)[2].text);
     if (lat && lon && alt)
       return make_site("", *lat, *lon, *alt);
   }

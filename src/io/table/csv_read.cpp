@@ -8,33 +8,6 @@ namespace umov {
 
 namespace {
 
-struct Cell {
-  std::string text;
-  std::size_t column = 1; ///< first character, counted from 1
-};
-
-/// Splits one line; quotes as in RFC 4180, no line break inside them. Empty if a quote stays open.
-std::optional<std::vector<Cell>> split(std::string_view line) {
-  std::vector<Cell> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (quoted && c == '"' && i + 1 < line.size() && line[i + 1] == '"')
-      cells.back().text += line[i++];
-    else if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      cells.push_back({"", i + 2});
-    else
-      cells.back().text += c;
-  }
-  if (quoted)
-    return std::nullopt;
-  for (Cell &cell : cells)
-    cell.text = std::string(trimmed(cell.text));
-  return cells;
-}
-
 class Reader {
 public:
   Reader(std::string_view text, const std::string &file, const std::vector<std::string> &required,
@@ -58,7 +31,7 @@ public:
         return fail(ErrorCode::BadInput,
                     fmt::format("more than {} cells in this row; is it a table?", columns_max),
                     {file_, line_});
-      const auto cells = split(line.substr(0, line.find_last_not_of('\r') + 1));
+      const auto cells = csv_cells(line.substr(0, line.find_last_not_of('\r') + 1));
       if (!cells)
         return fail(ErrorCode::BadInput, "a quote is not closed in this row; close it with \"",
                     {file_, line_});
@@ -70,8 +43,8 @@ public:
 private:
   std::string wanted() const { return fmt::format("{}", fmt::join(required_, ", ")); }
 
-  Result<void> header(const std::vector<Cell> &cells) {
-    for (const Cell &cell : cells)
+  Result<void> header(const std::vector<CsvCell> &cells) {
+    for (const CsvCell &cell : cells)
       header_.push_back(cell.text);
     for (const std::string &name : required_) {
       if (std::find(header_.begin(), header_.end(), name) == header_.end())
@@ -102,14 +75,14 @@ private:
                 {file_, line_});
   }
 
-  Result<void> row(const std::vector<Cell> &cells) {
+  Result<void> row(const std::vector<CsvCell> &cells) {
     if (cells.size() != header_.size())
       return fail(
           ErrorCode::BadInput,
           fmt::format("{} cells in this row; the header has {}", cells.size(), header_.size()),
           {file_, line_});
     for (std::size_t k = 0; k < taken_.size(); ++k) {
-      const Cell &cell = cells[place_[k]];
+      const CsvCell &cell = cells[place_[k]];
       const auto value = parse_number(cell.text);
       if (!value && k >= required_.size()) { // not the numbers that were hoped for: no such column
         is_dropped_[k] = true;

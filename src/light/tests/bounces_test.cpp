@@ -247,7 +247,7 @@ TEST(Bounces, MirrorsWithBodyLightAreThoseOfAVeryNarrowLobe) {
 }
 
 TEST(Bounces, PolishedSurfacesLieBetweenMirrorAndLobe) {
-  // exp(-g) of the light as from a mirror, the rest by the lobe (physics.md section 5): no height
+  // exp(-g) of the light as from a mirror, the rest by the lobe (lobes.md, Eq. 11): no height
   // is a mirror, much of it the lobe alone; in between one narrow lobe and one wide one, weighted.
   Material polished = interface_of("paper_al", 30);
   const auto of_height = [&](double nm) {

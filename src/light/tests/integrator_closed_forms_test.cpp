@@ -1,5 +1,6 @@
 // Meshes against the closed forms of docs/theory: point Sun, unit irradiance, [m2/sr].
 
+#include "core/tests/anchors.h"
 #include "light/tests/integrator_cases.h"
 
 namespace umov {
@@ -51,12 +52,13 @@ Pose cylinder_pose() { // theta_l = 60, theta_v = 120, azimuths 80 deg apart
 }
 
 TEST(IntegratorClosedForms, LambertCylinderConverges) {
-  // (rho/pi) R L sin sin (1/2)((pi - phi) cos phi + sin phi), printed as .307459: half a digit.
+  // (rho/pi) R L sin sin (1/2)((pi - phi) cos phi + sin phi); six digits.
+  const double expected = anchor("lambert_cylinder");
   double before = 1;
   for (const std::size_t sides : {24u, 96u, 768u}) {
     const Integrator tube(
         scene_of(make_cylinder(1, 2, sides), NormalMode::Flat, {white_lambert()}));
-    const double error = std::abs(intensity(tube, cylinder_pose()) - 0.307459);
+    const double error = std::abs(intensity(tube, cylinder_pose()) - expected);
     EXPECT_LT(error, before);
     before = error;
   }
@@ -67,7 +69,8 @@ TEST(IntegratorClosedForms, SmoothLambertCylinderOf48Sides) {
   const Integrator tube(scene_of(make_cylinder(1, 2, 48), NormalMode::Smooth, {white_lambert()}));
   const PoseResult result = tube.evaluate(cylinder_pose(), {});
   EXPECT_EQ(result.rays, 0u);
-  EXPECT_LT(relative(result.bands[1].stokes.i, 0.307459), 2e-4); // patch area: fourth order
+  EXPECT_LT(relative(result.bands[1].stokes.i, anchor("lambert_cylinder")),
+            2e-4); // patch area: fourth order
 }
 
 /// Relative errors of J 4 / (R^2 F) of a rough sphere with flat or smooth normals, sorted, over
@@ -93,8 +96,8 @@ double worst_rough_sphere(std::size_t facets, NormalMode normals, double exponen
   return rough_sphere_errors(facets, normals, exponent, expected).back();
 }
 
-// J -> R^2 F / (4 <h.n>) = R^2 F (m + 2) / (4 (m + 1)) while no facet is blocked (the printed table
-// of anchors shows where: at m >= 50 up to 90 deg, at m = 200 and 1000 beyond 120).
+// J -> R^2 F / (4 <h.n>) = R^2 F (m + 2) / (4 (m + 1)) while no facet is blocked (the table
+// rough_sphere of anchors shows where: at m >= 50 up to 90 deg, at m = 200 and 1000 beyond 120).
 TEST(IntegratorClosedForms, RoughSphereOf40000Facets) {
   const auto broad = rough_sphere_errors(40000, NormalMode::Flat, 200, 202.0 / 201);
   const auto narrow = rough_sphere_errors(40000, NormalMode::Flat, 1000, 1002.0 / 1001);
@@ -114,50 +117,44 @@ TEST(IntegratorClosedForms, SmoothRoughSphereOf5000Facets) {
 }
 
 TEST(IntegratorClosedForms, RoughSphereAtBroadLobes) {
-  // Printed anchors, m = 4 and 10 at 60 and 120 deg: half a unit of the last digit, and the
-  // facets' part (smooth patches: fourth order).
-  const double printed[2][2] = {{1.0984, 0.5967}, {1.0846, 0.8473}};
-  const double exponents[2] = {4, 10}, phases[2] = {60, 120};
-  for (int m = 0; m < 2; ++m) {
+  // Half a unit of the last digit, and the facets' part (smooth patches: fourth order).
+  const Anchors table("rough_sphere");
+  for (const char *m : {"4", "10"}) {
     const Scene scene = scene_of(make_sphere(1, 5000), NormalMode::Smooth,
-                                 {interface_of("paper_au", exponents[m])});
+                                 {interface_of("paper_au", AnchorRow::number(m))});
     const Integrator sphere(scene);
-    for (int p = 0; p < 2; ++p) {
-      const Angle angle = Angle::degrees(phases[p]);
+    for (const char *phase : {"60", "120"}) {
+      const Angle angle = Angle::degrees(AnchorRow::number(phase));
       const double a = scene.front[0].fresnel(1, std::cos(angle.radians())).a;
-      EXPECT_NEAR(4 * intensity(sphere, pose_at(5, angle)) / a, printed[m][p], 1.5e-4);
+      EXPECT_NEAR(4 * intensity(sphere, pose_at(5, angle)) / a, table.row({m, phase})["j"], 1.5e-4);
     }
   }
 }
 
 TEST(IntegratorClosedForms, SphereStokesOfGoldAndAluminium) {
-  // Printed (M00, M10) at 90 deg, R = 1, seven digits.
-  struct Row {
-    const char *name;
-    double exponent, i[3], q[3];
-  };
-  const Row rows[] = {
-      {"paper_au", 200, {.0995217, .2109066, .2355690}, {.0313506, .0124111, .0050759}},
-      {"paper_al", 50, {.2344181, .2323099, .2296853}, {.0065743, .0072210, .0080181}}};
-  for (const Row &row : rows) {
+  // (M00, M10) at 90 deg, R = 1, seven digits.
+  for (const AnchorRow &row : Anchors("sphere_stokes")) {
+    const std::string &name = row.text("material");
     const Integrator sphere(scene_of(make_sphere(1, 20000), NormalMode::Smooth,
-                                     {interface_of(row.name, row.exponent)}));
+                                     {interface_of(name.c_str(), row["m"])}));
     const PoseResult result = sphere.evaluate(pose_at(11, Angle::degrees(90)), {});
-    for (std::size_t b = 0; b < 3; ++b) {
-      EXPECT_LT(relative(result.bands[b].stokes.i, row.i[b]), 3e-5) << row.name;
-      EXPECT_LT(relative(result.bands[b].stokes.q, row.q[b]), 3e-5) << row.name;
-    }
+    const auto &light = result.bands[band_of(row)].stokes;
+    // Mylar's lobe of m = 10 is wide and its last digit is 4e-6 of it.
+    EXPECT_LT(relative(light.i, row["i"]), 3e-5) << name;
+    EXPECT_LT(relative(light.q, row["q"]), 3e-5) << name;
   }
 }
 
 TEST(IntegratorClosedForms, EllipsoidLikeAMirror) {
-  // J = F / (4 K(h)): semi-axes 1, 2, 3, l = x, v = (0, .6, .8), F = 1: .535396; at m = 10,000 the
+  // J = F / (4 K(h)): semi-axes 1, 2, 3, l = x, v = (0, .6, .8), F = 1; at m = 10,000 the
   // lobe adds (m + 2) / (m + 1) and second-order terms, together within 0.2 %.
   const Scene scene = scene_of(make_ellipsoid(1, 2, 3, 640000), NormalMode::Flat,
                                {interface_of("paper_al", 10000)});
   const double a = scene.front[0].fresnel(1, 0).a;
   const Integrator ellipsoid(scene);
-  EXPECT_LT(relative(intensity(ellipsoid, {{1, 0, 0}, {0, 0.6, 0.8}}) / a, 0.535396), 2e-3);
+  EXPECT_LT(
+      relative(intensity(ellipsoid, {{1, 0, 0}, {0, 0.6, 0.8}}) / a, anchor("mirror_ellipsoid")),
+      2e-3);
 }
 
 TEST(IntegratorClosedForms, SmoothEllipsoidNeedsFewFacets) {
@@ -165,7 +162,9 @@ TEST(IntegratorClosedForms, SmoothEllipsoidNeedsFewFacets) {
                                {interface_of("paper_al", 10000)});
   const double a = scene.front[0].fresnel(1, 0).a;
   const Integrator ellipsoid(scene);
-  EXPECT_LT(relative(intensity(ellipsoid, {{1, 0, 0}, {0, 0.6, 0.8}}) / a, 0.535396), 2e-3);
+  EXPECT_LT(
+      relative(intensity(ellipsoid, {{1, 0, 0}, {0, 0.6, 0.8}}) / a, anchor("mirror_ellipsoid")),
+      2e-3);
 }
 
 } // namespace

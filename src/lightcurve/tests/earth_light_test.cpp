@@ -2,6 +2,7 @@
 
 #include <umov/lightcurve/earth_light.h>
 
+#include "core/tests/anchors.h"
 #include "light/tests/integrator_cases.h"
 
 #include <cmath>
@@ -89,18 +90,16 @@ Stokes<SkyNorth> brute_force(const Scene &scene, const ObservingGeometry &g,
 const Rotation<Body, Gcrs> nadir(Vec3<Gcrs>{0, 1, 0}, Vec3<Gcrs>{0, 0, -1}, Vec3<Gcrs>{-1, 0, 0});
 
 TEST(EarthLight, LambertPlateOverTheSubsolarPoint) {
-  // physics page, section 8: albedo .3, 500 km above the subsolar point the facet gets .256499, 60
-  // deg from it .128249; GEO .0050747. A white Lambert plate of 1 m2 sends that over pi per sr.
+  // Albedo .3, 500 km above the subsolar point, 60 deg from it, and GEO. A white Lambert plate of
+  // 1 m2 sends the irradiance of the anchors' facet over pi per sr.
   const Scene plate = scene_of(make_plate(1, 1, false), NormalMode::Flat, {white_lambert()});
-  const struct {
-    double height, zenith, expected;
-  } rows[] = {{500, 0, .256499}, {500, 60, .128249}, {35786, 0, .0050747}};
-  for (const auto &row : rows) {
+  for (const AnchorRow &row : Anchors("earthshine")) {
+    const double height = row["radius_km"] - 6378.137;
     const double cosine = std::cos(0.4);
-    const auto g = geometry(row.height, row.zenith, {-cosine, std::sin(0.4), 0});
+    const auto g = geometry(height, row["zenith_deg"], {-cosine, std::sin(0.4), 0});
     const auto light = light_of(plate, g, nadir, {.patches = 4000});
     // 4,000 patches: the terminator and the limb cut some of them, 1e-3.
-    EXPECT_NEAR(light.stokes[1].i / (row.expected * cosine / pi), 1, 1e-3) << row.height;
+    EXPECT_NEAR(light.stokes[1].i / (row["facet"] * cosine / pi), 1, 1e-3) << height;
   }
 }
 

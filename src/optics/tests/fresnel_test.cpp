@@ -1,3 +1,5 @@
+#include "core/tests/anchors.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <umov/optics/fresnel.h>
@@ -8,34 +10,26 @@ namespace {
 constexpr double degree = pi / 180;
 
 TEST(Mueller, MatchesThePrintedEntriesAtPhase140) {
-  // physics page, section 2: M00, M01, M22, M23 at incidence 70 deg, six digits.
-  const struct {
-    std::complex<double> eta;
-    double m[4];
-  } rows[] = {{{1.62, 1.94}, {.461325, .271697, .002181, .372823}},
-              {{.359, 2.69}, {.846273, .099574, -.088388, .835733}},
-              {{.170, 3.14}, {.934640, .045093, -.219885, .907287}},
-              {{.556, 5.146}, {.899382, .074026, -.550021, .707733}},
-              {{1.015, 6.627}, {.883108, .087379, -.658676, .581715}},
-              {{1.558, 7.712}, {.867051, .099824, -.700456, .501174}}};
-  for (const auto &row : rows) {
-    const auto m = fresnel_mueller(std::cos(70 * degree), row.eta).m;
-    EXPECT_NEAR(m[0][0], row.m[0], 5.1e-7);
-    EXPECT_NEAR(m[0][1], row.m[1], 5.1e-7);
-    EXPECT_NEAR(m[2][2], row.m[2], 5.1e-7);
-    EXPECT_NEAR(m[2][3], row.m[3], 5.1e-7);
+  for (const AnchorRow &row : Anchors("mueller")) { // incidence 70 deg, six digits
+    const auto m = fresnel_mueller(std::cos(70 * degree), {row["n"], row["k"]}).m;
+    EXPECT_NEAR(m[0][0], row["m00"], 5.1e-7);
+    EXPECT_NEAR(m[0][1], row["m01"], 5.1e-7);
+    EXPECT_NEAR(m[2][2], row["m22"], 5.1e-7);
+    EXPECT_NEAR(m[2][3], row["m23"], 5.1e-7);
     EXPECT_EQ(m[3][2], -m[2][3]);
   }
 }
 
 TEST(Mueller, TurnsDiagonalLightAsPrinted) {
-  // physics page, section 2: Au 425, (1, 0, 1, 0) in.
+  // Au 425, (1, 0, 1, 0) in: the first and third columns of the matrix, six digits.
+  const Anchors table("mueller");
+  const AnchorRow &gold = table.row({"paper_au", "425"});
   const Stokes<ScatteringPlane> out =
       fresnel_mueller(std::cos(70 * degree), {1.62, 1.94}) * Stokes<ScatteringPlane>{1, 0, 1, 0};
-  EXPECT_NEAR(out.i, .461325, 5.1e-7);
-  EXPECT_NEAR(out.q, .271697, 5.1e-7);
-  EXPECT_NEAR(out.u, .002181, 5.1e-7);
-  EXPECT_NEAR(out.v, -.372823, 5.1e-7);
+  EXPECT_NEAR(out.i, gold["m00"], 5.1e-7);
+  EXPECT_NEAR(out.q, gold["m01"], 5.1e-7);
+  EXPECT_NEAR(out.u, gold["m22"], 5.1e-7);
+  EXPECT_NEAR(out.v, -gold["m23"], 5.1e-7);
 }
 
 TEST(Fresnel, NormalGrazingBrewsterAndNoInterface) {
@@ -59,17 +53,12 @@ TEST(Fresnel, NormalGrazingBrewsterAndNoInterface) {
 }
 
 TEST(Fresnel, QuarterWaveRetardanceAtThePrincipalAngle) {
-  // physics page, section 2: M22 = 0 there, six digits of the angle.
-  const struct {
-    std::complex<double> eta;
-    double phase;
-  } rows[] = {{{1.62, 1.94}, 139.843},  {{.359, 2.69}, 143.394},   {{.170, 3.14}, 147.442},
-              {{.556, 5.146}, 158.854}, {{1.015, 6.627}, 163.378}, {{1.558, 7.712}, 165.727}};
-  for (const auto &row : rows) {
+  for (const AnchorRow &row : Anchors("principal_angle")) { // M22 = 0 there
     const auto at = [&](double phase) {
-      return fresnel_mueller(std::cos(phase / 2 * degree), row.eta).m[2][2];
+      return fresnel_mueller(std::cos(phase / 2 * degree), {row["n"], row["k"]}).m[2][2];
     };
-    EXPECT_LT(at(row.phase - 6e-4) * at(row.phase + 6e-4), 0); // the sign changes inside the digit
+    const double phase = row["phase_deg"];
+    EXPECT_LT(at(phase - 6e-4) * at(phase + 6e-4), 0); // the sign changes inside the last digit
   }
 }
 

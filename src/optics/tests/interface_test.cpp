@@ -1,3 +1,5 @@
+#include "core/tests/anchors.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <umov/core/random.h>
@@ -13,23 +15,28 @@ const std::complex<double> aluminium{1.015, 6.627}; // Table 1 of the paper, 550
 double r_s(const MuellerEntries &m) { return m.a + m.b; }
 double r_p(const MuellerEntries &m) { return m.a - m.b; }
 
+/// Both powers against a row of the table of films: six digits.
+void expect_powers(const MuellerEntries &m, const char *name, const char *theta_deg) {
+  const Anchors films("films");
+  const AnchorRow &row = films.row({name, theta_deg});
+  EXPECT_NEAR(r_s(m), row["s"], 5.1e-7) << name << " " << theta_deg;
+  EXPECT_NEAR(r_p(m), row["p"], 5.1e-7) << name << " " << theta_deg;
+}
+
 TEST(Interface, QuarterWaveCoating) {
-  // Closed form ((n^2 - n_s)/(n^2 + n_s))^2 = .0127471 (physics page, section 8).
+  // Closed form ((n^2 - n_s)/(n^2 + n_s))^2 (Born & Wolf 1999, section 1.6).
   const double n = 1.38, s = 1.518;
   const Interface glass(s, {{n, 550 / (4 * n), true}}, green);
   EXPECT_NEAR(glass.reflection(1).a, std::pow((n * n - s) / (n * n + s), 2), 1e-15);
-  EXPECT_NEAR(glass.reflection(1).a, .0127471, 5e-8);
+  EXPECT_NEAR(glass.reflection(1).a, Anchors("films").row({"quarter_wave_mgf2"})["s"], 5e-8);
 }
 
 TEST(Interface, FilmsMatchThePrintedValues) {
   const Interface sio2(aluminium, {{1.46, 150, true}}, green);
-  EXPECT_NEAR(r_s(sio2.reflection(std::cos(45 * degree))), .912833, 5.1e-7);
-  EXPECT_NEAR(r_p(sio2.reflection(std::cos(45 * degree))), .870228, 5.1e-7);
-  EXPECT_NEAR(r_s(sio2.reflection(std::cos(70 * degree))), .909051, 5.1e-7);
-  EXPECT_NEAR(r_p(sio2.reflection(std::cos(70 * degree))), .875620, 5.1e-7);
+  expect_powers(sio2.reflection(std::cos(45 * degree)), "sio2_on_al", "45");
+  expect_powers(sio2.reflection(std::cos(70 * degree)), "sio2_on_al", "70");
   const Interface three(1.518, {{2.1, 60, true}, {1.46, 95, true}, {2.1, 60, true}}, green);
-  EXPECT_NEAR(r_s(three.reflection(std::cos(50 * degree))), .641320, 5.1e-7);
-  EXPECT_NEAR(r_p(three.reflection(std::cos(50 * degree))), .225756, 5.1e-7);
+  expect_powers(three.reflection(std::cos(50 * degree)), "three_films", "50");
 }
 
 TEST(Interface, AFilmWithoutThicknessIsTheBareSubstrate) {
@@ -53,16 +60,17 @@ TEST(Interface, WhatIsNotReflectedEntersAClearSubstrate) {
 }
 
 TEST(Interface, ThickFilmOverAMetal) {
-  // physics page: n = 1.7 over aluminium with tau = .9 per pass at every angle: k chosen for each.
-  const struct { double theta, s, p; } rows[] = {{0, .707303, .707303}, {60, .739436, .684513}};
-  for (const auto &row : rows) {
-    const double c = std::cos(row.theta * degree);
+  // n = 1.7 over aluminium with tau = .9 per pass at every angle: k chosen for each.
+  const Anchors films("films");
+  for (const char *theta : {"0", "60"}) {
+    const AnchorRow &row = films.row({"thick_on_al", theta});
+    const double c = std::cos(row["theta_deg"] * degree);
     const double inside = std::sqrt(1 - (1 - c * c) / (1.7 * 1.7));
     // tau = exp(-4 pi k d / (lambda cos)) with k so small that n counts as real.
     const double k = 1e-9, depth = -std::log(.9) * 550 * inside / (4 * pi * k);
     const Interface film(aluminium, {{{1.7, k}, depth, false}}, green);
-    EXPECT_NEAR(r_s(film.reflection(c)), row.s, 5.1e-7 + 1e-7);
-    EXPECT_NEAR(r_p(film.reflection(c)), row.p, 5.1e-7 + 1e-7);
+    EXPECT_NEAR(r_s(film.reflection(c)), row["s"], 5.1e-7 + 1e-7);
+    EXPECT_NEAR(r_p(film.reflection(c)), row["p"], 5.1e-7 + 1e-7);
   }
 }
 
@@ -106,21 +114,14 @@ TEST(Interface, MatricesStayRealisable) {
 TEST(Slab, ClearGlassMatchesThePrintedValues) {
   const double c = std::cos(50 * degree); // BK7 at 550 nm
   const MuellerEntries r = slab_reflection(1.518, c, 1), t = slab_transmission(1.518, c, 1);
-  EXPECT_NEAR(r_s(r), .209270, 5.1e-7);
-  EXPECT_NEAR(r_p(r), .007446, 5.1e-7);
-  EXPECT_NEAR(r_s(t), .790730, 5.1e-7);
-  EXPECT_NEAR(r_p(t), .992554, 5.1e-7);
+  expect_powers(r, "slab_reflects", "50");
+  expect_powers(t, "slab_transmits", "50");
 }
 
 TEST(Interface, MeanReflectanceMatchesThePrintedValues) {
-  // physics page, section 2: cosine-weighted means at 425, 550, 650 nm.
-  const struct {
-    std::complex<double> eta;
-    double mean;
-  } rows[] = {{{1.62, 1.94}, .419613}, {{.359, 2.69}, .844380}, {{1.558, 7.712}, .892388},
-              {{1.518, 0}, .094415},   {{5.15, 0}, .447122},    {{1.10, 0}, .025157}};
-  for (const auto &row : rows)
-    EXPECT_NEAR(Interface(row.eta).mean_reflectance(), row.mean, 5.1e-7);
+  for (const AnchorRow &row : Anchors("table1")) // six digits
+    EXPECT_NEAR(Interface({row["n"], row["k"]}).mean_reflectance(), row["f_mean"], 5.1e-7)
+        << row.text("material") << " " << row.text("nm");
 }
 
 } // namespace

@@ -15,7 +15,8 @@ TEST(Stokes, LightAlongTheNewAxisIsAllQ) {
 }
 
 TEST(Stokes, ScatteringToSkyTurnsByThePositionAngleOfS) {
-  // physics page, section 1: (Q, U)_sky = (Q cos 2psi - U sin 2psi, Q sin 2psi + U cos 2psi).
+  // docs/conventions.md, change of axes: (Q, U)_sky = (Q cos 2psi - U sin 2psi, Q sin 2psi + U cos
+  // 2psi).
   const double psi = 0.7;
   const Stokes<SkyNorth> sky =
       rotate_to<SkyNorth>(Stokes<ScatteringPlane>{1, 0.4, 0.2, 0}, Angle::radians(-psi));

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/core/golden_section.h>
 #include <umov/io/index_file.h>
 #include <umov/optics/fresnel.h>
 
@@ -23,16 +24,12 @@ double phase_deg(std::complex<double> r) {
   return value < 0 ? value + 360 : value;
 }
 
-/// Incidence of least R_p by golden steps on a fine grid.
+/// Incidence of least R_p, which has one minimum.
 double incidence_of_least_p(std::complex<double> eta) {
-  double best = 0, least = 2;
-  for (int i = 0; i <= 900'000; ++i) {
-    const double at = i * 1e-4;
-    const double r = std::norm(fresnel_amplitudes(std::cos(at * degree), eta).p);
-    if (r < least)
-      least = r, best = at;
-  }
-  return best;
+  const auto r_p = [&](double deg) {
+    return std::norm(fresnel_amplitudes(std::cos(deg * degree), eta).p);
+  };
+  return golden_minimum(r_p, 0, 90, 1e-5);
 }
 
 void add_surface(const SmoothSurface &surface, std::size_t colour, PaperFigure &figure,

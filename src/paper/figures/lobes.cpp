@@ -120,7 +120,7 @@ Result<PaperFigure> make_fig8(PaperWorkshop &) {
       const double deg = i == 0 ? 60 : 75;
       out.checks.push_back({fmt::format("P at {:g} deg, m = {:g}", deg, m),
                             surface.masking({std::sin(deg * degree), 0, std::cos(deg * degree)}),
-                            known.at(m)[i], 2e-6, "independent quadrature, six digits"});
+                            known.at(m)[i], 2e-6, "tests/data/anchors/masking, six digits"});
     }
   }
   out.plots = {seen, once};

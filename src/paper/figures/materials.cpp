@@ -71,8 +71,7 @@ Result<PaperFigure> make_table1(PaperWorkshop &) {
       "n + ik: paper, and measured (refractiveindex.info)",
       {"material", "425 nm", "550 nm", "650 nm", "R_sub", "measured at 425, 550, 650 nm"},
       {}};
-  // physics of the literal table, by independent quadrature: src/surface/tests/data/q_tables.txt
-  // says how
+  // tests/data/anchors/table1.csv
   const std::map<std::string, std::array<double, 3>> f0{
       {"paper_au", {.390290, .841902, .939440}},
       {"paper_al", {.923052, .915377, .905602}},
@@ -115,9 +114,9 @@ Result<PaperFigure> make_table1(PaperWorkshop &) {
         line.push_back(fmt::format("{:g}", r_sub));
       if (const auto known = f0.find(one.name); known != f0.end()) {
         out.checks.push_back({fmt::format("F0 of {} in {}", one.title, band.name), normal,
-                              known->second[b], 1e-6, "independent evaluation, six digits"});
+                              known->second[b], 1e-6, "tests/data/anchors/table1, six digits"});
         out.checks.push_back({fmt::format("mean F of {} in {}", one.title, band.name), average,
-                              mean.at(one.name)[b], 2e-6, "independent quadrature, six digits"});
+                              mean.at(one.name)[b], 2e-6, "tests/data/anchors/table1, six digits"});
       }
     }
     line.push_back(beside.empty() ? "none: a volume scatterer" : beside);

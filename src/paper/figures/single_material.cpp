@@ -10,7 +10,7 @@ namespace umov {
 namespace {
 
 constexpr double phase_deg = 140;
-/// At 140 deg, by independent evaluation.
+/// At 140 deg: tests/data/anchors/q_140.csv.
 struct PurePoint {
   const char *material;
   double q[3];
@@ -205,8 +205,9 @@ Result<PaperFigure> make_fig20(PaperWorkshop &workshop) {
   out.checks = {
       {"flat sheet: distance from the nearer pure point", worst_flat, 0, 3e-5,
        "six printed digits, and 32-bit sums"},
-      {"length of the chord", length, .51138, 1e-5, "independent evaluation"},
-      {"largest departure from the chord", departure, .01250, 2e-5, "independent evaluation"},
+      {"length of the chord", length, .51138, 1e-5, "tests/data/anchors/singles, five digits"},
+      {"largest departure from the chord", departure, .01250, 2e-5,
+       "tests/data/anchors/singles, five digits"},
       {"crumpled sheet: distance from the curve of mixtures", worst_curve, 0, 1e-4,
        "mixtures of two Stokes vectors; 32-bit sums"}};
   return out;

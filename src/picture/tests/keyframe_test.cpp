@@ -1,3 +1,5 @@
+#include "core/tests/anchors.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <umov/picture/keyframe.h>
@@ -20,7 +22,7 @@ Scene scene_of(Mesh mesh, const std::vector<std::string> &front,
 
 constexpr double radius = 1.5;
 
-/// Sphere of n = 1 and a body lobe: a Lambert sphere (physics.md section 3).
+/// Sphere of n = 1 and a body lobe: a Lambert sphere (lobes.md, Body light).
 Scene lambert_sphere() {
   return scene_of(make_sphere(radius, 20000), {"paper_spectralon"}, {"paper_spectralon"});
 }
@@ -109,7 +111,8 @@ TEST(KeyFrame, SunOnTheRightLightsTheRightSide) {
 }
 
 TEST(KeyFrame, PolarizationOfABareMetalIsFresnelEverywhere) {
-  // physics.md section 2, aluminium at 550 nm, phase 140: M00 .883108, M01 .087379 (six digits).
+  // Aluminium at 550 nm, phase 140: M01/M00, six digits each.
+  const double expected = anchor("al_550_140_M01") / anchor("al_550_140_M00");
   const Scene scene = scene_of(make_sphere(radius, 5000), {"paper_al"}, {"paper_al"});
   KeyFrameOptions options = small();
   options.size = 40;
@@ -118,7 +121,7 @@ TEST(KeyFrame, PolarizationOfABareMetalIsFresnelEverywhere) {
   int checked = 0;
   for (const KeyFrameSample &s : raster.points)
     if (s.radiance > 0) {
-      EXPECT_NEAR(static_cast<double>(s.p), .087379 / .883108, 2e-6);
+      EXPECT_NEAR(static_cast<double>(s.p), expected, 2e-6);
       ++checked;
     }
   EXPECT_GT(checked, 10);

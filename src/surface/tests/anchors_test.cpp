@@ -1,8 +1,9 @@
-#include "surface/tests/surface_cases.h"
-// Single numbers printed on the physics page (sections 2, 6 and 7), by quadrature of Surface.
+// Numbers of tests/data/anchors, by quadrature of Surface.
 
+#include "core/tests/anchors.h"
 #include "kernel/fresnel.inl.h"
 #include "kernel/microfacet.inl.h"
+#include "surface/tests/surface_cases.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -45,74 +46,47 @@ FresnelFactors sphere(const Surface &surface, std::size_t band, double phase) {
 }
 
 TEST(Anchors, CosineWeightedMeanReflectance) {
-  // Section 2, six digits: 2 int F mu dmu, here with mu = cos of incidence = cos(phase/2).
-  const struct {
-    const char *name;
-    double mean[3];
-  } rows[] = {{"paper_au", {.419613, .844380, .938314}},
-              {"paper_al", {.915762, .904740, .892388}},
-              {"paper_bk7", {.095728, .094415, .093830}},
-              {"paper_asi", {.447122, .422834, .401416}},
-              {"paper_mylar", {.025157, .091778, .106246}}};
-  for (const auto &row : rows)
-    for (std::size_t b = 0; b < 3; ++b) {
-      double sum = 0;
-      constexpr int steps = 4000; // in sqrt(mu): F rises steeply at grazing incidence
-      const Surface surface = make(row.name, 200);
-      for (int i = 0; i < steps; ++i) {
-        const double root = (i + 0.5) / steps, mu = root * root;
-        sum += surface.fresnel(b, 2 * mu * mu - 1).a * 4 * root * root * root / steps;
-      }
-      EXPECT_NEAR(sum, row.mean[b], 6e-7) << row.name << b;
+  // Six digits: 2 int F mu dmu, here with mu = cos of incidence = cos(phase/2).
+  for (const AnchorRow &row : Anchors("table1")) {
+    double sum = 0;
+    constexpr int steps = 4000; // in sqrt(mu): F rises steeply at grazing incidence
+    const Surface surface = make(row.text("material").c_str(), 200);
+    for (int i = 0; i < steps; ++i) {
+      const double root = (i + 0.5) / steps, mu = root * root;
+      sum += surface.fresnel(band_of(row), 2 * mu * mu - 1).a * 4 * root * root * root / steps;
     }
+    EXPECT_NEAR(sum, row["f_mean"], 6e-7) << row.text("material") << row.text("nm");
+  }
 }
 
 TEST(Anchors, PeaksOfQ) {
-  // Section 6: height to six digits and angle to .01 deg (Au 650 lies at 147.0749).
-  const struct {
-    const char *name;
-    std::size_t band;
-    double height, angle;
-  } rows[] = {{"paper_au", 0, .589109, 139.21}, {"paper_au", 1, .118072, 142.76},
-              {"paper_au", 2, .049468, 147.08}, {"paper_al", 0, .103720, 158.81},
-              {"paper_al", 1, .148238, 163.36}, {"paper_al", 2, .195039, 165.72}};
-  for (const auto &row : rows) {
-    const Surface surface = make(row.name, 200);
+  for (const AnchorRow &row : Anchors("q_peak")) { // six digits, and .01 deg in steps of .001
+    const Surface surface = make(row.text("material").c_str(), 200);
     double best = 0, at = 0;
-    for (double phase = row.angle - 1; phase < row.angle + 1; phase += 0.001)
-      if (const double q = q_of(surface, row.band, phase); q > best) {
+    for (double phase = row["phase_deg"] - 1; phase < row["phase_deg"] + 1; phase += 0.001)
+      if (const double q = q_of(surface, band_of(row), phase); q > best) {
         best = q;
         at = phase;
       }
-    EXPECT_NEAR(best, row.height, 6e-7) << row.name;
-    EXPECT_NEAR(at, row.angle, 0.0062) << row.name;
+    EXPECT_NEAR(best, row["q"], 6e-7) << row.text("material");
+    EXPECT_NEAR(at, row["phase_deg"], 0.0062) << row.text("material");
   }
 }
 
 TEST(Anchors, StokesOfSpheresAt90Degrees) {
-  // Section 7: (M00, M10), R = 1, seven digits; the midpoint rule adds below 2e-7.
-  const struct {
-    const char *name;
-    double m;
-    std::size_t band;
-    double i, q;
-  } rows[] = {{"paper_au", 200, 0, .0995217, .0313506},  {"paper_au", 200, 1, .2109066, .0124111},
-              {"paper_au", 200, 2, .2355690, .0050759},  {"paper_al", 50, 0, .2344181, .0065743},
-              {"paper_al", 50, 1, .2323099, .0072210},   {"paper_al", 50, 2, .2296853, .0080181},
-              {"paper_mylar", 10, 1, .0130810, .0108766}};
-  for (const auto &row : rows) {
-    const FresnelFactors f = sphere(make(row.name, row.m), row.band, pi / 2);
-    EXPECT_NEAR(f.a, row.i, 3e-7) << row.name;
-    EXPECT_NEAR(f.b, row.q, 3e-7) << row.name;
+  // (M00, M10), R = 1, seven digits; the midpoint rule adds below 2e-7.
+  for (const AnchorRow &row : Anchors("sphere_stokes")) {
+    const std::string &name = row.text("material");
+    const FresnelFactors f = sphere(make(name.c_str(), row["m"]), band_of(row), pi / 2);
+    EXPECT_NEAR(f.a, row["i"], 3e-7) << name;
+    EXPECT_NEAR(f.b, row["q"], 3e-7) << name;
   }
 }
 
 TEST(Anchors, LambertSphere) {
-  // Section 7: rho R^2 times these at 0, 30, ..., 150 deg, six digits.
-  const double expected[] = {.666667, .587229, .405999, .212207, .072665, .009878};
   const Surface surface = make("paper_spectralon", 200, true);
-  for (int i = 0; i < 6; ++i)
-    EXPECT_NEAR(sphere(surface, 0, 30.0 * i * pi / 180).a, expected[i], 2e-6);
+  for (const AnchorRow &row : Anchors("lambert_sphere")) // six digits, and the midpoint rule
+    EXPECT_NEAR(sphere(surface, 0, row["phase_deg"] * pi / 180).a, row["j"], 2e-6);
 }
 
 TEST(Anchors, EveryReflectionIsPhysical) {

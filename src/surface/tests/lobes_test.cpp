@@ -1,5 +1,6 @@
 // Body light, inter-reflection, apparent roughness, films, emission and transmission.
 
+#include "core/tests/anchors.h"
 #include "surface/tests/surface_cases.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ SurfaceDirections angles(double i, double o, double phi) {
 }
 
 TEST(PolarizedBody, MatchesThePrintedValues) {
-  // physics page, section 3: a-Si 550, R_sub = .1, seven digits.
+  // a-Si 550, R_sub = .1, seven digits.
   Material si = *builtin_material("paper_asi");
   si.body->is_polarized = true;
   const Surface surface = compiled(si);
@@ -25,14 +26,12 @@ TEST(PolarizedBody, MatchesThePrintedValues) {
     const auto at = angles(30, 60, phi);
     return surface.diffuse(1, at, sunlight) * (1 / (at.l.z * at.v.z));
   };
-  for (const double phi : {0., 180.}) {
-    EXPECT_NEAR(f(phi).i, .0185941, 5.1e-8);
-    EXPECT_NEAR(f(phi).q, -.0075745, 5.1e-8);
-    EXPECT_NEAR(f(phi).u, 0, 1e-15);
+  for (const AnchorRow &row : Anchors("polarized_body")) {
+    const auto light = f(row["phi_deg"]);
+    EXPECT_NEAR(light.i, row["i"], 5.1e-8);
+    EXPECT_NEAR(light.q, row["q"], 5.1e-8);
+    EXPECT_NEAR(std::abs(light.u), row["abs_u"], row["abs_u"] > 0 ? 5.1e-8 : 1e-15);
   }
-  EXPECT_NEAR(f(90).i, .0185941, 5.1e-8);
-  EXPECT_NEAR(f(90).q, -.0029133, 5.1e-8);
-  EXPECT_NEAR(std::abs(f(90).u), .0069918, 5.1e-8);
   EXPECT_NEAR(f(270).u, -f(90).u, 1e-15); // mirrored azimuth
   EXPECT_EQ(f(90).v, 0);
   // n = 1.5, R_sub = 1, normal incidence, seen at 80 deg.
@@ -40,7 +39,7 @@ TEST(PolarizedBody, MatchesThePrintedValues) {
   glass.index = constant_index(1.5);
   glass.body = BodyLobe{{{}, {1}}, true};
   const auto s = compiled(glass, "nm:550").diffuse(0, angles(0, 80, 0), sunlight);
-  EXPECT_NEAR(s.q / s.i, -.246434, 5.1e-7);
+  EXPECT_NEAR(s.q / s.i, anchor("polarized_body_n1.5_80"), 5.1e-7);
 }
 
 TEST(PolarizedBody, UHasTheSignOfFieldsInThreeDimensions) {
@@ -64,19 +63,17 @@ TEST(PolarizedBody, UHasTheSignOfFieldsInThreeDimensions) {
 }
 
 TEST(Interreflection, MatchesThePrintedValue) {
-  // physics page: Au 550, m = 10, ashikhmin, Ebar = .9138, F_ms = .7027; monostatic at 30 deg
-  // w F0 = .127188. For f_ms it prints .011142 and for the polarization .919453; a separate Gauss
-  // quadrature (E(30) = .9344913, Ebar = .9138473) gives f_ms = .0111411, hence .919459.
+  // Au 550, m = 10, ashikhmin, monostatic at 30 deg; six and seven digits.
   Material gold = *builtin_material("paper_au");
   gold.distribution = blinn_phong(10);
   gold.interreflection = Interreflection::Unpolarized;
   const Surface surface = compiled(gold);
   const auto terms = surface.terms(1, angles(30, 30, 0));
-  EXPECT_NEAR(terms.specular, .127188, 5.1e-7);
-  EXPECT_NEAR(terms.interreflection, .0111411, 1e-7);
-  // Active source: the degree of polarization of linear light sent straight back, .919453.
+  EXPECT_NEAR(terms.specular, anchor("gold_once_30"), 5.1e-7);
+  EXPECT_NEAR(terms.interreflection, anchor("gold_between_30"), 1e-7);
+  // Active source: the degree of polarization of linear light sent straight back.
   const auto m = surface.brdf(1, angles(30, 30, 0));
-  EXPECT_NEAR(m.m[1][1] / m.m[0][0], .919459, 1e-6);
+  EXPECT_NEAR(m.m[1][1] / m.m[0][0], anchor("gold_degree_30"), 1e-6);
   EXPECT_LT(m.m[3][3], 0); // the other helicity
 }
 
@@ -110,9 +107,8 @@ TEST(Interreflection, SingleBounceQKeepsTheRatio) {
 }
 
 TEST(Interreflection, SphereOfGoldMatchesThePrintedValues) {
-  // physics page, section 4: Au 425 sphere at phase 90: Q = .3150 for one reflection. With the
-  // unpolarized f_ms it prints .3045 at m = 10 and .2752 at m = 1; a separate program (Gauss and
-  // midpoint quadrature in Python, E and Ebar from the closed g) gives .304395 and .276909.
+  // Au 425 sphere at phase 90: one reflection, then with unpolarized f_ms. Four digits; six, of
+  // which the midpoint rule below leaves 2e-5.
   const auto q_of = [](double m, Interreflection kind) {
     Material gold = *builtin_material("paper_au");
     gold.distribution = blinn_phong(m);
@@ -134,42 +130,36 @@ TEST(Interreflection, SphereOfGoldMatchesThePrintedValues) {
       }
     return q / i;
   };
-  EXPECT_NEAR(q_of(10, Interreflection::None), .3150, 5.1e-5);
-  EXPECT_NEAR(q_of(10, Interreflection::Unpolarized), .304395, 2e-5);
-  EXPECT_NEAR(q_of(1, Interreflection::Unpolarized), .276909, 2e-5);
+  for (const AnchorRow &row : Anchors("gold_sphere")) {
+    const bool once = row.text("interreflection") == "none";
+    EXPECT_NEAR(q_of(row["m"], once ? Interreflection::None : Interreflection::Unpolarized),
+                row["q"], once ? 5.1e-5 : 2e-5);
+  }
 }
 
 TEST(ApparentRoughness, RatiosOfTheGoldPlate) {
-  // physics page, section 5: I(425)/I(650), in plane, 60 deg, on the specular side. The point 0 deg
-  // and the large ones compare negligible intensities; 2e-6 of masking allows six digits.
-  const double thetas[] = {0, 20, 40, 50, 60, 70, 80};
-  const struct {
-    double m, ratio[7];
-  } rows[] = {{10, {.47938, .39373, .35646, .35184, .35589, .36841, .38959}},
-              {100, {7.13268, 1.27008, .47792, .38082, .36047, .40684, .54931}},
-              {1000, {0, 0, 8.40154, .77763, .36047, .83079, 9.70956}}};
-  for (const auto &row : rows) {
+  // I(425)/I(650), in plane, 60 deg, on the specular side. 2e-6 of masking allows six digits; where
+  // the ratio is thousands, two intensities of nothing are compared: left out.
+  for (const AnchorRow &row : Anchors("rough_gold_colour")) {
+    if (row["ratio"] > 1e3)
+      continue;
     Material gold = *builtin_material("paper_au");
-    gold.distribution = blinn_phong(row.m);
+    gold.distribution = blinn_phong(row["m"]);
     gold.apparent_roughness = ApparentRoughness{0.8, 550, std::nullopt};
     const Surface surface = compiled(gold);
-    for (std::size_t k = 0; k < 7; ++k) {
-      if (row.ratio[k] == 0)
-        continue;
-      const auto at = angles(60, thetas[k], 180);
-      const auto i = [&](std::size_t b) { return surface.terms(b, at).specular; };
-      EXPECT_NEAR(i(0) / i(2), row.ratio[k], 1.2e-5 * std::max(1.0, row.ratio[k]))
-          << row.m << " " << thetas[k];
-      const auto blue = surface.brdf(0, at);
-      EXPECT_NEAR(blue.m[1][0] / blue.m[0][0],
-                  surface.fresnel(0, at.l_v).b / surface.fresnel(0, at.l_v).a,
-                  1e-12); // Q does not know of it
-    }
+    const auto at = angles(60, row["theta_v_deg"], 180);
+    const auto i = [&](std::size_t b) { return surface.terms(b, at).specular; };
+    EXPECT_NEAR(i(0) / i(2), row["ratio"], 1.2e-5 * std::max(1.0, row["ratio"]))
+        << row["m"] << " " << row["theta_v_deg"];
+    const auto blue = surface.brdf(0, at);
+    EXPECT_NEAR(blue.m[1][0] / blue.m[0][0],
+                surface.fresnel(0, at.l_v).b / surface.fresnel(0, at.l_v).a,
+                1e-12); // Q does not know of it
   }
 }
 
 TEST(ApparentRoughness, PolishedSharesMatchThePrintedValues) {
-  // physics page: sigma = 50 nm at 60 deg: e^-g = .579022 .721612 .791678.
+  // sigma = 50 nm at 60 deg: e^-g, six digits.
   Material gold = *builtin_material("paper_au");
   gold.distribution = blinn_phong(200);
   const Surface rough = compiled(gold);
@@ -177,9 +167,10 @@ TEST(ApparentRoughness, PolishedSharesMatchThePrintedValues) {
   const Surface polished = compiled(gold);
   // Far from the mirror direction only the rough part is left.
   const auto at = angles(60, 60, 90);
-  const double expected[] = {.579022, .721612, .791678};
-  for (std::size_t b = 0; b < 3; ++b)
-    EXPECT_NEAR(1 - polished.specular(b, at) / rough.specular(b, at), expected[b], 5.1e-7);
+  for (const AnchorRow &row : Anchors("polished")) {
+    const std::size_t b = band_of(row);
+    EXPECT_NEAR(1 - polished.specular(b, at) / rough.specular(b, at), row["share"], 5.1e-7);
+  }
   EXPECT_TRUE(polished.has_mirror());
 }
 

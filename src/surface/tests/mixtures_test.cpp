@@ -1,5 +1,6 @@
 // Two materials in one object: the paper's Eq. 22 with weights that differ between bands.
 
+#include "core/tests/anchors.h"
 #include "surface/tests/surface_cases.h"
 
 #include <array>
@@ -58,43 +59,32 @@ Departure departure(const char *one, const char *other, double phase_deg) {
 }
 
 TEST(Mixtures, DepartFromTheChordAsPrinted) {
-  // physics page, section 6: largest departure over all mixing ratios, in chord lengths.
-  const struct {
-    const char *one, *other;
-    double phase, expected;
-  } rows[] = {{"paper_au", "paper_al", 60, .0216},     {"paper_au", "paper_al", 140, .0244},
-              {"paper_au", "paper_al", 100, .0202},    {"paper_au", "paper_al", 160, .0489},
-              {"paper_au", "paper_bk7", 60, .0819},    {"paper_au", "paper_bk7", 140, .0322},
-              {"paper_au", "paper_asi", 60, .0456},    {"paper_au", "paper_asi", 140, .0381},
-              {"paper_al", "paper_mylar", 60, .315},   {"paper_al", "paper_mylar", 140, .109},
-              {"paper_bk7", "paper_mylar", 60, .0899}, {"paper_bk7", "paper_mylar", 140, .0433},
-              {"paper_al", "paper_bk7", 60, .0022},    {"paper_al", "paper_bk7", 140, .0024}};
-  for (const auto &row : rows) {
-    const Departure d = departure(row.one, row.other, row.phase);
-    EXPECT_NEAR(d.largest / d.chord, row.expected, row.expected > .1 ? 5.1e-4 : 5.1e-5)
-        << row.one << " " << row.other << " " << row.phase;
+  // Largest departure over all mixing ratios, in chord lengths; half a unit of the last digit.
+  for (const AnchorRow &row : Anchors("departures")) {
+    const Departure d =
+        departure(row.text("one").c_str(), row.text("other").c_str(), row["phase_deg"]);
+    EXPECT_NEAR(d.largest / d.chord, row["ratio"], 1.02 * row.half_digit("ratio"))
+        << row.text("one") << " " << row.text("other") << " " << row["phase_deg"];
   }
   const Departure gold = departure("paper_au", "paper_al", 140);
-  EXPECT_NEAR(gold.chord, .51138, 5.1e-6);
-  EXPECT_NEAR(gold.largest, .01250, 5.1e-6);
+  EXPECT_NEAR(gold.chord, anchor("gold_aluminium_chord"), 5.1e-6);
+  EXPECT_NEAR(gold.largest, anchor("gold_aluminium_bow"), 5.1e-6);
   const Colour half = mixed(light_of("paper_au", 140), light_of("paper_al", 140), 0.5);
-  const double expected[] = {.254076, .108104, .080434};
-  for (std::size_t k = 0; k < 3; ++k)
-    EXPECT_NEAR(half[k], expected[k], 5.1e-7);
+  for (const AnchorRow &row : Anchors("half_gold"))
+    EXPECT_NEAR(half[band_of(row)], row["q"], 5.1e-7);
 }
 
 TEST(Mixtures, LieOnAPlaneThroughTheOrigin) {
-  // physics page, section 6: normal (B, G, R) = (-.131, .769, -.626) at 40 deg, (-.127, .766,
-  // -.631) at 140; offset below .0012; out-of-plane rms over the largest .011 to .017. The page's
-  // random weights are not given: uniform ones here, so the normal holds to .01.
+  // The anchors' planes are those of other random mixtures: uniform weights of five materials here.
+  // Both are thin (.01 to .018 of their size), so mixtures stay within .02 of one another's plane.
   const char *names[] = {"paper_au", "paper_al", "paper_bk7", "paper_asi", "paper_mylar"};
-  const struct {
-    double phase, normal[3];
-  } rows[] = {{40, {-.131, .769, -.626}}, {140, {-.127, .766, -.631}}};
-  for (const auto &row : rows) {
+  for (const AnchorRow &row : Anchors("planes")) {
+    if (row.text("phase_deg") == "all")
+      continue;
+    const double normal[3] = {row["blue"], row["green"], row["red"]};
     std::array<Light, 5> lights;
     for (std::size_t m = 0; m < 5; ++m)
-      lights[m] = light_of(names[m], row.phase);
+      lights[m] = light_of(names[m], row["phase_deg"]);
     double rms_out = 0, rms = 0;
     constexpr int count = 2000;
     for (std::uint64_t i = 0; i < count; ++i) {
@@ -107,13 +97,13 @@ TEST(Mixtures, LieOnAPlaneThroughTheOrigin) {
           q += weight[m] * lights[m].q[b];
           in += weight[m] * lights[m].i[b];
         }
-        out += row.normal[b] * q / in;
+        out += normal[b] * q / in;
         size += std::pow(q / in, 2);
       }
       rms_out += out * out;
       rms += size;
     }
-    EXPECT_LT(std::sqrt(rms_out / rms), .02) << row.phase;
+    EXPECT_LT(std::sqrt(rms_out / rms), .02) << row["phase_deg"];
   }
 }
 

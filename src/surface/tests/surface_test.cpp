@@ -1,3 +1,4 @@
+#include "core/tests/anchors.h"
 #include "kernel/microfacet.inl.h"
 #include "surface/masking.h"
 #include "surface/tests/surface_cases.h"
@@ -19,22 +20,22 @@ Masking masking_of(double m) {
                  std::min(pi / 2, 9 / std::sqrt(m + 2)));
 }
 
+Shadowing shadowing_of(const AnchorRow &row) {
+  const std::string &name = row.text("shadowing");
+  return name == "ashikhmin" ? Shadowing::Ashikhmin
+         : name == "smith"   ? Shadowing::Smith
+                             : Shadowing::Separable;
+}
+
 double phase_cosine(double theta_l, double theta_v, double phi) {
   return std::cos(theta_l) * std::cos(theta_v) +
          std::sin(theta_l) * std::sin(theta_v) * std::cos(phi);
 }
 
 TEST(Masking, MatchesThePrintedValues) {
-  // physics page, section 3, P(k) check, six digits.
-  const double thetas[] = {30, 60, 75, 85, 89};
-  const struct {
-    double m, p[5];
-  } rows[] = {{1, {.983178, .821021, .564563, .240034, .053357}},
-              {10, {.999996, .990617, .886667, .508866, .132255}},
-              {200, {1, 1, .999994, .959617, .462263}}};
-  for (const auto &row : rows)
-    for (std::size_t i = 0; i < 5; ++i)
-      EXPECT_NEAR(masking_of(row.m)(std::cos(thetas[i] * degree)), row.p[i], 5.5e-7) << row.m;
+  for (const AnchorRow &row : Anchors("masking")) // six digits
+    EXPECT_NEAR(masking_of(row["m"])(std::cos(row["theta_deg"] * degree)), row["p"], 5.5e-7)
+        << row["m"];
 }
 
 TEST(Masking, HasItsClosedFormAtExponentZero) {
@@ -60,68 +61,36 @@ TEST(Masking, TableFollowsTheIntegralForEveryExponent) {
 }
 
 TEST(Surface, WeightsMatchThePrintedValues) {
-  // physics page, section 3, w = specular/((n.l)(n.v)); as many digits as printed.
-  const struct {
-    double m;
-    Shadowing shadowing;
-    double l, v, phi, w, tolerance;
-  } rows[] = {{0, Shadowing::Separable, 30, 60, 90, .11372117, 3e-7},
-              {10, Shadowing::Ashikhmin, 60, 60, 180, 1.87418697, 3e-6},
-              {10, Shadowing::Smith, 60, 60, 180, 1.87435199, 3e-6},
-              {10, Shadowing::Ashikhmin, 30, 60, 90, .12780082, 3e-7},
-              {10, Shadowing::Ashikhmin, 70, 70, 0, 8.475e-5, 5.1e-9},
-              {10, Shadowing::Smith, 70, 70, 0, 8.056e-5, 5.1e-9},
-              {200, Shadowing::Ashikhmin, 30, 30, 180, 10.71643283, 3e-5},
-              {200, Shadowing::Ashikhmin, 60, 60, 180, 32.14929850, 7e-5}};
-  for (const auto &row : rows) { // the tolerance is that of the masking table, 2e-6 relative
-    const Surface surface = make("paper_al", row.m, row.shadowing);
-    const double l = row.l * degree, v = row.v * degree;
+  // w = specular/((n.l)(n.v)) to half a digit and 2e-6, the tolerance of the masking table.
+  for (const AnchorRow &row : Anchors("weights")) {
+    const Surface surface = make("paper_al", row["m"], shadowing_of(row));
+    const double l = row["theta_l_deg"] * degree, v = row["theta_v_deg"] * degree;
+    const double l_v = phase_cosine(l, v, row["phi_deg"] * degree);
     const double w =
-        specular_of(surface, std::cos(l), std::cos(v), phase_cosine(l, v, row.phi * degree)) /
-        (std::cos(l) * std::cos(v));
-    EXPECT_NEAR(w, row.w, row.tolerance) << row.m;
+        specular_of(surface, std::cos(l), std::cos(v), l_v) / (std::cos(l) * std::cos(v));
+    EXPECT_NEAR(w, row["w"], row.half_digit("w") + 2e-6 * row["w"]) << row["m"];
   }
 }
 
 TEST(Surface, WhiteFurnaceMatchesTheTable) {
-  // Converged quadrature, four digits; E <= 1 is energy conservation. At 89.5 deg and m = 0 the
-  // integral of the closed form P = 2c/(1+c) over the observer gives .84945 and .95855, at 85 deg
-  // (smith) .78005; at m = 1 and 89.5 deg a separate quadrature of g and of the lobe gives .910010.
-  const double thetas[] = {0, 30, 60, 75, 85, 89.5};
-  const struct {
-    double m;
-    Shadowing shadowing;
-    double e[6];
-  } rows[] = {{0, Shadowing::Ashikhmin, {.3069, .3433, .4812, .6225, .7659, .8494}},
-              {0, Shadowing::Smith, {.3069, .3352, .4507, .5906, .7801, .9585}},
-              {1, Shadowing::Ashikhmin, {.4832, .5271, .6790, .8020, .8843, .9100}},
-              {4, Shadowing::Ashikhmin, {.7849, .7882, .8338, .8883, .9306, .9477}},
-              {10, Shadowing::Ashikhmin, {.9637, .9345, .8833, .8986, .9373, .9575}},
-              {10, Shadowing::Smith, {.9637, .9345, .8831, .9009, .9550, .9949}},
-              {50, Shadowing::Ashikhmin, {1.0000, .9998, .9727, .9148, .9257, .9609}},
-              {200, Shadowing::Ashikhmin, {1.0000, 1.0000, .9998, .9751, .9122, .9580}},
-              {1000, Shadowing::Ashikhmin, {1, 1, 1, 1.0000, .9490, .9484}},
-              {10000, Shadowing::Ashikhmin, {1, 1, 1, 1, 1.0000, .9194}}};
-  for (const auto &row : rows) {
-    const Surface surface = make("paper_al", row.m, row.shadowing);
-    for (std::size_t i = 0; i < 6; ++i) {
-      const double e = surface.furnace_albedo(tilted(std::cos(thetas[i] * degree)));
-      EXPECT_NEAR(e, row.e[i], 5.5e-5) << row.m << " " << thetas[i];
-      EXPECT_LE(e, 1 + 1e-5);
-    }
+  // Four digits; E <= 1 is energy conservation.
+  for (const AnchorRow &row : Anchors("furnace")) {
+    const Surface surface = make("paper_al", row["m"], shadowing_of(row));
+    const double e = surface.furnace_albedo(tilted(std::cos(row["theta_deg"] * degree)));
+    EXPECT_NEAR(e, row["e"], 5.5e-5) << row["m"] << " " << row["theta_deg"];
+    EXPECT_LE(e, 1 + 1e-5);
   }
 }
 
 TEST(Surface, BodyLobeMatchesThePrintedValues) {
-  // physics page, section 3: a-Si 550, m = 200, R_sub = .1; half a unit of the sixth digit.
+  // a-Si 550, m = 200, R_sub = .1; half a unit of the sixth digit.
   const Surface surface = make("paper_asi", 200);
   const auto f = [&](double l, double v) {
     const double a = std::cos(l * degree), b = std::cos(v * degree);
     return body_of(surface, 1, a, b) / (a * b);
   };
-  EXPECT_NEAR(f(0, 0), .018004, 6e-7);
-  EXPECT_NEAR(f(30, 60), .018480, 6e-7);
-  EXPECT_NEAR(f(60, 60), .018911, 6e-7);
+  for (const AnchorRow &row : Anchors("body"))
+    EXPECT_NEAR(f(row["theta_l_deg"], row["theta_v_deg"]), row["f"], 6e-7);
 }
 
 TEST(Surface, SpectralonIsALambertianWithoutInterface) {
@@ -131,18 +100,9 @@ TEST(Surface, SpectralonIsALambertianWithoutInterface) {
 }
 
 TEST(Surface, NormalReflectanceOfTableOne) {
-  // physics page, section 2, F0, six digits.
-  const struct {
-    const char *name;
-    double f0[3];
-  } rows[] = {{"paper_au", {.390290, .841902, .939440}},
-              {"paper_al", {.923052, .915377, .905602}},
-              {"paper_bk7", {.043492, .042320, .041802}},
-              {"paper_asi", {.455351, .426905, .401575}},
-              {"paper_mylar", {.002268, .040000, .053254}}};
-  for (const auto &row : rows)
-    for (std::size_t b = 0; b < 3; ++b)
-      EXPECT_NEAR(make(row.name, 200).fresnel(b, 1).a, row.f0[b], 5.1e-7);
+  for (const AnchorRow &row : Anchors("table1")) // six digits
+    EXPECT_NEAR(make(row.text("material").c_str(), 200).fresnel(band_of(row), 1).a, row["f0"],
+                5.1e-7);
 }
 
 TEST(Surface, IsReciprocalAndPhysical) {

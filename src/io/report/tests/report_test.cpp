@@ -1,3 +1,4 @@
+#include "core/tests/anchors.h"
 #include "io/report/assemble.h"
 #include "io/report/base64.h"
 #include "io/report/tests/synthetic_curve.h"
@@ -191,8 +192,8 @@ TEST(Report, PureMaterialCurvesAreFresnelRatios) {
   ASSERT_EQ(curves[1].phase_deg.size(), 181U);
   EXPECT_EQ(curves[1].material, "paper_al");
   EXPECT_EQ(curves[1].phase_deg[140], 140);
-  // physics.md section 2, aluminium at 550 nm, phase 140: M01 / M00, six digits each.
-  EXPECT_NEAR(curves[1].q_scat[140], .087379 / .883108, 2e-6);
+  // Aluminium at 550 nm, phase 140: M01/M00, six digits each.
+  EXPECT_NEAR(curves[1].q_scat[140], anchor("al_550_140_M01") / anchor("al_550_140_M00"), 2e-6);
   EXPECT_NEAR(curves[1].q_scat[0], 0, 1e-15); // normal incidence: no plane
 }
 

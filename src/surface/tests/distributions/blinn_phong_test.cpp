@@ -1,3 +1,4 @@
+#include "core/tests/anchors.h"
 #include "surface/tests/distributions/distribution_cases.h"
 
 namespace umov {
@@ -9,15 +10,12 @@ TEST(BlinnPhong, IsADistribution) {
 }
 
 TEST(BlinnPhong, ApparentRoughnessScalesTheExponent) {
-  // physics page, section 5: m(425) and m(650) for m0 = 10, 100, 1000 at 550 nm with q = .25.
-  const struct {
-    double m, blue, red;
-  } rows[] = {{10, 8.549, 11.045}, {100, 87.663, 108.886}, {1000, 878.807, 1087.289}};
-  for (const auto &row : rows) {
-    const auto d = *make_distribution(blinn_phong(row.m));
+  // m at 425 and 650 nm for one at 550 nm and H = .8, so that slopes go with the power .25.
+  for (const AnchorRow &row : Anchors("exponents")) {
+    const auto d = *make_distribution(blinn_phong(row["m"]));
     const auto m_of = [](const auto &one) { return 1 / (one->width() * one->width()) - 2; };
-    EXPECT_NEAR(m_of(d->scaled(std::pow(550. / 425, .25))), row.blue, 5.1e-4);
-    EXPECT_NEAR(m_of(d->scaled(std::pow(550. / 650, .25))), row.red, 5.1e-4);
+    EXPECT_NEAR(m_of(d->scaled(std::pow(550. / 425, .25))), row["m_425"], 5.1e-4);
+    EXPECT_NEAR(m_of(d->scaled(std::pow(550. / 650, .25))), row["m_650"], 5.1e-4);
   }
 }
 
