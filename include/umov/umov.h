@@ -11,6 +11,7 @@
 #include <umov/core/embedded.h>
 #include <umov/core/files.h>
 #include <umov/core/golden_section.h>
+#include <umov/core/locks.h>
 #include <umov/core/parallel.h>
 #include <umov/core/quantity.h>
 #include <umov/core/random.h>
@@ -115,6 +116,7 @@
 #include <umov/surface/rough_emission.h>
 #include <umov/surface/rough_transmission.h>
 #include <umov/surface/surface.h>
+#include <umov/time/earth_orientation.h>
 #include <umov/time/epoch.h>
 #include <umov/time/span.h>
 #include <umov/time/time_system.h>

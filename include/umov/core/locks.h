@@ -26,6 +26,7 @@ struct [[nodiscard]] WriteLock {
 
 namespace umov {
 
+/// What is shared and changes.
 using Mutex = std::shared_mutex;
 /// Held by one who looks, with others who look.
 using ReadLock = std::shared_lock<Mutex>;
