@@ -13,7 +13,7 @@ std::filesystem::path cache_folder() {
   return {};
 }
 
-FolderFacts facts_of(const std::filesystem::path &folder) {
+FolderFacts cache_facts(const std::filesystem::path &folder) {
   namespace fs = std::filesystem;
   FolderFacts out;
   std::error_code code;

@@ -13,6 +13,6 @@ struct FolderFacts {
   std::size_t files = 0;
   std::uintmax_t bytes = 0;
 };
-FolderFacts facts_of(const std::filesystem::path &folder);
+FolderFacts cache_facts(const std::filesystem::path &folder);
 
 } // namespace umov::cli

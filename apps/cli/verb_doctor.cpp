@@ -34,7 +34,7 @@ std::string cache_text() {
   const std::filesystem::path folder = cache_folder();
   if (folder.empty())
     return "none: neither XDG_CACHE_HOME nor HOME is set";
-  const FolderFacts facts = facts_of(folder);
+  const FolderFacts facts = cache_facts(folder);
   return fmt::format("{}: {}, {:.1f} MB", folder.string(), counted(facts.files, "file"),
                      static_cast<double>(facts.bytes) / 1e6);
 }
