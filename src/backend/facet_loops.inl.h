@@ -115,7 +115,7 @@ public:
       else if (is_closed_family(slot))
         shade_family(slot);
       else
-        shade_lobes(slot, chunk.slot);
+        shade_lobes(slot);
       if (slot.product_count > 0 && !slot.is_general)
         shade_products(slot);
     }
@@ -320,22 +320,15 @@ private:
     return is_any;
   }
 
-  /// One lobe after the other; those too narrow for a kernel go back to the caller.
-  UMOV_KERNEL void shade_lobes(const SlotTerms &slot, std::uint32_t index) {
-    bool is_any_narrow = false;
+  UMOV_KERNEL void shade_lobes(const SlotTerms &slot) {
     for (std::uint32_t k = slot.lobe_first; k < slot.lobe_first + slot.lobe_count; ++k)
-      if (pose_.is_narrow[k])
-        is_any_narrow = true;
-      else
-        shade_lobe(k);
-    if (is_any_narrow)
-      hand_back(index);
+      shade_lobe(k);
   }
 
   [[nodiscard]] UMOV_KERNEL bool is_closed_family(const SlotTerms &slot) const {
     bool is_closed = slot.family != backend::no_family && scene_.cluster_error.empty();
     for (std::uint32_t k = 0; is_closed && k < slot.lobe_count; ++k)
-      is_closed = pose_.lobes[slot.lobe_first + k].has_closed_form;
+      is_closed = !pose_.lobes[slot.lobe_first + k].uses_chords;
     return is_closed;
   }
 
@@ -355,6 +348,7 @@ private:
         R g[backend::family_nodes_max];
         for (std::size_t n = 0; n < family.node_count; ++n)
           g[n] = lobe_shadowing(family.node[n], pose_.facet, n_l, n_v);
+        const R log2_cosine = log2_of_one_minus(from.apart);
         const R area = Machine::load(area_[k] + s);
         const R deviation = is_exact_[k] ? R(T(0)) : Machine::load(deviation_[k] + s);
         for (std::size_t b = 0; b < slot.lobe_count; ++b) {
@@ -363,7 +357,9 @@ private:
           for (std::size_t n = 1; n < family.node_count; ++n)
             shadowing = shadowing + g[n] * R(weight[n]);
           const std::size_t lobe = slot.lobe_first + b;
-          const R w = closed_density(scene_.lobes[lobe], pose_.lobes[lobe], from) * shadowing;
+          const R w = blinn_phong_over_disk(scene_.lobes[lobe], pose_.lobes[lobe], from,
+                                            log2_cosine) *
+                      shadowing;
           const R error = deviation * w;
           sum[b] = sum[b] + area * w;
           variance[b] = variance[b] + error * error;
@@ -386,8 +382,8 @@ private:
         R x, y, z;
         const Cosines at = cosines(d, scene_.groups[group_[k]], s, x, y, z);
         const R n_l = max(at.n_l, R(T(0))), n_v = max(at.n_v, R(T(0)));
-        const R density =
-            lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet, x, y, z, n_l, n_v);
+        const R density = lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet,
+                                       from_half(pose_.facet, x, y, z, n_l, n_v));
         if (!Machine::any(density > R(T(0))))
           continue; // far from a narrow lobe
         const R w =
@@ -410,7 +406,7 @@ private:
   /// Relative error of the lobe from unlike normals in a class: m spread^2 / 2 at the peak, more on
   /// its flanks as (n - h)^2 m. Neighbours err to the same side, so the errors add up.
   UMOV_KERNEL R cluster_error(std::size_t lobe, std::size_t k, std::size_t s, R x, R y, R z) const {
-    const auto &h = pose_.facet.half[0];
+    const auto &h = pose_.facet.half;
     const R dx = x - R(h[0]), dy = y - R(h[1]), dz = z - R(h[2]);
     return Machine::load(scene_.cluster_error[group_[k]].value + s) *
            (R(T(1)) + (dx * dx + dy * dy + dz * dz) * R(scene_.lobes[lobe].per_width2));

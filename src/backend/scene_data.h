@@ -120,7 +120,6 @@ struct GridLook {
 template <class T> struct PoseData {
   kernel::FacetPose<T> facet;
   View<const kernel::LobeAtPose<T>> lobes;
-  View<const char> is_narrow; ///< per lobe: too narrow for the kernels at this pose
   GridLook small_sun, small_observer, large_sun, large_observer; ///< by table of masks
 };
 
@@ -157,7 +156,7 @@ template <class S> struct PoseSumsOf {
   View<S> specular_bias;                   ///< error from joined normals, added up
   View<S> product, product_variance;       ///< per product [m2]
   View<S> specular_linear, product_linear; ///< standard deviations, added up
-  SeenListOf<S> seen;                      ///< of general slots and narrow lobes
+  SeenListOf<S> seen;                      ///< of general slots
   bool is_any_seen = false;
 };
 using PoseSums = PoseSumsOf<double>;

@@ -9,18 +9,6 @@
 namespace umov {
 namespace {
 
-/// A surface that has a lobe, and the band.
-CompiledScene::LobeSource source_of(const kernel::LobeConstants<double> &lobe,
-                                    const std::vector<const Surface *> &surfaces) {
-  for (const Surface *surface : surfaces)
-    for (std::size_t b = 0; b < surface->band_count(); ++b) {
-      const auto form = surface->normals(b)->kernel_form();
-      if (form && form->shape == lobe.shape)
-        return {surface, b};
-    }
-  return {surfaces.front(), 0};
-}
-
 /// Appends what is summed for slots of these materials.
 void add_slot(const std::vector<const Surface *> &surfaces, CompiledScene &out) {
   backend::SlotTerms terms;
@@ -41,8 +29,6 @@ void add_slot(const std::vector<const Surface *> &surfaces, CompiledScene &out) 
     append(out.widths, fit->widths);
     append(out.data.profiles, fit->profiles);
     append(out.data.products, fit->products);
-    for (const auto &lobe : fit->lobes)
-      out.lobe_sources.push_back(source_of(lobe, surfaces));
     for (const double slope : fit->widths) {
       constexpr double half_width = 1.5e-7; // of the difference of two rounded unit vectors, 95 %
       const double width = std::max(slope, 1e-9);

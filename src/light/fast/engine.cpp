@@ -46,7 +46,7 @@ std::size_t Engine::State::terms_max() const {
 
 void Engine::State::prepare(const Pose &pose, Prepared &out) const {
   out.cos_phase = cos_phase(pose);
-  prepare_pose(pose, out.cos_phase, compiled.data.lobes, compiled.widths, hiding(), out.pose);
+  prepare_pose(pose, out.cos_phase, compiled.data.lobes, hiding(), out.pose);
   if (!options.is_double)
     round_pose(out.pose, out.single);
   if (masks)

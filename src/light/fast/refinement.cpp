@@ -75,9 +75,6 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
     return light_of_general(pose, at, facet, work, light);
   double *weight = work.weights.data() + k * terms_max();
   backend::weigh_facet(views.whole, at.pose, facet, weight);
-  for (std::size_t l = 0; l < terms.lobe_count; ++l)
-    if (at.pose.is_narrow[terms.lobe_first + l])
-      weight[l] = narrow_weight(terms.lobe_first + l, directions(pose, at, facet));
   const double *none = work.nothing.data();
   work.part.reset(bands());
   compiled.colours.add_slot(facet.slot,

@@ -13,7 +13,7 @@ namespace umov {
 /// What the facet loops sum for one or several surfaces.
 struct SurfaceFit {
   std::vector<kernel::LobeConstants<double>> lobes; ///< that differ; none for no lobe
-  std::vector<double> widths;                       ///< per lobe: slope, against the Sun's size
+  std::vector<double> widths;                       ///< per lobe: of the slope
   std::optional<backend::LobeFamily<double>> family;
   std::vector<backend::Profile<double>> profiles;
   std::vector<backend::Product> products;
