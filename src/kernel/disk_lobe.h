@@ -14,8 +14,8 @@ namespace umov::kernel {
 
 /// Variance of the disk's image over that of a Gaussian lobe: below `plain_max` cumulants beyond
 /// the second change nothing (1e-6 of the mean), up to `corrected_max` the fourth and the sixth
-/// tell the rest to 3e-4 of the peak; beyond, the image is cut into chords.
-inline constexpr double plain_max = 1e-3, corrected_max = 0.4;
+/// tell the rest to 6e-4 of the peak; beyond, the image is cut into chords.
+inline constexpr double plain_max = 1e-3, corrected_max = 0.3;
 /// The same for GGX, with the square of the image's half axis over alpha^2: its Taylor series to
 /// fourth order holds to 4e-4 of the peak up to there.
 inline constexpr double ggx_plain_max = 1e-3, ggx_taylor_max = 0.1;
@@ -55,8 +55,7 @@ inline void put_correction(double p, double q, DiskCorrection<double> &out) {
 
 /// `width`: standard deviation of the slope of a Gaussian lobe, alpha of GGX; `scale`: what the
 /// integral over chords in units of the width is multiplied by.
-inline void put_chords(const DiskImage &disk, double width, double scale,
-                       DiskChords<double> &out) {
+inline void put_chords(const DiskImage &disk, double width, double scale, DiskChords<double> &out) {
   const double a = 2 * std::sqrt(disk.along), b = 2 * std::sqrt(disk.across);
   out.per_width = 1 / width;
   out.scale = scale / (std::numbers::pi * a * b);
@@ -65,6 +64,10 @@ inline void put_chords(const DiskImage &disk, double width, double scale,
   out.bend = disk.tangent / (1 + disk.tangent * disk.tangent) * width;
   out.skew = disk.tangent * width * disk.along / (disk.along + width * width);
 }
+
+/// 1 - n.h where the squared sine of the angle is `sine2`; 4, which nothing reaches, from 90 deg
+/// on.
+inline double apart_of(double sine2) { return sine2 < 1 ? 1 - std::sqrt(1 - sine2) : 4; }
 
 /// Everything that a pose makes of a lobe. What `out` does not use stays as it was.
 inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage &disk,
@@ -75,6 +78,7 @@ inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage 
     out.peak = alpha2 / pi;
     out.along = 4 * disk.along;
     out.across = 4 * disk.across;
+    out.reach = 4;
     out.is_corrected = size > ggx_plain_max;
     out.uses_chords = size > ggx_taylor_max;
     if (out.uses_chords)
@@ -88,10 +92,14 @@ inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage 
   out.uses_chords = q > corrected_max;
   out.is_corrected = q > plain_max;
   if (out.uses_chords) {
-    put_chords(disk, 1 / std::sqrt(per_variance), peak / per_variance * std::sqrt(pi / 2),
-               out.chords);
+    const double width = 1 / std::sqrt(per_variance), a = 2 * std::sqrt(disk.along) + 8 * width,
+                 b = 2 * std::sqrt(disk.across) + 8 * width; // kernel/disk_lobe.inl.h takes 7
+    put_chords(disk, width, peak / per_variance * std::sqrt(pi / 2), out.chords);
+    out.reach = apart_of(a * a + b * b);
     return;
   }
+  constexpr double halvings = 130; // exp2 is 0 from 127 on
+  out.reach = per_variance > 0 ? apart_of(2 / log2e * halvings * (1 + q) / per_variance) : 4;
   const auto by = blinn_phong_spread(per_variance, disk.along, disk.across);
   out.peak = peak * by.scale;
   // Beckmann's exponent is that of a Gaussian as it stands; Blinn-Phong's is a power of the cosine
@@ -110,6 +118,7 @@ inline void round_lobe_at_pose(const LobeAtPose<double> &from, LobeAtPose<float>
   to.peak = f(from.peak);
   to.along = f(from.along);
   to.across = f(from.across);
+  to.reach = f(from.reach);
   to.is_corrected = from.is_corrected;
   to.uses_chords = from.uses_chords;
   if (from.is_corrected) {

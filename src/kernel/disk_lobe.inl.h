@@ -1,4 +1,5 @@
-// The mean of a lobe's D over the half vectors of a disk, for lobes of any width: docs/theory/lobes.md.
+// The mean of a lobe's D over the half vectors of a disk, for lobes of any width:
+// docs/theory/lobes.md.
 #if defined(UMOV_KERNEL_DISK_LOBE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef UMOV_KERNEL_DISK_LOBE_INL_H
 #undef UMOV_KERNEL_DISK_LOBE_INL_H
@@ -20,8 +21,7 @@ template <class R> struct FromHalf { R apart, x, x2, y2; };
 /// From second moments to the disk, of a Gaussian; x2, y2 in the coordinates that it is one in.
 /// Beyond six standard deviations there is nothing to correct: the polynomial stays what it is
 /// there.
-template <class R, class T>
-UMOV_KERNEL R disk_correction(const DiskCorrection<T> &c, R x2, R y2) {
+template <class R, class T> UMOV_KERNEL R disk_correction(const DiskCorrection<T> &c, R x2, R y2) {
   const R most = R(T(40));
   const R u = min(x2 * R(c.per_along), most), w = min(y2 * R(c.per_across), most);
   const R first = R(c.one) + u * (R(c.u) + u * (R(c.uu) + u * R(c.uuu)));
@@ -40,9 +40,7 @@ UMOV_KERNEL R blinn_phong_over_disk(const LobeConstants<T> &lobe, const LobeAtPo
 }
 
 /// Cosines to h below this are taken for it: slopes stay finite.
-template <class R> UMOV_KERNEL R cosine_to_half(R apart) {
-  return max(R(1) - apart, R(1e-4));
-}
+template <class R> UMOV_KERNEL R cosine_to_half(R apart) { return max(R(1) - apart, R(1e-4)); }
 
 /// Beckmann, a Gaussian in slopes.
 template <class R, class T>
@@ -138,9 +136,9 @@ UMOV_KERNEL R ggx_over_disk(const LobeConstants<T> &lobe, const LobeAtPose<T> &a
   if (!any(is_narrow))
     return series;
   const R scale = R(at.chords.per_width) / cosine;
-  const R chords = chords_over_disk(lobe.kind, at.chords, (from.x + half_shift) * scale,
-                                    sqrt(from.y2) * scale) *
-                   per_cosine2 * per_cosine2;
+  const R chords =
+      chords_over_disk(lobe.kind, at.chords, (from.x + half_shift) * scale, sqrt(from.y2) * scale) *
+      per_cosine2 * per_cosine2;
   return select(is_narrow, chords, series);
 }
 
@@ -152,10 +150,11 @@ UMOV_KERNEL R narrow_over_disk(const LobeConstants<T> &lobe, const LobeAtPose<T>
   const R sine2 = from.x2 + from.y2;
   const R cosine = cosine_to_half(from.apart), per_cosine2 = R(T(1)) / (cosine * cosine);
   const bool is_beckmann = lobe.kind == LobeKind::Beckmann;
-  const R scale = R(at.chords.per_width) *
-                  (is_beckmann ? R(T(1)) / cosine : R(T(1)) + sine2 * R(T(1) / T(6)));
+  const R scale =
+      R(at.chords.per_width) * (is_beckmann ? R(T(1)) / cosine : R(T(1)) + sine2 * R(T(1) / T(6)));
   const R x = (from.x + half_shift) * scale, y = sqrt(from.y2) * scale;
-  const auto is_near = max(abs(x) - R(at.chords.half_along), y - R(at.chords.half_across)) < R(T(7));
+  const auto is_near =
+      max(abs(x) - R(at.chords.half_along), y - R(at.chords.half_across)) < R(T(7));
   if (!any(is_near))
     return R(T(0));
   const R mean = chords_over_disk(lobe.kind, at.chords, x, y);

@@ -16,11 +16,16 @@
 /// 1 - n.h as |n - h|^2 / 2, which keeps in single precision what the rounding of n.h would cost:
 /// 6e-8 m.
 template <class R, class T>
-UMOV_KERNEL FromHalf<R> from_half(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+UMOV_KERNEL R apart_from_half(const FacetPose<T> &pose, R nx, R ny, R nz) {
   const R dx = nx - R(pose.half[0]), dy = ny - R(pose.half[1]), dz = nz - R(pose.half[2]);
-  const R apart = (dx * dx + dy * dy + dz * dz) * R(T(0.5));
-  const R x =
-      (n_l - n_v) * R(pose.along_scale) - R(pose.half_shift) * (R(T(1)) - apart);
+  return (dx * dx + dy * dy + dz * dz) * R(T(0.5));
+}
+
+/// The normal of a facet that faces both directions against the half vector.
+template <class R, class T>
+UMOV_KERNEL FromHalf<R> from_half(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+  const R apart = apart_from_half(pose, nx, ny, nz);
+  const R x = (n_l - n_v) * R(pose.along_scale) - R(pose.half_shift) * (R(T(1)) - apart);
   const R x2 = x * x;
   return {apart, x, x2, max(R(T(0)), apart * (R(T(2)) - apart) - x2)};
 }

@@ -37,10 +37,10 @@ template <class T> struct DiskCorrection {
 /// The disk's image in widths of the lobe, for lobes that are not much wider than it.
 template <class T> struct DiskChords {
   T per_width = 0;
-  T scale = 0;                     ///< of the integral over the image
+  T scale = 0;                       ///< of the integral over the image
   T half_along = 0, half_across = 0; ///< half axes
-  T bend = 0;                      ///< of the long axis, towards the observer, per square
-  T skew = 0;                      ///< growth of the image's brightness towards the observer
+  T bend = 0;                        ///< of the long axis, towards the observer, per square
+  T skew = 0;                        ///< growth of the image's brightness towards the observer
 };
 
 /// What the source's size makes of a lobe at one phase angle (kernel/disk_lobe.h).
@@ -49,6 +49,7 @@ template <class T> struct LobeAtPose {
   /// Gaussian lobes: growth of the mean's logarithm (base 2) with the squares of the coordinates.
   /// GGX: squares of the half axes of the disk's image.
   T along = 0, across = 0;
+  T reach = 4;               ///< 1 - n.h from which on nothing is left in single precision
   bool is_corrected = false; ///< beyond second moments
   bool uses_chords = false;  ///< GGX: where the lobe is narrow
   DiskCorrection<T> correction;
@@ -61,8 +62,10 @@ template <class T> struct FacetPose {
   T cos_phase = 1;
   /// 1/|l - v|: (n.l - n.v) times it is the normal's coordinate in the plane; 0 at phase 0.
   T along_scale = 0;
-  T half[3]{};       ///< mean half vector of the disk
-  T half_shift = 0;  ///< its coordinate in the plane, from the half vector of the disk's centre
+  T across[3]{};    ///< perpendicular to the scattering plane, along observer x Sun
+  T per_sine = 0;   ///< 1/|observer x Sun|; 0 without a plane
+  T half[3]{};      ///< mean half vector of the disk
+  T half_shift = 0; ///< its coordinate in the plane, from the half vector of the disk's centre
 };
 
 } // namespace umov::kernel

@@ -25,6 +25,11 @@ void add_slot(const std::vector<const Surface *> &surfaces, CompiledScene &out) 
     const auto append = [](auto &to, const auto &from) {
       to.insert(to.end(), from.begin(), from.end());
     };
+    const auto is_polarized = [](const backend::Product &product) {
+      return product.kind != backend::ProductKind::Even;
+    };
+    terms.is_polarized = std::any_of(fit->products.begin(), fit->products.end(), is_polarized);
+    out.has_u = out.has_u || terms.is_polarized;
     append(out.data.lobes, fit->lobes);
     append(out.widths, fit->widths);
     append(out.data.profiles, fit->profiles);
@@ -109,6 +114,7 @@ CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypoth
       error.value[lane] = 0.5 * c.spread2 / std::max(narrowest * narrowest, 1e-12);
       if (terms.is_general && group.member[lane] != no_index)
         ++out.general_classes;
+      out.has_u = out.has_u || terms.is_general;
     }
     const auto index = static_cast<std::uint32_t>(out.data.groups.size());
     out.data.groups.push_back(facets);

@@ -24,6 +24,7 @@ struct CompiledScene {
   std::vector<Rounding> rounding;
   Colours colours;
   std::size_t general_classes = 0;
+  bool has_u = false; ///< something gives U, or V
 };
 
 /// Groups by plan, surfaces by fit: those of `scene`, and of `hypotheses`, other materials on the

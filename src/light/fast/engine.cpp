@@ -199,7 +199,7 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
   const std::size_t materials =
       material.empty() ? 0 : *std::max_element(material_of.begin(), material_of.end()) + 1;
   out.material_i.assign(poses.size() * materials * band_count(), 0);
-  const bool has_u_or_v = s.compiled.general_classes > 0;
+  const bool has_u_or_v = s.compiled.has_u;
   s.for_each(
       poses, task.threads,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {

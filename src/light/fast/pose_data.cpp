@@ -26,6 +26,10 @@ void prepare_pose(const Pose &pose, double cos_phase,
   out.facet.cos_phase = cos_phase;
   const double apart = norm(pose.sun - pose.observer);
   out.facet.along_scale = apart > 1e-7 ? 1 / apart : 0;
+  const Vec3<Body> across = cross(pose.observer, pose.sun);
+  const double sine = norm(across);
+  out.facet.per_sine = sine > 1e-12 ? 1 / sine : 0;
+  put(out.facet.per_sine * across, out.facet.across);
   const kernel::DiskImage disk = kernel::disk_image(pose.sun_radius_rad, cos_phase);
   out.facet.half_shift = apart > 1e-7 ? disk.shift() : 0;
   put(kernel::mean_half_vector(pose.sun, pose.observer, any_perpendicular(pose.sun), apart, disk),
@@ -57,9 +61,11 @@ void round_pose(const backend::PoseData<double> &from, PoseStore<float> &to) {
     to.facet.sun[k] = f(from.facet.sun[k]);
     to.facet.observer[k] = f(from.facet.observer[k]);
     to.facet.half[k] = f(from.facet.half[k]);
+    to.facet.across[k] = f(from.facet.across[k]);
   }
   to.facet.cos_phase = f(from.facet.cos_phase);
   to.facet.along_scale = f(from.facet.along_scale);
+  to.facet.per_sine = f(from.facet.per_sine);
   to.facet.half_shift = f(from.facet.half_shift);
   to.resize(from.lobes.size());
   for (std::size_t k = 0; k < from.lobes.size(); ++k)

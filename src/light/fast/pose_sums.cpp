@@ -142,7 +142,7 @@ SlotSums Engine::State::sums_of(std::size_t slot, const Workspace &work) const {
 
 void Engine::State::colour_by_material(std::span<const std::uint32_t> material, double *intensity,
                                        Workspace &work) const {
-  work.light.reset(bands(), compiled.general_classes > 0);
+  work.light.reset(bands(), compiled.has_u);
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
     if (compiled.data.slots[slot].is_general)
       continue;
@@ -161,7 +161,7 @@ void Engine::State::colour_by_material(std::span<const std::uint32_t> material, 
 }
 
 void Engine::State::colour(Workspace &work) const {
-  work.light.reset(bands(), compiled.general_classes > 0);
+  work.light.reset(bands(), compiled.has_u);
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot)
     if (!compiled.data.slots[slot].is_general)
       compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.light);
