@@ -9,6 +9,7 @@
 #endif
 
 #include "backend/scene_data.h"
+#include "kernel/body.inl.h"
 #include "kernel/facet.inl.h"
 
 #include "kernel/begin.h"
@@ -23,6 +24,7 @@ using backend::Masks;
 using backend::MaskTable;
 using backend::PoseData;
 using backend::PoseSumsOf;
+using backend::ProductKind;
 using backend::SceneData;
 using backend::SeenListOf;
 using backend::SlotTerms;
@@ -50,7 +52,16 @@ UMOV_KERNEL EntryLook look_up(const Masks &masks, const MaskTable &table, const 
 /// (n.k) p(n.k) of a slot's profiles, of which there are some, towards both directions.
 template <class R> struct ProfileValues {
   R in[backend::profiles_max], out[backend::profiles_max];
+  EmissionTurn<R> turn; ///< if the slot is polarized
   template <class T> UMOV_KERNEL R product(const backend::Product &p) const {
+    switch (p.kind) {
+    case ProductKind::Cosine:
+      return in[p.first] * out[p.second] * turn.cosine;
+    case ProductKind::Sine:
+      return in[p.first] * out[p.second] * turn.sine;
+    case ProductKind::Even:
+      break;
+    }
     return R(T(0.5)) * (in[p.first] * out[p.second] + in[p.second] * out[p.first]);
   }
 };
@@ -102,8 +113,14 @@ public:
   }
 
   UMOV_KERNEL void run() {
+    bool is_any_left_out = false;
     for (const Chunk &chunk : scene_.chunks) {
-      find_facing(chunk);
+      const T reach = reach_of(scene_.slots[chunk.slot]);
+      if (reach < T(2)) {
+        find_facing<true>(chunk, reach);
+        is_any_left_out = true;
+      } else
+        find_facing<false>(chunk);
       if (masks_ != nullptr)
         hide();
       if (count_ == 0)
@@ -115,17 +132,19 @@ public:
       else if (is_closed_family(slot))
         shade_family(slot);
       else
-        shade_lobes(slot, chunk.slot);
+        shade_lobes(slot);
       if (slot.product_count > 0 && !slot.is_general)
         shade_products(slot);
     }
+    if (!out_.is_any_seen && is_any_left_out)
+      look_for_any();
   }
 
   /// Facets of which something is both lit and seen.
   UMOV_KERNEL void list_seen(SeenListOf<S> &out) {
     out.clear();
     for (const Chunk &chunk : scene_.chunks) {
-      find_facing(chunk);
+      find_facing<false>(chunk);
       if (masks_ != nullptr)
         hide();
       for (std::size_t k = 0; k < count_; ++k)
@@ -143,7 +162,7 @@ public:
     std::uint32_t facing[backend::groups_per_chunk];
     T whole[backend::groups_per_chunk][lanes];
     for (const Chunk &chunk : scene_.chunks) {
-      find_facing(chunk);
+      find_facing<false>(chunk);
       const std::size_t all = count_;
       for (std::size_t k = 0; k < all; ++k) {
         facing[k] = group_[k];
@@ -174,9 +193,33 @@ private:
     return {x * d.lx + y * d.ly + z * d.lz, x * d.vx + y * d.vy + z * d.vz};
   }
 
-  /// Lists the groups some of which face both directions, with the area that does. Without a
-  /// branch: whether the next group is among them is as good as random.
-  UMOV_KERNEL void find_facing(const Chunk &chunk) {
+  /// 1 - n.h of the farthest facets that any lobe of a slot without other light has light from.
+  [[nodiscard]] UMOV_KERNEL T reach_of(const SlotTerms &slot) const {
+    if (slot.is_general || slot.product_count > 0)
+      return T(4);
+    T reach = 0;
+    for (std::uint32_t k = 0; k < slot.lobe_count; ++k)
+      reach = max(reach, pose_.lobes[slot.lobe_first + k].reach);
+    return reach;
+  }
+
+  /// A facet that is lit and seen, beyond the reach of its lobe, is dark but not hidden.
+  UMOV_KERNEL void look_for_any() {
+    for (const Chunk &chunk : scene_.chunks) {
+      find_facing<false>(chunk);
+      if (masks_ != nullptr)
+        hide();
+      if (count_ > 0) {
+        out_.is_any_seen = true;
+        return;
+      }
+    }
+  }
+
+  /// Lists the groups some of which face both directions, with the area that does, if wanted only
+  /// of facets within reach of the half vector. Without a branch: whether the next group is among
+  /// them is as good as random.
+  template <bool is_near_only> UMOV_KERNEL void find_facing(const Chunk &chunk, T reach = 0) {
     const Directions d(pose_.facet);
     const FacetGroup<T> *const groups = scene_.groups.data() + chunk.first;
     const std::uint32_t first = chunk.first, all = chunk.count;
@@ -187,7 +230,9 @@ private:
       for (std::size_t s = 0; s < lanes; s += width) {
         R x, y, z;
         const Cosines at = cosines(d, f, s, x, y, z);
-        const auto faces = min(at.n_l, at.n_v) > R(T(0));
+        auto faces = min(at.n_l, at.n_v) > R(T(0));
+        if constexpr (is_near_only)
+          faces = faces & (apart_from_half(pose_.facet, x, y, z) < R(reach));
         is_any = Machine::any(faces) | is_any;
         Machine::store(select(faces, Machine::load(f.area + s), R(T(0))), area_[count] + s);
       }
@@ -320,22 +365,15 @@ private:
     return is_any;
   }
 
-  /// One lobe after the other; those too narrow for a kernel go back to the caller.
-  UMOV_KERNEL void shade_lobes(const SlotTerms &slot, std::uint32_t index) {
-    bool is_any_narrow = false;
+  UMOV_KERNEL void shade_lobes(const SlotTerms &slot) {
     for (std::uint32_t k = slot.lobe_first; k < slot.lobe_first + slot.lobe_count; ++k)
-      if (pose_.is_narrow[k])
-        is_any_narrow = true;
-      else
-        shade_lobe(k);
-    if (is_any_narrow)
-      hand_back(index);
+      shade_lobe(k);
   }
 
   [[nodiscard]] UMOV_KERNEL bool is_closed_family(const SlotTerms &slot) const {
     bool is_closed = slot.family != backend::no_family && scene_.cluster_error.empty();
     for (std::uint32_t k = 0; is_closed && k < slot.lobe_count; ++k)
-      is_closed = pose_.lobes[slot.lobe_first + k].has_closed_form;
+      is_closed = !pose_.lobes[slot.lobe_first + k].uses_chords;
     return is_closed;
   }
 
@@ -355,6 +393,7 @@ private:
         R g[backend::family_nodes_max];
         for (std::size_t n = 0; n < family.node_count; ++n)
           g[n] = lobe_shadowing(family.node[n], pose_.facet, n_l, n_v);
+        const R log2_cosine = log2_of_one_minus(from.apart);
         const R area = Machine::load(area_[k] + s);
         const R deviation = is_exact_[k] ? R(T(0)) : Machine::load(deviation_[k] + s);
         for (std::size_t b = 0; b < slot.lobe_count; ++b) {
@@ -363,7 +402,9 @@ private:
           for (std::size_t n = 1; n < family.node_count; ++n)
             shadowing = shadowing + g[n] * R(weight[n]);
           const std::size_t lobe = slot.lobe_first + b;
-          const R w = closed_density(scene_.lobes[lobe], pose_.lobes[lobe], from) * shadowing;
+          const R w =
+              blinn_phong_over_disk(scene_.lobes[lobe], pose_.lobes[lobe], from, log2_cosine) *
+              shadowing;
           const R error = deviation * w;
           sum[b] = sum[b] + area * w;
           variance[b] = variance[b] + error * error;
@@ -386,8 +427,8 @@ private:
         R x, y, z;
         const Cosines at = cosines(d, scene_.groups[group_[k]], s, x, y, z);
         const R n_l = max(at.n_l, R(T(0))), n_v = max(at.n_v, R(T(0)));
-        const R density =
-            lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet, x, y, z, n_l, n_v);
+        const R density = lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet,
+                                       from_half(pose_.facet, x, y, z, n_l, n_v));
         if (!Machine::any(density > R(T(0))))
           continue; // far from a narrow lobe
         const R w =
@@ -410,7 +451,7 @@ private:
   /// Relative error of the lobe from unlike normals in a class: m spread^2 / 2 at the peak, more on
   /// its flanks as (n - h)^2 m. Neighbours err to the same side, so the errors add up.
   UMOV_KERNEL R cluster_error(std::size_t lobe, std::size_t k, std::size_t s, R x, R y, R z) const {
-    const auto &h = pose_.facet.half[0];
+    const auto &h = pose_.facet.half;
     const R dx = x - R(h[0]), dy = y - R(h[1]), dz = z - R(h[2]);
     return Machine::load(scene_.cluster_error[group_[k]].value + s) *
            (R(T(1)) + (dx * dx + dy * dy + dz * dz) * R(scene_.lobes[lobe].per_width2));
@@ -445,7 +486,9 @@ private:
         R x, y, z;
         const Cosines at = cosines(d, scene_.groups[group_[k]], s, x, y, z);
         const R n_l = max(at.n_l, R(T(0))), n_v = max(at.n_v, R(T(0)));
-        const ProfileValues<R> values = profile_values<R, T>(scene_, slot, n_l, n_v);
+        ProfileValues<R> values = profile_values<R, T>(scene_, slot, n_l, n_v);
+        if (slot.is_polarized)
+          values.turn = emission_turn(pose_.facet, x, y, z, n_l, n_v);
         const R area = Machine::load(area_[k] + s);
         const R deviation = is_exact_[k] ? R(T(0)) : Machine::load(deviation_[k] + s);
         for (std::size_t p = 0; p < count; ++p) {

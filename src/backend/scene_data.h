@@ -29,12 +29,19 @@ struct Chunk {
 };
 inline constexpr std::size_t groups_per_chunk = 64;
 
-/// A symmetric product of two profiles of a slot: sum of area (n.l)(n.v) times the mean of
-/// p_first(n.l) p_second(n.v) and p_second(n.l) p_first(n.v).
+/// What a product of two profiles is a part of.
+enum class ProductKind : std::uint8_t {
+  Even,   ///< I: the mean of p_first(n.l) p_second(n.v) and p_second(n.l) p_first(n.v)
+  Cosine, ///< Q of emission: p_first(n.l) p_second(n.v) (1 - (n.v)^2) cos of twice its plane's
+          ///< angle
+  Sine    ///< U: with the sine
+};
+/// A product of two profiles of a slot, summed with area (n.l)(n.v).
 struct Product {
   std::uint32_t first = 0, second = 0; ///< counted from SlotTerms::profile_first
+  ProductKind kind = ProductKind::Even;
 };
-inline constexpr std::size_t profiles_max = 4, products_max = 8; ///< of one slot
+inline constexpr std::size_t profiles_max = 6, products_max = 16; ///< of one slot
 
 /// A function of the cosine c as a polynomial in 2 (1 + bend) c / (c + bend) - 1.
 template <class T> struct Profile {
@@ -59,7 +66,8 @@ struct SlotTerms {
   std::uint32_t family = no_family; ///< of those lobes, if they are one
   std::uint32_t profile_first = 0, profile_count = 0;
   std::uint32_t product_first = 0, product_count = 0;
-  bool is_general = false; ///< nothing is summed here: its seen facets are handed back
+  bool is_polarized = false; ///< some product is of Q or U
+  bool is_general = false;   ///< nothing is summed here: its seen facets are handed back
 };
 
 /// Where the blocks of one direction stand in the pool: rows may follow each other in any order.
@@ -120,7 +128,6 @@ struct GridLook {
 template <class T> struct PoseData {
   kernel::FacetPose<T> facet;
   View<const kernel::LobeAtPose<T>> lobes;
-  View<const char> is_narrow; ///< per lobe: too narrow for the kernels at this pose
   GridLook small_sun, small_observer, large_sun, large_observer; ///< by table of masks
 };
 
@@ -157,7 +164,7 @@ template <class S> struct PoseSumsOf {
   View<S> specular_bias;                   ///< error from joined normals, added up
   View<S> product, product_variance;       ///< per product [m2]
   View<S> specular_linear, product_linear; ///< standard deviations, added up
-  SeenListOf<S> seen;                      ///< of general slots and narrow lobes
+  SeenListOf<S> seen;                      ///< of general slots
   bool is_any_seen = false;
 };
 using PoseSums = PoseSumsOf<double>;

@@ -6,6 +6,7 @@
 #define UMOV_KERNEL_BODY_INL_H
 #endif
 
+#include "kernel/facet_constants.h"
 #include "kernel/math.inl.h"
 
 #include "kernel/begin.h"
@@ -37,6 +38,17 @@ UMOV_KERNEL EmissionPlanes<R> emission_planes(R lx, R ly, R lz, R vx, R vy, R vz
           select(has_in, R(2) * in_s * n_s * per_in, R(0)),
           select(has_out, (out_s * out_s - n_s * n_s) * per_out, R(1)),
           select(has_out, R(-2) * out_s * n_s * per_out, R(0))};
+}
+
+/// cos and sin of twice the angle of the plane of emission, times 1 - (n.v)^2: without a division,
+/// and 0 at the normal.
+template <class R> struct EmissionTurn { R cosine, sine; };
+template <class R, class T>
+UMOV_KERNEL EmissionTurn<R> emission_turn(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l,
+                                          R n_v) {
+  const R aside = nx * R(pose.across[0]) + ny * R(pose.across[1]) + nz * R(pose.across[2]);
+  const R out = (n_v * R(pose.cos_phase) - n_l) * R(pose.per_sine);
+  return {out * out - aside * aside, R(T(-2)) * out * aside};
 }
 
 #include "kernel/end.h"

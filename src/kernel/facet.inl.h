@@ -7,58 +7,40 @@
 #define UMOV_KERNEL_FACET_INL_H
 #endif
 
+#include "kernel/disk_lobe.inl.h"
 #include "kernel/facet_constants.h"
 #include "kernel/microfacet.inl.h"
-#include "kernel/solar_nodes.inl.h"
 
 #include "kernel/begin.h"
 
 /// 1 - n.h as |n - h|^2 / 2, which keeps in single precision what the rounding of n.h would cost:
 /// 6e-8 m.
 template <class R, class T>
-UMOV_KERNEL R one_minus_cosine(const FacetPose<T> &pose, std::size_t node, R nx, R ny, R nz) {
-  const R x = nx - R(pose.half[node][0]), y = ny - R(pose.half[node][1]),
-          z = nz - R(pose.half[node][2]);
-  return (x * x + y * y + z * z) * R(T(0.5));
+UMOV_KERNEL R apart_from_half(const FacetPose<T> &pose, R nx, R ny, R nz) {
+  const R dx = nx - R(pose.half[0]), dy = ny - R(pose.half[1]), dz = nz - R(pose.half[2]);
+  return (dx * dx + dy * dy + dz * dz) * R(T(0.5));
 }
 
-/// The normal against the half vector: what all Blinn-Phong lobes of a facet share.
-template <class R> struct FromHalf { R log2_cosine, x2, y2; };
+/// The normal of a facet that faces both directions against the half vector.
 template <class R, class T>
 UMOV_KERNEL FromHalf<R> from_half(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
-  const R d = one_minus_cosine(pose, 0, nx, ny, nz);
-  const R x = (n_l - n_v) * R(pose.along_scale), x2 = x * x;
-  return {log2_of_one_minus(d), x2, max(R(T(0)), d * (R(T(2)) - d) - x2)};
-}
-/// Mean of Blinn-Phong's D over the disk, in closed form.
-template <class R, class T>
-UMOV_KERNEL R closed_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
-                             const FromHalf<R> &from) {
-  return R(at.peak) *
-         exp2(R(lobe.shape) * from.log2_cosine + R(at.along) * from.x2 + R(at.across) * from.y2);
+  const R apart = apart_from_half(pose, nx, ny, nz);
+  const R x = (n_l - n_v) * R(pose.along_scale) - R(pose.half_shift) * (R(T(1)) - apart);
+  const R x2 = x * x;
+  return {apart, x, x2, max(R(T(0)), apart * (R(T(2)) - apart) - x2)};
 }
 
 /// Mean of D over the half vectors of the source.
 template <class R, class T>
 UMOV_KERNEL R lobe_density(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
-                           const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
-  if (at.has_closed_form)
-    return closed_density(lobe, at, from_half(pose, nx, ny, nz, n_l, n_v));
-  const auto density = [&](std::size_t node) {
-    const R d = one_minus_cosine(pose, node, nx, ny, nz);
-    if (lobe.kind == LobeKind::BlinnPhong)
-      return R(lobe.peak) * exp2(R(lobe.shape) * log2_of_one_minus(d));
-    const R cosine = max(R(T(1)) - d, R(T(1e-4))), sine2 = d * (R(T(2)) - d);
-    if (lobe.kind == LobeKind::Beckmann)
-      return beckmann(sine2, cosine * cosine, R(lobe.shape));
-    return ggx(sine2, cosine * cosine, R(lobe.shape));
-  };
-  if (!at.uses_nodes)
-    return density(0);
-  R sum = density(0) * R(source_node_weight<T>(0));
-  for (std::size_t k = 1; k < source_nodes; ++k)
-    sum = sum + density(k) * R(source_node_weight<T>(k));
-  return sum;
+                           const FacetPose<T> &pose, const FromHalf<R> &from) {
+  if (lobe.kind == LobeKind::Ggx)
+    return ggx_over_disk(lobe, at, from, R(pose.half_shift));
+  if (at.uses_chords)
+    return narrow_over_disk(lobe, at, from, R(pose.half_shift));
+  if (lobe.kind == LobeKind::Beckmann)
+    return beckmann_over_disk(at, from);
+  return blinn_phong_over_disk(lobe, at, from, log2_of_one_minus(from.apart));
 }
 
 /// P(k) of one direction above the horizon.
@@ -81,7 +63,7 @@ template <class R, class T>
 UMOV_KERNEL R lobe_weight(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
                           const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
   const R g = lobe_shadowing(lobe, pose, n_l, n_v);
-  return lobe_density(lobe, at, pose, nx, ny, nz, n_l, n_v) * g * R(T(0.25));
+  return lobe_density(lobe, at, pose, from_half(pose, nx, ny, nz, n_l, n_v)) * g * R(T(0.25));
 }
 
 #include "kernel/end.h"

@@ -27,11 +27,19 @@ BodyLight::BodyLight(double reflectance, const Interface &surface)
     : factor_(reflectance / (pi * (1 - surface.mean_reflectance()))), reflectance_(reflectance),
       surface_(surface) {}
 
-double BodyLight::entering(double n_k) const { return 1 - reflected_(std::clamp(n_k, 0.0, 1.0)); }
+double BodyLight::entering(double n_k) const {
+  return surface_ ? transmitted(*surface_, n_k).mean : 1 - reflected_(std::clamp(n_k, 0.0, 1.0));
+}
+
+double BodyLight::polarizing(double n_k) const {
+  constexpr double most = 1 - 1e-6; // nearer to the normal it is the limit, to that accuracy
+  const double c = std::clamp(n_k, 0.0, most);
+  return surface_ ? transmitted(*surface_, c).half_difference / ((1 - c) * (1 + c)) : 0;
+}
 
 double BodyLight::albedo(double n_k) const {
   // int f_b mu dw over the hemisphere: R_sub (1 - R(k)), since int (1 - R) mu dw = pi (1 - Rbar).
-  return reflectance_ * (surface_ ? transmitted(*surface_, n_k).mean : entering(n_k));
+  return reflectance_ * entering(n_k);
 }
 
 Stokes<ScatteringPlane> BodyLight::operator()(const SurfaceDirections &at,

@@ -21,10 +21,13 @@ public:
   [[nodiscard]] Stokes<ScatteringPlane> operator()(const SurfaceDirections &at,
                                                    const Stokes<ScatteringPlane> &in) const;
 
-  /// The unpolarized lobe is factor() (n.l)(n.v) entering(n.l) entering(n.v).
+  /// I of sunlight is factor() (n.l)(n.v) entering(n.l) entering(n.v).
   [[nodiscard]] bool is_polarized() const { return surface_.has_value(); }
   [[nodiscard]] double factor() const { return factor_; }
   [[nodiscard]] double entering(double n_k) const;
+  /// Of the polarized lobe: half the difference of what leaves in s and in p, over the squared sine
+  /// of the angle of emission, which it goes with near the normal.
+  [[nodiscard]] double polarizing(double n_k) const;
 
   /// Directional albedo for unpolarized light.
   [[nodiscard]] double albedo(double n_k) const;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <umov/core/text.h>
 
 namespace umov {
@@ -57,10 +56,6 @@ Result<void> check_table(const DistributionChoice &choice) {
 } // namespace
 
 DistributionChoice blinn_phong(double m) { return {"blinn_phong", {{"m", m}}, {}, {}, {}}; }
-
-double Distribution::spread(double, double, double, double, double) const {
-  return std::numeric_limits<double>::quiet_NaN();
-}
 
 const std::vector<const DistributionModel *> &distribution_models() {
   static const std::vector<const DistributionModel *> all = list_distribution_models();

@@ -1,10 +1,12 @@
 #include "surface/solar_disk.h"
 
-#include "kernel/solar_nodes.inl.h"
+#include "kernel/disk_lobe.h"
+#include "kernel/facet.inl.h"
 
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <umov/core/quantity.h>
 #include <umov/core/vec3.h>
 
@@ -111,6 +113,29 @@ double by_contour(const Distribution &normals, const DiskImage &image) {
   return area != 0 ? std::max(0.0, (inside * whole - outer) / area) : 0;
 }
 
+/// By the facet kernels' closed forms, where the lobe is wide enough for them.
+std::optional<double> by_kernel(const KernelForm &form, Vec3<Facet> l, Vec3<Facet> v,
+                                const kernel::DiskImage &disk) {
+  kernel::LobeConstants<double> lobe;
+  lobe.kind = form.kind;
+  lobe.shape = form.shape;
+  if (form.kind == LobeKind::BlinnPhong)
+    lobe.peak = kernel::blinn_phong_peak(form.shape);
+  kernel::LobeAtPose<double> at;
+  kernel::put_lobe_at_pose(lobe, disk, at);
+  if (at.uses_chords)
+    return {};
+  const double apart = norm(l - v);
+  kernel::FacetPose<double> pose;
+  pose.along_scale = apart > 1e-7 ? 1 / apart : 0;
+  pose.half_shift = apart > 1e-7 ? disk.shift() : 0;
+  const Vec3<Facet> half = kernel::mean_half_vector(l, v, any_perpendicular(l), apart, disk);
+  pose.half[0] = half.x;
+  pose.half[1] = half.y;
+  pose.half[2] = half.z;
+  return kernel::lobe_density(lobe, at, pose, kernel::from_half(pose, 0.0, 0.0, 1.0, l.z, v.z));
+}
+
 } // namespace
 
 double density_over_disk(const Distribution &normals, Vec3<Facet> l, Vec3<Facet> v, double l_v,
@@ -122,19 +147,15 @@ double density_over_disk(const Distribution &normals, Vec3<Facet> l, Vec3<Facet>
   const Vec3<Facet> h = sum / length;
   if (!(radius_rad > 0))
     return normals.density(h);
-  const auto [kappa1, kappa2] = kernel::disk_variances(radius_rad, l_v);
-  const double width = normals.width();
-  const double q = width > 0 ? kappa2 / (width * width) : HUGE_VAL;
-  if (q < kernel::closed_form_max) {
-    const double difference = l.z - v.z, s2 = (1 - l_v) / 2;
-    const double x2 = s2 > 1e-15 ? difference * difference / (4 * s2) : 0;
-    const double y2 = std::max(0.0, (1 - h.z) * (1 + h.z) - x2);
-    const double value = normals.spread(h.z, x2, y2, kappa1, kappa2);
-    if (std::isfinite(value))
-      return h.z > 0 ? value : 0;
+  const kernel::DiskImage disk = kernel::disk_image(radius_rad, l_v);
+  if (const auto form = normals.kernel_form()) {
+    if (const auto value = by_kernel(*form, l, v, disk))
+      return h.z > 0 ? *value : 0;
   }
+  const double width = normals.width();
+  const double q = width > 0 ? disk.across / (width * width) : HUGE_VAL;
   const DiskImage image(l, v, l_v, radius_rad);
-  if (q < kernel::nodes_max)
+  if (!normals.kernel_form() && q < kernel::nodes_max)
     return by_nodes(normals, image);
   if (!normals.is_isotropic())
     return by_rings(normals, image);
@@ -143,7 +164,7 @@ double density_over_disk(const Distribution &normals, Vec3<Facet> l, Vec3<Facet>
   const double tangent = std::sqrt(std::max(0.0, (1 - l_v) / std::max(1 + l_v, 1e-15)));
   const double x = std::clamp(image.along_plane(), -radius_rad / 2, radius_rad / 2);
   return by_contour(normals, image) *
-         std::max(0.0, 1 - x * tangent * kappa1 / (kappa1 + width * width));
+         std::max(0.0, 1 - x * tangent * disk.along / (disk.along + width * width));
 }
 
 } // namespace umov

@@ -311,11 +311,14 @@ const Distribution *Surface::normals(std::size_t band) const {
 std::optional<std::vector<Surface::SeparableDiffuse>>
 Surface::separable_diffuse(std::size_t band) const {
   const BandTables &own = tables_->bands[band];
-  if (tables_->material.measured || (own.body && own.body->is_polarized()))
+  if (tables_->material.measured)
     return {};
   std::vector<SeparableDiffuse> out;
-  if (own.body)
+  if (own.body) {
     out.push_back({own.body->factor(), [&own](double n_k) { return own.body->entering(n_k); }});
+    if (own.body->is_polarized())
+      out.back().polarizing = [&own](double n_k) { return own.body->polarizing(n_k); };
+  }
   if (own.interreflected)
     out.push_back({own.interreflected->factor(),
                    [&own](double n_k) { return own.interreflected->lost(n_k); },

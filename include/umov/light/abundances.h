@@ -16,7 +16,9 @@ struct AbundanceColumn {
   /// What is summed.
   enum class Kind {
     Specular, ///< sum of area D G2/4 over lit and seen facets [m2/sr], of one microfacet lobe
-    Diffuse   ///< sum of area (n.l)(n.v) p(n.l) p'(n.v) [m2], of two profiles of the body light
+    /// Sum of area (n.l)(n.v) p(n.l) p'(n.v) [m2], of two profiles of the body light; for light
+    /// polarized as it leaves, also with the sine or cosine of twice its plane's angle: any sign.
+    Diffuse
   };
   /// A mesh group and which of its materials.
   struct Side {

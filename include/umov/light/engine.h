@@ -104,7 +104,7 @@ public:
                               std::span<const std::uint32_t> material_of = {}) const;
 
   /// Sums of every pose before any colour. BadInput if a material has none (measured or
-  /// anisotropic surfaces, polarized body light: they are lit facet by facet).
+  /// anisotropic surfaces: they are lit facet by facet).
   Result<void> abundances(std::span<const Pose> poses, AbundanceTable &out,
                           unsigned threads = 1) const;
   /// What other materials and bands (of a scene with the same mesh groups) make of this engine's

@@ -58,10 +58,6 @@ public:
   [[nodiscard]] virtual bool is_mirror() const { return false; }
   /// int of D sin(theta) dtheta from theta to 90 deg, times 2 pi: for isotropic ones.
   [[nodiscard]] virtual double beyond(double cos_theta) const = 0;
-  /// Mean of D over a spread of half vectors with variances kappa1, kappa2 along two axes on which
-  /// the normal has the coordinates x, y; NaN if there is no closed form for it.
-  [[nodiscard]] virtual double spread(double n_h, double x2, double y2, double kappa1,
-                                      double kappa2) const;
   /// Which of the forms that the facet kernels know it is; empty: they call `density` facet by
   /// facet, which is slower.
   [[nodiscard]] virtual std::optional<KernelForm> kernel_form() const { return {}; }

@@ -100,11 +100,14 @@ public:
   /// Normals of the microfacet lobe of a band; null for a measured surface.
   [[nodiscard]] const Distribution *normals(std::size_t band) const;
   /// Diffuse light that is a product: factor (n.l)(n.v) profile(n.l) profile(n.v) of the source's
-  /// intensity, unpolarized or with the Q/I of one reflection.
+  /// intensity, unpolarized, with the Q/I of one reflection, or polarized about the plane of
+  /// emission: factor (n.l)(n.v) profile(n.l) polarizing(n.v) (1 - (n.v)^2) (cos, sin) of twice the
+  /// angle from the scattering plane are Q and U then.
   struct SeparableDiffuse {
     double factor = 0;
     std::function<double(double)> profile; ///< valid as long as this surface lives
     bool is_single_bounce = false;
+    std::function<double(double)> polarizing = {}; ///< empty: not so polarized
   };
   /// All diffuse light of a band as such products; empty if some of it is of another form.
   [[nodiscard]] std::optional<std::vector<SeparableDiffuse>>

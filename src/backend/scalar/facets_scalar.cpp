@@ -81,7 +81,9 @@ void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
                                     pose.lobes[slot.lobe_first + k], pose.facet, x, y, z, n_l, n_v);
   if (slot.product_count == 0)
     return;
-  const auto values = kernel::profile_values<double, double>(scene, slot, n_l, n_v);
+  auto values = kernel::profile_values<double, double>(scene, slot, n_l, n_v);
+  if (slot.is_polarized)
+    values.turn = kernel::emission_turn(pose.facet, x, y, z, n_l, n_v);
   for (std::size_t p = 0; p < slot.product_count; ++p)
     *weight++ = values.product<double>(scene.products[slot.product_first + p]);
 }

@@ -121,18 +121,15 @@ template <class R, class Put> UMOV_KERNEL void probe_solar_nodes(R x, const Put 
 /// leans by x from it.
 template <class R, class T, class Put> UMOV_KERNEL void probe_facet(R x, const Put &put) {
   FacetPose<T> pose;
-  const T sun[3] = {T(0.6), T(0), T(0.8)}, ring[2] = {T(0.02), T(0.0346)};
+  const T sun[3] = {T(0.6), T(0), T(0.8)};
   for (std::size_t k = 0; k < 3; ++k) {
     pose.sun[k] = sun[k];
     pose.observer[k] = k == 0 ? -sun[k] : sun[k];
   }
   pose.cos_phase = T(0.28);
   pose.along_scale = T(1 / 1.2);
-  for (std::size_t node = 0; node < source_nodes; ++node) {
-    pose.half[node][0] = node % 2 == 0 ? T(0) : ring[0];
-    pose.half[node][1] = node < 3 ? T(0) : ring[1];
-    pose.half[node][2] = T(1);
-  }
+  pose.half[2] = T(1);
+  pose.half_shift = T(-0.001);
   const R nx = R(0.3) * x, ny = R(0.2) * x, nz = sqrt(R(1) - nx * nx - ny * ny);
   const R n_l = nx * R(pose.sun[0]) + nz * R(pose.sun[2]),
           n_v = nx * R(pose.observer[0]) + nz * R(pose.observer[2]);
@@ -146,16 +143,18 @@ template <class R, class T, class Put> UMOV_KERNEL void probe_facet(R x, const P
       lobe.shape = kind == LobeKind::BlinnPhong ? T(40) : T(0.25);
       lobe.peak = T(6.5);
       LobeAtPose<T> at;
+      at.peak = T(6);
+      at.along = kind == LobeKind::Ggx ? T(0.01) : kind == LobeKind::Beckmann ? T(-11) : T(0.5);
+      at.across = kind == LobeKind::Ggx ? T(0.02) : kind == LobeKind::Beckmann ? T(-10) : T(0.25);
       put(lobe_weight(lobe, at, pose, nx, ny, nz, n_l, n_v));
-      at.uses_nodes = true;
+      at.is_corrected = true;
+      at.correction = {T(30),    T(25),    T(0.99), T(-0.01), T(-0.02),  T(0.002),
+                       T(0.003), T(0.004), T(1e-4), T(2e-4),  T(1.5e-4), T(3e-4)};
+      put(lobe_weight(lobe, at, pose, nx, ny, nz, n_l, n_v));
+      at.uses_chords = true;
+      at.chords = {T(5), T(2), T(0.5), T(0.75), T(0.02), T(0.03)};
       put(lobe_weight(lobe, at, pose, nx, ny, nz, n_l, n_v));
     }
-  LobeAtPose<T> closed;
-  closed.has_closed_form = true;
-  closed.peak = T(6);
-  closed.along = T(0.5);
-  closed.across = T(0.25);
-  put(lobe_weight(lobe, closed, pose, nx, ny, nz, n_l, n_v));
 }
 
 /// Families of kernels, and how far a type of single precision may be from double, of the value

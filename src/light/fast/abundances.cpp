@@ -97,7 +97,7 @@ void MaterialTables::apply(const AbundanceTable &from, StokesTable &out, unsigne
           for (std::size_t k = 0; k < columns; ++k)
             deviation[k] = from.half_width[row * columns + k] / normal_95;
           s.colours.prepare(from.cos_phase[row], from.has_plane[row] != 0, factors);
-          light.reset(band_count());
+          light.reset(band_count(), s.colours.has_u());
           std::size_t k = 0;
           for (std::size_t slot = 0; slot < s.slots.size(); ++slot) {
             const std::size_t p = k + s.slots[slot].lobe_count;
@@ -106,7 +106,7 @@ void MaterialTables::apply(const AbundanceTable &from, StokesTable &out, unsigne
                 factors, light);
             k = p + s.slots[slot].product_count;
           }
-          put_light(light, 1, from.has_plane[row] != 0, false, row, out);
+          put_light(light, 1, from.has_plane[row] != 0, s.colours.has_u(), row, out);
         }
       });
 }

@@ -380,8 +380,7 @@ ArticulatedEngine::ArticulatedEngine(const Scene &scene, const std::vector<Joint
       continue;
     state_->motion_of.push_back(k);
     state_->parts.emplace_back(part, options);
-    state_->has_u_or_v =
-        state_->has_u_or_v || state_->parts.back().engine->compiled.general_classes > 0;
+    state_->has_u_or_v = state_->has_u_or_v || state_->parts.back().engine->compiled.has_u;
   }
 }
 

@@ -57,25 +57,32 @@ Colours::Colours(std::vector<const Surface *> surfaces,
       for (std::size_t p = 0; p < slot.product_count; ++p)
         for (std::size_t b = 0; b < bands_; ++b) {
           const ProductLight &by = light[s]->products[b][p];
-          slot.unpolarized.push_back(by.unpolarized);
           slot.single_bounce.push_back(by.single_bounce);
           slot.whole.push_back(by.unpolarized + by.single_bounce);
+          slot.q.push_back(by.q);
+          slot.u.push_back(by.u);
           slot.has_single_bounce = slot.has_single_bounce || by.single_bounce != 0;
+          slot.has_emission = slot.has_emission || by.q != 0;
         }
     }
     const bool is_grey =
         std::all_of(slot.lobe.begin(), slot.lobe.end(), [](auto lobe) { return lobe == 0; });
-    slot.is_plain = is_grey && slot.product_count <= 1 && !slot.has_single_bounce;
+    slot.is_plain =
+        is_grey && slot.product_count <= 1 && !slot.has_single_bounce && !slot.has_emission;
     slots_.push_back(std::move(slot));
   }
   fresnel_ = FresnelTable(std::move(distinct));
+}
+
+bool Colours::has_u() const {
+  return std::any_of(slots_.begin(), slots_.end(), [](const Slot &s) { return s.has_emission; });
 }
 
 void Colours::prepare(double cos_phase, bool has_plane, PhaseFactors &out) const {
   const std::size_t columns = fresnel_.columns();
   out.a.resize(columns);
   out.b.resize(columns);
-  for (auto *room : {&out.ratio, &out.dev_i, &out.dev_q})
+  for (auto *room : {&out.ratio, &out.dev_i, &out.dev_q, &out.dev_u})
     room->resize(bands_);
   fresnel_.at(cos_phase, out.a.data(), out.b.data());
   if (!has_plane)
@@ -118,11 +125,13 @@ void Colours::add_variances(const Slot &slot, const SlotSums &sums, PhaseFactors
   const std::size_t n = bands_;
   const double *a = at.a.data() + slot.column, *b = at.b.data() + slot.column,
                *ratio = at.ratio.data();
-  double *__restrict dev_i = at.dev_i.data(), *__restrict dev_q = at.dev_q.data();
+  double *__restrict dev_i = at.dev_i.data(), *__restrict dev_q = at.dev_q.data(),
+                     *__restrict dev_u = at.dev_u.data();
   for (std::size_t k = 0; k < n; ++k) {
     const double d = slot.has_lobe ? sums.specular_deviation[slot.lobe[k]] : 0;
     dev_i[k] = a[k] * d;
     dev_q[k] = std::abs(b[k]) * d;
+    dev_u[k] = 0;
   }
   for (std::size_t p = 0; p < slot.product_count; ++p) {
     const double d = sums.product_deviation[p];
@@ -131,11 +140,17 @@ void Colours::add_variances(const Slot &slot, const SlotSums &sums, PhaseFactors
       dev_i[k] += std::abs(whole[k]) * d;
     for (std::size_t k = 0; slot.has_single_bounce && k < n; ++k)
       dev_q[k] += std::abs(ratio[k] * bounced[k]) * d;
+    for (std::size_t k = 0; slot.has_emission && k < n; ++k) {
+      dev_q[k] += std::abs(slot.q[p * n + k]) * d;
+      dev_u[k] += std::abs(slot.u[p * n + k]) * d;
+    }
   }
   for (std::size_t k = 0; k < n; ++k)
     out.var_i[k] += dev_i[k] * dev_i[k];
   for (std::size_t k = 0; !is_intensity_only_ && k < n; ++k)
     out.var_q[k] += dev_q[k] * dev_q[k];
+  for (std::size_t k = 0; !is_intensity_only_ && slot.has_emission && k < n; ++k)
+    out.var_u[k] += dev_u[k] * dev_u[k];
 }
 
 void Colours::add_slot(std::size_t index, const SlotSums &sums, PhaseFactors &at,
@@ -167,6 +182,10 @@ void Colours::add_slot(std::size_t index, const SlotSums &sums, PhaseFactors &at
     const double *__restrict bounced = slot.single_bounce.data() + p * n;
     for (std::size_t k = 0; has_q && slot.has_single_bounce && k < n; ++k)
       q[k] += ratio[k] * bounced[k] * s;
+    for (std::size_t k = 0; has_q && slot.has_emission && k < n; ++k) {
+      q[k] += slot.q[p * n + k] * s;
+      out.u[k] += slot.u[p * n + k] * s;
+    }
   }
   if (sums.varies)
     add_variances(slot, sums, at, out);

@@ -12,7 +12,7 @@ struct BandLight {
   std::vector<double> i, q, u, v;
   std::vector<double> var_i, var_q, var_u, var_v;
   std::vector<double> bias; ///< bound of what is known to be left out of I
-  /// Zeros; U and V only if something gives them: kernels do not.
+  /// Zeros; U and V only if something gives them.
   void reset(std::size_t bands, bool has_u_or_v = false);
   void add(const BandLight &other);
   /// The same with the other's unit of area changed into this one's.
@@ -29,8 +29,9 @@ struct SlotSums {
 
 /// Reflection of all microfacets at one phase angle, and room to work in.
 struct PhaseFactors {
-  std::vector<double> a, b;                ///< by column: M00, M10; b = 0 without a plane
-  std::vector<double> ratio, dev_i, dev_q; ///< of one slot: M10/M00, deviations of I and Q
+  std::vector<double> a, b; ///< by column: M00, M10; b = 0 without a plane
+  /// Of one slot: M10/M00, and deviations of I, Q, U.
+  std::vector<double> ratio, dev_i, dev_q, dev_u;
 };
 
 /// What one set of materials makes of sums.
@@ -46,6 +47,8 @@ public:
   void add_slot(std::size_t slot, const SlotSums &sums, PhaseFactors &at, BandLight &out) const;
 
   [[nodiscard]] std::size_t band_count() const { return bands_; }
+  /// Some slot gives U: BandLight needs room for it.
+  [[nodiscard]] bool has_u() const;
   [[nodiscard]] const Surface &surface(std::size_t slot) const { return *slots_[slot].surface; }
   /// First column of a slot in PhaseFactors.
   [[nodiscard]] std::size_t column(std::size_t slot) const { return slots_[slot].column; }
@@ -55,9 +58,9 @@ private:
     const Surface *surface = nullptr;
     std::size_t column = 0, product_count = 0;
     bool has_lobe = false;
-    std::vector<std::uint32_t> lobe;                       ///< per band
-    std::vector<double> unpolarized, single_bounce, whole; ///< [product * bands + band]
-    bool has_single_bounce = false;
+    std::vector<std::uint32_t> lobe;                ///< per band
+    std::vector<double> single_bounce, whole, q, u; ///< [product * bands + band]
+    bool has_single_bounce = false, has_emission = false;
     bool is_plain = false; ///< one lobe for all bands and at most one product
     double diffuse_error = 0;
   };

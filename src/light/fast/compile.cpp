@@ -9,18 +9,6 @@
 namespace umov {
 namespace {
 
-/// A surface that has a lobe, and the band.
-CompiledScene::LobeSource source_of(const kernel::LobeConstants<double> &lobe,
-                                    const std::vector<const Surface *> &surfaces) {
-  for (const Surface *surface : surfaces)
-    for (std::size_t b = 0; b < surface->band_count(); ++b) {
-      const auto form = surface->normals(b)->kernel_form();
-      if (form && form->shape == lobe.shape)
-        return {surface, b};
-    }
-  return {surfaces.front(), 0};
-}
-
 /// Appends what is summed for slots of these materials.
 void add_slot(const std::vector<const Surface *> &surfaces, CompiledScene &out) {
   backend::SlotTerms terms;
@@ -37,12 +25,15 @@ void add_slot(const std::vector<const Surface *> &surfaces, CompiledScene &out) 
     const auto append = [](auto &to, const auto &from) {
       to.insert(to.end(), from.begin(), from.end());
     };
+    const auto is_polarized = [](const backend::Product &product) {
+      return product.kind != backend::ProductKind::Even;
+    };
+    terms.is_polarized = std::any_of(fit->products.begin(), fit->products.end(), is_polarized);
+    out.has_u = out.has_u || terms.is_polarized;
     append(out.data.lobes, fit->lobes);
     append(out.widths, fit->widths);
     append(out.data.profiles, fit->profiles);
     append(out.data.products, fit->products);
-    for (const auto &lobe : fit->lobes)
-      out.lobe_sources.push_back(source_of(lobe, surfaces));
     for (const double slope : fit->widths) {
       constexpr double half_width = 1.5e-7; // of the difference of two rounded unit vectors, 95 %
       const double width = std::max(slope, 1e-9);
@@ -123,6 +114,7 @@ CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypoth
       error.value[lane] = 0.5 * c.spread2 / std::max(narrowest * narrowest, 1e-12);
       if (terms.is_general && group.member[lane] != no_index)
         ++out.general_classes;
+      out.has_u = out.has_u || terms.is_general;
     }
     const auto index = static_cast<std::uint32_t>(out.data.groups.size());
     out.data.groups.push_back(facets);

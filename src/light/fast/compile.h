@@ -16,12 +16,6 @@ struct CompiledScene {
   std::vector<std::vector<std::uint32_t>> slots;
   std::vector<std::optional<SurfaceFit>> fits; ///< as data.slots; empty: no kernel
   std::vector<double> widths;                  ///< per lobe
-  /// Per lobe: a surface that has it, and in which band.
-  struct LobeSource {
-    const Surface *surface;
-    std::size_t band;
-  };
-  std::vector<LobeSource> lobe_sources;
   /// Per lobe: what single precision costs on its flanks.
   struct Rounding {
     double per_peak; ///< 1 over the largest value of D G2/4, that of a Gaussian
@@ -30,6 +24,7 @@ struct CompiledScene {
   std::vector<Rounding> rounding;
   Colours colours;
   std::size_t general_classes = 0;
+  bool has_u = false; ///< something gives U, or V
 };
 
 /// Groups by plan, surfaces by fit: those of `scene`, and of `hypotheses`, other materials on the

@@ -46,7 +46,7 @@ std::size_t Engine::State::terms_max() const {
 
 void Engine::State::prepare(const Pose &pose, Prepared &out) const {
   out.cos_phase = cos_phase(pose);
-  prepare_pose(pose, out.cos_phase, compiled.data.lobes, compiled.widths, hiding(), out.pose);
+  prepare_pose(pose, out.cos_phase, compiled.data.lobes, hiding(), out.pose);
   if (!options.is_double)
     round_pose(out.pose, out.single);
   if (masks)
@@ -199,7 +199,7 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
   const std::size_t materials =
       material.empty() ? 0 : *std::max_element(material_of.begin(), material_of.end()) + 1;
   out.material_i.assign(poses.size() * materials * band_count(), 0);
-  const bool has_u_or_v = s.compiled.general_classes > 0;
+  const bool has_u_or_v = s.compiled.has_u;
   s.for_each(
       poses, task.threads,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {

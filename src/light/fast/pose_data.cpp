@@ -1,7 +1,6 @@
 #include "light/fast/pose_data.h"
 
-#include "kernel/microfacet.inl.h"
-#include "kernel/solar_nodes.inl.h"
+#include "kernel/disk_lobe.h"
 #include "light/fast/octahedron.h"
 
 #include <algorithm>
@@ -17,62 +16,27 @@ void put(Vec3<Body> v, double *out) {
   out[2] = v.z;
 }
 
-/// Half vector of a direction of light; some vector where there is none (phase 180), when no facet
-/// is lit for the observer.
-void put_half_vector(Vec3<Body> l, Vec3<Body> v, double *out) {
-  const Vec3<Body> sum = l + v;
-  const double length = norm(sum);
-  put(length > 1e-12 ? (1 / length) * sum : any_perpendicular(l), out);
-}
-
-/// Half vectors of the ring of the disk's nodes.
-void put_ring(const Pose &pose, kernel::FacetPose<double> &out) {
-  const Vec3<Body> across = cross(pose.observer, pose.sun);
-  const double length = norm(across);
-  const Vec3<Body> e2 = length > 1e-12 ? across / length : any_perpendicular(pose.sun);
-  const Vec3<Body> e1 = cross(e2, pose.sun);
-  const double sine = std::sin(pose.sun_radius_rad);
-  constexpr double half_root_3 = std::numbers::sqrt3 / 2;
-  constexpr double ring[][2] = {{1, 0},  {0.5, half_root_3},   {-0.5, half_root_3},
-                                {-1, 0}, {-0.5, -half_root_3}, {0.5, -half_root_3}};
-  for (std::size_t k = 1; k < kernel::source_nodes; ++k)
-    put_half_vector(kernel::disk_direction(pose.sun, e1, e2, sine, kernel::source_ring,
-                                           ring[k - 1][0], ring[k - 1][1]),
-                    pose.observer, out.half[k]);
-}
-
 } // namespace
 
 void prepare_pose(const Pose &pose, double cos_phase,
                   const std::vector<kernel::LobeConstants<double>> &lobes,
-                  const std::vector<double> &widths, const backend::Masks *masks,
-                  PoseStore<double> &out) {
+                  const backend::Masks *masks, PoseStore<double> &out) {
   put(pose.sun, out.facet.sun);
   put(pose.observer, out.facet.observer);
   out.facet.cos_phase = cos_phase;
   const double apart = norm(pose.sun - pose.observer);
   out.facet.along_scale = apart > 1e-7 ? 1 / apart : 0;
-  put_half_vector(pose.sun, pose.observer, out.facet.half[0]);
-  bool needs_ring = false;
-  const auto kappa = kernel::disk_variances(pose.sun_radius_rad, cos_phase);
+  const Vec3<Body> across = cross(pose.observer, pose.sun);
+  const double sine = norm(across);
+  out.facet.per_sine = sine > 1e-12 ? 1 / sine : 0;
+  put(out.facet.per_sine * across, out.facet.across);
+  const kernel::DiskImage disk = kernel::disk_image(pose.sun_radius_rad, cos_phase);
+  out.facet.half_shift = apart > 1e-7 ? disk.shift() : 0;
+  put(kernel::mean_half_vector(pose.sun, pose.observer, any_perpendicular(pose.sun), apart, disk),
+      out.facet.half);
   out.resize(lobes.size());
-  for (std::size_t k = 0; k < lobes.size(); ++k) {
-    kernel::LobeAtPose<double> &at = out.lobe_room[k];
-    at = {};
-    const double q = widths[k] > 0 ? kappa.across / (widths[k] * widths[k]) : HUGE_VAL;
-    out.narrow_room[k] =
-        pose.sun_radius_rad > 0 ? (q < kernel::nodes_max ? 0 : 1) : (widths[k] > 0 ? 0 : 1);
-    if (lobes[k].kind == LobeKind::BlinnPhong && q < kernel::closed_form_max) {
-      const auto by = kernel::blinn_phong_spread(lobes[k].shape, kappa.along, kappa.across);
-      at = {true, false, lobes[k].peak * by.scale, by.along * std::numbers::log2e,
-            by.across * std::numbers::log2e};
-    } else {
-      at.uses_nodes = pose.sun_radius_rad > 0;
-      needs_ring = needs_ring || at.uses_nodes;
-    }
-  }
-  if (needs_ring)
-    put_ring(pose, out.facet);
+  for (std::size_t k = 0; k < lobes.size(); ++k)
+    kernel::put_lobe_at_pose(lobes[k], disk, out.lobe_room[k]);
   if (masks != nullptr) {
     out.small_sun = look_around(masks->small.cells, pose.sun);
     out.small_observer = look_around(masks->small.cells, pose.observer);
@@ -86,22 +50,26 @@ void prepare_pose(const Pose &pose, double cos_phase,
   }
 }
 
+namespace {
+
+float f(double x) { return static_cast<float>(x); }
+
+} // namespace
+
 void round_pose(const backend::PoseData<double> &from, PoseStore<float> &to) {
-  const auto f = [](double x) { return static_cast<float>(x); };
   for (std::size_t k = 0; k < 3; ++k) {
     to.facet.sun[k] = f(from.facet.sun[k]);
     to.facet.observer[k] = f(from.facet.observer[k]);
-    for (std::size_t n = 0; n < kernel::source_nodes; ++n)
-      to.facet.half[n][k] = f(from.facet.half[n][k]);
+    to.facet.half[k] = f(from.facet.half[k]);
+    to.facet.across[k] = f(from.facet.across[k]);
   }
   to.facet.cos_phase = f(from.facet.cos_phase);
   to.facet.along_scale = f(from.facet.along_scale);
+  to.facet.per_sine = f(from.facet.per_sine);
+  to.facet.half_shift = f(from.facet.half_shift);
   to.resize(from.lobes.size());
-  for (std::size_t k = 0; k < from.lobes.size(); ++k) {
-    const auto &l = from.lobes[k];
-    to.lobe_room[k] = {l.has_closed_form, l.uses_nodes, f(l.peak), f(l.along), f(l.across)};
-  }
-  std::copy(from.is_narrow.begin(), from.is_narrow.end(), to.narrow_room.begin());
+  for (std::size_t k = 0; k < from.lobes.size(); ++k)
+    kernel::round_lobe_at_pose(from.lobes[k], to.lobe_room[k]);
   to.small_sun = from.small_sun;
   to.small_observer = from.small_observer;
   to.large_sun = from.large_sun;

@@ -7,12 +7,11 @@
 
 namespace umov {
 
-/// Directions and, for each lobe of that width, what the Sun's size makes of it. Grid directions
-/// are filled in where there are masks.
+/// Directions and, for each lobe, what the Sun's size makes of it. Grid directions are filled in
+/// where there are masks.
 void prepare_pose(const Pose &pose, double cos_phase,
                   const std::vector<kernel::LobeConstants<double>> &lobes,
-                  const std::vector<double> &widths, const backend::Masks *masks,
-                  PoseStore<double> &out);
+                  const backend::Masks *masks, PoseStore<double> &out);
 /// The same constants in single precision.
 void round_pose(const backend::PoseData<double> &from, PoseStore<float> &to);
 

@@ -29,7 +29,7 @@ bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) c
   work.general.reset(compiled.general_classes > 0 ? bands() : 0, true);
   work.general_i.assign(compiled.general_classes > 0 ? compiled.slots.size() * bands() : 0, 0);
   if (!work.sums.seen.empty())
-    add_narrow_and_general(pose, at, work);
+    add_general(pose, at, work);
   take_roots(work);
   if (!options.is_double)
     add_rounding(work);
@@ -95,11 +95,6 @@ SurfaceDirections Engine::State::directions(const Pose &pose, const Prepared &at
       pose.sun, pose.observer, at.cos_phase, pose.sun_radius_rad);
 }
 
-double Engine::State::narrow_weight(std::size_t lobe, const SurfaceDirections &at) const {
-  const auto &source = compiled.lobe_sources[lobe];
-  return source.surface->specular(source.band, at);
-}
-
 void Engine::State::light_of_general(const Pose &pose, const Prepared &at,
                                      const backend::SeenFacet &facet, const Workspace &work,
                                      Stokes<ScatteringPlane> *bands) const {
@@ -115,21 +110,9 @@ void Engine::State::light_of_general(const Pose &pose, const Prepared &at,
   }
 }
 
-void Engine::State::add_narrow_and_general(const Pose &pose, const Prepared &at,
-                                           Workspace &work) const {
+void Engine::State::add_general(const Pose &pose, const Prepared &at, Workspace &work) const {
   work.facet_light.resize(bands());
   for (const backend::SeenFacet &seen : work.sums.seen) {
-    const backend::SlotTerms &terms = compiled.data.slots[seen.slot];
-    if (!terms.is_general) {
-      const SurfaceDirections on = directions(pose, at, seen);
-      for (std::size_t lobe = terms.lobe_first; lobe < terms.lobe_first + terms.lobe_count; ++lobe)
-        if (at.pose.is_narrow[lobe]) {
-          const double w = narrow_weight(lobe, on);
-          work.sums.specular[lobe] += w * seen.area;
-          work.sums.specular_variance[lobe] += w * w * seen.variance;
-        }
-      continue;
-    }
     light_of_general(pose, at, seen, work, work.facet_light.data());
     BandLight &to = work.general;
     for (std::size_t b = 0; b < bands(); ++b) {
@@ -159,7 +142,7 @@ SlotSums Engine::State::sums_of(std::size_t slot, const Workspace &work) const {
 
 void Engine::State::colour_by_material(std::span<const std::uint32_t> material, double *intensity,
                                        Workspace &work) const {
-  work.light.reset(bands(), compiled.general_classes > 0);
+  work.light.reset(bands(), compiled.has_u);
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
     if (compiled.data.slots[slot].is_general)
       continue;
@@ -178,7 +161,7 @@ void Engine::State::colour_by_material(std::span<const std::uint32_t> material, 
 }
 
 void Engine::State::colour(Workspace &work) const {
-  work.light.reset(bands(), compiled.general_classes > 0);
+  work.light.reset(bands(), compiled.has_u);
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot)
     if (!compiled.data.slots[slot].is_general)
       compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.light);

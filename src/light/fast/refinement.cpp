@@ -48,7 +48,7 @@ bool Engine::State::is_uncertain(Workspace &work) const {
   for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
     if (compiled.data.slots[slot].is_general)
       continue;
-    work.part.reset(bands());
+    work.part.reset(bands(), compiled.has_u);
     compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.part);
     for (std::size_t b = 0; b < bands(); ++b) {
       const double scale = work.part.i[b] * all.i[b];
@@ -75,16 +75,13 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
     return light_of_general(pose, at, facet, work, light);
   double *weight = work.weights.data() + k * terms_max();
   backend::weigh_facet(views.whole, at.pose, facet, weight);
-  for (std::size_t l = 0; l < terms.lobe_count; ++l)
-    if (at.pose.is_narrow[terms.lobe_first + l])
-      weight[l] = narrow_weight(terms.lobe_first + l, directions(pose, at, facet));
   const double *none = work.nothing.data();
-  work.part.reset(bands());
+  work.part.reset(bands(), compiled.has_u);
   compiled.colours.add_slot(facet.slot,
                             {weight, none, none, weight + terms.lobe_count, none, false},
                             work.factors, work.part);
   for (std::size_t b = 0; b < bands(); ++b)
-    light[b] = {work.part.i[b], work.part.q[b], 0, 0};
+    light[b] = {work.part.i[b], work.part.q[b], compiled.has_u ? work.part.u[b] : 0, 0};
 }
 
 void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {

@@ -110,7 +110,7 @@ struct Engine::State {
 
   // pose_sums.cpp
   void sum_facets(const Prepared &at, SumsStore &out) const; ///< by kernels
-  void add_narrow_and_general(const Pose &pose, const Prepared &at, Workspace &work) const;
+  void add_general(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// `may_vary`: something has added variances besides masks and listed facets.
   void take_roots(Workspace &work, bool may_vary = false) const;
   void add_rounding(Workspace &work) const;
@@ -118,7 +118,6 @@ struct Engine::State {
                         const Workspace &work, Stokes<ScatteringPlane> *bands) const;
   [[nodiscard]] SurfaceDirections directions(const Pose &pose, const Prepared &at,
                                              const backend::SeenFacet &facet) const;
-  [[nodiscard]] double narrow_weight(std::size_t lobe, const SurfaceDirections &at) const;
   [[nodiscard]] SlotSums sums_of(std::size_t slot, const Workspace &work) const;
 
   // refinement.cpp

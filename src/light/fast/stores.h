@@ -58,7 +58,6 @@ inline std::uint32_t blocks_of(const backend::GroupMask &group) {
 /// A pose with its own room. Moving it leaves the views right, as the room stays where it is.
 template <class T> struct PoseStore : backend::PoseData<T> {
   std::vector<kernel::LobeAtPose<T>> lobe_room;
-  std::vector<char> narrow_room;
 
   PoseStore() = default;
   PoseStore(PoseStore &&) noexcept = default;
@@ -67,9 +66,7 @@ template <class T> struct PoseStore : backend::PoseData<T> {
     if (count == lobe_room.size())
       return;
     lobe_room.resize(count);
-    narrow_room.resize(count);
     this->lobes = lobe_room;
-    this->is_narrow = narrow_room;
   }
 };
 

@@ -121,33 +121,64 @@ std::optional<DiffuseBands> diffuse_of(const Surface &surface) {
   return out;
 }
 
-/// Profiles of term number t of all surfaces and bands: one family. False if it does not fit.
-bool fit_term(const std::vector<DiffuseBands> &surfaces, std::size_t t, double bend,
-              SurfaceFit &out) {
-  std::vector<Function> family;
-  for (const DiffuseBands &bands : surfaces)
-    for (const auto &terms : bands)
-      if (t < terms.size())
-        family.push_back(terms[t].profile);
-  const Basis basis = reduce(family, bend);
-  SurfaceFit::Term term{static_cast<std::uint32_t>(out.profiles.size()),
-                        static_cast<std::uint32_t>(basis.functions.size()),
-                        static_cast<std::uint32_t>(out.products.size()), 0};
+/// Adds the functions of a family as profiles. False if one does not fit.
+bool add_profiles(const Basis &basis, double bend, SurfaceFit &out) {
   for (std::size_t k = 0; k < basis.functions.size(); ++k) {
     const auto profile = fit_profile(basis.functions[k], basis.largest / basis.weight(k), bend);
     if (!profile)
       return false;
     out.profiles.push_back(*profile);
   }
+  return true;
+}
+
+/// What a function of a basis makes of the largest member, at most.
+double part_of(const Basis &basis, std::size_t function) {
+  return size_of(basis.functions[function]) * basis.weight(function) / basis.largest;
+}
+
+/// The part of the light that is polarized about the plane of emission, of a term whose profiles,
+/// those of `entering`, stand already.
+bool fit_polarizing(const std::vector<Function> &family, const Basis &entering, double bend,
+                    SurfaceFit::Term &term, SurfaceFit &out) {
+  const Basis basis = reduce(family, bend);
+  term.polarizing_first = static_cast<std::uint32_t>(out.profiles.size());
+  term.polarizing_count = static_cast<std::uint32_t>(basis.functions.size());
+  if (!add_profiles(basis, bend, out))
+    return false;
+  for (std::uint32_t i = 0; i < term.count; ++i)
+    for (std::uint32_t j = 0; j < term.polarizing_count; ++j)
+      for (const auto kind : {backend::ProductKind::Cosine, backend::ProductKind::Sine})
+        if (part_of(entering, i) * part_of(basis, j) > wanted_error)
+          out.products.push_back({term.first + i, term.polarizing_first + j, kind});
+  return true;
+}
+
+/// Profiles of term number t of all surfaces and bands: one family. False if it does not fit.
+bool fit_term(const std::vector<DiffuseBands> &surfaces, std::size_t t, double bend,
+              SurfaceFit &out) {
+  std::vector<Function> family, polarizing;
+  for (const DiffuseBands &bands : surfaces)
+    for (const auto &terms : bands)
+      if (t < terms.size()) {
+        family.push_back(terms[t].profile);
+        if (terms[t].polarizing)
+          polarizing.push_back(terms[t].polarizing);
+      }
+  const Basis basis = reduce(family, bend);
+  SurfaceFit::Term term{static_cast<std::uint32_t>(out.profiles.size()),
+                        static_cast<std::uint32_t>(basis.functions.size()),
+                        static_cast<std::uint32_t>(out.products.size()), 0};
+  if (!add_profiles(basis, bend, out))
+    return false;
   // Products of two small profiles are smaller than what the profiles themselves leave out.
-  const auto part = [&](std::size_t k) {
-    return size_of(basis.functions[k]) * basis.weight(k) / basis.largest;
-  };
   for (std::uint32_t i = 0; i < term.count; ++i)
     for (std::uint32_t j = i; j < term.count; ++j)
-      if (part(i) * part(j) > wanted_error)
+      if (part_of(basis, i) * part_of(basis, j) > wanted_error)
         out.products.push_back({term.first + i, term.first + j});
   term.product_count = static_cast<std::uint32_t>(out.products.size()) - term.product_first;
+  if (!polarizing.empty() && !fit_polarizing(polarizing, basis, bend, term, out))
+    return false;
   out.terms.push_back(term);
   return true;
 }
@@ -200,9 +231,11 @@ struct Projection {
   std::vector<double> part; ///< of the function, that each profile makes at most
   double error = HUGE_VAL;
 };
-Projection project(const Function &exact, const SurfaceFit &fit, const SurfaceFit::Term &term) {
-  const auto columns = static_cast<Eigen::Index>(term.count);
-  const auto *profiles = fit.profiles.data() + term.first;
+/// `unit`: what an error of the function is relative to.
+Projection project(const Function &exact, const Function &unit, const SurfaceFit &fit,
+                   std::size_t first, std::size_t count) {
+  const auto columns = static_cast<Eigen::Index>(count);
+  const auto *profiles = fit.profiles.data() + first;
   const auto value = [&](Eigen::Index k, double t) {
     return kernel::polynomial(profiles[k].c, profiles[k].degree, t);
   };
@@ -215,22 +248,47 @@ Projection project(const Function &exact, const SurfaceFit &fit, const SurfaceFi
       a(row, k) = value(k, chebyshev_node(i));
   }
   const Eigen::VectorXd share = a.colPivHouseholderQr().solve(wanted);
-  Projection out{{share.data(), share.data() + share.size()},
-                 std::vector<double>(static_cast<std::size_t>(term.count), 0),
-                 0};
+  Projection out{{share.data(), share.data() + share.size()}, std::vector<double>(count, 0), 0};
   constexpr int steps = 200;
   for (int i = 1; i < steps; ++i) {
-    const double t = 2.0 * i / steps - 1, f = exact(cosine(t, profiles[0].bend));
+    const double t = 2.0 * i / steps - 1, c = cosine(t, profiles[0].bend), f = exact(c),
+                 one = unit(c);
     double sum = 0;
     for (Eigen::Index k = 0; k < columns; ++k) {
       sum += share(k) * value(k, t);
       auto &part = out.part[static_cast<std::size_t>(k)];
-      part = f > 0 ? std::max(part, std::abs(share(k) * value(k, t) / f)) : part;
+      part = one > 0 ? std::max(part, std::abs(share(k) * value(k, t) / one)) : part;
     }
-    if (f > 0)
-      out.error = std::max(out.error, std::abs(sum / f - 1));
+    if (one > 0)
+      out.error = std::max(out.error, std::abs(sum - f) / one);
   }
   return out;
+}
+
+/// Q and U of emitted light as sums of products; gives the error in parts of I.
+double add_polarized(const Surface::SeparableDiffuse &of, const SurfaceFit &fit,
+                     const SurfaceFit::Term &term, const Projection &by,
+                     std::vector<ProductLight> &products) {
+  if (term.polarizing_count == 0)
+    return HUGE_VAL;
+  // Where light leaves at the normal it is not polarized: errors count with the squared sine.
+  const auto unit = [&](double c) { return of.profile(c) / std::max((1 - c) * (1 + c), 1e-3); };
+  const Projection out =
+      project(of.polarizing, unit, fit, term.polarizing_first, term.polarizing_count);
+  double error = out.error;
+  std::size_t product = term.product_first + term.product_count;
+  for (std::size_t i = 0; i < term.count; ++i)
+    for (std::size_t j = 0; j < term.polarizing_count; ++j) {
+      if (product == fit.products.size() || fit.products[product].first != term.first + i ||
+          fit.products[product].second != term.polarizing_first + j) {
+        error += by.part[i] * out.part[j]; // not summed
+        continue;
+      }
+      const double c = of.factor * by.share[i] * out.share[j];
+      products[product++].q += c;
+      products[product++].u += c;
+    }
+  return error;
 }
 
 /// Adds one diffuse term of one band as a sum of products.
@@ -239,7 +297,8 @@ void add_term(const Surface::SeparableDiffuse &of, const SurfaceFit &fit, Surfac
   const SurfaceFit::Term *best = nullptr;
   Projection by;
   for (const auto &term : fit.terms)
-    if (Projection one = project(of.profile, fit, term); one.error < by.error) {
+    if (Projection one = project(of.profile, of.profile, fit, term.first, term.count);
+        one.error < by.error && (!of.polarizing || term.polarizing_count > 0)) {
       best = &term;
       by = std::move(one);
     }
@@ -261,6 +320,8 @@ void add_term(const Surface::SeparableDiffuse &of, const SurfaceFit &fit, Surfac
       (of.is_single_bounce ? products[product].single_bounce : products[product].unpolarized) += c;
       ++product;
     }
+  if (of.polarizing)
+    by.error += add_polarized(of, fit, *best, by, products);
   out.diffuse_error = std::max(out.diffuse_error, by.error);
 }
 

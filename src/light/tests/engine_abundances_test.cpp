@@ -63,6 +63,20 @@ TEST(EngineAbundances, GiveWhatTheEngineGives) {
   EXPECT_EQ(sums_of(engine, poses, 1).sum, sums_of(engine, poses, 8).sum);
 }
 
+TEST(EngineAbundances, HoldPaintsWhoseLightIsPolarized) {
+  std::vector<Material> materials = four_materials();
+  materials[1].body->is_polarized = true;
+  const Scene scene = scene_of(make_box_wing({2000, 0}), NormalMode::Flat, materials);
+  const Engine engine = engine_of(scene, Visibility::Masks);
+  const auto poses = random_poses(300, solar_radius);
+  const StokesTable direct = evaluated(engine, poses),
+                    indirect = applied(engine, scene, sums_of(engine, poses));
+  EXPECT_LT(apart(indirect, direct), 1e-13);
+  for (std::size_t k = 0; k < direct.u.size(); ++k)
+    EXPECT_NEAR(indirect.u[k], direct.u[k], 1e-13 * direct.i[k]);
+  EXPECT_GT(*std::max_element(direct.u.begin(), direct.u.end()), 0);
+}
+
 TEST(EngineAbundances, RaysForUncertainPosesAreInTheSums) {
   const Scene scene = scene_of(make_box_wing({2000, 0}), NormalMode::Flat, four_materials());
   EngineOptions options;

@@ -29,10 +29,6 @@ public:
   double beyond(double cos_theta) const override {
     return (m_ + 2) / (m_ + 1) * kernel::power(std::clamp(cos_theta, 0.0, 1.0), m_ + 1);
   }
-  double spread(double n_h, double x2, double y2, double kappa1, double kappa2) const override {
-    const auto by = kernel::blinn_phong_spread(m_, kappa1, kappa2);
-    return kernel::blinn_phong(n_h, m_) * by.scale * std::exp(by.along * x2 + by.across * y2);
-  }
   std::optional<KernelForm> kernel_form() const override {
     return KernelForm{LobeKind::BlinnPhong, m_};
   }
