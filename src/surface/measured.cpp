@@ -21,6 +21,22 @@ std::vector<double> distinct(std::vector<double> values) {
   return values;
 }
 
+using Axis = std::vector<double>::const_iterator;
+
+/// Each albedo takes ten thousand values, so that of a table with more angles and wavelengths than
+/// any goniometer has some are looked at only.
+constexpr std::size_t most_checked = 500;
+
+/// At most `count` values of an axis, and one at least, evenly chosen with its ends.
+std::vector<double> spread(const std::vector<double> &axis, std::size_t count) {
+  if (axis.size() <= count)
+    return axis;
+  std::vector<double> out{axis.front()};
+  for (std::size_t k = 1; k < count; ++k)
+    out.push_back(axis[k * (axis.size() - 1) / (count - 1)]);
+  return out;
+}
+
 /// Delta M^T Delta, Delta = diag(1, 1, -1, 1): the matrix of the way back.
 Matrix way_back(const Matrix &m) {
   Matrix out{};
@@ -179,8 +195,8 @@ Result<MeasuredBrdf> MeasuredBrdf::from(std::vector<BrdfSample> samples, bool ha
     }
   out.asymmetry_ = largest > 0 ? worst / largest : 0;
   double albedo = 0, at = 0;
-  for (const double nm : out.axes_[0])
-    for (const double i : out.axes_[1])
+  for (const double nm : spread(out.axes_[0], most_checked / out.axes_[1].size()))
+    for (const double i : spread(out.axes_[1], most_checked))
       if (const double a = i < 90 ? out.albedo(nm, i * pi / 180) : 0; a > albedo) {
         albedo = a;
         at = i;
@@ -250,16 +266,29 @@ double MeasuredBrdf::in_plane(double nm, double tilt_rad, double incidence_rad) 
   const double tilt = tilt_rad * 180 / pi, wanted = std::abs(incidence_rad) * 180 / pi;
   const double last = axes_[2].back();
   std::vector<std::pair<double, double>> found; // incidence on the half vector, value
-  for (const double i : axes_[1])
-    for (const double side : {1.0, -1.0}) {
-      const double s = i - 2 * side * tilt;
-      if (std::abs(s) > last)
-        continue;
-      found.emplace_back(std::abs(i - side * tilt),
-                         look_up(nm, i, std::abs(s), s >= 0 ? 180 : 0)[0]);
-      if (tilt == 0)
-        break;
-    }
+  found.reserve(6);
+  // The neighbours of the wanted incidence in a stretch of the axis along which it rises or falls.
+  const auto take = [&](Axis begin, Axis end, double side, bool is_rising) {
+    const Axis at = std::partition_point(
+        begin, end, [&](double i) { return (std::abs(i - side * tilt) < wanted) == is_rising; });
+    for (const Axis i : {at, at == begin ? end : at - 1})
+      if (i != end) {
+        const double s = *i - 2 * side * tilt;
+        found.emplace_back(std::abs(*i - side * tilt),
+                           look_up(nm, *i, std::abs(s), s >= 0 ? 180 : 0)[0]);
+      }
+  };
+  const Axis begin = axes_[1].begin(), end = axes_[1].end();
+  const Axis first =
+      std::partition_point(begin, end, [&](double i) { return i - 2 * tilt < -last; });
+  const Axis stop =
+      std::partition_point(first, end, [&](double i) { return i - 2 * tilt <= last; });
+  const Axis bend = std::partition_point(first, stop, [&](double i) { return i < tilt; });
+  take(first, bend, 1, false);
+  take(bend, stop, 1, true);
+  if (tilt != 0)
+    take(begin, std::partition_point(begin, end, [&](double i) { return i + 2 * tilt <= last; }),
+         -1, true);
   if (found.empty()) // beyond what was measured: the nearest angle that was
     return look_up(nm, axes_[1].back(), last, 0)[0];
   std::sort(found.begin(), found.end());

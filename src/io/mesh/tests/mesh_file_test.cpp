@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <umov/core/files.h>
+#include <umov/core/text.h>
 #include <umov/io/mesh_file.h>
 #include <umov/shape/primitives.h>
 #include <umov/shape/topology.h>
@@ -376,6 +377,40 @@ TEST_P(MeshWritten, ReadsBackTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, MeshWritten, testing::Values("glb", "gltf", "stl", "ply", "obj"),
                          [](const auto &test) { return std::string(test.param); });
+
+TEST(StlReader, RefusesLinesOfTensOfThousandsOfWords) {
+  std::string text = "solid a\n";
+  for (int k = 0; k < 1500; ++k) // 18 words each
+    text +=
+        "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet ";
+  const auto out = read("long.stl", text + "\nendsolid a\n");
+  ASSERT_FALSE(out);
+  EXPECT_EQ(out.error().where.line, 2u);
+  EXPECT_NE(out.error().message.find("more than 20000 words"), std::string::npos);
+}
+
+TEST(MeshFile, ComesFromTheBytesThatWereGiven) {
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  Diagnostics diagnostics;
+  const auto out = read_mesh_bytes(obj, "/nowhere/a.obj", metres, diagnostics);
+  ASSERT_TRUE(out) << out.error().text();
+  EXPECT_EQ(out->mesh.triangles.size(), 1u);
+  // Assimp opens the file itself: one that is not what was given is noticed.
+  const fs::path path = fs::path(testing::TempDir()) / "changed.off";
+  const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  ASSERT_TRUE(write_file_atomically(path, off));
+  EXPECT_TRUE(read_mesh_bytes(off, path, metres, diagnostics));
+  const auto other = read_mesh_bytes(off + "\n", path, metres, diagnostics);
+  ASSERT_FALSE(other);
+  EXPECT_NE(other.error().message.find("changed while it was read"), std::string::npos);
+}
+
+TEST(MeshFile, TellsTheHashOfEachFurtherFile) {
+  const auto out = Square().read();
+  ASSERT_TRUE(out) << out.error().text();
+  ASSERT_EQ(out->files.size(), 1u);
+  EXPECT_EQ(out->files[0].sha256, sha256_hex(Square().buffer));
+}
 
 TEST(MeshFile, KeepsTheTreeWhenWritten) {
   Square square;
