@@ -7,6 +7,7 @@
 #include <erfa.h>
 #include <fmt/format.h>
 #include <string>
+#include <umov/time/earth_orientation.h>
 
 namespace umov {
 namespace {
