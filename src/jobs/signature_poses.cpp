@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <memory>
 #include <umov/core/files.h>
+#include <umov/core/text.h>
 #include <umov/light/poses.h>
 
 namespace umov::jobs {
@@ -29,6 +31,7 @@ Result<Vec3<Body>> direction_from(const Table &table, const std::string &name, s
 
 /// Poses and the numbers that they have in the output.
 struct NumberedPoses {
+  std::string sha256; ///< of the file
   std::vector<Pose> poses;
   std::vector<std::int64_t> number;
 };
@@ -39,6 +42,7 @@ Result<NumberedPoses> poses_from_table(const std::string &path) {
                               {"pose"}));
   const bool has_pose = table.find("pose") != nullptr;
   NumberedPoses out;
+  out.sha256 = sha256_hex(text);
   std::vector<Pose> &poses = out.poses;
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const Where where{path, static_cast<std::size_t>(table.number("line", i))};
@@ -71,14 +75,16 @@ Result<PoseList> random_poses(std::size_t per_phase, const std::vector<double> &
                   [=](std::size_t i) {
                     return random_pose(seed, i, Angle::degrees(phases_deg[i / per_phase]));
                   },
-                  [](std::size_t i) { return static_cast<std::int64_t>(i); }};
+                  [](std::size_t i) { return static_cast<std::int64_t>(i); },
+                  fmt::format("{} random poses each at {} deg, seed {}", per_phase,
+                              fmt::join(phases_deg, ","), seed)};
 }
 
 Result<PoseList> poses_from_file(const std::string &path) {
   UMOV_ASSIGN(table, poses_from_table(path));
   const auto all = std::make_shared<const NumberedPoses>(std::move(table));
   return PoseList{all->poses.size(), [all](std::size_t i) { return all->poses[i]; },
-                  [all](std::size_t i) { return all->number[i]; }};
+                  [all](std::size_t i) { return all->number[i]; }, "poses of " + all->sha256};
 }
 
 } // namespace umov::jobs
