@@ -1,10 +1,11 @@
 #include "console.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <fmt/format.h>
-#include <iostream>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <unistd.h>
@@ -53,14 +54,20 @@ std::string safe(const std::string &text) {
   return out;
 }
 
+/// A standard error that takes nothing more is no reason to end: fmt::print would throw.
+template <class... T> void say(fmt::format_string<T...> format, T &&...values) {
+  const std::string text = fmt::format(format, std::forward<T>(values)...);
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
 } // namespace
 
 int report(const Error &error) {
   const bool nothing = error.code == ErrorCode::Nothing;
   const bool colour = may_colour(stderr);
   const std::string word = nothing ? "no result" : "error";
-  fmt::print(stderr, "{}{}:{} {}\n", colour ? (nothing ? "\033[33m" : "\033[31m") : "", word,
-             colour ? "\033[0m" : "", safe(error.text()));
+  say("{}{}:{} {}\n", colour ? (nothing ? "\033[33m" : "\033[31m") : "", word,
+      colour ? "\033[0m" : "", safe(error.text()));
   return static_cast<int>(error.code);
 }
 
@@ -69,21 +76,36 @@ void report(const Diagnostics &diagnostics, const Common &common) {
     return;
   const bool colour = may_colour(stderr);
   for (const Warning &warning : diagnostics.warnings())
-    fmt::print(stderr, "{}warning:{} {}\n", colour ? "\033[33m" : "", colour ? "\033[0m" : "",
-               safe(warning.text()));
+    say("{}warning:{} {}\n", colour ? "\033[33m" : "", colour ? "\033[0m" : "",
+        safe(warning.text()));
 }
 
 void note(const Common &common, const std::string &text) {
   if (!common.quiet)
-    fmt::print(stderr, "{}\n", text);
+    say("{}\n", text);
 }
+
+namespace {
+
+tl::unexpected<Error> standard_output_lost() {
+  return fail(ErrorCode::Device, std::string("standard output cannot be written: ") +
+                                     std::strerror(errno) +
+                                     ". Give it a file with room, or -o to write to one.");
+}
+
+} // namespace
 
 Result<void> put(const std::string &path, const std::string &bytes) {
   if (!path.empty() && path != "-")
     return write_file_atomically(path, bytes);
-  std::cout.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush();
-  if (!std::cout)
-    return fail(ErrorCode::Device, "standard output cannot be written");
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size())
+    return standard_output_lost();
+  return flush_output();
+}
+
+Result<void> flush_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    return standard_output_lost();
   return {};
 }
 
@@ -93,7 +115,7 @@ ProgressBar::ProgressBar(std::string what, const Common &common)
 
 ProgressBar::~ProgressBar() {
   if (is_terminal_ && has_drawn_)
-    fmt::print(stderr, "\r\033[K");
+    say("\r\033[K");
 }
 
 void ProgressBar::update(std::size_t done, std::size_t total) {
@@ -108,13 +130,13 @@ void ProgressBar::update(std::size_t done, std::size_t total) {
   const double spent = duration<double>(now - begin_).count();
   const double left = share > 0 ? spent / share - spent : 0;
   if (!is_terminal_) {
-    fmt::print(stderr, "{}: {} of {}, {:.0f} s left\n", what_, done, total, left);
+    say("{}: {} of {}, {:.0f} s left\n", what_, done, total, left);
     return;
   }
   constexpr int width = 30;
   const int full = static_cast<int>(share * width);
-  fmt::print(stderr, "\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} %  {:.0f} s left", what_, "", full, "",
-             width - full, 100 * share, left);
+  say("\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} %  {:.0f} s left", what_, "", full, "", width - full,
+      100 * share, left);
   std::fflush(stderr);
 }
 

@@ -38,6 +38,8 @@ void note(const Common &common, const std::string &text);
 /// Writes to `path` atomically, or to stdout if it is empty or "-". An existing file is replaced
 /// only if `may_replace`.
 Result<void> put(const std::string &path, const std::string &bytes);
+/// What was printed has arrived. Device if not: the disk is full, or nobody reads.
+Result<void> flush_output();
 
 /// Progress on stderr: a bar that redraws on a terminal, else one line every five seconds.
 class ProgressBar {

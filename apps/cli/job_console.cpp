@@ -69,6 +69,14 @@ std::unique_ptr<TableSink> sink_for(const std::string &path, const Common &commo
   return make_file_sink(path, static_cast<unsigned>(common.threads));
 }
 
+Error stop_table(const std::string &path, Table rows, const Common &common, const Error &stopped) {
+  const auto sink = sink_for(path, common);
+  if (rows.rows() > 0)
+    if (const auto added = sink->add(std::move(rows)); !added)
+      return added.error();
+  return sink->stop(stopped);
+}
+
 ManifestInput manifest_of_command(const Common &common,
                                   std::chrono::system_clock::time_point started) {
   using namespace std::chrono;

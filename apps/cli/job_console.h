@@ -31,6 +31,10 @@ jobs::JobOptions job_options(const Common &common);
 /// Where a table goes: a file by the suffix of `path`, or stdout as text or JSON.
 std::unique_ptr<TableSink> sink_for(const std::string &path, const Common &common);
 
+/// For a table that is there when its job stops: TableSink::stop of what `sink_for` gives. No row,
+/// no file.
+Error stop_table(const std::string &path, Table rows, const Common &common, const Error &stopped);
+
 /// What every manifest says of the command: its line, threads, begin and duration until now.
 ManifestInput manifest_of_command(const Common &common,
                                   std::chrono::system_clock::time_point started);

@@ -3,11 +3,13 @@
 
 #include <csignal>
 #include <exception>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <new>
 #include <system_error>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
+#include <unistd.h>
 
 namespace {
 
@@ -86,24 +88,37 @@ int report_bug(const std::exception &bug) {
                            {}});
 }
 
+/// A descriptor that the caller closed (`>&-`) would be the next file's: what is printed would
+/// stand in a table.
+void hold_standard_descriptors() {
+  for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor)
+    if (::fcntl(descriptor, F_GETFD) < 0) [[maybe_unused]]
+      const int held = ::open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY);
+}
+
 } // namespace
 
 int main(int argc, char **argv) {
   std::signal(SIGPIPE, SIG_DFL); // `umov ... | head` ends quietly
+  std::signal(SIGXFSZ, SIG_IGN); // a file over the limit is an error of writing
+  hold_standard_descriptors();
   cli::command_line().assign(argv, argv + argc);
   try {
-    return run(argc, argv);
+    const int code = run(argc, argv);
+    const auto printed = cli::flush_output();
+    return printed || code != 0 ? code : cli::report(printed.error());
   } catch (const std::bad_alloc &) {
     return cli::report(Error{ErrorCode::Device, "out of memory; ask for less at once", {}});
   } catch (const Failure &failure) {
     return cli::report(failure.error());
   } catch (const std::system_error &problem) {
-    return problem.code() == std::errc::resource_unavailable_try_again
-               ? cli::report(Error{ErrorCode::Device,
-                                   "no thread could be made; allow more processes (ulimit -u) or "
-                                   "memory, or ask for fewer with --threads",
-                                   {}})
-               : report_bug(problem);
+    if (problem.code() == std::errc::resource_unavailable_try_again)
+      return cli::report(Error{ErrorCode::Device,
+                               "no thread could be made; allow more processes (ulimit -u) or "
+                               "memory, or ask for fewer with --threads",
+                               {}});
+    const auto printed = cli::flush_output(); // what fmt::print could not write
+    return printed ? report_bug(problem) : cli::report(printed.error());
   } catch (const std::exception &bug) {
     return report_bug(bug);
   }

@@ -49,25 +49,4 @@ Result<void> check_output(const std::string &path) {
   return {};
 }
 
-Error put_partial_table(const std::string &path, Table table, const Common &common,
-                        const Error &stopped) {
-  Error out = stopped;
-  if (table.rows() == 0)
-    return out;
-  std::filesystem::path target = path;
-  const bool is_file = !path.empty() && path != "-";
-  if (is_file)
-    target.replace_extension(".partial" + target.extension().string());
-  table.note("status", "stopped early: " + stopped.message);
-  if (const auto done = put_table(target.string(), table, common); !done) {
-    out.message +=
-        sentence_end(out.message) + " The finished rows are lost: " + done.error().text();
-    return out;
-  }
-  out.message += sentence_end(out.message) +
-                 (is_file ? " The finished rows are in " + target.string() + "."
-                          : std::string(" The finished rows were printed; they are not all."));
-  return out;
-}
-
 } // namespace umov::cli

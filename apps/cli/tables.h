@@ -18,10 +18,4 @@ Result<void> put_table(const std::string &path, const Table &table, const Common
 /// Refuses (Usage, Device) before any work what `put_table` would refuse after it.
 Result<void> check_output(const std::string &path);
 
-/// The rows of a stopped run go to "NAME.partial.csv", so that they are never taken for all; the
-/// header says so too. No row, no file. The error that the verb ends with: `stopped`, and
-/// where the rows are.
-Error put_partial_table(const std::string &path, Table table, const Common &common,
-                        const Error &stopped);
-
 } // namespace umov::cli

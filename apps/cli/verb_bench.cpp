@@ -21,8 +21,7 @@ Result<void> run_bench(const BenchOptions &o, const Common &common, Diagnostics 
   JobConsole console(common);
   UMOV_ASSIGN(report, bench::light(o.light, console.monitor(true), diagnostics));
   if (report.stopped)
-    return tl::unexpected(
-        put_partial_table(o.output, std::move(report.table), common, *report.stopped));
+    return tl::unexpected(stop_table(o.output, std::move(report.table), common, *report.stopped));
   return put_table(o.output, report.table, common);
 }
 

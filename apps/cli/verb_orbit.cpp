@@ -38,7 +38,7 @@ jobs::JobOptions options_of(const OrbitOptions &o, const Common &common) {
 Result<void> put_outcome(const OrbitOptions &o, const jobs::TableOutcome &out,
                          const Common &common) {
   if (out.is_partial)
-    return tl::unexpected(put_partial_table(o.output, out.table, common, *out.error));
+    return tl::unexpected(stop_table(o.output, out.table, common, *out.error));
   UMOV_TRY(put_table(o.output, out.table, common));
   if (out.error)
     return tl::unexpected(*out.error);

@@ -66,9 +66,9 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   options.allow_old_elements = o.allow_old_elements;
   JobConsole console(common);
   UMOV_ASSIGN(result, jobs::passes(request, options, console.monitor(true), diagnostics));
-  const Table table = jobs::passes_table(request, result);
+  Table table = jobs::passes_table(request, result);
   if (result.stopped)
-    return tl::unexpected(put_partial_table(o.output, table, common, *result.stopped));
+    return tl::unexpected(stop_table(o.output, std::move(table), common, *result.stopped));
   if (!o.chart.empty()) {
     UMOV_ASSIGN(page, jobs::sky_chart(request, result));
     UMOV_TRY(put(o.chart, page));

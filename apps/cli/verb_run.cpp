@@ -74,6 +74,7 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   jobs::JobOptions options = job_options(common);
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
+  options.journal = folder.journal_path();
   JobConsole console(common);
   const jobs::Monitor monitor = console.monitor(common.verbose);
   UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
@@ -81,7 +82,8 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
     tell_of_objects(o, objects, common);
     return {};
   }
-  UMOV_ASSIGN(result, jobs::compute_run(std::move(objects), scenario, monitor, diagnostics));
+  UMOV_ASSIGN(result,
+              jobs::compute_run(std::move(objects), scenario, options, monitor, diagnostics));
   UMOV_TRY(jobs::write_run(result, scenario, options, manifest_of_command(common, started),
                            diagnostics, folder));
   if (!common.quiet) {
@@ -107,6 +109,8 @@ void add_run(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand("run", "Light curve of a scenario: tables, report, manifest");
   auto o = std::make_shared<RunOptions>();
   auto common = std::make_shared<Common>();
+  verb->footer("Ended early, by Ctrl-C or a kill, the same command goes on where it was: finished "
+               "rows are kept beside the folder, in NAME.rows.partial, until the run is complete.");
   verb->add_option("scenario", o->scenario, "Scenario file (TOML); see umov schema")->required();
   verb->add_option("-o,--output", o->output, "Output folder, over the scenario's output.dir");
   verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");

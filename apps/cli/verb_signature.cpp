@@ -3,6 +3,7 @@
 #include "verbs.h"
 
 #include <filesystem>
+#include <umov/core/journal.h>
 #include <umov/jobs/signature.h>
 
 namespace umov::cli {
@@ -64,8 +65,10 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
                                         : jobs::poses_from_file(o.geometry));
   JobConsole console(common);
   const auto sink = sink_for(o.output, common);
-  return jobs::signature(scenario, poses, request_of(o), *sink, job_options(common),
-                         console.monitor(true), diagnostics);
+  jobs::JobOptions options = job_options(common);
+  options.journal = Journal::name_for(o.output);
+  return jobs::signature(scenario, poses, request_of(o), *sink, options, console.monitor(true),
+                         diagnostics);
 }
 
 } // namespace
@@ -75,6 +78,9 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
       app.add_subcommand("signature", "Stokes of an object for directions, without an orbit");
   auto o = std::make_shared<SignatureOptions>();
   auto common = std::make_shared<Common>();
+  verb->footer(
+      "With -o FILE and ended early, by Ctrl-C or a kill, the same command goes on where it "
+      "was: finished rows are kept in FILE.rows.partial until the table is complete.");
   verb->add_option("scene", o->scene, "Scenario file; orbit, time and observer are not used")
       ->required();
   auto *geometry =

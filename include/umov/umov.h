@@ -11,12 +11,14 @@
 #include <umov/core/embedded.h>
 #include <umov/core/files.h>
 #include <umov/core/golden_section.h>
+#include <umov/core/journal.h>
 #include <umov/core/locks.h>
 #include <umov/core/parallel.h>
 #include <umov/core/quantity.h>
 #include <umov/core/random.h>
 #include <umov/core/result.h>
 #include <umov/core/rotation.h>
+#include <umov/core/temporary.h>
 #include <umov/core/text.h>
 #include <umov/core/vec3.h>
 #include <umov/core/version.h>

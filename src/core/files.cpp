@@ -1,14 +1,12 @@
 #include "core/output_place.h"
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
-#include <random>
-#include <sstream>
 #include <sys/stat.h>
 #include <umov/core/files.h>
+#include <umov/core/temporary.h>
 #include <unistd.h>
 #include <utility>
 
@@ -41,16 +39,6 @@ tl::unexpected<Error> device_error(const fs::path &path, const std::string &acti
               {path.string()});
 }
 
-/// In the folder of the file, so that a rename puts it in place; different for every process, also
-/// where containers share a folder and number their processes alike.
-fs::path temporary_name(const fs::path &path) {
-  static std::atomic<unsigned> count{0};
-  std::random_device random;
-  std::ostringstream out;
-  out << path.string() << ".part-" << ::getpid() << '-' << std::hex << random() << ++count;
-  return out.str();
-}
-
 /// A file that is replaced keeps who may read it, and whose it is as far as we may say so.
 void keep_access(const fs::path &path, int descriptor) {
   struct stat old {};
@@ -58,6 +46,13 @@ void keep_access(const fs::path &path, int descriptor) {
     return;
   [[maybe_unused]] const int owner = ::fchown(descriptor, old.st_uid, old.st_gid);
   [[maybe_unused]] const int mode = ::fchmod(descriptor, old.st_mode & 0777);
+}
+
+void remove_abandoned(const fs::path &path) {
+  std::error_code unknown; // somebody else's may stay
+  for (const fs::path &old : abandoned_temporaries(path))
+    if (!fs::is_directory(old, unknown))
+      fs::remove(old, unknown);
 }
 
 } // namespace
@@ -113,6 +108,7 @@ Result<FileInProgress> FileInProgress::open(const fs::path &path) {
       return device_error(path, "write here");
     return out;
   }
+  remove_abandoned(place.path);
   struct stat old {};
   const mode_t mode = ::stat(place.path.c_str(), &old) == 0 ? 0600 : 0644;
   // Not mkostemp, whose 0600 knows nothing of the umask; a name that is taken is never opened.
@@ -127,6 +123,7 @@ Result<FileInProgress> FileInProgress::open(const fs::path &path) {
     out.temporary_.clear(); // nothing of ours to remove
     return device_error(path, "write here");
   }
+  hold_temporary(out.descriptor_);
   return out;
 }
 
@@ -136,10 +133,17 @@ Result<FileInProgress> FileInProgress::for_library(const fs::path &path) {
     return fail(ErrorCode::Device,
                 "is no regular file, which this format needs. Choose the name of a file.",
                 {path.string()});
+  remove_abandoned(place.path);
   FileInProgress out;
   out.path_ = place.path;
   out.temporary_ = temporary_name(place.path);
   return out;
+}
+
+void FileInProgress::hold() {
+  descriptor_ = ::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (descriptor_ >= 0)
+    hold_temporary(descriptor_);
 }
 
 FileInProgress::FileInProgress(FileInProgress &&other) noexcept { *this = std::move(other); }

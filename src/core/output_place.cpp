@@ -73,4 +73,11 @@ Result<OutputPlace> output_place(const fs::path &path) {
   return refuse("is a link that leads in a circle. Choose another name.");
 }
 
+fs::path beside(const fs::path &path, const std::string &before, const std::string &after) {
+  constexpr std::size_t most = 255; // NAME_MAX of every file system in use
+  const std::string name = path.filename().string();
+  const std::size_t room = most - std::min(most, before.size() + after.size());
+  return path.parent_path() / (before + name.substr(0, room) + after);
+}
+
 } // namespace umov

@@ -2,6 +2,7 @@
 // Private: where the name of an output leads.
 
 #include <filesystem>
+#include <string>
 #include <umov/core/result.h>
 
 namespace umov {
@@ -20,5 +21,10 @@ struct OutputPlace {
 /// Follows links as a shell does. Device for a folder, a circle of links, and a link that somebody
 /// else put into a folder of everybody's.
 Result<OutputPlace> output_place(const std::filesystem::path &path);
+
+/// A name in the same folder: the file's between two more parts, cut where it gets longer than
+/// names may be (255 bytes).
+std::filesystem::path beside(const std::filesystem::path &path, const std::string &before,
+                             const std::string &after);
 
 } // namespace umov

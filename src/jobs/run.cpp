@@ -1,5 +1,7 @@
 #include <umov/jobs/run.h>
 
+#include "jobs/job_journal.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/text.h>
@@ -89,27 +91,29 @@ void warn_of_earth(const LightCurveOutcome &outcome, const EarthshineOptions &op
                     patches_bound * options.patches, worst, patches_bound));
 }
 
-Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, const Monitor &monitor) {
+Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks blocks,
+                                  const Monitor &monitor) {
   static const std::atomic<bool> never{false};
   const std::string what = is_alone ? "light curve" : one.request.object;
-  const LightCurveRequest &request = one.request;
-  LightOptions options = request.light;
-  const std::vector<Joint> joints = joints_of(request.track.joints);
-  UMOV_ASSIGN(light, make_light(one.object.scene, joints, options));
-  one.light = light->facts();
-  std::unique_ptr<LightModel> many;
-  if (request.earthshine || request.has_moonlight) {
-    UMOV_ASSIGN(made, make_light_for_many(one.object.scene, joints, options));
-    many = std::move(made);
-  }
+  UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene));
+  one.light = models.light->facts();
   auto out = compute_light_curve(
-      request, *light, many.get(),
+      one.request, *models.light, models.many_directions.get(),
       [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
-      monitor.cancel != nullptr ? *monitor.cancel : never);
-  UMOV_TRY(light->keep_masks());
-  if (many)
-    UMOV_TRY(many->keep_masks());
+      monitor.cancel != nullptr ? *monitor.cancel : never, blocks);
+  UMOV_TRY(models.light->keep_masks());
+  if (models.many_directions)
+    UMOV_TRY(models.many_directions->keep_masks());
   return out;
+}
+
+Result<Journal> journal_of(const std::vector<ObjectRun> &objects, const Scenario &scenario,
+                           const JobOptions &options, const Monitor &monitor,
+                           Diagnostics &diagnostics) {
+  std::vector<InputFile> inputs;
+  for (const ObjectRun &one : objects)
+    inputs.insert(inputs.end(), one.object.inputs.begin(), one.object.inputs.end());
+  return open_journal(options, job_text(scenario, inputs, "run"), monitor, diagnostics);
 }
 
 } // namespace
@@ -137,11 +141,13 @@ Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptio
 }
 
 Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &scenario,
-                              const Monitor &monitor, Diagnostics &diagnostics) {
+                              const JobOptions &options, const Monitor &monitor,
+                              Diagnostics &diagnostics) {
   RunResult out;
+  UMOV_ASSIGN(journal, journal_of(objects, scenario, options, monitor, diagnostics));
   std::size_t with_rows = 0;
   for (std::size_t k = 0; k < objects.size(); ++k) {
-    auto outcome = compute(objects[k], objects.size() == 1, monitor);
+    auto outcome = compute(objects[k], objects.size() == 1, {&journal, k}, monitor);
     if (!outcome && objects.size() == 1)
       return tl::unexpected(outcome.error());
     if (outcome) {
@@ -168,6 +174,11 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
       diagnostics.warn(nothing.message);
     }
   }
+  if (journal.problem())
+    diagnostics.warn(journal.problem()->text());
+  if (out.stopped)
+    out.stopped = with_way_on(*out.stopped, journal);
+  out.journal = std::move(journal);
   if (with_rows == 0) {
     if (out.stopped)
       return tl::unexpected(*out.stopped);

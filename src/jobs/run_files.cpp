@@ -84,7 +84,7 @@ std::string options_needed(const JobOptions &options) {
 
 } // namespace
 
-Result<void> write_run(const RunResult &result, const Scenario &scenario, const JobOptions &options,
+Result<void> write_run(RunResult &result, const Scenario &scenario, const JobOptions &options,
                        ManifestInput manifest, const Diagnostics &diagnostics, RunFolder &folder) {
   const Written run{result, scenario, options, diagnostics};
   UMOV_TRY(add_tables(run, folder));
@@ -105,7 +105,10 @@ Result<void> write_run(const RunResult &result, const Scenario &scenario, const 
   if (result.stopped)
     manifest.stopped = result.stopped->text();
   folder.add("manifest.json", make_manifest(manifest));
-  return folder.commit();
+  UMOV_TRY(folder.commit());
+  if (!result.stopped || result.stopped->code != ErrorCode::Interrupted)
+    result.journal.finish();
+  return {};
 }
 
 } // namespace umov::jobs

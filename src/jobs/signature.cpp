@@ -1,11 +1,13 @@
 #include <umov/jobs/signature.h>
 
+#include "jobs/job_journal.h"
 #include "jobs/part_angles.h"
 #include "jobs/signature_rows.h"
 #include "jobs/temperatures.h"
 
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
 
@@ -99,6 +101,79 @@ LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &r
   return out;
 }
 
+/// What the rows depend on.
+std::string job_of(const Scenario &scenario, const std::vector<InputFile> &inputs,
+                   const PoseList &poses, const SignatureRequest &request,
+                   const LightOptions &light) {
+  const Stokes<ScatteringPlane> &s = light.source;
+  return job_text(scenario, inputs,
+                  fmt::format("signature of {}; source {} {} {} {} {} {}; method {}, accuracy {}, "
+                              "seed {}",
+                              poses.origin, static_cast<int>(request.source), s.i, s.q, s.u, s.v,
+                              fmt::join(request.temperatures, ","), name_of(light.method),
+                              light.accuracy, light.seed));
+}
+
+/// A block of poses from their numbers to rows.
+class PoseBlocks {
+public:
+  PoseBlocks(const PoseList &poses, const LightModel &model, const PartAngles &parts, bool has_disk,
+             Journal &journal, LightTask task)
+      : poses_(poses), model_(model), parts_(parts), has_disk_(has_disk), journal_(journal),
+        task_(task) {}
+
+  /// False if the task was cancelled.
+  bool light(Journal::Block block, std::size_t begin, std::size_t count) {
+    take(begin, count);
+    if (const auto kept = journal_.find(block);
+        kept && from_bytes(*kept, results_) && results_.poses() == count)
+      return true;
+    if (!model_.evaluate(part_, parts_.of(part_), results_, task_))
+      return false;
+    journal_.keep(block, to_bytes(results_));
+    return true;
+  }
+  [[nodiscard]] Table rows(bool is_emitted) const {
+    return SignatureRows::of(numbers_, part_, model_.scene().bands, results_, task_.threads)
+        .table(is_emitted);
+  }
+
+private:
+  void take(std::size_t begin, std::size_t count) {
+    part_.resize(count);
+    numbers_.resize(count);
+    parallel_for((count + 1023) / 1024, task_.threads, [&](std::size_t of) {
+      for (std::size_t i = of * 1024; i < std::min(count, (of + 1) * 1024); ++i) {
+        part_[i] = poses_.at(begin + i);
+        part_[i].sun_radius_rad = has_disk_ ? sun_radius_at_1au_rad : 0;
+        numbers_[i] = poses_.number(begin + i);
+      }
+    });
+  }
+  const PoseList &poses_;
+  const LightModel &model_;
+  const PartAngles &parts_;
+  bool has_disk_;
+  Journal &journal_;
+  LightTask task_;
+  StokesTable results_;
+  std::vector<Pose> part_;
+  std::vector<std::int64_t> numbers_;
+};
+
+/// What the log says of the masks in the end.
+void tell_of_masks(const LightModel &model, const std::filesystem::path &file, bool had_file,
+                   const Monitor &monitor) {
+  const LightFacts &facts = model.facts();
+  if (model.mask_bytes() > 0)
+    monitor.tell(fmt::format("{} triangles in {} classes, {:.0f} MB of masks", facts.triangles,
+                             facts.classes, static_cast<double>(model.mask_bytes()) / 1e6));
+  if (!file.empty() && !had_file)
+    monitor.tell(facts.is_convex
+                     ? "a convex body needs no masks: nothing is kept in " + file.string()
+                     : "masks are kept in " + file.string());
+}
+
 } // namespace
 
 Result<void> signature(const Scenario &scenario, const PoseList &poses,
@@ -106,59 +181,47 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
                        const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(source, source_of(request));
   UMOV_TRY(check_request(scenario, request));
-  const bool is_sun = request.source == Source::Sun;
+  const bool is_sun = request.source == Source::Sun, is_emitted = request.source == Source::Thermal;
   UMOV_ASSIGN(
       object,
       load_object(scenario, 0, {.allow_old_elements = true, .source_is_sun = is_sun}, diagnostics));
   const LightOptions light = light_asked_for(scenario, request, source, options);
-  const bool has_file = file_exists(request.mask_file);
+  UMOV_ASSIGN(journal, open_journal(options, job_of(scenario, object.inputs, poses, request, light),
+                                    monitor, diagnostics));
+  const bool had_file = file_exists(request.mask_file);
   monitor.tell("preparing the scene ...");
   const PartAngles parts(scenario.objects.front().parts, is_sun, scenario.file, diagnostics);
   UMOV_ASSIGN(model, light_of(object.scene, parts.joints(), request, light));
-  const LightFacts &facts = model->facts();
   const bool has_disk = is_sun && scenario.has_solar_disk;
-  const std::size_t block = block_of(facts, light.bounces);
+  const std::size_t block = block_of(model->facts(), light.bounces);
   LightTask task;
   task.threads = options.threads;
   task.cancel = monitor.cancel;
-  StokesTable results;
-  std::vector<Pose> part;
-  std::vector<std::int64_t> numbers;
+  PoseBlocks blocks(poses, *model, parts, has_disk, journal, task);
   std::size_t done = 0;
   while (done < poses.count && !monitor.is_cancelled()) {
     const std::size_t count = std::min(block, poses.count - done);
-    part.resize(count);
-    numbers.resize(count);
-    parallel_for((count + 1023) / 1024, options.threads, [&](std::size_t of) {
-      for (std::size_t i = of * 1024; i < std::min(count, (of + 1) * 1024); ++i) {
-        part[i] = poses.at(done + i);
-        part[i].sun_radius_rad = has_disk ? sun_radius_at_1au_rad : 0;
-        numbers[i] = poses.number(done + i);
-      }
-    });
-    if (!model->evaluate(part, parts.of(part), results, task))
+    if (!blocks.light({0, done / block}, done, count))
       break;
-    Table table = SignatureRows::of(numbers, part, object.scene.bands, results, options.threads)
-                      .table(request.source == Source::Thermal);
-    describe(request, source, has_disk, facts.visibility, table);
+    Table table = blocks.rows(is_emitted);
+    describe(request, source, has_disk, model->facts().visibility, table);
     UMOV_TRY(sink.add(std::move(table)));
     done += count;
     monitor.advance("poses", done, poses.count);
   }
+  if (journal.problem())
+    diagnostics.warn(journal.problem()->text());
   if (done < poses.count)
-    return tl::unexpected(
+    return tl::unexpected(with_way_on(
         sink.stop({ErrorCode::Interrupted,
                    fmt::format("stopped by the user after {} of {} poses", done, poses.count),
-                   {}}));
+                   {}}),
+        journal));
   UMOV_TRY(model->keep_masks());
-  if (model->mask_bytes() > 0)
-    monitor.tell(fmt::format("{} triangles in {} classes, {:.0f} MB of masks", facts.triangles,
-                             facts.classes, static_cast<double>(model->mask_bytes()) / 1e6));
-  if (!request.mask_file.empty() && !has_file)
-    monitor.tell(facts.is_convex ? "a convex body needs no masks: nothing is kept in " +
-                                       request.mask_file.string()
-                                 : "masks are kept in " + request.mask_file.string());
-  return sink.finish();
+  tell_of_masks(*model, request.mask_file, had_file, monitor);
+  UMOV_TRY(sink.finish());
+  journal.finish();
+  return {};
 }
 
 } // namespace umov::jobs

@@ -2,6 +2,8 @@
 
 #include "lightcurve/row.h"
 
+#include "lightcurve/row_bytes.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/parallel.h>
@@ -33,15 +35,19 @@ class RowMaker {
 public:
   RowMaker(const LightCurveRequest &request, const LightModel &light,
            const LightModel *many_directions, const Track &track, const KeptEpochs &kept,
-           std::vector<double> solar, LightCurve &curve, const std::atomic<bool> &cancel)
+           std::vector<double> solar, LightCurve &curve, const std::atomic<bool> &cancel,
+           KeptBlocks blocks)
       : request_(request), light_(light), many_directions_(many_directions), track_(track),
-        kept_(kept), solar_(std::move(solar)), curve_(curve), cancel_(cancel) {}
+        kept_(kept), solar_(std::move(solar)), curve_(curve), cancel_(cancel), blocks_(blocks) {}
 
   /// Every finished block stays after a stop; returns the rows kept.
   std::size_t fill(const Progress &progress, std::optional<Error> &stopped);
 
 private:
-  std::size_t fill_block(std::size_t begin, std::size_t count, std::optional<Error> &stopped);
+  std::size_t fill_block(Journal::Block block, std::size_t begin, std::size_t count,
+                         std::optional<Error> &stopped);
+  bool light_block(const std::vector<TrackPoint> &points, std::size_t begin, StokesTable &table);
+  bool find(Journal::Block block, std::size_t begin, std::size_t count, StokesTable &table);
   std::size_t place(std::size_t begin, std::size_t count, std::vector<TrackPoint> &points,
                     std::optional<Error> &stopped);
   void put(const StokesTable &table, std::size_t k, std::size_t row);
@@ -57,6 +63,7 @@ private:
   std::vector<double> solar_; ///< per band
   LightCurve &curve_;
   const std::atomic<bool> &cancel_;
+  KeptBlocks blocks_;
 };
 
 /// Many directions at one epoch.
@@ -150,29 +157,47 @@ void RowMaker::put(const StokesTable &table, std::size_t k, std::size_t row) {
               curve_.material_i.begin() + static_cast<std::ptrdiff_t>(row * parts));
 }
 
-/// How many rows of a block are complete: none if it was cancelled.
-std::size_t RowMaker::fill_block(std::size_t begin, std::size_t count,
-                                 std::optional<Error> &stopped) {
-  std::vector<TrackPoint> points;
-  const std::size_t placed = place(begin, count, points, stopped);
+/// Lights placed rows; false if it was cancelled.
+bool RowMaker::light_block(const std::vector<TrackPoint> &points, std::size_t begin,
+                           StokesTable &table) {
   std::vector<Pose> poses;
   std::vector<double> angles;
   for (const TrackPoint &point : points) {
     poses.push_back(point.pose);
     angles.insert(angles.end(), point.joint_angles_rad.begin(), point.joint_angles_rad.end());
   }
-  StokesTable table;
   const LightTask task{true, true, request_.threads, &cancel_};
-  if (light_.evaluate(poses, angles, table, task))
-    parallel_for(placed, request_.threads, [&](std::size_t k) {
-      put(table, k, begin + k);
-      if (!curve_.second_lights.empty() && !cancel_) // light of the Earth takes its time
+  if (!light_.evaluate(poses, angles, table, task))
+    return false;
+  if (!curve_.second_lights.empty())
+    parallel_for(points.size(), request_.threads, [&](std::size_t k) {
+      if (!cancel_) // light of the Earth takes its time
         add_second_lights(points[k], begin + k);
     });
-  if (cancel_) {
+  return !cancel_;
+}
+
+/// A block that an earlier run of the same job has lit.
+bool RowMaker::find(Journal::Block block, std::size_t begin, std::size_t count,
+                    StokesTable &table) {
+  const auto bytes = blocks_.journal != nullptr ? blocks_.journal->find(block) : std::nullopt;
+  return bytes && take_row_bytes(*bytes, begin, count, table, curve_);
+}
+
+/// How many rows of a block are complete: none if it was cancelled.
+std::size_t RowMaker::fill_block(Journal::Block block, std::size_t begin, std::size_t count,
+                                 std::optional<Error> &stopped) {
+  std::vector<TrackPoint> points;
+  const std::size_t placed = place(begin, count, points, stopped);
+  StokesTable table;
+  const bool is_found = find(block, begin, placed, table);
+  if (cancel_ || (!is_found && !light_block(points, begin, table))) {
     stopped = Error{ErrorCode::Interrupted, "", {}};
     return 0;
   }
+  if (!is_found && blocks_.journal != nullptr)
+    blocks_.journal->keep(block, row_bytes(table, begin, placed, curve_));
+  parallel_for(placed, request_.threads, [&](std::size_t k) { put(table, k, begin + k); });
   return placed;
 }
 
@@ -182,7 +207,7 @@ std::size_t RowMaker::fill(const Progress &progress, std::optional<Error> &stopp
   for (std::size_t begin = 0; begin < rows; begin += grain) {
     const std::size_t count = std::min(grain, rows - begin);
     std::optional<Error> here; // the selection may have stopped before, at a later row
-    const std::size_t done = begin + fill_block(begin, count, here);
+    const std::size_t done = begin + fill_block({blocks_.part, begin / grain}, begin, count, here);
     if (here) {
       stopped = here;
       if (stopped->code == ErrorCode::Interrupted)
@@ -244,11 +269,25 @@ void count_rows(LightCurveOutcome &out) {
 
 } // namespace
 
+Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene) {
+  LightOptions options = request.light;
+  options.threads = request.threads;
+  const std::vector<Joint> joints = joints_of(request.track.joints);
+  LightModels out;
+  UMOV_ASSIGN(light, make_light(scene, joints, options));
+  out.light = std::move(light);
+  if (request.earthshine || request.has_moonlight) {
+    UMOV_ASSIGN(many, make_light_for_many(scene, joints, options));
+    out.many_directions = std::move(many);
+  }
+  return out;
+}
+
 Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
                                               const LightModel &light,
                                               const LightModel *many_directions,
                                               const Progress &progress,
-                                              const std::atomic<bool> &cancel) {
+                                              const std::atomic<bool> &cancel, KeptBlocks blocks) {
   if (const ElementSet *set = request.track.orbit.elements())
     UMOV_TRY(request.track.orbit.at(set->epoch)); // elements that cannot even start
   UMOV_ASSIGN(solar, solar_irradiances(light.scene().bands));
@@ -260,7 +299,8 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
   out.passes_seen = kept.passes_seen;
   out.epochs_in_gaps = kept.epochs_in_gaps;
   out.stopped = kept.stopped;
-  RowMaker maker(request, light, many_directions, track, kept, std::move(solar), out.curve, cancel);
+  RowMaker maker(request, light, many_directions, track, kept, std::move(solar), out.curve, cancel,
+                 blocks);
   truncate(out.curve, maker.fill(progress, out.stopped));
   count_rows(out);
   return out;
@@ -269,19 +309,12 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
 Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, const Scene &scene,
                                               const Progress &progress,
                                               const std::atomic<bool> &cancel) {
-  LightOptions options = request.light;
-  options.threads = request.threads;
-  const std::vector<Joint> joints = joints_of(request.track.joints);
-  UMOV_ASSIGN(light, make_light(scene, joints, options));
-  std::unique_ptr<LightModel> many;
-  if (request.earthshine || request.has_moonlight) {
-    UMOV_ASSIGN(made, make_light_for_many(scene, joints, options));
-    many = std::move(made);
-  }
-  auto out = compute_light_curve(request, *light, many.get(), progress, cancel);
-  UMOV_TRY(light->keep_masks());
-  if (many)
-    UMOV_TRY(many->keep_masks());
+  UMOV_ASSIGN(models, make_light_models(request, scene));
+  auto out =
+      compute_light_curve(request, *models.light, models.many_directions.get(), progress, cancel);
+  UMOV_TRY(models.light->keep_masks());
+  if (models.many_directions)
+    UMOV_TRY(models.many_directions->keep_masks());
   return out;
 }
 

@@ -91,6 +91,17 @@ Geometry new_geometry(RTCDevice device, const Mesh &mesh) {
 } // namespace
 
 Occluder::Occluder(const Mesh &mesh) : state_(std::make_unique<State>()) {
+  try {
+    build(mesh);
+  } catch (...) {
+    // Embree takes memory to release a scene, and ends the program where there is none: what could
+    // not be built is left as it is.
+    [[maybe_unused]] const State *left = state_.release();
+    throw;
+  }
+}
+
+void Occluder::build(const Mesh &mesh) {
   const Box box = bounds(mesh);
   state_->centre = box.centre;
   state_->scale = 1 / box.half;

@@ -24,7 +24,8 @@ Result<std::string> read_file(const std::filesystem::path &path,
 Result<void> write_file_atomically(const std::filesystem::path &path, std::string_view bytes);
 
 /// A file that grows piece by piece and is there under its name only when it is complete: written
-/// as a temporary file in the same folder, which is removed unless `commit` succeeds.
+/// as a temporary file in the same folder, which is removed unless `commit` succeeds; what a killed
+/// process left goes when the same file is written again.
 class FileInProgress {
 public:
   /// Device if a file cannot be made there.
@@ -38,6 +39,8 @@ public:
   /// For a library that makes and fills the file by its name: where it goes. No `write` then.
   /// Device where a pipe or a device stands.
   static Result<FileInProgress> for_library(const std::filesystem::path &path);
+  /// The library has made the file: it is in use from now on, and not what a kill left.
+  void hold();
   /// Name of the file while it grows.
   [[nodiscard]] const std::filesystem::path &temporary() const { return temporary_; }
   /// Where it will stand, behind all links.

@@ -29,6 +29,9 @@ public:
   Result<void> commit();
   /// Where the folder will stand.
   [[nodiscard]] const std::filesystem::path &path() const { return target_; }
+  /// Where finished blocks are kept while the run goes on: beside the folder, or in one that is not
+  /// ours alone.
+  [[nodiscard]] std::filesystem::path journal_path() const;
 
 private:
   void step_aside(const std::string &suffix);

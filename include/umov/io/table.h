@@ -65,6 +65,8 @@ std::string to_csv(const Table &table);
 Result<std::string> to_fits(const Table &table);
 /// Its two parts: everything above the rows, and rows [begin, end).
 std::string csv_header(const Table &table);
+/// A line that readers of the CSV skip.
+std::string csv_note(const std::string &text);
 /// Rows [begin, end) of the CSV, appended to `out`.
 void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std::string &out);
 /// An array of objects; NaN is null.

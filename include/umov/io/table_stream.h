@@ -23,8 +23,8 @@ public:
   Result<void> append(const Table &rows);
   /// Puts the complete file in place. Device if that fails.
   Result<void> commit();
-  /// Under the name "stem.partial.suffix", for what was stopped early; a note says so where the
-  /// format has room for it after the rows (FITS: the header). Returns the name.
+  /// Under the name "stem.partial.suffix", for what was stopped early; a note says so: in the
+  /// header of FITS, behind the rows of CSV. Returns the name.
   Result<std::filesystem::path> commit_partial(const std::string &why);
 
   struct Writer;

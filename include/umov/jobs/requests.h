@@ -12,8 +12,11 @@ namespace umov::jobs {
 struct JobOptions {
   unsigned threads = 0;             ///< 0: all cores; the bytes do not depend on it
   std::filesystem::path mask_cache; ///< folder of masks of earlier jobs; empty: none are kept
-  bool allow_bad_checksum = false;  ///< of orbital elements
-  bool allow_old_elements = false;  ///< over 30 days from the span
+  /// File for the finished blocks of a job: the same job goes on from it after a kill, and removes
+  /// it when it is done. Empty: none are kept.
+  std::filesystem::path journal;
+  bool allow_bad_checksum = false; ///< of orbital elements
+  bool allow_old_elements = false; ///< over 30 days from the span
 };
 
 /// How a scenario lights its objects: [render] of it, with the seed and the job's threads and

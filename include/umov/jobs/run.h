@@ -2,6 +2,7 @@
 // The main job: light curves of the objects of a scenario, and the folder that tells of them.
 
 #include <optional>
+#include <umov/core/journal.h>
 #include <umov/io/run_folder.h>
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/requests.h>
@@ -21,21 +22,24 @@ struct ObjectRun {
 struct RunResult {
   std::vector<ObjectRun> objects; ///< those with rows
   std::optional<Error> stopped;   ///< Physics or Interrupted: rows before it are complete
+  Journal journal; ///< of the finished blocks: goes when the folder of a whole run is written
 };
 
 /// Reads what the scenario names and checks it; nothing is computed.
 Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptions &options,
                                         const Monitor &monitor, Diagnostics &diagnostics);
 
-/// Object after object; the first stop ends it, with the rows so far kept. Nothing if there is no
-/// row at all, with the next pass that would give one; warnings tell of rows that missed the
+/// Object after object; the first stop ends it, with the rows so far kept. What the same run
+/// finished before it was ended is taken from JobOptions::journal: the same bytes. Nothing if there
+/// is no row at all, with the next pass that would give one; warnings tell of rows that missed the
 /// accuracy.
 Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &scenario,
-                              const Monitor &monitor, Diagnostics &diagnostics);
+                              const JobOptions &options, const Monitor &monitor,
+                              Diagnostics &diagnostics);
 
 /// Tables, reports, locked scenario, log and manifest (`manifest` holds what the caller knows of
 /// the command; inputs, seed, warnings and method are added), put in place at once.
-Result<void> write_run(const RunResult &run, const Scenario &scenario, const JobOptions &options,
+Result<void> write_run(RunResult &run, const Scenario &scenario, const JobOptions &options,
                        ManifestInput manifest, const Diagnostics &diagnostics, RunFolder &folder);
 
 /// Passes with brightness and polarization, as lines for a person.

@@ -17,6 +17,7 @@ struct PoseList {
   std::size_t count = 0;
   std::function<Pose(std::size_t)> at;
   std::function<std::int64_t(std::size_t)> number;
+  std::string origin; ///< differs whenever the poses do
 };
 
 /// `per_phase` random poses at each phase angle (Usage unless 0 to 180 deg), by the counter-based
@@ -45,8 +46,9 @@ struct SignatureRequest {
 
 /// Rows of all poses into `sink`, block by block: memory does not grow with their number. The
 /// scenario's orbit, time and observer are not used; parts that follow the Sun or the observer, or
-/// stand at an angle, do so, others stand as in the mesh, with a warning. Usage for what does not
-/// go together; Interrupted after a stop, with the finished rows kept.
+/// stand at an angle, do so, others stand as in the mesh, with a warning. What the
+/// same job finished before it was ended is taken from JobOptions::journal: the same bytes. Usage
+/// for what does not go together; Interrupted after a stop, with the finished rows kept.
 Result<void> signature(const Scenario &scenario, const PoseList &poses,
                        const SignatureRequest &request, TableSink &sink, const JobOptions &options,
                        const Monitor &monitor, Diagnostics &diagnostics);

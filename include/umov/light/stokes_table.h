@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <string_view>
 #include <umov/optics/stokes.h>
 #include <vector>
 
@@ -46,5 +48,10 @@ struct StokesTable {
   /// Sets one pose in one band.
   void put(std::size_t pose, std::size_t band, const BandResult &result);
 };
+
+/// All of a table as this machine has it in memory, to be kept while a job runs.
+std::string to_bytes(const StokesTable &table);
+/// The table again; false for bytes that are none.
+[[nodiscard]] bool from_bytes(std::string_view bytes, StokesTable &table);
 
 } // namespace umov

@@ -2,7 +2,9 @@
 // From a track and a light model to a light curve over time.
 
 #include <functional>
+#include <memory>
 #include <umov/core/diagnostics.h>
+#include <umov/core/journal.h>
 #include <umov/light/light_model.h>
 #include <umov/lightcurve/earth_light.h>
 #include <umov/lightcurve/light_curve.h>
@@ -41,16 +43,33 @@ struct LightCurveOutcome {
 /// Called with the number of finished and of all epochs.
 using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
+/// What a light curve is computed with.
+struct LightModels {
+  std::unique_ptr<LightModel> light;
+  /// For light of the Earth and the Moon, asked for hundreds of directions at each epoch; null
+  /// where neither is wanted.
+  std::unique_ptr<LightModel> many_directions;
+};
+
+/// Models for what is asked of a scene.
+Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene);
+
+/// Where the blocks of a light curve that are finished are kept and found again, and under which
+/// part of the job; null: nowhere.
+struct KeptBlocks {
+  Journal *journal = nullptr;
+  std::uint64_t part = 0;
+};
+
 /// Computes the light curve of `light`'s object. Results are the same bits for any number of
-/// threads. When SGP4 fails (decayed orbit) or `cancel` becomes true the finished rows are kept and
-/// `stopped` says why. `many_directions`: the model for light of the Earth and the Moon, asked for
-/// hundreds of directions at each epoch; may be null where neither is wanted.
-Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
-                                              const LightModel &light,
-                                              const LightModel *many_directions,
-                                              const Progress &progress,
-                                              const std::atomic<bool> &cancel);
-/// The same with models made for `request` (make_light).
+/// threads, and whether or not blocks are found in the journal. When SGP4 fails (decayed orbit) or
+/// `cancel` becomes true the finished rows are kept and `stopped` says why. `many_directions` as in
+/// LightModels.
+Result<LightCurveOutcome>
+compute_light_curve(const LightCurveRequest &request, const LightModel &light,
+                    const LightModel *many_directions, const Progress &progress,
+                    const std::atomic<bool> &cancel, KeptBlocks blocks = {});
+/// The same with models made for `request`.
 Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, const Scene &scene,
                                               const Progress &progress,
                                               const std::atomic<bool> &cancel);

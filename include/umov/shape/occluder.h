@@ -41,6 +41,7 @@ public:
   [[nodiscard]] Hit nearest(Vec3<Body> origin, Vec3<Body> direction) const;
 
 private:
+  void build(const Mesh &mesh);
   [[nodiscard]] bool is_one_free(Point origin, Point direction) const;
   struct State;
   std::unique_ptr<State> state_;

@@ -10,9 +10,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <random>
 #include <stdio.h>
 #include <umov/core/files.h>
+#include <umov/core/journal.h>
+#include <umov/core/temporary.h>
 #include <umov/core/version.h>
 #include <unistd.h>
 #include <utility>
@@ -72,6 +73,13 @@ std::vector<std::string> strangers_in(const fs::path &folder) {
   return out;
 }
 
+/// Nothing in a folder that a killed run left is anybody else's: the files of a run, whole or half.
+bool holds_only_ours(const fs::path &folder) {
+  std::vector<std::string> all = strangers_in(folder);
+  std::erase_if(all, [](const std::string &name) { return name.find(".part-") != name.npos; });
+  return all.empty();
+}
+
 /// Something in a folder that umov did not write; empty if there is nothing.
 std::string stranger_in(const fs::path &folder) {
   const auto all = strangers_in(folder);
@@ -95,22 +103,37 @@ fs::path existing_parent(fs::path path) {
 
 /// Removes a folder unless it was released.
 struct Temporary {
+  explicit Temporary(fs::path folder)
+      : path(std::move(folder)),
+        descriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    hold_temporary(descriptor);
+  }
+  Temporary(const Temporary &) = delete;
+  Temporary &operator=(const Temporary &) = delete;
   fs::path path;
+  int descriptor;
   ~Temporary() {
+    if (descriptor >= 0)
+      ::close(descriptor);
     std::error_code code;
     if (!path.empty())
       fs::remove_all(path, code);
   }
 };
 
+/// What runs that were killed left of this folder; what the user had put in there is not ours.
+void remove_abandoned(const fs::path &folder) {
+  std::error_code unknown;
+  for (const fs::path &old : abandoned_temporaries(folder, "."))
+    if (fs::is_directory(old, unknown) && holds_only_ours(old))
+      fs::remove_all(old, unknown);
+}
+
 /// A new folder beside another one, with its permissions.
 Result<fs::path> make_beside(const fs::path &folder) {
   std::error_code code;
-  std::random_device random;
   for (int attempt = 0; attempt < 100; ++attempt) {
-    const fs::path out =
-        folder.parent_path() /
-        fmt::format(".{}.part-{}-{:x}", folder.filename().string(), ::getpid(), random());
+    const fs::path out = temporary_name(folder, ".");
     if (fs::create_directory(out, code)) { // false if somebody has it
       std::error_code unknown;
       if (const auto old = fs::status(folder, unknown); fs::is_directory(old))
@@ -215,6 +238,10 @@ Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
   return out;
 }
 
+fs::path RunFolder::journal_path() const {
+  return Journal::name_for(is_foreign_ ? real_ / "lightcurve" : real_);
+}
+
 void RunFolder::spare_complete_run() {
   if (!is_free(target_))
     step_aside(".partial");
@@ -238,10 +265,15 @@ Result<void> RunFolder::commit() {
   }
   std::error_code code;
   fs::create_directories(real_.parent_path(), code);
+  remove_abandoned(real_);
   UMOV_ASSIGN(made, make_beside(real_));
-  Temporary fresh{made};
+  Temporary fresh(made);
+  // It tells which files are ours, also of what a kill leaves of this folder.
+  if (const auto manifest = files_.find("manifest.json"); manifest != files_.end())
+    UMOV_TRY(write_file_atomically(fresh.path / manifest->first, manifest->second));
   for (const auto &[name, bytes] : files_)
-    UMOV_TRY(write_file_atomically(fresh.path / name, bytes));
+    if (name != "manifest.json")
+      UMOV_TRY(write_file_atomically(fresh.path / name, bytes));
   if (!is_replaceable(real_)) // somebody put something of his own there while the run went on
     step_aside(".new");
   UMOV_TRY(put_in_place(fresh, real_));

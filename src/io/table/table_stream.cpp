@@ -54,6 +54,7 @@ Result<TableStream> TableStream::open(const std::filesystem::path &path, const T
   if (path.extension() == ".fits") {
     UMOV_ASSIGN(file, FileInProgress::for_library(path));
     UMOV_ASSIGN(fits, FitsTable::create(file.temporary(), first));
+    file.hold();
     out.writer_ = std::make_unique<Writer>(Writer{std::move(file), std::move(fits), threads});
   } else {
     UMOV_ASSIGN(file, FileInProgress::open(path));
@@ -78,9 +79,12 @@ Result<void> TableStream::commit() {
 Result<std::filesystem::path> TableStream::commit_partial(const std::string &why) {
   std::filesystem::path path = writer_->file.path(); // in the folder of the temporary file
   path.replace_extension(".partial" + path.extension().string());
+  const std::string note = "status: stopped early: " + why;
   if (writer_->fits) {
-    UMOV_TRY(writer_->fits->note("status: " + why));
+    UMOV_TRY(writer_->fits->note(note));
     UMOV_TRY(writer_->fits->close());
+  } else {
+    UMOV_TRY(writer_->file.write(csv_note(note)));
   }
   UMOV_TRY(writer_->file.commit_as(path));
   return path;

@@ -105,10 +105,12 @@ std::string to_ecsv(const Table &table) {
   return out;
 }
 
+std::string csv_note(const std::string &text) { return "# " + one_line(text) + "\n"; }
+
 std::string csv_header(const Table &table) {
   std::string out, names, units;
   for (const auto &[key, value] : table.notes())
-    out += fmt::format("# {}: {}\n", one_line(key), one_line(value));
+    out += csv_note(key + ": " + value);
   for (const Column &c : table.columns()) {
     const char *comma = names.empty() ? "" : ",";
     names += comma + quoted_csv(c.name, ',');

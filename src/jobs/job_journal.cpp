@@ -1,0 +1,51 @@
+#include "jobs/job_journal.h"
+
+#include <fmt/format.h>
+#include <umov/core/text.h>
+#include <umov/core/version.h>
+#include <umov/light/engine.h>
+
+namespace umov::jobs {
+
+std::string job_text(const Scenario &scenario, const std::vector<InputFile> &inputs,
+                     const std::string &more) {
+  std::string out = fmt::format("umov {} {} {} {}\n", version, source_revision, conventions_version,
+                                engine_instruction_set());
+  for (const InputFile &input : inputs)
+    out += fmt::format("{} {}\n", input.sha256, input.path);
+  return out + more + "\n" + locked_scenario(scenario);
+}
+
+Result<Journal> open_journal(const JobOptions &options, const std::string &job,
+                             const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(out, Journal::open(options.journal, job));
+  const std::string name = out.path().string();
+  switch (out.found()) {
+  case Journal::Found::Nothing:
+    break;
+  case Journal::Found::Ours:
+    monitor.tell(fmt::format("going on from {}: {} are there", name,
+                             counted(out.count(), "finished block")));
+    break;
+  case Journal::Found::Foreign:
+    diagnostics.warn(fmt::format("{} is of another job (its scenario, options or version differ) "
+                                 "or damaged: this one begins anew",
+                                 name));
+    break;
+  case Journal::Found::Busy:
+    diagnostics.warn(fmt::format("another umov is writing {}: this one keeps no finished rows, and "
+                                 "whichever ends last gives the result",
+                                 name));
+    break;
+  }
+  return std::move(out);
+}
+
+Error with_way_on(Error stopped, const Journal &journal) {
+  if (stopped.code == ErrorCode::Interrupted && journal.count() > 0 && !journal.problem())
+    stopped.message += (stopped.message.ends_with('.') ? "" : ".") +
+                       std::string(" The same command goes on from there.");
+  return stopped;
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,26 @@
+#pragma once
+// Private: what makes a job the same job, and what is told of its journal.
+
+#include <string>
+#include <umov/core/diagnostics.h>
+#include <umov/core/journal.h>
+#include <umov/jobs/monitor.h>
+#include <umov/jobs/requests.h>
+#include <vector>
+
+namespace umov::jobs {
+
+/// All that the rows of a job depend on: version and build, the lanes of this machine, scenario,
+/// contents of its files, and `more`, what was asked besides. Threads and masks change no row.
+std::string job_text(const Scenario &scenario, const std::vector<InputFile> &inputs,
+                     const std::string &more);
+
+/// The journal that the options name; says how much of the job is done already, or why it begins
+/// anew.
+Result<Journal> open_journal(const JobOptions &options, const std::string &job,
+                             const Monitor &monitor, Diagnostics &diagnostics);
+
+/// The end of a job that was ended early: where it goes on.
+Error with_way_on(Error stopped, const Journal &journal);
+
+} // namespace umov::jobs

@@ -1,0 +1,149 @@
+/* Preloaded: makes the system fail where a test wants it.
+ *
+ * UMOV_FAULT=CALL:N:ERRNO  the N-th call (from 1) of CALL fails with ERRNO, and so do those after it
+ *                          unless N ends in "!"; CALL: write (files under UMOV_FAULT_UNDER), sync,
+ *                          rename, open (for writing), mkdir, read, thread, clock (set back by a day)
+ *                          ERRNO below 0: that signal is sent instead, before the call
+ * UMOV_FAULT_UNDER         prefix of the names of the files that are meant
+ * UMOV_FAULT_COUNT=FILE    the numbers of all calls are written to FILE at the end
+ */
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/uio.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { WRITE, SYNC, RENAME, OPEN, MKDIR, READ, THREAD, CLOCK, KINDS };
+static const char *const names[KINDS] = {"write", "sync", "rename", "open", "mkdir", "read", "thread", "clock"};
+static atomic_long counts[KINDS];
+static long at = 0;
+static int kind = -1, code = 0, once = 0;
+static char under[4096];
+#define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
+
+__attribute__((constructor)) static void start(void) {
+  const char *fault = getenv("UMOV_FAULT"), *where = getenv("UMOV_FAULT_UNDER");
+  if (where)
+    snprintf(under, sizeof under, "%s", where);
+  char name[16];
+  char mark = 0;
+  if (!fault || sscanf(fault, "%15[a-z]:%ld%c%d", name, &at, &mark, &code) != 4)
+    return;
+  once = mark == '!';
+  for (int k = 0; k < KINDS; ++k)
+    if (!strcmp(name, names[k]))
+      kind = k;
+}
+
+__attribute__((destructor)) static void tell(void) {
+  const char *file = getenv("UMOV_FAULT_COUNT");
+  FILE *out = file ? fopen(file, "w") : NULL;
+  if (!out)
+    return;
+  for (int k = 0; k < KINDS; ++k)
+    fprintf(out, "%s %ld\n", names[k], (long)counts[k]);
+  fclose(out);
+}
+
+static int fails(int what) {
+  const long n = ++counts[what];
+  if (what != kind || n < at || (once && n > at))
+    return 0;
+  if (code < 0) {
+    kill(getpid(), -code);
+    return 0;
+  }
+  errno = code;
+  return 1;
+}
+static int is_meant(const char *name) { return strncmp(name, under, strlen(under)) == 0; }
+static int is_meant_fd(int fd) {
+  char link[64], name[4096];
+  snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
+  const int saved = errno;
+  const ssize_t size = readlink(link, name, sizeof name - 1);
+  errno = saved;
+  if (size <= 0)
+    return 0;
+  name[size] = 0;
+  return name[0] == '/' && is_meant(name);
+}
+static int is_meant_at(const char *path) {
+  char name[8192];
+  if (path[0] == '/')
+    return is_meant(path);
+  if (!getcwd(name, 4096))
+    return 0;
+  strcat(name, "/");
+  strncat(name, path, 4000);
+  return is_meant(name);
+}
+
+ssize_t write(int fd, const void *data, size_t size) {
+  if (is_meant_fd(fd) && fails(WRITE))
+    return -1;
+  return REAL(write)(fd, data, size);
+}
+ssize_t pwrite64(int fd, const void *data, size_t size, off64_t offset) {
+  if (is_meant_fd(fd) && fails(WRITE))
+    return -1;
+  return REAL(pwrite64)(fd, data, size, offset);
+}
+ssize_t pwrite(int fd, const void *data, size_t size, off_t offset) { return pwrite64(fd, data, size, offset); }
+ssize_t writev(int fd, const struct iovec *parts, int count) {
+  if (is_meant_fd(fd) && fails(WRITE))
+    return -1;
+  return REAL(writev)(fd, parts, count);
+}
+size_t fwrite(const void *data, size_t size, size_t count, FILE *file) {
+  if (is_meant_fd(fileno(file)) && fails(WRITE))
+    return 0;
+  return REAL(fwrite)(data, size, count, file);
+}
+int fsync(int fd) { return is_meant_fd(fd) && fails(SYNC) ? -1 : REAL(fsync)(fd); }
+int rename(const char *from, const char *to) {
+  return is_meant_at(from) && fails(RENAME) ? -1 : REAL(rename)(from, to);
+}
+int renameat2(int a, const char *from, int b, const char *to, unsigned flags) {
+  return is_meant_at(from) && fails(RENAME) ? -1 : REAL(renameat2)(a, from, b, to, flags);
+}
+int mkdir(const char *path, mode_t mode) { return is_meant_at(path) && fails(MKDIR) ? -1 : REAL(mkdir)(path, mode); }
+#define OPENS(name)                                                                                                   \
+  int name(const char *path, int flags, ...) {                                                                        \
+    va_list rest;                                                                                                     \
+    va_start(rest, flags);                                                                                            \
+    const mode_t mode = va_arg(rest, mode_t);                                                                         \
+    va_end(rest);                                                                                                     \
+    if ((flags & O_ACCMODE) != O_RDONLY && is_meant_at(path) && fails(OPEN))                                          \
+      return -1;                                                                                                      \
+    return REAL(name)(path, flags, mode);                                                                             \
+  }
+OPENS(open)
+OPENS(open64)
+ssize_t read(int fd, void *data, size_t size) {
+  if (is_meant_fd(fd) && fails(READ))
+    return -1;
+  return REAL(read)(fd, data, size);
+}
+int pthread_create(pthread_t *thread, const pthread_attr_t *how, void *(*work)(void *), void *with) {
+  if (fails(THREAD))
+    return code;
+  return REAL(pthread_create)(thread, how, work, with);
+}
+int clock_gettime(clockid_t clock, struct timespec *out) {
+  const int done = (int)syscall(SYS_clock_gettime, clock, out);
+  if (clock == CLOCK_REALTIME && fails(CLOCK))
+    out->tv_sec -= 86400;
+  return done;
+}
