@@ -130,6 +130,8 @@ Result<Quaternion> unit_quaternion(Quaternion q) {
                 "the quaternion has length " + shortest(length) +
                     ", expected 1 within 1e-6 (scalar first: w, x, y, z). Give more digits or "
                     "divide by its length.");
+  if (std::abs(length - 1) < 1e-15) // left alone, so that writing and reading change nothing
+    return q;
   return Quaternion{q.w / length, q.x / length, q.y / length, q.z / length};
 }
 

@@ -26,7 +26,7 @@ TEST(ParallelFor, EveryIndexOnceAndExceptionsComeThrough) {
 
 // A container's limit: 1000 stacks do not fit. In a process of its own, which the limit stays in.
 TEST(ParallelForDeathTest, GoesOnWithTheThreadsThatThereAre) {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(UMOV_SANITIZED)
   GTEST_SKIP() << "address sanitizer needs the address space";
 #endif
   testing::GTEST_FLAG(death_test_style) = "threadsafe";

@@ -124,10 +124,11 @@ Result<void> check_record(const Message &message, const Segment &segment, const 
                   where);
   const Field *epoch = find(record.fields, "EPOCH");
   if (epoch != nullptr && !is_like_a_date(epoch->text))
-    return fail(ErrorCode::BadInput,
-                fmt::format("EPOCH is \"{}\", expected a date such as 2018-01-20T00:00:00",
-                            epoch->text.substr(0, 60)),
-                {message.file, epoch->line});
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("EPOCH is \"{}\", expected a date without blanks, such as 2018-01-20T00:00:00",
+                    epoch->text.substr(0, 60)),
+        {message.file, epoch->line});
   return record.name == "observation" ? check_observation(message, record) : Result<void>{};
 }
 

@@ -20,8 +20,9 @@ Result<Vec3<Body>> read_axis(const Node &node, const char *name, Vec3<Body> fall
   if (node.get(name)->is_array()) {
     UMOV_ASSIGN(v, node.numbers(name));
     const Vec3<Body> axis{v[0], v.size() > 1 ? v[1] : 0, v.size() > 2 ? v[2] : 0};
+    // Already unit to the last bits: left alone, so that a lock is its own lock.
     if (v.size() == 3 && norm(axis) > 0)
-      return normalized(axis);
+      return std::abs(norm(axis) - 1) < 1e-15 ? axis : normalized(axis);
   }
   return fail(ErrorCode::BadInput,
               fmt::format("{}: a body axis was expected, \"+X\" to \"-Z\" or [x, y, z]", name),

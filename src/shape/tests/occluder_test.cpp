@@ -66,7 +66,7 @@ TEST(Occluder, NonFiniteRaysAreNeverFree) {
 // In a process of its own, which the limit stays in. A tree that is not there must not be taken for
 // one that hides nothing.
 TEST(OccluderDeathTest, OutOfMemoryIsAFailureAndNotAFreeSky) {
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(UMOV_SANITIZED)
   GTEST_SKIP() << "address sanitizer needs the address space";
 #endif
   testing::GTEST_FLAG(death_test_style) = "threadsafe";

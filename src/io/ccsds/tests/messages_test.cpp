@@ -328,7 +328,7 @@ TEST(CcsdsMessages, LinesLostDoubledOrExchangedNeverCrash) {
   }
 }
 
-TEST(Messages, EpochsOfXmlAreDates) { // in KVN the second line would be a comment, and lost
+TEST(CcsdsMessages, EpochsOfXmlAreDates) { // in KVN the second line would be a comment, and lost
   const std::string state =
       "<X>7000</X><Y>0</Y><Z>0</Z><X_DOT>0</X_DOT><Y_DOT>7.5</Y_DOT><Z_DOT>0</Z_DOT>";
   const auto message = [&](const std::string &epoch) {

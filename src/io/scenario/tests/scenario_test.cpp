@@ -42,6 +42,18 @@ std::string with(const std::string &from, const std::string &to) {
   return text.replace(at, from.size(), to);
 }
 
+TEST(Scenario, ALockOfAnAxisIsItsOwnLock) {
+  for (const char *axis : {"[0, 1, 1]", "[1, 2, 3]", "[0.1, -0.7, 0.3]"}) {
+    const auto first =
+        read_scenario_text(with("point = \"+Z\"", std::string("point = ") + axis), "s.toml", {});
+    ASSERT_TRUE(first) << first.error().text();
+    const std::string lock = locked_scenario(*first);
+    const auto second = read_scenario_text(lock, "s.toml", {});
+    ASSERT_TRUE(second) << second.error().text();
+    EXPECT_EQ(locked_scenario(*second), lock);
+  }
+}
+
 TEST(Scenario, ReadsEveryPart) {
   const auto s = read_scenario_text(good, "dir/s.toml", {});
   ASSERT_TRUE(s) << s.error().text();
