@@ -101,12 +101,11 @@ double worst(const Lobe &lobe, double phase) {
 }
 
 TEST(DiskLobe, MeansOverTheDiskAgreeWithBruteForce) {
-  const Lobe lobes[] = {{LobeKind::BlinnPhong, 50},    {LobeKind::BlinnPhong, 3000},
-                        {LobeKind::BlinnPhong, 2e4},   {LobeKind::BlinnPhong, 2e5},
-                        {LobeKind::Beckmann, 0.1},     {LobeKind::Beckmann, 0.03},
-                        {LobeKind::Beckmann, 0.01},    {LobeKind::Beckmann, 0.003},
-                        {LobeKind::Ggx, 0.2},          {LobeKind::Ggx, 0.03},
-                        {LobeKind::Ggx, 0.01},         {LobeKind::Ggx, 0.003}};
+  const Lobe lobes[] = {
+      {LobeKind::BlinnPhong, 50},  {LobeKind::BlinnPhong, 3000}, {LobeKind::BlinnPhong, 2e4},
+      {LobeKind::BlinnPhong, 2e5}, {LobeKind::Beckmann, 0.1},    {LobeKind::Beckmann, 0.03},
+      {LobeKind::Beckmann, 0.01},  {LobeKind::Beckmann, 0.003},  {LobeKind::Ggx, 0.2},
+      {LobeKind::Ggx, 0.03},       {LobeKind::Ggx, 0.01},        {LobeKind::Ggx, 0.003}};
   std::size_t closed = 0, cut = 0;
   for (const double phase : {0.5, 20., 60., 100., 130., 148., 160., 170.})
     for (const Lobe &lobe : lobes) {
