@@ -74,7 +74,9 @@ Result<Days> parse(std::string_view text, const std::string &name) {
   const bool is_csv = text.substr(0, 4096).find(',') != std::string_view::npos;
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
+    std::string_view line = text.substr(0, end);
+    if (line.ends_with('\r'))
+      line.remove_suffix(1);
     text.remove_prefix(std::min(end + 1, text.size()));
     const auto day = is_csv ? day_of_csv(line) : day_of_finals(line);
     const Where place{name, number, 0};
