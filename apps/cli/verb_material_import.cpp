@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <umov/core/files.h>
+#include <umov/core/text.h>
 #include <umov/io/index_file.h>
 #include <umov/io/measured_file.h>
 
@@ -45,7 +46,8 @@ Result<void> import_file(const ImportOptions &o, const Common &common) {
                 {target.string()});
   UMOV_TRY(write_file_atomically(target, text));
   if (!common.quiet)
-    fmt::print("written to {}; umov material show {}\n", target.string(), target.string());
+    fmt::print("written to {}; umov material show {}\n", printable(target.string()),
+               printable(target.string()));
   return {};
 }
 

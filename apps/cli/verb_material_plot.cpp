@@ -3,6 +3,7 @@
 #include "verb_material.h"
 
 #include <fmt/format.h>
+#include <umov/core/text.h>
 #include <umov/jobs/material_page.h>
 
 namespace umov::cli {
@@ -19,7 +20,7 @@ Result<void> plot(const PlotOptions &o, const Common &common) {
   UMOV_ASSIGN(page, jobs::material_page(o.page));
   UMOV_TRY(put(o.output, page));
   if (!common.quiet)
-    fmt::print("written to {}\n", o.output);
+    fmt::print("written to {}\n", printable(o.output));
   return {};
 }
 

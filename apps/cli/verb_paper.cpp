@@ -4,6 +4,7 @@
 #include "verbs.h"
 
 #include <fmt/format.h>
+#include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/paper/paper.h>
 
@@ -68,8 +69,8 @@ Result<void> make(const PaperVerb &o, const Common &common) {
   folder.add("manifest.json", make_manifest(manifest));
   UMOV_TRY(folder.commit());
   if (!common.quiet)
-    fmt::print("written to {} in {:.0f} s: index.html has it all\n", folder.path().string(),
-               manifest.elapsed_s);
+    fmt::print("written to {} in {:.0f} s: index.html has it all\n",
+               printable(folder.path().string()), manifest.elapsed_s);
   return judge(figures);
 }
 

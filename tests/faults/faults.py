@@ -94,7 +94,12 @@ class Place:
         return name
 
     def names(self):
-        return sorted(os.listdir(self.folder))
+        """What lies in the folder, but for the cube's MTL and the journals of jobs that failed."""
+        return sorted(name for name in os.listdir(self.folder)
+                      if name != "cube.mtl" and not name.endswith(".rows.partial"))
+
+    def journals(self):
+        return [name for name in os.listdir(self.folder) if name.endswith(".rows.partial")]
 
     def leftovers(self):
         """Temporaries, which only a kill may leave."""

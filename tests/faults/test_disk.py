@@ -13,6 +13,15 @@ def made(place, job):
     return arguments, place.folder / result, contents(place.folder / result)
 
 
+def assert_same(found, good, done):
+    """What a warning is told in may hold it."""
+    told = {"report.html", "log.txt"} if isinstance(good, dict) and "warning" in done.err else ()
+    if told:
+        found, good = ({name: text for name, text in all.items() if name not in told}
+                       for all in (found, good))
+    assert found == good
+
+
 @pytest.mark.parametrize("call", ["write", "sync", "rename", "open", "mkdir"])
 @pytest.mark.parametrize("job", JOBS)
 def test_every_call_may_fail(place, job, call):
@@ -25,10 +34,11 @@ def test_every_call_may_fail(place, job, call):
                 done = place.faulty(f"{call}:{number}{once}{code}", *arguments)
                 assert_clean_end(done, {0, 6})
                 # Done all the same: what failed was not needed. Else the old result stands.
-                assert contents(result) == good, (number, once)
+                assert_same(contents(result), good, done)
                 assert place.names() == before, (number, once)
                 if done.code == 6:
                     assert place.umov(*arguments).code == 0
+                assert not place.journals()
 
 
 @pytest.mark.parametrize("job", ["run", "signature.csv", "signature.fits", "signature.json", "paper"])

@@ -178,7 +178,8 @@ def test_a_damaged_journal_costs_its_blocks_only(place):
         done = place.umov(*arguments)
         assert_clean_end(done, {0})
         assert contents(place.folder / "t.csv") == good
-        assert place.names() == ["cube.obj", "scenario.toml", "t.csv"]
+        # What the kill left of the output goes when it is older than a minute.
+        assert [n for n in place.names() if ".part-" not in n] == ["cube.obj", "scenario.toml", "t.csv"]
     journal.write_text("my own notes\n")
     done = place.umov(*arguments)
     assert done.code == 6 and "not a file that umov wrote" in done.err

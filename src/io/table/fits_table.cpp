@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fitsio.h>
@@ -78,8 +79,14 @@ Result<FitsTable> FitsTable::create(const std::filesystem::path &path, const Tab
   out.path_ = path;
   int status = 0;
   fitsfile *file = nullptr;
+  errno = 0;
   fits_create_diskfile(&file, path.c_str(), &status); // no extended file-name syntax
   out.file_ = file;
+  if (status != 0 && errno != 0) // CFITSIO does not say why
+    return fail(ErrorCode::Device,
+                fmt::format("cannot make the file: {}. Choose another folder or free some space.",
+                            std::strerror(errno)),
+                {path.string()});
   UMOV_TRY(out.begin(columns, status));
   return out;
 }
