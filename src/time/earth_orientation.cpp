@@ -72,7 +72,7 @@ constexpr const char *expected_form =
 Result<Days> parse(std::string_view text, const std::string &name) {
   Days out{name, {}};
   const bool is_csv = text.substr(0, 4096).find(',') != std::string_view::npos;
-  for (int number = 1; !text.empty(); ++number) {
+  for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     std::string_view line = text.substr(0, end);
     if (line.ends_with('\r'))

@@ -21,7 +21,9 @@ public:
   struct Block {
     std::uint64_t part = 0, number = 0;
     /// In order of parts.
-    auto operator<=>(const Block &) const = default;
+    friend bool operator<(const Block &a, const Block &b) {
+      return a.part != b.part ? a.part < b.part : a.number < b.number;
+    }
   };
   /// What stood in the file when it was opened.
   enum class Found {
