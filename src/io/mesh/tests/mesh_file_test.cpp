@@ -11,6 +11,7 @@
 #include <umov/io/mesh_file.h>
 #include <umov/shape/primitives.h>
 #include <umov/shape/topology.h>
+#include <unistd.h>
 
 namespace umov {
 namespace {
@@ -20,11 +21,18 @@ namespace fs = std::filesystem;
 
 const MeshFileOptions metres{.unit = "m", .up = "+Z"};
 
+/// A folder of this process: tests run side by side.
+fs::path own_folder() {
+  const fs::path out =
+      fs::path(testing::TempDir()) / ("umov_mesh_file_" + std::to_string(getpid()));
+  fs::create_directories(out);
+  return out;
+}
+
 /// Writes a file and reads it as a mesh.
 Result<MeshFile> read(const std::string &name, const std::string &bytes,
                       const MeshFileOptions &options = metres, Diagnostics *told = nullptr) {
-  const fs::path folder = fs::path(testing::TempDir()) / "umov_mesh_file_test";
-  fs::create_directories(folder);
+  const fs::path folder = own_folder();
   EXPECT_TRUE(write_file_atomically(folder / name, bytes));
   Diagnostics diagnostics;
   return read_mesh(folder / name, options, told != nullptr ? *told : diagnostics);
@@ -355,7 +363,7 @@ class MeshWritten : public testing::TestWithParam<const char *> {};
 
 TEST_P(MeshWritten, ReadsBackTheSame) {
   Mesh mesh = make_hst();
-  const fs::path path = fs::path(testing::TempDir()) / (std::string("hst.") + GetParam());
+  const fs::path path = own_folder() / (std::string("hst.") + GetParam());
   Diagnostics diagnostics;
   ASSERT_TRUE(write_mesh(path, mesh, diagnostics));
   const bool is_gltf = std::string(GetParam()).starts_with("gl");
@@ -396,7 +404,7 @@ TEST(MeshFile, ComesFromTheBytesThatWereGiven) {
   ASSERT_TRUE(out) << out.error().text();
   EXPECT_EQ(out->mesh.triangles.size(), 1u);
   // Assimp opens the file itself: one that is not what was given is noticed.
-  const fs::path path = fs::path(testing::TempDir()) / "changed.off";
+  const fs::path path = own_folder() / "changed.off";
   const std::string off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   ASSERT_TRUE(write_file_atomically(path, off));
   EXPECT_TRUE(read_mesh_bytes(off, path, metres, diagnostics));
@@ -419,7 +427,7 @@ TEST(MeshFile, KeepsTheTreeWhenWritten) {
           {"name": "right", "mesh": 0, "translation": [0, 5, 0]}])");
   const auto first = square.read();
   ASSERT_TRUE(first) << first.error().text();
-  const fs::path path = fs::path(testing::TempDir()) / "tree.glb";
+  const fs::path path = own_folder() / "tree.glb";
   Diagnostics diagnostics;
   ASSERT_TRUE(write_mesh(path, first->mesh, diagnostics));
   const auto second = read_mesh(path, {}, diagnostics);
