@@ -9,8 +9,8 @@ umov::Result<void> print_passes(const std::string &file, const std::string &plac
   UMOV_ASSIGN(site, umov::site_from(place));
   const umov::Trajectory orbit(sets.front());
   const umov::Epoch<umov::Utc> start = sets.front().epoch;
-  UMOV_ASSIGN(passes, umov::find_passes(orbit, site, start, umov::plus_seconds(start, 86400), {}));
-  for (const umov::SitePass &pass : passes)
+  UMOV_ASSIGN(found, umov::find_passes(orbit, site, start, umov::plus_seconds(start, 86400), {}));
+  for (const umov::SitePass &pass : found.passes)
     std::printf("%s  %4.0f s  up to %2.0f deg  %3.0f %% sunlit\n",
                 umov::to_iso(pass.rise.time, 0).c_str(),
                 umov::seconds_between(pass.set.time, pass.rise.time),
