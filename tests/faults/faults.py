@@ -155,4 +155,4 @@ def contents(path):
     if path.is_file():
         return path.read_bytes()
     return {one.name: one.read_bytes() for one in sorted(path.iterdir())
-            if one.name not in ("manifest.json", "index.html")}
+            if one.name not in ("manifest.json", "index.html", "speed.ecsv")}
