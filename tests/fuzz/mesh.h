@@ -2,6 +2,7 @@
 // Meshes there and back.
 
 #include "fuzz/target.h"
+#include "io/mesh/mesh_parts.h"
 
 #include <cmath>
 #include <umov/core/diagnostics.h>
@@ -55,6 +56,26 @@ void check_written_twice(const Mesh &mesh, const Read &read, const Write &write)
   const std::string second = write(back->mesh);
   const auto again = must(read(second), "what was read can be written and read");
   require(is_same_shape(back->mesh, again.mesh), "32 bits keep what has 32 bits");
+}
+
+/// One format: read as read_mesh_bytes reads it, but whatever the bytes look like; there and back
+/// by each writer.
+template <class Reader, class... Writers>
+int try_format(std::string_view bytes, const MeshFileOptions &options, const Reader &reader,
+               const Writers &...writers) {
+  const auto read = [&](std::string_view text) -> Result<MeshFile> {
+    Diagnostics diagnostics;
+    auto out = reader(text, options, diagnostics);
+    if (out)
+      UMOV_TRY(mesh_io::to_body_frame(*out, options, "input", diagnostics));
+    return out;
+  };
+  const auto mesh = read(bytes);
+  if (!is_read(mesh))
+    return 0;
+  check_mesh(mesh->mesh);
+  (check_written_twice(mesh->mesh, read, writers), ...);
+  return 0;
 }
 
 } // namespace umov::fuzz

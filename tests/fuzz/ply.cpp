@@ -2,29 +2,14 @@
 
 #include "fuzz/mesh.h"
 
-#include "io/mesh/mesh_parts.h"
 #include "io/mesh/readers.h"
-
-namespace {
-
-umov::Result<umov::MeshFile> read(std::string_view bytes) {
-  using namespace umov;
-  Diagnostics diagnostics;
-  const MeshFileOptions options = fuzz::mesh_options();
-  auto out = mesh_io::read_ply(bytes, "input", options, diagnostics);
-  if (out)
-    UMOV_TRY(mesh_io::to_body_frame(*out, options, "input", diagnostics));
-  return out;
-}
-
-} // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
   using namespace umov;
-  const auto mesh = read(fuzz::text_of(data, size));
-  if (!fuzz::is_read(mesh))
-    return 0;
-  fuzz::check_mesh(mesh->mesh);
-  fuzz::check_written_twice(mesh->mesh, read, mesh_io::write_ply);
-  return 0;
+  const auto reader = [](std::string_view bytes, const MeshFileOptions &options,
+                         Diagnostics &diagnostics) {
+    return mesh_io::read_ply(bytes, "input", options, diagnostics);
+  };
+  return fuzz::try_format(fuzz::text_of(data, size), fuzz::mesh_options(), reader,
+                          mesh_io::write_ply);
 }
