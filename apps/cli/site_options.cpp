@@ -1,6 +1,7 @@
 #include "site_options.h"
 
 #include <umov/io/sites.h>
+#include <umov/time/earth_orientation.h>
 
 namespace umov::cli {
 
@@ -19,6 +20,11 @@ void add_site(CLI::App &verb, SiteOptions &o) {
 void add_earth_orientation(CLI::App &verb, std::string &file) {
   verb.add_option("--eop", file,
                   "Table of Earth orientation (IERS finals2000A) in place of the compiled-in one");
+}
+
+Result<void> take_earth_orientation(const SiteOptions &o) {
+  return o.earth_orientation.empty() ? Result<void>()
+                                     : use_earth_orientation_file(o.earth_orientation);
 }
 
 Result<Site> site_of(const SiteOptions &o) {

@@ -15,6 +15,8 @@ void add_site(CLI::App &verb, SiteOptions &options);
 
 /// A table of Earth orientation in place of the compiled-in one.
 void add_earth_orientation(CLI::App &verb, std::string &file);
+/// Takes that table for this process, where one is given.
+Result<void> take_earth_orientation(const SiteOptions &options);
 
 /// Usage where nothing, or not all of it, is said.
 Result<Site> site_of(const SiteOptions &options);

@@ -6,7 +6,6 @@
 #include "verbs.h"
 
 #include <umov/jobs/ephemeris.h>
-#include <umov/time/earth_orientation.h>
 
 namespace umov::cli {
 namespace {
@@ -48,8 +47,7 @@ Result<void> put_outcome(const OrbitOptions &o, const jobs::TableOutcome &out,
 Result<void> run_ephemeris(const OrbitOptions &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
   UMOV_ASSIGN(site, site_of(o.site));
-  if (!o.site.earth_orientation.empty())
-    UMOV_TRY(use_earth_orientation_file(o.site.earth_orientation));
+  UMOV_TRY(take_earth_orientation(o.site));
   UMOV_ASSIGN(start, utc_from_iso(o.start));
   UMOV_ASSIGN(stop, utc_from_iso(o.stop));
   const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;

@@ -6,7 +6,6 @@
 #include "verbs.h"
 
 #include <umov/jobs/passes.h>
-#include <umov/time/earth_orientation.h>
 
 namespace umov::cli {
 namespace {
@@ -39,8 +38,7 @@ Result<jobs::PassModel> model_of(const PassesOptions &o) {
 Result<jobs::PassesRequest> request_of(const PassesOptions &o) {
   jobs::PassesRequest out;
   UMOV_ASSIGN(site, site_of(o.site));
-  if (!o.site.earth_orientation.empty())
-    UMOV_TRY(use_earth_orientation_file(o.site.earth_orientation));
+  UMOV_TRY(take_earth_orientation(o.site));
   UMOV_ASSIGN(start, utc_from_iso(o.start));
   UMOV_ASSIGN(stop, utc_from_iso(o.stop));
   UMOV_ASSIGN(model, model_of(o));

@@ -101,9 +101,7 @@ Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks bloc
       one.request, *models.light, models.many_directions.get(),
       [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
       monitor.cancel != nullptr ? *monitor.cancel : never, blocks);
-  UMOV_TRY(models.light->keep_masks());
-  if (models.many_directions)
-    UMOV_TRY(models.many_directions->keep_masks());
+  UMOV_TRY(models.keep_masks());
   return out;
 }
 

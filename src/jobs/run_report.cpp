@@ -44,10 +44,6 @@ std::vector<std::pair<std::string, std::string>> manifest_lines(const Scenario &
   return out;
 }
 
-/// I is three times its half-width: below that a magnitude or a degree of polarization says
-/// nothing.
-bool is_known(const LightCurveSample &s) { return s.intensity > 3 * s.half_width.i; }
-
 struct PassNumbers {
   double brightest = std::numeric_limits<double>::infinity(), faintest = -brightest;
   double p_max = 0, phase_min = 180, phase_max = 0;
@@ -65,12 +61,13 @@ PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
     out.phase_max = std::max(out.phase_max, phase);
     for (std::size_t b = 0; b < bands; ++b) {
       const LightCurveSample &s = curve.samples[i * bands + b];
-      out.has_unknown = out.has_unknown || !is_known(s);
-      if (!is_known(s) || std::isnan(s.magnitude))
+      const bool is_told = is_known(s.intensity, s.half_width);
+      out.has_unknown = out.has_unknown || !is_told;
+      if (!is_told || std::isnan(s.magnitude))
         continue;
       out.brightest = std::min(out.brightest, s.magnitude);
       out.faintest = std::max(out.faintest, s.magnitude);
-      if (!std::isnan(s.p) && std::hypot(s.half_width.q, s.half_width.u) < 0.1 * s.intensity)
+      if (!std::isnan(s.p) && is_p_known(s.intensity, s.half_width))
         out.p_max = std::max(out.p_max, s.p);
     }
   }

@@ -269,6 +269,11 @@ void count_rows(LightCurveOutcome &out) {
 
 } // namespace
 
+Result<void> LightModels::keep_masks() const {
+  UMOV_TRY(light->keep_masks());
+  return many_directions ? many_directions->keep_masks() : Result<void>();
+}
+
 Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene) {
   LightOptions options = request.light;
   options.threads = request.threads;
@@ -312,9 +317,7 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, 
   UMOV_ASSIGN(models, make_light_models(request, scene));
   auto out =
       compute_light_curve(request, *models.light, models.many_directions.get(), progress, cancel);
-  UMOV_TRY(models.light->keep_masks());
-  if (models.many_directions)
-    UMOV_TRY(models.many_directions->keep_masks());
+  UMOV_TRY(models.keep_masks());
   return out;
 }
 

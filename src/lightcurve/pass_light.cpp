@@ -98,13 +98,13 @@ void take(const BandResult &light, const ObservingGeometry &g, const Band &band,
   const auto &[s, half_width] = light;
   const ObservedLight observed =
       observed_light(s.i, band, solar, {g.sun_distance_km, g.range_km, g.sunlit});
-  if (!(observed.irradiance > 0) || !(s.i > 3 * half_width.i))
+  if (!(observed.irradiance > 0) || !is_known(s.i, half_width))
     return;
   const double magnitude = observed.magnitude;
   // fmin and fmax take the number where one of the two is none.
   pass.magnitude_min = std::fmin(pass.magnitude_min, magnitude);
   pass.magnitude_max = std::fmax(pass.magnitude_max, magnitude);
-  if (std::hypot(half_width.q, half_width.u) + half_width.i < 0.1 * s.i)
+  if (is_p_known(s.i, half_width))
     pass.p_max = std::fmax(pass.p_max, std::hypot(s.q, s.u) / s.i);
 }
 
@@ -114,7 +114,7 @@ void take(const BandResult &light, const ObservingGeometry &g, const Band &band,
 Result<void> PassLight::add_glints(const State &state, const Track &track,
                                    std::vector<ObservingGeometry> &lit, SitePass &pass) {
   const Epoch<Utc> origin = lit.front().time;
-  const std::vector<Joint> joints = joints_of(state.joints);
+  const std::vector<Joint> &joints = state.light->joints();
   const double last_s = seconds_between(lit.back().time, origin);
   const double rate = track.half_vector_rate(lit), half_disk = 0.5 * sun_radius_rad(lit.front());
   std::vector<Glint> all;

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -13,6 +14,14 @@ struct BandResult {
   Stokes<ScatteringPlane> stokes;     ///< [m2/sr] per unit solar irradiance
   Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths of I, Q, U, V
 };
+/// I is more than three times its half-width: below that a magnitude says nothing.
+inline bool is_known(double i, const Stokes<ScatteringPlane> &half_width) {
+  return i > 3 * half_width.i;
+}
+/// p is known to 0.1.
+inline bool is_p_known(double i, const Stokes<ScatteringPlane> &half_width) {
+  return std::hypot(half_width.q, half_width.u) + half_width.i < 0.1 * i;
+}
 /// Adds light of its own error: half-widths in quadrature.
 void add(const BandResult &more, BandResult &to);
 

@@ -49,6 +49,9 @@ struct LightModels {
   /// For light of the Earth and the Moon, asked for hundreds of directions at each epoch; null
   /// where neither is wanted.
   std::unique_ptr<LightModel> many_directions;
+
+  /// LightModel::keep_masks of both.
+  [[nodiscard]] Result<void> keep_masks() const;
 };
 
 /// Models for what is asked of a scene.
