@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <umov/light/engine_audit.h>
+#include <umov/light/light_model.h>
 #include <umov/light/poses.h>
 
 namespace umov::bench {
@@ -90,6 +91,9 @@ public:
       options.masks = one.masks;
       options.cluster_rad = one.cluster_rad;
       options.is_intensity_only = one.is_intensity_only;
+      if (one.masks.refine_above > 0) // as LightMethod::Auto has it: no rays for what is dark
+        for (const double light : typical_light(*scene_))
+          options.floor_i.push_back(default_accuracy_floor(LightMethod::Auto) * light);
       engine_.emplace(*scene_, options);
       key_ = key;
     }

@@ -32,14 +32,12 @@ namespace {
 
 /// [render] of a scenario; where it asks for no accuracy, that of ranges over a pass.
 LightOptions options_of(const Scenario &scene, const JobOptions &job) {
-  LightOptions out = pass_light_options();
-  if (scene.places.contains("render.accuracy"))
-    out = light_options(scene, job);
-  out.method = scene.light.method;
-  out.accuracy_floor = scene.light.accuracy_floor;
-  out.bounces = scene.light.bounces;
-  out.threads = job.threads;
-  out.mask_cache = job.mask_cache;
+  LightOptions out = light_options(scene, job);
+  if (!scene.places.contains("render.accuracy")) {
+    const LightOptions ranges = pass_light_options();
+    out.accuracy = ranges.accuracy;
+    out.max_points = ranges.max_points;
+  }
   return out;
 }
 

@@ -110,9 +110,11 @@ std::vector<Found> search_all(const PassesRequest &request, const std::vector<Tr
     if (const PassLight *light = models.of(orbits[i].norad_cat_id()))
       search.on_pass = [&, light](SitePass &pass, std::span<const ObservingGeometry> samples) {
         return light->describe(orbits[i], request.site, request.shadow, models.band(), samples,
-                               pass);
+                               pass, monitor.cancel);
       };
     out[i] = find_passes(orbits[i], request.site, request.start, request.stop, search);
+    if (!*out[i] && out[i]->error().code == ErrorCode::Interrupted)
+      return out[i].reset(); // as if it had not been begun
     const WriteLock guard(lock);
     monitor.advance("objects", ++done, orbits.size());
   });

@@ -38,7 +38,8 @@ Result<Stokes<ScatteringPlane>> source_of(const SignatureRequest &request) {
 }
 
 /// What the options say against each other.
-Result<void> check_request(const Scenario &scenario, const SignatureRequest &request) {
+Result<void> check_request(const Scenario &scenario, const SignatureRequest &request,
+                           LightMethod method) {
   if (scenario.objects.size() > 1)
     return fail(ErrorCode::BadInput,
                 fmt::format("holds {} objects; a signature is of one. Keep one [[object]].",
@@ -49,7 +50,7 @@ Result<void> check_request(const Scenario &scenario, const SignatureRequest &req
     return fail(ErrorCode::Usage, "masks are for sunlight; a laser takes rays, own heat paths");
   if ((request.source == Source::Thermal) != !request.temperatures.empty())
     return fail(ErrorCode::Usage, "--source thermal and --temperature go together");
-  if (!request.mask_file.empty() && request.method == LightMethod::Rays)
+  if (!request.mask_file.empty() && method == LightMethod::Rays)
     return fail(ErrorCode::Usage, "--masks goes with --visibility masks or auto");
   return {};
 }
@@ -60,7 +61,7 @@ Result<std::unique_ptr<LightModel>> light_of(const Scene &scene, const std::vect
   if (request.source != Source::Thermal)
     return make_light(scene, joints, options);
   UMOV_ASSIGN(kelvin, temperatures_of(request.temperatures, scene.mesh));
-  return make_thermal_light(scene, kelvin, options);
+  return make_thermal_light(scene, joints, kelvin, options);
 }
 
 /// What the header says of the source and of how hiding was decided.
@@ -180,12 +181,12 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
                        const SignatureRequest &request, TableSink &sink, const JobOptions &options,
                        const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(source, source_of(request));
-  UMOV_TRY(check_request(scenario, request));
+  const LightOptions light = light_asked_for(scenario, request, source, options);
+  UMOV_TRY(check_request(scenario, request, light.method));
   const bool is_sun = request.source == Source::Sun, is_emitted = request.source == Source::Thermal;
   UMOV_ASSIGN(
       object,
       load_object(scenario, 0, {.allow_old_elements = true, .source_is_sun = is_sun}, diagnostics));
-  const LightOptions light = light_asked_for(scenario, request, source, options);
   UMOV_ASSIGN(journal, open_journal(options, job_of(scenario, object.inputs, poses, request, light),
                                     monitor, diagnostics));
   const bool had_file = file_exists(request.mask_file);
@@ -217,10 +218,10 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
                    fmt::format("stopped by the user after {} of {} poses", done, poses.count),
                    {}}),
         journal));
-  UMOV_TRY(model->keep_masks());
-  tell_of_masks(*model, request.mask_file, had_file, monitor);
   UMOV_TRY(sink.finish());
   journal.finish();
+  UMOV_TRY(model->keep_masks()); // last: the rows are complete without it
+  tell_of_masks(*model, request.mask_file, had_file, monitor);
   return {};
 }
 

@@ -13,12 +13,12 @@
 namespace umov::kernel {
 
 /// Variance of the disk's image over that of a Gaussian lobe: below `plain_max` cumulants beyond
-/// the second change nothing (1e-6 of the mean), up to `corrected_max` the fourth and the sixth
+/// the second change 5e-5 of the peak at most, up to `corrected_max` the fourth and the sixth
 /// tell the rest to 6e-4 of the peak; beyond, the image is cut into chords.
-inline constexpr double plain_max = 1e-3, corrected_max = 0.3;
+inline constexpr double plain_max = 0.02, corrected_max = 0.3;
 /// The same for GGX, with the square of the image's half axis over alpha^2: its Taylor series to
 /// fourth order holds to 4e-4 of the peak up to there.
-inline constexpr double ggx_plain_max = 1e-3, ggx_taylor_max = 0.1;
+inline constexpr double ggx_plain_max = 0.01, ggx_taylor_max = 0.1;
 
 /// The image of a disk of directions in half-vector space.
 struct DiskImage {
@@ -65,9 +65,9 @@ inline void put_chords(const DiskImage &disk, double width, double scale, DiskCh
   out.skew = disk.tangent * width * disk.along / (disk.along + width * width);
 }
 
-/// 1 - n.h where the squared sine of the angle is `sine2`; 4, which nothing reaches, from 90 deg
-/// on.
-inline double apart_of(double sine2) { return sine2 < 1 ? 1 - std::sqrt(1 - sine2) : 4; }
+/// 1 - n.h or more where the squared sine of the angle is `sine2`; 4, which nothing reaches, from
+/// 90 deg on.
+inline double apart_of(double sine2) { return sine2 < 1 ? 0.5 * sine2 * (1 + sine2) : 4; }
 
 /// Everything that a pose makes of a lobe. What `out` does not use stays as it was.
 inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage &disk,
@@ -106,10 +106,11 @@ inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage 
   // and takes what is added to it.
   out.along = (is_beckmann ? by.along - per_variance / 2 : by.along) * log2e;
   out.across = (is_beckmann ? by.across - per_variance / 2 : by.across) * log2e;
-  out.correction.per_along = per_variance / (1 + p);
-  out.correction.per_across = per_variance / (1 + q);
-  if (out.is_corrected)
+  if (out.is_corrected) {
+    out.correction.per_along = per_variance / (1 + p);
+    out.correction.per_across = per_variance / (1 + q);
     put_correction(4 * p / (1 + p), 4 * q / (1 + q), out.correction);
+  }
 }
 
 /// The same in single precision.
@@ -141,8 +142,12 @@ template <class V> V half_vector(V l, V v, V other) {
 }
 /// Mean half vector of the disk. `apart` is |l - v|.
 template <class V> V mean_half_vector(V l, V v, V other, double apart, const DiskImage &disk) {
-  const V half = half_vector(l, v, other);
-  return apart > 1e-7 ? normalized(half + (disk.shift() / apart) * (l - v)) : half;
+  if (!(apart > 1e-7))
+    return half_vector(l, v, other);
+  // The shift is the tangent of half the phase angle, |l - v|/|l + v|, times `along`.
+  const V mean = (l + v) - disk.along * (l - v);
+  const double length = norm(mean);
+  return length > 1e-12 ? (1 / length) * mean : other;
 }
 
 } // namespace umov::kernel

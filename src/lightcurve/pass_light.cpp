@@ -24,6 +24,7 @@ struct PassLight::State {
 
 namespace {
 
+constexpr const char *stopped = "stopped by the user in the middle of a pass";
 constexpr double phase_step_deg = 0.5;
 constexpr std::size_t phase_steps = 361;
 
@@ -112,6 +113,7 @@ void take(const BandResult &light, const ObservingGeometry &g, const Band &band,
 
 /// Glints of flats that give more than half of the light then; their geometries join `lit`.
 Result<void> PassLight::add_glints(const State &state, const Track &track,
+                                   const std::atomic<bool> *cancel,
                                    std::vector<ObservingGeometry> &lit, SitePass &pass) {
   const Epoch<Utc> origin = lit.front().time;
   const std::vector<Joint> &joints = state.light->joints();
@@ -136,10 +138,12 @@ Result<void> PassLight::add_glints(const State &state, const Track &track,
   LightTask task;
   task.has_glints = true;
   task.threads = 1;
+  task.cancel = cancel;
   for (const Glint &glint : all) {
     UMOV_ASSIGN(point, track.at(plus_seconds(origin, glint.seconds)));
     StokesTable table;
-    (void)state.light->evaluate({&point.pose, 1}, point.joint_angles_rad, table, task);
+    if (!state.light->evaluate({&point.pose, 1}, point.joint_angles_rad, table, task))
+      return fail(ErrorCode::Interrupted, stopped);
     if (!(point.geometry.sunlit > 0) || !(table.glint_share[0] > 0.5))
       continue;
     pass.glints.push_back({point.geometry.time, glint.width_s});
@@ -150,7 +154,7 @@ Result<void> PassLight::add_glints(const State &state, const Track &track,
 
 Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
                                  std::size_t band, std::span<const ObservingGeometry> samples,
-                                 SitePass &pass) const {
+                                 SitePass &pass, const std::atomic<bool> *cancel) const {
   const State &state = *state_;
   std::vector<ObservingGeometry> lit;
   for (const ObservingGeometry &g : samples)
@@ -171,7 +175,7 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
   }
   UMOV_ASSIGN(track, Track::make({orbit, site, shadow, state.attitude, state.joints,
                                   state.has_solar_disk}));
-  UMOV_TRY(add_glints(state, track, lit, pass)); // first: their peaks count for the magnitudes
+  UMOV_TRY(add_glints(state, track, cancel, lit, pass)); // first: their peaks count for the magnitudes
   std::vector<Pose> poses;
   std::vector<double> angles;
   for (const ObservingGeometry &g : lit) {
@@ -182,7 +186,9 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
   StokesTable table;
   LightTask task;
   task.threads = 1; // objects are side by side
-  (void)state.light->evaluate(poses, angles, table, task);
+  task.cancel = cancel;
+  if (!state.light->evaluate(poses, angles, table, task))
+    return fail(ErrorCode::Interrupted, stopped);
   for (std::size_t k = 0; k < poses.size(); ++k)
     take(table.at(k, band), lit[k], state.bands[band], state.solar[band], pass);
   return {};

@@ -112,7 +112,8 @@ const char *name_of(LightMethod method);
 double default_accuracy_floor(LightMethod method);
 
 /// The model for a scene: the one place that decides how it is lit. `joints` have passed
-/// check_joints. BadInput for a mask file that does not fit.
+/// check_joints. BadInput for options outside their ranges, a mask file that does not fit, and one
+/// for an object whose parts turn.
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
                                                const LightOptions &options);
 
@@ -124,6 +125,7 @@ make_light_for_many(const Scene &scene, std::vector<Joint> joints, LightOptions 
 /// What the body emits by itself at temperatures [K] of its mesh groups: Stokes [W sr-1 nm-1], from
 /// up to options.bounces surfaces. BadInput as ThermalEmission::make.
 Result<std::unique_ptr<LightModel>> make_thermal_light(const Scene &scene,
+                                                       std::vector<Joint> joints,
                                                        std::span<const double> temperature_k,
                                                        const LightOptions &options);
 

@@ -35,10 +35,10 @@ public:
   /// Fills magnitudes, largest p and glints of a pass from its samples (those with sunlight), in
   /// one band. Samples whose I is not three times its half-width count for neither magnitude, those
   /// whose p is not known to 0.1 not for p. Glints: candidates of flats, of parts that turn too,
-  /// that give more than half of the light at their time.
+  /// that give more than half of the light at their time. Interrupted if `cancel` became true.
   Result<void> describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
                         std::size_t band, std::span<const ObservingGeometry> samples,
-                        SitePass &pass) const;
+                        SitePass &pass, const std::atomic<bool> *cancel = nullptr) const;
   /// LightModel::keep_masks.
   [[nodiscard]] Result<void> keep_masks() const;
   /// Bands that `describe` can be asked for.
@@ -47,6 +47,7 @@ public:
 private:
   struct State;
   static Result<void> add_glints(const State &state, const Track &track,
+                                 const std::atomic<bool> *cancel,
                                  std::vector<ObservingGeometry> &lit, SitePass &pass);
   std::shared_ptr<const State> state_;
 };

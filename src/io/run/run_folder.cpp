@@ -291,7 +291,11 @@ std::string make_manifest(const ManifestInput &input) {
   out["version"] = version;
   out["git"] = source_revision;
   out["conventions_version"] = conventions_version;
+  #ifdef __clang__
+  out["compiler"] = __VERSION__; // names itself
+#else
   out["compiler"] = "g++ " __VERSION__;
+#endif
   out["command_line"] = input.command_line;
   out["status"] = input.stopped.empty() ? complete : stopped_early;
   if (!input.stopped.empty())

@@ -9,77 +9,6 @@
 namespace umov {
 namespace {
 
-struct Sphere {
-  Vec3<Body> centre{};
-  double radius = 0;
-};
-
-Sphere around(std::span<const Vec3<Body>> points) {
-  Vec3<Body> low{INFINITY, INFINITY, INFINITY}, high = -1 * low;
-  for (const Vec3<Body> &p : points) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  Sphere out{(low + high) / 2, 0};
-  for (const Vec3<Body> &p : points)
-    out.radius = std::max(out.radius, norm(p - out.centre));
-  return out;
-}
-
-/// Spheres that hold a mesh: its triangles halved along their longest spread until there are 32.
-std::vector<Sphere> cover(const Mesh &mesh) {
-  constexpr std::size_t pieces = 32;
-  std::vector<std::vector<std::uint32_t>> parts{{}};
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    parts[0].push_back(t);
-  const auto corners = [&](const std::vector<std::uint32_t> &of) {
-    std::vector<Vec3<Body>> out;
-    for (const std::uint32_t t : of)
-      for (const std::uint32_t v : mesh.triangles[t].vertex)
-        out.push_back(mesh.positions[v]);
-    return out;
-  };
-  while (parts.size() < pieces) {
-    const auto largest = std::max_element(parts.begin(), parts.end(), [&](auto &a, auto &b) {
-      return (a.size() < 2 ? 0 : around(corners(a)).radius) <
-             (b.size() < 2 ? 0 : around(corners(b)).radius);
-    });
-    if (largest->size() < 2)
-      break;
-    const auto points = corners(*largest);
-    Vec3<Body> low = points[0], high = points[0];
-    for (const Vec3<Body> &p : points) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    const Vec3<Body> d = high - low;
-    const auto along = [&](std::uint32_t t) {
-      const Triangle &x = mesh.triangles[t];
-      const Vec3<Body> c =
-          mesh.positions[x.vertex[0]] + mesh.positions[x.vertex[1]] + mesh.positions[x.vertex[2]];
-      return d.x >= d.y && d.x >= d.z ? c.x : d.y >= d.z ? c.y : c.z;
-    };
-    std::stable_sort(largest->begin(), largest->end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return along(a) < along(b); });
-    const auto half = static_cast<std::ptrdiff_t>(largest->size() / 2);
-    std::vector<std::uint32_t> rest(largest->begin() + half, largest->end());
-    largest->erase(largest->begin() + half, largest->end());
-    parts.push_back(std::move(rest));
-  }
-  std::vector<Sphere> out;
-  for (const auto &part : parts)
-    if (!part.empty())
-      out.push_back(around(corners(part)));
-  return out;
-}
-
-/// Something of `other` may stand in a direction from something of `from`.
-bool may_hide(const Sphere &from, const Sphere &other, Vec3<Body> direction) {
-  const Vec3<Body> w = other.centre - from.centre;
-  const double reach = from.radius + other.radius, ahead = dot(w, direction);
-  return ahead > -reach && dot(w, w) - ahead * ahead < reach * reach;
-}
-
 /// A pose as a part sees it that has moved.
 Pose seen_from(const PartMotion &motion, Pose pose) {
   const PartMotion own = motion.inverse();
@@ -102,6 +31,10 @@ Scene part_of(const Scene &scene, const std::vector<std::size_t> &joint_of, std:
   return out;
 }
 
+/// What one part may hide of another is looked for with so many points that this part of the whole
+/// light may be missed where no accuracy is asked for (standard deviation).
+constexpr double others_missed = 0.003;
+
 } // namespace
 
 struct ArticulatedEngine::State {
@@ -109,213 +42,250 @@ struct ArticulatedEngine::State {
     std::unique_ptr<Engine::State> engine;
     Occluder occluder;
     std::vector<Sphere> cover;
-    std::vector<std::vector<Vec3<Body>>> points; ///< [group * lanes + lane]: ray origins
-    std::vector<Sphere> bounds;                  ///< of the same classes
+    RefinePoints points;
 
     Part(const Scene &scene, const EngineOptions &options);
   };
   std::vector<Joint> joints;
   std::vector<std::size_t> motion_of; ///< per part: its joint, or joints.size()
-  std::vector<Part> parts;
+  std::vector<std::unique_ptr<Part>> parts;
   std::size_t bands = 0;
   bool has_u_or_v = false;
+  double refine_above = 0;
 
+  /// What one thread needs of a part.
+  struct PartWork {
+    explicit PartWork(const Part &part);
+    Engine::State::Workspace own;
+    Engine::State::Prepared prepared;
+    Pose pose; ///< in the part's axes
+    std::vector<OtherPart> others;
+    bool has_light = false;
+    std::vector<std::uint32_t> material; ///< per slot
+  };
   /// What one thread needs.
   struct Workspace {
-    std::vector<Engine::State::Workspace> parts;
-    std::vector<Engine::State::Prepared> prepared; ///< per part
-    std::vector<Pose> pose;                        ///< per part, in its axes
-    std::vector<char> is_seen;                     ///< per part
-    BandLight total;
-    std::vector<Vec3<Body>> points;
-    std::vector<Occluder::Point> origins, directions;
-    std::vector<unsigned char> free;
-    BandLight left;                                   ///< after what parts hide of each other
-    bool is_mended = false;                           ///< rays were traced for some part
-    std::vector<std::vector<std::uint32_t>> material; ///< [part][slot]
-    std::size_t materials = 0;                        ///< 0: none are asked for
+    std::vector<PartWork> parts;
+    BandLight total;           ///< [m2/sr]
+    std::size_t materials = 0; ///< 0: none are asked for
   };
 
-  void evaluate(const Pose &pose, const std::vector<double> &angles, Workspace &work,
-                std::size_t row, StokesTable &out) const;
+  [[nodiscard]] Workspace workspace(std::size_t materials,
+                                    std::span<const std::uint32_t> material_of) const;
+  [[nodiscard]] std::vector<PartMotion> motions(std::span<const double> angles) const;
+  void evaluate(const Pose &pose, std::span<const double> angles, Workspace &work, std::size_t row,
+                StokesTable &out) const;
   [[nodiscard]] std::vector<ReadLock> hold_masks(std::span<const Pose> poses,
                                                  std::span<const double> angles_rad,
                                                  unsigned threads) const;
-  void light_parts(const std::vector<PartMotion> &motions, std::size_t row, Workspace &work,
-                   StokesTable &out) const;
-  void hide(std::size_t which, const std::vector<PartMotion> &to_part, Workspace &work) const;
-  [[nodiscard]] std::size_t points_for(const Engine::State &engine,
-                                       const Engine::State::Workspace &own, std::size_t k,
-                                       const BandLight &total) const;
-  [[nodiscard]] std::vector<bool> hidden(const Occluder &occluder, const PartMotion &there,
-                                         Vec3<Body> direction, Workspace &work) const;
+  bool add_up(const Pose &pose, const std::vector<PartMotion> &to_body, Workspace &work) const;
+  void place_others(std::size_t which, const std::vector<PartMotion> &to_body,
+                    PartWork &part) const;
+  void sum(Workspace &work) const;
+  void list(std::size_t which, PartWork &part) const;
+  void look_at_others(std::size_t which, PartWork &part) const;
+  void look_at_facet(const Engine::State &engine, std::size_t k, PartWork &part) const;
+  void take_roots(const Engine::State &engine, PartWork &part) const;
+  void mend(Workspace &work) const;
+  void put(const Pose &pose, const Workspace &work, std::size_t row, StokesTable &out) const;
+  void put_columns(Workspace &work, std::size_t row, StokesTable &out) const;
 };
 
 ArticulatedEngine::State::Part::Part(const Scene &scene, const EngineOptions &options)
     : engine(std::make_unique<Engine::State>(scene, options)), occluder(scene.mesh),
       cover(umov::cover(scene.mesh)) {
   engine->take_masks({});
-  const GroupPlan &plan = engine->plan;
-  points.resize(plan.groups.size() * backend::lanes);
-  bounds.resize(points.size());
-  double area = 0;
-  for (const FacetClass &c : engine->classes.list)
-    area += c.area_m2;
-  parallel_for(plan.groups.size(), options.threads, [&](std::size_t g) {
-    for (std::size_t lane = 0; lane < backend::lanes; ++lane) {
-      const std::uint32_t member = plan.groups[g].member[lane];
-      if (member == no_index)
-        continue;
-      // Large flats get more points: their light hangs on the edge of a shadow.
-      const double share = engine->classes.list[member].area_m2 / area;
-      const auto count = static_cast<std::size_t>(std::clamp(80'000 * share, 64.0, 4096.0));
-      auto &to = points[g * backend::lanes + lane];
-      for (const Occluder::Point &p :
-           spread_points(engine->scene, engine->elements, engine->classes, member, count, occluder)
-               .origin)
-        to.push_back(occluder.from_point(p));
-      bounds[g * backend::lanes + lane] = around(to);
-    }
-  });
+  points = RefinePoints(engine->scene, engine->elements, engine->classes, engine->plan, occluder);
 }
 
-/// Which of work.points (in this part's axes) another part hides in a direction; `there` takes
-/// them to the other part's axes.
-std::vector<bool> ArticulatedEngine::State::hidden(const Occluder &occluder,
-                                                   const PartMotion &there, Vec3<Body> direction,
-                                                   Workspace &work) const {
-  const Vec3<Body> d = there.turn * direction;
-  work.origins.clear();
-  for (const Vec3<Body> &p : work.points)
-    work.origins.push_back(occluder.to_point(there.place(p)));
-  work.directions.assign(work.points.size(), {static_cast<float>(d.x), static_cast<float>(d.y),
-                                              static_cast<float>(d.z)});
-  work.free.resize(work.points.size());
-  occluder.is_free(work.origins, work.directions, work.free);
-  std::vector<bool> out(work.points.size());
-  std::transform(work.free.begin(), work.free.end(), out.begin(),
-                 [](unsigned char free) { return free == 0; });
+ArticulatedEngine::State::PartWork::PartWork(const Part &part) : own(*part.engine) {
+  own.tracer.emplace(part.points, part.occluder, part.engine->hiding() != nullptr);
+}
+
+ArticulatedEngine::State::Workspace
+ArticulatedEngine::State::workspace(std::size_t materials,
+                                    std::span<const std::uint32_t> material_of) const {
+  Workspace out;
+  out.materials = materials;
+  for (const auto &part : parts) {
+    out.parts.emplace_back(*part);
+    for (std::size_t slot = 0; materials > 0 && slot < part->engine->compiled.slots.size(); ++slot)
+      out.parts.back().material.push_back(material_of[part->engine->compiled.slots[slot].front()]);
+  }
   return out;
 }
 
-/// Points that bring the error of a class down to a third of 0.3 % of the whole light, if sampling
-/// leaves 0.6 n^-3/4.
-std::size_t ArticulatedEngine::State::points_for(const Engine::State &engine,
-                                                 const Engine::State::Workspace &own, std::size_t k,
-                                                 const BandLight &total) const {
-  constexpr double wanted = 0.003, fewest = 24;
-  double weight = 0;
-  for (std::size_t b = 0; b < bands; ++b)
-    weight =
-        std::max(weight, own.facet_light[k * bands + b].i * own.uncertain[k].area *
-                             engine.compiled.area_m2 / (wanted * std::max(total.i[b], 1e-300)));
-  return static_cast<std::size_t>(std::max(std::pow(3 * 0.6 * weight, 4.0 / 3), fewest));
+/// Of all joints, and of what stands still.
+std::vector<PartMotion> ArticulatedEngine::State::motions(std::span<const double> angles) const {
+  std::vector<PartMotion> out = part_motions(joints, {angles.begin(), angles.end()});
+  out.emplace_back();
+  return out;
 }
 
-/// Takes away what other parts hide of this one's visible areas. work.total: the light without
-/// that.
-void ArticulatedEngine::State::hide(std::size_t which, const std::vector<PartMotion> &to_part,
-                                    Workspace &work) const {
-  const Part &part = parts[which];
-  const Pose &pose = work.pose[which];
-  const Engine::State::Prepared &prepared = work.prepared[which];
-  const Engine::State &engine = *part.engine;
-  Engine::State::Workspace &own = work.parts[which];
-  std::vector<std::vector<Sphere>> others(parts.size());
-  for (std::size_t q = 0; q < parts.size(); ++q)
-    for (const Sphere &sphere : parts[q].cover)
-      if (q != which)
-        others[q].push_back({to_part[q].inverse().place(sphere.centre), sphere.radius});
-  own.uncertain.reset(engine.views.whole.groups.size() * backend::lanes);
-  backend::list_seen(engine.views.whole, engine.hiding(), mask_error, prepared.pose, own.uncertain);
-  // Those that another part may come before.
-  const auto is_apart = [&](const backend::SeenFacet &facet) {
-    const Sphere &bounds = part.bounds[facet.group * backend::lanes + facet.lane];
-    for (const auto &spheres : others)
-      for (const Sphere &other : spheres)
-        if (may_hide(bounds, other, pose.sun) || may_hide(bounds, other, pose.observer))
-          return false;
-    return true;
-  };
-  own.uncertain.truncate(static_cast<std::size_t>(
-      std::remove_if(own.uncertain.begin(), own.uncertain.end(), is_apart) -
-      own.uncertain.begin()));
-  own.nothing.assign(engine.terms_max(), 0);
-  own.facet_light.assign(own.uncertain.size() * bands, {});
-  own.weights.assign(own.uncertain.size() * engine.terms_max(), 0);
-  for (std::size_t k = 0; k < own.uncertain.size(); ++k) {
-    backend::SeenFacet &facet = own.uncertain[k];
-    const std::size_t at = facet.group * backend::lanes + facet.lane;
-    engine.weigh(pose, prepared, k, own);
-    const std::vector<Vec3<Body>> &all = part.points[at];
-    const std::size_t count = std::min(all.size(), points_for(engine, own, k, work.total));
-    work.points.clear();
-    for (std::size_t i = 0; i < count; ++i) // spread over all of them
-      work.points.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
-    std::vector<bool> is_lost(count, false);
-    for (std::size_t q = 0; q < parts.size(); ++q)
-      for (const Vec3<Body> direction : {pose.sun, pose.observer}) {
-        const bool is_near =
-            std::any_of(others[q].begin(), others[q].end(), [&](const Sphere &other) {
-              return may_hide(part.bounds[at], other, direction);
-            });
-        if (!is_near)
-          continue;
-        const auto gone = hidden(parts[q].occluder, to_part[q], direction, work);
-        for (std::size_t i = 0; i < count; ++i)
-          is_lost[i] = is_lost[i] || gone[i];
-      }
-    if (std::none_of(is_lost.begin(), is_lost.end(), [](bool lost) { return lost; }))
+void ArticulatedEngine::State::place_others(std::size_t which,
+                                            const std::vector<PartMotion> &to_body,
+                                            PartWork &part) const {
+  part.others.clear();
+  for (std::size_t q = 0; q < parts.size(); ++q) {
+    if (q == which)
       continue;
-    // Of the points that the part itself leaves free, those that others hide.
-    std::vector<bool> is_free(count, true);
-    if (engine.hiding() != nullptr)
-      for (const Vec3<Body> direction : {pose.sun, pose.observer}) {
-        const auto gone = hidden(part.occluder, {}, direction, work);
-        for (std::size_t i = 0; i < count; ++i)
-          is_free[i] = is_free[i] && !gone[i];
-      }
-    std::size_t free = 0, lost = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      free += is_free[i] ? 1u : 0u;
-      lost += is_free[i] && is_lost[i] ? 1u : 0u;
-    }
-    if (free == 0 || lost == 0)
-      continue;
-    const double n = static_cast<double>(free), share = static_cast<double>(lost) / n;
-    const double before = facet.area;
-    engine.change_area(k, -before * share, own);
-    // One pseudo-disagreement stands for slivers that no point has found.
-    const double unsure = std::clamp(share, 0.5 / n, 1 - 0.5 / n);
-    engine.add_variance(k,
-                        before * before * static_cast<double>(mask_error.points) * unsure *
-                            (1 - unsure) / (n * std::sqrt(n)),
-                        own);
+    OtherPart other{&parts[q]->occluder,
+                    to_body[motion_of[q]].inverse() * to_body[motion_of[which]],
+                    {}};
+    const PartMotion back = other.there.inverse();
+    for (const Sphere &sphere : parts[q]->cover)
+      other.cover.push_back({back.place(sphere.centre), sphere.radius});
+    part.others.push_back(std::move(other));
   }
-  engine.take_roots(own, true);
+  part.own.tracer->set_others(part.others);
 }
 
-void ArticulatedEngine::State::evaluate(const Pose &pose, const std::vector<double> &angles,
-                                        Workspace &work, std::size_t row, StokesTable &out) const {
-  std::vector<PartMotion> motions = part_motions(joints, angles);
-  motions.emplace_back(); // what stands still
-  work.total.reset(bands, true);
-  work.is_seen.assign(parts.size(), 0);
+/// The light of every part as if it were alone; false if no part has any, beyond doubt.
+bool ArticulatedEngine::State::add_up(const Pose &pose, const std::vector<PartMotion> &to_body,
+                                      Workspace &work) const {
+  bool is_any = false;
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    work.pose[p] = seen_from(motions[motion_of[p]], pose);
-    const Engine::State &engine = *parts[p].engine;
-    engine.prepare(work.pose[p], work.prepared[p]);
-    if (!engine.sum(work.pose[p], work.prepared[p], work.parts[p]))
-      continue;
-    work.is_seen[p] = 1;
-    engine.colour(work.parts[p]);
-    work.total.add_scaled(work.parts[p].light, engine.compiled.area_m2);
+    const Engine::State &engine = *parts[p]->engine;
+    PartWork &part = work.parts[p];
+    part.pose = seen_from(to_body[motion_of[p]], pose);
+    engine.prepare(part.pose, part.prepared);
+    part.has_light = engine.add_up(part.pose, part.prepared, part.own);
+    is_any = is_any || part.has_light;
+    if (part.has_light)
+      place_others(p, to_body, part);
   }
-  if (std::find(work.is_seen.begin(), work.is_seen.end(), 1) == work.is_seen.end())
+  return is_any;
+}
+
+/// The light of the whole from the sums of its parts.
+void ArticulatedEngine::State::sum(Workspace &work) const {
+  work.total.reset(bands, true);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    PartWork &part = work.parts[p];
+    if (!part.has_light)
+      continue;
+    parts[p]->engine->colour(part.own);
+    work.total.add_scaled(part.own.light, parts[p]->engine->compiled.area_m2);
+  }
+}
+
+/// Facets to look at: all that could be seen, with variances of their own, where an accuracy is
+/// asked for; else those that another part may come before.
+void ArticulatedEngine::State::list(std::size_t which, PartWork &part) const {
+  const Engine::State &engine = *parts[which]->engine;
+  Engine::State::Workspace &own = part.own;
+  if (refine_above > 0)
+    return engine.list_uncertain(part.pose, part.prepared, own);
+  own.uncertain.reset(engine.views.whole.groups.size() * backend::lanes);
+  backend::list_seen(engine.views.whole, engine.hiding(), mask_error, part.prepared.pose,
+                     own.uncertain);
+  own.uncertain.truncate(static_cast<std::size_t>(
+      std::remove_if(own.uncertain.begin(), own.uncertain.end(),
+                     [&](const backend::SeenFacet &facet) {
+                       return !own.tracer->has_others_before(facet, part.pose);
+                     }) -
+      own.uncertain.begin()));
+  engine.weigh_uncertain(part.pose, part.prepared, own);
+}
+
+/// Whether another part hides something of a facet; if so its share is traced, all parts in the
+/// way.
+void ArticulatedEngine::State::look_at_facet(const Engine::State &engine, std::size_t k,
+                                             PartWork &part) const {
+  Engine::State::Workspace &own = part.own;
+  const backend::SeenFacet &facet = own.uncertain[k];
+  const double whole = engine.compiled.data.groups[facet.group].area[facet.lane];
+  const double missed = refine_above > 0 ? 0.9 * refine_above / normal_95 : others_missed;
+  const std::size_t points = first_points(own.error_per_area[k] * whole / missed);
+  const TracedShare free = own.tracer->trace_others(facet, points, part.pose);
+  if (free.share < 1) {
+    own.is_mended = true;
+    return engine.trace_facet(part.pose, k, points, own);
+  }
+  own.uncertain[k].variance +=
+      facet.area * facet.area * share_variance(1, static_cast<double>(free.points));
+}
+
+/// Takes away what other parts hide of this one's visible areas.
+void ArticulatedEngine::State::look_at_others(std::size_t which, PartWork &part) const {
+  const Engine::State &engine = *parts[which]->engine;
+  engine.weigh_errors(part.own);
+  for (std::size_t k = 0; k < part.own.uncertain.size(); ++k) {
+    const double before = part.own.uncertain[k].variance;
+    if (part.own.tracer->has_others_before(part.own.uncertain[k], part.pose))
+      look_at_facet(engine, k, part);
+    if (!(refine_above > 0)) // the sums hold what there was before
+      engine.add_variance(k, std::max(part.own.uncertain[k].variance - before, 0.0), part.own);
+  }
+  take_roots(engine, part);
+}
+
+void ArticulatedEngine::State::take_roots(const Engine::State &engine, PartWork &part) const {
+  if (refine_above > 0)
+    engine.take_variances(part.own);
+  engine.take_roots(part.own, true);
+}
+
+/// Rays for what makes the error, if there is too much of it, shared out by what each part makes.
+void ArticulatedEngine::State::mend(Workspace &work) const {
+  const auto refer = [&](std::size_t p) {
+    parts[p]->engine->refer_to(work.total, 1, work.parts[p].own);
+  };
+  std::vector<double> variance(parts.size(), 0);
+  double all = 0;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (!work.parts[p].has_light)
+      continue;
+    refer(p);
+    const Engine::State::Workspace &own = work.parts[p].own;
+    for (std::size_t b = 0; b < bands; ++b)
+      variance[p] =
+          std::max(variance[p], own.light.var_i[b] / (own.reference[b] * own.reference[b]));
+    all += variance[p];
+  }
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const Engine::State &engine = *parts[p]->engine;
+    PartWork &part = work.parts[p];
+    if (!part.has_light || !engine.is_uncertain(work.total, 1, part.own) || !(variance[p] > 0))
+      continue;
+    engine.trace(part.pose, variance[p] / all, part.own);
+    part.own.is_mended = true;
+    take_roots(engine, part);
+  }
+}
+
+void ArticulatedEngine::State::evaluate(const Pose &pose, std::span<const double> angles,
+                                        Workspace &work, std::size_t row, StokesTable &out) const {
+  out.method[row] = PoseMethod::Masks;
+  if (!add_up(pose, motions(angles), work))
     return put_darkness(row, out);
-  light_parts(motions, row, work, out);
-  put_light(work.left, 1, has_scattering_plane(pose), has_u_or_v, row, out);
-  out.method[row] = work.is_mended ? PoseMethod::Mended : PoseMethod::Masks;
+  sum(work);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (!work.parts[p].has_light)
+      continue;
+    parts[p]->engine->refer_to(work.total, 1, work.parts[p].own);
+    list(p, work.parts[p]);
+    look_at_others(p, work.parts[p]);
+  }
+  sum(work);
+  if (refine_above > 0) {
+    mend(work);
+    sum(work);
+  }
+  put(pose, work, row, out);
+  put_columns(work, row, out);
+}
+
+void ArticulatedEngine::State::put(const Pose &pose, const Workspace &work, std::size_t row,
+                                   StokesTable &out) const {
+  put_light(work.total, 1, has_scattering_plane(pose), has_u_or_v, row, out);
+  bool is_seen = has_any_light(work.total);
+  for (const PartWork &part : work.parts) {
+    is_seen = is_seen || (part.has_light && part.own.sums.is_any_seen);
+    if (part.has_light && part.own.is_mended)
+      out.method[row] = PoseMethod::Mended;
+  }
+  out.is_dark[row] = is_seen ? 0 : 1;
 }
 
 /// Masks of all parts, in the directions that these see.
@@ -323,49 +293,35 @@ std::vector<ReadLock> ArticulatedEngine::State::hold_masks(std::span<const Pose>
                                                            std::span<const double> angles_rad,
                                                            unsigned threads) const {
   std::vector<std::vector<Pose>> by_part(parts.size());
-  std::vector<double> angles(joints.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    std::copy_n(angles_rad.begin() + static_cast<std::ptrdiff_t>(k * angles.size()), angles.size(),
-                angles.begin());
-    std::vector<PartMotion> motions = part_motions(joints, angles);
-    motions.emplace_back(); // what stands still
+    const auto to_body = motions(angles_rad.subspan(k * joints.size(), joints.size()));
     for (std::size_t p = 0; p < parts.size(); ++p)
-      by_part[p].push_back(seen_from(motions[motion_of[p]], poses[k]));
+      by_part[p].push_back(seen_from(to_body[motion_of[p]], poses[k]));
   }
   std::vector<ReadLock> out;
   for (std::size_t p = 0; p < parts.size(); ++p)
-    out.push_back(parts[p].engine->hold_masks(by_part[p], threads));
+    out.push_back(parts[p]->engine->hold_masks(by_part[p], threads));
   return out;
 }
 
-/// The light of all parts after what they hide of each other, and the columns asked for.
-void ArticulatedEngine::State::light_parts(const std::vector<PartMotion> &motions, std::size_t row,
-                                           Workspace &work, StokesTable &out) const {
-  work.left.reset(bands, true);
-  work.is_mended = false;
+/// The columns asked for.
+void ArticulatedEngine::State::put_columns(Workspace &work, std::size_t row,
+                                           StokesTable &out) const {
   double glint = 0;
   for (std::size_t p = 0; p < parts.size(); ++p) {
-    if (work.is_seen[p] == 0)
+    const Engine::State &engine = *parts[p]->engine;
+    PartWork &part = work.parts[p];
+    if (!part.has_light)
       continue;
-    std::vector<PartMotion> to_part;
-    for (std::size_t q = 0; q < parts.size(); ++q)
-      to_part.push_back(motions[motion_of[q]].inverse() * motions[motion_of[p]]);
-    hide(p, to_part, work);
-    const Engine::State &engine = *parts[p].engine;
-    Engine::State::Workspace &own = work.parts[p];
     if (work.materials > 0)
-      engine.colour_by_material(work.material[p],
-                                out.material_i.data() + row * work.materials * bands, own);
-    else
-      engine.colour(own);
-    work.left.add_scaled(own.light, engine.compiled.area_m2);
-    work.is_mended = work.is_mended || own.is_mended;
+      engine.colour_by_material(part.material,
+                                out.material_i.data() + row * work.materials * bands, part.own);
     if (!out.glint_share.empty())
-      glint += engine.glint_share(work.pose[p], work.prepared[p], own) * own.light.i[0] *
+      glint += engine.glint_share(part.pose, part.prepared, part.own) * part.own.light.i[0] *
                engine.compiled.area_m2;
   }
-  if (!out.glint_share.empty() && work.left.i[0] > 0)
-    out.glint_share[row] = glint / work.left.i[0];
+  if (!out.glint_share.empty() && work.total.i[0] > 0)
+    out.glint_share[row] = glint / work.total.i[0];
 }
 
 ArticulatedEngine::ArticulatedEngine(const Scene &scene, const std::vector<Joint> &joints,
@@ -373,14 +329,15 @@ ArticulatedEngine::ArticulatedEngine(const Scene &scene, const std::vector<Joint
     : state_(std::make_unique<State>()) {
   state_->joints = joints;
   state_->bands = scene.bands.size();
+  state_->refine_above = options.masks.refine_above;
   const auto joint_of = joint_of_groups(scene.mesh, joints);
   for (std::size_t k = 0; k <= joints.size(); ++k) {
     const Scene part = part_of(scene, joint_of, k);
     if (part.mesh.triangles.empty())
       continue;
     state_->motion_of.push_back(k);
-    state_->parts.emplace_back(part, options);
-    state_->has_u_or_v = state_->has_u_or_v || state_->parts.back().engine->compiled.has_u;
+    state_->parts.push_back(std::make_unique<State::Part>(part, options));
+    state_->has_u_or_v = state_->has_u_or_v || state_->parts.back()->engine->compiled.has_u;
   }
 }
 
@@ -397,14 +354,14 @@ void ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const do
 
 std::size_t ArticulatedEngine::mask_bytes() const {
   std::size_t bytes = 0;
-  for (const State::Part &part : state_->parts)
-    bytes += part.engine->masks ? part.engine->masks->bytes() : 0;
+  for (const auto &part : state_->parts)
+    bytes += part->engine->masks ? part->engine->masks->bytes() : 0;
   return bytes;
 }
 
 void ArticulatedEngine::keep_masks() const {
-  for (const State::Part &part : state_->parts)
-    part.engine->keep_masks();
+  for (const auto &part : state_->parts)
+    part->engine->keep_masks();
 }
 
 bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
@@ -415,28 +372,16 @@ bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const do
   if (task.has_glints)
     out.glint_share.assign(poses.size(), 0);
   const std::size_t materials =
-      task.has_materials ? *std::max_element(material_of.begin(), material_of.end()) + 1 : 0;
+      task.has_materials && !material_of.empty() ? *std::max_element(material_of.begin(), material_of.end()) + 1 : 0;
   out.material_i.assign(poses.size() * materials * s.bands, 0);
   const std::vector<ReadLock> held = s.hold_masks(poses, angles_rad, task.threads);
   constexpr std::size_t block = 64;
   parallel_for((poses.size() + block - 1) / block, task.threads, [&](std::size_t begin) {
-    State::Workspace work;
-    work.materials = materials;
-    for (const State::Part &part : s.parts) {
-      work.parts.emplace_back(*part.engine);
-      work.material.emplace_back();
-      for (std::size_t slot = 0; materials > 0 && slot < part.engine->compiled.slots.size(); ++slot)
-        work.material.back().push_back(material_of[part.engine->compiled.slots[slot].front()]);
-    }
-    work.prepared.resize(s.parts.size());
-    work.pose.resize(s.parts.size());
-    std::vector<double> angles(s.joints.size());
+    State::Workspace work = s.workspace(materials, material_of);
     for (std::size_t k = begin * block; k < std::min(poses.size(), (begin + 1) * block); ++k) {
       if (task.cancel != nullptr && *task.cancel)
         return;
-      std::copy_n(angles_rad.begin() + static_cast<std::ptrdiff_t>(k * angles.size()),
-                  angles.size(), angles.begin());
-      s.evaluate(poses[k], angles, work, k, out);
+      s.evaluate(poses[k], angles_rad.subspan(k * s.joints.size(), s.joints.size()), work, k, out);
     }
   });
   return task.cancel == nullptr || !*task.cancel;

@@ -34,7 +34,7 @@ MaskQuality masks_for(double accuracy) {
 
 Engine::State::Workspace::Workspace(const State &of) {
   if (of.occluder)
-    tracer.emplace(*of.occluder);
+    tracer.emplace(of.refine_points, *of.occluder);
 }
 
 std::size_t Engine::State::terms_max() const {
@@ -46,7 +46,7 @@ std::size_t Engine::State::terms_max() const {
 
 void Engine::State::prepare(const Pose &pose, Prepared &out) const {
   out.cos_phase = cos_phase(pose);
-  prepare_pose(pose, out.cos_phase, compiled.data.lobes, hiding(), out.pose);
+  prepare_pose(pose, out.cos_phase, compiled.data.lobes, compiled.has_u, hiding(), out.pose);
   if (!options.is_double)
     round_pose(out.pose, out.single);
   if (masks)
@@ -133,8 +133,9 @@ std::uint64_t Engine::State::key_of_masks() const {
 
 void Engine::State::keep_masks() const {
   if (masks && masks->has_grown())
-    masks->read(
-        [&](const MaskStore &store) { cache_masks(options.mask_cache, key_of_masks(), store); });
+    masks->read([&](const MaskStore &store) {
+      cache_masks(options.mask_cache, key_of_masks(), plan, mask_size(), store);
+    });
 }
 
 Engine::Engine(const Scene &scene, const EngineOptions &options) {
@@ -194,7 +195,8 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
   if (task.has_glints)
     out.glint_share.assign(poses.size(), 0);
   std::vector<std::uint32_t> material; // per slot
-  for (std::size_t slot = 0; task.has_materials && slot < s.compiled.slots.size(); ++slot)
+  const bool has_materials = task.has_materials && !material_of.empty();
+  for (std::size_t slot = 0; has_materials && slot < s.compiled.slots.size(); ++slot)
     material.push_back(material_of[s.compiled.slots[slot].front()]);
   const std::size_t materials =
       material.empty() ? 0 : *std::max_element(material_of.begin(), material_of.end()) + 1;
@@ -205,17 +207,19 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
         if (task.cancel != nullptr && *task.cancel)
           return;
-        if (!s.sum(pose, at, work))
+        const bool has_light = s.sum(pose, at, work);
+        out.method[row] = !s.masks         ? PoseMethod::Exact
+                          : work.is_mended ? PoseMethod::Mended
+                                           : PoseMethod::Masks;
+        if (!has_light)
           return put_darkness(row, out);
         if (materials > 0)
           s.colour_by_material(material, out.material_i.data() + row * materials * band_count(),
                                work);
         else
           s.colour(work);
-        out.method[row] = !s.masks         ? PoseMethod::Exact
-                          : work.is_mended ? PoseMethod::Mended
-                                           : PoseMethod::Masks;
         put_light(work.light, s.compiled.area_m2, has_scattering_plane(pose), has_u_or_v, row, out);
+        out.is_dark[row] = work.sums.is_any_seen || has_any_light(work.light) ? 0 : 1;
         if (task.has_glints)
           out.glint_share[row] = s.glint_share(pose, at, work);
       });

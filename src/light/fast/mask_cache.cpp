@@ -61,12 +61,17 @@ std::optional<MaskStore> read_cached_masks(const fs::path &folder, std::uint64_t
   return std::move(*found);
 }
 
-void cache_masks(const fs::path &folder, std::uint64_t key, const MaskStore &masks) {
+void cache_masks(const fs::path &folder, std::uint64_t key, const GroupPlan &plan,
+                 const MaskSize &size, const MaskStore &masks) {
   if (folder.empty() || memory_of(masks) > bytes_max / 2)
     return;
   std::error_code code;
   fs::create_directories(folder, code);
-  if (write_masks(name_of(folder, key), masks, key))
+  const fs::path path = name_of(folder, key);
+  auto whole = read_masks(path, key, plan, size); // what others have kept meanwhile
+  if (whole)
+    add_rows(masks, *whole);
+  if (write_masks(path, whole ? *whole : masks, key))
     trim(folder);
 }
 

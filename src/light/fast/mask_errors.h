@@ -17,6 +17,12 @@ inline constexpr double mask_alike = 4e-3F;
 /// dense rays).
 inline constexpr double mask_series = 2;
 
+/// The first look at a class by rays: enough points to bring its error down to a third of what may
+/// be left, if its whole light is `weight` times that.
+std::size_t first_points(double weight);
+/// Variance of the share of a class of which `points` found `share` to be lit and seen.
+double share_variance(double share, double points);
+
 /// Adds to the variances what the classes' errors have in common.
 inline void add_alike(backend::PoseSums &sums) {
   const auto add = [](backend::View<double> linear, backend::View<double> variance) {

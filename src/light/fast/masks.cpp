@@ -164,6 +164,32 @@ void MaskTracer::trace(std::span<const std::uint32_t> directions, bool is_large,
   }
 }
 
+namespace {
+
+void add_rows(const MaskTableStore &known, const MaskStore &from, MaskTableStore &table,
+              MaskStore &to) {
+  for (std::size_t d = 0; d < table.row.size(); ++d) {
+    const backend::MaskRow row = known.row[d];
+    if (table.row[d].first != untraced || row.first == untraced)
+      continue;
+    const auto base = static_cast<std::uint32_t>(to.pool.size());
+    const std::uint32_t shared = 2 * to.longest; // wholly hidden and wholly free stand before
+    table.row[d] = {base, row.count};
+    for (std::size_t e = d * table.entries; e < (d + 1) * table.entries; ++e)
+      table.offset[e] =
+          known.offset[e] < shared ? known.offset[e] : base + (known.offset[e] - row.first);
+    const auto first = from.pool.begin() + static_cast<std::ptrdiff_t>(row.first);
+    to.pool.insert(to.pool.end(), first, first + static_cast<std::ptrdiff_t>(row.count));
+  }
+}
+
+} // namespace
+
+void add_rows(const MaskStore &known, MaskStore &masks) {
+  add_rows(known.small, known, masks.small, masks);
+  add_rows(known.large, known, masks.large, masks);
+}
+
 std::size_t memory_of(const MaskStore &masks) {
   return masks.pool.size() * sizeof(backend::MaskBlock) +
          (masks.small.offset.size() + masks.large.offset.size()) * sizeof(std::uint32_t) +

@@ -40,6 +40,9 @@ private:
   const Occluder &occluder_;
 };
 
+/// Adds the rows that `known` has and `masks` lacks; both of one plan and size.
+void add_rows(const MaskStore &known, MaskStore &masks);
+
 /// Bytes that the masks hold.
 std::size_t memory_of(const MaskStore &masks);
 

@@ -20,16 +20,18 @@ void put(Vec3<Body> v, double *out) {
 
 void prepare_pose(const Pose &pose, double cos_phase,
                   const std::vector<kernel::LobeConstants<double>> &lobes,
-                  const backend::Masks *masks, PoseStore<double> &out) {
+                  bool has_polarized_body, const backend::Masks *masks, PoseStore<double> &out) {
   put(pose.sun, out.facet.sun);
   put(pose.observer, out.facet.observer);
   out.facet.cos_phase = cos_phase;
   const double apart = norm(pose.sun - pose.observer);
   out.facet.along_scale = apart > 1e-7 ? 1 / apart : 0;
-  const Vec3<Body> across = cross(pose.observer, pose.sun);
-  const double sine = norm(across);
-  out.facet.per_sine = sine > 1e-12 ? 1 / sine : 0;
-  put(out.facet.per_sine * across, out.facet.across);
+  if (has_polarized_body) {
+    const Vec3<Body> across = cross(pose.observer, pose.sun);
+    const double sine = norm(across);
+    out.facet.per_sine = sine > 1e-12 ? 1 / sine : 0;
+    put(out.facet.per_sine * across, out.facet.across);
+  }
   const kernel::DiskImage disk = kernel::disk_image(pose.sun_radius_rad, cos_phase);
   out.facet.half_shift = apart > 1e-7 ? disk.shift() : 0;
   put(kernel::mean_half_vector(pose.sun, pose.observer, any_perpendicular(pose.sun), apart, disk),

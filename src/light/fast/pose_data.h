@@ -11,7 +11,7 @@ namespace umov {
 /// where there are masks.
 void prepare_pose(const Pose &pose, double cos_phase,
                   const std::vector<kernel::LobeConstants<double>> &lobes,
-                  const backend::Masks *masks, PoseStore<double> &out);
+                  bool has_polarized_body, const backend::Masks *masks, PoseStore<double> &out);
 /// The same constants in single precision.
 void round_pose(const backend::PoseData<double> &from, PoseStore<float> &to);
 

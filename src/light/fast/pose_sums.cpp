@@ -19,11 +19,10 @@ void Engine::State::sum_facets(const Prepared &at, SumsStore &out) const {
     add_alike(out);
 }
 
-bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) const {
+bool Engine::State::add_up(const Pose &pose, const Prepared &at, Workspace &work) const {
   sum_facets(at, work.sums);
-  const bool may_mend = masks && options.masks.refine_above > 0;
   work.is_mended = false;
-  if (!work.sums.is_any_seen && !(may_mend && options.doubts_all))
+  if (!work.sums.is_any_seen && !doubts_darkness())
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
   work.general.reset(compiled.general_classes > 0 ? bands() : 0, true);
@@ -33,9 +32,21 @@ bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) c
   take_roots(work);
   if (!options.is_double)
     add_rounding(work);
-  if (may_mend && (options.doubts_all || is_uncertain(work)))
+  return true;
+}
+
+bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) const {
+  if (!add_up(pose, at, work))
+    return false;
+  if (!may_mend())
+    return true;
+  if (!options.doubts_all) {
+    colour(work);
+    refer_to(work.light, compiled.area_m2, work);
+  }
+  if (options.doubts_all || is_uncertain(work.light, compiled.area_m2, work))
     mend(pose, at, work);
-  return work.sums.is_any_seen || work.is_mended;
+  return true;
 }
 
 namespace {

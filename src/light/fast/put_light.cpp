@@ -35,6 +35,10 @@ void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_
   }
 }
 
+bool has_any_light(const BandLight &light) {
+  return std::any_of(light.i.begin(), light.i.end(), [](double i) { return i > 0; });
+}
+
 void put_darkness(std::size_t row, StokesTable &out) {
   out.is_dark[row] = 1;
   for (auto *column : {&out.i, &out.q, &out.i_err, &out.q_err})

@@ -30,16 +30,31 @@ std::span<const Occluder::Point> RefinePoints::of(std::uint32_t group, std::uint
         spread_points(*source_.scene, *source_.elements, *source_.classes, of.member[lane],
                       is_fine ? fine_count(of) : coarse_count(of), *source_.occluder)
             .origin;
+    std::vector<Vec3<Body>> places;
+    for (const Occluder::Point &p : grade.origin)
+      places.push_back(source_.occluder->from_point(p));
+    if (!is_fine)
+      both.bounds = around(places);
   });
   return grade.origin;
 }
 
-void RefineTracer::trace(Vec3<Body> direction) {
-  directions_.assign(left_.size(),
-                     {static_cast<float>(direction.x), static_cast<float>(direction.y),
-                      static_cast<float>(direction.z)});
-  free_.resize(left_.size());
-  occluder_.is_free(left_, directions_, free_);
+const Sphere &RefinePoints::bounds(std::uint32_t group, std::uint32_t lane) const {
+  (void)of(group, lane, 1);
+  return points_[group * backend::lanes + lane].bounds;
+}
+
+/// Some of the points of a class, in left_; how many.
+std::size_t RefineTracer::take(const backend::SeenFacet &facet, std::size_t wanted) {
+  const auto all = points_.of(facet.group, facet.lane, wanted);
+  const std::size_t count = std::clamp<std::size_t>(wanted, 1, all.size());
+  left_.clear();
+  for (std::size_t i = 0; i < count; ++i)
+    left_.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
+  return count;
+}
+
+void RefineTracer::drop_hidden() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < left_.size(); ++i)
     if (free_[i] != 0)
@@ -47,14 +62,68 @@ void RefineTracer::trace(Vec3<Body> direction) {
   left_.resize(kept);
 }
 
-TracedShare RefineTracer::trace(std::span<const Occluder::Point> points, std::size_t wanted,
+void RefineTracer::keep_free(Vec3<Body> direction) {
+  directions_.assign(left_.size(),
+                     {static_cast<float>(direction.x), static_cast<float>(direction.y),
+                      static_cast<float>(direction.z)});
+  free_.resize(left_.size());
+  occluder_.is_free(left_, directions_, free_);
+  drop_hidden();
+}
+
+void RefineTracer::keep_free_of(const OtherPart &other, Vec3<Body> direction) {
+  const Vec3<Body> d = other.there.turn * direction;
+  moved_.clear();
+  for (const Occluder::Point &p : left_)
+    moved_.push_back(other.occluder->to_point(other.there.place(occluder_.from_point(p))));
+  directions_.assign(left_.size(), {static_cast<float>(d.x), static_cast<float>(d.y),
+                                    static_cast<float>(d.z)});
+  free_.resize(left_.size());
+  other.occluder->is_free(moved_, directions_, free_);
+  drop_hidden();
+}
+
+namespace {
+
+bool comes_before(const OtherPart &other, const Sphere &bounds, Vec3<Body> direction) {
+  return std::any_of(other.cover.begin(), other.cover.end(), [&](const Sphere &sphere) {
+    return may_hide(bounds, sphere, direction);
+  });
+}
+
+} // namespace
+
+void RefineTracer::keep_free_of_others(const Sphere &bounds, Vec3<Body> direction) {
+  for (const OtherPart &other : others_)
+    if (!left_.empty() && comes_before(other, bounds, direction))
+      keep_free_of(other, direction);
+}
+
+bool RefineTracer::has_others_before(const backend::SeenFacet &facet, const Pose &pose) const {
+  const Sphere &bounds = points_.bounds(facet.group, facet.lane);
+  return std::any_of(others_.begin(), others_.end(), [&](const OtherPart &other) {
+    return comes_before(other, bounds, pose.sun) || comes_before(other, bounds, pose.observer);
+  });
+}
+
+TracedShare RefineTracer::trace_others(const backend::SeenFacet &facet, std::size_t wanted,
+                                       const Pose &pose) {
+  const std::size_t count = take(facet, wanted);
+  const Sphere &bounds = points_.bounds(facet.group, facet.lane);
+  keep_free_of_others(bounds, pose.sun);
+  keep_free_of_others(bounds, pose.observer);
+  return {static_cast<double>(left_.size()) / static_cast<double>(count), count};
+}
+
+TracedShare RefineTracer::trace(const backend::SeenFacet &facet, std::size_t wanted,
                                 const Pose &pose) {
-  const std::size_t count = std::clamp<std::size_t>(wanted, 1, points.size());
-  left_.clear();
-  for (std::size_t i = 0; i < count; ++i)
-    left_.push_back(points[(2 * i + 1) * points.size() / (2 * count)]);
-  trace(pose.sun);
-  trace(pose.observer);
+  const std::size_t count = take(facet, wanted);
+  for (const Vec3<Body> &direction : {pose.sun, pose.observer}) {
+    if (hides_itself_)
+      keep_free(direction);
+    if (!others_.empty())
+      keep_free_of_others(points_.bounds(facet.group, facet.lane), direction);
+  }
   return {static_cast<double>(left_.size()) / static_cast<double>(count), count};
 }
 

@@ -3,9 +3,11 @@
 
 #include "backend/scene_data.h"
 #include "light/fast/mask_points.h"
+#include "light/fast/spheres.h"
 
 #include <memory>
 #include <mutex>
+#include <umov/scene/articulation.h>
 #include <umov/scene/pose.h>
 
 namespace umov {
@@ -21,6 +23,8 @@ public:
   /// At least `wanted` points of a class, or as many as there ever are.
   [[nodiscard]] std::span<const Occluder::Point> of(std::uint32_t group, std::uint32_t lane,
                                                     std::size_t wanted) const;
+  /// What holds them, in the body.
+  [[nodiscard]] const Sphere &bounds(std::uint32_t group, std::uint32_t lane) const;
 
 private:
   struct Grade {
@@ -29,6 +33,7 @@ private:
   };
   struct Points {
     Grade coarse, fine;
+    Sphere bounds;
   };
   struct Source {
     const Scene *scene;
@@ -41,7 +46,14 @@ private:
   std::unique_ptr<Points[]> points_; ///< [group * lanes + lane]
 };
 
-/// Part of `points` that is lit and seen in the pose, and how many there are.
+/// Another rigid part, as it stands now, seen from the part whose points are traced.
+struct OtherPart {
+  const Occluder *occluder = nullptr;
+  PartMotion there;          ///< from this part's axes to the other's
+  std::vector<Sphere> cover; ///< of the other, in this part's axes
+};
+
+/// Part of a class's points that is lit and seen in the pose, and how many there are.
 struct TracedShare {
   double share = 0;
   std::size_t points = 0;
@@ -50,14 +62,29 @@ struct TracedShare {
 /// Traces rays; one per thread.
 class RefineTracer {
 public:
-  explicit RefineTracer(const Occluder &occluder) : occluder_(occluder) {}
-  /// `wanted` of the points, spread over all of them.
-  TracedShare trace(std::span<const Occluder::Point> points, std::size_t wanted, const Pose &pose);
+  /// Both must live. `hides_itself`: some point of the part may be hidden by the part.
+  RefineTracer(const RefinePoints &points, const Occluder &occluder, bool hides_itself = true)
+      : points_(points), occluder_(occluder), hides_itself_(hides_itself) {}
+  /// What else may hide, from now on; it must live.
+  void set_others(std::span<const OtherPart> others) { others_ = others; }
+  /// Some other part may come before the facet.
+  [[nodiscard]] bool has_others_before(const backend::SeenFacet &facet, const Pose &pose) const;
+  /// `wanted` points of a class, spread over all of it.
+  TracedShare trace(const backend::SeenFacet &facet, std::size_t wanted, const Pose &pose);
+  /// The same, as if nothing but the other parts hid anything.
+  TracedShare trace_others(const backend::SeenFacet &facet, std::size_t wanted, const Pose &pose);
 
 private:
-  void trace(Vec3<Body> direction);
+  std::size_t take(const backend::SeenFacet &facet, std::size_t wanted);
+  void keep_free(Vec3<Body> direction);
+  void keep_free_of_others(const Sphere &bounds, Vec3<Body> direction);
+  void keep_free_of(const OtherPart &other, Vec3<Body> direction);
+  void drop_hidden();
+  const RefinePoints &points_;
   const Occluder &occluder_;
-  std::vector<Occluder::Point> left_, directions_;
+  bool hides_itself_;
+  std::span<const OtherPart> others_;
+  std::vector<Occluder::Point> left_, moved_, directions_;
   std::vector<unsigned char> free_;
 };
 

@@ -7,62 +7,46 @@
 #include <numeric>
 
 namespace umov {
-namespace {
-
-/// The first look at a class: enough points to bring its error down to a third of what may be left,
-/// if its whole light is `weight` times that; sampling leaves 0.6 n^-3/4 at worst.
+/// Sampling leaves 0.6 n^-3/4 at worst.
 std::size_t first_points(double weight) {
   constexpr double fewest = 32, most = 4096;
   return static_cast<std::size_t>(std::clamp(std::pow(3 * 0.6 * weight, 4.0 / 3), fewest, most));
 }
 
-constexpr double points_most = 16'384; ///< of a class
-
-/// Variance of the share of a class of which `points` found `share` to be lit and seen. One
-/// pseudo-disagreement stands for slivers that no point has found.
+/// One pseudo-disagreement stands for slivers that no point has found.
 double share_variance(double share, double points) {
   const double unsure = std::clamp(share, 1 / points, 1 - 1 / points);
   return static_cast<double>(mask_error.points) * unsure * (1 - unsure) /
          (points * std::sqrt(points));
 }
 
+namespace {
+
+constexpr double points_most = 16'384; ///< of a class
+
 } // namespace
 
-/// What a relative error refers to: I, or the floor below which I need not be known as well.
-double Engine::State::reference(const BandLight &all, std::size_t b) const {
-  const double floor = options.floor_i.empty() ? 0 : options.floor_i[b] / compiled.area_m2;
-  return std::max({all.i[b], floor, 1e-300});
+/// What relative errors refer to from now on: the light of the whole [m2/sr], or the floor below
+/// which I need not be known as well. `all` counts areas in units of `unit_m2`.
+void Engine::State::refer_to(const BandLight &all, double unit_m2, Workspace &work) const {
+  const double scale = unit_m2 / compiled.area_m2;
+  work.reference.resize(bands());
+  work.q_share.resize(bands());
+  for (std::size_t b = 0; b < bands(); ++b) {
+    const double floor = options.floor_i.empty() ? 0 : options.floor_i[b] / compiled.area_m2;
+    work.reference[b] = std::max({all.i[b] * scale, floor, 1e-300});
+    work.q_share[b] = all.i[b] > 0 ? all.q[b] / all.i[b] : 0;
+  }
 }
 
-/// Some band misses the accuracy from which on rays are traced, in I or in Q/I. What a slot lacks
-/// of its light changes Q/I by how far its own is from that of the whole.
-bool Engine::State::is_uncertain(Workspace &work) const {
-  colour(work);
-  const double most = options.masks.refine_above / normal_95;
-  const BandLight &all = work.light;
+/// Some band of a pose's light misses the accuracy from which on rays are traced.
+bool Engine::State::is_uncertain(const BandLight &all, double unit_m2,
+                                 const Workspace &work) const {
+  const double most = options.masks.refine_above / normal_95 * compiled.area_m2 / unit_m2;
   for (std::size_t b = 0; b < bands(); ++b)
-    if (all.var_i[b] > std::pow(most * reference(all, b), 2))
+    if (all.var_i[b] > std::pow(most * work.reference[b], 2))
       return true;
-  std::vector<double> &variance = work.band_room;
-  variance.assign(bands(), 0);
-  for (std::size_t slot = 0; slot < compiled.slots.size(); ++slot) {
-    if (compiled.data.slots[slot].is_general)
-      continue;
-    work.part.reset(bands(), compiled.has_u);
-    compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.part);
-    for (std::size_t b = 0; b < bands(); ++b) {
-      const double scale = work.part.i[b] * all.i[b];
-      const double apart = work.part.q[b] * all.i[b] - all.q[b] * work.part.i[b];
-      if (scale > 0)
-        variance[b] += work.part.var_i[b] * (apart / scale) * (apart / scale);
-    }
-  }
-  bool is_any = false;
-  for (std::size_t b = 0; b < bands(); ++b) {
-    const double allowed = options.q_part * most * reference(all, b);
-    is_any = is_any || variance[b] > allowed * allowed;
-  }
-  return is_any;
+  return false;
 }
 
 /// The light of one uncertain facet per unit area, and its weights in the sums.
@@ -86,12 +70,20 @@ void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
 
 void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
   work.uncertain.reset(views.whole.groups.size() * backend::lanes);
-  backend::list_facing(views.whole, *hiding(), mask_error, at.pose, work.uncertain);
+  if (masks)
+    backend::list_facing(views.whole, *hiding(), mask_error, at.pose, work.uncertain);
+  else
+    backend::list_seen(views.whole, nullptr, mask_error, at.pose, work.uncertain);
   for (backend::SeenFacet &facet : work.uncertain)
     facet.variance *= mask_series;
+  weigh_uncertain(pose, at, work);
+}
+
+void Engine::State::weigh_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
   work.nothing.assign(terms_max(), 0);
   work.facet_light.assign(work.uncertain.size() * bands(), {});
   work.weights.assign(work.uncertain.size() * terms_max(), 0);
+  work.points.assign(work.uncertain.size(), 0);
   for (std::size_t k = 0; k < work.uncertain.size(); ++k)
     weigh(pose, at, k, work);
 }
@@ -99,14 +91,12 @@ void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspa
 /// Error of I, or of Q at constant Q/I, per area of each uncertain facet, in parts of the light of
 /// the whole: of the band where it is worst.
 void Engine::State::weigh_errors(Workspace &work) const {
-  const BandLight &all = work.light;
   work.error_per_area.assign(work.uncertain.size(), 0);
   for (std::size_t k = 0; k < work.uncertain.size(); ++k)
     for (std::size_t b = 0; b < bands(); ++b) {
       const auto &light = work.facet_light[k * bands() + b];
-      const double own_q = all.i[b] > 0 ? light.i * all.q[b] / all.i[b] : 0;
-      const double worst = std::max(light.i, std::abs(light.q - own_q) / options.q_part);
-      work.error_per_area[k] = std::max(work.error_per_area[k], worst / reference(all, b));
+      const double worst = std::max(light.i, std::abs(light.q - light.i * work.q_share[b]));
+      work.error_per_area[k] = std::max(work.error_per_area[k], worst / work.reference[b]);
     }
 }
 
@@ -115,8 +105,7 @@ void Engine::State::trace_facet(const Pose &pose, std::size_t k, std::size_t poi
                                 Workspace &work) const {
   backend::SeenFacet &facet = work.uncertain[k];
   const double whole = compiled.data.groups[facet.group].area[facet.lane];
-  const TracedShare traced =
-      work.tracer->trace(refine_points.of(facet.group, facet.lane, points), points, pose);
+  const TracedShare traced = work.tracer->trace(facet, points, pose);
   change_area(k, whole * traced.share - facet.area, work);
   facet.variance = whole * whole * share_variance(traced.share, static_cast<double>(traced.points));
   work.points[k] = traced.points;
@@ -220,8 +209,9 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
   return is_any;
 }
 
-void Engine::State::trace(const Pose &pose, Workspace &work) const {
-  const double wanted = 0.9 * options.masks.refine_above / normal_95;
+/// Rays, until the variance that is left is `part` of what the accuracy allows.
+void Engine::State::trace(const Pose &pose, double part, Workspace &work) const {
+  const double wanted = 0.9 * options.masks.refine_above / normal_95 * std::sqrt(part);
   constexpr int looks_max = 3;
   weigh_errors(work);
   const double left = trace_worst(pose, wanted, work);
@@ -269,13 +259,14 @@ void Engine::State::take_variances(Workspace &work) const {
 /// too much of it.
 void Engine::State::mend(const Pose &pose, const Prepared &at, Workspace &work) const {
   list_uncertain(pose, at, work);
-  work.points.assign(work.uncertain.size(), 0);
   take_variances(work);
   take_roots(work);
-  work.is_mended = is_uncertain(work);
+  colour(work);
+  refer_to(work.light, compiled.area_m2, work);
+  work.is_mended = is_uncertain(work.light, compiled.area_m2, work);
   if (!work.is_mended)
     return;
-  trace(pose, work);
+  trace(pose, 1, work);
   take_variances(work);
   take_roots(work);
 }

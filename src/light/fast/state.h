@@ -18,6 +18,8 @@ inline constexpr double normal_95 = 1.959963984540054; ///< two-sided quantile o
 void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_or_v,
                std::size_t row, StokesTable &out);
 void put_darkness(std::size_t row, StokesTable &out);
+/// Some band has light.
+bool has_any_light(const BandLight &light);
 
 struct Engine::State {
   State(const Scene &of, const EngineOptions &with);
@@ -71,8 +73,10 @@ struct Engine::State {
     BandLight light;   ///< of the whole
     BandLight general; ///< of the facets without a kernel
     BandLight part;
-    // Of `is_uncertain` and `refine`:
-    std::vector<double> band_room, nothing;
+    // Of `mend`:
+    std::vector<double> reference; ///< per band: what relative errors refer to
+    std::vector<double> q_share;   ///< per band: Q/I of the whole
+    std::vector<double> nothing;
     SeenStore uncertain;
     std::vector<double> weights;                      ///< [uncertain * terms_max + term]
     std::vector<Stokes<ScatteringPlane>> facet_light; ///< [uncertain * bands + band], per area
@@ -94,8 +98,14 @@ struct Engine::State {
   [[nodiscard]] std::size_t terms_max() const; ///< lobes and products of a slot, at most
 
   void prepare(const Pose &pose, Prepared &out) const;
-  /// All sums of a pose, and the light that has none; false if nothing is both lit and seen.
+  [[nodiscard]] bool may_mend() const { return masks && options.masks.refine_above > 0; }
+  /// Where the masks see nothing there may be something all the same.
+  [[nodiscard]] bool doubts_darkness() const { return may_mend() && options.doubts_all; }
+  /// All sums of a pose, and the light that has none; false if nothing is both lit and seen, beyond
+  /// doubt.
   bool sum(const Pose &pose, const Prepared &at, Workspace &work) const;
+  /// The same without rays.
+  bool add_up(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// work.light from the sums.
   void colour(Workspace &work) const;
   /// The same, with I of each slot's material added to intensity[material * bands + band].
@@ -121,13 +131,15 @@ struct Engine::State {
   [[nodiscard]] SlotSums sums_of(std::size_t slot, const Workspace &work) const;
 
   // refinement.cpp
-  [[nodiscard]] bool is_uncertain(Workspace &work) const;
+  void refer_to(const BandLight &all, double unit_m2, Workspace &work) const;
+  [[nodiscard]] bool is_uncertain(const BandLight &all, double unit_m2,
+                                  const Workspace &work) const;
   void mend(const Pose &pose, const Prepared &at, Workspace &work) const;
   void list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const;
   void weigh(const Pose &pose, const Prepared &at, std::size_t k, Workspace &work) const;
-  [[nodiscard]] double reference(const BandLight &all, std::size_t b) const;
+  void weigh_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const;
   void weigh_errors(Workspace &work) const;
-  void trace(const Pose &pose, Workspace &work) const;
+  void trace(const Pose &pose, double part, Workspace &work) const;
   double trace_worst(const Pose &pose, double wanted, Workspace &work) const;
   bool trace_more(const Pose &pose, double allowed, Workspace &work) const;
   void trace_facet(const Pose &pose, std::size_t k, std::size_t points, Workspace &work) const;

@@ -1,6 +1,7 @@
 #include <umov/light/light_model.h>
 
 #include <algorithm>
+#include <umov/core/expects.h>
 
 namespace umov {
 
@@ -20,13 +21,14 @@ LightModel::LightModel(const Scene &scene, std::vector<Joint> joints)
 
 bool LightModel::evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
                           StokesTable &out, const LightTask &task) const {
+  UMOV_EXPECTS(angles_rad.size() == poses.size() * joints_.size());
   return light(poses, angles_rad, out, task);
 }
 
 bool LightModel::evaluate(std::span<const Pose> poses, StokesTable &out,
                           const LightTask &task) const {
   const std::vector<double> still(poses.size() * joints_.size(), 0);
-  return light(poses, still, out, task);
+  return evaluate(poses, still, out, task);
 }
 
 } // namespace umov

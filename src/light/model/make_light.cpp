@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <functional>
 #include <umov/core/parallel.h>
 #include <umov/light/poses.h>
@@ -29,7 +30,7 @@ std::vector<Pose> typical_poses(std::size_t count) {
 } // namespace
 
 double curved_error(const Scene &scene, const Engine &unhidden,
-                    const std::vector<double> &typical_i) {
+                    const std::vector<double> &typical_i, unsigned threads) {
   constexpr double least = 1e-4;
   if (scene.normals != NormalMode::Smooth)
     return least;
@@ -38,7 +39,7 @@ double curved_error(const Scene &scene, const Engine &unhidden,
   unhidden.evaluate(poses, fast);
   const Elements elements = make_elements(scene, visible_sides(scene.mesh));
   std::vector<double> errors(poses.size(), 0);
-  parallel_for(poses.size(), 0, [&](std::size_t k) {
+  parallel_for(poses.size(), threads, [&](std::size_t k) {
     const LitElements lit =
         light_elements(scene, elements, geometry_of(poses[k]), Stokes<ScatteringPlane>{1, 0, 0, 0});
     for (std::size_t b = 0; b < fast.bands; ++b)
@@ -112,16 +113,41 @@ const char *name_of(LightMethod method) {
 
 double default_accuracy_floor(LightMethod method) { return method == LightMethod::Auto ? 0.1 : 0; }
 
+namespace {
+
+Result<void> check(const LightOptions &options) {
+  const auto refuse = [](const char *what, double found, const char *expected) {
+    return fail(ErrorCode::BadInput, fmt::format("{} is {}; {} was expected", what, found, expected));
+  };
+  if (!(options.accuracy > 0 && options.accuracy <= 1))
+    return refuse("accuracy", options.accuracy, "a number above 0, up to 1,");
+  if (const double floor = options.accuracy_floor.value_or(0); !(floor >= 0 && std::isfinite(floor)))
+    return refuse("accuracy_floor", floor, "0 or more");
+  if (options.bounces < 1 || options.bounces > 64)
+    return refuse("bounces", static_cast<double>(options.bounces), "1 to 64");
+  return {};
+}
+
+} // namespace
+
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
                                                const LightOptions &options) {
-  const bool is_auto = options.method == LightMethod::Auto;
+  UMOV_TRY(check(options));
+  const bool has_rays = takes_rays(scene, joints, options);
   std::vector<double> typical_i;
   std::optional<Engine> unhidden;
-  if (is_auto || options.accuracy_floor.value_or(0) > 0)
+  if (!has_rays || options.accuracy_floor.value_or(0) > 0)
     typical_i = typical_light(unhidden.emplace(unhidden_engine(scene)));
-  if (takes_rays(scene, joints, options))
+  if (!options.mask_file.empty() && (has_rays || !joints.empty()))
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} cannot hold the masks: {}. Leave the file out; the cache keeps "
+                            "masks by itself.",
+                            options.mask_file.string(),
+                            has_rays ? "this light is traced by rays, without masks"
+                                     : "each part that turns has its own"));
+  if (has_rays)
     return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i);
-  const double missed = is_auto ? curved_error(scene, *unhidden, typical_i) : 0;
+  const double missed = curved_error(scene, *unhidden, typical_i, options.threads);
   return MasksLight::make(scene, std::move(joints), options, std::move(typical_i), missed);
 }
 

@@ -52,7 +52,6 @@ Result<void> MasksLight::prepare() {
   with.doubts_all = is_auto;
   with.is_lazy = true;
   with.mask_cache = options_.mask_file.empty() ? options_.mask_cache : "";
-  with.q_part = 1; // Q in parts of I, to the accuracy of I
   with.floor_i = facts_.floor_i;
   if (joints().empty() && !options_.mask_file.empty() && file_exists(options_.mask_file)) {
     UMOV_ASSIGN(read, Engine::with_masks(options_.mask_file, scene(), with));
@@ -128,8 +127,8 @@ bool MasksLight::light(std::span<const Pose> poses, std::span<const double> angl
                                : turning_->evaluate(poses, angles_rad, out, task, material_of_);
   if (!is_done)
     return false;
+  add_allowance(out);
   if (direct_) {
-    add_allowance(out);
     const std::vector<std::size_t> left = inaccurate(out);
     if (!left.empty() && !direct_->light(poses, angles_rad, left, out, task))
       return false;

@@ -16,7 +16,7 @@ std::vector<double> floor_of(const LightOptions &options, const std::vector<doub
 /// of I and the typical light; at least 1e-4, which is all where every facet is flat. `unhidden` is
 /// the scene's engine without visibility.
 double curved_error(const Scene &scene, const Engine &unhidden,
-                    const std::vector<double> &typical_i);
+                    const std::vector<double> &typical_i, unsigned threads);
 
 /// Each pose by rays, with light between surfaces where it is asked for.
 class RaysLight final : public LightModel {

@@ -42,12 +42,11 @@ const Integrator &RayTracer::integrator() const {
   return *integrator_;
 }
 
-/// The mesh of an object whose parts turn is another one at every pose.
-Scene RayTracer::turned(std::span<const double> angles_rad, std::size_t pose) const {
-  const auto first = angles_rad.begin() + static_cast<std::ptrdiff_t>(pose * joints_.size());
-  Scene out = scene_;
-  out.mesh =
-      posed(scene_.mesh, joints_, {first, first + static_cast<std::ptrdiff_t>(joints_.size())});
+Scene turned(const Scene &scene, const std::vector<Joint> &joints,
+             std::span<const double> angles_rad, std::size_t pose) {
+  const auto angles = angles_rad.subspan(pose * joints.size(), joints.size());
+  Scene out = scene;
+  out.mesh = posed(scene.mesh, joints, {angles.begin(), angles.end()});
   return out;
 }
 
@@ -82,7 +81,7 @@ bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angle
     found.resize(which.size());
     parallel_for(which.size(), task.threads, [&](std::size_t k) {
       if (!is_cancelled(task))
-        found[k] = Integrator(turned(angles_rad, which[k])).evaluate(chosen[k], options_);
+        found[k] = Integrator(turned(scene_, joints_, angles_rad, which[k])).evaluate(chosen[k], options_);
     });
   }
   if (is_cancelled(task) || found.size() < which.size())
@@ -96,10 +95,7 @@ bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angle
 
 bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double> angles_rad,
                              StokesTable &out, const LightTask &task) const {
-  // The accuracy refers to the whole light, or to the floor.
-  std::vector<double> direct = out.i;
-  for (std::size_t at = 0; at < direct.size() && !options_.floor_i.empty(); ++at)
-    direct[at] = std::max(direct[at], options_.floor_i[at % out.bands]);
+  const std::vector<double> direct = out.i;
   std::vector<IndirectLight> more;
   if (joints_.empty()) {
     more = integrator().indirect(poses, direct, options_, task.threads, task.cancel);
@@ -107,7 +103,7 @@ bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double
     more.resize(poses.size());
     parallel_for(poses.size(), task.threads, [&](std::size_t k) {
       if (!is_cancelled(task))
-        more[k] = Integrator(turned(angles_rad, k))
+        more[k] = Integrator(turned(scene_, joints_, angles_rad, k))
                       .indirect(poses.subspan(k, 1),
                                 std::span(direct).subspan(k * out.bands, out.bands), options_, 1)
                       .front();

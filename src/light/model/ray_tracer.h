@@ -17,6 +17,11 @@ std::vector<std::uint32_t> material_of_slots(const Scene &scene,
 
 inline bool is_cancelled(const LightTask &task) { return task.cancel != nullptr && *task.cancel; }
 
+/// The scene of one pose of a table of angles: the mesh of an object whose parts turn is another
+/// one at every pose.
+Scene turned(const Scene &scene, const std::vector<Joint> &joints,
+             std::span<const double> angles_rad, std::size_t pose);
+
 /// Poses by the reference path, some of a batch or all of it. `scene` and `joints` must live.
 class RayTracer {
 public:
@@ -35,7 +40,6 @@ private:
   /// Of a body whose parts do not turn; made when a pose first needs it: ray tree and elements cost
   /// more than all poses of a job that masks light.
   [[nodiscard]] const Integrator &integrator() const;
-  [[nodiscard]] Scene turned(std::span<const double> angles_rad, std::size_t pose) const;
   void put(const PoseResult &result, std::size_t row, StokesTable &out) const;
 
   const Scene &scene_;

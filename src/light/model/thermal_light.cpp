@@ -1,5 +1,6 @@
 #include "light/model/ray_tracer.h"
 
+#include <umov/core/parallel.h>
 #include <umov/light/thermal.h>
 
 namespace umov {
@@ -8,20 +9,23 @@ namespace {
 /// The body's own heat, by paths.
 class ThermalLight final : public LightModel {
 public:
-  ThermalLight(const Scene &of, ThermalEmission emission, const LightOptions &options)
-      : LightModel(of, {}), emission_(std::move(emission)), options_(integration_of(options, {})),
-        integrator_(scene()) {
+  ThermalLight(const Scene &of, std::vector<Joint> turning, ThermalEmission emission,
+               const LightOptions &options)
+      : LightModel(of, std::move(turning)), emission_(std::move(emission)),
+        options_(integration_of(options, {})), integrator_(scene()) {
     facts_.method = LightMethod::Rays;
-    facts_.is_convex = integrator_.is_convex();
+    facts_.is_convex = joints().empty() && integrator_.is_convex();
     facts_.instruction_set = "scalar double";
     facts_.visibility = "paths";
   }
 
 private:
-  bool light(std::span<const Pose> poses, std::span<const double>, StokesTable &out,
+  bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override {
     out.resize(poses.size(), scene().bands.size());
-    const auto found = integrator_.thermal(poses, emission_, options_, task.threads, task.cancel);
+    out.glint_share.assign(task.has_glints ? poses.size() : 0, 0); // heat has none
+    out.material_i.assign(0, 0);
+    const auto found = emitted(poses, angles_rad, task);
     if (is_cancelled(task) || found.size() < poses.size())
       return false;
     for (std::size_t k = 0; k < poses.size(); ++k) {
@@ -36,6 +40,21 @@ private:
     return true;
   }
 
+  [[nodiscard]] std::vector<IndirectLight> emitted(std::span<const Pose> poses,
+                                                   std::span<const double> angles_rad,
+                                                   const LightTask &task) const {
+    if (joints().empty())
+      return integrator_.thermal(poses, emission_, options_, task.threads, task.cancel);
+    std::vector<IndirectLight> out(poses.size());
+    parallel_for(poses.size(), task.threads, [&](std::size_t k) {
+      if (!is_cancelled(task))
+        out[k] = Integrator(turned(scene(), joints(), angles_rad, k))
+                     .thermal(poses.subspan(k, 1), emission_, options_, 1)
+                     .front();
+    });
+    return out;
+  }
+
   ThermalEmission emission_;
   IntegrationOptions options_;
   Integrator integrator_;
@@ -44,10 +63,11 @@ private:
 } // namespace
 
 Result<std::unique_ptr<LightModel>> make_thermal_light(const Scene &scene,
+                                                       std::vector<Joint> joints,
                                                        std::span<const double> temperature_k,
                                                        const LightOptions &options) {
   UMOV_ASSIGN(emission, ThermalEmission::make(scene, temperature_k));
-  return std::make_unique<ThermalLight>(scene, std::move(emission), options);
+  return std::make_unique<ThermalLight>(scene, std::move(joints), std::move(emission), options);
 }
 
 } // namespace umov

@@ -148,7 +148,11 @@ std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
   const std::size_t bands = state_->scene.bands.size();
   if (state_->is_convex || options.bounces < 2)
     return {poses.size(), IndirectLight{std::vector<BandResult>(bands), 0}};
-  return by_paths(state_->paths(), poses, direct_i, options, threads, cancel, nullptr);
+  // The accuracy refers to the whole light, or to the floor.
+  std::vector<double> refers_to(direct_i.begin(), direct_i.end());
+  for (std::size_t at = 0; at < refers_to.size() && !options.floor_i.empty(); ++at)
+    refers_to[at] = std::max(refers_to[at], options.floor_i[at % bands]);
+  return by_paths(state_->paths(), poses, refers_to, options, threads, cancel, nullptr);
 }
 
 std::vector<IndirectLight> Integrator::thermal(std::span<const Pose> poses,
