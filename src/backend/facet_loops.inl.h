@@ -28,6 +28,7 @@ using backend::ProductKind;
 using backend::SceneData;
 using backend::SeenListOf;
 using backend::SlotTerms;
+using backend::View;
 
 /// The blocks of one entry in the three directions around one.
 struct EntryLook {
@@ -140,10 +141,10 @@ public:
       look_for_any();
   }
 
-  /// Facets of which something is both lit and seen.
-  UMOV_KERNEL void list_seen(SeenListOf<S> &out) {
+  /// Facets of some groups of which something is both lit and seen.
+  UMOV_KERNEL void list_seen(View<const Chunk> chunks, SeenListOf<S> &out) {
     out.clear();
-    for (const Chunk &chunk : scene_.chunks) {
+    for (const Chunk &chunk : chunks) {
       find_facing<false>(chunk);
       if (masks_ != nullptr)
         hide();
@@ -157,7 +158,7 @@ public:
   /// All facets that face both directions, with the area of each that is looked up as free and how
   /// uncertain it is. One pseudo-disagreement stands for slivers that no point has found: what is
   /// looked up as wholly free or wholly hidden may still be a little of the other.
-  void list_facing(SeenListOf<S> &out) {
+  UMOV_KERNEL void list_facing(SeenListOf<S> &out) {
     out.clear();
     std::uint32_t facing[backend::groups_per_chunk];
     T whole[backend::groups_per_chunk][lanes];
@@ -263,7 +264,8 @@ private:
 
   UMOV_KERNEL static S square(S x) { return x * x; }
 
-  void list_group(std::uint32_t group, const T *whole, std::uint32_t slot, SeenListOf<S> &out) {
+  UMOV_KERNEL void list_group(std::uint32_t group, const T *whole, std::uint32_t slot,
+                              SeenListOf<S> &out) {
     const GroupMask &mask = masks_->groups[group];
     count_ = 0;
     group_[0] = group;
@@ -271,13 +273,13 @@ private:
       area_[0][j] = whole[j];
     is_exact_[0] = true;
     const bool is_any = mask.is_large ? hide_large(mask) : hide_small(mask);
-    const double points = 32.0 * mask.words, unsure = 1 / points * (1 - 1 / points);
-    const double pseudo = static_cast<double>(model_.points) * unsure / (points * sqrt(points));
+    const S points = S(32) * S(mask.words), unsure = S(1) / points * (S(1) - S(1) / points);
+    const S pseudo = static_cast<S>(model_.points) * unsure / (points * sqrt(points));
     for (std::uint32_t j = 0; j < lanes; ++j)
       if (whole[j] > 0)
         out.push({group, j, slot, is_any ? static_cast<S>(area_[0][j]) : S(0),
                   (is_any && !is_exact_[0] ? square(static_cast<S>(deviation_[0][j])) : S(0)) +
-                      square(static_cast<S>(whole[j])) * static_cast<S>(pseudo)});
+                      square(static_cast<S>(whole[j])) * pseudo});
   }
 
   /// Makes room for a deviation where there was none.

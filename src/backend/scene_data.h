@@ -192,9 +192,12 @@ void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErr
 void list_facing(const SceneData<double> &scene, const Masks &masks, const MaskErrorModel &model,
                  const PoseData<double> &pose, SeenList &out);
 
-/// Facets of which something is both lit and seen, without variances.
+/// Facets of which something is both lit and seen, without variances: of all groups, or of those of
+/// some chunks.
 void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
                const PoseData<double> &pose, SeenList &out);
+void list_seen(const SceneData<double> &scene, View<const Chunk> chunks, const Masks *masks,
+               const MaskErrorModel &model, const PoseData<double> &pose, SeenList &out);
 /// Light of one facet per unit area without its colour: per lobe of its slot, then per product.
 /// `weight` has room for all of them.
 void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,

@@ -63,8 +63,13 @@ void list_facing(const SceneData<double> &scene, const Masks &masks, const MaskE
 
 void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
                const PoseData<double> &pose, SeenList &out) {
+  list_seen(scene, scene.chunks, masks, model, pose, out);
+}
+
+void list_seen(const SceneData<double> &scene, View<const Chunk> chunks, const Masks *masks,
+               const MaskErrorModel &model, const PoseData<double> &pose, SeenList &out) {
   PoseSums unused;
-  kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_seen(out);
+  kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_seen(chunks, out);
 }
 
 void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,

@@ -50,9 +50,10 @@ struct Engine::State {
   struct Flat {
     Vec3<Body> normal;
     double cosine;
-    std::uint32_t group, lane;
+    std::uint32_t group, lane, slot;
   };
-  std::vector<Flat> flats;
+  std::vector<Flat> flats; ///< by group and lane
+  [[nodiscard]] const Flat *flat_of(const backend::SeenFacet &facet) const;
   [[nodiscard]] std::vector<Flat> find_flats() const;
 
   /// A pose made ready; the next one is while this one is summed.
@@ -86,7 +87,9 @@ struct Engine::State {
     std::optional<RefineTracer> tracer;
     bool is_mended = false;        ///< rays were traced for this pose
     std::vector<double> general_i; ///< [slot * bands + band], of the facets without a kernel
+    // Of `glint_share`:
     SeenStore seen;
+    std::vector<backend::Chunk> near_flats; ///< their groups
   };
 
   [[nodiscard]] const backend::Masks *hiding() const { return masks ? &masks->view() : nullptr; }
