@@ -44,7 +44,7 @@ double curved_error(const Scene &scene, const Engine &unhidden,
         light_elements(scene, elements, geometry_of(poses[k]), Stokes<ScatteringPlane>{1, 0, 0, 0});
     for (std::size_t b = 0; b < fast.bands; ++b)
       errors[k] = std::max(errors[k], std::abs(fast.i[k * fast.bands + b] - lit.total[b]) /
-                                          std::max(lit.total[b], typical_i[b]));
+                                          std::max(lit.total[b], dim_part * typical_i[b]));
   });
   std::nth_element(errors.begin(), errors.begin() + 1, errors.end(), std::greater<>());
   return std::max(errors[1], least);

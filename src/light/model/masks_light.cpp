@@ -97,7 +97,8 @@ std::size_t MasksLight::mask_bytes() const {
 /// What light by the middle of curved elements may miss.
 void MasksLight::add_allowance(StokesTable &table) const {
   for (std::size_t at = 0; at < table.i.size(); ++at) {
-    const double more = curved_error_ * std::max(table.i[at], typical_i_[at % table.bands]);
+    const double more =
+        curved_error_ * std::max(table.i[at], dim_part * typical_i_[at % table.bands]);
     table.i_err[at] += more;
     for (std::vector<double> *error : {&table.q_err, &table.u_err})
       (*error)[at] += more;

@@ -11,10 +11,13 @@ namespace umov {
 /// What the accuracy of each band refers to at least, from the typical light; empty: 0.
 std::vector<double> floor_of(const LightOptions &options, const std::vector<double> &typical_i);
 
+/// Light below this part of the typical one counts as that much in what `curved_error` refers to:
+/// the error falls with I (HST, Agena: 0.02 to 0.2 % of it down to there).
+inline constexpr double dim_part = 0.1;
 /// What the engine errs by lighting curved elements by their middle: the second largest of 24
-/// random poses (95 %) of its difference from the reference, nothing hidden, in parts of the larger
-/// of I and the typical light; at least 1e-4, which is all where every facet is flat. `unhidden` is
-/// the scene's engine without visibility.
+/// random poses (95 %) of its difference from the reference, nothing hidden, in parts of I (of dim
+/// light: see `dim_part`); at least 1e-4, which is all where every facet is flat. `unhidden` is the
+/// scene's engine without visibility.
 double curved_error(const Scene &scene, const Engine &unhidden,
                     const std::vector<double> &typical_i, unsigned threads);
 
@@ -51,7 +54,7 @@ private:
 
   LightOptions options_;
   std::vector<double> typical_i_; ///< per band
-  double curved_error_;           ///< of I, in parts of it or of the typical light
+  double curved_error_;           ///< of I, in parts of it
   std::vector<std::uint32_t> material_of_;
   std::optional<Engine> engine_;             ///< of a body whose parts do not turn
   std::optional<ArticulatedEngine> turning_; ///< of one whose parts do

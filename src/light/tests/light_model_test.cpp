@@ -146,6 +146,88 @@ TEST(LightModel, CacheGivesTheSameBytesAndSurvivesDamage) {
   EXPECT_EQ(lit(*model(options), poses).i_err, first.i_err);
 }
 
+TEST(LightModel, MasksOfSeveralJobsAreJoinedInTheCache) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "umov_joined_masks";
+  std::filesystem::remove_all(folder);
+  const auto all = poses_of(20);
+  const std::vector<Pose> some(all.begin(), all.begin() + 10), others(all.begin() + 10, all.end());
+  LightOptions options{.method = LightMethod::Masks};
+  options.mask_cache = folder;
+  const auto one = model(options), another = model(options); // at the same time
+  (void)lit(*one, some);
+  (void)lit(*another, others);
+  ASSERT_TRUE(one->keep_masks());
+  ASSERT_TRUE(another->keep_masks());
+  const auto next = model(options);
+  const std::size_t known = next->mask_bytes();
+  const auto table = lit(*next, all);
+  EXPECT_EQ(next->mask_bytes(), known); // nothing was traced anew
+  const auto fresh = lit(*model({.method = LightMethod::Masks}), all);
+  EXPECT_EQ(table.i, fresh.i);
+  EXPECT_EQ(table.q_err, fresh.q_err);
+}
+
+// Masks that see nothing are no proof: what may have been missed stands beside I = 0, and the row
+// does not say that nothing hides anything.
+TEST(LightModel, DarknessSaysHowItIsKnown) {
+  std::vector<Pose> poses;
+  for (std::uint64_t k = 0; k < 200; ++k)
+    poses.push_back(random_pose(9, k, Angle::degrees(165)));
+  for (const LightMethod method : {LightMethod::Masks, LightMethod::Auto}) {
+    const auto table = lit(*model({.method = method}), poses);
+    std::size_t dark = 0, doubted = 0;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      EXPECT_NE(table.method[k], PoseMethod::Exact);
+      dark += table.is_dark[k];
+      doubted += table.is_dark[k] != 0 && table.i_err[k * 3] > 0 ? 1u : 0u;
+    }
+    ASSERT_GT(dark, 0U);
+    if (method == LightMethod::Auto)
+      EXPECT_GT(doubted, 0U);
+  }
+}
+
+TEST(LightModel, OptionsOutsideTheirRangeAreRefused) {
+  const auto refused = [](LightOptions options, std::vector<Joint> joints = {}) {
+    const auto made = make_light(box_wing(), std::move(joints), options);
+    EXPECT_FALSE(made);
+    return made ? "" : made.error().message;
+  };
+  EXPECT_EQ(refused({.accuracy = 0}),
+            "accuracy is 0; a number above 0, up to 1, was expected");
+  EXPECT_EQ(refused({.accuracy_floor = -1}), "accuracy_floor is -1; 0 or more was expected");
+  EXPECT_EQ(refused({.bounces = 65}), "bounces is 65; 1 to 64 was expected");
+  LightOptions kept;
+  kept.mask_file = "some.masks";
+  EXPECT_NE(refused(kept, {{.name = "wings", .groups = {"panels"}}}).find("has its own"),
+            std::string::npos);
+}
+
+// A part that turns emits as it stands then, not as the mesh has it.
+TEST(LightModel, HeatFollowsThePartsThatTurn) {
+  const Scene scene = box_wing();
+  const std::vector<Joint> joints{{.name = "wings", .groups = {"panels"}}};
+  const std::vector<double> kelvin(scene.mesh.groups.size(), 3000);
+  LightOptions options;
+  options.accuracy = 0.002;
+  const auto turning = make_thermal_light(scene, joints, kelvin, options);
+  ASSERT_TRUE(turning);
+  const Pose pose{{0, 0, 1}, {0, 0, 1}};
+  for (const double angle : {0.0, 1.2}) {
+    Scene turned = scene;
+    turned.mesh = posed(scene.mesh, joints, {angle});
+    const auto still = make_thermal_light(turned, {}, kelvin, options);
+    ASSERT_TRUE(still);
+    StokesTable a, b;
+    LightTask task;
+    task.has_glints = task.has_materials = true;
+    ASSERT_TRUE((*turning)->evaluate({&pose, 1}, {&angle, 1}, a, task));
+    ASSERT_TRUE((*still)->evaluate({&pose, 1}, b, task));
+    EXPECT_EQ(a.i, b.i);
+    EXPECT_EQ(a.glint_share, std::vector<double>{0});
+  }
+}
+
 TEST(LightModel, FewPosesTraceFewDirections) {
   const auto light = model({.method = LightMethod::Masks});
   const std::size_t before = light->mask_bytes();
