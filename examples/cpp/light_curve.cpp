@@ -11,7 +11,6 @@ umov::Result<void> print_light_curve(const std::string &file,
   const auto request = umov::jobs::light_curve_request(scenario, scenario.objects[0], object, {});
   const std::atomic<bool> cancel = false;
   UMOV_ASSIGN(outcome, umov::compute_light_curve(request, object.scene, nullptr, cancel));
-
   const umov::LightCurve &curve = outcome.curve;
   for (std::size_t k = 0; k < curve.samples.size(); ++k)
     std::printf("%s %s %.3f mag, p %.4f\n",

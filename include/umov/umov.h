@@ -9,6 +9,7 @@
 #include <umov/core/constants.h>
 #include <umov/core/diagnostics.h>
 #include <umov/core/embedded.h>
+#include <umov/core/expects.h>
 #include <umov/core/files.h>
 #include <umov/core/golden_section.h>
 #include <umov/core/journal.h>

@@ -196,7 +196,8 @@ Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
   UMOV_ASSIGN(traced, bands_of(request, band, bands.size()));
   Subject subject{std::move(object), std::move(traced), {}};
   if (request.view) {
-    const PartAngles parts(scenario.objects[request.object].parts, true, scenario.file, diagnostics);
+    const PartAngles parts(scenario.objects[request.object].parts, true, scenario.file,
+                           diagnostics);
     subject.shots.push_back({*request.view, parts.of({&request.view->pose, 1}), {}});
   } else {
     UMOV_ASSIGN(shots, shots_from_orbit(request, scenario, subject.object, options, monitor));

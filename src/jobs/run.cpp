@@ -59,9 +59,9 @@ void warn_of_accuracy(const LightCurveOutcome &outcome, const LightOptions &ligh
   }
   if (count > 0)
     diagnostics.warn(fmt::format(
-        "{} of {} epochs did not reach the accuracy {:g} asked of I (worst {:.3g}){}. See "
-        "intensity_err.",
-        count, curve.epochs.size(), accuracy, worst,
+        "{} of {} epochs did not reach the accuracy {:g} asked of I ({}){}. See intensity_err.",
+        count, curve.epochs.size(), accuracy,
+        worst < 1 ? fmt::format("worst {:.3g}", worst) : "some are not known at all",
         light.method == LightMethod::Masks
             ? ": masks alone are as good as they are; render.method = \"auto\" mends them by rays"
             : ": most points per pose were reached"));
@@ -168,8 +168,8 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
       break;
     }
     if (is_empty && objects.size() > 1) {
-      UMOV_ASSIGN(nothing, nothing_found(objects[k].request));
-      diagnostics.warn(nothing.message);
+      const auto nothing = nothing_found(objects[k].request);
+      diagnostics.warn(nothing ? nothing->message : nothing.error().text());
     }
   }
   if (journal.problem())

@@ -75,14 +75,14 @@ template <class R> UMOV_KERNEL R arc_sinh(R x) {
 /// Gauss and Legendre's nodes on [-1, 1].
 inline constexpr std::size_t chord_count = 8;
 template <class T> UMOV_KERNEL T chord_node(std::size_t k) {
-  constexpr double node[chord_count / 2] = {0.18343464249564981, 0.52553240991632899,
-                                            0.79666647741362674, 0.96028985649753623};
-  return k < chord_count / 2 ? T(-node[chord_count / 2 - 1 - k]) : T(node[k - chord_count / 2]);
+  constexpr T node[chord_count / 2] = {T(0.18343464249564981), T(0.52553240991632899),
+                                       T(0.79666647741362674), T(0.96028985649753623)};
+  return k < chord_count / 2 ? -node[chord_count / 2 - 1 - k] : node[k - chord_count / 2];
 }
 template <class T> UMOV_KERNEL T chord_weight(std::size_t k) {
-  constexpr double weight[chord_count / 2] = {0.36268378337836198, 0.31370664587788729,
-                                              0.22238103445337447, 0.10122853629037626};
-  return T(weight[k < chord_count / 2 ? chord_count / 2 - 1 - k : k - chord_count / 2]);
+  constexpr T weight[chord_count / 2] = {T(0.36268378337836198), T(0.31370664587788729),
+                                         T(0.22238103445337447), T(0.10122853629037626)};
+  return weight[k < chord_count / 2 ? chord_count / 2 - 1 - k : k - chord_count / 2];
 }
 
 /// The disk's image as chords in the scattering plane's direction, each in closed form; x, y: the

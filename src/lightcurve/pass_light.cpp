@@ -175,7 +175,8 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
   }
   UMOV_ASSIGN(track, Track::make({orbit, site, shadow, state.attitude, state.joints,
                                   state.has_solar_disk}));
-  UMOV_TRY(add_glints(state, track, cancel, lit, pass)); // first: their peaks count for the magnitudes
+  UMOV_TRY(
+      add_glints(state, track, cancel, lit, pass)); // first: their peaks count for the magnitudes
   std::vector<Pose> poses;
   std::vector<double> angles;
   for (const ObservingGeometry &g : lit) {

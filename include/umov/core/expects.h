@@ -9,8 +9,8 @@
 #define UMOV_EXPECTS(condition)                                                                    \
   do {                                                                                             \
     if (!(condition)) {                                                                            \
-      std::fprintf(stderr, "%s:%d: %s: expected of the caller: %s\n", __FILE__, __LINE__, __func__, \
-                   #condition);                                                                    \
+      std::fprintf(stderr, "%s:%d: %s: expected of the caller: %s\n", __FILE__, __LINE__,          \
+                   __func__, #condition);                                                          \
       std::abort();                                                                                \
     }                                                                                              \
   } while (false)

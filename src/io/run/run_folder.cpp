@@ -291,7 +291,7 @@ std::string make_manifest(const ManifestInput &input) {
   out["version"] = version;
   out["git"] = source_revision;
   out["conventions_version"] = conventions_version;
-  #ifdef __clang__
+#ifdef __clang__
   out["compiler"] = __VERSION__; // names itself
 #else
   out["compiler"] = "g++ " __VERSION__;

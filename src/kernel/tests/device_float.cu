@@ -61,6 +61,16 @@ __global__ void sum_poses(backend::SceneData<float> scene, backend::Masks masks,
   kernel::FacetLoops<DeviceMachine>(scene, &masks, model, pose[i], out[i]).run();
 }
 
+__global__ void list_facets(backend::SceneData<float> scene, backend::Masks masks,
+                            backend::MaskErrorModel model, const backend::PoseData<float> *pose,
+                            backend::PoseSumsOf<float> *sums, backend::SeenListOf<float> *facing,
+                            backend::SeenListOf<float> *seen) {
+  const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
+  kernel::FacetLoops<DeviceMachine> loops(scene, &masks, model, pose[i], sums[i]);
+  loops.list_facing(facing[i]);
+  loops.list_seen(scene.chunks, seen[i]);
+}
+
 __global__ void probe_all(const float *x, float *sum) {
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   for (std::size_t family = 0; family < kernel::probe_families; ++family)

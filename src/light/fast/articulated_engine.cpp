@@ -129,9 +129,8 @@ void ArticulatedEngine::State::place_others(std::size_t which,
   for (std::size_t q = 0; q < parts.size(); ++q) {
     if (q == which)
       continue;
-    OtherPart other{&parts[q]->occluder,
-                    to_body[motion_of[q]].inverse() * to_body[motion_of[which]],
-                    {}};
+    OtherPart other{
+        &parts[q]->occluder, to_body[motion_of[q]].inverse() * to_body[motion_of[which]], {}};
     const PartMotion back = other.there.inverse();
     for (const Sphere &sphere : parts[q]->cover)
       other.cover.push_back({back.place(sphere.centre), sphere.radius});
@@ -314,8 +313,8 @@ void ArticulatedEngine::State::put_columns(Workspace &work, std::size_t row,
     if (!part.has_light)
       continue;
     if (work.materials > 0)
-      engine.colour_by_material(part.material,
-                                out.material_i.data() + row * work.materials * bands, part.own);
+      engine.colour_by_material(part.material, out.material_i.data() + row * work.materials * bands,
+                                part.own);
     if (!out.glint_share.empty())
       glint += engine.glint_share(part.pose, part.prepared, part.own) * part.own.light.i[0] *
                engine.compiled.area_m2;
@@ -371,8 +370,9 @@ bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const do
   out.resize(poses.size(), s.bands);
   if (task.has_glints)
     out.glint_share.assign(poses.size(), 0);
-  const std::size_t materials =
-      task.has_materials && !material_of.empty() ? *std::max_element(material_of.begin(), material_of.end()) + 1 : 0;
+  const std::size_t materials = task.has_materials && !material_of.empty()
+                                    ? *std::max_element(material_of.begin(), material_of.end()) + 1
+                                    : 0;
   out.material_i.assign(poses.size() * materials * s.bands, 0);
   const std::vector<ReadLock> held = s.hold_masks(poses, angles_rad, task.threads);
   constexpr std::size_t block = 64;

@@ -41,9 +41,10 @@ std::vector<Engine::State::Flat> Engine::State::find_flats() const {
 /// The flat that a facet is; nullptr if it is none.
 const Engine::State::Flat *Engine::State::flat_of(const backend::SeenFacet &facet) const {
   const auto place = [](const auto &of) { return std::pair(of.group, of.lane); };
-  const auto found = std::lower_bound(
-      flats.begin(), flats.end(), facet,
-      [&](const Flat &flat, const backend::SeenFacet &wanted) { return place(flat) < place(wanted); });
+  const auto found = std::lower_bound(flats.begin(), flats.end(), facet,
+                                      [&](const Flat &flat, const backend::SeenFacet &wanted) {
+                                        return place(flat) < place(wanted);
+                                      });
   return found != flats.end() && place(*found) == place(facet) ? &*found : nullptr;
 }
 
@@ -65,7 +66,8 @@ double Engine::State::glint_share(const Pose &pose, const Prepared &at, Workspac
   backend::list_seen(views.whole, work.near_flats, hiding(), mask_error, at.pose, work.seen);
   double light = 0;
   for (const backend::SeenFacet &facet : work.seen)
-    if (const Flat *flat = flat_of(facet); flat != nullptr && dot(flat->normal, half) >= flat->cosine)
+    if (const Flat *flat = flat_of(facet);
+        flat != nullptr && dot(flat->normal, half) >= flat->cosine)
       light += facet.area * work.factors.a[compiled.colours.column(facet.slot)] *
                compiled.colours.surface(facet.slot).specular(0, directions(pose, at, facet));
   return light / work.light.i[0];

@@ -19,8 +19,8 @@ void put(Vec3<Body> v, double *out) {
 } // namespace
 
 void prepare_pose(const Pose &pose, double cos_phase,
-                  const std::vector<kernel::LobeConstants<double>> &lobes,
-                  bool has_polarized_body, const backend::Masks *masks, PoseStore<double> &out) {
+                  const std::vector<kernel::LobeConstants<double>> &lobes, bool has_polarized_body,
+                  const backend::Masks *masks, PoseStore<double> &out) {
   put(pose.sun, out.facet.sun);
   put(pose.observer, out.facet.observer);
   out.facet.cos_phase = cos_phase;

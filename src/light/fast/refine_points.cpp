@@ -76,8 +76,8 @@ void RefineTracer::keep_free_of(const OtherPart &other, Vec3<Body> direction) {
   moved_.clear();
   for (const Occluder::Point &p : left_)
     moved_.push_back(other.occluder->to_point(other.there.place(occluder_.from_point(p))));
-  directions_.assign(left_.size(), {static_cast<float>(d.x), static_cast<float>(d.y),
-                                    static_cast<float>(d.z)});
+  directions_.assign(left_.size(),
+                     {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)});
   free_.resize(left_.size());
   other.occluder->is_free(moved_, directions_, free_);
   drop_hidden();
@@ -86,9 +86,8 @@ void RefineTracer::keep_free_of(const OtherPart &other, Vec3<Body> direction) {
 namespace {
 
 bool comes_before(const OtherPart &other, const Sphere &bounds, Vec3<Body> direction) {
-  return std::any_of(other.cover.begin(), other.cover.end(), [&](const Sphere &sphere) {
-    return may_hide(bounds, sphere, direction);
-  });
+  return std::any_of(other.cover.begin(), other.cover.end(),
+                     [&](const Sphere &sphere) { return may_hide(bounds, sphere, direction); });
 }
 
 } // namespace

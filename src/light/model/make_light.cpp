@@ -117,11 +117,13 @@ namespace {
 
 Result<void> check(const LightOptions &options) {
   const auto refuse = [](const char *what, double found, const char *expected) {
-    return fail(ErrorCode::BadInput, fmt::format("{} is {}; {} was expected", what, found, expected));
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} is {}; {} was expected", what, found, expected));
   };
   if (!(options.accuracy > 0 && options.accuracy <= 1))
     return refuse("accuracy", options.accuracy, "a number above 0, up to 1,");
-  if (const double floor = options.accuracy_floor.value_or(0); !(floor >= 0 && std::isfinite(floor)))
+  if (const double floor = options.accuracy_floor.value_or(0);
+      !(floor >= 0 && std::isfinite(floor)))
     return refuse("accuracy_floor", floor, "0 or more");
   if (options.bounces < 1 || options.bounces > 64)
     return refuse("bounces", static_cast<double>(options.bounces), "1 to 64");

@@ -81,7 +81,8 @@ bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angle
     found.resize(which.size());
     parallel_for(which.size(), task.threads, [&](std::size_t k) {
       if (!is_cancelled(task))
-        found[k] = Integrator(turned(scene_, joints_, angles_rad, which[k])).evaluate(chosen[k], options_);
+        found[k] =
+            Integrator(turned(scene_, joints_, angles_rad, which[k])).evaluate(chosen[k], options_);
     });
   }
   if (is_cancelled(task) || found.size() < which.size())

@@ -193,8 +193,7 @@ TEST(LightModel, OptionsOutsideTheirRangeAreRefused) {
     EXPECT_FALSE(made);
     return made ? "" : made.error().message;
   };
-  EXPECT_EQ(refused({.accuracy = 0}),
-            "accuracy is 0; a number above 0, up to 1, was expected");
+  EXPECT_EQ(refused({.accuracy = 0}), "accuracy is 0; a number above 0, up to 1, was expected");
   EXPECT_EQ(refused({.accuracy_floor = -1}), "accuracy_floor is -1; 0 or more was expected");
   EXPECT_EQ(refused({.bounces = 65}), "bounces is 65; 1 to 64 was expected");
   LightOptions kept;
