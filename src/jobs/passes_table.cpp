@@ -7,6 +7,7 @@
 #include <limits>
 #include <umov/core/text.h>
 #include <umov/observation/epochs.h>
+#include <umov/photometry/radiometry.h>
 
 namespace umov::jobs {
 namespace {
@@ -105,7 +106,9 @@ void PassColumns::add_light() {
          [](E, P p) { return p.sunlit_share > 0 ? p.phase_max.degrees() : none; });
   number("mag_min", "mag(AB)", "brightest while sunlit; empty where no model is given",
          [](E, P p) { return p.magnitude_min; });
-  number("mag_max", "mag(AB)", "faintest while sunlit", [](E, P p) { return p.magnitude_max; });
+  number("mag_max", "mag(AB)",
+         fmt::format("faintest while sunlit; {:g} stands for fainter", faintest_magnitude).c_str(),
+         [](E, P p) { return p.magnitude_max; });
   number("p_max", "", "largest degree of linear polarization while sunlit",
          [](E, P p) { return p.p_max; });
   text("glints", "times of glints, joined by semicolons", [](E, P p) {

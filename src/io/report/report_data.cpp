@@ -101,6 +101,7 @@ Json band_json(const LightCurve &curve, std::size_t band, std::size_t stride) {
            {"irradiance", each([](S s) { return s.irradiance; })},
            {"intensity", each([](S s) { return s.intensity; })},
            {"mag", each([](S s) { return s.magnitude; })},
+           {"mag_limit", each([](S s) { return has_magnitude_limit(s) ? 1 : 0; })},
            {"q", each([](S s) { return s.sky.q; })},
            {"u", each([](S s) { return s.sky.u; })},
            {"p", each([](S s) { return s.p; })},

@@ -56,7 +56,8 @@ std::string caption_of(const LightCurve &curve, std::size_t epoch, std::size_t b
   std::string text =
       fmt::format("phase {:.1f} deg", curve.epochs[epoch].geometry.phase_angle.degrees());
   if (std::isfinite(s.magnitude))
-    text += fmt::format(", {:.2f} mag", s.magnitude);
+    text +=
+        fmt::format(", {}{:.2f} mag", has_magnitude_limit(s) ? "fainter than " : "", s.magnitude);
   if (std::isfinite(s.p))
     text += fmt::format(", p {:.1f} %", 100 * s.p);
   return text + " (" + curve.bands[band].name + ")";

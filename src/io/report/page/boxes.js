@@ -12,10 +12,12 @@ function coordinates(site) {
   return (site.name ? site.name + " (" : "") + north + ", " + east + ", " + site.alt_m.toFixed(0) + " m" + (site.name ? ")" : "");
 }
 
-/// Magnitudes from bright to faint over some rows and all bands.
+/// Magnitudes from bright to faint over some rows and all bands; limits count as ">".
 function magnitudeText(rows) {
-  const limits = range(rows.flatMap((i) => bands.map((band) => band.mag[i])));
-  return limits ? limits[0].toFixed(2) + " to " + limits[1].toFixed(2) : "no light";
+  const known = range(rows.flatMap((i) => bands.map((band) => band.mag_limit[i] ? null : band.mag[i])));
+  const limits = range(rows.flatMap((i) => bands.map((band) => band.mag_limit[i] ? band.mag[i] : null)));
+  if (!known) return limits ? "> " + limits[0].toFixed(2) : "no light";
+  return known[0].toFixed(2) + " to " + (limits ? "> " + Math.max(known[1], limits[1]).toFixed(2) : known[1].toFixed(2));
 }
 
 function greatestP(rows) {

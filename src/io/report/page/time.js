@@ -60,7 +60,29 @@ function eventTraces(shown, data, plan) {
   return height;
 }
 
-/// Rows of panels from `rows`: {title, at(band, row), cyclic, type, reversed, range, dtick, digits, unit}.
+/// Magnitudes from the faint end of the axis to the bright one: 12 below the brightest at most, so that the far
+/// tail of a lobe leaves the curve its height. Null where nothing is known.
+function magnitudeSpan(shown) {
+  const rows = shown.flatMap((pass) => pass.rows);
+  const known = range(rows.flatMap((i) => bands.map((band) => band.mag_limit[i] ? null : band.mag[i])));
+  if (!known) return null;
+  const faint = Math.min(known[1], known[0] + 12), pad = Math.max(0.1, 0.05 * (faint - known[0]));
+  return [faint + pad, known[0] - pad];
+}
+
+/// Triangles that point to where the object is: limits, and what is fainter than the axis reaches.
+function limitTraces(pass, k, curve, key, edge, data) {
+  const rows = pass.rows.filter((i) => curve.value(i) !== null && (curve.isLimit(i) || curve.value(i) > edge));
+  if (!rows.length) return;
+  data.push({
+    type: "scatter", mode: "markers", x: rows.map((i) => times[i]), y: rows.map((i) => Math.min(curve.value(i), edge)),
+    customdata: rows.map((i) => (curve.isLimit(i) ? "> " : "") + curve.value(i).toFixed(2)),
+    xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: plain(curve.name), legendgroup: curve.name, showlegend: false,
+    marker: { color: curve.colour, symbol: "triangle-down-open", size: 7 }, hovertemplate: "%{customdata} mag",
+  });
+}
+
+/// Rows of panels from `rows`: {title, at(band, row), cyclic, type, reversed, range, dtick, digits, unit, span, isLimit}.
 function timeFigure(rows) {
   const shown = shownPasses();
   const data = [];
@@ -70,15 +92,18 @@ function timeFigure(rows) {
   const gap = 0.05;
   const height = (1 - floor - (floor ? 0.02 : 0) - gap * (rows.length - 1)) / rows.length;
   rows.forEach((row, r) => {
+    const span = row.span ? row.span(shown) : row.range;
     const top = 1 - r * (height + gap);
     const key = r ? r + 1 : "";
     plan["yaxis" + key] = axis({
       title: row.title, domain: [Math.max(0, top - height), top], type: row.type || "linear",
-      autorange: row.range ? false : row.reversed ? "reversed" : true, ...(row.range ? { range: row.range } : {}),
+      autorange: span ? false : row.reversed ? "reversed" : true, ...(span ? { range: span } : {}),
       ...(row.dtick ? { dtick: row.dtick } : {}), ...(row.type === "log" ? { exponentformat: "power" } : {}),
     });
-    const curves = row.curves || bands.map((band) => ({ name: band.name, colour: band.colour, symbol: band.symbol, at: (i) => row.at(band, i) }));
+    const curves = row.curves || bands.map((band) => ({ name: band.name, colour: band.colour, symbol: band.symbol, value: (i) => row.at(band, i),
+      isLimit: (i) => row.isLimit ? row.isLimit(band, i) : false, at: (i) => row.span && (row.isLimit(band, i) || (span && row.at(band, i) > span[0])) ? null : row.at(band, i) }));
     shown.forEach((pass, k) => curves.forEach((curve) => {
+      if (row.span) limitTraces(pass, k, curve, key, span ? span[0] : Infinity, data);
       const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
       data.push({
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, customdata: line.row.map((i) => epochs.phase[i]),
@@ -96,7 +121,8 @@ function timeFigure(rows) {
 }
 
 const brightnessRows = {
-  mag: { title: "AB magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag" },
+  mag: { title: "AB magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag",
+    span: magnitudeSpan, isLimit: (band, i) => band.mag_limit[i] === 1 },
   irradiance: { title: "I [W m⁻² nm⁻¹]", at: (band, i) => positive(band.irradiance[i]), type: "log", digits: "3e" },
   intensity: { title: "intensity [m² sr⁻¹]", at: (band, i) => positive(band.intensity[i]), type: "log", digits: "3e" },
 };
@@ -107,9 +133,9 @@ const timeFigures = [
   {
     id: "intensity", title: "Brightness against time", height: () => isNarrow() ? 340 : 460,
     controls: [{ key: "scale", name: "Show", options: [["mag", "magnitude"], ["irradiance", "irradiance"], ["intensity", "intensity"]] }],
-    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
+    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Triangles: fainter than the point, or than the axis reaches. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
     build: (state) => timeFigure([brightnessRows[state.scale]]),
-    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
+    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["mag_limit", "", (b, i) => b.mag_limit[i] ? "True" : "False"], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
       ["intensity", "m2 sr-1", (b, i) => b.intensity[i]]]),
   },
   {
@@ -146,7 +172,8 @@ const colourPairs = byWavelength.slice(1).map((long, k) => ({
   name: bands[byWavelength[k]].name + " − " + bands[long].name, short: bands[byWavelength[k]], long: bands[long],
   colour: manyBandColours[(2 * k) % 7], symbol: symbols[k % symbols.length],
 }));
-const colourIndex = (pair, i) => pair.short.mag[i] === null || pair.long.mag[i] === null ? null : pair.short.mag[i] - pair.long.mag[i];
+const isMagnitude = (band, i) => band.mag[i] !== null && !band.mag_limit[i];
+const colourIndex = (pair, i) => !isMagnitude(pair.short, i) || !isMagnitude(pair.long, i) ? null : pair.short.mag[i] - pair.long.mag[i];
 const colourFigure = {
   id: "colour", title: "Colour index against time", height: () => isNarrow() ? 320 : 460,
   caption: "Shorter minus longer wavelength, AB magnitudes: larger is redder.",
