@@ -67,10 +67,8 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   Table table = jobs::passes_table(request, result);
   if (result.stopped)
     return tl::unexpected(stop_table(o.output, std::move(table), common, *result.stopped));
-  if (!o.chart.empty()) {
-    UMOV_ASSIGN(page, jobs::sky_chart(request, result));
-    UMOV_TRY(put(o.chart, page));
-  }
+  if (!o.chart.empty())
+    UMOV_TRY(put(o.chart, jobs::sky_chart(request, result)));
   return put_table(o.output, table, common);
 }
 
@@ -120,7 +118,7 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   verb->add_flag("--keep-going", o->keep_going, "Report bad sets and keep the others");
   verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
   add_pass_model(*verb, *o);
-  verb->add_option("--chart", o->chart, "Sky chart of the passes (HTML)");
+  verb->add_option("--chart", o->chart, "Sky chart of the passes, with a table (HTML)");
   add_table_output(*verb, o->output);
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
