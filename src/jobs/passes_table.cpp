@@ -95,7 +95,7 @@ void PassColumns::add_light() {
   text("shadow_exit_utc", "half of the Sun's disk is back; empty: not during the pass",
        [](E, P p) { return shadow_time(p, false); });
   number("sunlit_share", "", "of the time between rise and set",
-         [](E, P p) { return p.sunlit_share; });
+         [](E, P p) { return std::round(p.sunlit_share * 1e9) / 1e9; }); // no .9999999999999999
   number("visible", "s", "sunlit, with the site's Sun below --sun-alt-max-deg",
          [](E, P p) { return p.visible_s; });
   number("range_min", "km", "smallest distance from the site",

@@ -13,8 +13,8 @@ struct SkyTrack {
   std::string rise, culmination, set; ///< UTC, "" where the span cuts the pass
   double altitude_max = 0;            ///< [deg]
   double magnitude_min = 0, magnitude_max = 0;
-  double phase_min = 0, phase_max = 0; ///< while sunlit [deg]
-  double visible_s = 0;                ///< sunlit in a dark sky
+  double phase_min = 0, phase_max = 0;   ///< while sunlit [deg]
+  double visible_s = 0;                  ///< sunlit in a dark sky
   std::vector<double> azimuth, altitude; ///< [deg], in equal steps from rise to set
   std::vector<bool> is_sunlit;           ///< of each point
 };
@@ -27,8 +27,8 @@ struct SkyPage {
   std::vector<std::string> notes; ///< one sentence each
 };
 
-/// The sky overhead with north up and east left, tracks coloured by magnitude, and a table beside it
-/// that can be sorted. Same input, same bytes.
+/// The sky overhead with north up and east left, tracks coloured by magnitude, and a table beside
+/// it that can be sorted. Same input, same bytes.
 std::string make_sky_page(const SkyPage &page);
 
 } // namespace umov

@@ -186,6 +186,7 @@ Json key_frames_json(const std::vector<ReportKeyFrame> &frames) {
     out.push_back({{"time", frame.time},
                    {"caption", frame.caption},
                    {"width_m", frame.width_m},
+                   {"white", frame.white},
                    {"sun", {frame.sun_right, frame.sun_up}},
                    {"pictures", std::move(pictures)}});
   }

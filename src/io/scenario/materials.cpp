@@ -47,7 +47,10 @@ Result<IndexTable> read_index_in_place(const Node &below) {
 Result<IndexTable> read_index(const Node &node) {
   UMOV_TRY(node.require("index"));
   if (node.get("index")->is_string()) {
-    auto found = find_index(node.text("index", ""));
+    const std::string name = node.text("index", "");
+    if (is_index_file_name(name))
+      return read_index_file(beside(node, name));
+    auto found = find_index(name);
     if (!found)
       return fail(ErrorCode::BadInput, found.error().message, node.where("index"));
     return *found;
