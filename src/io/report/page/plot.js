@@ -85,6 +85,8 @@ function choice(name, options, current, onChange) {
 
 const fileStem = (report.object || "object").replace(/[^A-Za-z0-9_-]+/g, "_") + "_";
 
+const paper = { isPrinting: false }; // two figures stand on a sheet
+
 /// One cursor through all figures against time and the pictures: where the pointer is in one of them, a line stands
 /// in the others, and the picture nearest in time is framed.
 const cursor = {
@@ -177,7 +179,7 @@ class FigureCard {
     try {
       const { data, layout: plan } = this.figure.build(this.state);
       const height = typeof this.figure.height === "function" ? this.figure.height() : this.figure.height || 380;
-      Plotly.react(this.plot, data, { ...plan, height },
+      Plotly.react(this.plot, data, { ...plan, height: paper.isPrinting ? 0.78 * height : height },
         { displaylogo: false, displayModeBar: hasHover ? "hover" : false, modeBarButtonsToRemove: ["select2d", "lasso2d", "toImage"] });
       cursor.follow(this);
     } catch (error) {

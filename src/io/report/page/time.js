@@ -85,7 +85,7 @@ function limitTraces(pass, k, curve, key, edge, data) {
   const rows = pass.rows.filter((i) => curve.value(i) !== null && (curve.isLimit(i) || curve.value(i) > edge));
   if (!rows.length) return;
   data.push({
-    type: "scatter", mode: "markers", x: rows.map((i) => times[i]), y: rows.map((i) => Math.min(curve.value(i), edge)),
+    type: "scatter", mode: "markers", x: rows.map((i) => times[i]), y: rows.map((i) => Math.min(curve.value(i), edge)), cliponaxis: false,
     customdata: rows.map((i) => (curve.isLimit(i) ? "> " : "") + curve.value(i).toFixed(2)),
     xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: plain(curve.name), legendgroup: curve.name, showlegend: false,
     marker: { color: curve.colour, symbol: "triangle-down-open", size: 7 }, hovertemplate: "%{customdata} mag",
@@ -113,7 +113,7 @@ function timeFigure(rows) {
     const curves = row.curves || bands.map((band) => ({ name: band.label, colour: band.colour, symbol: band.symbol, value: (i) => row.at(band, i),
       isLimit: (i) => row.isLimit ? row.isLimit(band, i) : false, at: (i) => row.span && (row.isLimit(band, i) || (span && row.at(band, i) > span[0])) ? null : row.at(band, i) }));
     shown.forEach((pass, k) => curves.forEach((curve) => {
-      if (row.span) limitTraces(pass, k, curve, key, span ? span[0] : Infinity, data);
+      if (row.span) limitTraces(pass, k, curve, key, span ? span[0] - 0.02 * (span[0] - span[1]) : Infinity, data);
       const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
       data.push({
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, customdata: line.row.map((i) => epochs.phase[i]),
