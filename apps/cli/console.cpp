@@ -118,6 +118,20 @@ ProgressBar::~ProgressBar() {
     say("\r\033[K");
 }
 
+/// Time left at the rate of the last 20 s; nothing is promised in the first seconds, when caches
+/// fill and rates say little.
+std::string ProgressBar::left(std::size_t done, std::size_t total) const {
+  using namespace std::chrono;
+  const auto &[from, first] = lately_.front();
+  const auto &[to, last] = lately_.back();
+  const double spent = duration<double>(to - from).count();
+  if (duration<double>(to - begin_).count() < 3 || last <= first || !(spent > 1))
+    return "time left not known yet";
+  const double rest = static_cast<double>(total - done) * spent / static_cast<double>(last - first);
+  return rest < 100 ? fmt::format("{:.0f} s left", rest)
+                    : fmt::format("{:.0f} min left", rest / 60);
+}
+
 void ProgressBar::update(std::size_t done, std::size_t total) {
   using namespace std::chrono;
   const auto now = steady_clock::now();
@@ -127,16 +141,17 @@ void ProgressBar::update(std::size_t done, std::size_t total) {
   last_ = now;
   has_drawn_ = true;
   const double share = static_cast<double>(done) / static_cast<double>(total);
-  const double spent = duration<double>(now - begin_).count();
-  const double left = share > 0 ? spent / share - spent : 0;
+  lately_.emplace_back(now, done);
+  while (lately_.size() > 2 && now - lately_.front().first > seconds(20))
+    lately_.pop_front();
   if (!is_terminal_) {
-    say("{}: {} of {}, {:.0f} s left\n", what_, done, total, left);
+    say("{}: {} of {}, {}\n", what_, done, total, left(done, total));
     return;
   }
   constexpr int width = 30;
   const int full = static_cast<int>(share * width);
-  say("\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} %  {:.0f} s left", what_, "", full, "", width - full,
-      100 * share, left);
+  say("\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} %  {}", what_, "", full, "", width - full, 100 * share,
+      left(done, total));
   std::fflush(stderr);
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <deque>
 #include <functional>
 #include <string>
 #include <umov/core/diagnostics.h>
@@ -49,9 +50,12 @@ public:
   void update(std::size_t done, std::size_t total);
 
 private:
+  [[nodiscard]] std::string left(std::size_t done, std::size_t total) const;
   std::string what_;
   bool is_terminal_, is_on_, has_drawn_ = false;
   std::chrono::steady_clock::time_point begin_, last_;
+  /// What was done when, lately: the rate of now, not that of a slow beginning.
+  std::deque<std::pair<std::chrono::steady_clock::time_point, std::size_t>> lately_;
 };
 
 /// Set by the first Ctrl-C or termination signal; a second one ends the program at once.

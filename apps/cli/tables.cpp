@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fmt/ranges.h>
 #include <umov/io/table_sink.h>
+#include <unistd.h>
 
 namespace umov::cli {
 namespace {
@@ -24,6 +25,30 @@ void add_table_output(CLI::App &verb, std::string &path) {
   verb.add_option(
       "-o,--output", path,
       fmt::format("Table, instead of stdout: {} by its suffix", fmt::join(table_suffixes(), ", ")));
+}
+
+void add_columns(CLI::App &verb, std::vector<std::string> &columns) {
+  verb.add_option("-c,--columns", columns,
+                  "Columns, separated by commas, or all; on a terminal a few without it")
+      ->delimiter(',');
+}
+
+Result<Table> chosen_columns(const Table &table, const std::vector<std::string> &columns,
+                             const std::vector<std::string> &few, const std::string &path,
+                             const Common &common) {
+  const bool is_shown = (path.empty() || path == "-") && !common.json;
+  if (columns.size() == 1 && columns.front() == "all")
+    return table;
+  if (!columns.empty())
+    return with_columns(table, columns);
+  if (!is_shown || ::isatty(STDOUT_FILENO) == 0)
+    return table;
+  if (few.empty())
+    return without_empty_columns(table);
+  UMOV_ASSIGN(short_one, with_columns(table, few));
+  note(common, fmt::format("{} of {} columns; -c all shows them all, -c NAME,NAME those",
+                           few.size(), table.columns().size()));
+  return without_empty_columns(short_one);
 }
 
 Result<void> put_table(const std::string &path, const Table &table, const Common &common) {

@@ -11,6 +11,14 @@ const std::vector<std::string> &table_suffixes();
 /// -o of a verb that prints a table.
 void add_table_output(CLI::App &verb, std::string &path);
 
+/// -c of a verb whose table is wide: columns by name, or all.
+void add_columns(CLI::App &verb, std::vector<std::string> &columns);
+/// The columns asked for; without -c those of `few` (all if it is empty) where a terminal shows
+/// them, empty ones left out, and all elsewhere.
+Result<Table> chosen_columns(const Table &table, const std::vector<std::string> &columns,
+                             const std::vector<std::string> &few, const std::string &path,
+                             const Common &common);
+
 /// Writes a table: by the suffix of `path`; to stdout as text, or JSON with
 /// --json. Another suffix is a usage error.
 Result<void> put_table(const std::string &path, const Table &table, const Common &common);

@@ -9,6 +9,7 @@ namespace {
 
 struct BenchOptions {
   std::string output, orbit;
+  std::vector<std::string> columns;
   bench::LightRequest light;
 };
 
@@ -16,13 +17,18 @@ Result<void> run_bench(const BenchOptions &o, const Common &common, Diagnostics 
   UMOV_TRY(check_output(o.output));
   if (!o.orbit.empty()) {
     UMOV_ASSIGN(table, bench::orbit(o.orbit, diagnostics));
-    return put_table(o.output, table, common);
+    UMOV_ASSIGN(rates, chosen_columns(table, o.columns, {}, o.output, common));
+    return put_table(o.output, rates, common);
   }
+  note(common,
+       "about half a minute of one core per case, less on a quick one; the table comes at the "
+       "end (--only NAME measures less)");
   JobConsole console(common);
   UMOV_ASSIGN(report, bench::light(o.light, console.monitor(true), diagnostics));
   if (report.stopped)
     return tl::unexpected(stop_table(o.output, std::move(report.table), common, *report.stopped));
-  return put_table(o.output, report.table, common);
+  UMOV_ASSIGN(shown, chosen_columns(report.table, o.columns, {}, o.output, common));
+  return put_table(o.output, shown, common);
 }
 
 } // namespace
@@ -42,6 +48,7 @@ void add_bench(CLI::App &app, const Exit &exit_with) {
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
   add_table_output(*verb, o->output);
+  add_columns(*verb, o->columns);
   add_common(*verb, *common, true);
   verb->callback([o, common, exit_with] {
     watch_interrupts();

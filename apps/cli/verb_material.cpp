@@ -41,8 +41,7 @@ Result<void> print_index(const IndexOptions &o, const Common &common) {
     UMOV_ASSIGN(all, jobs::index_list());
     return put_table(o.output, all, common);
   }
-  const bool is_file = o.name.ends_with(".yml") || o.name.ends_with(".yaml");
-  UMOV_ASSIGN(index, is_file ? read_index_file(o.name) : find_index(o.name));
+  UMOV_ASSIGN(index, is_index_file_name(o.name) ? read_index_file(o.name) : find_index(o.name));
   UMOV_ASSIGN(table, jobs::index_table(index, o.wavelengths));
   return put_table(o.output, table, common);
 }
@@ -51,7 +50,9 @@ void add_index(CLI::App &material, const Exit &exit_with) {
   auto *verb = material.add_subcommand("index", "n and k of a table; without a name, all tables");
   auto o = std::make_shared<IndexOptions>();
   auto common = std::make_shared<Common>();
-  auto *name = verb->add_option("index", o->name, "Name, or a page of refractiveindex.info (.yml)");
+  auto *name = verb->add_option("index", o->name,
+                                "Name, a page of refractiveindex.info (.yml), or columns "
+                                "wavelength, n, k (.csv .txt .dat)");
   auto *nm = verb->add_option("--wavelength", o->wavelengths, "[nm], separated by commas")
                  ->delimiter(',')
                  ->check(CLI::Range(1.0, 1e7));

@@ -25,7 +25,8 @@ Result<void> import_file(const ImportOptions &o, const Common &common) {
   const std::string beside =
       fs::proximate(source, target.has_parent_path() ? target.parent_path() : ".").string();
   std::string text;
-  if (source.extension() == ".csv") {
+  UMOV_ASSIGN(bytes, read_file(source, 16u << 20));
+  if (source.extension() == ".csv" && bytes.find("theta") != std::string::npos) {
     std::vector<std::string> remarks;
     UMOV_ASSIGN(measured, read_measured_file(source, o.accept, remarks));
     text = fmt::format("[material.\"{}\"]\ndescription = \"measured, {}\"\ntable = \"{}\"\n{}",
@@ -54,9 +55,9 @@ Result<void> import_file(const ImportOptions &o, const Common &common) {
 } // namespace
 
 void add_import(CLI::App &material, const Exit &exit_with) {
-  auto *verb = material.add_subcommand(
-      "import",
-      "Check a page of refractiveindex.info (.yml) or a measured BRDF (.csv), as a material");
+  auto *verb = material.add_subcommand("import", "Check n and k (a page of refractiveindex.info, "
+                                                 "or columns wavelength, n, k) or a measured BRDF "
+                                                 "(.csv with theta_i_deg), as a material");
   auto o = std::make_shared<ImportOptions>();
   auto common = std::make_shared<Common>();
   verb->add_option("file", o->file, "Input")->required();

@@ -12,12 +12,16 @@ namespace {
 struct PlotOptions {
   jobs::MaterialPageRequest page;
   std::string output;
+  bool is_all = false;
 };
 
 Result<void> plot(const PlotOptions &o, const Common &common) {
   if (!o.output.ends_with(".html"))
     return fail(ErrorCode::Usage, "-o " + o.output + ": a name that ends in .html was expected");
-  UMOV_ASSIGN(page, jobs::material_page(o.page));
+  if (o.is_all == !o.page.names.empty())
+    return fail(ErrorCode::Usage, "names of materials or --all, one of them, was expected");
+  UMOV_ASSIGN(page, o.is_all ? jobs::material_gallery(o.page.wavelengths_nm)
+                             : jobs::material_page(o.page));
   UMOV_TRY(put(o.output, page));
   if (!common.quiet)
     fmt::print("written to {}\n", printable(o.output));
@@ -31,7 +35,8 @@ void add_plot(CLI::App &material, const Exit &exit_with) {
       "plot", "Fresnel curves, Q against phase, n and k, lobes and colour ratio, as one HTML page");
   auto o = std::make_shared<PlotOptions>();
   auto common = std::make_shared<Common>();
-  verb->add_option("material", o->page.names, "Names or TOML files")->required();
+  verb->add_option("material", o->page.names, "Names or TOML files");
+  verb->add_flag("--all", o->is_all, "A gallery: one figure for each material of the library");
   verb->add_option("--wavelength", o->page.wavelengths_nm, "[nm], separated by commas")
       ->delimiter(',')
       ->check(CLI::Range(10.0, 1e6))

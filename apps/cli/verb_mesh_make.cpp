@@ -22,13 +22,28 @@ struct ShapeOptions {
   std::string shape, output;
   double radius = 1, length = 2, width = 1, height = 1, edge = 1, chamfer = 0.1;
   std::vector<double> semi_axes{0.25, 0.25, 1};
-  int facets = 5000, sides = 48;
+  int facets = 5000, sides = 48, units = 3, panels = 0;
+  std::vector<double> bus, wing;
+  double diameter = 2, yoke = 0.5, focus = 0.8;
+  std::vector<double> nozzle{1, 0.8};
   double array_angle_deg = 0, crumple = 0, crumple_slope = 0;
   bool two_sided = false;
   RoughSurfaceOptions rough;
 };
 
 using Maker = std::function<Mesh(const ShapeOptions &)>;
+
+SatelliteOptions satellite_of(const ShapeOptions &o) {
+  SatelliteOptions out;
+  if (!o.bus.empty())
+    out.bus_m = {o.bus[0], o.bus[1], o.bus[2]};
+  if (!o.wing.empty()) {
+    out.wing_length_m = o.wing[0];
+    out.wing_width_m = o.wing[1];
+  }
+  out.yoke_m = o.yoke;
+  return out;
+}
 
 const std::map<std::string, Maker> &makers() {
   static const std::map<std::string, Maker> all{
@@ -55,8 +70,29 @@ const std::map<std::string, Maker> &makers() {
        }},
       {"box-wing",
        [](const auto &o) {
-         return make_box_wing(
-             {.facets = static_cast<std::size_t>(o.facets), .crumple_m = o.crumple});
+         return o.bus.empty() && o.wing.empty()
+                    ? make_box_wing(
+                          {.facets = static_cast<std::size_t>(o.facets), .crumple_m = o.crumple})
+                    : make_satellite(satellite_of(o));
+       }},
+      {"cubesat",
+       [](const auto &o) {
+         return make_cubesat({.units = static_cast<std::size_t>(o.units),
+                              .panels = static_cast<std::size_t>(o.panels)});
+       }},
+      {"rocket-body",
+       [](const auto &o) {
+         return make_rocket_body({.length_m = o.length,
+                                  .diameter_m = o.diameter,
+                                  .nozzle_length_m = o.nozzle[0],
+                                  .nozzle_diameter_m = o.nozzle[1],
+                                  .sides = static_cast<std::size_t>(o.sides)});
+       }},
+      {"dish",
+       [](const auto &o) {
+         return make_dish({.diameter_m = o.diameter,
+                           .focus_m = o.focus,
+                           .sides = static_cast<std::size_t>(o.sides)});
        }},
       {"agena",
        [](const auto &o) { return make_agena({.sides = static_cast<std::size_t>(o.sides)}); }},
@@ -82,6 +118,33 @@ Result<void> make(const ShapeOptions &options) {
                                       "makes other formats of it)");
   Diagnostics diagnostics;
   return write_mesh(path, mesh, diagnostics);
+}
+
+void add_spacecraft(CLI::App &verb, ShapeOptions &o) {
+  const auto length = CLI::Range(1e-3, 1e3);
+  verb.add_option("--units", o.units, "cubesat: 1, 2, 3, 6 or 12")
+      ->check(CLI::IsMember({1, 2, 3, 6, 12}))
+      ->capture_default_str();
+  verb.add_option("--panels", o.panels, "cubesat: deployed panels, to +x, -x, +y, -y")
+      ->check(CLI::Range(0, 4))
+      ->capture_default_str();
+  verb.add_option("--bus", o.bus, "box-wing: x y z [m]")->expected(3)->check(length);
+  verb.add_option("--wing", o.wing, "box-wing: length along y and width of a wing [m]")
+      ->expected(2)
+      ->check(length);
+  verb.add_option("--yoke", o.yoke, "box-wing: from bus to wing [m]")
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
+  verb.add_option("--diameter", o.diameter, "rocket-body, dish: [m]")
+      ->check(length)
+      ->capture_default_str();
+  verb.add_option("--nozzle", o.nozzle, "rocket-body: length and diameter of its nozzle [m]")
+      ->expected(2)
+      ->check(length)
+      ->capture_default_str();
+  verb.add_option("--focus", o.focus, "dish: focal length [m]")
+      ->check(length)
+      ->capture_default_str();
 }
 
 void add_rough_surface(CLI::App &verb, RoughSurfaceOptions &rough) {
@@ -114,7 +177,9 @@ void add_mesh_make(CLI::App &mesh, const Exit &exit_with) {
                    "mli (--width --crumple-slope), cylinder "
                    "(--radius --length --sides), chamfered-cube (--edge --chamfer), cigar "
                    "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides), "
-                   "box-wing (--facets --crumple), "
+                   "box-wing (--bus --wing --yoke: a group for each face and side; or --facets "
+                   "--crumple: the benchmark's), cubesat (--units --panels), rocket-body (--length "
+                   "--diameter --nozzle --sides), dish (--diameter --focus --sides), "
                    "rough-surface (--cells "
                    "--cell --slope --correlation --hurst --seed)")
       ->required()
@@ -149,6 +214,7 @@ void add_mesh_make(CLI::App &mesh, const Exit &exit_with) {
   verb->add_option("--array-angle-deg", options->array_angle_deg,
                    "Turn of the solar arrays about their boom")
       ->capture_default_str();
+  add_spacecraft(*verb, *options);
   add_rough_surface(*verb, options->rough);
   verb->add_flag("--two-sided", options->two_sided, "Materials \"front\" and \"back\"");
   add_common(*verb, *common, false);

@@ -46,6 +46,8 @@ Result<void> make(const PaperVerb &o, const Common &common) {
   UMOV_ASSIGN(folder, RunFolder::open(o.output, common.force));
   Paper paper({.threads = static_cast<unsigned>(common.threads)});
   const std::vector<std::string> ids = o.only.empty() ? paper_figure_ids() : o.only;
+  if (o.only.empty())
+    note(common, fmt::format("{} figures and claims: about eight minutes of one core", ids.size()));
   std::vector<PaperFigure> figures;
   ProgressBar bar("figures", common);
   for (const std::string &id : ids) {

@@ -14,7 +14,7 @@ struct PassesOptions {
   SiteOptions site;
   std::string orbit, output, start, stop, shadow = "ellipsoid", chart;
   std::string scene, body, material, band;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides, columns;
   std::vector<int> norad;
   double size_m = 1, altitude_min_deg = 10, sun_altitude_max_deg = -6;
   bool is_visible_only = false, allow_bad_checksum = false, keep_going = false,
@@ -67,11 +67,14 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   Table table = jobs::passes_table(request, result);
   if (result.stopped)
     return tl::unexpected(stop_table(o.output, std::move(table), common, *result.stopped));
-  if (!o.chart.empty()) {
-    UMOV_ASSIGN(page, jobs::sky_chart(request, result));
-    UMOV_TRY(put(o.chart, page));
-  }
-  return put_table(o.output, table, common);
+  if (!o.chart.empty())
+    UMOV_TRY(put(o.chart, jobs::sky_chart(request, result)));
+  UMOV_ASSIGN(shown, chosen_columns(table, o.columns,
+                                    {"name", "rise_utc", "culmination_utc", "set_utc",
+                                     "culmination_alt", "culmination_az", "phase_min", "mag_min",
+                                     "p_max", "sunlit_share", "visible"},
+                                    o.output, common));
+  return put_table(o.output, shown, common);
 }
 
 void add_pass_model(CLI::App &verb, PassesOptions &o) {
@@ -120,8 +123,9 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   verb->add_flag("--keep-going", o->keep_going, "Report bad sets and keep the others");
   verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
   add_pass_model(*verb, *o);
-  verb->add_option("--chart", o->chart, "Sky chart of the passes (HTML)");
+  verb->add_option("--chart", o->chart, "Sky chart of the passes, with a table (HTML)");
   add_table_output(*verb, o->output);
+  add_columns(*verb, o->columns);
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
   verb->callback([=] {

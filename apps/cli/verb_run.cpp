@@ -89,7 +89,10 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   if (!common.quiet) {
     for (const jobs::ObjectRun &one : result.objects)
       fmt::print("{}", jobs::summarize(one.outcome));
-    fmt::print("written to {}\n", printable(folder.path().string()));
+    fmt::print("written to {}{}\n", printable(folder.path().string()),
+               folder.replaced_utc().empty()
+                   ? ""
+                   : fmt::format(", in place of the run of {}", printable(folder.replaced_utc())));
   }
   const std::chrono::duration<double> spent = std::chrono::system_clock::now() - started;
   if (common.verbose)

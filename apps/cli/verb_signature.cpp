@@ -3,6 +3,7 @@
 #include "verbs.h"
 
 #include <filesystem>
+#include <fmt/format.h>
 #include <umov/core/journal.h>
 #include <umov/jobs/signature.h>
 
@@ -55,6 +56,28 @@ jobs::SignatureRequest request_of(const SignatureOptions &o) {
   return out;
 }
 
+/// Says how large a table will be before it is made, and refuses one for which there is no room.
+Result<void> tell_size(const std::string &path, std::size_t rows, const Common &common) {
+  // Of a row, measured: 27 numbers of eight bytes and the names; in CSV they take more digits.
+  const double bytes = static_cast<double>(rows) * (path.ends_with(".fits") ? 316 : 430);
+  if (path.empty() || path == "-" || bytes < 1e8)
+    return {};
+  namespace fs = std::filesystem;
+  std::error_code code;
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
+  const auto room = fs::space(folder, code);
+  const std::string size =
+      fmt::format("{} rows: {} will have about {:.2g} GB", rows, path, bytes / 1e9);
+  if (!code && bytes > static_cast<double>(room.available))
+    return fail(ErrorCode::Device,
+                fmt::format("{}, and {:.2g} GB are free. Ask for fewer poses or bands, or write to "
+                            "another disk.",
+                            size, static_cast<double>(room.available) / 1e9),
+                {folder.string()});
+  note(common, size);
+  return {};
+}
+
 Result<void> run_signature(const SignatureOptions &o, const Common &common,
                            Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
@@ -63,6 +86,7 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   const std::uint64_t seed = o.has_seed ? o.seed : scenario.seed;
   UMOV_ASSIGN(poses, o.geometry.empty() ? jobs::random_poses(o.poses, o.phases_deg, seed)
                                         : jobs::poses_from_file(o.geometry));
+  UMOV_TRY(tell_size(o.output, poses.count * scenario.bands.size(), common));
   JobConsole console(common);
   const auto sink = sink_for(o.output, common);
   jobs::JobOptions options = job_options(common);

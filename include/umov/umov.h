@@ -43,6 +43,7 @@
 #include <umov/io/run_folder.h>
 #include <umov/io/scenario.h>
 #include <umov/io/sites.h>
+#include <umov/io/sky_page.h>
 #include <umov/io/story_page.h>
 #include <umov/io/table.h>
 #include <umov/io/table_sink.h>

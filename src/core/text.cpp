@@ -2,6 +2,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <umov/core/text.h>
 #include <vector>
 
@@ -51,8 +52,51 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
+namespace {
+
+/// Words of a name: "cell_silicon" has two.
+std::set<std::string> words_of(std::string_view name) {
+  std::set<std::string> out;
+  for (std::size_t begin = 0; begin <= name.size();) {
+    const std::size_t end = std::min(name.find_first_of("_-.", begin), name.size());
+    if (end - begin >= 3)
+      out.emplace(name.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return out;
+}
+
+/// The shortest known name that begins with a whole given one ("step": "step_s"); empty if none.
+std::optional<std::string> longer_name(std::string_view given, std::span<const std::string> known) {
+  std::optional<std::string> best;
+  for (const std::string &name : known)
+    if (given.size() >= 3 && name.size() > given.size() && name.starts_with(given) &&
+        name[given.size()] == '_' && (!best || name.size() < best->size()))
+      best = name;
+  return best;
+}
+
+/// The nearest of those that share a word ("solar_cell": "cell_gaas"); empty if none.
+std::optional<std::string> kindred_name(std::string_view given,
+                                        std::span<const std::string> known) {
+  const auto wanted = words_of(given);
+  std::optional<std::string> best;
+  for (const std::string &name : known) {
+    const auto words = words_of(name);
+    const bool is_kindred =
+        std::ranges::any_of(words, [&](const auto &w) { return wanted.contains(w); });
+    if (is_kindred && (!best || edit_distance(given, name) < edit_distance(given, *best)))
+      best = name;
+  }
+  return best;
+}
+
+} // namespace
+
 std::optional<std::string> nearest_name(std::string_view given,
                                         std::span<const std::string> known) {
+  if (auto longer = longer_name(given, known))
+    return longer;
   const std::size_t reach = std::max<std::size_t>(2, given.size() / 3);
   std::optional<std::string> best;
   std::size_t best_distance = reach + 1, best_start = 0;
@@ -66,7 +110,7 @@ std::optional<std::string> nearest_name(std::string_view given,
       best = name;
     }
   }
-  return best;
+  return best ? best : kindred_name(given, known);
 }
 
 std::string shortest(double value) {

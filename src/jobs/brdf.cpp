@@ -42,7 +42,7 @@ private:
 };
 
 struct BrdfColumns {
-  std::vector<std::vector<double>> in{4}, mueller{16}, terms{4};
+  std::vector<std::vector<double>> in{4}, mueller{16}, terms{5};
 };
 
 Result<void> evaluate(const BrdfGeometry &row, bool with_terms, Surfaces &surfaces,
@@ -62,8 +62,8 @@ Result<void> evaluate(const BrdfGeometry &row, bool with_terms, Surfaces &surfac
     out.mueller[k].push_back(m.m[k / 4][k % 4]);
   if (with_terms) {
     const auto terms = surface.terms(0, at);
-    const std::array<double, 4> parts{terms.specular, terms.body, terms.interreflection,
-                                      terms.measured};
+    const std::array<double, 5> parts{terms.specular, terms.body, terms.interreflection,
+                                      terms.measured, terms.haze};
     for (std::size_t k = 0; k < parts.size(); ++k)
       out.terms[k].push_back(parts[k]);
   }
@@ -109,6 +109,8 @@ Result<Table> brdf_table(const BrdfRequest &request) {
               std::move(columns.terms[2]));
     table.add("m00_measured", "1 / sr", "part of m00: from a measured table",
               std::move(columns.terms[3]));
+    table.add("m00_haze", "1 / sr", "part of m00: scratches, dust and edges",
+              std::move(columns.terms[4]));
   }
   return table;
 }

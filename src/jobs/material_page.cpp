@@ -1,5 +1,7 @@
 #include <umov/jobs/material_page.h>
 
+#include "jobs/sphere_light.h"
+
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -78,13 +80,13 @@ PlotFigure amplitudes(const std::vector<Subject> &subjects) {
 }
 
 PlotFigure retardances(const std::vector<Subject> &subjects) {
-  return {"Phase of r_p against r_s (180 at normal incidence: the field directions)",
+  return {"Phase between r_p and r_s, either way (180 at normal incidence: the field directions)",
           "incidence [deg]", "phase [deg]",
           lines_over(subjects, steps(0, 89.5, 0.5),
                      [](const Subject &s, std::size_t b, double deg) {
                        const auto f = s.surface.interface(b).reflection(std::cos(deg * rad));
-                       const double phase = std::arg(f.z) / rad;
-                       return phase < -1e-6 ? phase + 360 : std::abs(phase);
+                       // 0 and 360 are one phase: a metal's run from 180 down, a film's both ways.
+                       return std::abs(std::arg(f.z)) / rad;
                      }),
           false};
 }
@@ -95,6 +97,16 @@ PlotFigure polarization(const std::vector<Subject> &subjects) {
                      [](const Subject &s, std::size_t b, double deg) {
                        const FresnelFactors f = s.surface.fresnel(b, std::cos(deg * rad));
                        return f.a > 0 ? 100 * f.b / f.a : std::nan("");
+                     }),
+          false};
+}
+
+PlotFigure sphere_polarization(const std::vector<Subject> &subjects, double step_deg) {
+  return {"Q/I of a sphere, all its light", "phase angle [deg]", "Q/I [%]",
+          lines_over(subjects, steps(0, 180 - step_deg, step_deg),
+                     [](const Subject &s, std::size_t b, double deg) {
+                       const auto light = sphere_light(s.surface, b, deg * rad);
+                       return light && light->i > 0 ? 100 * light->q / light->i : std::nan("");
                      }),
           false};
 }
@@ -177,14 +189,16 @@ Result<std::vector<Subject>> subjects_of(const MaterialPageRequest &request) {
 
 std::vector<PlotFigure> figures_of(const std::vector<Subject> &subjects,
                                    const MaterialPageRequest &request) {
-  std::vector<PlotFigure> out;
+  std::vector<PlotFigure> out{sphere_polarization(subjects, 3)};
   std::vector<Subject> with_interface;
   for (const Subject &s : subjects)
     if (!s.surface.material().measured && !s.surface.interface(0).is_void())
       with_interface.push_back(s);
   if (!with_interface.empty())
-    out = {polarization(with_interface), reflectances(with_interface), amplitudes(with_interface),
-           retardances(with_interface), indices(with_interface)};
+    for (PlotFigure &figure : std::vector{polarization(with_interface),
+                                          reflectances(with_interface), amplitudes(with_interface),
+                                          retardances(with_interface), indices(with_interface)})
+      out.push_back(std::move(figure));
   out.push_back(lobes(subjects, request.theta_i_deg));
   if (request.wavelengths_nm.size() > 1)
     out.push_back(colour_ratios(subjects, request.theta_i_deg));
@@ -192,6 +206,35 @@ std::vector<PlotFigure> figures_of(const std::vector<Subject> &subjects,
 }
 
 } // namespace
+
+Result<std::string> material_gallery(const std::vector<double> &wavelengths_nm) {
+  std::vector<PlotFigure> figures;
+  std::vector<std::string> notes{
+      "Each figure: Q/I of a sphere of one material, all its light, with "
+      "a point Sun; positive perpendicular to the scattering plane."};
+  for (const std::string &name : material_library()) {
+    MaterialPageRequest one;
+    one.names = {name};
+    UMOV_ASSIGN(material, read_material(name));
+    one.wavelengths_nm.clear();
+    const WavelengthRange range = range_of(material);
+    for (const double nm : wavelengths_nm)
+      if (nm >= range.first_nm && nm <= range.last_nm)
+        one.wavelengths_nm.push_back(nm);
+    UMOV_ASSIGN(subjects, subjects_of(one));
+    if (one.wavelengths_nm.empty() || subjects.front().surface.is_anisotropic()) {
+      notes.push_back(name + ": no one curve (brushed, or its tables end elsewhere).");
+      continue;
+    }
+    figures.push_back(sphere_polarization(subjects, 5));
+    figures.back().title = name;
+    for (PlotLine &line : figures.back().lines)
+      line.name.erase(0, name.size() + 1);
+    notes.push_back(name + ": " +
+                    (material.description.empty() ? "Table 1 of the paper" : material.description));
+  }
+  return make_plot_page("All materials", figures, notes);
+}
 
 Result<std::string> material_page(const MaterialPageRequest &request) {
   UMOV_ASSIGN(subjects, subjects_of(request));

@@ -7,6 +7,7 @@
 #include <limits>
 #include <umov/core/text.h>
 #include <umov/observation/epochs.h>
+#include <umov/photometry/radiometry.h>
 
 namespace umov::jobs {
 namespace {
@@ -94,7 +95,7 @@ void PassColumns::add_light() {
   text("shadow_exit_utc", "half of the Sun's disk is back; empty: not during the pass",
        [](E, P p) { return shadow_time(p, false); });
   number("sunlit_share", "", "of the time between rise and set",
-         [](E, P p) { return p.sunlit_share; });
+         [](E, P p) { return std::round(p.sunlit_share * 1e9) / 1e9; }); // no .9999999999999999
   number("visible", "s", "sunlit, with the site's Sun below --sun-alt-max-deg",
          [](E, P p) { return p.visible_s; });
   number("range_min", "km", "smallest distance from the site",
@@ -105,7 +106,9 @@ void PassColumns::add_light() {
          [](E, P p) { return p.sunlit_share > 0 ? p.phase_max.degrees() : none; });
   number("mag_min", "mag(AB)", "brightest while sunlit; empty where no model is given",
          [](E, P p) { return p.magnitude_min; });
-  number("mag_max", "mag(AB)", "faintest while sunlit", [](E, P p) { return p.magnitude_max; });
+  number("mag_max", "mag(AB)",
+         fmt::format("faintest while sunlit; {:g} stands for fainter", faintest_magnitude).c_str(),
+         [](E, P p) { return p.magnitude_max; });
   number("p_max", "", "largest degree of linear polarization while sunlit",
          [](E, P p) { return p.p_max; });
   text("glints", "times of glints, joined by semicolons", [](E, P p) {

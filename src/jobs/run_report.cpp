@@ -47,7 +47,7 @@ std::vector<std::pair<std::string, std::string>> manifest_lines(const Scenario &
 struct PassNumbers {
   double brightest = std::numeric_limits<double>::infinity(), faintest = -brightest;
   double p_max = 0, phase_min = 180, phase_max = 0;
-  bool has_unknown = false; ///< samples fainter than can be told
+  bool has_limit = false; ///< samples fainter than can be told
 };
 
 PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
@@ -61,10 +61,13 @@ PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
     out.phase_max = std::max(out.phase_max, phase);
     for (std::size_t b = 0; b < bands; ++b) {
       const LightCurveSample &s = curve.samples[i * bands + b];
-      const bool is_told = is_known(s.intensity, s.half_width);
-      out.has_unknown = out.has_unknown || !is_told;
-      if (!is_told || std::isnan(s.magnitude))
+      if (std::isnan(s.magnitude))
         continue;
+      if (has_magnitude_limit(s)) {
+        out.has_limit = true;
+        out.faintest = std::max(out.faintest, s.magnitude);
+        continue;
+      }
       out.brightest = std::min(out.brightest, s.magnitude);
       out.faintest = std::max(out.faintest, s.magnitude);
       if (!std::isnan(s.p) && is_p_known(s.intensity, s.half_width))
@@ -134,8 +137,8 @@ std::string summarize(const LightCurveOutcome &outcome) {
                        pass.culmination_altitude.degrees(), is_outside ? " (outside the span)" : "",
                        n.phase_min, n.phase_max);
     if (std::isfinite(n.brightest))
-      out += fmt::format("  mag {:.1f} to {:.1f} AB{}  p up to {:.0f} %", n.brightest, n.faintest,
-                         n.has_unknown ? " and fainter" : "", 100 * n.p_max);
+      out += fmt::format("  mag {:.1f} to {}{:.1f} AB  p up to {:.0f} %", n.brightest,
+                         n.has_limit ? "> " : "", n.faintest, 100 * n.p_max);
     out += "\n";
   }
   const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),

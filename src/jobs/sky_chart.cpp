@@ -5,63 +5,97 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <umov/io/plot_page.h>
+#include <limits>
+#include <tuple>
+#include <umov/io/sky_page.h>
 #include <umov/observation/epochs.h>
 
 namespace umov::jobs {
 namespace {
 
-constexpr std::size_t passes_max = 40; ///< more is a tangle
+constexpr std::size_t passes_max = 1000; ///< a page that any browser opens at once
+constexpr int steps = 60;                ///< of a track
 
-bool has_any(const PlotLine &line) {
-  return std::ranges::any_of(line.x, [](double x) { return !std::isnan(x); });
-}
-
-/// The sunlit and the dark part of a pass, each with gaps where the other is.
-void add_pass(const Trajectory &orbit, const SitePass &pass, const Site &site, ShadowModel shadow,
-              std::size_t colour, PlotFigure &figure) {
-  const std::string id = pass_id(orbit, pass.whole_culmination);
-  PlotLine lit{id, {}, {}, colour, "solid", {}}, dark{"", {}, {}, colour, "dot", {}};
-  constexpr int points = 120;
+void add_points(const Trajectory &orbit, const SitePass &pass, const PassesRequest &request,
+                SkyTrack &out) {
   const double length = seconds_between(pass.set.time, pass.rise.time);
-  for (int i = 0; i <= points; ++i) {
-    const Epoch<Utc> time = plus_seconds(pass.rise.time, length * i / points);
+  for (int i = 0; i <= steps; ++i) {
+    const Epoch<Utc> time = plus_seconds(pass.rise.time, length * i / steps);
     const auto state = orbit.at(time);
     if (!state)
       continue;
-    const ObservingGeometry g = observe(*state, time, site, shadow);
-    const bool is_end = i == 0 || i == points;
-    for (PlotLine *line : {&lit, &dark}) {
-      const bool is_on = (g.sunlit > 0.5) == (line == &lit);
-      line->x.push_back(is_on ? g.azimuth.degrees() : std::nan(""));
-      line->y.push_back(is_on ? g.altitude.degrees() : std::nan(""));
-      line->labels.push_back(is_on && is_end ? to_iso(time).substr(11, 8) : "");
-    }
+    const ObservingGeometry g = observe(*state, time, request.site, request.shadow);
+    out.azimuth.push_back(g.azimuth.degrees());
+    out.altitude.push_back(g.altitude.degrees());
+    out.is_sunlit.push_back(g.sunlit > 0.5);
   }
-  const bool is_lit = has_any(lit);
-  if (is_lit)
-    figure.lines.push_back(std::move(lit));
-  if (has_any(dark)) {
-    dark.name = id + (is_lit ? ", in the shadow" : "");
-    figure.lines.push_back(std::move(dark));
-  }
+}
+
+SkyTrack track_of(const Trajectory &orbit, const SitePass &pass, const PassesRequest &request) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const bool is_lit = pass.sunlit_share > 0;
+  SkyTrack out;
+  out.id = pass_id(orbit, pass.whole_culmination);
+  out.name = orbit.name().empty() ? fmt::format("{}", orbit.norad_cat_id()) : orbit.name();
+  out.rise = pass.is_rise_cut ? "" : to_iso(pass.rise.time);
+  out.culmination = to_iso(pass.culmination.time);
+  out.set = pass.is_set_cut ? "" : to_iso(pass.set.time);
+  out.altitude_max = pass.culmination.altitude.degrees();
+  out.magnitude_min = pass.magnitude_min;
+  out.magnitude_max = pass.magnitude_max;
+  out.phase_min = is_lit ? pass.phase_min.degrees() : none;
+  out.phase_max = is_lit ? pass.phase_max.degrees() : none;
+  out.visible_s = pass.visible_s;
+  add_points(orbit, pass, request, out);
+  return out;
+}
+
+/// Numbers of the passes that are drawn: the brightest, then the highest, where there are too many.
+std::vector<std::size_t> chosen(const PassesResult &result) {
+  std::vector<std::size_t> out(result.found.size());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = k;
+  if (out.size() <= passes_max)
+    return out;
+  const auto rank = [&](std::size_t k) {
+    const SitePass &pass = result.found[k].pass;
+    const double faint = std::isnan(pass.magnitude_min) ? 99 : pass.magnitude_min;
+    return std::tuple(faint, pass.visible_s > 0 ? 0 : 1, -pass.culmination.altitude.degrees());
+  };
+  std::ranges::stable_sort(out, [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
+  out.resize(passes_max);
+  std::ranges::sort(out);
+  return out;
 }
 
 } // namespace
 
-Result<std::string> sky_chart(const PassesRequest &request, const PassesResult &result) {
-  PlotFigure figure{"Passes over the site", "", "", {}, false, true};
-  for (std::size_t k = 0; k < std::min(result.found.size(), passes_max); ++k)
-    add_pass(result.orbits[result.found[k].object], result.found[k].pass, request.site,
-             request.shadow, k % 7, figure);
-  std::vector<std::string> notes{
-      "The sky overhead: zenith in the middle, north up, east left. Times are UTC.",
-      "Dotted: more than half of the Sun's disk is behind the Earth."};
-  if (result.found.size() > passes_max)
-    notes.push_back(
-        fmt::format("The first {} of {} passes are drawn.", passes_max, result.found.size()));
+std::string sky_chart(const PassesRequest &request, const PassesResult &result) {
   const std::string &name = request.site.name;
-  return make_plot_page("Passes over " + (name.empty() ? "the site" : name), {figure}, notes);
+  SkyPage page;
+  page.title = "Passes over " + (name.empty() ? "the site" : name);
+  const auto drawn = chosen(result);
+  bool has_magnitudes = false;
+  for (const std::size_t k : drawn) {
+    const ObjectPass &one = result.found[k];
+    page.tracks.push_back(track_of(result.orbits[one.object], one.pass, request));
+    has_magnitudes = has_magnitudes || !std::isnan(one.pass.magnitude_min);
+  }
+  page.model = has_magnitudes ? result.model : "";
+  page.notes = {
+      "The sky overhead: zenith in the middle, north up, east left, the horizon outside. Times "
+      "are UTC; an arrow stands at the end of each track.",
+      "Dotted: more than half of the Sun's disk is behind the Earth."};
+  if (has_magnitudes)
+    page.notes.emplace_back(
+        "Colour and mag: the brightest magnitude (AB) of the pass while sunlit.");
+  else
+    page.notes.emplace_back(
+        "No magnitudes: give --model sphere --material paint_white, or --scene.");
+  if (drawn.size() < result.found.size())
+    page.notes.push_back(
+        fmt::format("The best {} of {} passes are drawn.", drawn.size(), result.found.size()));
+  return make_sky_page(page);
 }
 
 } // namespace umov::jobs

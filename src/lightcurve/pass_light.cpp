@@ -101,7 +101,7 @@ void take(const BandResult &light, const ObservingGeometry &g, const Band &band,
       observed_light(s.i, band, solar, {g.sun_distance_km, g.range_km, g.sunlit});
   if (!(observed.irradiance > 0) || !is_known(s.i, half_width))
     return;
-  const double magnitude = observed.magnitude;
+  const double magnitude = std::min(observed.magnitude, faintest_magnitude);
   // fmin and fmax take the number where one of the two is none.
   pass.magnitude_min = std::fmin(pass.magnitude_min, magnitude);
   pass.magnitude_max = std::fmax(pass.magnitude_max, magnitude);

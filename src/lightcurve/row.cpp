@@ -40,6 +40,11 @@ double sunlight(const LightCurveRequest &request, const ObservingGeometry &g, co
 
 } // namespace
 
+bool has_magnitude_limit(const LightCurveSample &sample) {
+  return sample.magnitude >= faintest_magnitude ||
+         (!std::isnan(sample.magnitude) && !is_known(sample.intensity, sample.half_width));
+}
+
 LightCurveSample sample_from(const BandResult &band, const Band &colour, double solar,
                              const ObservingGeometry &geometry, const LightCurveRequest &request,
                              bool is_dark) {
@@ -47,11 +52,17 @@ LightCurveSample sample_from(const BandResult &band, const Band &colour, double 
   LightCurveSample out;
   out.intensity = band.stokes.i;
   out.half_width = band.half_width;
-  const ObservedLight observed = observed_light(
-      band.stokes.i, colour, solar,
-      {geometry.sun_distance_km, geometry.range_km, sunlight(request, geometry, colour)});
+  const LightPath path{geometry.sun_distance_km, geometry.range_km,
+                       sunlight(request, geometry, colour)};
+  const ObservedLight observed = observed_light(band.stokes.i, colour, solar, path);
   out.irradiance = observed.irradiance;
   out.magnitude = observed.magnitude;
+  if (!is_dark && path.sunlit > 0) {
+    if (!is_known(out.intensity, out.half_width))
+      out.magnitude =
+          observed_light(out.intensity + out.half_width.i, colour, solar, path).magnitude;
+    out.magnitude = std::fmin(out.magnitude, faintest_magnitude); // of tails that underflow, too
+  }
   if (is_dark || !(band.stokes.i > 0)) {
     out.sky = {nan, nan, nan, nan};
     out.scattering = {nan, nan, nan, nan};

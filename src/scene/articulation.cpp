@@ -109,7 +109,11 @@ Result<void> check_names(const Joint &joint, const Mesh &mesh) {
       return fail(
           ErrorCode::BadInput,
           fmt::format(
-              "part \"{}\": the mesh has no group \"{}\"; it has {}", joint.name, group,
+              "part \"{}\": the mesh has no group \"{}\"{}; it has {}", joint.name, group,
+              std::find(mesh.nodes.begin(), mesh.nodes.end(), group) == mesh.nodes.end()
+                  ? ""
+                  : " (groups are named by material), but a node of that name: nodes = [\"" +
+                        group + "\"]",
               fmt::join(std::set<std::string>(mesh.groups.begin(), mesh.groups.end()), ", ")));
   for (const std::string &node : joint.nodes)
     UMOV_TRY(check_node(joint, node, mesh));

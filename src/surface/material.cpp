@@ -30,6 +30,23 @@ Result<void> check_body(const Material &material) {
   return {};
 }
 
+Result<void> check_haze(const Material &material) {
+  if (!material.haze)
+    return {};
+  const Haze &haze = *material.haze;
+  if (!(haze.share >= 0 && haze.share <= 1))
+    return problem(material, fmt::format("haze {:g}; 0 to 1 was expected", haze.share));
+  const bool is_known = haze.high > 0;
+  if (is_known &&
+      !(haze.low >= 0 && haze.low <= haze.share && haze.share <= haze.high && haze.high <= 1))
+    return problem(material, fmt::format("haze {:g} is not in its range {:g} to {:g}", haze.share,
+                                         haze.low, haze.high));
+  if (haze.is_white && haze.is_polarized)
+    return problem(material,
+                   "white haze depolarizes; leave polarized out or give share, not albedo");
+  return {};
+}
+
 Result<void> check_layers(const Material &material) {
   for (const Layer &layer : material.layers) {
     UMOV_TRY(named(material, check_index(layer.index), "layer " + layer.index.name));
@@ -77,6 +94,7 @@ Result<void> check_material(const Material &material) {
   if (!normals)
     return problem(material, normals.error().message);
   UMOV_TRY(check_body(material));
+  UMOV_TRY(check_haze(material));
   UMOV_TRY(check_apparent_roughness(material));
   const bool needs_albedo = material.interreflection != Interreflection::None ||
                             (material.body && !material.body->is_polarized);
@@ -105,6 +123,8 @@ std::string describe_polarization(const Material &material) {
     out += "; inter-reflection unpolarized";
   else if (material.interreflection == Interreflection::SingleBounceQ)
     out += "; inter-reflection as one reflection";
+  if (material.haze)
+    out += material.haze->is_polarized ? "; haze as one reflection" : "; haze unpolarized";
   return out;
 }
 

@@ -71,7 +71,7 @@ Emissivity rough_emissivity(const Surface &surface, std::size_t band, double the
       }
   }
   // What leaves as from a mirror is not in the lobe: it needs a source with a size.
-  const double share = surface.mirror_part(band, c_v);
+  const double share = surface.clear_share() * surface.mirror_part(band, c_v);
   const Emissivity smooth =
       share > 0 ? smooth_emissivity(surface.interface(band), c_v) : Emissivity{};
   return {1 - i - diffuse_i - share * (1 - smooth.i), -q - diffuse_q + share * smooth.q};

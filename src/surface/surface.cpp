@@ -18,6 +18,7 @@ struct BandTables {
   std::optional<BodyLight> body;
   std::optional<Interreflected> interreflected;
   double wavelength_nm = 0;
+  double haze_albedo = 0; ///< what haze reflects of all light
 };
 
 Result<Interface> make_interface(const Material &material, const Band &band) {
@@ -57,6 +58,7 @@ struct Surface::Tables {
   std::optional<MicrofacetLobe> mirror;                    ///< of a polished surface
   std::vector<BandTables> bands;
   bool has_diffuse = false;
+  double clear_share = 1; ///< of the area, the rest being haze
 
   /// Part of the light that meets a polished surface as a mirror (lobes.md, Eq. 11).
   [[nodiscard]] double mirror_share(const BandTables &band, double n_l, double n_v) const {
@@ -115,6 +117,9 @@ Result<Surface> Surface::compile(const Material &material, const std::vector<Ban
     else if (tables->lobes.empty())
       tables->lobes.emplace_back(normals, material.shadowing);
     out.lobe = tables->lobes.size() - 1;
+    if (material.haze)
+      out.haze_albedo =
+          material.haze->share * (material.haze->is_white ? 1 : out.interface.mean_reflectance());
     const MicrofacetLobe &lobe = tables->lobes.back();
     if (material.interreflection != Interreflection::None) {
       if (tables->furnace.size() < tables->lobes.size())
@@ -141,7 +146,9 @@ Result<Surface> Surface::compile(const Material &material, const std::vector<Ban
                                    })
                                                       : FacetReflectance{}));
   }
-  tables->has_diffuse = material.body || material.interreflection != Interreflection::None;
+  tables->clear_share = material.haze ? 1 - material.haze->share : 1;
+  tables->has_diffuse =
+      material.body || material.haze || material.interreflection != Interreflection::None;
   Surface out;
   out.tables_ = std::move(tables);
   return out;
@@ -190,16 +197,37 @@ Stokes<ScatteringPlane> Surface::diffuse(std::size_t band, const SurfaceDirectio
       out += Stokes<ScatteringPlane>{value * in.i, 0, 0, 0};
     }
   }
+  if (!(own.haze_albedo > 0))
+    return out;
+  return out * tables_->clear_share + haze(band, at, in);
+}
+
+Stokes<ScatteringPlane> Surface::haze(std::size_t band, const SurfaceDirections &at,
+                                      const Stokes<ScatteringPlane> &in) const {
+  const double value = tables_->bands[band].haze_albedo / pi * at.l.z * at.v.z;
+  const auto f = mueller(band, at.l_v);
+  if (!tables_->material.haze->is_polarized || !(f.m[0][0] > 0))
+    return {value * in.i, 0, 0, 0};
+  return (f * in) * (value / f.m[0][0]);
+}
+
+MuellerEntries Surface::reflection(std::size_t band, double cosine) const {
+  MuellerEntries out = tables_->bands[band].interface.reflection(cosine);
+  out.a *= tables_->clear_share;
+  out.b *= tables_->clear_share;
+  out.z *= tables_->clear_share;
   return out;
 }
 
+double Surface::clear_share() const { return tables_->clear_share; }
+
 FresnelFactors Surface::fresnel(std::size_t band, double l_v) const {
-  const MuellerEntries f = tables_->bands[band].interface.reflection(half_angle_cosine(l_v));
+  const MuellerEntries f = reflection(band, half_angle_cosine(l_v));
   return {f.a, f.b};
 }
 
 Mueller<ScatteringPlane, ScatteringPlane> Surface::mueller(std::size_t band, double l_v) const {
-  return tables_->bands[band].interface.reflection(half_angle_cosine(l_v)).matrix();
+  return reflection(band, half_angle_cosine(l_v)).matrix();
 }
 
 Mueller<ScatteringPlane, ScatteringPlane> Surface::brdf(std::size_t band,
@@ -233,9 +261,10 @@ Surface::Terms Surface::terms(std::size_t band, const SurfaceDirections &at) con
   const Stokes<ScatteringPlane> sunlight{1, 0, 0, 0};
   out.specular = specular(band, at) / n_l / n_v * fresnel(band, at.l_v).a;
   if (own.body)
-    out.body = (*own.body)(at, sunlight).i / n_l / n_v;
+    out.body = tables_->clear_share * (*own.body)(at, sunlight).i / n_l / n_v;
   if (own.interreflected)
-    out.interreflection = (*own.interreflected)(n_l, n_v) / n_l / n_v;
+    out.interreflection = tables_->clear_share * (*own.interreflected)(n_l, n_v) / n_l / n_v;
+  out.haze = own.haze_albedo / pi;
   if (tables_->material.measured)
     out.measured = diffuse(band, at, sunlight).i / n_l / n_v;
   return out;
@@ -248,7 +277,7 @@ double Surface::specular_albedo(std::size_t band, Vec3<Facet> k) const {
   const auto facet = reflectance_of(own.interface);
   const double facets = directional_albedo(k, tables_->lobes[own.lobe], facet);
   const double share = tables_->mirror_share(own, k.z, k.z);
-  return (1 - share) * facets + share * facet(k.z);
+  return tables_->clear_share * ((1 - share) * facets + share * facet(k.z));
 }
 
 double Surface::albedo(std::size_t band, Vec3<Facet> k) const {
@@ -256,12 +285,12 @@ double Surface::albedo(std::size_t band, Vec3<Facet> k) const {
     return tables_->material.measured->albedo(tables_->bands[band].wavelength_nm,
                                               std::acos(std::clamp(k.z, 0.0, 1.0)));
   const BandTables &own = tables_->bands[band];
-  double out = specular_albedo(band, k);
+  double below = 0;
   if (own.interreflected)
-    out += own.interreflected->albedo(k.z);
+    below += own.interreflected->albedo(k.z);
   if (own.body)
-    out += own.body->albedo(k.z);
-  return out;
+    below += own.body->albedo(k.z);
+  return specular_albedo(band, k) + tables_->clear_share * below + own.haze_albedo;
 }
 
 double Surface::furnace_albedo(Vec3<Facet> k) const {
@@ -315,14 +344,18 @@ Surface::separable_diffuse(std::size_t band) const {
     return {};
   std::vector<SeparableDiffuse> out;
   if (own.body) {
-    out.push_back({own.body->factor(), [&own](double n_k) { return own.body->entering(n_k); }});
+    out.push_back({tables_->clear_share * own.body->factor(),
+                   [&own](double n_k) { return own.body->entering(n_k); }});
     if (own.body->is_polarized())
       out.back().polarizing = [&own](double n_k) { return own.body->polarizing(n_k); };
   }
   if (own.interreflected)
-    out.push_back({own.interreflected->factor(),
+    out.push_back({tables_->clear_share * own.interreflected->factor(),
                    [&own](double n_k) { return own.interreflected->lost(n_k); },
                    tables_->material.interreflection == Interreflection::SingleBounceQ});
+  if (own.haze_albedo > 0)
+    out.push_back(
+        {own.haze_albedo / pi, [](double) { return 1.0; }, tables_->material.haze->is_polarized});
   return out;
 }
 

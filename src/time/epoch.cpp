@@ -105,13 +105,23 @@ tl::unexpected<Error> bad_time(std::string_view text, const std::string &problem
   return fail(ErrorCode::BadInput, fmt::format("\"{}\" {}", text, problem));
 }
 
+/// A day without a time: "2018-01-21".
+bool is_date(std::string_view text) {
+  bool out = text.size() == 10;
+  for (std::size_t i = 0; i < text.size() && out; ++i)
+    out = i == 4 || i == 7 ? text[i] == '-' : text[i] >= '0' && text[i] <= '9';
+  return out;
+}
+
 } // namespace
 
 Result<Epoch<Utc>> utc_from_iso(std::string_view text) {
   Civil c{};
   if (text.size() > 64 || !read_civil(text, c))
-    return bad_time(text.substr(0, 64), "is not a time; ISO 8601 such as 2018-01-21T04:00:00Z was "
-                                        "expected");
+    return bad_time(
+        text.substr(0, 64),
+        fmt::format("is not a time; ISO 8601 such as {}Z was expected",
+                    is_date(text) ? std::string(text) + "T00:00:00" : "2018-01-21T04:00:00"));
   if (!c.has_offset)
     return bad_time(text,
                     fmt::format("has no zone, so it could be local time or UTC. Write {}Z for "

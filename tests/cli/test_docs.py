@@ -42,3 +42,8 @@ def test_links_of_the_pages_lead_somewhere():
     for page in pages:
         for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text()):
             assert target.startswith("http") or (page.parent / target).exists(), f"{page}: {target}"
+
+
+def test_the_page_of_keys_is_that_of_the_schema():
+    made = subprocess.run(["python3", ROOT / "tools/doc_keys", UMOV], capture_output=True, text=True, check=True).stdout
+    assert made == (ROOT / "docs/keys.md").read_text(), "run tools/doc_keys > docs/keys.md"

@@ -28,6 +28,23 @@ def test_the_list_says_how_each_polarizes_and_what_is_assumed(umov):
         assert "source = " in text and "assumed = " in text, path
 
 
+def test_no_material_of_the_library_is_black_beside_its_lobe(umov, tmp_path):
+    """The darkest of the flight surfaces that were measured, a solar array, sends .0018 per sr back where least
+    (Fankhauser et al. 2023, 532 nm); polished glass is taken to be six times darker at most."""
+    rows = ["wavelength_nm,theta_i_deg,theta_o_deg,phi_deg"] + [f"550,{i},{o},{phi}" for i in (10, 60)
+                                                                for o in (40, 75) for phi in (0, 90)]
+    (tmp_path / "t.csv").write_text("\n".join(rows) + "\n")
+    for path in (ROOT / "data/materials").glob("*.toml"):
+        done = umov("brdf", path.stem, "--batch", "t.csv", "--terms", "-o", "m.csv")
+        assert done.code == 0, done.err
+        for row in read_csv(tmp_path / "m.csv"):
+            assert float(row["m00"]) > 0.0018 / 6, (path.stem, row)
+            parts = [float(row[f"m00_{part}"]) for part in ("specular", "body", "interreflection", "haze", "measured")]
+            assert sum(parts) == pytest.approx(float(row["m00"]), rel=1e-9), path.stem
+        text = path.read_text()
+        assert "body" in text or ("haze" in text and "range" in text), path
+
+
 def test_index_answers_and_refuses_outside(umov, tmp_path):
     done = umov("material", "index", "SiO2_Malitson", "--wavelength", "587.6,1000", "-o", "n.csv")
     assert done.code == 0, done.err
@@ -41,7 +58,7 @@ def test_index_answers_and_refuses_outside(umov, tmp_path):
 
 
 def test_show_gives_a_material_that_can_be_read_again(umov, tmp_path):
-    for name in ("cell_silicon", "paint_white", "aluminium_brushed", "mli_kapton", "paper_asi"):
+    for name in ("cell_silicon", "paint_white", "aluminium_brushed", "mli_kapton", "paper_asi", "gold"):
         shown = umov("material", "show", name)
         assert shown.code == 0, shown.err
         (tmp_path / "m.toml").write_text(shown.out.split("\nwavelengths  ")[0] + "\n")
@@ -68,6 +85,10 @@ BAD = [
      'interreflection = "unpolarized"', ["anisotropic"]),
     ('distribution = { model = "table", file = "none.csv" }', ["none.csv", "no such file"]),
     ('distribution = { model = "ggx", alpha = 0.1 }\nbody = { reflectance = 1.2 }', ["1.2"]),
+    ('distribution = { model = "ggx", alpha = 0.1 }\nhaze = { share = 1.2 }', ["haze 1.2"]),
+    ('distribution = { model = "ggx", alpha = 0.1 }\nhaze = { share = 0.1, albedo = 0.1 }', ["one of them"]),
+    ('distribution = { model = "ggx", alpha = 0.1 }\nhaze = { share = 0.1, range = [0.2, 0.3] }', ["0.2 to 0.3"]),
+    ('distribution = { model = "ggx", alpha = 0.1 }\nhaze = { albedo = 0.1, polarized = true }', ["depolarizes"]),
 ]
 
 

@@ -1,4 +1,6 @@
 """umov passes: one object, a catalogue, what is refused."""
+import json
+import re
 import signal
 import subprocess
 import time
@@ -127,7 +129,14 @@ def test_glints_of_a_spinning_plate_stand_in_the_run(umov, scenario, tmp_path):
     assert times and len(times) == len(widths) and flagged
     for time in flagged:  # a row in glint lies within the width of one that was found
         assert any(abs((time - t).sec) <= w for t, w in zip(times, widths)), time
-    assert (tmp_path / "sky.html").stat().st_size > 100_000
+    page = (tmp_path / "sky.html").read_text()
+    data = json.loads(re.search(r'id="data">(.*?)</script>', page).group(1))
+    track, = data["tracks"]
+    # Hundredths of a degree: the track rises at the altitude limit and reaches the table's culmination.
+    assert track["alt100"][0] == pytest.approx(1000, abs=2) and track["id"] == found["pass_id"]
+    assert max(track["alt100"]) / 100 == pytest.approx(float(found["culmination_alt"]), abs=0.3)
+    assert track["mag"] == pytest.approx(float(found["mag_min"]), abs=1e-3)
+    assert "://" not in re.sub(r"http://www.w3.org/2000/svg", "", page), "nothing is loaded from anywhere"
 
 
 @pytest.mark.parametrize("change, words", [

@@ -1,5 +1,6 @@
 """umov run: what it writes, and that the numbers hang together."""
 import filecmp
+import itertools
 import json
 import math
 import warnings
@@ -38,8 +39,8 @@ def test_ecsv_opens_with_astropy_and_has_units_everywhere(umov, scenario, tmp_pa
     assert table["I"].unit.is_equivalent("W / (m2 nm)")
     for name in ("time_utc mjd_utc name norad_cat_id band lambda_eff pass_id sunlit az alt ra dec "
                  "range range_rate phase_angle sun_alt airmass I intensity q u v p dop pa q_scat "
-                 "u_scat pa_scat mag mag_system glint qw qx qy qz elset_age intensity_err "
-                 "stokes_q_err stokes_u_err stokes_v_err").split():
+                 "u_scat pa_scat mag mag_limit mag_system glint qw qx qy qz elset_age intensity_err "
+                 "stokes_q_err stokes_u_err stokes_v_err mag_err q_err u_err v_err p_err pa_err").split():
         assert name in table.colnames, name
     # The two clocks of a row say the same (mjd has about 1e-11 d of rounding).
     clock = Time([t.rstrip("Z") for t in table["time_utc"]], scale="utc")
@@ -59,6 +60,45 @@ def test_polarization_columns_agree_with_each_other(umov, scenario, tmp_path):
         assert row["p"] == pytest.approx(abs(row["q_scat"]), abs=1e-12)
         # Q > 0 for one reflection: the electric vector stands along the normal of the plane.
         assert abs((row["pa"] - row["pa_scat"] + 90) % 180 - 90) < 1e-6
+
+
+@pytest.mark.parametrize("frame", ["equatorial", "altaz", "scattering"])
+def test_errors_stand_in_the_frame_of_their_value(umov, scenario, tmp_path, frame):
+    """Each Stokes parameter at either end of its interval, carried to the sky anew: the errors told contain all
+    eight corners to first order (the second is 1 % here), and are reached by one of them."""
+    done = umov("run", scenario(("step_s = 20", "step_s = 30"), ('default = "paper_al"', 'default = "paint_white"')),
+                "--set", f"output.pol_frame={frame}")
+    assert done.code == 0, done.err
+    rows = [row for row in Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv") if row["intensity"] > 0]
+    assert rows
+    for row in rows:
+        turn, i0, worst = math.radians(2 * row["pa_scat"]), row["intensity"], {}
+        for corner in itertools.product((-1, 1), repeat=4):
+            i = i0 + corner[0] * row["intensity_err"]
+            q, u, v = (row[f"{name}_scat" if name != "v" else "v"] * i0 + sign * row[f"stokes_{name}_err"]
+                       for name, sign in zip("quv", corner[1:]))
+            sky = {"q": (q * math.cos(turn) - u * math.sin(turn)) / i,
+                   "u": (q * math.sin(turn) + u * math.cos(turn)) / i, "v": v / i, "p": math.hypot(q, u) / i,
+                   "mag": row["mag"] - 2.5 * math.log10(i / i0)}
+            sky["pa"] = math.degrees(math.atan2(sky["u"], sky["q"]) / 2)
+            for name, value in sky.items():
+                off = abs(value - row[name])
+                worst[name] = max(worst.get(name, 0), min(off, 180 - off) if name == "pa" else off)
+        for name, off in worst.items():
+            assert off <= 1.01 * row[f"{name}_err"] + 1e-12, (name, off, row[f"{name}_err"])
+            assert row[f"{name}_err"] <= 1.01 * off + 1e-12, (name, off, row[f"{name}_err"])
+
+
+def test_what_is_fainter_than_magnitude_30_is_a_limit(umov, scenario, tmp_path):
+    """A lobe of a degree without haze: off it there are tails such as 1e-300, which are no light."""
+    needle = '[material.needle]\nindex = "Al_Rakic"\ndistribution = { model = "blinn_phong", m = 5000 }\n[bands]'
+    done = umov("run", scenario(('default = "paper_al"', 'default = "needle"'), ("[bands]", needle)))
+    assert done.code == 0, done.err
+    rows = Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv")
+    faint = [row for row in rows if row["mag_limit"] == "True" or row["mag_limit"] is True or row["mag_limit"] == 1]
+    assert faint and all(row["mag"] == 30 for row in faint)
+    assert all(row["mag"] <= 30 for row in rows if row["intensity"] > 0)
+    assert "> 30.0 AB" in done.out or "mag" not in done.out, done.out
 
 
 def test_same_bytes_for_any_number_of_threads(umov, scenario, tmp_path):

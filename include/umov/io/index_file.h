@@ -10,11 +10,16 @@
 namespace umov {
 
 /// Reads a page of refractiveindex.info as it is published (YAML: DATA with tabulated nk, n, k or
-/// formula 1 to 9; wavelengths in um). BadInput with file and line for an unknown type or formula,
-/// wavelengths that are not increasing or look like nm, k < 0, n <= 0.
+/// formula 1 to 9; wavelengths in um), or columns of wavelength, n and k between blanks, commas or
+/// semicolons (nm or um by the header, else by the numbers; k may be absent). BadInput with file
+/// and line for an unknown type or formula, wavelengths that are not increasing or look like nm, k
+/// < 0, n <= 0.
 Result<IndexTable> read_index_text(const std::string &text, const std::string &file);
 /// The same from a file.
 Result<IndexTable> read_index_file(const std::filesystem::path &path);
+
+/// The suffix says that a name is one of a file: .yml, .yaml, .csv, .txt, .dat.
+bool is_index_file_name(const std::filesystem::path &name);
 
 /// Names of the compiled-in tables (stems of data/nk, and paper_au and so on), sorted.
 std::vector<std::string> index_names();

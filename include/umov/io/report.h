@@ -31,6 +31,7 @@ struct ReportKeyFrame {
   double width_m = 0;               ///< side of the pictures
   double sun_right = 0, sun_up = 0; ///< unit vector to the Sun, its part in the picture plane
   std::vector<ReportPicture> pictures;
+  double white = 0; ///< radiance that is white in the picture of brightness; 0: not told
 };
 
 /// A point of a whole pass, shadowed parts included, for the sky track.

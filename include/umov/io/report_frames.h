@@ -12,7 +12,8 @@ namespace umov {
 Vec3<Body> celestial_north(const LightCurveEpoch &epoch);
 
 /// Epochs worth a picture: per pass the brightest one and others spread evenly in time, `count` per
-/// pass in all; fewer if the pass is shorter. In order of time; dark epochs are left out.
+/// pass in all; fewer if the pass is short: one, and one more for every 20 s. In order of time;
+/// dark epochs are left out.
 std::vector<std::size_t> choose_key_epochs(const LightCurve &curve, std::size_t count);
 
 /// The pictures of the chosen epochs in all three shadings, ready for the report. `joints` turn by

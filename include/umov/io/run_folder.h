@@ -29,6 +29,8 @@ public:
   Result<void> commit();
   /// Where the folder will stand.
   [[nodiscard]] const std::filesystem::path &path() const { return target_; }
+  /// When the run began whose folder this one replaces; "" if it replaces none.
+  [[nodiscard]] const std::string &replaced_utc() const { return replaced_utc_; }
   /// Where finished blocks are kept while the run goes on: beside the folder, or in one that is not
   /// ours alone.
   [[nodiscard]] std::filesystem::path journal_path() const;
@@ -36,6 +38,7 @@ public:
 private:
   void step_aside(const std::string &suffix);
 
+  std::string replaced_utc_;
   std::filesystem::path target_; ///< as the user named it
   std::filesystem::path real_;   ///< where that is
   bool is_foreign_ = false;

@@ -58,8 +58,9 @@ private:
 /// Enhanced CSV 1.0 (Astropy APE 6): names, types, units and notes in the header, blank-separated
 /// rows, NaN as "nan". Every column but text and truth values carries a unit.
 std::string to_ecsv(const Table &table);
-/// RFC 4180 with LF; notes as "# key: value", then "# unit: ..." above the header; NaN is an empty
-/// cell; a ' stands before a text that spreadsheets would compute as a formula.
+/// RFC 4180 with LF; where there are notes, a first comment says how to read it; they follow as "#
+/// key: value", then "# unit: ..." above the header; NaN is an empty cell; a ' stands before a text
+/// that spreadsheets would compute as a formula.
 std::string to_csv(const Table &table);
 /// A binary table of a FITS file (standard 4.0). BadInput for text that a column cannot hold.
 Result<std::string> to_fits(const Table &table);
@@ -73,6 +74,11 @@ void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std
 std::string to_json(const Table &table);
 /// Aligned columns for a terminal, numbers to six digits.
 std::string to_text(const Table &table);
+/// Columns of a table by name, in the order asked for. Usage with the nearest name for an unknown
+/// one.
+Result<Table> with_columns(const Table &table, const std::vector<std::string> &names);
+/// The same without columns in which no row says anything; notes are kept.
+Table without_empty_columns(const Table &table);
 
 /// Reads the `required` numeric columns of a CSV text, and those of `optional` that are there;
 /// others are ignored. A last column "line" tells where each row stands. Lines that start with '#'

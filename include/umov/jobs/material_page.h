@@ -14,7 +14,12 @@ struct MaterialPageRequest {
   double theta_i_deg = 60; ///< source from the normal, for lobes and colour
 };
 
-/// One HTML page: Q against phase, Fresnel curves, n and k, lobes and colour ratio.
+/// One HTML page with a figure for each material of the library: Q of a sphere against phase, by
+/// the wavelengths that its tables cover.
+Result<std::string> material_gallery(const std::vector<double> &wavelengths_nm);
+
+/// One HTML page: Q of a sphere and of one reflection against phase, Fresnel curves, n and k, lobes
+/// and colour ratio.
 Result<std::string> material_page(const MaterialPageRequest &request);
 
 } // namespace umov::jobs

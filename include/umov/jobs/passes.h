@@ -60,8 +60,8 @@ Result<PassesResult> passes(const PassesRequest &request, const JobOptions &opti
 /// A row per pass, with what was asked in the header.
 Table passes_table(const PassesRequest &request, const PassesResult &result);
 
-/// A page with the tracks over the site's sky, sunlit parts full and shadowed ones dotted, times at
-/// both ends. Internal if this build has no plotting script.
-Result<std::string> sky_chart(const PassesRequest &request, const PassesResult &result);
+/// A page with the tracks over the site's sky, coloured by magnitude, sunlit parts full and
+/// shadowed ones dotted, and a table that can be sorted. The best thousand where there are more.
+std::string sky_chart(const PassesRequest &request, const PassesResult &result);
 
 } // namespace umov::jobs

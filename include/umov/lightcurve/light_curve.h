@@ -32,11 +32,15 @@ struct LightCurveSample {
   Stokes<ScatteringPlane> scattering; ///< q_scat, u_scat, v as fractions; NaN if dark
   double p = 0, dop = 0;              ///< NaN if dark
   double pa_deg = 0;                  ///< [0, 180), NaN if p is 0 or dark
-  double magnitude = 0;               ///< AB; NaN if dark or in the umbra
+  double magnitude = 0; ///< AB, a limit where `has_magnitude_limit`; NaN if dark or in the umbra
   Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths [m2/sr]
   /// Light of more than one surface, part of `intensity`, as fractions of it; with bounces > 1.
   Stokes<ScatteringPlane> indirect;
 };
+
+/// The magnitude is a limit, the object fainter: beyond `faintest_magnitude`, or I is not three
+/// times its half-width, and the magnitude that of I and half-width together.
+bool has_magnitude_limit(const LightCurveSample &sample);
 
 /// Light of the object by another source than the Sun, not in I; [epoch * bands + band], in the sky
 /// axes of the curve.

@@ -18,6 +18,10 @@ double irradiance_at_observer(double intensity, double solar_irradiance, double 
 /// 1983). NaN where the irradiance is not positive.
 double ab_magnitude(double irradiance, Wavelength wavelength);
 
+/// Fainter than this a magnitude is given as a limit: no telescope tells such light from none, and
+/// what a model gives there is the far tail of a lobe.
+constexpr double faintest_magnitude = 30;
+
 /// What arrives at an observer in one band.
 struct ObservedLight {
   double irradiance = 0; ///< [W m-2 nm-1] above the atmosphere

@@ -36,6 +36,39 @@ struct AgenaOptions {
 };
 /// The stage as its options say.
 Mesh make_agena(const AgenaOptions &options = {});
+/// A CubeSat by the CubeSat Design Specification (100 mm across, 113.5 mm per unit in height; 6 and
+/// 12 units stand three high), origin at its middle, height along z. Groups: body_px, body_mx,
+/// body_py, body_my, body_pz, body_mz, and for each panel panel_px_front (cells, +z), _back, _edge.
+struct CubesatOptions {
+  std::size_t units = 3;  ///< 1, 2, 3, 6 or 12
+  std::size_t panels = 0; ///< 0 to 4 deployed ones as long as the body: to +x, -x, +y, -y
+};
+/// The CubeSat as its options say.
+Mesh make_cubesat(const CubesatOptions &options = {});
+/// A box with two wings along y. Groups: bus_px to bus_mz; wing_py_front (cells, +z), wing_py_back,
+/// wing_py_edge, wing_py_yoke and the same for wing_my: each wing turns about y.
+struct SatelliteOptions {
+  Vec3<Body> bus_m{2, 2, 2.5};
+  double wing_length_m = 8, wing_width_m = 2.2; ///< along y and across
+  double yoke_m = 0.5;                          ///< from bus to wing
+};
+/// The satellite as its options say.
+Mesh make_satellite(const SatelliteOptions &options = {});
+/// A spent stage, z forward from the nozzle's exit. Groups: nozzle, aft, tank, forward.
+struct RocketBodyOptions {
+  double length_m = 6.5, diameter_m = 2; ///< without the nozzle
+  double nozzle_length_m = 1, nozzle_diameter_m = 0.8;
+  std::size_t sides = 48;
+};
+/// The stage as its options say.
+Mesh make_rocket_body(const RocketBodyOptions &options = {});
+/// A paraboloid shell opening to +z, its apex at the origin. Groups: dish_front, dish_back.
+struct DishOptions {
+  double diameter_m = 2, focus_m = 0.8;
+  std::size_t sides = 48;
+};
+/// The dish as its options say.
+Mesh make_dish(const DishOptions &options = {});
 /// The benchmark's satellite: bus, two panels on yokes, dish (a shell), tower and tank, 4.2 m
 /// across, at least `facets` triangles, most of them dividing flat faces. Groups: bus, panels,
 /// dish, tank.

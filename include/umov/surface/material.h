@@ -30,6 +30,16 @@ struct BodyLobe {
   bool operator==(const BodyLobe &) const = default;
 };
 
+/// The floor under every lobe: scratches, dust, edges, wires. A part of the area reflects like a
+/// Lambert surface of the interface's mean reflectance, or white (docs/theory/lobes.md, Eq. 14).
+struct Haze {
+  double share = 0;          ///< of the area; of a white one that is its albedo
+  bool is_white = false;     ///< reflects everything, whatever the interface does
+  bool is_polarized = false; ///< with the Q/I of one reflection
+  double low = 0, high = 0;  ///< what the share may be; both 0: not said
+  bool operator==(const Haze &) const = default;
+};
+
 /// A film or layer on the substrate.
 struct Layer {
   IndexTable index;
@@ -60,6 +70,7 @@ struct Material {
   Shadowing shadowing = Shadowing::Ashikhmin;
   Interreflection interreflection = Interreflection::None;
   std::optional<BodyLobe> body; ///< absent: none
+  std::optional<Haze> haze;     ///< absent: none
   std::optional<ApparentRoughness> apparent_roughness;
   std::shared_ptr<const MeasuredBrdf> measured; ///< instead of all of the above
   std::string measured_file;

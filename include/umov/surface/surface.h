@@ -48,30 +48,35 @@ public:
   /// The same for every band.
   [[nodiscard]] bool is_specular_grey() const;
 
-  /// f M (n.l)(n.v) [1/sr] of all light that is not one reflection (body, inter-reflection,
+  /// f M (n.l)(n.v) [1/sr] of all light that is not one reflection (body, inter-reflection, haze,
   /// measured surfaces), for the incoming light `in` per unit irradiance.
   [[nodiscard]] Stokes<ScatteringPlane> diffuse(std::size_t band, const SurfaceDirections &at,
                                                 const Stokes<ScatteringPlane> &in) const;
   /// There is any such light.
   [[nodiscard]] bool has_diffuse() const;
 
-  /// Fresnel reflection of every contributing microfacet (incidence = half the phase angle).
+  /// Fresnel reflection of every contributing microfacet (incidence = half the phase angle), less
+  /// what goes into haze.
   [[nodiscard]] FresnelFactors fresnel(std::size_t band, double l_v) const;
   /// The whole Mueller matrix of one reflection at that phase angle (docs/theory/microfacet.md, Eq.
   /// 2).
   [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> mueller(std::size_t band,
                                                                   double l_v) const;
+  /// Reflection of a microfacet at a cosine of incidence, less what goes into haze.
+  [[nodiscard]] MuellerEntries reflection(std::size_t band, double cosine) const;
+  /// Part of the area that is not haze.
+  [[nodiscard]] double clear_share() const;
   /// Mueller BRDF [1/sr] of all lobes. Grazing and back directions give zeros.
   [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> brdf(std::size_t band,
                                                                const SurfaceDirections &at) const;
   /// Parts of M00 of the BRDF, for people.
   struct Terms {
-    double specular = 0, body = 0, interreflection = 0, measured = 0;
+    double specular = 0, body = 0, interreflection = 0, measured = 0, haze = 0;
   };
   /// The parts in a band, for unpolarized light.
   [[nodiscard]] Terms terms(std::size_t band, const SurfaceDirections &at) const;
 
-  /// Directional albedo of the microfacet lobe alone, Fresnel included (R(k) of
+  /// Directional albedo of the microfacet lobe alone, Fresnel and haze included (R(k) of
   /// docs/theory/microfacet.md, Eq. 6), towards a direction in the facet frame.
   [[nodiscard]] double specular_albedo(std::size_t band, Vec3<Facet> k) const;
   /// Directional albedo of everything, for unpolarized light.
@@ -116,6 +121,8 @@ public:
   [[nodiscard]] const Interface &interface(std::size_t band) const;
 
 private:
+  [[nodiscard]] Stokes<ScatteringPlane> haze(std::size_t band, const SurfaceDirections &at,
+                                             const Stokes<ScatteringPlane> &in) const;
   struct Tables;
   std::shared_ptr<const Tables> tables_;
 };

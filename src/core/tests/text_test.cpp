@@ -21,6 +21,12 @@ TEST(NearestName, FindsASlipAndKeepsQuietOtherwise) {
   EXPECT_EQ(nearest_name("interreflecton", known), "interreflection");
   EXPECT_EQ(nearest_name("bdoy", known), "body");
   EXPECT_FALSE(nearest_name("wavelength", known));
+  const std::vector<std::string> keys{"start",   "stop",      "step_s",
+                                      "lat_deg", "cell_gaas", "cell_silicon"};
+  EXPECT_EQ(nearest_name("step", keys), "step_s"); // by meaning, though "stop" is nearer
+  EXPECT_EQ(nearest_name("lat", keys), "lat_deg");
+  EXPECT_EQ(nearest_name("solar_cell", keys), "cell_gaas");
+  EXPECT_EQ(nearest_name("stp", keys), "stop");
 }
 
 TEST(Sha256, MatchesThePublishedVector) {

@@ -1,6 +1,9 @@
 #include <umov/io/index_file.h>
 
+#include "io/index/index_columns.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <sstream>
@@ -163,6 +166,8 @@ std::string plain(const std::string &html) {
 } // namespace
 
 Result<IndexTable> read_index_text(const std::string &text, const std::string &file) {
+  if (is_index_columns(text))
+    return read_index_columns(text, file);
   const Reader reader{file};
   IndexTable out;
   out.name = std::filesystem::path(file).stem().string();
@@ -171,7 +176,9 @@ Result<IndexTable> read_index_text(const std::string &text, const std::string &f
     const YAML::Node root = YAML::Load(text);
     const YAML::Node data = root.IsMap() ? root["DATA"] : YAML::Node();
     if (!data || !data.IsSequence() || data.size() == 0)
-      return fail(ErrorCode::BadInput, "no list DATA; a page of refractiveindex.info was expected",
+      return fail(ErrorCode::BadInput,
+                  "no list DATA; a page of refractiveindex.info was expected, or "
+                  "columns wavelength, n, k (nm or um in the header)",
                   {file});
     // A page has a few entries; an alias (*name) costs a hostile one nothing and us a table each.
     constexpr std::size_t entries_max = 16;
@@ -197,6 +204,11 @@ Result<IndexTable> read_index_text(const std::string &text, const std::string &f
   if (auto checked = check_index(out); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, {file});
   return out;
+}
+
+bool is_index_file_name(const std::filesystem::path &name) {
+  constexpr std::array suffixes{".yml", ".yaml", ".csv", ".txt", ".dat"};
+  return std::ranges::find(suffixes, name.extension().string()) != suffixes.end();
 }
 
 Result<IndexTable> read_index_file(const std::filesystem::path &path) {

@@ -248,27 +248,41 @@ void PolygonMaker::finish() {
     mesh_.tangents.clear();
 }
 
+/// Warns of sizes that no satellite has: the largest, a space station, is 109 m long.
+void warn_of_size(const Mesh &mesh, const MeshFileOptions &options, const std::string &file,
+                  Diagnostics &diagnostics) {
+  Vec3<Body> low = mesh.positions.front(), high = low;
+  for (const Vec3<Body> p : mesh.positions) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  const Vec3<Body> size = high - low;
+  const double longest = std::max({size.x, size.y, size.z});
+  if (longest >= 0.01 && longest <= 120)
+    return;
+  const bool is_long = longest > 120;
+  diagnostics.warn(fmt::format("the mesh is {:.3g} m long, {} than any satellite; is unit = \"{}\" "
+                               "right? With one a thousand times {} it is {:.3g} m",
+                               longest, is_long ? "longer" : "shorter",
+                               options.unit.empty() ? "m" : options.unit,
+                               is_long ? "smaller" : "larger", longest * (is_long ? 1e-3 : 1e3)),
+                   {file});
+}
+
 Result<void> to_body_frame(MeshFile &read, const MeshFileOptions &options, const std::string &file,
                            Diagnostics &diagnostics) {
   Mesh &mesh = read.mesh;
   if (mesh.triangles.empty())
     return fail(ErrorCode::BadInput, "no face; a mesh of polygons was expected", {file});
   UMOV_ASSIGN(metres, metres_of(mesh, options, {file}));
-  double largest = 0;
-  for (Vec3<Body> &p : mesh.positions) {
+  for (Vec3<Body> &p : mesh.positions)
     p = turned(p * metres, options.up);
-    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-  }
   for (Vec3<Body> &t : mesh.tangents)
     t = turned(t, options.up);
   for (MeshNode &node : read.nodes)
     node.origin_m = turned(node.origin_m * metres, options.up) + Vec3<Body>{}; // -0 becomes 0
   turn_normals(mesh, options.up);
-  if (largest < 1e-3 || largest > 1e4)
-    diagnostics.warn(
-        fmt::format("the mesh reaches {:.3g} m from its origin; is unit = \"{}\" right?", largest,
-                    options.unit),
-        {file});
+  warn_of_size(mesh, options, file, diagnostics);
   return {};
 }
 

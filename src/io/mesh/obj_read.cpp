@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <optional>
+#include <set>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 
@@ -56,6 +57,7 @@ private:
   Result<bool> takes_mtl(const std::string &name, const Word &statement);
   std::string name_of(const std::vector<Word> &words);
   Result<void> finish();
+  void keep_tree();
   std::uint32_t group();
 
   Lines lines_;
@@ -156,7 +158,8 @@ Result<std::array<double, 2>> Reader::texture(const std::vector<Word> &words) {
 }
 
 std::uint32_t Reader::group() {
-  return groups_.of(has_material_ ? material_ : object_.empty() ? "default" : object_);
+  const std::string node = object_.empty() ? "default" : object_;
+  return groups_.of(has_material_ ? material_ : node, node);
 }
 
 Result<void> Reader::take_face(const std::vector<Word> &words) {
@@ -274,6 +277,21 @@ Result<void> Reader::take(const std::vector<Word> &words) {
   return {};
 }
 
+/// The names of o and g are nodes, without a tree, where they say more than the materials do.
+void Reader::keep_tree() {
+  Mesh &mesh = out_.mesh;
+  const std::set<std::string> nodes(mesh.nodes.begin(), mesh.nodes.end());
+  if (nodes.size() < 2 || mesh.nodes == mesh.groups) {
+    mesh.nodes.clear();
+    return;
+  }
+  std::map<std::string, std::size_t> triangles;
+  for (const Triangle &t : mesh.triangles)
+    ++triangles[mesh.nodes[t.front]];
+  for (const auto &[name, count] : triangles)
+    out_.nodes.push_back({name, {}, count});
+}
+
 Result<void> Reader::finish() {
   const Where file{lines_.file()};
   for (const auto &[name, first] : unknown_) {
@@ -285,6 +303,7 @@ Result<void> Reader::finish() {
                       lines_.where(first));
   }
   polygons_.finish();
+  keep_tree();
   UMOV_TRY(mesh_io::to_body_frame(out_, options_, lines_.file(), diagnostics_));
   if (skipped_ > 0)
     diagnostics_.warn(fmt::format("{} points or lines were skipped: they have no area", skipped_),

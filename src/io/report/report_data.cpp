@@ -101,6 +101,7 @@ Json band_json(const LightCurve &curve, std::size_t band, std::size_t stride) {
            {"irradiance", each([](S s) { return s.irradiance; })},
            {"intensity", each([](S s) { return s.intensity; })},
            {"mag", each([](S s) { return s.magnitude; })},
+           {"mag_limit", each([](S s) { return has_magnitude_limit(s) ? 1 : 0; })},
            {"q", each([](S s) { return s.sky.q; })},
            {"u", each([](S s) { return s.sky.u; })},
            {"p", each([](S s) { return s.p; })},
@@ -185,6 +186,7 @@ Json key_frames_json(const std::vector<ReportKeyFrame> &frames) {
     out.push_back({{"time", frame.time},
                    {"caption", frame.caption},
                    {"width_m", frame.width_m},
+                   {"white", frame.white},
                    {"sun", {frame.sun_right, frame.sun_up}},
                    {"pictures", std::move(pictures)}});
   }

@@ -51,21 +51,35 @@ void choose_from_pass(const LightCurve &curve, const std::vector<std::size_t> &l
     chosen.insert(lit[rank]);
 }
 
+/// Pictures that a pass can fill with something new: one, and one more for every 20 s of it.
+std::size_t worth(const LightCurve &curve, const std::vector<std::size_t> &lit) {
+  if (lit.empty())
+    return 0;
+  constexpr double apart_s = 20;
+  const double length = seconds_between(curve.epochs[lit.back()].geometry.time,
+                                        curve.epochs[lit.front()].geometry.time);
+  return 1 + static_cast<std::size_t>(length / apart_s);
+}
+
 std::string caption_of(const LightCurve &curve, std::size_t epoch, std::size_t band) {
   const LightCurveSample &s = curve.samples[epoch * curve.bands.size() + band];
   std::string text =
       fmt::format("phase {:.1f} deg", curve.epochs[epoch].geometry.phase_angle.degrees());
   if (std::isfinite(s.magnitude))
-    text += fmt::format(", {:.2f} mag", s.magnitude);
+    text +=
+        fmt::format(", {}{:.2f} mag", has_magnitude_limit(s) ? "fainter than " : "", s.magnitude);
   if (std::isfinite(s.p))
     text += fmt::format(", p {:.1f} %", 100 * s.p);
   return text + " (" + curve.bands[band].name + ")";
 }
 
 Result<ReportKeyFrame> picture_set(const KeyFrameRaster &raster, const LightCurve &curve,
-                                   std::size_t epoch, std::size_t band, double white) {
+                                   std::size_t epoch, std::size_t band) {
   const LightCurveEpoch &at = curve.epochs[epoch];
   ReportKeyFrame out;
+  // Each by itself: beside a glint in one picture the object would be black in all others.
+  const double white = common_exposure(std::span(&raster, 1));
+  out.white = white;
   out.time = to_iso(at.geometry.time);
   out.caption = caption_of(curve, epoch, band);
   out.width_m = 2 * raster.half_width_m;
@@ -94,7 +108,7 @@ Vec3<Body> celestial_north(const LightCurveEpoch &epoch) {
 std::vector<std::size_t> choose_key_epochs(const LightCurve &curve, std::size_t count) {
   std::set<std::size_t> chosen;
   for (const auto &lit : lit_passes(curve))
-    choose_from_pass(curve, lit, count, chosen);
+    choose_from_pass(curve, lit, std::min(count, worth(curve, lit)), chosen);
   return {chosen.begin(), chosen.end()};
 }
 
@@ -113,10 +127,9 @@ Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const Li
                                  std::span(&options.band, 1)));
     rasters.push_back(std::move(one.front()));
   }
-  const double white = common_exposure(rasters);
   std::vector<ReportKeyFrame> out;
   for (std::size_t k = 0; k < epochs.size(); ++k) {
-    UMOV_ASSIGN(frame, picture_set(rasters[k], curve, epochs[k], options.band, white));
+    UMOV_ASSIGN(frame, picture_set(rasters[k], curve, epochs[k], options.band));
     out.push_back(std::move(frame));
   }
   return out;

@@ -10,6 +10,7 @@ namespace umov {
 
 struct OldManifest {
   std::string status;             ///< "complete" where it does not say
+  std::string started_utc;        ///< "" where it does not say
   std::vector<std::string> files; ///< names besides those that every run writes
 };
 

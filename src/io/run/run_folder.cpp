@@ -224,6 +224,8 @@ Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
                                          stranger_in(out.target_)));
     out.is_foreign_ = true;
   }
+  if (const auto old = manifest_of(out.target_))
+    out.replaced_utc_ = old->started_utc;
   // The working folder cannot be exchanged under the user's feet.
   if (out.real_ == fs::current_path(code))
     out.is_foreign_ = true;

@@ -129,7 +129,12 @@ Result<StartLaw> read_start(const Node &node) {
 constexpr std::initializer_list<const char *> pointing_keys{
     "point", "at", "then", "toward", "quaternion", "roll_deg", "pitch_deg", "yaw_deg"};
 
-Result<SpinLaw> read_spin(const Node &node) {
+/// When the start holds: as given, else where the scenario begins.
+Result<Epoch<Utc>> epoch_of(const Node &node, const std::optional<Epoch<Utc>> &begin) {
+  return node.has("epoch") || !begin ? node.time("epoch") : Result<Epoch<Utc>>(*begin);
+}
+
+Result<SpinLaw> read_spin(const Node &node, const std::optional<Epoch<Utc>> &begin) {
   UMOV_TRY(forbid(node, "mode = \"spin\"", pointing_keys));
   UMOV_TRY(forbid(node, "mode = \"spin\"", {"inertia", "file", "pieces"}));
   SpinLaw law;
@@ -147,7 +152,7 @@ Result<SpinLaw> read_spin(const Node &node) {
                 node.where("period_s"));
   law.rate_rad_s = node.has("rate_deg_s") ? Angle::degrees(node.number("rate_deg_s", 0)).radians()
                                           : 2 * pi / period;
-  UMOV_ASSIGN(epoch, node.time("epoch"));
+  UMOV_ASSIGN(epoch, epoch_of(node, begin));
   law.epoch = epoch;
   UMOV_ASSIGN(start, read_start(node));
   law.start = start;
@@ -173,7 +178,7 @@ Result<void> read_inertia(const Node &node, TumbleLaw &law) {
   return {};
 }
 
-Result<TumbleLaw> read_tumble(const Node &node) {
+Result<TumbleLaw> read_tumble(const Node &node, const std::optional<Epoch<Utc>> &begin) {
   UMOV_TRY(forbid(node, "mode = \"tumble\"", pointing_keys));
   UMOV_TRY(forbid(node, "mode = \"tumble\"", {"axis", "period_s", "file", "pieces"}));
   TumbleLaw law;
@@ -186,7 +191,7 @@ Result<TumbleLaw> read_tumble(const Node &node) {
                             rate.size()),
                 node.where("rate_deg_s"));
   law.rate_rad_s = Vec3<Body>{rate[0], rate[1], rate[2]} * (pi / 180);
-  UMOV_ASSIGN(epoch, node.time("epoch"));
+  UMOV_ASSIGN(epoch, epoch_of(node, begin));
   law.epoch = epoch;
   UMOV_ASSIGN(start, read_start(node));
   law.start = start;
@@ -202,7 +207,7 @@ Result<TableLaw> read_table(const Node &node, const std::filesystem::path &folde
 }
 
 Result<PiecewiseLaw> read_pieces(const Node &node, const std::filesystem::path &folder,
-                                 std::uint64_t seed) {
+                                 const AttitudeContext &context) {
   UMOV_TRY(forbid(node, "mode = \"pieces\"", pointing_keys));
   UMOV_TRY(forbid(node, "mode = \"pieces\"",
                   {"axis", "rate_deg_s", "period_s", "epoch", "start", "inertia", "file"}));
@@ -215,7 +220,7 @@ Result<PiecewiseLaw> read_pieces(const Node &node, const std::filesystem::path &
     const Node piece(*item.as_table(), "object.attitude", "object.attitude.pieces", node.file());
     UMOV_TRY(piece.check());
     UMOV_ASSIGN(from, piece.time("from"));
-    UMOV_ASSIGN(one, read_attitude(piece, folder, seed));
+    UMOV_ASSIGN(one, read_attitude(piece, folder, context));
     law.pieces.push_back({from, std::make_shared<AttitudeLaw>(one)});
   }
   return law;
@@ -313,7 +318,7 @@ std::string law_toml(const LibrationLaw &law) {
 } // namespace
 
 Result<AttitudeLaw> read_attitude(const Node &node, const std::filesystem::path &folder,
-                                  std::uint64_t seed) {
+                                  const AttitudeContext &context) {
   UMOV_ASSIGN(
       mode, node.choice("mode", "", {"", "nadir", "inertial", "spin", "tumble", "aem", "pieces"}));
   const auto as_law = [](auto law) { return AttitudeLaw{law}; };
@@ -321,17 +326,17 @@ Result<AttitudeLaw> read_attitude(const Node &node, const std::filesystem::path 
     if (mode == "inertial")
       return read_inertial(node).map(as_law);
     if (mode == "spin")
-      return read_spin(node).map(as_law);
+      return read_spin(node, context.begin).map(as_law);
     if (mode == "tumble")
-      return read_tumble(node).map(as_law);
+      return read_tumble(node, context.begin).map(as_law);
     if (mode == "aem")
       return read_table(node, folder).map(as_law);
     if (mode == "pieces")
-      return read_pieces(node, folder, seed).map(as_law);
+      return read_pieces(node, folder, context).map(as_law);
     return read_two_axis(node).map(as_law);
   };
   UMOV_ASSIGN(plain, read());
-  UMOV_ASSIGN(law, with_libration(node, plain, seed));
+  UMOV_ASSIGN(law, with_libration(node, plain, context.seed));
   if (auto checked = check_attitude(law); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, node.where());
   return law;

@@ -60,6 +60,16 @@ std::string apparent_toml(const ApparentRoughness &a) {
   return out + " }\n";
 }
 
+std::string haze_toml(const Haze &haze) {
+  std::string out =
+      fmt::format("haze = {{ {} = {}", haze.is_white ? "albedo" : "share", shortest(haze.share));
+  if (!haze.is_white)
+    out += fmt::format(", polarized = {}", haze.is_polarized);
+  if (haze.high > 0)
+    out += fmt::format(", range = {}", list_toml({haze.low, haze.high}));
+  return out + " }\n";
+}
+
 std::string texts_toml(const Material &m) {
   std::string out;
   for (const auto &[key, text] :
@@ -89,6 +99,8 @@ std::string material_toml(const Material &m) {
                      interreflection_names[static_cast<std::size_t>(m.interreflection)]);
   if (m.apparent_roughness)
     out += apparent_toml(*m.apparent_roughness);
+  if (m.haze)
+    out += haze_toml(*m.haze);
   if (!m.body)
     return out;
   const Tabulated &r = m.body->reflectance;

@@ -47,7 +47,10 @@ Result<IndexTable> read_index_in_place(const Node &below) {
 Result<IndexTable> read_index(const Node &node) {
   UMOV_TRY(node.require("index"));
   if (node.get("index")->is_string()) {
-    auto found = find_index(node.text("index", ""));
+    const std::string name = node.text("index", "");
+    if (is_index_file_name(name))
+      return read_index_file(beside(node, name));
+    auto found = find_index(name);
     if (!found)
       return fail(ErrorCode::BadInput, found.error().message, node.where("index"));
     return *found;
@@ -93,6 +96,27 @@ Result<Tabulated> read_reflectance(const Node &below) {
   return Tabulated{nm, values};
 }
 
+Result<std::optional<Haze>> read_haze(const Node &node) {
+  if (!node.has("haze"))
+    return std::optional<Haze>{};
+  UMOV_ASSIGN(below, node.child("haze"));
+  if (below.has("share") == below.has("albedo"))
+    return fail(ErrorCode::BadInput, "haze takes share or albedo, one of them", node.where("haze"));
+  Haze out;
+  out.is_white = below.has("albedo");
+  out.share = below.number(out.is_white ? "albedo" : "share", 0);
+  out.is_polarized = below.boolean("polarized", false);
+  if (below.has("range")) {
+    UMOV_ASSIGN(range, below.numbers("range"));
+    if (range.size() != 2 || !(range[1] > 0))
+      return fail(ErrorCode::BadInput, "range = [smallest, largest] was expected",
+                  below.where("range"));
+    out.low = range[0];
+    out.high = range[1];
+  }
+  return std::optional(out);
+}
+
 Result<DistributionChoice> read_distribution(const Node &node) {
   UMOV_ASSIGN(below, node.child("distribution"));
   UMOV_TRY(below.require("model"));
@@ -126,7 +150,7 @@ Result<std::optional<ApparentRoughness>> read_apparent_roughness(const Node &nod
 }
 
 Result<Material> read_measured(const Node &node, Material out) {
-  for (const char *name : {"index", "layers", "distribution", "shadowing", "body",
+  for (const char *name : {"index", "layers", "distribution", "shadowing", "body", "haze",
                            "interreflection", "apparent_roughness", "direction"})
     if (node.has(name))
       return fail(ErrorCode::BadInput,
@@ -165,6 +189,8 @@ Result<void> read_scattering(const Node &node, Material &out) {
     UMOV_ASSIGN(reflectance, read_reflectance(below));
     out.body = BodyLobe{reflectance, below.boolean("polarized", false)};
   }
+  UMOV_ASSIGN(haze, read_haze(node));
+  out.haze = haze;
   return {};
 }
 

@@ -78,32 +78,86 @@ Where place_of(const toml::key &key, const toml::node &value, const std::string 
   return place_of(has_place ? value.source() : key.source(), file);
 }
 
-Result<void> Node::check() const {
-  const auto known = names_in(schema_);
-  for (const auto &[key, value] : *table_) {
-    const std::string name(key.str());
-    const Key *spec = find_key(schema_, name);
-    if (spec == nullptr) {
-      const auto near = nearest_name(name, known);
-      return fail(ErrorCode::BadInput,
-                  fmt::format("unknown key \"{}\"{}. {}", name,
-                              label_.empty() ? "" : " in [" + label_ + "]",
-                              near ? fmt::format("Did you mean \"{}\"?", *near)
-                                   : fmt::format("Known: {}", fmt::join(known, ", "))),
-                  place_of(key.source(), file_));
-    }
-    if (!is_of(value, spec->kind))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} is {}; {} was expected ({})", name, name_of(value),
-                              to_text(spec->kind), spec->text),
-                  place_of(key, value, file_));
-    if (const auto number = value.value<double>();
-        number && spec->kind == Kind::Number && !std::isfinite(*number))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} is {}; a finite number was expected", name, *number),
-                  place_of(key, value, file_));
+std::optional<Error> Node::problem_of(const toml::key &key, const toml::node &value) const {
+  const std::string name(key.str());
+  const auto problem = [](const std::string &text, const Where &where) {
+    return Error{ErrorCode::BadInput, text, where};
+  };
+  const Key *spec = find_key(schema_, name);
+  if (spec == nullptr) {
+    const auto known = names_in(schema_);
+    const auto near = nearest_name(name, known);
+    return problem(fmt::format("unknown key \"{}\"{}. {}", name,
+                               label_.empty() ? "" : " in [" + label_ + "]",
+                               near ? fmt::format("Did you mean \"{}\"?", *near)
+                                    : fmt::format("Known: {}", fmt::join(known, ", "))),
+                   place_of(key.source(), file_));
   }
+  if (!is_of(value, spec->kind))
+    return problem(fmt::format("{} is {}; {} was expected ({})", name, name_of(value),
+                               to_text(spec->kind), spec->text),
+                   place_of(key, value, file_));
+  if (const auto number = value.value<double>();
+      number && spec->kind == Kind::Number && !std::isfinite(*number))
+    return problem(fmt::format("{} is {}; a finite number was expected", name, *number),
+                   place_of(key, value, file_));
   return {};
+}
+
+void Node::add_problems(std::vector<Error> &problems) const {
+  for (const auto &[key, value] : *table_)
+    if (auto problem = problem_of(key, value))
+      problems.push_back(std::move(*problem));
+}
+
+void Node::add_problems_below(std::vector<Error> &problems) const {
+  add_problems(problems);
+  const auto look_into = [&](const toml::node &value, const std::string &schema) {
+    const toml::table *table = value.as_table();
+    if (table != nullptr && !names_in(schema).empty())
+      Node(*table, schema, schema, file_).add_problems_below(problems);
+  };
+  for (const auto &[key, value] : *table_) {
+    const std::string below =
+        schema_.empty() ? std::string(key.str()) : schema_ + "." + std::string(key.str());
+    if (below == "material" && value.is_table())
+      for (const auto &[name, material] : *value.as_table())
+        look_into(material, below);
+    else if (const toml::array *list = value.as_array())
+      for (const toml::node &item : *list)
+        look_into(item, below);
+    else
+      look_into(value, below);
+  }
+}
+
+namespace {
+
+/// The first problem, and the others in lines of their own.
+Result<void> told(const std::vector<Error> &problems) {
+  if (problems.empty())
+    return {};
+  Error out = problems.front();
+  constexpr std::size_t most = 10;
+  for (std::size_t i = 1; i < std::min(problems.size(), most); ++i)
+    out.message += "\n  and " + problems[i].text();
+  if (problems.size() > most)
+    out.message += fmt::format("\n  and {} more", problems.size() - most);
+  return tl::unexpected(out);
+}
+
+} // namespace
+
+Result<void> Node::check() const {
+  std::vector<Error> problems;
+  add_problems(problems);
+  return told(problems);
+}
+
+Result<void> Node::check_with_all_below() const {
+  std::vector<Error> problems;
+  add_problems_below(problems);
+  return told(problems);
 }
 
 Where Node::where(const char *name) const {

@@ -18,8 +18,10 @@ public:
       : table_(&table), schema_(std::move(schema)), label_(std::move(label)),
         file_(std::move(file)) {}
 
-  /// BadInput at the first key that is unknown or of the wrong type.
+  /// BadInput at the first key that is unknown or of the wrong type; the message has the others.
   [[nodiscard]] Result<void> check() const;
+  /// The same for all tables below too, as far as they have a list of keys.
+  [[nodiscard]] Result<void> check_with_all_below() const;
 
   [[nodiscard]] bool has(const char *name) const { return table_->contains(name); }
   [[nodiscard]] Where where(const char *name) const;
@@ -47,6 +49,10 @@ public:
                                            const std::vector<std::string> &later = {}) const;
 
 private:
+  [[nodiscard]] std::optional<Error> problem_of(const toml::key &key,
+                                                const toml::node &value) const;
+  void add_problems(std::vector<Error> &problems) const;
+  void add_problems_below(std::vector<Error> &problems) const;
   const toml::table *table_;
   std::string schema_, label_, file_;
 };

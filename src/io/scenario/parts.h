@@ -6,9 +6,14 @@
 
 namespace umov::scenario {
 
-/// `folder`: of relative paths; `seed`: of the scenario, for libration.
+/// What an attitude takes from the scenario around it.
+struct AttitudeContext {
+  std::uint64_t seed = 0;               ///< of libration
+  std::optional<Epoch<Utc>> begin = {}; ///< of the scenario: where a spin starts unless it says so
+};
+/// `folder`: of relative paths.
 Result<AttitudeLaw> read_attitude(const Node &node, const std::filesystem::path &folder,
-                                  std::uint64_t seed);
+                                  const AttitudeContext &context);
 /// One [[object.part]].
 Result<MovingJoint> read_part(const Node &node);
 std::string part_toml(const MovingJoint &part);

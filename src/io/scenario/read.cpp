@@ -245,6 +245,8 @@ Result<void> read_parts(const Node &object, Scenario &out) {
     const Node node(*item.as_table(), "object.part", "object.part", out.file);
     UMOV_TRY(node.check());
     UMOV_ASSIGN(part, scenario::read_part(node));
+    if (part.joint.name.empty()) // messages and columns call it by its place in the list
+      part.joint.name = fmt::format("{}", out.objects.back().parts.size() + 1);
     out.objects.back().parts.push_back(part);
   }
   return {};
@@ -259,7 +261,8 @@ Result<void> read_object(const Node &object, const fs::path &folder, Scenario &o
   if (object.has("attitude")) {
     UMOV_ASSIGN(node, object.child("attitude"));
     out.places[key_of(out, "attitude")] = object.where("attitude");
-    UMOV_ASSIGN(law, scenario::read_attitude(node, folder, out.seed));
+    const auto begin = out.time ? std::optional(out.time->start) : std::nullopt;
+    UMOV_ASSIGN(law, scenario::read_attitude(node, folder, {out.seed, begin}));
     one.attitude = law;
   }
   UMOV_TRY(read_parts(object, out));
@@ -283,11 +286,26 @@ Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out
   return {};
 }
 
+/// A number where the name of a band belongs: 550 for "nm:550".
+Result<void> check_band_names(const Node &bands) {
+  const toml::array *list = bands.get("set")->as_array();
+  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
+    if (const auto number = list->get(i)->value<double>())
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("set holds the number {0:g}; bands are names, a wavelength among them "
+                      "is written \"nm:{0:g}\"",
+                      *number),
+          bands.where("set"));
+  return {};
+}
+
 Result<void> read_bands(const Node &top, Scenario &out) {
   Where where = top.where("bands");
   if (top.has("bands")) {
     UMOV_ASSIGN(node, top.child("bands"));
     if (node.has("set")) {
+      UMOV_TRY(check_band_names(node));
       UMOV_ASSIGN(set, node.strings("set"));
       out.band_set = set;
       where = node.where("set");
@@ -397,7 +415,7 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   Scenario out;
   out.file = path.string();
   const Node top(document, "", "", out.file);
-  UMOV_TRY(top.check());
+  UMOV_TRY(top.check_with_all_below());
   UMOV_TRY(top.require("umov"));
   if (const auto form = top.integer("umov", 1); form != 1)
     return fail(ErrorCode::BadInput, fmt::format("umov = {}; this version reads 1", form),

@@ -1,6 +1,8 @@
 #include <umov/io/table.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fmt/ranges.h>
 #include <limits>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
@@ -79,6 +81,51 @@ void Table::append(Table &&rows) {
         },
         columns_[c].cells);
   rows_ += rows.rows_;
+}
+
+Result<Table> with_columns(const Table &table, const std::vector<std::string> &names) {
+  Table out;
+  for (const std::string &name : names) {
+    const Column *column = table.find(name);
+    if (column == nullptr) {
+      std::vector<std::string> known;
+      for (const Column &one : table.columns())
+        known.push_back(one.name);
+      const auto near = nearest_name(name, known);
+      return fail(ErrorCode::Usage,
+                  fmt::format("no column \"{}\".{} There are: {}", name,
+                              near ? fmt::format(" Did you mean \"{}\"?", *near) : "",
+                              fmt::join(known, ", ")));
+    }
+    out.add(column->name, column->unit, column->description, column->cells);
+  }
+  for (const auto &[key, value] : table.notes())
+    out.note(key, value);
+  return out;
+}
+
+namespace {
+
+struct IsEmpty {
+  bool operator()(const std::vector<double> &cells) const {
+    return std::ranges::all_of(cells, [](double v) { return std::isnan(v); });
+  }
+  bool operator()(const std::vector<std::string> &cells) const {
+    return std::ranges::all_of(cells, [](const std::string &text) { return text.empty(); });
+  }
+  template <class Other> bool operator()(const Other &) const { return false; }
+};
+
+} // namespace
+
+Table without_empty_columns(const Table &table) {
+  Table out;
+  for (const Column &column : table.columns())
+    if (table.rows() == 0 || !std::visit(IsEmpty{}, column.cells))
+      out.add(column.name, column.unit, column.description, column.cells);
+  for (const auto &[key, value] : table.notes())
+    out.note(key, value);
+  return out;
 }
 
 std::string Table::text(std::string_view name, std::size_t row) const {

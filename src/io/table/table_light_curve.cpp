@@ -74,14 +74,16 @@ void add_geometry(RowColumns &t) {
   t.of_epoch("airmass", "", "Kasten & Young 1989", [](E e) { return e.airmass; });
 }
 
+/// Position angle of the normal of the scattering plane in a frame.
+Angle axis_of(E e, PolarizationFrame frame) {
+  const ObservingGeometry &g = e.geometry;
+  return frame == PolarizationFrame::AltAz        ? g.pa_scat_altaz
+         : frame == PolarizationFrame::Scattering ? Angle()
+                                                  : g.pa_scat_equatorial;
+}
+
 void add_light(RowColumns &t, PolarizationFrame frame) {
-  const auto axis = [frame](E e) {
-    const auto &g = e.geometry;
-    return (frame == PolarizationFrame::AltAz        ? g.pa_scat_altaz
-            : frame == PolarizationFrame::Scattering ? Angle()
-                                                     : g.pa_scat_equatorial)
-        .degrees();
-  };
+  const auto axis = [frame](E e) { return axis_of(e, frame).degrees(); };
   t.of_sample("I", "W / (m2 nm)", "irradiance at the observer above the atmosphere",
               [](S s) { return s.irradiance; });
   t.of_sample("intensity", "m2 / sr", "without distance and solar flux",
@@ -97,11 +99,73 @@ void add_light(RowColumns &t, PolarizationFrame frame) {
               [](S s) { return s.scattering.q; });
   t.of_sample("u_scat", "", "U/I in the scattering frame", [](S s) { return s.scattering.u; });
   t.of_epoch("pa_scat", "deg", "position angle of the normal of the scattering plane", axis);
-  t.of_sample("mag", "mag(AB)", "AB magnitude", [](S s) { return s.magnitude; });
+  t.of_sample("mag", "mag(AB)", "AB magnitude; empty where no light comes",
+              [](S s) { return s.magnitude; });
+  t.add<bool>("mag_limit", "", "mag is a limit: the object is fainter",
+              [](E, S s, const Band &) { return has_magnitude_limit(s); });
   t.add<std::string>("mag_system", "", "system of mag",
                      [](E, S, const Band &) { return std::string("AB"); });
   t.add<bool>("glint", "", "a flat mirror-like part gives most of the light",
               [](E e, S, const Band &) { return e.has_glint; });
+}
+
+/// Half-widths of the derived numbers, in the frame of their values: those of Stokes parameters in
+/// the scattering frame, carried over to first order, all at their worst together.
+class DerivedErrors {
+public:
+  explicit DerivedErrors(S s) : s_(s), i_(s.half_width.i / s.intensity) {}
+
+  [[nodiscard]] double mag() const { return 2.5 * std::log10(1 + i_); }
+  /// Of q or u: the axes of the sky stand at `cosine`, `sine` of twice the angle from Q.
+  [[nodiscard]] double part(double value, double cosine, double sine) const {
+    return (std::abs(cosine) * s_.half_width.q + std::abs(sine) * s_.half_width.u) / s_.intensity +
+           std::abs(value) * i_;
+  }
+  [[nodiscard]] double v() const {
+    return s_.half_width.v / s_.intensity + std::abs(s_.sky.v) * i_;
+  }
+  [[nodiscard]] double p() const {
+    return s_.p > 0 ? part(s_.p, s_.scattering.q / s_.p, s_.scattering.u / s_.p) : part(0, 1, 1);
+  }
+  [[nodiscard]] double pa_deg() const {
+    const double across = part(0, s_.scattering.u / s_.p, s_.scattering.q / s_.p);
+    return std::min(90.0, 0.5 * std::atan2(across, s_.p) * (180 / pi));
+  }
+
+private:
+  S s_;
+  double i_; ///< of I, relative
+};
+
+void add_errors(RowColumns &t, PolarizationFrame frame) {
+  t.of_sample("intensity_err", "m2 / sr", "numerical 95 % half-width",
+              [](S s) { return s.half_width.i; });
+  t.of_sample("stokes_q_err", "m2 / sr", "numerical 95 % half-width, scattering frame",
+              [](S s) { return s.half_width.q; });
+  t.of_sample("stokes_u_err", "m2 / sr", "numerical 95 % half-width, scattering frame",
+              [](S s) { return s.half_width.u; });
+  t.of_sample("stokes_v_err", "m2 / sr", "numerical 95 % half-width",
+              [](S s) { return s.half_width.v; });
+  const auto of = [&t](const char *name, const char *unit, const char *text, auto take) {
+    t.add<double>(name, unit, text, [take](E e, S s, const Band &) {
+      constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      return std::isnan(s.sky.q) ? none : take(DerivedErrors(s), e, s);
+    });
+  };
+  using D = const DerivedErrors &;
+  of("mag_err", "mag", "numerical 95 % half-width of mag", [](D d, E, S) { return d.mag(); });
+  of("q_err", "", "numerical 95 % half-width of q, sky frame", [frame](D d, E e, S s) {
+    const double twice = 2 * axis_of(e, frame).radians();
+    return d.part(s.sky.q, std::cos(twice), std::sin(twice));
+  });
+  of("u_err", "", "numerical 95 % half-width of u, sky frame", [frame](D d, E e, S s) {
+    const double twice = 2 * axis_of(e, frame).radians();
+    return d.part(s.sky.u, std::sin(twice), std::cos(twice));
+  });
+  of("v_err", "", "numerical 95 % half-width of v", [](D d, E, S) { return d.v(); });
+  of("p_err", "", "numerical 95 % half-width of p", [](D d, E, S) { return d.p(); });
+  of("pa_err", "deg", "numerical 95 % half-width of pa; empty where p is 0",
+     [](D d, E, S s) { return s.p > 0 ? d.pa_deg() : std::numeric_limits<double>::quiet_NaN(); });
 }
 
 /// Light of other sources, not in I: columns of their own.
@@ -164,14 +228,7 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   t.of_epoch("qz", "", "attitude body_from_gcrs", [](E e) { return e.body_from_gcrs.z; });
   t.of_epoch("elset_age", "d", "time since the epoch of the elements",
              [](E e) { return e.elset_age_days; });
-  t.of_sample("intensity_err", "m2 / sr", "numerical 95 % half-width",
-              [](S s) { return s.half_width.i; });
-  t.of_sample("stokes_q_err", "m2 / sr", "numerical 95 % half-width, scattering frame",
-              [](S s) { return s.half_width.q; });
-  t.of_sample("stokes_u_err", "m2 / sr", "numerical 95 % half-width, scattering frame",
-              [](S s) { return s.half_width.u; });
-  t.of_sample("stokes_v_err", "m2 / sr", "numerical 95 % half-width",
-              [](S s) { return s.half_width.v; });
+  add_errors(t, frame);
   note_conventions(table);
   table.note("object", curve.object);
   table.note("pol_frame", frame == PolarizationFrame::Equatorial ? "equatorial"

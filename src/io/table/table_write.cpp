@@ -108,7 +108,12 @@ std::string to_ecsv(const Table &table) {
 std::string csv_note(const std::string &text) { return "# " + one_line(text) + "\n"; }
 
 std::string csv_header(const Table &table) {
-  std::string out, names, units;
+  std::string names, units;
+  std::string out;
+  if (!table.notes().empty())
+    out =
+        csv_note("read with pandas.read_csv(NAME, comment=\"#\") or astropy: Table.read(NAME, "
+                 "format=\"ascii.csv\", comment=\"#\"); units stand in the line above the header");
   for (const auto &[key, value] : table.notes())
     out += csv_note(key + ": " + value);
   for (const Column &c : table.columns()) {

@@ -13,7 +13,7 @@ constexpr double tolerance = 1e-7;
 
 /// Reflection at an incidence, from the phase angle that has it.
 MuellerEntries reflection(const Surface &surface, std::size_t band, double cosine) {
-  return surface.interface(band).reflection(std::clamp(cosine, 0.0, 1.0));
+  return surface.reflection(band, std::clamp(cosine, 0.0, 1.0));
 }
 
 } // namespace

@@ -12,17 +12,19 @@ function coordinates(site) {
   return (site.name ? site.name + " (" : "") + north + ", " + east + ", " + site.alt_m.toFixed(0) + " m" + (site.name ? ")" : "");
 }
 
-/// Magnitudes from bright to faint over some rows and all bands.
+/// Magnitudes from bright to faint over some rows and all bands; limits count as ">".
 function magnitudeText(rows) {
-  const limits = range(rows.flatMap((i) => bands.map((band) => band.mag[i])));
-  return limits ? limits[0].toFixed(2) + " to " + limits[1].toFixed(2) : "no light";
+  const known = range(rows.flatMap((i) => bands.map((band) => band.mag_limit[i] ? null : band.mag[i])));
+  const limits = range(rows.flatMap((i) => bands.map((band) => band.mag_limit[i] ? band.mag[i] : null)));
+  if (!known) return limits ? "> " + limits[0].toFixed(2) : "no light";
+  return known[0].toFixed(2) + " to " + (limits ? "> " + Math.max(known[1], limits[1]).toFixed(2) : known[1].toFixed(2));
 }
 
 function greatestP(rows) {
   let best = null;
   for (const band of bands)
     for (const i of rows)
-      if (band.p[i] !== null && (best === null || band.p[i] > best.p)) best = { p: band.p[i], band: band.name, row: i };
+      if (band.p[i] !== null && (best === null || band.p[i] > best.p)) best = { p: band.p[i], band: band.label, row: i };
   return best;
 }
 
@@ -51,7 +53,7 @@ function fillSummary() {
     fact("Site", coordinates(report.site)),
     fact("Passes", String(report.passes.length || passes.length)),
     fact("Epochs", epochCount + (dark ? ", " + dark + " dark" : "")),
-    fact("Bands", bands.map((band) => band.name).join(", ") || "none"),
+    fact("Bands", bands.map((band) => band.label).join(", ") || "none"),
     fact("Maximum altitude", altitude ? altitude[1].toFixed(1) + "°" : "none"),
     fact("Phase angle", phase ? phase[0].toFixed(1) + "° to " + phase[1].toFixed(1) + "°" : "none"),
     fact("AB magnitude", magnitudeText(all)),
@@ -113,16 +115,24 @@ function frameLegend() {
     element("span", {}, "p: 0 %", element("span", { class: "ramp", style: "background:" + ramp }), "100 %"), ...names);
 }
 
+/// How much fainter than the brightest picture one may be before it is as white.
+function exposureText(frame) {
+  const longest = Math.max(...report.key_frames.map((one) => one.white));
+  if (report.key_frames.length < 2 || !(frame.white > 0)) return "";
+  const times = longest / frame.white;
+  return times < 1.05 ? " · exposed shortest of all" : " · exposed " + (times < 10 ? times.toFixed(1) : Number(times.toPrecision(2)).toLocaleString("en")) + " times as long";
+}
+
 function fillKeyFrames() {
   if (!report.key_frames.length) return;
-  const frames = report.key_frames.map((frame, k) => element("figure", { class: "frame" },
+  const frames = report.key_frames.map((frame, k) => element("figure", { class: "frame", "data-time": frame.time },
     element("div", { class: "pictures" }, ...frame.pictures.map((picture) => element("a",
       { class: "picture", href: picture.src, download: fileStem + "frame" + (k + 1) + "_" + picture.label + ".png", title: "Save this picture" },
       element("img", { src: picture.src, alt: "Object at " + frame.time + ", " + picture.label }), overlay(frame),
       element("span", {}, picture.label)))),
-    element("figcaption", {}, element("b", {}, frame.time.slice(0, 19).replace("T", " ")), " · " + frame.caption + " · " + frame.width_m.toFixed(1) + " m wide")));
+    element("figcaption", {}, element("b", {}, frame.time.slice(0, 19).replace("T", " ")), " · " + frame.caption + " · " + frame.width_m.toFixed(1) + " m wide" + exposureText(frame))));
   byId("frames").hidden = false;
   byId("frames").append(element("h2", {}, "The object as the observer sees it"), frameLegend(),
-    element("p", { class: "caption" }, "Celestial north up, east left; one exposure for all pictures, brightness on a logarithmic-like (asinh) scale; material darker in shadow. The arrow points to the side of the Sun."),
+    element("p", { class: "caption" }, "Celestial north up, east left; each picture of brightness has its own exposure, told below it, on a logarithmic-like (asinh) scale; material darker in shadow. The arrow points to the side of the Sun."),
     element("div", { class: "frame-grid" }, ...frames));
 }

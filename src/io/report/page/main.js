@@ -59,11 +59,13 @@ let wasDark = false;
 window.addEventListener("beforeprint", () => {
   wasDark = document.documentElement.dataset.theme === "dark";
   if (wasDark) setTheme("light");
+  paper.isPrinting = true;
   drawAll();
   for (const card of cards) Plotly.Plots.resize(card.plot);
 });
 window.addEventListener("afterprint", () => {
   if (wasDark) setTheme("dark");
+  paper.isPrinting = false;
   drawAll();
 });
 let narrow = isNarrow();

@@ -16,6 +16,7 @@ const symbols3d = ["circle", "square", "diamond", "cross", "x", "circle-open", "
 
 const byWavelength = bands.map((_, i) => i).sort((a, b) => bands[a].wavelength_nm - bands[b].wavelength_nm);
 bands.forEach((band, i) => {
+  band.label = /^nm:[0-9.]+$/.test(band.name) ? band.name.slice(3) + " nm" : band.name; // tables keep the name
   const rank = byWavelength.indexOf(i);
   const palette = bands.length <= 3 ? threeBandColours : manyBandColours;
   band.colour = bands.length === 1 ? palette[0] : palette[rank % palette.length];

@@ -37,7 +37,7 @@ function pureTraces(data, plan, shownBand) {
       type: "scatter", mode: "lines", x: curve.phase, y: curve.q_scat.map(percent), name: plain(curve.material),
       legendgroup: "pure " + curve.material, showlegend: false, opacity: 0.55,
       line: { color: shownBand === "all" ? bands[curve.band].colour : theme.soft, dash: dashes[m % dashes.length], width: 1.2 },
-      hovertemplate: "%{y:.1f} % at %{x}°<extra>" + plain(curve.material + " " + bands[curve.band].name) + "</extra>",
+      hovertemplate: "%{y:.1f} % at %{x}°<extra>" + plain(curve.material + " " + bands[curve.band].label) + "</extra>",
     });
     if (shownBand !== "all") {
       const at = pureLabel(curve, m);
@@ -53,7 +53,7 @@ function pureTraces(data, plan, shownBand) {
 
 const phaseFigure = {
   id: "q_phase", title: "Q against phase angle", height: () => isNarrow() ? 420 : 460,
-  controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].name])] }],
+  controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].label])] }],
   caption: "q_scat in percent, positive perpendicular to the scattering plane"
     + (pureMaterials.length ? "; thin lines behind: a surface of one material alone, single bounce, without body light." : "."),
   build: (state) => {
@@ -64,9 +64,9 @@ const phaseFigure = {
     byWavelength.filter((b) => state.band === "all" || state.band === b).forEach((b) => {
       const line = joined((i) => epochs.phase[i], (i) => percent(bands[b].q_scat[i]));
       data.push({
-        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, text: line.row.map((i) => epochs.time[i]), name: plain(bands[b].name),
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, text: line.row.map((i) => epochs.time[i]), name: plain(bands[b].label),
         line: { color: bands[b].colour, width: 2 }, marker: { color: bands[b].colour, symbol: bands[b].symbol, size: 7, maxdisplayed: 40 },
-        hovertemplate: "%{y:.2f} % at %{x:.2f}°<br>%{text}<extra>" + plain(bands[b].name) + "</extra>",
+        hovertemplate: "%{y:.2f} % at %{x:.2f}°<br>%{text}<extra>" + plain(bands[b].label) + "</extra>",
       });
     });
     return { data, layout: plan };
@@ -82,22 +82,22 @@ function phaseAxis(extra) {
 
 const planeFigure = {
   id: "qu_plane", title: "q-u plane", height: () => isNarrow() ? 430 : 460,
-  controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].name])] }],
+  controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].label])] }],
   caption: "Sky frame, percent; colour is phase angle, marker shape is the band. Distance from the origin is p, half the angle around it the position angle.",
   build: (state) => {
     const theme = themeColours();
     const data = byWavelength.filter((b) => state.band === "all" || state.band === b).map((b) => {
       const line = joined((i) => percent(bands[b].q[i]), (i) => percent(bands[b].u[i]));
       return {
-        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: plain(bands[b].name), showlegend: false, text: line.row.map((i) => epochs.time[i]),
+        type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: plain(bands[b].label), showlegend: false, text: line.row.map((i) => epochs.time[i]),
         line: { color: theme.line, width: 0.8 }, customdata: line.row.map((i) => epochs.phase[i]),
         marker: { color: line.row.map((i) => epochs.phase[i]), coloraxis: "coloraxis", symbol: bands[b].symbol, size: 7, line: { width: 0.5, color: theme.soft } },
-        hovertemplate: "q %{x:.2f} %, u %{y:.2f} %<br>phase %{customdata:.2f}°<br>%{text}<extra>" + plain(bands[b].name) + "</extra>",
+        hovertemplate: "q %{x:.2f} %, u %{y:.2f} %<br>phase %{customdata:.2f}°<br>%{text}<extra>" + plain(bands[b].label) + "</extra>",
       };
     });
     // The legend explains the shapes; a marker coloured by phase has no colour of its own.
     byWavelength.filter((b) => state.band === "all" || state.band === b).forEach((b) => data.push({
-      type: "scatter", mode: "markers", x: [null], y: [null], name: plain(bands[b].name), hoverinfo: "skip",
+      type: "scatter", mode: "markers", x: [null], y: [null], name: plain(bands[b].label), hoverinfo: "skip",
       marker: { symbol: bands[b].symbol, size: 9, color: theme.soft } }));
     return { data, layout: layout({
       hovermode: "closest", coloraxis: phaseAxis(), margin: { l: 50, r: 14, t: 8, b: 90 },
@@ -148,7 +148,7 @@ const rgbFigure = {
     const side = (b) => {
       const [low, high] = range(rows.map((i) => percent(bands[b].q_scat[i]))) || [0, 1];
       const pad = Math.max(0.5, 0.35 * (high - low));
-      return axis({ title: { text: plain(bands[b].name) + " [%]" }, backgroundcolor: theme.card, range: [low - pad, high + pad], nticks: 5 });
+      return axis({ title: { text: plain(bands[b].label) + " [%]" }, backgroundcolor: theme.card, range: [low - pad, high + pad], nticks: 5 });
     };
     return { data, layout: layout({
       coloraxis: phaseAxis({ y: -0.02 }), margin: { l: 0, r: 0, t: 8, b: 60 }, dragmode: "turntable",
@@ -196,14 +196,14 @@ const skyFigure = {
       const ends = [track.rows[0], track.rows[track.rows.length - 1]];
       data.push({
         type: "scatterpolar", mode: "markers+text", r: ends.map((i) => 90 - track.source.alt[i]), theta: ends.map((i) => track.source.az[i]), cliponaxis: false,
-        text: ends.map((i) => track.source.time[i].slice(11, 19)), textposition: ends.map((i) => track.source.az[i] % 360 > 180 ? "middle right" : "middle left"), textfont: { size: isNarrow() ? 9 : 11 },
+        text: ends.map((i) => "\u00a0\u00a0\u00a0" + track.source.time[i].slice(11, 19) + "\u00a0\u00a0\u00a0"), textposition: ends.map((i) => track.source.az[i] % 360 > 180 ? "middle right" : "middle left"), textfont: { size: isNarrow() ? 9 : 11 },
         marker: { size: 8, symbol: ["circle-open", "x-thin-open"], color: theme.text, line: { width: 2 } }, hoverinfo: "skip", showlegend: false,
       });
     });
     if (shadow.r.length)
       data.push({ type: "scatterpolar", mode: "markers", ...shadow, name: "in the Earth's shadow", marker: { size: 6, symbol: "diamond", color: "#7f8794" }, hoverinfo: "skip", showlegend: true });
     const colours = isAngle
-      ? { colorscale: cyclicScale, cmin: 0, cmax: 180, colorbar: colourBar("position angle, " + bands[middleBand].name + " [°]", { tickvals: [0, 45, 90, 135, 180], y: -0.1 }) }
+      ? { colorscale: cyclicScale, cmin: 0, cmax: 180, colorbar: colourBar("position angle, " + bands[middleBand].label + " [°]", { tickvals: [0, 45, 90, 135, 180], y: -0.1 }) }
       : phaseAxis({ y: -0.1 });
     return { data, layout: layout({
       coloraxis: colours, margin: isNarrow() ? { l: 46, r: 46, t: 26, b: 84 } : { l: 62, r: 62, t: 26, b: 84 }, dragmode: false,

@@ -85,15 +85,52 @@ function choice(name, options, current, onChange) {
 
 const fileStem = (report.object || "object").replace(/[^A-Za-z0-9_-]+/g, "_") + "_";
 
+const paper = { isPrinting: false }; // two figures stand on a sheet
+
+/// One cursor through all figures against time and the pictures: where the pointer is in one of them, a line stands
+/// in the others, and the picture nearest in time is framed.
+const cursor = {
+  cards: new Set(),
+  follow(card) {
+    if (!card.figure.isAgainstTime || this.cards.has(card)) return;
+    this.cards.add(card);
+    card.line = element("div", { class: "cursor", hidden: "" });
+    card.plot.append(card.line);
+    card.plot.on("plotly_hover", (event) => this.show(String(event.points[0].x), card));
+    card.plot.on("plotly_unhover", () => this.hide());
+  },
+  show(time, source) {
+    for (const card of this.cards) if (card !== source) this.place(card, time);
+    const at = Date.parse(time.replace(" ", "T") + "Z");
+    const frames = [...document.querySelectorAll(".frame")];
+    const off = frames.map((frame) => Math.abs(milliseconds(frame.dataset.time) - at));
+    const nearest = off.length ? off.indexOf(Math.min(...off)) : -1;
+    frames.forEach((frame, k) => frame.classList.toggle("near", k === nearest && off[k] < 120000));
+  },
+  /// The line of a card at a time, in the panel that has it.
+  place(card, time) {
+    const full = card.plot._fullLayout; // where Plotly keeps the places of its axes
+    const panel = Object.keys(full || {}).filter((key) => /^xaxis[0-9]*$/.test(key)).map((key) => full[key])
+      .find((one) => one.range && time >= String(one.range[0]) && time <= String(one.range[1]));
+    card.line.hidden = !panel;
+    if (!panel) return;
+    card.line.style.left = (panel._offset + panel.d2p(time)).toFixed(1) + "px";
+    card.line.style.top = full._size.t + "px";
+    card.line.style.height = full._size.h + "px";
+  },
+  hide() {
+    for (const card of this.cards) card.line.hidden = true;
+    for (const frame of document.querySelectorAll(".frame.near")) frame.classList.remove("near");
+  },
+};
+
 /// A figure on its card: `figure` has id, title, caption, height, controls, build(state), table(state).
 class FigureCard {
   constructor(figure, parent) {
     this.figure = figure;
     this.state = Object.fromEntries((figure.controls || []).map((c) => [c.key, c.options[0][0]]));
     this.plot = element("div", { class: "plot", id: figure.id });
-    const save = (format) => Plotly.downloadImage(this.plot,
-      { format, filename: fileStem + figure.id, width: 1000, height: 640, scale: format === "png" ? 2 : 1 })
-      .catch(() => {}); // a second press while the first is at work
+    const save = (format) => this.saveAs(format);
     this.save = element("span", { class: "save" },
       element("button", { type: "button", title: "Save as SVG", onclick: () => save("svg") }, "SVG"),
       element("button", { type: "button", title: "Save as PNG", onclick: () => save("png") }, "PNG"),
@@ -118,12 +155,33 @@ class FigureCard {
     }).observe(this.plot);
   }
 
+  /// Light, whatever the page is, with its title, and named by what it shows.
+  async saveAs(format) {
+    const root = document.documentElement, theme = root.dataset.theme;
+    try {
+      root.dataset.theme = "light";
+      const { data, layout: plan } = this.figure.build(this.state);
+      root.dataset.theme = theme;
+      const pass = selection.pass === "all" || passes.length < 2 ? "" : ", " + passes[Number(selection.pass)].label + " UTC";
+      const title = { text: plain((report.object || "object") + pass + ": " + this.figure.title.toLowerCase()), x: 0.02, xanchor: "left", y: 0.97, yanchor: "top", font: { size: 15 } };
+      const margin = { ...plan.margin, t: 92 };
+      const shown = this.state.scale || this.state.band !== undefined && this.state.band !== "all" ? this.state.scale || bands[this.state.band].label : "";
+      await Plotly.downloadImage({ data, layout: { ...plan, title, margin } }, { format, width: 1000, height: 640, scale: format === "png" ? 2 : 1,
+        filename: fileStem + this.figure.id + (shown ? "_" + shown.replace(/[^A-Za-z0-9]+/g, "_") : "") });
+    } catch {
+      // a second press while the first is at work
+    } finally {
+      root.dataset.theme = theme;
+    }
+  }
+
   draw() {
     try {
       const { data, layout: plan } = this.figure.build(this.state);
       const height = typeof this.figure.height === "function" ? this.figure.height() : this.figure.height || 380;
-      Plotly.react(this.plot, data, { ...plan, height },
+      Plotly.react(this.plot, data, { ...plan, height: paper.isPrinting ? 0.78 * height : height },
         { displaylogo: false, displayModeBar: hasHover ? "hover" : false, modeBarButtonsToRemove: ["select2d", "lasso2d", "toImage"] });
+      cursor.follow(this);
     } catch (error) {
       Plotly.purge(this.plot);
       this.plot.replaceChildren(element("div", { class: "note" },

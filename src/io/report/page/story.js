@@ -94,13 +94,27 @@
   }
   for (const note of page.notes) document.getElementById("notes").append(make("li", note));
   // Plots are drawn when they come near the window: a page of dozens opens at once.
+  const drawn = new Set();
+  const draw = (place, figure) => {
+    if (drawn.has(place)) return;
+    drawn.add(place);
+    watch.unobserve(place);
+    umovFigure(place, figure);
+  };
   const watch = new IntersectionObserver((entries) => {
     for (const entry of entries)
-      if (entry.isIntersecting) {
-        watch.unobserve(entry.target);
-        umovFigure(entry.target, later.find(([place]) => place === entry.target)[1]);
-      }
+      if (entry.isIntersecting) draw(entry.target, later.find(([place]) => place === entry.target)[1]);
   }, { rootMargin: "600px" });
   for (const [place] of later) watch.observe(place);
+  // Paper has them all, and so has who waits: the others follow one by one when the page has nothing to do.
+  window.addEventListener("beforeprint", () => later.forEach(([place, figure]) => draw(place, figure)));
+  const whenIdle = window.requestIdleCallback || ((job) => setTimeout(job, 200));
+  const drawNext = () => {
+    const next = later.find(([place]) => !drawn.has(place));
+    if (!next) return;
+    draw(...next);
+    whenIdle(drawNext);
+  };
+  whenIdle(drawNext);
   document.getElementById(location.hash.slice(1))?.scrollIntoView({ behavior: "instant" }); // it was not there yet
 })();

@@ -6,9 +6,9 @@ const eventKinds = [
   { name: "glint", symbol: "star", colour: "#e69f00", at: (row) => epochs.glint[row] === 1 },
 ];
 
-/// Parts of the width for the shown passes, by duration, none narrower than a third of an equal share.
+/// Parts of the width for the shown passes, by duration, none narrower than a sixth of an equal share.
 function panelDomains(shown) {
-  const least = 0.33 / shown.length;
+  const least = 0.16 / shown.length;
   const spans = shown.map((pass) => Math.max(1, clock[pass.rows[pass.rows.length - 1]] - clock[pass.rows[0]]));
   const total = spans.reduce((a, b) => a + b, 0);
   const shares = spans.map((span) => Math.max(least, span / total));
@@ -23,6 +23,15 @@ function panelDomains(shown) {
   });
 }
 
+/// The day under a panel, as long as it fits; one day for all stands under the widest alone.
+function panelTitle(shown, k, width) {
+  const isOneDay = shown.every((pass) => pass.day === shown[0].day);
+  const spans = shown.map((pass) => clock[pass.rows[pass.rows.length - 1]] - clock[pass.rows[0]]);
+  if (isOneDay) return k === spans.indexOf(Math.max(...spans)) ? shown[k].day + " UTC" : "";
+  const room = width * (isNarrow() ? 300 : 620); // letters of 7 pixels, about
+  return room > 110 ? shown[k].day + " UTC" : room > 45 ? shown[k].day.slice(5) : "";
+}
+
 function timeAxes(shown, plan) {
   const domains = panelDomains(shown);
   const theme = themeColours();
@@ -31,9 +40,10 @@ function timeAxes(shown, plan) {
     const pad = Math.max(500, 0.02 * (last - first));
     const iso = (t) => new Date(t).toISOString().replace("T", " ").replace("Z", "");
     plan["xaxis" + (k ? k + 1 : "")] = axis({
-      type: "date", domain: domains[k], anchor: "y", title: shown.length > 3 || (shown.length > 2 && isNarrow()) ? pass.day.slice(5) : pass.day + " UTC",
+      type: "date", domain: domains[k], anchor: "y", title: panelTitle(shown, k, domains[k][1] - domains[k][0]),
       range: [iso(first - pad), iso(last + pad)], tickformat: last - first < 180000 ? "%H:%M:%S" : "%H:%M",
-      hoverformat: "%H:%M:%S", nticks: Math.max(2, Math.round((isNarrow() ? 5 : 9) * (domains[k][1] - domains[k][0]))),
+      hoverformat: "%H:%M:%S", nticks: Math.max(1, Math.round((isNarrow() ? 5 : 9) * (domains[k][1] - domains[k][0]))),
+      showticklabels: domains[k][1] - domains[k][0] > (isNarrow() ? 0.2 : 0.09),
       showline: true, tickangle: 0, zeroline: false,
     });
     if (k > 0) // a line between panels that are not next to each other in time
@@ -60,7 +70,29 @@ function eventTraces(shown, data, plan) {
   return height;
 }
 
-/// Rows of panels from `rows`: {title, at(band, row), cyclic, type, reversed, range, dtick, digits, unit}.
+/// Magnitudes from the faint end of the axis to the bright one: 12 below the brightest at most, so that the far
+/// tail of a lobe leaves the curve its height. Null where nothing is known.
+function magnitudeSpan(shown) {
+  const rows = shown.flatMap((pass) => pass.rows);
+  const known = range(rows.flatMap((i) => bands.map((band) => band.mag_limit[i] ? null : band.mag[i])));
+  if (!known) return null;
+  const faint = Math.min(known[1], known[0] + 12), pad = Math.max(0.1, 0.05 * (faint - known[0]));
+  return [faint + pad, known[0] - pad];
+}
+
+/// Triangles that point to where the object is: limits, and what is fainter than the axis reaches.
+function limitTraces(pass, k, curve, key, edge, data) {
+  const rows = pass.rows.filter((i) => curve.value(i) !== null && (curve.isLimit(i) || curve.value(i) > edge));
+  if (!rows.length) return;
+  data.push({
+    type: "scatter", mode: "markers", x: rows.map((i) => times[i]), y: rows.map((i) => Math.min(curve.value(i), edge)), cliponaxis: false,
+    customdata: rows.map((i) => (curve.isLimit(i) ? "> " : "") + curve.value(i).toFixed(2)),
+    xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: plain(curve.name), legendgroup: curve.name, showlegend: false,
+    marker: { color: curve.colour, symbol: "triangle-down-open", size: 7 }, hovertemplate: "%{customdata} mag",
+  });
+}
+
+/// Rows of panels from `rows`: {title, at(band, row), cyclic, type, reversed, range, dtick, digits, unit, span, isLimit}.
 function timeFigure(rows) {
   const shown = shownPasses();
   const data = [];
@@ -70,15 +102,18 @@ function timeFigure(rows) {
   const gap = 0.05;
   const height = (1 - floor - (floor ? 0.02 : 0) - gap * (rows.length - 1)) / rows.length;
   rows.forEach((row, r) => {
+    const span = row.span ? row.span(shown) : row.range;
     const top = 1 - r * (height + gap);
     const key = r ? r + 1 : "";
     plan["yaxis" + key] = axis({
       title: row.title, domain: [Math.max(0, top - height), top], type: row.type || "linear",
-      autorange: row.range ? false : row.reversed ? "reversed" : true, ...(row.range ? { range: row.range } : {}),
+      autorange: span ? false : row.reversed ? "reversed" : true, ...(span ? { range: span } : {}),
       ...(row.dtick ? { dtick: row.dtick } : {}), ...(row.type === "log" ? { exponentformat: "power" } : {}),
     });
-    const curves = row.curves || bands.map((band) => ({ name: band.name, colour: band.colour, symbol: band.symbol, at: (i) => row.at(band, i) }));
+    const curves = row.curves || bands.map((band) => ({ name: band.label, colour: band.colour, symbol: band.symbol, value: (i) => row.at(band, i),
+      isLimit: (i) => row.isLimit ? row.isLimit(band, i) : false, at: (i) => row.span && (row.isLimit(band, i) || (span && row.at(band, i) > span[0])) ? null : row.at(band, i) }));
     shown.forEach((pass, k) => curves.forEach((curve) => {
+      if (row.span) limitTraces(pass, k, curve, key, span ? span[0] - 0.02 * (span[0] - span[1]) : Infinity, data);
       const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
       data.push({
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, customdata: line.row.map((i) => epochs.phase[i]),
@@ -96,7 +131,8 @@ function timeFigure(rows) {
 }
 
 const brightnessRows = {
-  mag: { title: "AB magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag" },
+  mag: { title: "AB magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag",
+    span: magnitudeSpan, isLimit: (band, i) => band.mag_limit[i] === 1 },
   irradiance: { title: "I [W m⁻² nm⁻¹]", at: (band, i) => positive(band.irradiance[i]), type: "log", digits: "3e" },
   intensity: { title: "intensity [m² sr⁻¹]", at: (band, i) => positive(band.intensity[i]), type: "log", digits: "3e" },
 };
@@ -105,15 +141,15 @@ const skyNorth = { equatorial: "celestial north", altaz: "the local zenith", sca
 
 const timeFigures = [
   {
-    id: "intensity", title: "Brightness against time", height: () => isNarrow() ? 340 : 460,
+    id: "brightness", isAgainstTime: true, title: "Brightness against time", height: () => isNarrow() ? 340 : 460,
     controls: [{ key: "scale", name: "Show", options: [["mag", "magnitude"], ["irradiance", "irradiance"], ["intensity", "intensity"]] }],
-    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
+    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Triangles: fainter than the point, or than the axis reaches. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
     build: (state) => timeFigure([brightnessRows[state.scale]]),
-    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
+    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["mag_limit", "", (b, i) => b.mag_limit[i] ? "True" : "False"], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
       ["intensity", "m2 sr-1", (b, i) => b.intensity[i]]]),
   },
   {
-    id: "qu", title: "q and u against time", height: () => isNarrow() ? 400 : 460,
+    id: "qu", isAgainstTime: true, title: "q and u against time", height: () => isNarrow() ? 400 : 460,
     caption: "Fractions of I in percent, in the sky frame: +q towards " + skyNorth + ", +u 45° from it.",
     build: () => timeFigure([
       { title: "q [%]", at: (band, i) => percent(band.q[i]), digits: "2f", unit: "%" },
@@ -121,7 +157,7 @@ const timeFigures = [
     table: () => tidyTable([["q", "", (b, i) => b.q[i]], ["u", "", (b, i) => b.u[i]]]),
   },
   {
-    id: "p_pa", title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 460,
+    id: "p_pa", isAgainstTime: true, title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 460,
     caption: "p in percent; position angle in [0°, 180°) from " + skyNorth + ". The angle is cyclic: no line joins 180° to 0°.",
     build: () => timeFigure([
       { title: "p [%]", at: (band, i) => percent(band.p[i]), digits: "2f", unit: "%" },
@@ -133,7 +169,7 @@ const timeFigures = [
 /// What light of more than one surface does to each Stokes parameter, in percent of I.
 const indirectPart = (part) => (band, i) => percent(band["indirect_" + part][i]);
 const indirectFigure = {
-  id: "indirect", title: "Light between surfaces", height: () => isNarrow() ? 420 : 520,
+  id: "indirect", isAgainstTime: true, title: "Light between surfaces", height: () => isNarrow() ? 420 : 520,
   caption: "Part of I, Q, U and V from light that touched more than one surface, in percent of the whole I, up to " +
     report.bounces + " surfaces. Q and U in the scattering frame: +Q perpendicular to the plane of Sun, object and observer.",
   build: () => timeFigure([["i", "I"], ["q", "Q"], ["u", "U"], ["v", "V"]].map(([part, name]) =>
@@ -143,12 +179,13 @@ const indirectFigure = {
 
 /// Differences of magnitude between neighbouring bands.
 const colourPairs = byWavelength.slice(1).map((long, k) => ({
-  name: bands[byWavelength[k]].name + " − " + bands[long].name, short: bands[byWavelength[k]], long: bands[long],
+  name: bands[byWavelength[k]].label + " − " + bands[long].label, short: bands[byWavelength[k]], long: bands[long],
   colour: manyBandColours[(2 * k) % 7], symbol: symbols[k % symbols.length],
 }));
-const colourIndex = (pair, i) => pair.short.mag[i] === null || pair.long.mag[i] === null ? null : pair.short.mag[i] - pair.long.mag[i];
+const isMagnitude = (band, i) => band.mag[i] !== null && !band.mag_limit[i];
+const colourIndex = (pair, i) => !isMagnitude(pair.short, i) || !isMagnitude(pair.long, i) ? null : pair.short.mag[i] - pair.long.mag[i];
 const colourFigure = {
-  id: "colour", title: "Colour index against time", height: () => isNarrow() ? 320 : 460,
+  id: "colour", isAgainstTime: true, title: "Colour index against time", height: () => isNarrow() ? 320 : 460,
   caption: "Shorter minus longer wavelength, AB magnitudes: larger is redder.",
   build: () => timeFigure([{ title: "colour [mag]", digits: "3f", unit: "mag",
     // Rounding keeps a constant colour a straight line instead of a plot of the last bits.
@@ -178,9 +215,9 @@ function litRuns(pass, band) {
 }
 
 const contributionFigure = {
-  id: "contribution", title: "Contribution per material", height: () => isNarrow() ? 360 : 460,
+  id: "contribution", isAgainstTime: true, title: "Contribution per material", height: () => isNarrow() ? 360 : 460,
   controls: [
-    { key: "band", name: "Band", options: byWavelength.map((b) => [b, bands[b].name]) },
+    { key: "band", name: "Band", options: byWavelength.map((b) => [b, bands[b].label]) },
     { key: "scale", name: "Show", options: [["share", "share"], ["intensity", "intensity"]] }],
   caption: "Reflected light of each material, stacked; share of the intensity in percent or absolute.",
   build: (state) => {

@@ -1,0 +1,155 @@
+"""What a newcomer does in the first half hour: shapes of given sizes, tables of their own, slips, and how they are told."""
+import json
+import math
+import os
+import pty
+import re
+import subprocess
+
+import pytest
+from astropy.table import Table
+
+from conftest import ROOT, UMOV, read_csv
+
+HST = ROOT / "data/tle/hst.tle"
+DAY = ("--start", "2018-01-21T04:00:00Z", "--stop", "2018-01-21T08:00:00Z")
+
+
+def test_a_csv_says_in_its_first_line_how_it_is_read(umov, tmp_path):
+    done = umov("passes", "--orbit", HST, "-s", "maui", *DAY, "-o", "p.csv")
+    assert done.code == 0, done.err
+    first = (tmp_path / "p.csv").read_text().splitlines()[0]
+    format_name, comment = re.search(r'Table.read\(NAME, format="(.*?)", comment="(.)"\)', first).groups()
+    table = Table.read(tmp_path / "p.csv", format=format_name, comment=comment)
+    assert len(table) == len(read_csv(tmp_path / "p.csv")) and "rise_utc" in table.colnames
+
+
+@pytest.mark.parametrize("text", ["wavelength_nm,n,k\n400,1.5,0.1\n700,1.5,0.1\n", "0.4 1.5 0.1\n0.7 1.5 0.1\n"])
+def test_columns_of_n_and_k_are_an_index(umov, tmp_path, text):
+    (tmp_path / "mine.csv").write_text(text)
+    (tmp_path / "m.toml").write_text('[material.m]\nindex = "mine.csv"\n'
+                                     'distribution = { model = "beckmann", alpha = 0.1 }\n')
+    done = umov("material", "index", "mine.csv", "--wavelength", "550", "--json")
+    assert done.code == 0 and json.loads(done.out)[0]["k"] == pytest.approx(0.1), done.err
+    assert umov("brdf", "m.toml", "--theta-i", 30, "--theta-o", 30, "--phi", 180).code == 0
+    assert umov("material", "import", "mine.csv", "--name", "mine").code == 0
+    assert "[material" in (tmp_path / "mine.toml").read_text()
+
+
+GROUPED = """v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0
+g body\nusemtl foil\nf 1 2 3 4\ng wing\nusemtl cell\nf 2 5 6\nusemtl foil\nf 2 6 3
+"""
+
+
+def test_groups_of_an_obj_are_nodes_that_turn(umov, scenario, tmp_path):
+    (tmp_path / "g.obj").write_text(GROUPED)
+    part = ('[object.materials]\ndefault = "paper_al"\n',
+            '[object.materials]\ndefault = "paper_al"\n[[object.part]]\nnodes = ["wing"]\naxis = "+X"\nface = "+Z"\n'
+            'toward = "sun"\n')
+    assert umov("run", scenario(("cube.obj", "g.obj"), part), "--dry-run").code in (0, 3)
+    described = umov("mesh", "info", "g.obj", "--unit", "m", "--up", "+Z", "--json")
+    assert described.code == 0, described.err
+    nodes = json.loads(described.out)["nodes"]
+    assert {node["path"] if "path" in node else node["node"] for node in nodes} == {"body", "wing"}, nodes
+    wrong = (part[0], part[1].replace("nodes =", "groups ="))
+    done = umov("run", scenario(("cube.obj", "g.obj"), wrong), "--dry-run")
+    assert done.code == 3 and 'part "1"' in done.err and 'nodes = ["wing"]' in done.err, done.err
+
+
+@pytest.mark.parametrize("shape, options, groups", [
+    ("cubesat", ("--units", 3, "--panels", 2), {"body_px", "panel_px_front", "panel_mx_back"}),
+    ("box-wing", ("--bus", 2, 2, 3, "--wing", 8, 2), {"bus_mz", "wing_py_front", "wing_my_back"}),
+    ("rocket-body", ("--length", 6, "--diameter", 2), {"nozzle", "tank", "forward"}),
+    ("dish", ("--diameter", 3, "--focus", 1), {"dish_front", "dish_back"}),
+])
+def test_spacecraft_of_given_sizes(umov, shape, options, groups):
+    assert umov("mesh", "make", shape, *options, "-o", "s.obj").code == 0
+    done = umov("mesh", "check", "s.obj", "--unit", "m", "--up", "+Z")
+    assert done.code == 0, done.out + done.err
+    names = {row["name"] for row in json.loads(
+        umov("mesh", "info", "s.obj", "--unit", "m", "--up", "+Z", "--json").out)["materials"]}
+    assert groups <= names, names
+
+
+def test_a_slip_of_the_unit_is_noticed(umov, scenario, tmp_path):
+    assert umov("mesh", "make", "cubesat", "-o", "c.obj").code == 0
+    lines = (tmp_path / "c.obj").read_text().splitlines()
+    scaled = [" ".join(["v", *(repr(1000 * float(x)) for x in line.split()[1:])]) if line.startswith("v ") else line
+              for line in lines]
+    (tmp_path / "mm.obj").write_text("\n".join(scaled) + "\n")
+    done = umov("mesh", "info", "mm.obj", "--unit", "m", "--up", "+Z")
+    assert "longer than any satellite" in done.err and "0.341 m" in done.err, done.err
+    assert "warning" not in umov("mesh", "info", "mm.obj", "--unit", "mm", "--up", "+Z").err
+
+
+@pytest.mark.parametrize("changes, words", [
+    ([("step_s = 20", "step = 20")], ['Did you mean "step_s"?']),
+    ([('default = "paper_al"', 'default = "solar_cell"')], ['Did you mean "cell_']),
+    ([('set = "paper_rgb"', "set = [550]")], ['"nm:550"']),
+    ([("lat_deg", "lat"), ("lon_deg", "lon"), ("alt_m", "alt"), ("pol", "pol")],
+     ['"lat_deg"', '"lon_deg"', '"alt_m"']),
+    ([("step_s = 20", "step = 20"), ('set = "paper_rgb"', 'sett = "paper_rgb"')], ['"step_s"', '"set"']),
+])
+def test_hints_by_meaning_and_all_slips_at_once(umov, scenario, changes, words):
+    done = umov("run", scenario(*[c for c in changes if c != ("pol", "pol")]), "--dry-run")
+    assert done.code == 3 and all(word in done.err for word in words), done.err
+
+
+def test_a_date_alone_is_answered_with_the_time_that_is_meant(umov):
+    done = umov("passes", "--orbit", HST, "-s", "maui", "--start", "2018-01-21", "--stop", "2018-01-22")
+    assert done.code == 3 and "2018-01-21T00:00:00Z" in done.err, done.err
+
+
+def test_a_spin_starts_with_the_scenario(umov, scenario, tmp_path):
+    name = scenario(('attitude = { mode = "nadir" }',
+                     'attitude = { mode = "spin", axis = "+X", period_s = 20, start = { mode = "nadir" } }'))
+    done = umov("run", name)
+    assert done.code == 0, done.err
+    assert "epoch = 2018-01-21T05:08:00" in (tmp_path / "out/scenario.lock.toml").read_text()
+
+
+def shown_on_a_terminal(*arguments):
+    """What a command prints when its standard output is a terminal."""
+    here, there = pty.openpty()
+    child = subprocess.Popen([UMOV, *map(str, arguments)], stdout=there, stderr=subprocess.DEVNULL)
+    os.close(there)
+    out = b""
+    while True:
+        try:
+            part = os.read(here, 65536)
+        except OSError:
+            break
+        if not part:
+            break
+        out += part
+    assert child.wait() == 0
+    return out.decode().replace("\r\n", "\n")
+
+
+def test_a_terminal_gets_few_columns_and_others_by_name():
+    arguments = ("passes", "--orbit", HST, "-s", "maui", *DAY)
+    lines = shown_on_a_terminal(*arguments).splitlines()
+    assert max(map(len, lines)) <= 160 and "mag_min" not in lines[0], lines[0]  # no model: the column is empty
+    assert shown_on_a_terminal(*arguments, "-c", "name,rise_az").split()[:2] == ["name", "rise_az"]
+    piped = subprocess.run([UMOV, *map(str, arguments)], capture_output=True, text=True, check=True)
+    assert "glint_widths" in piped.stdout
+    done = subprocess.run([UMOV, *map(str, arguments), "-c", "rise"], capture_output=True, text=True)
+    assert done.returncode == 2 and 'Did you mean "rise_' in done.stderr, done.stderr
+
+
+def test_a_run_says_which_one_it_replaces(umov, scenario):
+    name = scenario()
+    assert "in place of" not in umov("run", name).out
+    assert re.search(r"in place of the run of 20\d\d-\d\d-\d\dT", umov("run", name).out)
+
+
+def test_the_gallery_draws_every_material(umov, tmp_path):
+    done = umov("material", "plot", "--all", "-o", "g.html")
+    assert done.code == 0, done.err
+    page = json.loads(re.search(r'id="data">(.*?)</script>', (tmp_path / "g.html").read_text()).group(1))
+    figures = {figure["title"]: figure for figure in page["figures"]}
+    assert len(figures) >= 26
+    # A Lambert sphere polarizes nothing; what one reflection does is the paper's B/A: gold at 140 deg, 425 nm, .589.
+    assert all(abs(y) < 1e-9 for line in figures["paper_spectralon"]["lines"] for y in line["y"])
+    gold = figures["paper_au"]["lines"][0]
+    assert gold["y"][gold["x"].index(140)] == pytest.approx(58.9, abs=0.1)
