@@ -39,6 +39,36 @@ Result<Vec3<Body>> direction_of(const double *xyz, const char *name, std::size_t
                           name, row, xyz[0], xyz[1], xyz[2]));
 }
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// How many poses are lit together: as many as take a twentieth of a second, so that Ctrl-C need not
+/// wait (masks of a new direction cost a thousand times what looking them up does). Where light
+/// between surfaces is shared by the poses of a block those of `umov signature`.
+class BlockSize {
+public:
+  explicit BlockSize(const jobs::PoseLight &light)
+      : is_fixed_(light.options().bounces > 1), size_(is_fixed_ ? light.block() : first) {}
+  [[nodiscard]] std::size_t size() const { return size_; }
+  void learn(double seconds) {
+    constexpr double wanted_s = 0.05;
+    if (is_fixed_)
+      return;
+    if (seconds < wanted_s / 4)
+      size_ = std::min(size_ * 4, most);
+    else if (seconds > wanted_s)
+      size_ = std::max(size_ / 2, least);
+  }
+
+private:
+  static constexpr std::size_t first = 16, least = 4, most = 1u << 16;
+  bool is_fixed_;
+  std::size_t size_;
+};
+
 /// A scene ready for directions.
 class Light {
 public:
@@ -50,27 +80,28 @@ public:
     constexpr double short_s = 0.01;
     return static_cast<double>(poses) * seconds_per_pose_ < short_s;
   }
-  /// All poses, in the blocks of `umov signature`. Interrupted if the monitor says so.
+  /// All poses, block by block. Interrupted if the monitor says so.
   Result<void> evaluate(const PoseArrays &arrays, unsigned threads, const jobs::Monitor &monitor) {
-    const auto begin = std::chrono::steady_clock::now();
-    const std::size_t block = light_.block();
+    const auto begin = Clock::now();
+    BlockSize block(light_);
     std::vector<Pose> poses;
     StokesTable table;
     LightTask task;
     task.threads = threads;
     task.cancel = monitor.cancel;
     for (std::size_t done = 0; done < arrays.count; done += poses.size()) {
-      poses.resize(std::min(block, arrays.count - done));
+      const auto block_begin = Clock::now();
+      poses.resize(std::min(block.size(), arrays.count - done));
       UMOV_TRY(take_poses(arrays, done, poses));
-      if (!light_.evaluate(poses, table, task))
+      if (monitor.is_cancelled() || !light_.evaluate(poses, table, task))
         return fail(ErrorCode::Interrupted,
                     fmt::format("stopped by the user after {} of {} poses", done, arrays.count));
       put(table, done, threads, arrays);
       monitor.advance("poses", done + poses.size(), arrays.count);
+      block.learn(seconds_since(block_begin));
     }
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
     if (arrays.count > 0)
-      seconds_per_pose_ = spent.count() / static_cast<double>(arrays.count);
+      seconds_per_pose_ = seconds_since(begin) / static_cast<double>(arrays.count);
     return {};
   }
 

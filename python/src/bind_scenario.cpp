@@ -42,6 +42,7 @@ void bind_scenario(nb::module_ &m) {
       .def_static(
           "read",
           [](const std::filesystem::path &path, const std::vector<std::string> &changes) {
+            const nb::gil_scoped_release free;
             return take(read_scenario(path, changes));
           },
           "path"_a, "changes"_a)
@@ -49,6 +50,7 @@ void bind_scenario(nb::module_ &m) {
           "parse",
           [](const std::string &text, const std::filesystem::path &path,
              const std::vector<std::string> &changes) {
+            const nb::gil_scoped_release free;
             return take(read_scenario_text(text, path, changes));
           },
           "text"_a, "path"_a, "changes"_a)

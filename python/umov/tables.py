@@ -86,7 +86,7 @@ class Table:
         return self._table.rows
 
     def to_qtable(self) -> QTable:
-        """The same as an astropy QTable: units on every column, notes in `meta`."""
+        """The same as an astropy QTable: every column of floats has a unit, the notes are in `meta`."""
         from astropy import units
         from astropy.table import Column, QTable
         out = QTable(meta=self.notes)
@@ -94,7 +94,7 @@ class Table:
             values = self[name]
             if unit.startswith("mag("):
                 out[name] = units.Magnitude(values, unit=units.Unit(unit), copy=False)
-            elif unit:
+            elif unit or values.dtype.kind == "f":
                 out[name] = units.Quantity(values, unit=units.Unit(unit), copy=False)
             else:
                 out[name] = Column(values, copy=False)
