@@ -13,6 +13,8 @@ namespace nb = nanobind;
 
 /// A read-only column: its memory belongs to `owner`.
 template <class T> using View = nb::ndarray<nb::numpy, const T, nb::c_contig>;
+/// A site as Python has it: name, latitude, longitude [deg], altitude [m].
+using SiteTuple = nb::typed<nb::tuple, nb::str, nb::float_, nb::float_, nb::float_>;
 /// Input of floats in C order.
 using Vectors = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Numbers = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
@@ -34,8 +36,7 @@ nb::ndarray<nb::numpy, T, nb::c_contig> array_from(std::vector<T> &&values,
 /// A new array whose values are still to be written.
 template <class T> struct NewArray {
   explicit NewArray(std::size_t count)
-      : data(new T[count]),
-        owner(data, [](void *p) noexcept { delete[] static_cast<T *>(p); }) {}
+      : data(new T[count]), owner(data, [](void *p) noexcept { delete[] static_cast<T *>(p); }) {}
   T *data;
   nb::capsule owner;
   [[nodiscard]] nb::ndarray<nb::numpy, T, nb::c_contig>

@@ -45,8 +45,8 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// How many poses are lit together: as many as take a twentieth of a second, so that Ctrl-C need not
-/// wait (masks of a new direction cost a thousand times what looking them up does). Where light
+/// How many poses are lit together: as many as take a twentieth of a second, so that Ctrl-C need
+/// not wait (masks of a new direction cost a thousand times what looking them up does). Where light
 /// between surfaces is shared by the poses of a block those of `umov signature`.
 class BlockSize {
 public:
@@ -179,16 +179,18 @@ nb::tuple light_of(Light &light, const Vectors &sun, const Vectors &observer, un
   const NewArray<double> stokes(count * bands * 4), half_width(count * bands * 4);
   const NewArray<bool> is_dark(count);
   const NewArray<std::uint8_t> method(count);
-  run_poses(light,
-            {sun.data(), observer.data(), count, stokes.data, half_width.data, is_dark.data,
-             method.data},
-            threads, watch);
+  run_poses(
+      light,
+      {sun.data(), observer.data(), count, stokes.data, half_width.data, is_dark.data, method.data},
+      threads, watch);
   return nb::make_tuple(stokes.shaped({count, bands, 4}), half_width.shaped({count, bands, 4}),
                         is_dark.shaped({count}), method.shaped({count}));
 }
 
 LightMethod method_from(const std::string &word) {
-  return word == "rays" ? LightMethod::Rays : word == "masks" ? LightMethod::Masks : LightMethod::Auto;
+  return word == "rays"    ? LightMethod::Rays
+         : word == "masks" ? LightMethod::Masks
+                           : LightMethod::Auto;
 }
 
 void make_light_for(Light *self, const Scenario &scenario, const std::optional<std::string> &method,
@@ -230,9 +232,8 @@ nb::dict facts_of(const Light &light) {
 }
 
 /// [2, count, 3]: directions of the Sun and of the observer.
-nb::ndarray<nb::numpy, double, nb::c_contig> random_directions(std::size_t count, double phase_deg,
-                                                               std::uint64_t seed,
-                                                               std::size_t first) {
+nb::ndarray<nb::numpy, double, nb::c_contig>
+random_directions(std::size_t count, double phase_deg, std::uint64_t seed, std::size_t first) {
   const jobs::PoseList list = take(jobs::random_poses(first + count, {phase_deg}, seed));
   const NewArray<double> out(count * 6);
   for (std::size_t i = 0; i < count; ++i) {
@@ -253,8 +254,13 @@ void bind_light(nb::module_ &m) {
       .def("__init__", &make_light_for, "scenario"_a, "method"_a.none(), "accuracy"_a.none(),
            "laser"_a, "temperatures"_a, "mask_file"_a, "options"_a, "watch"_a.none())
       .def("stokes", &stokes_of, "sun"_a, "observer"_a, "threads"_a, "watch"_a.none())
-      .def("light", &light_of, "sun"_a, "observer"_a, "threads"_a, "watch"_a.none())
-      .def_prop_ro("facts", &facts_of)
+      .def(
+          "light", &light_of, "sun"_a, "observer"_a, "threads"_a, "watch"_a.none(),
+          nb::sig("def light(self, sun: numpy.typing.NDArray[numpy.float64], observer: "
+                  "numpy.typing.NDArray[numpy.float64], threads: int, watch: object | None) -> "
+                  "tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], "
+                  "numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.uint8]]"))
+      .def_prop_ro("facts", &facts_of, nb::sig("def facts(self) -> dict[str, typing.Any]"))
       .def_prop_ro("materials",
                    [](const Light &light) { return light.light().model().materials(); })
       .def("keep_masks", [](const Light &light) { take(light.light().model().keep_masks()); });

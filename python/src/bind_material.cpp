@@ -29,17 +29,17 @@ NewArray<double> matrices_of(const Table &table) {
   return out;
 }
 
-nb::ndarray<nb::numpy, double, nb::c_contig> brdf(const Material &material, const Numbers &wavelength_nm,
-                                      const Numbers &theta_i_deg, const Numbers &theta_o_deg,
-                                      const Numbers &phi_deg, const Numbers &azimuth_deg) {
+nb::ndarray<nb::numpy, double, nb::c_contig>
+brdf(const Material &material, const Numbers &wavelength_nm, const Numbers &theta_i_deg,
+     const Numbers &theta_o_deg, const Numbers &phi_deg, const Numbers &azimuth_deg) {
   jobs::BrdfRequest request{material, {}, false, ""};
   const std::size_t count = wavelength_nm.shape(0);
   Result<Table> table = Table();
   {
     const nb::gil_scoped_release free;
     for (std::size_t i = 0; i < count; ++i)
-      request.rows.push_back({wavelength_nm.data()[i], theta_i_deg.data()[i],
-                              theta_o_deg.data()[i], phi_deg.data()[i], azimuth_deg.data()[i]});
+      request.rows.push_back({wavelength_nm.data()[i], theta_i_deg.data()[i], theta_o_deg.data()[i],
+                              phi_deg.data()[i], azimuth_deg.data()[i]});
     table = jobs::brdf_table(request);
   }
   return matrices_of(take(std::move(table))).shaped({count, 4, 4});
@@ -63,11 +63,13 @@ void bind_material(nb::module_ &m) {
       .def_ro("assumed", &Material::assumed)
       .def_prop_ro("toml", &material_as_toml)
       .def_prop_ro("polarization", &describe_polarization)
-      .def_prop_ro("range_nm",
-                   [](const Material &material) {
-                     const WavelengthRange range = range_of(material);
-                     return nb::make_tuple(range.first_nm, range.last_nm);
-                   })
+      .def_prop_ro(
+          "range_nm",
+          [](const Material &material) {
+            const WavelengthRange range = range_of(material);
+            return nb::make_tuple(range.first_nm, range.last_nm);
+          },
+          nb::sig("def range_nm(self) -> tuple[float, float]"))
       .def(
           "index_table",
           [](const Material &material, const std::vector<double> &wavelengths_nm) {

@@ -60,10 +60,8 @@ nb::object numbers(nb::handle self) {
 
 void bind_orbit(nb::module_ &m) {
   nb::class_<States>(m, "States", "States of a catalogue.")
-      .def_prop_ro("teme", &teme,
-                   nb::sig("def teme(self) -> numpy.typing.NDArray[numpy.float64]"))
-      .def_prop_ro("error", &codes,
-                   nb::sig("def error(self) -> numpy.typing.NDArray[numpy.int32]"))
+      .def_prop_ro("teme", &teme, nb::sig("def teme(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_prop_ro("error", &codes, nb::sig("def error(self) -> numpy.typing.NDArray[numpy.int32]"))
       .def_prop_ro("norad_cat_id", &numbers,
                    nb::sig("def norad_cat_id(self) -> numpy.typing.NDArray[numpy.int32]"))
       .def_prop_ro(

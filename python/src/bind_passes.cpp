@@ -1,5 +1,6 @@
 // Passes over a site, and where an object stands.
 
+#include "arrays.h"
 #include "attend.h"
 #include "bindings.h"
 #include "errors.h"
@@ -29,34 +30,37 @@ ShadowModel shadow_from(const std::string &word) {
 
 Rows rows_of(Attention &attention, Result<Rows> &&result) {
   attention.settle(was_interrupted(result) ||
-                   (result && result->stopped &&
-                    result->stopped->code == ErrorCode::Interrupted));
+                   (result && result->stopped && result->stopped->code == ErrorCode::Interrupted));
   return take(std::move(result));
 }
 
 Rows find_passes_of(const jobs::PassesRequest &request, const jobs::JobOptions &options,
                     nb::handle watch) {
   Attention attention(watch);
-  return rows_of(attention, attend(attention, [&](const jobs::Monitor &monitor,
-                                                  Diagnostics &diagnostics) -> Result<Rows> {
-                   UMOV_ASSIGN(found, jobs::passes(request, options, monitor, diagnostics));
-                   return Rows{jobs::passes_table(request, found), found.stopped};
-                 }));
+  return rows_of(
+      attention,
+      attend(attention,
+             [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Rows> {
+               UMOV_ASSIGN(found, jobs::passes(request, options, monitor, diagnostics));
+               return Rows{jobs::passes_table(request, found), found.stopped};
+             }));
 }
 
 Rows ephemeris_of(const jobs::EphemerisRequest &request, const jobs::JobOptions &options,
                   nb::handle watch) {
   Attention attention(watch);
-  return rows_of(attention, attend(attention, [&](const jobs::Monitor &monitor,
-                                                  Diagnostics &diagnostics) -> Result<Rows> {
-                   UMOV_ASSIGN(out, jobs::ephemeris(request, options, monitor, diagnostics));
-                   return Rows{std::move(out.table), out.error};
-                 }));
+  return rows_of(
+      attention,
+      attend(attention,
+             [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Rows> {
+               UMOV_ASSIGN(out, jobs::ephemeris(request, options, monitor, diagnostics));
+               return Rows{std::move(out.table), out.error};
+             }));
 }
 
 /// The site and span that every request of this file has.
 template <class Request>
-void set_place(Request &request, const nb::tuple &site, const std::string &start,
+void set_place(Request &request, const SiteTuple &site, const std::string &start,
                const std::string &stop, const std::string &shadow) {
   request.site = take(make_site(nb::cast<std::string>(site[0]), nb::cast<double>(site[1]),
                                 nb::cast<double>(site[2]), nb::cast<double>(site[3])));
@@ -76,7 +80,7 @@ void bind_passes(nb::module_ &m) {
           nb::sig("def stopped(self) -> tuple[int, str, str, int, int] | None"));
   m.def(
       "passes",
-      [](const std::string &orbit, const std::vector<int> &norad, const nb::tuple &site,
+      [](const std::string &orbit, const std::vector<int> &norad, const SiteTuple &site,
          const std::string &start, const std::string &stop, double alt_min_deg,
          double sun_alt_max_deg, const std::string &shadow, bool visible_only,
          const Scenario *scene, const std::string &band, const jobs::JobOptions &options,
@@ -97,7 +101,7 @@ void bind_passes(nb::module_ &m) {
       "shadow"_a, "visible_only"_a, "scene"_a.none(), "band"_a, "options"_a, "watch"_a.none());
   m.def(
       "ephemeris",
-      [](const std::string &orbit, int norad, const nb::tuple &site, const std::string &start,
+      [](const std::string &orbit, int norad, const SiteTuple &site, const std::string &start,
          const std::string &stop, double step_s, const std::string &shadow,
          const jobs::JobOptions &options, nb::handle watch) {
         jobs::EphemerisRequest request;

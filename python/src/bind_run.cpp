@@ -19,7 +19,7 @@ using nb::literals::operator""_a;
 /// What a run computed, for Python.
 struct Run {
   jobs::RunTables tables;
-  std::vector<double> jd1, jd2; ///< of every epoch, UTC
+  std::vector<double> jd1, jd2;    ///< of every epoch, UTC
   std::vector<std::size_t> epochs; ///< of every object
   std::optional<Error> stopped;
 };
@@ -41,16 +41,15 @@ Run run_of(const jobs::RunResult &result) {
 
 Run run(const Scenario &scenario, const jobs::JobOptions &options, nb::handle watch) {
   Attention attention(watch);
-  auto result = attend(
-      attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Run> {
+  auto result =
+      attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Run> {
         UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
-        UMOV_ASSIGN(out, jobs::compute_run(std::move(objects), scenario, options, monitor,
-                                           diagnostics));
+        UMOV_ASSIGN(out,
+                    jobs::compute_run(std::move(objects), scenario, options, monitor, diagnostics));
         return run_of(out);
       });
   attention.settle(was_interrupted(result) ||
-                   (result && result->stopped &&
-                    result->stopped->code == ErrorCode::Interrupted));
+                   (result && result->stopped && result->stopped->code == ErrorCode::Interrupted));
   return take(std::move(result));
 }
 
@@ -66,8 +65,8 @@ void bind_run(nb::module_ &m) {
           "__init__",
           [](jobs::JobOptions *self, unsigned threads, const std::string &mask_cache,
              bool allow_bad_checksum, bool allow_old_elements) {
-            new (self) jobs::JobOptions{
-                threads, mask_cache, {}, allow_bad_checksum, allow_old_elements};
+            new (self)
+                jobs::JobOptions{threads, mask_cache, {}, allow_bad_checksum, allow_old_elements};
           },
           "threads"_a, "mask_cache"_a, "allow_bad_checksum"_a, "allow_old_elements"_a);
   nb::class_<Run>(m, "Run", "What a run computed.")
@@ -78,12 +77,10 @@ void bind_run(nb::module_ &m) {
           "passes", [](const Run &r) { return &r.tables.passes; },
           nb::rv_policy::reference_internal)
       .def_prop_ro(
-          "jd1",
-          [](nb::handle self) { return view(self, nb::cast<const Run &>(self).jd1); },
+          "jd1", [](nb::handle self) { return view(self, nb::cast<const Run &>(self).jd1); },
           nb::sig("def jd1(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def_prop_ro(
-          "jd2",
-          [](nb::handle self) { return view(self, nb::cast<const Run &>(self).jd2); },
+          "jd2", [](nb::handle self) { return view(self, nb::cast<const Run &>(self).jd2); },
           nb::sig("def jd2(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def_ro("epochs", &Run::epochs)
       .def_prop_ro(

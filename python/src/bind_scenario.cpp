@@ -1,9 +1,9 @@
 // Scenarios: read, checked and written by the library.
 
+#include "arrays.h"
 #include "bindings.h"
 #include "errors.h"
 
-#include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -30,9 +30,9 @@ std::vector<std::string> objects_of(const Scenario &scenario) {
   return out;
 }
 
-nb::tuple site_tuple(const Site &site) {
-  return nb::make_tuple(site.name, site.latitude.degrees(), site.longitude.degrees(),
-                        site.altitude_m);
+SiteTuple site_tuple(const Site &site) {
+  return nb::borrow<SiteTuple>(nb::make_tuple(site.name, site.latitude.degrees(),
+                                              site.longitude.degrees(), site.altitude_m));
 }
 
 } // namespace
@@ -41,14 +41,14 @@ void bind_scenario(nb::module_ &m) {
   nb::class_<Scenario>(m, "Scenario", "A scenario with all defaults filled in.")
       .def_static(
           "read",
-          [](const std::filesystem::path &path, const std::vector<std::string> &changes) {
+          [](const std::string &path, const std::vector<std::string> &changes) {
             const nb::gil_scoped_release free;
             return take(read_scenario(path, changes));
           },
           "path"_a, "changes"_a)
       .def_static(
           "parse",
-          [](const std::string &text, const std::filesystem::path &path,
+          [](const std::string &text, const std::string &path,
              const std::vector<std::string> &changes) {
             const nb::gil_scoped_release free;
             return take(read_scenario_text(text, path, changes));

@@ -79,7 +79,8 @@ void bind_table(nb::module_ &m) {
           [](nb::handle self, const std::string &name) {
             return values_of(column_of(nb::cast<const Table &>(self), name), self);
           },
-          "name"_a, nb::sig("def column(self, name: str) -> numpy.typing.NDArray | list[str]"))
+          "name"_a,
+          nb::sig("def column(self, name: str) -> numpy.typing.NDArray[typing.Any] | list[str]"))
       .def("add", &add_column, "name"_a, "unit"_a, "description"_a, "values"_a)
       .def("note", &Table::note, "key"_a, "value"_a)
       .def("csv", [](const Table &t) { return to_csv(t); })

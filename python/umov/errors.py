@@ -35,7 +35,7 @@ class Error(Exception):
     ...     umov.Material("paper_gold")
     ... except umov.Error as error:
     ...     print(error)
-    unknown material "paper_gold". Did you mean "paper_au"? Known: umov material list.
+    unknown material "paper_gold". Did you mean "paper_al"? Known: umov material list.
     """
 
     exit_code = 1

@@ -17,7 +17,7 @@ __all__ = ["Material", "brdf", "materials"]
 def materials() -> Table:
     """Every material of the library: the rows of `umov material list`.
 
-    >>> "film_silvered" in umov.materials()["name"]
+    >>> "film_silvered" in umov.materials()["material"]
     True
     """
     return Table(_umov.material_list())
@@ -32,7 +32,7 @@ class Material:
     >>> rough = umov.Material.from_dict("rough", {"index": {"n": 1.5, "k": 0},
     ...                                 "distribution": {"model": "ggx", "alpha": 0.3}})
     >>> rough
-    Material('rough', polarizes)
+    Material('rough', reflection polarizes)
     """
 
     def __init__(self, name: str) -> None:

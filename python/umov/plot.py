@@ -92,7 +92,7 @@ def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], 
 def magnitude(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """AB magnitude over time, bright at the top.
 
-    >>> plot.magnitude(curve).yaxis_inverted()
+    >>> bool(plot.magnitude(curve).yaxis_inverted())
     True
     """
     axes = _over_time(curve, axes, curve.mag, "AB magnitude")
@@ -140,8 +140,8 @@ def degree(curve: LightCurve, axes: Axes | None = None) -> Axes:
 def position_angle(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Position angle over time; it is cyclic, and no line joins 180 to 0 deg.
 
-    >>> plot.position_angle(curve).get_ylim()
-    (0.0, 180.0)
+    >>> [float(end) for end in plot.position_angle(curve).get_ylim()]
+    [0.0, 180.0]
     """
     axes = _over_time(curve, axes, curve.pa, "position angle [°]", cyclic=True)
     axes.set(ylim=(0, 180), yticks=range(0, 181, 45))

@@ -27,7 +27,7 @@ def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: in
 
     >>> curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
     >>> print(repr(curve).splitlines()[0])
-    <umov.LightCurve HST: 15 epochs x 3 bands (nm:425, nm:550, nm:650)
+    <umov.LightCurve HST: 6 epochs x 3 bands (nm:425, nm:550, nm:650)
     """
     changes = dict(set or {})
     if seed is not None:

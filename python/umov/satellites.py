@@ -28,6 +28,10 @@ def band_table(bands: Bands) -> dict[str, Any]:
     return {"set": bands if isinstance(bands, str) else list(bands)}
 
 
+def _without_none(value: Any) -> Any:
+    return {k: v for k, v in value.items() if v is not None} if isinstance(value, Mapping) else value
+
+
 def _absolute(path: Any) -> Any:
     return str(pathlib.Path(path).absolute()) if isinstance(path, (str, os.PathLike)) else path
 
@@ -56,7 +60,7 @@ class Satellite:
             "name": name, "orbit": self._orbit(orbit, norad), "mesh": self._mesh(mesh, unit, up, normals),
             "attitude": dict(attitude) if attitude is not None else None,
             "materials": self._materials(materials), "part": [dict(part) for part in parts] or None}
-        self._table = {key: value for key, value in self._table.items() if value is not None}
+        self._table = {key: _without_none(value) for key, value in self._table.items() if value is not None}
         self._files = adapters.Files(self._texts) if self._texts else None
         self._set_files()
 

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import os
-import pathlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Union
 
@@ -45,7 +44,7 @@ class Scenario:
 
     def __init__(self, source: AnyScenario, set: Changes | None = None) -> None:
         if isinstance(source, (str, os.PathLike)):
-            self._scenario = _umov.Scenario.read(pathlib.Path(source), _change_list(set))
+            self._scenario = _umov.Scenario.read(os.fspath(source), _change_list(set))
         elif isinstance(source, Mapping):
             self._scenario = _parse(_toml.text_of(source), None, set)
         elif isinstance(source, Scenario):
@@ -123,7 +122,7 @@ AnyScenario = Union[str, "os.PathLike[str]", Mapping[str, Any], Scenario, "Satel
 
 def _parse(text: str, path: str | os.PathLike[str] | None, changes: Changes | None) -> _umov.Scenario:
     # Relative paths start at the folder of the file that the text stands for.
-    place = pathlib.Path(path) if path is not None else pathlib.Path("scenario")
+    place = os.fspath(path) if path is not None else "scenario"
     return _umov.Scenario.parse(text, place, _change_list(changes))
 
 

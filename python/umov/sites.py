@@ -27,7 +27,7 @@ class Site:
     topos or the [observer] table of a scenario.
 
     >>> umov.Site("paranal")
-    Site('paranal', lat_deg=-24.6272, lon_deg=-70.4042, alt_m=2635.0)
+    Site('paranal', lat_deg=-24.6275, lon_deg=-70.4044, alt_m=2635.0)
     >>> umov.Site(lat_deg=20.7083, lon_deg=-156.2578, alt_m=3058, name="Maui").to_dict()["name"]
     'Maui'
     """

@@ -38,8 +38,8 @@ class Table:
 
     >>> table = umov.materials()
     >>> table.names[:2]
-    ['name', 'range']
-    >>> len(table), table["name"][0]
+    ['material', 'nm']
+    >>> len(table), str(table["material"][0])
     (28, 'paper_au')
     """
 

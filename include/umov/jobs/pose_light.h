@@ -10,8 +10,8 @@
 
 namespace umov::jobs {
 
-/// What `signature` asks for its rows: the scenario's object read, compiled and ready for directions,
-/// its parts turned as far as directions tell. Thread safe.
+/// What `signature` asks for its rows: the scenario's object read, compiled and ready for
+/// directions, its parts turned as far as directions tell. Thread safe.
 class PoseLight {
 public:
   /// Reads and compiles. Usage for what does not go together; warns of parts that cannot turn here.
