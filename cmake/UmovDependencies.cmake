@@ -5,6 +5,7 @@ option(UMOV_WITH_PAPER "The paper remade: umov::paper and umov paper" ${PROJECT_
 option(UMOV_WITH_REPORT "Report pages and PNG pictures (libpng, zlib, plotly)" ${PROJECT_IS_TOP_LEVEL})
 option(UMOV_WITH_FITS "Tables as FITS (CFITSIO)" ${PROJECT_IS_TOP_LEVEL})
 option(UMOV_WITH_EXR "Pictures as OpenEXR" ${PROJECT_IS_TOP_LEVEL})
+option(UMOV_WITH_PYTHON "The Python package umov (nanobind, Python_EXECUTABLE)" OFF)
 option(UMOV_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(UMOV_INSTALL "Install the library, its headers and its CMake package" ${PROJECT_IS_TOP_LEVEL})
 

@@ -57,6 +57,7 @@
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/orbit_files.h>
 #include <umov/jobs/passes.h>
+#include <umov/jobs/pose_light.h>
 #include <umov/jobs/render.h>
 #include <umov/jobs/requests.h>
 #include <umov/jobs/run.h>

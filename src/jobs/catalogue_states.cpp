@@ -15,31 +15,30 @@
 namespace umov::jobs {
 namespace {
 
-struct CatalogueRow {
-  bool is_done = false; ///< not where a stop came first
-  int norad_cat_id = 0;
-  Epoch<Utc> time{};
-  Sgp4Code code = Sgp4Code::Ok;
-  TemeState state;
-};
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr TemeState no_state{{none, none, none}, {none, none, none}};
 
-Table catalogue_table(const std::vector<CatalogueRow> &rows) {
-  using R = const CatalogueRow &;
+/// Every state that is done, object by object.
+Table catalogue_table(const CatalogueStates &all, const std::vector<Epoch<Utc>> &times) {
   Table t;
   std::vector<std::int64_t> ids, codes;
-  std::vector<std::string> times;
-  for (R row : rows) {
-    ids.push_back(row.norad_cat_id);
-    codes.push_back(static_cast<int>(row.code));
-    times.push_back(to_iso(row.time));
+  std::vector<std::string> iso, time_of;
+  std::vector<TemeState> rows;
+  for (const Epoch<Utc> time : times)
+    iso.push_back(to_iso(time));
+  for (std::size_t row = 0; row < all.states.size(); ++row) {
+    if (all.is_done[row] == 0)
+      continue;
+    ids.push_back(all.norad_cat_id[row / times.size()]);
+    codes.push_back(static_cast<int>(all.codes[row]));
+    time_of.push_back(iso[row % times.size()]);
+    rows.push_back(all.states[row]);
   }
   t.add("norad_cat_id", "", "catalogue number", std::move(ids));
-  t.add("time_utc", "", "UTC", std::move(times));
+  t.add("time_utc", "", "UTC", std::move(time_of));
   t.add("error", "", "0, or the SGP4 code with which the object failed", std::move(codes));
   const auto add = [&](const char *name, const char *unit, const char *text, auto take) {
-    add_numbers(t, rows, name, unit, text, [&](R row) {
-      return row.code == Sgp4Code::Ok ? take(row.state) : std::numeric_limits<double>::quiet_NaN();
-    });
+    add_numbers(t, rows, name, unit, text, take);
   };
   using S = const TemeState &;
   add("teme_x", "km", "position, TEME", [](S s) { return s.position_km.x; });
@@ -52,10 +51,16 @@ Table catalogue_table(const std::vector<CatalogueRow> &rows) {
 }
 
 /// Objects by times, object by object; whole blocks of objects are missing after a stop.
-std::vector<CatalogueRow> propagate_all(const std::vector<ElementSet> &sets,
-                                        const std::vector<Epoch<Utc>> &times, unsigned threads,
-                                        const Monitor &monitor) {
-  std::vector<CatalogueRow> rows(sets.size() * times.size());
+CatalogueStates propagate_all(const std::vector<ElementSet> &sets,
+                              const std::vector<Epoch<Utc>> &times, unsigned threads,
+                              const Monitor &monitor) {
+  CatalogueStates out;
+  const std::size_t rows = sets.size() * times.size();
+  for (const ElementSet &set : sets)
+    out.norad_cat_id.push_back(set.norad_cat_id);
+  out.states.assign(rows, no_state);
+  out.codes.assign(rows, Sgp4Code::Ok);
+  out.is_done.assign(rows, 0);
   constexpr std::size_t block = 256; // objects side by side in lanes
   parallel_for((sets.size() + block - 1) / block, threads, [&](std::size_t b) {
     const std::size_t first = b * block, count = std::min(block, sets.size() - first);
@@ -70,14 +75,15 @@ std::vector<CatalogueRow> propagate_all(const std::vector<ElementSet> &sets,
         minutes[i] = clock_days_between(times[k], sets[first + i].epoch) * 1440;
       propagate_objects(models, minutes, states, codes);
       for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t row = (first + i) * times.size() + k;
         const bool can_start = models[i].init_code() == Sgp4Code::Ok;
-        rows[(first + i) * times.size() + k] = {true, sets[first + i].norad_cat_id, times[k],
-                                                can_start ? codes[i] : models[i].init_code(),
-                                                can_start ? states[i] : TemeState{}};
+        out.codes[row] = can_start ? codes[i] : models[i].init_code();
+        out.states[row] = out.codes[row] == Sgp4Code::Ok ? states[i] : no_state;
+        out.is_done[row] = 1;
       }
     }
   });
-  return rows;
+  return out;
 }
 
 /// A catalogue has many ages: one line for all that are too old to trust, and a refusal only where
@@ -117,14 +123,16 @@ Result<void> check_ages(const StatesRequest &request, bool allow_old,
 }
 
 /// Warns of the first states that failed; how many did.
-std::size_t tell_of_failures(const std::vector<CatalogueRow> &rows, Diagnostics &diagnostics) {
+std::size_t tell_of_failures(const CatalogueStates &all, const std::vector<Epoch<Utc>> &times,
+                             Diagnostics &diagnostics) {
   constexpr std::size_t told_max = 10;
   std::size_t failed = 0;
-  for (const CatalogueRow &row : rows)
-    if (row.code != Sgp4Code::Ok && failed++ < told_max)
-      diagnostics.warn(fmt::format("{}: SGP4 fails at {} (code {}, {})", row.norad_cat_id,
-                                   to_iso(row.time), static_cast<int>(row.code),
-                                   to_text(row.code)));
+  for (std::size_t row = 0; row < all.codes.size(); ++row)
+    if (all.codes[row] != Sgp4Code::Ok && failed++ < told_max)
+      diagnostics.warn(fmt::format("{}: SGP4 fails at {} (code {}, {})",
+                                   all.norad_cat_id[row / times.size()],
+                                   to_iso(times[row % times.size()]),
+                                   static_cast<int>(all.codes[row]), to_text(all.codes[row])));
   if (failed > told_max)
     diagnostics.warn(fmt::format("{} more states failed; see the column error", failed - told_max));
   return failed;
@@ -132,28 +140,34 @@ std::size_t tell_of_failures(const std::vector<CatalogueRow> &rows, Diagnostics 
 
 } // namespace
 
-Result<TableOutcome> catalogue_states(const StatesRequest &request, const JobOptions &options,
-                                      const Monitor &monitor, Diagnostics &diagnostics) {
+Result<CatalogueStates> propagate_catalogue(const StatesRequest &request, const JobOptions &options,
+                                            const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(text, read_file(request.orbit));
   UMOV_ASSIGN(sets, read_elements(text, request.orbit,
                                   {options.allow_bad_checksum, request.keep_going}, diagnostics));
   UMOV_TRY(check_ages(request, options.allow_old_elements, sets, diagnostics));
   for (const Epoch<Utc> time : request.times)
     warn_if_beyond_leap_seconds(time, diagnostics);
-  auto rows = propagate_all(sets, request.times, options.threads, monitor);
-  const std::size_t all = rows.size();
-  std::erase_if(rows, [](const CatalogueRow &row) { return !row.is_done; });
-  const std::size_t failed = tell_of_failures(rows, diagnostics);
-  TableOutcome out{catalogue_table(rows), rows.size() < all, {}};
+  CatalogueStates out = propagate_all(sets, request.times, options.threads, monitor);
+  const auto done =
+      static_cast<std::size_t>(std::count(out.is_done.begin(), out.is_done.end(), char{1}));
+  const std::size_t failed = tell_of_failures(out, request.times, diagnostics);
+  out.is_partial = done < out.states.size();
   if (out.is_partial)
-    out.error =
-        Error{ErrorCode::Interrupted,
-              fmt::format("stopped by the user after {} of {}", rows.size(), counted(all, "state")),
-              {}};
-  else if (failed == rows.size())
+    out.error = Error{ErrorCode::Interrupted,
+                      fmt::format("stopped by the user after {} of {}", done,
+                                  counted(out.states.size(), "state")),
+                      {}};
+  else if (failed == done)
     out.error = Error{
         ErrorCode::Physics, "SGP4 failed for every object; give newer elements", {request.orbit}};
   return out;
+}
+
+Result<TableOutcome> catalogue_states(const StatesRequest &request, const JobOptions &options,
+                                      const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(all, propagate_catalogue(request, options, monitor, diagnostics));
+  return TableOutcome{catalogue_table(all, request.times), all.is_partial, all.error};
 }
 
 } // namespace umov::jobs

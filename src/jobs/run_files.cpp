@@ -24,16 +24,9 @@ bool wants(const Scenario &scenario, const char *format) {
 }
 
 Result<void> add_tables(const Written &run, RunFolder &folder) {
-  Table table, passes;
-  for (const ObjectRun &one : run.result.objects) {
-    table.append(light_curve_table(one.outcome.curve, one.request.frame));
-    passes.append(passes_table(one.outcome.passes, one.outcome.curve));
-  }
-  if (run.result.stopped) {
+  const auto [table, passes] = run_tables(run.result);
+  if (run.result.stopped)
     folder.spare_complete_run();
-    table.note("status", "stopped early: " + run.result.stopped->message);
-    passes.note("status", "stopped early: " + run.result.stopped->message);
-  }
   folder.add("passes.ecsv", to_ecsv(passes));
   if (wants(run.scenario, "ecsv"))
     folder.add("lightcurve.ecsv", to_ecsv(table));
@@ -83,6 +76,19 @@ std::string options_needed(const JobOptions &options) {
 }
 
 } // namespace
+
+RunTables run_tables(const RunResult &run) {
+  RunTables out;
+  for (const ObjectRun &one : run.objects) {
+    out.light_curve.append(light_curve_table(one.outcome.curve, one.request.frame));
+    out.passes.append(passes_table(one.outcome.passes, one.outcome.curve));
+  }
+  if (run.stopped) {
+    out.light_curve.note("status", "stopped early: " + run.stopped->message);
+    out.passes.note("status", "stopped early: " + run.stopped->message);
+  }
+  return out;
+}
 
 Result<void> write_run(RunResult &result, const Scenario &scenario, const JobOptions &options,
                        ManifestInput manifest, const Diagnostics &diagnostics, RunFolder &folder) {

@@ -94,6 +94,8 @@ std::string scenario_schema_json();
 
 /// A material by name (paper_* or the library), or from a TOML file with one [material.NAME] table.
 Result<Material> read_material(const std::string &name_or_path);
+/// The one [material.NAME] table of a text that stands for the file `path`.
+Result<Material> read_material_text(const std::string &text, const std::string &path);
 /// Names of all compiled-in materials: the paper's six, then the library of data/materials.
 std::vector<std::string> material_library();
 /// A material as TOML, with the tables of its indices by name, file or in place.

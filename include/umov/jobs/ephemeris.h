@@ -41,7 +41,20 @@ struct StatesRequest {
   bool keep_going = false; ///< bad sets of the file are reported, the others kept
 };
 
-/// TEME states of every object at every time, object by object; those that SGP4 cannot give are
+/// States of a catalogue: [object * times + time].
+struct CatalogueStates {
+  std::vector<int> norad_cat_id; ///< per object
+  std::vector<TemeState> states; ///< NaN where SGP4 gives none
+  std::vector<Sgp4Code> codes;   ///< why there is none
+  std::vector<char> is_done;     ///< 0 where a stop came first
+  bool is_partial = false;       ///< some are not done
+  std::optional<Error> error;    ///< Interrupted, or Physics if every one failed
+};
+
+/// TEME states of every object at every time as numbers; warns of the first that fail.
+Result<CatalogueStates> propagate_catalogue(const StatesRequest &request, const JobOptions &options,
+                                            const Monitor &monitor, Diagnostics &diagnostics);
+/// The same as a table, object by object; those that SGP4 cannot give are
 /// empty, with its code. Partial after a stop; Physics with a whole table if every one failed.
 Result<TableOutcome> catalogue_states(const StatesRequest &request, const JobOptions &options,
                                       const Monitor &monitor, Diagnostics &diagnostics);

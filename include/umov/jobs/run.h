@@ -4,6 +4,7 @@
 #include <optional>
 #include <umov/core/journal.h>
 #include <umov/io/run_folder.h>
+#include <umov/io/table.h>
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/requests.h>
 #include <umov/lightcurve/compute.h>
@@ -36,6 +37,13 @@ Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptio
 Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &scenario,
                               const JobOptions &options, const Monitor &monitor,
                               Diagnostics &diagnostics);
+
+/// The rows of a run.
+struct RunTables {
+  Table light_curve, passes;
+};
+/// Those of all objects, one object after the other: what the files of its folder hold.
+RunTables run_tables(const RunResult &run);
 
 /// Tables, reports, locked scenario, log and manifest (`manifest` holds what the caller knows of
 /// the command; inputs, seed, warnings and method are added), put in place at once.

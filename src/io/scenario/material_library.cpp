@@ -45,6 +45,10 @@ Result<Material> read_material(const std::string &name_or_path) {
                           near ? fmt::format(" Did you mean \"{}\"?", *near) : ""));
 }
 
+Result<Material> read_material_text(const std::string &text, const std::string &path) {
+  return scenario::read_material_text(text, path);
+}
+
 bool scenario::is_in_library(const std::string &name) {
   const auto names = material_library();
   return std::find(names.begin(), names.end(), name) != names.end();

@@ -1,6 +1,5 @@
 #include <umov/io/poses_file.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/io/table.h>
@@ -13,14 +12,11 @@ Result<Vec3<Body>> direction_from(const Table &table, const std::string &name, s
                                   const Where &where) {
   const Vec3<Body> v{table.number(name + "_x", row), table.number(name + "_y", row),
                      table.number(name + "_z", row)};
-  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  if (!(largest > 0))
+  const auto direction = direction_along(v);
+  if (!direction)
     return fail(ErrorCode::BadInput,
                 fmt::format("{0}_x, {0}_y, {0}_z are 0; a direction was expected", name), where);
-  int exponent = 0; // squares of very long or short vectors would leave the range of a double
-  std::frexp(largest, &exponent);
-  return normalized(Vec3<Body>{std::ldexp(v.x, -exponent), std::ldexp(v.y, -exponent),
-                               std::ldexp(v.z, -exponent)});
+  return *direction;
 }
 
 /// The number of a pose: beyond 2^53 a double no longer tells one from the next.

@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <limits>
+#include <umov/scene/pose.h>
 #include <umov/scene/scene.h>
 #include <umov/shape/primitives.h>
 
@@ -51,6 +53,21 @@ TEST(Scene, SmoothMakesNormalsWhereThereAreNone) {
       // The weights of Max (1999) are exact where vertices lie on a sphere: rounding only.
       EXPECT_LT(norm(scene->mesh.normals[t.normal[k]] - scene->mesh.positions[t.vertex[k]]), 1e-12);
     }
+}
+
+TEST(Pose, DirectionsOfAnyLengthAndNoneOfNothing) {
+  const double inf = std::numeric_limits<double>::infinity();
+  const Vec3<Body> expected{2.0 / 3, -1.0 / 3, 2.0 / 3};
+  for (const double scale : {1e-320, 1e-200, 1.0, 1e150, 8e307}) {
+    const auto found = direction_along(Vec3<Body>{scale, -scale / 2, scale});
+    ASSERT_TRUE(found);
+    // 1e-320 has three digits.
+    EXPECT_LT(norm(*found - expected), scale < 1e-300 ? 1e-3 : 1e-15) << scale;
+  }
+  const Vec3<Body> unit = normalized(Vec3<Body>{0.1, 0.2, 0.3});
+  EXPECT_EQ(*direction_along(unit), unit); // the poses of a table come back from it
+  for (const Vec3<Body> &none : {Vec3<Body>{}, {inf, 0, 0}, {1, -inf, inf}, {0, inf - inf, 1}})
+    EXPECT_FALSE(direction_along(none));
 }
 
 } // namespace

@@ -1,0 +1,32 @@
+# %% [markdown]
+# # My first pass
+# When does the Hubble Space Telescope pass over Maui, and what does a polarimeter see of it?
+
+# %%
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import umov
+
+DATA = Path(__file__).resolve().parents[2] / "data"
+hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", normals="smooth", orbit=DATA / "tle/hst.tle",
+                     attitude={"point": "+Z", "at": {"ra_deg": 83.8, "dec_deg": -5.4}, "then": "+X", "toward": "sun"},
+                     materials={"array_front": "cell_silicon", "array_back": "mli_kapton", "antenna": "paint_white",
+                                "light_shield": "film_aluminized", "forward_shell": "film_aluminized",
+                                "default": "aluminium_anodized"}, name="HST")
+
+# %% [markdown]
+# Passes come with the magnitudes of this very body: the columns of `umov passes`, as an astropy table.
+
+# %%
+table = umov.passes(hst, "maui", "2018-01-21T04:00Z", "2018-01-21T07:00Z")
+print(table["rise_utc", "culmination_alt", "set_utc", "mag_min", "p_max"])
+
+# %% [markdown]
+# The light of the first one, every five seconds, in the three bands of the paper.
+
+# %%
+curve = hst.light_curve("maui", table[0], step_s=5)
+print(curve)
+curve.plot().savefig("first_pass.png")
+plt.close("all")

@@ -1,0 +1,92 @@
+// The main job: light curves of a scenario, in memory.
+
+#include "arrays.h"
+#include "attend.h"
+#include "bindings.h"
+#include "errors.h"
+#include "options.h"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <umov/jobs/run.h>
+#include <umov/time/epoch.h>
+
+namespace umov::python {
+namespace {
+
+using nb::literals::operator""_a;
+
+/// What a run computed, for Python.
+struct Run {
+  jobs::RunTables tables;
+  std::vector<double> jd1, jd2;    ///< of every epoch, UTC
+  std::vector<std::size_t> epochs; ///< of every object
+  std::optional<Error> stopped;
+};
+
+Run run_of(const jobs::RunResult &result) {
+  Run out;
+  out.tables = jobs::run_tables(result);
+  for (const jobs::ObjectRun &one : result.objects) {
+    const auto &epochs = one.outcome.curve.epochs;
+    out.epochs.push_back(epochs.size());
+    for (const LightCurveEpoch &epoch : epochs) {
+      out.jd1.push_back(epoch.geometry.time.jd1);
+      out.jd2.push_back(epoch.geometry.time.jd2);
+    }
+  }
+  out.stopped = result.stopped;
+  return out;
+}
+
+Run run(const Scenario &scenario, const jobs::JobOptions &options, nb::handle watch) {
+  Attention attention(watch);
+  auto result =
+      attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Run> {
+        UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
+        UMOV_ASSIGN(out,
+                    jobs::compute_run(std::move(objects), scenario, options, monitor, diagnostics));
+        return run_of(out);
+      });
+  attention.settle(was_interrupted(result) ||
+                   (result && result->stopped && result->stopped->code == ErrorCode::Interrupted));
+  return take(std::move(result));
+}
+
+nb::object view(nb::handle self, const std::vector<double> &values) {
+  return nb::cast(View<double>(values.data(), {values.size()}, self));
+}
+
+} // namespace
+
+void bind_run(nb::module_ &m) {
+  nb::class_<jobs::JobOptions>(m, "JobOptions", "How a job runs, apart from its scenario.")
+      .def(
+          "__init__",
+          [](jobs::JobOptions *self, unsigned threads, const std::string &mask_cache,
+             bool allow_bad_checksum, bool allow_old_elements) {
+            new (self)
+                jobs::JobOptions{threads, mask_cache, {}, allow_bad_checksum, allow_old_elements};
+          },
+          "threads"_a, "mask_cache"_a, "allow_bad_checksum"_a, "allow_old_elements"_a);
+  nb::class_<Run>(m, "Run", "What a run computed.")
+      .def_prop_ro(
+          "light_curve", [](const Run &r) { return &r.tables.light_curve; },
+          nb::rv_policy::reference_internal)
+      .def_prop_ro(
+          "passes", [](const Run &r) { return &r.tables.passes; },
+          nb::rv_policy::reference_internal)
+      .def_prop_ro(
+          "jd1", [](nb::handle self) { return view(self, nb::cast<const Run &>(self).jd1); },
+          nb::sig("def jd1(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_prop_ro(
+          "jd2", [](nb::handle self) { return view(self, nb::cast<const Run &>(self).jd2); },
+          nb::sig("def jd2(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_ro("epochs", &Run::epochs)
+      .def_prop_ro(
+          "stopped", [](const Run &r) { return tuple_of(r.stopped ? &*r.stopped : nullptr); },
+          nb::sig("def stopped(self) -> tuple[int, str, str, int, int] | None"));
+  m.def("run", &run, "scenario"_a, "options"_a, "watch"_a.none());
+}
+
+} // namespace umov::python

@@ -1,0 +1,97 @@
+// Tables: columns without copies, and their way through pickle and into files.
+
+#include "arrays.h"
+#include "bindings.h"
+#include "errors.h"
+
+#include <algorithm>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <umov/io/table.h>
+#include <umov/io/table_sink.h>
+
+namespace umov::python {
+namespace {
+
+using nb::literals::operator""_a;
+
+const Column &column_of(const Table &table, const std::string &name) {
+  const Column *column = table.find(name);
+  if (column == nullptr)
+    throw nb::key_error(name.c_str());
+  return *column;
+}
+
+/// Numbers as a read-only view of the table's memory; texts as a list.
+nb::object values_of(const Column &column, nb::handle owner) {
+  if (const auto *x = std::get_if<std::vector<double>>(&column.cells))
+    return nb::cast(View<double>(x->data(), {x->size()}, owner));
+  if (const auto *x = std::get_if<std::vector<std::int64_t>>(&column.cells))
+    return nb::cast(View<std::int64_t>(x->data(), {x->size()}, owner));
+  if (const auto *x = std::get_if<std::vector<std::string>>(&column.cells))
+    return nb::cast(*x);
+  const auto &bits = std::get<std::vector<bool>>(column.cells); // packed: there is nothing to view
+  const NewArray<bool> out(bits.size());
+  std::copy(bits.begin(), bits.end(), out.data);
+  return nb::cast(out.shaped({bits.size()}));
+}
+
+void add_column(Table &table, const std::string &name, const std::string &unit,
+                const std::string &description, const nb::object &values) {
+  using Floats = nb::ndarray<const double, nb::ndim<1>, nb::c_contig>;
+  using Wholes = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig>;
+  using Truths = nb::ndarray<const bool, nb::ndim<1>, nb::c_contig>;
+  const auto put = [&](const auto &array, auto cells) {
+    cells.assign(array.data(), array.data() + array.size());
+    table.add(name, unit, description, std::move(cells));
+  };
+  if (Floats floats; nb::try_cast(values, floats, false))
+    put(floats, std::vector<double>());
+  else if (Wholes wholes; nb::try_cast(values, wholes, false))
+    put(wholes, std::vector<std::int64_t>());
+  else if (Truths truths; nb::try_cast(values, truths, false))
+    put(truths, std::vector<bool>());
+  else
+    table.add(name, unit, description, nb::cast<std::vector<std::string>>(values));
+}
+
+template <class Member>
+std::vector<std::string> texts_of(const Table &table, Member Column::*member) {
+  std::vector<std::string> out;
+  for (const Column &column : table.columns())
+    out.push_back(column.*member);
+  return out;
+}
+
+} // namespace
+
+void bind_table(nb::module_ &m) {
+  nb::class_<Table>(m, "Table", "Named columns with units.")
+      .def(nb::init<>())
+      .def_prop_ro("rows", &Table::rows)
+      .def_prop_ro("names", [](const Table &t) { return texts_of(t, &Column::name); })
+      .def_prop_ro("units", [](const Table &t) { return texts_of(t, &Column::unit); })
+      .def_prop_ro("descriptions", [](const Table &t) { return texts_of(t, &Column::description); })
+      .def_prop_ro("notes", &Table::notes)
+      .def(
+          "column",
+          [](nb::handle self, const std::string &name) {
+            return values_of(column_of(nb::cast<const Table &>(self), name), self);
+          },
+          "name"_a,
+          nb::sig("def column(self, name: str) -> numpy.typing.NDArray[typing.Any] | list[str]"))
+      .def("add", &add_column, "name"_a, "unit"_a, "description"_a, "values"_a)
+      .def("note", &Table::note, "key"_a, "value"_a)
+      .def("csv", [](const Table &t) { return to_csv(t); })
+      .def("ecsv", [](const Table &t) { return to_ecsv(t); })
+      .def(
+          "write",
+          [](const Table &t, const std::string &path) {
+            const nb::gil_scoped_release free;
+            take(write_table(path, t));
+          },
+          "path"_a);
+}
+
+} // namespace umov::python

@@ -1,0 +1,50 @@
+"""Tests of the package as it was built, beside the command of the same build."""
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = ROOT / "build/release"
+sys.path.insert(0, str(BUILD / "python"))
+os.environ["PYTHONPATH"] = str(BUILD / "python")  # of child processes
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+EXAMPLES, DATA = ROOT / "examples", ROOT / "data"
+UMOV = BUILD / "apps/cli/umov"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def cache_of_its_own(tmp_path_factory):
+    """Masks of the tests stay out of the user's cache."""
+    os.environ["XDG_CACHE_HOME"] = str(tmp_path_factory.mktemp("cache"))
+
+
+@pytest.fixture
+def command(tmp_path):
+    """command("brdf", ...) in an empty folder; returns what it printed."""
+
+    def call(*arguments, code=0):
+        done = subprocess.run([UMOV, *map(str, arguments)], cwd=tmp_path, text=True, capture_output=True,
+                              timeout=300)
+        assert done.returncode == code, done.stderr
+        return done.stdout if code == 0 else done.stderr
+
+    return call
+
+
+@pytest.fixture
+def hst():
+    import umov
+    return umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", orbit=DATA / "tle/hst.tle", norad=20580,
+                          attitude={"mode": "nadir"}, materials={"default": "film_silvered"}, name="HST")
+
+
+@pytest.fixture(scope="session")
+def plate():
+    """A sheet of paper's aluminium: two triangles, convex, quick."""
+    import umov
+    vertices = [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]]
+    return umov.Satellite(mesh=(vertices, [[0, 1, 2], [0, 2, 3]]), materials="paper_al", name="plate")

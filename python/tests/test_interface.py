@@ -1,0 +1,241 @@
+"""What goes in and comes out: units, times, sites, tables, adapters; and what is refused."""
+import datetime
+import pathlib
+
+import numpy as np
+import pytest
+import umov
+from astropy import units as u
+from astropy.coordinates import EarthLocation
+from astropy.time import Time, TimeDelta
+from conftest import DATA, EXAMPLES
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+START, STOP = "2018-01-21T05:08:00Z", "2018-01-21T05:09:00Z"
+
+
+@pytest.fixture(scope="module")
+def curve():
+    return umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 30})
+
+
+def test_light_curve_of_a_satellite_is_that_of_its_scenario(hst):
+    ours = hst.light_curve("maui", START, STOP, step=20 * u.s, bands=["nm:550", "nm:650"])
+    text = umov.Scenario(hst.to_scenario_dict(["nm:550", "nm:650"], observer={"name": "maui"},
+                                              time={"start": START, "stop": STOP, "step_s": 20})).to_toml()
+    np.testing.assert_array_equal(ours.I, umov.run(umov.Scenario.from_toml(text)).I)
+    assert ours.I.shape == (4, 2)
+
+
+def test_light_curve_of_a_pass(hst):
+    table = umov.passes(hst, "maui", "2018-01-21T04:00Z", "2018-01-21T06:00Z")
+    ours = hst.light_curve("maui", table[0], step_s=30)
+    assert ours.time[0] >= Time(table["rise_utc"][0].rstrip("Z")) - TimeDelta(1 * u.ms)
+    assert ours.time[-1] <= Time(table["set_utc"][0].rstrip("Z")) + TimeDelta(1 * u.ms)
+
+
+@pytest.mark.parametrize("time", [
+    "2018-01-21T05:08:00Z", "2018-01-20T19:08:00-10:00", Time("2018-01-21T05:08:00"),
+    Time("2018-01-21T05:08:00").tt, datetime.datetime(2018, 1, 21, 5, 8, tzinfo=datetime.timezone.utc)])
+def test_times_of_every_kind_mean_the_same(time):
+    assert umov.utc(time) == "2018-01-21T05:08:00.000Z"
+
+
+@pytest.mark.parametrize("time", [datetime.datetime(2018, 1, 21), "2018-01-21T05:08:00", "today", 58000.0, None,
+                                  Time(["2018-01-21", "2018-01-22"]), np.datetime64("2018-01-21")])
+def test_times_without_a_zone_are_refused(time):
+    with pytest.raises(umov.Error):
+        umov.utc(time)
+
+
+def test_a_naive_datetime_is_told_how_to_mend():
+    with pytest.raises(umov.UsageError, match=r"replace\(tzinfo=timezone.utc\)"):
+        umov.utc(datetime.datetime(2018, 1, 21))
+
+
+def test_sites_of_every_kind_mean_the_same():
+    from skyfield.api import wgs84
+    one = umov.Site(lat_deg=20.5, lon_deg=-156.25, alt_m=3058)
+    place = umov.Site(EarthLocation.from_geodetic(-156.25 * u.deg, 20.5 * u.deg, 3058 * u.m))
+    topos = umov.Site(wgs84.latlon(20.5, -156.25, 3058))
+    # astropy keeps geocentric metres: 1e-9 deg are 0.1 mm
+    for other in (place, topos):
+        assert abs(other.lat_deg - 20.5) < 1e-9 and abs(other.lon_deg + 156.25) < 1e-9
+        assert abs(other.alt_m - 3058) < 1e-4
+    assert umov.Site.from_toml(one.to_toml()) == one == umov.Site(one.to_dict())
+    back = one.to_earth_location()
+    assert abs(back.lat.deg - 20.5) < 1e-9
+
+
+@pytest.mark.parametrize("site", ["atlantis", 3, {"lat_deg": 1}, {"lat_deg": 91, "lon_deg": 0, "alt_m": 0}])
+def test_sites_that_are_none_are_refused(site):
+    with pytest.raises(umov.Error):
+        umov.Site(site)
+    with pytest.raises(umov.UsageError):
+        umov.Site(lat_deg=3)
+
+
+def test_orbits_of_other_packages_give_the_same_numbers():
+    from sgp4.api import Satrec
+    from skyfield.api import EarthSatellite, load
+    lines = [line for line in (DATA / "tle/hst.tle").read_text().splitlines() if line[:2] in ("1 ", "2 ")][:2]
+    (expected := umov.propagate("\n".join(lines) + "\n", START))
+    satrec = Satrec.twoline2rv(*lines)
+    for orbit in (lines, satrec, EarthSatellite(*lines, "HST", load.timescale(builtin=True))):
+        np.testing.assert_array_equal(umov.propagate(orbit, START).position_km, expected.position_km)
+    # SGP4 of another hand: micrometres
+    error, position, _ = satrec.sgp4(*(float(x) for x in (Time(START.rstrip("Z")).jd1, Time(START.rstrip("Z")).jd2)))
+    assert error == 0 and np.abs(expected.position_km[0, 0] - position).max() < 1e-6
+
+
+def test_meshes_of_trimesh(plate):
+    import trimesh
+    box = trimesh.creation.box((1, 1, 1))
+    cube = umov.Engine(umov.Satellite(mesh=box, materials="paper_al"), bands=["nm:550"])
+    assert cube.facts["triangles"] == 12 and cube.facts["is_convex"]
+    face = umov.Engine(plate, bands=["nm:550"])
+    # Of a cube lit and seen along a normal only that face counts: the plate of 1 m.
+    np.testing.assert_allclose(cube.evaluate([0, 0, 1], [0, 0.1, 1]), face.evaluate([0, 0, 1], [0, 0.1, 1]), rtol=1e-6)
+
+
+def test_tables(curve, tmp_path):
+    table = curve.to_table()
+    from astropy.table import QTable
+    curve.write(tmp_path / "a.ecsv")
+    read = QTable.read(tmp_path / "a.ecsv")
+    assert table.colnames == read.colnames and len(table) == len(read)
+    for name in table.colnames:
+        if table[name].dtype.kind == "f":
+            assert table[name].unit == read[name].unit, name
+    assert table["range"].unit == u.km and table.meta["object"] == "HST"
+    frame = curve.to_pandas()
+    assert list(frame.columns) == table.colnames and frame.attrs["units"]["range"] == "km"
+    np.testing.assert_array_equal(frame["I"], curve["I"].ravel())
+    series = curve.to_timeseries()
+    assert series["I"].shape == curve.I.shape and series["az"].shape == (len(curve),)
+    assert abs((series.time - Time([t.rstrip("Z") for t in curve["time_utc"][:, 0]])).sec).max() < 5.1e-4
+    curve.write(tmp_path / "a.fits")
+    assert (tmp_path / "a.fits").read_bytes()[:6] == b"SIMPLE"
+    with pytest.raises(umov.UsageError):
+        curve.write(tmp_path / "a.docx")
+
+
+def test_scenarios_go_round(tmp_path):
+    one = umov.Scenario(EXAMPLES / "hst_maui.toml")
+    assert umov.Scenario.from_toml(one.to_toml()) == one
+    assert umov.Scenario(one.to_dict()) == one
+    assert umov.Scenario(one, set={"render.bounces": 2}).to_dict()["render"]["bounces"] == 2
+
+
+def test_own_materials_go_with_the_satellite():
+    own = umov.Material.from_dict("own", {"index": {"n": 1.5, "k": 0.0}, "distribution": {"model": "ggx", "alpha": 0.3}})
+    mesh = ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    lit = umov.Engine(umov.Satellite(mesh=mesh, materials=own), bands=["nm:550"]).evaluate([0, 0, 1], [0, 1, 1])
+    other = umov.Engine(umov.Satellite(mesh=mesh, materials="paper_al"), bands=["nm:550"]).evaluate([0, 0, 1], [0, 1, 1])
+    assert lit[0, 0] > 0 and lit[0, 0] != other[0, 0]
+
+
+@pytest.mark.parametrize("call", [
+    lambda hst: hst.light_curve("maui", START, STOP, step=20),
+    lambda hst: hst.light_curve("maui", START, STOP, step=20 * u.m),
+    lambda hst: hst.light_curve("maui", START, STOP, step=1 * u.s, step_s=1),
+    lambda hst: hst.light_curve("maui", START),
+    lambda hst: hst.light_curve("maui", START, STOP, bands=["V"]),
+    lambda hst: umov.Engine(hst, method="guess"),
+    lambda hst: umov.Engine(hst, laser=[1, 0]),
+    lambda hst: umov.Engine(hst, laser=[1, 2, 0, 0]),
+    lambda hst: umov.Engine(hst, accuracy=2),
+    lambda hst: umov.Satellite(mesh=3, materials="paper_al"),
+    lambda hst: umov.Satellite(mesh=([[0, 0, 0]], [[0, 1, 2]]), materials="paper_al"),
+    lambda hst: umov.Satellite(mesh=([[0, 0, float("nan")]], [[0, 0, 0]]), materials="paper_al"),
+    lambda hst: umov.Satellite(mesh="a.obj", materials=3),
+    lambda hst: umov.Satellite(mesh="a.obj", materials="paper_al", orbit=3),
+    lambda hst: umov.Satellite.from_toml("umov = 1"),
+    lambda hst: umov.run(3),
+    lambda hst: umov.run(EXAMPLES / "hst_maui.toml", set={"render.bounce": 2}),
+    lambda hst: umov.run({"umov": 1, "object": object()}),
+    lambda hst: umov.run(EXAMPLES / "nothing.toml"),
+    lambda hst: umov.passes(hst, "maui", STOP, START),
+    lambda hst: umov.passes(hst, "maui", START, START, shadow="cone"),
+    lambda hst: umov.passes(DATA / "tle/hst.tle", "maui", START, STOP, band="nm:550"),
+    lambda hst: umov.ephemeris(hst, "maui", START, STOP),
+    lambda hst: umov.brdf("paper_al", theta_i_deg=[1, 2], theta_o_deg=[1, 2, 3]),
+    lambda hst: umov.brdf("paper_al", theta_i_deg=91),
+    lambda hst: umov.brdf("paper_al", theta_i_deg=float("nan")),
+    lambda hst: umov.brdf("paper_al", theta_i_deg="steep"),
+    lambda hst: umov.brdf("paper_al", theta_i_deg=3 * u.m),
+    lambda hst: umov.random_poses(-1, 60),
+    lambda hst: umov.random_poses(1, 200),
+    lambda hst: umov.materials()["colour"],
+])
+def test_what_does_not_fit_is_refused(call, hst):
+    with pytest.raises(umov.Error) as caught:
+        call(hst)
+    assert isinstance(caught.value, (umov.UsageError, umov.InputError)) and len(str(caught.value)) > 20
+
+
+def test_no_pass_is_no_result(hst):
+    with pytest.raises(umov.NoResult, match="no pass"):
+        umov.passes(hst, "maui", "2018-01-21T04:00Z", "2018-01-21T04:05Z")
+
+
+@pytest.fixture(scope="module")
+def engine(plate):
+    return umov.Engine(plate, bands=["nm:550"])
+
+
+ANY = st.floats(allow_nan=True, allow_infinity=True, width=64)
+
+
+@settings(max_examples=500, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(sun=arrays.arrays(np.float64, arrays.array_shapes(min_dims=0, max_dims=3, max_side=4), elements=ANY),
+       observer=arrays.arrays(np.float64, arrays.array_shapes(min_dims=0, max_dims=3, max_side=4), elements=ANY))
+def test_any_array_gives_light_or_an_error(engine, sun, observer):
+    try:
+        stokes = engine.evaluate(sun, observer)
+    except umov.Error as error:
+        assert "was expected" in str(error) or "were expected" in str(error)
+        return
+    assert stokes.shape == (*np.broadcast_shapes(sun.shape, observer.shape)[:-1], 1, 4)
+    assert np.isfinite(stokes).all()
+    assert (np.linalg.norm(stokes[..., 1:], axis=-1) <= stokes[..., 0] * (1 + 1e-6)).all()
+
+
+@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(shape=arrays.array_shapes(min_dims=1, max_dims=3, max_side=3))
+def test_light_does_not_depend_on_the_shape_or_layout(engine, shape):
+    sun, observer = umov.random_poses(int(np.prod(shape)), 50, seed=3)
+    flat = engine.evaluate(sun, observer)
+    shaped = engine.evaluate(sun.reshape(*shape, 3), np.asfortranarray(observer.reshape(*shape, 3)))
+    np.testing.assert_array_equal(shaped.reshape(flat.shape), flat)
+
+
+def test_kinds_of_light(plate):
+    sun, observer = [0, 0, 1], [0, 0.05, 1]
+    laser = umov.Engine(plate, bands=["nm:550"], laser=[1, 0, 0, 1]).evaluate(sun, observer)
+    assert abs(laser[0, 3] / laser[0, 0]) > 0.9  # a metal near its normal keeps the circle and turns it
+    heat = umov.Engine(plate, bands=["nm:10000"], temperatures=["300"], set={
+        "material.black": {"index": {"n": 1.5, "k": 0.5}, "distribution": {"model": "ggx", "alpha": 0.2}},
+        "object.materials.default": "black"}).evaluate(sun, observer)
+    assert heat[0, 0] > 0
+
+
+def test_where_things_are_found(curve, hst):
+    for one in (curve, hst, umov.Site("maui"), umov.Scenario(EXAMPLES / "hst_maui.toml"), umov.materials(),
+                umov.Material("gold"), umov.Engine(hst, bands=["nm:550"])):
+        assert "object at 0x" not in repr(one)
+    assert "data:image/png" in curve._repr_html_()
+    assert "<table" in umov.materials()._repr_html_()
+
+
+def test_adapters_leave_no_files(plate):
+    import gc
+    made = umov.Satellite(mesh=([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), materials="paper_al")
+    folder = pathlib.Path(made.to_dict()["mesh"]["file"]).parent
+    engine = umov.Engine(made)
+    assert folder.is_dir()
+    del made, engine
+    gc.collect()
+    assert not folder.exists()

@@ -1,0 +1,201 @@
+"""Ctrl-C, callbacks, threads, processes, memory and pickles."""
+import concurrent.futures
+import gc
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+import umov
+from conftest import DATA, EXAMPLES
+
+#: A minute of work and more.
+LONG = {"render.method": "auto", "time.step_s": 0.02, "time.start": "2018-01-21T05:07:00Z",
+        "time.stop": "2018-01-21T05:14:00Z"}
+
+
+def interrupt_after(seconds):
+    timer = threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    return time.monotonic() + seconds
+
+
+@pytest.mark.parametrize("what", ["run", "evaluate"])
+def test_ctrl_c_stops_soon_and_leaves_nothing_broken(what, hst):
+    engine = umov.Engine(hst, bands=["nm:550"], method="masks")
+    sun, observer = umov.random_poses(1_000_000, 60)
+    ran = 1.5
+    pressed = interrupt_after(ran)
+    with pytest.raises(KeyboardInterrupt) as caught:
+        if what == "run":
+            umov.run(EXAMPLES / "hst_maui.toml", set=LONG)
+        else:
+            engine.evaluate(sun, observer)
+    # A round of the wait for signals is 0.05 s; what a machine with other work may add is left open.
+    assert time.monotonic() - pressed < ran / 3
+    assert isinstance(caught.value, umov.Interrupted)
+    assert engine.evaluate(sun[:1], observer[:1]).shape == (1, 1, 4)
+
+
+def test_ctrl_c_keeps_what_is_done(hst):
+    def at_once(what, done, total):
+        if done > 0:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(umov.Interrupted) as caught:
+        umov.run(EXAMPLES / "hst_maui.toml", set=LONG, progress=at_once)
+    part = caught.value.partial
+    assert part.is_partial and 0 < len(part) and "PARTIAL" in repr(part)
+    whole = umov.run(EXAMPLES / "hst_maui.toml", set={**LONG, "time.stop": umov.utc(part.time[-1])})
+    np.testing.assert_array_equal(part.I, whole.I)
+
+
+def test_an_exception_of_the_callback_comes_through(plate):
+    class Own(Exception):
+        pass
+
+    def fail(what, done, total):
+        raise Own(what)
+
+    engine = umov.Engine(plate)
+    with pytest.raises(Own, match="poses"):
+        engine.evaluate(*umov.random_poses(100_000, 60), progress=fail)
+    assert engine.evaluate([0, 0, 1], [0, 1, 1]).shape == (3, 4)
+
+
+def test_progress_comes_in_order_in_the_thread_that_called(hst):
+    seen, threads = [], set()
+
+    def note(what, done, total):
+        seen.append((what, done, total))
+        threads.add(threading.get_ident())
+
+    umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 10}, progress=note)
+    assert threads == {threading.get_ident()}
+    assert [done for _, done, _ in seen] == sorted(done for _, done, _ in seen)
+    assert seen[-1][1] == seen[-1][2]
+
+
+def poses_of(number, engine):
+    return engine.evaluate(*umov.random_poses(500, 60, seed=number)).tobytes()
+
+
+@pytest.mark.parametrize("pool", ["threads", "processes"])
+def test_side_by_side_gives_the_same_bytes(pool, hst):
+    engine = umov.Engine(hst, bands=["nm:550"], method="masks", threads=1)
+    alone = [poses_of(k, engine) for k in range(4)]
+    if pool == "threads":
+        executor = concurrent.futures.ThreadPoolExecutor(4)
+    else:
+        executor = concurrent.futures.ProcessPoolExecutor(4, multiprocessing.get_context("spawn"))
+    with executor:
+        assert list(executor.map(poses_of, range(4), [engine] * 4)) == alone
+
+
+def test_the_interpreter_goes_on_while_poses_are_lit(plate):
+    engine = umov.Engine(plate)
+    sun, observer = umov.random_poses(400_000, 60)
+    ticks, done = 0, threading.Event()
+    worker = threading.Thread(target=lambda: (engine.evaluate(sun, observer), done.set()))
+    worker.start()
+    while not done.is_set():
+        ticks += 1
+        time.sleep(0.001)
+    worker.join()
+    assert ticks > 3
+
+
+def resident_kb():
+    return int(next(line for line in open("/proc/self/status") if line.startswith("VmRSS")).split()[1])
+
+
+def test_cycles_leak_nothing(plate):
+    scenario = umov.Scenario(plate)
+
+    def cycles(count):
+        for _ in range(count):
+            engine = umov.Engine(scenario, bands=["nm:550"], cache=False, threads=1)
+            for _ in range(20):
+                engine.light([0, 0, 1], [0, 1, 1])
+            del engine
+        gc.collect()
+
+    cycles(100)
+    before = resident_kb()
+    cycles(500)
+    # One table of a pose (8 doubles) lost by each of 10,000 calls would be 640 KB, a page by each engine 2 MB.
+    assert resident_kb() - before < 256
+
+
+def test_results_are_not_copied(plate):
+    engine = umov.Engine(plate, bands=["nm:550"])
+    stokes = engine.evaluate(*umov.random_poses(10, 60))
+    assert stokes.flags.c_contiguous and stokes.base is not None
+    states = umov.propagate(DATA / "tle/hst.tle", ["2018-01-21T05:00Z", "2018-01-21T06:00Z"])
+    assert np.shares_memory(states.position_km, states.position_km.base)
+    assert not states.position_km.flags.writeable
+    assert states.position_km.__array_interface__["data"][0] + 24 == \
+        states.velocity_km_s.__array_interface__["data"][0]
+
+
+def test_columns_outlive_their_table():
+    curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
+    light, copy = curve.I, curve.I.copy()
+    assert not light.flags.writeable and light.base is not None
+    del curve
+    gc.collect()
+    np.testing.assert_array_equal(light, copy)
+
+
+@pytest.mark.parametrize("make", [
+    lambda: umov.Scenario(EXAMPLES / "hst_maui.toml"),
+    lambda: umov.Site("maui"),
+    lambda: umov.Material("paper_au"),
+    lambda: umov.Material.from_dict("own", {"index": {"n": 1.5, "k": 0.0},
+                                            "distribution": {"model": "ggx", "alpha": 0.3}}),
+    lambda: umov.Satellite(mesh=([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), materials="paper_al"),
+])
+def test_pickles_are_equal(make):
+    one = make()
+    again = pickle.loads(pickle.dumps(one))
+    if not isinstance(one, umov.Satellite):  # whose adapters' files lie elsewhere
+        assert again == one and hash(again) == hash(one)
+    assert type(again) is type(one)
+
+
+def test_pickled_results_are_the_same_bytes(tmp_path, plate):
+    curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
+    again = pickle.loads(pickle.dumps(curve))
+    curve.write(tmp_path / "a.csv")
+    again.write(tmp_path / "b.csv")
+    assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
+    assert (again.time == curve.time).all()
+    engine = umov.Engine(plate, bands=["nm:550"])
+    assert poses_of(1, pickle.loads(pickle.dumps(engine))) == poses_of(1, engine)
+
+
+def test_a_script_that_is_interrupted_ends_as_python_does(hst):
+    script = textwrap.dedent(f"""
+        import umov
+        print("ready", flush=True)
+        umov.run({str(EXAMPLES / "hst_maui.toml")!r}, set={LONG!r})
+    """)
+    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "ready\n"
+    time.sleep(1)
+    child.send_signal(signal.SIGINT)
+    _, errors = child.communicate(timeout=60)
+    assert child.returncode in (-signal.SIGINT, 130, 1) and "Interrupted" in errors
+
+
+def test_import_needs_no_other_package():
+    """astropy, pandas and matplotlib are loaded when they are asked for: an import takes the time of numpy's."""
+    script = "import sys, umov; print(sorted({'astropy', 'pandas', 'matplotlib', 'sgp4', 'skyfield'} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout == "[]\n"

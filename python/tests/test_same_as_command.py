@@ -1,0 +1,150 @@
+"""What Python computes has the bytes that the command writes."""
+import csv
+import warnings
+
+import numpy as np
+import pytest
+import umov
+from conftest import DATA, EXAMPLES
+from umov import _toml
+
+SHORT = {"time.start": "2018-01-21T05:05:00Z", "time.stop": "2018-01-21T05:15:00Z", "time.step_s": 20}
+
+
+def columns_of(path):
+    """Columns of one of our CSV files as text."""
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    rows = list(csv.DictReader(lines))
+    return {name: [row[name] for row in rows] for name in rows[0]}
+
+
+def assert_same_numbers(ours, texts):
+    """Bit for bit: the command writes the shortest decimals that give the numbers back."""
+    theirs = np.array([float(text) if text else np.nan for text in texts])
+    np.testing.assert_array_equal(np.ascontiguousarray(ours).ravel().view(np.int64)[~np.isnan(theirs)],
+                                  theirs.view(np.int64)[~np.isnan(theirs)])
+    assert np.isnan(ours.ravel()[np.isnan(theirs)]).all()
+
+
+@pytest.mark.parametrize("example", ["hst_maui", "agena_maui"])
+def test_run(example, command, tmp_path):
+    path = EXAMPLES / f"{example}.toml"
+    sets = [word for key, value in SHORT.items() for word in ("--set", f"{key}={value}")]
+    command("run", path, *sets, "-o", tmp_path / "out", "-q")
+    curve = umov.run(path, set=SHORT)
+    curve.write(tmp_path / "ours.csv")
+    curve.write(tmp_path / "ours.ecsv")
+    curve.passes.write(tmp_path / "passes.ecsv")
+    out = tmp_path / "out"
+    assert (tmp_path / "ours.csv").read_bytes() == (out / "lightcurve.csv").read_bytes()
+    assert (tmp_path / "ours.ecsv").read_bytes() == (out / "lightcurve.ecsv").read_bytes()
+    assert (tmp_path / "passes.ecsv").read_bytes() == (out / "passes.ecsv").read_bytes()
+    theirs = columns_of(out / "lightcurve.csv")
+    for name in ("I", "q_scat", "mag", "range"):
+        assert_same_numbers(curve[name], theirs[name])
+    assert curve.table["time_utc"].tolist() == theirs["time_utc"]
+
+
+@pytest.mark.parametrize("method", ["masks", "auto", "rays"])
+def test_signature(method, command, tmp_path):
+    path, poses = EXAMPLES / "hst_maui.toml", 4 if method == "rays" else 100
+    command("signature", path, "--poses", poses, "--phase", "60", "--seed", 7, "--visibility", method,
+            "-o", tmp_path / "t.csv")
+    theirs = columns_of(tmp_path / "t.csv")
+    engine = umov.Engine(path, method=method, set={"seed": 7})
+    light = engine.light(*umov.random_poses(poses, phase_deg=60, seed=7))
+    for k, name in enumerate(("intensity", "stokes_q", "stokes_u", "stokes_v")):
+        assert_same_numbers(light.stokes[..., k], theirs[name])
+        assert_same_numbers(light.half_width[..., k], theirs[f"{name}_err"])
+    np.testing.assert_array_equal(engine.evaluate(*umov.random_poses(poses, 60, 7)), light.stokes)
+
+
+def test_signature_of_directions_of_any_length(command, tmp_path):
+    rows = [[0, 0, 2, 0, 1e-200, 1e-200], [1, 2, 3, -3, 1e5, 4], [1e300, 0, 0, 1e300, 1e299, 0]]
+    head = "sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n"
+    (tmp_path / "g.csv").write_text(head + "\n".join(",".join(map(repr, map(float, row))) for row in rows))
+    path = EXAMPLES / "hst_maui.toml"
+    command("signature", path, "--geometry", "g.csv", "--visibility", "masks", "-o", tmp_path / "t.csv")
+    given = np.array(rows, dtype=float)
+    ours = umov.Engine(path, method="masks").evaluate(given[:, :3], given[:, 3:])
+    assert_same_numbers(ours[..., 0], columns_of(tmp_path / "t.csv")["intensity"])
+
+
+def test_passes(command, tmp_path, hst):
+    span = ("2018-01-21T00:00:00Z", "2018-01-22T00:00:00Z")
+    tle = DATA / "tle/hst.tle"
+    command("passes", "--orbit", tle, "-s", "maui", "--start", span[0], "--stop", span[1], "-o", tmp_path / "t.csv")
+    table = umov.passes(tle, "maui", *span)
+    theirs = columns_of(tmp_path / "t.csv")
+    assert list(theirs) == table.colnames
+    for name, texts in theirs.items():
+        if table[name].dtype.kind == "f":
+            assert_same_numbers(np.asarray(table[name].value if hasattr(table[name], "value") else table[name]),
+                                texts)
+        else:
+            assert [str(one) for one in table[name]] == texts
+    lit = umov.passes(hst, "maui", *span)
+    scene = {key: value for key, value in hst.to_dict().items() if key != "orbit"}
+    (tmp_path / "scene.toml").write_text(_toml.text_of({**hst.to_scenario_dict(), "object": [scene]}))
+    command("passes", "--orbit", tle, "--norad", 20580, "-s", "maui", "--start", span[0], "--stop", span[1],
+            "--scene", "scene.toml", "-o", tmp_path / "lit.csv")
+    assert_same_numbers(np.asarray(lit["mag_min"].value), columns_of(tmp_path / "lit.csv")["mag_min"])
+    assert np.isfinite(lit["mag_min"].value).any()
+
+
+def test_ephemeris(command, tmp_path):
+    tle, span = DATA / "tle/hst.tle", ("2018-01-21T05:05:00Z", "2018-01-21T05:15:00Z")
+    command("orbit", "ephemeris", "--orbit", tle, "--lat-deg", 20.7083, "--lon-deg", -156.2578, "--alt-m", 3058,
+            "--start", span[0], "--stop", span[1], "--step-s", 60, "-o", tmp_path / "t.csv")
+    site = umov.Site(lat_deg=20.7083, lon_deg=-156.2578, alt_m=3058)
+    table = umov.ephemeris(tle, site, *span, step_s=60)
+    assert_same_numbers(np.asarray(table["az"].value), columns_of(tmp_path / "t.csv")["az"])
+
+
+def test_propagate(command, tmp_path):
+    tle = DATA / "tle/hst.tle"
+    times = ["2018-01-21T05:00:00Z", "2018-01-21T06:00:00Z"]
+    command("orbit", "propagate", "--orbit", tle, "--at", ",".join(times), "-o", tmp_path / "t.csv")
+    theirs = columns_of(tmp_path / "t.csv")
+    states = umov.propagate(tle, times)
+    assert_same_numbers(states.position_km[..., 0], theirs["teme_x"])
+    assert_same_numbers(states.velocity_km_s[..., 2], theirs["teme_vz"])
+
+
+@pytest.mark.parametrize("material", ["paper_au", "film_silvered", "mli_kapton", "paper_spectralon"])
+def test_brdf(material, command, tmp_path):
+    rng = np.random.default_rng(3)
+    rows = np.column_stack([rng.choice([450.0, 550.0], 50), rng.uniform(0, 90, 50), rng.uniform(0, 90, 50),
+                            rng.uniform(-180, 180, 50)])
+    head = "wavelength_nm,theta_i_deg,theta_o_deg,phi_deg\n"
+    (tmp_path / "b.csv").write_text(head + "\n".join(",".join(map(repr, row)) for row in rows.tolist()))
+    command("brdf", material, "--batch", "b.csv", "-o", tmp_path / "t.csv")
+    theirs = columns_of(tmp_path / "t.csv")
+    ours = umov.brdf(material, *rows.T)
+    for i in range(4):
+        for j in range(4):
+            assert_same_numbers(ours[:, i, j], theirs[f"m{i}{j}"])
+
+
+def test_errors_have_the_text_of_the_command(command, tmp_path):
+    (tmp_path / "bad.toml").write_text("umov = 1\n[observer]\nnaem = \"maui\"\n")
+    told = command("run", tmp_path / "bad.toml", code=3)
+    with pytest.raises(umov.InputError) as caught:
+        umov.run(tmp_path / "bad.toml")
+    assert told.strip() == f"error: {caught.value}"
+    assert caught.value.where == umov.Where(str(tmp_path / "bad.toml"), 3, 1)
+
+
+def test_warnings_have_the_text_of_the_command(command):
+    tle = DATA / "tle/hst.tle"
+    words = ("orbit", "ephemeris", "--orbit", tle, "-s", "maui", "--start", "2018-02-12T05:05:00Z", "--stop",
+             "2018-02-12T05:05:00Z", "--step-s", 1)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        umov.ephemeris(tle, "maui", "2018-02-12T05:05:00Z", "2018-02-12T05:05:00Z", step_s=1)
+    ours = [str(one.message) for one in caught if issubclass(one.category, umov.UmovWarning)]
+    assert ours and all(one.filename == __file__ for one in caught if one.category is umov.UmovWarning)
+    import subprocess
+    from conftest import UMOV
+    told = subprocess.run([UMOV, *map(str, words)], capture_output=True, text=True).stderr
+    assert [f"warning: {text}" for text in ours] == [line for line in told.splitlines() if line.startswith("warning")]

@@ -1,0 +1,29 @@
+"""Polarized light curves of satellites and space debris.
+
+Everything that is computed is computed by the C++ library; this package gives it the manners of Python.
+
+>>> import umov
+>>> curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
+>>> curve.bands
+['nm:425', 'nm:550', 'nm:650']
+"""
+from ._umov import conventions_version, source_revision
+from ._umov import version as __version__
+from .engines import Engine, Light, random_poses
+from .errors import (DeviceError, Error, InputError, InternalError, Interrupted, NoResult, NumericsError,
+                     UmovWarning, UsageError, Where)
+from .light_curves import LightCurve
+from .materials import Material, brdf, materials
+from .orbits import States, ephemeris, passes, propagate
+from .runs import run
+from .satellites import Satellite
+from .scenarios import Scenario, schema
+from .sites import Site, site_names
+from .tables import Table
+from .times import utc
+
+__all__ = ["DeviceError", "Engine", "Error", "InputError", "InternalError", "Interrupted", "Light",
+           "LightCurve", "Material", "NoResult", "NumericsError", "Satellite", "Scenario", "Site", "States",
+           "Table", "UmovWarning", "UsageError", "Where", "__version__", "brdf", "conventions_version",
+           "ephemeris", "materials", "passes", "propagate", "random_poses", "run", "schema", "site_names",
+           "source_revision", "utc"]

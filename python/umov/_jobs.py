@@ -1,0 +1,90 @@
+"""How jobs run: what is watched, on how many threads, and where masks are kept."""
+from __future__ import annotations
+
+import logging
+import os
+import pathlib
+import sys
+import warnings
+from collections.abc import Callable
+from typing import Union
+
+from . import _umov
+from .errors import UmovWarning
+
+Progress = Union[None, bool, Callable[[str, int, int], object]]
+_LOG = logging.getLogger("umov")
+
+
+class _Bar:
+    """progress=True: tqdm where it is installed, else a line on a terminal."""
+
+    def __init__(self) -> None:
+        self._what = ""
+        self._bar: object = None
+        try:
+            from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
+            self._make: Callable[..., object] | None = tqdm
+        except ImportError:
+            self._make = None
+
+    def __call__(self, what: str, done: int, total: int) -> None:
+        if self._make is None:
+            if sys.stderr.isatty():
+                print(f"\r{what}: {done} of {total} ", end="\n" if done == total else "",
+                      file=sys.stderr, flush=True)
+            return
+        if what != self._what:
+            self._what, self._bar = what, self._make(total=total, desc=what)
+        bar: object = self._bar
+        bar.n = done  # type: ignore[attr-defined]
+        bar.refresh()  # type: ignore[attr-defined]
+
+
+def _stack_level() -> int:
+    """Frames up to the first outside of this package: where a warning is shown."""
+    level, frame = 2, sys._getframe(2)
+    package = os.path.dirname(__file__)
+    while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == package:
+        level, frame = level + 1, frame.f_back
+    return level
+
+
+class Watch:
+    """What the library tells while a job runs, in the thread that called it."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress: Callable[[str, int, int], object] | None = None
+        if progress is True:
+            self._progress = _Bar()
+        elif callable(progress):
+            self._progress = progress
+
+    def progress(self, what: str, done: int, total: int) -> None:
+        if self._progress is not None:
+            self._progress(what, done, total)
+
+    def remark(self, text: str) -> None:
+        _LOG.info(text)
+
+    def warn(self, text: str) -> None:
+        warnings.warn(text, UmovWarning, stacklevel=_stack_level())
+
+
+def cache_folder(cache: bool | str | os.PathLike[str]) -> str:
+    """Where masks of earlier jobs are kept: for True that of the command."""
+    if not isinstance(cache, bool):
+        return os.fspath(cache)
+    if not cache:
+        return ""
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    if base.startswith("/"):
+        return str(pathlib.Path(base) / "umov")
+    home = os.environ.get("HOME", "")
+    return str(pathlib.Path(home) / ".cache" / "umov") if home.startswith("/") else ""
+
+
+def job_options(threads: int = 0, cache: bool | str | os.PathLike[str] = True,
+                allow_bad_checksum: bool = False,
+                allow_old_elements: bool = False) -> _umov.JobOptions:
+    return _umov.JobOptions(threads, cache_folder(cache), allow_bad_checksum, allow_old_elements)

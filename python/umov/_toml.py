@@ -1,0 +1,79 @@
+"""TOML from dictionaries; the standard library only reads it."""
+from __future__ import annotations
+
+import datetime
+import json
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from .errors import UsageError
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
+
+
+def _key(name: str) -> str:
+    return name if _BARE.match(name) else json.dumps(name)
+
+
+def _number(value: float) -> str:
+    if math.isnan(value):
+        return "nan"
+    if math.isinf(value):
+        return "inf" if value > 0 else "-inf"
+    return repr(float(value))
+
+
+def value_text(value: Any, name: str = "value") -> str:
+    """A value in place, tables too."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
+    if isinstance(value, os.PathLike):
+        return value_text(os.fspath(value), name)
+    if isinstance(value, datetime.datetime):
+        from .times import utc
+        return utc(value)
+    if isinstance(value, Mapping):
+        inside = (f"{_key(str(k))} = {value_text(v, str(k))}" for k, v in value.items() if v is not None)
+        return "{ " + ", ".join(inside) + " }"
+    if hasattr(value, "tolist"):  # numpy arrays and numbers
+        return value_text(value.tolist(), name)
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return _number(value)
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(value_text(one, name) for one in value) + "]"
+    raise UsageError(f"{name} is a {type(value).__name__}; a number, text, truth value, time, list "
+                     "or table was expected")
+
+
+def _is_tables(value: Any) -> bool:
+    return (isinstance(value, Sequence) and not isinstance(value, str) and len(value) > 0
+            and all(isinstance(one, Mapping) for one in value))
+
+
+def text_of(document: Mapping[str, Any]) -> str:
+    """A document: plain keys first, then a section for each table of the top."""
+    lines: list[str] = []
+    sections: list[str] = []
+    for name, value in document.items():
+        if value is None:
+            continue
+        if isinstance(value, Mapping):
+            sections += _section(f"[{_key(name)}]", value)
+        elif _is_tables(value):
+            for one in value:
+                sections += _section(f"[[{_key(name)}]]", one)
+        else:
+            lines.append(f"{_key(name)} = {value_text(value, name)}")
+    return "\n".join(lines + sections) + "\n"
+
+
+def _section(head: str, table: Mapping[str, Any]) -> list[str]:
+    return ["", head, *(f"{_key(str(k))} = {value_text(v, str(k))}"
+                        for k, v in table.items() if v is not None)]

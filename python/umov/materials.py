@@ -1,0 +1,156 @@
+"""Materials and their Mueller BRDFs."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _toml, _umov
+from .errors import UsageError
+from .tables import Table
+
+__all__ = ["Material", "brdf", "materials"]
+
+
+def materials() -> Table:
+    """Every material of the library: the rows of `umov material list`.
+
+    >>> "film_silvered" in umov.materials()["material"]
+    True
+    """
+    return Table(_umov.material_list())
+
+
+class Material:
+    """A material: a name of the library or a TOML file, or with `from_dict` and `from_toml` one's own.
+
+    >>> gold = umov.Material("paper_au")
+    >>> gold.brdf(wavelength_nm=550, theta_i_deg=60, theta_o_deg=60, phi_deg=180).shape
+    (4, 4)
+    >>> rough = umov.Material.from_dict("rough", {"index": {"n": 1.5, "k": 0},
+    ...                                 "distribution": {"model": "ggx", "alpha": 0.3}})
+    >>> rough
+    Material('rough', reflection polarizes)
+    """
+
+    def __init__(self, name: str) -> None:
+        self._material = _umov.Material.read(str(name))
+        #: the library or a file has it: scenarios may name it
+        self.is_named = not str(name).endswith(".toml")
+
+    @classmethod
+    def from_toml(cls, text: str, path: str = "material.toml") -> Material:
+        """From a text with one [material.NAME] table that stands for the file `path`."""
+        out = cls.__new__(cls)
+        out._material, out.is_named = _umov.Material.parse(text, path), False
+        return out
+
+    @classmethod
+    def from_dict(cls, name: str, table: Mapping[str, Any]) -> Material:
+        """From the table [material.NAME] of a scenario."""
+        return cls.from_toml(_toml.text_of({"material": {name: table}}))
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._material.name
+
+    @property
+    def description(self) -> str:
+        """What it is."""
+        return self._material.description
+
+    @property
+    def source(self) -> str:
+        """Where its numbers come from."""
+        return self._material.source
+
+    @property
+    def assumed(self) -> str:
+        """What is not known of it."""
+        return self._material.assumed
+
+    @property
+    def range_nm(self) -> tuple[float, float]:
+        """Wavelengths for which it is known."""
+        first, last = self._material.range_nm
+        return float(first), float(last)
+
+    def to_toml(self) -> str:
+        """As a [material.NAME] table."""
+        return self._material.toml
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as a dictionary, without the name."""
+        import tomllib
+        table: dict[str, Any] = tomllib.loads(self.to_toml())["material"][self.name]
+        return table
+
+    def brdf(self, wavelength_nm: ArrayLike = 550.0, theta_i_deg: ArrayLike = 0.0,
+             theta_o_deg: ArrayLike = 0.0, phi_deg: ArrayLike = 0.0,
+             azimuth_deg: ArrayLike = 0.0) -> NDArray[np.float64]:
+        """Mueller BRDF [1/sr] (..., 4, 4): see `umov.brdf`."""
+        return brdf(self, wavelength_nm, theta_i_deg, theta_o_deg, phi_deg, azimuth_deg)
+
+    def refractive_index(self, wavelength_nm: ArrayLike) -> NDArray[np.complex128]:
+        """n + ik at wavelengths [nm], of the same shape.
+
+        >>> round(complex(umov.Material("paper_bk7").refractive_index(550)).real, 2)
+        1.52
+        """
+        asked = np.asarray(wavelength_nm, dtype=np.float64)
+        table = Table(self._material.index_table(np.atleast_1d(asked).ravel().tolist()))
+        return (table["n"] + 1j * table["k"]).reshape(asked.shape)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Material) and self.to_toml() == other.to_toml()
+
+    def __hash__(self) -> int:
+        return hash(self.to_toml())
+
+    def __repr__(self) -> str:
+        return f"Material({self.name!r}, {self._material.polarization})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Material, (self.name,)) if self.is_named else (Material.from_toml, (self.to_toml(),))
+
+
+def brdf(material: Union[str, Material], wavelength_nm: ArrayLike = 550.0, theta_i_deg: ArrayLike = 0.0,
+         theta_o_deg: ArrayLike = 0.0, phi_deg: ArrayLike = 0.0,
+         azimuth_deg: ArrayLike = 0.0) -> NDArray[np.float64]:
+    """Mueller BRDF [1/sr] in the scattering plane: angles from the normal [deg], `phi_deg` the azimuth of
+    the observer minus that of the source, broadcast against each other to (..., 4, 4).
+
+    >>> f = umov.brdf("paper_al", theta_i_deg=[10, 30, 50], theta_o_deg=30, phi_deg=180)
+    >>> f.shape
+    (3, 4, 4)
+    """
+    of = material if isinstance(material, Material) else Material(material)
+    names = ("wavelength_nm", "theta_i_deg", "theta_o_deg", "phi_deg", "azimuth_deg")
+    given = [number_array(value, name) for value, name in
+             zip((wavelength_nm, theta_i_deg, theta_o_deg, phi_deg, azimuth_deg), names)]
+    try:
+        shaped = np.broadcast_arrays(*given)
+    except ValueError as error:
+        shapes = ", ".join(f"{name} {value.shape}" for name, value in zip(names, given))
+        raise UsageError(f"{shapes} do not fit together; shapes that broadcast were expected") from error
+    flat = [np.ascontiguousarray(one).ravel() for one in shaped]
+    return _umov.brdf(of._material, *flat).reshape(*shaped[0].shape, 4, 4)
+
+
+def number_array(value: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Finite numbers as float64; a Quantity in the unit that the name says."""
+    if hasattr(value, "to_value"):
+        try:
+            value = value.to_value(name.rsplit("_", 1)[1])
+        except Exception as error:
+            raise UsageError(f"{name} is {value!r}; it does not go into that unit ({error})") from error
+    try:
+        out = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name} is {value!r}; numbers were expected") from error
+    if not np.isfinite(out).all():
+        raise UsageError(f"{name} has values that are not finite; finite numbers were expected")
+    return out

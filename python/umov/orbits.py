@@ -1,0 +1,148 @@
+"""Passes, ephemerides and catalogues."""
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _umov, adapters
+from ._jobs import Progress, Watch, job_options
+from .errors import Stopped, UsageError, raise_stopped
+from .satellites import Bands, Satellite
+from .scenarios import Scenario
+from .sites import AnySite, Site
+from .tables import Table
+from .times import AnyTime, seconds, utc, utc_list
+
+if TYPE_CHECKING:
+    from astropy.table import QTable
+
+__all__ = ["States", "ephemeris", "passes", "propagate"]
+
+AnyOrbit = Union[Satellite, str, "os.PathLike[str]", Sequence[str], Any]
+Numbers = Union[None, int, Sequence[int]]
+
+
+def _orbit(orbit: AnyOrbit) -> tuple[str, adapters.Files | None]:
+    """The file of an orbit, and the object that keeps it if it was made."""
+    if isinstance(orbit, Satellite):
+        if orbit.orbit_file is None:
+            raise UsageError("the satellite has no file of an orbit; give it one")
+        return orbit.orbit_file, orbit._files
+    text = adapters.orbit_text(orbit)
+    if text is None:
+        file: Any = orbit
+        return os.fspath(file), None
+    files = adapters.Files({"orbit.tle": text})
+    return str(files.folder / "orbit.tle"), files
+
+
+def _numbers(norad: Numbers, orbit: AnyOrbit) -> list[int]:
+    if norad is None:
+        own = orbit.norad if isinstance(orbit, Satellite) else None
+        return [] if own is None else [own]
+    return [int(norad)] if isinstance(norad, (int, np.integer)) else [int(one) for one in norad]
+
+
+def _table(rows: _umov.Rows) -> QTable:
+    table = Table(rows.table).to_qtable()
+    if rows.stopped is not None:
+        raise_stopped(rows.stopped, table)
+    return table
+
+
+def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, norad: Numbers = None,
+           alt_min_deg: float = 10.0, sun_alt_max_deg: float = -6.0, visible_only: bool = False,
+           shadow: str = "ellipsoid", bands: Bands | None = None, band: str = "", threads: int = 0,
+           cache: bool | str | os.PathLike[str] = True, progress: Progress = None,
+           allow_bad_checksum: bool = False, allow_old_elements: bool = False) -> QTable:
+    """Passes over a site as an astropy QTable with the columns of `umov passes`. `orbit` is a Satellite,
+    whose magnitudes and glints are then told too, or a file, TLE lines, a Satrec or an EarthSatellite; a file
+    may hold a whole catalogue. No pass is `NoResult`.
+
+    >>> table = umov.passes(DATA / "tle/hst.tle", "maui", "2018-01-21T04:00Z", "2018-01-21T07:00Z")
+    >>> print(table["culmination_utc"][0], table["culmination_alt"][0].round(1))
+    2018-01-21T05:11:47.051Z 56.8 deg
+    """
+    if shadow not in ("ellipsoid", "sphere"):
+        raise UsageError(f"shadow is {shadow!r}; ellipsoid or sphere was expected")
+    file, kept = _orbit(orbit)
+    scene = None
+    if isinstance(orbit, Satellite):
+        scene = Scenario(_scene_of(orbit, bands or "paper_rgb"))._scenario
+    elif bands is not None or band:
+        raise UsageError("bands and band are of the magnitudes of a Satellite; none was given")
+    rows = _umov.passes(file, _numbers(norad, orbit), Site(site)._tuple(), utc(start), utc(stop),
+                        float(alt_min_deg), float(sun_alt_max_deg), shadow, visible_only, scene, band,
+                        job_options(threads, cache, allow_bad_checksum, allow_old_elements), Watch(progress))
+    del kept
+    return _table(rows)
+
+
+def _scene_of(satellite: Satellite, bands: Bands) -> dict[str, Any]:
+    """The scene stands for whatever the file holds: without an orbit."""
+    scene = satellite.to_scenario_dict(bands)
+    scene["object"] = [{key: value for key, value in scene["object"][0].items() if key != "orbit"}]
+    return scene
+
+
+def ephemeris(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, step: Any = None,
+              step_s: float | None = None, norad: int | None = None, shadow: str = "ellipsoid",
+              threads: int = 0, progress: Progress = None, allow_bad_checksum: bool = False,
+              allow_old_elements: bool = False) -> QTable:
+    """Where an object stands as seen from a site: the rows of `umov orbit ephemeris`.
+
+    >>> table = umov.ephemeris(DATA / "tle/hst.tle", "maui", "2018-01-21T05:10Z", "2018-01-21T05:11Z",
+    ...                        step_s=30)
+    >>> len(table), table["range"].unit.to_string()
+    (3, 'km')
+    """
+    if (step is None) == (step_s is None):
+        raise UsageError("step (a Quantity) or step_s; one of them was expected")
+    length = seconds(step) if step_s is None else float(step_s)
+    file, kept = _orbit(orbit)
+    numbers = _numbers(norad, orbit)
+    rows = _umov.ephemeris(file, numbers[0] if numbers else 0, Site(site)._tuple(), utc(start), utc(stop),
+                           length, shadow, job_options(threads, False, allow_bad_checksum, allow_old_elements),
+                           Watch(progress))
+    del kept
+    return _table(rows)
+
+
+class States(NamedTuple):
+    """States of a catalogue, [object, time]; read-only views of the library's memory.
+
+    >>> states = umov.propagate(DATA / "tle/hst.tle", ["2018-01-21T05:00Z", "2018-01-21T05:10Z"])
+    >>> states.position_km.shape, states.error.tolist()
+    ((1, 2, 3), [[0, 0]])
+    """
+
+    norad_cat_id: NDArray[np.int32]  #: per object
+    position_km: NDArray[np.float64]  #: (object, time, 3), TEME; NaN where SGP4 fails
+    velocity_km_s: NDArray[np.float64]  #: (object, time, 3), TEME
+    error: NDArray[np.int32]  #: (object, time): 0, or the code of SGP4
+
+
+def propagate(orbit: AnyOrbit, times: AnyTime | Sequence[AnyTime], *, threads: int = 0,
+              progress: Progress = None, allow_bad_checksum: bool = False,
+              allow_old_elements: bool = False) -> States:
+    """SGP4 for every object of a file at every time: the numbers of `umov orbit propagate`. Objects that
+    fail have a code and a warning; `NumericsError` if all of them do.
+
+    >>> umov.propagate(DATA / "tle/hst.tle", "2018-01-21T05:00Z").velocity_km_s.shape
+    (1, 1, 3)
+    """
+    file, kept = _orbit(orbit)
+    texts, _ = utc_list(times)
+    done = _umov.propagate(file, texts, job_options(threads, False, allow_bad_checksum, allow_old_elements),
+                           Watch(progress))
+    del kept
+    teme = done.teme
+    out = States(done.norad_cat_id, teme[:, :, :3], teme[:, :, 3:], done.error)
+    stopped: Stopped | None = done.stopped
+    if stopped is not None:
+        raise_stopped(stopped, out)
+    return out

@@ -1,0 +1,276 @@
+"""Figures of the report with matplotlib: axes in, axes out, the same colours and markers.
+
+>>> from umov import plot
+>>> axes = plot.q_phase(curve)
+>>> axes.get_xlabel()
+'phase angle [°]'
+"""
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from .light_curves import LightCurve
+
+__all__ = ["colour_index", "degree", "intensity", "magnitude", "overview", "position_angle", "q_phase", "q_rgb",
+           "qu_plane", "qu_time", "sky_track"]
+
+# Okabe & Ito (2008); the first three follow the wavelength from blue to red, as in the report.
+THREE = ("#0072b2", "#009e73", "#d55e00")
+MANY = ("#0072b2", "#56b4e9", "#009e73", "#e69f00", "#d55e00", "#cc79a7", "#000000")
+MARKERS = ("o", "s", "^", "D", "P", "X", "*")
+PHASE_MAP = "cividis"
+CYCLIC_MAP = "twilight"
+_NORTH = {"equatorial": "celestial north", "altaz": "the local zenith",
+          "scattering": "the normal of the scattering plane"}
+
+
+def _axes(axes: Axes | None, projection: str | None = None) -> Axes:
+    if axes is not None:
+        return axes
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise UsageError("a figure needs the package matplotlib: pip install matplotlib") from error
+    made: Axes = plt.figure(figsize=(7, 4.5), layout="constrained").add_subplot(projection=projection)
+    return made
+
+
+def band_styles(curve: LightCurve) -> list[dict[str, Any]]:
+    """Colour and marker of each band, by wavelength.
+
+    >>> [style["color"] for style in plot.band_styles(curve)]
+    ['#0072b2', '#009e73', '#d55e00']
+    """
+    waves = curve["lambda_eff"][0]
+    rank = np.argsort(np.argsort(waves, kind="stable"), kind="stable")
+    palette = THREE if len(waves) <= 3 else MANY
+    return [{"color": palette[k % len(palette)], "marker": MARKERS[k % len(MARKERS)], "markersize": 4,
+             "linewidth": 1.5} for k in rank]
+
+
+def _passes(curve: LightCurve) -> Iterator[NDArray[np.intp]]:
+    """Epochs of each pass: no line joins two of them."""
+    ids = curve.pass_id
+    for one in dict.fromkeys(ids.tolist()):
+        yield np.flatnonzero(ids == one)
+
+
+def _every(count: int) -> int:
+    return max(1, count // 24)
+
+
+def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], label: str, *,
+               cyclic: bool = False, bands: list[str] | None = None,
+               styles: list[dict[str, Any]] | None = None) -> Axes:
+    axes = _axes(axes)
+    times = curve.time.datetime64
+    for b, (style, name) in enumerate(zip(styles or band_styles(curve), bands or curve.bands)):
+        for k, part in enumerate(_passes(curve)):
+            values = rows[part, b].astype(np.float64)
+            if cyclic:  # no line joins 180 to 0
+                values[1:][np.abs(np.diff(values)) > 90] = np.nan
+            axes.plot(times[part], values, label=name if k == 0 else None, markevery=_every(len(part)), **style)
+    axes.set_ylabel(label)
+    axes.tick_params("x", rotation=30)
+    axes.grid(alpha=0.3)
+    if len(bands or curve.bands) > 1:
+        axes.legend(fontsize="small")
+    return axes
+
+
+def magnitude(curve: LightCurve, axes: Axes | None = None) -> Axes:
+    """AB magnitude over time, bright at the top.
+
+    >>> bool(plot.magnitude(curve).yaxis_inverted())
+    True
+    """
+    axes = _over_time(curve, axes, curve.mag, "AB magnitude")
+    if not axes.yaxis_inverted():
+        axes.invert_yaxis()
+    return axes
+
+
+def intensity(curve: LightCurve, axes: Axes | None = None) -> Axes:
+    """Intensity without distance and solar flux over time.
+
+    >>> plot.intensity(curve).get_yscale()
+    'log'
+    """
+    axes = _over_time(curve, axes, np.where(curve.intensity > 0, curve.intensity, np.nan), "intensity [m² sr⁻¹]")
+    axes.set_yscale("log")
+    return axes
+
+
+def qu_time(curve: LightCurve, axes: tuple[Axes, Axes] | None = None) -> tuple[Axes, Axes]:
+    """q and u over time, in percent of I, in the sky frame.
+
+    >>> upper, lower = plot.qu_time(curve)
+    >>> lower.get_ylabel()
+    'u [%]'
+    """
+    if axes is None:
+        import matplotlib.pyplot as plt
+        upper, lower = plt.figure(figsize=(7, 5), layout="constrained").subplots(2, 1, sharex=True)
+        axes = (upper, lower)
+    north = _NORTH.get(curve.table.notes.get("pol_frame", ""), "north")
+    _over_time(curve, axes[0], 100 * curve.q, "q [%]").set_title(f"+q towards {north}", fontsize="small")
+    return axes[0], _over_time(curve, axes[1], 100 * curve.u, "u [%]")
+
+
+def degree(curve: LightCurve, axes: Axes | None = None) -> Axes:
+    """Degree of linear polarization over time, in percent.
+
+    >>> plot.degree(curve).get_ylabel()
+    'p [%]'
+    """
+    return _over_time(curve, axes, 100 * curve.p, "p [%]")
+
+
+def position_angle(curve: LightCurve, axes: Axes | None = None) -> Axes:
+    """Position angle over time; it is cyclic, and no line joins 180 to 0 deg.
+
+    >>> [float(end) for end in plot.position_angle(curve).get_ylim()]
+    [0.0, 180.0]
+    """
+    axes = _over_time(curve, axes, curve.pa, "position angle [°]", cyclic=True)
+    axes.set(ylim=(0, 180), yticks=range(0, 181, 45))
+    return axes
+
+
+def q_phase(curve: LightCurve, axes: Axes | None = None) -> Axes:
+    """Q/I in the scattering frame against phase angle.
+
+    >>> plot.q_phase(curve).get_ylabel()
+    'q_scat [%]'
+    """
+    axes = _axes(axes)
+    for b, (style, name) in enumerate(zip(band_styles(curve), curve.bands)):
+        for k, part in enumerate(_passes(curve)):
+            axes.plot(curve.phase_angle[part], 100 * curve.q_scat[part, b], label=name if k == 0 else None,
+                      markevery=_every(len(part)), **style)
+    axes.axhline(0, color="0.5", linewidth=0.8)
+    axes.set(xlabel="phase angle [°]", ylabel="q_scat [%]")
+    axes.grid(alpha=0.3)
+    if len(curve.bands) > 1:
+        axes.legend(fontsize="small")
+    return axes
+
+
+def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
+    """u against q, coloured by phase angle; bands differ by marker.
+
+    >>> plot.qu_plane(curve).get_xlabel()
+    'q [%]'
+    """
+    axes = _axes(axes)
+    drawn = None
+    for b, style in enumerate(band_styles(curve)):
+        drawn = axes.scatter(100 * curve.q[:, b], 100 * curve.u[:, b], c=curve.phase_angle, cmap=PHASE_MAP, s=14,
+                             marker=style["marker"], label=curve.bands[b], vmin=0, vmax=180)
+    axes.axhline(0, color="0.5", linewidth=0.8)
+    axes.axvline(0, color="0.5", linewidth=0.8)
+    axes.set(xlabel="q [%]", ylabel="u [%]", aspect="equal")
+    if drawn is not None and axes.figure is not None:
+        axes.figure.colorbar(drawn, ax=axes, label="phase angle [°]")
+    axes.legend(fontsize="small")
+    return axes
+
+
+def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
+    """Q/I of short, middle and long wavelength as a cloud in three dimensions, coloured by phase angle.
+
+    >>> plot.q_rgb(curve).get_zlabel()
+    'nm:650 [%]'
+    """
+    if len(curve.bands) < 3:
+        raise UsageError(f"the curve has {len(curve.bands)} bands; three or more were expected")
+    axes = _axes(axes, "3d")
+    order = np.argsort(curve["lambda_eff"][0], kind="stable")
+    three = [int(order[0]), int(order[len(order) // 2]), int(order[-1])]
+    cloud: Callable[..., Any] = axes.scatter
+    drawn = cloud(*(100 * curve.q_scat[:, b] for b in three), c=curve.phase_angle, cmap=PHASE_MAP, s=8, vmin=0,
+                  vmax=180)
+    for name, b in zip("xyz", three):
+        getattr(axes, f"set_{name}label")(f"{curve.bands[b]} [%]")
+    if axes.figure is not None:
+        axes.figure.colorbar(drawn, ax=axes, label="phase angle [°]", shrink=0.7)
+    return axes
+
+
+def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
+    """Shorter minus longer wavelength over time, AB magnitudes: larger is redder.
+
+    >>> [text.get_text() for text in plot.colour_index(curve).get_legend().get_texts()]
+    ['nm:425 − nm:550', 'nm:550 − nm:650']
+    """
+    if len(curve.bands) < 2:
+        raise UsageError("the curve has one band; two or more were expected")
+    order = np.argsort(curve["lambda_eff"][0], kind="stable").tolist()
+    pairs = list(itertools.pairwise(order))
+    rows = np.stack([curve.mag[:, a] - curve.mag[:, b] for a, b in pairs], axis=1)
+    styles = [{"color": MANY[(2 * k) % 7], "marker": MARKERS[k % 7], "markersize": 4} for k in range(len(pairs))]
+    names = [f"{curve.bands[a]} − {curve.bands[b]}" for a, b in pairs]
+    axes = _over_time(curve, axes, rows, "colour [mag]", bands=names, styles=styles)
+    axes.legend(fontsize="small")
+    return axes
+
+
+def sky_track(curve: LightCurve, axes: Any = None) -> Any:
+    """Where the object stood, north up and east to the left as one looks up, coloured by phase angle.
+
+    >>> plot.sky_track(curve).name
+    'polar'
+    """
+    axes = _axes(axes, "polar")
+    axes.set_theta_zero_location("N")
+    axes.set_theta_direction(1)
+    for part in _passes(curve):
+        theta, radius = np.radians(curve.az[part]), 90 - curve.alt[part]
+        axes.plot(theta, radius, color="0.7", linewidth=1)
+        drawn = axes.scatter(theta, radius, c=curve.phase_angle[part], cmap=PHASE_MAP, s=10, vmin=0, vmax=180)
+    axes.set_rlim(0, 90)
+    axes.set_rgrids([0, 30, 60, 90], ["90°", "60°", "30°", ""])
+    axes.set_thetagrids(range(0, 360, 45), ["N", "NE", "E", "SE", "S", "SW", "W", "NW"])
+    if axes.figure is not None and len(curve):
+        axes.figure.colorbar(drawn, ax=axes, label="phase angle [°]", shrink=0.8)
+    return axes
+
+
+def overview(curve: LightCurve, figure: Figure | None = None) -> Figure:
+    """Magnitude, q, u, p and position angle over time, and Q against phase, in one figure.
+
+    >>> len(plot.overview(curve).axes)
+    6
+    """
+    if figure is None:
+        try:
+            import matplotlib.pyplot as plt
+        except ImportError as error:
+            raise UsageError("a figure needs the package matplotlib: pip install matplotlib") from error
+        figure = plt.figure(figsize=(10, 7))
+    figure.set_layout_engine("constrained")
+    axes = figure.subplots(3, 2)
+    magnitude(curve, axes[0, 0])
+    q_phase(curve, axes[0, 1])
+    qu_time(curve, (axes[1, 0], axes[1, 1]))
+    degree(curve, axes[2, 0])
+    position_angle(curve, axes[2, 1])
+    for one in axes.ravel()[1:]:
+        if (legend := one.get_legend()) is not None:
+            legend.remove()
+    for one in (axes[0, 0], axes[1, 0], axes[1, 1]):
+        one.tick_params("x", labelbottom=False)
+    if curve.scenario is not None and curve.scenario.title:
+        figure.suptitle(curve.scenario.title)
+    return figure

@@ -1,0 +1,44 @@
+"""The main job."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any
+
+from . import _umov
+from ._jobs import Progress, Watch, job_options
+from .errors import raise_stopped
+from .light_curves import LightCurve
+from .scenarios import AnyScenario, Scenario
+
+__all__ = ["run"]
+
+
+def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: int | None = None,
+        accuracy: float | None = None, threads: int = 0, cache: bool | str | os.PathLike[str] = True,
+        progress: Progress = None, allow_bad_checksum: bool = False,
+        allow_old_elements: bool = False) -> LightCurve:
+    """The light curve of a scenario, as the command `umov run` computes it, in memory.
+
+    `scenario`: path, dictionary, Scenario or text as for `Scenario`; `set`: changes of its keys;
+    `progress`: True for a bar, or a callable (what, done, total); `threads`: 0 for all cores (the bytes do
+    not depend on it); `cache`: masks of earlier runs, as the command keeps them, a folder, or False.
+    Ctrl-C raises `Interrupted`, an orbit that ends `NumericsError`, with the finished rows in `partial`.
+
+    >>> curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
+    >>> print(repr(curve).splitlines()[0])
+    <umov.LightCurve HST: 6 epochs x 3 bands (nm:425, nm:550, nm:650)
+    """
+    changes = dict(set or {})
+    if seed is not None:
+        changes["seed"] = int(seed)
+    if accuracy is not None:
+        changes["render.accuracy"] = float(accuracy)
+    asked = Scenario(scenario, changes or None)
+    asked._scenario.check_for_run()
+    done = _umov.run(asked._scenario, job_options(threads, cache, allow_bad_checksum, allow_old_elements),
+                     Watch(progress))
+    curve = LightCurve._from_run(done, asked)
+    if done.stopped is not None:
+        raise_stopped(done.stopped, curve)
+    return curve

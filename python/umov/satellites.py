@@ -1,0 +1,231 @@
+"""An object: shape, orbit, attitude and materials."""
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Union
+
+from . import _toml, adapters
+from ._jobs import Progress
+from .errors import UsageError
+from .sites import AnySite, Site
+from .times import AnyTime, seconds, utc
+
+if TYPE_CHECKING:
+    from astropy.units import Quantity
+
+    from .light_curves import LightCurve
+    from .materials import Material
+
+__all__ = ["Satellite"]
+
+Bands = Union[str, Sequence[str]]
+
+
+def band_table(bands: Bands) -> dict[str, Any]:
+    """The [bands] table of a scenario."""
+    return {"set": bands if isinstance(bands, str) else list(bands)}
+
+
+def _without_none(value: Any) -> Any:
+    return {k: v for k, v in value.items() if v is not None} if isinstance(value, Mapping) else value
+
+
+def _absolute(path: Any) -> Any:
+    return str(pathlib.Path(path).absolute()) if isinstance(path, (str, os.PathLike)) else path
+
+
+class Satellite:
+    """An [[object]] of a scenario. `mesh` is a file, a trimesh mesh or (vertices, faces); `orbit` a file,
+    TLE lines, an sgp4 Satrec, a skyfield EarthSatellite or a table; materials are names, files' names
+    or `Material`s, by mesh material or "default".
+
+    >>> hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", orbit=DATA / "tle/hst.tle",
+    ...                      attitude={"mode": "nadir"}, materials={"default": "film_silvered"}, name="HST")
+    >>> hst
+    <umov.Satellite 'HST': mesh hst.obj, orbit hst.tle, materials film_silvered>
+    >>> umov.Satellite.from_toml(hst.to_toml()) == hst
+    True
+    """
+
+    def __init__(self, mesh: Any, *, unit: str | None = None, up: str | None = None, orbit: Any = None,
+                 norad: int | None = None, attitude: Mapping[str, Any] | None = None,
+                 materials: str | Material | Mapping[str, Any], name: str = "", normals: str | None = None,
+                 parts: Sequence[Mapping[str, Any]] = ()) -> None:
+        self.name = name
+        self._texts: adapters.Texts = {}
+        self._own: dict[str, str] = {}
+        self._table: dict[str, Any] = {
+            "name": name, "orbit": self._orbit(orbit, norad), "mesh": self._mesh(mesh, unit, up, normals),
+            "attitude": dict(attitude) if attitude is not None else None,
+            "materials": self._materials(materials), "part": [dict(part) for part in parts] or None}
+        self._table = {key: _without_none(value) for key, value in self._table.items() if value is not None}
+        self._files = adapters.Files(self._texts) if self._texts else None
+        self._set_files()
+
+    def _orbit(self, orbit: Any, norad: int | None) -> dict[str, Any] | None:
+        if orbit is None:
+            return None
+        text = adapters.orbit_text(orbit)
+        if text is not None:
+            self._texts["orbit.tle"] = text
+            return {"file": "orbit.tle", "norad": norad}
+        table = dict(orbit) if isinstance(orbit, Mapping) else {"file": orbit, "norad": norad}
+        return {**table, "file": _absolute(table["file"])} if "file" in table else table
+
+    def _mesh(self, mesh: Any, unit: str | None, up: str | None, normals: str | None) -> dict[str, Any]:
+        text = adapters.mesh_text(mesh)
+        more = {"unit": unit, "up": up, "normals": normals}
+        if text is not None:
+            self._texts["mesh.obj"] = text
+            return {"file": "mesh.obj", **more, "unit": unit or "m", "up": up or "+Z"}
+        table = dict(mesh) if isinstance(mesh, Mapping) else {"file": mesh}
+        return {**more, **table, "file": _absolute(table.get("file"))}
+
+    def _materials(self, materials: Any) -> dict[str, Any]:
+        table = materials if isinstance(materials, Mapping) else {"default": materials}
+        out: dict[str, Any] = {}
+        for group, one in table.items():
+            if isinstance(one, Mapping):
+                out[group] = {side: self._material_name(of) for side, of in one.items()}
+            else:
+                out[group] = self._material_name(one)
+        return out
+
+    def _material_name(self, material: Any) -> str:
+        if isinstance(material, str):
+            return _absolute(material) if material.endswith(".toml") else material
+        if hasattr(material, "to_toml") and hasattr(material, "is_named"):
+            if not material.is_named:
+                self._own[material.name] = material.to_toml()
+            return str(material.name)
+        raise UsageError(f"a material is a {type(material).__name__}; a name or a Material was expected")
+
+    def _set_files(self) -> None:
+        """Files that adapters made stand in a folder that is another one in every process."""
+        if self._files is not None:
+            for key, name in (("orbit", "orbit.tle"), ("mesh", "mesh.obj")):
+                if name in self._files.texts:
+                    self._table[key] = {**self._table[key], "file": str(self._files.folder / name)}
+
+    @classmethod
+    def from_dict(cls, table: Mapping[str, Any]) -> Satellite:
+        """From an [[object]] table of a scenario, with the tables `material` of its own besides."""
+        from .materials import Material
+        own = {name: Material.from_dict(name, one) for name, one in table.get("material", {}).items()}
+
+        def find(name: Any) -> Any:
+            if isinstance(name, Mapping):
+                return {side: find(of) for side, of in name.items()}
+            return own.get(name, name)
+
+        return cls(table["mesh"], orbit=table.get("orbit"), attitude=table.get("attitude"),
+                   materials={group: find(name) for group, name in table["materials"].items()},
+                   name=table.get("name", ""), parts=table.get("part", ()))
+
+    @classmethod
+    def from_toml(cls, text: str) -> Satellite:
+        """From a text with one [[object]] and its [material.NAME] tables, such as a scenario."""
+        import tomllib
+        document = tomllib.loads(text)
+        if len(document.get("object", ())) != 1:
+            raise UsageError(f"the text has {len(document.get('object', ()))} objects; one [[object]] was expected")
+        return cls.from_dict({**document["object"][0], "material": document.get("material", {})})
+
+    def to_dict(self) -> dict[str, Any]:
+        """The [[object]] table of a scenario, with `material` tables of its own besides."""
+        import tomllib
+        own: dict[str, Any] = {}
+        for text in self._own.values():
+            own.update(tomllib.loads(text)["material"])
+        return {**self._table, **({"material": own} if own else {})}
+
+    def to_toml(self) -> str:
+        """The same as text."""
+        table = self.to_dict()
+        own = table.pop("material", {})
+        return _toml.text_of({"object": [table], **({"material": own} if own else {})}).lstrip()
+
+    def to_scenario_dict(self, bands: Bands = "paper_rgb", **sections: Any) -> dict[str, Any]:
+        """A whole scenario of this object; `sections` are its other tables, such as time or render."""
+        table = self.to_dict()
+        own = table.pop("material", None)
+        return {"umov": 1, "object": [table], "bands": band_table(bands), "material": own, **sections}
+
+    def light_curve(self, site: AnySite, start: Any, stop: AnyTime | None = None, *,
+                    step: Quantity | Any = None, step_s: float | None = None, bands: Bands = "paper_rgb",
+                    alt_min_deg: float = 0.0, sun_alt_max_deg: float = 90.0, sunlit: bool = True,
+                    seed: int = 0, pol_frame: str = "equatorial", render: Mapping[str, Any] | None = None,
+                    **options: Any) -> LightCurve:
+        """The light of this object over time as seen from a site, between two times or during a pass
+        (a row of `umov.passes`). `options` are those of `umov.run`.
+
+        >>> curve = hst.light_curve("maui", "2018-01-21T05:10:00Z", "2018-01-21T05:10:20Z", step_s=10,
+        ...                         bands=["nm:550"])
+        >>> curve.I.shape
+        (3, 1)
+        """
+        from .runs import run
+        if stop is None:
+            start, stop = _span_of_pass(start)
+        if step is not None and step_s is not None:
+            raise UsageError("step and step_s; one of them was expected")
+        length = seconds(step) if step is not None else float(1.0 if step_s is None else step_s)
+        only = {"alt_min_deg": float(alt_min_deg), "sun_alt_max_deg": float(sun_alt_max_deg), "sunlit": sunlit}
+        scenario = self.to_scenario_dict(
+            bands, title=self.name, seed=seed, observer=Site(site).to_dict(),
+            time={"start": utc(start), "stop": utc(stop), "step_s": length, "only": only},
+            render=dict(render) if render else None, output={"pol_frame": pol_frame})
+        return run(scenario, **options)
+
+    @property
+    def orbit_file(self) -> str | None:
+        """The file of its orbit, or None."""
+        file = self._table.get("orbit", {}).get("file")
+        return None if file is None else str(file)
+
+    @property
+    def norad(self) -> int | None:
+        """The catalogue number that was given, or None."""
+        number = self._table.get("orbit", {}).get("norad")
+        return None if not number else int(number)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Satellite) and self.to_dict() == other.to_dict()
+
+    def __hash__(self) -> int:
+        return hash(self.to_toml())
+
+    def __repr__(self) -> str:
+        mesh = pathlib.Path(str(self._table["mesh"]["file"])).name
+        orbit = pathlib.Path(self.orbit_file).name if self.orbit_file else "none"
+        materials = sorted({name for one in self._table["materials"].values()
+                            for name in (one.values() if isinstance(one, Mapping) else [one])})
+        return f"<umov.Satellite {self.name!r}: mesh {mesh}, orbit {orbit}, materials {', '.join(materials)}>"
+
+    def _repr_html_(self) -> str:
+        import html
+        return f"<p><b>{html.escape(repr(self))}</b></p><pre>{html.escape(self.to_toml())}</pre>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        state = dict(self.__dict__)
+        state["_files"] = None
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._files = adapters.Files(self._texts) if self._texts else None
+        self._set_files()
+
+
+def _span_of_pass(row: Any) -> tuple[str, str]:
+    """Rise and set of a row of `umov.passes`."""
+    try:
+        rise, end = str(row["rise_utc"]), str(row["set_utc"])
+    except (TypeError, KeyError, IndexError, ValueError) as error:
+        raise UsageError("no stop; a start and a stop were expected, or a row of umov.passes") from error
+    if not rise or not end:
+        raise UsageError("the pass is cut by the span that was searched; rise and set were expected. "
+                         "Search a longer span.")
+    return rise, end

@@ -1,0 +1,130 @@
+"""The scenario: what a run is about, with one meaning as file, text, dictionary and object."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Union
+
+from . import _toml, _umov
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    from .satellites import Satellite
+
+__all__ = ["Scenario", "schema"]
+
+Changes = Mapping[str, Any]
+
+
+def schema() -> dict[str, Any]:
+    """JSON Schema of the scenario, with every key and default.
+
+    >>> umov.schema()["properties"]["render"]["properties"]["bounces"]["default"]
+    1
+    """
+    import json
+    out: dict[str, Any] = json.loads(_umov.schema())
+    return out
+
+
+def _change_list(changes: Changes | None) -> list[str]:
+    return [f"{key}={_toml.value_text(value, key)}" for key, value in (changes or {}).items()]
+
+
+class Scenario:
+    """A scenario, read and checked. Give a path, a dictionary or another scenario, and `set` for
+    changes ("render.bounces": 2), as `--set` of the command does.
+
+    >>> scenario = umov.Scenario(EXAMPLES / "hst_maui.toml", set={"time.step_s": 5})
+    >>> scenario.title, scenario.objects
+    ('HST from Maui, polarized RGB', ['HST'])
+    >>> scenario.to_dict()["time"]["step_s"]
+    5
+    """
+
+    def __init__(self, source: AnyScenario, set: Changes | None = None) -> None:
+        if isinstance(source, (str, os.PathLike)):
+            self._scenario = _umov.Scenario.read(os.fspath(source), _change_list(set))
+        elif isinstance(source, Mapping):
+            self._scenario = _parse(_toml.text_of(source), None, set)
+        elif isinstance(source, Scenario):
+            self._scenario = (_parse(source.to_toml(), source.file, set) if set else source._scenario)
+        elif hasattr(source, "to_scenario_dict"):
+            self._scenario = _parse(_toml.text_of(source.to_scenario_dict()), None, set)
+        else:
+            raise UsageError(f"{source!r} is a {type(source).__name__}; the path of a scenario, a dictionary, "
+                             "a Scenario or a Satellite was expected")
+        self._keep: Any = source  # files that adapters made live as long as it
+
+    @classmethod
+    def from_toml(cls, text: str, path: str | os.PathLike[str] | None = None,
+                  set: Changes | None = None) -> Scenario:
+        """From a text; `path` is the file that it stands for: relative paths start there."""
+        out = cls.__new__(cls)
+        out._scenario, out._keep = _parse(text, path, set), None
+        return out
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> Scenario:
+        """From the tables of a scenario; relative paths start at the working folder."""
+        return cls(document)
+
+    def to_toml(self) -> str:
+        """With every default written out and absolute paths."""
+        return self._scenario.locked
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as tables."""
+        import tomllib
+        return tomllib.loads(self.to_toml())
+
+    @property
+    def title(self) -> str:
+        """Heading of the report."""
+        return self._scenario.title
+
+    @property
+    def file(self) -> str:
+        """The file that it was read from, as messages name it."""
+        return self._scenario.file
+
+    @property
+    def objects(self) -> list[str]:
+        """Names of the objects."""
+        return self._scenario.objects
+
+    @property
+    def bands(self) -> list[str]:
+        """Names of the bands."""
+        return [name for name, _ in self._scenario.bands]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Scenario) and self.to_toml() == other.to_toml()
+
+    def __hash__(self) -> int:
+        return hash(self.to_toml())
+
+    def __repr__(self) -> str:
+        objects = ", ".join(name or "unnamed" for name in self.objects)
+        return f"<umov.Scenario {self.title!r}: {objects}; {', '.join(self.bands)}>"
+
+    def _repr_html_(self) -> str:
+        import html
+        return (f"<details><summary>{html.escape(repr(self))}</summary>"
+                f"<pre>{html.escape(self.to_toml())}</pre></details>")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (self.to_toml(), self.file)
+
+
+AnyScenario = Union[str, "os.PathLike[str]", Mapping[str, Any], Scenario, "Satellite"]
+
+
+def _parse(text: str, path: str | os.PathLike[str] | None, changes: Changes | None) -> _umov.Scenario:
+    # Relative paths start at the folder of the file that the text stands for.
+    place = os.fspath(path) if path is not None else "scenario"
+    return _umov.Scenario.parse(text, place, _change_list(changes))
+
+
+def _restore(text: str, file: str) -> Scenario:
+    return Scenario.from_toml(text, file)

@@ -1,0 +1,116 @@
+"""Places on the Earth."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Union
+
+from . import _toml, _umov
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    from astropy.coordinates import EarthLocation
+
+__all__ = ["Site", "site_names"]
+
+
+def site_names() -> list[str]:
+    """Names that `Site` knows.
+
+    >>> "maui" in umov.site_names() or "amos" in umov.site_names()
+    True
+    """
+    return _umov.site_names()
+
+
+class Site:
+    """A place on the WGS 84 ellipsoid: by name, by coordinates, or from an EarthLocation, a skyfield
+    topos or the [observer] table of a scenario.
+
+    >>> umov.Site("paranal")
+    Site('paranal', lat_deg=-24.6275, lon_deg=-70.4044, alt_m=2635.0)
+    >>> umov.Site(lat_deg=20.7083, lon_deg=-156.2578, alt_m=3058, name="Maui").to_dict()["name"]
+    'Maui'
+    """
+
+    def __init__(self, site: AnySite | None = None, *, lat_deg: float | None = None,
+                 lon_deg: float | None = None, alt_m: float | None = None, name: str = "") -> None:
+        numbers = (lat_deg, lon_deg, alt_m)
+        if site is None:
+            if lat_deg is None or lon_deg is None or alt_m is None:
+                raise UsageError("where? Give a name of umov.site_names(), or lat_deg, lon_deg and alt_m")
+            told = _umov.check_site(name, float(lat_deg), float(lon_deg), float(alt_m))
+        elif any(number is not None for number in numbers):
+            raise UsageError(f"{site!r} and coordinates besides; one of them was expected")
+        else:
+            told = _told(site, name)
+        self.name: str = told[0]
+        self.lat_deg: float = told[1]
+        self.lon_deg: float = told[2]
+        self.alt_m: float = told[3]
+
+    @classmethod
+    def from_dict(cls, table: Mapping[str, Any]) -> Site:
+        """From the [observer] table of a scenario."""
+        return cls(table)
+
+    @classmethod
+    def from_toml(cls, text: str) -> Site:
+        """From a text with an [observer] table."""
+        import tomllib
+        return cls(tomllib.loads(text).get("observer", {}))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The [observer] table of a scenario."""
+        return {"name": self.name, "lat_deg": self.lat_deg, "lon_deg": self.lon_deg, "alt_m": self.alt_m}
+
+    def to_toml(self) -> str:
+        """The same as text."""
+        return _toml.text_of({"observer": self.to_dict()}).lstrip()
+
+    def to_earth_location(self) -> EarthLocation:
+        """The same as astropy has it."""
+        from astropy import units
+        from astropy.coordinates import EarthLocation
+        return EarthLocation.from_geodetic(self.lon_deg * units.deg, self.lat_deg * units.deg,
+                                           self.alt_m * units.m)
+
+    def _tuple(self) -> tuple[str, float, float, float]:
+        return self.name, self.lat_deg, self.lon_deg, self.alt_m
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Site) and self._tuple() == other._tuple()
+
+    def __hash__(self) -> int:
+        return hash(self._tuple())
+
+    def __repr__(self) -> str:
+        return (f"Site({self.name!r}, lat_deg={self.lat_deg:g}, lon_deg={self.lon_deg:g}, "
+                f"alt_m={self.alt_m})")
+
+
+AnySite = Union[str, Site, Mapping[str, Any], "EarthLocation", Any]
+
+
+def _told(site: AnySite, name: str) -> tuple[str, float, float, float]:
+    if isinstance(site, Site):
+        return (name or site.name), site.lat_deg, site.lon_deg, site.alt_m
+    if isinstance(site, str):
+        told = _umov.site(site)
+        return (name or told[0]), told[1], told[2], told[3]
+    if isinstance(site, Mapping):
+        if "lat_deg" not in site and "name" in site:
+            return _told(str(site["name"]), name)
+        try:
+            numbers = [float(site[key]) for key in ("lat_deg", "lon_deg", "alt_m")]
+        except (KeyError, TypeError, ValueError) as error:
+            raise UsageError(f"{dict(site)!r}; lat_deg, lon_deg and alt_m were expected") from error
+        return _umov.check_site(name or str(site.get("name", "")), *numbers)
+    if hasattr(site, "geodetic"):  # astropy
+        place = site.geodetic
+        return _umov.check_site(name, float(place.lat.deg), float(place.lon.wrap_at("180d").deg),
+                                float(place.height.to_value("m")))
+    if hasattr(site, "latitude") and hasattr(site, "elevation"):  # skyfield
+        return _umov.check_site(name, float(site.latitude.degrees), float(site.longitude.degrees),
+                                float(site.elevation.m))
+    raise UsageError(f"{site!r} is a {type(site).__name__}; a site was expected: a name, a Site, an "
+                     "EarthLocation, a skyfield topos or a table with lat_deg, lon_deg and alt_m")

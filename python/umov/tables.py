@@ -1,0 +1,133 @@
+"""Columns with units, and their way to astropy, pandas and files."""
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _umov
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    import pandas
+    from astropy.table import QTable
+
+__all__ = ["Table"]
+
+
+def _pack(table: _umov.Table) -> tuple[list[tuple[str, str, str, Any]], list[tuple[str, str]]]:
+    columns = [(name, unit, text, table.column(name))
+               for name, unit, text in zip(table.names, table.units, table.descriptions)]
+    return columns, list(table.notes)
+
+
+def _unpack(columns: list[tuple[str, str, str, Any]], notes: list[tuple[str, str]]) -> _umov.Table:
+    out = _umov.Table()
+    for name, unit, text, values in columns:
+        out.add(name, unit, text, values)
+    for key, value in notes:
+        out.note(key, value)
+    return out
+
+
+class Table:
+    """Rows of a job, column by column. Numbers are read-only numpy views of the library's memory.
+
+    >>> table = umov.materials()
+    >>> table.names[:2]
+    ['material', 'nm']
+    >>> len(table), str(table["material"][0])
+    (28, 'paper_au')
+    """
+
+    def __init__(self, table: _umov.Table) -> None:
+        self._table = table
+        self._texts: dict[str, NDArray[Any]] = {}
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the columns, in order."""
+        return self._table.names
+
+    @property
+    def notes(self) -> dict[str, str]:
+        """What a file's header would say: versions, conventions, object."""
+        return dict(self._table.notes)
+
+    def unit(self, name: str) -> str:
+        """Unit of a column as astropy spells it; "" for none."""
+        return self._table.units[self._position(name)]
+
+    def description(self, name: str) -> str:
+        """What a column holds, in a line."""
+        return self._table.descriptions[self._position(name)]
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        self._position(name)
+        if name not in self._texts:
+            values = self._table.column(name)
+            if not isinstance(values, list):
+                return values
+            text = np.array(values, dtype=np.str_)
+            text.flags.writeable = False
+            self._texts[name] = text
+        return self._texts[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return self._table.rows
+
+    def to_qtable(self) -> QTable:
+        """The same as an astropy QTable: every column of floats has a unit, the notes are in `meta`."""
+        from astropy import units
+        from astropy.table import Column, QTable
+        out = QTable(meta=self.notes)
+        for name, unit in zip(self.names, self._table.units):
+            values = self[name]
+            if unit.startswith("mag("):
+                out[name] = units.Magnitude(values, unit=units.Unit(unit), copy=False)
+            elif unit or values.dtype.kind == "f":
+                out[name] = units.Quantity(values, unit=units.Unit(unit), copy=False)
+            else:
+                out[name] = Column(values, copy=False)
+            out[name].info.description = self.description(name)
+        return out
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The same as a pandas DataFrame; units and notes in `attrs`."""
+        import pandas
+        out = pandas.DataFrame({name: self[name] for name in self.names})
+        out.attrs["units"] = dict(zip(self.names, self._table.units))
+        out.attrs["notes"] = self.notes
+        return out
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes .csv, .ecsv, .fits or .json: the bytes of the command's file."""
+        self._table.write(os.fspath(path))
+
+    def _position(self, name: str) -> int:
+        try:
+            return self.names.index(name)
+        except ValueError:
+            raise UsageError(f"there is no column \"{name}\"; there are {', '.join(self.names)}") from None
+
+    def _repr_html_(self) -> str:
+        return str(self.to_qtable()[:8]._repr_html_()) + f"<p>{len(self)} rows</p>"
+
+    def __repr__(self) -> str:
+        return f"<umov.Table: {len(self)} rows of {', '.join(self.names)}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, _pack(self._table)
+
+
+def _restore(columns: list[tuple[str, str, str, Any]], notes: list[tuple[str, str]]) -> Table:
+    return Table(_unpack(columns, notes))

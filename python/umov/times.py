@@ -1,0 +1,67 @@
+"""Times: ISO 8601 with an offset, aware datetimes, or astropy's Time."""
+from __future__ import annotations
+
+import datetime
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Union
+
+from . import _umov
+from .errors import UsageError
+
+if TYPE_CHECKING:
+    from astropy.time import Time
+
+__all__ = ["utc"]
+
+AnyTime = Union[str, datetime.datetime, "Time"]
+
+
+def utc(time: AnyTime) -> str:
+    """A time as the scenario writes it: ISO 8601, UTC, with Z.
+
+    >>> umov.utc("2018-01-21T06:00:00+02:00")
+    '2018-01-21T04:00:00.000Z'
+    >>> from astropy.time import Time
+    >>> umov.utc(Time("2018-01-21T04:00:37", scale="tai"))
+    '2018-01-21T04:00:00.000Z'
+    """
+    if isinstance(time, str):
+        return _umov.check_time(time)
+    if isinstance(time, datetime.datetime):
+        if time.tzinfo is None:
+            raise UsageError(
+                f"{time!r} has no time zone; an aware datetime was expected. In UTC that is:\n"
+                "    from datetime import timezone\n"
+                "    time = time.replace(tzinfo=timezone.utc)")
+        return _umov.check_time(time.isoformat())
+    if hasattr(time, "utc") and hasattr(time, "isscalar"):  # astropy, which need not be imported
+        if not time.isscalar:
+            raise UsageError(f"a Time of shape {time.shape}; a single time was expected")
+        exact = time.utc.replicate(format="isot")
+        exact.precision = 9
+        return _umov.check_time(str(exact.value) + "Z")
+    raise UsageError(f"{time!r} is a {type(time).__name__}; a time was expected: ISO 8601 with an offset "
+                     "(\"2018-01-21T04:00:00Z\"), an aware datetime or an astropy Time")
+
+
+def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
+    """Times of a call, and whether it was a single one."""
+    if isinstance(times, (str, datetime.datetime)):
+        return [utc(times)], True
+    if hasattr(times, "isscalar") and times.isscalar:
+        return [utc(times)], True
+    listed: Any = times
+    return [utc(one) for one in listed], False
+
+
+def seconds(step: Any, name: str = "step") -> float:
+    """A length of time in seconds: a Quantity, a timedelta, or a plain number if it is named so."""
+    if isinstance(step, datetime.timedelta):
+        return step.total_seconds()
+    if hasattr(step, "to_value"):
+        try:
+            return float(step.to_value("s"))
+        except Exception as error:
+            raise UsageError(f"{name} is {step!r}; a length of time was expected ({error})") from error
+    raise UsageError(f"{name} is {step!r}, a number without a unit; a Quantity was expected. Give "
+                     f"{name}={step!r} * astropy.units.s or {name}_s={step!r}.")

@@ -1,0 +1,118 @@
+#include <umov/jobs/pose_light.h>
+
+#include "jobs/part_angles.h"
+#include "jobs/temperatures.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+
+namespace umov::jobs {
+namespace {
+
+using Source = SignatureRequest::Source;
+
+/// Stokes vector of the source per unit irradiance.
+Result<Stokes<ScatteringPlane>> source_of(const SignatureRequest &request) {
+  const Stokes<ScatteringPlane> &s = request.state;
+  const double polarized = std::sqrt(s.q * s.q + s.u * s.u + s.v * s.v);
+  if (request.source != Source::Laser && polarized > 0)
+    return fail(ErrorCode::Usage, "--state goes with --source laser");
+  if (!(s.i > 0) || !(polarized <= s.i * (1 + 1e-12)))
+    return fail(ErrorCode::Usage,
+                fmt::format("--state {} {} {} {}: I > 0 and sqrt(Q2 + U2 + V2) <= I were expected",
+                            s.i, s.q, s.u, s.v));
+  return s * (1 / s.i);
+}
+
+/// What the options say against each other.
+Result<void> check_request(const Scenario &scenario, const SignatureRequest &request,
+                           LightMethod method) {
+  if (scenario.objects.size() > 1)
+    return fail(ErrorCode::BadInput,
+                fmt::format("holds {} objects; a signature is of one. Keep one [[object]].",
+                            scenario.objects.size()),
+                {scenario.file});
+  const bool has_masks = request.method == LightMethod::Masks || !request.mask_file.empty();
+  if (request.source != Source::Sun && has_masks)
+    return fail(ErrorCode::Usage, "masks are for sunlight; a laser takes rays, own heat paths");
+  if ((request.source == Source::Thermal) != !request.temperatures.empty())
+    return fail(ErrorCode::Usage, "--source thermal and --temperature go together");
+  if (!request.mask_file.empty() && method == LightMethod::Rays)
+    return fail(ErrorCode::Usage, "--masks goes with --visibility masks or auto");
+  return {};
+}
+
+Result<std::unique_ptr<LightModel>> light_of(const Scene &scene, const std::vector<Joint> &joints,
+                                             const SignatureRequest &request,
+                                             const LightOptions &options) {
+  if (request.source != Source::Thermal)
+    return make_light(scene, joints, options);
+  UMOV_ASSIGN(kelvin, temperatures_of(request.temperatures, scene.mesh));
+  return make_thermal_light(scene, joints, kelvin, options);
+}
+
+/// What the request says goes over what the scenario says.
+LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &request,
+                             const Stokes<ScatteringPlane> &source, const JobOptions &options) {
+  LightOptions out = light_options(scenario, options);
+  out.method = request.method.value_or(out.method);
+  out.accuracy = request.accuracy.value_or(out.accuracy);
+  out.seed = request.seed.value_or(scenario.seed);
+  out.source = source;
+  out.mask_file = request.mask_file;
+  return out;
+}
+
+} // namespace
+
+struct PoseLight::State {
+  LightOptions options;
+  std::vector<InputFile> inputs;
+  double sun_radius_rad = 0;
+  std::optional<PartAngles> parts;
+  std::unique_ptr<LightModel> model;
+};
+
+PoseLight::PoseLight(std::unique_ptr<State> state) : state_(std::move(state)) {}
+PoseLight::PoseLight(PoseLight &&) noexcept = default;
+PoseLight &PoseLight::operator=(PoseLight &&) noexcept = default;
+PoseLight::~PoseLight() = default;
+
+Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureRequest &request,
+                                  const JobOptions &options, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(source, source_of(request));
+  const LightOptions light = light_asked_for(scenario, request, source, options);
+  UMOV_TRY(check_request(scenario, request, light.method));
+  const bool is_sun = request.source == Source::Sun;
+  UMOV_ASSIGN(
+      object,
+      load_object(scenario, 0, {.allow_old_elements = true, .source_is_sun = is_sun}, diagnostics));
+  auto state = std::make_unique<State>();
+  state->options = light;
+  state->inputs = std::move(object.inputs);
+  state->sun_radius_rad = is_sun && scenario.has_solar_disk ? sun_radius_at_1au_rad : 0;
+  state->parts.emplace(scenario.objects.front().parts, is_sun, scenario.file, diagnostics);
+  UMOV_ASSIGN(model, light_of(object.scene, state->parts->joints(), request, state->options));
+  state->model = std::move(model);
+  return PoseLight(std::move(state));
+}
+
+bool PoseLight::evaluate(std::span<const Pose> poses, StokesTable &out,
+                         const LightTask &task) const {
+  return state_->model->evaluate(poses, state_->parts->of(poses), out, task);
+}
+
+std::size_t PoseLight::block() const {
+  const LightMethod method = state_->model->facts().method;
+  if (state_->options.bounces > 1 || method == LightMethod::Rays)
+    return 512;
+  return method == LightMethod::Auto ? 4096 : 1u << 17;
+}
+
+double PoseLight::sun_radius_rad() const { return state_->sun_radius_rad; }
+const LightModel &PoseLight::model() const { return *state_->model; }
+const LightOptions &PoseLight::options() const { return state_->options; }
+const std::vector<InputFile> &PoseLight::inputs() const { return state_->inputs; }
+
+} // namespace umov::jobs
