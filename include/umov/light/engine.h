@@ -47,6 +47,8 @@ struct EngineOptions {
   /// With `refine_above` > 0: half-widths count every facet that could be seen, also where the
   /// masks know of none; each pose costs tens of microseconds more.
   bool doubts_all = false;
+  /// Part of `refine_above` that is asked of Q/I, where classes are traced.
+  double q_part = 0.06;
   /// Facets of one material whose normals differ by less are joined [rad]; the error goes into the
   /// half-widths. 0: only those that are equal to 1e-5.
   double cluster_rad = 0;

@@ -95,7 +95,8 @@ void Engine::State::weigh_errors(Workspace &work) const {
   for (std::size_t k = 0; k < work.uncertain.size(); ++k)
     for (std::size_t b = 0; b < bands(); ++b) {
       const auto &light = work.facet_light[k * bands() + b];
-      const double worst = std::max(light.i, std::abs(light.q - light.i * work.q_share[b]));
+      const double worst =
+          std::max(light.i, std::abs(light.q - light.i * work.q_share[b]) / options.q_part);
       work.error_per_area[k] = std::max(work.error_per_area[k], worst / work.reference[b]);
     }
 }
