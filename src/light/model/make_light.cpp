@@ -140,13 +140,11 @@ Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<J
   std::optional<Engine> unhidden;
   if (!has_rays || options.accuracy_floor.value_or(0) > 0)
     typical_i = typical_light(unhidden.emplace(unhidden_engine(scene)));
-  if (!options.mask_file.empty() && (has_rays || !joints.empty()))
+  if (!options.mask_file.empty() && !joints.empty())
     return fail(ErrorCode::BadInput,
-                fmt::format("{} cannot hold the masks: {}. Leave the file out; the cache keeps "
-                            "masks by itself.",
-                            options.mask_file.string(),
-                            has_rays ? "this light is traced by rays, without masks"
-                                     : "each part that turns has its own"));
+                fmt::format("{} cannot hold the masks: each part that turns has "
+                            "its own. Leave the file out; the cache keeps them.",
+                            options.mask_file.string()));
   if (has_rays)
     return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i);
   const double missed = curved_error(scene, *unhidden, typical_i, options.threads);
