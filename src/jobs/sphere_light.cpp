@@ -14,7 +14,8 @@ std::optional<SphereLight> sphere_light(const Surface &surface, std::size_t band
     return {};
   const double half = phase_rad / 2, l_v = std::cos(phase_rad);
   const Vec3<Facet> l{std::sin(half), 0, std::cos(half)}, v{-l.x, 0, l.z};
-  const FresnelFactors f = surface.material().measured ? FresnelFactors{} : surface.fresnel(band, l_v);
+  const FresnelFactors f =
+      surface.material().measured ? FresnelFactors{} : surface.fresnel(band, l_v);
   const double mirror = surface.mirror_part(band, std::cos(half));
   SphereLight out{mirror * f.a / 4, mirror * f.b / 4};
   constexpr int azimuths = 32;

@@ -10,8 +10,8 @@ namespace umov::jobs {
 struct SphereLight {
   double i = 0, q = 0;
 };
-/// By quadrature over its normals, for a point Sun; empty for anisotropic surfaces, whose sphere has
-/// no one curve.
+/// By quadrature over its normals, for a point Sun; empty for anisotropic surfaces, whose sphere
+/// has no one curve.
 std::optional<SphereLight> sphere_light(const Surface &surface, std::size_t band, double phase_rad);
 
 } // namespace umov::jobs

@@ -81,8 +81,8 @@ Mesh make_cubesat(const CubesatOptions &options) {
     const Vec3<Body> out = is_along_x ? Vec3<Body>{side, 0, 0} : Vec3<Body>{0, side, 0};
     // Hinged at the top of the body, as long as it is tall: cells up.
     const Vec3<Body> centre = out * (reach + gap_m + z / 2) + Vec3<Body>{0, 0, z / 2 - thick};
-    const Vec3<Body> half = is_along_x ? Vec3<Body>{z / 2, y / 2, thick / 2}
-                                       : Vec3<Body>{x / 2, z / 2, thick / 2};
+    const Vec3<Body> half =
+        is_along_x ? Vec3<Body>{z / 2, y / 2, thick / 2} : Vec3<Body>{x / 2, z / 2, thick / 2};
     constexpr const char *names[] = {"panel_px", "panel_mx", "panel_py", "panel_my"};
     add_panel(builder, centre, half, names[k]);
   }
@@ -111,8 +111,13 @@ Mesh make_rocket_body(const RocketBodyOptions &o) {
   const double r = 0.5 * o.diameter_m, n = 0.5 * o.nozzle_diameter_m, z = o.nozzle_length_m;
   const double throat = 0.35 * n, dome = std::min(0.5 * r, 0.2 * o.length_m);
   // The nozzle is closed by a disk at its exit: what one sees of its inside is dark.
-  const std::vector<Outline> outline{{0, 0}, {0, n}, {z, throat}, {z, r}, {z + o.length_m - dome, r},
-                                     {z + o.length_m, 0.4 * r}, {z + o.length_m, 0}};
+  const std::vector<Outline> outline{{0, 0},
+                                     {0, n},
+                                     {z, throat},
+                                     {z, r},
+                                     {z + o.length_m - dome, r},
+                                     {z + o.length_m, 0.4 * r},
+                                     {z + o.length_m, 0}};
   const std::vector<std::uint32_t> groups{nozzle, nozzle, aft, tank, forward, forward};
   builder.revolve(outline, o.sides, {}, [&](std::size_t i, std::size_t) { return groups[i]; });
   return std::move(builder.mesh);

@@ -1,4 +1,5 @@
-// Tables of two or three columns: wavelength, n and k, as spectrometers, ellipsometers and papers give them.
+// Tables of two or three columns: wavelength, n and k, as spectrometers, ellipsometers and papers
+// give them.
 
 #include "io/index/index_columns.h"
 
@@ -32,7 +33,8 @@ std::vector<std::string> words_of(std::string_view line) {
 
 bool is_numeric(const std::vector<std::string> &words) {
   return (words.size() == 2 || words.size() == 3) &&
-         std::ranges::all_of(words, [](const std::string &w) { return parse_number(w).has_value(); });
+         std::ranges::all_of(words,
+                             [](const std::string &w) { return parse_number(w).has_value(); });
 }
 
 /// Lines with something in them; comments and the header are collected for the unit that they name.
@@ -101,11 +103,12 @@ Result<IndexTable> read_index_columns(std::string_view text, const std::string &
                   {file, row.line});
     nm.push_back(*parse_number(row.words[0]));
     if (nm.size() > 1 && !(nm.back() > nm[nm.size() - 2]))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("wavelength {:g} follows {:g}; increasing ones were expected. Sort them "
-                              "and leave repeated ones out.",
-                              nm.back(), nm[nm.size() - 2]),
-                  {file, row.line});
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("wavelength {:g} follows {:g}; increasing ones were expected. Sort them "
+                      "and leave repeated ones out.",
+                      nm.back(), nm[nm.size() - 2]),
+          {file, row.line});
     n.push_back(*parse_number(row.words[1]));
     if (row.words.size() == 3)
       k.push_back(*parse_number(row.words[2]));
@@ -117,11 +120,12 @@ Result<IndexTable> read_index_columns(std::string_view text, const std::string &
   if (unit == 0 && nm.back() <= 100)
     unit = 1000;
   if (unit == 0)
-    return fail(ErrorCode::BadInput,
-                fmt::format("wavelengths {:g} to {:g}: nm or um? Say it in the header line, such as "
-                            "wavelength_nm,n,k",
-                            nm.front(), nm.back()),
-                {file});
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("wavelengths {:g} to {:g}: nm or um? Say it in the header line, such as "
+                    "wavelength_nm,n,k",
+                    nm.front(), nm.back()),
+        {file});
   for (double &one : nm)
     one *= unit;
   IndexTable out;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <umov/core/quantity.h>
-#include <umov/shape/topology.h>
 #include <umov/shape/primitives.h>
+#include <umov/shape/topology.h>
 
 namespace umov {
 namespace {
@@ -49,8 +49,8 @@ TEST(Spacecraft, CellsFaceUpAndTheBowlOpensUp) {
                       mesh.positions[t.vertex[2]] - mesh.positions[t.vertex[0]])
                     .z,
                 0);
-  // Area of a paraboloid of radius R and focal length f: (8 pi/3) f^2 ((1 + R^2/(4 f^2))^(3/2) - 1);
-  // 48 flat sides and 12 rings lie inside it by 1 %.
+  // Area of a paraboloid of radius R and focal length f: (8 pi/3) f^2 ((1 + R^2/(4 f^2))^(3/2) -
+  // 1); 48 flat sides and 12 rings lie inside it by 1 %.
   const double f = 0.8, k = 1 + 1 / (4 * f * f);
   const double exact = 8 * pi / 3 * f * f * (std::pow(k, 1.5) - 1);
   EXPECT_NEAR(area_of(make_dish(), "dish_front"), exact, 0.01 * exact);

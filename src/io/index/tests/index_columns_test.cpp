@@ -14,20 +14,23 @@ std::complex<double> at(const std::string &text, double nm) {
 
 TEST(IndexColumns, SpellingsOfOneTableAreOneTable) {
   const std::complex<double> expected{1.5, 0.02}; // half way between the rows, by hand
-  for (const char *text : {"wavelength_nm,n,k\n500,1.4,0.01\n600,1.6,0.03\n", "500 1.4 0.01\n600 1.6 0.03\n",
-                           "# mine\n0.5\t1.4\t0.01\n0.6\t1.6\t0.03\n",
-                           "Wavelength (um); n; k\r\n0.5; 1.4; 0.01\r\n0.6; 1.6; 0.03\r\n",
-                           "wl(\xc2\xb5m) n k\n0.5 1.4 0.01\n0.6 1.6 0.03\n",
-                           "angstrom,n,k\n5000,1.4,0.01\n6000,1.6,0.03\n"})
+  for (const char *text :
+       {"wavelength_nm,n,k\n500,1.4,0.01\n600,1.6,0.03\n", "500 1.4 0.01\n600 1.6 0.03\n",
+        "# mine\n0.5\t1.4\t0.01\n0.6\t1.6\t0.03\n",
+        "Wavelength (um); n; k\r\n0.5; 1.4; 0.01\r\n0.6; 1.6; 0.03\r\n",
+        "wl(\xc2\xb5m) n k\n0.5 1.4 0.01\n0.6 1.6 0.03\n",
+        "angstrom,n,k\n5000,1.4,0.01\n6000,1.6,0.03\n"})
     EXPECT_NEAR(std::abs(at(text, 550) - expected), 0, 1e-12) << text;
   EXPECT_FALSE(read_index_text("500,1.4\n600,1.6\n", "n.csv")->has_k);
 }
 
 TEST(IndexColumns, RefusesWithTheLine) {
-  for (const auto &[text, word] :
-       {std::pair{"nm,n,k\n500,1.4,0\n600,1.4\n", "mine.csv:3: "}, {"nm,n,k\n500,1.4,0\n600,x,0\n", "mine.csv:3: "},
-        {"nm,n,k\n600,1.4,0\n500,1.4,0\n", "increasing"}, {"x,n,k\n50,1.4,0\n500,1.4,0\n", "nm or um"},
-        {"nm,n,k\n500,-1.4,0\n600,1.4,0\n", "n = -1.4"}, {"hello\nworld\n", "wavelength, n, k"}}) {
+  for (const auto &[text, word] : {std::pair{"nm,n,k\n500,1.4,0\n600,1.4\n", "mine.csv:3: "},
+                                   {"nm,n,k\n500,1.4,0\n600,x,0\n", "mine.csv:3: "},
+                                   {"nm,n,k\n600,1.4,0\n500,1.4,0\n", "increasing"},
+                                   {"x,n,k\n50,1.4,0\n500,1.4,0\n", "nm or um"},
+                                   {"nm,n,k\n500,-1.4,0\n600,1.4,0\n", "n = -1.4"},
+                                   {"hello\nworld\n", "wavelength, n, k"}}) {
     const auto table = read_index_text(text, "mine.csv");
     ASSERT_FALSE(table) << text;
     EXPECT_NE(table.error().text().find(word), std::string::npos) << table.error().text();
