@@ -147,6 +147,18 @@ void add_spacecraft(CLI::App &verb, ShapeOptions &o) {
       ->capture_default_str();
 }
 
+void add_foil_and_arrays(CLI::App &verb, ShapeOptions &o) {
+  verb.add_option("--crumple", o.crumple, "box-wing: height of the folds of the bus's foil [m]")
+      ->check(CLI::Range(0.0, 0.05))
+      ->capture_default_str();
+  verb.add_option("--crumple-slope", o.crumple_slope, "mli: rms slope of its folds")
+      ->check(CLI::Range(0.0, 3.0))
+      ->capture_default_str();
+  verb.add_option("--array-angle-deg", o.array_angle_deg,
+                  "Turn of the solar arrays about their boom")
+      ->capture_default_str();
+}
+
 void add_rough_surface(CLI::App &verb, RoughSurfaceOptions &rough) {
   verb.add_option("--cells", rough.cells, "rough-surface: cells per side")->capture_default_str();
   verb.add_option("--cell", rough.cell_m, "rough-surface: side of a cell [m]")
@@ -204,16 +216,7 @@ void add_mesh_make(CLI::App &mesh, const Exit &exit_with) {
   verb->add_option("--sides", options->sides, "Sides of round parts")
       ->check(CLI::Range(8, 4096))
       ->capture_default_str();
-  verb->add_option("--crumple", options->crumple,
-                   "box-wing: height of the folds of the bus's foil [m]")
-      ->check(CLI::Range(0.0, 0.05))
-      ->capture_default_str();
-  verb->add_option("--crumple-slope", options->crumple_slope, "mli: rms slope of its folds")
-      ->check(CLI::Range(0.0, 3.0))
-      ->capture_default_str();
-  verb->add_option("--array-angle-deg", options->array_angle_deg,
-                   "Turn of the solar arrays about their boom")
-      ->capture_default_str();
+  add_foil_and_arrays(*verb, *options);
   add_spacecraft(*verb, *options);
   add_rough_surface(*verb, options->rough);
   verb->add_flag("--two-sided", options->two_sided, "Materials \"front\" and \"back\"");

@@ -76,6 +76,30 @@ FacetReflectance reflectance_of(const Interface &interface) {
   return [&interface](double cosine) { return interface.reflection(std::min(cosine, 1.0)).a; };
 }
 
+/// Light from below the surface, if the material has any. `out` must stay where it is.
+Result<void> add_body(const Material &material, const Band &band, const MicrofacetLobe &lobe,
+                      BandTables &out) {
+  if (!material.body)
+    return {};
+  const auto reflectance =
+      value_at(material.body->reflectance, band.wavelength, "the body reflectance");
+  if (!reflectance)
+    return fail(ErrorCode::BadInput, fmt::format("material \"{}\", band \"{}\": {}", material.name,
+                                                 band.name, reflectance.error().message));
+  if (material.body->is_polarized)
+    out.body.emplace(*reflectance, out.interface);
+  else if (out.interface.is_void())
+    out.body.emplace(*reflectance, AlbedoTable()); // exactly R_sub / pi
+  else
+    out.body.emplace(*reflectance,
+                     AlbedoTable(lobe, reflectance_of(out.interface),
+                                 out.interreflected ? FacetReflectance([&out](double n_k) {
+                                   return out.interreflected->albedo(n_k);
+                                 })
+                                                    : FacetReflectance{}));
+  return {};
+}
+
 } // namespace
 
 Result<Surface> Surface::compile(const Material &material, const std::vector<Band> &bands) {
@@ -126,25 +150,7 @@ Result<Surface> Surface::compile(const Material &material, const std::vector<Ban
         tables->furnace.push_back(std::make_shared<AlbedoTable>(lobe, FacetReflectance{}));
       out.interreflected.emplace(tables->furnace.back(), out.interface.mean_reflectance());
     }
-    if (!material.body)
-      continue;
-    auto reflectance =
-        value_at(material.body->reflectance, band.wavelength, "the body reflectance");
-    if (!reflectance)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("material \"{}\", band \"{}\": {}", material.name, band.name,
-                              reflectance.error().message));
-    if (material.body->is_polarized)
-      out.body.emplace(*reflectance, out.interface);
-    else if (out.interface.is_void())
-      out.body.emplace(*reflectance, AlbedoTable()); // exactly R_sub / pi
-    else
-      out.body.emplace(*reflectance,
-                       AlbedoTable(lobe, reflectance_of(out.interface),
-                                   out.interreflected ? FacetReflectance([&out](double n_k) {
-                                     return out.interreflected->albedo(n_k);
-                                   })
-                                                      : FacetReflectance{}));
+    UMOV_TRY(add_body(material, band, lobe, out));
   }
   tables->clear_share = material.haze ? 1 - material.haze->share : 1;
   tables->has_diffuse =
