@@ -79,6 +79,11 @@ PoseLight::PoseLight(PoseLight &&) noexcept = default;
 PoseLight &PoseLight::operator=(PoseLight &&) noexcept = default;
 PoseLight::~PoseLight() = default;
 
+Result<void> PoseLight::check(const Scenario &scenario, const SignatureRequest &request) {
+  UMOV_TRY(source_of(request));
+  return check_request(scenario, request);
+}
+
 Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureRequest &request,
                                   const JobOptions &options, Diagnostics &diagnostics) {
   UMOV_ASSIGN(source, source_of(request));

@@ -116,6 +116,7 @@ void tell_of_masks(const LightModel &model, const std::filesystem::path &file, b
 Result<void> signature(const Scenario &scenario, const PoseList &poses,
                        const SignatureRequest &request, TableSink &sink, const JobOptions &options,
                        const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_TRY(PoseLight::check(scenario, request));
   monitor.tell("preparing the scene ...");
   const bool had_file = file_exists(request.mask_file);
   UMOV_ASSIGN(light, PoseLight::make(scenario, request, options, diagnostics));

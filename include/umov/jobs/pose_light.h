@@ -14,7 +14,10 @@ namespace umov::jobs {
 /// directions, its parts turned as far as directions tell. Thread safe.
 class PoseLight {
 public:
-  /// Reads and compiles. Usage for what does not go together; warns of parts that cannot turn here.
+  /// Usage or BadInput for what does not go together, before anything is read.
+  static Result<void> check(const Scenario &scenario, const SignatureRequest &request);
+  /// Checks, reads and compiles. Usage for what does not go together; warns of parts that cannot
+  /// turn here.
   static Result<PoseLight> make(const Scenario &scenario, const SignatureRequest &request,
                                 const JobOptions &options, Diagnostics &diagnostics);
   PoseLight(PoseLight &&) noexcept;
