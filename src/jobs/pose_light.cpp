@@ -26,8 +26,7 @@ Result<Stokes<ScatteringPlane>> source_of(const SignatureRequest &request) {
 }
 
 /// What the options say against each other.
-Result<void> check_request(const Scenario &scenario, const SignatureRequest &request,
-                           LightMethod method) {
+Result<void> check_request(const Scenario &scenario, const SignatureRequest &request) {
   if (scenario.objects.size() > 1)
     return fail(ErrorCode::BadInput,
                 fmt::format("holds {} objects; a signature is of one. Keep one [[object]].",
@@ -38,6 +37,7 @@ Result<void> check_request(const Scenario &scenario, const SignatureRequest &req
     return fail(ErrorCode::Usage, "masks are for sunlight; a laser takes rays, own heat paths");
   if ((request.source == Source::Thermal) != !request.temperatures.empty())
     return fail(ErrorCode::Usage, "--source thermal and --temperature go together");
+  const LightMethod method = request.method.value_or(scenario.light.method);
   if (!request.mask_file.empty() && method == LightMethod::Rays)
     return fail(ErrorCode::Usage, "--masks goes with --visibility masks or auto");
   return {};
@@ -88,7 +88,7 @@ Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureReque
                                   const JobOptions &options, Diagnostics &diagnostics) {
   UMOV_ASSIGN(source, source_of(request));
   const LightOptions light = light_asked_for(scenario, request, source, options);
-  UMOV_TRY(check_request(scenario, request, light.method));
+  UMOV_TRY(check_request(scenario, request));
   const bool is_sun = request.source == Source::Sun;
   UMOV_ASSIGN(
       object,
