@@ -55,5 +55,10 @@ install(DIRECTORY examples DESTINATION ${documents})
 # What the scenarios of examples read.
 install(DIRECTORY data/tle data/mesh DESTINATION ${documents}/data)
 if(UMOV_WITH_CLI)
-  install(FILES docs/umov.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  # From the same source as --help.
+  install(CODE "
+    set(place \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}/man1\")
+    file(MAKE_DIRECTORY \"\${place}\")
+    execute_process(COMMAND $<TARGET_FILE:umov> man -o \"\${place}/umov.1\"
+                    COMMAND_ERROR_IS_FATAL ANY)")
 endif()

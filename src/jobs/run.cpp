@@ -64,7 +64,7 @@ void warn_of_accuracy(const LightCurveOutcome &outcome, const LightOptions &ligh
         worst < 1 ? fmt::format("worst {:.3g}", worst) : "some are not known at all",
         light.method == LightMethod::Masks
             ? ": masks alone are as good as they are; render.method = \"auto\" mends them by rays"
-            : ": most points per pose were reached"));
+            : ": the largest number of points per pose was reached"));
 }
 
 /// The same of the Earth's light, whose patches are cut up to a bound.

@@ -134,8 +134,8 @@ std::string summarize(const LightCurveOutcome &outcome) {
     const bool is_outside = seconds_between(pass.culmination, pass.rise) < 0 ||
                             seconds_between(pass.set, pass.culmination) < 0;
     out += fmt::format("  {}  max alt {:.0f} deg{}  phase {:.0f}-{:.0f} deg", pass.id,
-                       pass.culmination_altitude.degrees(), is_outside ? " (outside the span)" : "",
-                       n.phase_min, n.phase_max);
+                       pass.culmination_altitude.degrees(),
+                       is_outside ? " (not among the epochs)" : "", n.phase_min, n.phase_max);
     if (std::isfinite(n.brightest))
       out += fmt::format("  mag {:.1f} to {}{:.1f} AB  p up to {:.0f} %", n.brightest,
                          n.has_limit ? "> " : "", n.faintest, 100 * n.p_max);

@@ -84,4 +84,5 @@ def test_pkg_config(prefix, tmp_path):
 def test_documents(prefix):
     for name in ("share/doc/umov/LICENSE", "share/man/man1/umov.1", "share/doc/umov/conventions.md"):
         assert (prefix / name).stat().st_size > 0
+    assert "umov signature" in (prefix / "share/man/man1/umov.1").read_text(encoding="utf-8")
     assert not list((prefix / "include").rglob("paper.h"))
