@@ -77,7 +77,7 @@ struct ArticulatedEngine::State {
                 StokesTable &out) const;
   [[nodiscard]] std::vector<ReadLock> hold_masks(std::span<const Pose> poses,
                                                  std::span<const double> angles_rad,
-                                                 unsigned threads) const;
+                                                 const LightTask &task) const;
   bool add_up(const Pose &pose, const std::vector<PartMotion> &to_body, Workspace &work) const;
   void place_others(std::size_t which, const std::vector<PartMotion> &to_body,
                     PartWork &part) const;
@@ -290,7 +290,7 @@ void ArticulatedEngine::State::put(const Pose &pose, const Workspace &work, std:
 /// Masks of all parts, in the directions that these see.
 std::vector<ReadLock> ArticulatedEngine::State::hold_masks(std::span<const Pose> poses,
                                                            std::span<const double> angles_rad,
-                                                           unsigned threads) const {
+                                                           const LightTask &task) const {
   std::vector<std::vector<Pose>> by_part(parts.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const auto to_body = motions(angles_rad.subspan(k * joints.size(), joints.size()));
@@ -299,7 +299,7 @@ std::vector<ReadLock> ArticulatedEngine::State::hold_masks(std::span<const Pose>
   }
   std::vector<ReadLock> out;
   for (std::size_t p = 0; p < parts.size(); ++p)
-    out.push_back(parts[p]->engine->hold_masks(by_part[p], threads));
+    out.push_back(parts[p]->engine->hold_masks(by_part[p], task));
   return out;
 }
 
@@ -374,7 +374,7 @@ bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const do
                                     ? *std::max_element(material_of.begin(), material_of.end()) + 1
                                     : 0;
   out.material_i.assign(poses.size() * materials * s.bands, 0);
-  const std::vector<ReadLock> held = s.hold_masks(poses, angles_rad, task.threads);
+  const std::vector<ReadLock> held = s.hold_masks(poses, angles_rad, task);
   constexpr std::size_t block = 64;
   parallel_for((poses.size() + block - 1) / block, task.threads, [&](std::size_t begin) {
     State::Workspace work = s.workspace(materials, material_of);

@@ -55,7 +55,7 @@ void Engine::State::prepare(const Pose &pose, Prepared &out) const {
 }
 
 template <class Body>
-void Engine::State::for_each(std::span<const Pose> poses, unsigned threads,
+void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task,
                              const Body &body) const {
   std::vector<std::uint32_t> order(poses.size());
   if (masks && poses.size() >= ordered_from) {
@@ -63,14 +63,17 @@ void Engine::State::for_each(std::span<const Pose> poses, unsigned threads,
     order = order_for_masks(poses, directions, masks->bytes() / directions);
   } else
     std::iota(order.begin(), order.end(), 0u);
-  const ReadLock held = hold_masks(poses, threads);
-  const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(threads)) + 1,
+  const ReadLock held = hold_masks(poses, task);
+  const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(task.threads)) + 1,
                                       poses_per_task_min, poses_per_task_max);
-  parallel_for((poses.size() + size - 1) / size, threads, [&](std::size_t task) {
+  const auto is_cancelled = [&] { return task.cancel != nullptr && *task.cancel; };
+  parallel_for((poses.size() + size - 1) / size, task.threads, [&](std::size_t part) {
+    if (is_cancelled()) // masks may be lacking
+      return;
     Workspace work(*this);
-    const std::size_t begin = task * size, end = std::min(poses.size(), begin + size);
+    const std::size_t begin = part * size, end = std::min(poses.size(), begin + size);
     prepare(poses[order[begin]], work.prepared[0]);
-    for (std::size_t k = begin; k < end; ++k) {
+    for (std::size_t k = begin; k < end && !is_cancelled(); ++k) {
       if (k + 1 < end)
         prepare(poses[order[k + 1]], work.prepared[(k + 1 - begin) % 2]);
       body(order[k], poses[order[k]], work.prepared[(k - begin) % 2], work);
@@ -123,8 +126,8 @@ void Engine::State::take_masks(std::optional<MaskStore> ready) {
   facts.mask_bytes = masks->bytes();
 }
 
-ReadLock Engine::State::hold_masks(std::span<const Pose> poses, unsigned threads) const {
-  return masks ? masks->ensure(poses, threads) : ReadLock();
+ReadLock Engine::State::hold_masks(std::span<const Pose> poses, const LightTask &task) const {
+  return masks ? masks->ensure(poses, task.threads, task.cancel) : ReadLock();
 }
 
 std::uint64_t Engine::State::key_of_masks() const {
@@ -203,10 +206,8 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
   out.material_i.assign(poses.size() * materials * band_count(), 0);
   const bool has_u_or_v = s.compiled.has_u;
   s.for_each(
-      poses, task.threads,
+      poses, task,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
-        if (task.cancel != nullptr && *task.cancel)
-          return;
         const bool has_light = s.sum(pose, at, work);
         out.method[row] = !s.masks         ? PoseMethod::Exact
                           : work.is_mended ? PoseMethod::Mended
@@ -235,8 +236,10 @@ Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out
                                            s.compiled.colours.surface(slot).material().name +
                                            "\" is lit facet by facet and has no sums");
   begin_abundances(s.compiled, s.scene.mesh, poses, out);
+  LightTask task;
+  task.threads = threads;
   s.for_each(
-      poses, threads,
+      poses, task,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
         out.is_dark[row] = s.sum(pose, at, work) ? 0 : 1;
         if (out.is_dark[row] == 0)

@@ -2,6 +2,7 @@
 
 #include "light/fast/octahedron.h"
 
+#include <algorithm>
 #include <umov/core/parallel.h>
 
 namespace umov {
@@ -10,6 +11,8 @@ namespace {
 const MaskTableStore &table_of(const MaskStore &masks, bool is_large) {
   return is_large ? masks.large : masks.small;
 }
+
+bool is_true(const std::atomic<bool> *cancel) { return cancel != nullptr && *cancel; }
 
 } // namespace
 
@@ -53,32 +56,41 @@ std::vector<std::uint32_t> LazyMasks::missing(std::span<const Pose> poses, bool 
   return out;
 }
 
-void LazyMasks::trace(const std::vector<std::uint32_t> &small,
-                      const std::vector<std::uint32_t> &large, unsigned threads) {
-  tracer_.trace(small, false, threads, store_);
-  tracer_.trace(large, true, threads, store_);
+/// A few at a time, for whoever wants to stop.
+void LazyMasks::trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
+                      const std::atomic<bool> *cancel) {
+  constexpr std::size_t at_once = 64;
+  while (!directions.empty() && !is_true(cancel)) {
+    const std::size_t count = std::min(at_once, directions.size());
+    tracer_.trace(directions.first(count), is_large, threads, store_);
+    directions = directions.subspan(count);
+    has_grown_ = true;
+  }
   view_ = store_.view();
-  has_grown_ = true;
   is_complete_ = missing(false).empty() && missing(true).empty();
 }
 
-ReadLock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads) {
+ReadLock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads,
+                           const std::atomic<bool> *cancel) {
   if (is_complete_)
     return ReadLock(mutex_);
   for (;;) {
     {
       ReadLock lock(mutex_);
-      if (missing(poses, false, threads).empty() && missing(poses, true, threads).empty())
+      if (is_true(cancel) ||
+          (missing(poses, false, threads).empty() && missing(poses, true, threads).empty()))
         return lock;
     }
     const WriteLock lock(mutex_);
-    trace(missing(poses, false, threads), missing(poses, true, threads), threads);
+    for (const bool is_large : {false, true})
+      trace(missing(poses, is_large, threads), is_large, threads, cancel);
   }
 }
 
 void LazyMasks::ensure_all(unsigned threads) {
   const WriteLock lock(mutex_);
-  trace(missing(false), missing(true), threads);
+  for (const bool is_large : {false, true})
+    trace(missing(is_large), is_large, threads, nullptr);
 }
 
 } // namespace umov

@@ -16,8 +16,10 @@ public:
   /// `known`: empty_masks, or what a file held.
   LazyMasks(MaskStore known, MaskTracer tracer);
 
-  /// Traces what poses lack. As long as the lock is held `view` stays as it is.
-  [[nodiscard]] ReadLock ensure(std::span<const Pose> poses, unsigned threads);
+  /// Traces what poses lack. As long as the lock is held `view` stays as it is. Some of it may
+  /// still be lacking once `cancel` is true.
+  [[nodiscard]] ReadLock ensure(std::span<const Pose> poses, unsigned threads,
+                                const std::atomic<bool> *cancel);
   void ensure_all(unsigned threads);
 
   /// What the loops read: it holds for poses that were ensured, while their lock is held.
@@ -35,8 +37,8 @@ private:
   [[nodiscard]] std::vector<std::uint32_t> missing(std::span<const Pose> poses, bool is_large,
                                                    unsigned threads) const;
   [[nodiscard]] std::vector<std::uint32_t> missing(bool is_large) const;
-  void trace(const std::vector<std::uint32_t> &small, const std::vector<std::uint32_t> &large,
-             unsigned threads);
+  void trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
+             const std::atomic<bool> *cancel);
 
   MaskStore store_;
   MaskTracer tracer_;

@@ -93,8 +93,8 @@ struct Engine::State {
   };
 
   [[nodiscard]] const backend::Masks *hiding() const { return masks ? &masks->view() : nullptr; }
-  /// Masks for these poses, as long as what is returned is held.
-  [[nodiscard]] ReadLock hold_masks(std::span<const Pose> poses, unsigned threads) const;
+  /// Masks for these poses, as long as what is returned is held; not all if the task is cancelled.
+  [[nodiscard]] ReadLock hold_masks(std::span<const Pose> poses, const LightTask &task) const;
   [[nodiscard]] std::uint64_t key_of_masks() const;
   void keep_masks() const;
   [[nodiscard]] std::size_t bands() const { return scene.bands.size(); }
@@ -117,9 +117,10 @@ struct Engine::State {
   /// Part of I in band 0 that flats reflect whose normal is within their lobe's half width of the
   /// half vector.
   double glint_share(const Pose &pose, const Prepared &at, Workspace &work) const;
-  /// Runs `body(row, pose, prepared, workspace)` for all poses, in an order that suits the masks.
+  /// Runs `body(row, pose, prepared, workspace)` for all poses, in an order that suits the masks;
+  /// for none any more once the task is cancelled.
   template <class Body>
-  void for_each(std::span<const Pose> poses, unsigned threads, const Body &body) const;
+  void for_each(std::span<const Pose> poses, const LightTask &task, const Body &body) const;
 
   // pose_sums.cpp
   void sum_facets(const Prepared &at, SumsStore &out) const; ///< by kernels

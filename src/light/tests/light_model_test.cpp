@@ -227,6 +227,23 @@ TEST(LightModel, HeatFollowsThePartsThatTurn) {
   }
 }
 
+// Masks of many directions take minutes: a job that is stopped does not wait for them, and what was
+// traced serves the next one.
+TEST(LightModel, TracingMasksCanBeStopped) {
+  const auto light = model({.method = LightMethod::Masks});
+  const auto poses = poses_of(100);
+  std::atomic<bool> cancel = true;
+  LightTask task;
+  task.cancel = &cancel;
+  StokesTable out;
+  const std::size_t before = light->mask_bytes();
+  EXPECT_FALSE(light->evaluate(poses, out, task));
+  EXPECT_EQ(light->mask_bytes(), before);
+  cancel = false;
+  ASSERT_TRUE(light->evaluate(poses, out, task));
+  EXPECT_EQ(out.i, lit(*model({.method = LightMethod::Masks}), poses).i);
+}
+
 TEST(LightModel, FewPosesTraceFewDirections) {
   const auto light = model({.method = LightMethod::Masks});
   const std::size_t before = light->mask_bytes();
