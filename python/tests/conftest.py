@@ -1,10 +1,15 @@
 """Tests of the package as it was built, beside the command of the same build."""
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 
 import pytest
+
+# Whoever starts the tests in the background may have SIGINT ignored, and then Python leaves it so;
+# what is asked of Ctrl-C here is asked of a terminal.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build/release"
