@@ -178,13 +178,21 @@ TEST(LightModel, DarknessSaysHowItIsKnown) {
     std::size_t dark = 0, doubted = 0;
     for (std::size_t k = 0; k < poses.size(); ++k) {
       EXPECT_NE(table.method[k], PoseMethod::Exact);
-      dark += table.is_dark[k];
+      dark += table.is_dark[k] != 0 ? 1u : 0u;
       doubted += table.is_dark[k] != 0 && table.i_err[k * 3] > 0 ? 1u : 0u;
     }
     ASSERT_GT(dark, 0U);
-    if (method == LightMethod::Auto)
+    if (method == LightMethod::Auto) {
       EXPECT_GT(doubted, 0U);
+    }
   }
+}
+
+Joint wings() {
+  Joint out;
+  out.name = "wings";
+  out.groups = {"panels"};
+  return out;
 }
 
 TEST(LightModel, OptionsOutsideTheirRangeAreRefused) {
@@ -198,14 +206,13 @@ TEST(LightModel, OptionsOutsideTheirRangeAreRefused) {
   EXPECT_EQ(refused({.bounces = 65}), "bounces is 65; 1 to 64 was expected");
   LightOptions kept;
   kept.mask_file = "some.masks";
-  EXPECT_NE(refused(kept, {{.name = "wings", .groups = {"panels"}}}).find("has its own"),
-            std::string::npos);
+  EXPECT_NE(refused(kept, {wings()}).find("has its own"), std::string::npos);
 }
 
 // A part that turns emits as it stands then, not as the mesh has it.
 TEST(LightModel, HeatFollowsThePartsThatTurn) {
   const Scene scene = box_wing();
-  const std::vector<Joint> joints{{.name = "wings", .groups = {"panels"}}};
+  const std::vector<Joint> joints{wings()};
   const std::vector<double> kelvin(scene.mesh.groups.size(), 3000);
   LightOptions options;
   options.accuracy = 0.002;
