@@ -1,114 +1,20 @@
 // umov mesh make: shapes of given sizes.
 
 #include "console.h"
+#include "mesh_shapes.h"
 #include "verbs.h"
 
 #include <filesystem>
-#include <fmt/format.h>
-#include <map>
-#include <umov/core/quantity.h>
 #include <umov/io/mesh_file.h>
 #include <umov/io/obj.h>
-#include <umov/shape/primitives.h>
-#include <umov/shape/rough_surface.h>
 
 namespace umov::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Sizes of the shapes; each shape uses those that its help line names.
-struct ShapeOptions {
-  std::string shape, output;
-  double radius = 1, length = 2, width = 1, height = 1, edge = 1, chamfer = 0.1;
-  std::vector<double> semi_axes{0.25, 0.25, 1};
-  int facets = 5000, sides = 48, units = 3, panels = 0;
-  std::vector<double> bus, wing;
-  double diameter = 2, yoke = 0.5, focus = 0.8;
-  std::vector<double> nozzle{1, 0.8};
-  double array_angle_deg = 0, crumple = 0, crumple_slope = 0;
-  bool two_sided = false;
-  RoughSurfaceOptions rough;
-};
-
-using Maker = std::function<Mesh(const ShapeOptions &)>;
-
-SatelliteOptions satellite_of(const ShapeOptions &o) {
-  SatelliteOptions out;
-  if (!o.bus.empty())
-    out.bus_m = {o.bus[0], o.bus[1], o.bus[2]};
-  if (!o.wing.empty()) {
-    out.wing_length_m = o.wing[0];
-    out.wing_width_m = o.wing[1];
-  }
-  out.yoke_m = o.yoke;
-  return out;
-}
-
-const std::map<std::string, Maker> &makers() {
-  static const std::map<std::string, Maker> all{
-      {"sphere",
-       [](const auto &o) { return make_sphere(o.radius, static_cast<std::size_t>(o.facets)); }},
-      {"plate", [](const auto &o) { return make_plate(o.width, o.height, o.two_sided); }},
-      {"mli", [](const auto &o) { return make_mli_sheet(o.width, o.crumple_slope); }},
-      {"cylinder",
-       [](const auto &o) {
-         return make_cylinder(o.radius, o.length, static_cast<std::size_t>(o.sides));
-       }},
-      {"chamfered-cube", [](const auto &o) { return make_chamfered_cube(o.edge, o.chamfer); }},
-      {"cigar",
-       [](const auto &o) {
-         return make_ellipsoid(o.semi_axes[0], o.semi_axes[1], o.semi_axes[2],
-                               static_cast<std::size_t>(o.facets));
-       }},
-      {"hst",
-       [](const auto &o) {
-         HstOptions hst;
-         hst.sides = static_cast<std::size_t>(o.sides);
-         hst.array_angle_rad = o.array_angle_deg * pi / 180;
-         return make_hst(hst);
-       }},
-      {"box-wing",
-       [](const auto &o) {
-         return o.bus.empty() && o.wing.empty()
-                    ? make_box_wing(
-                          {.facets = static_cast<std::size_t>(o.facets), .crumple_m = o.crumple})
-                    : make_satellite(satellite_of(o));
-       }},
-      {"cubesat",
-       [](const auto &o) {
-         return make_cubesat({.units = static_cast<std::size_t>(o.units),
-                              .panels = static_cast<std::size_t>(o.panels)});
-       }},
-      {"rocket-body",
-       [](const auto &o) {
-         return make_rocket_body({.length_m = o.length,
-                                  .diameter_m = o.diameter,
-                                  .nozzle_length_m = o.nozzle[0],
-                                  .nozzle_diameter_m = o.nozzle[1],
-                                  .sides = static_cast<std::size_t>(o.sides)});
-       }},
-      {"dish",
-       [](const auto &o) {
-         return make_dish({.diameter_m = o.diameter,
-                           .focus_m = o.focus,
-                           .sides = static_cast<std::size_t>(o.sides)});
-       }},
-      {"agena",
-       [](const auto &o) { return make_agena({.sides = static_cast<std::size_t>(o.sides)}); }},
-  };
-  return all;
-}
-
-Result<Mesh> mesh_for(const ShapeOptions &options) {
-  if (options.shape != "rough-surface")
-    return makers().at(options.shape)(options);
-  UMOV_ASSIGN(field, make_height_field(options.rough));
-  return mesh_of(field);
-}
-
 Result<void> make(const ShapeOptions &options) {
-  UMOV_ASSIGN(mesh, mesh_for(options));
+  UMOV_ASSIGN(mesh, make_shape(options));
   if (options.output.empty() || options.output == "-")
     return put("", write_obj(mesh, options.shape, MtlUse::None).obj);
   const fs::path path = options.output;
@@ -180,10 +86,6 @@ void add_mesh_make(CLI::App &mesh, const Exit &exit_with) {
   auto *verb = mesh.add_subcommand("make", "Make a shape as OBJ and MTL, in metres, +Z up");
   auto options = std::make_shared<ShapeOptions>();
   auto common = std::make_shared<Common>();
-  std::vector<std::string> names;
-  for (const auto &[name, maker] : makers())
-    names.push_back(name);
-  names.emplace_back("rough-surface");
   verb->add_option("shape", options->shape,
                    "sphere (--radius --facets), plate (--width --height --two-sided), "
                    "mli (--width --crumple-slope), cylinder "
@@ -195,7 +97,7 @@ void add_mesh_make(CLI::App &mesh, const Exit &exit_with) {
                    "rough-surface (--cells "
                    "--cell --slope --correlation --hurst --seed)")
       ->required()
-      ->check(CLI::IsMember(names));
+      ->check(CLI::IsMember(shape_names()));
   verb->add_option("-o,--output", options->output, "OBJ file; the MTL goes beside it");
   const auto length = CLI::Range(1e-6, 1e6);
   verb->add_option("--radius", options->radius, "[m]")->check(length)->capture_default_str();
