@@ -28,7 +28,10 @@ ShadowModel shadow_from(const std::string &word) {
   return word == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
 }
 
-Rows rows_of(Attention &attention, Result<Rows> &&result) {
+/// Rows of a job, run off the calling thread; a stop leaves those that were done.
+template <class Job> Rows rows_of(nb::handle watch, const Job &job) {
+  Attention attention(watch);
+  Result<Rows> result = attend(attention, job);
   attention.settle(was_interrupted(result) ||
                    (result && result->stopped && result->stopped->code == ErrorCode::Interrupted));
   return take(std::move(result));
@@ -36,26 +39,20 @@ Rows rows_of(Attention &attention, Result<Rows> &&result) {
 
 Rows find_passes_of(const jobs::PassesRequest &request, const jobs::JobOptions &options,
                     nb::handle watch) {
-  Attention attention(watch);
-  return rows_of(
-      attention,
-      attend(attention,
-             [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Rows> {
-               UMOV_ASSIGN(found, jobs::passes(request, options, monitor, diagnostics));
-               return Rows{jobs::passes_table(request, found), found.stopped};
-             }));
+  return rows_of(watch,
+                 [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Rows> {
+                   UMOV_ASSIGN(found, jobs::passes(request, options, monitor, diagnostics));
+                   return Rows{jobs::passes_table(request, found), found.stopped};
+                 });
 }
 
 Rows ephemeris_of(const jobs::EphemerisRequest &request, const jobs::JobOptions &options,
                   nb::handle watch) {
-  Attention attention(watch);
-  return rows_of(
-      attention,
-      attend(attention,
-             [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Rows> {
-               UMOV_ASSIGN(out, jobs::ephemeris(request, options, monitor, diagnostics));
-               return Rows{std::move(out.table), out.error};
-             }));
+  return rows_of(watch,
+                 [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Rows> {
+                   UMOV_ASSIGN(out, jobs::ephemeris(request, options, monitor, diagnostics));
+                   return Rows{std::move(out.table), out.error};
+                 });
 }
 
 /// The site and span that every request of this file has.
