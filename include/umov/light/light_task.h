@@ -3,6 +3,9 @@
 
 namespace umov {
 
+/// Somebody wants the work to end. nullptr: nobody can.
+inline bool is_stopped(const std::atomic<bool> *cancel) { return cancel != nullptr && *cancel; }
+
 /// How a batch of poses is lit: which optional columns of the table are filled, on how many
 /// threads, and when to stop.
 struct LightTask {

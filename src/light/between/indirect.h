@@ -7,12 +7,11 @@
 #include <atomic>
 #include <span>
 #include <umov/light/integrator.h>
+#include <umov/light/light_task.h>
 #include <umov/light/thermal.h>
 #include <umov/shape/occluder.h>
 
 namespace umov {
-
-inline bool is_stopped(const std::atomic<bool> *cancel) { return cancel != nullptr && *cancel; }
 
 /// Light by paths of 2 to options.bounces surfaces for each of a number of poses, drawn until the
 /// half-width of I falls below options.accuracy times the whole, direct_i[pose * bands + band]

@@ -379,12 +379,12 @@ bool ArticulatedEngine::evaluate(std::span<const Pose> poses, std::span<const do
   parallel_for((poses.size() + block - 1) / block, task.threads, [&](std::size_t begin) {
     State::Workspace work = s.workspace(materials, material_of);
     for (std::size_t k = begin * block; k < std::min(poses.size(), (begin + 1) * block); ++k) {
-      if (task.cancel != nullptr && *task.cancel)
+      if (is_stopped(task.cancel))
         return;
       s.evaluate(poses[k], angles_rad.subspan(k * s.joints.size(), s.joints.size()), work, k, out);
     }
   });
-  return task.cancel == nullptr || !*task.cancel;
+  return !is_stopped(task.cancel);
 }
 
 } // namespace umov

@@ -66,14 +66,13 @@ void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task,
   const ReadLock held = hold_masks(poses, task);
   const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(task.threads)) + 1,
                                       poses_per_task_min, poses_per_task_max);
-  const auto is_cancelled = [&] { return task.cancel != nullptr && *task.cancel; };
   parallel_for((poses.size() + size - 1) / size, task.threads, [&](std::size_t part) {
-    if (is_cancelled()) // masks may be lacking
+    if (is_stopped(task.cancel)) // masks may be lacking
       return;
     Workspace work(*this);
     const std::size_t begin = part * size, end = std::min(poses.size(), begin + size);
     prepare(poses[order[begin]], work.prepared[0]);
-    for (std::size_t k = begin; k < end && !is_cancelled(); ++k) {
+    for (std::size_t k = begin; k < end && !is_stopped(task.cancel); ++k) {
       if (k + 1 < end)
         prepare(poses[order[k + 1]], work.prepared[(k + 1 - begin) % 2]);
       body(order[k], poses[order[k]], work.prepared[(k - begin) % 2], work);
@@ -224,7 +223,7 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
         if (task.has_glints)
           out.glint_share[row] = s.glint_share(pose, at, work);
       });
-  return task.cancel == nullptr || !*task.cancel;
+  return !is_stopped(task.cancel);
 }
 
 Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out,

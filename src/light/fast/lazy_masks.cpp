@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <umov/core/parallel.h>
+#include <umov/light/light_task.h>
 
 namespace umov {
 namespace {
@@ -11,8 +12,6 @@ namespace {
 const MaskTableStore &table_of(const MaskStore &masks, bool is_large) {
   return is_large ? masks.large : masks.small;
 }
-
-bool is_true(const std::atomic<bool> *cancel) { return cancel != nullptr && *cancel; }
 
 } // namespace
 
@@ -60,7 +59,7 @@ std::vector<std::uint32_t> LazyMasks::missing(std::span<const Pose> poses, bool 
 void LazyMasks::trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
                       const std::atomic<bool> *cancel) {
   constexpr std::size_t at_once = 64;
-  while (!directions.empty() && !is_true(cancel)) {
+  while (!directions.empty() && !is_stopped(cancel)) {
     const std::size_t count = std::min(at_once, directions.size());
     tracer_.trace(directions.first(count), is_large, threads, store_);
     directions = directions.subspan(count);
@@ -77,7 +76,7 @@ ReadLock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads,
   for (;;) {
     {
       ReadLock lock(mutex_);
-      if (is_true(cancel) ||
+      if (is_stopped(cancel) ||
           (missing(poses, false, threads).empty() && missing(poses, true, threads).empty()))
         return lock;
     }

@@ -30,18 +30,19 @@ std::span<const Occluder::Point> RefinePoints::of(std::uint32_t group, std::uint
         spread_points(*source_.scene, *source_.elements, *source_.classes, of.member[lane],
                       is_fine ? fine_count(of) : coarse_count(of), *source_.occluder)
             .origin;
-    std::vector<Vec3<Body>> places;
-    for (const Occluder::Point &p : grade.origin)
-      places.push_back(source_.occluder->from_point(p));
-    if (!is_fine)
-      both.bounds = around(places);
   });
   return grade.origin;
 }
 
 const Sphere &RefinePoints::bounds(std::uint32_t group, std::uint32_t lane) const {
-  (void)of(group, lane, 1);
-  return points_[group * backend::lanes + lane].bounds;
+  Points &own = points_[group * backend::lanes + lane];
+  std::call_once(own.has_bounds, [&] {
+    std::vector<Vec3<Body>> places;
+    for (const Occluder::Point &p : of(group, lane, 1))
+      places.push_back(source_.occluder->from_point(p));
+    own.bounds = around(places);
+  });
+  return own.bounds;
 }
 
 /// Some of the points of a class, in left_; how many.

@@ -33,6 +33,7 @@ private:
   };
   struct Points {
     Grade coarse, fine;
+    std::once_flag has_bounds;
     Sphere bounds;
   };
   struct Source {

@@ -80,12 +80,12 @@ bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angle
   } else {
     found.resize(which.size());
     parallel_for(which.size(), task.threads, [&](std::size_t k) {
-      if (!is_cancelled(task))
+      if (!is_stopped(task.cancel))
         found[k] =
             Integrator(turned(scene_, joints_, angles_rad, which[k])).evaluate(chosen[k], options_);
     });
   }
-  if (is_cancelled(task) || found.size() < which.size())
+  if (is_stopped(task.cancel) || found.size() < which.size())
     return false;
   if (options_.bounces > 1)
     out.indirect.resize(out.i.size());
@@ -103,14 +103,14 @@ bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double
   } else {
     more.resize(poses.size());
     parallel_for(poses.size(), task.threads, [&](std::size_t k) {
-      if (!is_cancelled(task))
+      if (!is_stopped(task.cancel))
         more[k] = Integrator(turned(scene_, joints_, angles_rad, k))
                       .indirect(poses.subspan(k, 1),
                                 std::span(direct).subspan(k * out.bands, out.bands), options_, 1)
                       .front();
     });
   }
-  if (is_cancelled(task) || more.size() < poses.size())
+  if (is_stopped(task.cancel) || more.size() < poses.size())
     return false;
   out.indirect.resize(out.i.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {

@@ -15,8 +15,6 @@ IntegrationOptions integration_of(const LightOptions &options, std::vector<doubl
 std::vector<std::uint32_t> material_of_slots(const Scene &scene,
                                              const std::vector<std::string> &names);
 
-inline bool is_cancelled(const LightTask &task) { return task.cancel != nullptr && *task.cancel; }
-
 /// The scene of one pose of a table of angles: the mesh of an object whose parts turn is another
 /// one at every pose.
 Scene turned(const Scene &scene, const std::vector<Joint> &joints,

@@ -24,9 +24,10 @@ private:
              const LightTask &task) const override {
     out.resize(poses.size(), scene().bands.size());
     out.glint_share.assign(task.has_glints ? poses.size() : 0, 0); // heat has none
-    out.material_i.assign(0, 0);
+    out.material_i.assign(task.has_materials ? poses.size() * materials().size() * out.bands : 0,
+                          0);
     const auto found = emitted(poses, angles_rad, task);
-    if (is_cancelled(task) || found.size() < poses.size())
+    if (is_stopped(task.cancel) || found.size() < poses.size())
       return false;
     for (std::size_t k = 0; k < poses.size(); ++k) {
       out.method[k] = PoseMethod::Rays;
@@ -47,7 +48,7 @@ private:
       return integrator_.thermal(poses, emission_, options_, task.threads, task.cancel);
     std::vector<IndirectLight> out(poses.size());
     parallel_for(poses.size(), task.threads, [&](std::size_t k) {
-      if (!is_cancelled(task))
+      if (!is_stopped(task.cancel))
         out[k] = Integrator(turned(scene(), joints(), angles_rad, k))
                      .thermal(poses.subspan(k, 1), emission_, options_, 1)
                      .front();
