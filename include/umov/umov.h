@@ -35,6 +35,7 @@
 #include <umov/io/measured_file.h>
 #include <umov/io/mesh_file.h>
 #include <umov/io/obj.h>
+#include <umov/io/passband_file.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
 #include <umov/io/poses_file.h>
@@ -82,10 +83,12 @@
 #include <umov/observation/moving_joints.h>
 #include <umov/observation/track.h>
 #include <umov/optics/band.h>
+#include <umov/optics/band_grid.h>
 #include <umov/optics/emission.h>
 #include <umov/optics/fresnel.h>
 #include <umov/optics/index.h>
 #include <umov/optics/interface.h>
+#include <umov/optics/passband.h>
 #include <umov/optics/realisable.h>
 #include <umov/optics/stokes.h>
 #include <umov/orbit/elements.h>
