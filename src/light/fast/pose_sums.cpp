@@ -115,9 +115,10 @@ void Engine::State::light_of_general(const Pose &pose, const Prepared &at,
   const SurfaceDirections on = directions(pose, at, facet);
   for (std::size_t b = 0; b < this->bands(); ++b) {
     const double w = surface.specular(b, on);
-    bands[b] = {work.factors.a[column + b] * w, work.factors.b[column + b] * w, 0, 0};
-    if (surface.has_diffuse())
-      bands[b] += surface.diffuse(b, on, sunlight);
+    const double a = work.factors.a[column + b], q = work.factors.b[column + b];
+    bands[b] = {a * w, q * w, 0, 0};
+    if (surface.has_diffuse()) // unpolarized light asks for a and b only
+      bands[b] += surface.diffuse(b, on, sunlight, MuellerEntries{a, q, {}}.matrix());
   }
 }
 
