@@ -38,6 +38,10 @@ const Spectrum &sunlight() {
   return table;
 }
 
+bool has_curve(const std::vector<Band> &bands) {
+  return std::any_of(bands.begin(), bands.end(), [](const Band &band) { return band.curve; });
+}
+
 Result<Band> band_of(Passband curve) {
   UMOV_ASSIGN(sun, sunlight_in(curve));
   Band out{curve.name, Wavelength::nm(sun.effective_nm)};
@@ -101,6 +105,15 @@ Result<double> solar_irradiance(const Band &band) {
     return solar_irradiance(band.wavelength);
   UMOV_ASSIGN(sun, sunlight_in(*band.curve));
   return sun.value;
+}
+
+Result<double> zero_irradiance(const Band &band, MagnitudeSystem system) {
+  if (band.curve)
+    return zero_irradiance(*band.curve, system);
+  // AB and ST of a band so narrow that it is its wavelength.
+  const double nm = band.wavelength.nm();
+  return zero_irradiance(Passband{band.name, {0.999 * nm, nm, 1.001 * nm}, {0, 1, 0}, 0, "", ""},
+                         system);
 }
 
 } // namespace umov

@@ -15,6 +15,9 @@ struct Band {
   std::shared_ptr<const Passband> curve = nullptr; ///< null: one wavelength
 };
 
+/// Some of the bands have a curve.
+bool has_curve(const std::vector<Band> &bands);
+
 /// A band of a curve. BadInput outside the solar spectrum.
 Result<Band> band_of(Passband curve);
 
@@ -29,5 +32,7 @@ Result<void> check_band_set(const std::vector<Band> &bands);
 Result<double> solar_irradiance(Wavelength wavelength);
 /// The same for a band: the photon-weighted mean of a curve.
 Result<double> solar_irradiance(const Band &band);
+/// `zero_irradiance` of its curve; of one wavelength AB and ST alone, else BadInput.
+Result<double> zero_irradiance(const Band &band, MagnitudeSystem system);
 
 } // namespace umov

@@ -2,9 +2,8 @@
 // The wavelengths at which light is computed, and how those of a band are summed
 // (docs/theory/bands.md, Eq. 6 and 7).
 
-#include <span>
 #include <umov/optics/band.h>
-#include <umov/optics/stokes.h>
+#include <vector>
 
 namespace umov {
 
@@ -17,6 +16,22 @@ struct BandTerm {
   double weight = 0;    ///< the weights of a band add up to 1
   double coarse = 0;    ///< the same if every other wavelength were left out
 };
+
+/// Eq. 6: what a band has of a quantity that is known at the nodes, and the error that Eq. 7 sees.
+template <class Value> struct BandSum {
+  Value value{}, change{}; ///< `change`: value minus that of every other wavelength
+};
+/// `at_node`: the quantity at a node.
+template <class Value, class AtNode>
+BandSum<Value> sum_band(const std::vector<BandTerm> &terms, const AtNode &at_node) {
+  BandSum<Value> out;
+  for (const BandTerm &term : terms) {
+    const Value value = at_node(term.node);
+    out.value += value * term.weight;
+    out.change += value * (term.weight - term.coarse);
+  }
+  return out;
+}
 
 /// All wavelengths of a set of bands.
 class BandGrid {
