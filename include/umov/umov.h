@@ -50,6 +50,7 @@
 #include <umov/io/table_sink.h>
 #include <umov/io/table_stream.h>
 #include <umov/io/trajectory_file.h>
+#include <umov/jobs/band_tables.h>
 #include <umov/jobs/brdf.h>
 #include <umov/jobs/ephemeris.h>
 #include <umov/jobs/material_page.h>

@@ -38,7 +38,8 @@ public:
            std::vector<PhotometricBand> colours, LightCurve &curve, const std::atomic<bool> &cancel,
            KeptBlocks blocks)
       : request_(request), light_(light), many_directions_(many_directions), track_(track),
-        kept_(kept), colours_(std::move(colours)), curve_(curve), cancel_(cancel), blocks_(blocks) {}
+        kept_(kept), colours_(std::move(colours)), curve_(curve), cancel_(cancel), blocks_(blocks) {
+  }
 
   /// Every finished block stays after a stop; returns the rows kept.
   std::size_t fill(const Progress &progress, std::optional<Error> &stopped);
@@ -147,8 +148,7 @@ void RowMaker::put(const StokesTable &table, std::size_t k, std::size_t row) {
   for (std::size_t b = 0; b < bands; ++b) {
     const BandResult result = table.at(k, b);
     LightCurveSample &sample = curve_.samples[row * bands + b];
-    sample =
-        sample_from(result, colours_[b], epoch.geometry, request_, epoch.is_dark);
+    sample = sample_from(result, colours_[b], epoch.geometry, request_, epoch.is_dark);
     if (!table.band_err.empty())
       sample.band_err = table.band_err[k * bands + b];
     if (!table.indirect.empty() && result.stokes.i > 0)
@@ -306,8 +306,8 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
   out.passes_seen = kept.passes_seen;
   out.epochs_in_gaps = kept.epochs_in_gaps;
   out.stopped = kept.stopped;
-  RowMaker maker(request, light, many_directions, track, kept, std::move(colours), out.curve, cancel,
-                 blocks);
+  RowMaker maker(request, light, many_directions, track, kept, std::move(colours), out.curve,
+                 cancel, blocks);
   truncate(out.curve, maker.fill(progress, out.stopped));
   count_rows(out);
   return out;

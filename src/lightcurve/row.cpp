@@ -58,8 +58,7 @@ LightCurveSample sample_from(const BandResult &band, const PhotometricBand &colo
   out.magnitude = observed.magnitude;
   if (!is_dark && path.sunlit > 0) {
     if (!is_known(out.intensity, out.half_width))
-      out.magnitude =
-          observed_light(out.intensity + out.half_width.i, colour, path).magnitude;
+      out.magnitude = observed_light(out.intensity + out.half_width.i, colour, path).magnitude;
     out.magnitude = std::fmin(out.magnitude, faintest_magnitude); // of tails that underflow, too
   }
   if (is_dark || !(band.stokes.i > 0)) {

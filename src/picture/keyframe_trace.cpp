@@ -166,9 +166,9 @@ void add_indirect(const std::vector<Seen> &seen, const std::vector<Stokes<Scatte
   for (std::size_t k = 0; k < seen.size(); ++k) {
     KeyFrameSample &out = line[seen[k].column];
     const auto direct = static_cast<double>(out.radiance);
-    const auto more = sum_band<Stokes<ScatteringPlane>>(
-        grid.terms()[band],
-        [&](std::size_t node) { return light[k * grid.nodes().size() + node]; });
+    const auto more = sum_band<Stokes<ScatteringPlane>>(grid.terms()[band], [&](std::size_t node) {
+      return light[k * grid.nodes().size() + node];
+    });
     const Stokes<ScatteringPlane> sum =
         more.value + Stokes<ScatteringPlane>{1, out.q, out.u, out.v} * direct;
     if (!(sum.i > 0))

@@ -44,8 +44,8 @@ double worst_change(const Surface &surface, const std::vector<BandTerm> &terms) 
        {std::array{20., 60., 0.}, std::array{60., 10., 180.}, std::array{50., 70., 90.}}) {
     if (!surface.has_diffuse())
       break;
-    const SurfaceDirections at = directions_from_angles(
-        in_deg * pi / 180, out_deg * pi / 180, azimuth_deg * pi / 180);
+    const SurfaceDirections at =
+        directions_from_angles(in_deg * pi / 180, out_deg * pi / 180, azimuth_deg * pi / 180);
     out = std::max(out, relative_change(terms, [&](std::size_t node) {
                      return surface.diffuse(node, at, sunlight);
                    }));
@@ -86,9 +86,9 @@ Result<CompiledMaterials> CompiledMaterials::make(const std::vector<Band> &bands
 }
 
 const Surface &CompiledMaterials::of(const Material &material) const {
-  const auto found =
-      std::find_if(surfaces_.begin(), surfaces_.end(),
-                   [&](const Surface &surface) { return surface.material() == material; });
+  const auto found = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const Surface &surface) {
+    return surface.material() == material;
+  });
   UMOV_EXPECTS(found != surfaces_.end());
   return *found;
 }

@@ -67,7 +67,7 @@ struct Scenario {
   std::optional<ScenarioTime> time;
   std::filesystem::path earth_orientation; ///< table in place of the compiled-in one; empty: that
   std::vector<ScenarioObject> objects;     ///< at least one
-  std::map<std::string, Material> own_materials; ///< the [material.NAME] tables
+  std::map<std::string, Material> own_materials;      ///< the [material.NAME] tables
   std::vector<BandEntry> band_set{{"paper_rgb", {}}}; ///< as [bands] names them
   std::vector<Band> bands;
   std::vector<InputFile> band_files; ///< curves that were read

@@ -134,9 +134,9 @@ Result<std::unique_ptr<LightModel>> make_thermal_light(const Scene &scene,
                                                        std::span<const double> temperature_k,
                                                        const LightOptions &options);
 
-/// Per node of the scene's grid [m2/sr]: the median over 256 random poses (phase angles spread evenly over 30 to 150
-/// deg) of I if nothing hid anything. A property of the object, so that no row's accuracy depends
-/// on which other rows are asked for.
+/// Per node of the scene's grid [m2/sr]: the median over 256 random poses (phase angles spread
+/// evenly over 30 to 150 deg) of I if nothing hid anything. A property of the object, so that no
+/// row's accuracy depends on which other rows are asked for.
 std::vector<double> typical_light(const Scene &scene);
 
 /// Names of all materials of a scene in order of first use (fronts, then backs).

@@ -28,12 +28,13 @@ struct LightCurveEpoch {
 struct LightCurveSample {
   /// I [W m-2 nm-1] at the observer above the atmosphere; the photon-weighted mean of a curve.
   double irradiance = 0;
-  double intensity = 0;  ///< [m2/sr]
-  Stokes<SkyNorth> sky;  ///< q, u, v as fractions in the chosen sky frame, i = 1; NaN if dark
+  double intensity = 0; ///< [m2/sr]
+  Stokes<SkyNorth> sky; ///< q, u, v as fractions in the chosen sky frame, i = 1; NaN if dark
   Stokes<ScatteringPlane> scattering; ///< q_scat, u_scat, v as fractions; NaN if dark
   double p = 0, dop = 0;              ///< NaN if dark
   double pa_deg = 0;                  ///< [0, 180), NaN if p is 0 or dark
-  double magnitude = 0; ///< of the curve's system, a limit where `has_magnitude_limit`; NaN if dark or in the umbra
+  double magnitude = 0; ///< of the curve's system, a limit where `has_magnitude_limit`; NaN if dark
+                        ///< or in the umbra
   Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths [m2/sr]
   /// What summing a band from few wavelengths may leave out [m2/sr]; 0 at one wavelength.
   Stokes<ScatteringPlane> band_err;

@@ -12,13 +12,13 @@ namespace umov {
 /// Normals of the triangles, or of the vertices in between.
 enum class NormalMode { Flat, Smooth };
 
-/// One object ready to be lit: a cleaned mesh, the bands and a compiled surface for each mesh group,
-/// at the wavelengths that the bands are summed from.
+/// One object ready to be lit: a cleaned mesh, the bands and a compiled surface for each mesh
+/// group, at the wavelengths that the bands are summed from.
 struct Scene {
   Mesh mesh;
   NormalMode normals = NormalMode::Flat;
-  std::vector<Band> bands; ///< that are asked for
-  BandGrid grid;           ///< of them: light is computed at its nodes
+  std::vector<Band> bands;    ///< that are asked for
+  BandGrid grid;              ///< of them: light is computed at its nodes
   std::vector<Surface> front; ///< per mesh group: seen when the group is the side faced
   std::vector<Surface> back;  ///< per mesh group: where the back of that group's faces is seen
 };

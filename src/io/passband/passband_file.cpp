@@ -98,7 +98,8 @@ Result<Passband> read_passband_text(const std::string &text, const std::string &
                            std::move(curve.wavelength), std::move(curve.response), *form.detector);
   if (!out)
     return fail(ErrorCode::BadInput, out.error().message, {file});
-  out->source = curve.source.empty() ? std::filesystem::path(file).filename().string() : curve.source;
+  out->source =
+      curve.source.empty() ? std::filesystem::path(file).filename().string() : curve.source;
   if (curve.vega_zero_jy > 0) { // per Hz to per nm at the pivot
     const double light_nm_s = constants::speed_of_light_km_s * 1e12, pivot = pivot_nm(*out);
     out->vega_zero = curve.vega_zero_jy * 1e-26 * light_nm_s / (pivot * pivot);

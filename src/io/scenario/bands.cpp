@@ -32,12 +32,11 @@ Result<BandEntry> read_entry(const Node &bands, const toml::node &item) {
   if (const toml::table *table = item.as_table())
     return read_file_entry(Node(*table, "bands.set", "bands.set", bands.file()));
   if (const auto number = item.value<double>(); number && !item.is_string())
-    return fail(
-        ErrorCode::BadInput,
-        fmt::format("set holds the number {0:g}; bands are names, a wavelength among them "
-                    "is written \"nm:{0:g}\"",
-                    *number),
-        bands.where("set"));
+    return fail(ErrorCode::BadInput,
+                fmt::format("set holds the number {0:g}; bands are names, a wavelength among them "
+                            "is written \"nm:{0:g}\"",
+                            *number),
+                bands.where("set"));
   if (!item.is_string())
     return fail(ErrorCode::BadInput,
                 "set: a name, a table { file = \"x.csv\" }, or a list of both was expected",

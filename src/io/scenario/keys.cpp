@@ -128,8 +128,10 @@ const std::vector<Key> &keys() {
       {"bands", "mag_system", String, "\"AB\"",
        "AB, ST or Vega (the latter where a band has a zero point)"},
       {"bands.set", "file", String, "",
-       "curve of a band: VOTable of the SVO Filter Profile Service, or columns wavelength, response"},
-      {"bands.set", "unit", String, "", "of its wavelengths: nm, um or Angstrom; absent: the file says"},
+       "curve of a band: VOTable of the SVO Filter Profile Service, or columns wavelength, "
+       "response"},
+      {"bands.set", "unit", String, "",
+       "of its wavelengths: nm, um or Angstrom; absent: the file says"},
       {"bands.set", "detector", String, "",
        "photon or energy: what the curve multiplies; absent: the file says"},
       {"render", "bounces", Integer, fmt::format("{}", light.bounces),

@@ -170,7 +170,8 @@ std::pair<double, double> range_of(const Band &band) {
 std::string tables_that_cover(const std::string &name, double first_nm, double last_nm) {
   std::vector<std::string> out = indices_covering(name, Wavelength::nm(first_nm));
   const auto also = indices_covering(name, Wavelength::nm(last_nm));
-  std::erase_if(out, [&](const std::string &one) { return std::ranges::find(also, one) == also.end(); });
+  std::erase_if(out,
+                [&](const std::string &one) { return std::ranges::find(also, one) == also.end(); });
   return out.empty() ? "" : fmt::format(" Tables that cover it: {}.", fmt::join(out, ", "));
 }
 
@@ -199,7 +200,8 @@ Result<void> check_bands(const Material &material, const Scenario &scenario,
                     fmt::format("material \"{}\": index \"{}\" covers {:g}-{:g} nm; band \"{}\" "
                                 "needs {:g}-{:g} nm. Extrapolation is off.{}",
                                 material.name, table->name, known.first_nm, known.last_nm,
-                                band.name, first, last, tables_that_cover(table->name, first, last)),
+                                band.name, first, last,
+                                tables_that_cover(table->name, first, last)),
                     {scenario.file});
       } else if (!band.curve) {
         if (const auto eta = index_at(*table, band.wavelength); !eta)

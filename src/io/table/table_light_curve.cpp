@@ -256,10 +256,11 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
 void note_curves(const std::vector<Band> &bands, Table &table) {
   if (!has_curve(bands))
     return;
-  table.note("bands", "Of a band with a curve every quantity is the photon-weighted mean over its "
-                      "response in sunlight (ASTM E490), Stokes components before any ratio; "
-                      "lambda_eff: its effective wavelength. band_err_*: what the mean changes by if "
-                      "every other wavelength is left out.");
+  table.note("bands",
+             "Of a band with a curve every quantity is the photon-weighted mean over its "
+             "response in sunlight (ASTM E490), Stokes components before any ratio; "
+             "lambda_eff: its effective wavelength. band_err_*: what the mean changes by if "
+             "every other wavelength is left out.");
   for (const Band &band : bands)
     if (band.curve)
       table.note("band " + band.name,

@@ -8,10 +8,10 @@ using Light = Stokes<ScatteringPlane>;
 /// One pose in one band.
 void sum_pose(const StokesTable &nodes, std::size_t from, const std::vector<BandTerm> &terms,
               std::size_t to, std::size_t band, StokesTable &out) {
-  const auto light = sum_band<Light>(
-      terms, [&](std::size_t node) { return nodes.at(from, node).stokes; });
-  const auto half_width = sum_band<Light>(
-      terms, [&](std::size_t node) { return nodes.at(from, node).half_width; });
+  const auto light =
+      sum_band<Light>(terms, [&](std::size_t node) { return nodes.at(from, node).stokes; });
+  const auto half_width =
+      sum_band<Light>(terms, [&](std::size_t node) { return nodes.at(from, node).half_width; });
   out.put(to, band, {light.value, half_width.value});
   const std::size_t at = to * out.bands + band;
   const Light &change = light.change;
