@@ -45,7 +45,8 @@ void add_band_list(CLI::App &bands, const Exit &exit_with) {
 }
 
 void add_band_show(CLI::App &bands, const Exit &exit_with) {
-  auto *verb = bands.add_subcommand("show", "One band: its numbers, and the curve as photons count");
+  auto *verb =
+      bands.add_subcommand("show", "One band: its numbers, and the curve as photons count");
   auto o = std::make_shared<BandOptions>();
   auto common = std::make_shared<Common>();
   verb->add_option("band", o->name, "As a scenario spells it: Bessell.V, nm:550, file:x.vot")

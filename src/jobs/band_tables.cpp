@@ -85,10 +85,10 @@ Result<std::string> band_text(const Band &band) {
   for (const MagnitudeSystem system :
        {MagnitudeSystem::AB, MagnitudeSystem::ST, MagnitudeSystem::Vega})
     if (const auto zero = zero_irradiance(band, system))
-      out += fmt::format("{:<14} 0 mag = {:.6g} W m-2 nm-1{}; the Sun {:.4f}\n", name_of(system),
-                         *zero,
-                         system == MagnitudeSystem::Vega ? " (" + band.curve->vega_source + ")" : "",
-                         sun_magnitude(band, solar, system));
+      out += fmt::format(
+          "{:<14} 0 mag = {:.6g} W m-2 nm-1{}; the Sun {:.4f}\n", name_of(system), *zero,
+          system == MagnitudeSystem::Vega ? " (" + band.curve->vega_source + ")" : "",
+          sun_magnitude(band, solar, system));
     else
       out += fmt::format("{:<14} no zero point\n", name_of(system));
   return out;

@@ -145,6 +145,7 @@ Result<std::vector<Band>> read_bands(const std::vector<BandEntry> &entries,
 
 Result<std::vector<Band>> bands_named(const std::vector<std::string> &names) {
   std::vector<BandEntry> entries;
+  entries.reserve(names.size());
   for (const std::string &name : names)
     entries.push_back({name, {}});
   return read_bands(entries);

@@ -38,9 +38,9 @@ TEST(Bands, MetalsThroughFiltersAreRightToAThousandth) {
     const double error_i = std::abs(sum.value.i - i), error_q = std::abs(sum.value.q - q * i);
     worst = std::max({worst, error_i / i, std::abs(sum.value.q / sum.value.i - q)});
     const double slack = 1e-5 * i; // a hundredth of what is asked for: there Eq. 7 may say 0
-    covered += error_i <= std::abs(sum.change.i) + slack && error_q <= std::abs(sum.change.q) + slack
-                   ? 1u
-                   : 0u;
+    covered +=
+        error_i <= std::abs(sum.change.i) + slack && error_q <= std::abs(sum.change.q) + slack ? 1u
+                                                                                               : 0u;
     ++cases;
   }
   EXPECT_EQ(cases, 60u);
