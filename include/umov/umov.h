@@ -48,6 +48,7 @@
 #include <umov/io/table.h>
 #include <umov/io/table_sink.h>
 #include <umov/io/table_stream.h>
+#include <umov/io/tle.h>
 #include <umov/io/trajectory_file.h>
 #include <umov/jobs/brdf.h>
 #include <umov/jobs/ephemeris.h>
@@ -94,6 +95,7 @@
 #include <umov/orbit/passes.h>
 #include <umov/orbit/select.h>
 #include <umov/orbit/sgp4.h>
+#include <umov/orbit/state.h>
 #include <umov/orbit/state_vector.h>
 #include <umov/orbit/trajectory.h>
 #include <umov/photometry/earthshine.h>
