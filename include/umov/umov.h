@@ -125,6 +125,7 @@
 #include <umov/surface/surface.h>
 #include <umov/time/earth_orientation.h>
 #include <umov/time/epoch.h>
+#include <umov/time/hourly.h>
 #include <umov/time/span.h>
 #include <umov/time/time_system.h>
 // clang-format on
