@@ -49,6 +49,7 @@
 #include <umov/io/table.h>
 #include <umov/io/table_sink.h>
 #include <umov/io/table_stream.h>
+#include <umov/io/tle.h>
 #include <umov/io/trajectory_file.h>
 #include <umov/jobs/band_tables.h>
 #include <umov/jobs/brdf.h>
@@ -98,6 +99,7 @@
 #include <umov/orbit/passes.h>
 #include <umov/orbit/select.h>
 #include <umov/orbit/sgp4.h>
+#include <umov/orbit/state.h>
 #include <umov/orbit/state_vector.h>
 #include <umov/orbit/trajectory.h>
 #include <umov/photometry/earthshine.h>
@@ -127,6 +129,7 @@
 #include <umov/surface/surface.h>
 #include <umov/time/earth_orientation.h>
 #include <umov/time/epoch.h>
+#include <umov/time/hourly.h>
 #include <umov/time/span.h>
 #include <umov/time/time_system.h>
 // clang-format on

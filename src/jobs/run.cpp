@@ -92,7 +92,8 @@ void warn_of_earth(const LightCurveOutcome &outcome, const EarthshineOptions &op
   double worst = 0;
   const std::size_t bands = outcome.curve.bands.size();
   for (const SecondLight &light : outcome.curve.second_lights)
-    for (std::size_t i = 0; light.name == "earth" && i < outcome.curve.epochs.size(); ++i) {
+    for (std::size_t i = 0; light.source == SecondSource::Earth && i < outcome.curve.epochs.size();
+         ++i) {
       double error = 0;
       for (std::size_t b = 0; b < bands; ++b)
         if (const double full = light.intensity[i * bands + b].i; full > 0)

@@ -101,7 +101,7 @@ void RowMaker::add_second_lights(const TrackPoint &point, std::size_t row) {
   EarthshineOptions earth = request.earthshine.value_or(EarthshineOptions{});
   earth.narrowest_lobe = narrowest_lobe(light_.scene());
   for (SecondLight &second : curve.second_lights) {
-    const auto sum = second.name == "moon"
+    const auto sum = second.source == SecondSource::Moon
                          ? moon_light(geometry, body_from_gcrs, north, bands, light)
                          : earth_light(geometry, body_from_gcrs, north, earth, bands, light);
     for (std::size_t b = 0; b < bands; ++b) {
@@ -237,9 +237,9 @@ LightCurve empty_curve(const LightCurveRequest &request, const LightModel &light
   curve.samples.resize(rows * curve.bands.size());
   curve.material_i.resize(curve.samples.size() * curve.materials.size());
   if (request.earthshine)
-    curve.second_lights.push_back({"earth", {}, {}, {}});
+    curve.second_lights.push_back({SecondSource::Earth, {}, {}, {}});
   if (request.has_moonlight)
-    curve.second_lights.push_back({"moon", {}, {}, {}});
+    curve.second_lights.push_back({SecondSource::Moon, {}, {}, {}});
   for (SecondLight &second : curve.second_lights) {
     second.intensity.resize(curve.samples.size());
     second.half_width.resize(curve.samples.size());

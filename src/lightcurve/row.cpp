@@ -39,6 +39,8 @@ double sunlight(const LightCurveRequest &request, const ObservingGeometry &g, co
 
 } // namespace
 
+const char *name_of(SecondSource source) { return source == SecondSource::Moon ? "moon" : "earth"; }
+
 bool has_magnitude_limit(const LightCurveSample &sample) {
   return sample.magnitude >= faintest_magnitude ||
          (!std::isnan(sample.magnitude) && !is_known(sample.intensity, sample.half_width));

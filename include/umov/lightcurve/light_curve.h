@@ -46,10 +46,15 @@ struct LightCurveSample {
 /// times its half-width, and the magnitude that of I and half-width together.
 bool has_magnitude_limit(const LightCurveSample &sample);
 
+/// What lights the object besides the Sun.
+enum class SecondSource { Earth, Moon };
+/// "earth" or "moon": begins the names of its columns.
+const char *name_of(SecondSource source);
+
 /// Light of the object by another source than the Sun, not in I; [epoch * bands + band], in the sky
 /// axes of the curve.
 struct SecondLight {
-  std::string name;                         ///< "earth" or "moon": begins its columns
+  SecondSource source = SecondSource::Earth;
   std::vector<Stokes<SkyNorth>> intensity;  ///< [m2/sr] per unit solar irradiance
   std::vector<Stokes<SkyNorth>> half_width; ///< numerical 95 % half-widths of `intensity`
   std::vector<double> irradiance;           ///< I at the observer [W m-2 nm-1]

@@ -111,8 +111,8 @@ Result<void> read_time(const Node &top, Scenario &out) {
     return fail(ErrorCode::BadInput,
                 fmt::format("step_s = {}; a positive number was expected", time.step_s),
                 node.where("step_s"));
-  if (auto grid = time_grid({start, stop, time.step_s}); !grid)
-    return fail(ErrorCode::BadInput, grid.error().message, node.where("stop"));
+  if (auto count = epoch_count({start, stop, time.step_s}); !count)
+    return fail(ErrorCode::BadInput, count.error().message, node.where("stop"));
   if (node.has("only")) {
     UMOV_ASSIGN(only, node.child("only"));
     const double lowest = only.number("alt_min_deg", 0), sun = only.number("sun_alt_max_deg", 90);

@@ -183,14 +183,14 @@ void add_band_errors(RowColumns &t) {
 
 /// Light of other sources, not in I: columns of their own.
 void add_second_light(Table &table, const SecondLight &light) {
-  const std::string of = light.name == "moon" ? "moonlight" : "earthshine";
-  table.add(light.name + "_I", "W / (m2 nm)", "irradiance at the observer by " + of,
-            light.irradiance);
+  const std::string of = light.source == SecondSource::Moon ? "moonlight" : "earthshine",
+                    source = name_of(light.source);
+  table.add(source + "_I", "W / (m2 nm)", "irradiance at the observer by " + of, light.irradiance);
   const auto add = [&](const char *name, const char *text, double Stokes<SkyNorth>::*part) {
     std::vector<double> values;
     for (const Stokes<SkyNorth> &s : light.intensity)
       values.push_back(s.i > 0 ? s.*part / s.i : std::numeric_limits<double>::quiet_NaN());
-    table.add(light.name + name, "", text + of, std::move(values));
+    table.add(source + name, "", text + of, std::move(values));
   };
   add("_q", "Q/I in the sky frame of ", &Stokes<SkyNorth>::q);
   add("_u", "U/I in the sky frame of ", &Stokes<SkyNorth>::u);
@@ -200,13 +200,13 @@ void add_second_light(Table &table, const SecondLight &light) {
     irradiance.push_back(light.intensity[k].i > 0
                              ? light.half_width[k].i / light.intensity[k].i * light.irradiance[k]
                              : 0);
-  table.add(light.name + "_I_err", "W / (m2 nm)", "numerical 95 % half-width", irradiance);
+  table.add(source + "_I_err", "W / (m2 nm)", "numerical 95 % half-width", irradiance);
   const auto add_error = [&](const char *name, double Stokes<SkyNorth>::*part) {
     std::vector<double> values;
     for (std::size_t k = 0; k < light.intensity.size(); ++k)
       values.push_back(light.intensity[k].i > 0 ? light.half_width[k].*part / light.intensity[k].i
                                                 : std::numeric_limits<double>::quiet_NaN());
-    table.add(light.name + name, "", "numerical 95 % half-width, over I", std::move(values));
+    table.add(source + name, "", "numerical 95 % half-width, over I", std::move(values));
   };
   add_error("_q_err", &Stokes<SkyNorth>::q);
   add_error("_u_err", &Stokes<SkyNorth>::u);

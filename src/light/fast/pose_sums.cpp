@@ -25,8 +25,10 @@ bool Engine::State::add_up(const Pose &pose, const Prepared &at, Workspace &work
   if (!work.sums.is_any_seen && !doubts_darkness())
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
-  work.general.reset(compiled.general_classes > 0 ? bands() : 0, true);
-  work.general_i.assign(compiled.general_classes > 0 ? compiled.slots.size() * bands() : 0, 0);
+  if (compiled.general_classes > 0) {
+    work.general.reset(bands(), true);
+    work.general_i.assign(compiled.slots.size() * bands(), 0);
+  }
   if (!work.sums.seen.empty())
     add_general(pose, at, work);
   take_roots(work);
