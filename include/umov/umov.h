@@ -35,6 +35,7 @@
 #include <umov/io/measured_file.h>
 #include <umov/io/mesh_file.h>
 #include <umov/io/obj.h>
+#include <umov/io/passband_file.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
 #include <umov/io/poses_file.h>
@@ -50,6 +51,7 @@
 #include <umov/io/table_stream.h>
 #include <umov/io/tle.h>
 #include <umov/io/trajectory_file.h>
+#include <umov/jobs/band_tables.h>
 #include <umov/jobs/brdf.h>
 #include <umov/jobs/ephemeris.h>
 #include <umov/jobs/material_page.h>
@@ -83,10 +85,12 @@
 #include <umov/observation/moving_joints.h>
 #include <umov/observation/track.h>
 #include <umov/optics/band.h>
+#include <umov/optics/band_grid.h>
 #include <umov/optics/emission.h>
 #include <umov/optics/fresnel.h>
 #include <umov/optics/index.h>
 #include <umov/optics/interface.h>
+#include <umov/optics/passband.h>
 #include <umov/optics/realisable.h>
 #include <umov/optics/stokes.h>
 #include <umov/orbit/elements.h>

@@ -21,19 +21,27 @@ struct BandTables {
   double haze_albedo = 0; ///< what haze reflects of all light
 };
 
+/// Where a table is asked for a band: within a curve one that holds its ends no further than there.
+Wavelength asked_at(const IndexTable &table, const Band &band) {
+  if (!table.holds_ends || !band.curve)
+    return band.wavelength;
+  const WavelengthRange range = range_of(table);
+  return Wavelength::nm(std::clamp(band.wavelength.nm(), range.first_nm, range.last_nm));
+}
+
 Result<Interface> make_interface(const Material &material, const Band &band) {
   const auto named = [&](const Error &error) {
     return fail(ErrorCode::BadInput, fmt::format("material \"{}\", band \"{}\": {}", material.name,
                                                  band.name, error.message));
   };
-  const auto eta = index_at(material.index, band.wavelength);
+  const auto eta = index_at(material.index, asked_at(material.index, band));
   if (!eta)
     return named(eta.error());
   if (material.layers.empty())
     return Interface(*eta);
   std::vector<OpticalLayer> layers;
   for (const Layer &layer : material.layers) {
-    const auto film = index_at(layer.index, band.wavelength);
+    const auto film = index_at(layer.index, asked_at(layer.index, band));
     if (!film)
       return named(film.error());
     layers.push_back({*film, layer.thickness_nm, layer.is_coherent});

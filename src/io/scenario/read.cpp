@@ -286,38 +286,6 @@ Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out
   return {};
 }
 
-/// A number where the name of a band belongs: 550 for "nm:550".
-Result<void> check_band_names(const Node &bands) {
-  const toml::array *list = bands.get("set")->as_array();
-  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
-    if (const auto number = list->get(i)->value<double>())
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("set holds the number {0:g}; bands are names, a wavelength among them "
-                      "is written \"nm:{0:g}\"",
-                      *number),
-          bands.where("set"));
-  return {};
-}
-
-Result<void> read_bands(const Node &top, Scenario &out) {
-  Where where = top.where("bands");
-  if (top.has("bands")) {
-    UMOV_ASSIGN(node, top.child("bands"));
-    if (node.has("set")) {
-      UMOV_TRY(check_band_names(node));
-      UMOV_ASSIGN(set, node.strings("set"));
-      out.band_set = set;
-      where = node.where("set");
-    }
-  }
-  auto bands = bands_from(out.band_set);
-  if (!bands)
-    return fail(ErrorCode::BadInput, bands.error().message, where);
-  out.bands = *bands;
-  return {};
-}
-
 Result<void> read_method(const Node &render, LightOptions &out) {
   UMOV_ASSIGN(method, render.choice("method", name_of(out.method), {"auto", "rays", "masks"}));
   out.method = method == "rays"    ? LightMethod::Rays
@@ -429,7 +397,7 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(read_observer(top, out));
   UMOV_TRY(read_earth(top, path.parent_path(), out));
   UMOV_TRY(read_time(top, out));
-  UMOV_TRY(read_bands(top, out));
+  UMOV_TRY(scenario::read_bands(top, path.parent_path(), out));
   UMOV_TRY(read_render(top, out));
   UMOV_TRY(read_output(top, out));
   UMOV_ASSIGN(own, scenario::read_material_tables(top));

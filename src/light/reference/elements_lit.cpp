@@ -67,7 +67,7 @@ public:
   Lighter(const Scene &scene, const Elements &elements, const PoseGeometry &pose,
           const Stokes<ScatteringPlane> &source)
       : scene_(scene), elements_(elements), pose_(pose), source_(source),
-        bands_(scene.bands.size()), is_known_(2 * scene.mesh.groups.size(), 0) {
+        bands_(scene.grid.nodes().size()), is_known_(2 * scene.mesh.groups.size(), 0) {
     for (const auto *side : {&scene.front, &scene.back})
       for (const Surface &surface : *side)
         if (!surface.is_specular_grey())
