@@ -7,6 +7,10 @@ Everything that is computed is computed by the C++ library; this package gives i
 >>> curve.bands
 ['nm:425', 'nm:550', 'nm:650']
 """
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 from ._umov import conventions_version, source_revision
 from ._umov import version as __version__
 from .engines import Engine, Light, random_poses
@@ -22,8 +26,19 @@ from .sites import Site, site_names
 from .tables import Table
 from .times import utc
 
+if TYPE_CHECKING:
+    from . import plot
+
 __all__ = ["DeviceError", "Engine", "Error", "InputError", "InternalError", "Interrupted", "Light",
            "LightCurve", "Material", "NoResult", "NumericsError", "Satellite", "Scenario", "Site", "States",
            "Table", "UmovWarning", "UsageError", "Where", "__version__", "brdf", "conventions_version",
-           "ephemeris", "materials", "passes", "propagate", "random_poses", "run", "schema", "site_names",
+           "ephemeris", "materials", "passes", "plot", "propagate", "random_poses", "run", "schema", "site_names",
            "source_revision", "utc"]
+
+
+def __getattr__(name: str) -> Any:
+    """`umov.plot`, loaded when it is asked for."""
+    if name == "plot":
+        import importlib
+        return importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module 'umov' has no attribute {name!r}")

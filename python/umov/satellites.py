@@ -39,7 +39,7 @@ def _absolute(path: Any) -> Any:
 class Satellite:
     """An [[object]] of a scenario. `mesh` is a file, a trimesh mesh or (vertices, faces); `orbit` a file,
     TLE lines, an sgp4 Satrec, a skyfield EarthSatellite or a table; materials are names, files' names
-    or `Material`s, by mesh material or "default".
+    or a `Material` each, by mesh material or "default".
 
     >>> hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", orbit=DATA / "tle/hst.tle",
     ...                      attitude={"mode": "nadir"}, materials={"default": "film_silvered"}, name="HST")
