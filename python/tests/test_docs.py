@@ -18,7 +18,7 @@ import gallery as pages  # noqa: E402
 
 PUBLIC = sorted(name for name in umov.__all__ if callable(getattr(umov, name)))
 MODULES = ["engines", "errors", "light_curves", "materials", "orbits", "plot", "runs", "satellites", "scenarios",
-           "sites", "tables", "times"]
+           "sites", "tables", "times", "abundances", "pictures", "turnable"]
 
 
 @pytest.mark.parametrize("name", PUBLIC)
@@ -30,9 +30,10 @@ def test_has_an_example(name):
 def names():
     hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", orbit=DATA / "tle/hst.tle", norad=20580,
                          attitude={"mode": "nadir"}, materials={"default": "film_silvered"}, name="HST")
-    return {"umov": umov, "plot": importlib.import_module("umov.plot"), "EXAMPLES": EXAMPLES, "DATA": DATA, "hst": hst,
+    return {"umov": umov, "plot": importlib.import_module("umov.plot"),
+            "turnable": importlib.import_module("umov.turnable"), "EXAMPLES": EXAMPLES, "DATA": DATA, "hst": hst,
             "engine": umov.Engine(hst, method="masks"),
-            "curve": umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})}
+            "curve": umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 30})}
 
 
 @pytest.mark.parametrize("module", ["__init__", *MODULES])

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 from ._umov import conventions_version, source_revision
 from ._umov import version as __version__
+from .abundances import Abundances, Coloured, Column, Sums
 from .engines import Engine, Light, random_poses
 from .errors import (DeviceError, Error, InputError, InternalError, Interrupted, NoResult, NumericsError,
                      UmovWarning, UsageError, Where)
 from .light_curves import LightCurve
 from .materials import Material, brdf, materials
 from .orbits import States, ephemeris, passes, propagate
+from .pictures import Mesh, Picture, mesh, render
 from .runs import run
 from .satellites import Satellite
 from .scenarios import Scenario, schema
@@ -27,18 +29,18 @@ from .tables import Table
 from .times import utc
 
 if TYPE_CHECKING:
-    from . import plot
+    from . import plot, turnable
 
-__all__ = ["DeviceError", "Engine", "Error", "InputError", "InternalError", "Interrupted", "Light",
-           "LightCurve", "Material", "NoResult", "NumericsError", "Satellite", "Scenario", "Site", "States",
-           "Table", "UmovWarning", "UsageError", "Where", "__version__", "brdf", "conventions_version",
-           "ephemeris", "materials", "passes", "plot", "propagate", "random_poses", "run", "schema", "site_names",
-           "source_revision", "utc"]
+__all__ = ["Abundances", "Coloured", "Column", "DeviceError", "Engine", "Error", "InputError", "InternalError", 
+           "Interrupted", "Light", "LightCurve", "Material", "Mesh", "NoResult", "NumericsError", "Picture", "Satellite",
+           "Scenario", "Site", "States", "Sums", "Table", "UmovWarning", "UsageError", "Where", "__version__",
+           "brdf", "conventions_version", "ephemeris", "materials", "mesh", "passes", "plot", "propagate",
+           "random_poses", "render", "run", "schema", "site_names", "source_revision", "turnable", "utc"]
 
 
 def __getattr__(name: str) -> Any:
-    """`umov.plot`, loaded when it is asked for."""
-    if name == "plot":
+    """`umov.plot` and `umov.turnable`, loaded when they are asked for."""
+    if name in ("plot", "turnable"):
         import importlib
-        return importlib.import_module(".plot", __name__)
+        return importlib.import_module("." + name, __name__)
     raise AttributeError(f"module 'umov' has no attribute {name!r}")

@@ -90,13 +90,13 @@ class Engine:
         """Stokes [m2/sr] (..., band, 4) in the scattering frame per unit solar irradiance, for directions
         (..., 3) in the body frame from the object to the Sun and to the observer, of any length, which
         broadcast against each other."""
-        flat, shape = _directions(sun, observer)
+        flat, shape = directions(sun, observer)
         out = self._light.stokes(*flat, self._threads, Watch(progress))
         return out.reshape(*shape, len(self.bands), 4)
 
     def light(self, sun: ArrayLike, observer: ArrayLike, *, progress: Progress = None) -> Light:
         """The same with half-widths, and how each pose was lit."""
-        flat, shape = _directions(sun, observer)
+        flat, shape = directions(sun, observer)
         stokes, half_width, is_dark, method = self._light.light(*flat, self._threads, Watch(progress))
         full = (*shape, len(self.bands), 4)
         return Light(stokes.reshape(full), half_width.reshape(full), is_dark.reshape(shape),
@@ -118,7 +118,7 @@ class Engine:
         Engine.__init__(self, state["scenario"], **state["options"])
 
 
-def _directions(sun: ArrayLike, observer: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:
+def directions(sun: ArrayLike, observer: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:
     given = []
     for value, name in ((sun, "sun"), (observer, "observer")):
         try:

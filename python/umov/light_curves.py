@@ -14,6 +14,7 @@ from .tables import Table
 
 if TYPE_CHECKING:
     import pandas
+    from astropy.coordinates import SkyCoord
     from astropy.table import QTable
     from astropy.time import Time
     from astropy.timeseries import TimeSeries
@@ -185,6 +186,27 @@ class LightCurve:
         out = TimeSeries(time=self.time, data=columns)
         out.meta.update(self.table.notes, bands=self.bands if which is None else [self.bands[which]])
         return out
+
+    def to_skycoord(self) -> SkyCoord:
+        """Where the object stood, topocentric along the axes of the GCRS and with its distance, one place per epoch.
+
+        >>> curve.to_skycoord().distance.to("km").value.shape == curve.time.shape
+        True
+        """
+        from astropy import units
+        from astropy.coordinates import GCRS, CartesianRepresentation, SkyCoord
+        from astropy.utils import iers
+
+        from .sites import Site
+        if self.scenario is None:
+            raise UsageError("the curve has no scenario, so no site; one that umov.run made was expected")
+        place = Site(self.scenario.to_dict()["observer"]).to_earth_location()
+        # The tables that come with astropy: nothing is fetched for a place.
+        with iers.conf.set_temp("auto_download", False), iers.conf.set_temp("iers_degraded_accuracy", "ignore"):
+            origin, _ = place.get_gcrs_posvel(self.time)
+        at_rest = CartesianRepresentation([0, 0, 0] * units.m / units.s)
+        frame = GCRS(obstime=self.time, obsgeoloc=origin, obsgeovel=at_rest)
+        return SkyCoord(self.ra * units.deg, self.dec * units.deg, distance=self.range * units.km, frame=frame)
 
     def to_lightkurve(self, band: str | int = 0) -> Any:
         """A lightkurve LightCurve of one band: flux is `I`, flux_err what the half-width means as one

@@ -206,7 +206,20 @@ class Satellite:
 
     def _repr_html_(self) -> str:
         import html
-        return f"<p><b>{html.escape(repr(self))}</b></p><pre>{html.escape(self.to_toml())}</pre>"
+        return (f"<p><b>{html.escape(repr(self))}</b></p>{self._picture()}"
+                f"<details><summary>TOML</summary><pre>{html.escape(self.to_toml())}</pre></details>")
+
+    def _picture(self) -> str:
+        """The mesh by material as an image in place; what is wrong with a satellite is for others to say."""
+        import base64
+
+        from .errors import Error
+        from .pictures import render
+        try:
+            png = render(self, sun=(1, 0.4, 0.9), observer=(1, 1.3, 0.7), side=240, samples=2).png
+        except Error:
+            return ""
+        return f'<img alt="the mesh" width="240" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
 
     def __getstate__(self) -> dict[str, Any]:
         state = dict(self.__dict__)

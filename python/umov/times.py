@@ -51,6 +51,10 @@ def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
     if hasattr(times, "isscalar") and times.isscalar:
         return [utc(times)], True
     listed: Any = times
+    if hasattr(listed, "utc") and hasattr(listed, "isscalar"):  # an array of astropy: one conversion for all
+        exact = listed.utc.replicate(format="isot")
+        exact.precision = 9
+        return [_umov.check_time(f"{one}Z") for one in exact.value.ravel().tolist()], False
     return [utc(one) for one in listed], False
 
 

@@ -157,6 +157,14 @@ def _sign(line: _Line, sign: str) -> str:
     return f"<mo{stretch}>{html.escape(SIGNS.get(sign, sign))}</mo>"
 
 
+def _is_product(line: _Line, kind: str) -> bool:
+    """Names beside each other, with a blank that is to be seen."""
+    after, operand = line.peek(1), ("name", "number")
+    if kind not in operand or line.peek(-1)[1] == "×" or line.peek()[0] != "space" or after[0] not in operand:
+        return False
+    return not (after[1] == "x" and line.peek(2)[0] == "space" and line.peek(3)[0] in (*operand, "sign"))
+
+
 def _row(line: _Line, end: str = "") -> str:
     """MathML up to a closing parenthesis, or the end."""
     out, depth = "", 0
@@ -180,7 +188,7 @@ def _row(line: _Line, end: str = "") -> str:
             out += _name(line, text)
         else:
             out += _sign(line, text)
-        if kind in ("name", "number") and line.peek()[0] == "space" and line.peek(1)[0] in ("name", "number"):
+        if _is_product(line, kind):
             out += "<mspace width='0.2em'/>"
     return out
 
