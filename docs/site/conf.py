@@ -34,12 +34,3 @@ html_copy_source = False
 html_show_search_summary = False  # which is fetched, and a page from a disk may not fetch
 pygments_style, pygments_dark_style = "friendly", "monokai"
 
-
-def use_plotly(app, pagename, templatename, context, doctree):
-    """Only pages with a figure that turns load the script, which is large."""
-    if doctree is not None and "plotly-graph-div" in doctree.astext():
-        app.add_js_file("plotly.min.js", priority=100)
-
-
-def setup(app):
-    app.connect("html-page-context", use_plotly)

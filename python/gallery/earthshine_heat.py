@@ -20,23 +20,24 @@ curve = umov.run(ROOT / "examples/hst_maui.toml", set={
     "render.earthshine.albedo": 0.3, "bands.set": ["nm:550"], "time.start": "2018-01-21T05:07:00Z",
     "time.stop": "2018-01-21T05:16:00Z", "time.step_s": 15, "time.only.sunlit": False})
 sun, earth = curve.I[:, 0], curve["earth_I"][:, 0]
-share = earth / (sun + earth)
-print(f"the Earth brings {np.nanmin(share):.1%} to {np.nanmax(share):.1%} of the light")
+sunlit = sun > 0
+share = earth[sunlit] / (sun + earth)[sunlit]
+print(f"while the Sun shines the Earth brings {share.min():.1%} to {share.max():.1%} of the light")
 
 # %% [markdown]
 # The Earth lights faces that the Sun does not, so where the Sun's side is turned away it is most of what is seen. Its
 # light has been to many places of the Earth's disk and is hardly polarized: p of the sum is smaller.
 
 # %%
-q = (curve.q[:, 0] * sun + curve["earth_q"][:, 0] * earth) / (sun + earth)
-u = (curve.u[:, 0] * sun + curve["earth_u"][:, 0] * earth) / (sun + earth)
+q, u = ((curve[name][sunlit, 0] * sun[sunlit] + curve[f"earth_{name}"][sunlit, 0] * earth[sunlit])
+        / (sun + earth)[sunlit] for name in "qu")
 figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), layout="constrained")
 axes[0].semilogy(curve.phase_angle, sun, label="Sun")
 axes[0].semilogy(curve.phase_angle, earth, label="Earth")
 axes[0].set(xlabel="phase angle [°]", ylabel="I [W m⁻² nm⁻¹]")
 axes[0].legend()
 axes[1].plot(curve.phase_angle, 100 * curve.p[:, 0], label="Sun alone")
-axes[1].plot(curve.phase_angle, 100 * np.hypot(q, u), label="with the Earth")
+axes[1].plot(curve.phase_angle[sunlit], 100 * np.hypot(q, u), label="with the Earth")
 axes[1].set(xlabel="phase angle [°]", ylabel="p [%]")
 axes[1].legend()
 

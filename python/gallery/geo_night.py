@@ -53,8 +53,9 @@ for name, curve in january.items():
 # %% [markdown]
 # Hardly a difference: the wings look at the Sun and mirror it past us, to the north. Their axis is that of the Earth, so
 # they follow the Sun's right ascension but not its declination. The mirrored light stands as far north as the Sun stands
-# south, and Maui is 3.5 degrees north as the satellite sees it: some night in March, and one in October, it is met.
-# (The elements are weeks old then: a warning says so, and for a place on the ring it does not matter.)
+# south, and Maui is 3.5 degrees north as the satellite sees it: around the equinoxes it is met, unless the satellite
+# stands in the Earth's shadow just then. (The elements are weeks old by then: a warning says so, and for a place on the
+# ring it does not matter.)
 
 # %%
 warnings.simplefilter("ignore", umov.UmovWarning)

@@ -17,6 +17,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "build/release/python"
 KEPT = ROOT / "build/release/gallery"
+#: Of pages with a figure that turns: from the site itself.
+PLOTLY = '<script src="../_static/plotly.min.js"></script>'
 RUNNER = pathlib.Path(__file__).with_name("run_page.py")
 
 
@@ -99,6 +101,8 @@ def markdown(page: pathlib.Path, told: dict[str, object], pictures: pathlib.Path
         if printed:
             out += f"```{{code-block}} text\n:class: output\n\n{printed.rstrip()}\n```\n\n"
         if cell["html"]:
+            if "plotly-graph-div" in cell["html"] and PLOTLY not in out:
+                out += f"```{{raw}} html\n{PLOTLY}\n```\n\n"
             out += "```{raw} html\n<div class=\"output\">" + cell["html"] + "</div>\n```\n\n"
         for name in cell["pictures"]:
             (pictures / f"{page.stem}_{name}").write_bytes(base64.b64decode(told["pictures"][name]))  # type: ignore[index]
