@@ -77,13 +77,12 @@ Result<std::vector<Pose>> poses_from(const Vectors &sun, const Vectors &observer
 Abundances sums_of(const Sums &sums, const Vectors &sun, const Vectors &observer, unsigned threads,
                    nb::handle watch) {
   Attention attention(watch);
-  auto made =
-      attend(attention, [&](const jobs::Monitor &, Diagnostics &) -> Result<Abundances> {
-        UMOV_ASSIGN(poses, poses_from(sun, observer, sums.sun_radius_rad()));
-        Abundances out;
-        UMOV_TRY(sums.engine().abundances(poses, out.table, threads));
-        return out;
-      });
+  auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &) -> Result<Abundances> {
+    UMOV_ASSIGN(poses, poses_from(sun, observer, sums.sun_radius_rad()));
+    Abundances out;
+    UMOV_TRY(sums.engine().abundances(poses, out.table, threads));
+    return out;
+  });
   attention.settle(false);
   return take(std::move(made));
 }
@@ -96,8 +95,8 @@ nb::tuple applied(const Sums &sums, const Abundances &abundances, const Scenario
     double diffuse_error = 0;
   };
   Attention attention(watch);
-  auto made = attend(
-      attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Done> {
+  auto made =
+      attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Done> {
         UMOV_ASSIGN(object, load_object(scenario, 0, {}, diagnostics));
         UMOV_ASSIGN(tables, sums.engine().tables_for(object.scene));
         Done out;
@@ -162,9 +161,10 @@ void bind_abundances(nb::module_ &m) {
            "scenario"_a, "others"_a, "options"_a, "watch"_a.none())
       .def("abundances", &sums_of, "sun"_a, "observer"_a, "threads"_a, "watch"_a.none())
       .def("apply", &applied, "abundances"_a, "scenario"_a, "threads"_a, "watch"_a.none(),
-           nb::sig("def apply(self, abundances: Abundances, scenario: Scenario, threads: int, watch: "
-                   "object | None) -> tuple[numpy.typing.NDArray[numpy.float64], "
-                   "numpy.typing.NDArray[numpy.float64], float]"));
+           nb::sig(
+               "def apply(self, abundances: Abundances, scenario: Scenario, threads: int, watch: "
+               "object | None) -> tuple[numpy.typing.NDArray[numpy.float64], "
+               "numpy.typing.NDArray[numpy.float64], float]"));
 }
 
 } // namespace umov::python

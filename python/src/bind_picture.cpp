@@ -22,9 +22,9 @@ using Three = std::array<double, 3>;
 Vec3<Body> direction_of(const Three &v, const char *name) {
   if (const auto direction = direction_along({v[0], v[1], v[2]}))
     return *direction;
-  return take(Result<Vec3<Body>>(
-      fail(ErrorCode::BadInput,
-           std::string(name) + " is no direction; three finite numbers other than 0 were expected")));
+  return take(Result<Vec3<Body>>(fail(
+      ErrorCode::BadInput,
+      std::string(name) + " is no direction; three finite numbers other than 0 were expected")));
 }
 
 jobs::RenderRequest::Shade shade_from(const std::string &word) {
@@ -48,9 +48,9 @@ nb::bytes render(const Scenario &scenario, const std::string &shade, const std::
   request.side = side;
   request.samples = samples;
   if (directions.size() == 3)
-    request.view = KeyFrameView{{direction_of(directions[0], "sun"),
-                                 direction_of(directions[1], "observer"), 0},
-                                direction_of(directions[2], "up")};
+    request.view = KeyFrameView{
+        {direction_of(directions[0], "sun"), direction_of(directions[1], "observer"), 0},
+        direction_of(directions[2], "up")};
   if (time)
     request.time = take(utc_from_iso(*time));
   Attention attention(watch);

@@ -1,6 +1,6 @@
-// The loop that python/tests/test_overhead.py holds the package against: catalogue_loop FILE FIRST COUNT. For every line
-// that it reads it propagates all objects of FILE to COUNT minutes from FIRST on, on one thread, and prints the
-// seconds by the clock and of the processor.
+// The loop that python/tests/test_overhead.py holds the package against: catalogue_loop FILE FIRST
+// COUNT. For every line that it reads it propagates all objects of FILE to COUNT minutes from FIRST
+// on, on one thread, and prints the seconds by the clock and of the processor.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

@@ -1,6 +1,7 @@
 """What goes in and comes out: units, times, sites, tables, adapters; and what is refused."""
 import datetime
 import pathlib
+import pickle
 
 import numpy as np
 import pytest
@@ -120,6 +121,15 @@ def test_tables(curve, tmp_path):
     assert (tmp_path / "a.fits").read_bytes()[:6] == b"SIMPLE"
     with pytest.raises(umov.UsageError):
         curve.write(tmp_path / "a.docx")
+
+
+def test_materials_add_up(curve):
+    sides = curve.scenario.to_dict()["object"][0]["materials"].values()
+    assert set(curve.contributions) == {name for side in sides for name in side.values()}
+    # Sums of the same floats in another order.
+    np.testing.assert_allclose(sum(curve.contributions.values()), curve.intensity, rtol=1e-6, atol=1e-12)
+    again = pickle.loads(pickle.dumps(curve))
+    np.testing.assert_array_equal(again.contributions["film_silvered"], curve.contributions["film_silvered"])
 
 
 def test_places_are_those_that_astropy_turns_into_altitudes(curve):

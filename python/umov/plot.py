@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from .light_curves import LightCurve
     from .pictures import Picture
 
-__all__ = ["band_styles", "colour_index", "degree", "folded", "intensity", "magnitude", "overview", "periodogram", "picture",
-           "position_angle", "pure_materials", "q_phase", "q_rgb", "qu_plane", "qu_time", "sky_track", "three_bands"]
+__all__ = ["band_styles", "colour_index", "contributions", "degree", "folded", "intensity", "magnitude", "overview",
+           "periodogram", "picture", "position_angle", "pure_materials", "q_phase", "q_rgb",
+           "qu_plane", "qu_time", "sky_track", "three_bands"]
 
 # Okabe & Ito (2008); the first three follow the wavelength from blue to red, as in the report.
 THREE = ("#0072b2", "#009e73", "#d55e00")
@@ -203,6 +204,30 @@ def _interfaces(curve: LightCurve) -> Iterator[tuple[str, dict[str, Any]]]:
         table = dict(own[name]) if name in own else Material(name).to_dict()
         if "table" not in table:
             yield name, {key: value for key, value in table.items() if key not in ("body", "haze", "interreflection")}
+
+
+def contributions(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
+    """Direct light of each material over time, as parts of all direct light, on top of each other.
+
+    >>> axes = plot.contributions(curve)
+    >>> axes.get_ylabel(), len(axes.collections) == len(curve.contributions)
+    ('share of the direct light', True)
+    """
+    if not curve.contributions:
+        raise UsageError("the curve does not know what each material gives; one that umov.run made was expected")
+    axes = _axes(axes)
+    which = curve.band(band)
+    rows = np.stack([light[:, which] for light in curve.contributions.values()])
+    with np.errstate(invalid="ignore"):
+        share = rows / rows.sum(axis=0)
+    times = curve.time.datetime64
+    for part in _passes(curve):
+        axes.stackplot(times[part], share[:, part], labels=list(curve.contributions) if part[0] == 0 else [],
+                       colors=[MANY[k % len(MANY)] for k in range(len(rows))])
+    axes.set(ylabel="share of the direct light", ylim=(0, 1))
+    axes.tick_params("x", rotation=30)
+    axes.legend(fontsize="small", loc="upper left")
+    return axes
 
 
 def _periodic(curve: LightCurve, band: str | int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

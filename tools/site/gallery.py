@@ -97,9 +97,8 @@ def markdown(page: pathlib.Path, told: dict[str, object], pictures: pathlib.Path
             out += cell["source"] + "\n\n"
             continue
         out += f"```python\n{cell['source']}\n```\n\n"
-        printed = cell["printed"] + (cell["text"] if not cell["html"] else "")
-        if printed:
-            out += f"```{{code-block}} text\n:class: output\n\n{printed.rstrip()}\n```\n\n"
+        if cell["printed"]:
+            out += f"```{{code-block}} text\n:class: output\n\n{cell['printed'].rstrip()}\n```\n\n"
         if cell["html"]:
             if "plotly-graph-div" in cell["html"] and PLOTLY not in out:
                 out += f"```{{raw}} html\n{PLOTLY}\n```\n\n"

@@ -44,8 +44,9 @@ def main(page, out):
             pictures = sorted(path.name for path in pathlib.Path().glob("*.png") if path.name not in seen)
             seen.update(pictures)
             cell |= {"printed": printed.getvalue(), "pictures": pictures}
-            if value is not None:
-                cell |= {"text": repr(value), "html": html_of(value)}
+            html = html_of(value)  # what has no picture of itself was a call, made for what it does
+            if html:
+                cell |= {"text": repr(value)[:200], "html": html}
         cells.append(cell)
     out.write_text(json.dumps({"cells": cells}))
 

@@ -50,9 +50,9 @@ def put_docs(pages: Pages) -> None:
             pages.put(str(name), equations.with_equations(text))
         else:
             pages.put(str(name), path.read_bytes())
-    for name in ("CHANGELOG.md", "CONTRIBUTING.md"):
+    for page in ("CHANGELOG.md", "CONTRIBUTING.md"):
         # Links to the pages, which stand one folder higher here.
-        pages.put(name.lower(), (ROOT / name).read_text().replace("](docs/", "]("))
+        pages.put(page.lower(), (ROOT / page).read_text().replace("](docs/", "]("))
 
 
 def put_gallery(pages: Pages) -> None:
