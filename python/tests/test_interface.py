@@ -1,5 +1,6 @@
 """What goes in and comes out: units, times, sites, tables, adapters; and what is refused."""
 import datetime
+import functools
 import pathlib
 import pickle
 
@@ -307,3 +308,38 @@ def test_adapters_leave_no_files(plate):
     del made, engine
     gc.collect()
     assert not folder.exists()
+
+
+# What somebody may hand over by mistake.
+ODD = st.one_of(st.none(), st.booleans(), st.integers(-10**20, 10**20), ANY, st.text(max_size=12), st.binary(max_size=8),
+                st.lists(ANY, max_size=4), st.dictionaries(st.text(max_size=5), ANY, max_size=2), st.just(object()),
+                st.sampled_from([3 * u.m, [1, 2] * u.deg, np.array(["a"]), np.zeros((2, 3), dtype=complex), u.s,
+                                 Time("2018-01-21"), TimeDelta(3 * u.s), datetime.datetime(2018, 1, 21),
+                                 umov.Material, EarthLocation.from_geodetic(0 * u.deg, 0 * u.deg), np.ma.masked]))
+TLE = DATA / "tle/hst.tle"
+MATERIALS = functools.cache(umov.materials)
+CALLS = {
+    "Site": umov.Site, "Site.lat_deg": lambda x: umov.Site(lat_deg=x, lon_deg=0, alt_m=0), "utc": umov.utc,
+    "mesh": lambda x: umov.Satellite(mesh=x, materials="paper_al"), "Material": umov.Material,
+    "vertices": lambda x: umov.Satellite(mesh=(x, [[0, 1, 2]]), materials="paper_al"),
+    "faces": lambda x: umov.Satellite(mesh=([[0, 0, 0], [1, 0, 0], [0, 1, 0]], x), materials="paper_al"),
+    "orbit": lambda x: umov.propagate(x, START), "times": lambda x: umov.propagate(TLE, x),
+    "theta": lambda x: umov.brdf("paper_al", theta_i_deg=x), "wavelength": lambda x: umov.brdf("paper_al", wavelength_nm=x),
+    "phase": lambda x: umov.random_poses(3, x), "count": lambda x: umov.random_poses(x, 60) if not isinstance(x, int) or x < 1000 or x > 1e9 else None,
+    "norad": lambda x: umov.passes(TLE, "maui", START, STOP, norad=x), "stop": lambda x: umov.passes(TLE, "maui", START, x),
+    "step": lambda x: umov.ephemeris(TLE, "maui", START, START, step=x),
+    "step_s": lambda x: umov.ephemeris(TLE, "maui", START, START, step_s=x),
+    "set": lambda x: umov.Scenario(EXAMPLES / "hst_maui.toml", set={"render.accuracy": x}), "Scenario": umov.Scenario,
+    "column": lambda x: MATERIALS()[x],
+}
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(odd=ODD)
+@pytest.mark.parametrize("name", CALLS)
+def test_odd_arguments_are_told_of(name, odd):
+    """500 cases in all: what does not fit is an error of ours, with words of what was found."""
+    try:
+        CALLS[name](odd)
+    except umov.Error as error:
+        assert len(str(error)) > 10 and not isinstance(error, umov.InternalError)

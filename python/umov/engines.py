@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _umov
 from ._jobs import Progress, Watch, job_options
+from ._numbers import number, whole
 from .errors import UsageError
 from .satellites import Bands, band_table
 from .scenarios import AnyScenario, Scenario
@@ -149,7 +150,7 @@ def random_poses(count: int, phase_deg: float, seed: int = 0, first: int = 0) ->
     >>> bool(abs((sun * observer).sum(axis=1)).max() < 1e-15)
     True
     """
-    if count < 0 or first < 0 or seed < 0:
-        raise UsageError(f"count {count}, first {first}, seed {seed}; none below 0 was expected")
-    both = _umov.random_directions(count, float(phase_deg), seed, first)
+    most = 2**63 - 1
+    both = _umov.random_directions(whole(count, "count", 10**9), number(phase_deg, "phase_deg"), whole(seed, "seed", most),
+                                   whole(first, "first", 10**12))
     return both[0], both[1]

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _toml, adapters
 from ._jobs import Progress
+from ._numbers import number
 from .errors import UsageError
 from .sites import AnySite, Site
 from .times import AnyTime, seconds, utc
@@ -171,8 +172,9 @@ class Satellite:
             start, stop = _span_of_pass(start)
         if step is not None and step_s is not None:
             raise UsageError("step and step_s; one of them was expected")
-        length = seconds(step) if step is not None else float(1.0 if step_s is None else step_s)
-        only = {"alt_min_deg": float(alt_min_deg), "sun_alt_max_deg": float(sun_alt_max_deg), "sunlit": sunlit}
+        length = seconds(step) if step is not None else number(1.0 if step_s is None else step_s, "step_s")
+        only = {"alt_min_deg": number(alt_min_deg, "alt_min_deg"),
+                "sun_alt_max_deg": number(sun_alt_max_deg, "sun_alt_max_deg"), "sunlit": sunlit}
         scenario = self.to_scenario_dict(
             bands, title=self.name, seed=seed, observer=Site(site).to_dict(),
             time={"start": utc(start), "stop": utc(stop), "step_s": length, "only": only},
