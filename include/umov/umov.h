@@ -3,6 +3,11 @@
 // a header. Lowest module first.
 
 // clang-format off: in the order of the modules
+#include <umov/atmosphere/air.h>
+#include <umov/atmosphere/refraction.h>
+#include <umov/atmosphere/scintillation.h>
+#include <umov/atmosphere/sky_brightness.h>
+#include <umov/atmosphere/sky_polarization.h>
 #include <umov/attitude/attitude.h>
 #include <umov/attitude/attitude_table.h>
 #include <umov/attitude/tumble.h>
@@ -26,6 +31,15 @@
 #include <umov/frames/earth.h>
 #include <umov/frames/site.h>
 #include <umov/frames/sky.h>
+#include <umov/instrument/detector.h>
+#include <umov/instrument/draws.h>
+#include <umov/instrument/exposure.h>
+#include <umov/instrument/mirrors.h>
+#include <umov/instrument/mosaic.h>
+#include <umov/instrument/mueller.h>
+#include <umov/instrument/observe.h>
+#include <umov/instrument/polarimeter.h>
+#include <umov/instrument/telescope.h>
 #include <umov/io/attitude_file.h>
 #include <umov/io/ccsds.h>
 #include <umov/io/elements_file.h>
@@ -103,6 +117,12 @@
 #include <umov/picture/channel.h>
 #include <umov/picture/colours.h>
 #include <umov/picture/keyframe.h>
+#include <umov/reduction/calibration.h>
+#include <umov/reduction/likelihood.h>
+#include <umov/reduction/polarization.h>
+#include <umov/reduction/ratio.h>
+#include <umov/reduction/sequence.h>
+#include <umov/reduction/stokes_fit.h>
 #include <umov/scene/articulation.h>
 #include <umov/scene/pose.h>
 #include <umov/scene/scene.h>
