@@ -192,6 +192,7 @@ Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &pla
     out[c].channel = (*channels)[0][c].name;
     out[c].analyser_deg = (*channels)[0][c].analyser_deg;
     out[c].pixels = pixels;
+    out[c].scintillation = sd;
     out[c].mean_sky += d.dark_e_s * plan.exposure_s * pixels;
     draw(plan, light, c, factor, out[c]);
   }

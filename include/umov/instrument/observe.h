@@ -79,6 +79,7 @@ struct ChannelCounts {
   double pixels = 0;
   double var_read = 0; ///< [e2] of reading and rounding, all pixels
   double excess2 = 1;
+  double scintillation = 0; ///< relative standard deviation of the transparency
   bool is_saturated = false;
   StokesRow row{};     ///< counts - sky = row . S, S in the sky frame of the files [e W-1 m2 nm]
   double mean_star = 0, mean_sky = 0; ///< truth of the simulation
@@ -101,6 +102,10 @@ public:
                                                            const ExposureLight &light) const;
   /// Makes the channels of a state.
   [[nodiscard]] Result<void> prepare(const PolarimeterState &state);
+  /// It has them.
+  [[nodiscard]] bool is_prepared(const PolarimeterState &state) const {
+    return channels_of(state) != nullptr;
+  }
 
   /// The band.
   [[nodiscard]] const BandResponse &band() const { return band_; }

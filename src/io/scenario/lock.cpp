@@ -1,3 +1,4 @@
+#include "io/scenario/instrument.h"
 #include "io/scenario/parts.h"
 
 #include <array>
@@ -123,7 +124,8 @@ std::string locked_scenario(const Scenario &s) {
     out += fmt::format("earthshine = {{ albedo = {}, patches = {}, accuracy = {} }}\n",
                        shortest(s.earthshine->albedo), s.earthshine->patches,
                        shortest(s.earthshine->accuracy));
-  out += "\n[detector]\nmodel = \"ideal\"\n";
+  out += s.observation ? scenario::observation_toml(*s.observation)
+                       : std::string("\n[detector]\nmodel = \"ideal\"\n");
   out += fmt::format("\n[output]\ndir = {}\nformats = {}\npol_frame = \"{}\"\n",
                      quoted(s.output_dir.string()), list(s.formats), frame_name(s.frame));
   for (const auto &[name, material] : s.own_materials)
