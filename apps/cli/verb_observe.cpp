@@ -24,8 +24,8 @@ Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnost
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
   JobConsole console(common);
-  UMOV_ASSIGN(result, jobs::observe(scenario, options, console.monitor(common.verbose),
-                                    diagnostics));
+  UMOV_ASSIGN(result,
+              jobs::observe(scenario, options, console.monitor(common.verbose), diagnostics));
   UMOV_TRY(jobs::write_observation(result, scenario, manifest_of_command(common, started),
                                    diagnostics, folder));
   note(common, fmt::format("{}, {} rows of counts; light {:.1f} s, counts {:.1f} s",

@@ -42,6 +42,7 @@
 #include <umov/instrument/telescope.h>
 #include <umov/io/attitude_file.h>
 #include <umov/io/ccsds.h>
+#include <umov/io/counts_file.h>
 #include <umov/io/elements_file.h>
 #include <umov/io/exr.h>
 #include <umov/io/index_file.h>
@@ -49,6 +50,7 @@
 #include <umov/io/measured_file.h>
 #include <umov/io/mesh_file.h>
 #include <umov/io/obj.h>
+#include <umov/io/observation.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
 #include <umov/io/poses_file.h>
@@ -65,13 +67,16 @@
 #include <umov/io/trajectory_file.h>
 #include <umov/jobs/brdf.h>
 #include <umov/jobs/ephemeris.h>
+#include <umov/jobs/exposure.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
 #include <umov/jobs/mesh_description.h>
 #include <umov/jobs/monitor.h>
+#include <umov/jobs/observe.h>
 #include <umov/jobs/orbit_files.h>
 #include <umov/jobs/passes.h>
 #include <umov/jobs/pose_light.h>
+#include <umov/jobs/reduce.h>
 #include <umov/jobs/render.h>
 #include <umov/jobs/requests.h>
 #include <umov/jobs/run.h>

@@ -11,14 +11,14 @@ namespace {
 
 /// What is known of a band of the sky.
 struct SkyRow {
-  double nm;              ///< where it lies (Bessell 1990)
-  double dark;            ///< mag / arcsec^2
-  double fit[3];          ///< twilight: powers of zenith distance - 95 deg
-  double ab_minus_vega;   ///< Sun, AB minus Vega
+  double nm;            ///< where it lies (Bessell 1990)
+  double dark;          ///< mag / arcsec^2
+  double fit[3];        ///< twilight: powers of zenith distance - 95 deg
+  double ab_minus_vega; ///< Sun, AB minus Vega
 };
 
 constexpr SkyRow rows[] = {
-    {360, 22.3, {11.78, 1.376, -.039}, .7287}, {440, 22.6, {11.84, 1.411, -.041}, -.1294},
+    {360, 22.3, {11.78, 1.376, -.039}, .7287},  {440, 22.6, {11.84, 1.411, -.041}, -.1294},
     {550, 21.6, {11.84, 1.518, -.057}, -.0087}, {656, 20.9, {11.40, 1.567, -.064}, .1845},
     {805, 19.7, {10.93, 1.470, -.062}, .4110},
 };

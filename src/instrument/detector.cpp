@@ -7,9 +7,7 @@
 namespace umov {
 namespace {
 
-double register_gain(const Detector &d) {
-  return d.model == DetectorModel::Emccd ? d.em_gain : 1;
-}
+double register_gain(const Detector &d) { return d.model == DetectorModel::Emccd ? d.em_gain : 1; }
 
 /// Electrons, after a register in units of its input, before they are read.
 double draw_electrons(const Detector &d, double mean, double exposure_s, Draws &draws) {

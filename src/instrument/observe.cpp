@@ -48,8 +48,7 @@ InstrumentMueller BandObserver::port(std::size_t node, Angle altitude) const {
   if (where == TelescopePort::Cassegrain || mirror_.empty())
     return identity_element();
   return nasmyth_port(mirror_[node],
-                      where == TelescopePort::NasmythRight ? NasmythSide::Right
-                                                           : NasmythSide::Left,
+                      where == TelescopePort::NasmythRight ? NasmythSide::Right : NasmythSide::Left,
                       altitude);
 }
 
@@ -110,8 +109,7 @@ double BandObserver::mean_transmission(double airmass) const {
   return sum / rate_per_flux();
 }
 
-double BandObserver::scintillation_sd(double exposure_s, double airmass,
-                                      double rate_rad_s) const {
+double BandObserver::scintillation_sd(double exposure_s, double airmass, double rate_rad_s) const {
   if (!conditions_.scintillation)
     return 0;
   const double sd = umov::scintillation_sd(*conditions_.scintillation,
@@ -149,8 +147,8 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   out.sky = out.mean_sky + out.sky_err * sky_draws.normal();
   const double lattice = instrument_.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
   const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
-  const double peak = star * lattice / share * peak_share(light.airmass) +
-                      out.mean_sky / out.pixels;
+  const double peak =
+      star * lattice / share * peak_share(light.airmass) + out.mean_sky / out.pixels;
   out.is_saturated = peak > saturation_e(d);
 }
 
@@ -171,10 +169,10 @@ Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &pla
     const double through = transmission(band_.nm[k], conditions_.air, light.airmass);
     const auto sky = at_polarimeter(k, light.sky, light.altitude, light.axis_zenith);
     const InstrumentMueller from_sky =
-        mirror_.empty() ? axes_turned(light.axis)
-                        : axes_turned(light.axis_zenith) * port(k, light.altitude) *
-                              axes_turned(Angle::radians(light.axis.radians() -
-                                                         light.axis_zenith.radians()));
+        mirror_.empty()
+            ? axes_turned(light.axis)
+            : axes_turned(light.axis_zenith) * port(k, light.altitude) *
+                  axes_turned(Angle::radians(light.axis.radians() - light.axis_zenith.radians()));
     for (std::size_t c = 0; c < out.size(); ++c) {
       const PolarimeterChannel &channel = (*channels)[k][c];
       const StokesRow real = channel.row * own;

@@ -18,8 +18,8 @@ constexpr std::array<std::array<double, 2>, 4> gauss4{{{-0.43056815579702629, 0.
 StokesRow plate_row(const InstrumentMueller &analyser, double retardance_deg, double plate_deg,
                     double turn_deg) {
   const auto at = [&](double angle) {
-    return first_row(behind(
-        analyser, retarder(Angle::degrees(retardance_deg), Angle::degrees(angle))));
+    return first_row(
+        behind(analyser, retarder(Angle::degrees(retardance_deg), Angle::degrees(angle))));
   };
   if (turn_deg == 0)
     return at(plate_deg);
@@ -43,11 +43,11 @@ std::vector<PolarimeterChannel> pem_channels(const Polarimeter &p, double extinc
       for (const auto &[x, w] : gauss4) {
         const double phase = 2 * pi * (b + (k + .5 + x) / pieces) / bins;
         const Angle d = Angle::degrees(p.amplitude_deg * std::sin(phase));
-        row = row + first_row(behind(analyser, retarder(d, Angle::degrees(45)))) *
-                        (w / pieces / bins);
+        row = row +
+              first_row(behind(analyser, retarder(d, Angle::degrees(45)))) * (w / pieces / bins);
       }
-    out.push_back({fmt::format("phase{}", b), analyser_deg,
-                   row_on_sky(row, Angle::degrees(analyser_deg))});
+    out.push_back(
+        {fmt::format("phase{}", b), analyser_deg, row_on_sky(row, Angle::degrees(analyser_deg))});
   }
   return out;
 }
@@ -66,10 +66,9 @@ std::vector<PolarimeterChannel> analyser_channels(const std::vector<double> &ang
 void add_beams(std::vector<PolarimeterChannel> &out, const std::string &suffix, double extinction,
                double retardance, double plate, double turn, double share) {
   for (const auto &[name, angle] : {std::pair{"o", 0.}, {"x", 90.}})
-    out.push_back({name + suffix, angle,
-                   plate_row(polarizer(extinction, Angle::degrees(angle)), retardance, plate,
-                             turn) *
-                       share});
+    out.push_back(
+        {name + suffix, angle,
+         plate_row(polarizer(extinction, Angle::degrees(angle)), retardance, plate, turn) * share});
 }
 
 } // namespace
@@ -123,9 +122,15 @@ std::size_t parameters_of(PolarimeterType type) {
 }
 
 const std::vector<std::string> &polarimeter_names() {
-  static const std::vector<std::string> names{
-      "none", "polarizer_wheel", "hwp_dual_beam", "spinning_hwp_dual_beam", "rotating_retarder",
-      "pem",  "flc",             "four_camera",   "mosaic"};
+  static const std::vector<std::string> names{"none",
+                                              "polarizer_wheel",
+                                              "hwp_dual_beam",
+                                              "spinning_hwp_dual_beam",
+                                              "rotating_retarder",
+                                              "pem",
+                                              "flc",
+                                              "four_camera",
+                                              "mosaic"};
   return names;
 }
 

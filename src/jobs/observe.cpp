@@ -89,8 +89,7 @@ Result<LitBlock> light_of(const Session &s, std::span<const Exposure> exposures)
   std::vector<std::optional<Result<TrackPoint>>> placed(exposures.size() * per);
   parallel_for(exposures.size(), s.threads, [&](std::size_t e) {
     for (std::size_t n = 0; n < per; ++n)
-      placed[e * per + n] =
-          s.track.at(plus_seconds(exposures[e].middle.time, s.nodes[n].offset_s));
+      placed[e * per + n] = s.track.at(plus_seconds(exposures[e].middle.time, s.nodes[n].offset_s));
   });
   LitBlock out;
   std::vector<Pose> poses;
@@ -114,12 +113,12 @@ Result<LitBlock> light_of(const Session &s, std::span<const Exposure> exposures)
 /// with the Sun's spectrum replaced by its mean in the band.
 Stokes<ScatteringPlane> irradiance_of(const BandResult &lit, const BandResponse &band,
                                       const ObservingGeometry &g) {
-  return lit.stokes * irradiance_at_observer(1, band.solar_mean, g.sun_distance_km, g.sunlit,
-                                             g.range_km);
+  return lit.stokes *
+         irradiance_at_observer(1, band.solar_mean, g.sun_distance_km, g.sunlit, g.range_km);
 }
 
-ExposureLight arriving(const Session &s, const Exposure &e, std::size_t number,
-                       const LitBlock &lit, Recorded &out) {
+ExposureLight arriving(const Session &s, const Exposure &e, std::size_t number, const LitBlock &lit,
+                       Recorded &out) {
   const BandObserver &observer = s.observers[e.planned.band];
   const BandResponse &band = observer.band();
   const ObservingGeometry &g = e.middle;
@@ -132,14 +131,13 @@ ExposureLight arriving(const Session &s, const Exposure &e, std::size_t number,
     const Angle to_file =
         Angle::radians(-now.pa_scat_altaz.radians() - zenith_in(s.scenario.frame, now).radians());
     for (std::size_t k = 0; k < band.nm.size(); ++k) {
-      const auto light_here = irradiance_of(
-          lit.table.at(at, s.bands.index[e.planned.band][k]), band, now);
+      const auto light_here =
+          irradiance_of(lit.table.at(at, s.bands.index[e.planned.band][k]), band, now);
       const auto zenith_axes =
           rotate_to<SkyNorth>(light_here, Angle::radians(-now.pa_scat_altaz.radians()));
       light.flux[k] +=
           observer.at_polarimeter(k, zenith_axes, now.altitude, x_axis) * s.nodes[n].weight;
-      out.truth += rotate_to<SkyNorth>(light_here, to_file) *
-                   (band.weight[k] * s.nodes[n].weight);
+      out.truth += rotate_to<SkyNorth>(light_here, to_file) * (band.weight[k] * s.nodes[n].weight);
     }
   }
   const auto sky = sky_light(s.observation.sky, band, g, s.k_v);
@@ -149,8 +147,8 @@ ExposureLight arriving(const Session &s, const Exposure &e, std::size_t number,
   const Angle seen = apparent_altitude(band.pivot_nm, g.altitude, s.surface);
   light.airmass = airmass(seen);
   light.axis_zenith = x_axis_from_zenith(s.observation.instrument, g);
-  light.axis = Angle::radians(light.axis_zenith.radians() +
-                              zenith_in(s.scenario.frame, g).radians());
+  light.axis =
+      Angle::radians(light.axis_zenith.radians() + zenith_in(s.scenario.frame, g).radians());
   light.transparency = e.cloud;
   const auto &first = lit.points[number * s.nodes.size()].geometry;
   const auto &last = lit.points[(number + 1) * s.nodes.size() - 1].geometry;
@@ -208,26 +206,25 @@ public:
       channel_.push_back(c.channel);
       saturated_.push_back(c.is_saturated);
       const double axis = std::fmod(std::fmod(r.axis.degrees(), 180) + 180, 180);
-      const double values[] = {
-          c.analyser_deg,
-          e.planned.plan.state.plate_deg,
-          axis,
-          c.counts,
-          c.counts / s_.observation.instrument.detector.gain_e_adu,
-          c.sky,
-          c.sky_err,
-          c.pixels,
-          c.var_read,
-          c.excess2,
-          r.airmass,
-          r.k_mag,
-          c.row[0],
-          c.row[1],
-          c.row[2],
-          c.row[3],
-          e.middle.phase_angle.degrees(),
-          pa_scat(e.middle),
-          c.scintillation};
+      const double values[] = {c.analyser_deg,
+                               e.planned.plan.state.plate_deg,
+                               axis,
+                               c.counts,
+                               c.counts / s_.observation.instrument.detector.gain_e_adu,
+                               c.sky,
+                               c.sky_err,
+                               c.pixels,
+                               c.var_read,
+                               c.excess2,
+                               r.airmass,
+                               r.k_mag,
+                               c.row[0],
+                               c.row[1],
+                               c.row[2],
+                               c.row[3],
+                               e.middle.phase_angle.degrees(),
+                               pa_scat(e.middle),
+                               c.scintillation};
       for (std::size_t k = 0; k < std::size(values); ++k)
         numbers_[k].push_back(values[k]);
     }
@@ -355,8 +352,7 @@ void note(Table &table, const Scenario &scenario, const ObservedBands &bands) {
   table.note("pol_frame", frame_name(scenario.frame));
   table.note("instrument", o.instrument.name.empty() ? "in the scenario" : o.instrument.name);
   table.note("polarimeter", name_of(o.instrument.polarimeter.type));
-  table.note("parameters",
-             fmt::format("{}", parameters_of(o.instrument.polarimeter.type)));
+  table.note("parameters", fmt::format("{}", parameters_of(o.instrument.polarimeter.type)));
   table.note("mag_system", "AB");
   for (const BandResponse &band : bands.bands)
     table.note("zero_flux " + band.name, shortest(band.zero_flux));
@@ -425,9 +421,9 @@ Result<std::vector<Exposure>> exposures_of(const Scenario &scenario, const Track
   EpochSpan span{plus_seconds(request.span.start, half), plus_seconds(request.span.stop, -half),
                  o.cadence_s};
   if (seconds_between(span.stop, span.start) < 0)
-    return fail(ErrorCode::BadInput,
-                fmt::format("observation.exposure_s = {} is longer than the span of [time]",
-                            o.exposure_s));
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("observation.exposure_s = {} is longer than the span of [time]", o.exposure_s));
   UMOV_ASSIGN(kept, keep_epochs(track, span, request.only, request.threads,
                                 monitor.cancel != nullptr ? *monitor.cancel : never));
   Draws clock({scenario.seed, object, 0, 0, 0xc10c});
@@ -435,10 +431,9 @@ Result<std::vector<Exposure>> exposures_of(const Scenario &scenario, const Track
   Cloud cloud(o, scenario.seed, object);
   std::vector<Exposure> out;
   for (const ObservingGeometry &g : kept.geometry) {
-    const auto k = static_cast<std::size_t>(
-        std::llround(seconds_between(g.time, span.start) / o.cadence_s));
-    const double elapsed =
-        out.empty() ? 0 : seconds_between(g.time, out.back().middle.time);
+    const auto k =
+        static_cast<std::size_t>(std::llround(seconds_between(g.time, span.start) / o.cadence_s));
+    const double elapsed = out.empty() ? 0 : seconds_between(g.time, out.back().middle.time);
     out.push_back({programme.at(k), g, plus_seconds(g.time, clock_error), cloud.next(elapsed)});
   }
   return out;
@@ -519,15 +514,14 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
                             const Programme &programme, std::uint32_t object,
                             const JobOptions &options, const Monitor &monitor, Observation &out,
                             Diagnostics &diagnostics) {
-  UMOV_ASSIGN(loaded, load_object(scenario, object,
-                                  {options.allow_bad_checksum, options.allow_old_elements},
-                                  diagnostics));
+  UMOV_ASSIGN(loaded,
+              load_object(scenario, object,
+                          {options.allow_bad_checksum, options.allow_old_elements}, diagnostics));
   LightCurveRequest request =
       light_curve_request(scenario, scenario.objects[object], loaded, options);
   out.inputs.insert(out.inputs.end(), loaded.inputs.begin(), loaded.inputs.end());
   UMOV_ASSIGN(track, Track::make(request.track));
-  UMOV_ASSIGN(exposures,
-              exposures_of(scenario, track, request, programme, object, monitor));
+  UMOV_ASSIGN(exposures, exposures_of(scenario, track, request, programme, object, monitor));
   if (exposures.empty())
     return {};
   const auto began = std::chrono::steady_clock::now();
@@ -537,18 +531,18 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
   for (const Exposure &e : exposures)
     if (!observers[e.planned.band].is_prepared(e.planned.plan.state))
       UMOV_TRY(observers[e.planned.band].prepare(e.planned.plan.state));
-  const Session session{scenario,
-                        *scenario.observation,
-                        bands,
-                        *models.light,
-                        track,
-                        std::move(observers),
-                        exposure_nodes(scenario.observation->exposure_s,
-                                       shortest_feature_s(track, exposures)),
-                        request.object,
-                        {conditions.air.pressure_hpa, 283.15, 4},
-                        extinction_mag(550, conditions.air),
-                        options.threads};
+  const Session session{
+      scenario,
+      *scenario.observation,
+      bands,
+      *models.light,
+      track,
+      std::move(observers),
+      exposure_nodes(scenario.observation->exposure_s, shortest_feature_s(track, exposures)),
+      request.object,
+      {conditions.air.pressure_hpa, 283.15, 4},
+      extinction_mag(550, conditions.air),
+      options.threads};
   out.light_s += seconds_since(began);
   warn_of_mosaic(session, diagnostics);
   warn_of_air(exposures, session, diagnostics);
@@ -615,9 +609,9 @@ Result<void> write_observation(const Observation &observation, const Scenario &s
     }
   }
   folder.add("scenario.lock.toml", locked_scenario(scenario));
-  std::string log = fmt::format("{}, {} rows of counts\n",
-                                counted(observation.exposures, "exposure"),
-                                observation.counts.rows());
+  std::string log =
+      fmt::format("{}, {} rows of counts\n", counted(observation.exposures, "exposure"),
+                  observation.counts.rows());
   for (const Warning &warning : diagnostics.warnings()) {
     log += "warning: " + warning.text() + "\n";
     manifest.warnings.push_back(warning.text());

@@ -81,13 +81,37 @@ Result<Programme> Programme::make(const ScenarioObservation &o,
         out.steps_.push_back({step.state, b});
     }
   out.set_size_ = is_simultaneous(p.type) ? 1 : steps.size();
+  UMOV_TRY(out.check(p, bands));
   return out;
+}
+
+/// All states of a set together must tell what the type is made for.
+Result<void> Programme::check(const Polarimeter &p, const std::vector<BandResponse> &bands) const {
+  const std::size_t parameters = parameters_of(p.type);
+  if (parameters < 3)
+    return {};
+  for (const BandResponse &band : bands) {
+    std::vector<StokesRow> rows;
+    for (std::size_t k = 0; k < set_size_; ++k) {
+      UMOV_ASSIGN(channels, polarimeter_channels(p, at(k).plan.state, band.pivot_nm));
+      for (const PolarimeterChannel &channel : channels)
+        rows.push_back(channel.row);
+    }
+    const ModulationQuality quality = modulation_quality(rows, parameters);
+    if (!std::isfinite(quality.condition) || rows.size() < parameters)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("the {} rows of observation.sequence cannot tell {} (condition "
+                              "number {:.3g}); give other angles",
+                              rows.size(), quality.missing.empty() ? "U" : quality.missing,
+                              quality.condition));
+  }
+  return {};
 }
 
 PlannedExposure Programme::at(std::size_t k) const {
   const Step &step = steps_[k % steps_.size()];
-  PlannedExposure out{{static_cast<std::uint32_t>(k), exposure_s_, step.state}, step.band,
-                      k / set_size_};
+  PlannedExposure out{
+      {static_cast<std::uint32_t>(k), exposure_s_, step.state}, step.band, k / set_size_};
   if (turn_per_exposure_ > 0) {
     const double middle = turn_per_cadence_ * static_cast<double>(k) + turn_per_exposure_ / 2;
     out.plan.state.plate_deg += std::fmod(middle, 360);

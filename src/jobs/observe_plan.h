@@ -31,6 +31,8 @@ public:
   [[nodiscard]] std::size_t set_size() const { return set_size_; }
 
 private:
+  [[nodiscard]] Result<void> check(const Polarimeter &polarimeter,
+                                   const std::vector<BandResponse> &bands) const;
   struct Step {
     PolarimeterState state;
     std::size_t band;

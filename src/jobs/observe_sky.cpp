@@ -26,8 +26,8 @@ private:
 
 Stokes<SkyNorth> polarized(double intensity, const SkyPolarization &p) {
   const double twice = 2 * p.axis.radians();
-  return {intensity, intensity * p.degree * std::cos(twice),
-          intensity * p.degree * std::sin(twice), 0};
+  return {intensity, intensity * p.degree * std::cos(twice), intensity * p.degree * std::sin(twice),
+          0};
 }
 
 Angle from_zenith(Vec3<Enu> v) { return Angle::radians(std::acos(std::min(1.0, v.z))); }
@@ -53,8 +53,8 @@ Stokes<SkyNorth> moonlight(const SkyOptions &options, const ObservingGeometry &g
 
 } // namespace
 
-SkyLight sky_light(const SkyOptions &options, const BandResponse &band,
-                   const ObservingGeometry &g, double extinction) {
+SkyLight sky_light(const SkyOptions &options, const BandResponse &band, const ObservingGeometry &g,
+                   double extinction) {
   const Horizon horizon(g);
   const Vec3<Enu> to_sky = horizon.direction(-g.to_observer);
   const Vec3<Enu> to_sun = horizon.direction(g.sun_gcrs_km - g.observer_gcrs_km);

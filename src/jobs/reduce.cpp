@@ -93,8 +93,8 @@ void add_scintillation(std::vector<CommonError> &out, Rows rows, const StokesFit
 Reduced solve(const Set &set, std::size_t parameters, const ReduceOptions &options) {
   Reduced out;
   out.first = set.rows.front();
-  out.time = plus_seconds(out.first.time,
-                          seconds_between(set.rows.back().time, out.first.time) / 2);
+  out.time =
+      plus_seconds(out.first.time, seconds_between(set.rows.back().time, out.first.time) / 2);
   if (set.is_cut)
     out.flags = "saturated";
   const auto data = data_of(set.rows);
@@ -196,8 +196,7 @@ public:
 private:
   [[nodiscard]] double zero_flux(const std::string &band) const {
     const auto found = file_.notes.find("zero_flux " + band);
-    const auto value =
-        found == file_.notes.end() ? std::nullopt : parse_number(found->second);
+    const auto value = found == file_.notes.end() ? std::nullopt : parse_number(found->second);
     return value.value_or(nan);
   }
 
@@ -257,8 +256,8 @@ void warn_of_drift(const std::vector<Set> &sets, const std::vector<Reduced> &red
   std::vector<double> drifts, errors;
   for (std::size_t k = 1; k < reduced.size(); ++k) {
     const Reduced &a = reduced[k - 1], &b = reduced[k];
-    const auto steps = static_cast<double>(sets[k].rows.back().exposure -
-                                           sets[k].rows.front().exposure + 1);
+    const auto steps =
+        static_cast<double>(sets[k].rows.back().exposure - sets[k].rows.front().exposure + 1);
     const bool is_sequence = steps >= 3 && sets[k].rows.size() == static_cast<std::size_t>(steps);
     if (!is_sequence || !a.is_solved || !b.is_solved || a.first.band != b.first.band)
       continue;
@@ -333,12 +332,10 @@ Result<Table> reduce(const CountsFile &file, const ReduceOptions &options, const
     if (sets.empty())
       return fail(ErrorCode::Physics, "every channel is saturated: there is nothing to reduce");
     reduced.resize(sets.size());
-    parallel_for(sets.size(), options.threads, [&](std::size_t k) {
-      reduced[k] = solve(sets[k], parameters, options);
-    });
-    const auto solved = std::ranges::count_if(reduced, [](const Reduced &r) {
-      return r.fit.covariance[0][0] > 0;
-    });
+    parallel_for(sets.size(), options.threads,
+                 [&](std::size_t k) { reduced[k] = solve(sets[k], parameters, options); });
+    const auto solved =
+        std::ranges::count_if(reduced, [](const Reduced &r) { return r.fit.covariance[0][0] > 0; });
     if (solved == 0)
       return tl::unexpected(fit_stokes(data_of(sets.front().rows), parameters).error());
     warn_of_drift(sets, reduced, diagnostics);

@@ -49,8 +49,7 @@ double log_multiplied(double output, double mean, double gain) {
 double log_saturated(double limit, double mean, double variance) {
   const double x = (limit - mean) / std::sqrt(2 * (mean + variance));
   constexpr double far = 25; // erfc underflows a little later
-  return x < far ? std::log(std::erfc(x) / 2)
-                 : -x * x - std::log(2 * x * std::sqrt(pi));
+  return x < far ? std::log(std::erfc(x) / 2) : -x * x - std::log(2 * x * std::sqrt(pi));
 }
 
 double log_likelihood(std::span<const PredictedCounts> counts) {

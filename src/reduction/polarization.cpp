@@ -40,7 +40,8 @@ double likeliest(double x) {
 /// Logarithm of the Rice density at x of a true nu over that of the likeliest nu.
 double log_ratio(double x, double nu) {
   const double best = likeliest(x);
-  return (best * best - nu * nu) / 2 + std::log(cyl_bessel_i(0, x * nu) / cyl_bessel_i(0, x * best));
+  return (best * best - nu * nu) / 2 +
+         std::log(cyl_bessel_i(0, x * nu) / cyl_bessel_i(0, x * best));
 }
 
 /// Probability of less than x at a true nu: the square is non-central chi-squared.
@@ -124,10 +125,9 @@ PolarizationEstimate polarization_of(double q, double u, const LinearCovariance 
   const double across = y * y * c[0][0] - 2 * x * y * c[0][1] + x * x * c[1][1];
   out.sd = std::sqrt(along);
   out.across = std::sqrt(across);
-  out.debiased =
-      out.p > 0 && across > 0
-          ? out.p - across * (1 - std::exp(-out.p * out.p / across)) / (2 * out.p)
-          : out.p;
+  out.debiased = out.p > 0 && across > 0
+                     ? out.p - across * (1 - std::exp(-out.p * out.p / across)) / (2 * out.p)
+                     : out.p;
   out.angle_rad = phi < 0 ? phi / 2 + pi : phi / 2;
   const double ratio = out.p / out.across;
   constexpr double linear_from = 4;

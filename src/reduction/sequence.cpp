@@ -95,8 +95,7 @@ Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period
   constexpr int rounds = 15;
   for (int k = 0; k < rounds; ++k) {
     const Linearised now = linearise(data, basis, state, scale);
-    const Vector weight =
-        (now.mean.cwiseMax(1).cwiseProduct(excess) + fixed).cwiseInverse();
+    const Vector weight = (now.mean.cwiseMax(1).cwiseProduct(excess) + fixed).cwiseInverse();
     const Matrix weighted = now.jacobian.transpose() * weight.asDiagonal();
     const Eigen::LDLT<Matrix> factor(weighted * now.jacobian);
     const Vector residual = counts - now.mean, step = factor.solve(weighted * residual);

@@ -6,10 +6,10 @@ namespace umov {
 /// The air over a site.
 struct Air {
   double pressure_hpa = 1013.25;
-  double aerosol_550 = 0.02;      ///< optical depth at 550 nm, vertical
-  double aerosol_exponent = 1.3;  ///< depth goes with wavelength^-exponent (Angstrom 1929)
-  double ozone_du = 260;          ///< column [Dobson units]
-  double water_cm = 0.3;          ///< precipitable water [cm]
+  double aerosol_550 = 0.02;     ///< optical depth at 550 nm, vertical
+  double aerosol_exponent = 1.3; ///< depth goes with wavelength^-exponent (Angstrom 1929)
+  double ozone_du = 260;         ///< column [Dobson units]
+  double water_cm = 0.3;         ///< precipitable water [cm]
 };
 
 /// Pressure of the US Standard Atmosphere 1976 at a height in metres [hPa].

@@ -10,7 +10,7 @@ namespace umov {
 
 /// How electrons become numbers.
 enum class DetectorModel {
-  Ideal,  ///< photons are counted, nothing else
+  Ideal, ///< photons are counted, nothing else
   Ccd,
   Cmos,
   Emccd,  ///< with a multiplying register
@@ -22,11 +22,11 @@ struct Detector {
   DetectorModel model = DetectorModel::Ideal;
   double pixel_um = 0;
   std::array<int, 2> size_px{};
-  double read_e = 0;      ///< standard deviation of a pixel
-  double dark_e_s = 0;    ///< per pixel
-  double gain_e_adu = 1;  ///< electrons for one number
+  double read_e = 0;     ///< standard deviation of a pixel
+  double dark_e_s = 0;   ///< per pixel
+  double gain_e_adu = 1; ///< electrons for one number
   int bits = 16;
-  double well_e = 0;      ///< 0: no limit
+  double well_e = 0; ///< 0: no limit
   double bias_adu = 100;
   double nonlinearity = 0; ///< kappa: a full well reads 1 - kappa of itself
   double em_gain = 1;
@@ -52,7 +52,7 @@ double saturation_e(const Detector &detector);
 
 /// What the CCD equation takes.
 struct ApertureCounts {
-  double star = 0;    ///< electrons
+  double star = 0;          ///< electrons
   double sky = 0, dark = 0; ///< electrons per pixel
   double pixels = 0;
   double sky_pixels = 0; ///< that the sky was taken from; 0: it is known

@@ -30,9 +30,9 @@ struct BandResponse {
   std::string name;
   std::vector<double> nm, weight; ///< weights of the nodes in photons of sunlight, sum 1
   double pivot_nm = 0;
-  double solar_mean = 0;      ///< of the Sun at 1 au, photon-weighted [W m-2 nm-1]
+  double solar_mean = 0;       ///< of the Sun at 1 au, photon-weighted [W m-2 nm-1]
   double photons_per_flux = 0; ///< [s-1 m-2] of a photon-weighted mean of 1 W m-2 nm-1
-  double zero_flux = 0;       ///< photon-weighted mean of AB magnitude 0 [W m-2 nm-1]
+  double zero_flux = 0;        ///< photon-weighted mean of AB magnitude 0 [W m-2 nm-1]
 };
 /// A band of constant response over a width, as narrow filters are.
 Result<BandResponse> narrow_band(std::string name, double nm, double width_nm);
@@ -43,7 +43,7 @@ struct ObservingConditions {
   Seeing seeing;
   std::optional<ScintillationSite> scintillation; ///< absent: none
   bool has_slewing_factor = false;
-  double aperture_fwhm = 2;                 ///< radius that counts are summed in
+  double aperture_fwhm = 2; ///< radius that counts are summed in
   double sky_inner_fwhm = 4, sky_outer_fwhm = 6;
   std::uint64_t seed = 0;
   std::uint32_t object = 0; ///< of the random streams
@@ -61,12 +61,12 @@ struct ExposureLight {
   /// Mean over the exposure at each node, above the air, in the axes that the port hands out,
   /// the Sun's spectrum replaced by its mean in the band [W m-2 nm-1].
   std::vector<Stokes<InstrumentAxes>> flux;
-  Stokes<SkyNorth> sky;   ///< per square arc second, zenith axes [W m-2 nm-1 arcsec-2]
+  Stokes<SkyNorth> sky; ///< per square arc second, zenith axes [W m-2 nm-1 arcsec-2]
   double airmass = 1;
-  Angle altitude;         ///< of the object
-  Angle axis_zenith;      ///< of the instrument's x axis, from the zenith direction
-  Angle axis;             ///< the same from the reference direction of the sky frame of the files
-  double rate_rad_s = 0;  ///< of the object over the sky
+  Angle altitude;        ///< of the object
+  Angle axis_zenith;     ///< of the instrument's x axis, from the zenith direction
+  Angle axis;            ///< the same from the reference direction of the sky frame of the files
+  double rate_rad_s = 0; ///< of the object over the sky
   double transparency = 1;
 };
 
@@ -74,14 +74,14 @@ struct ExposureLight {
 struct ChannelCounts {
   std::string channel;
   double analyser_deg = 0;
-  double counts = 0;   ///< electrons in the aperture, sky included
+  double counts = 0;           ///< electrons in the aperture, sky included
   double sky = 0, sky_err = 0; ///< of them, as the annulus says: sky and dark
   double pixels = 0;
   double var_read = 0; ///< [e2] of reading and rounding, all pixels
   double excess2 = 1;
   double scintillation = 0; ///< relative standard deviation of the transparency
   bool is_saturated = false;
-  StokesRow row{};     ///< counts - sky = row . S, S in the sky frame of the files [e W-1 m2 nm]
+  StokesRow row{}; ///< counts - sky = row . S, S in the sky frame of the files [e W-1 m2 nm]
   double mean_star = 0, mean_sky = 0; ///< truth of the simulation
 };
 
@@ -138,7 +138,7 @@ private:
   Instrument instrument_;
   BandResponse band_;
   ObservingConditions conditions_;
-  std::vector<double> rate_; ///< per node: electrons per second of unit flux, no air
+  std::vector<double> rate_;              ///< per node: electrons per second of unit flux, no air
   std::vector<InstrumentMueller> mirror_; ///< per node; empty at a Cassegrain focus
   double pixel_arcsec_ = 1;
   std::map<StateKey, Channels> channels_;

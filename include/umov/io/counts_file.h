@@ -31,9 +31,9 @@ struct CountsFile {
 };
 
 /// Reads ECSV (blank-separated) or CSV with the columns time_utc, set_id, band, counts, sky,
-/// sky_err, var_read, w0, w1, w2 and w3; of the others those that are there. Rows whose counts are no
-/// number are left out with a warning. BadInput with line and column for what is missing, a negative
-/// variance and times that go back.
+/// sky_err, var_read, w0, w1, w2 and w3; of the others those that are there. Rows whose counts are
+/// no number are left out with a warning. BadInput with line and column for what is missing, a
+/// negative variance and times that go back.
 Result<CountsFile> read_counts_text(std::string_view text, const std::string &file,
                                     Diagnostics &diagnostics);
 

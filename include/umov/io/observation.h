@@ -11,11 +11,11 @@ namespace umov {
 
 /// How bright and how polarized the sky is.
 struct SkyOptions {
-  std::map<std::string, double> dark_mag;   ///< by letter, over the tables'
+  std::map<std::string, double> dark_mag; ///< by letter, over the tables'
   bool has_twilight = true, has_moon = true;
   double dilution_sun = 0.8, dilution_moon = 0.6;
-  std::optional<double> mag;  ///< fixed surface brightness, AB in the band, instead of all that
-  double p = 0;               ///< of it, along the normal of the plane of the Sun
+  std::optional<double> mag; ///< fixed surface brightness, AB in the band, instead of all that
+  double p = 0;              ///< of it, along the normal of the plane of the Sun
 };
 
 /// One step of a sequence.

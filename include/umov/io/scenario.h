@@ -73,7 +73,7 @@ struct Scenario {
   std::vector<std::string> formats{"ecsv", "html"};
   PolarizationFrame frame = PolarizationFrame::Equatorial;
   std::optional<ScenarioObservation> observation; ///< [observation] and its instrument
-  std::map<std::string, Where> places; ///< where keys stand ("object.0.materials.front")
+  std::map<std::string, Where> places;            ///< where keys stand ("object.0.materials.front")
 };
 
 /// Reads a scenario; each of `overrides` is "dotted.key=value" with a TOML value (a bare word

@@ -10,16 +10,16 @@ namespace umov::jobs {
 
 /// Counts and truth of an observation.
 struct Observation {
-  Table counts; ///< one row per exposure and channel
-  Table truth;  ///< one row per exposure: what a reduction should find
+  Table counts;                             ///< one row per exposure and channel
+  Table truth;                              ///< one row per exposure: what a reduction should find
   std::size_t exposures = 0, saturated = 0; ///< of them, with a channel that is full
   std::vector<InputFile> inputs;
   double light_s = 0, counts_s = 0; ///< time that light and counts took
 };
 
 /// Simulates it: the light at nodes within every exposure, the air, the telescope, the polarimeter
-/// and the detector. BadInput without [observation]; Nothing if no exposure falls in a pass; Physics
-/// if every exposure is saturated.
+/// and the detector. BadInput without [observation]; Nothing if no exposure falls in a pass;
+/// Physics if every exposure is saturated.
 Result<Observation> observe(const Scenario &scenario, const JobOptions &options,
                             const Monitor &monitor, Diagnostics &diagnostics);
 

@@ -20,8 +20,8 @@ struct StandardMeasurement {
 
 /// measured = factor * truth e^(-2i axis) + offset.
 struct PolarimeterCalibration {
-  std::complex<double> factor{1, 0}; ///< efficiency e^(2i phi0)
-  std::complex<double> offset;       ///< q0 + i u0
+  std::complex<double> factor{1, 0};   ///< efficiency e^(2i phi0)
+  std::complex<double> offset;         ///< q0 + i u0
   double factor_sd = 0, offset_sd = 0; ///< of real and imaginary part each
   double chi2 = 0;
   int dof = 0;

@@ -10,10 +10,10 @@ using LinearCovariance = std::array<std::array<double, 2>, 2>;
 
 /// Point values.
 struct PolarizationEstimate {
-  double p = 0;        ///< biased: never below 0
-  double debiased = 0; ///< "modified asymptotic" of Plaszczynski et al. 2014, MNRAS 439, 4048
-  double sd = 0;       ///< of p, along (q, u)
-  double across = 0;   ///< standard deviation across (q, u)
+  double p = 0;            ///< biased: never below 0
+  double debiased = 0;     ///< "modified asymptotic" of Plaszczynski et al. 2014, MNRAS 439, 4048
+  double sd = 0;           ///< of p, along (q, u)
+  double across = 0;       ///< standard deviation across (q, u)
   double angle_rad = 0;    ///< of the axis, [0, pi)
   double angle_sd_rad = 0; ///< 68.27 % half width
 };

@@ -37,18 +37,19 @@ struct StokesFit {
 /// data draws means down. `parameters`: 1 (I), 3 (I, Q, U) or 4. BadInput where the rows cannot
 /// tell one of them.
 Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t parameters);
-/// The same with common errors on top (C = C_n + J Sigma J^T), at the model of the fit without them.
+/// The same with common errors on top (C = C_n + J Sigma J^T), at the model of the fit without
+/// them.
 Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t parameters,
                              std::span<const CommonError> common);
 
 /// What common errors of an instrument may be, as standard deviations; 0: known.
 struct ErrorPriors {
-  double instrumental = 0;     ///< of q0 and of u0
-  double gain = 0;             ///< of each channel
-  double transparency = 0;     ///< of a set: scintillation, cloud
-  double angle_rad = 0;        ///< of the instrument's x axis
-  double efficiency = 0;       ///< of q, u
-  double sky = 0;              ///< of the whole sky, relative
+  double instrumental = 0; ///< of q0 and of u0
+  double gain = 0;         ///< of each channel
+  double transparency = 0; ///< of a set: scintillation, cloud
+  double angle_rad = 0;    ///< of the instrument's x axis
+  double efficiency = 0;   ///< of q, u
+  double sky = 0;          ///< of the whole sky, relative
 };
 /// Their effects on the channels of a simultaneous set. `axis_rad`: of the instrument's x axis in
 /// the frame of the rows; `fit`: of the same data.

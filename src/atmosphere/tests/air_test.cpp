@@ -7,9 +7,7 @@ namespace umov {
 namespace {
 
 /// Anchors have nine digits.
-double of(const std::string &name) {
-  return Anchors("observing_air").row({name.c_str()})["value"];
-}
+double of(const std::string &name) { return Anchors("observing_air").row({name.c_str()})["value"]; }
 void expect_same(double found, const std::string &name) {
   EXPECT_NEAR(found, of(name), 1e-8 * std::abs(of(name))) << name;
 }

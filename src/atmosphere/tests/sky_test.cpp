@@ -7,9 +7,7 @@
 namespace umov {
 namespace {
 
-double of(const std::string &name) {
-  return Anchors("observing_air").row({name.c_str()})["value"];
-}
+double of(const std::string &name) { return Anchors("observing_air").row({name.c_str()})["value"]; }
 Vec3<Enu> at(double azimuth, double altitude) {
   return horizontal_direction(Angle::degrees(azimuth), Angle::degrees(altitude));
 }

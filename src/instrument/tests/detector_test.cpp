@@ -60,14 +60,13 @@ void expect_statistics(const Detector &d, double mean, double exposure_s) {
   const double expected = excess_variance(d) * mean + fixed_variance(d);
   const double m = sum / trials, v = squares / trials - m * m;
   EXPECT_NEAR(m, 0, 4 * std::sqrt(expected / trials)) << name_of(d.model) << " " << mean;
-  const double kurtosis = 2 + 6 * std::pow(excess_variance(d), 2) * mean / (expected * expected) *
-                                  excess_variance(d);
+  const double kurtosis =
+      2 + 6 * std::pow(excess_variance(d), 2) * mean / (expected * expected) * excess_variance(d);
   EXPECT_NEAR(v / expected, 1, 4 * std::sqrt(kurtosis / trials)) << name_of(d.model) << " " << mean;
 }
 
 TEST(Detector, MeanAndVarianceOfEveryModel) {
-  for (const DetectorModel model :
-       {DetectorModel::Ccd, DetectorModel::Cmos, DetectorModel::Emccd})
+  for (const DetectorModel model : {DetectorModel::Ccd, DetectorModel::Cmos, DetectorModel::Emccd})
     for (const double mean : {1., 10., 1e3, 1e5}) {
       Detector d = camera(model);
       d.bits = 32;

@@ -14,8 +14,9 @@ double worst_error(double exposure, double feature) {
   double worst = 0, largest = 0;
   for (int k = 0; k <= 4000; ++k) {
     const double at = (exposure / 2 + 2) * (k / 2000. - 1);
-    const double exact = s * std::sqrt(2 * 3.14159265358979) / 2 / exposure *
-                         (std::erf((exposure / 2 - at) / root) + std::erf((exposure / 2 + at) / root));
+    const double exact =
+        s * std::sqrt(2 * 3.14159265358979) / 2 / exposure *
+        (std::erf((exposure / 2 - at) / root) + std::erf((exposure / 2 + at) / root));
     double found = 0;
     for (const ExposureNode &node : nodes)
       found += node.weight * std::exp(-std::pow((node.offset_s - at) / s, 2) / 2);

@@ -68,8 +68,7 @@ TEST(TracedBeam, NasmythIsTheClosedRule) {
     beam.reflect(normalized(beam.direction() - out), eta);
     EXPECT_NEAR(norm(beam.direction() - out), 0, 1e-15);
     beam.turn_to({0, 0, 1});
-    const auto closed =
-        nasmyth_port(mirror_element(eta, at_45), side, Angle::radians(altitude));
+    const auto closed = nasmyth_port(mirror_element(eta, at_45), side, Angle::radians(altitude));
     for (std::size_t r = 0; r < 4; ++r)
       for (std::size_t c = 0; c < 4; ++c) // V keeps its sign: two turns of the field
         EXPECT_NEAR(beam.matrix().m[r][c] / twice, closed.m[r][c], 1e-12) << r << c;

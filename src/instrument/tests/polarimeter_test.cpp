@@ -64,14 +64,15 @@ TEST(HalfWavePlate, ImperfectionsAsFieldsGiveThem) { // nine digits
        {std::pair{"retardance", plate(185)}, {"extinction", plate(180, 300)}}) {
     EXPECT_NEAR(difference(beams(p, 0), beams(p, 45)), of(name + std::string("_difference_q")),
                 1e-9);
-    EXPECT_NEAR(difference(beams(p, 22.5), beams(p, 67.5)),
-                of(name + std::string("_difference_u")), 1e-9);
+    EXPECT_NEAR(difference(beams(p, 22.5), beams(p, 67.5)), of(name + std::string("_difference_u")),
+                1e-9);
   }
 }
 
 TEST(HalfWavePlate, EightPositionsCancelCircularLight) {
   const Polarimeter p = plate(185);
-  const double q = (difference(beams(p, 0), beams(p, 45)) + difference(beams(p, 90), beams(p, 135))) / 2;
+  const double q =
+      (difference(beams(p, 0), beams(p, 45)) + difference(beams(p, 90), beams(p, 135))) / 2;
   // (1 + cos e)/2 of q remains, no V.
   EXPECT_NEAR(q, .2 * (1 + std::cos(5 * pi / 180)) / 2, 1e-6);
 }

@@ -75,8 +75,8 @@ Result<void> read_telescope(const Node &node, Telescope &out) {
   UMOV_TRY(read_number(node, "focal_length_m", positive, out.focal_length_m));
   UMOV_TRY(read_curve(node, "throughput", {0, 1, "0 to 1"}, out.throughput));
   const char *ports[] = {"cassegrain", "nasmyth_left", "nasmyth_right"};
-  UMOV_ASSIGN(port, node.choice("port", ports[static_cast<int>(out.port)],
-                                {ports[0], ports[1], ports[2]}));
+  UMOV_ASSIGN(
+      port, node.choice("port", ports[static_cast<int>(out.port)], {ports[0], ports[1], ports[2]}));
   out.port = static_cast<TelescopePort>(std::find(ports, ports + 3, port) - ports);
   if (node.has("mirror")) {
     out.mirror = node.text("mirror", "");
@@ -105,8 +105,8 @@ Result<void> read_shutter(const Node &node, Detector &out) {
 Result<void> read_detector(const Node &node, Detector &out) {
   UMOV_ASSIGN(model, node.choice("model", name_of(out.model), detector_names()));
   const auto &names = detector_names();
-  out.model = static_cast<DetectorModel>(std::find(names.begin(), names.end(), model) -
-                                         names.begin());
+  out.model =
+      static_cast<DetectorModel>(std::find(names.begin(), names.end(), model) - names.begin());
   UMOV_TRY(read_number(node, "pixel_um", positive, out.pixel_um));
   UMOV_TRY(read_number(node, "read_e", not_negative, out.read_e));
   UMOV_TRY(read_number(node, "dark_e_s", not_negative, out.dark_e_s));
@@ -303,9 +303,9 @@ Result<Instrument> read_instrument_text(const std::string &text, const std::stri
     out.assumed = top.text("assumed", "");
     const scenario::Node tables(document, "", "", path);
     UMOV_TRY(scenario::read_instrument_tables(tables, out));
-    for (const auto &[table, key] :
-         {std::pair{"telescope", "aperture_m"}, {"telescope", "focal_length_m"},
-          {"detector", "pixel_um"}}) {
+    for (const auto &[table, key] : {std::pair{"telescope", "aperture_m"},
+                                     {"telescope", "focal_length_m"},
+                                     {"detector", "pixel_um"}}) {
       UMOV_ASSIGN(node, tables.child(table));
       UMOV_TRY(node.require(key));
     }
@@ -328,8 +328,7 @@ Result<Instrument> read_instrument(const std::string &name_or_path) {
                                   "data/instruments/" + name_or_path + ".toml");
   const auto near = nearest_name(name_or_path, instrument_names());
   return fail(ErrorCode::BadInput,
-              fmt::format("unknown instrument \"{}\".{} Known: umov instrument list.",
-                          name_or_path,
+              fmt::format("unknown instrument \"{}\".{} Known: umov instrument list.", name_or_path,
                           near ? fmt::format(" Did you mean \"{}\"?", *near) : ""));
 }
 

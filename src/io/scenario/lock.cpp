@@ -1,6 +1,7 @@
 #include "io/scenario/instrument.h"
 #include "io/scenario/parts.h"
 
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 #include <umov/core/text.h>
@@ -106,6 +107,10 @@ std::string object(const ScenarioObject &o) {
 std::string locked_scenario(const Scenario &s) {
   std::string out = "# Every default filled in; running this file repeats the run.\n";
   out += fmt::format("umov = 1\ntitle = {}\nseed = {}\n", quoted(s.title), s.seed);
+  if (s.observation)
+    if (const auto names = instrument_names();
+        std::ranges::find(names, s.observation->instrument.name) != names.end())
+      out += fmt::format("instrument = {}\n", quoted(s.observation->instrument.name));
   out += observer_and_time(s);
   if (!s.earth_orientation.empty())
     out += fmt::format("\n[earth]\neop = {}\n", absolute_path(s.earth_orientation));

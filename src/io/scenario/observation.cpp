@@ -15,8 +15,8 @@ Result<void> read_at_least(const Node &node, const char *name, double low, doubl
   out = node.number(name, out);
   if (out >= low)
     return {};
-  return fail(ErrorCode::BadInput,
-              fmt::format("{} = {}; {} or more was expected", name, out, low), node.where(name));
+  return fail(ErrorCode::BadInput, fmt::format("{} = {}; {} or more was expected", name, out, low),
+              node.where(name));
 }
 
 Result<void> read_seeing(const Node &air, Seeing &out) {
@@ -112,8 +112,8 @@ Result<void> read_sequence(const Node &node, ScenarioObservation &out) {
                   node.where("sequence"));
     const Node step(*item.as_table(), "observation.sequence", "observation.sequence", node.file());
     UMOV_TRY(step.check());
-    out.sequence.push_back({{step.number("analyser_deg", 0), step.number("plate_deg", 0), 0},
-                            step.text("band", "")});
+    out.sequence.push_back(
+        {{step.number("analyser_deg", 0), step.number("plate_deg", 0), 0}, step.text("band", "")});
   }
   return {};
 }
@@ -177,11 +177,11 @@ std::string sky_toml(const SkyOptions &sky) {
   std::string dark;
   for (const auto &[letter, mag] : sky.dark_mag)
     dark += (dark.empty() ? "" : ", ") + letter + " = " + shortest(mag);
-  std::string out = fmt::format("sky = {{ twilight = \"{}\", moon = \"{}\", dilution = {{ sun = "
-                                "{}, moon = {} }}, p = {}",
-                                sky.has_twilight ? "patat2006" : "none",
-                                sky.has_moon ? "ks1991" : "none", shortest(sky.dilution_sun),
-                                shortest(sky.dilution_moon), shortest(sky.p));
+  std::string out =
+      fmt::format("sky = {{ twilight = \"{}\", moon = \"{}\", dilution = {{ sun = "
+                  "{}, moon = {} }}, p = {}",
+                  sky.has_twilight ? "patat2006" : "none", sky.has_moon ? "ks1991" : "none",
+                  shortest(sky.dilution_sun), shortest(sky.dilution_moon), shortest(sky.p));
   if (!dark.empty())
     out += ", dark_mag = { " + dark + " }";
   if (sky.mag)
@@ -201,10 +201,9 @@ std::string atmosphere_toml(const ScenarioObservation &o) {
                      shortest(o.seeing.arcsec), shortest(o.seeing.at_nm),
                      shortest(o.seeing.outer_scale_m),
                      o.seeing.profile == ImageProfile::Gauss ? "gauss" : "moffat");
-  out += o.scintillation_c_y
-             ? fmt::format("scintillation = {{ c_y = {}, slew = {} }}\n",
-                           shortest(*o.scintillation_c_y), o.has_slewing_factor)
-             : std::string("scintillation = \"none\"\n");
+  out += o.scintillation_c_y ? fmt::format("scintillation = {{ c_y = {}, slew = {} }}\n",
+                                           shortest(*o.scintillation_c_y), o.has_slewing_factor)
+                             : std::string("scintillation = \"none\"\n");
   out += sky_toml(o.sky);
   return out + fmt::format("cloud = {{ sd_mag = {}, time_s = {} }}\n", shortest(o.cloud_sd_mag),
                            shortest(o.cloud_time_s));

@@ -37,8 +37,8 @@ public:
       return std::nan("");
     if (const auto value = parse_number(cell))
       return *value;
-    return fail(ErrorCode::BadInput,
-                fmt::format("{}: \"{}\" is no number", name, printable(cell)), where(row));
+    return fail(ErrorCode::BadInput, fmt::format("{}: \"{}\" is no number", name, printable(cell)),
+                where(row));
   }
 
 private:
@@ -103,10 +103,10 @@ Result<void> check_row(const CountRow &row, const Where &where) {
     if (!std::isfinite(w))
       return fail(ErrorCode::BadInput, "w0 to w3 are numbers", where);
   if (!(row.row[0] > 0))
-    return fail(ErrorCode::BadInput,
-                fmt::format("w0 = {}; light must make counts: a number above 0 was expected",
-                            row.row[0]),
-                where);
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("w0 = {}; light must make counts: a number above 0 was expected", row.row[0]),
+        where);
   return {};
 }
 

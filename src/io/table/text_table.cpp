@@ -83,9 +83,8 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
   std::size_t number = 0;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = trimmed(text.substr(0, text.substr(0, end).ends_with('\r')
-                                                             ? end - 1
-                                                             : end));
+    const std::string_view line =
+        trimmed(text.substr(0, text.substr(0, end).ends_with('\r') ? end - 1 : end));
     text.remove_prefix(std::min(end + 1, text.size()));
     const Where where{file, ++number};
     if (line.empty())
@@ -107,10 +106,10 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
       continue;
     }
     if (cells->size() != out.columns.size())
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} cells in a table of {} columns", cells->size(),
-                              out.columns.size()),
-                  where);
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("{} cells in a table of {} columns", cells->size(), out.columns.size()),
+          where);
     out.rows.push_back(std::move(*cells));
     out.lines.push_back(number);
   }

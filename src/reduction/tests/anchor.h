@@ -20,8 +20,8 @@ inline StokesRow analyser_row(double angle_deg, double gain) {
   return {gain / 2, gain / 2 * d * std::cos(x), gain / 2 * d * std::sin(x), 0};
 }
 
-/// The worked set of docs/theory/observing.md 6: 40 pixels of 2.3 e and 2.6 e/ADU, sky of 120 e from
-/// 400 pixels.
+/// The worked set of docs/theory/observing.md 6: 40 pixels of 2.3 e and 2.6 e/ADU, sky of 120 e
+/// from 400 pixels.
 inline std::vector<ChannelDatum> worked_set() {
   const double counts[] = {3120, 2705, 2210, 2650}, gains[] = {.98, 1, 1.02, 1.01};
   const double fixed = 40 * 2.3 * 2.3 + 120 * 40 / 400. + 40 * 2.6 * 2.6 / 12;

@@ -45,11 +45,11 @@ TEST(PolarimeterCalibration, PullsOfManyNights) {
     for (StandardMeasurement &one : data)
       one.measured += sd * Complex(draws.normal(), draws.normal());
     const auto found = calibrate_polarimeter(data);
-    const double pulls[] = {
-        (std::abs(found->factor) - .985) / found->factor_sd,
-        (std::arg(found->factor) / 2 - .8 * degree) / (found->factor_sd / .985 / 2),
-        (found->offset.real() - .0042) / found->offset_sd,
-        (found->offset.imag() + .0018) / found->offset_sd};
+    const double pulls[] = {(std::abs(found->factor) - .985) / found->factor_sd,
+                            (std::arg(found->factor) / 2 - .8 * degree) /
+                                (found->factor_sd / .985 / 2),
+                            (found->offset.real() - .0042) / found->offset_sd,
+                            (found->offset.imag() + .0018) / found->offset_sd};
     for (std::size_t k = 0; k < 4; ++k)
       sums[k] += pulls[k], squares[k] += pulls[k] * pulls[k];
   }
@@ -94,8 +94,7 @@ TEST(PhotometricCalibration, SixStars) { // nine digits
   const double left[] = {.004, -.003, .002, -.005, .001, .001};
   std::vector<PhotometricStandard> stars;
   for (int k = 0; k < 6; ++k)
-    stars.push_back(
-        {mags[k], mags[k] - 20.571 + .118 * x[k] - .030 * c[k] + left[k], x[k], c[k]});
+    stars.push_back({mags[k], mags[k] - 20.571 + .118 * x[k] - .030 * c[k] + left[k], x[k], c[k]});
   const auto found = calibrate_photometry(stars);
   EXPECT_NEAR(found->zero_point, of("photometry_zero"), 1e-7);
   EXPECT_NEAR(found->extinction, of("photometry_extinction"), 1e-9);

@@ -25,7 +25,8 @@ TEST(Likelihood, OfAMultiplyingRegister) { // a sum over what went in, eight dig
   EXPECT_NEAR(log_multiplied(1500, 3, 300), of("multiplied"), 1e-6);
   // Beyond the range of the Bessel function it goes on smoothly.
   const double a = 499.9999 * 499.9999 / 4, b = 500.0001 * 500.0001 / 4;
-  EXPECT_NEAR(log_multiplied(300 * a / 10, 10, 300), log_multiplied(300 * b / 10, 10, 300), .006); // its slope: .0048
+  EXPECT_NEAR(log_multiplied(300 * a / 10, 10, 300), log_multiplied(300 * b / 10, 10, 300),
+              .006); // its slope: .0048
 }
 
 TEST(Likelihood, OfASaturatedPixel) {

@@ -66,8 +66,7 @@ std::vector<TimedDatum> tumbling(std::uint32_t trial) {
   const double f1 = 2 * pi * draws.normal(), f2 = 2 * pi * draws.normal();
   for (int k = 0; k < 240; ++k) {
     const double t = .25 * k + .125, phase = 2 * pi * t / 7.3;
-    const double light =
-        2e4 * (1 + .35 * std::cos(phase + f1) + .2 * std::cos(2 * phase + f2));
+    const double light = 2e4 * (1 + .35 * std::cos(phase + f1) + .2 * std::cos(2 * phase + f2));
     const double a = four_angles[k % 4] * pi / 90;
     const StokesRow row{.5, .5 * std::cos(a), .5 * std::sin(a), 0};
     const double mean = light * (row[0] + row[1] * .1 - row[2] * .05) + 50;
@@ -83,8 +82,7 @@ TEST(Sequence, RawCountsTellATumblingBodysPolarization) {
     const auto data = tumbling(t);
     const auto fit = fit_sequence(data, 7.3, 3, 3);
     ASSERT_TRUE(fit);
-    const double pull =
-        (fit->fractions.value[0] - .1) / std::sqrt(fit->fractions.covariance[0][0]);
+    const double pull = (fit->fractions.value[0] - .1) / std::sqrt(fit->fractions.covariance[0][0]);
     s += pull, ss += pull * pull;
     double worst = 0; // of one cycle, in its photon error
     for (std::size_t k = 0; k + 3 < data.size(); k += 4) {

@@ -29,8 +29,9 @@ TEST(StokesFit, CommonErrorsWidenIt) { // nine digits
   const auto first = fit_stokes(data, 3);
   std::vector<CommonError> own(2, {std::vector<double>(4), .002}), gains, air(1);
   for (std::size_t k = 0; k < 4; ++k) {
-    const double angle = four_angles[k] * pi / 90, star = respond(data[k].row, Stokes<SkyNorth>{
-        first->stokes[0], first->stokes[1], first->stokes[2], 0});
+    const double angle = four_angles[k] * pi / 90,
+                 star = respond(data[k].row, Stokes<SkyNorth>{first->stokes[0], first->stokes[1],
+                                                              first->stokes[2], 0});
     own[0].effect[k] = data[k].row[0] * first->stokes[0] * std::cos(angle);
     own[1].effect[k] = data[k].row[0] * first->stokes[0] * std::sin(angle);
     gains.push_back({std::vector<double>(4, 0), .005});
@@ -41,8 +42,10 @@ TEST(StokesFit, CommonErrorsWidenIt) { // nine digits
   std::vector<CommonError> all = own;
   all.insert(all.end(), gains.begin(), gains.end());
   all.push_back(air[0]);
-  for (const auto &[name, common] : {std::pair{std::string("instrumental"), own}, {"gains", gains},
-                                     {"scintillation", air}, {"all", all}}) {
+  for (const auto &[name, common] : {std::pair{std::string("instrumental"), own},
+                                     {"gains", gains},
+                                     {"scintillation", air},
+                                     {"all", all}}) {
     const auto fit = fit_stokes(data, 3, common);
     const StokesFractions f = fractions_of(*fit);
     EXPECT_NEAR(f.value[0], of(name + "_q"), 1e-9) << name;
@@ -125,8 +128,8 @@ double coverage(double intensity, bool is_told, std::uint32_t trials) {
     std::vector<ChannelDatum> data;
     for (const double angle : four_angles) {
       const StokesRow row = analyser_row(angle, 1);
-      const double mean = (1 + .005 * draws.normal()) * air * intensity *
-                              (row[0] + row[1] * q + row[2] * u) + 120;
+      const double mean =
+          (1 + .005 * draws.normal()) * air * intensity * (row[0] + row[1] * q + row[2] * u) + 120;
       data.push_back({draws.poisson(mean) + 15 * draws.normal(), sky, 225, 1, row});
     }
     auto fit = fit_stokes(data, 3);
