@@ -62,6 +62,7 @@ int run(int argc, char **argv) {
   cli::add_material(app, exit_with);
   cli::add_mesh(app, exit_with);
   cli::add_observe(app, exit_with);
+  cli::add_calibrate(app, exit_with);
   cli::add_reduce(app, exit_with);
   cli::add_exposure(app, exit_with);
   cli::add_instrument(app, exit_with);

@@ -6,7 +6,8 @@
 namespace umov::cli {
 
 void add_exposure(CLI::App &app, const Exit &exit_with) {
-  auto *verb = app.add_subcommand("exposure", "How long an instrument must expose for an error of p");
+  auto *verb =
+      app.add_subcommand("exposure", "How long an instrument must expose for an error of p");
   auto o = std::make_shared<jobs::ExposureRequest>();
   auto common = std::make_shared<Common>();
   auto output = std::make_shared<std::string>();

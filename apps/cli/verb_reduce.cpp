@@ -3,15 +3,17 @@
 #include "verbs.h"
 
 #include <fmt/format.h>
+#include <tuple>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
+#include <umov/io/calibration_file.h>
 #include <umov/jobs/reduce.h>
 
 namespace umov::cli {
 namespace {
 
 struct ReduceVerb {
-  std::string counts, output, model = "static";
+  std::string counts, output, calibration, model = "static";
   std::vector<std::string> columns;
   double q0_sd = 0, gain_sd = 0, angle_sd_deg = 0, efficiency_sd = 0, sky_sd = 0;
 };
@@ -42,6 +44,31 @@ Result<void> read_model(const std::string &text, jobs::ReduceOptions &out) {
   return {};
 }
 
+/// A calibration of another instrument or band tells nothing; an old one little.
+Result<void> check_calibration(const CalibrationFile &file, const CountsFile &counts,
+                               const std::string &path, Diagnostics &diagnostics) {
+  const auto note = [&](const char *name) {
+    const auto found = counts.notes.find(name);
+    return found == counts.notes.end() ? std::string() : found->second;
+  };
+  const CountRow &first = counts.rows.front();
+  for (const auto &[what, own, other] :
+       {std::tuple{"instrument", file.instrument, note("instrument")},
+        {"band", file.band, first.band}})
+    if (!own.empty() && !other.empty() && own != other)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("this calibration is of the {} \"{}\", the counts are of \"{}\"; "
+                              "calibrate that one",
+                              what, own, other),
+                  {path});
+  constexpr double old_days = 30;
+  if (const auto made = utc_from_iso(file.made_utc))
+    if (const double days = seconds_between(first.time, *made) / 86400; days > old_days)
+      diagnostics.warn(fmt::format("the calibration is {:.0f} days older than the counts", days),
+                       {path});
+  return {};
+}
+
 Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
   jobs::ReduceOptions options;
@@ -51,6 +78,12 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
   constexpr std::size_t largest = 1u << 31;
   UMOV_ASSIGN(text, read_file(o.counts, largest));
   UMOV_ASSIGN(counts, read_counts_text(text, o.counts, diagnostics));
+  if (!o.calibration.empty()) {
+    UMOV_ASSIGN(read, read_file(o.calibration));
+    UMOV_ASSIGN(file, read_calibration_text(read, o.calibration));
+    UMOV_TRY(check_calibration(file, counts, o.calibration, diagnostics));
+    options.calibration = file.calibration;
+  }
   JobConsole console(common);
   UMOV_ASSIGN(table, jobs::reduce(counts, options, console.monitor(false), diagnostics));
   UMOV_ASSIGN(shown, chosen_columns(table, o.columns,
@@ -68,6 +101,7 @@ void add_reduce(CLI::App &app, const Exit &exit_with) {
   auto common = std::make_shared<Common>();
   verb->add_option("counts", o->counts, "Counts of umov observe (ECSV or CSV), or your own")
       ->required();
+  verb->add_option("--calibration", o->calibration, "Of umov calibrate: taken out of q and u");
   verb->add_option("--model", o->model,
                    "static: every set by itself; fourier:PERIOD_S: brightness as a series over "
                    "time, q and u constant")

@@ -41,6 +41,7 @@
 #include <umov/instrument/polarimeter.h>
 #include <umov/instrument/telescope.h>
 #include <umov/io/attitude_file.h>
+#include <umov/io/calibration_file.h>
 #include <umov/io/ccsds.h>
 #include <umov/io/counts_file.h>
 #include <umov/io/elements_file.h>
@@ -60,12 +61,14 @@
 #include <umov/io/scenario.h>
 #include <umov/io/sites.h>
 #include <umov/io/sky_page.h>
+#include <umov/io/standards_file.h>
 #include <umov/io/story_page.h>
 #include <umov/io/table.h>
 #include <umov/io/table_sink.h>
 #include <umov/io/table_stream.h>
 #include <umov/io/trajectory_file.h>
 #include <umov/jobs/brdf.h>
+#include <umov/jobs/calibrate.h>
 #include <umov/jobs/ephemeris.h>
 #include <umov/jobs/exposure.h>
 #include <umov/jobs/material_page.h>

@@ -9,8 +9,8 @@ namespace {
 
 /// Rates of one instrument on one star [1/s], all channels together.
 struct Rates {
-  double star = 0; ///< detected electrons in the apertures
-  double whole = 0; ///< before polarizers, all of the image
+  double star = 0;                     ///< detected electrons in the apertures
+  double whole = 0;                    ///< before polarizers, all of the image
   double sky = 0, dark = 0, fixed = 0; ///< fixed: variance of each exposure
   double lost = 1;                     ///< part that polarizers let through
   double peak = 0;                     ///< on the brightest pixel of the brightest channel
@@ -81,12 +81,14 @@ Result<void> check(const ExposureRequest &r) {
     const char *name;
     double value, low, high;
   };
-  for (const Bound &b : {Bound{"--alt", r.altitude_deg, 3, 90}, {"--sd-p", r.sd_p, 1e-7, 1},
-                         {"--nm", r.nm, 300, 1200}, {"--width-nm", r.width_nm, 1e-3, 1000},
+  for (const Bound &b : {Bound{"--alt", r.altitude_deg, 3, 90},
+                         {"--sd-p", r.sd_p, 1e-7, 1},
+                         {"--nm", r.nm, 300, 1200},
+                         {"--width-nm", r.width_nm, 1e-3, 1000},
                          {"--seeing", r.seeing_arcsec, 1e-3, 100}})
     if (!(b.value >= b.low && b.value <= b.high))
-      return fail(ErrorCode::Usage, fmt::format("{} {}: {} to {} was expected", b.name, b.value,
-                                                b.low, b.high));
+      return fail(ErrorCode::Usage,
+                  fmt::format("{} {}: {} to {} was expected", b.name, b.value, b.low, b.high));
   return {};
 }
 

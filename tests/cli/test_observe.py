@@ -246,3 +246,67 @@ def test_instruments_say_what_was_assumed(umov, tmp_path):
     again = umov("instrument", "show", "own.toml")
     assert again.out == (tmp_path / "own.toml").read_text()
     assert "assumed" in again.out
+
+
+def standards(path, q0=0.0042, u0=-0.0018, efficiency=0.985, phi0=0.8):
+    """Counts of four ideal orientations, 1e8 electrons: an unpolarized star and HD 204827, instrument turned."""
+    lines = ["# instrument: own", "# pol_frame: equatorial",
+             "time_utc,set_id,name,band,x_axis_pa,counts,sky,sky_err,var_read,w0,w1,w2,w3"]
+    for number, (name, p, axis) in enumerate([("none", 0, a) for a in (0, 30, 60, 90)] +
+                                             [("HD 204827", 0.04893, a) for a in (10, 40, 70, 100)]):
+        x = 2 * math.radians(59.10 - axis)
+        turn = 2 * math.radians(phi0)
+        q = efficiency * p * math.cos(x + turn) + q0
+        u = efficiency * p * math.sin(x + turn) + u0
+        for angle in (0, 45, 90, 135):
+            a = 2 * math.radians(angle)
+            b = 2 * math.radians(angle + axis)
+            counts = 2.5e7 * (1 + q * math.cos(a) + u * math.sin(a))
+            lines.append(f"2018-01-21T05:{number:02}:00Z,{number},{name},V,{axis},{counts!r},0,0,0,"
+                         f".25,{math.cos(b) / 4!r},{math.sin(b) / 4!r},0")
+    path.write_text("\n".join(lines) + "\n")
+
+
+def test_standards_calibrate_an_instrument(umov, tmp_path):
+    standards(tmp_path / "stars.csv")
+    (tmp_path / "known.csv").write_text("name,p_percent,pa_deg\nnone,0,0\nHD 204827,4.893,59.10\n")
+    done = umov("calibrate", "stars.csv", "--standards", "known.csv", "-o", "own.toml")
+    assert done.code == 0, done.err
+    found = dict(line.split(" = ") for line in (tmp_path / "own.toml").read_text().splitlines() if " = " in line
+                 and not line.startswith("#"))
+    # What the counts were made with; 1e8 electrons would leave 1.4e-4 of noise, these have none.
+    assert abs(float(found["efficiency"]) - 0.985) < 1e-6 and abs(float(found["phi0_deg"]) - 0.8) < 1e-4
+    assert abs(float(found["q0"]) - 0.0042) < 1e-7 and abs(float(found["u0"]) + 0.0018) < 1e-7
+    done = umov("reduce", "stars.csv", "--calibration", "own.toml", "-o", "back.ecsv")
+    assert done.code == 0, done.err
+    for row in Table.read(tmp_path / "back.ecsv"):
+        if row["name"] != "none":
+            assert abs(row["p"] - 0.04893) < 1e-6 and abs(row["pa"] - 59.10) < 1e-3
+
+
+def test_calibrations_that_are_refused(umov, tmp_path):
+    standards(tmp_path / "stars.csv")
+    (tmp_path / "none.csv").write_text("name,p_percent,pa_deg\nnone,0,0\n")
+    done = umov("calibrate", "stars.csv", "--standards", "none.csv")
+    assert done.code == 3 and "polarized" in done.err
+    (tmp_path / "other.csv").write_text("name,p_percent,pa_deg\nVega,0,0\n")
+    assert umov("calibrate", "stars.csv", "--standards", "other.csv").code == 3
+    (tmp_path / "known.csv").write_text("name,p_percent,pa_deg\nnone,0,0\nHD 204827,4.893,59.10\n")
+    assert umov("calibrate", "stars.csv", "--standards", "known.csv", "-o", "own.toml").code == 0
+    for key, other in (("instrument", "own"), ("band", "V")):
+        text = (tmp_path / "own.toml").read_text().replace(f'{key} = "{other}"', f'{key} = "another"')
+        (tmp_path / "wrong.toml").write_text(text)
+        done = umov("reduce", "stars.csv", "--calibration", "wrong.toml")
+        assert done.code == 3 and "another" in done.err
+
+
+def test_how_long_to_expose(umov, tmp_path):
+    """C11 at magnitude 8: 2 electrons variance of p^2 to 1e-4, so 2e4 electrons and a little noise of the camera."""
+    done = umov("exposure", "--instrument", "c11_imx250", "--mag", 8, "-o", "e.csv")
+    assert done.code == 0, done.err
+    rows = {line.split(",")[0]: float(line.split(",")[1])
+            for line in (tmp_path / "e.csv").read_text().splitlines() if line[0] not in "#q"}
+    assert abs(rows["electrons"] * rows["share_star"] - 2e4) < 1
+    assert abs(rows["time"] * rows["rate"] / rows["electrons"] - 1) < 1e-6
+    assert abs(rows["share_star"] + rows["share_sky"] + rows["share_dark"] + rows["share_read"] - 1) < 1e-6
+    assert umov("exposure", "--instrument", "c11_imx250", "--alt", 1).code == 2

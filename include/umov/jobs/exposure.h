@@ -8,15 +8,15 @@ namespace umov::jobs {
 
 /// What is asked.
 struct ExposureRequest {
-  std::string instrument;    ///< a name or a file
-  double mag = 8;            ///< AB, above the air
-  double altitude_deg = 45;  ///< apparent
-  double height_m = 0;       ///< of the site
-  double sd_p = 0.01;        ///< wanted standard deviation of the degree of polarization
+  std::string instrument;   ///< a name or a file
+  double mag = 8;           ///< AB, above the air
+  double altitude_deg = 45; ///< apparent
+  double height_m = 0;      ///< of the site
+  double sd_p = 0.01;       ///< wanted standard deviation of the degree of polarization
   double nm = 550, width_nm = 80;
-  double sky_mag = 21;       ///< AB in the band [mag / arcsec2]
-  double seeing_arcsec = 2;  ///< at the zenith
-  double change_per_s = 0;   ///< relative change of the object's brightness
+  double sky_mag = 21;      ///< AB in the band [mag / arcsec2]
+  double seeing_arcsec = 2; ///< at the zenith
+  double change_per_s = 0;  ///< relative change of the object's brightness
 };
 
 /// Rows of a quantity, its value and its unit: electrons, time for `sd_p`, time that fills a pixel,
