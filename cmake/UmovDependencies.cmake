@@ -11,7 +11,7 @@ option(UMOV_INSTALL "Install the library, its headers and its CMake package" ${P
 
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
-find_package(Boost 1.74 REQUIRED) # headers: Math, Odeint
+find_package(Boost 1.74 REQUIRED) # headers: Math, Odeint, Random
 find_package(fmt REQUIRED)
 find_package(tl-expected REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)

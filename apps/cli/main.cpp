@@ -62,6 +62,11 @@ int run(int argc, char **argv) {
   cli::add_material(app, exit_with);
   cli::add_bands(app, exit_with);
   cli::add_mesh(app, exit_with);
+  cli::add_observe(app, exit_with);
+  cli::add_calibrate(app, exit_with);
+  cli::add_reduce(app, exit_with);
+  cli::add_exposure(app, exit_with);
+  cli::add_instrument(app, exit_with);
   cli::add_orbit(app, exit_with);
   cli::add_passes(app, exit_with);
 #ifdef UMOV_WITH_PAPER

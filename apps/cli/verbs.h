@@ -17,6 +17,12 @@ void add_brdf(CLI::App &app, const Exit &exit_with);
 void add_material(CLI::App &app, const Exit &exit_with);
 void add_mesh(CLI::App &app, const Exit &exit_with);
 void add_mesh_make(CLI::App &mesh, const Exit &exit_with);
+void add_instrument(CLI::App &app, const Exit &exit_with);
+void add_observe(CLI::App &app, const Exit &exit_with);
+void add_calibrate(CLI::App &app, const Exit &exit_with);
+void add_exposure(CLI::App &app, const Exit &exit_with);
+void add_reduce(CLI::App &app, const Exit &exit_with);
+
 void add_orbit(CLI::App &app, const Exit &exit_with);
 void add_orbit_show(CLI::App &orbit, const Exit &exit_with);
 void add_orbit_convert(CLI::App &orbit, const Exit &exit_with);

@@ -3,6 +3,11 @@
 // a header. Lowest module first.
 
 // clang-format off: in the order of the modules
+#include <umov/atmosphere/air.h>
+#include <umov/atmosphere/refraction.h>
+#include <umov/atmosphere/scintillation.h>
+#include <umov/atmosphere/sky_brightness.h>
+#include <umov/atmosphere/sky_polarization.h>
 #include <umov/attitude/attitude.h>
 #include <umov/attitude/attitude_table.h>
 #include <umov/attitude/tumble.h>
@@ -26,8 +31,19 @@
 #include <umov/frames/earth.h>
 #include <umov/frames/site.h>
 #include <umov/frames/sky.h>
+#include <umov/instrument/detector.h>
+#include <umov/instrument/draws.h>
+#include <umov/instrument/exposure.h>
+#include <umov/instrument/mirrors.h>
+#include <umov/instrument/mosaic.h>
+#include <umov/instrument/mueller.h>
+#include <umov/instrument/observe.h>
+#include <umov/instrument/polarimeter.h>
+#include <umov/instrument/telescope.h>
 #include <umov/io/attitude_file.h>
+#include <umov/io/calibration_file.h>
 #include <umov/io/ccsds.h>
+#include <umov/io/counts_file.h>
 #include <umov/io/elements_file.h>
 #include <umov/io/exr.h>
 #include <umov/io/index_file.h>
@@ -35,6 +51,7 @@
 #include <umov/io/measured_file.h>
 #include <umov/io/mesh_file.h>
 #include <umov/io/obj.h>
+#include <umov/io/observation.h>
 #include <umov/io/passband_file.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
@@ -45,6 +62,7 @@
 #include <umov/io/scenario.h>
 #include <umov/io/sites.h>
 #include <umov/io/sky_page.h>
+#include <umov/io/standards_file.h>
 #include <umov/io/story_page.h>
 #include <umov/io/table.h>
 #include <umov/io/table_sink.h>
@@ -53,14 +71,18 @@
 #include <umov/io/trajectory_file.h>
 #include <umov/jobs/band_tables.h>
 #include <umov/jobs/brdf.h>
+#include <umov/jobs/calibrate.h>
 #include <umov/jobs/ephemeris.h>
+#include <umov/jobs/exposure.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
 #include <umov/jobs/mesh_description.h>
 #include <umov/jobs/monitor.h>
+#include <umov/jobs/observe.h>
 #include <umov/jobs/orbit_files.h>
 #include <umov/jobs/passes.h>
 #include <umov/jobs/pose_light.h>
+#include <umov/jobs/reduce.h>
 #include <umov/jobs/render.h>
 #include <umov/jobs/requests.h>
 #include <umov/jobs/run.h>
@@ -110,6 +132,12 @@
 #include <umov/picture/channel.h>
 #include <umov/picture/colours.h>
 #include <umov/picture/keyframe.h>
+#include <umov/reduction/calibration.h>
+#include <umov/reduction/likelihood.h>
+#include <umov/reduction/polarization.h>
+#include <umov/reduction/ratio.h>
+#include <umov/reduction/sequence.h>
+#include <umov/reduction/stokes_fit.h>
 #include <umov/scene/articulation.h>
 #include <umov/scene/pose.h>
 #include <umov/scene/scene.h>

@@ -9,6 +9,9 @@ import bodies
 import heights
 import interfaces
 import microfacet
+import observing_air
+import observing_instrument
+import observing_reduction
 import passbands
 import surroundings
 import two_materials
@@ -116,6 +119,9 @@ TABLES = {
                        two_materials.half_rows),
     "planes": Table("paper.md 2: 50,000 random mixtures", "phase_deg,blue,green,red,thickness",
                     two_materials.plane_rows),
+    "observing_air": Table("observing.md 2", "name,formula,value", observing_air.rows),
+    "observing_instrument": Table("observing.md 3, 4", "name,formula,value", observing_instrument.rows),
+    "observing_reduction": Table("observing.md 5, 6, 7", "name,formula,value", observing_reduction.rows),
     "singles": Table("as each row says", "name,formula,value", single_rows),
 }
 

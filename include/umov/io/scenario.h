@@ -7,6 +7,7 @@
 #include <string>
 #include <umov/attitude/attitude.h>
 #include <umov/core/diagnostics.h>
+#include <umov/io/observation.h>
 #include <umov/io/passband_file.h>
 #include <umov/lightcurve/compute.h>
 #include <umov/orbit/state_vector.h>
@@ -79,7 +80,8 @@ struct Scenario {
   std::filesystem::path output_dir{"out"}; ///< relative to the working folder
   std::vector<std::string> formats{"ecsv", "html"};
   PolarizationFrame frame = PolarizationFrame::Equatorial;
-  std::map<std::string, Where> places; ///< where keys stand ("object.0.materials.front")
+  std::optional<ScenarioObservation> observation; ///< [observation] and its instrument
+  std::map<std::string, Where> places;            ///< where keys stand ("object.0.materials.front")
 };
 
 /// Reads a scenario; each of `overrides` is "dotted.key=value" with a TOML value (a bare word

@@ -1,5 +1,7 @@
+#include "io/scenario/instrument.h"
 #include "io/scenario/parts.h"
 
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 #include <umov/core/text.h>
@@ -105,6 +107,10 @@ std::string object(const ScenarioObject &o) {
 std::string locked_scenario(const Scenario &s) {
   std::string out = "# Every default filled in; running this file repeats the run.\n";
   out += fmt::format("umov = 1\ntitle = {}\nseed = {}\n", quoted(s.title), s.seed);
+  if (s.observation)
+    if (const auto names = instrument_names();
+        std::ranges::find(names, s.observation->instrument.name) != names.end())
+      out += fmt::format("instrument = {}\n", quoted(s.observation->instrument.name));
   out += observer_and_time(s);
   if (!s.earth_orientation.empty())
     out += fmt::format("\n[earth]\neop = {}\n", absolute_path(s.earth_orientation));
@@ -123,7 +129,8 @@ std::string locked_scenario(const Scenario &s) {
     out += fmt::format("earthshine = {{ albedo = {}, patches = {}, accuracy = {} }}\n",
                        shortest(s.earthshine->albedo), s.earthshine->patches,
                        shortest(s.earthshine->accuracy));
-  out += "\n[detector]\nmodel = \"ideal\"\n";
+  out += s.observation ? scenario::observation_toml(*s.observation)
+                       : std::string("\n[detector]\nmodel = \"ideal\"\n");
   out += fmt::format("\n[output]\ndir = {}\nformats = {}\npol_frame = \"{}\"\n",
                      quoted(s.output_dir.string()), list(s.formats), frame_name(s.frame));
   for (const auto &[name, material] : s.own_materials)

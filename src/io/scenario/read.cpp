@@ -1,3 +1,4 @@
+#include "io/scenario/instrument.h"
 #include "io/scenario/parts.h"
 
 #include <algorithm>
@@ -344,10 +345,6 @@ Result<void> read_render(const Node &top, Scenario &out) {
     UMOV_ASSIGN(sun, node.choice("sun", "disk", {"disk", "point"}));
     out.has_solar_disk = sun == "disk";
   }
-  if (top.has("detector")) {
-    UMOV_ASSIGN(node, top.child("detector"));
-    UMOV_TRY(node.choice("model", "ideal", {"ideal"}, {"real"}));
-  }
   return {};
 }
 
@@ -400,6 +397,8 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(scenario::read_bands(top, path.parent_path(), out));
   UMOV_TRY(read_render(top, out));
   UMOV_TRY(read_output(top, out));
+  UMOV_ASSIGN(observation, scenario::read_observation(top, path.parent_path().string()));
+  out.observation = observation;
   UMOV_ASSIGN(own, scenario::read_material_tables(top));
   UMOV_TRY(scenario::check_own_names(top, own));
   out.own_materials = own;

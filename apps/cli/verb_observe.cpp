@@ -1,0 +1,67 @@
+#include "job_console.h"
+#include "verbs.h"
+
+#include <fmt/format.h>
+#include <umov/core/text.h>
+#include <umov/jobs/observe.h>
+
+namespace umov::cli {
+namespace {
+
+struct ObserveOptions {
+  std::string scenario, output;
+  std::vector<std::string> overrides;
+  bool allow_bad_checksum = false, allow_old_elements = false;
+};
+
+Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnostics &diagnostics) {
+  const auto started = std::chrono::system_clock::now();
+  UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.overrides));
+  if (!o.output.empty())
+    scenario.output_dir = o.output;
+  UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
+  jobs::JobOptions options = job_options(common);
+  options.allow_bad_checksum = o.allow_bad_checksum;
+  options.allow_old_elements = o.allow_old_elements;
+  JobConsole console(common);
+  UMOV_ASSIGN(result,
+              jobs::observe(scenario, options, console.monitor(common.verbose), diagnostics));
+  UMOV_TRY(jobs::write_observation(result, scenario, manifest_of_command(common, started),
+                                   diagnostics, folder));
+  note(common, fmt::format("{}, {} rows of counts; light {:.1f} s, counts {:.1f} s",
+                           counted(result.exposures, "exposure"), result.counts.rows(),
+                           result.light_s, result.counts_s));
+  if (!common.quiet)
+    fmt::print("written to {}\n", printable(folder.path().string()));
+  return {};
+}
+
+} // namespace
+
+void add_observe(CLI::App &app, const Exit &exit_with) {
+  auto *verb = app.add_subcommand(
+      "observe", "Counts that an instrument records of a scenario: air, telescope, polarimeter");
+  auto o = std::make_shared<ObserveOptions>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("scenario", o->scenario, "Scenario with [observation] and an instrument")
+      ->required();
+  verb->add_option("-o,--output", o->output, "Output folder, over the scenario's output.dir");
+  verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
+  verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
+  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum,
+                 "Read elements with a bad checksum");
+  verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
+  verb->add_flag("-v,--verbose", common->verbose, "Also say what was read");
+  add_threads(*verb, *common);
+  add_cache(*verb, *common);
+  add_common(*verb, *common, false);
+  verb->callback([o, common, exit_with] {
+    watch_interrupts();
+    Diagnostics diagnostics;
+    const auto done = run_observe(*o, *common, diagnostics);
+    report(diagnostics, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace umov::cli

@@ -1,0 +1,129 @@
+#include "job_console.h"
+#include "tables.h"
+#include "verbs.h"
+
+#include <fmt/format.h>
+#include <tuple>
+#include <umov/core/files.h>
+#include <umov/core/text.h>
+#include <umov/io/calibration_file.h>
+#include <umov/jobs/reduce.h>
+
+namespace umov::cli {
+namespace {
+
+struct ReduceVerb {
+  std::string counts, output, calibration, model = "static";
+  std::vector<std::string> columns;
+  double q0_sd = 0, gain_sd = 0, angle_sd_deg = 0, efficiency_sd = 0, sky_sd = 0;
+};
+
+/// "static", "fourier:PERIOD" or "fourier:PERIOD:HARMONICS".
+Result<void> read_model(const std::string &text, jobs::ReduceOptions &out) {
+  if (text == "static")
+    return {};
+  const auto wrong = [&] {
+    return fail(ErrorCode::Usage,
+                "--model " + text +
+                    ": static, fourier:PERIOD_S or fourier:PERIOD_S:HARMONICS was expected");
+  };
+  if (!text.starts_with("fourier:"))
+    return wrong();
+  const std::string rest = text.substr(8);
+  const std::size_t colon = std::min(rest.find(':'), rest.size());
+  const auto period = parse_number(rest.substr(0, colon));
+  if (!period || !(*period > 0))
+    return wrong();
+  out.period_s = *period;
+  if (colon == rest.size())
+    return {};
+  const auto harmonics = parse_number(rest.substr(colon + 1));
+  if (!harmonics || !(*harmonics >= 1 && *harmonics <= 100))
+    return wrong();
+  out.harmonics = static_cast<int>(*harmonics);
+  return {};
+}
+
+/// A calibration of another instrument or band tells nothing; an old one little.
+Result<void> check_calibration(const CalibrationFile &file, const CountsFile &counts,
+                               const std::string &path, Diagnostics &diagnostics) {
+  const auto note = [&](const char *name) {
+    const auto found = counts.notes.find(name);
+    return found == counts.notes.end() ? std::string() : found->second;
+  };
+  const CountRow &first = counts.rows.front();
+  for (const auto &[what, own, other] :
+       {std::tuple{"instrument", file.instrument, note("instrument")},
+        {"band", file.band, first.band}})
+    if (!own.empty() && !other.empty() && own != other)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("this calibration is of the {} \"{}\", the counts are of \"{}\"; "
+                              "calibrate that one",
+                              what, own, other),
+                  {path});
+  constexpr double old_days = 30;
+  if (const auto made = utc_from_iso(file.made_utc))
+    if (const double days = seconds_between(first.time, *made) / 86400; days > old_days)
+      diagnostics.warn(fmt::format("the calibration is {:.0f} days older than the counts", days),
+                       {path});
+  return {};
+}
+
+Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &diagnostics) {
+  UMOV_TRY(check_output(o.output));
+  jobs::ReduceOptions options;
+  UMOV_TRY(read_model(o.model, options));
+  options.priors = {o.q0_sd, o.gain_sd, 0, o.angle_sd_deg * pi / 180, o.efficiency_sd, o.sky_sd};
+  options.threads = static_cast<unsigned>(common.threads);
+  constexpr std::size_t largest = 1u << 31;
+  UMOV_ASSIGN(text, read_file(o.counts, largest));
+  UMOV_ASSIGN(counts, read_counts_text(text, o.counts, diagnostics));
+  if (!o.calibration.empty()) {
+    UMOV_ASSIGN(read, read_file(o.calibration));
+    UMOV_ASSIGN(file, read_calibration_text(read, o.calibration));
+    UMOV_TRY(check_calibration(file, counts, o.calibration, diagnostics));
+    options.calibration = file.calibration;
+  }
+  JobConsole console(common);
+  UMOV_ASSIGN(table, jobs::reduce(counts, options, console.monitor(false), diagnostics));
+  UMOV_ASSIGN(shown, chosen_columns(table, o.columns,
+                                    {"time_utc", "band", "mag", "q", "u", "v", "p_debiased", "p_lo",
+                                     "p_hi", "pa", "pa_err", "flags"},
+                                    o.output, common));
+  return put_table(o.output, shown, common);
+}
+
+} // namespace
+
+void add_reduce(CLI::App &app, const Exit &exit_with) {
+  auto *verb = app.add_subcommand("reduce", "Stokes parameters with errors from counts");
+  auto o = std::make_shared<ReduceVerb>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("counts", o->counts, "Counts of umov observe (ECSV or CSV), or your own")
+      ->required();
+  verb->add_option("--calibration", o->calibration, "Of umov calibrate: taken out of q and u");
+  verb->add_option("--model", o->model,
+                   "static: every set by itself; fourier:PERIOD_S: brightness as a series over "
+                   "time, q and u constant")
+      ->capture_default_str();
+  const auto prior = [&](const char *name, double &value, const char *text) {
+    verb->add_option(name, value, text)->check(CLI::Range(0.0, 1e3))->capture_default_str();
+  };
+  prior("--q0-sd", o->q0_sd, "How well the instrument's own q and u are known");
+  prior("--gain-sd", o->gain_sd, "How well the gain of each channel is known");
+  prior("--angle-sd-deg", o->angle_sd_deg, "How well the instrument's angle is known [deg]");
+  prior("--efficiency-sd", o->efficiency_sd, "How well the efficiency is known");
+  prior("--sky-sd", o->sky_sd, "How well the whole sky is known, relative");
+  add_table_output(*verb, o->output);
+  add_columns(*verb, o->columns);
+  add_threads(*verb, *common);
+  add_common(*verb, *common, true);
+  verb->callback([o, common, exit_with] {
+    Diagnostics diagnostics;
+    const auto done = run_reduce(*o, *common, diagnostics);
+    report(diagnostics, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace umov::cli

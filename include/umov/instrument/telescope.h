@@ -1,0 +1,53 @@
+#pragma once
+#include <string>
+#include <umov/core/quantity.h>
+#include <umov/optics/index.h>
+
+namespace umov {
+
+/// Where the light leaves the telescope.
+enum class TelescopePort { Cassegrain, NasmythLeft, NasmythRight };
+/// What carries it.
+enum class Mount { AltAz, Equatorial };
+
+/// A telescope.
+struct Telescope {
+  double aperture_m = 0;
+  double obstruction = 0; ///< of the diameter
+  double focal_length_m = 0;
+  Tabulated throughput{{}, {1}}; ///< optics times detector, without polarizers, against wavelength
+  TelescopePort port = TelescopePort::Cassegrain;
+  std::string mirror = "Al_Rakic"; ///< index of the flat mirror of a Nasmyth port
+  Mount mount = Mount::AltAz;
+  bool has_derotator = false; ///< turns the whole instrument with the sky
+};
+
+/// Light-collecting area [m2].
+double collecting_area_m2(const Telescope &telescope);
+/// Scale of the image [arcsec/px].
+double pixel_scale_arcsec(const Telescope &telescope, double pixel_um);
+/// Position angle of the instrument's x axis from the zenith direction. parallactic_angle: of the
+/// zenith from the pole.
+Angle axis_from_zenith(const Telescope &telescope, Angle x_axis, Angle parallactic_angle);
+
+/// Profile of a star's image.
+enum class ImageProfile { Gauss, Moffat }; ///< Moffat with exponent 4.765 (Trujillo et al. 2001)
+
+/// Share of the light within a radius, in full widths at half maximum.
+double share_inside(ImageProfile profile, double radius_fwhm);
+
+/// The seeing at the zenith.
+struct Seeing {
+  double arcsec = 1, at_nm = 500;
+  double outer_scale_m = 0; ///< 0: infinite
+  ImageProfile profile = ImageProfile::Moffat;
+};
+
+/// Full width at half maximum through an air mass [arcsec]: X^0.6 lambda^-0.2, narrower by the
+/// outer scale (Tokovinin 2002, PASP 114, 1156, Eq. 19).
+double seeing_fwhm_arcsec(const Seeing &seeing, double nm, double airmass);
+
+/// Length of a trail [px] of an object that moves by `rate_rad_s` over the detector.
+double trail_length_px(double rate_rad_s, double exposure_s, double arcsec_per_px);
+
+} // namespace umov

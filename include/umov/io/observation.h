@@ -1,0 +1,54 @@
+#pragma once
+// Instruments as files, and what a scenario says of an observation.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <umov/instrument/observe.h>
+#include <vector>
+
+namespace umov {
+
+/// How bright and how polarized the sky is.
+struct SkyOptions {
+  std::map<std::string, double> dark_mag; ///< by letter, over the tables'
+  bool has_twilight = true, has_moon = true;
+  double dilution_sun = 0.8, dilution_moon = 0.6;
+  std::optional<double> mag; ///< fixed surface brightness, AB in the band, instead of all that
+  double p = 0;              ///< of it, along the normal of the plane of the Sun
+};
+
+/// One step of a sequence.
+struct SequenceStep {
+  PolarimeterState state;
+  std::string band; ///< empty: every band, one after the other
+};
+
+/// [atmosphere], [telescope], [detector], [polarimeter] and [observation] of a scenario.
+struct ScenarioObservation {
+  Instrument instrument;
+  Air air;
+  bool has_own_pressure = false; ///< else that of the site's height
+  Seeing seeing;
+  std::optional<double> scintillation_c_y = 1.5; ///< absent: none
+  bool has_slewing_factor = false;
+  SkyOptions sky;
+  double cloud_sd_mag = 0, cloud_time_s = 60;
+  std::vector<std::string> bands; ///< empty: those of [bands]
+  double width_nm = 10;           ///< of bands that are one wavelength
+  double exposure_s = 1, cadence_s = 1;
+  std::vector<SequenceStep> sequence; ///< empty: that of the polarimeter's type
+  double aperture_fwhm = 2;
+  double clock_error_s = 0.001;
+};
+
+/// Names of the instruments that are compiled in.
+std::vector<std::string> instrument_names();
+/// An instrument by name or from a TOML file.
+Result<Instrument> read_instrument(const std::string &name_or_path);
+/// From a text that stands for the file `path`.
+Result<Instrument> read_instrument_text(const std::string &text, const std::string &path);
+/// An instrument as TOML; reading it gives the same.
+std::string instrument_as_toml(const Instrument &instrument);
+
+} // namespace umov

@@ -1,0 +1,26 @@
+#pragma once
+// How long to expose: what an instrument makes of a star of a magnitude.
+
+#include <umov/io/observation.h>
+#include <umov/io/table.h>
+
+namespace umov::jobs {
+
+/// What is asked.
+struct ExposureRequest {
+  std::string instrument;   ///< a name or a file
+  double mag = 8;           ///< AB, above the air
+  double altitude_deg = 45; ///< apparent
+  double height_m = 0;      ///< of the site
+  double sd_p = 0.01;       ///< wanted standard deviation of the degree of polarization
+  double nm = 550, width_nm = 80;
+  double sky_mag = 21;      ///< AB in the band [mag / arcsec2]
+  double seeing_arcsec = 2; ///< at the zenith
+  double change_per_s = 0;  ///< relative change of the object's brightness
+};
+
+/// Rows of a quantity, its value and its unit: electrons, time for `sd_p`, time that fills a pixel,
+/// shares of each noise at that time, false polarization of analysers that follow each other.
+Result<Table> exposure(const ExposureRequest &request);
+
+} // namespace umov::jobs

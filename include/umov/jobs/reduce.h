@@ -1,0 +1,29 @@
+#pragma once
+// Counts back to Stokes parameters with their errors.
+
+#include <optional>
+#include <umov/io/counts_file.h>
+#include <umov/io/table.h>
+#include <umov/jobs/monitor.h>
+#include <umov/reduction/calibration.h>
+#include <umov/reduction/stokes_fit.h>
+
+namespace umov::jobs {
+
+/// How counts are reduced.
+struct ReduceOptions {
+  /// Brightness as a Fourier series of this period [s], with q, u (and v) that stay: for sequences
+  /// of a tumbling object. 0: every set by itself.
+  double period_s = 0;
+  int harmonics = 3;
+  ErrorPriors priors; ///< of the instrument, beside the scintillation that the file tells
+  std::optional<PolarimeterCalibration> calibration; ///< its offset and factor are taken out
+  unsigned threads = 0;
+};
+
+/// One row per set (or per band, with a period): Stokes parameters, degree and angle with errors,
+/// intervals and tests. BadInput where no set can be solved.
+Result<Table> reduce(const CountsFile &counts, const ReduceOptions &options, const Monitor &monitor,
+                     Diagnostics &diagnostics);
+
+} // namespace umov::jobs

@@ -1,0 +1,67 @@
+#pragma once
+// What standards tell of an instrument.
+
+#include <array>
+#include <complex>
+#include <span>
+#include <umov/core/result.h>
+#include <umov/instrument/mueller.h>
+#include <vector>
+
+namespace umov {
+
+/// A standard star as it was measured: z = q + iu in the instrument's axes.
+struct StandardMeasurement {
+  std::complex<double> measured;
+  std::complex<double> truth; ///< in the sky frame
+  double axis_rad = 0;        ///< of the instrument's x axis in that frame
+  double sd = 0;              ///< of q and of u
+};
+
+/// measured = factor * truth e^(-2i axis) + offset.
+struct PolarimeterCalibration {
+  std::complex<double> factor{1, 0};   ///< efficiency e^(2i phi0)
+  std::complex<double> offset;         ///< q0 + i u0
+  double factor_sd = 0, offset_sd = 0; ///< of real and imaginary part each
+  double chi2 = 0;
+  int dof = 0;
+};
+
+/// Complex least squares. BadInput with fewer than two measurements, without a polarized standard,
+/// or where one instrument angle alone cannot tell the offset from the star.
+Result<PolarimeterCalibration> calibrate_polarimeter(std::span<const StandardMeasurement> data);
+
+/// A target with its calibration applied, in the sky frame.
+struct CalibratedTarget {
+  std::complex<double> value;
+  double variance = 0;        ///< of q and of u each, by its own noise
+  double common_variance = 0; ///< more of it, the same for the whole run
+};
+/// Of a measurement in the instrument's axes.
+CalibratedTarget apply(const PolarimeterCalibration &calibration, std::complex<double> measured,
+                       double axis_rad, double variance);
+
+/// One channel's row for I, Q, U from a polarizer turned before it: angles [rad] and counts.
+struct ChannelCalibration {
+  StokesRow row{};
+  std::array<double, 3> sd{};
+};
+/// Counts are taken to have the variance `variance`.
+Result<ChannelCalibration> calibrate_channel(std::span<const double> angles_rad,
+                                             std::span<const double> counts, double variance);
+
+/// A standard in the light of one band.
+struct PhotometricStandard {
+  double catalogue_mag = 0, instrumental_mag = 0, airmass = 1, colour = 0;
+};
+/// m_std - m_inst = Z - k X - c C.
+struct PhotometricCalibration {
+  double zero_point = 0, extinction = 0, colour_term = 0;
+  std::array<std::array<double, 3>, 3> covariance{}; ///< in that order
+  double residual_sd = 0;
+};
+/// Linear least squares with equal weights. BadInput with fewer than four stars or where air mass
+/// or colour do not change.
+Result<PhotometricCalibration> calibrate_photometry(std::span<const PhotometricStandard> stars);
+
+} // namespace umov

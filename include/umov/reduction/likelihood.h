@@ -1,0 +1,37 @@
+#pragma once
+// How likely counts are: what an inversion compares its light with.
+
+#include <span>
+#include <umov/reduction/stokes_fit.h>
+
+namespace umov {
+
+/// Logarithm of the likelihood of one sum of electrons from a mean [e].
+/// A Poisson number that was read with a normal error of `read_sd` (the exact sum).
+double log_poisson_gauss(double counts, double mean, double read_sd);
+/// The same as one Poisson number: counts + read^2 around mean + read^2. Good above a mean of some
+/// tens, and without the bias that variances taken from data have.
+double log_shifted_poisson(double counts, double mean, double variance);
+/// A normal number with the variance of the model.
+double log_normal_counts(double counts, double mean, double variance, double excess2 = 1);
+/// Output of a multiplying register of a gain, in its electrons, at counts > 0 (Basden, Haniff &
+/// Mackay 2003, MNRAS 345, 985); of no output at all exp(-mean).
+double log_multiplied(double output, double mean, double gain);
+/// At least `limit` electrons: a saturated pixel tells no more.
+double log_saturated(double limit, double mean, double variance);
+
+/// One channel with the mean that a model gives it.
+struct PredictedCounts {
+  ChannelDatum datum;
+  double mean = 0; ///< sky included
+  bool is_saturated = false;
+  double saturation = 0; ///< [e], of those
+};
+/// Logarithm of the likelihood of independent channels: the exact sum where few electrons meet
+/// little reading noise, else the shifted Poisson number; normal behind a register.
+double log_likelihood(std::span<const PredictedCounts> counts);
+/// Of a set whose channels share errors: normal with C = C_n + J Sigma J^T, without n/2 ln 2 pi.
+/// Solved by one small matrix of the common terms (Woodbury).
+double log_likelihood(std::span<const PredictedCounts> counts, std::span<const CommonError> common);
+
+} // namespace umov

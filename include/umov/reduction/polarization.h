@@ -1,0 +1,36 @@
+#pragma once
+// Degree and angle of polarization from q and u with their errors.
+
+#include <array>
+
+namespace umov {
+
+/// Covariance of q and u.
+using LinearCovariance = std::array<std::array<double, 2>, 2>;
+
+/// Point values.
+struct PolarizationEstimate {
+  double p = 0;            ///< biased: never below 0
+  double debiased = 0;     ///< "modified asymptotic" of Plaszczynski et al. 2014, MNRAS 439, 4048
+  double sd = 0;           ///< of p, along (q, u)
+  double across = 0;       ///< standard deviation across (q, u)
+  double angle_rad = 0;    ///< of the axis, [0, pi)
+  double angle_sd_rad = 0; ///< 68.27 % half width
+};
+/// Of q and u.
+PolarizationEstimate polarization_of(double q, double u, const LinearCovariance &covariance);
+
+/// 68.27 % half width of the angle [rad] for p in units of its error (Naghizadeh-Khouei & Clarke
+/// 1993, A&A 274, 968).
+double angle_half_width(double p_over_sd);
+
+/// A confidence interval.
+struct PolarizationInterval {
+  double low = 0, high = 0;
+};
+/// Of the true degree, for `x` found, both in units of the error of q and u (Feldman & Cousins
+/// 1998, Phys. Rev. D 57, 3873, on the Rice distribution): never empty, an upper limit by itself
+/// where x is small. Beyond x = 8 the normal interval about the debiased value.
+PolarizationInterval degree_interval(double x, double level = 0.95);
+
+} // namespace umov

@@ -1,0 +1,33 @@
+#pragma once
+// Exposures one after the other of a source that changes meanwhile.
+
+#include <complex>
+#include <span>
+#include <umov/reduction/stokes_fit.h>
+#include <vector>
+
+namespace umov {
+
+/// False polarization q + iu that analysers at these angles, one after the other, make of an
+/// unpolarized light whose exposures hold `light`.
+std::complex<double> false_polarization(std::span<const double> angles_rad,
+                                        std::span<const double> light);
+
+/// A count at its own time.
+struct TimedDatum {
+  double time_s = 0;
+  ChannelDatum datum;
+};
+/// Brightness over time as a Fourier series, with q, u (and v) that stay.
+struct SequenceFit {
+  std::vector<double> series; ///< mean, then cosine and sine of each harmonic
+  StokesFractions fractions;
+  double chi2 = 0;
+  int dof = 0;
+};
+/// Fits the raw counts (Gauss-Newton, variance of the model): nothing is differenced, so that a
+/// change between two exposures is not taken for polarization. `parameters` 3 or 4.
+Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period_s, int harmonics,
+                                 std::size_t parameters);
+
+} // namespace umov

@@ -1,0 +1,111 @@
+#include <umov/instrument/detector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace umov {
+namespace {
+
+double register_gain(const Detector &d) { return d.model == DetectorModel::Emccd ? d.em_gain : 1; }
+
+/// Electrons, after a register in units of its input, before they are read.
+double draw_electrons(const Detector &d, double mean, double exposure_s, Draws &draws) {
+  if (d.model == DetectorModel::Counter && mean > 0) {
+    const double told = counted_rate(d, mean / exposure_s) * exposure_s;
+    const double width = std::sqrt(counter_fano(d, mean / exposure_s));
+    return told + (draws.poisson(told) - told) * width;
+  }
+  const double n = draws.poisson(mean);
+  const double excess = excess_variance(d) - 1;
+  if (!(excess > 0 && n > 0))
+    return n;
+  return draws.gamma(n / excess) * excess; // mean n, variance n (F^2 - 1)
+}
+
+} // namespace
+
+const std::vector<std::string> &detector_names() {
+  static const std::vector<std::string> names{"ideal", "ccd", "cmos", "emccd", "counter"};
+  return names;
+}
+
+const char *name_of(DetectorModel model) {
+  return detector_names()[static_cast<std::size_t>(model)].c_str();
+}
+
+double excess_variance(const Detector &d) {
+  const double g = register_gain(d);
+  if (!(g > 1))
+    return 1;
+  const double m = d.em_stages;
+  return 2 * (g - 1) * std::pow(g, -(m + 1) / m) + 1 / g;
+}
+
+double fixed_variance(const Detector &d) {
+  if (d.model == DetectorModel::Ideal || d.model == DetectorModel::Counter)
+    return 0;
+  const double g = register_gain(d);
+  return (d.read_e * d.read_e + d.gain_e_adu * d.gain_e_adu / 12) / (g * g);
+}
+
+double saturation_e(const Detector &d) {
+  if (d.model == DetectorModel::Ideal || d.model == DetectorModel::Counter)
+    return std::numeric_limits<double>::infinity();
+  const double numbers = (std::exp2(d.bits) - 1 - d.bias_adu) * d.gain_e_adu / register_gain(d);
+  return d.well_e > 0 ? std::min(d.well_e, numbers) : numbers;
+}
+
+double aperture_variance(const Detector &d, const ApertureCounts &c) {
+  const double f2 = excess_variance(d);
+  const double of_sky = c.sky_pixels > 0 ? 1 + c.pixels / c.sky_pixels : 1;
+  return f2 * c.star + c.pixels * of_sky * (f2 * (c.sky + c.dark) + fixed_variance(d));
+}
+
+double bent(const Detector &d, double x) {
+  return d.well_e > 0 ? x * (1 - d.nonlinearity * x / d.well_e) : x;
+}
+
+double straightened(const Detector &d, double y) {
+  if (!(d.well_e > 0))
+    return y;
+  const double root = 1 - 4 * d.nonlinearity * y / d.well_e;
+  return 2 * y / (1 + std::sqrt(std::max(0.0, root)));
+}
+
+double counted_rate(const Detector &d, double rate) { return rate / (1 + rate * d.dead_time_s); }
+
+double counter_fano(const Detector &d, double rate) {
+  const double x = 1 + rate * d.dead_time_s;
+  return 1 / (x * x);
+}
+
+PixelReading read_pixel(const Detector &d, double mean, double exposure_s, Draws &draws) {
+  double electrons = draw_electrons(d, mean, exposure_s, draws);
+  PixelReading out;
+  const bool is_full = d.well_e > 0 && electrons > d.well_e;
+  if (is_full)
+    electrons = d.well_e;
+  const bool is_counted = d.model == DetectorModel::Ideal || d.model == DetectorModel::Counter;
+  const double g = register_gain(d);
+  const double x = bent(d, electrons) * g + (is_counted ? 0 : d.read_e * draws.normal());
+  const double last = std::exp2(d.bits) - 1;
+  const double number = std::floor(x / d.gain_e_adu + d.bias_adu + 0.5);
+  out.is_saturated = is_full || number >= last;
+  out.adu = static_cast<int>(std::clamp(number, 0.0, last));
+  return out;
+}
+
+double electrons_of(const Detector &d, const PixelReading &reading) {
+  const double x = (reading.adu - d.bias_adu) * d.gain_e_adu / register_gain(d);
+  return straightened(d, x);
+}
+
+double draw_aperture(const Detector &d, double mean, double pixels, double exposure_s,
+                     Draws &draws) {
+  const double electrons = draw_electrons(d, mean, exposure_s, draws);
+  const double fixed = pixels * fixed_variance(d);
+  return fixed > 0 ? electrons + std::sqrt(fixed) * draws.normal() : electrons;
+}
+
+} // namespace umov

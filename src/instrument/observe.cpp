@@ -1,0 +1,200 @@
+#include <umov/instrument/observe.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/optics/band.h>
+#include <umov/photometry/radiometry.h>
+
+namespace umov {
+namespace {
+
+constexpr double planck_j_s = 6.62607015e-34, light_m_s = 299792458; // exact, SI 2019
+
+/// Random streams of one exposure.
+enum Stream : std::uint32_t { Light = 0, Sky = 1, Air = 2 };
+
+} // namespace
+
+Result<BandResponse> narrow_band(std::string name, double nm, double width_nm) {
+  UMOV_ASSIGN(sun, solar_irradiance(Wavelength::nm(nm)));
+  BandResponse out{std::move(name), {nm}, {1}, nm, sun, 0, 0};
+  out.photons_per_flux = width_nm * nm * 1e-9 / (planck_j_s * light_m_s);
+  out.zero_flux = std::pow(10, 0.4 * ab_magnitude(1, Wavelength::nm(nm)));
+  return out;
+}
+
+Result<BandObserver> BandObserver::make(const Instrument &instrument, BandResponse band,
+                                        const ObservingConditions &conditions,
+                                        const std::vector<std::complex<double>> &mirror_eta) {
+  BandObserver out;
+  out.instrument_ = instrument;
+  out.conditions_ = conditions;
+  const double area = collecting_area_m2(instrument.telescope);
+  for (std::size_t k = 0; k < band.nm.size(); ++k) {
+    UMOV_ASSIGN(throughput, value_at(instrument.telescope.throughput, Wavelength::nm(band.nm[k]),
+                                     "telescope.throughput"));
+    out.rate_.push_back(area * throughput * band.photons_per_flux * band.weight[k]);
+  }
+  for (const std::complex<double> &eta : mirror_eta)
+    out.mirror_.push_back(mirror_element(eta, std::sqrt(0.5)));
+  out.band_ = std::move(band);
+  out.pixel_arcsec_ = pixel_scale_arcsec(instrument.telescope, instrument.detector.pixel_um);
+  return out;
+}
+
+InstrumentMueller BandObserver::port(std::size_t node, Angle altitude) const {
+  const TelescopePort where = instrument_.telescope.port;
+  if (where == TelescopePort::Cassegrain || mirror_.empty())
+    return identity_element();
+  return nasmyth_port(mirror_[node],
+                      where == TelescopePort::NasmythRight ? NasmythSide::Right : NasmythSide::Left,
+                      altitude);
+}
+
+Stokes<InstrumentAxes> BandObserver::at_polarimeter(std::size_t node, const Stokes<SkyNorth> &s,
+                                                    Angle altitude, Angle axis_zenith) const {
+  if (mirror_.empty())
+    return rotate_to<InstrumentAxes>(s, axis_zenith);
+  // At a Nasmyth focus the x axis is counted from the vertical there: after the mirror.
+  const Stokes<InstrumentAxes> up{s.i, s.q, s.u, s.v};
+  return axes_turned(axis_zenith) * (port(node, altitude) * up);
+}
+
+Result<void> BandObserver::prepare(const PolarimeterState &state) {
+  Channels channels;
+  for (const double nm : band_.nm) {
+    UMOV_ASSIGN(one, polarimeter_channels(instrument_.polarimeter, state, nm));
+    channels.push_back(std::move(one));
+  }
+  channels_[{state.analyser_deg, state.plate_deg, state.plate_turn_deg}] = std::move(channels);
+  return {};
+}
+
+const BandObserver::Channels *BandObserver::channels_of(const PolarimeterState &state) const {
+  const auto found = channels_.find({state.analyser_deg, state.plate_deg, state.plate_turn_deg});
+  return found == channels_.end() ? nullptr : &found->second;
+}
+
+double BandObserver::fwhm_arcsec(double airmass) const {
+  return seeing_fwhm_arcsec(conditions_.seeing, band_.pivot_nm, airmass);
+}
+
+double BandObserver::pixels_of_circle(double radius_fwhm, double airmass) const {
+  const double radius = radius_fwhm * fwhm_arcsec(airmass) / pixel_arcsec_;
+  const double parts = instrument_.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
+  return pi * radius * radius / parts;
+}
+
+double BandObserver::aperture_pixels(double airmass) const {
+  return pixels_of_circle(conditions_.aperture_fwhm, airmass);
+}
+
+double BandObserver::sky_pixels(double airmass) const {
+  return pixels_of_circle(conditions_.sky_outer_fwhm, airmass) -
+         pixels_of_circle(conditions_.sky_inner_fwhm, airmass);
+}
+
+double BandObserver::rate_per_flux() const {
+  double out = 0;
+  for (const double rate : rate_)
+    out += rate;
+  return out;
+}
+
+double BandObserver::mean_transmission(double airmass) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < band_.nm.size(); ++k)
+    sum += rate_[k] * transmission(band_.nm[k], conditions_.air, airmass);
+  return sum / rate_per_flux();
+}
+
+double BandObserver::scintillation_sd(double exposure_s, double airmass, double rate_rad_s) const {
+  if (!conditions_.scintillation)
+    return 0;
+  const double sd = umov::scintillation_sd(*conditions_.scintillation,
+                                           instrument_.telescope.aperture_m, exposure_s, airmass);
+  return conditions_.has_slewing_factor
+             ? sd * std::sqrt(slewing_variance_factor(rate_rad_s, airmass))
+             : sd;
+}
+
+double BandObserver::peak_share(double airmass) const {
+  const double width = fwhm_arcsec(airmass) / pixel_arcsec_;
+  constexpr double beta = 4.765;
+  const double sharp = conditions_.seeing.profile == ImageProfile::Gauss
+                           ? 4 * std::log(2.) / pi
+                           : 4 * (std::exp2(1 / beta) - 1) * (beta - 1) / pi;
+  return std::min(1.0, sharp / (width * width));
+}
+
+void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, std::size_t channel,
+                        double factor, ChannelCounts &out) const {
+  const Detector &d = instrument_.detector;
+  const DrawKey key{conditions_.seed, conditions_.object, plan.index,
+                    static_cast<std::uint32_t>(channel), Stream::Light};
+  Draws draws(key);
+  const double star = out.mean_star * factor;
+  out.counts = draw_aperture(d, star + out.mean_sky, out.pixels, plan.exposure_s, draws);
+  out.excess2 = excess_variance(d);
+  out.var_read = out.pixels * fixed_variance(d);
+  const double ring = sky_pixels(light.airmass);
+  const double per_pixel = out.excess2 * out.mean_sky / out.pixels + fixed_variance(d);
+  out.sky_err = out.pixels * std::sqrt(per_pixel / ring);
+  DrawKey of_sky = key;
+  of_sky.pixel = Stream::Sky;
+  Draws sky_draws(of_sky);
+  out.sky = out.mean_sky + out.sky_err * sky_draws.normal();
+  const double lattice = instrument_.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
+  const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
+  const double peak =
+      star * lattice / share * peak_share(light.airmass) + out.mean_sky / out.pixels;
+  out.is_saturated = peak > saturation_e(d);
+}
+
+Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &plan,
+                                                         const ExposureLight &light) const {
+  const Channels *channels = channels_of(plan.state);
+  if (channels == nullptr)
+    return fail(ErrorCode::Internal, "a state of the polarimeter was not prepared");
+  const Polarimeter &polarimeter = instrument_.polarimeter;
+  const Detector &d = instrument_.detector;
+  const double radius = conditions_.aperture_fwhm * fwhm_arcsec(light.airmass);
+  const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
+  const InstrumentMueller own = instrumental_polarization(polarimeter.q0, polarimeter.u0);
+  const double pixels = aperture_pixels(light.airmass);
+  std::vector<ChannelCounts> out(channels->front().size());
+  for (std::size_t k = 0; k < band_.nm.size(); ++k) {
+    const double bare = rate_[k] * plan.exposure_s;
+    const double through = transmission(band_.nm[k], conditions_.air, light.airmass);
+    const auto sky = at_polarimeter(k, light.sky, light.altitude, light.axis_zenith);
+    const InstrumentMueller from_sky =
+        mirror_.empty()
+            ? axes_turned(light.axis)
+            : axes_turned(light.axis_zenith) * port(k, light.altitude) *
+                  axes_turned(Angle::radians(light.axis.radians() - light.axis_zenith.radians()));
+    for (std::size_t c = 0; c < out.size(); ++c) {
+      const PolarimeterChannel &channel = (*channels)[k][c];
+      const StokesRow real = channel.row * own;
+      out[c].mean_star += bare * through * share * respond(real, light.flux[k]);
+      out[c].mean_sky += bare * pi * radius * radius * respond(real, sky);
+      out[c].row = out[c].row + (channel.row * from_sky) * (bare * through * share);
+    }
+  }
+  const double sd = scintillation_sd(plan.exposure_s, light.airmass, light.rate_rad_s);
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    const auto pupil = polarimeter.has_separate_pupils ? static_cast<std::uint32_t>(c) : 0;
+    Draws air({conditions_.seed, conditions_.object, plan.index, pupil, Stream::Air});
+    const double factor =
+        light.transparency * (sd > 0 ? std::exp(sd * air.normal() - sd * sd / 2) : 1);
+    out[c].channel = (*channels)[0][c].name;
+    out[c].analyser_deg = (*channels)[0][c].analyser_deg;
+    out[c].pixels = pixels;
+    out[c].scintillation = sd;
+    out[c].mean_sky += d.dark_e_s * plan.exposure_s * pixels;
+    draw(plan, light, c, factor, out[c]);
+  }
+  return out;
+}
+
+} // namespace umov

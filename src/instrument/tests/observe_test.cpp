@@ -1,0 +1,116 @@
+#include "instrument/tests/anchor.h"
+
+#include <gtest/gtest.h>
+#include <umov/instrument/observe.h>
+
+namespace umov {
+namespace {
+
+Instrument camera() {
+  Instrument out;
+  out.telescope = {.2794, .34, 2.794, {{}, {.35}}};
+  out.detector.model = DetectorModel::Cmos;
+  out.detector.pixel_um = 3.45;
+  out.detector.read_e = 2.3;
+  out.detector.gain_e_adu = 2.6;
+  out.detector.well_e = 10500;
+  out.polarimeter.type = PolarimeterType::Mosaic;
+  out.polarimeter.angles_deg = {90, 45, 135, 0};
+  out.polarimeter.extinction = {{}, {300}};
+  return out;
+}
+
+/// A band of 10 nm at 550: what it holds follows from three constants.
+BandObserver observer(const Instrument &instrument, const ObservingConditions &conditions) {
+  auto out = BandObserver::make(instrument, *narrow_band("nm:550", 550, 10), conditions, {});
+  EXPECT_TRUE(out);
+  EXPECT_TRUE(out->prepare({}));
+  return *out;
+}
+
+ExposureLight star(double flux, double q, double u) {
+  ExposureLight out;
+  out.flux = {{flux, flux * q, flux * u, 0}};
+  out.axis = out.axis_zenith = Angle::degrees(30);
+  out.altitude = Angle::degrees(60);
+  return out;
+}
+
+ObservingConditions no_air() {
+  ObservingConditions out;
+  out.air = {0, 0, 1.3, 0, 0};
+  out.aperture_fwhm = 1;
+  return out;
+}
+
+TEST(BandObserver, ElectronsFollowFromEnergy) {
+  const BandObserver one = observer(camera(), no_air());
+  // 10 nm of 1e-14 W m-2 nm-1 at 550 nm, h c / lambda = 3.611719e-19 J, .0542239834 m2, .35.
+  const double rate = 1e-13 / 3.6117192e-19 * of("area_c11") * .35;
+  EXPECT_NEAR(one.rate_per_flux() * 1e-14 / rate, 1, 1e-6);
+  const auto counts = one.observe({0, .05, {}}, star(1e-14, .4, -.3));
+  double sum = 0;
+  for (const ChannelCounts &c : *counts)
+    sum += c.mean_star;
+  // All four orientations together: the light of I alone, (1 + 1/E)/2 of it, in the aperture.
+  EXPECT_NEAR(sum / (rate * .05 * of("moffat_1") * (1 + 1. / 300) / 2), 1, 1e-6);
+}
+
+TEST(BandObserver, RowsAreThoseOfTheMeans) {
+  Instrument instrument = camera();
+  const BandObserver one = observer(instrument, no_air());
+  ExposureLight light = star(1e-14, .4, -.3);
+  const auto counts = one.observe({0, .05, {}}, light);
+  const auto sky = rotate_to<SkyNorth>(light.flux[0], Angle::degrees(-30));
+  for (const ChannelCounts &c : *counts)
+    EXPECT_NEAR(respond(c.row, sky) / c.mean_star, 1, 1e-12);
+}
+
+TEST(BandObserver, InstrumentalTermsAreNotInTheRows) {
+  Instrument instrument = camera();
+  const auto clean = observer(instrument, no_air()).observe({0, .05, {}}, star(1e-14, 0, 0));
+  instrument.polarimeter.q0 = .01;
+  const auto spoilt = observer(instrument, no_air()).observe({0, .05, {}}, star(1e-14, 0, 0));
+  for (std::size_t c = 0; c < 4; ++c)
+    EXPECT_EQ(clean->at(c).row, spoilt->at(c).row);
+  // Channel 3 stands at 0 deg, channel 0 at 90: q0 and -q0 times the diattenuation.
+  const double d = of("diattenuation_300"); // nine digits
+  EXPECT_NEAR(spoilt->at(3).mean_star / clean->at(3).mean_star, 1 + .01 * d, 1e-11);
+  EXPECT_NEAR(spoilt->at(0).mean_star / clean->at(0).mean_star, 1 - .01 * d, 1e-11);
+}
+
+/// Standard deviation over mean of the counts of one channel, and of a ratio of two.
+struct Scatter {
+  double one = 0, ratio = 0;
+};
+Scatter scatter(const BandObserver &observer, int trials) {
+  double s = 0, ss = 0, r = 0, rr = 0;
+  for (int k = 0; k < trials; ++k) {
+    const auto n = observer.observe({static_cast<std::uint32_t>(k), .1, {}}, star(1e-9, 0, 0));
+    const double a = (n->at(0).counts - n->at(0).sky) / n->at(0).mean_star;
+    const double b = (n->at(1).counts - n->at(1).sky) / n->at(1).mean_star;
+    s += a, ss += a * a, r += a / b, rr += a / b * (a / b);
+  }
+  const double m = s / trials, q = r / trials;
+  return {std::sqrt(ss / trials - m * m), std::sqrt(rr / trials - q * q)};
+}
+
+TEST(BandObserver, ScintillationIsOneForOnePupil) {
+  ObservingConditions windy = no_air();
+  windy.scintillation = ScintillationSite{3058, 1.5};
+  Instrument instrument = camera();
+  instrument.detector = {};
+  instrument.detector.pixel_um = 3.45;
+  constexpr int trials = 20'000;
+  const Scatter mosaic = scatter(observer(instrument, windy), trials);
+  const double sd = scintillation_sd(*windy.scintillation, .2794, .1, 1);
+  EXPECT_NEAR(mosaic.one / sd, 1, 4 / std::sqrt(2. * trials) + .005); // 4 standard errors, photons
+  EXPECT_LT(mosaic.ratio, .03 * sd); // what is left are photons: 3e6 of them a channel
+  instrument.polarimeter.type = PolarimeterType::FourCamera;
+  instrument.polarimeter.has_separate_pupils = true;
+  const Scatter lenses = scatter(observer(instrument, windy), trials);
+  EXPECT_NEAR(lenses.ratio / (std::sqrt(2.) * sd), 1, .03);
+}
+
+} // namespace
+} // namespace umov

@@ -1,0 +1,142 @@
+#include "instrument/tests/anchor.h"
+
+#include <gtest/gtest.h>
+#include <umov/instrument/polarimeter.h>
+
+namespace umov {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+const Stokes<InstrumentAxes> light{1, .2, -.1, .05};
+
+std::array<double, 2> beams(const Polarimeter &p, double plate_deg, double turn_deg = 0) {
+  const auto channels = polarimeter_channels(p, {0, plate_deg, turn_deg}, 550);
+  return {respond(channels->at(0).row, light), respond(channels->at(1).row, light)};
+}
+
+Polarimeter plate(double retardance_deg, double extinction = infinite) {
+  Polarimeter out;
+  out.type = PolarimeterType::HwpDualBeam;
+  out.retardance_deg = {{}, {retardance_deg}};
+  out.extinction = {{}, {extinction}};
+  return out;
+}
+
+std::vector<StokesRow> rows_of(const Polarimeter &p, const std::vector<PolarimeterState> &states) {
+  std::vector<StokesRow> out;
+  for (const PolarimeterState &state : states) {
+    const auto channels = polarimeter_channels(p, state, 550);
+    for (const PolarimeterChannel &channel : *channels)
+      out.push_back(channel.row);
+  }
+  return out;
+}
+
+TEST(Elements, QuarterWaveSigns) {
+  // Fields: fast axis x, y is delayed by a quarter. U = 1 becomes V = +1; at 45 deg Q = 1, V = -1.
+  const auto along = retarder(Angle::degrees(90), Angle()) * Stokes<InstrumentAxes>{1, 0, 1, 0};
+  EXPECT_NEAR(along.v, 1, 1e-15);
+  const auto across =
+      retarder(Angle::degrees(90), Angle::degrees(45)) * Stokes<InstrumentAxes>{1, 1, 0, 0};
+  EXPECT_NEAR(across.v, -1, 1e-15);
+}
+
+TEST(Elements, TurnsUndoEachOther) {
+  const auto back = axes_turned(Angle::degrees(-31)) * axes_turned(Angle::degrees(31));
+  for (std::size_t r = 0; r < 4; ++r)
+    for (std::size_t c = 0; c < 4; ++c)
+      EXPECT_NEAR(back.m[r][c], r == c ? 1 : 0, 1e-14);
+}
+
+TEST(Elements, PolarizerWithExtinction) { // nine digits
+  const auto row = first_row(polarizer(300, Angle::degrees(30)));
+  EXPECT_NEAR(respond(row, light), of("polarizer_300_30"), 1e-9);
+  EXPECT_NEAR(std::hypot(row[1], row[2]) / row[0], of("diattenuation_300"), 1e-9);
+}
+
+/// Difference of two plate positions' beams, halved (docs/theory/observing.md 4).
+double difference(std::array<double, 2> a, std::array<double, 2> b) {
+  return ((a[0] - a[1]) / (a[0] + a[1]) - (b[0] - b[1]) / (b[0] + b[1])) / 2;
+}
+
+TEST(HalfWavePlate, ImperfectionsAsFieldsGiveThem) { // nine digits
+  for (const auto &[name, p] :
+       {std::pair{"retardance", plate(185)}, {"extinction", plate(180, 300)}}) {
+    EXPECT_NEAR(difference(beams(p, 0), beams(p, 45)), of(name + std::string("_difference_q")),
+                1e-9);
+    EXPECT_NEAR(difference(beams(p, 22.5), beams(p, 67.5)), of(name + std::string("_difference_u")),
+                1e-9);
+  }
+}
+
+TEST(HalfWavePlate, EightPositionsCancelCircularLight) {
+  const Polarimeter p = plate(185);
+  const double q =
+      (difference(beams(p, 0), beams(p, 45)) + difference(beams(p, 90), beams(p, 135))) / 2;
+  // (1 + cos e)/2 of q remains, no V.
+  EXPECT_NEAR(q, .2 * (1 + std::cos(5 * pi / 180)) / 2, 1e-6);
+}
+
+TEST(HalfWavePlate, TurningLosesModulation) {
+  // 16 frames a turn: sin(2a)/(2a) with a = 22.5 deg.
+  const Polarimeter p = plate(180);
+  const double q = difference(beams(p, 0, 22.5), beams(p, 45, 22.5));
+  EXPECT_NEAR(q / .2, std::sin(pi / 4) / (pi / 4), 1e-9);
+}
+
+TEST(Modulation, RetarderSchemes) {
+  Polarimeter p;
+  p.type = PolarimeterType::RotatingRetarder;
+  const auto at = [&](double retardance, std::vector<double> angles) {
+    p.retardance_deg = {{}, {retardance}};
+    std::vector<PolarimeterState> states;
+    for (const double a : angles)
+      states.push_back({0, a, 0});
+    return modulation_quality(rows_of(p, states), 4);
+  };
+  const auto balanced = at(131.8, {-51.69, -15.12, 15.12, 51.69});
+  EXPECT_NEAR(balanced.condition, of("balanced_condition"), 1e-8);
+  EXPECT_NEAR(balanced.weighted_variance, of("balanced_variance"), 1e-7);
+  const auto quarter = at(90, {0, 22.5, 45, 67.5, 90, 112.5, 135, 157.5});
+  EXPECT_NEAR(quarter.condition, of("quarter_condition"), 1e-8);
+  EXPECT_EQ(at(90, {0, 45, 90, 135}).missing, "U"); // cos^2, sin 2a cos 2a = 0, sin 2a
+  EXPECT_TRUE(std::isinf(at(90, {0, 45, 90, 135}).condition));
+}
+
+TEST(Modulation, FourAnalysersAreAsGoodAsThree) {
+  Polarimeter p;
+  p.type = PolarimeterType::Mosaic;
+  p.angles_deg = {90, 45, 135, 0};
+  EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).condition, std::sqrt(2.), 1e-12);
+  p.angles_deg = {0, 60, 120};
+  EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).condition, std::sqrt(2.), 1e-12);
+}
+
+TEST(Pem, PhasesTellAllFourParametersWithTwoAngles) {
+  Polarimeter p;
+  p.type = PolarimeterType::Pem;
+  const auto one = modulation_quality(rows_of(p, {{}}), 4);
+  EXPECT_EQ(one.missing, "U"); // one modulator sees q and v
+  EXPECT_LT(modulation_quality(rows_of(p, {{0, 0, 0}, {45, 0, 0}}), 4).condition, 3);
+  // Bins together lose nothing, and where J0 of the amplitude is 0 no q stays in their mean.
+  StokesRow sum{};
+  for (const StokesRow &row : rows_of(p, {{}}))
+    sum = sum + row;
+  EXPECT_NEAR(sum[0], .5, 1e-12);
+  EXPECT_NEAR(sum[1], 0, 1e-8); // amplitude given to 1e-6 deg
+}
+
+TEST(Polarimeter, SharesAddUpToOne) {
+  for (const PolarimeterType type : {PolarimeterType::HwpDualBeam, PolarimeterType::Flc}) {
+    Polarimeter p;
+    p.type = type;
+    StokesRow sum{};
+    for (const StokesRow &row : rows_of(p, {{}}))
+      sum = sum + row;
+    EXPECT_NEAR(sum[0], 1, 1e-12);
+    EXPECT_NEAR(sum[1], 0, 1e-12);
+  }
+}
+
+} // namespace
+} // namespace umov

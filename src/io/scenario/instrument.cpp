@@ -1,0 +1,342 @@
+#include "io/scenario/instrument.h"
+
+#include "io/scenario/parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <umov/core/embedded.h>
+#include <umov/core/files.h>
+#include <umov/core/text.h>
+#include <umov/io/index_file.h>
+
+namespace umov {
+
+const std::vector<EmbeddedFile> &instrument_files();
+
+namespace scenario {
+namespace {
+
+/// A key's number in a range; `what` ends "a number ... was expected".
+struct Bounds {
+  double low, high;
+  const char *what;
+};
+
+Result<void> read_number(const Node &node, const char *name, const Bounds &bounds, double &out) {
+  if (!node.has(name))
+    return {};
+  out = node.number(name, out);
+  if (out >= bounds.low && out <= bounds.high)
+    return {};
+  return fail(ErrorCode::BadInput, fmt::format("{} = {}; {} was expected", name, out, bounds.what),
+              node.where(name));
+}
+
+constexpr Bounds not_negative{0, 1e12, "0 or more"};
+constexpr Bounds positive{1e-12, 1e12, "a number above 0"};
+
+/// A number, or { wavelength_nm = [...], value = [...] }.
+Result<void> read_curve(const Node &node, const char *name, const Bounds &bounds, Tabulated &out) {
+  if (!node.has(name))
+    return {};
+  const toml::node &value = *node.get(name);
+  if (const toml::table *table = value.as_table()) {
+    const Node below(*table, "curve", node.label() + "." + name, node.file());
+    UMOV_TRY(below.check());
+    UMOV_TRY(below.require("wavelength_nm"));
+    UMOV_TRY(below.require("value"));
+    UMOV_ASSIGN(nm, below.numbers("wavelength_nm"));
+    UMOV_ASSIGN(values, below.numbers("value"));
+    out = {nm, values};
+    if (auto fine = check_tabulated(out, name); !fine)
+      return fail(ErrorCode::BadInput, fine.error().message, node.where(name));
+  } else if (value.is_number()) {
+    out = {{}, {node.number(name, 0)}};
+  } else {
+    return fail(ErrorCode::BadInput,
+                fmt::format("{}: a number or {{ wavelength_nm = [...], value = [...] }} was "
+                            "expected",
+                            name),
+                node.where(name));
+  }
+  for (const double one : out.value)
+    if (!(one >= bounds.low && one <= bounds.high))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} holds {}; {} was expected", name, one, bounds.what),
+                  node.where(name));
+  return {};
+}
+
+Result<void> read_telescope(const Node &node, Telescope &out) {
+  UMOV_TRY(read_number(node, "aperture_m", positive, out.aperture_m));
+  UMOV_TRY(read_number(node, "obstruction", {0, .999999, "0 to below 1"}, out.obstruction));
+  UMOV_TRY(read_number(node, "focal_length_m", positive, out.focal_length_m));
+  UMOV_TRY(read_curve(node, "throughput", {0, 1, "0 to 1"}, out.throughput));
+  const char *ports[] = {"cassegrain", "nasmyth_left", "nasmyth_right"};
+  UMOV_ASSIGN(
+      port, node.choice("port", ports[static_cast<int>(out.port)], {ports[0], ports[1], ports[2]}));
+  out.port = static_cast<TelescopePort>(std::find(ports, ports + 3, port) - ports);
+  if (node.has("mirror")) {
+    out.mirror = node.text("mirror", "");
+    if (auto found = find_index(out.mirror); !found)
+      return fail(ErrorCode::BadInput, found.error().message, node.where("mirror"));
+  }
+  UMOV_ASSIGN(mount, node.choice("mount", out.mount == Mount::AltAz ? "altaz" : "equatorial",
+                                 {"altaz", "equatorial"}));
+  out.mount = mount == "altaz" ? Mount::AltAz : Mount::Equatorial;
+  out.has_derotator = node.boolean("derotator", out.has_derotator);
+  return {};
+}
+
+Result<void> read_shutter(const Node &node, Detector &out) {
+  UMOV_ASSIGN(shutter, node.choice("shutter", out.has_rolling_shutter ? "rolling" : "global",
+                                   {"global", "rolling"}));
+  out.has_rolling_shutter = shutter == "rolling";
+  UMOV_TRY(read_number(node, "line_time_s", positive, out.line_time_s));
+  if (out.has_rolling_shutter && !(out.line_time_s > 0))
+    return fail(ErrorCode::BadInput,
+                "shutter = \"rolling\" without line_time_s; add the time from row to row",
+                node.where("shutter"));
+  return {};
+}
+
+Result<void> read_detector(const Node &node, Detector &out) {
+  UMOV_ASSIGN(model, node.choice("model", name_of(out.model), detector_names()));
+  const auto &names = detector_names();
+  out.model =
+      static_cast<DetectorModel>(std::find(names.begin(), names.end(), model) - names.begin());
+  UMOV_TRY(read_number(node, "pixel_um", positive, out.pixel_um));
+  UMOV_TRY(read_number(node, "read_e", not_negative, out.read_e));
+  UMOV_TRY(read_number(node, "dark_e_s", not_negative, out.dark_e_s));
+  UMOV_TRY(read_number(node, "gain_e_adu", positive, out.gain_e_adu));
+  UMOV_TRY(read_number(node, "bias_adu", not_negative, out.bias_adu));
+  UMOV_TRY(read_number(node, "well_e", not_negative, out.well_e));
+  UMOV_TRY(read_number(node, "nonlinearity", {0, .25, "0 to 0.25"}, out.nonlinearity));
+  UMOV_TRY(read_number(node, "em_gain", {1, 1e5, "1 to 100000"}, out.em_gain));
+  UMOV_TRY(read_number(node, "dead_time_s", {0, 1, "0 to 1"}, out.dead_time_s));
+  if (node.has("em_gain") && out.model != DetectorModel::Emccd && out.em_gain != 1)
+    return fail(ErrorCode::BadInput,
+                fmt::format("em_gain = {} with model = \"{}\"; only an emccd multiplies",
+                            out.em_gain, name_of(out.model)),
+                node.where("em_gain"));
+  const auto bits = node.integer("bits", out.bits);
+  if (bits < 1 || bits > 32)
+    return fail(ErrorCode::BadInput, fmt::format("bits = {}; 1 to 32 was expected", bits),
+                node.where("bits"));
+  out.bits = static_cast<int>(bits);
+  if (node.has("size_px")) {
+    UMOV_ASSIGN(size, node.numbers("size_px"));
+    if (size.size() != 2 || !(size[0] >= 1 && size[1] >= 1 && size[0] <= 1e5 && size[1] <= 1e5))
+      return fail(ErrorCode::BadInput, "size_px: [columns, rows] was expected",
+                  node.where("size_px"));
+    out.size_px = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  }
+  return read_shutter(node, out);
+}
+
+Result<void> read_layout(const Node &node, Polarimeter &out) {
+  if (node.has("angles_deg")) {
+    UMOV_ASSIGN(angles, node.numbers("angles_deg"));
+    out.angles_deg = angles;
+  }
+  if (!node.has("layout"))
+    return {};
+  std::vector<double> angles;
+  const toml::array &rows = *node.get("layout")->as_array();
+  for (const toml::node &row : rows)
+    if (const toml::array *cells = row.as_array())
+      for (const toml::node &cell : *cells)
+        if (const auto angle = cell.value<double>())
+          angles.push_back(*angle);
+  std::vector<double> sorted = angles;
+  for (double &angle : sorted)
+    angle = std::fmod(std::fmod(angle, 180) + 180, 180);
+  std::sort(sorted.begin(), sorted.end());
+  const bool is_fine = sorted.size() == 4 && rows.size() == 2 && sorted[0] != sorted[1] &&
+                       sorted[1] != sorted[2] && sorted[2] != sorted[3];
+  if (!is_fine)
+    return fail(ErrorCode::BadInput,
+                "layout: two rows of two different angles were expected, as [[90, 45], [135, 0]]",
+                node.where("layout"));
+  out.angles_deg = angles;
+  return {};
+}
+
+Result<void> check_polarimeter(const Node &node, const Polarimeter &p, bool has_axis) {
+  const auto fault = [&](const std::string &text) {
+    return fail(ErrorCode::BadInput, text, node.where("type"));
+  };
+  if (p.type == PolarimeterType::Mosaic && p.angles_deg.size() != 4)
+    return fault("a mosaic needs its layout: makers' sheets disagree. Add layout = [[90, 45], "
+                 "[135, 0]] as your camera has it");
+  if (p.type == PolarimeterType::FourCamera && p.angles_deg.size() < 3)
+    return fault("four_camera needs angles_deg, three or more analysers");
+  if (p.type == PolarimeterType::SpinningHwpDualBeam && !(p.period_s > 0))
+    return fault("spinning_hwp_dual_beam needs period_s, of a turn of the plate");
+  if (p.type != PolarimeterType::None && !has_axis)
+    return fault("a polarimeter without x_axis_deg: which way it stands is not known. Add the "
+                 "angle of its x axis, counter-clockwise from the zenith direction (altaz) or "
+                 "from north (equatorial)");
+  return {};
+}
+
+Result<void> read_polarimeter(const Node &node, bool is_whole, Polarimeter &out) {
+  const auto &names = polarimeter_names();
+  UMOV_ASSIGN(type, node.choice("type", name_of(out.type), names));
+  out.type =
+      static_cast<PolarimeterType>(std::find(names.begin(), names.end(), type) - names.begin());
+  UMOV_TRY(read_layout(node, out));
+  UMOV_TRY(read_curve(node, "extinction", {1, 1e12, "more than 1"}, out.extinction));
+  UMOV_TRY(read_curve(node, "retardance_deg", {-720, 720, "-720 to 720"}, out.retardance_deg));
+  UMOV_TRY(read_number(node, "plate_zero_deg", {-360, 360, "-360 to 360"}, out.plate_zero_deg));
+  UMOV_TRY(read_number(node, "period_s", positive, out.period_s));
+  UMOV_TRY(read_number(node, "x_axis_deg", {-360, 360, "-360 to 360"}, out.x_axis_deg));
+  UMOV_TRY(read_number(node, "q0", {-1, 1, "-1 to 1"}, out.q0));
+  UMOV_TRY(read_number(node, "u0", {-1, 1, "-1 to 1"}, out.u0));
+  UMOV_ASSIGN(pupils, node.choice("pupils", out.has_separate_pupils ? "separate" : "common",
+                                  {"common", "separate"}));
+  out.has_separate_pupils = pupils == "separate";
+  return check_polarimeter(node, out, is_whole || node.has("x_axis_deg"));
+}
+
+std::string list_toml(const std::vector<double> &values) {
+  std::string out;
+  for (const double one : values)
+    out += (out.empty() ? "" : ", ") + shortest(one);
+  return "[" + out + "]";
+}
+
+std::string curve_toml(const Tabulated &curve) {
+  if (curve.wavelength_nm.empty())
+    return shortest(curve.value.front());
+  return fmt::format("{{ wavelength_nm = {}, value = {} }}", list_toml(curve.wavelength_nm),
+                     list_toml(curve.value));
+}
+
+std::string polarimeter_toml(const Polarimeter &p) {
+  std::string out = fmt::format("\n[polarimeter]\ntype = \"{}\"\n", name_of(p.type));
+  const auto &a = p.angles_deg;
+  if (p.type == PolarimeterType::Mosaic)
+    out += fmt::format("layout = [[{}, {}], [{}, {}]]\n", shortest(a[0]), shortest(a[1]),
+                       shortest(a[2]), shortest(a[3]));
+  else if (!a.empty())
+    out += fmt::format("angles_deg = {}\n", list_toml(a));
+  if (std::isfinite(p.extinction.value.front()))
+    out += fmt::format("extinction = {}\n", curve_toml(p.extinction));
+  out += fmt::format("retardance_deg = {}\nplate_zero_deg = {}\n", curve_toml(p.retardance_deg),
+                     shortest(p.plate_zero_deg));
+  if (p.period_s > 0)
+    out += fmt::format("period_s = {}\n", shortest(p.period_s));
+  return out + fmt::format("pupils = \"{}\"\nx_axis_deg = {}\nq0 = {}\nu0 = {}\n",
+                           p.has_separate_pupils ? "separate" : "common", shortest(p.x_axis_deg),
+                           shortest(p.q0), shortest(p.u0));
+}
+
+} // namespace
+
+Result<void> read_instrument_tables(const Node &top, Instrument &out) {
+  const bool is_whole = !out.name.empty();
+  if (top.has("telescope")) {
+    UMOV_ASSIGN(node, top.child("telescope"));
+    UMOV_TRY(read_telescope(node, out.telescope));
+  }
+  if (top.has("detector")) {
+    UMOV_ASSIGN(node, top.child("detector"));
+    UMOV_TRY(read_detector(node, out.detector));
+  }
+  if (top.has("polarimeter")) {
+    UMOV_ASSIGN(node, top.child("polarimeter"));
+    UMOV_TRY(read_polarimeter(node, is_whole, out.polarimeter));
+  }
+  return {};
+}
+
+std::string instrument_tables_toml(const Instrument &i) {
+  const Telescope &t = i.telescope;
+  const Detector &d = i.detector;
+  const char *ports[] = {"cassegrain", "nasmyth_left", "nasmyth_right"};
+  std::string out = fmt::format(
+      "\n[telescope]\naperture_m = {}\nobstruction = {}\nfocal_length_m = {}\nthroughput = {}\n"
+      "port = \"{}\"\nmirror = {}\nmount = \"{}\"\nderotator = {}\n",
+      shortest(t.aperture_m), shortest(t.obstruction), shortest(t.focal_length_m),
+      curve_toml(t.throughput), ports[static_cast<int>(t.port)], quoted(t.mirror),
+      t.mount == Mount::AltAz ? "altaz" : "equatorial", t.has_derotator);
+  out += fmt::format("\n[detector]\nmodel = \"{}\"\npixel_um = {}\nsize_px = [{}, {}]\n"
+                     "read_e = {}\ndark_e_s = {}\ngain_e_adu = {}\nbits = {}\nbias_adu = {}\n"
+                     "well_e = {}\nnonlinearity = {}\nshutter = \"{}\"\n",
+                     name_of(d.model), shortest(d.pixel_um), d.size_px[0], d.size_px[1],
+                     shortest(d.read_e), shortest(d.dark_e_s), shortest(d.gain_e_adu), d.bits,
+                     shortest(d.bias_adu), shortest(d.well_e), shortest(d.nonlinearity),
+                     d.has_rolling_shutter ? "rolling" : "global");
+  if (d.line_time_s > 0)
+    out += fmt::format("line_time_s = {}\n", shortest(d.line_time_s));
+  if (d.em_gain != 1)
+    out += fmt::format("em_gain = {}\n", shortest(d.em_gain));
+  if (d.dead_time_s > 0)
+    out += fmt::format("dead_time_s = {}\n", shortest(d.dead_time_s));
+  return out + polarimeter_toml(i.polarimeter);
+}
+
+} // namespace scenario
+
+std::vector<std::string> instrument_names() {
+  std::vector<std::string> out;
+  for (const EmbeddedFile &file : instrument_files())
+    out.emplace_back(file.stem);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+Result<Instrument> read_instrument_text(const std::string &text, const std::string &path) {
+  try {
+    const toml::table document = toml::parse(text, path);
+    const scenario::Node top(document, "instrument_file", "", path);
+    UMOV_TRY(top.check());
+    for (const char *name : {"description", "source", "assumed", "telescope", "detector"})
+      UMOV_TRY(top.require(name));
+    Instrument out;
+    const std::filesystem::path file = path;
+    out.description = top.text("description", "");
+    out.source = top.text("source", "");
+    out.assumed = top.text("assumed", "");
+    const scenario::Node tables(document, "", "", path);
+    UMOV_TRY(scenario::read_instrument_tables(tables, out));
+    for (const auto &[table, key] : {std::pair{"telescope", "aperture_m"},
+                                     {"telescope", "focal_length_m"},
+                                     {"detector", "pixel_um"}}) {
+      UMOV_ASSIGN(node, tables.child(table));
+      UMOV_TRY(node.require(key));
+    }
+    out.name = file.stem().string();
+    return out;
+  } catch (const toml::parse_error &problem) {
+    return fail(ErrorCode::BadInput, std::string(problem.description()),
+                scenario::place_of(problem.source(), path));
+  }
+}
+
+Result<Instrument> read_instrument(const std::string &name_or_path) {
+  if (name_or_path.ends_with(".toml")) {
+    UMOV_ASSIGN(text, read_file(name_or_path));
+    return read_instrument_text(text, name_or_path);
+  }
+  for (const EmbeddedFile &file : instrument_files())
+    if (name_or_path == file.stem)
+      return read_instrument_text(std::string(file.bytes),
+                                  "data/instruments/" + name_or_path + ".toml");
+  const auto near = nearest_name(name_or_path, instrument_names());
+  return fail(ErrorCode::BadInput,
+              fmt::format("unknown instrument \"{}\".{} Known: umov instrument list.", name_or_path,
+                          near ? fmt::format(" Did you mean \"{}\"?", *near) : ""));
+}
+
+std::string instrument_as_toml(const Instrument &i) {
+  return fmt::format("description = {}\nsource = {}\nassumed = {}\n",
+                     scenario::quoted(i.description), scenario::quoted(i.source),
+                     scenario::quoted(i.assumed)) +
+         scenario::instrument_tables_toml(i);
+}
+
+} // namespace umov

@@ -1,0 +1,20 @@
+#pragma once
+// Private: readers of instruments and observations.
+
+#include "io/scenario/node.h"
+#include <umov/io/observation.h>
+
+namespace umov::scenario {
+
+/// [telescope], [detector] and [polarimeter] of a document; what they leave out is that of `out`.
+Result<void> read_instrument_tables(const Node &top, Instrument &out);
+/// [atmosphere] and [observation], with the instrument that the document names; absent without
+/// [observation].
+Result<std::optional<ScenarioObservation>> read_observation(const Node &top,
+                                                            const std::string &folder);
+/// The tables as TOML, those of the instrument included.
+std::string observation_toml(const ScenarioObservation &observation);
+/// [telescope], [detector] and [polarimeter].
+std::string instrument_tables_toml(const Instrument &instrument);
+
+} // namespace umov::scenario

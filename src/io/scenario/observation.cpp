@@ -1,0 +1,234 @@
+#include "io/scenario/instrument.h"
+
+#include "io/scenario/parts.h"
+
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov::scenario {
+namespace {
+
+/// A key's number that is at least `low`.
+Result<void> read_at_least(const Node &node, const char *name, double low, double &out) {
+  if (!node.has(name))
+    return {};
+  out = node.number(name, out);
+  if (out >= low)
+    return {};
+  return fail(ErrorCode::BadInput, fmt::format("{} = {}; {} or more was expected", name, out, low),
+              node.where(name));
+}
+
+Result<void> read_seeing(const Node &air, Seeing &out) {
+  out.outer_scale_m = 25;
+  if (!air.has("seeing"))
+    return {};
+  UMOV_ASSIGN(node, air.child("seeing"));
+  UMOV_TRY(read_at_least(node, "arcsec", 1e-3, out.arcsec));
+  UMOV_TRY(read_at_least(node, "at_nm", 100, out.at_nm));
+  UMOV_TRY(read_at_least(node, "outer_scale_m", 0, out.outer_scale_m));
+  UMOV_ASSIGN(profile, node.choice("profile", "moffat", {"moffat", "gauss"}));
+  out.profile = profile == "gauss" ? ImageProfile::Gauss : ImageProfile::Moffat;
+  return {};
+}
+
+Result<void> read_scintillation(const Node &air, ScenarioObservation &out) {
+  if (!air.has("scintillation"))
+    return {};
+  if (air.get("scintillation")->is_string()) {
+    UMOV_TRY(air.choice("scintillation", "none", {"none"}));
+    out.scintillation_c_y.reset();
+    return {};
+  }
+  UMOV_ASSIGN(node, air.child("scintillation"));
+  UMOV_ASSIGN(model, node.choice("model", "osborn2015", {"osborn2015", "none"}));
+  double c_y = 1.5;
+  UMOV_TRY(read_at_least(node, "c_y", 0, c_y));
+  if (model == "none")
+    out.scintillation_c_y.reset();
+  else
+    out.scintillation_c_y = c_y;
+  out.has_slewing_factor = node.boolean("slew", false);
+  return {};
+}
+
+Result<void> read_sky(const Node &air, SkyOptions &out) {
+  if (!air.has("sky"))
+    return {};
+  UMOV_ASSIGN(node, air.child("sky"));
+  if (node.has("dark_mag")) {
+    UMOV_ASSIGN(dark, node.child("dark_mag"));
+    for (const char *letter : {"U", "B", "V", "R", "I"})
+      if (dark.has(letter))
+        out.dark_mag[letter] = dark.number(letter, 0);
+  }
+  UMOV_ASSIGN(twilight, node.choice("twilight", "patat2006", {"patat2006", "none"}));
+  UMOV_ASSIGN(moon, node.choice("moon", "ks1991", {"ks1991", "none"}));
+  out.has_twilight = twilight != "none";
+  out.has_moon = moon != "none";
+  if (node.has("dilution")) {
+    UMOV_ASSIGN(dilution, node.child("dilution"));
+    UMOV_TRY(read_at_least(dilution, "sun", 0, out.dilution_sun));
+    UMOV_TRY(read_at_least(dilution, "moon", 0, out.dilution_moon));
+  }
+  if (node.has("mag"))
+    out.mag = node.number("mag", 0);
+  UMOV_TRY(read_at_least(node, "p", 0, out.p));
+  return {};
+}
+
+Result<void> read_atmosphere(const Node &top, ScenarioObservation &out) {
+  out.seeing.outer_scale_m = 25;
+  if (!top.has("atmosphere"))
+    return {};
+  UMOV_ASSIGN(air, top.child("atmosphere"));
+  out.has_own_pressure = air.has("pressure_hpa");
+  UMOV_TRY(read_at_least(air, "pressure_hpa", 0, out.air.pressure_hpa));
+  if (air.has("aerosol")) {
+    UMOV_ASSIGN(aerosol, air.child("aerosol"));
+    UMOV_TRY(read_at_least(aerosol, "tau_550", 0, out.air.aerosol_550));
+    out.air.aerosol_exponent = aerosol.number("exponent", out.air.aerosol_exponent);
+  }
+  UMOV_TRY(read_at_least(air, "ozone_du", 0, out.air.ozone_du));
+  UMOV_TRY(read_at_least(air, "water_cm", 0, out.air.water_cm));
+  UMOV_TRY(read_seeing(air, out.seeing));
+  UMOV_TRY(read_scintillation(air, out));
+  UMOV_TRY(read_sky(air, out.sky));
+  if (air.has("cloud")) {
+    UMOV_ASSIGN(cloud, air.child("cloud"));
+    UMOV_TRY(read_at_least(cloud, "sd_mag", 0, out.cloud_sd_mag));
+    UMOV_TRY(read_at_least(cloud, "time_s", 1e-6, out.cloud_time_s));
+  }
+  return {};
+}
+
+Result<void> read_sequence(const Node &node, ScenarioObservation &out) {
+  if (!node.has("sequence"))
+    return {};
+  for (const toml::node &item : *node.get("sequence")->as_array()) {
+    if (!item.is_table())
+      return fail(ErrorCode::BadInput,
+                  "sequence: tables such as { analyser_deg = 45 } were expected",
+                  node.where("sequence"));
+    const Node step(*item.as_table(), "observation.sequence", "observation.sequence", node.file());
+    UMOV_TRY(step.check());
+    out.sequence.push_back(
+        {{step.number("analyser_deg", 0), step.number("plate_deg", 0), 0}, step.text("band", "")});
+  }
+  return {};
+}
+
+Result<void> read_exposures(const Node &node, ScenarioObservation &out) {
+  if (node.has("bands")) {
+    UMOV_ASSIGN(bands, node.strings("bands"));
+    out.bands = bands;
+  }
+  UMOV_TRY(read_at_least(node, "width_nm", 1e-6, out.width_nm));
+  UMOV_TRY(read_at_least(node, "exposure_s", 1e-9, out.exposure_s));
+  out.cadence_s = node.number("cadence_s", out.exposure_s);
+  if (!(out.cadence_s >= out.exposure_s))
+    return fail(ErrorCode::BadInput,
+                fmt::format("cadence_s = {} is shorter than exposure_s = {}; exposures cannot "
+                            "overlap",
+                            out.cadence_s, out.exposure_s),
+                node.where("cadence_s"));
+  UMOV_TRY(read_sequence(node, out));
+  UMOV_TRY(read_at_least(node, "aperture_fwhm", 0.01, out.aperture_fwhm));
+  UMOV_TRY(read_at_least(node, "clock_error_s", 0, out.clock_error_s));
+  UMOV_TRY(node.choice("level", "aperture", {"aperture"}, {"image"}));
+  return {};
+}
+
+} // namespace
+
+Result<std::optional<ScenarioObservation>> read_observation(const Node &top,
+                                                            const std::string &folder) {
+  ScenarioObservation out;
+  if (top.has("instrument")) {
+    const std::string name = top.text("instrument", "");
+    const bool is_file = name.ends_with(".toml") && !name.starts_with('/');
+    auto found = read_instrument(is_file && !folder.empty() ? folder + "/" + name : name);
+    if (!found)
+      return fail(found.error().code, found.error().text(), top.where("instrument"));
+    out.instrument = *found;
+  }
+  UMOV_TRY(read_instrument_tables(top, out.instrument));
+  UMOV_TRY(read_atmosphere(top, out));
+  if (!top.has("observation"))
+    return std::optional<ScenarioObservation>();
+  UMOV_ASSIGN(node, top.child("observation"));
+  UMOV_TRY(read_exposures(node, out));
+  for (const auto &[name, value] :
+       {std::pair{"telescope.aperture_m", out.instrument.telescope.aperture_m},
+        {"telescope.focal_length_m", out.instrument.telescope.focal_length_m},
+        {"detector.pixel_um", out.instrument.detector.pixel_um}})
+    if (!(value > 0))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("[observation] needs {}, or an instrument that has it (umov "
+                              "instrument list)",
+                              name),
+                  top.where("observation"));
+  return std::optional(out);
+}
+
+namespace {
+
+std::string sky_toml(const SkyOptions &sky) {
+  std::string dark;
+  for (const auto &[letter, mag] : sky.dark_mag)
+    dark += (dark.empty() ? "" : ", ") + letter + " = " + shortest(mag);
+  std::string out =
+      fmt::format("sky = {{ twilight = \"{}\", moon = \"{}\", dilution = {{ sun = "
+                  "{}, moon = {} }}, p = {}",
+                  sky.has_twilight ? "patat2006" : "none", sky.has_moon ? "ks1991" : "none",
+                  shortest(sky.dilution_sun), shortest(sky.dilution_moon), shortest(sky.p));
+  if (!dark.empty())
+    out += ", dark_mag = { " + dark + " }";
+  if (sky.mag)
+    out += ", mag = " + shortest(*sky.mag);
+  return out + " }\n";
+}
+
+std::string atmosphere_toml(const ScenarioObservation &o) {
+  std::string out = "\n[atmosphere]\n";
+  if (o.has_own_pressure)
+    out += fmt::format("pressure_hpa = {}\n", shortest(o.air.pressure_hpa));
+  out += fmt::format("aerosol = {{ tau_550 = {}, exponent = {} }}\nozone_du = {}\nwater_cm = {}\n",
+                     shortest(o.air.aerosol_550), shortest(o.air.aerosol_exponent),
+                     shortest(o.air.ozone_du), shortest(o.air.water_cm));
+  out += fmt::format("seeing = {{ arcsec = {}, at_nm = {}, outer_scale_m = {}, profile = \"{}\" "
+                     "}}\n",
+                     shortest(o.seeing.arcsec), shortest(o.seeing.at_nm),
+                     shortest(o.seeing.outer_scale_m),
+                     o.seeing.profile == ImageProfile::Gauss ? "gauss" : "moffat");
+  out += o.scintillation_c_y ? fmt::format("scintillation = {{ c_y = {}, slew = {} }}\n",
+                                           shortest(*o.scintillation_c_y), o.has_slewing_factor)
+                             : std::string("scintillation = \"none\"\n");
+  out += sky_toml(o.sky);
+  return out + fmt::format("cloud = {{ sd_mag = {}, time_s = {} }}\n", shortest(o.cloud_sd_mag),
+                           shortest(o.cloud_time_s));
+}
+
+} // namespace
+
+std::string observation_toml(const ScenarioObservation &o) {
+  std::string out = atmosphere_toml(o) + instrument_tables_toml(o.instrument);
+  out += fmt::format("\n[observation]\nexposure_s = {}\ncadence_s = {}\nwidth_nm = {}\n"
+                     "aperture_fwhm = {}\nclock_error_s = {}\n",
+                     shortest(o.exposure_s), shortest(o.cadence_s), shortest(o.width_nm),
+                     shortest(o.aperture_fwhm), shortest(o.clock_error_s));
+  std::string bands, steps;
+  for (const std::string &band : o.bands)
+    bands += (bands.empty() ? "" : ", ") + quoted(band);
+  if (!bands.empty())
+    out += "bands = [" + bands + "]\n";
+  for (const SequenceStep &step : o.sequence)
+    steps += fmt::format("{}{{ analyser_deg = {}, plate_deg = {}, band = {} }}",
+                         steps.empty() ? "" : ", ", shortest(step.state.analyser_deg),
+                         shortest(step.state.plate_deg), quoted(step.band));
+  if (!steps.empty())
+    out += "sequence = [" + steps + "]\n";
+  return out;
+}
+
+} // namespace umov::scenario

@@ -1,0 +1,152 @@
+#include <umov/io/counts_file.h>
+
+#include "io/table/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <optional>
+#include <umov/core/text.h>
+
+namespace umov {
+namespace {
+
+/// Reads cells by the name of their column.
+class Cells {
+public:
+  Cells(const TextTable &table, const std::string &file) : table_(table), file_(file) {}
+
+  [[nodiscard]] Where where(std::size_t row) const { return {file_, table_.lines[row]}; }
+  [[nodiscard]] std::optional<std::size_t> column(const std::string &name) const {
+    const auto &c = table_.columns;
+    const auto found = std::find(c.begin(), c.end(), name);
+    return found == c.end() ? std::nullopt
+                            : std::optional(static_cast<std::size_t>(found - c.begin()));
+  }
+  [[nodiscard]] std::string text(const std::string &name, std::size_t row) const {
+    const auto at = column(name);
+    return at ? table_.rows[row][*at] : std::string();
+  }
+  /// `fallback` where there is no such column or the cell is empty.
+  [[nodiscard]] Result<double> number(const std::string &name, std::size_t row,
+                                      double fallback) const {
+    const std::string cell = text(name, row);
+    if (cell.empty())
+      return fallback;
+    if (cell == "nan" || cell == "NaN")
+      return std::nan("");
+    if (const auto value = parse_number(cell))
+      return *value;
+    return fail(ErrorCode::BadInput, fmt::format("{}: \"{}\" is no number", name, printable(cell)),
+                where(row));
+  }
+
+private:
+  const TextTable &table_;
+  const std::string &file_;
+};
+
+Result<void> check_columns(const Cells &cells, const TextTable &table, const std::string &file) {
+  for (const char *name : {"time_utc", "set_id", "band", "counts", "sky", "sky_err", "var_read",
+                           "w0", "w1", "w2", "w3"})
+    if (!cells.column(name))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("counts without the column \"{}\"; umov observe writes all, and "
+                              "docs/theory/observing.md says what they are",
+                              name),
+                  {file, table.lines.empty() ? 0 : table.lines.front()});
+  return {};
+}
+
+Result<void> read_numbers(const Cells &cells, std::size_t row, CountRow &out) {
+  struct Field {
+    const char *name;
+    double *value;
+  };
+  double exposure = 0, set = 0;
+  const Field fields[] = {{"counts", &out.counts},
+                          {"sky", &out.sky},
+                          {"sky_err", &out.sky_err},
+                          {"var_read", &out.var_read},
+                          {"excess2", &out.excess2},
+                          {"scint_sd", &out.scintillation},
+                          {"x_axis_pa", &out.x_axis_pa_deg},
+                          {"phase_angle", &out.phase_angle_deg},
+                          {"pa_scat", &out.pa_scat_deg},
+                          {"airmass", &out.airmass},
+                          {"w0", &out.row[0]},
+                          {"w1", &out.row[1]},
+                          {"w2", &out.row[2]},
+                          {"w3", &out.row[3]},
+                          {"exposure", &exposure},
+                          {"set_id", &set}};
+  for (const Field &field : fields) {
+    UMOV_ASSIGN(value, cells.number(field.name, row, *field.value));
+    *field.value = value;
+  }
+  constexpr double whole_max = 1e15;
+  if (!(std::abs(exposure) < whole_max && std::abs(set) < whole_max))
+    return fail(ErrorCode::BadInput, "exposure and set_id are whole numbers", cells.where(row));
+  out.exposure = static_cast<std::int64_t>(exposure);
+  out.set = static_cast<std::int64_t>(set);
+  return {};
+}
+
+Result<void> check_row(const CountRow &row, const Where &where) {
+  if (!(row.var_read >= 0 && row.sky_err >= 0 && row.excess2 >= 1))
+    return fail(ErrorCode::BadInput,
+                fmt::format("var_read = {}, sky_err = {}, excess2 = {}; variances are 0 or more, "
+                            "excess2 1 or more",
+                            row.var_read, row.sky_err, row.excess2),
+                where);
+  for (const double w : row.row)
+    if (!std::isfinite(w))
+      return fail(ErrorCode::BadInput, "w0 to w3 are numbers", where);
+  if (!(row.row[0] > 0))
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("w0 = {}; light must make counts: a number above 0 was expected", row.row[0]),
+        where);
+  return {};
+}
+
+} // namespace
+
+Result<CountsFile> read_counts_text(std::string_view text, const std::string &file,
+                                    Diagnostics &diagnostics) {
+  UMOV_ASSIGN(table, read_text_table(text, file));
+  const Cells cells(table, file);
+  UMOV_TRY(check_columns(cells, table, file));
+  CountsFile out;
+  out.notes = table.notes;
+  std::size_t dropped = 0;
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    CountRow row;
+    const auto time = utc_from_iso(cells.text("time_utc", k));
+    if (!time)
+      return fail(ErrorCode::BadInput, time.error().message, cells.where(k));
+    row.time = *time;
+    row.name = cells.text("name", k);
+    row.band = cells.text("band", k);
+    row.channel = cells.text("channel", k);
+    const std::string full = cells.text("saturated", k);
+    row.is_saturated = full == "True" || full == "true" || full == "1";
+    UMOV_TRY(read_numbers(cells, k, row));
+    if (!std::isfinite(row.counts) || !std::isfinite(row.sky)) {
+      ++dropped;
+      continue;
+    }
+    UMOV_TRY(check_row(row, cells.where(k)));
+    if (!out.rows.empty() && out.rows.back().name == row.name &&
+        seconds_between(row.time, out.rows.back().time) < -1e-6)
+      return fail(ErrorCode::BadInput, "times go back; sort the rows by time", cells.where(k));
+    out.rows.push_back(std::move(row));
+  }
+  if (dropped > 0)
+    diagnostics.warn(fmt::format("{} without counts left out", counted(dropped, "row")), {file});
+  if (out.rows.empty())
+    return fail(ErrorCode::BadInput, "no row of counts", {file});
+  return out;
+}
+
+} // namespace umov

@@ -1,0 +1,119 @@
+#include "io/table/text_table.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <umov/core/text.h>
+
+namespace umov {
+namespace {
+
+/// Cells between blanks; quotes as in RFC 4180. Empty if a quote stays open.
+std::optional<std::vector<std::string>> blank_cells(std::string_view line) {
+  std::vector<std::string> out;
+  std::size_t i = 0;
+  while (i < line.size()) {
+    if (line[i] == ' ' || line[i] == '\t') {
+      ++i;
+      continue;
+    }
+    std::string cell;
+    if (line[i] != '"') {
+      const std::size_t end = std::min(line.find_first_of(" \t", i), line.size());
+      cell = line.substr(i, end - i);
+      i = end;
+    } else {
+      for (++i;; ++i) {
+        if (i >= line.size())
+          return std::nullopt;
+        if (line[i] == '"' && (i + 1 >= line.size() || line[i + 1] != '"'))
+          break;
+        i += line[i] == '"' ? 1u : 0u;
+        cell += line[i];
+      }
+      ++i;
+    }
+    out.push_back(std::move(cell));
+  }
+  return out;
+}
+
+std::optional<std::vector<std::string>> cells_of(std::string_view line, bool has_blanks) {
+  if (has_blanks)
+    return blank_cells(line);
+  const auto cells = csv_cells(line);
+  if (!cells)
+    return std::nullopt;
+  std::vector<std::string> out;
+  for (const CsvCell &cell : *cells)
+    out.push_back(cell.text);
+  return out;
+}
+
+/// A line of the header: `# - {"key": "value"}` of ECSV, or `# key: value`.
+void read_note(std::string_view line, std::map<std::string, std::string> &notes) {
+  std::string_view text = trimmed(line.substr(1));
+  if (text.starts_with("- {\"")) {
+    const auto json = nlohmann::json::parse(text.substr(2), nullptr, false);
+    if (json.is_object() && json.size() == 1 && json.begin()->is_string())
+      notes[json.begin().key()] = json.begin()->get<std::string>();
+    return;
+  }
+  if (const std::size_t colon = text.find(": "); colon != std::string_view::npos)
+    notes[std::string(text.substr(0, colon))] = trimmed(text.substr(colon + 2));
+}
+
+Result<void> add_header(TextTable &out, std::vector<std::string> cells, const Where &where) {
+  std::vector<std::string> sorted = cells;
+  std::sort(sorted.begin(), sorted.end());
+  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("column \"{}\" stands twice; leave one out", printable(*twice)), where);
+  out.columns = std::move(cells);
+  return {};
+}
+
+} // namespace
+
+Result<TextTable> read_text_table(std::string_view text, const std::string &file) {
+  constexpr std::size_t rows_max = 20'000'000, line_max = 100'000;
+  TextTable out;
+  bool has_blanks = false;
+  std::size_t number = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line =
+        trimmed(text.substr(0, text.substr(0, end).ends_with('\r') ? end - 1 : end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const Where where{file, ++number};
+    if (line.empty())
+      continue;
+    if (line.front() == '#') {
+      read_note(line, out.notes);
+      continue;
+    }
+    if (line.size() > line_max || out.rows.size() >= rows_max)
+      return fail(ErrorCode::BadInput, "this is longer than a table of counts; is it one?", where);
+    if (out.columns.empty())
+      has_blanks = line.find(',') == std::string_view::npos;
+    auto cells = cells_of(line, has_blanks);
+    if (!cells)
+      return fail(ErrorCode::BadInput, "a quote is not closed in this row; close it with \"",
+                  where);
+    if (out.columns.empty()) {
+      UMOV_TRY(add_header(out, std::move(*cells), where));
+      continue;
+    }
+    if (cells->size() != out.columns.size())
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("{} cells in a table of {} columns", cells->size(), out.columns.size()),
+          where);
+    out.rows.push_back(std::move(*cells));
+    out.lines.push_back(number);
+  }
+  return out;
+}
+
+} // namespace umov

@@ -1,0 +1,138 @@
+#include <umov/jobs/exposure.h>
+
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/photometry/radiometry.h>
+
+namespace umov::jobs {
+namespace {
+
+/// Rates of one instrument on one star [1/s], all channels together.
+struct Rates {
+  double star = 0;                     ///< detected electrons in the apertures
+  double whole = 0;                    ///< before polarizers, all of the image
+  double sky = 0, dark = 0, fixed = 0; ///< fixed: variance of each exposure
+  double lost = 1;                     ///< part that polarizers let through
+  double peak = 0;                     ///< on the brightest pixel of the brightest channel
+  double scintillation = 0;            ///< relative sd of 1 s
+};
+
+Result<Rates> rates_of(const ExposureRequest &r, const Instrument &instrument,
+                       const BandObserver &observer, const Air &air) {
+  const BandResponse &band = observer.band();
+  const double x = airmass(Angle::degrees(r.altitude_deg));
+  Rates out;
+  const double flux = band.zero_flux * std::pow(10, -0.4 * r.mag);
+  out.whole = observer.rate_per_flux() * flux * transmission(r.nm, air, x);
+  UMOV_ASSIGN(channels, polarimeter_channels(instrument.polarimeter, {}, r.nm));
+  double largest = 0;
+  out.lost = 0;
+  for (const PolarimeterChannel &channel : channels) {
+    out.lost += channel.row[0];
+    largest = std::max(largest, channel.row[0]);
+  }
+  const double share = share_inside(ImageProfile::Moffat, 1);
+  const double width = observer.fwhm_arcsec(x);
+  out.star = out.whole * share * out.lost;
+  const double sky = band.zero_flux * std::pow(10, -0.4 * r.sky_mag) * observer.rate_per_flux();
+  out.sky = sky * pi * width * width * out.lost;
+  const double pixels = observer.aperture_pixels(x) * static_cast<double>(channels.size());
+  out.dark = instrument.detector.dark_e_s * pixels;
+  out.fixed = pixels * fixed_variance(instrument.detector);
+  const double lattice = instrument.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
+  out.peak = out.whole * largest * lattice * observer.peak_share(x);
+  out.scintillation = observer.scintillation_sd(1, x, 0);
+  return out;
+}
+
+/// Exposure in which sqrt(2 variance)/electrons comes down to `sd`; of a linear polarimeter.
+double time_for(const Rates &r, double excess2, double sd, double factor) {
+  // sd^2 (s t)^2 = factor (F^2 (s + b) t + v): a quadratic in t.
+  const double a = sd * sd * r.star * r.star;
+  const double b = factor * excess2 * (r.star + r.sky + r.dark), c = factor * r.fixed;
+  return (b + std::sqrt(b * b + 4 * a * c)) / (2 * a);
+}
+
+/// A quantity and what it means, row by row.
+class Sheet {
+public:
+  void add(const char *quantity, double value, const char *unit, std::string text) {
+    names_.emplace_back(quantity);
+    values_.push_back(value);
+    units_.emplace_back(unit);
+    texts_.push_back(std::move(text));
+  }
+  Table table() && {
+    Table out;
+    out.add("quantity", "", "what is told", std::move(names_));
+    out.add("value", "", "in its unit", std::move(values_));
+    out.add("in", "", "unit", std::move(units_));
+    out.add("meaning", "", "what it is", std::move(texts_));
+    return out;
+  }
+
+private:
+  std::vector<std::string> names_, units_, texts_;
+  std::vector<double> values_;
+};
+
+Result<void> check(const ExposureRequest &r) {
+  struct Bound {
+    const char *name;
+    double value, low, high;
+  };
+  for (const Bound &b : {Bound{"--alt", r.altitude_deg, 3, 90},
+                         {"--sd-p", r.sd_p, 1e-7, 1},
+                         {"--nm", r.nm, 300, 1200},
+                         {"--width-nm", r.width_nm, 1e-3, 1000},
+                         {"--seeing", r.seeing_arcsec, 1e-3, 100}})
+    if (!(b.value >= b.low && b.value <= b.high))
+      return fail(ErrorCode::Usage,
+                  fmt::format("{} {}: {} to {} was expected", b.name, b.value, b.low, b.high));
+  return {};
+}
+
+} // namespace
+
+Result<Table> exposure(const ExposureRequest &r) {
+  UMOV_TRY(check(r));
+  UMOV_ASSIGN(instrument, read_instrument(r.instrument));
+  UMOV_ASSIGN(band, narrow_band(fmt::format("nm:{:g}", r.nm), r.nm, r.width_nm));
+  ObservingConditions conditions;
+  conditions.air.pressure_hpa = standard_pressure_hpa(r.height_m);
+  conditions.seeing = {r.seeing_arcsec, 500, 25};
+  conditions.aperture_fwhm = 1;
+  conditions.scintillation = ScintillationSite{r.height_m, 1.5};
+  UMOV_ASSIGN(observer, BandObserver::make(instrument, band, conditions, {}));
+  UMOV_ASSIGN(rates, rates_of(r, instrument, observer, conditions.air));
+  const PolarimeterType type = instrument.polarimeter.type;
+  const bool is_full = parameters_of(type) == 4;
+  const double f2 = excess_variance(instrument.detector), factor = is_full ? 3 : 2;
+  const double t = time_for(rates, f2, r.sd_p, factor);
+  const double all = f2 * (rates.star + rates.sky + rates.dark) * t + rates.fixed;
+  Sheet out;
+  out.add("zero_point", 2.5 * std::log10(observer.rate_per_flux() * band.zero_flux), "mag(AB)",
+          "of 1 electron a second, no air, no polarizer");
+  out.add("rate_whole", rates.whole, "electron / s", "through the air, before polarizers");
+  out.add("rate", rates.star, "electron / s", "detected in all channels, aperture of one width");
+  out.add("time", t, "s",
+          is_full ? "of a whole sequence, until q, u and v are known to sd_p"
+                  : "of all states together, until p is known to sd_p");
+  out.add("electrons", rates.star * t, "electron", "detected in that time");
+  out.add("saturation", saturation_e(instrument.detector) / rates.peak, "s",
+          "exposure that fills the brightest pixel");
+  out.add("share_star", f2 * rates.star * t / all, "", "of the variance: the object's own photons");
+  out.add("share_sky", f2 * rates.sky * t / all, "", "the sky's");
+  out.add("share_dark", f2 * rates.dark * t / all, "", "dark current");
+  out.add("share_read", rates.fixed / all, "", "reading and rounding, once");
+  out.add("scintillation", rates.scintillation / std::sqrt(t), "",
+          is_simultaneous(type) && !instrument.polarimeter.has_separate_pupils
+              ? "relative, of I alone: channels share it"
+              : "relative, of each exposure of that length");
+  if (!is_simultaneous(type) && r.change_per_s > 0)
+    out.add("false_p", std::sqrt(2.0) * r.change_per_s * t / 4, "",
+            "of four states in a row while brightness changes as told");
+  return std::move(out).table();
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,103 @@
+#include <umov/reduction/likelihood.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/special_functions/bessel.hpp>
+#include <boost/math/special_functions/erf.hpp>
+#include <cmath>
+#include <limits>
+#include <umov/core/quantity.h>
+
+namespace umov {
+
+double log_poisson_gauss(double counts, double mean, double read_sd) {
+  const double reach = 12 * (std::sqrt(mean) + read_sd + 1);
+  const auto first = static_cast<std::int64_t>(std::max(0.0, std::min(mean, counts) - reach));
+  const auto last = static_cast<std::int64_t>(std::max({mean, counts, 0.0}) + reach);
+  double largest = -std::numeric_limits<double>::infinity();
+  std::vector<double> terms;
+  for (std::int64_t k = first; k <= last; ++k) {
+    const auto n = static_cast<double>(k);
+    const double off = (counts - n) / read_sd;
+    terms.push_back(n * std::log(mean) - mean - std::lgamma(n + 1) - off * off / 2);
+    largest = std::max(largest, terms.back());
+  }
+  double sum = 0;
+  for (const double term : terms)
+    sum += std::exp(term - largest);
+  return largest + std::log(sum) - std::log(read_sd * std::sqrt(2 * pi));
+}
+
+double log_shifted_poisson(double counts, double mean, double variance) {
+  const double n = std::max(0.0, counts + variance), m = mean + variance;
+  return n * std::log(m) - m - std::lgamma(n + 1);
+}
+
+double log_normal_counts(double counts, double mean, double variance, double excess2) {
+  const double v = excess2 * mean + variance, off = counts - mean;
+  return -off * off / (2 * v) - std::log(2 * pi * v) / 2;
+}
+
+double log_multiplied(double output, double mean, double gain) {
+  const double a = 2 * std::sqrt(output * mean / gain);
+  // I1 grows as exp(a)/sqrt(2 pi a): asked for without the exponential where that overflows.
+  const double bessel = a < 500 ? std::log(boost::math::cyl_bessel_i(1, a))
+                                : a - std::log(2 * pi * a) / 2 - 3 / (8 * a);
+  return std::log(mean / (output * gain)) / 2 - output / gain - mean + bessel;
+}
+
+double log_saturated(double limit, double mean, double variance) {
+  const double x = (limit - mean) / std::sqrt(2 * (mean + variance));
+  constexpr double far = 25; // erfc underflows a little later
+  return x < far ? std::log(std::erfc(x) / 2) : -x * x - std::log(2 * x * std::sqrt(pi));
+}
+
+double log_likelihood(std::span<const PredictedCounts> counts) {
+  constexpr double few = 30, little = 4; // electrons, and variance of reading
+  double out = 0;
+  for (const PredictedCounts &one : counts) {
+    const ChannelDatum &d = one.datum;
+    if (one.is_saturated)
+      out += log_saturated(one.saturation, one.mean, d.fixed_variance);
+    else if (d.excess2 != 1)
+      out += log_normal_counts(d.counts, one.mean, d.fixed_variance, d.excess2);
+    else if (one.mean < few && d.fixed_variance < little && d.fixed_variance > 0)
+      out += log_poisson_gauss(d.counts, one.mean, std::sqrt(d.fixed_variance));
+    else
+      out += log_shifted_poisson(d.counts, one.mean, d.fixed_variance);
+  }
+  return out;
+}
+
+double log_likelihood(std::span<const PredictedCounts> counts,
+                      std::span<const CommonError> common) {
+  const auto n = static_cast<Eigen::Index>(counts.size());
+  const auto m = static_cast<Eigen::Index>(common.size());
+  Eigen::VectorXd residual(n), weight(n);
+  double log_determinant = 0;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const PredictedCounts &one = counts[static_cast<std::size_t>(k)];
+    const double variance = one.datum.excess2 * one.mean + one.datum.fixed_variance;
+    residual(k) = one.datum.counts - one.mean;
+    weight(k) = 1 / variance;
+    log_determinant += std::log(variance);
+  }
+  double chi2 = residual.dot(weight.cwiseProduct(residual));
+  if (m > 0) {
+    Eigen::MatrixXd j(n, m);
+    for (Eigen::Index c = 0; c < m; ++c) {
+      const CommonError &one = common[static_cast<std::size_t>(c)];
+      j.col(c) = Eigen::Map<const Eigen::VectorXd>(one.effect.data(), n) * one.sd;
+    }
+    const Eigen::MatrixXd weighted = weight.asDiagonal() * j;
+    const Eigen::MatrixXd small = Eigen::MatrixXd::Identity(m, m) + j.transpose() * weighted;
+    const Eigen::LLT<Eigen::MatrixXd> factor(small);
+    const Eigen::VectorXd projected = weighted.transpose() * residual;
+    chi2 -= projected.dot(factor.solve(projected));
+    for (Eigen::Index c = 0; c < m; ++c)
+      log_determinant += 2 * std::log(factor.matrixL()(c, c));
+  }
+  return -(chi2 + log_determinant) / 2;
+}
+
+} // namespace umov

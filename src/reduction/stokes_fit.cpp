@@ -1,0 +1,174 @@
+#include <umov/reduction/stokes_fit.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/instrument/polarimeter.h>
+
+namespace umov {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+struct System {
+  Matrix w;
+  Vector n, sky, fixed, excess;
+};
+
+System system_of(std::span<const ChannelDatum> data, std::size_t parameters) {
+  const auto rows = static_cast<Eigen::Index>(data.size());
+  System out{Matrix(rows, static_cast<Eigen::Index>(parameters)), Vector(rows), Vector(rows),
+             Vector(rows), Vector(rows)};
+  for (Eigen::Index r = 0; r < rows; ++r) {
+    const ChannelDatum &one = data[static_cast<std::size_t>(r)];
+    for (std::size_t c = 0; c < parameters; ++c)
+      out.w(r, static_cast<Eigen::Index>(c)) = one.row[c];
+    out.n(r) = one.counts;
+    out.sky(r) = one.sky;
+    out.fixed(r) = one.fixed_variance;
+    out.excess(r) = one.excess2;
+  }
+  return out;
+}
+
+/// Rows are electrons per flux: scaled to a largest of 1, so that nothing under- or overflows.
+double scale_of(std::span<const ChannelDatum> data) {
+  double out = 0;
+  for (const ChannelDatum &one : data)
+    out = std::max(out, std::abs(one.row[0]));
+  return out;
+}
+
+/// Counts of a model; of noise alone no less than a thousandth of an electron.
+Vector variance_of(const System &s, const Vector &stokes) {
+  const Vector mean = (s.w * stokes + s.sky).cwiseMax(1e-3);
+  return mean.cwiseProduct(s.excess) + s.fixed;
+}
+
+struct Solution {
+  Vector stokes;
+  Matrix covariance;
+};
+
+Solution solve(const System &s, const Matrix &inverse_c) {
+  const Matrix weighted = s.w.transpose() * inverse_c;
+  Solution out;
+  out.covariance = (weighted * s.w).inverse();
+  out.stokes = out.covariance * (weighted * (s.n - s.sky));
+  return out;
+}
+
+StokesFit put(const System &s, const Solution &solution, const Matrix &c, double scale) {
+  StokesFit out;
+  const auto k = solution.stokes.size();
+  for (Eigen::Index i = 0; i < k; ++i) {
+    out.stokes[static_cast<std::size_t>(i)] = solution.stokes(i) / scale;
+    for (Eigen::Index j = 0; j < k; ++j)
+      out.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
+          solution.covariance(i, j) / scale / scale;
+  }
+  const Vector residual = s.n - s.sky - s.w * solution.stokes;
+  const Eigen::LDLT<Matrix> factor(c);
+  out.chi2 = residual.dot(factor.solve(residual));
+  out.dof = static_cast<int>(s.n.size() - k);
+  out.minus_2_log_likelihood = out.chi2 + factor.vectorD().array().log().sum();
+  return out;
+}
+
+Result<void> check_rows(std::span<const ChannelDatum> data, std::size_t parameters, double scale) {
+  std::vector<StokesRow> rows;
+  for (const ChannelDatum &one : data)
+    rows.push_back(one.row * (1 / scale));
+  const ModulationQuality quality = modulation_quality(rows, parameters);
+  if (data.size() >= parameters && std::isfinite(quality.condition))
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("{} channels of a set cannot tell {} (condition number {:.3g}); a "
+                          "sequence of at least {} different states is needed",
+                          data.size(), quality.missing.empty() ? "I, Q, U" : quality.missing,
+                          quality.condition, parameters));
+}
+
+} // namespace
+
+Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t parameters) {
+  return fit_stokes(data, parameters, {});
+}
+
+Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t parameters,
+                             std::span<const CommonError> common) {
+  const double scale = scale_of(data);
+  UMOV_TRY(check_rows(data, parameters, scale));
+  System s = system_of(data, parameters);
+  s.w /= scale;
+  Vector variance = s.n.cwiseMax(1).cwiseProduct(s.excess) + s.fixed;
+  Solution solution;
+  constexpr int rounds = 8; // each gains two digits or more
+  for (int k = 0; k < rounds; ++k) {
+    solution = solve(s, variance.cwiseInverse().asDiagonal());
+    variance = variance_of(s, solution.stokes);
+  }
+  Matrix c = variance.asDiagonal();
+  if (!common.empty()) {
+    for (const CommonError &one : common) {
+      const Eigen::Map<const Vector> effect(one.effect.data(), s.n.size());
+      c += one.sd * one.sd * effect * effect.transpose();
+    }
+    solution = solve(s, c.inverse());
+  }
+  return put(s, solution, c, scale);
+}
+
+std::vector<CommonError> common_errors(const ErrorPriors &priors,
+                                       std::span<const ChannelDatum> data, const StokesFit &fit,
+                                       double axis_rad) {
+  std::vector<CommonError> out;
+  const auto add = [&](double sd, auto effect) {
+    if (sd <= 0)
+      return;
+    CommonError one{{}, sd};
+    for (const ChannelDatum &datum : data)
+      one.effect.push_back(effect(datum));
+    out.push_back(std::move(one));
+  };
+  const auto &s = fit.stokes;
+  const auto star = [&s](const ChannelDatum &d) {
+    return d.row[0] * s[0] + d.row[1] * s[1] + d.row[2] * s[2] + d.row[3] * s[3];
+  };
+  const auto own_axes = [axis_rad](const ChannelDatum &d) {
+    return row_on_sky(d.row, Angle::radians(-axis_rad));
+  };
+  add(priors.instrumental, [&](const ChannelDatum &d) { return own_axes(d)[1] * s[0]; });
+  add(priors.instrumental, [&](const ChannelDatum &d) { return own_axes(d)[2] * s[0]; });
+  for (std::size_t k = 0; priors.gain > 0 && k < data.size(); ++k) {
+    CommonError one{std::vector<double>(data.size(), 0), priors.gain};
+    one.effect[k] = star(data[k]);
+    out.push_back(std::move(one));
+  }
+  add(priors.transparency, star);
+  add(priors.angle_rad,
+      [&](const ChannelDatum &d) { return 2 * (d.row[2] * s[1] - d.row[1] * s[2]); });
+  add(priors.efficiency, [&](const ChannelDatum &d) { return d.row[1] * s[1] + d.row[2] * s[2]; });
+  add(priors.sky, [](const ChannelDatum &d) { return d.sky; });
+  return out;
+}
+
+StokesFractions fractions_of(const StokesFit &fit) {
+  StokesFractions out;
+  const double i = fit.stokes[0];
+  double jacobian[3][4]{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.value[k] = fit.stokes[k + 1] / i;
+    jacobian[k][0] = -fit.stokes[k + 1] / (i * i);
+    jacobian[k][k + 1] = 1 / i;
+  }
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = 0; b < 3; ++b)
+      for (std::size_t c = 0; c < 4; ++c)
+        for (std::size_t d = 0; d < 4; ++d)
+          out.covariance[a][b] += jacobian[a][c] * fit.covariance[c][d] * jacobian[b][d];
+  return out;
+}
+
+} // namespace umov

@@ -1,0 +1,111 @@
+#include "reduction/tests/anchor.h"
+
+#include <gtest/gtest.h>
+#include <umov/instrument/draws.h>
+#include <umov/reduction/calibration.h>
+
+namespace umov {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double degree = pi / 180;
+const Complex factor = std::polar(.985, 2 * .8 * degree), offset{.0042, -.0018};
+constexpr double sd = 5e-4;
+
+/// An unpolarized star at four angles and HD 204827 (4.893 %, 59.10 deg: Schmidt et al. 1992).
+std::vector<StandardMeasurement> night() {
+  std::vector<StandardMeasurement> out;
+  const Complex star = std::polar(.04893, 2 * 59.10 * degree);
+  for (const double axis : {0., 30., 60., 90.})
+    out.push_back({offset, 0, axis * degree, sd});
+  for (const double axis : {10., 40., 70., 100.})
+    out.push_back(
+        {factor * star * std::polar(1., -2 * axis * degree) + offset, star, axis * degree, sd});
+  return out;
+}
+
+TEST(PolarimeterCalibration, IsRecoveredWithItsErrors) { // nine digits
+  const auto found = calibrate_polarimeter(night());
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(std::abs(found->factor - factor), 0, 1e-14);
+  EXPECT_NEAR(std::abs(found->offset - offset), 0, 1e-15);
+  EXPECT_NEAR(found->factor_sd, of("standards_factor_sd"), 1e-11);
+  EXPECT_NEAR(found->offset_sd, of("standards_offset_sd"), 1e-12);
+  const Complex target{.25, -.11};
+  const auto back = apply(*found, factor * target * std::polar(1., -.7) + offset, .35, 1e-8);
+  EXPECT_NEAR(std::abs(back.value - target), 0, 1e-14);
+}
+
+TEST(PolarimeterCalibration, PullsOfManyNights) {
+  constexpr std::uint32_t nights = 2000;
+  double sums[4]{}, squares[4]{};
+  for (std::uint32_t t = 0; t < nights; ++t) {
+    Draws draws({41, 0, t, 0, 0});
+    auto data = night();
+    for (StandardMeasurement &one : data)
+      one.measured += sd * Complex(draws.normal(), draws.normal());
+    const auto found = calibrate_polarimeter(data);
+    const double pulls[] = {(std::abs(found->factor) - .985) / found->factor_sd,
+                            (std::arg(found->factor) / 2 - .8 * degree) /
+                                (found->factor_sd / .985 / 2),
+                            (found->offset.real() - .0042) / found->offset_sd,
+                            (found->offset.imag() + .0018) / found->offset_sd};
+    for (std::size_t k = 0; k < 4; ++k)
+      sums[k] += pulls[k], squares[k] += pulls[k] * pulls[k];
+  }
+  for (std::size_t k = 0; k < 4; ++k) { // 2,000: .022 and .016
+    const double mean = sums[k] / nights;
+    EXPECT_NEAR(mean, 0, .06) << k;
+    EXPECT_NEAR(std::sqrt(squares[k] / nights - mean * mean), 1, .05) << k;
+  }
+}
+
+TEST(PolarimeterCalibration, OneAngleIsNotEnough) {
+  auto data = night();
+  data.erase(data.begin(), data.begin() + 4);
+  for (StandardMeasurement &one : data)
+    one.axis_rad = 0;
+  EXPECT_FALSE(calibrate_polarimeter(data));
+  data.clear();
+  EXPECT_FALSE(calibrate_polarimeter(data));
+}
+
+TEST(ChannelCalibration, EighteenAngles) {
+  std::vector<double> angles, counts;
+  const StokesRow row = analyser_row(45, 2e4);
+  for (int k = 0; k < 18; ++k) {
+    angles.push_back(k * 20 * degree);
+    counts.push_back(row[0] + row[1] * std::cos(2 * angles.back()) +
+                     row[2] * std::sin(2 * angles.back()));
+  }
+  const auto found = calibrate_channel(angles, counts, 1e4);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(found->row[k], row[k], 1e-8);
+  // (S S^T)^-1 of even angles: 1/n, 2/n, 2/n.
+  EXPECT_NEAR(found->sd[0], 100 / std::sqrt(18.), 1e-10);
+  EXPECT_NEAR(found->sd[1], 100 * std::sqrt(2 / 18.), 1e-10);
+  const std::vector<double> two{0, pi};
+  EXPECT_FALSE(calibrate_channel(two, two, 1));
+}
+
+TEST(PhotometricCalibration, SixStars) { // nine digits
+  const double mags[] = {8.120, 9.455, 8.902, 10.231, 9.017, 9.788};
+  const double x[] = {1.02, 1.21, 1.55, 1.08, 1.90, 1.37}, c[] = {.05, .62, 1.10, .35, .71, -.02};
+  const double left[] = {.004, -.003, .002, -.005, .001, .001};
+  std::vector<PhotometricStandard> stars;
+  for (int k = 0; k < 6; ++k)
+    stars.push_back({mags[k], mags[k] - 20.571 + .118 * x[k] - .030 * c[k] + left[k], x[k], c[k]});
+  const auto found = calibrate_photometry(stars);
+  EXPECT_NEAR(found->zero_point, of("photometry_zero"), 1e-7);
+  EXPECT_NEAR(found->extinction, of("photometry_extinction"), 1e-9);
+  EXPECT_NEAR(found->colour_term, of("photometry_colour"), 1e-9);
+  const auto &cov = found->covariance;
+  EXPECT_NEAR(std::sqrt(cov[0][0]), of("photometry_zero_sd"), 1e-10);
+  EXPECT_NEAR(std::sqrt(cov[1][1]), of("photometry_extinction_sd"), 1e-10);
+  EXPECT_NEAR(cov[0][1] / std::sqrt(cov[0][0] * cov[1][1]), of("photometry_correlation"), 1e-8);
+  EXPECT_NEAR(found->residual_sd, of("photometry_residual"), 1e-10);
+  EXPECT_FALSE(calibrate_photometry(std::span(stars).first(3)));
+}
+
+} // namespace
+} // namespace umov

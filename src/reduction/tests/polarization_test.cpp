@@ -1,0 +1,62 @@
+#include "reduction/tests/anchor.h"
+
+#include <gtest/gtest.h>
+#include <umov/instrument/draws.h>
+#include <umov/reduction/polarization.h>
+
+namespace umov {
+namespace {
+
+TEST(Polarization, DebiasedValues) { // nine digits
+  for (const char *p : {"0.5", "1", "2", "3", "5"}) {
+    const auto found = polarization_of(AnchorRow::number(p), 0, {{{1, 0}, {0, 1}}});
+    EXPECT_NEAR(found.debiased, of(std::string("debiased_") + p), 1e-8);
+  }
+}
+
+TEST(Polarization, UnequalErrors) {
+  // q .02, u .01, covariance (1, .3; .3, .5) 1e-4: along (2, 1)/sqrt 5 the variance is
+  // (4 + 1.2 + .5)/5 = 1.14, across (1 - 1.2 + 2)/5 = .36, in 1e-4.
+  const auto found = polarization_of(.02, .01, {{{1e-4, .3e-4}, {.3e-4, .5e-4}}});
+  EXPECT_NEAR(found.sd, std::sqrt(1.14e-4), 1e-12);
+  EXPECT_NEAR(found.across, std::sqrt(.36e-4), 1e-12);
+  const double p = std::sqrt(5e-4);
+  EXPECT_NEAR(found.debiased, p - .36e-4 * (1 - std::exp(-5 / .36)) / (2 * p), 1e-12);
+  EXPECT_NEAR(found.angle_rad, std::atan2(1, 2) / 2, 1e-15);
+}
+
+TEST(Polarization, AngleOfFaintPolarization) { // seven digits, by 40,000 trapezoids
+  for (const int x : {1, 2, 3})
+    EXPECT_NEAR(angle_half_width(x) * 180 / pi, of("angle_" + std::to_string(x)), 1e-4);
+}
+
+TEST(DegreeInterval, LimitsAreThoseOfTheConstruction) {
+  for (const char *x : {"0.5", "1", "2", "3", "4", "5"}) { // grid of .01 on both axes
+    const auto found = degree_interval(AnchorRow::number(x));
+    EXPECT_NEAR(found.low, of(std::string("low_") + x), .015) << x;
+    EXPECT_NEAR(found.high, of(std::string("high_") + x), .015) << x;
+  }
+}
+
+TEST(DegreeInterval, BecomesALimitWherePolarizationIsNotSeen) {
+  const double edge = std::sqrt(-2 * std::log(.05)); // 5 % of nothing lies beyond
+  EXPECT_EQ(degree_interval(edge - .001).low, 0);
+  EXPECT_GT(degree_interval(edge + .001).low, 0);
+}
+
+TEST(DegreeInterval, CoversAsItSays) {
+  constexpr std::uint32_t trials = 1000; // .007
+  for (const double truth : {0., .5, 1., 2., 4., 8.}) {
+    double hits = 0;
+    for (std::uint32_t t = 0; t < trials; ++t) {
+      Draws draws({31, 0, t, static_cast<std::uint32_t>(2 * truth), 0});
+      const auto i = degree_interval(std::hypot(truth + draws.normal(), draws.normal()));
+      EXPECT_LT(i.low, i.high);
+      hits += i.low <= truth && truth <= i.high ? 1 : 0;
+    }
+    EXPECT_NEAR(hits / trials, .95, .02) << truth;
+  }
+}
+
+} // namespace
+} // namespace umov

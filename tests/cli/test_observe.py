@@ -1,0 +1,312 @@
+"""umov observe and reduce: from a scenario to counts and back, through every instrument."""
+import math
+import statistics
+
+import pytest
+from astropy.table import Table
+
+from conftest import ROOT
+
+CUBE = """
+umov = 1
+seed = 7
+instrument = "{instrument}"
+[observer]
+name = "Maui"
+lat_deg = 20.7083
+lon_deg = -156.2578
+alt_m = 3058
+[time]
+start = 2018-01-21T05:11:00Z
+stop = 2018-01-21T05:12:{seconds:02}Z
+[[object]]
+name = "cube"
+orbit = {{ file = "{root}/data/tle/hst.tle", norad = 20580 }}
+mesh = {{ file = "sphere.obj", unit = "m", up = "+Z" }}
+materials = {{ default = "paint_white" }}
+[atmosphere]
+seeing = {{ arcsec = 3 }}
+{air}
+[observation]
+bands = ["nm:550"]
+width_nm = 50
+{observation}
+[output]
+dir = "out"
+formats = ["ecsv"]
+pol_frame = "{frame}"
+"""
+
+
+@pytest.fixture
+def scene(umov, tmp_path):
+    """scene(instrument, observation, ...) writes observe.toml for a small white sphere."""
+    assert umov("mesh", "make", "sphere", "--radius", "0.2", "--facets", "1000", "-o", "sphere.obj").code == 0
+
+    def write(instrument, observation, air="", frame="altaz", seconds=0):
+        (tmp_path / "observe.toml").write_text(
+            CUBE.format(instrument=instrument, observation=observation, air=air, root=ROOT, frame=frame,
+                        seconds=seconds))
+        return tmp_path / "observe.toml"
+
+    return write
+
+
+def observed(umov, tmp_path, scenario, *reduce):
+    done = umov("observe", scenario, "--force")
+    assert done.code == 0, done.err
+    reduced = umov("reduce", "out/counts.ecsv", "-o", "stokes.ecsv", *reduce)
+    assert reduced.code == 0, reduced.err
+    return Table.read(tmp_path / "stokes.ecsv"), Table.read(tmp_path / "out/truth.ecsv"), done.err + reduced.err
+
+
+def pulls(stokes, truth):
+    """(found - true)/sd of I, q, u (and v), set by set."""
+    out = {name: [] for name in ("I", "q", "u", "v")}
+    sets = {}
+    for number, *values in zip(truth["set_id"], truth["I"], truth["q"], truth["u"], truth["v"]):
+        sets.setdefault(int(number), []).append(values)
+    for row in stokes:
+        if row["flags"]:
+            continue
+        own = sets[int(row["set_id"])]
+        light = sum(values[0] for values in own) / len(own)
+        out["I"].append((row["I_obs"] - light) / row["I_err"])
+        for k, name in enumerate("quv", 1):
+            if not math.isnan(row[f"cov_{name}{name}"]):
+                mean = sum(values[k] * values[0] for values in own) / len(own) / light
+                out[name].append((row[name] - mean) / math.sqrt(row[f"cov_{name}{name}"]))
+    return {name: values for name, values in out.items() if values}
+
+
+CASES = [("c11_imx250", "exposure_s = 0.1", 3), ("hwp_wollaston_1m", "exposure_s = 0.02\ncadence_s = 0.1", 3),
+         ("moptop_2m", "exposure_s = 0.02\ncadence_s = 0.1", 3), ("mmt9_channel", "exposure_s = 0.1", 3),
+         ("full_stokes_3m6", "exposure_s = 0.005\ncadence_s = 0.1", 4)]
+
+
+@pytest.mark.parametrize("instrument, observation, parameters", CASES)
+def test_what_is_recorded_is_found_again(scene, umov, tmp_path, instrument, observation, parameters):
+    extra = "" if instrument != "moptop_2m" else "\n[polarimeter]\nperiod_s = 1.6"
+    path = scene(instrument, observation + extra, air="scintillation = { c_y = 0.3 }")
+    stokes, truth, _ = observed(umov, tmp_path, path)
+    found = pulls(stokes, truth)
+    assert len(found) == parameters
+    for name, values in found.items():
+        if name == "I":  # scintillation of a set is drawn log-normal about 1
+            continue
+        n = len(values)
+        assert n >= 150
+        # Four standard errors of a mean and of a standard deviation.
+        assert abs(statistics.mean(values)) < 4 / math.sqrt(n) + 0.02, name
+        assert abs(statistics.stdev(values) - 1) < 4 / math.sqrt(2 * n) + 0.02, name
+    dof = [row["chi2"] / row["dof"] for row in stokes if not row["flags"] and row["dof"] > 0]
+    assert len(dof) > 0 or instrument in ("mmt9_channel", "full_stokes_3m6")  # as many states as unknowns
+    assert not dof or abs(statistics.mean(dof) - 1) < 4 * math.sqrt(2 / len(dof)) + 0.02
+
+
+def test_frames_of_the_sky_tell_the_same(scene, umov, tmp_path):
+    """A camera on an alt-azimuth mount: the same counts, and q_scat does not know the frame."""
+    tables = {}
+    for frame in ("altaz", "equatorial", "scattering"):
+        path = scene("c11_imx250", "exposure_s = 1", frame=frame)
+        stokes, _, _ = observed(umov, tmp_path, path)
+        tables[frame] = (Table.read(tmp_path / "out/counts.ecsv"), stokes)
+    counts, stokes = tables["altaz"]
+    for other in ("equatorial", "scattering"):
+        assert max(abs(counts["counts"] - tables[other][0]["counts"])) < 1e-6 * max(counts["counts"])
+        assert max(abs(stokes["q_scat"] - tables[other][1]["q_scat"])) < 1e-9
+        assert max(abs(stokes["p"] - tables[other][1]["p"])) < 1e-9
+    assert max(abs(tables["scattering"][1]["q_scat"] - tables["scattering"][1]["q"])) < 1e-12
+
+
+def test_the_same_seed_gives_the_same_bytes(scene, umov, tmp_path):
+    path = scene("c11_imx250", "exposure_s = 1")
+    for threads in (1, 2):
+        assert umov("observe", path, "-o", f"t{threads}", "--threads", threads).code == 0
+    one, two = ((tmp_path / f"t{n}/counts.ecsv").read_bytes() for n in (1, 2))
+    assert one == two
+    assert umov("observe", path, "-o", "other", "--set", "seed=8").code == 0
+    assert (tmp_path / "other/counts.ecsv").read_bytes() != one
+
+
+def test_the_locked_scenario_repeats_it(scene, umov, tmp_path):
+    assert umov("observe", scene("usafa16", "exposure_s = 5"), "-o", "a").code == 0
+    assert umov("observe", "a/scenario.lock.toml", "-o", "b").code == 0
+    assert (tmp_path / "a/counts.ecsv").read_bytes() == (tmp_path / "b/counts.ecsv").read_bytes()
+
+
+def test_counts_can_be_fitted_without_umov(scene, umov, tmp_path):
+    """Rows of four orientations solved by hand: unweighted least squares is within the errors."""
+    stokes, _, _ = observed(umov, tmp_path, scene("c11_imx250", "exposure_s = 1"))
+    counts = Table.read(tmp_path / "out/counts.ecsv")
+    import numpy
+    first = counts[counts["set_id"] == counts["set_id"][0]]
+    rows = numpy.array([[r["w0"], r["w1"], r["w2"]] for r in first])
+    found = numpy.linalg.lstsq(rows, numpy.array(first["counts"] - first["sky"]), rcond=None)[0]
+    assert abs(found[1] / found[0] - stokes["q"][0]) < 0.2 * math.sqrt(stokes["cov_qq"][0])
+
+
+def test_a_drift_is_told_in_figures(scene, umov, tmp_path):
+    _, _, said = observed(umov, tmp_path, scene("usafa16", "exposure_s = 2", air='scintillation = "none"'))
+    assert "fourier:PERIOD" in said and "looks like p" in said
+
+
+BAD = [("exposure_s = 0", "exposure_s = 0"), ("exposure_s = 1\ncadence_s = 0.5", "cannot overlap"),
+       ('exposure_s = 1\nlevel = "image"', "level"),
+       ("exposure_s = 1\n[telescope]\nobstruction = 1", "0 to below 1"),
+       ("exposure_s = 1\n[telescope]\naperture_m = 0", "above 0"),
+       ("exposure_s = 1\n[telescope]\nthroughput = 1.2", "0 to 1"),
+       ("exposure_s = 1\n[telescope]\nfocal_length_m = 0", "above 0"),
+       ("exposure_s = 1\n[detector]\ngain_e_adu = 0", "above 0"),
+       ("exposure_s = 1\n[detector]\nbits = 33", "1 to 32"),
+       ("exposure_s = 1\n[detector]\nread_e = -1", "0 or more"),
+       ('exposure_s = 1\n[detector]\nmodel = "ccd"\nem_gain = 300', "only an emccd"),
+       ('exposure_s = 1\n[detector]\nshutter = "rolling"', "line_time_s"),
+       ("exposure_s = 1\n[polarimeter]\nlayout = [[90, 45], [135, 90]]", "[[90, 45], [135, 0]]"),
+       ("exposure_s = 1\n[polarimeter]\nretardence_deg = 90", "retardance_deg")]
+
+
+@pytest.mark.parametrize("observation, told", BAD)
+def test_what_is_refused(scene, umov, observation, told):
+    done = umov("observe", scene("c11_imx250", observation), "--force")
+    assert done.code == 3, done.err
+    assert told in done.err and "observe.toml:" in done.err
+
+
+def test_what_a_scenario_must_have(scene, umov, tmp_path):
+    path = scene("c11_imx250", "exposure_s = 1")
+    text = path.read_text()
+    path.write_text(text.replace("c11_imx250", "c11_imx25"))
+    done = umov("observe", path)
+    assert done.code == 3 and 'Did you mean "c11_imx250"' in done.err
+    path.write_text(text.split("[observation]")[0])
+    done = umov("observe", path)
+    assert done.code == 3 and "umov instrument list" in done.err
+    own = 'exposure_s = 1\n[polarimeter]\ntype = "hwp_dual_beam"'
+    path.write_text(scene("c11_imx250", own).read_text().replace(
+        'instrument = "c11_imx250"', "") + "\n[telescope]\naperture_m = 1\nfocal_length_m = 8\n[detector]\npixel_um = 9\n")
+    done = umov("observe", path)
+    assert done.code == 3 and "x_axis_deg" in done.err
+
+
+def test_full_wells_end_it(scene, umov):
+    done = umov("observe", scene("c11_imx250", "exposure_s = 20", air='sky = { mag = 3.0 }'))
+    assert done.code == 4 and "saturated" in done.err
+
+
+def test_states_that_cannot_tell_a_parameter(scene, umov, tmp_path):
+    own = ('exposure_s = 1\nsequence = [{ plate_deg = 0 }, { plate_deg = 45 }, { plate_deg = 90 }, { plate_deg = 135 }]'
+           "\n[polarimeter]\nretardance_deg = 90")
+    done = umov("observe", scene("full_stokes_3m6", own))
+    assert done.code == 3 and "condition number" in done.err
+
+
+COUNTS = """time_utc,set_id,band,counts,sky,sky_err,var_read,w0,w1,w2,w3
+2018-01-21T05:12:00Z,1,V,3120,120,3.464,234,.49,.4867,0,0
+2018-01-21T05:12:00Z,1,V,2705,120,3.464,234,.5,0,.4967,0
+2018-01-21T05:12:00Z,1,V,2210,120,3.464,234,.51,-.5066,0,0
+2018-01-21T05:12:00Z,1,V,2650,120,3.464,234,.505,0,-.5016,0
+"""
+
+
+def test_own_counts_are_reduced(umov, tmp_path):
+    """The worked set of docs/theory/observing.md 6 (anchors: fit_q, fit_u, fit_sd_q), typed to four digits."""
+    (tmp_path / "own.csv").write_text(COUNTS)
+    done = umov("reduce", "own.csv", "-o", "own.ecsv")
+    assert done.code == 0, done.err
+    row = Table.read(tmp_path / "own.ecsv")[0]
+    assert abs(row["q"] - 0.19940) < 2e-4 and abs(row["u"] - 0.01584) < 2e-4
+    assert abs(math.sqrt(row["cov_qq"]) - 0.014814) < 2e-5
+
+
+BAD_COUNTS = [(COUNTS.replace(",var_read", ",read"), "var_read"), (COUNTS.replace("234", "-234"), "variances"),
+              (COUNTS.replace("05:12:00Z,1,V,2650", "05:11:00Z,1,V,2650"), "times go back"),
+              (COUNTS.replace("2705", "many"), "no number"),
+              ("\n".join(COUNTS.splitlines()[:3]) + "\n", "cannot tell"), ("", "without the column")]
+
+
+@pytest.mark.parametrize("text, told", BAD_COUNTS)
+def test_counts_that_are_refused(umov, tmp_path, text, told):
+    (tmp_path / "bad.csv").write_text(text)
+    done = umov("reduce", "bad.csv")
+    assert done.code == 3 and told in done.err, done.err
+
+
+def test_counts_that_are_no_number_are_left_out(umov, tmp_path):
+    (tmp_path / "gap.csv").write_text(COUNTS.replace("2650", "nan"))
+    done = umov("reduce", "gap.csv")
+    assert done.code == 0 and "1 row without counts" in done.err
+
+
+def test_instruments_say_what_was_assumed(umov, tmp_path):
+    names = [line.split()[0] for line in umov("instrument", "list").out.splitlines()[1:]]
+    assert "c11_imx250" in names and len([n for n in names if "_" in n]) >= 5
+    shown = umov("instrument", "show", "moptop_2m", "-o", "own.toml")
+    assert shown.code == 0
+    again = umov("instrument", "show", "own.toml")
+    assert again.out == (tmp_path / "own.toml").read_text()
+    assert "assumed" in again.out
+
+
+def standards(path, q0=0.0042, u0=-0.0018, efficiency=0.985, phi0=0.8):
+    """Counts of four ideal orientations, 1e8 electrons: an unpolarized star and HD 204827, instrument turned."""
+    lines = ["# instrument: own", "# pol_frame: equatorial",
+             "time_utc,set_id,name,band,x_axis_pa,counts,sky,sky_err,var_read,w0,w1,w2,w3"]
+    for number, (name, p, axis) in enumerate([("none", 0, a) for a in (0, 30, 60, 90)] +
+                                             [("HD 204827", 0.04893, a) for a in (10, 40, 70, 100)]):
+        x = 2 * math.radians(59.10 - axis)
+        turn = 2 * math.radians(phi0)
+        q = efficiency * p * math.cos(x + turn) + q0
+        u = efficiency * p * math.sin(x + turn) + u0
+        for angle in (0, 45, 90, 135):
+            a = 2 * math.radians(angle)
+            b = 2 * math.radians(angle + axis)
+            counts = 2.5e7 * (1 + q * math.cos(a) + u * math.sin(a))
+            lines.append(f"2018-01-21T05:{number:02}:00Z,{number},{name},V,{axis},{counts!r},0,0,0,"
+                         f".25,{math.cos(b) / 4!r},{math.sin(b) / 4!r},0")
+    path.write_text("\n".join(lines) + "\n")
+
+
+def test_standards_calibrate_an_instrument(umov, tmp_path):
+    standards(tmp_path / "stars.csv")
+    (tmp_path / "known.csv").write_text("name,p_percent,pa_deg\nnone,0,0\nHD 204827,4.893,59.10\n")
+    done = umov("calibrate", "stars.csv", "--standards", "known.csv", "-o", "own.toml")
+    assert done.code == 0, done.err
+    found = dict(line.split(" = ") for line in (tmp_path / "own.toml").read_text().splitlines() if " = " in line
+                 and not line.startswith("#"))
+    # What the counts were made with; 1e8 electrons would leave 1.4e-4 of noise, these have none.
+    assert abs(float(found["efficiency"]) - 0.985) < 1e-6 and abs(float(found["phi0_deg"]) - 0.8) < 1e-4
+    assert abs(float(found["q0"]) - 0.0042) < 1e-7 and abs(float(found["u0"]) + 0.0018) < 1e-7
+    done = umov("reduce", "stars.csv", "--calibration", "own.toml", "-o", "back.ecsv")
+    assert done.code == 0, done.err
+    for row in Table.read(tmp_path / "back.ecsv"):
+        if row["name"] != "none":
+            assert abs(row["p"] - 0.04893) < 1e-6 and abs(row["pa"] - 59.10) < 1e-3
+
+
+def test_calibrations_that_are_refused(umov, tmp_path):
+    standards(tmp_path / "stars.csv")
+    (tmp_path / "none.csv").write_text("name,p_percent,pa_deg\nnone,0,0\n")
+    done = umov("calibrate", "stars.csv", "--standards", "none.csv")
+    assert done.code == 3 and "polarized" in done.err
+    (tmp_path / "other.csv").write_text("name,p_percent,pa_deg\nVega,0,0\n")
+    assert umov("calibrate", "stars.csv", "--standards", "other.csv").code == 3
+    (tmp_path / "known.csv").write_text("name,p_percent,pa_deg\nnone,0,0\nHD 204827,4.893,59.10\n")
+    assert umov("calibrate", "stars.csv", "--standards", "known.csv", "-o", "own.toml").code == 0
+    for key, other in (("instrument", "own"), ("band", "V")):
+        text = (tmp_path / "own.toml").read_text().replace(f'{key} = "{other}"', f'{key} = "another"')
+        (tmp_path / "wrong.toml").write_text(text)
+        done = umov("reduce", "stars.csv", "--calibration", "wrong.toml")
+        assert done.code == 3 and "another" in done.err
+
+
+def test_how_long_to_expose(umov, tmp_path):
+    """C11 at magnitude 8: 2 electrons variance of p^2 to 1e-4, so 2e4 electrons and a little noise of the camera."""
+    done = umov("exposure", "--instrument", "c11_imx250", "--mag", 8, "-o", "e.csv")
+    assert done.code == 0, done.err
+    rows = {line.split(",")[0]: float(line.split(",")[1])
+            for line in (tmp_path / "e.csv").read_text().splitlines() if line[0] not in "#q"}
+    assert abs(rows["electrons"] * rows["share_star"] - 2e4) < 1
+    assert abs(rows["time"] * rows["rate"] / rows["electrons"] - 1) < 1e-6
+    assert abs(rows["share_star"] + rows["share_sky"] + rows["share_dark"] + rows["share_read"] - 1) < 1e-6
+    assert umov("exposure", "--instrument", "c11_imx250", "--alt", 1).code == 2

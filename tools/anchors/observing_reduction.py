@@ -1,0 +1,185 @@
+"""From counts back to Stokes parameters (docs/theory/observing.md 5 to 7), by least squares and quadrature in numpy."""
+
+from math import erf, lgamma
+
+import numpy as np
+
+DEGREE = np.pi / 180
+ANGLES = np.array([0, 45, 90, 135]) * DEGREE
+D300 = 299 / 301
+GAINS = np.array([.98, 1, 1.02, 1.01])
+ROWS = GAINS[:, None] / 2 * np.column_stack([np.ones(4), D300 * np.cos(2 * ANGLES), D300 * np.sin(2 * ANGLES)])
+COUNTS, SKY = np.array([3120., 2705, 2210, 2650]), 120.
+FIXED = 40 * 2.3 ** 2 + SKY * 40 / 400 + 40 * 2.6 ** 2 / 12
+
+
+def weighted(c):
+    inverse = np.linalg.inv(c)
+    covariance = np.linalg.inv(ROWS.T @ inverse @ ROWS)
+    return covariance @ ROWS.T @ inverse @ (COUNTS - SKY), covariance
+
+
+def fit(loops=60):
+    """The fixed point: variances of the model that they lead to."""
+    variance = COUNTS + FIXED
+    for _ in range(loops):
+        s, covariance = weighted(np.diag(variance))
+        variance = ROWS @ s + SKY + FIXED
+    return s, covariance, variance
+
+
+def fractions(s, covariance):
+    j = np.array([[-s[1] / s[0] ** 2, 1 / s[0], 0], [-s[2] / s[0] ** 2, 0, 1 / s[0]]])
+    return s[1:] / s[0], j @ covariance @ j.T
+
+
+def common_columns(s):
+    gains = [np.eye(4)[k] * (ROWS @ s) for k in range(4)]
+    own = [ROWS[:, 0] * s[0] * np.cos(2 * ANGLES), ROWS[:, 0] * s[0] * np.sin(2 * ANGLES)]
+    return {"instrumental": own, "gains": gains, "scintillation": [ROWS @ s]}
+
+
+PRIORS = {"instrumental": .002, "gains": .005, "scintillation": .0139}
+
+
+def nuisance_rows():
+    s, _, variance = fit()
+    columns = common_columns(s)
+    for case in ("instrumental", "gains", "scintillation", "all"):
+        names = list(PRIORS) if case == "all" else [case]
+        j = np.array([c * PRIORS[n] for n in names for c in columns[n]]).T
+        c = np.diag(variance) + j @ j.T
+        new, covariance = weighted(c)
+        value, spread = fractions(new, covariance)
+        r = COUNTS - SKY - ROWS @ new
+        yield f"{case}_q", value[0]
+        yield f"{case}_sd_q", np.sqrt(spread[0, 0])
+        yield f"{case}_sd_u", np.sqrt(spread[1, 1])
+        yield f"{case}_sd_i", np.sqrt(covariance[0, 0]) / new[0]
+        yield f"{case}_likelihood", r @ np.linalg.solve(c, r) + np.linalg.slogdet(c)[1]
+
+
+def rice(x, nu):
+    """x exp(-(x^2 + nu^2)/2) I0(x nu)."""
+    return x * np.exp(-(x * x + nu * nu) / 2) * np.i0(x * nu)
+
+
+def interval_table():
+    """Feldman & Cousins' construction on grids: good to a grid step, .01."""
+    step = .01
+    x = np.arange(step / 2, 13, step)
+    wide = np.arange(0, 12, .02)
+    densities = np.array([rice(x, nu) for nu in wide])
+    best = densities.max(axis=0)
+    out = {v: [np.inf, 0] for v in (.5, 1, 2, 3, 4, 5)}
+    for nu in np.arange(0, 7.2, .005):
+        f = rice(x, nu)
+        order = np.argsort(-f / best)
+        inside = np.zeros(len(x), bool)
+        inside[order[:np.searchsorted(np.cumsum(f[order]) * step, .95) + 1]] = True
+        for v, ends in out.items():
+            if inside[int(v / step)]:
+                ends[0], ends[1] = min(ends[0], nu), max(ends[1], nu)
+    return out
+
+
+def angle_half(x):
+    t = np.linspace(0, np.pi / 2, 40001)
+    eta = x / np.sqrt(2) * np.cos(2 * t)
+    g = (1 / np.sqrt(np.pi) + eta * np.exp(eta ** 2) * (1 + np.array([erf(e) for e in eta])))
+    g *= np.exp(-x * x / 2) / np.sqrt(np.pi)
+    sums = np.concatenate([[0], np.cumsum((g[1:] + g[:-1]) / 2 * np.diff(t))]) * 2
+    return np.interp(.682689492137086, sums, t) / DEGREE
+
+
+def counts_likelihood(n, mu, read):
+    k = np.arange(int(mu + 40 * np.sqrt(mu) + 60))
+    terms = k * np.log(mu) - mu - np.array([lgamma(i + 1) for i in k]) - (n - k) ** 2 / 2 / read ** 2
+    exact = np.log(np.sum(np.exp(terms - terms.max()))) + terms.max() - np.log(read * np.sqrt(2 * np.pi))
+    m, v = n + read ** 2, mu + read ** 2
+    return exact, m * np.log(v) - v - lgamma(m + 1), -(n - mu) ** 2 / 2 / v - np.log(2 * np.pi * v) / 2
+
+
+def multiplied(x, mu, gain):
+    """Sum over the number of electrons that went in: each gives an exponential output of mean `gain`."""
+    n = np.arange(1, 60)
+    log_terms = [k * np.log(mu) - mu - lgamma(k + 1) + (k - 1) * np.log(x) - x / gain - k * np.log(gain) - lgamma(k)
+                 for k in n]
+    return np.log(np.sum(np.exp(log_terms)))
+
+
+def standards():
+    factor, offset = .985 * np.exp(2j * .8 * DEGREE), .0042 - .0018j
+    axes = np.array([0, 30, 60, 90, 10, 40, 70, 100]) * DEGREE
+    truth = np.concatenate([np.zeros(4), np.full(4, .04893 * np.exp(2j * 59.10 * DEGREE))])
+    g = np.column_stack([truth * np.exp(-2j * axes), np.ones(8)])
+    inverse = np.linalg.inv(g.conj().T @ g)
+    return abs(factor), 5e-4 * np.sqrt(inverse[0, 0].real), 5e-4 * np.sqrt(inverse[1, 1].real)
+
+
+def photometry():
+    star = np.array([8.120, 9.455, 8.902, 10.231, 9.017, 9.788])
+    x = np.array([1.02, 1.21, 1.55, 1.08, 1.90, 1.37])
+    c = np.array([.05, .62, 1.10, .35, .71, -.02])
+    seen = star - 20.571 + .118 * x - .030 * c + np.array([.004, -.003, .002, -.005, .001, .001])
+    m = np.column_stack([np.ones(6), -x, -c])
+    found, left = np.linalg.lstsq(m, star - seen, rcond=None)[:2]
+    covariance = np.linalg.inv(m.T @ m) * left[0] / 3
+    return found, np.sqrt(np.diag(covariance)), np.sqrt(left[0] / 3), covariance
+
+
+def sequence_rms(order, exposure):
+    angles = np.array(order) * DEGREE
+    begin = np.arange(len(order)) * exposure
+    out = []
+    for phase in np.linspace(0, 2 * np.pi, 73):  # the mean of each exposure of 1 + .3 cos, period 10 s
+        f = lambda t: t + .3 * 10 / 2 / np.pi * np.sin(2 * np.pi * t / 10 + phase)  # noqa: E731
+        light = f(begin + exposure) - f(begin)
+        w = np.column_stack([np.ones(len(order)), np.cos(2 * angles), np.sin(2 * angles)]) / 2
+        s = np.linalg.lstsq(w, light, rcond=None)[0]
+        out.append(np.hypot(s[1], s[2]) / s[0])
+    return np.sqrt(np.mean(np.square(out))), max(out)
+
+
+def rows():
+    """name, formula, value."""
+    six = "observing.md 6"
+    s, covariance, variance = fit()
+    for k, name in enumerate("IQU"):
+        yield f"fit_{name}", six, (s[k], "10g")
+        yield f"fit_{name}{name}", six, (covariance[k, k], "9g")
+    value, spread = fractions(s, covariance)
+    yield "fit_q", six, (value[0], "9g")
+    yield "fit_u", six, (value[1], "9g")
+    yield "fit_sd_q", six, (np.sqrt(spread[0, 0]), "9g")
+    yield "fit_sd_u", six, (np.sqrt(spread[1, 1]), "9g")
+    yield "fit_chi2", six, (np.sum((COUNTS - SKY - ROWS @ s) ** 2 / variance), "9g")
+    for x in (.5, 1, 2, 3, 5):
+        yield f"debiased_{x:g}", six, (x - (1 - np.exp(-x * x)) / 2 / x, "9g")
+    for x in (1, 2, 3):
+        yield f"angle_{x}", six, (angle_half(x), "7g")
+    for x, (low, high) in interval_table().items():
+        yield f"low_{x:g}", six, (low, 2)
+        yield f"high_{x:g}", six, (high, 2)
+    for name, order, exposure in (("plain", (0, 45, 90, 135), 1), ("crossed", (0, 90, 45, 135), 1),
+                                  ("mirrored", (0, 45, 90, 135, 135, 90, 45, 0), 1),
+                                  ("quick", (0, 45, 90, 135), .05)):
+        rms, largest = sequence_rms(order, exposure)
+        yield f"tumble_{name}_rms", six, (rms, "7g")
+        yield f"tumble_{name}_largest", six, (largest, "7g")
+    five = "observing.md 5"
+    for name, number in zip(("factor", "factor_sd", "offset_sd"), standards()):
+        yield f"standards_{name}", five, (number, "9g")
+    found, sds, residual, c = photometry()
+    for k, name in enumerate(("zero", "extinction", "colour")):
+        yield f"photometry_{name}", five, (found[k], "9g")
+        yield f"photometry_{name}_sd", five, (sds[k], "9g")
+    yield "photometry_residual", five, (residual, "9g")
+    yield "photometry_correlation", five, (c[0, 1] / sds[0] / sds[1], "9g")
+    seven = "observing.md 7"
+    for name, number in nuisance_rows():
+        yield name, seven, (number, "9g")
+    for n, mu, read in ((3.2, 5, 1.6), (52.3, 45, 3), (1012, 980, 7)):
+        for kind, number in zip(("exact", "shifted", "normal"), counts_likelihood(n, mu, read)):
+            yield f"{kind}_{mu}", seven, (number, "8g")
+    yield "multiplied", seven, (multiplied(1500, 3, 300), "8g")
