@@ -24,8 +24,7 @@ Scene box_wing(const std::vector<Band> &bands) {
   for (std::size_t g = 0; g < mesh.groups.size(); ++g)
     materials.push_back(three[g % 3]);
   Diagnostics diagnostics;
-  auto scene = make_scene(mesh, NormalMode::Flat, bands, materials, materials,
-                          diagnostics);
+  auto scene = make_scene(mesh, NormalMode::Flat, bands, materials, materials, diagnostics);
   EXPECT_TRUE(scene) << scene.error().text();
   return std::move(*scene);
 }
