@@ -60,6 +60,8 @@ def test_bash_completes(umov, tmp_path):
     assert complete(umov, tmp_path, "umov", "passes", "--vis") == ["--visible"]
     assert complete(umov, tmp_path, "umov", "completion", "z") == ["zsh"]
     assert complete(umov, tmp_path, "umov", "run", "-o", "") == []  # files
+    assert complete(umov, tmp_path, "umov", "passes", "-s", "mauna") == ["mauna-kea"]
+    assert complete(umov, tmp_path, "umov", "brdf", "mli_kapton_") == ["mli_kapton_back"]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

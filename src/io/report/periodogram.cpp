@@ -35,7 +35,8 @@ double median_step(std::span<const double> seconds) {
   return *middle;
 }
 
-/// Sine and cosine of every sample at one frequency, and by how much a step of frequency turns them.
+/// Sine and cosine of every sample at one frequency, and by how much a step of frequency turns
+/// them.
 struct Phasors {
   std::vector<double> c, s, step_c, step_s;
 

@@ -7,7 +7,8 @@
 
 namespace umov {
 
-/// Power against period, shortest last. `trend` is the parabola in (t - first) / span that was taken off.
+/// Power against period, shortest last. `trend` is the parabola in (t - first) / span that was
+/// taken off.
 struct Periodogram {
   std::vector<double> period_s;
   std::vector<double> power; ///< part of the variance that a sine of that period takes, in [0, 1]

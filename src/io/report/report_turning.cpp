@@ -9,7 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Periods and powers of one band of the epochs [first, last), with 5 digits; null where there are too few.
+/// Periods and powers of one band of the epochs [first, last), with 5 digits; null where there are
+/// too few.
 Json band_json(const LightCurve &curve, std::size_t first, std::size_t last, std::size_t band) {
   std::vector<double> seconds, magnitudes;
   const std::size_t bands = curve.bands.size();

@@ -6,8 +6,8 @@
 
 namespace umov {
 
-/// {"periods": [{name, seconds}], "passes": [{pass, start, span_s, bands: [{period, power, best, trend}]}]};
-/// null where the attitude does not turn by itself.
+/// {"periods": [{name, seconds}], "passes": [{pass, start, span_s, bands: [{period, power, best,
+/// trend}]}]}; null where the attitude does not turn by itself.
 nlohmann::ordered_json turning_json(const ReportInput &input);
 
 } // namespace umov
