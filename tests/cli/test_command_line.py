@@ -86,7 +86,7 @@ def test_groff_reads_the_manual_page(umov, tmp_path):
 
 def test_every_verb_has_the_same_habits(umov):
     found = leaves(umov)
-    no_table = {"run", "mesh make", "mesh convert", "material plot", "material import", "orbit convert",
+    no_table = {"mesh make", "mesh convert", "material plot", "material import", "orbit convert",
                 "paper", "render", "schema", "completion", "man"}
     assert {path[5:] for path, words in found.items() if "--json" not in words} == no_table
     only_prints = {"mesh info", "mesh check", "doctor"}
