@@ -1,7 +1,10 @@
 #include "completion.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <umov/io/scenario.h>
+#include <umov/io/sites.h>
 
 namespace umov::cli {
 namespace {
@@ -30,6 +33,24 @@ std::string patterns(const std::vector<std::string> &texts) {
   return fmt::format("{}", fmt::join(out, "|"));
 }
 
+/// Values worth offering: those that there are, or names of what an option may also take as a file
+/// or as numbers.
+std::vector<std::string> values_of(const OptionFacts &option) {
+  if (!option.choices.empty())
+    return option.choices;
+  const auto is_called = [&](const char *name) {
+    return std::find(option.names.begin(), option.names.end(), name) != option.names.end();
+  };
+  std::vector<std::string> out;
+  if (is_called("--site"))
+    out = site_names();
+  if (option.is_argument && is_called("material"))
+    out = material_library();
+  for (std::string &name : out)
+    std::replace(name.begin(), name.end(), ' ', '-'); // sites are known by either
+  return out;
+}
+
 /// "umov render --shade" for each name of an option.
 std::vector<std::string> places(const VerbFacts &verb, const OptionFacts &option) {
   std::vector<std::string> out;
@@ -53,7 +74,7 @@ std::vector<std::string> words_of(const VerbFacts &verb) {
   for (const VerbFacts &below : verb.verbs)
     out.push_back(below.name);
   for (const OptionFacts &option : verb.options) {
-    const auto &words = option.is_argument ? option.choices : option.names;
+    const auto words = option.is_argument ? values_of(option) : option.names;
     out.insert(out.end(), words.begin(), words.end());
   }
   return out;
@@ -64,7 +85,7 @@ std::vector<std::string> file_places(const VerbFacts &root) {
   std::vector<std::string> out;
   for (const VerbFacts *verb : all_verbs(root))
     for (const OptionFacts &option : verb->options)
-      if (!option.is_argument && !option.value.empty() && option.choices.empty())
+      if (!option.is_argument && !option.value.empty() && values_of(option).empty())
         for (const std::string &place : places(*verb, option))
           out.push_back(place);
   return out;
@@ -76,9 +97,9 @@ std::string bash_completion(const VerbFacts &root) {
   std::string values, words;
   for (const VerbFacts *verb : all_verbs(root)) {
     for (const OptionFacts &option : verb->options)
-      if (!option.is_argument && !option.choices.empty())
+      if (!option.is_argument && !values_of(option).empty())
         values += fmt::format("    {}) words={} ;;\n", patterns(places(*verb, option)),
-                              quoted(fmt::format("{}", fmt::join(option.choices, " "))));
+                              quoted(fmt::format("{}", fmt::join(values_of(option), " "))));
     words += fmt::format("    {}) words={} ;;\n", quoted(verb->path),
                          quoted(fmt::format("{}", fmt::join(words_of(*verb), " "))));
   }
@@ -122,14 +143,14 @@ std::string zsh_completion(const VerbFacts &root) {
       verbs += described(below.name, below.text);
     for (const OptionFacts &option : verb->options) {
       if (option.is_argument)
-        for (const std::string &choice : option.choices)
+        for (const std::string &choice : values_of(option))
           verbs += described(choice, option.text);
       else
         for (const std::string &name : option.names)
           options += described(name, option.text);
-      if (!option.is_argument && !option.choices.empty())
+      if (!option.is_argument && !values_of(option).empty())
         values += fmt::format("    ({}) compadd -- {}; return ;;\n",
-                              patterns(places(*verb, option)), fmt::join(option.choices, " "));
+                              patterns(places(*verb, option)), fmt::join(values_of(option), " "));
     }
     words +=
         fmt::format("    ({}) verbs=({} ); options=({} ) ;;\n", quoted(verb->path), verbs, options);
@@ -177,9 +198,9 @@ std::string fish_completion(const VerbFacts &root) {
       lines += fmt::format("{} -a {} -d {}\n", begin, below.name, fish_quoted(below.text));
     for (const OptionFacts &option : verb->options) {
       const std::string choices =
-          option.choices.empty()
+          values_of(option).empty()
               ? ""
-              : " -a " + fish_quoted(fmt::format("{}", fmt::join(option.choices, " ")));
+              : " -a " + fish_quoted(fmt::format("{}", fmt::join(values_of(option), " ")));
       std::string names;
       for (const std::string &name : option.names)
         names += name.starts_with("--")  ? " -l " + name.substr(2)
@@ -187,10 +208,10 @@ std::string fish_completion(const VerbFacts &root) {
                                          : "";
       if (option.is_argument && choices.empty())
         continue; // files, by the default of fish
-      const char *value = option.is_argument       ? " -f"
-                          : option.value.empty()   ? ""
-                          : option.choices.empty() ? " -r -F"
-                                                   : " -x";
+      const char *value = option.is_argument          ? (option.choices.empty() ? "" : " -f")
+                          : option.value.empty()      ? ""
+                          : values_of(option).empty() ? " -r -F"
+                                                      : " -x";
       lines += begin + names + value + choices + " -d " + fish_quoted(option.text) + "\n";
     }
   }

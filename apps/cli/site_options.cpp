@@ -1,5 +1,8 @@
 #include "site_options.h"
 
+#include <algorithm>
+#include <fmt/format.h>
+#include <regex>
 #include <umov/io/sites.h>
 #include <umov/time/earth_orientation.h>
 
@@ -27,14 +30,26 @@ Result<void> take_earth_orientation(const SiteOptions &o) {
                                      : use_earth_orientation_file(o.earth_orientation);
 }
 
-Result<Site> site_of(const SiteOptions &o) {
-  if (!o.site.empty())
-    return site_from(o.site);
-  for (const auto *one : {o.latitude, o.longitude, o.altitude})
+Result<Site> site_of(const SiteOptions &o, const Common &common) {
+  constexpr const char *no_height = "no height was given: 0 m above the WGS 84 ellipsoid is taken";
+  if (!o.site.empty()) {
+    UMOV_ASSIGN(site, site_from(o.site));
+    if (std::count(o.site.begin(), o.site.end(), ',') == 1)
+      note(common, fmt::format("{}; --site {},HEIGHT tells it", no_height, o.site));
+    return site;
+  }
+  for (const auto *one : {o.latitude, o.longitude})
     if (one->count() == 0)
       return fail(ErrorCode::Usage,
                   "where? Give --site NAME or LAT,LON,ALT, or --lat-deg, --lon-deg and --alt-m");
+  if (o.altitude->count() == 0)
+    note(common, fmt::format("{}; --alt-m tells it", no_height));
   return make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m);
+}
+
+Result<Epoch<Utc>> time_of(const std::string &text) {
+  static const std::regex date("[0-9]{4}-[0-9]{2}-[0-9]{2}");
+  return utc_from_iso(std::regex_match(text, date) ? text + "T00:00:00Z" : text);
 }
 
 } // namespace umov::cli

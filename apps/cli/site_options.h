@@ -1,7 +1,10 @@
 #pragma once
+#include "console.h"
+
 #include <CLI/CLI.hpp>
 #include <string>
 #include <umov/frames/site.h>
+#include <umov/time/epoch.h>
 
 namespace umov::cli {
 
@@ -18,7 +21,10 @@ void add_earth_orientation(CLI::App &verb, std::string &file);
 /// Takes that table for this process, where one is given.
 Result<void> take_earth_orientation(const SiteOptions &options);
 
-/// Usage where nothing, or not all of it, is said.
-Result<Site> site_of(const SiteOptions &options);
+/// Usage where nothing, or not all of it, is said. A height that is not said is 0, with a remark.
+Result<Site> site_of(const SiteOptions &options, const Common &common);
+
+/// A time as options take it: ISO 8601, or a date alone for 0 h UTC of that day.
+Result<Epoch<Utc>> time_of(const std::string &text);
 
 } // namespace umov::cli

@@ -46,10 +46,10 @@ Result<void> put_outcome(const OrbitOptions &o, const jobs::TableOutcome &out,
 
 Result<void> run_ephemeris(const OrbitOptions &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
-  UMOV_ASSIGN(site, site_of(o.site));
+  UMOV_ASSIGN(site, site_of(o.site, common));
   UMOV_TRY(take_earth_orientation(o.site));
-  UMOV_ASSIGN(start, utc_from_iso(o.start));
-  UMOV_ASSIGN(stop, utc_from_iso(o.stop));
+  UMOV_ASSIGN(start, time_of(o.start));
+  UMOV_ASSIGN(stop, time_of(o.stop));
   const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
   JobConsole console(common);
   UMOV_ASSIGN(out,
@@ -62,7 +62,7 @@ Result<void> run_propagate(const OrbitOptions &o, const Common &common, Diagnost
   UMOV_TRY(check_output(o.output));
   jobs::StatesRequest request{o.orbit, {}, o.keep_going};
   for (const std::string &text : o.at) {
-    UMOV_ASSIGN(time, utc_from_iso(text));
+    UMOV_ASSIGN(time, time_of(text));
     request.times.push_back(time);
   }
   JobConsole console(common);

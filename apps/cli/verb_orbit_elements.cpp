@@ -1,6 +1,7 @@
 // umov orbit show and convert: files of mean elements and CCSDS messages, read and written.
 
 #include "console.h"
+#include "site_options.h"
 #include "verbs.h"
 
 #include "tables.h"
@@ -48,8 +49,8 @@ Result<jobs::ConversionRequest> request_of(const ElementsOptions &o) {
   jobs::ConversionRequest out{o.file, form_name(o), o.output, {}, {}, o.step_s, now()};
   if (out.form != "oem" || o.start.empty() || o.stop.empty())
     return out;
-  UMOV_ASSIGN(start, utc_from_iso(o.start));
-  UMOV_ASSIGN(stop, utc_from_iso(o.stop));
+  UMOV_ASSIGN(start, time_of(o.start));
+  UMOV_ASSIGN(stop, time_of(o.stop));
   out.start = start;
   out.stop = stop;
   return out;

@@ -35,12 +35,12 @@ Result<jobs::PassModel> model_of(const PassesOptions &o) {
   return out;
 }
 
-Result<jobs::PassesRequest> request_of(const PassesOptions &o) {
+Result<jobs::PassesRequest> request_of(const PassesOptions &o, const Common &common) {
   jobs::PassesRequest out;
-  UMOV_ASSIGN(site, site_of(o.site));
+  UMOV_ASSIGN(site, site_of(o.site, common));
   UMOV_TRY(take_earth_orientation(o.site));
-  UMOV_ASSIGN(start, utc_from_iso(o.start));
-  UMOV_ASSIGN(stop, utc_from_iso(o.stop));
+  UMOV_ASSIGN(start, time_of(o.start));
+  UMOV_ASSIGN(stop, time_of(o.stop));
   UMOV_ASSIGN(model, model_of(o));
   out.orbit = o.orbit;
   out.norad = o.norad;
@@ -58,7 +58,7 @@ Result<jobs::PassesRequest> request_of(const PassesOptions &o) {
 
 Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
-  UMOV_ASSIGN(request, request_of(o));
+  UMOV_ASSIGN(request, request_of(o, common));
   jobs::JobOptions options = job_options(common);
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;

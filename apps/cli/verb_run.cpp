@@ -3,9 +3,11 @@
 #include "verbs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/jobs/run.h>
@@ -67,9 +69,45 @@ void tell_of_objects(const RunOptions &o, const std::vector<jobs::ObjectRun> &ob
                              counted(one.object.scene.bands.size(), "band")));
 }
 
+/// Reads and checks everything; the output folder last, as nothing is written.
+Result<void> check_alone(const RunOptions &o, const Scenario &scenario, const Common &common,
+                         Diagnostics &diagnostics) {
+  jobs::JobOptions options = job_options(common);
+  options.allow_bad_checksum = o.allow_bad_checksum;
+  options.allow_old_elements = o.allow_old_elements;
+  JobConsole console(common);
+  UMOV_ASSIGN(objects,
+              jobs::load_run(scenario, options, console.monitor(common.verbose), diagnostics));
+  tell_of_objects(o, objects, common);
+  UMOV_TRY(RunFolder::open(scenario.output_dir, common.force));
+  return {};
+}
+
+/// Many epochs take a while until the first of them is lit: said before.
+void tell_of_search(const Scenario &scenario, const Common &common) {
+  const ScenarioTime &span = *scenario.time;
+  const double count = std::floor(seconds_between(span.stop, span.start) / span.step_s) + 1;
+  constexpr double many = 200'000; // about a second
+  if (count >= many)
+    note(common, fmt::format("looking for passes among {:.0f} epochs", count));
+}
+
+/// The folder and what is in it, for programs.
+void print_json(const jobs::RunResult &result, const RunFolder &folder) {
+  nlohmann::ordered_json objects = nlohmann::ordered_json::array();
+  for (const jobs::ObjectRun &one : result.objects)
+    objects.push_back(nlohmann::ordered_json::parse(jobs::summary_json(one.outcome)));
+  const nlohmann::ordered_json out{{"folder", folder.path().string()},
+                                   {"complete", !result.stopped},
+                                   {"objects", std::move(objects)}};
+  fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnostics) {
   const auto started = std::chrono::system_clock::now();
   UMOV_ASSIGN(scenario, read_with_options(o));
+  if (o.dry_run)
+    return check_alone(o, scenario, common, diagnostics);
   UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
   jobs::JobOptions options = job_options(common);
   options.allow_bad_checksum = o.allow_bad_checksum;
@@ -78,15 +116,14 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   JobConsole console(common);
   const jobs::Monitor monitor = console.monitor(common.verbose);
   UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
-  if (o.dry_run) {
-    tell_of_objects(o, objects, common);
-    return {};
-  }
+  tell_of_search(scenario, common);
   UMOV_ASSIGN(result,
               jobs::compute_run(std::move(objects), scenario, options, monitor, diagnostics));
   UMOV_TRY(jobs::write_run(result, scenario, options, manifest_of_command(common, started),
                            diagnostics, folder));
-  if (!common.quiet) {
+  if (common.json)
+    print_json(result, folder);
+  else if (!common.quiet) {
     for (const jobs::ObjectRun &one : result.objects)
       fmt::print("{}", jobs::summarize(one.outcome));
     fmt::print("written to {}{}\n", printable(folder.path().string()),
@@ -133,7 +170,7 @@ void add_run(CLI::App &app, const Exit &exit_with) {
   verb->add_flag("-v,--verbose", common->verbose, "Also say what was read and how long it took");
   add_threads(*verb, *common);
   add_cache(*verb, *common);
-  add_common(*verb, *common, false);
+  add_common(*verb, *common, true);
   verb->callback([o, common, exit_with] {
     if (o->device != "auto" &&
         std::ranges::find(device_names(), o->device) == device_names().end()) {

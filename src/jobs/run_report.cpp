@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <umov/attitude/tumble.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
@@ -171,6 +172,32 @@ std::string summarize(const LightCurveOutcome &outcome) {
     out += fmt::format("  {} with nothing both lit and seen: intensity 0, q and u empty\n",
                        counted(static_cast<std::size_t>(dark), "epoch"));
   return out;
+}
+
+std::string summary_json(const LightCurveOutcome &outcome) {
+  using Json = nlohmann::ordered_json;
+  const LightCurve &curve = outcome.curve;
+  Json bands = Json::array(), passes = Json::array();
+  for (const Band &band : curve.bands)
+    bands.push_back(band.name);
+  for (const Pass &pass : outcome.passes) {
+    const PassNumbers n = numbers_of(curve, pass.id);
+    const bool is_known = std::isfinite(n.brightest);
+    passes.push_back({{"pass_id", pass.id},
+                      {"alt_max", pass.culmination_altitude.degrees()},
+                      {"phase_min", n.phase_min},
+                      {"phase_max", n.phase_max},
+                      {"mag_min", is_known ? Json(n.brightest) : Json(nullptr)},
+                      {"mag_max", is_known ? Json(n.faintest) : Json(nullptr)},
+                      {"has_limit", n.has_limit},
+                      {"p_max", n.p_max}});
+  }
+  const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),
+                                  [](const LightCurveEpoch &e) { return e.is_dark; });
+  return Json{{"name", curve.object},          {"norad_cat_id", curve.norad_cat_id},
+              {"epochs", curve.epochs.size()}, {"dark", dark},
+              {"bands", std::move(bands)},     {"passes", std::move(passes)}}
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 } // namespace umov::jobs

@@ -157,7 +157,7 @@ def test_doubtful_meshes_are_told_of(umov, scenario, tmp_path):
 @pytest.mark.parametrize("override", [
     "time.step_s=0", "time.stepp=1", "render.accuracy=9", "observer.lat_deg=north", "seed=-1",
     "time.only.alt_min_deg=99", "bands.set=x", "observer=3", "object.mesh.file=no.obj",
-    "time.start=2018-01-21", "object.materials.default=paper_all",
+    "time.start=2018-01-21T05:00:00", "object.materials.default=paper_all",
 ])
 def test_errors_of_overrides_name_the_option(umov, scenario, override):
     done = umov("run", scenario(), "--set", override)

@@ -60,6 +60,8 @@ def test_bash_completes(umov, tmp_path):
     assert complete(umov, tmp_path, "umov", "passes", "--vis") == ["--visible"]
     assert complete(umov, tmp_path, "umov", "completion", "z") == ["zsh"]
     assert complete(umov, tmp_path, "umov", "run", "-o", "") == []  # files
+    assert complete(umov, tmp_path, "umov", "passes", "-s", "mauna") == ["mauna-kea"]
+    assert complete(umov, tmp_path, "umov", "brdf", "mli_kapton_") == ["mli_kapton_back"]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -84,7 +86,7 @@ def test_groff_reads_the_manual_page(umov, tmp_path):
 
 def test_every_verb_has_the_same_habits(umov):
     found = leaves(umov)
-    no_table = {"run", "mesh make", "mesh convert", "material plot", "material import", "orbit convert",
+    no_table = {"mesh make", "mesh convert", "material plot", "material import", "orbit convert",
                 "paper", "render", "schema", "completion", "man"}
     assert {path[5:] for path, words in found.items() if "--json" not in words} == no_table
     only_prints = {"mesh info", "mesh check", "doctor"}

@@ -95,10 +95,6 @@ def test_hints_by_meaning_and_all_slips_at_once(umov, scenario, changes, words):
     assert done.code == 3 and all(word in done.err for word in words), done.err
 
 
-def test_a_date_alone_is_answered_with_the_time_that_is_meant(umov):
-    done = umov("passes", "--orbit", HST, "-s", "maui", "--start", "2018-01-21", "--stop", "2018-01-22")
-    assert done.code == 3 and "2018-01-21T00:00:00Z" in done.err, done.err
-
 
 def test_a_spin_starts_with_the_scenario(umov, scenario, tmp_path):
     name = scenario(('attitude = { mode = "nadir" }',
@@ -153,3 +149,52 @@ def test_the_gallery_draws_every_material(umov, tmp_path):
     assert all(abs(y) < 1e-9 for line in figures["paper_spectralon"]["lines"] for y in line["y"])
     gold = figures["paper_au"]["lines"][0]
     assert gold["y"][gold["x"].index(140)] == pytest.approx(58.9, abs=0.1)
+
+
+def test_a_site_without_height_stands_at_zero(umov, tmp_path):
+    """To the byte the passes of the same site at 0 m, with a remark that -q leaves out."""
+    outputs = [umov("passes", "--orbit", HST, *where, *DAY, "-o", f"{k}.csv") for k, where in enumerate((
+        ("-s", "20.7,-156.3,0"), ("-s", "20.7,-156.3"), ("--lat-deg", "20.7", "--lon-deg", "-156.3")))]
+    assert [done.code for done in outputs] == [0, 0, 0], outputs[1].err
+    assert len({(tmp_path / f"{k}.csv").read_text() for k in range(3)}) == 1
+    assert "0 m above" not in outputs[0].err
+    assert "--site 20.7,-156.3,HEIGHT" in outputs[1].err and "--alt-m tells it" in outputs[2].err
+    assert "0 m above" not in umov("passes", "--orbit", HST, "-s", "20.7,-156.3", *DAY, "-q").err
+
+
+def test_a_date_alone_begins_its_day(umov, scenario, tmp_path):
+    for name, clock in (("a", ""), ("b", "T00:00:00Z")):
+        done = umov("passes", "--orbit", HST, "-s", "maui", "--start", "2018-01-21" + clock, "--stop",
+                    "2018-01-22" + clock, "-o", name + ".csv")
+        assert done.code == 0, done.err
+    assert (tmp_path / "a.csv").read_text() == (tmp_path / "b.csv").read_text()
+    done = umov("run", scenario(), "--dry-run", "--set", "time.start=2018-01-21", "--set", "time.stop=2018-01-22")
+    assert done.code == 0, done.err
+
+
+def test_a_run_tells_programs_what_it_found(umov, scenario, tmp_path):
+    done = umov("run", scenario(), "--json", "-o", "told")
+    assert done.code == 0, done.err
+    told = json.loads(done.out)
+    rows = Table.read(tmp_path / "told/lightcurve.ecsv")
+    one, bands = told["objects"][0], len(set(rows["band"]))
+    assert told["complete"] and told["folder"].endswith("told")
+    assert one["epochs"] * bands == len(rows) and one["dark"] >= 0
+    first = one["passes"][0]
+    known = [row["mag"] for row in rows if row["pass_id"] == first["pass_id"] and str(row["mag_limit"]) == "False"]
+    assert first["mag_min"] == pytest.approx(min(known), abs=1e-9)
+
+
+def test_a_dry_run_looks_at_the_folder_last(umov, scenario, tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/thesis.txt").write_text("x")
+    done = umov("run", scenario(), "--dry-run", "-o", "mine", "--set", "object.materials.default=paper_all")
+    assert done.code == 3 and "paper_all" in done.err, done.err
+    done = umov("run", scenario(), "--dry-run", "-o", "mine")
+    assert done.code == 6 and "fine;" in done.err, done.err
+
+
+def test_a_long_search_is_told_before_it_starts(umov, scenario):
+    span = ("--set", "time.start=2018-01-21", "--set", "time.stop=2018-01-25", "--set", "time.only.alt_min_deg=88")
+    done = umov("run", scenario(), *span, "--set", "time.step_s=1")
+    assert "looking for passes among 345601 epochs" in done.err, done.err

@@ -52,5 +52,8 @@ Result<void> write_run(RunResult &run, const Scenario &scenario, const JobOption
 
 /// Passes with brightness and polarization, as lines for a person.
 std::string summarize(const LightCurveOutcome &outcome);
+/// The same as a JSON object: name, norad_cat_id, epochs, dark, bands, passes with pass_id,
+/// alt_max, phase_min, phase_max, mag_min, mag_max (null where nothing is known), has_limit, p_max.
+std::string summary_json(const LightCurveOutcome &outcome);
 
 } // namespace umov::jobs

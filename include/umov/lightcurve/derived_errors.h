@@ -28,12 +28,15 @@ public:
     return (std::abs(cosine) * s_.half_width.q + std::abs(sine) * s_.half_width.u) / s_.intensity +
            std::abs(value) * i_;
   }
+  /// Of V/I.
   [[nodiscard]] double v() const {
     return s_.half_width.v / s_.intensity + std::abs(s_.sky.v) * i_;
   }
+  /// Of the degree of linear polarization.
   [[nodiscard]] double p() const {
     return s_.p > 0 ? part(s_.p, s_.scattering.q / s_.p, s_.scattering.u / s_.p) : part(0, 1, 1);
   }
+  /// Of the position angle; 90 where nothing is known of it.
   [[nodiscard]] double pa_deg() const {
     const double across = part(0, s_.scattering.u / s_.p, s_.scattering.q / s_.p);
     return std::min(90.0, 0.5 * std::atan2(across, s_.p) * (180 / pi));

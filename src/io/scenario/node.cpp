@@ -21,7 +21,7 @@ bool is_of(const toml::node &node, Kind kind) {
   case Kind::Boolean:
     return node.is_boolean();
   case Kind::Time:
-    return node.is_date_time() || node.is_string();
+    return node.is_date() || node.is_date_time() || node.is_string();
   case Kind::List:
     return node.is_array();
   case Kind::Table:
@@ -183,6 +183,9 @@ bool Node::boolean(const char *name, bool fallback) const {
 namespace {
 
 Result<Epoch<Utc>> time_from(const toml::node &node) {
+  if (const auto day = node.value<toml::date>()) // alone: 0 h UTC
+    return utc_from_iso(
+        fmt::format("{:04}-{:02}-{:02}T00:00:00Z", day->year, day->month, day->day));
   const auto stamp = node.value<toml::date_time>();
   return utc_from_iso(stamp ? iso_of(*stamp) : node.value_or(std::string()));
 }

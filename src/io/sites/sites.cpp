@@ -45,9 +45,9 @@ std::vector<std::string> site_names() {
 }
 
 Result<Site> site_from(const std::string &text) {
-  if (const auto cells = csv_cells(text); cells && cells->size() == 3) {
-    const auto lat = parse_number((*cells)[0].text), lon = parse_number((*cells)[1].text),
-               alt = parse_number((*cells)[2].text);
+  if (const auto cells = csv_cells(text); cells && (cells->size() == 3 || cells->size() == 2)) {
+    const auto lat = parse_number((*cells)[0].text), lon = parse_number((*cells)[1].text);
+    const auto alt = cells->size() == 3 ? parse_number((*cells)[2].text) : std::optional(0.0);
     if (lat && lon && alt)
       return make_site("", *lat, *lon, *alt);
   }

@@ -15,12 +15,17 @@ TEST(Sites, ByNameAndByNumbers) {
   ASSERT_TRUE(own);
   EXPECT_NEAR(own->longitude.degrees(), -20.5, 1e-12);
   EXPECT_EQ(own->altitude_m, 30);
+  const auto low = site_from("10,-20.5");
+  ASSERT_TRUE(low);
+  EXPECT_EQ(low->altitude_m, 0);
+  EXPECT_EQ(low->longitude.radians(), own->longitude.radians());
 }
 
 TEST(Sites, SaysWhatIsWrong) {
   EXPECT_NE(site_from("Mauii").error().message.find("Did you mean \"maui\"?"), std::string::npos);
   EXPECT_NE(site_from("95,0,0").error().message.find("lat"), std::string::npos);
-  EXPECT_FALSE(site_from("1,2"));
+  EXPECT_FALSE(site_from("1,2,"));
+  EXPECT_FALSE(site_from("1"));
   EXPECT_FALSE(site_from(""));
   for (const std::string &name : site_names())
     EXPECT_TRUE(site_from(name)) << name;
