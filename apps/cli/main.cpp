@@ -60,6 +60,7 @@ int run(int argc, char **argv) {
   cli::add_brdf(app, exit_with);
   cli::add_bench(app, exit_with);
   cli::add_material(app, exit_with);
+  cli::add_bands(app, exit_with);
   cli::add_mesh(app, exit_with);
   cli::add_observe(app, exit_with);
   cli::add_calibrate(app, exit_with);

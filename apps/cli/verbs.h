@@ -11,6 +11,7 @@ using Exit = std::function<void(int)>;
 
 void add_run(CLI::App &app, const Exit &exit_with);
 void add_signature(CLI::App &app, const Exit &exit_with);
+void add_bands(CLI::App &app, const Exit &exit_with);
 void add_bench(CLI::App &app, const Exit &exit_with);
 void add_brdf(CLI::App &app, const Exit &exit_with);
 void add_material(CLI::App &app, const Exit &exit_with);

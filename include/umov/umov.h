@@ -52,6 +52,7 @@
 #include <umov/io/mesh_file.h>
 #include <umov/io/obj.h>
 #include <umov/io/observation.h>
+#include <umov/io/passband_file.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
 #include <umov/io/poses_file.h>
@@ -66,7 +67,9 @@
 #include <umov/io/table.h>
 #include <umov/io/table_sink.h>
 #include <umov/io/table_stream.h>
+#include <umov/io/tle.h>
 #include <umov/io/trajectory_file.h>
+#include <umov/jobs/band_tables.h>
 #include <umov/jobs/brdf.h>
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/ephemeris.h>
@@ -104,10 +107,12 @@
 #include <umov/observation/moving_joints.h>
 #include <umov/observation/track.h>
 #include <umov/optics/band.h>
+#include <umov/optics/band_grid.h>
 #include <umov/optics/emission.h>
 #include <umov/optics/fresnel.h>
 #include <umov/optics/index.h>
 #include <umov/optics/interface.h>
+#include <umov/optics/passband.h>
 #include <umov/optics/realisable.h>
 #include <umov/optics/stokes.h>
 #include <umov/orbit/elements.h>
@@ -116,6 +121,7 @@
 #include <umov/orbit/passes.h>
 #include <umov/orbit/select.h>
 #include <umov/orbit/sgp4.h>
+#include <umov/orbit/state.h>
 #include <umov/orbit/state_vector.h>
 #include <umov/orbit/trajectory.h>
 #include <umov/photometry/earthshine.h>
@@ -151,6 +157,7 @@
 #include <umov/surface/surface.h>
 #include <umov/time/earth_orientation.h>
 #include <umov/time/epoch.h>
+#include <umov/time/hourly.h>
 #include <umov/time/span.h>
 #include <umov/time/time_system.h>
 // clang-format on

@@ -70,7 +70,7 @@ class LightCurve:
     pa = _Column("position angle of polarization, [0, 180) [deg]", True)
     q_scat = _Column("Q/I, + perpendicular to the scattering plane", True)
     u_scat = _Column("U/I in the scattering frame", True)
-    mag = _Column("AB magnitude", True)
+    mag = _Column("magnitude of `mag_system`", True)
     mjd_utc = _Column("UTC as modified Julian date [d]")
     name = _Column("object")
     pass_id = _Column("catalogue number and culmination")
@@ -120,6 +120,11 @@ class LightCurve:
                 return _Part(self, slice(first, first + count))
             first += count
         raise UsageError(f"there is no object \"{name}\"; there are {', '.join(self.objects)}")
+
+    @property
+    def mag_system(self) -> str:
+        """System of the magnitudes: AB, ST or Vega."""
+        return str(self.table["mag_system"][0]) if len(self.table["mag_system"]) else "AB"
 
     @property
     def time(self) -> Time:
@@ -220,7 +225,7 @@ class LightCurve:
             if here.any():
                 text += f"  phase {phase.min():.0f}-{phase.max():.0f} deg"
             if np.isfinite(mag).any():
-                text += f"  mag {np.nanmin(mag):.1f} to {np.nanmax(mag):.1f} AB"
+                text += f"  mag {np.nanmin(mag):.1f} to {np.nanmax(mag):.1f} {self.mag_system}"
             if np.isfinite(p).any():
                 text += f"  p up to {100 * np.nanmax(p):.0f} %"
             lines.append(text)

@@ -90,12 +90,12 @@ def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], 
 
 
 def magnitude(curve: LightCurve, axes: Axes | None = None) -> Axes:
-    """AB magnitude over time, bright at the top.
+    """Magnitude over time, bright at the top.
 
     >>> bool(plot.magnitude(curve).yaxis_inverted())
     True
     """
-    axes = _over_time(curve, axes, curve.mag, "AB magnitude")
+    axes = _over_time(curve, axes, curve.mag, f"{curve.mag_system} magnitude")
     if not axes.yaxis_inverted():
         axes.invert_yaxis()
     return axes
@@ -209,7 +209,7 @@ def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
 
 
 def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
-    """Shorter minus longer wavelength over time, AB magnitudes: larger is redder.
+    """Shorter minus longer wavelength over time, in magnitudes: larger is redder.
 
     >>> [text.get_text() for text in plot.colour_index(curve).get_legend().get_texts()]
     ['nm:425 − nm:550', 'nm:550 − nm:650']

@@ -1,7 +1,9 @@
 #include <umov/frames/earth.h>
 
+#include <array>
 #include <erfa.h>
 #include <umov/time/earth_orientation.h>
+#include <umov/time/hourly.h>
 
 namespace umov {
 namespace {
@@ -13,6 +15,13 @@ struct Ut1Date {
 Ut1Date ut1_of(Epoch<Utc> time, double dut1_s) {
   Ut1Date out{};
   eraUtcut1(time.jd1, time.jd2, dut1_s, &out.a, &out.b);
+  return out;
+}
+
+/// Celestial intermediate pole and origin: X, Y and s of IAU 2006/2000A [rad].
+std::array<double, 3> celestial_pole(double tt1, double tt2) {
+  std::array<double, 3> out{};
+  eraXys06a(tt1, tt2, &out[0], &out[1], &out[2]);
   return out;
 }
 
@@ -39,8 +48,13 @@ Rotation<Itrs, Gcrs> itrs_from_gcrs(Epoch<Utc> time) {
   const EarthOrientation eo = earth_orientation(time);
   const Ut1Date ut1 = ut1_of(time, eo.dut1_s);
   const Epoch<Tt> tt = tt_from(time);
-  double m[3][3];
-  eraC2t06a(tt.jd1, tt.jd2, ut1.a, ut1.b, eo.x_p_rad, eo.y_p_rad, m);
+  // As eraC2t06a, but for the pole, which is known from its place on whole hours.
+  thread_local Hourly<3> pole_of_date(celestial_pole);
+  const auto [x, y, s] = pole_of_date(tt);
+  double intermediate[3][3], motion[3][3], m[3][3];
+  eraC2ixys(x, y, s, intermediate);
+  eraPom00(eo.x_p_rad, eo.y_p_rad, eraSp00(tt.jd1, tt.jd2), motion);
+  eraC2tcio(intermediate, eraEra00(ut1.a, ut1.b), motion, m);
   return from_rows<Itrs, Gcrs>(m);
 }
 

@@ -35,11 +35,12 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
   out.made_utc = to_iso(counts.rows.back().time);
   if (!out.pol_frame.empty() && out.pol_frame != "equatorial")
     return fail(ErrorCode::BadInput, "standards have position angles from north: counts in the "
-                                     "frame \"" + out.pol_frame + "\" cannot be held against them");
+                                     "frame \"" +
+                                         out.pol_frame + "\" cannot be held against them");
   for (const CountRow &row : counts.rows)
     if (row.band != out.band)
-      return fail(ErrorCode::BadInput, "two bands, " + out.band + " and " + row.band +
-                                           ": calibrate each by itself");
+      return fail(ErrorCode::BadInput,
+                  "two bands, " + out.band + " and " + row.band + ": calibrate each by itself");
   UMOV_ASSIGN(table, reduce(counts, {}, {}, diagnostics));
   const auto axes = axes_of(counts);
   std::vector<StandardMeasurement> data;

@@ -23,7 +23,7 @@ struct Observed {
 Observed observe_all(const EphemerisRequest &request, const Trajectory &orbit,
                      const std::vector<Epoch<Utc>> &times, unsigned threads,
                      const Monitor &monitor) {
-  std::vector<TemeState> states(times.size());
+  std::vector<OrbitState> states(times.size());
   const std::size_t count = orbit.at(times, states); // the rows before the first gap are good
   std::vector<char> is_done(count);
   Observed out;
@@ -68,9 +68,17 @@ Table ephemeris_table(const std::vector<ObservingGeometry> &rows, ShadowModel sh
   add("itrs_vx", "km / s", "velocity, ITRS", [](G g) { return g.itrs_velocity_km_s.x; });
   add("itrs_vy", "km / s", "velocity, ITRS", [](G g) { return g.itrs_velocity_km_s.y; });
   add("itrs_vz", "km / s", "velocity, ITRS", [](G g) { return g.itrs_velocity_km_s.z; });
-  add("teme_x", "km", "position, TEME", [](G g) { return g.teme.position_km.x; });
-  add("teme_y", "km", "position, TEME", [](G g) { return g.teme.position_km.y; });
-  add("teme_z", "km", "position, TEME", [](G g) { return g.teme.position_km.z; });
+  std::vector<Vec3<Teme>> teme;
+  teme.reserve(rows.size());
+  for (G row : rows)
+    teme.push_back(teme_state(row.state, row.time).position_km);
+  const auto add_teme = [&](const char *name, double Vec3<Teme>::*axis) {
+    add_numbers(t, teme, name, "km", "position, TEME",
+                [axis](const Vec3<Teme> &position) { return position.*axis; });
+  };
+  add_teme("teme_x", &Vec3<Teme>::x);
+  add_teme("teme_y", &Vec3<Teme>::y);
+  add_teme("teme_z", &Vec3<Teme>::z);
   add("sun_az", "deg", "azimuth of the Sun", [](G g) { return g.sun_azimuth.degrees(); });
   add("sun_alt", "deg", "altitude of the Sun, airless",
       [](G g) { return g.sun_altitude.degrees(); });

@@ -11,7 +11,7 @@ Result<PassModels> PassModels::of_body(const PassModel &wanted, Diagnostics &dia
     return fail(ErrorCode::Usage,
                 "--model needs --material: nothing is guessed; see umov material list");
   UMOV_ASSIGN(material, read_material(wanted.material));
-  UMOV_ASSIGN(bands, bands_from({wanted.band.empty() ? "nm:550" : wanted.band}));
+  UMOV_ASSIGN(bands, bands_named({wanted.band.empty() ? "nm:550" : wanted.band}));
   const bool is_sphere = wanted.body == PassModel::Body::Sphere;
   if (is_sphere) {
     UMOV_ASSIGN(sphere, PassLight::of_sphere(wanted.size_m, material, bands));
@@ -51,9 +51,10 @@ Result<PassModels> PassModels::of_scene(const PassModel &wanted, const JobOption
   for (std::size_t k = 0; k < scene.objects.size(); ++k) {
     const int norad = scene.objects[k].orbit ? scene.objects[k].orbit->norad : 0;
     UMOV_ASSIGN(object, load_object(scene, k, {.allow_old_elements = true}, diagnostics));
-    UMOV_ASSIGN(light, PassLight::of_body({std::move(object.scene), object.attitude,
-                                           scene.objects[k].parts, scene.has_solar_disk},
-                                          options_of(scene, options)));
+    UMOV_ASSIGN(light,
+                PassLight::of_body({std::move(object.scene), object.attitude,
+                                    scene.objects[k].parts, scene.has_solar_disk, scene.magnitudes},
+                                   options_of(scene, options)));
     if (norad > 0)
       out.by_number_.insert_or_assign(norad, light);
     else

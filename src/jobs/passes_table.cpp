@@ -104,9 +104,13 @@ void PassColumns::add_light() {
          [](E, P p) { return p.sunlit_share > 0 ? p.phase_min.degrees() : none; });
   number("phase_max", "deg", "largest phase angle while sunlit",
          [](E, P p) { return p.sunlit_share > 0 ? p.phase_max.degrees() : none; });
-  number("mag_min", "mag(AB)", "brightest while sunlit; empty where no model is given",
+  const std::string system = name_of(result_.magnitudes);
+  // Vega's is no unit that readers of ECSV know.
+  const std::string unit =
+      result_.magnitudes == MagnitudeSystem::Vega ? "mag" : "mag(" + system + ")";
+  number("mag_min", unit.c_str(), "brightest while sunlit; empty where no model is given",
          [](E, P p) { return p.magnitude_min; });
-  number("mag_max", "mag(AB)",
+  number("mag_max", unit.c_str(),
          fmt::format("faintest while sunlit; {:g} stands for fainter", faintest_magnitude).c_str(),
          [](E, P p) { return p.magnitude_max; });
   number("p_max", "", "largest degree of linear polarization while sunlit",

@@ -3,6 +3,7 @@
 #include "jobs/part_angles.h"
 #include "jobs/temperatures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
@@ -35,6 +36,15 @@ Result<void> check_request(const Scenario &scenario, const SignatureRequest &req
   const bool has_masks = request.method == LightMethod::Masks || !request.mask_file.empty();
   if (request.source != Source::Sun && has_masks)
     return fail(ErrorCode::Usage, "masks are for sunlight; a laser takes rays, own heat paths");
+  if (request.source != Source::Sun && has_curve(scenario.bands))
+    return fail(ErrorCode::BadInput,
+                fmt::format("band \"{}\" is a mean over sunlight; {} takes wavelengths, such as "
+                            "bands.set = \"nm:550\"",
+                            std::find_if(scenario.bands.begin(), scenario.bands.end(),
+                                         [](const Band &band) { return band.curve; })
+                                ->name,
+                            request.source == Source::Laser ? "a laser" : "own heat"),
+                {scenario.file});
   if ((request.source == Source::Thermal) != !request.temperatures.empty())
     return fail(ErrorCode::Usage, "--source thermal and --temperature go together");
   const LightMethod method = request.method.value_or(scenario.light.method);

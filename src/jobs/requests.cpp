@@ -21,6 +21,7 @@ LightCurveRequest light_curve_request(const Scenario &scenario, const ScenarioOb
   out.span = {scenario.time->start, scenario.time->stop, scenario.time->step_s};
   out.only = scenario.time->only;
   out.frame = scenario.frame;
+  out.magnitudes = scenario.magnitudes;
   out.earthshine = scenario.earthshine;
   out.has_moonlight = scenario.has_moonlight;
   out.has_refracted_shadow = scenario.has_refracted_shadow;

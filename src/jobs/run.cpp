@@ -67,6 +67,24 @@ void warn_of_accuracy(const LightCurveOutcome &outcome, const LightOptions &ligh
             : ": the largest number of points per pose was reached"));
 }
 
+/// The same of bands whose sum of wavelengths is not as good as theirs should be.
+void warn_of_bands(const LightCurve &curve, Diagnostics &diagnostics) {
+  constexpr double wanted = 1e-3; // docs/theory/bands.md, Eq. 8
+  std::size_t count = 0;
+  double worst = 0;
+  for (const LightCurveSample &s : curve.samples) {
+    const Stokes<ScatteringPlane> &e = s.band_err;
+    const double error = s.intensity > 0 ? std::max({e.i, e.q, e.u}) / s.intensity : 0;
+    count += error > wanted ? 1u : 0u;
+    worst = std::max(worst, error);
+  }
+  if (count > 0)
+    diagnostics.warn(
+        fmt::format("{} of {} rows have light whose colours change within the band faster "
+                    "than its wavelengths follow: up to {:.2g} of I, see band_err_*",
+                    count, curve.samples.size(), worst));
+}
+
 /// The same of the Earth's light, whose patches are cut up to a bound.
 void warn_of_earth(const LightCurveOutcome &outcome, const EarthshineOptions &options,
                    Diagnostics &diagnostics) {
@@ -74,7 +92,8 @@ void warn_of_earth(const LightCurveOutcome &outcome, const EarthshineOptions &op
   double worst = 0;
   const std::size_t bands = outcome.curve.bands.size();
   for (const SecondLight &light : outcome.curve.second_lights)
-    for (std::size_t i = 0; light.name == "earth" && i < outcome.curve.epochs.size(); ++i) {
+    for (std::size_t i = 0; light.source == SecondSource::Earth && i < outcome.curve.epochs.size();
+         ++i) {
       double error = 0;
       for (std::size_t b = 0; b < bands; ++b)
         if (const double full = light.intensity[i * bands + b].i; full > 0)
@@ -158,6 +177,7 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
     with_rows += is_empty ? 0u : 1u;
     if (!is_empty)
       warn_of_accuracy(objects[k].outcome, scenario.light, objects[k].light.floor_i, diagnostics);
+    warn_of_bands(objects[k].outcome.curve, diagnostics);
     if (const std::size_t gaps = objects[k].outcome.epochs_in_gaps; gaps > 0)
       diagnostics.warn(fmt::format("{} of the span in gaps of the ephemeris: no rows",
                                    counted(gaps, "epoch") + (gaps > 1 ? " lie" : " lies")));

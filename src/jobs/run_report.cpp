@@ -99,7 +99,7 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
                     .frame = request.frame,
                     .passes = outcome.passes};
   input.sky_track = sky_track(request, outcome.passes);
-  input.pure_materials = pure_material_curves(object.scene.front);
+  input.pure_materials = pure_material_curves(object.scene.front, object.scene.grid);
   // Few pictures of many passes: the page stays a page.
   const std::size_t per_pass = outcome.passes.size() > 4 ? 1 : 4;
   std::vector<std::size_t> epochs = choose_key_epochs(outcome.curve, per_pass);
@@ -137,8 +137,9 @@ std::string summarize(const LightCurveOutcome &outcome) {
                        pass.culmination_altitude.degrees(),
                        is_outside ? " (not among the epochs)" : "", n.phase_min, n.phase_max);
     if (std::isfinite(n.brightest))
-      out += fmt::format("  mag {:.1f} to {}{:.1f} AB  p up to {:.0f} %", n.brightest,
-                         n.has_limit ? "> " : "", n.faintest, 100 * n.p_max);
+      out += fmt::format("  mag {:.1f} to {}{:.1f} {}  p up to {:.0f} %", n.brightest,
+                         n.has_limit ? "> " : "", n.faintest, name_of(curve.magnitudes),
+                         100 * n.p_max);
     out += "\n";
   }
   const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <umov/core/parallel.h>
+#include <umov/io/light_curve_table.h>
 
 namespace umov::jobs {
 
@@ -61,6 +62,8 @@ SignatureRows SignatureRows::of(const std::vector<std::int64_t> &numbers,
   out.band_.resize(rows);
   for (auto &column : out.numbers_)
     column.resize(rows);
+  out.band_err_ = results.band_err;
+  out.bands_ = bands;
   constexpr std::size_t poses_per_task = 2048;
   parallel_for((poses.size() + poses_per_task - 1) / poses_per_task, threads,
                [&](std::size_t task) {
@@ -104,7 +107,22 @@ Table SignatureRows::table(bool is_emitted) && {
   out.add("band", "", "band as in the scene", std::move(band_));
   for (std::size_t i = 0; i < heads.size(); ++i)
     out.add(heads[i].name, heads[i].unit, heads[i].text, std::move(numbers_[i]));
+  if (!band_err_.empty()) {
+    const auto add = [&](const char *name, double Stokes<ScatteringPlane>::*part) {
+      std::vector<double> values;
+      for (const Stokes<ScatteringPlane> &error : band_err_)
+        values.push_back(error.*part);
+      out.add(name, unit,
+              "error of the band's sum of wavelengths (change if every other is left out)",
+              std::move(values));
+    };
+    add("band_err_i", &Stokes<ScatteringPlane>::i);
+    add("band_err_q", &Stokes<ScatteringPlane>::q);
+    add("band_err_u", &Stokes<ScatteringPlane>::u);
+    add("band_err_v", &Stokes<ScatteringPlane>::v);
+  }
   note_conventions(out);
+  note_curves(bands_, out);
   return out;
 }
 

@@ -29,6 +29,8 @@ private:
   std::vector<std::int64_t> pose_;
   std::vector<std::string> band_;
   std::vector<std::vector<double>> numbers_{number_columns};
+  std::vector<Stokes<ScatteringPlane>> band_err_; ///< of bands with a curve, else empty
+  std::vector<Band> bands_;
 };
 
 } // namespace umov::jobs

@@ -87,8 +87,9 @@ std::string sky_chart(const PassesRequest &request, const PassesResult &result) 
       "are UTC; an arrow stands at the end of each track.",
       "Dotted: more than half of the Sun's disk is behind the Earth."};
   if (has_magnitudes)
-    page.notes.emplace_back(
-        "Colour and mag: the brightest magnitude (AB) of the pass while sunlit.");
+    page.notes.push_back(
+        fmt::format("Colour and mag: the brightest magnitude ({}) of the pass while sunlit.",
+                    name_of(result.magnitudes)));
   else
     page.notes.emplace_back(
         "No magnitudes: give --model sphere --material paint_white, or --scene.");

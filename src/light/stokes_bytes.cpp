@@ -33,7 +33,7 @@ template <class Table, class Each> bool for_columns(Table &table, const Each &ea
   return each(table.i) && each(table.q) && each(table.u) && each(table.v) && each(table.i_err) &&
          each(table.q_err) && each(table.u_err) && each(table.v_err) && each(table.is_dark) &&
          each(table.method) && each(table.indirect) && each(table.glint_share) &&
-         each(table.material_i);
+         each(table.material_i) && each(table.band_err);
 }
 
 bool is_consistent(const StokesTable &table) {

@@ -37,6 +37,7 @@ void StokesTable::resize(std::size_t poses, std::size_t band_count) {
   indirect.clear();
   glint_share.clear();
   material_i.clear();
+  band_err.clear();
 }
 
 BandResult StokesTable::at(std::size_t pose, std::size_t band) const {

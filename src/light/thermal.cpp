@@ -34,7 +34,7 @@ Result<ThermalEmission> ThermalEmission::make(const Scene &scene,
                 fmt::format("{} temperatures for a mesh of {} groups; one for each was expected",
                             temperature_k.size(), scene.mesh.groups.size()));
   ThermalEmission out;
-  out.bands_ = scene.bands.size();
+  out.bands_ = scene.grid.nodes().size();
   std::vector<Table> tables;
   std::vector<std::pair<const Surface *, std::vector<Emissivity>>> known; // groups share materials
   for (std::size_t group = 0; group < temperature_k.size(); ++group) {
@@ -56,7 +56,7 @@ Result<ThermalEmission> ThermalEmission::make(const Scene &scene,
           same != known.end() ? same->second
                               : known.emplace_back(surface, emissivities(*surface)).second;
       for (std::size_t band = 0; band < out.bands_; ++band) {
-        const double planck = planck_radiance(scene.bands[band].wavelength, kelvin);
+        const double planck = planck_radiance(scene.grid.nodes()[band].wavelength, kelvin);
         Table &table = tables.emplace_back();
         for (std::size_t k = 0; k <= steps; ++k) {
           const Emissivity &e = of[band * (steps + 1) + k];

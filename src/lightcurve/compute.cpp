@@ -35,10 +35,11 @@ class RowMaker {
 public:
   RowMaker(const LightCurveRequest &request, const LightModel &light,
            const LightModel *many_directions, const Track &track, const KeptEpochs &kept,
-           std::vector<double> solar, LightCurve &curve, const std::atomic<bool> &cancel,
+           std::vector<PhotometricBand> colours, LightCurve &curve, const std::atomic<bool> &cancel,
            KeptBlocks blocks)
       : request_(request), light_(light), many_directions_(many_directions), track_(track),
-        kept_(kept), solar_(std::move(solar)), curve_(curve), cancel_(cancel), blocks_(blocks) {}
+        kept_(kept), colours_(std::move(colours)), curve_(curve), cancel_(cancel), blocks_(blocks) {
+  }
 
   /// Every finished block stays after a stop; returns the rows kept.
   std::size_t fill(const Progress &progress, std::optional<Error> &stopped);
@@ -60,7 +61,7 @@ private:
   const LightModel *many_directions_;
   const Track &track_;
   const KeptEpochs &kept_;
-  std::vector<double> solar_; ///< per band
+  std::vector<PhotometricBand> colours_;
   LightCurve &curve_;
   const std::atomic<bool> &cancel_;
   KeptBlocks blocks_;
@@ -88,7 +89,6 @@ void RowMaker::add_second_lights(const TrackPoint &point, std::size_t row) {
   const ObservingGeometry &geometry = point.geometry;
   const Rotation<Body, Gcrs> &body_from_gcrs = point.body_from_gcrs;
   const LightCurveRequest &request = request_;
-  const std::vector<double> &solar = solar_;
   LightCurve &curve = curve_;
   const std::size_t bands = curve.bands.size();
   const auto light = [&](const std::vector<Pose> &poses) {
@@ -101,14 +101,14 @@ void RowMaker::add_second_lights(const TrackPoint &point, std::size_t row) {
   EarthshineOptions earth = request.earthshine.value_or(EarthshineOptions{});
   earth.narrowest_lobe = narrowest_lobe(light_.scene());
   for (SecondLight &second : curve.second_lights) {
-    const auto sum = second.name == "moon"
+    const auto sum = second.source == SecondSource::Moon
                          ? moon_light(geometry, body_from_gcrs, north, bands, light)
                          : earth_light(geometry, body_from_gcrs, north, earth, bands, light);
     for (std::size_t b = 0; b < bands; ++b) {
       second.intensity[row * bands + b] = sum.stokes[b];
       second.half_width[row * bands + b] = sum.half_width[b];
       second.irradiance[row * bands + b] = irradiance_at_observer(
-          sum.stokes[b].i, solar[b], geometry.sun_distance_km, 1, geometry.range_km);
+          sum.stokes[b].i, colours_[b].solar, geometry.sun_distance_km, 1, geometry.range_km);
     }
   }
 }
@@ -148,8 +148,9 @@ void RowMaker::put(const StokesTable &table, std::size_t k, std::size_t row) {
   for (std::size_t b = 0; b < bands; ++b) {
     const BandResult result = table.at(k, b);
     LightCurveSample &sample = curve_.samples[row * bands + b];
-    sample =
-        sample_from(result, curve_.bands[b], solar_[b], epoch.geometry, request_, epoch.is_dark);
+    sample = sample_from(result, colours_[b], epoch.geometry, request_, epoch.is_dark);
+    if (!table.band_err.empty())
+      sample.band_err = table.band_err[k * bands + b];
     if (!table.indirect.empty() && result.stokes.i > 0)
       sample.indirect = table.indirect[k * bands + b] * (1 / result.stokes.i);
   }
@@ -230,14 +231,15 @@ LightCurve empty_curve(const LightCurveRequest &request, const LightModel &light
   curve.method = request.light.method;
   curve.norad_cat_id = request.track.orbit.norad_cat_id();
   curve.bands = light.scene().bands;
+  curve.magnitudes = request.magnitudes;
   curve.materials = light.materials();
   curve.epochs.resize(rows);
   curve.samples.resize(rows * curve.bands.size());
   curve.material_i.resize(curve.samples.size() * curve.materials.size());
   if (request.earthshine)
-    curve.second_lights.push_back({"earth", {}, {}, {}});
+    curve.second_lights.push_back({SecondSource::Earth, {}, {}, {}});
   if (request.has_moonlight)
-    curve.second_lights.push_back({"moon", {}, {}, {}});
+    curve.second_lights.push_back({SecondSource::Moon, {}, {}, {}});
   for (SecondLight &second : curve.second_lights) {
     second.intensity.resize(curve.samples.size());
     second.half_width.resize(curve.samples.size());
@@ -295,7 +297,7 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
                                               const std::atomic<bool> &cancel, KeptBlocks blocks) {
   if (const ElementSet *set = request.track.orbit.elements())
     UMOV_TRY(request.track.orbit.at(set->epoch)); // elements that cannot even start
-  UMOV_ASSIGN(solar, solar_irradiances(light.scene().bands));
+  UMOV_ASSIGN(colours, photometric_bands(light.scene().bands, request.magnitudes));
   UMOV_ASSIGN(track, Track::make(request.track));
   UMOV_ASSIGN(kept, keep_epochs(track, request.span, request.only, request.threads, cancel));
   LightCurveOutcome out;
@@ -304,8 +306,8 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
   out.passes_seen = kept.passes_seen;
   out.epochs_in_gaps = kept.epochs_in_gaps;
   out.stopped = kept.stopped;
-  RowMaker maker(request, light, many_directions, track, kept, std::move(solar), out.curve, cancel,
-                 blocks);
+  RowMaker maker(request, light, many_directions, track, kept, std::move(colours), out.curve,
+                 cancel, blocks);
   truncate(out.curve, maker.fill(progress, out.stopped));
   count_rows(out);
   return out;

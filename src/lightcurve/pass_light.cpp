@@ -10,8 +10,7 @@
 namespace umov {
 
 struct PassLight::State {
-  std::vector<Band> bands;
-  std::vector<double> solar; ///< irradiance at 1 au per band
+  std::vector<PhotometricBand> bands;
   // A sphere:
   std::vector<Stokes<ScatteringPlane>> by_phase; ///< [step * bands + band], steps of half a degree
   // A body:
@@ -40,9 +39,8 @@ LightOptions pass_light_options(LightMethod method) {
 
 Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options) {
   auto state = std::make_shared<State>();
-  state->bands = body.scene.bands;
-  UMOV_ASSIGN(solar, solar_irradiances(body.scene.bands));
-  state->solar = std::move(solar);
+  UMOV_ASSIGN(colours, photometric_bands(body.scene.bands, body.magnitudes));
+  state->bands = std::move(colours);
   state->attitude = body.attitude;
   state->has_solar_disk = body.has_solar_disk;
   const std::vector<Joint> joints = joints_of(body.joints);
@@ -64,9 +62,8 @@ Result<PassLight> PassLight::of_sphere(double radius_m, const Material &material
   UMOV_ASSIGN(scene, make_scene(make_sphere(radius_m, 5000), NormalMode::Smooth, bands, {material},
                                 {material}, unused));
   auto state = std::make_shared<State>();
-  state->bands = bands;
-  UMOV_ASSIGN(solar, solar_irradiances(bands));
-  state->solar = std::move(solar);
+  UMOV_ASSIGN(colours, photometric_bands(bands, MagnitudeSystem::AB));
+  state->bands = std::move(colours);
   std::vector<Pose> poses;
   for (std::size_t k = 0; k < phase_steps; ++k) {
     const double phase = Angle::degrees(phase_step_deg * static_cast<double>(k)).radians();
@@ -85,8 +82,6 @@ Result<PassLight> PassLight::of_sphere(double radius_m, const Material &material
   return out;
 }
 
-const std::vector<Band> &PassLight::bands() const { return state_->bands; }
-
 Result<void> PassLight::keep_masks() const {
   return state_->light ? state_->light->keep_masks() : Result<void>();
 }
@@ -94,11 +89,11 @@ Result<void> PassLight::keep_masks() const {
 namespace {
 
 /// Takes one sample of light into the pass's ranges, as far as it is known.
-void take(const BandResult &light, const ObservingGeometry &g, const Band &band, double solar,
+void take(const BandResult &light, const ObservingGeometry &g, const PhotometricBand &band,
           SitePass &pass) {
   const auto &[s, half_width] = light;
   const ObservedLight observed =
-      observed_light(s.i, band, solar, {g.sun_distance_km, g.range_km, g.sunlit});
+      observed_light(s.i, band, {g.sun_distance_km, g.range_km, g.sunlit});
   if (!(observed.irradiance > 0) || !is_known(s.i, half_width))
     return;
   const double magnitude = std::min(observed.magnitude, faintest_magnitude);
@@ -169,7 +164,7 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
       const double share = at - static_cast<double>(k);
       const auto &a = state.by_phase[k * state.bands.size() + band],
                  &b = state.by_phase[(k + 1) * state.bands.size() + band];
-      take({a * (1 - share) + b * share, {}}, g, state.bands[band], state.solar[band], pass);
+      take({a * (1 - share) + b * share, {}}, g, state.bands[band], pass);
     }
     return {};
   }
@@ -191,7 +186,7 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
   if (!state.light->evaluate(poses, angles, table, task))
     return fail(ErrorCode::Interrupted, stopped);
   for (std::size_t k = 0; k < poses.size(); ++k)
-    take(table.at(k, band), lit[k], state.bands[band], state.solar[band], pass);
+    take(table.at(k, band), lit[k], state.bands[band], pass);
   return {};
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <umov/core/constants.h>
-#include <umov/photometry/radiometry.h>
 #include <umov/photometry/refracted_shadow.h>
 
 namespace umov {
@@ -40,12 +39,14 @@ double sunlight(const LightCurveRequest &request, const ObservingGeometry &g, co
 
 } // namespace
 
+const char *name_of(SecondSource source) { return source == SecondSource::Moon ? "moon" : "earth"; }
+
 bool has_magnitude_limit(const LightCurveSample &sample) {
   return sample.magnitude >= faintest_magnitude ||
          (!std::isnan(sample.magnitude) && !is_known(sample.intensity, sample.half_width));
 }
 
-LightCurveSample sample_from(const BandResult &band, const Band &colour, double solar,
+LightCurveSample sample_from(const BandResult &band, const PhotometricBand &colour,
                              const ObservingGeometry &geometry, const LightCurveRequest &request,
                              bool is_dark) {
   const PolarizationFrame frame = request.frame;
@@ -53,14 +54,13 @@ LightCurveSample sample_from(const BandResult &band, const Band &colour, double 
   out.intensity = band.stokes.i;
   out.half_width = band.half_width;
   const LightPath path{geometry.sun_distance_km, geometry.range_km,
-                       sunlight(request, geometry, colour)};
-  const ObservedLight observed = observed_light(band.stokes.i, colour, solar, path);
+                       sunlight(request, geometry, colour.band)};
+  const ObservedLight observed = observed_light(band.stokes.i, colour, path);
   out.irradiance = observed.irradiance;
   out.magnitude = observed.magnitude;
   if (!is_dark && path.sunlit > 0) {
     if (!is_known(out.intensity, out.half_width))
-      out.magnitude =
-          observed_light(out.intensity + out.half_width.i, colour, solar, path).magnitude;
+      out.magnitude = observed_light(out.intensity + out.half_width.i, colour, path).magnitude;
     out.magnitude = std::fmin(out.magnitude, faintest_magnitude); // of tails that underflow, too
   }
   if (is_dark || !(band.stokes.i > 0)) {

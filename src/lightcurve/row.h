@@ -2,11 +2,12 @@
 // Private: one band at one epoch, from the light of a pose.
 
 #include <umov/lightcurve/compute.h>
+#include <umov/photometry/radiometry.h>
 
 namespace umov {
 
-/// `solar`: irradiance at 1 au of the band `colour`.
-LightCurveSample sample_from(const BandResult &band, const Band &colour, double solar,
+/// `colour`: the band of `band`.
+LightCurveSample sample_from(const BandResult &band, const PhotometricBand &colour,
                              const ObservingGeometry &geometry, const LightCurveRequest &request,
                              bool is_dark);
 

@@ -151,7 +151,7 @@ std::string pass_id(const Trajectory &orbit, Epoch<Utc> culmination) {
   return orbit.id() + "-" + time;
 }
 
-Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &of) {
+Result<std::size_t> epoch_count(const EpochSpan &of) {
   const auto &[start, stop, step_s] = of;
   if (!(step_s > 0) || !std::isfinite(step_s))
     return fail(ErrorCode::BadInput,
@@ -167,9 +167,14 @@ Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &of) {
                 fmt::format("{:.0f} epochs asked for; the limit is {}. Take a longer step or a "
                             "shorter span.",
                             steps + 1, max_epochs));
-  std::vector<Epoch<Utc>> out(static_cast<std::size_t>(steps) + 1);
+  return static_cast<std::size_t>(steps) + 1;
+}
+
+Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &of) {
+  UMOV_ASSIGN(count, epoch_count(of));
+  std::vector<Epoch<Utc>> out(count);
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = plus_seconds(start, static_cast<double>(i) * step_s);
+    out[i] = plus_seconds(of.start, static_cast<double>(i) * of.step_s);
   return out;
 }
 

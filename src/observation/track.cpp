@@ -18,7 +18,7 @@ double sun_radius_rad(const ObservingGeometry &g) {
 Result<Track> Track::make(TrackRequest request) {
   const auto shared = std::make_shared<const TrackRequest>(std::move(request));
   UMOV_ASSIGN(attitude, Attitude::make(shared->attitude, [&shared](Epoch<Utc> time) {
-                return shared->orbit.at(time).map([&](const TemeState &state) {
+                return shared->orbit.at(time).map([&](const OrbitState &state) {
                   return context_of(umov::observe(state, time, shared->site, shared->shadow));
                 });
               }));
@@ -26,7 +26,7 @@ Result<Track> Track::make(TrackRequest request) {
 }
 
 Result<ObservingGeometry> Track::observe(Epoch<Utc> time) const {
-  return request_->orbit.at(time).map([&](const TemeState &state) {
+  return request_->orbit.at(time).map([&](const OrbitState &state) {
     return umov::observe(state, time, request_->site, request_->shadow);
   });
 }

@@ -10,10 +10,6 @@ UMOV_EMBEDDED(solar_spectrum)
 namespace umov {
 namespace {
 
-struct Spectrum {
-  std::vector<double> wavelength_nm, irradiance; ///< W m-2 nm-1
-};
-
 /// The compiled-in table; its form is fixed, so there is nothing to report.
 Spectrum parse_solar_spectrum() {
   Spectrum out;
@@ -29,18 +25,29 @@ Spectrum parse_solar_spectrum() {
     const auto value = parse_number(line.substr(space + 1));
     if (um && value) { // the line of column names is no number
       out.wavelength_nm.push_back(*um * 1000);
-      out.irradiance.push_back(*value / 1000);
+      out.value.push_back(*value / 1000);
     }
   }
   return out;
 }
 
-const Spectrum &solar() {
+} // namespace
+
+const Spectrum &sunlight() {
   static const Spectrum table = parse_solar_spectrum();
   return table;
 }
 
-} // namespace
+bool has_curve(const std::vector<Band> &bands) {
+  return std::any_of(bands.begin(), bands.end(), [](const Band &band) { return band.curve; });
+}
+
+Result<Band> band_of(Passband curve) {
+  UMOV_ASSIGN(sun, sunlight_in(curve));
+  Band out{curve.name, Wavelength::nm(sun.effective_nm)};
+  out.curve = std::make_shared<const Passband>(std::move(curve));
+  return out;
+}
 
 Result<std::vector<Band>> bands_from(const std::vector<std::string> &set) {
   std::vector<Band> bands;
@@ -54,8 +61,8 @@ Result<std::vector<Band>> bands_from(const std::vector<std::string> &set) {
         name.starts_with("nm:") ? parse_number(std::string_view(name).substr(3)) : std::nullopt;
     if (!nm)
       return fail(ErrorCode::BadInput,
-                  fmt::format("unknown band \"{}\"; \"paper_rgb\" or \"nm:NUMBER\" (such as "
-                              "\"nm:550\") was expected. Bands with a curve are not built yet.",
+                  fmt::format("\"{}\" is no wavelength; \"paper_rgb\" or \"nm:NUMBER\" (such as "
+                              "\"nm:550\") was expected",
                               name));
     if (!(*nm >= 10 && *nm <= 1e6))
       return fail(ErrorCode::BadInput,
@@ -63,18 +70,23 @@ Result<std::vector<Band>> bands_from(const std::vector<std::string> &set) {
                               name, *nm));
     bands.push_back({name, Wavelength::nm(*nm)});
   }
+  UMOV_TRY(check_band_set(bands));
+  return bands;
+}
+
+Result<void> check_band_set(const std::vector<Band> &bands) {
   for (std::size_t i = 0; i < bands.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (bands[i].name == bands[j].name)
         return fail(ErrorCode::BadInput,
                     fmt::format("band \"{}\" stands twice; leave one out", bands[i].name));
   if (bands.empty())
-    return fail(ErrorCode::BadInput, "no band; give \"paper_rgb\" or a list of \"nm:NUMBER\"");
-  return bands;
+    return fail(ErrorCode::BadInput, "no band; give \"paper_rgb\" or a list such as [\"nm:550\"]");
+  return {};
 }
 
 Result<double> solar_irradiance(Wavelength wavelength) {
-  const Spectrum &table = solar();
+  const Spectrum &table = sunlight();
   const double nm = wavelength.nm();
   if (!(nm >= table.wavelength_nm.front() && nm <= table.wavelength_nm.back()))
     return fail(ErrorCode::BadInput,
@@ -85,7 +97,23 @@ Result<double> solar_irradiance(Wavelength wavelength) {
   const auto i = static_cast<std::size_t>(next - table.wavelength_nm.begin());
   const double x0 = table.wavelength_nm[i - 1], x1 = table.wavelength_nm[i];
   const double t = (nm - x0) / (x1 - x0);
-  return (1 - t) * table.irradiance[i - 1] + t * table.irradiance[i];
+  return (1 - t) * table.value[i - 1] + t * table.value[i];
+}
+
+Result<double> solar_irradiance(const Band &band) {
+  if (!band.curve)
+    return solar_irradiance(band.wavelength);
+  UMOV_ASSIGN(sun, sunlight_in(*band.curve));
+  return sun.value;
+}
+
+Result<double> zero_irradiance(const Band &band, MagnitudeSystem system) {
+  if (band.curve)
+    return zero_irradiance(*band.curve, system);
+  // AB and ST of a band so narrow that it is its wavelength.
+  const double nm = band.wavelength.nm();
+  return zero_irradiance(Passband{band.name, {0.999 * nm, nm, 1.001 * nm}, {0, 1, 0}, 0, "", ""},
+                         system);
 }
 
 } // namespace umov

@@ -1,7 +1,8 @@
 #include <umov/orbit/ephemeris.h>
 
+#include "orbit/earth_axes.h"
+
 #include <cmath>
-#include <umov/core/constants.h>
 #include <umov/frames/earth.h>
 #include <umov/frames/sky.h>
 
@@ -42,8 +43,8 @@ void add_topocentric(ObservingGeometry &out, const Site &site, Vec3<Itrs> sun_it
 
 } // namespace
 
-Angle topocentric_altitude(const TemeState &state, Epoch<Utc> time, const Site &site) {
-  const Vec3<Itrs> line = itrs_from_teme(time) * state.position_km - itrs_position_km(site);
+Angle topocentric_altitude(const OrbitState &state, Epoch<Utc> time, const Site &site) {
+  const Vec3<Itrs> line = itrs_position_km(state, time) - itrs_position_km(site);
   return topocentric(enu_from_itrs(site) * line).altitude;
 }
 
@@ -56,21 +57,20 @@ const char *twilight(Angle sun_altitude) {
                            : "night";
 }
 
-ObservingGeometry observe(const TemeState &state, Epoch<Utc> time, const Site &site,
+ObservingGeometry observe(const OrbitState &state, Epoch<Utc> time, const Site &site,
                           ShadowModel shadow) {
   ObservingGeometry out;
   out.time = time;
-  out.teme = state;
-  const auto teme_to_itrs = itrs_from_teme(time);
+  out.state = state;
   const auto gcrs_to_itrs = itrs_from_gcrs(time);
   const auto gcrs_from_itrs = gcrs_to_itrs.inverse();
-  out.itrs_km = teme_to_itrs * state.position_km;
-  // The Earth turns about its own axis, which polar motion tilts by microradians only.
-  const Vec3<Itrs> spin{0, 0, constants::earth_rate_rad_s};
-  const Vec3<Itrs> inertial = teme_to_itrs * state.velocity_km_s;
-  out.itrs_velocity_km_s = inertial - cross(spin, out.itrs_km);
-  out.gcrs_km = gcrs_from_itrs * out.itrs_km;
-  out.gcrs_velocity_km_s = gcrs_from_itrs * inertial;
+  const EarthAxes earth = earth_axes(state, time, gcrs_to_itrs);
+  out.itrs_km = earth.position_km;
+  out.itrs_velocity_km_s = earth.inertial_km_s - carried_km_s(earth.position_km);
+  const auto *inertial = std::get_if<GcrsState>(&state);
+  out.gcrs_km = inertial ? inertial->position_km : gcrs_from_itrs * earth.position_km;
+  out.gcrs_velocity_km_s =
+      inertial ? inertial->velocity_km_s : gcrs_from_itrs * earth.inertial_km_s;
   out.sun_gcrs_km = apparent_sun_km(time);
   const Vec3<Itrs> sun_itrs_km = gcrs_to_itrs * out.sun_gcrs_km;
   add_topocentric(out, site, sun_itrs_km, gcrs_from_itrs);

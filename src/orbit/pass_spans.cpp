@@ -35,7 +35,7 @@ public:
     std::vector<Epoch<Utc>> times(seconds.size());
     std::transform(seconds.begin(), seconds.end(), times.begin(),
                    [this](double s) { return time(s); });
-    std::vector<TemeState> states(times.size());
+    std::vector<OrbitState> states(times.size());
     std::vector<double> out(orbit_.at(times, states));
     for (std::size_t k = 0; k < out.size(); ++k)
       out[k] = topocentric_altitude(states[k], times[k], site_).radians();

@@ -60,20 +60,9 @@ private:
   Vec3<Gcrs> pole_;
 };
 
-/// The state in GCRS: through TEME, as every trajectory is.
 Phase start_phase(const StateVector &s) {
-  OrbitEphemeris two;
-  EphemerisSegment segment;
-  segment.frame = s.frame;
-  segment.states = {s.state, s.state};
-  segment.states[1].time = plus_seconds(s.state.time, 1);
-  segment.interpolation = Interpolation::Linear;
-  segment.degree = 1;
-  segment.first = segment.last = s.state.time;
-  two.segments = {segment};
-  const TemeState teme = Trajectory(two).at(s.state.time).value();
-  const auto to_gcrs = itrs_from_gcrs(s.state.time).inverse() * itrs_from_teme(s.state.time);
-  const Vec3<Gcrs> r = to_gcrs * teme.position_km, v = to_gcrs * teme.velocity_km_s;
+  const GcrsState state = gcrs_state(state_in(s.state, s.frame), s.state.time);
+  const Vec3<Gcrs> r = state.position_km, v = state.velocity_km_s;
   return {r.x, r.y, r.z, v.x, v.y, v.z};
 }
 

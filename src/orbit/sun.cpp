@@ -1,15 +1,18 @@
 #include <umov/orbit/ephemeris.h>
 
+#include <array>
 #include <erfa.h>
 #include <umov/core/constants.h>
+#include <umov/time/hourly.h>
 
 namespace umov {
 
-Vec3<Gcrs> apparent_sun_km(Epoch<Utc> time) {
-  // TDB - TT stays below 2 ms, in which the Earth moves 60 m: nothing.
-  const Epoch<Tt> tt = tt_from(time);
+namespace {
+
+/// [km]. TDB - TT stays below 2 ms, in which the Earth moves 60 m: nothing.
+std::array<double, 3> apparent_sun(double tt1, double tt2) {
   double heliocentric[2][3], barycentric[2][3];
-  eraEpv00(tt.jd1, tt.jd2, heliocentric, barycentric);
+  eraEpv00(tt1, tt2, heliocentric, barycentric);
   // The Sun where it was when the light left: its barycentric motion is 15 m/s, so 8 minutes are
   // 7 km or 0.01 arcsec. One step is enough.
   constexpr double light_days_per_au = 499.004784 / 86400; // IAU 2009: light time for 1 au [s]
@@ -31,7 +34,16 @@ Vec3<Gcrs> apparent_sun_km(Epoch<Utc> time) {
   }
   double proper[3];
   eraAb(natural, velocity, length, 1 - speed_squared / 2, proper);
-  return Vec3<Gcrs>{proper[0], proper[1], proper[2]} * (length * constants::au_km);
+  const double km = length * constants::au_km;
+  return {proper[0] * km, proper[1] * km, proper[2] * km};
+}
+
+} // namespace
+
+Vec3<Gcrs> apparent_sun_km(Epoch<Utc> time) {
+  thread_local Hourly<3> sun(apparent_sun);
+  const auto [x, y, z] = sun(tt_from(time));
+  return {x, y, z};
 }
 
 } // namespace umov

@@ -8,9 +8,8 @@
 #include <erfam.h>
 #include <fmt/format.h>
 #include <limits>
-#include <umov/core/constants.h>
 #include <umov/core/quantity.h>
-#include <umov/frames/earth.h>
+#include <umov/orbit/sgp4.h>
 #include <umov/time/span.h>
 
 namespace umov {
@@ -38,23 +37,6 @@ Vec3<Gcrs> gcrs_from_eme2000(const std::array<double, 3> &v) {
   return {out[0], out[1], out[2]};
 }
 
-TemeState teme_from(const EphemerisState &s, OrbitFrame frame) {
-  if (frame == OrbitFrame::Teme)
-    return {vec<Teme>(s.position_km), vec<Teme>(s.velocity_km_s)};
-  const auto teme_from_itrs = itrs_from_teme(s.time).inverse();
-  if (frame == OrbitFrame::Itrs) {
-    const auto position = vec<Itrs>(s.position_km);
-    const Vec3<Itrs> spin{0, 0, constants::earth_rate_rad_s};
-    return {teme_from_itrs * position,
-            teme_from_itrs * (vec<Itrs>(s.velocity_km_s) + cross(spin, position))};
-  }
-  const auto teme_from_gcrs = teme_from_itrs * itrs_from_gcrs(s.time);
-  if (frame == OrbitFrame::Eme2000)
-    return {teme_from_gcrs * gcrs_from_eme2000(s.position_km),
-            teme_from_gcrs * gcrs_from_eme2000(s.velocity_km_s)};
-  return {teme_from_gcrs * vec<Gcrs>(s.position_km), teme_from_gcrs * vec<Gcrs>(s.velocity_km_s)};
-}
-
 const EphemerisSegment *segment_at(const OrbitEphemeris &ephemeris, Epoch<Utc> time) {
   for (const EphemerisSegment &segment : ephemeris.segments)
     if (covers(segment, time))
@@ -79,6 +61,20 @@ tl::unexpected<Error> sgp4_failure(const ElementSet &set, Epoch<Utc> time, Sgp4C
 }
 
 } // namespace
+
+OrbitState state_in(const EphemerisState &s, OrbitFrame frame) {
+  switch (frame) {
+  case OrbitFrame::Teme:
+    return TemeState{vec<Teme>(s.position_km), vec<Teme>(s.velocity_km_s)};
+  case OrbitFrame::Itrs:
+    return ItrsState{vec<Itrs>(s.position_km), vec<Itrs>(s.velocity_km_s)};
+  case OrbitFrame::Eme2000:
+    return GcrsState{gcrs_from_eme2000(s.position_km), gcrs_from_eme2000(s.velocity_km_s)};
+  case OrbitFrame::Gcrs:
+    break;
+  }
+  return GcrsState{vec<Gcrs>(s.position_km), vec<Gcrs>(s.velocity_km_s)};
+}
 
 Result<void> check_ephemeris(const OrbitEphemeris &ephemeris) {
   if (ephemeris.segments.empty())
@@ -153,7 +149,7 @@ double Trajectory::search_step_s() const {
   return std::clamp(period_s / 48 * std::pow(1 - set.eccentricity, 1.5), shortest, longest);
 }
 
-Result<TemeState> Trajectory::at(Epoch<Utc> time) const {
+Result<OrbitState> Trajectory::at(Epoch<Utc> time) const {
   if (body_->elements) {
     const ElementSet &set = *body_->elements;
     TemeState state;
@@ -162,15 +158,15 @@ Result<TemeState> Trajectory::at(Epoch<Utc> time) const {
       code = body_->model->propagate(clock_days_between(time, set.epoch) * 1440, state);
     if (code != Sgp4Code::Ok)
       return sgp4_failure(set, time, code);
-    return state;
+    return OrbitState(state);
   }
   const EphemerisSegment *segment = segment_at(body_->ephemeris, time);
   if (segment == nullptr)
     return not_covered(body_->ephemeris, time);
-  return teme_from(interpolate(*segment, time), segment->frame);
+  return state_in(interpolate(*segment, time), segment->frame);
 }
 
-std::size_t Trajectory::at(std::span<const Epoch<Utc>> times, std::span<TemeState> states) const {
+std::size_t Trajectory::at(std::span<const Epoch<Utc>> times, std::span<OrbitState> states) const {
   if (!body_->elements) {
     for (std::size_t k = 0; k < times.size(); ++k) {
       const auto state = at(times[k]);
@@ -186,7 +182,9 @@ std::size_t Trajectory::at(std::span<const Epoch<Utc>> times, std::span<TemeStat
   for (std::size_t k = 0; k < times.size(); ++k)
     minutes[k] = clock_days_between(times[k], body_->elements->epoch) * 1440;
   std::vector<Sgp4Code> codes(times.size());
-  body_->model->propagate(minutes, states, codes);
+  std::vector<TemeState> teme(times.size());
+  body_->model->propagate(minutes, teme, codes);
+  std::copy(teme.begin(), teme.end(), states.begin());
   const auto bad =
       std::find_if(codes.begin(), codes.end(), [](Sgp4Code code) { return code != Sgp4Code::Ok; });
   return static_cast<std::size_t>(bad - codes.begin());

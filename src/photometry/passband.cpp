@@ -1,19 +1,10 @@
 #include <umov/photometry/passband.h>
 
+#include <algorithm>
 #include <cmath>
 #include <umov/optics/band.h>
 
 namespace umov {
-
-Passband gaussian_passband(std::string name, double centre_nm, double full_width_nm) {
-  Passband out{std::move(name), {}, {}};
-  for (int i = -50; i <= 50; ++i) {
-    const double x = i / 40.; // in full widths
-    out.wavelength_nm.push_back(centre_nm + x * full_width_nm);
-    out.response.push_back(std::exp2(-4 * x * x));
-  }
-  return out;
-}
 
 Result<std::vector<double>> sunlight_weights(const Passband &band) {
   const auto &at = band.wavelength_nm;

@@ -22,20 +22,28 @@ double ab_magnitude(double irradiance, Wavelength wavelength) {
   return -2.5 * std::log10(f_nu / zero_point);
 }
 
-ObservedLight observed_light(double intensity, const Band &band, double solar_irradiance,
-                             const LightPath &path) {
-  const double irradiance = irradiance_at_observer(
-      intensity, solar_irradiance, path.sun_distance_km, path.sunlit, path.range_km);
-  return {irradiance, ab_magnitude(irradiance, band.wavelength)};
-}
-
-Result<std::vector<double>> solar_irradiances(const std::vector<Band> &bands) {
-  std::vector<double> out;
+Result<std::vector<PhotometricBand>> photometric_bands(const std::vector<Band> &bands,
+                                                       MagnitudeSystem system) {
+  std::vector<PhotometricBand> out;
   for (const Band &band : bands) {
-    UMOV_ASSIGN(value, solar_irradiance(band.wavelength));
-    out.push_back(value);
+    UMOV_ASSIGN(solar, solar_irradiance(band));
+    UMOV_ASSIGN(zero, zero_irradiance(band, system));
+    out.push_back({band, system, solar, zero});
   }
   return out;
+}
+
+double magnitude_of(double irradiance, const PhotometricBand &band) {
+  if (!band.band.curve && band.system == MagnitudeSystem::AB)
+    return ab_magnitude(irradiance, band.band.wavelength);
+  return irradiance > 0 ? -2.5 * std::log10(irradiance / band.zero)
+                        : std::numeric_limits<double>::quiet_NaN();
+}
+
+ObservedLight observed_light(double intensity, const PhotometricBand &band, const LightPath &path) {
+  const double irradiance = irradiance_at_observer(intensity, band.solar, path.sun_distance_km,
+                                                   path.sunlit, path.range_km);
+  return {irradiance, magnitude_of(irradiance, band)};
 }
 
 double airmass(Angle altitude) {

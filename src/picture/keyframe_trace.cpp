@@ -123,6 +123,21 @@ std::vector<Seen> reached_by_sun(const Camera &camera, const std::vector<Seen> &
   return out;
 }
 
+/// Light that a point sends to the observer, times the cosine at which it is seen, in a band.
+Stokes<ScatteringPlane> reflected(const Surface &surface, const std::vector<BandTerm> &terms,
+                                  const SurfaceDirections &at) {
+  const bool is_grey = surface.is_specular_grey();
+  const double grey = is_grey ? surface.specular(terms.front().node, at) : 0;
+  const auto at_node = [&](std::size_t node) {
+    const FresnelFactors f = surface.fresnel(node, at.l_v);
+    const double specular = is_grey ? grey : surface.specular(node, at);
+    const auto diffuse = surface.diffuse(node, at, {1, 0, 0, 0});
+    return Stokes<ScatteringPlane>{f.a * specular + diffuse.i, f.b * specular + diffuse.q,
+                                   diffuse.u, diffuse.v};
+  };
+  return sum_band<Stokes<ScatteringPlane>>(terms, at_node).value;
+}
+
 /// Reflected light of the lit points of a row in a band.
 void light(const Camera &camera, std::size_t band, const std::vector<Seen> &lit,
            std::span<KeyFrameSample> line) {
@@ -131,31 +146,31 @@ void light(const Camera &camera, std::size_t band, const std::vector<Seen> &lit,
   for (const Seen &s : lit) {
     KeyFrameSample &out = line[s.column];
     out.is_lit = true;
-    const FresnelFactors f = s.surface->fresnel(band, l_v);
     const SurfaceDirections at =
         directions_on(s.normal, direction_field(camera.scene.mesh, *s.surface, s.at.triangle), l, v,
                       l_v, camera.view.pose.sun_radius_rad);
-    const double specular = s.surface->specular(band, at);
-    const auto diffuse = s.surface->diffuse(band, at, {1, 0, 0, 0});
-    const double intensity = f.a * specular + diffuse.i;
-    out.radiance = static_cast<float>(intensity / dot(s.normal, v));
-    if (intensity > 0) {
-      out.q = static_cast<float>((f.b * specular + diffuse.q) / intensity);
-      out.u = static_cast<float>(diffuse.u / intensity);
-      out.v = static_cast<float>(diffuse.v / intensity);
+    const auto sent = reflected(*s.surface, camera.scene.grid.terms()[band], at);
+    out.radiance = static_cast<float>(sent.i / dot(s.normal, v));
+    if (sent.i > 0) {
+      out.q = static_cast<float>(sent.q / sent.i);
+      out.u = static_cast<float>(sent.u / sent.i);
+      out.v = static_cast<float>(sent.v / sent.i);
       out.p = std::hypot(out.q, out.u);
     }
   }
 }
 
-/// Adds what touched several surfaces, [point * bands + band] of all bands of the scene.
+/// Adds what touched several surfaces, [point * nodes + node] at all wavelengths of the scene.
 void add_indirect(const std::vector<Seen> &seen, const std::vector<Stokes<ScatteringPlane>> &light,
-                  std::size_t band, std::size_t bands, std::span<KeyFrameSample> line) {
+                  const BandGrid &grid, std::size_t band, std::span<KeyFrameSample> line) {
   for (std::size_t k = 0; k < seen.size(); ++k) {
     KeyFrameSample &out = line[seen[k].column];
     const auto direct = static_cast<double>(out.radiance);
+    const auto more = sum_band<Stokes<ScatteringPlane>>(grid.terms()[band], [&](std::size_t node) {
+      return light[k * grid.nodes().size() + node];
+    });
     const Stokes<ScatteringPlane> sum =
-        light[k * bands + band] + Stokes<ScatteringPlane>{1, out.q, out.u, out.v} * direct;
+        more.value + Stokes<ScatteringPlane>{1, out.q, out.u, out.v} * direct;
     if (!(sum.i > 0))
       continue;
     out.radiance = static_cast<float>(sum.i);
@@ -238,7 +253,7 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
       std::copy(dark.begin(), dark.end(), line.begin());
       light(camera, bands[b], lit, line);
       if (!more.empty())
-        add_indirect(seen, more, bands[b], scene.bands.size(), line);
+        add_indirect(seen, more, scene.grid, bands[b], line);
     }
   });
   return rasters;

@@ -1,5 +1,7 @@
 #include <umov/scene/scene.h>
 
+#include "scene/compiled_materials.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -8,25 +10,6 @@
 
 namespace umov {
 namespace {
-
-/// Compiles each distinct material once; copies of a Surface share their tables.
-class SurfaceCache {
-public:
-  explicit SurfaceCache(const std::vector<Band> &bands) : bands_(bands) {}
-
-  Result<Surface> compile(const Material &material) {
-    for (const Surface &known : surfaces_)
-      if (known.material() == material)
-        return known;
-    UMOV_ASSIGN(surface, Surface::compile(material, bands_));
-    surfaces_.push_back(surface);
-    return surface;
-  }
-
-private:
-  const std::vector<Band> &bands_;
-  std::vector<Surface> surfaces_;
-};
 
 /// Vertex normals far from their face come from a broken export and darken it without a word.
 void warn_of_odd_normals(const Mesh &mesh, const std::string &file, Diagnostics &diagnostics) {
@@ -67,13 +50,12 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
     scene.mesh = with_vertex_normals(scene.mesh, crease_rad);
     warn_of_odd_normals(scene.mesh, file, diagnostics);
   }
-  SurfaceCache cache(bands);
+  UMOV_ASSIGN(materials, CompiledMaterials::make(bands, front, back));
+  scene.grid = materials.grid();
   for (std::size_t g = 0; g < front.size(); ++g) {
-    UMOV_ASSIGN(front_surface, cache.compile(front[g]));
-    scene.front.push_back(front_surface);
-    UMOV_ASSIGN(back_surface, cache.compile(back[g]));
-    scene.back.push_back(back_surface);
-    for (const Surface *surface : {&front_surface, &back_surface})
+    scene.front.push_back(materials.of(front[g]));
+    scene.back.push_back(materials.of(back[g]));
+    for (const Surface *surface : {&scene.front.back(), &scene.back.back()})
       if (surface->is_anisotropic() && !surface->material().direction &&
           scene.mesh.tangents.empty())
         return fail(

@@ -29,6 +29,7 @@ const std::vector<double> table_1_nm{425, 550, 650};
 IndexTable paper_index(const PaperRow &row) {
   IndexTable out = tabulated_index(row.name, table_1_nm, {row.eta.begin(), row.eta.end()});
   out.reference = "Table 1 of the paper";
+  out.holds_ends = true;
   return out;
 }
 

@@ -21,19 +21,27 @@ struct BandTables {
   double haze_albedo = 0; ///< what haze reflects of all light
 };
 
+/// Where a table is asked for a band: within a curve one that holds its ends no further than there.
+Wavelength asked_at(const IndexTable &table, const Band &band) {
+  if (!table.holds_ends || !band.curve)
+    return band.wavelength;
+  const WavelengthRange range = range_of(table);
+  return Wavelength::nm(std::clamp(band.wavelength.nm(), range.first_nm, range.last_nm));
+}
+
 Result<Interface> make_interface(const Material &material, const Band &band) {
   const auto named = [&](const Error &error) {
     return fail(ErrorCode::BadInput, fmt::format("material \"{}\", band \"{}\": {}", material.name,
                                                  band.name, error.message));
   };
-  const auto eta = index_at(material.index, band.wavelength);
+  const auto eta = index_at(material.index, asked_at(material.index, band));
   if (!eta)
     return named(eta.error());
   if (material.layers.empty())
     return Interface(*eta);
   std::vector<OpticalLayer> layers;
   for (const Layer &layer : material.layers) {
-    const auto film = index_at(layer.index, band.wavelength);
+    const auto film = index_at(layer.index, asked_at(layer.index, band));
     if (!film)
       return named(film.error());
     layers.push_back({*film, layer.thickness_nm, layer.is_coherent});
@@ -177,6 +185,15 @@ bool Surface::has_diffuse() const { return tables_->has_diffuse; }
 
 Stokes<ScatteringPlane> Surface::diffuse(std::size_t band, const SurfaceDirections &at,
                                          const Stokes<ScatteringPlane> &in) const {
+  const Material &material = tables_->material;
+  const bool is_as_reflected = (material.haze && material.haze->is_polarized) ||
+                               material.interreflection == Interreflection::SingleBounceQ;
+  return diffuse(band, at, in, is_as_reflected ? mueller(band, at.l_v) : FacetMueller{});
+}
+
+Stokes<ScatteringPlane> Surface::diffuse(std::size_t band, const SurfaceDirections &at,
+                                         const Stokes<ScatteringPlane> &in,
+                                         const FacetMueller &reflection) const {
   if (!tables_->has_diffuse || !(at.l.z > 0 && at.v.z > 0))
     return {};
   const BandTables &own = tables_->bands[band];
@@ -197,24 +214,21 @@ Stokes<ScatteringPlane> Surface::diffuse(std::size_t band, const SurfaceDirectio
   if (own.interreflected) {
     const double value = (*own.interreflected)(at.l.z, at.v.z);
     if (tables_->material.interreflection == Interreflection::SingleBounceQ) {
-      const auto f = mueller(band, at.l_v);
-      out += (f * in) * (f.m[0][0] > 0 ? value / f.m[0][0] : 0);
+      const double r = reflection.m[0][0];
+      out += (reflection * in) * (r > 0 ? value / r : 0);
     } else {
       out += Stokes<ScatteringPlane>{value * in.i, 0, 0, 0};
     }
   }
   if (!(own.haze_albedo > 0))
     return out;
-  return out * tables_->clear_share + haze(band, at, in);
-}
-
-Stokes<ScatteringPlane> Surface::haze(std::size_t band, const SurfaceDirections &at,
-                                      const Stokes<ScatteringPlane> &in) const {
-  const double value = tables_->bands[band].haze_albedo / pi * at.l.z * at.v.z;
-  const auto f = mueller(band, at.l_v);
-  if (!tables_->material.haze->is_polarized || !(f.m[0][0] > 0))
-    return {value * in.i, 0, 0, 0};
-  return (f * in) * (value / f.m[0][0]);
+  const double haze = own.haze_albedo / pi * at.l.z * at.v.z, r = reflection.m[0][0];
+  out = out * tables_->clear_share;
+  if (tables_->material.haze->is_polarized && r > 0)
+    out += (reflection * in) * (haze / r);
+  else
+    out += Stokes<ScatteringPlane>{haze * in.i, 0, 0, 0};
+  return out;
 }
 
 MuellerEntries Surface::reflection(std::size_t band, double cosine) const {
@@ -232,7 +246,7 @@ FresnelFactors Surface::fresnel(std::size_t band, double l_v) const {
   return {f.a, f.b};
 }
 
-Mueller<ScatteringPlane, ScatteringPlane> Surface::mueller(std::size_t band, double l_v) const {
+FacetMueller Surface::mueller(std::size_t band, double l_v) const {
   return reflection(band, half_angle_cosine(l_v)).matrix();
 }
 

@@ -3,7 +3,7 @@
 
 #include "fuzz/elements.h"
 
-#include <umov/orbit/elements.h>
+#include <umov/io/tle.h>
 
 namespace {
 

@@ -12,6 +12,7 @@ import microfacet
 import observing_air
 import observing_instrument
 import observing_reduction
+import passbands
 import surroundings
 import two_materials
 
@@ -62,6 +63,11 @@ def single_rows():
 
 PHASES = ",".join(str(p) for p in bodies.PHASES)
 TABLES = {
+    "bands": Table("bands.md 2 to 5: sunlight (ASTM E490) through each curve of data/filters",
+                   "name,stem,pivot_nm,effective_nm,spread_nm,mean_w_m2_nm,ab,st,ab_zero_1e9_photons_s_m2,vega",
+                   passbands.band_rows),
+    "band_metals": Table("bands.md 2 and microfacet.md 2: a mirror of metal through a band",
+                         "metal,band,phase_deg,intensity,q", passbands.metal_rows),
     "mueller": Table("microfacet.md 2; Table 1 of the paper", "material,nm,n,k,phase_deg,m00,m01,m22,m23",
                      interfaces.mueller_rows),
     "principal_angle": Table("microfacet.md 2: M22 = 0", "material,nm,n,k,phase_deg",

@@ -70,6 +70,7 @@ Result<std::string> make_report(const ReportInput &input);
 
 /// B/A against phase angle, 0..180 deg in steps of 1 deg, for each band of each material (by name,
 /// the first of that name counts). Materials whose interface reflects nothing (n = 1) have none.
-std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> surfaces);
+std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> surfaces,
+                                                    const BandGrid &grid);
 
 } // namespace umov

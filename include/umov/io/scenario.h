@@ -8,6 +8,7 @@
 #include <umov/attitude/attitude.h>
 #include <umov/core/diagnostics.h>
 #include <umov/io/observation.h>
+#include <umov/io/passband_file.h>
 #include <umov/lightcurve/compute.h>
 #include <umov/orbit/state_vector.h>
 #include <umov/orbit/trajectory.h>
@@ -53,6 +54,11 @@ struct ScenarioObject {
   std::vector<MovingJoint> parts;
 };
 
+/// An input file and the hash of what was read.
+struct InputFile {
+  std::string path, sha256;
+};
+
 /// A scenario with all defaults filled in. A scene (for `umov signature`) has no orbit, time and
 /// observer. Relative paths have been resolved against the folder of the scenario.
 struct Scenario {
@@ -62,9 +68,11 @@ struct Scenario {
   std::optional<ScenarioTime> time;
   std::filesystem::path earth_orientation; ///< table in place of the compiled-in one; empty: that
   std::vector<ScenarioObject> objects;     ///< at least one
-  std::map<std::string, Material> own_materials; ///< the [material.NAME] tables
-  std::vector<std::string> band_set{"paper_rgb"};
+  std::map<std::string, Material> own_materials;      ///< the [material.NAME] tables
+  std::vector<BandEntry> band_set{{"paper_rgb", {}}}; ///< as [bands] names them
   std::vector<Band> bands;
+  std::vector<InputFile> band_files; ///< curves that were read
+  MagnitudeSystem magnitudes = MagnitudeSystem::AB;
   LightOptions light; ///< method, accuracy and its floor, bounces
   std::optional<EarthshineOptions> earthshine;
   bool has_moonlight = false, has_refracted_shadow = false;
@@ -102,11 +110,6 @@ Result<Material> read_material_text(const std::string &text, const std::string &
 std::vector<std::string> material_library();
 /// A material as TOML, with the tables of its indices by name, file or in place.
 std::string material_as_toml(const Material &material);
-
-/// An input file and the hash of what was read.
-struct InputFile {
-  std::string path, sha256;
-};
 
 /// An object of a scenario with all its files read.
 struct LoadedObject {

@@ -8,6 +8,7 @@
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/requests.h>
 #include <umov/orbit/ephemeris.h>
+#include <umov/orbit/sgp4.h>
 #include <vector>
 
 namespace umov::jobs {

@@ -49,7 +49,8 @@ struct PassesResult {
   std::vector<Trajectory> orbits; ///< of the objects that were to be searched
   std::vector<ObjectPass> found;  ///< by the time of rise
   std::string model;              ///< what the objects were taken for, in words
-  std::optional<Error> stopped;   ///< Interrupted: passes of some objects are not there
+  MagnitudeSystem magnitudes = MagnitudeSystem::AB;
+  std::optional<Error> stopped; ///< Interrupted: passes of some objects are not there
 };
 
 /// Searches all objects side by side. Nothing if there is no pass; Physics if every orbit ends

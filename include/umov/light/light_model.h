@@ -72,7 +72,9 @@ public:
   LightModel &operator=(const LightModel &) = delete;
 
   /// Stokes of every pose, directions in the body; joint angles [pose * joints + joint] [rad];
-  /// `out` is resized. False if `task.cancel` became true: the table is then of no use.
+  /// `out` is resized, to the bands of the scene: those with a curve are summed here, and nowhere
+  /// else, from the wavelengths at which the light is computed (docs/theory/bands.md). False if
+  /// `task.cancel` became true: the table is then of no use.
   [[nodiscard]] bool evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
                               StokesTable &out, const LightTask &task = {}) const;
   /// The same for parts that stand as the mesh has them.
@@ -96,9 +98,12 @@ public:
 protected:
   /// For the models that `make_light` chooses from.
   LightModel(const Scene &scene, std::vector<Joint> joints);
+  /// Floors at the wavelengths of the grid as those of the bands.
+  [[nodiscard]] std::vector<double> of_bands(const std::vector<double> &nodes) const;
   LightFacts facts_;
 
 private:
+  /// At the nodes of the scene's grid.
   virtual bool light(std::span<const Pose> poses, std::span<const double> angles_rad,
                      StokesTable &out, const LightTask &task) const = 0;
   Scene scene_;
@@ -129,9 +134,9 @@ Result<std::unique_ptr<LightModel>> make_thermal_light(const Scene &scene,
                                                        std::span<const double> temperature_k,
                                                        const LightOptions &options);
 
-/// Per band [m2/sr]: the median over 256 random poses (phase angles spread evenly over 30 to 150
-/// deg) of I if nothing hid anything. A property of the object, so that no row's accuracy depends
-/// on which other rows are asked for.
+/// Per node of the scene's grid [m2/sr]: the median over 256 random poses (phase angles spread
+/// evenly over 30 to 150 deg) of I if nothing hid anything. A property of the object, so that no
+/// row's accuracy depends on which other rows are asked for.
 std::vector<double> typical_light(const Scene &scene);
 
 /// Names of all materials of a scene in order of first use (fronts, then backs).

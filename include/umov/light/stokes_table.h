@@ -48,6 +48,8 @@ struct StokesTable {
   std::vector<Stokes<ScatteringPlane>> indirect; ///< of more than one surface, part of I, Q, U, V
   std::vector<double> glint_share; ///< per pose: of direct I in band 0 from flats within their lobe
   std::vector<double> material_i;  ///< [(pose * materials + material) * bands + band], direct light
+  /// Of bands with a curve: what summing few wavelengths may leave out, of I, Q, U, V.
+  std::vector<Stokes<ScatteringPlane>> band_err;
   /// Makes room for poses and bands; optional columns stay empty.
   void resize(std::size_t poses, std::size_t band_count);
   /// Number of poses.

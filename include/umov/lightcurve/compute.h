@@ -22,6 +22,7 @@ struct LightCurveRequest {
   EpochSpan span;
   EpochFilter only;
   PolarizationFrame frame = PolarizationFrame::Equatorial;
+  MagnitudeSystem magnitudes = MagnitudeSystem::AB;
   std::optional<EarthshineOptions> earthshine; ///< absent: none
   bool has_moonlight = false;
   /// Sunlight at the Earth's edge bent and reddened by its air: I takes `refracted_sunlight` of its

@@ -26,14 +26,18 @@ struct LightCurveEpoch {
 
 /// One band at one epoch.
 struct LightCurveSample {
-  double irradiance = 0; ///< I [W m-2 nm-1] at the observer above the atmosphere
-  double intensity = 0;  ///< [m2/sr]
-  Stokes<SkyNorth> sky;  ///< q, u, v as fractions in the chosen sky frame, i = 1; NaN if dark
+  /// I [W m-2 nm-1] at the observer above the atmosphere; the photon-weighted mean of a curve.
+  double irradiance = 0;
+  double intensity = 0; ///< [m2/sr]
+  Stokes<SkyNorth> sky; ///< q, u, v as fractions in the chosen sky frame, i = 1; NaN if dark
   Stokes<ScatteringPlane> scattering; ///< q_scat, u_scat, v as fractions; NaN if dark
   double p = 0, dop = 0;              ///< NaN if dark
   double pa_deg = 0;                  ///< [0, 180), NaN if p is 0 or dark
-  double magnitude = 0; ///< AB, a limit where `has_magnitude_limit`; NaN if dark or in the umbra
+  double magnitude = 0; ///< of the curve's system, a limit where `has_magnitude_limit`; NaN if dark
+                        ///< or in the umbra
   Stokes<ScatteringPlane> half_width; ///< numerical 95 % half-widths [m2/sr]
+  /// What summing a band from few wavelengths may leave out [m2/sr]; 0 at one wavelength.
+  Stokes<ScatteringPlane> band_err;
   /// Light of more than one surface, part of `intensity`, as fractions of it; with bounces > 1.
   Stokes<ScatteringPlane> indirect;
 };
@@ -42,10 +46,15 @@ struct LightCurveSample {
 /// times its half-width, and the magnitude that of I and half-width together.
 bool has_magnitude_limit(const LightCurveSample &sample);
 
+/// What lights the object besides the Sun.
+enum class SecondSource { Earth, Moon };
+/// "earth" or "moon": begins the names of its columns.
+const char *name_of(SecondSource source);
+
 /// Light of the object by another source than the Sun, not in I; [epoch * bands + band], in the sky
 /// axes of the curve.
 struct SecondLight {
-  std::string name;                         ///< "earth" or "moon": begins its columns
+  SecondSource source = SecondSource::Earth;
   std::vector<Stokes<SkyNorth>> intensity;  ///< [m2/sr] per unit solar irradiance
   std::vector<Stokes<SkyNorth>> half_width; ///< numerical 95 % half-widths of `intensity`
   std::vector<double> irradiance;           ///< I at the observer [W m-2 nm-1]
@@ -57,6 +66,7 @@ struct LightCurve {
   std::size_t bounces = 1; ///< surfaces that the light may have touched
   int norad_cat_id = 0;
   std::vector<Band> bands;
+  MagnitudeSystem magnitudes = MagnitudeSystem::AB;
   LightMethod method = LightMethod::Rays; ///< of the whole; rows say theirs
   std::vector<std::string> materials;     ///< in order of first use in the scene
   std::vector<LightCurveEpoch> epochs;

@@ -18,6 +18,7 @@ struct PassBody {
   AttitudeLaw attitude;            ///< complete
   std::vector<MovingJoint> joints; ///< checked against the mesh
   bool has_solar_disk = true;      ///< the Sun as a uniform disk at its distance, or a point
+  MagnitudeSystem magnitudes = MagnitudeSystem::AB;
 };
 
 /// Light for ranges over a pass: magnitudes to a few hundredths, so accuracy .02.
@@ -41,8 +42,6 @@ public:
                         SitePass &pass, const std::atomic<bool> *cancel = nullptr) const;
   /// LightModel::keep_masks.
   [[nodiscard]] Result<void> keep_masks() const;
-  /// Bands that `describe` can be asked for.
-  [[nodiscard]] const std::vector<Band> &bands() const;
 
 private:
   struct State;

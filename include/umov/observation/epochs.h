@@ -40,8 +40,9 @@ struct KeptEpochs {
   std::optional<Error> stopped;   ///< Physics: where the orbit ends; the epochs before it are there
 };
 
-/// Epochs start, start + step, ... up to `stop`; BadInput if step <= 0, stop < start or more than
-/// 10 million epochs.
+/// How many epochs a span has; BadInput if step <= 0, stop < start or more than 10 million.
+Result<std::size_t> epoch_count(const EpochSpan &span);
+/// They themselves: start, start + step, ... up to `stop`. BadInput as epoch_count.
 Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &span);
 
 /// Propagates and observes a span. Interrupted if `cancel` became true; BadInput as time_grid.

@@ -34,7 +34,8 @@ struct IndexTable {
   Tabulated k{{}, {0}};
   bool has_k = true; ///< false: the source gives no k, and 0 stands for "transparent or unknown"
   std::string file;  ///< of a table that is not compiled in
-  std::string reference; ///< where the numbers come from
+  std::string reference;   ///< where the numbers come from
+  bool holds_ends = false; ///< within a band with a curve its end values hold beyond it
   bool operator==(const IndexTable &) const = default;
 };
 

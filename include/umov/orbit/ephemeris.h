@@ -4,7 +4,7 @@
 #include <umov/core/quantity.h>
 #include <umov/core/rotation.h>
 #include <umov/frames/site.h>
-#include <umov/orbit/sgp4.h>
+#include <umov/orbit/state.h>
 #include <umov/time/epoch.h>
 
 namespace umov {
@@ -16,7 +16,7 @@ enum class ShadowModel { Ellipsoid, Sphere };
 /// light time, no refraction), apparent geocentric Sun at its finite distance.
 struct ObservingGeometry {
   Epoch<Utc> time;
-  TemeState teme;
+  OrbitState state;                       ///< as it was given
   Vec3<Itrs> itrs_km, itrs_velocity_km_s; ///< velocity relative to the turning Earth
   Vec3<Gcrs> gcrs_km, gcrs_velocity_km_s; ///< inertial
   Vec3<Gcrs> observer_gcrs_km;
@@ -35,11 +35,11 @@ struct ObservingGeometry {
 };
 
 /// `time` need not be near the elements' epoch; nothing is checked here but mathematics.
-ObservingGeometry observe(const TemeState &state, Epoch<Utc> time, const Site &site,
+ObservingGeometry observe(const OrbitState &state, Epoch<Utc> time, const Site &site,
                           ShadowModel shadow);
 
 /// The altitude that `observe` gives, alone: many times faster, for searches.
-Angle topocentric_altitude(const TemeState &state, Epoch<Utc> time, const Site &site);
+Angle topocentric_altitude(const OrbitState &state, Epoch<Utc> time, const Site &site);
 
 /// Visible fraction of the Sun's uniform disk over the Earth, 0..1, from positions in one
 /// geocentric Earth-fixed frame. No atmosphere.

@@ -2,16 +2,10 @@
 #include <memory>
 #include <span>
 #include <umov/core/result.h>
-#include <umov/core/vec3.h>
 #include <umov/orbit/elements.h>
+#include <umov/orbit/state.h>
 
 namespace umov {
-
-/// Position and velocity as SGP4 gives them.
-struct TemeState {
-  Vec3<Teme> position_km;
-  Vec3<Teme> velocity_km_s;
-};
 
 /// Codes of the reference implementation (Vallado et al. 2006); 0 = fine. SubOrbital is kept for
 /// its number alone: the reference retired it and it is never returned (Decayed covers the case).

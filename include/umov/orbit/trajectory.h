@@ -8,9 +8,8 @@
 #include <span>
 #include <string>
 #include <umov/core/result.h>
-#include <umov/core/vec3.h>
 #include <umov/orbit/elements.h>
-#include <umov/orbit/sgp4.h>
+#include <umov/orbit/state.h>
 #include <vector>
 
 namespace umov {
@@ -25,6 +24,9 @@ struct EphemerisState {
   Epoch<Utc> time{};
   std::array<double, 3> position_km{}, velocity_km_s{};
 };
+
+/// The numbers of a state of an ephemeris, in the frame that they are in; EME2000 becomes GCRS.
+OrbitState state_in(const EphemerisState &state, OrbitFrame frame);
 
 /// States in order of time; between them the polynomial of `degree` through the nearest ones:
 /// Lagrange through degree + 1 of them, position and velocity apart; Hermite through
@@ -71,11 +73,12 @@ public:
   /// perigee takes.
   [[nodiscard]] double search_step_s() const;
 
+  /// In the frame that SGP4 or the ephemeris has it in (EME2000 as GCRS).
   /// Physics where SGP4 fails, or beyond what an ephemeris covers (its gaps too), with the time.
-  [[nodiscard]] Result<TemeState> at(Epoch<Utc> time) const;
+  [[nodiscard]] Result<OrbitState> at(Epoch<Utc> time) const;
   /// The same for many times; returns how many states are there before the first failure.
   [[nodiscard]] std::size_t at(std::span<const Epoch<Utc>> times,
-                               std::span<TemeState> states) const;
+                               std::span<OrbitState> states) const;
 
 private:
   struct Body;

@@ -1,22 +1,11 @@
 #pragma once
-// Bands with a width: a response over wavelengths.
+// Bands sampled at their own points, and how air dims them.
 
-#include <string>
 #include <umov/core/result.h>
+#include <umov/optics/passband.h>
 #include <vector>
 
 namespace umov {
-
-/// Response of a detector behind a filter, relative, to photons (photon convention), at increasing
-/// wavelengths; 0 outside.
-struct Passband {
-  std::string name;
-  std::vector<double> wavelength_nm, response;
-};
-
-/// A Gaussian by its full width at half maximum, sampled every fortieth of it out to 1.25 widths
-/// on both sides (response .013 there).
-Passband gaussian_passband(std::string name, double centre_nm, double full_width_nm);
 
 /// Weights of the wavelengths in a detected count of sunlight: response times solar irradiance
 /// times wavelength times step (trapezoid), sum 1. Stokes components are summed with them before

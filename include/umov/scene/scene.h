@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <umov/core/diagnostics.h>
 #include <umov/core/result.h>
-#include <umov/optics/band.h>
+#include <umov/optics/band_grid.h>
 #include <umov/shape/mesh.h>
 #include <umov/surface/surface.h>
 #include <vector>
@@ -12,12 +12,13 @@ namespace umov {
 /// Normals of the triangles, or of the vertices in between.
 enum class NormalMode { Flat, Smooth };
 
-/// One object ready to be lit: a cleaned mesh, a compiled surface for each mesh group and the
-/// bands.
+/// One object ready to be lit: a cleaned mesh, the bands and a compiled surface for each mesh
+/// group, at the wavelengths that the bands are summed from.
 struct Scene {
   Mesh mesh;
   NormalMode normals = NormalMode::Flat;
-  std::vector<Band> bands;
+  std::vector<Band> bands;    ///< that are asked for
+  BandGrid grid;              ///< of them: light is computed at its nodes
   std::vector<Surface> front; ///< per mesh group: seen when the group is the side faced
   std::vector<Surface> back;  ///< per mesh group: where the back of that group's faces is seen
 };

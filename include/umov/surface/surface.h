@@ -19,6 +19,9 @@ struct FresnelFactors {
   double a = 0, b = 0;
 };
 
+/// One reflection by a microfacet, both bases in the scattering plane.
+using FacetMueller = Mueller<ScatteringPlane, ScatteringPlane>;
+
 /// Two directions on a surface, unit vectors in its frame, and the source's size.
 struct SurfaceDirections {
   Vec3<Facet> l, v;    ///< to the source and to the observer
@@ -52,6 +55,10 @@ public:
   /// measured surfaces), for the incoming light `in` per unit irradiance.
   [[nodiscard]] Stokes<ScatteringPlane> diffuse(std::size_t band, const SurfaceDirections &at,
                                                 const Stokes<ScatteringPlane> &in) const;
+  /// The same with `mueller(band, at.l_v)` at hand, which serves every facet of a pose.
+  [[nodiscard]] Stokes<ScatteringPlane> diffuse(std::size_t band, const SurfaceDirections &at,
+                                                const Stokes<ScatteringPlane> &in,
+                                                const FacetMueller &reflection) const;
   /// There is any such light.
   [[nodiscard]] bool has_diffuse() const;
 
@@ -60,8 +67,7 @@ public:
   [[nodiscard]] FresnelFactors fresnel(std::size_t band, double l_v) const;
   /// The whole Mueller matrix of one reflection at that phase angle (docs/theory/microfacet.md, Eq.
   /// 2).
-  [[nodiscard]] Mueller<ScatteringPlane, ScatteringPlane> mueller(std::size_t band,
-                                                                  double l_v) const;
+  [[nodiscard]] FacetMueller mueller(std::size_t band, double l_v) const;
   /// Reflection of a microfacet at a cosine of incidence, less what goes into haze.
   [[nodiscard]] MuellerEntries reflection(std::size_t band, double cosine) const;
   /// Part of the area that is not haze.
@@ -121,8 +127,6 @@ public:
   [[nodiscard]] const Interface &interface(std::size_t band) const;
 
 private:
-  [[nodiscard]] Stokes<ScatteringPlane> haze(std::size_t band, const SurfaceDirections &at,
-                                             const Stokes<ScatteringPlane> &in) const;
   struct Tables;
   std::shared_ptr<const Tables> tables_;
 };

@@ -3,7 +3,7 @@
 
 #include <string>
 #include <umov/core/diagnostics.h>
-#include <umov/orbit/elements.h>
+#include <umov/io/tle.h>
 #include <vector>
 
 namespace umov {

@@ -83,20 +83,26 @@ Result<std::string> make_report(const ReportInput &input) {
   return assemble_report(input, report_plotly());
 }
 
-std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> surfaces) {
+std::vector<PureMaterialCurve> pure_material_curves(std::span<const Surface> surfaces,
+                                                    const BandGrid &grid) {
   std::vector<PureMaterialCurve> out;
   for (const Surface &surface : surfaces) {
     const std::string &name = surface.material().name;
     if (std::any_of(out.begin(), out.end(), [&](const auto &c) { return c.material == name; }))
       continue;
-    for (std::size_t band = 0; band < surface.band_count(); ++band) {
+    for (std::size_t band = 0; band < grid.terms().size(); ++band) {
       PureMaterialCurve curve{name, band, {}, {}};
       for (int deg = 0; deg <= 180; ++deg) {
-        const FresnelFactors f = surface.fresnel(band, std::cos(deg * (pi / 180)));
-        if (!(f.a > 0)) // an interface that reflects nothing (n = 1) has no q
+        const double l_v = std::cos(deg * (pi / 180));
+        const auto light =
+            sum_band<Stokes<ScatteringPlane>>(grid.terms()[band], [&](std::size_t node) {
+              const FresnelFactors f = surface.fresnel(node, l_v);
+              return Stokes<ScatteringPlane>{f.a, f.b, 0, 0};
+            }).value;
+        if (!(light.i > 0)) // an interface that reflects nothing (n = 1) has no q
           continue;
         curve.phase_deg.push_back(deg);
-        curve.q_scat.push_back(f.b / f.a);
+        curve.q_scat.push_back(light.q / light.i);
       }
       if (!curve.phase_deg.empty())
         out.push_back(std::move(curve));

@@ -36,12 +36,14 @@ const char *north_name(PolarizationFrame frame) {
   return "the normal of the scattering plane";
 }
 
-std::vector<std::string> standard_conventions(PolarizationFrame frame) {
+std::vector<std::string> standard_conventions(PolarizationFrame frame, const LightCurve &curve) {
   return {
       "Times are UTC at mid-exposure; phase angle is Sun-object-observer, 0 = full.",
       "intensity is reflected intensity per unit solar irradiance [m2/sr], without distance, "
       "eclipse or atmosphere; irradiance adds sunlit fraction, Sun distance and range, above the "
-      "atmosphere [W m-2 nm-1]. Magnitudes are AB.",
+      "atmosphere [W m-2 nm-1]" +
+          std::string(has_curve(curve.bands) ? ", photon-weighted means over the band" : "") +
+          fmt::format(". Magnitudes are {}.", name_of(curve.magnitudes)),
       fmt::format("q and u are fractions of I, shown in percent: +q towards {}, +u 45 deg from it "
                   "{}, position angle counted the same way in [0, 180) deg (IAU 1973).",
                   north_name(frame),
@@ -235,6 +237,7 @@ Result<std::string> report_data(const ReportInput &input) {
         {"lon", input.site.longitude.degrees()},
         {"alt_m", input.site.altitude_m}}},
       {"frame", frame_name(input.frame)},
+      {"mag_system", name_of(curve.magnitudes)},
       {"bounces", curve.bounces},
       {"stride", stride},
       {"passes", passes_json(input.passes)},
@@ -248,7 +251,7 @@ Result<std::string> report_data(const ReportInput &input) {
       {"manifest", std::move(manifest)},
       {"warnings", input.warnings},
       {"conventions",
-       input.conventions.empty() ? standard_conventions(input.frame) : input.conventions},
+       input.conventions.empty() ? standard_conventions(input.frame, curve) : input.conventions},
   };
   return inert_json(data); // NaN becomes null
 }

@@ -24,10 +24,10 @@ Result<CalibrationFile> read_calibration_text(const std::string &text, const std
     PolarimeterCalibration &c = out.calibration;
     const double efficiency = top.number("efficiency", 1);
     if (!(efficiency > 0 && efficiency <= 2))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("efficiency = {}; a number above 0, at most 2, was expected",
-                              efficiency),
-                  top.where("efficiency"));
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("efficiency = {}; a number above 0, at most 2, was expected", efficiency),
+          top.where("efficiency"));
     c.factor = std::polar(efficiency, 2 * top.number("phi0_deg", 0) * pi / 180);
     c.offset = {top.number("q0", 0), top.number("u0", 0)};
     c.factor_sd = top.number("efficiency_sd", 0);
@@ -46,14 +46,15 @@ Result<CalibrationFile> read_calibration_text(const std::string &text, const std
 
 std::string calibration_as_toml(const CalibrationFile &f) {
   const PolarimeterCalibration &c = f.calibration;
-  return fmt::format("# measured = efficiency e^(2i phi0) (truth in the instrument's axes) + q0 + i u0\n"
-                     "instrument = {}\nband = {}\npol_frame = {}\nmade_utc = {}\nefficiency = {}\nphi0_deg = {}\n"
-                     "q0 = {}\nu0 = {}\nefficiency_sd = {}\nq0_sd = {}\nchi2 = {}\ndof = {}\n",
-                     scenario::quoted(f.instrument), scenario::quoted(f.band),
-                     scenario::quoted(f.pol_frame), scenario::quoted(f.made_utc),
-                     shortest(std::abs(c.factor)), shortest(std::arg(c.factor) / 2 * 180 / pi),
-                     shortest(c.offset.real()), shortest(c.offset.imag()), shortest(c.factor_sd),
-                     shortest(c.offset_sd), shortest(c.chi2), c.dof);
+  return fmt::format(
+      "# measured = efficiency e^(2i phi0) (truth in the instrument's axes) + q0 + i u0\n"
+      "instrument = {}\nband = {}\npol_frame = {}\nmade_utc = {}\nefficiency = {}\nphi0_deg = {}\n"
+      "q0 = {}\nu0 = {}\nefficiency_sd = {}\nq0_sd = {}\nchi2 = {}\ndof = {}\n",
+      scenario::quoted(f.instrument), scenario::quoted(f.band), scenario::quoted(f.pol_frame),
+      scenario::quoted(f.made_utc), shortest(std::abs(c.factor)),
+      shortest(std::arg(c.factor) / 2 * 180 / pi), shortest(c.offset.real()),
+      shortest(c.offset.imag()), shortest(c.factor_sd), shortest(c.offset_sd), shortest(c.chi2),
+      c.dof);
 }
 
 } // namespace umov

@@ -159,25 +159,59 @@ Result<void> check_mtl(const Named &of, const MeshFile &read) {
   return {};
 }
 
-/// A band that an index does not cover: which compiled-in tables would.
-Result<void> check_bands(const Material &material, const Scenario &scenario) {
+/// Wavelengths that a band asks a material for.
+std::pair<double, double> range_of(const Band &band) {
+  if (!band.curve)
+    return {band.wavelength.nm(), band.wavelength.nm()};
+  return {band.curve->wavelength_nm.front(), band.curve->wavelength_nm.back()};
+}
+
+/// Which compiled-in tables cover both ends of a band.
+std::string tables_that_cover(const std::string &name, double first_nm, double last_nm) {
+  std::vector<std::string> out = indices_covering(name, Wavelength::nm(first_nm));
+  const auto also = indices_covering(name, Wavelength::nm(last_nm));
+  std::erase_if(out,
+                [&](const std::string &one) { return std::ranges::find(also, one) == also.end(); });
+  return out.empty() ? "" : fmt::format(" Tables that cover it: {}.", fmt::join(out, ", "));
+}
+
+/// A band that an index does not cover: which compiled-in tables would. What a table that holds its
+/// ends is asked beyond them is told.
+Result<void> check_bands(const Material &material, const Scenario &scenario,
+                         Diagnostics &diagnostics) {
   if (material.measured)
     return {};
   std::vector<const IndexTable *> tables{&material.index};
   for (const Layer &layer : material.layers)
     tables.push_back(&layer.index);
   for (const Band &band : scenario.bands)
-    for (const IndexTable *table : tables)
-      if (const auto eta = index_at(*table, band.wavelength); !eta) {
-        const auto others = indices_covering(table->name, band.wavelength);
+    for (const IndexTable *table : tables) {
+      const auto [first, last] = range_of(band);
+      const WavelengthRange known = umov::range_of(*table);
+      const bool is_covered = first >= known.first_nm && last <= known.last_nm;
+      if (band.curve && table->holds_ends && !is_covered) {
+        diagnostics.warn(fmt::format("material \"{}\" is known at {:g}-{:g} nm; band \"{}\" "
+                                     "({:g}-{:g} nm) takes the values at the ends beyond",
+                                     material.name, known.first_nm, known.last_nm, band.name, first,
+                                     last),
+                         {scenario.file});
+      } else if (band.curve && !is_covered) {
         return fail(ErrorCode::BadInput,
-                    fmt::format("material \"{}\", band \"{}\": {}{}", material.name, band.name,
-                                eta.error().message,
-                                others.empty() ? ""
-                                               : fmt::format(" Tables that cover it: {}.",
-                                                             fmt::join(others, ", "))),
+                    fmt::format("material \"{}\": index \"{}\" covers {:g}-{:g} nm; band \"{}\" "
+                                "needs {:g}-{:g} nm. Extrapolation is off.{}",
+                                material.name, table->name, known.first_nm, known.last_nm,
+                                band.name, first, last,
+                                tables_that_cover(table->name, first, last)),
                     {scenario.file});
+      } else if (!band.curve) {
+        if (const auto eta = index_at(*table, band.wavelength); !eta)
+          return fail(ErrorCode::BadInput,
+                      fmt::format("material \"{}\", band \"{}\": {}{}", material.name, band.name,
+                                  eta.error().message,
+                                  tables_that_cover(table->name, first, first)),
+                      {scenario.file});
       }
+    }
   return {};
 }
 
@@ -187,8 +221,10 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
                                  const LoadOptions &options, Diagnostics &diagnostics) {
   LoadedObject out;
   const Named of{scenario, scenario.objects[which], which};
-  if (which == 0)
+  if (which == 0) {
     UMOV_TRY(load_earth(scenario, out));
+    out.inputs.insert(out.inputs.end(), scenario.band_files.begin(), scenario.band_files.end());
+  }
   UMOV_TRY(load_orbit(of, options, diagnostics, out));
   UMOV_ASSIGN(read, load_mesh(of, diagnostics, out));
   UMOV_TRY(check_mtl(of, read));
@@ -207,9 +243,13 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
     front.push_back(one);
     back.push_back(other);
   }
+  std::vector<Material> checked; // each once: it may be told of
   for (std::size_t i = 0; i < front.size(); ++i)
     for (const Material *material : {&front[i], &back[i]})
-      UMOV_TRY(check_bands(*material, scenario));
+      if (std::find(checked.begin(), checked.end(), *material) == checked.end()) {
+        UMOV_TRY(check_bands(*material, scenario, diagnostics));
+        checked.push_back(*material);
+      }
   auto scene =
       make_scene(read.mesh, of.object.mesh.normals, scenario.bands, front, back, diagnostics,
                  of.object.mesh.crease_deg * pi / 180, of.object.mesh.file.string());

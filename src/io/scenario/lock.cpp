@@ -116,7 +116,7 @@ std::string locked_scenario(const Scenario &s) {
     out += fmt::format("\n[earth]\neop = {}\n", absolute_path(s.earth_orientation));
   for (const ScenarioObject &one : s.objects)
     out += object(one);
-  out += fmt::format("\n[bands]\nset = {}\n", list(s.band_set));
+  out += scenario::bands_toml(s);
   out += fmt::format(
       "\n[render]\nmethod = \"{}\"\nbounces = {}\nsun = \"{}\"\naccuracy = {}\n"
       "accuracy_floor = {}\n",

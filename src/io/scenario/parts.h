@@ -14,6 +14,9 @@ struct AttitudeContext {
 /// `folder`: of relative paths.
 Result<AttitudeLaw> read_attitude(const Node &node, const std::filesystem::path &folder,
                                   const AttitudeContext &context);
+/// [bands]: the curves are read.
+Result<void> read_bands(const Node &top, const std::filesystem::path &folder, Scenario &out);
+std::string bands_toml(const Scenario &scenario);
 /// One [[object.part]].
 Result<MovingJoint> read_part(const Node &node);
 std::string part_toml(const MovingJoint &part);

@@ -112,8 +112,8 @@ Result<void> read_time(const Node &top, Scenario &out) {
     return fail(ErrorCode::BadInput,
                 fmt::format("step_s = {}; a positive number was expected", time.step_s),
                 node.where("step_s"));
-  if (auto grid = time_grid({start, stop, time.step_s}); !grid)
-    return fail(ErrorCode::BadInput, grid.error().message, node.where("stop"));
+  if (auto count = epoch_count({start, stop, time.step_s}); !count)
+    return fail(ErrorCode::BadInput, count.error().message, node.where("stop"));
   if (node.has("only")) {
     UMOV_ASSIGN(only, node.child("only"));
     const double lowest = only.number("alt_min_deg", 0), sun = only.number("sun_alt_max_deg", 90);
@@ -287,38 +287,6 @@ Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out
   return {};
 }
 
-/// A number where the name of a band belongs: 550 for "nm:550".
-Result<void> check_band_names(const Node &bands) {
-  const toml::array *list = bands.get("set")->as_array();
-  for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
-    if (const auto number = list->get(i)->value<double>())
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("set holds the number {0:g}; bands are names, a wavelength among them "
-                      "is written \"nm:{0:g}\"",
-                      *number),
-          bands.where("set"));
-  return {};
-}
-
-Result<void> read_bands(const Node &top, Scenario &out) {
-  Where where = top.where("bands");
-  if (top.has("bands")) {
-    UMOV_ASSIGN(node, top.child("bands"));
-    if (node.has("set")) {
-      UMOV_TRY(check_band_names(node));
-      UMOV_ASSIGN(set, node.strings("set"));
-      out.band_set = set;
-      where = node.where("set");
-    }
-  }
-  auto bands = bands_from(out.band_set);
-  if (!bands)
-    return fail(ErrorCode::BadInput, bands.error().message, where);
-  out.bands = *bands;
-  return {};
-}
-
 Result<void> read_method(const Node &render, LightOptions &out) {
   UMOV_ASSIGN(method, render.choice("method", name_of(out.method), {"auto", "rays", "masks"}));
   out.method = method == "rays"    ? LightMethod::Rays
@@ -426,7 +394,7 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(read_observer(top, out));
   UMOV_TRY(read_earth(top, path.parent_path(), out));
   UMOV_TRY(read_time(top, out));
-  UMOV_TRY(read_bands(top, out));
+  UMOV_TRY(scenario::read_bands(top, path.parent_path(), out));
   UMOV_TRY(read_render(top, out));
   UMOV_TRY(read_output(top, out));
   UMOV_ASSIGN(observation, scenario::read_observation(top, path.parent_path().string()));

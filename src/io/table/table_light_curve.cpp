@@ -1,6 +1,7 @@
 #include <umov/io/light_curve_table.h>
 
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 
 namespace umov {
@@ -82,7 +83,7 @@ Angle axis_of(E e, PolarizationFrame frame) {
                                                   : g.pa_scat_equatorial;
 }
 
-void add_light(RowColumns &t, PolarizationFrame frame) {
+void add_light(RowColumns &t, PolarizationFrame frame, MagnitudeSystem magnitudes) {
   const auto axis = [frame](E e) { return axis_of(e, frame).degrees(); };
   t.of_sample("I", "W / (m2 nm)", "irradiance at the observer above the atmosphere",
               [](S s) { return s.irradiance; });
@@ -99,12 +100,15 @@ void add_light(RowColumns &t, PolarizationFrame frame) {
               [](S s) { return s.scattering.q; });
   t.of_sample("u_scat", "", "U/I in the scattering frame", [](S s) { return s.scattering.u; });
   t.of_epoch("pa_scat", "deg", "position angle of the normal of the scattering plane", axis);
-  t.of_sample("mag", "mag(AB)", "AB magnitude; empty where no light comes",
+  const std::string system = name_of(magnitudes);
+  // Vega's is no unit that readers of ECSV know.
+  const std::string unit = magnitudes == MagnitudeSystem::Vega ? "mag" : "mag(" + system + ")";
+  t.of_sample("mag", unit.c_str(), (system + " magnitude; empty where no light comes").c_str(),
               [](S s) { return s.magnitude; });
   t.add<bool>("mag_limit", "", "mag is a limit: the object is fainter",
               [](E, S s, const Band &) { return has_magnitude_limit(s); });
   t.add<std::string>("mag_system", "", "system of mag",
-                     [](E, S, const Band &) { return std::string("AB"); });
+                     [system](E, S, const Band &) { return system; });
   t.add<bool>("glint", "", "a flat mirror-like part gives most of the light",
               [](E e, S, const Band &) { return e.has_glint; });
 }
@@ -168,16 +172,25 @@ void add_errors(RowColumns &t, PolarizationFrame frame) {
      [](D d, E, S s) { return s.p > 0 ? d.pa_deg() : std::numeric_limits<double>::quiet_NaN(); });
 }
 
+/// Of bands with a curve: what summing them from few wavelengths may leave out.
+void add_band_errors(RowColumns &t) {
+  const char *text = "error of the band's sum of wavelengths (change if every other is left out)";
+  t.of_sample("band_err_i", "m2 / sr", text, [](S s) { return s.band_err.i; });
+  t.of_sample("band_err_q", "m2 / sr", text, [](S s) { return s.band_err.q; });
+  t.of_sample("band_err_u", "m2 / sr", text, [](S s) { return s.band_err.u; });
+  t.of_sample("band_err_v", "m2 / sr", text, [](S s) { return s.band_err.v; });
+}
+
 /// Light of other sources, not in I: columns of their own.
 void add_second_light(Table &table, const SecondLight &light) {
-  const std::string of = light.name == "moon" ? "moonlight" : "earthshine";
-  table.add(light.name + "_I", "W / (m2 nm)", "irradiance at the observer by " + of,
-            light.irradiance);
+  const std::string of = light.source == SecondSource::Moon ? "moonlight" : "earthshine",
+                    source = name_of(light.source);
+  table.add(source + "_I", "W / (m2 nm)", "irradiance at the observer by " + of, light.irradiance);
   const auto add = [&](const char *name, const char *text, double Stokes<SkyNorth>::*part) {
     std::vector<double> values;
     for (const Stokes<SkyNorth> &s : light.intensity)
       values.push_back(s.i > 0 ? s.*part / s.i : std::numeric_limits<double>::quiet_NaN());
-    table.add(light.name + name, "", text + of, std::move(values));
+    table.add(source + name, "", text + of, std::move(values));
   };
   add("_q", "Q/I in the sky frame of ", &Stokes<SkyNorth>::q);
   add("_u", "U/I in the sky frame of ", &Stokes<SkyNorth>::u);
@@ -187,13 +200,13 @@ void add_second_light(Table &table, const SecondLight &light) {
     irradiance.push_back(light.intensity[k].i > 0
                              ? light.half_width[k].i / light.intensity[k].i * light.irradiance[k]
                              : 0);
-  table.add(light.name + "_I_err", "W / (m2 nm)", "numerical 95 % half-width", irradiance);
+  table.add(source + "_I_err", "W / (m2 nm)", "numerical 95 % half-width", irradiance);
   const auto add_error = [&](const char *name, double Stokes<SkyNorth>::*part) {
     std::vector<double> values;
     for (std::size_t k = 0; k < light.intensity.size(); ++k)
       values.push_back(light.intensity[k].i > 0 ? light.half_width[k].*part / light.intensity[k].i
                                                 : std::numeric_limits<double>::quiet_NaN());
-    table.add(light.name + name, "", "numerical 95 % half-width, over I", std::move(values));
+    table.add(source + name, "", "numerical 95 % half-width, over I", std::move(values));
   };
   add_error("_q_err", &Stokes<SkyNorth>::q);
   add_error("_u_err", &Stokes<SkyNorth>::u);
@@ -207,7 +220,7 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   RowColumns t(curve, table);
   add_names(t, curve);
   add_geometry(t);
-  add_light(t, frame);
+  add_light(t, frame, curve.magnitudes);
   if (curve.bounces > 1) {
     t.of_sample("indirect_i", "", "part of I that touched several surfaces",
                 [](S s) { return s.indirect.i; });
@@ -229,12 +242,31 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   t.of_epoch("elset_age", "d", "time since the epoch of the elements",
              [](E e) { return e.elset_age_days; });
   add_errors(t, frame);
+  if (has_curve(curve.bands))
+    add_band_errors(t);
   note_conventions(table);
+  note_curves(curve.bands, table);
   table.note("object", curve.object);
   table.note("pol_frame", frame == PolarizationFrame::Equatorial ? "equatorial"
                           : frame == PolarizationFrame::AltAz    ? "altaz"
                                                                  : "scattering");
   return table;
+}
+
+void note_curves(const std::vector<Band> &bands, Table &table) {
+  if (!has_curve(bands))
+    return;
+  table.note("bands",
+             "Of a band with a curve every quantity is the photon-weighted mean over its "
+             "response in sunlight (ASTM E490), Stokes components before any ratio; "
+             "lambda_eff: its effective wavelength. band_err_*: what the mean changes by if "
+             "every other wavelength is left out.");
+  for (const Band &band : bands)
+    if (band.curve)
+      table.note("band " + band.name,
+                 fmt::format("{:g}-{:g} nm, pivot {:.2f} nm; {}", band.curve->wavelength_nm.front(),
+                             band.curve->wavelength_nm.back(), pivot_nm(*band.curve),
+                             band.curve->source));
 }
 
 Table passes_table(const std::vector<Pass> &passes, const LightCurve &curve) {

@@ -44,7 +44,7 @@ Result<Trajectory> from_message(std::string_view text, const std::string &file,
 
 Result<ccsds::Message> oem_from(const Trajectory &orbit, const std::vector<Epoch<Utc>> &times,
                                 Epoch<Utc> created) {
-  std::vector<TemeState> states(times.size());
+  std::vector<OrbitState> states(times.size());
   if (const std::size_t count = orbit.at(times, states); count < times.size())
     return tl::unexpected(orbit.at(times[count]).error());
   const auto date = [](Epoch<Utc> time) {
@@ -74,7 +74,7 @@ Result<ccsds::Message> oem_from(const Trajectory &orbit, const std::vector<Epoch
       {"INTERPOLATION_DEGREE", "9", "", 0}};
   constexpr std::array keys{"X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT"};
   for (std::size_t k = 0; k < times.size(); ++k) {
-    const Vec3<Teme> r = states[k].position_km, v = states[k].velocity_km_s;
+    const auto [r, v] = teme_state(states[k], times[k]);
     const std::array<double, 6> numbers{r.x, r.y, r.z, v.x, v.y, v.z};
     ccsds::Record record{"stateVector", {{"EPOCH", date(times[k]), "", 0}}, 0};
     for (std::size_t i = 0; i < keys.size(); ++i)

@@ -37,7 +37,7 @@ PathSampler::PathSampler(const BounceScene &of, const Occluder &occluder, const 
                          const IntegrationOptions &options, const ThermalEmission *emission,
                          bool has_ends)
     : of_(of), scene_(of.scene_), occluder_(occluder), pose_(pose), options_(options),
-      bands_(of.scene_.bands.size()),
+      bands_(of.scene_.grid.nodes().size()),
       seen_(has_ends ? facing(pose.observer) : AreaChoice({}, of.area_m2_, of.groups_)),
       lit_(has_ends ? facing(pose.sun) : AreaChoice({}, of.area_m2_, of.groups_)),
       emission_(emission), plane_(plane_normal(pose.observer, pose.sun)) {}

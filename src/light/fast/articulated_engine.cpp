@@ -327,7 +327,7 @@ ArticulatedEngine::ArticulatedEngine(const Scene &scene, const std::vector<Joint
                                      const EngineOptions &options)
     : state_(std::make_unique<State>()) {
   state_->joints = joints;
-  state_->bands = scene.bands.size();
+  state_->bands = scene.grid.nodes().size();
   state_->refine_above = options.masks.refine_above;
   const auto joint_of = joint_of_groups(scene.mesh, joints);
   for (std::size_t k = 0; k <= joints.size(); ++k) {

@@ -182,7 +182,7 @@ Engine::Engine(Engine &&) noexcept = default;
 Engine &Engine::operator=(Engine &&) noexcept = default;
 
 const EngineFacts &Engine::facts() const { return state_->facts; }
-std::size_t Engine::band_count() const { return state_->scene.bands.size(); }
+std::size_t Engine::band_count() const { return state_->scene.grid.nodes().size(); }
 
 void Engine::evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads) const {
   LightTask task;

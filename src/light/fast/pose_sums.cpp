@@ -25,8 +25,10 @@ bool Engine::State::add_up(const Pose &pose, const Prepared &at, Workspace &work
   if (!work.sums.is_any_seen && !doubts_darkness())
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
-  work.general.reset(compiled.general_classes > 0 ? bands() : 0, true);
-  work.general_i.assign(compiled.general_classes > 0 ? compiled.slots.size() * bands() : 0, 0);
+  if (compiled.general_classes > 0) {
+    work.general.reset(bands(), true);
+    work.general_i.assign(compiled.slots.size() * bands(), 0);
+  }
   if (!work.sums.seen.empty())
     add_general(pose, at, work);
   take_roots(work);
@@ -115,9 +117,10 @@ void Engine::State::light_of_general(const Pose &pose, const Prepared &at,
   const SurfaceDirections on = directions(pose, at, facet);
   for (std::size_t b = 0; b < this->bands(); ++b) {
     const double w = surface.specular(b, on);
-    bands[b] = {work.factors.a[column + b] * w, work.factors.b[column + b] * w, 0, 0};
-    if (surface.has_diffuse())
-      bands[b] += surface.diffuse(b, on, sunlight);
+    const double a = work.factors.a[column + b], q = work.factors.b[column + b];
+    bands[b] = {a * w, q * w, 0, 0};
+    if (surface.has_diffuse()) // unpolarized light asks for a and b only
+      bands[b] += surface.diffuse(b, on, sunlight, MuellerEntries{a, q, {}}.matrix());
   }
 }
 

@@ -97,7 +97,7 @@ struct Engine::State {
   [[nodiscard]] ReadLock hold_masks(std::span<const Pose> poses, const LightTask &task) const;
   [[nodiscard]] std::uint64_t key_of_masks() const;
   void keep_masks() const;
-  [[nodiscard]] std::size_t bands() const { return scene.bands.size(); }
+  [[nodiscard]] std::size_t bands() const { return scene.grid.nodes().size(); }
   [[nodiscard]] std::size_t terms_max() const; ///< lobes and products of a slot, at most
 
   void prepare(const Pose &pose, Prepared &out) const;

@@ -1,5 +1,7 @@
 #include <umov/light/light_model.h>
 
+#include "light/model/band_sums.h"
+
 #include <algorithm>
 #include <umov/core/expects.h>
 
@@ -22,7 +24,30 @@ LightModel::LightModel(const Scene &scene, std::vector<Joint> joints)
 bool LightModel::evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
                           StokesTable &out, const LightTask &task) const {
   UMOV_EXPECTS(angles_rad.size() == poses.size() * joints_.size());
-  return light(poses, angles_rad, out, task);
+  if (scene_.grid.is_plain())
+    return light(poses, angles_rad, out, task);
+  // In parts: there are tens of wavelengths for each band. Those that share paths stay together.
+  constexpr std::size_t part = 2048;
+  StokesTable nodes;
+  for (std::size_t begin = 0; begin == 0 || begin < poses.size(); begin += part) {
+    const std::size_t count = std::min(part, poses.size() - begin);
+    if (!light(poses.subspan(begin, count),
+               angles_rad.subspan(begin * joints_.size(), count * joints_.size()), nodes, task))
+      return false;
+    if (begin == 0)
+      size_as(nodes, scene_.grid, poses.size(), materials_.size(), out);
+    sum_bands(nodes, scene_.grid, materials_.size(), begin, out);
+  }
+  return true;
+}
+
+std::vector<double> LightModel::of_bands(const std::vector<double> &nodes) const {
+  std::vector<double> out;
+  for (std::size_t b = 0; b < scene_.bands.size() && !nodes.empty(); ++b)
+    out.push_back(sum_band<double>(scene_.grid.terms()[b], [&](std::size_t node) {
+                    return nodes[node];
+                  }).value);
+  return out;
 }
 
 bool LightModel::evaluate(std::span<const Pose> poses, StokesTable &out,

@@ -40,7 +40,8 @@ Result<std::unique_ptr<LightModel>> MasksLight::make(const Scene &scene, std::ve
 Result<void> MasksLight::prepare() {
   const auto start = std::chrono::steady_clock::now();
   const bool is_auto = options_.method == LightMethod::Auto;
-  facts_.floor_i = floor_of(options_, typical_i_);
+  floor_i_ = floor_of(options_, typical_i_);
+  facts_.floor_i = of_bands(floor_i_);
   EngineOptions with;
   with.threads = options_.threads;
   // What masks lack, rays add: finer masks cost more to make than they save.
@@ -53,7 +54,7 @@ Result<void> MasksLight::prepare() {
   with.q_part = 1; // Q in parts of I, to the accuracy of I
   with.is_lazy = true;
   with.mask_cache = options_.mask_file.empty() ? options_.mask_cache : "";
-  with.floor_i = facts_.floor_i;
+  with.floor_i = floor_i_;
   if (joints().empty() && !options_.mask_file.empty() && file_exists(options_.mask_file)) {
     UMOV_ASSIGN(read, Engine::with_masks(options_.mask_file, scene(), with));
     engine_.emplace(std::move(read));
@@ -67,7 +68,7 @@ Result<void> MasksLight::prepare() {
   facts_.is_convex = engine_ && engine_->facts().is_convex;
   facts_.classes = engine_ ? engine_->facts().classes : 0;
   facts_.visibility = in_words(facts_, with.masks);
-  IntegrationOptions rays = integration_of(options_, facts_.floor_i);
+  IntegrationOptions rays = integration_of(options_, floor_i_);
   if (options_.bounces > 1 && !facts_.is_convex)
     between_.emplace(scene(), joints(), rays, materials());
   rays.bounces = 1;
@@ -113,8 +114,7 @@ std::vector<std::size_t> MasksLight::inaccurate(const StokesTable &table) const 
   for (std::size_t k = 0; k < table.poses(); ++k)
     for (std::size_t b = 0; b < table.bands; ++b) {
       const std::size_t at = k * table.bands + b;
-      const std::vector<double> &floor = facts().floor_i;
-      const double refers_to = std::max(table.i[at], floor.empty() ? 0 : floor[b]);
+      const double refers_to = std::max(table.i[at], floor_i_.empty() ? 0 : floor_i_[b]);
       if (table.i_err[at] > slack * options_.accuracy * refers_to) {
         out.push_back(k);
         break;

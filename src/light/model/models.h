@@ -8,7 +8,7 @@
 
 namespace umov {
 
-/// What the accuracy of each band refers to at least, from the typical light; empty: 0.
+/// What the accuracy at each node refers to at least, from the typical light; empty: 0.
 std::vector<double> floor_of(const LightOptions &options, const std::vector<double> &typical_i);
 
 /// Light below this part of the typical one counts as that much in what `curved_error` refers to:
@@ -53,7 +53,8 @@ private:
   [[nodiscard]] std::vector<std::size_t> inaccurate(const StokesTable &table) const;
 
   LightOptions options_;
-  std::vector<double> typical_i_; ///< per band
+  std::vector<double> typical_i_; ///< per node
+  std::vector<double> floor_i_;   ///< what the accuracy refers to at least, per node
   double curved_error_;           ///< of I, in parts of it
   std::vector<std::uint32_t> material_of_;
   std::optional<Engine> engine_;             ///< of a body whose parts do not turn

@@ -8,7 +8,7 @@ RaysLight::RaysLight(const Scene &of, std::vector<Joint> turning, const LightOpt
                      const std::vector<double> &typical_i)
     : LightModel(of, std::move(turning)),
       rays_(scene(), joints(), integration_of(options, floor_of(options, typical_i)), materials()) {
-  facts_.floor_i = floor_of(options, typical_i);
+  facts_.floor_i = of_bands(floor_of(options, typical_i));
   facts_.method = LightMethod::Rays;
   facts_.is_convex = rays_.is_convex();
   facts_.instruction_set = "scalar double";
@@ -17,7 +17,7 @@ RaysLight::RaysLight(const Scene &of, std::vector<Joint> turning, const LightOpt
 
 bool RaysLight::light(std::span<const Pose> poses, std::span<const double> angles_rad,
                       StokesTable &out, const LightTask &task) const {
-  out.resize(poses.size(), scene().bands.size());
+  out.resize(poses.size(), scene().grid.nodes().size());
   if (task.has_glints)
     out.glint_share.assign(poses.size(), 0);
   if (task.has_materials)

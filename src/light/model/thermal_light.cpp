@@ -22,7 +22,7 @@ public:
 private:
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override {
-    out.resize(poses.size(), scene().bands.size());
+    out.resize(poses.size(), scene().grid.nodes().size());
     out.glint_share.assign(task.has_glints ? poses.size() : 0, 0); // heat has none
     out.material_i.assign(task.has_materials ? poses.size() * materials().size() * out.bands : 0,
                           0);

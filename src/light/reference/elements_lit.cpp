@@ -67,7 +67,7 @@ public:
   Lighter(const Scene &scene, const Elements &elements, const PoseGeometry &pose,
           const Stokes<ScatteringPlane> &source)
       : scene_(scene), elements_(elements), pose_(pose), source_(source),
-        bands_(scene.bands.size()), is_known_(2 * scene.mesh.groups.size(), 0) {
+        bands_(scene.grid.nodes().size()), is_known_(2 * scene.mesh.groups.size(), 0) {
     for (const auto *side : {&scene.front, &scene.back})
       for (const Surface &surface : *side)
         if (!surface.is_specular_grey())
@@ -79,6 +79,7 @@ public:
             out_.has_u_or_v || (surface.material().body && surface.material().body->is_polarized) ||
             (surface.material().measured && surface.material().measured->has_polarization());
     out_.fresnel.resize(is_known_.size() * bands_);
+    reflection_.resize(is_known_.size() * bands_);
     out_.total.assign(bands_, 0);
     integrals_.specular.resize(out_.lobes);
     integrals_.diffuse.resize(bands_);
@@ -114,8 +115,8 @@ private:
         consider(0, half, side, slot, depth + 1);
       return;
     }
+    learn_reflection(surface, slot);
     integrate(surface, e, side, slot);
-    learn_fresnel(surface, slot);
     LitElement lit;
     lit.is_piece = depth > 0;
     lit.element = static_cast<std::uint32_t>(lit.is_piece ? out_.pieces.size() : index);
@@ -211,7 +212,8 @@ private:
         integrals_.specular[k].add(surface.specular(k, at), w, w_low);
       integrals_.projected += w * at.l.z * at.v.z;
       for (std::size_t b = 0; has_diffuse && b < bands_; ++b)
-        integrals_.diffuse[b].add(surface.diffuse(b, at, source_), w, w_low);
+        integrals_.diffuse[b].add(surface.diffuse(b, at, source_, reflection_[slot * bands_ + b]),
+                                  w, w_low);
     };
     if (e.is_flat)
       add(e.normal[0], 1, 1);
@@ -227,19 +229,19 @@ private:
       band.scale(e.area_m2);
   }
 
-  void learn_fresnel(const Surface &surface, std::uint32_t slot) {
+  /// One microfacet incidence serves the whole pose.
+  void learn_reflection(const Surface &surface, std::uint32_t slot) {
     if (is_known_[slot])
       return;
     is_known_[slot] = 1;
     const bool is_sunlight = source_.q == 0 && source_.u == 0 && source_.v == 0;
     for (std::size_t b = 0; b < bands_; ++b) {
+      const FacetMueller m = surface.mueller(b, pose_.cos_phase);
+      reflection_[slot * bands_ + b] = m;
       Stokes<ScatteringPlane> &light = out_.fresnel[slot * bands_ + b];
-      if (is_sunlight) {
-        const FresnelFactors f = surface.fresnel(b, pose_.cos_phase);
-        light = {f.a * source_.i, pose_.has_plane ? f.b * source_.i : 0, 0, 0};
-      } else {
-        light = surface.mueller(b, pose_.cos_phase) * source_;
-      }
+      light = m * source_;
+      if (is_sunlight && !pose_.has_plane)
+        light.q = 0;
     }
   }
 
@@ -263,7 +265,8 @@ private:
   const PoseGeometry &pose_;
   const Stokes<ScatteringPlane> &source_;
   std::size_t bands_;
-  std::vector<char> is_known_; ///< per slot: its Fresnel factors are there
+  std::vector<char> is_known_;           ///< per slot: its reflection is there
+  std::vector<FacetMueller> reflection_; ///< one: [slot * bands + band]
   SideIntegrals integrals_;
   LitElements out_;
 };

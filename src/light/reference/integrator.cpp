@@ -64,7 +64,7 @@ bool Integrator::is_convex() const { return state_->is_convex; }
 
 PoseResult Integrator::direct(const Pose &pose, const IntegrationOptions &options) const {
   const Scene &scene = state_->scene;
-  const std::size_t bands = scene.bands.size(), groups = scene.mesh.groups.size();
+  const std::size_t bands = scene.grid.nodes().size(), groups = scene.mesh.groups.size();
   const PoseGeometry geometry = geometry_of(pose);
   const LitElements lit = light_elements(scene, state_->elements, geometry, options.source);
   const VisibleSums sums =
@@ -145,7 +145,7 @@ std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
                                                 std::span<const double> direct_i,
                                                 const IntegrationOptions &options, unsigned threads,
                                                 const std::atomic<bool> *cancel) const {
-  const std::size_t bands = state_->scene.bands.size();
+  const std::size_t bands = state_->scene.grid.nodes().size();
   if (state_->is_convex || options.bounces < 2)
     return {poses.size(), IndirectLight{std::vector<BandResult>(bands), 0}};
   // The accuracy refers to the whole light, or to the floor.
@@ -159,7 +159,7 @@ std::vector<IndirectLight> Integrator::thermal(std::span<const Pose> poses,
                                                const ThermalEmission &emission,
                                                const IntegrationOptions &options, unsigned threads,
                                                const std::atomic<bool> *cancel) const {
-  const std::vector<double> nothing(poses.size() * state_->scene.bands.size());
+  const std::vector<double> nothing(poses.size() * state_->scene.grid.nodes().size());
   return by_paths(state_->paths(), poses, nothing, options, threads, cancel, &emission);
 }
 
@@ -167,7 +167,7 @@ std::vector<Stokes<ScatteringPlane>>
 Integrator::indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
                               const IntegrationOptions &options, std::size_t paths,
                               std::uint64_t first) const {
-  const std::size_t bands = state_->scene.bands.size();
+  const std::size_t bands = state_->scene.grid.nodes().size();
   std::vector<Stokes<ScatteringPlane>> out(points.size() * bands);
   if (state_->is_convex || options.bounces < 2 || points.empty())
     return out;

@@ -174,7 +174,7 @@ private:
 } // namespace
 
 VisibleSums sum_unhidden(const Scene &scene, const LitElements &lit) {
-  const std::size_t bands = scene.bands.size(), slots = 2 * scene.mesh.groups.size();
+  const std::size_t bands = scene.grid.nodes().size(), slots = 2 * scene.mesh.groups.size();
   VisibleSums out;
   out.specular.assign(slots * lit.lobes, 0);
   out.diffuse.resize(slots * bands);

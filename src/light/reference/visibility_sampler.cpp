@@ -41,7 +41,7 @@ public:
           const PoseGeometry &pose, const LitElements &lit, std::uint64_t seed,
           std::uint32_t stream)
       : scene_(scene), elements_(elements), occluder_(occluder), pose_(pose), lit_(lit),
-        seed_(seed), stream_(stream), bands_(scene.bands.size()), lobes_(lit.lobes),
+        seed_(seed), stream_(stream), bands_(scene.grid.nodes().size()), lobes_(lit.lobes),
         kinds_(lit.lobes + 1), variance_(bands_), block_specular_(lobes_), block_diffuse_(bands_),
         block_rule_(bands_), ratio_(kinds_), weight_sum_(kinds_) {
     out_.sums.specular.assign(2 * scene.mesh.groups.size() * lobes_, 0);

@@ -87,7 +87,7 @@ void expect_alike(const StokesTable &a, const StokesTable &b, double factor, dou
 class LightProperties : public testing::TestWithParam<LightMethod> {};
 INSTANTIATE_TEST_SUITE_P(Methods, LightProperties,
                          testing::Values(LightMethod::Rays, LightMethod::Masks, LightMethod::Auto),
-                         [](const auto &info) { return std::string(name_of(info.param)); });
+                         [](const auto &method) { return std::string(name_of(method.param)); });
 
 TEST_P(LightProperties, TurningObjectSunAndObserverTogetherChangesNothing) {
   // A turn about (1, 1, 1) by 120 deg and one about z whose tangent of half the angle is 1/2.

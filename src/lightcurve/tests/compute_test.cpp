@@ -61,7 +61,7 @@ TEST(LightCurve, TwoLambertPlatesFollowTheCosines) {
   const LightCurve curve = computed(request, scene).curve;
   ASSERT_EQ(curve.bands.size(), 3u);
   ASSERT_EQ(curve.samples.size(), 3 * curve.epochs.size());
-  const auto solar = solar_irradiances(curve.bands);
+  const auto colours = photometric_bands(curve.bands, MagnitudeSystem::AB);
   std::size_t lit = 0;
   for (std::size_t k = 0; k < curve.epochs.size(); ++k) {
     const LightCurveEpoch &epoch = curve.epochs[k];
@@ -73,7 +73,7 @@ TEST(LightCurve, TwoLambertPlatesFollowTheCosines) {
       const LightCurveSample &sample = curve.samples[3 * k + b];
       EXPECT_NEAR(sample.intensity, expected, 1e-9 + sample.half_width.i);
       EXPECT_EQ(sample.irradiance,
-                irradiance_at_observer(sample.intensity, (*solar)[b],
+                irradiance_at_observer(sample.intensity, (*colours)[b].solar,
                                        epoch.geometry.sun_distance_km, epoch.geometry.sunlit,
                                        epoch.geometry.range_km));
     }

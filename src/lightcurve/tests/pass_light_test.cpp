@@ -44,7 +44,8 @@ double sphere_magnitude(double radius_m, const ObservingGeometry &g, const Band 
   const double intensity =
       2 / (3 * pi) * radius_m * radius_m * (std::sin(a) + (pi - a) * std::cos(a));
   const LightPath path{g.sun_distance_km, g.range_km, g.sunlit};
-  return observed_light(intensity, band, solar_irradiances({band})->front(), path).magnitude;
+  return observed_light(intensity, photometric_bands({band}, MagnitudeSystem::AB)->front(), path)
+      .magnitude;
 }
 
 TEST(PassLight, ALambertSphereFollowsItsPhaseFunction) {

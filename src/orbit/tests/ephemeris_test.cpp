@@ -9,9 +9,10 @@
 #include <sstream>
 #include <umov/core/files.h>
 #include <umov/frames/earth.h>
-#include <umov/orbit/elements.h>
+#include <umov/io/tle.h>
 #include <umov/orbit/ephemeris.h>
 #include <umov/orbit/moon.h>
+#include <umov/orbit/sgp4.h>
 
 namespace umov {
 namespace {

@@ -9,6 +9,8 @@
 #include <map>
 #include <sstream>
 #include <umov/core/files.h>
+#include <umov/io/tle.h>
+#include <umov/orbit/sgp4.h>
 
 namespace umov {
 namespace {

@@ -13,6 +13,7 @@ Scene scene_of(Mesh mesh, const std::vector<std::string> &front,
   Scene scene;
   scene.mesh = std::move(mesh);
   scene.bands = *bands_from({"paper_rgb"});
+  scene.grid = *BandGrid::make(scene.bands);
   for (const std::string &name : front)
     scene.front.push_back(*Surface::compile(*builtin_material(name), scene.bands));
   for (const std::string &name : back)

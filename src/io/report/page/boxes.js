@@ -29,7 +29,7 @@ function greatestP(rows) {
 }
 
 function passTable() {
-  const head = ["pass", "rise", "culmination", "set", "max altitude", "rows", "AB magnitude", "max p"];
+  const head = ["pass", "rise", "culmination", "set", "max altitude", "rows", report.mag_system + " magnitude", "max p"];
   const body = report.passes.map((pass) => {
     const own = passes.filter((p) => p.id === pass.id).flatMap((p) => p.rows);
     const p = greatestP(own);
@@ -56,7 +56,7 @@ function fillSummary() {
     fact("Bands", bands.map((band) => band.label).join(", ") || "none"),
     fact("Maximum altitude", altitude ? altitude[1].toFixed(1) + "°" : "none"),
     fact("Phase angle", phase ? phase[0].toFixed(1) + "° to " + phase[1].toFixed(1) + "°" : "none"),
-    fact("AB magnitude", magnitudeText(all)),
+    fact(report.mag_system + " magnitude", magnitudeText(all)),
     fact("Maximum p", p ? (100 * p.p).toFixed(1) + " % (" + p.band + ", phase " + epochs.phase[p.row].toFixed(1) + "°)" : "undefined"));
   byId("summary").append(facts, report.passes.length ? passTable() : "");
   const span = epochCount ? epochs.time[0].slice(0, 19) + "Z to " + epochs.time[epochCount - 1].slice(0, 19) + "Z" : "no epochs";

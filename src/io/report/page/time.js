@@ -131,7 +131,7 @@ function timeFigure(rows) {
 }
 
 const brightnessRows = {
-  mag: { title: "AB magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag",
+  mag: { title: report.mag_system + " magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag",
     span: magnitudeSpan, isLimit: (band, i) => band.mag_limit[i] === 1 },
   irradiance: { title: "I [W m⁻² nm⁻¹]", at: (band, i) => positive(band.irradiance[i]), type: "log", digits: "3e" },
   intensity: { title: "intensity [m² sr⁻¹]", at: (band, i) => positive(band.intensity[i]), type: "log", digits: "3e" },
@@ -186,7 +186,7 @@ const isMagnitude = (band, i) => band.mag[i] !== null && !band.mag_limit[i];
 const colourIndex = (pair, i) => !isMagnitude(pair.short, i) || !isMagnitude(pair.long, i) ? null : pair.short.mag[i] - pair.long.mag[i];
 const colourFigure = {
   id: "colour", isAgainstTime: true, title: "Colour index against time", height: () => isNarrow() ? 320 : 460,
-  caption: "Shorter minus longer wavelength, AB magnitudes: larger is redder.",
+  caption: "Shorter minus longer wavelength, " + report.mag_system + " magnitudes: larger is redder.",
   build: () => timeFigure([{ title: "colour [mag]", digits: "3f", unit: "mag",
     // Rounding keeps a constant colour a straight line instead of a plot of the last bits.
     curves: colourPairs.map((pair) => ({ name: pair.name, colour: pair.colour, symbol: pair.symbol,

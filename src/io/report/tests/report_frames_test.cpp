@@ -13,6 +13,7 @@ Scene sphere_of(const std::string &material) {
   Scene scene;
   scene.mesh = make_sphere(1.5, 200);
   scene.bands = *bands_from({"paper_rgb"});
+  scene.grid = *BandGrid::make(scene.bands);
   scene.front.push_back(*Surface::compile(*builtin_material(material), scene.bands));
   scene.back = scene.front;
   return scene;

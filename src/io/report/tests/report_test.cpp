@@ -187,7 +187,7 @@ TEST(Report, PureMaterialCurvesAreFresnelRatios) {
   std::vector<Surface> surfaces;
   for (const char *name : {"paper_al", "paper_spectralon", "paper_al"})
     surfaces.push_back(*Surface::compile(*builtin_material(name), *bands));
-  const auto curves = pure_material_curves(surfaces);
+  const auto curves = pure_material_curves(surfaces, *BandGrid::make(*bands));
   ASSERT_EQ(curves.size(), 3U); // aluminium once; spectralon (n = 1) has no interface
   ASSERT_EQ(curves[1].phase_deg.size(), 181U);
   EXPECT_EQ(curves[1].material, "paper_al");

@@ -1,6 +1,6 @@
 // TLE fields: columns to numbers, each with its range.
 
-#include "tle_line.h"
+#include "io/elements/tle_line.h"
 
 #include <cmath>
 #include <umov/core/quantity.h>

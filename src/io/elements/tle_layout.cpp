@@ -1,6 +1,6 @@
 // TLE lines before their fields: kind, characters, layout, length, checksum.
 
-#include "tle_line.h"
+#include "io/elements/tle_line.h"
 
 #include <array>
 #include <span>

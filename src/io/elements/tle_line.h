@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 #include <umov/core/result.h>
-#include <umov/orbit/elements.h>
+#include <umov/io/tle.h>
 
 namespace umov::tle {
 

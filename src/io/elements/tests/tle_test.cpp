@@ -1,10 +1,11 @@
 // The TLE reader: one row per kind of good and bad line, made from the set in data/tle/hst.tle.
 
-#include "fixed_columns.h"
+#include "orbit/tests/fixed_columns.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <umov/core/files.h>
+#include <umov/io/tle.h>
 #include <umov/orbit/sgp4.h>
 
 namespace umov {

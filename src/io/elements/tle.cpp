@@ -1,6 +1,6 @@
 // TLE and 3LE texts: lines into sets.
 
-#include "tle_line.h"
+#include "io/elements/tle_line.h"
 
 #include <optional>
 #include <utility>

@@ -1,0 +1,104 @@
+// The curves of data/filters, and Gaussians about the paper's wavelengths.
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+#include <umov/core/embedded.h>
+#include <umov/core/text.h>
+#include <umov/io/passband_file.h>
+
+UMOV_EMBEDDED(filter_names)
+
+namespace umov {
+
+const std::vector<EmbeddedFile> &filter_curves_files();
+
+namespace {
+
+/// A row of data/filters/bands.csv; its form is fixed, so there is nothing to report.
+struct Known {
+  std::string name, stem;
+  double vega_zero = 0;
+  std::string vega_source;
+};
+
+std::vector<Known> read_names() {
+  std::vector<Known> out;
+  std::string_view text = filter_names();
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const auto cells = line.starts_with('#') ? std::nullopt : csv_cells(line);
+    if (cells && cells->size() == 4 && parse_number((*cells)[2].text))
+      out.push_back(
+          {(*cells)[0].text, (*cells)[1].text, *parse_number((*cells)[2].text), (*cells)[3].text});
+  }
+  return out;
+}
+
+const std::vector<Known> &known() {
+  static const std::vector<Known> table = read_names();
+  return table;
+}
+
+/// What a name has before its point.
+std::string group_of(const std::string &name) { return name.substr(0, name.find('.')); }
+
+constexpr std::array wide_centres_nm{425, 550, 650};
+
+Result<Passband> curve_of(const Known &one) {
+  for (const EmbeddedFile &file : filter_curves_files())
+    if (one.stem == file.stem) {
+      UMOV_ASSIGN(out,
+                  read_passband_text(std::string(file.bytes), "data/filters/" + one.stem + ".ecsv",
+                                     {"", DetectorKind::Photon}));
+      out.name = one.name;
+      out.vega_zero = one.vega_zero;
+      out.vega_source = one.vega_source;
+      return std::move(out);
+    }
+  return fail(ErrorCode::Internal, one.stem + ": not compiled in");
+}
+
+} // namespace
+
+std::vector<std::string> passband_names() {
+  std::vector<std::string> out;
+  for (const Known &one : known())
+    out.push_back(one.name);
+  for (const int nm : wide_centres_nm)
+    out.push_back(fmt::format("rgb_wide.{}", nm));
+  return out;
+}
+
+std::vector<std::string> passband_group(const std::string &name) {
+  std::vector<std::string> out;
+  for (const std::string &one : passband_names())
+    if (group_of(one) == name)
+      out.push_back(one);
+  return out;
+}
+
+Result<Passband> find_passband(const std::string &name) {
+  for (const Known &one : known())
+    if (name == one.name || name == one.stem)
+      return curve_of(one);
+  for (const int nm : wide_centres_nm)
+    if (name == fmt::format("rgb_wide.{}", nm)) {
+      Passband out = gaussian_passband(name, nm, 80);
+      out.source = "a Gaussian of 80 nm full width about a wavelength of the paper: an assumption";
+      return out;
+    }
+  std::vector<std::string> names = passband_names();
+  for (const Known &one : known())
+    names.push_back(one.stem);
+  const auto near = nearest_name(name, names);
+  return fail(ErrorCode::BadInput,
+              fmt::format("unknown band \"{}\".{} A wavelength is written \"nm:550\", a file of "
+                          "one's own \"file:x.vot\". Known: umov bands list.",
+                          printable(name),
+                          near ? fmt::format(" Did you mean \"{}\"?", *near) : ""));
+}
+
+} // namespace umov
