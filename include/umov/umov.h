@@ -100,6 +100,7 @@
 #include <umov/light/stokes_table.h>
 #include <umov/light/thermal.h>
 #include <umov/lightcurve/compute.h>
+#include <umov/lightcurve/derived_errors.h>
 #include <umov/lightcurve/earth_light.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/lightcurve/pass_light.h>

@@ -30,3 +30,15 @@ curve = hst.light_curve("maui", table[0], step_s=5)
 print(curve)
 curve.plot().savefig("first_pass.png")
 plt.close("all")
+
+# %% [markdown]
+# The same pass as a cloud of Q/I in three bands, to be turned with the mouse: one material alone would lie on a line.
+
+# %%
+umov.turnable.q_rgb(curve)
+
+# %% [markdown]
+# And the mesh, a colour for each of its materials.
+
+# %%
+umov.turnable.mesh(hst)

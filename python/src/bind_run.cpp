@@ -21,15 +21,20 @@ struct Run {
   jobs::RunTables tables;
   std::vector<double> jd1, jd2;    ///< of every epoch, UTC
   std::vector<std::size_t> epochs; ///< of every object
+  /// Of every object: its materials, and what each gives [epoch, material, band].
+  std::vector<std::vector<std::string>> materials;
+  std::vector<std::vector<double>> material_i;
   std::optional<Error> stopped;
 };
 
-Run run_of(const jobs::RunResult &result) {
+Run run_of(jobs::RunResult result) {
   Run out;
   out.tables = jobs::run_tables(result);
-  for (const jobs::ObjectRun &one : result.objects) {
+  for (jobs::ObjectRun &one : result.objects) {
     const auto &epochs = one.outcome.curve.epochs;
     out.epochs.push_back(epochs.size());
+    out.materials.push_back(one.outcome.curve.materials);
+    out.material_i.push_back(std::move(one.outcome.curve.material_i));
     for (const LightCurveEpoch &epoch : epochs) {
       out.jd1.push_back(epoch.geometry.time.jd1);
       out.jd2.push_back(epoch.geometry.time.jd2);
@@ -46,7 +51,7 @@ Run run(const Scenario &scenario, const jobs::JobOptions &options, nb::handle wa
         UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
         UMOV_ASSIGN(out,
                     jobs::compute_run(std::move(objects), scenario, options, monitor, diagnostics));
-        return run_of(out);
+        return run_of(std::move(out));
       });
   attention.settle(was_interrupted(result) ||
                    (result && result->stopped && result->stopped->code == ErrorCode::Interrupted));
@@ -55,6 +60,19 @@ Run run(const Scenario &scenario, const jobs::JobOptions &options, nb::handle wa
 
 nb::object view(nb::handle self, const std::vector<double> &values) {
   return nb::cast(View<double>(values.data(), {values.size()}, self));
+}
+
+nb::list contributions(nb::handle self) {
+  const auto &run = nb::cast<const Run &>(self);
+  nb::list out;
+  for (std::size_t k = 0; k < run.epochs.size(); ++k) {
+    const std::size_t cells = run.epochs[k] * run.materials[k].size();
+    const std::size_t bands = cells > 0 ? run.material_i[k].size() / cells : 0;
+    const View<double> values(run.material_i[k].data(),
+                              {run.epochs[k], run.materials[k].size(), bands}, self);
+    out.append(nb::make_tuple(run.materials[k], values));
+  }
+  return out;
 }
 
 } // namespace
@@ -83,6 +101,9 @@ void bind_run(nb::module_ &m) {
           "jd2", [](nb::handle self) { return view(self, nb::cast<const Run &>(self).jd2); },
           nb::sig("def jd2(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def_ro("epochs", &Run::epochs)
+      .def_prop_ro("contributions", &contributions,
+                   nb::sig("def contributions(self) -> list[tuple[list[str], "
+                           "numpy.typing.NDArray[numpy.float64]]]"))
       .def_prop_ro(
           "stopped", [](const Run &r) { return tuple_of(r.stopped ? &*r.stopped : nullptr); },
           nb::sig("def stopped(self) -> tuple[int, str, str, int, int] | None"));

@@ -12,5 +12,7 @@ void bind_passes(nanobind::module_ &m);
 void bind_light(nanobind::module_ &m);
 void bind_material(nanobind::module_ &m);
 void bind_orbit(nanobind::module_ &m);
+void bind_picture(nanobind::module_ &m);
+void bind_abundances(nanobind::module_ &m);
 
 } // namespace umov::python

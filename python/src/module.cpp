@@ -18,4 +18,6 @@ NB_MODULE(_umov, m) {
   umov::python::bind_light(m);
   umov::python::bind_material(m);
   umov::python::bind_orbit(m);
+  umov::python::bind_picture(m);
+  umov::python::bind_abundances(m);
 }

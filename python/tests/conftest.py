@@ -53,3 +53,12 @@ def plate():
     import umov
     vertices = [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]]
     return umov.Satellite(mesh=(vertices, [[0, 1, 2], [0, 2, 3]]), materials="paper_al", name="plate")
+
+
+@pytest.fixture(scope="session")
+def glass():
+    """The same of a glass whose roughness needs no table: compiled in half a millisecond."""
+    import umov
+    vertices = [[-0.5, -0.5, 0], [0.5, -0.5, 0], [0.5, 0.5, 0], [-0.5, 0.5, 0]]
+    rough = umov.Material.from_dict("glass", {"index": {"n": 1.5, "k": 0.0}, "distribution": {"model": "ggx", "alpha": 0.3}})
+    return umov.Satellite(mesh=(vertices, [[0, 1, 2], [0, 2, 3]]), materials=rough, name="glass")

@@ -1,6 +1,8 @@
 """What goes in and comes out: units, times, sites, tables, adapters; and what is refused."""
 import datetime
+import functools
 import pathlib
+import pickle
 
 import numpy as np
 import pytest
@@ -122,6 +124,73 @@ def test_tables(curve, tmp_path):
         curve.write(tmp_path / "a.docx")
 
 
+def test_materials_add_up(curve):
+    sides = curve.scenario.to_dict()["object"][0]["materials"].values()
+    assert set(curve.contributions) == {name for side in sides for name in side.values()}
+    # Sums of the same floats in another order.
+    np.testing.assert_allclose(sum(curve.contributions.values()), curve.intensity, rtol=1e-6, atol=1e-12)
+    again = pickle.loads(pickle.dumps(curve))
+    np.testing.assert_array_equal(again.contributions["film_silvered"], curve.contributions["film_silvered"])
+
+
+def test_places_are_those_that_astropy_turns_into_altitudes(curve):
+    from astropy.coordinates import ITRS, AltAz
+    place = umov.Site(curve.scenario.to_dict()["observer"]).to_earth_location()
+    seen = curve.to_skycoord().transform_to(ITRS(obstime=curve.time, location=place)).transform_to(
+        AltAz(obstime=curve.time, location=place))
+    # astropy takes the aberration of the Earth's motion, 20.5 arcsec, off what was geometric, the other way round for
+    # light that came with us; and UT1 of its own table.
+    assert np.abs(seen.alt.deg - curve.alt).max() < 25 / 3600
+    away = np.angle(np.exp(1j * np.radians(seen.az.deg - curve.az)), deg=True) * np.cos(np.radians(curve.alt))
+    assert np.abs(away).max() < 25 / 3600
+    np.testing.assert_allclose(seen.distance.to_value("km"), curve.range, rtol=1e-4)
+
+
+def test_pictures_and_triangles(hst, plate):
+    import io
+
+    from matplotlib.image import imread
+    picture = umov.render(plate, sun=[0, 0, 1], observer=[0, 0, 1], up=[0, 1, 0], side=50, samples=1)
+    image = imread(io.BytesIO(picture.png))
+    assert image.shape[:2] == (50, 50)
+    # The square of 1 m in a picture of 2.08 bounding radii (0.707 m): 34 pixels of 50 along a side.
+    sky, square = image[0, 0, :3], image[25, 25, :3]
+    assert not np.allclose(sky, square)
+    assert abs(np.all(np.isclose(image[25, :, :3], square, atol=0.02), axis=-1).sum() - 34) <= 2
+    made = umov.mesh(plate)
+    assert made.vertices.shape == (4, 3) and made.faces.shape == (2, 3) and made.group_names == ["default"]
+    assert "data:image/png" in hst._repr_html_()
+    for wrong in ({"shade": "heat"}, {"sun": [1, 0, 0]}, {"sun": [0, 0, 0], "observer": [1, 0, 0]}, {"side": 0}):
+        with pytest.raises(umov.Error):
+            umov.render(plate, **wrong)
+
+
+@pytest.mark.parametrize("material", ["paint_white", "aluminium_anodized", "film_silvered"])
+def test_sums_serve_other_materials_and_bands(hst, material):
+    """What is applied to sums is what an engine of those materials gives: to rounding, but where it mends what
+    mirrors show of an edge, within the half-widths of both."""
+    sun, observer = umov.random_poses(200, phase_deg=70, seed=3)
+    bands = ["nm:450", "nm:650"]
+    plain = umov.Satellite.from_dict({**hst.to_dict(), "materials": {"default": material}})
+    sums = umov.Sums(plain, cache=False)
+    made = sums.abundances(sun, observer)
+    assert made.sum.shape == (200, len(made.columns)) and not made.sum.flags.writeable
+    engine = umov.Engine(plain, bands=bands, method="masks", cache=False).light(sun, observer)
+    ours = sums.apply(made, bands=bands)
+    away = np.abs(ours.stokes - engine.stokes)
+    assert (away <= ours.half_width + engine.half_width).all()
+    assert (away[..., 0] > 1e-9 * engine.stokes[..., 0]).mean() < (0 if material == "paint_white" else 0.1) + 1e-9
+    # Another substance with the same roughness.
+    table = {**umov.Material(material).to_dict(), "index": {"n": 1.0, "k": 6.0}}
+    table.pop("layers", None)
+    other = umov.Material.from_dict("other", table)
+    another = umov.Satellite.from_dict({**hst.to_dict(), "materials": {"default": "other"}, "material": {"other": table}})
+    expected = umov.Engine(another, bands=bands, method="masks", cache=False).light(sun, observer)
+    applied = sums.apply(made, another, bands=bands)
+    assert (np.abs(applied.stokes - expected.stokes) <= applied.half_width + expected.half_width).all()
+    np.testing.assert_array_equal(sums.apply(made, materials={"default": other}, bands=bands).stokes, applied.stokes)
+
+
 def test_scenarios_go_round(tmp_path):
     one = umov.Scenario(EXAMPLES / "hst_maui.toml")
     assert umov.Scenario.from_toml(one.to_toml()) == one
@@ -239,3 +308,38 @@ def test_adapters_leave_no_files(plate):
     del made, engine
     gc.collect()
     assert not folder.exists()
+
+
+# What somebody may hand over by mistake.
+ODD = st.one_of(st.none(), st.booleans(), st.integers(-10**20, 10**20), ANY, st.text(max_size=12), st.binary(max_size=8),
+                st.lists(ANY, max_size=4), st.dictionaries(st.text(max_size=5), ANY, max_size=2), st.just(object()),
+                st.sampled_from([3 * u.m, [1, 2] * u.deg, np.array(["a"]), np.zeros((2, 3), dtype=complex), u.s,
+                                 Time("2018-01-21"), TimeDelta(3 * u.s), datetime.datetime(2018, 1, 21),
+                                 umov.Material, EarthLocation.from_geodetic(0 * u.deg, 0 * u.deg), np.ma.masked]))
+TLE = DATA / "tle/hst.tle"
+MATERIALS = functools.cache(umov.materials)
+CALLS = {
+    "Site": umov.Site, "Site.lat_deg": lambda x: umov.Site(lat_deg=x, lon_deg=0, alt_m=0), "utc": umov.utc,
+    "mesh": lambda x: umov.Satellite(mesh=x, materials="paper_al"), "Material": umov.Material,
+    "vertices": lambda x: umov.Satellite(mesh=(x, [[0, 1, 2]]), materials="paper_al"),
+    "faces": lambda x: umov.Satellite(mesh=([[0, 0, 0], [1, 0, 0], [0, 1, 0]], x), materials="paper_al"),
+    "orbit": lambda x: umov.propagate(x, START), "times": lambda x: umov.propagate(TLE, x),
+    "theta": lambda x: umov.brdf("paper_al", theta_i_deg=x), "wavelength": lambda x: umov.brdf("paper_al", wavelength_nm=x),
+    "phase": lambda x: umov.random_poses(3, x), "count": lambda x: umov.random_poses(x, 60) if not isinstance(x, int) or x < 1000 or x > 1e9 else None,
+    "norad": lambda x: umov.passes(TLE, "maui", START, STOP, norad=x), "stop": lambda x: umov.passes(TLE, "maui", START, x),
+    "step": lambda x: umov.ephemeris(TLE, "maui", START, START, step=x),
+    "step_s": lambda x: umov.ephemeris(TLE, "maui", START, START, step_s=x),
+    "set": lambda x: umov.Scenario(EXAMPLES / "hst_maui.toml", set={"render.accuracy": x}), "Scenario": umov.Scenario,
+    "column": lambda x: MATERIALS()[x],
+}
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(odd=ODD)
+@pytest.mark.parametrize("name", CALLS)
+def test_odd_arguments_are_told_of(name, odd):
+    """500 cases in all: what does not fit is an error of ours, with words of what was found."""
+    try:
+        CALLS[name](odd)
+    except umov.Error as error:
+        assert len(str(error)) > 10 and not isinstance(error, umov.InternalError)

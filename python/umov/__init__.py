@@ -7,14 +7,20 @@ Everything that is computed is computed by the C++ library; this package gives i
 >>> curve.bands
 ['nm:425', 'nm:550', 'nm:650']
 """
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
 from ._umov import conventions_version, source_revision
 from ._umov import version as __version__
+from .abundances import Abundances, Coloured, Column, Sums
 from .engines import Engine, Light, random_poses
 from .errors import (DeviceError, Error, InputError, InternalError, Interrupted, NoResult, NumericsError,
                      UmovWarning, UsageError, Where)
 from .light_curves import LightCurve
 from .materials import Material, brdf, materials
 from .orbits import States, ephemeris, passes, propagate
+from .pictures import Mesh, Picture, mesh, render
 from .runs import run
 from .satellites import Satellite
 from .scenarios import Scenario, schema
@@ -22,8 +28,19 @@ from .sites import Site, site_names
 from .tables import Table
 from .times import utc
 
-__all__ = ["DeviceError", "Engine", "Error", "InputError", "InternalError", "Interrupted", "Light",
-           "LightCurve", "Material", "NoResult", "NumericsError", "Satellite", "Scenario", "Site", "States",
-           "Table", "UmovWarning", "UsageError", "Where", "__version__", "brdf", "conventions_version",
-           "ephemeris", "materials", "passes", "propagate", "random_poses", "run", "schema", "site_names",
-           "source_revision", "utc"]
+if TYPE_CHECKING:
+    from . import plot, turnable
+
+__all__ = ["Abundances", "Coloured", "Column", "DeviceError", "Engine", "Error", "InputError", "InternalError", 
+           "Interrupted", "Light", "LightCurve", "Material", "Mesh", "NoResult", "NumericsError", "Picture", "Satellite",
+           "Scenario", "Site", "States", "Sums", "Table", "UmovWarning", "UsageError", "Where", "__version__",
+           "brdf", "conventions_version", "ephemeris", "materials", "mesh", "passes", "plot", "propagate",
+           "random_poses", "render", "run", "schema", "site_names", "source_revision", "turnable", "utc"]
+
+
+def __getattr__(name: str) -> Any:
+    """`umov.plot` and `umov.turnable`, loaded when they are asked for."""
+    if name in ("plot", "turnable"):
+        import importlib
+        return importlib.import_module("." + name, __name__)
+    raise AttributeError(f"module 'umov' has no attribute {name!r}")

@@ -40,6 +40,8 @@ def value_text(value: Any, name: str = "value") -> str:
     if isinstance(value, Mapping):
         inside = (f"{_key(str(k))} = {value_text(v, str(k))}" for k, v in value.items() if v is not None)
         return "{ " + ", ".join(inside) + " }"
+    if hasattr(value, "to_value") or hasattr(value, "scale"):  # a unit or a time, of which a scenario has its own forms
+        raise UsageError(f"{name} is {value!r}; a plain number or a text was expected, in the unit that the key says")
     if hasattr(value, "tolist"):  # numpy arrays and numbers
         return value_text(value.tolist(), name)
     if isinstance(value, int):

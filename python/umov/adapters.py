@@ -66,8 +66,11 @@ def mesh_text(mesh: Any) -> str | None:
     else:
         raise UsageError(f"mesh is a {type(mesh).__name__}; a file, a table of the scenario, a trimesh mesh or "
                          "(vertices, faces) was expected")
-    points = np.asarray(vertices, dtype=np.float64)
-    corners = np.asarray(faces)
+    try:
+        points = np.asarray(vertices, dtype=np.float64)
+        corners = np.asarray(faces)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise UsageError(f"vertices or faces are no arrays of numbers ({error}); (N, 3) each was expected") from error
     if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
         raise UsageError(f"vertices have shape {points.shape}; (N, 3) finite numbers were expected")
     if corners.ndim != 2 or corners.shape[1] != 3 or not np.issubdtype(corners.dtype, np.integer):

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _umov
 from ._jobs import Progress, Watch, job_options
+from ._numbers import number, whole
 from .errors import UsageError
 from .satellites import Bands, band_table
 from .scenarios import AnyScenario, Scenario
@@ -90,13 +91,13 @@ class Engine:
         """Stokes [m2/sr] (..., band, 4) in the scattering frame per unit solar irradiance, for directions
         (..., 3) in the body frame from the object to the Sun and to the observer, of any length, which
         broadcast against each other."""
-        flat, shape = _directions(sun, observer)
+        flat, shape = directions(sun, observer)
         out = self._light.stokes(*flat, self._threads, Watch(progress))
         return out.reshape(*shape, len(self.bands), 4)
 
     def light(self, sun: ArrayLike, observer: ArrayLike, *, progress: Progress = None) -> Light:
         """The same with half-widths, and how each pose was lit."""
-        flat, shape = _directions(sun, observer)
+        flat, shape = directions(sun, observer)
         stokes, half_width, is_dark, method = self._light.light(*flat, self._threads, Watch(progress))
         full = (*shape, len(self.bands), 4)
         return Light(stokes.reshape(full), half_width.reshape(full), is_dark.reshape(shape),
@@ -118,7 +119,7 @@ class Engine:
         Engine.__init__(self, state["scenario"], **state["options"])
 
 
-def _directions(sun: ArrayLike, observer: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:
+def directions(sun: ArrayLike, observer: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:
     given = []
     for value, name in ((sun, "sun"), (observer, "observer")):
         try:
@@ -149,7 +150,7 @@ def random_poses(count: int, phase_deg: float, seed: int = 0, first: int = 0) ->
     >>> bool(abs((sun * observer).sum(axis=1)).max() < 1e-15)
     True
     """
-    if count < 0 or first < 0 or seed < 0:
-        raise UsageError(f"count {count}, first {first}, seed {seed}; none below 0 was expected")
-    both = _umov.random_directions(count, float(phase_deg), seed, first)
+    most = 2**63 - 1
+    both = _umov.random_directions(whole(count, "count", 10**9), number(phase_deg, "phase_deg"), whole(seed, "seed", most),
+                                   whole(first, "first", 10**12))
     return both[0], both[1]

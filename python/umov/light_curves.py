@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
@@ -14,6 +15,7 @@ from .tables import Table
 
 if TYPE_CHECKING:
     import pandas
+    from astropy.coordinates import SkyCoord
     from astropy.table import QTable
     from astropy.time import Time
     from astropy.timeseries import TimeSeries
@@ -89,19 +91,23 @@ class LightCurve:
     elset_age = _Column("time since the epoch of the elements [d]")
 
     def __init__(self, table: Table, passes: Table, jd: tuple[Floats, Floats], epochs: list[int],
-                 bands: list[str], scenario: Scenario | None, is_partial: bool = False) -> None:
+                 bands: list[str], scenario: Scenario | None, is_partial: bool = False,
+                 contributions: Mapping[str, Floats] | None = None) -> None:
         self.table = table  #: all rows, those of lightcurve.ecsv
         self.passes = passes  #: a row per pass, those of passes.ecsv
         self.bands = bands  #: names, in the order of the second axis
         self.scenario = scenario  #: what was asked
         self.is_partial = is_partial  #: it ended early
+        #: direct light of each material of the object, name to (epoch, band) [m2/sr]; they add up to `intensity` where
+        #: no light between surfaces was asked for
+        self.contributions: dict[str, Floats] = dict(contributions or {})
         self._jd = jd
         self._epochs = epochs
 
     @classmethod
     def _from_run(cls, run: _umov.Run, scenario: Scenario) -> LightCurve:
         return cls(Table(run.light_curve), Table(run.passes), (run.jd1, run.jd2), list(run.epochs),
-                   scenario.bands, scenario, run.stopped is not None)
+                   scenario.bands, scenario, run.stopped is not None, _by_material(run.contributions))
 
     @property
     def objects(self) -> list[str]:
@@ -191,6 +197,27 @@ class LightCurve:
         out.meta.update(self.table.notes, bands=self.bands if which is None else [self.bands[which]])
         return out
 
+    def to_skycoord(self) -> SkyCoord:
+        """Where the object stood, topocentric along the axes of the GCRS and with its distance, one place per epoch.
+
+        >>> curve.to_skycoord().distance.to("km").value.shape == curve.time.shape
+        True
+        """
+        from astropy import units
+        from astropy.coordinates import GCRS, CartesianRepresentation, SkyCoord
+        from astropy.utils import iers
+
+        from .sites import Site
+        if self.scenario is None:
+            raise UsageError("the curve has no scenario, so no site; one that umov.run made was expected")
+        place = Site(self.scenario.to_dict()["observer"]).to_earth_location()
+        # The tables that come with astropy: nothing is fetched for a place.
+        with iers.conf.set_temp("auto_download", False), iers.conf.set_temp("iers_degraded_accuracy", "ignore"):
+            origin, _ = place.get_gcrs_posvel(self.time)
+        at_rest = CartesianRepresentation([0, 0, 0] * units.m / units.s)
+        frame = GCRS(obstime=self.time, obsgeoloc=origin, obsgeovel=at_rest)
+        return SkyCoord(self.ra * units.deg, self.dec * units.deg, distance=self.range * units.km, frame=frame)
+
     def to_lightkurve(self, band: str | int = 0) -> Any:
         """A lightkurve LightCurve of one band: flux is `I`, flux_err what the half-width means as one
         standard deviation."""
@@ -242,7 +269,17 @@ class LightCurve:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return LightCurve, (self.table, self.passes, (np.array(self._jd[0]), np.array(self._jd[1])),
-                            self._epochs, self.bands, self.scenario, self.is_partial)
+                            self._epochs, self.bands, self.scenario, self.is_partial,
+                            {name: np.array(rows) for name, rows in self.contributions.items()})
+
+
+def _by_material(told: list[tuple[list[str], Floats]]) -> dict[str, Floats]:
+    """Of objects that follow each other; views where there is one, 0 where an object lacks a material."""
+    if len(told) == 1:
+        return {name: told[0][1][:, k] for k, name in enumerate(told[0][0])}
+    names = dict.fromkeys(name for one, _ in told for name in one)
+    return {name: np.concatenate([rows[:, one.index(name)] if name in one else np.zeros_like(rows[:, 0])
+                                  for one, rows in told]) for name in names}
 
 
 def _with_unit(values: NDArray[Any], unit: str) -> Any:
@@ -270,7 +307,8 @@ class _Part(LightCurve):
 
     def __init__(self, whole: LightCurve, epochs: slice) -> None:
         super().__init__(whole.table, whole.passes, (whole._jd[0][epochs], whole._jd[1][epochs]),
-                         [epochs.stop - epochs.start], whole.bands, whole.scenario, whole.is_partial)
+                         [epochs.stop - epochs.start], whole.bands, whole.scenario, whole.is_partial,
+                         {name: rows[epochs] for name, rows in whole.contributions.items()})
         self._whole, self._slice = whole, epochs
 
     def __getitem__(self, name: str) -> NDArray[Any]:

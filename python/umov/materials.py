@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _toml, _umov
+from ._numbers import number_array
 from .errors import UsageError
 from .tables import Table
 
@@ -138,19 +139,3 @@ def brdf(material: Union[str, Material], wavelength_nm: ArrayLike = 550.0, theta
         raise UsageError(f"{shapes} do not fit together; shapes that broadcast were expected") from error
     flat = [np.ascontiguousarray(one).ravel() for one in shaped]
     return _umov.brdf(of._material, *flat).reshape(*shaped[0].shape, 4, 4)
-
-
-def number_array(value: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Finite numbers as float64; a Quantity in the unit that the name says."""
-    if hasattr(value, "to_value"):
-        try:
-            value = value.to_value(name.rsplit("_", 1)[1])
-        except Exception as error:
-            raise UsageError(f"{name} is {value!r}; it does not go into that unit ({error})") from error
-    try:
-        out = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"{name} is {value!r}; numbers were expected") from error
-    if not np.isfinite(out).all():
-        raise UsageError(f"{name} has values that are not finite; finite numbers were expected")
-    return out

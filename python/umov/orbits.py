@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from . import _umov, adapters
 from ._jobs import Progress, Watch, job_options
+from ._numbers import number, whole
 from .errors import Stopped, UsageError, raise_stopped
 from .satellites import Bands, Satellite
 from .scenarios import Scenario
@@ -34,8 +35,10 @@ def _orbit(orbit: AnyOrbit) -> tuple[str, adapters.Files | None]:
         return orbit.orbit_file, orbit._files
     text = adapters.orbit_text(orbit)
     if text is None:
-        file: Any = orbit
-        return os.fspath(file), None
+        if not isinstance(orbit, (str, os.PathLike)):
+            raise UsageError(f"orbit is a {type(orbit).__name__}; a file, TLE lines, a Satellite, a Satrec or an EarthSatellite "
+                             "was expected")
+        return os.fspath(orbit), None
     files = adapters.Files({"orbit.tle": text})
     return str(files.folder / "orbit.tle"), files
 
@@ -44,7 +47,9 @@ def _numbers(norad: Numbers, orbit: AnyOrbit) -> list[int]:
     if norad is None:
         own = orbit.norad if isinstance(orbit, Satellite) else None
         return [] if own is None else [own]
-    return [int(norad)] if isinstance(norad, (int, np.integer)) else [int(one) for one in norad]
+    if isinstance(norad, (list, tuple)) or (isinstance(norad, np.ndarray) and norad.ndim == 1):
+        return [whole(one, "norad") for one in norad]
+    return [whole(norad, "norad")]
 
 
 def _table(rows: _umov.Rows) -> QTable:
@@ -76,7 +81,7 @@ def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, nor
     elif bands is not None or band:
         raise UsageError("bands and band are of the magnitudes of a Satellite; none was given")
     rows = _umov.passes(file, _numbers(norad, orbit), Site(site)._tuple(), utc(start), utc(stop),
-                        float(alt_min_deg), float(sun_alt_max_deg), shadow, visible_only, scene, band,
+                        number(alt_min_deg, "alt_min_deg"), number(sun_alt_max_deg, "sun_alt_max_deg"), shadow, visible_only, scene, band,
                         job_options(threads, cache, allow_bad_checksum, allow_old_elements), Watch(progress))
     del kept
     return _table(rows)
@@ -102,7 +107,7 @@ def ephemeris(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, 
     """
     if (step is None) == (step_s is None):
         raise UsageError("step (a Quantity) or step_s; one of them was expected")
-    length = seconds(step) if step_s is None else float(step_s)
+    length = seconds(step) if step_s is None else number(step_s, "step_s")
     file, kept = _orbit(orbit)
     numbers = _numbers(norad, orbit)
     rows = _umov.ephemeris(file, numbers[0] if numbers else 0, Site(site)._tuple(), utc(start), utc(stop),

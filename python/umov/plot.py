@@ -21,9 +21,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .light_curves import LightCurve
+    from .pictures import Picture
 
-__all__ = ["colour_index", "degree", "intensity", "magnitude", "overview", "position_angle", "q_phase", "q_rgb",
-           "qu_plane", "qu_time", "sky_track"]
+__all__ = ["band_styles", "colour_index", "contributions", "degree", "folded", "intensity", "magnitude", "overview",
+           "periodogram", "picture", "position_angle", "pure_materials", "q_phase", "q_rgb",
+           "qu_plane", "qu_time", "sky_track", "three_bands"]
 
 # Okabe & Ito (2008); the first three follow the wavelength from blue to red, as in the report.
 THREE = ("#0072b2", "#009e73", "#d55e00")
@@ -167,6 +169,129 @@ def q_phase(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
+def pure_materials(curve: LightCurve, axes: Axes | None = None) -> Axes:
+    """Q/I against phase angle of a surface of one material of the object alone, one reflection at its interface:
+    thin lines to draw behind `q_phase`. A measured material has no interface and no line.
+
+    >>> axes = plot.pure_materials(curve, plot.q_phase(curve))
+    >>> "film_silvered" in [text.get_text() for text in axes.get_legend().get_texts()]
+    True
+    """
+    from .materials import Material
+    axes = _axes(axes)
+    phase = np.arange(0.0, 179.5, 1.0)
+    for k, (name, table) in enumerate(_interfaces(curve)):
+        interface = Material.from_dict(name, table)
+        for b, style in enumerate(band_styles(curve)):
+            f = interface.brdf(float(curve["lambda_eff"][0, b]), phase / 2, phase / 2, 180)
+            axes.plot(phase, 100 * f[:, 1, 0] / f[:, 0, 0], color=style["color"], linewidth=0.8, alpha=0.6, zorder=1,
+                      linestyle=("-", "--", ":", "-.")[k % 4], label=name if b == 0 else None)
+    axes.set(xlabel="phase angle [°]", ylabel="q_scat [%]")
+    axes.legend(fontsize="small")
+    return axes
+
+
+def _interfaces(curve: LightCurve) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Materials of a curve's objects, each without the light from below its surface."""
+    from .materials import Material
+    if curve.scenario is None:
+        raise UsageError("the curve has no scenario, so no materials; one that umov.run made was expected")
+    document = curve.scenario.to_dict()
+    own = document.get("material", {})
+    names = dict.fromkeys(name for one in document["object"] for value in one["materials"].values()
+                          for name in (value.values() if isinstance(value, dict) else [value]))
+    for name in names:
+        table = dict(own[name]) if name in own else Material(name).to_dict()
+        if "table" not in table:
+            yield name, {key: value for key, value in table.items() if key not in ("body", "haze", "interreflection")}
+
+
+def contributions(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
+    """Direct light of each material over time, as parts of all direct light, on top of each other.
+
+    >>> axes = plot.contributions(curve)
+    >>> axes.get_ylabel(), len(axes.collections) == len(curve.contributions)
+    ('share of the direct light', True)
+    """
+    if not curve.contributions:
+        raise UsageError("the curve does not know what each material gives; one that umov.run made was expected")
+    axes = _axes(axes)
+    which = curve.band(band)
+    rows = np.stack([light[:, which] for light in curve.contributions.values()])
+    with np.errstate(invalid="ignore"):
+        share = rows / rows.sum(axis=0)
+    times = curve.time.datetime64
+    for part in _passes(curve):
+        axes.stackplot(times[part], share[:, part], labels=list(curve.contributions) if part[0] == 0 else [],
+                       colors=[MANY[k % len(MANY)] for k in range(len(rows))])
+    axes.set(ylabel="share of the direct light", ylim=(0, 1))
+    axes.tick_params("x", rotation=30)
+    axes.legend(fontsize="small", loc="upper left")
+    return axes
+
+
+def _periodic(curve: LightCurve, band: str | int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Seconds and magnitudes at 1,000 km, where there is light."""
+    values = curve.mag[:, curve.band(band)] - 5 * np.log10(curve.range / 1000)
+    lit = np.isfinite(values)
+    if lit.sum() < 8:
+        raise UsageError(f"{lit.sum()} epochs have light; eight or more were expected")
+    return (curve.mjd_utc[lit] - curve.mjd_utc[0]) * 86400.0, values[lit]
+
+
+def periodogram(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0, harmonics: int = 4) -> Axes:
+    """Lomb-Scargle power of the magnitude at 1,000 km against period; a body that looks alike twice a turn peaks at
+    half its period as well. The highest peak stands in the title.
+
+    >>> plot.periodogram(curve).get_xlabel()
+    'period [s]'
+    """
+    from astropy.timeseries import LombScargle
+    axes = _axes(axes)
+    seconds, values = _periodic(curve, band)
+    step, span = float(np.median(np.diff(seconds))), float(np.ptp(seconds))
+    frequency = np.linspace(1 / span, 0.5 / step, min(20_000, max(200, int(5 * span / step))))
+    power = LombScargle(seconds, values, nterms=min(harmonics, len(values) // 4)).power(frequency)
+    axes.plot(1 / frequency, power, color=THREE[0], linewidth=1)
+    axes.set(xlabel="period [s]", ylabel="power", xscale="log", title=f"{1 / frequency[int(np.argmax(power))]:.4g} s")
+    axes.grid(alpha=0.3)
+    return axes
+
+
+def folded(curve: LightCurve, period_s: float, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
+    """Magnitude at 1,000 km against the part of a turn, coloured by time.
+
+    >>> plot.folded(curve, period_s=41).get_xlabel()
+    'turn of 41 s'
+    """
+    if not period_s > 0:
+        raise UsageError(f"period_s is {period_s!r}; a number above 0 was expected")
+    axes = _axes(axes)
+    seconds, values = _periodic(curve, band)
+    drawn = axes.scatter(seconds / period_s % 1, values, c=seconds, cmap=PHASE_MAP, s=8)
+    if not axes.yaxis_inverted():
+        axes.invert_yaxis()
+    axes.set(xlabel=f"turn of {period_s:g} s", ylabel="AB magnitude at 1,000 km", xlim=(0, 1))
+    axes.grid(alpha=0.3)
+    if axes.figure is not None:
+        axes.figure.colorbar(drawn, ax=axes, label="time [s]")
+    return axes
+
+
+def picture(image: Picture, axes: Axes | None = None) -> Axes:
+    """A picture of `umov.render`, up as it was asked for.
+
+    >>> plot.picture(umov.render(hst, sun=[1, 1, 1], observer=[0, 1, 1], side=64, samples=1)).get_title()
+    'material'
+    """
+    import io
+    axes = _axes(axes)
+    from matplotlib.image import imread
+    axes.imshow(imread(io.BytesIO(image.png)))
+    axes.set(title=image.shade, xticks=[], yticks=[])
+    return axes
+
+
 def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """u against q, coloured by phase angle; bands differ by marker.
 
@@ -187,17 +312,26 @@ def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
+def three_bands(curve: LightCurve) -> list[int]:
+    """Numbers of the shortest, the middle and the longest band. `UsageError` if there are fewer than three.
+
+    >>> plot.three_bands(curve)
+    [0, 1, 2]
+    """
+    if len(curve.bands) < 3:
+        raise UsageError(f"the curve has {len(curve.bands)} bands; three or more were expected")
+    order = np.argsort(curve["lambda_eff"][0], kind="stable")
+    return [int(order[0]), int(order[len(order) // 2]), int(order[-1])]
+
+
 def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
     """Q/I of short, middle and long wavelength as a cloud in three dimensions, coloured by phase angle.
 
     >>> plot.q_rgb(curve).get_zlabel()
     'nm:650 [%]'
     """
-    if len(curve.bands) < 3:
-        raise UsageError(f"the curve has {len(curve.bands)} bands; three or more were expected")
+    three = three_bands(curve)
     axes = _axes(axes, "3d")
-    order = np.argsort(curve["lambda_eff"][0], kind="stable")
-    three = [int(order[0]), int(order[len(order) // 2]), int(order[-1])]
     cloud: Callable[..., Any] = axes.scatter
     drawn = cloud(*(100 * curve.q_scat[:, b] for b in three), c=curve.phase_angle, cmap=PHASE_MAP, s=8, vmin=0,
                   vmax=180)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _toml, adapters
 from ._jobs import Progress
+from ._numbers import number
 from .errors import UsageError
 from .sites import AnySite, Site
 from .times import AnyTime, seconds, utc
@@ -39,7 +40,7 @@ def _absolute(path: Any) -> Any:
 class Satellite:
     """An [[object]] of a scenario. `mesh` is a file, a trimesh mesh or (vertices, faces); `orbit` a file,
     TLE lines, an sgp4 Satrec, a skyfield EarthSatellite or a table; materials are names, files' names
-    or `Material`s, by mesh material or "default".
+    or a `Material` each, by mesh material or "default".
 
     >>> hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", orbit=DATA / "tle/hst.tle",
     ...                      attitude={"mode": "nadir"}, materials={"default": "film_silvered"}, name="HST")
@@ -171,8 +172,9 @@ class Satellite:
             start, stop = _span_of_pass(start)
         if step is not None and step_s is not None:
             raise UsageError("step and step_s; one of them was expected")
-        length = seconds(step) if step is not None else float(1.0 if step_s is None else step_s)
-        only = {"alt_min_deg": float(alt_min_deg), "sun_alt_max_deg": float(sun_alt_max_deg), "sunlit": sunlit}
+        length = seconds(step) if step is not None else number(1.0 if step_s is None else step_s, "step_s")
+        only = {"alt_min_deg": number(alt_min_deg, "alt_min_deg"),
+                "sun_alt_max_deg": number(sun_alt_max_deg, "sun_alt_max_deg"), "sunlit": sunlit}
         scenario = self.to_scenario_dict(
             bands, title=self.name, seed=seed, observer=Site(site).to_dict(),
             time={"start": utc(start), "stop": utc(stop), "step_s": length, "only": only},
@@ -206,7 +208,20 @@ class Satellite:
 
     def _repr_html_(self) -> str:
         import html
-        return f"<p><b>{html.escape(repr(self))}</b></p><pre>{html.escape(self.to_toml())}</pre>"
+        return (f"<p><b>{html.escape(repr(self))}</b></p>{self._picture()}"
+                f"<details><summary>TOML</summary><pre>{html.escape(self.to_toml())}</pre></details>")
+
+    def _picture(self) -> str:
+        """The mesh by material as an image in place; what is wrong with a satellite is for others to say."""
+        import base64
+
+        from .errors import Error
+        from .pictures import render
+        try:
+            png = render(self, sun=(1, 0.4, 0.9), observer=(1, 1.3, 0.7), side=240, samples=2).png
+        except Error:
+            return ""
+        return f'<img alt="the mesh" width="240" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
 
     def __getstate__(self) -> dict[str, Any]:
         state = dict(self.__dict__)

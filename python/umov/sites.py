@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _toml, _umov
+from ._numbers import number
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class Site:
         if site is None:
             if lat_deg is None or lon_deg is None or alt_m is None:
                 raise UsageError("where? Give a name of umov.site_names(), or lat_deg, lon_deg and alt_m")
-            told = _umov.check_site(name, float(lat_deg), float(lon_deg), float(alt_m))
+            told = _umov.check_site(str(name), number(lat_deg, "lat_deg"), number(lon_deg, "lon_deg"), number(alt_m, "alt_m"))
         elif any(number is not None for number in numbers):
             raise UsageError(f"{site!r} and coordinates besides; one of them was expected")
         else:

@@ -2,8 +2,8 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Union
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, TypeGuard, Union
 
 from . import _umov
 from .errors import UsageError
@@ -14,6 +14,11 @@ if TYPE_CHECKING:
 __all__ = ["utc"]
 
 AnyTime = Union[str, datetime.datetime, "Time"]
+
+
+def _is_astropy(time: Any) -> TypeGuard[Time]:
+    """A Time of astropy, which need not be imported; a TimeDelta knows no stars."""
+    return hasattr(type(time), "sidereal_time")
 
 
 def utc(time: AnyTime) -> str:
@@ -34,7 +39,7 @@ def utc(time: AnyTime) -> str:
                 "    from datetime import timezone\n"
                 "    time = time.replace(tzinfo=timezone.utc)")
         return _umov.check_time(time.isoformat())
-    if hasattr(time, "utc") and hasattr(time, "isscalar"):  # astropy, which need not be imported
+    if _is_astropy(time):
         if not time.isscalar:
             raise UsageError(f"a Time of shape {time.shape}; a single time was expected")
         exact = time.utc.replicate(format="isot")
@@ -48,9 +53,15 @@ def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
     """Times of a call, and whether it was a single one."""
     if isinstance(times, (str, datetime.datetime)):
         return [utc(times)], True
-    if hasattr(times, "isscalar") and times.isscalar:
+    if _is_astropy(times) and times.isscalar:
         return [utc(times)], True
     listed: Any = times
+    if not isinstance(listed, Iterable) or not getattr(listed, "shape", (1,)):
+        raise UsageError(f"{times!r} is a {type(times).__name__}; a time or a list of times was expected")
+    if _is_astropy(listed):  # one conversion for all
+        exact = listed.utc.replicate(format="isot")
+        exact.precision = 9
+        return [_umov.check_time(f"{one}Z") for one in exact.value.ravel().tolist()], False
     return [utc(one) for one in listed], False
 
 

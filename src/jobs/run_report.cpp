@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <umov/attitude/tumble.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/io/report.h>
@@ -81,6 +82,27 @@ PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
 
 namespace {
 
+/// Periods that a law has by itself; none where it follows its targets alone.
+std::vector<TurningPeriod> turning_periods(const AttitudeLaw &law) {
+  std::vector<TurningPeriod> out;
+  if (const auto *spin = std::get_if<SpinLaw>(&law); spin && spin->rate_rad_s != 0)
+    out.push_back({"spin", 2 * pi / std::abs(spin->rate_rad_s)});
+  if (const auto *tumble = std::get_if<TumbleLaw>(&law))
+    if (const auto motion = TorqueFreeMotion::make(tumble->inertia, tumble->rate_rad_s)) {
+      if (motion->precession_rate_rad_s() != 0)
+        out.push_back({"precession", 2 * pi / std::abs(motion->precession_rate_rad_s())});
+      if (std::isfinite(motion->body_period_s()))
+        out.push_back({"rotation in the body", motion->body_period_s()});
+    }
+  if (const auto *pieces = std::get_if<PiecewiseLaw>(&law))
+    for (const AttitudePiece &piece : pieces->pieces)
+      for (TurningPeriod &one : turning_periods(*piece.law))
+        out.push_back(std::move(one));
+  if (const auto *unsteady = std::get_if<LibrationLaw>(&law))
+    return turning_periods(*unsteady->law);
+  return out;
+}
+
 std::string title_of(const Scenario &scenario, const LightCurveRequest &request) {
   if (scenario.title.empty())
     return request.object;
@@ -114,6 +136,7 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
                                       joints_of(request.track.joints)));
   input.key_frames = std::move(frames);
   input.key_frame_materials = material_names(object.scene);
+  input.turning = turning_periods(request.track.attitude);
   input.manifest = manifest_lines(scenario, object);
   if (outcome.stopped)
     input.warnings.push_back("PARTIAL RESULT: " + outcome.stopped->message);

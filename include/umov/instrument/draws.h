@@ -17,10 +17,13 @@ struct DrawKey {
 /// them. The fifth axis, the number of the word, runs in steps of four through the key.
 class Draws {
 public:
+  /// A word.
   using result_type = std::uint32_t;
   /// At the beginning of a key's stream.
   explicit Draws(const DrawKey &key) : key_(key) {}
+  /// The least word.
   static constexpr result_type min() { return 0; }
+  /// The largest word.
   static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
   /// The next word.
   result_type operator()();

@@ -42,6 +42,12 @@ struct SkyTrackPoint {
   double sunlit = 1;
 };
 
+/// A period that the attitude's law has: "spin", "precession", "rotation in the body".
+struct TurningPeriod {
+  std::string name;
+  double seconds = 0;
+};
+
 /// All that the report shows.
 struct ReportInput {
   const LightCurve &curve;
@@ -54,6 +60,7 @@ struct ReportInput {
   std::vector<ReportKeyFrame> key_frames = {};
   std::vector<std::string> key_frame_materials = {}; ///< material_names(scene): fixes the colours
   std::vector<std::pair<std::string, std::string>> manifest = {}; ///< shown as given, in order
+  std::vector<TurningPeriod> turning = {}; ///< not empty: periodogram and folded curve are shown
   std::vector<std::string> warnings = {};
   std::vector<std::string> conventions = {}; ///< one sentence each; empty: the standard ones
 };

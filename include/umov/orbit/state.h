@@ -23,6 +23,7 @@ struct ItrsState {
   Vec3<Itrs> velocity_km_s;
 };
 
+/// A state in one of these frames.
 using OrbitState = std::variant<TemeState, GcrsState, ItrsState>;
 
 /// The same state in TEME (GMST82 and polar motion, as `itrs_from_teme`) at its time.

@@ -15,10 +15,12 @@ namespace umov {
 /// thread safe: one per thread.
 template <std::size_t N> class Hourly {
 public:
+  /// What is computed at once.
   using Values = std::array<double, N>;
   /// `exact` takes a two-part Julian date TT.
   explicit Hourly(Values (*exact)(double jd1, double jd2)) : exact_(exact) {}
 
+  /// The numbers at a time.
   Values operator()(Epoch<Tt> time) {
     const double hours = ((time.jd1 - origin) + time.jd2) * 24, before = std::floor(hours);
     const auto first = static_cast<std::int64_t>(before) - 1;

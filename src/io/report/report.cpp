@@ -14,6 +14,7 @@ UMOV_EMBEDDED(report_js_model)
 UMOV_EMBEDDED(report_js_plot)
 UMOV_EMBEDDED(report_js_time)
 UMOV_EMBEDDED(report_js_plane)
+UMOV_EMBEDDED(report_js_turning)
 UMOV_EMBEDDED(report_js_boxes)
 UMOV_EMBEDDED(report_js_main)
 UMOV_EMBEDDED(report_plotly_licence)
@@ -50,8 +51,9 @@ std::string html_text(std::string_view text) {
 
 std::string page_script() {
   std::string out = "(() => {\n\"use strict\";\n";
-  for (const std::string_view part : {report_js_model(), report_js_plot(), report_js_time(),
-                                      report_js_plane(), report_js_boxes(), report_js_main()})
+  for (const std::string_view part :
+       {report_js_model(), report_js_plot(), report_js_time(), report_js_plane(),
+        report_js_turning(), report_js_boxes(), report_js_main()})
     out += part;
   return out + "})();\n";
 }

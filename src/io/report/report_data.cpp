@@ -2,10 +2,14 @@
 
 #include "io/report/base64.h"
 #include "io/report/page.h"
+#include "io/report/report_turning.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <umov/lightcurve/derived_errors.h>
 
 namespace umov {
 namespace {
@@ -89,6 +93,37 @@ Json epochs_json(const LightCurve &curve, std::size_t stride) {
           {"dark", each([](E e) { return e.is_dark ? 1 : 0; })},
           {"glint", each([](E e) { return e.has_glint ? 1 : 0; })},
           {"elset_age", each([](E e) { return e.elset_age_days; })}};
+}
+
+/// Two digits: half-widths are drawn, not read.
+double coarse(double value) {
+  if (!(value > 0) || !std::isfinite(value))
+    return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return std::stod(fmt::format("{:.1e}", std::round(value / unit) * unit));
+}
+
+/// Half-widths of what the figures show; of I as a part of it.
+void add_errors(Json &out, const ReportInput &input, std::size_t band, std::size_t stride) {
+  const LightCurve &curve = input.curve;
+  const auto each = [&](const char *name, auto &&value) {
+    out[name] = column(curve.epochs.size(), stride, [&](std::size_t i) {
+      const LightCurveSample &s = curve.samples[i * curve.bands.size() + band];
+      if (std::isnan(s.sky.q))
+        return std::numeric_limits<double>::quiet_NaN();
+      const double twice = 2 * scattering_axis(curve.epochs[i], input.frame).radians();
+      return coarse(value(DerivedErrors(s), s, std::cos(twice), std::sin(twice)));
+    });
+  };
+  using D = const DerivedErrors &;
+  using S = const LightCurveSample &;
+  each("mag_err", [](D d, S, double, double) { return d.mag(); });
+  each("q_err", [](D d, S s, double c, double x) { return d.part(s.sky.q, c, x); });
+  each("u_err", [](D d, S s, double c, double x) { return d.part(s.sky.u, x, c); });
+  each("p_err", [](D d, S, double, double) { return d.p(); });
+  each("pa_err", [](D d, S s, double, double) {
+    return s.p > 0 ? d.pa_deg() : std::numeric_limits<double>::quiet_NaN();
+  });
 }
 
 Json band_json(const LightCurve &curve, std::size_t band, std::size_t stride) {
@@ -222,8 +257,10 @@ Result<std::string> report_data(const ReportInput &input) {
   const std::size_t stride =
       std::max<std::size_t>(1, (curve.epochs.size() + report_max_epochs - 1) / report_max_epochs);
   Json bands = Json::array();
-  for (std::size_t b = 0; b < curve.bands.size(); ++b)
+  for (std::size_t b = 0; b < curve.bands.size(); ++b) {
     bands.push_back(band_json(curve, b, stride));
+    add_errors(bands.back(), input, b, stride);
+  }
   Json manifest = Json::array();
   for (const auto &[key, value] : input.manifest)
     manifest.push_back({key, value});
@@ -248,6 +285,7 @@ Result<std::string> report_data(const ReportInput &input) {
       {"pure_materials", pure_json(input.pure_materials)},
       {"key_frames", key_frames_json(input.key_frames)},
       {"polarization_scale", polarization_scale()},
+      {"turning", turning_json(input)},
       {"manifest", std::move(manifest)},
       {"warnings", input.warnings},
       {"conventions",

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <umov/lightcurve/derived_errors.h>
 
 namespace umov {
 
@@ -75,16 +76,8 @@ void add_geometry(RowColumns &t) {
   t.of_epoch("airmass", "", "Kasten & Young 1989", [](E e) { return e.airmass; });
 }
 
-/// Position angle of the normal of the scattering plane in a frame.
-Angle axis_of(E e, PolarizationFrame frame) {
-  const ObservingGeometry &g = e.geometry;
-  return frame == PolarizationFrame::AltAz        ? g.pa_scat_altaz
-         : frame == PolarizationFrame::Scattering ? Angle()
-                                                  : g.pa_scat_equatorial;
-}
-
 void add_light(RowColumns &t, PolarizationFrame frame, MagnitudeSystem magnitudes) {
-  const auto axis = [frame](E e) { return axis_of(e, frame).degrees(); };
+  const auto axis = [frame](E e) { return scattering_axis(e, frame).degrees(); };
   t.of_sample("I", "W / (m2 nm)", "irradiance at the observer above the atmosphere",
               [](S s) { return s.irradiance; });
   t.of_sample("intensity", "m2 / sr", "without distance and solar flux",
@@ -113,34 +106,6 @@ void add_light(RowColumns &t, PolarizationFrame frame, MagnitudeSystem magnitude
               [](E e, S, const Band &) { return e.has_glint; });
 }
 
-/// Half-widths of the derived numbers, in the frame of their values: those of Stokes parameters in
-/// the scattering frame, carried over to first order, all at their worst together.
-class DerivedErrors {
-public:
-  explicit DerivedErrors(S s) : s_(s), i_(s.half_width.i / s.intensity) {}
-
-  [[nodiscard]] double mag() const { return 2.5 * std::log10(1 + i_); }
-  /// Of q or u: the axes of the sky stand at `cosine`, `sine` of twice the angle from Q.
-  [[nodiscard]] double part(double value, double cosine, double sine) const {
-    return (std::abs(cosine) * s_.half_width.q + std::abs(sine) * s_.half_width.u) / s_.intensity +
-           std::abs(value) * i_;
-  }
-  [[nodiscard]] double v() const {
-    return s_.half_width.v / s_.intensity + std::abs(s_.sky.v) * i_;
-  }
-  [[nodiscard]] double p() const {
-    return s_.p > 0 ? part(s_.p, s_.scattering.q / s_.p, s_.scattering.u / s_.p) : part(0, 1, 1);
-  }
-  [[nodiscard]] double pa_deg() const {
-    const double across = part(0, s_.scattering.u / s_.p, s_.scattering.q / s_.p);
-    return std::min(90.0, 0.5 * std::atan2(across, s_.p) * (180 / pi));
-  }
-
-private:
-  S s_;
-  double i_; ///< of I, relative
-};
-
 void add_errors(RowColumns &t, PolarizationFrame frame) {
   t.of_sample("intensity_err", "m2 / sr", "numerical 95 % half-width",
               [](S s) { return s.half_width.i; });
@@ -159,11 +124,11 @@ void add_errors(RowColumns &t, PolarizationFrame frame) {
   using D = const DerivedErrors &;
   of("mag_err", "mag", "numerical 95 % half-width of mag", [](D d, E, S) { return d.mag(); });
   of("q_err", "", "numerical 95 % half-width of q, sky frame", [frame](D d, E e, S s) {
-    const double twice = 2 * axis_of(e, frame).radians();
+    const double twice = 2 * scattering_axis(e, frame).radians();
     return d.part(s.sky.q, std::cos(twice), std::sin(twice));
   });
   of("u_err", "", "numerical 95 % half-width of u, sky frame", [frame](D d, E e, S s) {
-    const double twice = 2 * axis_of(e, frame).radians();
+    const double twice = 2 * scattering_axis(e, frame).radians();
     return d.part(s.sky.u, std::sin(twice), std::cos(twice));
   });
   of("v_err", "", "numerical 95 % half-width of v", [](D d, E, S) { return d.v(); });

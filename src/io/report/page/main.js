@@ -32,7 +32,7 @@ function setTheme(name) {
 }
 
 function fillFigures() {
-  const figures = [timeFigures[0], phaseFigure, timeFigures[1], planeFigure, timeFigures[2], skyFigure,
+  const figures = [timeFigures[0], turningFigure, brightnessPhaseFigure, phaseFigure, timeFigures[1], planeFigure, timeFigures[2], skyFigure,
     contributions.length ? contributionFigure : null, report.bounces > 1 ? indirectFigure : null, rgbBands.length ? rgbFigure : null, colourPairs.length ? colourFigure : null];
   for (const figure of figures.filter(Boolean)) cards.push(new FigureCard(figure, byId("figures")));
   drawAll();

@@ -10,7 +10,7 @@ const plain = (name) => name.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
 
 // Okabe & Ito (2008); the first three follow the wavelength from blue to red.
 const threeBandColours = ["#0072b2", "#009e73", "#d55e00"];
-const manyBandColours = ["#0072b2", "#56b4e9", "#009e73", "#e69f00", "#d55e00", "#cc79a7", "#000000"];
+const manyBandColours = ["#0072b2", "#56b4e9", "#009e73", "#e69f00", "#d55e00", "#cc79a7", "#7f8794"];
 const symbols = ["circle", "square", "triangle-up", "diamond", "cross", "x", "star"];
 const symbols3d = ["circle", "square", "diamond", "cross", "x", "circle-open", "square-open"];
 
@@ -21,6 +21,7 @@ bands.forEach((band, i) => {
   const palette = bands.length <= 3 ? threeBandColours : manyBandColours;
   band.colour = bands.length === 1 ? palette[0] : palette[rank % palette.length];
   band.symbol = symbols[rank % symbols.length];
+  band.dash = ["solid", "dash", "dot"][Math.floor(rank / palette.length) % 3]; // where colours come again
 });
 const middleBand = byWavelength.length ? byWavelength[Math.floor(byWavelength.length / 2)] : 0;
 /// Short, middle and long wavelength; empty with fewer than three bands.
@@ -58,6 +59,10 @@ const passes = (() => {
   }
   return out;
 })();
+
+/// For each row a number that its run shares.
+const runOf = [];
+passes.flatMap((pass) => pass.runs).forEach((run, k) => run.forEach((row) => { runOf[row] = k; }));
 
 /// Which passes are shown: "all" or the number of one.
 const selection = { pass: passes.length === 1 ? "0" : "all" };
@@ -103,6 +108,12 @@ function gappedCyclic(pass, valueAt) {
 const percent = (value) => value === null ? null : 100 * value;
 const positive = (value) => value > 0 ? value : null;
 const fixed = (value, digits) => value === null || !Number.isFinite(value) ? "" : value.toFixed(digits);
+
+const bandControl = { key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].label])] };
+const chosenBands = (state) => byWavelength.filter((b) => state.band === undefined || state.band === "all" || state.band === b);
+
+/// A colour of six digits, seen through.
+const faint = (hex, opacity) => "rgba(" + [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16)).join(",") + "," + opacity + ")";
 
 /// Least and greatest finite value, or null.
 function range(values) {

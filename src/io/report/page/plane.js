@@ -53,7 +53,7 @@ function pureTraces(data, plan, shownBand) {
 
 const phaseFigure = {
   id: "q_phase", title: "Q against phase angle", height: () => isNarrow() ? 420 : 460,
-  controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].label])] }],
+  controls: [bandControl],
   caption: "q_scat in percent, positive perpendicular to the scattering plane"
     + (pureMaterials.length ? "; thin lines behind: a surface of one material alone, single bounce, without body light." : "."),
   build: (state) => {
@@ -61,11 +61,11 @@ const phaseFigure = {
     const plan = layout({ annotations: [], hovermode: "closest",
       xaxis: axis({ title: "phase angle [°]", range: [0, 180], dtick: 30 }), yaxis: axis({ title: "q_scat [%]" }) });
     pureTraces(data, plan, state.band);
-    byWavelength.filter((b) => state.band === "all" || state.band === b).forEach((b) => {
+    chosenBands(state).forEach((b) => {
       const line = joined((i) => epochs.phase[i], (i) => percent(bands[b].q_scat[i]));
       data.push({
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, text: line.row.map((i) => epochs.time[i]), name: plain(bands[b].label),
-        line: { color: bands[b].colour, width: 2 }, marker: { color: bands[b].colour, symbol: bands[b].symbol, size: 7, maxdisplayed: 40 },
+        line: { color: bands[b].colour, width: 2, dash: bands[b].dash }, marker: { color: bands[b].colour, symbol: bands[b].symbol, size: 7, maxdisplayed: 40 },
         hovertemplate: "%{y:.2f} % at %{x:.2f}°<br>%{text}<extra>" + plain(bands[b].label) + "</extra>",
       });
     });
@@ -80,23 +80,65 @@ function phaseAxis(extra) {
   return { colorscale: "Cividis", cmin: limits[0], cmax: limits[1], colorbar: colourBar("phase angle [°]", extra) };
 }
 
+/// Rows before the least phase angle of their pass, and those from it on: the night's two branches.
+function phaseBranches(pass) {
+  const least = pass.rows.reduce((best, i) => epochs.phase[i] < epochs.phase[best] ? i : best, pass.rows[0]);
+  return [pass.rows.filter((i) => i < least), pass.rows.filter((i) => i >= least)];
+}
+
+const brightnessPhaseFigure = {
+  id: "brightness_phase", title: "Brightness against phase angle", height: () => isNarrow() ? 380 : 460,
+  controls: [{ key: "scale", name: "Show", options: [["mag", "magnitude"], ["intensity", "at one range"]] }, bandControl],
+  caption: "Magnitude as observed, or -2.5 log of the intensity in m² sr⁻¹: the object alone, without range and eclipse. Filled: before the least phase angle of the pass; open: after it. Limits are left out.",
+  build: (state) => {
+    const value = (band, i) => !isMagnitude(band, i) ? null : state.scale === "mag" ? band.mag[i] : band.intensity[i] > 0 ? -2.5 * Math.log10(band.intensity[i]) : null;
+    const data = [];
+    chosenBands(state).forEach((b) => [0, 1].forEach((side) => {
+      const line = { x: [], y: [], row: [] };
+      shownPasses().forEach((pass) => {
+        let last = null;
+        for (const i of phaseBranches(pass)[side]) {
+          if (last !== null && runOf[i] !== runOf[last]) { line.x.push(null); line.y.push(null); line.row.push(i); }
+          line.x.push(epochs.phase[i]); line.y.push(value(bands[b], i)); line.row.push(i);
+          last = i;
+        }
+        line.x.push(null); line.y.push(null); line.row.push(pass.rows[0]);
+      });
+      if (!line.y.some((one) => one !== null)) return;
+      data.push({
+        type: "scatter", mode: "lines+markers", ...line, text: line.row.map((i) => epochs.time[i]), name: plain(bands[b].label), legendgroup: bands[b].name,
+        showlegend: !data.some((one) => one.legendgroup === bands[b].name), line: { color: bands[b].colour, width: 1.4, dash: bands[b].dash },
+        marker: { color: bands[b].colour, symbol: bands[b].symbol + (side ? "-open" : ""), size: 6, maxdisplayed: 40 },
+        hovertemplate: "%{y:.2f} mag at %{x:.2f}°<br>%{text}<extra>" + plain(bands[b].label) + "</extra>",
+      });
+    }));
+    const ends = range(data.flatMap((trace) => trace.y));
+    const faint = ends ? Math.min(ends[1], ends[0] + 12) : 1, pad = ends ? Math.max(0.1, 0.05 * (faint - ends[0])) : 0;
+    return { data, layout: layout({ hovermode: "closest", xaxis: axis({ title: "phase angle [°]" }),
+      yaxis: axis({ title: state.scale === "mag" ? "AB magnitude" : "-2.5 log intensity", range: ends ? [faint + pad, ends[0] - pad] : [1, 0] }) }) };
+  },
+  table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["intensity", "m2 sr-1", (b, i) => b.intensity[i]]]),
+};
+
 const planeFigure = {
   id: "qu_plane", title: "q-u plane", height: () => isNarrow() ? 430 : 460,
-  controls: [{ key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].label])] }],
+  controls: [bandControl],
   caption: "Sky frame, percent; colour is phase angle, marker shape is the band. Distance from the origin is p, half the angle around it the position angle.",
   build: (state) => {
     const theme = themeColours();
-    const data = byWavelength.filter((b) => state.band === "all" || state.band === b).map((b) => {
+    const shown = chosenBands(state);
+    const every = Math.max(1, Math.ceil(shownRows().length * shown.length / 900)); // more markers hide each other
+    const data = shown.map((b) => {
       const line = joined((i) => percent(bands[b].q[i]), (i) => percent(bands[b].u[i]));
       return {
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, name: plain(bands[b].label), showlegend: false, text: line.row.map((i) => epochs.time[i]),
         line: { color: theme.line, width: 0.8 }, customdata: line.row.map((i) => epochs.phase[i]),
-        marker: { color: line.row.map((i) => epochs.phase[i]), coloraxis: "coloraxis", symbol: bands[b].symbol, size: 7, line: { width: 0.5, color: theme.soft } },
+        marker: { color: line.row.map((i) => epochs.phase[i]), coloraxis: "coloraxis", symbol: bands[b].symbol, size: line.row.map((_, k) => k % every ? 0 : 7), line: { width: 0.5, color: theme.soft } },
         hovertemplate: "q %{x:.2f} %, u %{y:.2f} %<br>phase %{customdata:.2f}°<br>%{text}<extra>" + plain(bands[b].label) + "</extra>",
       };
     });
     // The legend explains the shapes; a marker coloured by phase has no colour of its own.
-    byWavelength.filter((b) => state.band === "all" || state.band === b).forEach((b) => data.push({
+    chosenBands(state).forEach((b) => data.push({
       type: "scatter", mode: "markers", x: [null], y: [null], name: plain(bands[b].label), hoverinfo: "skip",
       marker: { symbol: bands[b].symbol, size: 9, color: theme.soft } }));
     return { data, layout: layout({

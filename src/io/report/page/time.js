@@ -92,8 +92,40 @@ function limitTraces(pass, k, curve, key, edge, data) {
   });
 }
 
-/// Rows of panels from `rows`: {title, at(band, row), cyclic, type, reversed, range, dtick, digits, unit, span, isLimit}.
-function timeFigure(rows) {
+/// Bands of the numerical half-widths behind a curve, one outline per stretch of neighbouring values.
+function errorTraces(pass, k, curve, key, data) {
+  const x = [], y = [];
+  for (const run of pass.runs) {
+    let part = [];
+    const close = () => {
+      if (part.length > 1) {
+        const back = [...part].reverse();
+        x.push(...part.map((i) => times[i]), ...back.map((i) => times[i]), null);
+        y.push(...part.map((i) => curve.bounds(i)[0]), ...back.map((i) => curve.bounds(i)[1]), null);
+      }
+      part = [];
+    };
+    for (const i of run) {
+      if (curve.at(i) !== null && curve.bounds(i)) part.push(i);
+      else close();
+    }
+    close();
+  }
+  if (x.length) data.push({
+    type: "scatter", mode: "lines", x, y, fill: "toself", fillcolor: faint(curve.colour, 0.22), line: { width: 0 }, hoverinfo: "skip",
+    xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: plain(curve.name), legendgroup: curve.name, showlegend: false,
+  });
+}
+
+/// Value and half-width as two bounds; on a logarithmic axis the lower one stays above a thousandth of the value.
+const within = (value, error, least = -Infinity, most = Infinity) => value === null || error === null || !(error > 0) ? null
+  : [Math.max(least, value - error), Math.min(most, value + error)];
+const withinFactor = (value, magError) => value === null || magError === null || !(magError > 0) ? null
+  : [Math.max(1e-3 * value, value * (2 - 10 ** (0.4 * magError))), value * 10 ** (0.4 * magError)];
+
+/// Rows of panels from `rows`: {title, at(band, row), bounds(band, row), cyclic, type, reversed, range, dtick, digits, unit,
+/// span, isLimit}, of the bands that `state` chooses.
+function timeFigure(rows, state = {}) {
   const shown = shownPasses();
   const data = [];
   const plan = layout({ hovermode: "x unified", shapes: [] });
@@ -110,16 +142,18 @@ function timeFigure(rows) {
       autorange: span ? false : row.reversed ? "reversed" : true, ...(span ? { range: span } : {}),
       ...(row.dtick ? { dtick: row.dtick } : {}), ...(row.type === "log" ? { exponentformat: "power" } : {}),
     });
-    const curves = row.curves || bands.map((band) => ({ name: band.label, colour: band.colour, symbol: band.symbol, value: (i) => row.at(band, i),
+    const curves = row.curves || chosenBands(state).map((b) => bands[b]).map((band) => ({ name: band.label, colour: band.colour, symbol: band.symbol, dash: band.dash,
+      bounds: row.bounds && ((i) => row.bounds(band, i)), value: (i) => row.at(band, i),
       isLimit: (i) => row.isLimit ? row.isLimit(band, i) : false, at: (i) => row.span && (row.isLimit(band, i) || (span && row.at(band, i) > span[0])) ? null : row.at(band, i) }));
     shown.forEach((pass, k) => curves.forEach((curve) => {
       if (row.span) limitTraces(pass, k, curve, key, span ? span[0] - 0.02 * (span[0] - span[1]) : Infinity, data);
+      if (curve.bounds) errorTraces(pass, k, curve, key, data);
       const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
       data.push({
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, customdata: line.row.map((i) => epochs.phase[i]),
         xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: plain(curve.name), legendgroup: curve.name,
         showlegend: r === 0 && k === 0, connectgaps: false,
-        line: { color: curve.colour, width: 1.6 }, marker: { color: curve.colour, symbol: curve.symbol, size: 6, maxdisplayed: 24 },
+        line: { color: curve.colour, width: 1.6, dash: curve.dash || "solid" }, marker: { color: curve.colour, symbol: curve.symbol, size: 6, maxdisplayed: 24 },
         hovertemplate: "%{y:." + row.digits + "} " + (row.unit || "") + " (phase %{customdata:.1f}°)",
       });
     }));
@@ -132,9 +166,9 @@ function timeFigure(rows) {
 
 const brightnessRows = {
   mag: { title: report.mag_system + " magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag",
-    span: magnitudeSpan, isLimit: (band, i) => band.mag_limit[i] === 1 },
-  irradiance: { title: "I [W m⁻² nm⁻¹]", at: (band, i) => positive(band.irradiance[i]), type: "log", digits: "3e" },
-  intensity: { title: "intensity [m² sr⁻¹]", at: (band, i) => positive(band.intensity[i]), type: "log", digits: "3e" },
+    bounds: (band, i) => within(band.mag[i], band.mag_err[i]), span: magnitudeSpan, isLimit: (band, i) => band.mag_limit[i] === 1 },
+  irradiance: { title: "I [W m⁻² nm⁻¹]", at: (band, i) => positive(band.irradiance[i]), bounds: (band, i) => withinFactor(positive(band.irradiance[i]), band.mag_err[i]), type: "log", digits: "3e" },
+  intensity: { title: "intensity [m² sr⁻¹]", at: (band, i) => positive(band.intensity[i]), bounds: (band, i) => withinFactor(positive(band.intensity[i]), band.mag_err[i]), type: "log", digits: "3e" },
 };
 
 const skyNorth = { equatorial: "celestial north", altaz: "the local zenith", scattering: "the normal of the scattering plane" }[report.frame];
@@ -142,27 +176,28 @@ const skyNorth = { equatorial: "celestial north", altaz: "the local zenith", sca
 const timeFigures = [
   {
     id: "brightness", isAgainstTime: true, title: "Brightness against time", height: () => isNarrow() ? 340 : 460,
-    controls: [{ key: "scale", name: "Show", options: [["mag", "magnitude"], ["irradiance", "irradiance"], ["intensity", "intensity"]] }],
-    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Triangles: fainter than the point, or than the axis reaches. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
-    build: (state) => timeFigure([brightnessRows[state.scale]]),
-    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["mag_limit", "", (b, i) => b.mag_limit[i] ? "True" : "False"], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
+    controls: [{ key: "scale", name: "Show", options: [["mag", "magnitude"], ["irradiance", "irradiance"], ["intensity", "intensity"]] }, bandControl],
+    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Shaded behind curves, here and below: numerical 95 % half-widths, often thinner than the line. Triangles: fainter than the point, or than the axis reaches. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
+    build: (state) => timeFigure([brightnessRows[state.scale]], state),
+    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["mag_err", "mag", (b, i) => b.mag_err[i]], ["mag_limit", "", (b, i) => b.mag_limit[i] ? "True" : "False"], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
       ["intensity", "m2 sr-1", (b, i) => b.intensity[i]]]),
   },
   {
-    id: "qu", isAgainstTime: true, title: "q and u against time", height: () => isNarrow() ? 400 : 460,
+    id: "qu", isAgainstTime: true, title: "q and u against time", height: () => isNarrow() ? 400 : 460, controls: [bandControl],
     caption: "Fractions of I in percent, in the sky frame: +q towards " + skyNorth + ", +u 45° from it.",
-    build: () => timeFigure([
-      { title: "q [%]", at: (band, i) => percent(band.q[i]), digits: "2f", unit: "%" },
-      { title: "u [%]", at: (band, i) => percent(band.u[i]), digits: "2f", unit: "%" }]),
-    table: () => tidyTable([["q", "", (b, i) => b.q[i]], ["u", "", (b, i) => b.u[i]]]),
+    build: (state) => timeFigure([
+      { title: "q [%]", at: (band, i) => percent(band.q[i]), bounds: (band, i) => within(percent(band.q[i]), percent(band.q_err[i]), -100, 100), digits: "2f", unit: "%" },
+      { title: "u [%]", at: (band, i) => percent(band.u[i]), bounds: (band, i) => within(percent(band.u[i]), percent(band.u_err[i]), -100, 100), digits: "2f", unit: "%" }], state),
+    table: () => tidyTable([["q", "", (b, i) => b.q[i]], ["q_err", "", (b, i) => b.q_err[i]], ["u", "", (b, i) => b.u[i]], ["u_err", "", (b, i) => b.u_err[i]]]),
   },
   {
-    id: "p_pa", isAgainstTime: true, title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 460,
+    id: "p_pa", isAgainstTime: true, title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 460, controls: [bandControl],
     caption: "p in percent; position angle in [0°, 180°) from " + skyNorth + ". The angle is cyclic: no line joins 180° to 0°.",
-    build: () => timeFigure([
-      { title: "p [%]", at: (band, i) => percent(band.p[i]), digits: "2f", unit: "%" },
-      { title: "angle [°]", at: (band, i) => band.pa[i], cyclic: true, range: [0, 180], dtick: 45, digits: "1f", unit: "°" }]),
-    table: () => tidyTable([["p", "", (b, i) => b.p[i]], ["pa", "deg", (b, i) => b.pa[i]]]),
+    build: (state) => timeFigure([
+      { title: "p [%]", at: (band, i) => percent(band.p[i]), bounds: (band, i) => within(percent(band.p[i]), percent(band.p_err[i]), 0, 100), digits: "2f", unit: "%" },
+      { title: "angle [°]", at: (band, i) => band.pa[i], cyclic: true, range: [0, 180], dtick: 45, digits: "1f", unit: "°",
+        bounds: (band, i) => within(band.pa[i], band.pa_err[i], 0, 180) }], state),
+    table: () => tidyTable([["p", "", (b, i) => b.p[i]], ["p_err", "", (b, i) => b.p_err[i]], ["pa", "deg", (b, i) => b.pa[i]], ["pa_err", "deg", (b, i) => b.pa_err[i]]]),
   },
 ];
 

@@ -83,6 +83,31 @@ TEST(Report, DarkEpochsHaveNoPolarizationAndZeroIntensity) {
   EXPECT_GT(dark, 5);
 }
 
+TEST(Report, HalfWidthsStandBesideTheirNumbers) {
+  LightCurve curve = test::synthetic_curve(40);
+  curve.samples[3 * 5 + 1].half_width.i = 0.01 * curve.samples[3 * 5 + 1].intensity;
+  const auto data = data_of(page_of(input_of(curve)));
+  // 2.5 log10(1.01) = .010803...; two digits are written. All other errors of this curve are 0.
+  EXPECT_EQ(data["bands"][1]["mag_err"][5].get<double>(), 0.011);
+  EXPECT_EQ(data["bands"][1]["mag_err"][6].get<double>(), 0);
+  const double p = curve.samples[3 * 5 + 1].p; // dp = p dI/I where Q and U are exact
+  EXPECT_NEAR(data["bands"][1]["p_err"][5].get<double>(), 0.01 * p, 0.05 * 0.01 * p);
+}
+
+TEST(Report, PeriodogramWhereTheAttitudeTurns) {
+  const LightCurve curve = test::synthetic_curve();
+  ReportInput input = input_of(curve);
+  EXPECT_TRUE(data_of(page_of(input))["turning"].is_null());
+  input.turning = {{"spin", 66}};
+  const auto turning = data_of(page_of(input))["turning"];
+  EXPECT_EQ(turning["periods"][0]["seconds"], 66);
+  ASSERT_EQ(turning["passes"].size(), 2U);
+  EXPECT_EQ(turning["passes"][1]["pass"], "20580-20180121T161803Z");
+  // sin(40 t) with t = 1 after 420 s: 2 pi 420 / 40 = 65.97 s; the phase curve beneath it shifts it
+  // a little.
+  EXPECT_NEAR(turning["passes"][0]["bands"][1]["best"].get<double>(), 65.97, 1.5);
+}
+
 TEST(Report, EachMaterialHasItsContribution) {
   const LightCurve curve = test::synthetic_curve();
   const auto data = data_of(page_of(input_of(curve)));

@@ -1,0 +1,170 @@
+// Geometric sums of poses, which other materials and bands may be applied to.
+
+#include "arrays.h"
+#include "attend.h"
+#include "bindings.h"
+#include "errors.h"
+#include "options.h"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <umov/jobs/requests.h>
+#include <umov/light/engine.h>
+#include <umov/light/poses.h>
+#include <umov/scene/pose.h>
+
+namespace umov::python {
+namespace {
+
+using nb::literals::operator""_a;
+
+/// The engine of one object, and the sums of poses that it was asked for.
+class Sums {
+public:
+  Sums(const Scenario &scenario, const std::vector<Scenario> &others,
+       const jobs::JobOptions &options, nb::handle watch) {
+    Attention attention(watch);
+    auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) {
+      return make(scenario, others, options, diagnostics);
+    });
+    attention.settle(false);
+    engine_ = std::make_unique<Engine>(take(std::move(made)));
+    sun_radius_rad_ = scenario.has_solar_disk ? sun_radius_at_1au_rad : 0;
+  }
+
+  [[nodiscard]] const Engine &engine() const { return *engine_; }
+  [[nodiscard]] double sun_radius_rad() const { return sun_radius_rad_; }
+
+private:
+  static Result<Engine> make(const Scenario &scenario, const std::vector<Scenario> &others,
+                             const jobs::JobOptions &options, Diagnostics &diagnostics) {
+    UMOV_ASSIGN(object, load_object(scenario, 0, {}, diagnostics));
+    EngineOptions how;
+    how.mask_cache = options.mask_cache;
+    how.threads = options.threads;
+    how.is_lazy = true;
+    for (const Scenario &other : others) {
+      UMOV_ASSIGN(loaded, load_object(other, 0, {}, diagnostics));
+      how.hypotheses.push_back(std::move(loaded.scene));
+    }
+    return Engine(object.scene, how);
+  }
+  std::unique_ptr<Engine> engine_;
+  double sun_radius_rad_ = 0;
+};
+
+/// Sums of poses, whose memory the arrays share.
+struct Abundances {
+  AbundanceTable table;
+};
+
+Result<std::vector<Pose>> poses_from(const Vectors &sun, const Vectors &observer,
+                                     double sun_radius_rad) {
+  std::vector<Pose> poses(sun.shape(0));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double *const s = sun.data() + 3 * i, *const o = observer.data() + 3 * i;
+    const auto to_sun = direction_along({s[0], s[1], s[2]});
+    const auto to_observer = direction_along({o[0], o[1], o[2]});
+    if (!to_sun || !to_observer)
+      return fail(ErrorCode::BadInput,
+                  std::string(to_sun ? "observer[" : "sun[") + std::to_string(i) +
+                      "] has no direction; three finite numbers other than 0 were expected");
+    poses[i] = {*to_sun, *to_observer, sun_radius_rad};
+  }
+  return poses;
+}
+
+Abundances sums_of(const Sums &sums, const Vectors &sun, const Vectors &observer, unsigned threads,
+                   nb::handle watch) {
+  Attention attention(watch);
+  auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &) -> Result<Abundances> {
+    UMOV_ASSIGN(poses, poses_from(sun, observer, sums.sun_radius_rad()));
+    Abundances out;
+    UMOV_TRY(sums.engine().abundances(poses, out.table, threads));
+    return out;
+  });
+  attention.settle(false);
+  return take(std::move(made));
+}
+
+/// What the materials and bands of a scenario make of sums: [pose, band, 4], and the half-widths.
+nb::tuple applied(const Sums &sums, const Abundances &abundances, const Scenario &scenario,
+                  unsigned threads, nb::handle watch) {
+  struct Done {
+    StokesTable table;
+    double diffuse_error = 0;
+  };
+  Attention attention(watch);
+  auto made =
+      attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Done> {
+        UMOV_ASSIGN(object, load_object(scenario, 0, {}, diagnostics));
+        UMOV_ASSIGN(tables, sums.engine().tables_for(object.scene));
+        Done out;
+        tables.apply(abundances.table, out.table, threads);
+        out.diffuse_error = tables.diffuse_error();
+        return out;
+      });
+  attention.settle(false);
+  const Done done = take(std::move(made));
+  const StokesTable &table = done.table;
+  const std::size_t count = table.poses(), bands = table.bands;
+  const NewArray<double> stokes(count * bands * 4), half_width(count * bands * 4);
+  for (std::size_t k = 0; k < count * bands; ++k) {
+    double *const out = stokes.data + 4 * k, *const err = half_width.data + 4 * k;
+    out[0] = table.i[k], out[1] = table.q[k], out[2] = table.u[k], out[3] = table.v[k];
+    err[0] = table.i_err[k], err[1] = table.q_err[k], err[2] = table.u_err[k];
+    err[3] = table.v_err[k];
+  }
+  return nb::make_tuple(stokes.shaped({count, bands, 4}), half_width.shaped({count, bands, 4}),
+                        done.diffuse_error);
+}
+
+nb::object columns_of(nb::handle self, const std::vector<double> &values) {
+  const auto &table = nb::cast<const Abundances &>(self).table;
+  return nb::cast(View<double>(values.data(), {table.poses(), table.columns.size()}, self));
+}
+
+/// Kind, shape and sides of every column: ("specular", 0.3, ["body", "panel (back)"]).
+nb::list names_of(const Abundances &abundances) {
+  nb::list out;
+  for (const AbundanceColumn &column : abundances.table.columns) {
+    std::vector<std::string> sides;
+    for (const AbundanceColumn::Side &side : column.sides)
+      sides.push_back(side.group + (side.is_back_surface ? " (back)" : ""));
+    const bool is_specular = column.kind == AbundanceColumn::Kind::Specular;
+    out.append(nb::make_tuple(is_specular ? "specular" : "diffuse", column.shape, sides));
+  }
+  return out;
+}
+
+} // namespace
+
+void bind_abundances(nb::module_ &m) {
+  nb::class_<Abundances>(m, "Abundances", "Geometric sums of poses.")
+      .def_prop_ro(
+          "sum",
+          [](nb::handle self) {
+            return columns_of(self, nb::cast<const Abundances &>(self).table.sum);
+          },
+          nb::sig("def sum(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_prop_ro(
+          "half_width",
+          [](nb::handle self) {
+            return columns_of(self, nb::cast<const Abundances &>(self).table.half_width);
+          },
+          nb::sig("def half_width(self) -> numpy.typing.NDArray[numpy.float64]"))
+      .def_prop_ro("columns", &names_of,
+                   nb::sig("def columns(self) -> list[tuple[str, float, list[str]]]"));
+  nb::class_<Sums>(m, "Sums", "An engine that is asked for sums.")
+      .def(nb::init<const Scenario &, const std::vector<Scenario> &, const jobs::JobOptions &,
+                    nb::handle>(),
+           "scenario"_a, "others"_a, "options"_a, "watch"_a.none())
+      .def("abundances", &sums_of, "sun"_a, "observer"_a, "threads"_a, "watch"_a.none())
+      .def("apply", &applied, "abundances"_a, "scenario"_a, "threads"_a, "watch"_a.none(),
+           nb::sig(
+               "def apply(self, abundances: Abundances, scenario: Scenario, threads: int, watch: "
+               "object | None) -> tuple[numpy.typing.NDArray[numpy.float64], "
+               "numpy.typing.NDArray[numpy.float64], float]"));
+}
+
+} // namespace umov::python

@@ -1,0 +1,51 @@
+"""Numbers of arguments: what is none, or has another unit, is told of."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .errors import UsageError
+
+
+def _plain(value: Any, name: str) -> Any:
+    """A Quantity in the unit that the name says; all else as it is."""
+    if not hasattr(value, "to_value"):
+        return value
+    unit = name.rsplit("_", 1)[-1]
+    try:
+        return value.to_value(unit)
+    except Exception as error:
+        raise UsageError(f"{name} is {value!r}; it does not go into that unit ({error})") from error
+
+
+def number_array(value: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Finite numbers as float64."""
+    try:
+        plain = np.asarray(_plain(value, name))
+        if plain.dtype.kind == "c":
+            raise TypeError("complex")
+        out = plain.astype(np.float64, copy=False)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise UsageError(f"{name} is {value!r}; numbers were expected") from error
+    if not np.isfinite(out).all():
+        raise UsageError(f"{name} has values that are not finite; finite numbers were expected")
+    return out
+
+
+def number(value: Any, name: str) -> float:
+    """One finite number. Texts are none, although float() would take them."""
+    if isinstance(value, (str, bytes)):
+        raise UsageError(f"{name} is {value!r}; a number was expected")
+    out = number_array(value, name)
+    if out.ndim:
+        raise UsageError(f"{name} has shape {out.shape}; a single number was expected")
+    return float(out)
+
+
+def whole(value: Any, name: str, last: int = 2**31 - 1) -> int:
+    """A whole number from 0 on."""
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not 0 <= value <= last:
+        raise UsageError(f"{name} is {value!r}; a whole number from 0 to {last} was expected")
+    return int(value)

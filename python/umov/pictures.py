@@ -1,0 +1,104 @@
+"""Pictures of an object as an observer sees it, and its triangles."""
+from __future__ import annotations
+
+import os
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _umov
+from ._jobs import Progress, Watch, job_options
+from .errors import UsageError
+from .scenarios import AnyScenario, Scenario
+from .times import AnyTime, utc
+
+__all__ = ["Mesh", "Picture", "mesh", "render"]
+
+SHADES = ("intensity", "polarization", "angle", "material", "colour")
+
+
+class Picture:
+    """A PNG file in memory, shown by notebooks.
+
+    >>> picture = umov.render(hst, sun=[1, 1, 1], observer=[0, 1, 1], side=64, samples=1)
+    >>> picture.png[:8] == b"\\x89PNG\\r\\n\\x1a\\n", picture
+    (True, <umov.Picture 'material'>)
+    """
+
+    def __init__(self, png: bytes, shade: str) -> None:
+        self.png = png  #: the file
+        self.shade = shade  #: what its colours tell
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Writes the file."""
+        with open(path, "wb") as out:
+            out.write(self.png)
+
+    def _repr_png_(self) -> bytes:
+        return self.png
+
+    def __repr__(self) -> str:
+        return f"<umov.Picture {self.shade!r}>"
+
+
+def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: ArrayLike | None = None,
+           observer: ArrayLike | None = None, up: ArrayLike = (0, 0, 1), time: AnyTime | None = None,
+           side: int = 512, samples: int = 3, threads: int = 0, progress: Progress = None) -> Picture:
+    """The object as the observer sees it, north up: the picture of `umov render`.
+
+    With `sun` and `observer`, directions (3) in the body frame, from there, with `up` upwards; else on the
+    scenario's orbit at `time`, or where the first pass is brightest. `shade`: intensity, polarization, angle,
+    material or colour (three bands); `band`: whose, the middle one for "". `side` is in pixels, `samples` rays per
+    pixel and axis. `UsageError` for what does not go together, `NoResult` if nothing of the span is lit.
+
+    >>> umov.render(EXAMPLES / "hst_maui.toml", shade="intensity", time="2018-01-21T05:11:00Z", side=64).shade
+    'intensity'
+    """
+    if shade not in SHADES:
+        raise UsageError(f"shade is {shade!r}; one of {', '.join(SHADES)} was expected")
+    if (sun is None) != (observer is None):
+        raise UsageError("sun without observer, or the other way round; both or none were expected")
+    if not 1 <= side <= 4096 or not 1 <= samples <= 8:
+        raise UsageError(f"side {side}, samples {samples}; 1 to 4096 and 1 to 8 were expected")
+    directions = [] if sun is None else [_three(value, name) for value, name in
+                                         ((sun, "sun"), (observer, "observer"), (up, "up"))]
+    png = _umov.render(Scenario(scene)._scenario, shade, band, directions, None if time is None else utc(time),
+                       side, samples, job_options(threads, False), Watch(progress))
+    return Picture(png, shade)
+
+
+def _three(value: ArrayLike | None, name: str) -> tuple[float, float, float]:
+    try:
+        out = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise UsageError(f"{name} is {value!r}; three numbers were expected") from error
+    if out.shape != (3,):
+        raise UsageError(f"{name} has shape {out.shape}; (3,) was expected")
+    return float(out[0]), float(out[1]), float(out[2])
+
+
+class Mesh(NamedTuple):
+    """Triangles of an object as they are lit: cleaned, in metres, in the body frame.
+
+    >>> made = umov.mesh(hst)
+    >>> made.vertices.shape[1], made.faces.shape[1], "light_shield" in made.group_names
+    (3, 3, True)
+    """
+
+    vertices: NDArray[np.float64]  #: (V, 3) [m]
+    faces: NDArray[np.uint32]  #: (F, 3), counter-clockwise from outside
+    groups: NDArray[np.uint32]  #: (F): into group_names
+    group_names: list[str]  #: mesh materials
+
+
+def mesh(scene: AnyScenario, *, object: int = 0, progress: Progress = None) -> Mesh:
+    """The triangles of an object of a scenario.
+
+    >>> int(umov.mesh(hst).faces.max()) < len(umov.mesh(hst).vertices)
+    True
+    """
+    scenario = Scenario(scene)
+    if not 0 <= object < len(scenario.objects):
+        raise UsageError(f"object is {object}; 0 to {len(scenario.objects) - 1} was expected")
+    return Mesh(*_umov.mesh(scenario._scenario, object, Watch(progress)))
