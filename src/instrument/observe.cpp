@@ -24,6 +24,14 @@ Result<BandResponse> narrow_band(std::string name, double nm, double width_nm) {
   return out;
 }
 
+Result<BandResponse> curve_band(const Passband &curve) {
+  UMOV_ASSIGN(sun, sunlight_in(curve));
+  UMOV_ASSIGN(zero, zero_irradiance(curve, MagnitudeSystem::AB));
+  const double pivot = pivot_nm(curve);
+  return BandResponse{curve.name, {pivot}, {1}, pivot, sun.value, ab_zero_photons(curve) / zero,
+                      zero};
+}
+
 Result<BandObserver> BandObserver::make(const Instrument &instrument, BandResponse band,
                                         const ObservingConditions &conditions,
                                         const std::vector<std::complex<double>> &mirror_eta) {

@@ -31,7 +31,7 @@ struct Exposure {
 };
 
 /// Everything of one object that does not change from exposure to exposure.
-struct Session {
+struct Setup {
   const Scenario &scenario;
   const ScenarioObservation &observation;
   const ObservedBands &bands;
@@ -84,7 +84,7 @@ struct LitBlock {
   StokesTable table;
 };
 
-Result<LitBlock> light_of(const Session &s, std::span<const Exposure> exposures) {
+Result<LitBlock> light_of(const Setup &s, std::span<const Exposure> exposures) {
   const std::size_t per = s.nodes.size();
   std::vector<std::optional<Result<TrackPoint>>> placed(exposures.size() * per);
   parallel_for(exposures.size(), s.threads, [&](std::size_t e) {
@@ -117,7 +117,7 @@ Stokes<ScatteringPlane> irradiance_of(const BandResult &lit, const BandResponse 
          irradiance_at_observer(1, band.solar_mean, g.sun_distance_km, g.sunlit, g.range_km);
 }
 
-ExposureLight arriving(const Session &s, const Exposure &e, std::size_t number, const LitBlock &lit,
+ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit,
                        Recorded &out) {
   const BandObserver &observer = s.observers[e.planned.band];
   const BandResponse &band = observer.band();
@@ -157,7 +157,7 @@ ExposureLight arriving(const Session &s, const Exposure &e, std::size_t number, 
   return light;
 }
 
-Recorded record(const Session &s, const Exposure &e, std::size_t number, const LitBlock &lit) {
+Recorded record(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit) {
   Recorded out;
   const BandObserver &observer = s.observers[e.planned.band];
   const ExposureLight light = arriving(s, e, number, lit, out);
@@ -194,7 +194,7 @@ private:
 /// Columns of the counts, filled exposure by exposure.
 class CountsTable {
 public:
-  explicit CountsTable(const Session &s) : s_(s) {}
+  explicit CountsTable(const Setup &s) : s_(s) {}
 
   void add(const Exposure &e, const Recorded &r) {
     for (const ChannelCounts &c : r.channels) {
@@ -272,7 +272,7 @@ private:
            : s_.scenario.frame == PolarizationFrame::AltAz    ? g.pa_scat_altaz.degrees()
                                                               : 0;
   }
-  const Session &s_;
+  const Setup &s_;
   std::vector<std::string> time_, name_, band_, channel_;
   std::vector<std::int64_t> exposure_, set_;
   std::vector<bool> saturated_;
@@ -282,7 +282,7 @@ private:
 /// Columns of the truth.
 class TruthTable {
 public:
-  explicit TruthTable(const Session &s) : s_(s) {}
+  explicit TruthTable(const Setup &s) : s_(s) {}
 
   void add(const Exposure &e, const Recorded &r) {
     const BandResponse &band = s_.observers[e.planned.band].band();
@@ -334,7 +334,7 @@ public:
   }
 
 private:
-  const Session &s_;
+  const Setup &s_;
   std::vector<std::string> time_, name_, band_;
   std::vector<std::int64_t> exposure_, set_;
   std::array<std::vector<double>, 10> numbers_;
@@ -395,7 +395,7 @@ Result<std::vector<BandObserver>> observers_of(const ScenarioObservation &o,
 }
 
 /// The sampling of a mosaic's image, in figures.
-void warn_of_mosaic(const Session &s, Diagnostics &diagnostics) {
+void warn_of_mosaic(const Setup &s, Diagnostics &diagnostics) {
   const ScenarioObservation &o = s.observation;
   if (o.instrument.polarimeter.type != PolarimeterType::Mosaic)
     return;
@@ -460,7 +460,7 @@ struct Tables {
   TruthTable truth;
 };
 
-Result<void> run_blocks(const Session &s, const std::vector<Exposure> &exposures,
+Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
                         const Monitor &monitor, Tables &tables, Observation &out,
                         Diagnostics &diagnostics) {
   constexpr std::size_t block = 4096;
@@ -499,8 +499,7 @@ Result<void> run_blocks(const Session &s, const std::vector<Exposure> &exposures
 }
 
 /// Circumstances that the models do not reach.
-void warn_of_air(const std::vector<Exposure> &exposures, const Session &s,
-                 Diagnostics &diagnostics) {
+void warn_of_air(const std::vector<Exposure> &exposures, const Setup &s, Diagnostics &diagnostics) {
   std::size_t low = 0;
   for (const Exposure &e : exposures)
     low += apparent_altitude(550, e.middle.altitude, s.surface).degrees() < 3 ? 1u : 0u;
@@ -531,7 +530,7 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
   for (const Exposure &e : exposures)
     if (!observers[e.planned.band].is_prepared(e.planned.plan.state))
       UMOV_TRY(observers[e.planned.band].prepare(e.planned.plan.state));
-  const Session session{
+  const Setup setup{
       scenario,
       *scenario.observation,
       bands,
@@ -544,10 +543,10 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
       extinction_mag(550, conditions.air),
       options.threads};
   out.light_s += seconds_since(began);
-  warn_of_mosaic(session, diagnostics);
-  warn_of_air(exposures, session, diagnostics);
-  Tables tables{CountsTable(session), TruthTable(session)};
-  UMOV_TRY(run_blocks(session, exposures, monitor, tables, out, diagnostics));
+  warn_of_mosaic(setup, diagnostics);
+  warn_of_air(exposures, setup, diagnostics);
+  Tables tables{CountsTable(setup), TruthTable(setup)};
+  UMOV_TRY(run_blocks(setup, exposures, monitor, tables, out, diagnostics));
   out.counts.append(std::move(tables.counts).table());
   out.truth.append(std::move(tables.truth).table());
   return models.keep_masks();

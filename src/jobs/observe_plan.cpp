@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/io/passband_file.h>
+#include <umov/optics/band_grid.h>
 
 namespace umov::jobs {
 namespace {
@@ -37,14 +39,26 @@ Result<ObservedBands> observed_bands(const Scenario &scenario) {
   const ScenarioObservation &o = *scenario.observation;
   std::vector<Band> bands = scenario.bands;
   if (!o.bands.empty()) {
-    UMOV_ASSIGN(own, bands_from(o.bands));
+    UMOV_ASSIGN(own, bands_named(o.bands));
     bands = own;
   }
+  UMOV_ASSIGN(grid, BandGrid::make(bands));
   ObservedBands out;
-  for (const Band &band : bands) {
-    UMOV_ASSIGN(response, narrow_band(band.name, band.wavelength.nm(), o.width_nm));
-    out.index.push_back({out.nodes.size()});
-    out.nodes.push_back(band);
+  out.nodes = grid.nodes();
+  for (Band &node : out.nodes)
+    node.curve = nullptr; // light is computed at the wavelength alone
+  for (std::size_t b = 0; b < bands.size(); ++b) {
+    UMOV_ASSIGN(response, bands[b].curve
+                              ? curve_band(*bands[b].curve)
+                              : narrow_band(bands[b].name, bands[b].wavelength.nm(), o.width_nm));
+    response.nm.clear();
+    response.weight.clear();
+    out.index.emplace_back();
+    for (const BandTerm &term : grid.terms()[b]) {
+      out.index.back().push_back(term.node);
+      response.nm.push_back(out.nodes[term.node].wavelength.nm());
+      response.weight.push_back(term.weight);
+    }
     out.bands.push_back(std::move(response));
   }
   return out;

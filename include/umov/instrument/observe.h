@@ -12,6 +12,7 @@
 #include <umov/instrument/mirrors.h>
 #include <umov/instrument/polarimeter.h>
 #include <umov/instrument/telescope.h>
+#include <umov/optics/passband.h>
 #include <vector>
 
 namespace umov {
@@ -36,6 +37,10 @@ struct BandResponse {
 };
 /// A band of constant response over a width, as narrow filters are.
 Result<BandResponse> narrow_band(std::string name, double nm, double width_nm);
+
+/// A band with a curve, at its pivot wavelength alone: nodes and weights are the caller's to
+/// choose.
+Result<BandResponse> curve_band(const Passband &curve);
 
 /// Circumstances of an observation that do not change with time.
 struct ObservingConditions {
