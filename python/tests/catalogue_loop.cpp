@@ -22,7 +22,8 @@ umov::Result<void> run(const std::string &file, const std::string &first, int co
     const std::clock_t begin_cpu = std::clock();
     const auto begin = std::chrono::steady_clock::now();
     // A caller keeps the results of each call.
-    UMOV_ASSIGN(states, umov::jobs::propagate_catalogue(request, options, {}, warnings));
+    [[maybe_unused]] const auto states =
+        umov::jobs::propagate_catalogue(request, options, {}, warnings).value();
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
     const double processor = static_cast<double>(std::clock() - begin_cpu) / CLOCKS_PER_SEC;
     std::printf("%.9f %.9f\n", spent.count(), processor);

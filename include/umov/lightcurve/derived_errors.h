@@ -20,8 +20,10 @@ inline Angle scattering_axis(const LightCurveEpoch &e, PolarizationFrame frame) 
 /// the scattering frame, carried over to first order, all at their worst together.
 class DerivedErrors {
 public:
+  /// Of a sample, which must live.
   explicit DerivedErrors(const LightCurveSample &s) : s_(s), i_(s.half_width.i / s.intensity) {}
 
+  /// Of the magnitude.
   [[nodiscard]] double mag() const { return 2.5 * std::log10(1 + i_); }
   /// Of q or u: the axes of the sky stand at `cosine`, `sine` of twice the angle from Q.
   [[nodiscard]] double part(double value, double cosine, double sine) const {
