@@ -58,6 +58,7 @@ Result<Band> band_named(const std::string &name, const PassbandForm &form) {
   if (bands.size() == 1)
     return std::move(bands.front());
   std::vector<std::string> names;
+  names.reserve(bands.size());
   for (const Band &band : bands)
     names.push_back(band.name);
   return fail(ErrorCode::Usage,

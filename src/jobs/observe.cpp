@@ -352,6 +352,7 @@ void note(Table &table, const Scenario &scenario, const ObservedBands &bands) {
   table.note("pol_frame", frame_name(scenario.frame));
   table.note("instrument", o.instrument.name.empty() ? "in the scenario" : o.instrument.name);
   table.note("polarimeter", name_of(o.instrument.polarimeter.type));
+  table.note("pupils", o.instrument.polarimeter.has_separate_pupils ? "separate" : "common");
   table.note("parameters", fmt::format("{}", parameters_of(o.instrument.polarimeter.type)));
   table.note("mag_system", "AB");
   for (const BandResponse &band : bands.bands)
@@ -603,7 +604,7 @@ Result<void> write_observation(const Observation &observation, const Scenario &s
       } else {
         bytes = format == "csv" ? to_csv(*table) : to_ecsv(*table);
       }
-      manifest.files.push_back(name + "." + format);
+      manifest.files.push_back(fmt::format("{}.{}", name, format));
       folder.add(manifest.files.back(), std::move(bytes));
     }
   }

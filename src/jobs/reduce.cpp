@@ -76,21 +76,24 @@ std::size_t parameters_of(const CountsFile &file) {
   return circular > answers ? 4 : linear > answers ? 3 : 1;
 }
 
-/// Transparency changes from exposure to exposure, and is one for all channels of an exposure.
-void add_scintillation(std::vector<CommonError> &out, Rows rows, const StokesFit &fit) {
+/// Light flickers from exposure to exposure, alike in all channels of one pupil.
+void add_scintillation(std::vector<CommonError> &out, Rows rows, const StokesFit &fit,
+                       bool has_separate_pupils) {
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const bool is_first = k == 0 || rows[k].exposure != rows[k - 1].exposure;
+    const bool is_first = k == 0 || has_separate_pupils || rows[k].exposure != rows[k - 1].exposure;
     if (!is_first || !(rows[k].scintillation > 0))
       continue;
     CommonError one{std::vector<double>(rows.size(), 0), rows[k].scintillation};
-    for (std::size_t j = k; j < rows.size() && rows[j].exposure == rows[k].exposure; ++j)
+    const std::size_t behind = has_separate_pupils ? k + 1 : rows.size();
+    for (std::size_t j = k; j < behind && rows[j].exposure == rows[k].exposure; ++j)
       for (std::size_t p = 0; p < 4; ++p)
         one.effect[j] += rows[j].row[p] * fit.stokes[p];
     out.push_back(std::move(one));
   }
 }
 
-Reduced solve(const Set &set, std::size_t parameters, const ReduceOptions &options) {
+Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
+              const ReduceOptions &options) {
   Reduced out;
   out.first = set.rows.front();
   out.time =
@@ -105,9 +108,13 @@ Reduced solve(const Set &set, std::size_t parameters, const ReduceOptions &optio
   }
   std::vector<CommonError> common =
       common_errors(options.priors, data, *fit, out.first.x_axis_pa_deg * pi / 180);
-  add_scintillation(common, set.rows, *fit);
+  add_scintillation(common, set.rows, *fit, has_separate_pupils);
   if (!common.empty())
     fit = fit_stokes(data, parameters, common);
+  if (!fit || !(fit->covariance[0][0] > 0) || !std::isfinite(fit->covariance[0][0])) {
+    out.flags += out.flags.empty() ? "incomplete" : " incomplete";
+    return out;
+  }
   out.fit = *fit;
   out.fractions = fractions_of(*fit);
   double sky = 0, counts = 0;
@@ -259,7 +266,8 @@ void warn_of_drift(const std::vector<Set> &sets, const std::vector<Reduced> &red
     const auto steps =
         static_cast<double>(sets[k].rows.back().exposure - sets[k].rows.front().exposure + 1);
     const bool is_sequence = steps >= 3 && sets[k].rows.size() == static_cast<std::size_t>(steps);
-    if (!is_sequence || !a.is_solved || !b.is_solved || a.first.band != b.first.band)
+    if (!is_sequence || !a.is_solved || !b.is_solved || a.first.band != b.first.band ||
+        a.first.name != b.first.name)
       continue;
     drifts.push_back(std::abs(b.fit.stokes[0] / a.fit.stokes[0] - 1) / steps);
     errors.push_back(std::sqrt(b.fractions.covariance[0][0]));
@@ -301,7 +309,7 @@ Result<std::vector<Reduced>> over_time(const CountsFile &file, std::size_t param
     one.time = plus_seconds(one.first.time, data.back().time_s / 2);
     one.fractions = fit.fractions;
     one.fit.stokes[0] = fit.series[0];
-    one.fit.covariance[0][0] = std::numeric_limits<double>::min();
+    one.fit.covariance[0][0] = fit.mean_variance;
     one.fit.chi2 = fit.chi2;
     one.fit.dof = fit.dof;
     one.is_solved = true;
@@ -332,12 +340,20 @@ Result<Table> reduce(const CountsFile &file, const ReduceOptions &options, const
     if (sets.empty())
       return fail(ErrorCode::Physics, "every channel is saturated: there is nothing to reduce");
     reduced.resize(sets.size());
-    parallel_for(sets.size(), options.threads,
-                 [&](std::size_t k) { reduced[k] = solve(sets[k], parameters, options); });
+    const auto pupils = file.notes.find("pupils");
+    const bool has_separate_pupils = pupils != file.notes.end() && pupils->second == "separate";
+    parallel_for(sets.size(), options.threads, [&](std::size_t k) {
+      reduced[k] = solve(sets[k], parameters, has_separate_pupils, options);
+    });
     const auto solved =
         std::ranges::count_if(reduced, [](const Reduced &r) { return r.fit.covariance[0][0] > 0; });
-    if (solved == 0)
-      return tl::unexpected(fit_stokes(data_of(sets.front().rows), parameters).error());
+    if (solved == 0) {
+      const auto first = fit_stokes(data_of(sets.front().rows), parameters);
+      return first ? fail(ErrorCode::Physics,
+                          "no set of counts tells a Stokes parameter with a finite error: are "
+                          "counts, sky and w0 to w3 in the units that umov observe writes?")
+                   : tl::unexpected(first.error());
+    }
     warn_of_drift(sets, reduced, diagnostics);
     monitor.advance("sets", sets.size(), sets.size());
   }

@@ -65,6 +65,27 @@ std::complex<double> false_polarization(std::span<const double> angles_rad,
   return 2 / n * sum / mean;
 }
 
+namespace {
+
+/// Every unknown has an effect of its own: the smallest eigenvalue in units of each one's own.
+bool tells_apart(const Matrix &normal) {
+  const Vector root = normal.diagonal().cwiseSqrt();
+  if (!(root.minCoeff() > 0) || !root.allFinite())
+    return false;
+  const Vector inverse = root.cwiseInverse();
+  const Matrix unit = inverse.asDiagonal() * normal * inverse.asDiagonal();
+  constexpr double least = 1e-9; // of rounding there is 1e-14
+  return Eigen::SelfAdjointEigenSolver<Matrix>(unit, Eigen::EigenvaluesOnly).eigenvalues()(0) >
+         least;
+}
+
+tl::unexpected<Error> indistinct() {
+  return fail(ErrorCode::BadInput, "the series does not tell brightness and polarization apart; "
+                                   "fewer harmonics or more analyser angles are needed");
+}
+
+} // namespace
+
 Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period_s, int harmonics,
                                  std::size_t parameters) {
   const auto n = static_cast<Eigen::Index>(data.size());
@@ -98,16 +119,18 @@ Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period
     const Vector weight = (now.mean.cwiseMax(1).cwiseProduct(excess) + fixed).cwiseInverse();
     const Matrix weighted = now.jacobian.transpose() * weight.asDiagonal();
     const Eigen::LDLT<Matrix> factor(weighted * now.jacobian);
+    if (!tells_apart(weighted * now.jacobian))
+      return indistinct();
     const Vector residual = counts - now.mean, step = factor.solve(weighted * residual);
     if (factor.info() != Eigen::Success || !step.allFinite())
-      return fail(ErrorCode::BadInput, "the series does not tell brightness and polarization "
-                                       "apart; fewer harmonics or more analyser angles are needed");
+      return indistinct();
     state.series += step.head(terms);
     state.fractions += step.tail(fractions);
     covariance = factor.solve(Matrix::Identity(terms + fractions, terms + fractions));
     out.chi2 = residual.dot(weight.cwiseProduct(residual));
   }
   out.dof = static_cast<int>(n - terms - fractions);
+  out.mean_variance = covariance(0, 0) / (scale * scale);
   for (Eigen::Index k = 0; k < terms; ++k)
     out.series.push_back(state.series(k) / scale);
   for (Eigen::Index a = 0; a < fractions; ++a) {

@@ -17,7 +17,7 @@ CONFIGURATION = [
     (('default = "paper_al"', 'default = "paper_all"'), ["paper_all", "paper_al"]),
     (('default = "paper_al"', 'front = "paper_al"'), ["front", "cube"]),
     (('set = "paper_rgb"', 'set = ["nm:800"]'), ["800", "425"]),
-    (('set = "paper_rgb"', 'set = ["Bessell.V"]'), ["Bessell.V", "nm:"]),
+    (('set = "paper_rgb"', 'set = ["Bessel.Q"]'), ["Bessel.Q", "nm:"]),
     (('unit = "m", ', ""), ["no unit", "unit ="]),
     (('up = "+Z", ', ""), ["up"]),
     (("norad = 20580", "norad = 99"), ["99", "20580"]),

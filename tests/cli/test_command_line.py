@@ -32,7 +32,7 @@ def test_the_scripts_know_every_option_of_the_help(umov):
     man = umov("man").out.replace("\\-", "-")
     for path, words in found.items():
         help_text = umov(*path.split()[1:], "--help").out
-        options = set(re.findall(r"^  (?:-\w,)?(--[a-z-]+)", help_text, re.M))
+        options = set(re.findall(r"^  (?:-\w,)?(--[a-z0-9-]+)", help_text, re.M))
         assert options and options <= set(words), path
         assert ".SS " + path + "\n" in man and f"'{path}'" in scripts["zsh"], path
         part = man.split(".SS " + path + "\n")[1].split("\n.S")[0]
@@ -87,7 +87,8 @@ def test_groff_reads_the_manual_page(umov, tmp_path):
 def test_every_verb_has_the_same_habits(umov):
     found = leaves(umov)
     no_table = {"mesh make", "mesh convert", "material plot", "material import", "orbit convert",
-                "paper", "render", "schema", "completion", "man"}
+                "paper", "render", "schema", "completion", "man", "observe", "calibrate",
+                "instrument show"}
     assert {path[5:] for path, words in found.items() if "--json" not in words} == no_table
     only_prints = {"mesh info", "mesh check", "doctor"}
     assert {path[5:] for path, words in found.items() if "--output" not in words} == only_prints

@@ -52,7 +52,7 @@ def test_a_catalogue_the_same_for_any_threads(umov, tmp_path):
 
 
 @pytest.mark.parametrize("change, code, words", [
-    (("-s", "20.7,-156.2"), 2, ["latitude, longitude"]),
+    (("-s", "20.7"), 2, ["latitude, longitude"]),
     (("-s", "95,0,0"), 3, ["lat_deg = 95", "-90 to 90"]),
     (("-s", SITE, "--norad", 1), 3, ["1"]),
     ((), 2, ["where?", "--site"]),

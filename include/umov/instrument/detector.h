@@ -21,10 +21,10 @@ enum class DetectorModel {
 struct Detector {
   DetectorModel model = DetectorModel::Ideal;
   double pixel_um = 0;
-  std::array<int, 2> size_px{};
-  double read_e = 0;     ///< standard deviation of a pixel
-  double dark_e_s = 0;   ///< per pixel
-  double gain_e_adu = 1; ///< electrons for one number
+  std::array<int, 2> size_px{}; ///< columns, rows; 0: not known
+  double read_e = 0;            ///< standard deviation of a pixel
+  double dark_e_s = 0;          ///< per pixel
+  double gain_e_adu = 1;        ///< electrons for one number
   int bits = 16;
   double well_e = 0; ///< 0: no limit
   double bias_adu = 100;

@@ -21,6 +21,7 @@ struct TimedDatum {
 /// Brightness over time as a Fourier series, with q, u (and v) that stay.
 struct SequenceFit {
   std::vector<double> series; ///< mean, then cosine and sine of each harmonic
+  double mean_variance = 0;   ///< of the mean
   StokesFractions fractions;
   double chi2 = 0;
   int dof = 0;

@@ -263,13 +263,15 @@ std::string instrument_tables_toml(const Instrument &i) {
       shortest(t.aperture_m), shortest(t.obstruction), shortest(t.focal_length_m),
       curve_toml(t.throughput), ports[static_cast<int>(t.port)], quoted(t.mirror),
       t.mount == Mount::AltAz ? "altaz" : "equatorial", t.has_derotator);
-  out += fmt::format("\n[detector]\nmodel = \"{}\"\npixel_um = {}\nsize_px = [{}, {}]\n"
-                     "read_e = {}\ndark_e_s = {}\ngain_e_adu = {}\nbits = {}\nbias_adu = {}\n"
-                     "well_e = {}\nnonlinearity = {}\nshutter = \"{}\"\n",
-                     name_of(d.model), shortest(d.pixel_um), d.size_px[0], d.size_px[1],
-                     shortest(d.read_e), shortest(d.dark_e_s), shortest(d.gain_e_adu), d.bits,
-                     shortest(d.bias_adu), shortest(d.well_e), shortest(d.nonlinearity),
-                     d.has_rolling_shutter ? "rolling" : "global");
+  out += fmt::format(
+      "\n[detector]\nmodel = \"{}\"\npixel_um = {}\n{}"
+      "read_e = {}\ndark_e_s = {}\ngain_e_adu = {}\nbits = {}\nbias_adu = {}\n"
+      "well_e = {}\nnonlinearity = {}\nshutter = \"{}\"\n",
+      name_of(d.model), shortest(d.pixel_um),
+      d.size_px[0] > 0 ? fmt::format("size_px = [{}, {}]\n", d.size_px[0], d.size_px[1]) : "",
+      shortest(d.read_e), shortest(d.dark_e_s), shortest(d.gain_e_adu), d.bits,
+      shortest(d.bias_adu), shortest(d.well_e), shortest(d.nonlinearity),
+      d.has_rolling_shutter ? "rolling" : "global");
   if (d.line_time_s > 0)
     out += fmt::format("line_time_s = {}\n", shortest(d.line_time_s));
   if (d.em_gain != 1)

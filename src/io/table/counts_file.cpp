@@ -3,6 +3,7 @@
 #include "io/table/text_table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
@@ -58,6 +59,20 @@ Result<void> check_columns(const Cells &cells, const TextTable &table, const std
   return {};
 }
 
+/// Truth as tables and spreadsheets write it.
+Result<bool> truth_of(const Cells &cells, const std::string &name, std::size_t row) {
+  std::string cell = cells.text(name, row);
+  std::ranges::transform(cell, cell.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (cell == "true" || cell == "1")
+    return true;
+  if (cell.empty() || cell == "false" || cell == "0")
+    return false;
+  return fail(ErrorCode::BadInput,
+              fmt::format("{} = \"{}\"; True or False was expected", name,
+                          printable(cells.text(name, row))),
+              cells.where(row));
+}
+
 Result<void> read_numbers(const Cells &cells, std::size_t row, CountRow &out) {
   struct Field {
     const char *name;
@@ -80,13 +95,18 @@ Result<void> read_numbers(const Cells &cells, std::size_t row, CountRow &out) {
                           {"w3", &out.row[3]},
                           {"exposure", &exposure},
                           {"set_id", &set}};
+  // A count that is not there is none of 0.
+  out.counts = out.sky = out.row[0] = out.row[1] = out.row[2] = out.row[3] = std::nan("");
   for (const Field &field : fields) {
     UMOV_ASSIGN(value, cells.number(field.name, row, *field.value));
     *field.value = value;
   }
   constexpr double whole_max = 1e15;
-  if (!(std::abs(exposure) < whole_max && std::abs(set) < whole_max))
-    return fail(ErrorCode::BadInput, "exposure and set_id are whole numbers", cells.where(row));
+  for (const auto &[name, value] : {std::pair{"exposure", exposure}, {"set_id", set}})
+    if (!(std::abs(value) < whole_max && value == std::floor(value)))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} = {}; a whole number was expected", name, value),
+                  cells.where(row));
   out.exposure = static_cast<std::int64_t>(exposure);
   out.set = static_cast<std::int64_t>(set);
   return {};
@@ -99,9 +119,19 @@ Result<void> check_row(const CountRow &row, const Where &where) {
                             "excess2 1 or more",
                             row.var_read, row.sky_err, row.excess2),
                 where);
+  if (!(row.scintillation >= 0 && std::isfinite(row.scintillation)))
+    return fail(ErrorCode::BadInput,
+                fmt::format("scint_sd = {}; 0 or more was expected", row.scintillation), where);
+  constexpr double most = 1e100; // squares of it are numbers still
+  if (!(std::abs(row.counts) < most && std::abs(row.sky) < most))
+    return fail(ErrorCode::BadInput,
+                fmt::format("counts = {}, sky = {}; counts of electrons were expected", row.counts,
+                            row.sky),
+                where);
   for (const double w : row.row)
-    if (!std::isfinite(w))
-      return fail(ErrorCode::BadInput, "w0 to w3 are numbers", where);
+    if (!(std::abs(w) < most))
+      return fail(ErrorCode::BadInput, "w0 to w3 are numbers; some are missing or too large",
+                  where);
   if (!(row.row[0] > 0))
     return fail(
         ErrorCode::BadInput,
@@ -129,8 +159,8 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
     row.name = cells.text("name", k);
     row.band = cells.text("band", k);
     row.channel = cells.text("channel", k);
-    const std::string full = cells.text("saturated", k);
-    row.is_saturated = full == "True" || full == "true" || full == "1";
+    UMOV_ASSIGN(is_saturated, truth_of(cells, "saturated", k));
+    row.is_saturated = is_saturated;
     UMOV_TRY(read_numbers(cells, k, row));
     if (!std::isfinite(row.counts) || !std::isfinite(row.sky)) {
       ++dropped;

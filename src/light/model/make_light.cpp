@@ -34,21 +34,25 @@ std::vector<std::size_t> few_nodes(std::size_t count) {
   return out;
 }
 
-/// The scene at some nodes of its grid. What compiled at all of them compiles at a few.
+/// The scene at some nodes of its grid: what compiles at all of them compiles at a few, if each
+/// still says which curve asks for it.
 Scene at_nodes(const Scene &scene, const std::vector<std::size_t> &which) {
   Scene out = scene;
   out.bands.clear();
-  for (const std::size_t node : which)
-    out.bands.push_back({scene.grid.nodes()[node].name, scene.grid.nodes()[node].wavelength});
+  std::vector<Band> nodes;
+  for (const std::size_t node : which) {
+    nodes.push_back(scene.grid.nodes()[node]);
+    out.bands.push_back({nodes.back().name, nodes.back().wavelength});
+  }
   out.grid = BandGrid::make(out.bands).value();
   std::vector<std::pair<Surface, Surface>> known; // as it was, as it is now
   for (auto *side : {&out.front, &out.back})
     for (Surface &surface : *side) {
-      const auto same = std::find_if(known.begin(), known.end(),
-                                     [&](const auto &pair) { return pair.first.is_same(surface); });
+      auto same = std::find_if(known.begin(), known.end(),
+                               [&](const auto &pair) { return pair.first.is_same(surface); });
       if (same == known.end())
-        known.emplace_back(surface, Surface::compile(surface.material(), out.bands).value());
-      surface = same == known.end() ? known.back().second : same->second;
+        same = known.insert(same, {surface, Surface::compile(surface.material(), nodes).value()});
+      surface = same->second;
     }
   return out;
 }
