@@ -2,6 +2,7 @@
 #include "tables.h"
 #include "verbs.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <tuple>
 #include <umov/core/files.h>
@@ -52,9 +53,12 @@ Result<void> check_calibration(const CalibrationFile &file, const CountsFile &co
     return found == counts.notes.end() ? std::string() : found->second;
   };
   const CountRow &first = counts.rows.front();
+  const auto strange =
+      std::ranges::find_if(counts.rows, [&](const CountRow &row) { return row.band != file.band; });
+  const CountRow &of_band = strange == counts.rows.end() ? first : *strange;
   for (const auto &[what, own, other] :
        {std::tuple{"instrument", file.instrument, note("instrument")},
-        {"band", file.band, first.band}})
+        {"band", file.band, of_band.band}})
     if (!own.empty() && !other.empty() && own != other)
       return fail(ErrorCode::BadInput,
                   fmt::format("this calibration is of the {} \"{}\", the counts are of \"{}\"; "

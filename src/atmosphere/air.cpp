@@ -51,7 +51,8 @@ constexpr double sea_level_hpa = 1013.25;
 } // namespace
 
 double standard_pressure_hpa(double height_m) {
-  return sea_level_hpa * std::pow(1 - 2.25577e-5 * height_m, 5.25588);
+  // The troposphere's law ends at 44 km, with nothing above.
+  return sea_level_hpa * std::pow(std::max(0.0, 1 - 2.25577e-5 * height_m), 5.25588);
 }
 
 double rayleigh_depth(double nm, double pressure_hpa) {

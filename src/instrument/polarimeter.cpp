@@ -55,6 +55,7 @@ std::vector<PolarimeterChannel> pem_channels(const Polarimeter &p, double extinc
 std::vector<PolarimeterChannel> analyser_channels(const std::vector<double> &angles,
                                                   double extinction) {
   std::vector<PolarimeterChannel> out;
+  out.reserve(angles.size());
   for (const double angle : angles)
     out.push_back({fmt::format("{:g}", angle), angle,
                    first_row(polarizer(extinction, Angle::degrees(angle))) *

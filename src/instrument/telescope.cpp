@@ -1,5 +1,6 @@
 #include <umov/instrument/telescope.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace umov {
@@ -38,7 +39,9 @@ double seeing_fwhm_arcsec(const Seeing &seeing, double nm, double airmass) {
   if (seeing.outer_scale_m <= 0)
     return free;
   const double r0 = 0.976 * nm * 1e-9 / (free * arcsec);
-  return free * std::sqrt(1 - 2.183 * std::pow(r0 / seeing.outer_scale_m, 0.356));
+  // The fit is of r0 below a tenth of the outer scale; there the root is .19 at least.
+  const double ratio = std::min(r0 / seeing.outer_scale_m, 0.1);
+  return free * std::sqrt(1 - 2.183 * std::pow(ratio, 0.356));
 }
 
 double trail_length_px(double rate_rad_s, double exposure_s, double arcsec_per_px) {

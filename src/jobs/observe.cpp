@@ -432,6 +432,8 @@ Result<std::vector<Exposure>> exposures_of(const Scenario &scenario, const Track
   Cloud cloud(o, scenario.seed, object);
   std::vector<Exposure> out;
   for (const ObservingGeometry &g : kept.geometry) {
+    if (!(g.altitude.radians() > 0)) // there is no air mass below the horizon
+      continue;
     const auto k =
         static_cast<std::size_t>(std::llround(seconds_between(g.time, span.start) / o.cadence_s));
     const double elapsed = out.empty() ? 0 : seconds_between(g.time, out.back().middle.time);
@@ -464,7 +466,9 @@ struct Tables {
 Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
                         const Monitor &monitor, Tables &tables, Observation &out,
                         Diagnostics &diagnostics) {
-  constexpr std::size_t block = 4096;
+  // About 5 kB for each time within an exposure at which the light is computed.
+  const std::size_t block =
+      std::clamp<std::size_t>(65'536 / std::max<std::size_t>(1, s.nodes.size()), 1, 4096);
   std::size_t unknown_twilight = 0;
   for (std::size_t begin = 0; begin < exposures.size(); begin += block) {
     if (monitor.is_cancelled())

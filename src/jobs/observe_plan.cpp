@@ -39,8 +39,13 @@ Result<ObservedBands> observed_bands(const Scenario &scenario) {
   const ScenarioObservation &o = *scenario.observation;
   std::vector<Band> bands = scenario.bands;
   if (!o.bands.empty()) {
-    UMOV_ASSIGN(own, bands_named(o.bands));
-    bands = own;
+    std::vector<BandEntry> entries;
+    for (const std::string &name : o.bands)
+      entries.push_back({name, {}});
+    auto own = read_bands(entries, std::filesystem::path(scenario.file).parent_path());
+    if (!own)
+      return fail(own.error().code, "observation.bands: " + own.error().message, {scenario.file});
+    bands = std::move(*own);
   }
   UMOV_ASSIGN(grid, BandGrid::make(bands));
   ObservedBands out;
@@ -77,6 +82,12 @@ Result<Programme> Programme::make(const ScenarioObservation &o,
     out.turn_per_cadence_ = 360 * o.cadence_s / p.period_s;
     out.turn_per_exposure_ = 360 * o.exposure_s / p.period_s;
     const double frames = 90 / out.turn_per_cadence_;
+    constexpr double most = 10'000;
+    if (!(frames <= most))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("polarimeter.period_s = {} makes {:.3g} exposures of each quarter "
+                              "turn at observation.cadence_s = {}; {} is the limit",
+                              p.period_s, frames, o.cadence_s, most));
     const auto whole = static_cast<std::size_t>(std::max(2.0, std::round(frames)));
     steps.resize(whole, steps.front());
   }

@@ -12,12 +12,13 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 /// 1, cos, sin, cos 2, sin 2 ... of the phase.
-Vector basis_at(double phase, int harmonics) {
+Vector basis_at(double phase, Eigen::Index harmonics) {
   Vector out(1 + 2 * harmonics);
   out(0) = 1;
-  for (int k = 1; k <= harmonics; ++k) {
-    out(2 * k - 1) = std::cos(k * phase);
-    out(2 * k) = std::sin(k * phase);
+  for (Eigen::Index k = 1; k <= harmonics; ++k) {
+    const double turned = static_cast<double>(k) * phase;
+    out(2 * k - 1) = std::cos(turned);
+    out(2 * k) = std::sin(turned);
   }
   return out;
 }

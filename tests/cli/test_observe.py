@@ -104,6 +104,17 @@ def test_what_is_recorded_is_found_again(scene, umov, tmp_path, instrument, obse
     assert not dof or abs(statistics.mean(dof) - 1) < 4 * math.sqrt(2 / len(dof)) + 0.02
 
 
+def test_lenses_of_their_own_flicker_apart(scene, umov, tmp_path):
+    """Scintillation is drawn for each lens: taken for common to all, it would leave q and u with far too small errors."""
+    path = scene("mmt9_channel", "exposure_s = 0.1", air="scintillation = { c_y = 6 }")
+    stokes, truth, _ = observed(umov, tmp_path, path)
+    found = pulls(stokes, truth)
+    for name in "qu":
+        n = len(found[name])
+        # Four standard errors; a star four times as bright as another is not Gaussian: .1 besides.
+        assert n >= 100 and abs(statistics.stdev(found[name]) - 1) < 4 / math.sqrt(2 * n) + 0.1, name
+
+
 def test_frames_of_the_sky_tell_the_same(scene, umov, tmp_path):
     """A camera on an alt-azimuth mount: the same counts, and q_scat does not know the frame."""
     tables = {}
@@ -221,7 +232,7 @@ def test_own_counts_are_reduced(umov, tmp_path):
 
 BAD_COUNTS = [(COUNTS.replace(",var_read", ",read"), "var_read"), (COUNTS.replace("234", "-234"), "variances"),
               (COUNTS.replace("05:12:00Z,1,V,2650", "05:11:00Z,1,V,2650"), "times go back"),
-              (COUNTS.replace("2705", "many"), "no number"),
+              (COUNTS.replace("2705", "many"), "no number"), (COUNTS.replace("2705", "1e200"), "electrons"),
               ("\n".join(COUNTS.splitlines()[:3]) + "\n", "cannot tell"), ("", "without the column")]
 
 

@@ -74,6 +74,9 @@ Result<void> read_sky(const Node &air, SkyOptions &out) {
   if (node.has("mag"))
     out.mag = node.number("mag", 0);
   UMOV_TRY(read_at_least(node, "p", 0, out.p));
+  if (out.p > 1)
+    return fail(ErrorCode::BadInput, fmt::format("p = {}; 0 to 1 was expected", out.p),
+                node.where("p"));
   return {};
 }
 
@@ -84,9 +87,19 @@ Result<void> read_atmosphere(const Node &top, ScenarioObservation &out) {
   UMOV_ASSIGN(air, top.child("atmosphere"));
   out.has_own_pressure = air.has("pressure_hpa");
   UMOV_TRY(read_at_least(air, "pressure_hpa", 0, out.air.pressure_hpa));
+  if (constexpr double most = 1200; out.air.pressure_hpa > most)
+    return fail(ErrorCode::BadInput,
+                fmt::format("pressure_hpa = {}; up to {} hPa was expected (1 hPa is 100 Pa)",
+                            out.air.pressure_hpa, most),
+                air.where("pressure_hpa"));
   if (air.has("aerosol")) {
     UMOV_ASSIGN(aerosol, air.child("aerosol"));
     UMOV_TRY(read_at_least(aerosol, "tau_550", 0, out.air.aerosol_550));
+    if (constexpr double most = 10; out.air.aerosol_550 > most)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("tau_550 = {}; an optical depth of up to {} was expected",
+                              out.air.aerosol_550, most),
+                  aerosol.where("tau_550"));
     out.air.aerosol_exponent = aerosol.number("exponent", out.air.aerosol_exponent);
   }
   UMOV_TRY(read_at_least(air, "ozone_du", 0, out.air.ozone_du));
