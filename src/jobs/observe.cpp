@@ -16,6 +16,7 @@
 #include <umov/instrument/exposure.h>
 #include <umov/instrument/mosaic.h>
 #include <umov/io/index_file.h>
+#include <umov/lightcurve/derived_errors.h>
 #include <umov/photometry/radiometry.h>
 #include <umov/time/earth_orientation.h>
 
@@ -223,7 +224,7 @@ public:
                                c.row[2],
                                c.row[3],
                                e.middle.phase_angle.degrees(),
-                               pa_scat(e.middle),
+                               scattering_axis(e.middle, s_.scenario.frame).degrees(),
                                c.scintillation};
       for (std::size_t k = 0; k < std::size(values); ++k)
         numbers_[k].push_back(values[k]);
@@ -267,11 +268,6 @@ public:
   }
 
 private:
-  [[nodiscard]] double pa_scat(const ObservingGeometry &g) const {
-    return s_.scenario.frame == PolarizationFrame::Equatorial ? g.pa_scat_equatorial.degrees()
-           : s_.scenario.frame == PolarizationFrame::AltAz    ? g.pa_scat_altaz.degrees()
-                                                              : 0;
-  }
   const Setup &s_;
   std::vector<std::string> time_, name_, band_, channel_;
   std::vector<std::int64_t> exposure_, set_;
@@ -340,16 +336,10 @@ private:
   std::array<std::vector<double>, 10> numbers_;
 };
 
-const char *frame_name(PolarizationFrame frame) {
-  return frame == PolarizationFrame::Equatorial ? "equatorial"
-         : frame == PolarizationFrame::AltAz    ? "altaz"
-                                                : "scattering";
-}
-
 void note(Table &table, const Scenario &scenario, const ObservedBands &bands) {
   const ScenarioObservation &o = *scenario.observation;
   note_conventions(table);
-  table.note("pol_frame", frame_name(scenario.frame));
+  table.note("pol_frame", name_of(scenario.frame));
   table.note("instrument", o.instrument.name.empty() ? "in the scenario" : o.instrument.name);
   table.note("polarimeter", name_of(o.instrument.polarimeter.type));
   table.note("pupils", o.instrument.polarimeter.has_separate_pupils ? "separate" : "common");

@@ -39,6 +39,18 @@ double sunlight(const LightCurveRequest &request, const ObservingGeometry &g, co
 
 } // namespace
 
+const char *name_of(PolarizationFrame frame) {
+  switch (frame) {
+  case PolarizationFrame::Equatorial:
+    return "equatorial";
+  case PolarizationFrame::AltAz:
+    return "altaz";
+  case PolarizationFrame::Scattering:
+    break;
+  }
+  return "scattering";
+}
+
 const char *name_of(SecondSource source) { return source == SecondSource::Moon ? "moon" : "earth"; }
 
 bool has_magnitude_limit(const LightCurveSample &sample) {

@@ -14,6 +14,8 @@ namespace umov {
 
 /// Axes that q, u and pa refer to.
 enum class PolarizationFrame { Equatorial, AltAz, Scattering };
+/// "equatorial", "altaz" or "scattering", as in scenarios and headers.
+const char *name_of(PolarizationFrame frame);
 
 /// What a light curve is asked of.
 struct LightCurveRequest {

@@ -9,8 +9,7 @@
 namespace umov {
 
 /// Position angle of the normal of the scattering plane in a frame.
-inline Angle scattering_axis(const LightCurveEpoch &e, PolarizationFrame frame) {
-  const ObservingGeometry &g = e.geometry;
+inline Angle scattering_axis(const ObservingGeometry &g, PolarizationFrame frame) {
   return frame == PolarizationFrame::AltAz        ? g.pa_scat_altaz
          : frame == PolarizationFrame::Scattering ? Angle()
                                                   : g.pa_scat_equatorial;

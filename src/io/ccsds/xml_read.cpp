@@ -1,11 +1,9 @@
-// NDM/XML. pugixml knows no entities but the five of XML, so a document type has nothing to offer
-// and is refused.
+// NDM/XML.
 
 #include "io/ccsds/keywords.h"
-#include "io/ccsds/xml_lines.h"
+#include "io/ccsds/xml_open.h"
 
 #include <fmt/format.h>
-#include <pugixml.hpp>
 #include <umov/core/text.h>
 
 namespace umov::ccsds {
@@ -13,13 +11,11 @@ namespace {
 
 class XmlReader {
 public:
-  XmlReader(std::string_view text, const std::string &file) : lines_(text) { out_.file = file; }
+  XmlReader(XmlLines lines, const std::string &file) : lines_(std::move(lines)) {
+    out_.file = file;
+  }
 
   Result<Message> read(const pugi::xml_document &document) {
-    for (const pugi::xml_node node : document.children())
-      if (node.type() == pugi::node_doctype)
-        return refuse(node, "has a document type definition; none was expected. Nothing is "
-                            "expanded and nothing is fetched: remove it.");
     pugi::xml_node root = document.document_element();
     if (std::string_view(root.name()) == "ndm") {
       std::size_t count = 0;
@@ -119,13 +115,9 @@ private:
 
 Result<Message> read_xml(std::string_view text, const std::string &file) {
   pugi::xml_document document;
-  const auto done =
-      document.load_buffer(text.data(), text.size(),
-                           pugi::parse_default | pugi::parse_doctype | pugi::parse_trim_pcdata);
-  if (!done)
-    return fail(ErrorCode::BadInput, std::string("is no XML: ") + done.description(),
-                {file, XmlLines(text).of(done.offset)});
-  return XmlReader(text, file).read(document);
+  XmlLines lines(text);
+  UMOV_TRY(open_xml(text, file, lines, document));
+  return XmlReader(std::move(lines), file).read(document);
 }
 
 } // namespace umov::ccsds

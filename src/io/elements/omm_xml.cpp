@@ -1,10 +1,8 @@
-// NDM/XML: <omm>, alone or in <ndm>. pugixml knows no entities but the five of XML, so a document
-// type has nothing to offer here and is refused.
+// NDM/XML: <omm>, alone or in <ndm>.
 
-#include "io/ccsds/xml_lines.h"
+#include "io/ccsds/xml_open.h"
 #include "io/elements/omm_message.h"
 
-#include <pugixml.hpp>
 #include <umov/core/text.h>
 
 namespace umov::omm {
@@ -38,19 +36,8 @@ Result<void> take_leaves(pugi::xml_node node, int depth, const XmlLines &lines,
 
 Result<void> read_xml(std::string_view text, const std::string &file, const Sink &sink) {
   pugi::xml_document document;
-  const auto done =
-      document.load_buffer(text.data(), text.size(),
-                           pugi::parse_default | pugi::parse_doctype | pugi::parse_trim_pcdata);
   const XmlLines lines(text);
-  if (!done)
-    return fail(ErrorCode::BadInput, std::string("is no XML: ") + done.description(),
-                {file, lines.of(done.offset)});
-  for (const pugi::xml_node node : document.children())
-    if (node.type() == pugi::node_doctype)
-      return fail(ErrorCode::BadInput,
-                  "has a document type definition; none was expected. Nothing is expanded and "
-                  "nothing is fetched: remove it.",
-                  {file, lines.of(node.offset_debug())});
+  UMOV_TRY(open_xml(text, file, lines, document));
   std::size_t messages = 0;
   const auto read = [&](pugi::xml_node omm) -> Result<void> {
     Message message{{}, lines.of(omm.offset_debug()), ++messages};

@@ -2,7 +2,7 @@
 // filter, and a table of wavelength and transmission. pugixml knows no entities but the five of
 // XML, so a document type has nothing to offer here and is refused.
 
-#include "io/ccsds/xml_lines.h"
+#include "io/ccsds/xml_open.h"
 #include "io/passband/curve_text.h"
 
 #include <fmt/format.h>
@@ -104,18 +104,9 @@ Result<void> take_rows(const Reader &reader, pugi::xml_node rows, Curve &out) {
 
 Result<Curve> read_votable(const std::string &text, const std::string &file) {
   pugi::xml_document document;
-  const auto done =
-      document.load_buffer(text.data(), text.size(),
-                           pugi::parse_default | pugi::parse_doctype | pugi::parse_trim_pcdata);
   const XmlLines lines(text);
-  if (!done)
-    return fail(ErrorCode::BadInput, std::string("is no XML: ") + done.description(),
-                {file, lines.of(done.offset)});
+  UMOV_TRY(open_xml(text, file, lines, document));
   const Reader reader{file, lines};
-  for (const pugi::xml_node node : document.children())
-    if (node.type() == pugi::node_doctype)
-      return reader.problem(node, "has a document type definition; none was expected. Nothing is "
-                                  "expanded and nothing is fetched: remove it.");
   const pugi::xml_node root = document.document_element();
   const pugi::xml_node table = first_below(root, "TABLE");
   if (local_name(root) != "VOTABLE" || !table)

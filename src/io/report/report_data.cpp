@@ -16,18 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json; // keeps the order of insertion: same bytes each run
 
-const char *frame_name(PolarizationFrame frame) {
-  switch (frame) {
-  case PolarizationFrame::Equatorial:
-    return "equatorial";
-  case PolarizationFrame::AltAz:
-    return "altaz";
-  case PolarizationFrame::Scattering:
-    break;
-  }
-  return "scattering";
-}
-
 const char *north_name(PolarizationFrame frame) {
   switch (frame) {
   case PolarizationFrame::Equatorial:
@@ -111,7 +99,7 @@ void add_errors(Json &out, const ReportInput &input, std::size_t band, std::size
       const LightCurveSample &s = curve.samples[i * curve.bands.size() + band];
       if (std::isnan(s.sky.q))
         return std::numeric_limits<double>::quiet_NaN();
-      const double twice = 2 * scattering_axis(curve.epochs[i], input.frame).radians();
+      const double twice = 2 * scattering_axis(curve.epochs[i].geometry, input.frame).radians();
       return coarse(value(DerivedErrors(s), s, std::cos(twice), std::sin(twice)));
     });
   };
@@ -273,7 +261,7 @@ Result<std::string> report_data(const ReportInput &input) {
         {"lat", input.site.latitude.degrees()},
         {"lon", input.site.longitude.degrees()},
         {"alt_m", input.site.altitude_m}}},
-      {"frame", frame_name(input.frame)},
+      {"frame", name_of(input.frame)},
       {"mag_system", name_of(curve.magnitudes)},
       {"bounces", curve.bounces},
       {"stride", stride},

@@ -43,12 +43,6 @@ std::string absolute_path(const std::filesystem::path &path) {
   return quoted((code ? path : full).lexically_normal().string());
 }
 
-const char *frame_name(PolarizationFrame frame) {
-  return frame == PolarizationFrame::AltAz        ? "altaz"
-         : frame == PolarizationFrame::Scattering ? "scattering"
-                                                  : "equatorial";
-}
-
 std::string observer_and_time(const Scenario &s) {
   std::string out;
   if (s.observer)
@@ -132,7 +126,7 @@ std::string locked_scenario(const Scenario &s) {
   out += s.observation ? scenario::observation_toml(*s.observation)
                        : std::string("\n[detector]\nmodel = \"ideal\"\n");
   out += fmt::format("\n[output]\ndir = {}\nformats = {}\npol_frame = \"{}\"\n",
-                     quoted(s.output_dir.string()), list(s.formats), frame_name(s.frame));
+                     quoted(s.output_dir.string()), list(s.formats), name_of(s.frame));
   for (const auto &[name, material] : s.own_materials)
     out += "\n" + scenario::material_toml(material);
   return out;

@@ -77,7 +77,7 @@ void add_geometry(RowColumns &t) {
 }
 
 void add_light(RowColumns &t, PolarizationFrame frame, MagnitudeSystem magnitudes) {
-  const auto axis = [frame](E e) { return scattering_axis(e, frame).degrees(); };
+  const auto axis = [frame](E e) { return scattering_axis(e.geometry, frame).degrees(); };
   t.of_sample("I", "W / (m2 nm)", "irradiance at the observer above the atmosphere",
               [](S s) { return s.irradiance; });
   t.of_sample("intensity", "m2 / sr", "without distance and solar flux",
@@ -124,11 +124,11 @@ void add_errors(RowColumns &t, PolarizationFrame frame) {
   using D = const DerivedErrors &;
   of("mag_err", "mag", "numerical 95 % half-width of mag", [](D d, E, S) { return d.mag(); });
   of("q_err", "", "numerical 95 % half-width of q, sky frame", [frame](D d, E e, S s) {
-    const double twice = 2 * scattering_axis(e, frame).radians();
+    const double twice = 2 * scattering_axis(e.geometry, frame).radians();
     return d.part(s.sky.q, std::cos(twice), std::sin(twice));
   });
   of("u_err", "", "numerical 95 % half-width of u, sky frame", [frame](D d, E e, S s) {
-    const double twice = 2 * scattering_axis(e, frame).radians();
+    const double twice = 2 * scattering_axis(e.geometry, frame).radians();
     return d.part(s.sky.u, std::sin(twice), std::cos(twice));
   });
   of("v_err", "", "numerical 95 % half-width of v", [](D d, E, S) { return d.v(); });
@@ -212,9 +212,7 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   note_conventions(table);
   note_curves(curve.bands, table);
   table.note("object", curve.object);
-  table.note("pol_frame", frame == PolarizationFrame::Equatorial ? "equatorial"
-                          : frame == PolarizationFrame::AltAz    ? "altaz"
-                                                                 : "scattering");
+  table.note("pol_frame", name_of(frame));
   return table;
 }
 
