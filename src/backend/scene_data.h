@@ -19,6 +19,18 @@ template <class T> struct alignas(64) FacetGroup {
   T nx[lanes]{}, ny[lanes]{}, nz[lanes]{}, area[lanes]{};
 };
 
+/// A cone around the normals of a group: some of them face a direction only if its cosine to the
+/// axis is more than `least`.
+struct Cone {
+  double axis[3]{};
+  double least = 0;
+};
+/// T is float or double.
+template <class T> Cone cone_of(const FacetGroup<T> &group);
+
+/// The cones of all groups, with room for a register beyond the last.
+template <class T> struct GroupCones { View<const T> x, y, z, least; };
+
 /// One number for each lane of a group.
 template <class T> struct alignas(64) LaneNumbers { T value[lanes]{}; };
 
@@ -108,6 +120,7 @@ struct Masks {
 
 template <class T> struct SceneData {
   View<const FacetGroup<T>> groups;
+  GroupCones<T> cones;
   View<const Chunk> chunks;
   View<const SlotTerms> slots;
   View<const kernel::LobeConstants<T>> lobes;

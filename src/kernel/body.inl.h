@@ -41,12 +41,10 @@ UMOV_KERNEL EmissionPlanes<R> emission_planes(R lx, R ly, R lz, R vx, R vy, R vz
 }
 
 /// cos and sin of twice the angle of the plane of emission, times 1 - (n.v)^2: without a division,
-/// and 0 at the normal.
+/// and 0 at the normal. `aside`: n.across.
 template <class R> struct EmissionTurn { R cosine, sine; };
 template <class R, class T>
-UMOV_KERNEL EmissionTurn<R> emission_turn(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l,
-                                          R n_v) {
-  const R aside = nx * R(pose.across[0]) + ny * R(pose.across[1]) + nz * R(pose.across[2]);
+UMOV_KERNEL EmissionTurn<R> emission_turn(const FacetPose<T> &pose, R aside, R n_l, R n_v) {
   const R out = (n_v * R(pose.cos_phase) - n_l) * R(pose.per_sine);
   return {out * out - aside * aside, R(T(-2)) * out * aside};
 }

@@ -23,8 +23,7 @@ UMOV_KERNEL R apart_from_half(const FacetPose<T> &pose, R nx, R ny, R nz) {
 
 /// The normal of a facet that faces both directions against the half vector.
 template <class R, class T>
-UMOV_KERNEL FromHalf<R> from_half(const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
-  const R apart = apart_from_half(pose, nx, ny, nz);
+UMOV_KERNEL FromHalf<R> from_half(const FacetPose<T> &pose, R apart, R n_l, R n_v) {
   const R x = (n_l - n_v) * R(pose.along_scale) - R(pose.half_shift) * (R(T(1)) - apart);
   const R x2 = x * x;
   return {apart, x, x2, max(R(T(0)), apart * (R(T(2)) - apart) - x2)};
@@ -63,7 +62,8 @@ template <class R, class T>
 UMOV_KERNEL R lobe_weight(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
                           const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
   const R g = lobe_shadowing(lobe, pose, n_l, n_v);
-  return lobe_density(lobe, at, pose, from_half(pose, nx, ny, nz, n_l, n_v)) * g * R(T(0.25));
+  const R apart = apart_from_half(pose, nx, ny, nz);
+  return lobe_density(lobe, at, pose, from_half(pose, apart, n_l, n_v)) * g * R(T(0.25));
 }
 
 #include "kernel/end.h"

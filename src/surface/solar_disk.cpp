@@ -133,7 +133,9 @@ std::optional<double> by_kernel(const KernelForm &form, Vec3<Facet> l, Vec3<Face
   pose.half[0] = half.x;
   pose.half[1] = half.y;
   pose.half[2] = half.z;
-  return kernel::lobe_density(lobe, at, pose, kernel::from_half(pose, 0.0, 0.0, 1.0, l.z, v.z));
+  return kernel::lobe_density(
+      lobe, at, pose,
+      kernel::from_half(pose, kernel::apart_from_half(pose, 0.0, 0.0, 1.0), l.z, v.z));
 }
 
 } // namespace

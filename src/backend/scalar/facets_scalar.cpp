@@ -12,11 +12,25 @@ struct ScalarMachine {
   using R = double;
   using T = double;
   using S = double;
+  using Mask = bool;
   static constexpr std::size_t width = 1;
   static double load(const double *p) { return *p; }
-  static void store(double x, double *p) { *p = x; }
+  static double load_any(const double *p) { return *p; }
+  static void store_any(double x, double *p) { *p = x; }
   static double total(double x) { return x; }
   static bool any(bool x) { return x; }
+  static std::uint32_t bits(bool x) { return x ? 1 : 0; }
+  static std::uint32_t first_bit(std::uint32_t) { return 0; }
+  class Packer {
+  public:
+    explicit Packer(bool keep) : keep_(keep) {}
+    [[nodiscard]] std::size_t count() const { return keep_ ? 1 : 0; }
+    static void put(double x, double *to) { *to = x; }
+    static void put_indices(std::uint32_t first, std::uint32_t *to) { *to = first; }
+
+  private:
+    bool keep_;
+  };
 
   static int joint(const std::uint32_t *a, const std::uint32_t *b) {
     return std::popcount(*a & *b);
@@ -77,10 +91,9 @@ void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
   const FacetGroup<double> &f = scene.groups[facet.group];
   const SlotTerms &slot = scene.slots[facet.slot];
   const double x = f.nx[facet.lane], y = f.ny[facet.lane], z = f.nz[facet.lane];
-  const auto towards = [&](const double *d) {
-    return std::max(x * d[0] + y * d[1] + z * d[2], 0.0);
-  };
-  const double n_l = towards(pose.facet.sun), n_v = towards(pose.facet.observer);
+  const auto along = [&](const double *d) { return x * d[0] + y * d[1] + z * d[2]; };
+  const double n_l = std::max(along(pose.facet.sun), 0.0);
+  const double n_v = std::max(along(pose.facet.observer), 0.0);
   for (std::size_t k = 0; k < slot.lobe_count; ++k)
     *weight++ = kernel::lobe_weight(scene.lobes[slot.lobe_first + k],
                                     pose.lobes[slot.lobe_first + k], pose.facet, x, y, z, n_l, n_v);
@@ -88,7 +101,7 @@ void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
     return;
   auto values = kernel::profile_values<double, double>(scene, slot, n_l, n_v);
   if (slot.is_polarized)
-    values.turn = kernel::emission_turn(pose.facet, x, y, z, n_l, n_v);
+    values.turn = kernel::emission_turn(pose.facet, along(pose.facet.across), n_l, n_v);
   for (std::size_t p = 0; p < slot.product_count; ++p)
     *weight++ = values.product<double>(scene.products[slot.product_first + p]);
 }

@@ -2,9 +2,11 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backend/simd/facets_simd.cpp"
+#include <bit>
 #include <hwy/foreach_target.h>
 // foreach_target comes first: it includes this file once for each instruction set.
 #include "backend/simd/lanes.inl.h"
+#include "backend/simd/packer.inl.h"
 
 #include "backend/facet_loops.inl.h"
 
@@ -14,13 +16,20 @@ struct SimdMachine {
   using R = Lanes;
   using T = float;
   using S = double;
+  using Mask = LaneMask;
+  using Packer = kernel::HWY_NAMESPACE::Packer;
   static constexpr std::size_t width = hn::MaxLanes(FloatTag());
   static HWY_INLINE Lanes load(const float *p) { return hn::Load(FloatTag(), p); }
-  static HWY_INLINE void store(Lanes x, float *p) { hn::Store(x.v, FloatTag(), p); }
+  static HWY_INLINE Lanes load_any(const float *p) { return hn::LoadU(FloatTag(), p); }
+  static HWY_INLINE void store_any(Lanes x, float *p) { hn::StoreU(x.v, FloatTag(), p); }
   static HWY_INLINE double total(Lanes x) {
     return static_cast<double>(hn::GetLane(hn::SumOfLanes(FloatTag(), x.v)));
   }
   static HWY_INLINE bool any(LaneMask m) { return kernel::HWY_NAMESPACE::any(m); }
+  static HWY_INLINE std::uint32_t bits(LaneMask m) { return bits_of(m); }
+  static HWY_INLINE std::uint32_t first_bit(std::uint32_t bits) {
+    return static_cast<std::uint32_t>(std::countr_zero(bits));
+  }
 
   static HWY_INLINE hn::Vec<WordTag> word(const EntryLook &look, std::size_t k, std::size_t block,
                                           std::size_t s) {

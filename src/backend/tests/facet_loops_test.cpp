@@ -23,6 +23,7 @@ constexpr std::size_t lobe_count = 5;
 /// two products of two profiles.
 template <class T> struct Heap {
   std::vector<FacetGroup<T>> groups;
+  std::vector<T> cone[4]; ///< GroupCones
   std::vector<Chunk> chunks;
   std::vector<SlotTerms> slots;
   std::vector<LobeConstants<T>> lobes;
@@ -45,6 +46,14 @@ template <class T> struct Heap {
         group.area[lane] = T(1.5F + uniform(random)) / 4096;
       }
     }
+    for (const FacetGroup<T> &group : groups) {
+      const Cone around = cone_of(group);
+      for (std::size_t k = 0; k < 3; ++k)
+        cone[k].push_back(static_cast<T>(around.axis[k]));
+      cone[3].push_back(static_cast<T>(around.least));
+    }
+    for (std::vector<T> &column : cone)
+      column.resize(group_count + lanes);
     for (std::uint32_t g = 0; g < group_count; g += groups_per_chunk)
       chunks.push_back({g, std::min<std::uint32_t>(groups_per_chunk, group_count - g), 0});
     SlotTerms &slot = slots.emplace_back();
@@ -103,7 +112,9 @@ template <class T> struct Heap {
       kernel::round_lobe_at_pose(exact, out);
   }
   [[nodiscard]] SceneData<T> scene() const {
-    return {groups, chunks, slots, lobes, {}, profiles, products, {}};
+    return {
+        groups, {cone[0], cone[1], cone[2], cone[3]}, chunks, slots, lobes, {}, profiles, products,
+        {}};
   }
 };
 

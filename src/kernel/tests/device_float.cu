@@ -12,11 +12,25 @@ struct DeviceMachine {
   using R = float;
   using T = float;
   using S = float;
+  using Mask = bool;
   static constexpr std::size_t width = 1;
   __device__ static float load(const float *p) { return *p; }
-  __device__ static void store(float x, float *p) { *p = x; }
+  __device__ static float load_any(const float *p) { return *p; }
+  __device__ static void store_any(float x, float *p) { *p = x; }
   __device__ static float total(float x) { return x; }
   __device__ static bool any(bool x) { return x; }
+  __device__ static std::uint32_t bits(bool x) { return x ? 1 : 0; }
+  __device__ static std::uint32_t first_bit(std::uint32_t) { return 0; }
+  class Packer {
+  public:
+    __device__ explicit Packer(bool keep) : keep_(keep) {}
+    __device__ std::size_t count() const { return keep_ ? 1 : 0; }
+    __device__ static void put(float x, float *to) { *to = x; }
+    __device__ static void put_indices(std::uint32_t first, std::uint32_t *to) { *to = first; }
+
+  private:
+    bool keep_;
+  };
   __device__ static int joint(const kernel::EntryLook &sun, const kernel::EntryLook &seen,
                               std::size_t a, std::size_t b, std::size_t block, std::size_t word) {
     return __popc(sun.block[a][block].word[word] & seen.block[b][block].word[word]);

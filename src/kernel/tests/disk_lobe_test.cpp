@@ -74,9 +74,9 @@ double by_kernel(const Lobe &lobe, const Plane &plane, Vec3<Body> n) {
   pose.half[2] = half.z;
   kernel::LobeAtPose<double> at;
   kernel::put_lobe_at_pose(constants(lobe), disk, at);
-  return kernel::lobe_density(
-      constants(lobe), at, pose,
-      kernel::from_half(pose, n.x, n.y, n.z, dot(n, plane.sun), dot(n, plane.observer)));
+  return kernel::lobe_density(constants(lobe), at, pose,
+                              kernel::from_half(pose, kernel::apart_from_half(pose, n.x, n.y, n.z),
+                                                dot(n, plane.sun), dot(n, plane.observer)));
 }
 
 /// Standard deviation of the slope; of GGX the core's.
@@ -132,7 +132,8 @@ TEST(DiskLobe, APointSourceSeesTheLobeItself) {
     for (const double tilt : {0., 0.05, 0.3}) {
       kernel::FacetPose<double> pose;
       pose.half[2] = 1;
-      const auto from = kernel::from_half(pose, std::sin(tilt), 0.0, std::cos(tilt), 0.0, 0.0);
+      const auto from = kernel::from_half(
+          pose, kernel::apart_from_half(pose, std::sin(tilt), 0.0, std::cos(tilt)), 0.0, 0.0);
       const double exact = density(lobe, std::cos(tilt));
       EXPECT_NEAR(kernel::lobe_density(constants(lobe), at, pose, from), exact, 1e-12 * exact);
     }

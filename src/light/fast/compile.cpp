@@ -125,6 +125,7 @@ CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypoth
       out.data.chunks.push_back({index, 0, it->second});
     ++out.data.chunks.back().count;
   }
+  out.data.cones = ConesStore<double>(out.data.groups);
   double diffuse_error = 0;
   out.colours = colours_of(scene, out, is_intensity_only, diffuse_error).value(); // made for it
   return out;
@@ -162,6 +163,7 @@ SceneStore<float> round_scene(const SceneStore<double> &from) {
       out.groups[g].nz[lane] = f(from.groups[g].nz[lane]);
       out.groups[g].area[lane] = f(from.groups[g].area[lane]);
     }
+  out.cones = ConesStore<float>(out.groups);
   for (const auto &error : from.cluster_error) {
     auto &to = out.cluster_error.emplace_back();
     std::transform(std::begin(error.value), std::end(error.value), to.value, f);

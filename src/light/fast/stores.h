@@ -12,9 +12,28 @@ namespace umov {
 
 template <class T> using HugePages = std::vector<T, HugePageAllocator<T>>;
 
+/// Of backend::GroupCones.
+template <class T> struct ConesStore {
+  std::vector<T> x, y, z, least;
+
+  explicit ConesStore(const std::vector<backend::FacetGroup<T>> &groups = {}) {
+    for (const auto &group : groups) {
+      const backend::Cone cone = backend::cone_of(group);
+      x.push_back(static_cast<T>(cone.axis[0]));
+      y.push_back(static_cast<T>(cone.axis[1]));
+      z.push_back(static_cast<T>(cone.axis[2]));
+      least.push_back(static_cast<T>(cone.least));
+    }
+    for (auto *column : {&x, &y, &z, &least}) // what is read there is not used
+      column->resize(column->size() + backend::lanes, T(0));
+  }
+  [[nodiscard]] backend::GroupCones<T> view() const { return {x, y, z, least}; }
+};
+
 /// Of backend::SceneData.
 template <class T> struct SceneStore {
   std::vector<backend::FacetGroup<T>> groups;
+  ConesStore<T> cones;
   std::vector<backend::Chunk> chunks;
   std::vector<backend::SlotTerms> slots;
   std::vector<kernel::LobeConstants<T>> lobes;
@@ -24,7 +43,8 @@ template <class T> struct SceneStore {
   std::vector<backend::LaneNumbers<T>> cluster_error;
 
   [[nodiscard]] backend::SceneData<T> view() const {
-    return {groups, chunks, slots, lobes, families, profiles, products, cluster_error};
+    return {groups,   cones.view(), chunks,   slots,        lobes,
+            families, profiles,     products, cluster_error};
   }
 };
 
