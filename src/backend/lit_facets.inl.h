@@ -26,6 +26,8 @@ template <class Machine> class LitFacets {
   using T = typename Machine::T;
   using Packer = typename Machine::Packer;
   static constexpr std::size_t lanes = backend::lanes, width = Machine::width;
+  static constexpr std::size_t listed =
+      backend::groups_per_chunk + lanes; ///< a register is written whole
   static constexpr std::size_t room = (backend::groups_per_chunk + 1) * lanes;
 
 public:
@@ -43,12 +45,19 @@ public:
   UMOV_KERNEL void gather(const backend::Chunk &chunk, const GatherTask<T> &task) {
     count_ = 0;
     varies_ = false;
-    const std::size_t groups = list_facing(chunk);
-    for (std::size_t k = 0; k < groups; ++k)
-      if (masks_ != nullptr)
-        add_masked(facing_[k], task);
-      else
-        add_free(facing_[k], task);
+    if (masks_ == nullptr) {
+      const std::size_t groups = list_facing(chunk.first, chunk.count);
+      add_all<Known::Free>(facing_, groups, task);
+    } else {
+      std::uint32_t small = chunk.count;
+      while (small > 0 && masks_->groups[chunk.first + small - 1].is_large)
+        --small;
+      if (small > 0)
+        gather_small(chunk.first, small, task);
+      const std::size_t large = list_facing(chunk.first + small, chunk.count - small);
+      for (std::size_t k = 0; k < large; ++k)
+        add_large(facing_[k], task);
+    }
     fill_register();
   }
 
@@ -76,9 +85,7 @@ public:
     return id_[k] % static_cast<std::uint32_t>(lanes);
   }
   [[nodiscard]] UMOV_KERNEL T area_of(std::size_t k) const { return area_[k]; }
-  [[nodiscard]] UMOV_KERNEL T deviation_of(std::size_t k) const {
-    return masks_ != nullptr ? deviation_[k] : T(0);
-  }
+  [[nodiscard]] UMOV_KERNEL T deviation_of(std::size_t k) const { return deviation_[k]; }
 
 private:
   /// Directions in lanes, loaded once.
@@ -93,41 +100,132 @@ private:
     R n_l, n_v, apart, area, aside;
   };
 
-  /// Groups whose cone of normals has some that face both directions.
-  UMOV_KERNEL std::size_t list_facing(const backend::Chunk &chunk) {
-    const std::uint32_t end = chunk.first + chunk.count;
-    if (chunk.count == 1) {
-      facing_[0] = chunk.first;
-      return 1;
-    }
-    std::size_t count = 0;
-    for (std::uint32_t g = chunk.first; g < end; g += width) {
-      const R x = Machine::load_any(scene_.cones.x.data() + g),
-              y = Machine::load_any(scene_.cones.y.data() + g),
-              z = Machine::load_any(scene_.cones.z.data() + g),
-              least = Machine::load_any(scene_.cones.least.data() + g);
-      const R to_sun = x * to_.lx + y * to_.ly + z * to_.lz;
-      const R to_observer = x * to_.vx + y * to_.vy + z * to_.vz;
-      const Packer pack(min(to_sun, to_observer) > least);
-      pack.put_indices(g, facing_ + count);
-      count += pack.count();
-    }
-    while (count > 0 && facing_[count - 1] >= end) // of the next chunk, in the same register
+  /// What the masks know of a group whose directions are free, or partly so, or hidden.
+  enum class Known : std::uint8_t { Free, FreeToSun, FreeToObserver, Nothing };
+
+  /// Groups g, g + 1... of which some normals may face both directions.
+  UMOV_KERNEL typename Machine::Mask face_both(std::uint32_t g) const {
+    const R x = Machine::load_any(scene_.cones.x.data() + g),
+            y = Machine::load_any(scene_.cones.y.data() + g),
+            z = Machine::load_any(scene_.cones.z.data() + g),
+            least = Machine::load_any(scene_.cones.least.data() + g);
+    const R to_sun = x * to_.lx + y * to_.ly + z * to_.lz;
+    const R to_observer = x * to_.vx + y * to_.vy + z * to_.vz;
+    return min(to_sun, to_observer) > least;
+  }
+
+  /// Groups that a register has beyond the end are of others.
+  UMOV_KERNEL static std::size_t without_others(const std::uint32_t *list, std::size_t count,
+                                                std::uint32_t end) {
+    while (count > 0 && list[count - 1] >= end)
       --count;
     return count;
   }
 
+  UMOV_KERNEL std::size_t list_facing(std::uint32_t first, std::uint32_t groups) {
+    constexpr std::uint32_t few = 3; // not worth a look
+    const std::uint32_t end = first + groups;
+    std::size_t count = 0;
+    for (std::uint32_t g = first; groups <= few && g < end; ++g)
+      facing_[count++] = g;
+    for (std::uint32_t g = first; groups > few && g < end; g += width)
+      count += put_groups(face_both(g), g, facing_ + count);
+    return without_others(facing_, count, end);
+  }
+
+  /// The three rows of a table around a direction.
+  struct Rows {
+    const std::uint32_t *offset[3];
+    UMOV_KERNEL Rows(const backend::MaskTable &table, const backend::GridLook &look) {
+      for (std::size_t k = 0; k < 3; ++k)
+        offset[k] = table.offset.data() + look.direction[k] * table.entries;
+    }
+    /// Entries e, e + 1... that are `what` in all three.
+    [[nodiscard]] UMOV_KERNEL typename Machine::Mask are(std::uint32_t what,
+                                                         std::uint32_t e) const {
+      return Machine::all_three(offset[0] + e, offset[1] + e, offset[2] + e, what);
+    }
+  };
+
+  /// Sixteen classes to a group, with few points each: sorted first by what is known of them, so
+  /// that each kind is counted without a branch.
+  UMOV_KERNEL void gather_small(std::uint32_t first, std::uint32_t groups,
+                                const GatherTask<T> &task) {
+    const Rows sun(masks_->small, pose_.small_sun), seen(masks_->small, pose_.small_observer);
+    const std::uint32_t end = first + groups, entry = masks_->groups[first].entry;
+    const std::uint32_t free = masks_->free(), hidden = masks_->hidden();
+    std::size_t count[4] = {0, 0, 0, 0};
+    for (std::uint32_t g = first; g < end; g += width) {
+      const std::uint32_t e = entry + (g - first);
+      auto faces = face_both(g);
+      if (!task.keeps_hidden)
+        faces = faces & !(sun.are(hidden, e) | seen.are(hidden, e));
+      const auto free_sun = sun.are(free, e), free_seen = seen.are(free, e);
+      count[0] += put_groups(faces & free_sun & free_seen, g, facing_ + count[0]);
+      count[1] += put_groups(faces & free_sun & !free_seen, g, partly_[0] + count[1]);
+      count[2] += put_groups(faces & !free_sun & free_seen, g, partly_[1] + count[2]);
+      count[3] += put_groups(faces & !(free_sun | free_seen), g, partly_[2] + count[3]);
+    }
+    count[0] = without_others(facing_, count[0], end);
+    for (std::size_t kind = 0; kind < 3; ++kind)
+      count[kind + 1] = without_others(partly_[kind], count[kind + 1], end);
+    const auto ask_for = [&](const Rows &rows, std::size_t kind) {
+      for (std::size_t k = 0; k < count[kind + 1]; ++k)
+        for (const std::uint32_t *offset : rows.offset)
+          Machine::prefetch(masks_->pool.data() + offset[entry + (partly_[kind][k] - first)]);
+    };
+    ask_for(seen, 0);
+    ask_for(sun, 1);
+    ask_for(sun, 2);
+    ask_for(seen, 2);
+    add_all<Known::Free>(facing_, count[0], task); // while what was asked for comes
+    add_all<Known::FreeToSun>(partly_[0], count[1], task);
+    add_all<Known::FreeToObserver>(partly_[1], count[2], task);
+    add_all<Known::Nothing>(partly_[2], count[3], task);
+  }
+
+  UMOV_KERNEL static std::size_t put_groups(typename Machine::Mask keep, std::uint32_t first,
+                                            std::uint32_t *to) {
+    const Packer pack(keep);
+    pack.put_indices(first, to);
+    return pack.count();
+  }
+
+  /// What is asked for rarely costs a test where nothing of it is.
+  template <Known known>
+  UMOV_KERNEL void add_all(const std::uint32_t *groups, std::size_t count,
+                           const GatherTask<T> &task) {
+    if (task.has_aside || task.has_ids || !scene_.cluster_error.empty())
+      add_all<known, true>(groups, count, task);
+    else
+      add_all<known, false>(groups, count, task);
+  }
+  template <Known known, bool has_more>
+  UMOV_KERNEL void add_all(const std::uint32_t *groups, std::size_t count,
+                           const GatherTask<T> &task) {
+    const Directions to = to_; // nothing that is written may stand in it
+    std::size_t at = count_;
+    for (std::size_t k = 0; k < count; ++k)
+      if constexpr (known == Known::Free)
+        add_free<has_more>(groups[k], task, to, at);
+      else
+        add_small<known, has_more>(groups[k], task, to, at);
+    count_ = at;
+    varies_ = varies_ || (known != Known::Free && count > 0);
+  }
+
   /// Facets s, s + 1... of a group; `keep`: those that face both directions within reach.
+  template <bool has_more>
   UMOV_KERNEL Facets face(std::uint32_t group, std::size_t s, const GatherTask<T> &task,
-                          typename Machine::Mask &keep) const {
+                          const Directions &to, typename Machine::Mask &keep) const {
     const backend::FacetGroup<T> &f = scene_.groups[group];
     const R x = Machine::load(f.nx + s), y = Machine::load(f.ny + s), z = Machine::load(f.nz + s);
     Facets out;
-    out.n_l = x * to_.lx + y * to_.ly + z * to_.lz;
-    out.n_v = x * to_.vx + y * to_.vy + z * to_.vz;
+    out.n_l = x * to.lx + y * to.ly + z * to.lz;
+    out.n_v = x * to.vx + y * to.vy + z * to.vz;
     out.apart = apart_from_half(pose_.facet, x, y, z);
     out.area = Machine::load(f.area + s);
-    if (task.has_aside) {
+    if (has_more && task.has_aside) {
       const T *const across = pose_.facet.across;
       out.aside = x * R(across[0]) + y * R(across[1]) + z * R(across[2]);
     }
@@ -136,59 +234,53 @@ private:
     return out;
   }
 
+  /// Writes those of `pack` from `at` on, which moves behind them.
+  template <bool has_more>
   UMOV_KERNEL void push(std::uint32_t group, std::size_t s, const GatherTask<T> &task,
-                        const Facets &facets, R deviation, const Packer &pack) {
-    pack.put(facets.n_l, n_l_ + count_);
-    pack.put(facets.n_v, n_v_ + count_);
-    pack.put(facets.apart, apart_ + count_);
-    pack.put(facets.area, area_ + count_);
-    if (masks_ != nullptr)
-      pack.put(deviation, deviation_ + count_);
-    if (task.has_aside)
-      pack.put(facets.aside, aside_ + count_);
-    if (!scene_.cluster_error.empty())
-      pack.put(Machine::load(scene_.cluster_error[group].value + s), cluster_error_ + count_);
-    if (task.has_ids)
-      pack.put_indices(group * static_cast<std::uint32_t>(lanes) + static_cast<std::uint32_t>(s),
-                       id_ + count_);
-    count_ += pack.count();
+                        const Facets &facets, R deviation, const Packer &pack, std::size_t &at) {
+    pack.put(facets.n_l, n_l_ + at);
+    pack.put(facets.n_v, n_v_ + at);
+    pack.put(facets.apart, apart_ + at);
+    pack.put(facets.area, area_ + at);
+    pack.put(deviation, deviation_ + at);
+    if constexpr (has_more) {
+      if (task.has_aside)
+        pack.put(facets.aside, aside_ + at);
+      if (!scene_.cluster_error.empty())
+        pack.put(Machine::load(scene_.cluster_error[group].value + s), cluster_error_ + at);
+      if (task.has_ids)
+        pack.put_indices(group * static_cast<std::uint32_t>(lanes) + static_cast<std::uint32_t>(s),
+                         id_ + at);
+    }
+    at += pack.count();
   }
 
-  UMOV_KERNEL void add_free(std::uint32_t group, const GatherTask<T> &task) {
+  template <bool has_more>
+  UMOV_KERNEL void add_free(std::uint32_t group, const GatherTask<T> &task, const Directions &to,
+                            std::size_t &at) {
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
-      const Facets facets = face(group, s, task, keep);
-      push(group, s, task, facets, R(T(0)), Packer(keep));
+      const Facets facets = face<has_more>(group, s, task, to, keep);
+      push<has_more>(group, s, task, facets, R(T(0)), Packer(keep), at);
     }
   }
 
-  UMOV_KERNEL void add_masked(std::uint32_t group, const GatherTask<T> &task) {
+  template <Known known, bool has_more>
+  UMOV_KERNEL void add_small(std::uint32_t group, const GatherTask<T> &task, const Directions &to,
+                             std::size_t &at) {
     const backend::GroupMask &mask = masks_->groups[group];
-    if (mask.is_large)
-      return add_large(group, mask, task);
     const EntryLook sun = look_up(*masks_, masks_->small, pose_.small_sun, mask.entry);
     const EntryLook seen = look_up(*masks_, masks_->small, pose_.small_observer, mask.entry);
-    if ((sun.is_hidden || seen.is_hidden) && !task.keeps_hidden)
-      return;
-    if (sun.is_free && seen.is_free)
-      return add_free(group, task);
-    add_small(group, mask, sun, seen, task);
-  }
-
-  /// Sixteen classes with few points each.
-  UMOV_KERNEL void add_small(std::uint32_t group, const backend::GroupMask &mask,
-                             const EntryLook &sun, const EntryLook &seen,
-                             const GatherTask<T> &task) {
     const T points = T(32) * T(mask.words);
     const R per_point = R(T(1) / points);
     const R sampling = R(T(model_.points) / (points * sqrt(points))), grid = R(T(model_.grid));
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
-      Facets facets = face(group, s, task, keep);
+      Facets facets = face<has_more>(group, s, task, to, keep);
       if (!Machine::any(keep))
         continue;
       R share, mean_square;
-      count_small(sun, seen, mask.words, s, share, mean_square);
+      count_small<known>(sun, seen, mask.words, s, share, mean_square);
       share = share * per_point;
       mean_square = mean_square * per_point * per_point;
       const R variance = share * max(R(T(1)) - share, R(T(0))) * sampling +
@@ -197,19 +289,19 @@ private:
         keep = keep & (share > R(T(0)));
       const R deviation = facets.area * sqrt(variance);
       facets.area = facets.area * share;
-      push(group, s, task, facets, deviation, Packer(keep));
-      varies_ = true;
+      push<has_more>(group, s, task, facets, deviation, Packer(keep), at);
     }
   }
 
   /// Counts of nine pairs of directions, weighted. Where all directions around one are free, three
   /// tell what nine would.
+  template <Known known>
   UMOV_KERNEL void count_small(const EntryLook &sun, const EntryLook &seen, std::size_t words,
                                std::size_t s, R &mean, R &mean_square) const {
-    if (seen.is_free)
+    if constexpr (known == Known::FreeToObserver)
       Machine::template count_lanes<3, 1>(sun, seen, words, s, pose_.small_sun.weight, mean,
                                           mean_square);
-    else if (sun.is_free)
+    else if constexpr (known == Known::FreeToSun)
       Machine::template count_lanes<1, 3>(sun, seen, words, s, pose_.small_observer.weight, mean,
                                           mean_square);
     else
@@ -217,12 +309,12 @@ private:
   }
 
   /// Classes with many points each, one after the other.
-  UMOV_KERNEL void add_large(std::uint32_t group, const backend::GroupMask &mask,
-                             const GatherTask<T> &task) {
+  UMOV_KERNEL void add_large(std::uint32_t group, const GatherTask<T> &task) {
+    const backend::GroupMask &mask = masks_->groups[group];
     alignas(64) T share[lanes], deviation[lanes];
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
-      Facets facets = face(group, s, task, keep);
+      Facets facets = face<true>(group, s, task, to_, keep);
       if (!Machine::any(keep))
         continue;
       for (std::size_t j = 0; j < width; ++j)
@@ -236,7 +328,7 @@ private:
         keep = keep & (shares > R(T(0)));
       const R deviations = facets.area * Machine::load(deviation);
       facets.area = facets.area * shares;
-      push(group, s, task, facets, deviations, Packer(keep));
+      push<true>(group, s, task, facets, deviations, Packer(keep), count_);
     }
   }
 
@@ -283,7 +375,7 @@ private:
   float small_weight_[9], large_weight_[9];
   std::size_t count_ = 0;
   bool varies_ = false;
-  std::uint32_t facing_[room];
+  std::uint32_t facing_[listed], partly_[3][listed]; ///< groups
   std::uint32_t id_[room];
   alignas(64) T n_l_[room], n_v_[room], apart_[room], area_[room], deviation_[room];
   alignas(64) T aside_[room], cluster_error_[room];

@@ -82,20 +82,16 @@ struct SlotTerms {
   bool is_general = false;   ///< nothing is summed here: its seen facets are handed back
 };
 
-/// Where the blocks of one direction stand in the pool: rows may follow each other in any order.
-struct MaskRow {
-  std::uint32_t first = 0, count = 0;
-};
-
 /// Bits of points that are free in a direction, for a grid of directions on the octahedron.
 struct MaskTable {
-  std::size_t cells = 0;            ///< per edge of the unfolded octahedron
-  std::size_t entries = 0;          ///< per direction
-  View<const std::uint32_t> offset; ///< [direction * entries + entry], in units of 64 bytes
-  View<const MaskRow> row;          ///< per direction
+  std::size_t cells = 0;   ///< per edge of the unfolded octahedron
+  std::size_t entries = 0; ///< per direction
+  /// [direction * entries + entry], in units of 64 bytes; with room for a register beyond the last.
+  View<const std::uint32_t> offset;
 };
 
-/// How the visible share of a group is looked up.
+/// How the visible share of a group is looked up. In a chunk the small ones come first, and their
+/// entries follow each other.
 struct GroupMask {
   std::uint32_t entry = 0; ///< first entry of its table
   std::uint16_t words = 0; ///< per lane (32 points each)
@@ -188,7 +184,7 @@ struct MaskErrorModel {
   float points = 1, grid = 1;
 };
 
-/// Asks the processor for what the masks hold around the directions of a pose that comes soon:
+/// Asks the processor for where the masks stand around the directions of a pose that comes soon:
 /// random poses would wait for memory most of their time.
 void prefetch(const Masks &masks, const GridLook &small_sun, const GridLook &small_observer,
               const GridLook &large_sun, const GridLook &large_observer);

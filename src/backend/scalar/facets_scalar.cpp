@@ -19,6 +19,11 @@ struct ScalarMachine {
   static void store_any(double x, double *p) { *p = x; }
   static double total(double x) { return x; }
   static bool any(bool x) { return x; }
+  static bool all_three(const std::uint32_t *a, const std::uint32_t *b, const std::uint32_t *c,
+                        std::uint32_t value) {
+    return *a == value && *b == value && *c == value;
+  }
+  static void prefetch(const MaskBlock *) {}
   static std::uint32_t bits(bool x) { return x ? 1 : 0; }
   static std::uint32_t first_bit(std::uint32_t) { return 0; }
   class Packer {

@@ -26,6 +26,17 @@ struct SimdMachine {
     return static_cast<double>(hn::GetLane(hn::SumOfLanes(FloatTag(), x.v)));
   }
   static HWY_INLINE bool any(LaneMask m) { return kernel::HWY_NAMESPACE::any(m); }
+  static HWY_INLINE void prefetch(const backend::MaskBlock *block) { __builtin_prefetch(block); }
+  /// Words that are equal to one in three rows.
+  static HWY_INLINE LaneMask all_three(const std::uint32_t *a, const std::uint32_t *b,
+                                       const std::uint32_t *c, std::uint32_t value) {
+    const WordTag d;
+    const auto wanted = hn::Set(d, value);
+    const auto differ =
+        hn::Or(hn::Or(hn::Xor(hn::LoadU(d, a), wanted), hn::Xor(hn::LoadU(d, b), wanted)),
+               hn::Xor(hn::LoadU(d, c), wanted));
+    return {hn::RebindMask(FloatTag(), hn::Eq(differ, hn::Zero(d)))};
+  }
   static HWY_INLINE std::uint32_t bits(LaneMask m) { return bits_of(m); }
   static HWY_INLINE std::uint32_t first_bit(std::uint32_t bits) {
     return static_cast<std::uint32_t>(std::countr_zero(bits));

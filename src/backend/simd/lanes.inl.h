@@ -23,6 +23,7 @@ using WordTag = hn::RebindToUnsigned<FloatTag>;
 struct LaneMask {
   hn::Mask<FloatTag> m;
   friend HWY_INLINE LaneMask operator&(LaneMask a, LaneMask b) { return {hn::And(a.m, b.m)}; }
+  friend HWY_INLINE LaneMask operator!(LaneMask a) { return {hn::Not(a.m)}; }
   friend HWY_INLINE LaneMask operator|(LaneMask a, LaneMask b) { return {hn::Or(a.m, b.m)}; }
 };
 

@@ -6,8 +6,8 @@
 #define UMOV_BACKEND_PACKER_INL_H
 #endif
 
-#include "backend/simd/pack_table.h"
 #include "backend/simd/lanes.inl.h"
+#include "backend/simd/pack_table.h"
 
 #include <bit>
 
@@ -24,7 +24,7 @@ HWY_INLINE std::uint32_t bits_of(LaneMask m) {
 class Packer {
 public:
   HWY_INLINE explicit Packer(LaneMask keep)
-      : keep_(keep), count_(static_cast<std::size_t>(std::popcount(bits_of(keep)))) {
+      : keep_(keep), count_(hn::CountTrue(FloatTag(), keep.m)) {
 #if HWY_TARGET == HWY_AVX2
     const hn::Rebind<std::uint8_t, WordTag> d;
     from_ = hn::PromoteTo(WordTag(), hn::Load(d, backend::pack_table.lane[bits_of(keep)]));

@@ -122,7 +122,6 @@ template <class T> struct Heap {
 struct RandomMasks {
   std::vector<MaskBlock> pool;
   std::vector<std::uint32_t> offset;
-  std::vector<MaskRow> row;
   std::vector<GroupMask> groups;
   Masks view;
 
@@ -133,7 +132,6 @@ struct RandomMasks {
       for (std::uint32_t &word : pool[k].word)
         word = ~0u;
     for (std::size_t d = 0; d < directions; ++d) {
-      const auto first = static_cast<std::uint32_t>(pool.size());
       for (std::uint32_t g = 0; g < group_count; ++g) {
         if (g % 4 < 2) {
           offset.push_back(g % 4 == 0 ? words : 0);
@@ -144,11 +142,11 @@ struct RandomMasks {
           for (std::uint32_t &word : pool.emplace_back().word)
             word = static_cast<std::uint32_t>(random()) | static_cast<std::uint32_t>(random());
       }
-      row.push_back({first, static_cast<std::uint32_t>(pool.size()) - first});
     }
+    offset.resize(offset.size() + lanes);
     for (std::uint32_t g = 0; g < group_count; ++g)
       groups.push_back({g, words, false});
-    view.small = {2, group_count, offset, row};
+    view.small = {2, group_count, offset};
     view.groups = groups;
     view.pool = pool;
     view.longest = words;

@@ -19,6 +19,11 @@ struct DeviceMachine {
   __device__ static void store_any(float x, float *p) { *p = x; }
   __device__ static float total(float x) { return x; }
   __device__ static bool any(bool x) { return x; }
+  __device__ static bool all_three(const std::uint32_t *a, const std::uint32_t *b,
+                        const std::uint32_t *c, std::uint32_t value) {
+    return *a == value && *b == value && *c == value;
+  }
+  __device__ static void prefetch(const backend::MaskBlock *) {}
   __device__ static std::uint32_t bits(bool x) { return x ? 1 : 0; }
   __device__ static std::uint32_t first_bit(std::uint32_t) { return 0; }
   class Packer {

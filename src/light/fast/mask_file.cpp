@@ -34,7 +34,7 @@ private:
 
 /// Everything of fixed size, in front.
 struct Header {
-  char magic[8] = {'u', 'm', 'o', 'v', 'm', 's', 'k', '2'};
+  char magic[8] = {'u', 'm', 'o', 'v', 'm', 's', 'k', '3'};
   std::uint64_t byte_order = 0x0102030405060708ull; ///< the machine's own
   std::uint64_t key = 0, checksum = 0;              ///< of everything else in the file
   std::uint64_t groups = 0, blocks = 0, longest = 0;
@@ -100,7 +100,7 @@ bool is_consistent(const MaskStore &masks, bool is_large) {
   for (std::size_t k = 0; k < table.offset.size(); ++k)
     if (table.offset[k] + blocks[k % table.entries] > masks.pool.size())
       return false;
-  return std::all_of(table.row.begin(), table.row.end(), [&](const backend::MaskRow &row) {
+  return std::all_of(table.row.begin(), table.row.end(), [&](const MaskRow &row) {
     return row.first == untraced || std::size_t{row.first} + row.count <= masks.pool.size();
   });
 }

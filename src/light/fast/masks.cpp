@@ -103,7 +103,8 @@ MaskStore empty_masks(const GroupPlan &plan, const MaskSize &size) {
   out.large.cells = size.large_cells;
   for (MaskTableStore *table : {&out.small, &out.large}) {
     const std::size_t directions = table->entries > 0 ? table->directions() : 0;
-    table->offset.assign(directions * table->entries, 0);
+    // With room for the register that begins at the last one.
+    table->offset.assign(directions > 0 ? directions * table->entries + backend::lanes : 0, 0);
     table->row.assign(directions, {untraced, 0});
   }
   out.pool.assign(std::size_t{2} * out.longest, backend::MaskBlock{});
@@ -169,7 +170,7 @@ namespace {
 void add_rows(const MaskTableStore &known, const MaskStore &from, MaskTableStore &table,
               MaskStore &to) {
   for (std::size_t d = 0; d < table.row.size(); ++d) {
-    const backend::MaskRow row = known.row[d];
+    const MaskRow row = known.row[d];
     if (table.row[d].first != untraced || row.first == untraced)
       continue;
     const auto base = static_cast<std::uint32_t>(to.pool.size());

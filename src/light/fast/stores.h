@@ -48,14 +48,19 @@ template <class T> struct SceneStore {
   }
 };
 
+/// Where the blocks of one direction stand in the pool: rows may follow each other in any order.
+struct MaskRow {
+  std::uint32_t first = 0, count = 0;
+};
+
 /// Of backend::MaskTable.
 struct MaskTableStore {
   std::size_t cells = 0, entries = 0;
   HugePages<std::uint32_t> offset;
-  std::vector<backend::MaskRow> row;
+  std::vector<MaskRow> row; ///< per direction
 
   [[nodiscard]] std::size_t directions() const { return (cells + 1) * (cells + 1); }
-  [[nodiscard]] backend::MaskTable view() const { return {cells, entries, offset, row}; }
+  [[nodiscard]] backend::MaskTable view() const { return {cells, entries, offset}; }
 };
 
 /// Of backend::Masks.
