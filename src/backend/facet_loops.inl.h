@@ -89,11 +89,12 @@ public:
       task.reach = reach_of(slot);
       task.has_aside = slot.is_polarized;
       task.has_ids = slot.is_general;
+      task.has_doubts = model_.has_doubts && masks_ != nullptr;
       is_any_left_out = is_any_left_out || task.reach < T(2);
       lit_.gather(chunk, task);
       if (lit_.count() == 0)
         continue;
-      out_.is_any_seen = true;
+      out_.is_any_seen = out_.is_any_seen || lit_.is_any_seen();
       if (slot.is_general)
         hand_back(chunk.slot);
       else
@@ -116,23 +117,16 @@ public:
   }
 
   /// All facets that face both directions, with the area of each that is looked up as free and how
-  /// uncertain it is. One pseudo-disagreement stands for slivers that no point has found: what is
-  /// looked up as wholly free or wholly hidden may still be a little of the other.
+  /// uncertain it is, with doubts (GatherTask).
   UMOV_KERNEL void list_facing(SeenListOf<S> &out) {
     out.clear();
     GatherTask<T> task;
-    task.has_ids = task.keeps_hidden = true;
+    task.has_ids = task.has_doubts = true;
     for (const Chunk &chunk : scene_.chunks) {
       lit_.gather(chunk, task);
-      for (std::size_t k = 0; k < lit_.count(); ++k) {
-        const std::uint32_t group = lit_.group(k), lane = lit_.lane(k);
-        const S points = S(32) * S(masks_->groups[group].words);
-        const S unsure = S(1) / points * (S(1) - S(1) / points);
-        const S pseudo = static_cast<S>(model_.points) * unsure / (points * sqrt(points));
-        const S whole = static_cast<S>(scene_.groups[group].area[lane]);
-        out.push({group, lane, chunk.slot, static_cast<S>(lit_.area_of(k)),
-                  square(static_cast<S>(lit_.deviation_of(k))) + square(whole) * pseudo});
-      }
+      for (std::size_t k = 0; k < lit_.count(); ++k)
+        out.push({lit_.group(k), lit_.lane(k), chunk.slot, static_cast<S>(lit_.area_of(k)),
+                  square(static_cast<S>(lit_.deviation_of(k)))});
     }
   }
 

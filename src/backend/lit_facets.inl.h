@@ -14,10 +14,13 @@
 
 /// What is asked of a chunk.
 template <class T> struct GatherTask {
-  T reach = T(4);            ///< facets whose 1 - n.h is less
-  bool has_aside = false;    ///< n.across too
-  bool has_ids = false;      ///< which facet each is
-  bool keeps_hidden = false; ///< facets too of which the masks hide all, with area 0
+  T reach = T(4);         ///< facets whose 1 - n.h is less
+  bool has_aside = false; ///< n.across too
+  bool has_ids = false;   ///< which facet each is
+  /// Facets too of which the masks hide all, with area 0; and one pseudo-disagreement in each
+  /// deviation, for slivers that no point has found: what is looked up as wholly free or wholly
+  /// hidden may still be a little of the other.
+  bool has_doubts = false;
 };
 
 /// `Machine` names the lane type R, the scalar T, the mask of lanes, how to load, pack and count.
@@ -44,7 +47,7 @@ public:
 
   UMOV_KERNEL void gather(const backend::Chunk &chunk, const GatherTask<T> &task) {
     count_ = 0;
-    varies_ = false;
+    varies_ = is_any_seen_ = false;
     if (masks_ == nullptr) {
       const std::size_t groups = list_facing(chunk.first, chunk.count);
       add_all<Known::Free>(facing_, groups, task);
@@ -63,6 +66,8 @@ public:
 
   /// So many; what is read of the last register beyond them has no area.
   [[nodiscard]] UMOV_KERNEL std::size_t count() const { return count_; }
+  /// Some area is lit and seen.
+  [[nodiscard]] UMOV_KERNEL bool is_any_seen() const { return is_any_seen_; }
   /// Some area is uncertain; else no deviation need be read.
   [[nodiscard]] UMOV_KERNEL bool varies() const { return varies_; }
   [[nodiscard]] UMOV_KERNEL R n_l(std::size_t k) const { return Machine::load(n_l_ + k); }
@@ -158,7 +163,7 @@ private:
     for (std::uint32_t g = first; g < end; g += width) {
       const std::uint32_t e = entry + (g - first);
       auto faces = face_both(g);
-      if (!task.keeps_hidden)
+      if (!task.has_doubts)
         faces = faces & !(sun.are(hidden, e) | seen.are(hidden, e));
       const auto free_sun = sun.are(free, e), free_seen = seen.are(free, e);
       count[0] += put_groups(faces & free_sun & free_seen, g, facing_ + count[0]);
@@ -211,7 +216,7 @@ private:
       else
         add_small<known, has_more>(groups[k], task, to, at);
     count_ = at;
-    varies_ = varies_ || (known != Known::Free && count > 0);
+    varies_ = varies_ || (count > 0 && (known != Known::Free || task.has_doubts));
   }
 
   /// Facets s, s + 1... of a group; `keep`: those that face both directions within reach.
@@ -258,11 +263,28 @@ private:
   template <bool has_more>
   UMOV_KERNEL void add_free(std::uint32_t group, const GatherTask<T> &task, const Directions &to,
                             std::size_t &at) {
+    const R doubt = R(task.has_doubts ? sqrt(doubt_of(masks_->groups[group])) : T(0));
+    const std::size_t before = at;
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
       const Facets facets = face<has_more>(group, s, task, to, keep);
-      push<has_more>(group, s, task, facets, R(T(0)), Packer(keep), at);
+      push<has_more>(group, s, task, facets, facets.area * doubt, Packer(keep), at);
     }
+    is_any_seen_ = is_any_seen_ || at > before;
+  }
+
+  /// Variance of the share of a class, of which all points but one agree.
+  [[nodiscard]] UMOV_KERNEL T doubt_of(const backend::GroupMask &mask) const {
+    const T points = T(32) * T(mask.words), unsure = T(1) / points * (T(1) - T(1) / points);
+    return T(model_.points) * unsure / (points * sqrt(points));
+  }
+
+  /// Those of `keep` of which something is seen, or all that are in doubt.
+  UMOV_KERNEL typename Machine::Mask take_seen(const GatherTask<T> &task, R share,
+                                               typename Machine::Mask keep) {
+    const auto seen = keep & (share > R(T(0)));
+    is_any_seen_ = is_any_seen_ || Machine::any(seen);
+    return task.has_doubts ? keep : seen;
   }
 
   template <Known known, bool has_more>
@@ -272,7 +294,7 @@ private:
     const EntryLook sun = look_up(*masks_, masks_->small, pose_.small_sun, mask.entry);
     const EntryLook seen = look_up(*masks_, masks_->small, pose_.small_observer, mask.entry);
     const T points = T(32) * T(mask.words);
-    const R per_point = R(T(1) / points);
+    const R per_point = R(T(1) / points), doubt = R(task.has_doubts ? doubt_of(mask) : T(0));
     const R sampling = R(T(model_.points) / (points * sqrt(points))), grid = R(T(model_.grid));
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
@@ -284,9 +306,8 @@ private:
       share = share * per_point;
       mean_square = mean_square * per_point * per_point;
       const R variance = share * max(R(T(1)) - share, R(T(0))) * sampling +
-                         max(mean_square - share * share, R(T(0))) * grid;
-      if (!task.keeps_hidden)
-        keep = keep & (share > R(T(0)));
+                         max(mean_square - share * share, R(T(0))) * grid + doubt;
+      keep = take_seen(task, share, keep);
       const R deviation = facets.area * sqrt(variance);
       facets.area = facets.area * share;
       push<has_more>(group, s, task, facets, deviation, Packer(keep), at);
@@ -311,29 +332,30 @@ private:
   /// Classes with many points each, one after the other.
   UMOV_KERNEL void add_large(std::uint32_t group, const GatherTask<T> &task) {
     const backend::GroupMask &mask = masks_->groups[group];
-    alignas(64) T share[lanes], deviation[lanes];
+    alignas(64) T share[lanes], variance[lanes];
+    const R doubt = R(task.has_doubts ? doubt_of(mask) : T(0));
+    varies_ = varies_ || task.has_doubts;
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
       Facets facets = face<true>(group, s, task, to_, keep);
       if (!Machine::any(keep))
         continue;
       for (std::size_t j = 0; j < width; ++j)
-        share[j] = deviation[j] = T(0);
+        share[j] = variance[j] = T(0);
       for (std::uint32_t rest = Machine::bits(keep); rest != 0; rest &= rest - 1) {
         const auto j = Machine::first_bit(rest);
-        look_up_large(mask, static_cast<std::uint32_t>(mask.entry + s + j), share[j], deviation[j]);
+        look_up_large(mask, static_cast<std::uint32_t>(mask.entry + s + j), share[j], variance[j]);
       }
       const R shares = Machine::load(share);
-      if (!task.keeps_hidden)
-        keep = keep & (shares > R(T(0)));
-      const R deviations = facets.area * Machine::load(deviation);
+      keep = take_seen(task, shares, keep);
+      const R deviations = facets.area * sqrt(Machine::load(variance) + doubt);
       facets.area = facets.area * shares;
       push<true>(group, s, task, facets, deviations, Packer(keep), count_);
     }
   }
 
   UMOV_KERNEL void look_up_large(const backend::GroupMask &mask, std::uint32_t entry, T &share,
-                                 T &deviation) {
+                                 T &variance) {
     const EntryLook sun = look_up(*masks_, masks_->large, pose_.large_sun, entry);
     const EntryLook seen = look_up(*masks_, masks_->large, pose_.large_observer, entry);
     if (sun.is_hidden || seen.is_hidden)
@@ -353,7 +375,7 @@ private:
       mean_square += w * f * f;
     }
     const T sampling = share * max(T(1) - share, T(0)) * T(model_.points) / (points * sqrt(points));
-    deviation = sqrt(sampling + max(mean_square - share * share, T(0)) * T(model_.grid));
+    variance = sampling + max(mean_square - share * share, T(0)) * T(model_.grid);
   }
 
   /// The last register may be read whole: no light comes from what is beyond the last facet.
@@ -374,7 +396,7 @@ private:
   const Directions to_;
   float small_weight_[9], large_weight_[9];
   std::size_t count_ = 0;
-  bool varies_ = false;
+  bool varies_ = false, is_any_seen_ = false;
   std::uint32_t facing_[listed], partly_[3][listed]; ///< groups
   std::uint32_t id_[room];
   alignas(64) T n_l_[room], n_v_[room], apart_[room], area_[room], deviation_[room];

@@ -182,6 +182,7 @@ using PoseSums = PoseSumsOf<double>;
 /// variance among the directions around (docs/theory/engine.md).
 struct MaskErrorModel {
   float points = 1, grid = 1;
+  bool has_doubts = false; ///< what is looked up as wholly free or hidden is uncertain too
 };
 
 /// Asks the processor for where the masks stand around the directions of a pose that comes soon:

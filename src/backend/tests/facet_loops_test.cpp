@@ -174,8 +174,10 @@ TEST(FacetLoops, LanesAgreeWithTheReference) {
   const Heap<double> exact;
   const Heap<float> single;
   const RandomMasks masks;
-  const MaskErrorModel model{1.5F, 0.25F};
-  for (const Masks *hiding : {static_cast<const Masks *>(nullptr), &masks.view}) {
+  for (const auto &[hiding, has_doubts] :
+       {std::pair(static_cast<const Masks *>(nullptr), false), std::pair(&masks.view, false),
+        std::pair(&masks.view, true)}) {
+    const MaskErrorModel model{1.5F, 0.25F, has_doubts};
     Summed wanted;
     sum_facets(exact.scene(), hiding, model, exact.pose, wanted.sums);
     EXPECT_TRUE(wanted.sums.is_any_seen);
@@ -195,6 +197,34 @@ TEST(FacetLoops, LanesAgreeWithTheReference) {
     }
     choose_instruction_set(InstructionSet::Best);
   }
+}
+
+/// Doubts add one variance to every facet that faces both directions, hidden or free, and no light:
+/// with n points 1.5 (1/n)(1 - 1/n) n^-1.5 of its area squared, here n = 64.
+TEST(FacetLoops, DoubtsCountFacetsThatMasksCallFreeOrHidden) {
+  const Heap<double> heap;
+  const RandomMasks masks;
+  std::vector<SeenFacet> room(group_count * lanes);
+  SeenList facing(room);
+  list_facing(heap.scene(), masks.view, {1.5F, 0.25F}, heap.pose, facing);
+  Summed plain, doubtful;
+  sum_facets(heap.scene(), &masks.view, {1.5F, 0.25F}, heap.pose, plain.sums);
+  sum_facets(heap.scene(), &masks.view, {1.5F, 0.25F, true}, heap.pose, doubtful.sums);
+  double variance = plain.sums.product_variance[0], linear = 0;
+  std::size_t hidden = 0;
+  for (const SeenFacet &facet : facing) {
+    double weight[lobe_count + 2];
+    weigh_facet(heap.scene(), heap.pose, facet, weight);
+    const double whole = heap.groups[facet.group].area[facet.lane], n = 64;
+    const double doubt = 1.5 * (1 / n) * (1 - 1 / n) / (n * std::sqrt(n)) * whole * whole;
+    variance += weight[lobe_count] * weight[lobe_count] * doubt;
+    linear += weight[lobe_count] * std::sqrt(facet.variance);
+    hidden += facet.area == 0 ? 1u : 0u;
+  }
+  EXPECT_GT(hidden, 100u);
+  EXPECT_NEAR(doubtful.sums.product[0], plain.sums.product[0], 1e-12 * plain.sums.product[0]);
+  EXPECT_NEAR(doubtful.sums.product_variance[0], variance, 1e-9 * variance);
+  EXPECT_NEAR(doubtful.sums.product_linear[0], linear, 1e-9 * linear);
 }
 
 /// What is handed back: the facets of a general slot, in the order of the groups.

@@ -15,7 +15,10 @@ inline constexpr double mask_alike = 4e-3F;
 /// off for many of them: variances of single looked-up facets are taken so much larger, for
 /// half-widths to cover nine in ten of a series too (HST, Agena, box-wing and crumpled foil against
 /// dense rays).
-inline constexpr double mask_series = 2;
+inline constexpr float mask_series = 2;
+/// Of sums in which nothing is taken for certain.
+inline constexpr backend::MaskErrorModel doubtful_error{mask_error.points * mask_series,
+                                                        mask_error.grid *mask_series, true};
 
 /// The first look at a class by rays: enough points to bring its error down to a third of what may
 /// be left, if its whole light is `weight` times that.

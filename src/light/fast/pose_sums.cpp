@@ -11,10 +11,12 @@ namespace umov {
 
 void Engine::State::sum_facets(const Prepared &at, SumsStore &out) const {
   out.reset(views.whole);
+  const backend::MaskErrorModel &error =
+      may_mend() && options.doubts_all ? doubtful_error : mask_error;
   if (options.is_double)
-    backend::sum_facets(views.whole, hiding(), mask_error, at.pose, out);
+    backend::sum_facets(views.whole, hiding(), error, at.pose, out);
   else
-    backend::sum_facets(views.single, hiding(), mask_error, at.single, out);
+    backend::sum_facets(views.single, hiding(), error, at.single, out);
   if (masks)
     add_alike(out);
 }
@@ -42,11 +44,9 @@ bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) c
     return false;
   if (!may_mend())
     return true;
-  if (!options.doubts_all) {
-    colour(work);
-    refer_to(work.light, compiled.area_m2, work);
-  }
-  if (options.doubts_all || is_uncertain(work.light, compiled.area_m2, work))
+  colour(work);
+  refer_to(work.light, compiled.area_m2, work);
+  if (is_uncertain(work.light, compiled.area_m2, work))
     mend(pose, at, work);
   return true;
 }

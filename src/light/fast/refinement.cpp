@@ -75,7 +75,7 @@ void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspa
   else
     backend::list_seen(views.whole, nullptr, mask_error, at.pose, work.uncertain);
   for (backend::SeenFacet &facet : work.uncertain)
-    facet.variance *= mask_series;
+    facet.variance *= static_cast<double>(mask_series);
   weigh_uncertain(pose, at, work);
 }
 
