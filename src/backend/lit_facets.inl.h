@@ -61,7 +61,7 @@ public:
       for (std::size_t k = 0; k < large; ++k)
         add_large(facing_[k], task);
     }
-    fill_register();
+    fill_register(task);
   }
 
   /// So many; what is read of the last register beyond them has no area.
@@ -196,31 +196,34 @@ private:
     return pack.count();
   }
 
-  /// What is asked for rarely costs a test where nothing of it is.
+  /// Something is asked for that rarely is: that costs no test where it is not.
+  [[nodiscard]] UMOV_KERNEL bool has_more(const GatherTask<T> &task) const {
+    return task.has_aside || task.has_ids || !scene_.cluster_error.empty();
+  }
   template <Known known>
   UMOV_KERNEL void add_all(const std::uint32_t *groups, std::size_t count,
                            const GatherTask<T> &task) {
-    if (task.has_aside || task.has_ids || !scene_.cluster_error.empty())
+    if (has_more(task))
       add_all<known, true>(groups, count, task);
     else
       add_all<known, false>(groups, count, task);
   }
-  template <Known known, bool has_more>
+  template <Known known, bool has_all>
   UMOV_KERNEL void add_all(const std::uint32_t *groups, std::size_t count,
                            const GatherTask<T> &task) {
     const Directions to = to_; // nothing that is written may stand in it
     std::size_t at = count_;
     for (std::size_t k = 0; k < count; ++k)
       if constexpr (known == Known::Free)
-        add_free<has_more>(groups[k], task, to, at);
+        add_free<has_all>(groups[k], task, to, at);
       else
-        add_small<known, has_more>(groups[k], task, to, at);
+        add_small<known, has_all>(groups[k], task, to, at);
     count_ = at;
     varies_ = varies_ || (count > 0 && (known != Known::Free || task.has_doubts));
   }
 
   /// Facets s, s + 1... of a group; `keep`: those that face both directions within reach.
-  template <bool has_more>
+  template <bool has_all>
   UMOV_KERNEL Facets face(std::uint32_t group, std::size_t s, const GatherTask<T> &task,
                           const Directions &to, typename Machine::Mask &keep) const {
     const backend::FacetGroup<T> &f = scene_.groups[group];
@@ -230,7 +233,7 @@ private:
     out.n_v = x * to.vx + y * to.vy + z * to.vz;
     out.apart = apart_from_half(pose_.facet, x, y, z);
     out.area = Machine::load(f.area + s);
-    if (has_more && task.has_aside) {
+    if (has_all && task.has_aside) {
       const T *const across = pose_.facet.across;
       out.aside = x * R(across[0]) + y * R(across[1]) + z * R(across[2]);
     }
@@ -240,7 +243,7 @@ private:
   }
 
   /// Writes those of `pack` from `at` on, which moves behind them.
-  template <bool has_more>
+  template <bool has_all>
   UMOV_KERNEL void push(std::uint32_t group, std::size_t s, const GatherTask<T> &task,
                         const Facets &facets, R deviation, const Packer &pack, std::size_t &at) {
     pack.put(facets.n_l, n_l_ + at);
@@ -248,7 +251,7 @@ private:
     pack.put(facets.apart, apart_ + at);
     pack.put(facets.area, area_ + at);
     pack.put(deviation, deviation_ + at);
-    if constexpr (has_more) {
+    if constexpr (has_all) {
       if (task.has_aside)
         pack.put(facets.aside, aside_ + at);
       if (!scene_.cluster_error.empty())
@@ -260,15 +263,15 @@ private:
     at += pack.count();
   }
 
-  template <bool has_more>
+  template <bool has_all>
   UMOV_KERNEL void add_free(std::uint32_t group, const GatherTask<T> &task, const Directions &to,
                             std::size_t &at) {
     const R doubt = R(task.has_doubts ? sqrt(doubt_of(masks_->groups[group])) : T(0));
     const std::size_t before = at;
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
-      const Facets facets = face<has_more>(group, s, task, to, keep);
-      push<has_more>(group, s, task, facets, facets.area * doubt, Packer(keep), at);
+      const Facets facets = face<has_all>(group, s, task, to, keep);
+      push<has_all>(group, s, task, facets, facets.area * doubt, Packer(keep), at);
     }
     is_any_seen_ = is_any_seen_ || at > before;
   }
@@ -287,7 +290,7 @@ private:
     return task.has_doubts ? keep : seen;
   }
 
-  template <Known known, bool has_more>
+  template <Known known, bool has_all>
   UMOV_KERNEL void add_small(std::uint32_t group, const GatherTask<T> &task, const Directions &to,
                              std::size_t &at) {
     const backend::GroupMask &mask = masks_->groups[group];
@@ -298,7 +301,7 @@ private:
     const R sampling = R(T(model_.points) / (points * sqrt(points))), grid = R(T(model_.grid));
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
-      Facets facets = face<has_more>(group, s, task, to, keep);
+      Facets facets = face<has_all>(group, s, task, to, keep);
       if (!Machine::any(keep))
         continue;
       R share, mean_square;
@@ -310,7 +313,7 @@ private:
       keep = take_seen(task, share, keep);
       const R deviation = facets.area * sqrt(variance);
       facets.area = facets.area * share;
-      push<has_more>(group, s, task, facets, deviation, Packer(keep), at);
+      push<has_all>(group, s, task, facets, deviation, Packer(keep), at);
     }
   }
 
@@ -379,14 +382,18 @@ private:
   }
 
   /// The last register may be read whole: no light comes from what is beyond the last facet.
-  UMOV_KERNEL void fill_register() {
+  UMOV_KERNEL void fill_register(const GatherTask<T> &task) {
     if (count_ % width == 0)
       return;
     Machine::store_any(R(T(1)), n_l_ + count_);
     Machine::store_any(R(T(1)), n_v_ + count_);
     Machine::store_any(R(T(1)), apart_ + count_);
-    for (T *column : {area_, deviation_, aside_, cluster_error_})
-      Machine::store_any(R(T(0)), column + count_);
+    Machine::store_any(R(T(0)), area_ + count_);
+    Machine::store_any(R(T(0)), deviation_ + count_);
+    if (has_more(task)) {
+      Machine::store_any(R(T(0)), aside_ + count_);
+      Machine::store_any(R(T(0)), cluster_error_ + count_);
+    }
   }
 
   const backend::SceneData<T> &scene_;
