@@ -1,7 +1,9 @@
 #include "bench/cases.h"
 
 #include <fmt/format.h>
+#include <map>
 #include <umov/io/obj.h>
+#include <umov/io/scenario.h>
 #include <umov/shape/primitives.h>
 
 namespace umov::bench {
@@ -48,6 +50,23 @@ Result<Mesh> case_mesh(const BenchCase &of, Diagnostics &diagnostics) {
     return make_agena();
   UMOV_ASSIGN(read, read_obj(of.mesh, {"m", "+Z"}, diagnostics));
   return read.mesh;
+}
+
+/// Of each group of the telescope.
+Result<std::vector<Material>> telescope_materials(const Mesh &mesh) {
+  const std::map<std::string, const char *> names{
+      {"light_shield", "film_aluminized"}, {"forward_shell", "film_aluminized"},
+      {"equipment", "film_silvered"},      {"aft_shroud", "film_silvered"},
+      {"door", "film_aluminized"},         {"array_front", "cell_silicon"},
+      {"array_back", "mli_kapton"},        {"array_frame", "aluminium_anodized"},
+      {"antenna", "paint_white"},          {"handrail", "paint_white"}};
+  std::vector<Material> out;
+  for (const std::string &group : mesh.groups) {
+    const auto named = names.find(group);
+    UMOV_ASSIGN(material, read_material(named != names.end() ? named->second : "paint_white"));
+    out.push_back(std::move(material));
+  }
+  return out;
 }
 
 } // namespace
@@ -115,6 +134,7 @@ std::vector<BenchCase> standard_cases() {
           c.has_errors = false;
         });
   add("fast masks and rays", [](BenchCase &) {});
+  add("default", [](BenchCase &c) { c.is_default_path = true; });
   add("fine masks", [](BenchCase &c) { c.masks = without_rays(fine_masks); });
   add("one pose, fast masks", [](BenchCase &c) {
     c.masks = without_rays(fast_masks);
@@ -122,6 +142,17 @@ std::vector<BenchCase> standard_cases() {
     c.has_errors = false;
   });
   add("hst, fast masks and rays", [](BenchCase &c) { c.mesh = "hst"; });
+  const auto add_telescope = [&](const char *name, bool is_default) {
+    add(name, [&](BenchCase &c) {
+      c.mesh = "hst";
+      c.normals = NormalMode::Smooth;
+      c.has_library_materials = true;
+      c.masks = without_rays(fast_masks);
+      c.is_default_path = is_default;
+    });
+  };
+  add_telescope("hst of the library, fast masks", false);
+  add_telescope("hst of the library, default", true);
   add("agena, fast masks and rays", [](BenchCase &c) { c.mesh = "agena"; });
   add("crumpled, 1,000,000 triangles, clustered", [](BenchCase &c) {
     c.mesh = "foil";
@@ -154,6 +185,10 @@ Result<Scene> case_scene(const BenchCase &of, Diagnostics &diagnostics) {
                           ? 550
                           : 425 + 225 * static_cast<double>(b) / static_cast<double>(of.bands - 1);
     bands.push_back({fmt::format("nm:{:g}", nm), Wavelength::nm(nm)});
+  }
+  if (of.has_library_materials) {
+    UMOV_ASSIGN(materials, telescope_materials(mesh));
+    return make_scene(mesh, of.normals, bands, materials, materials, diagnostics);
   }
   const char *names[] = {"paper_au", "paper_asi", "paper_spectralon", "paper_al"};
   const double exponents[] = {200, 1000, 20, 50};

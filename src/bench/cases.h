@@ -23,6 +23,8 @@ struct BenchCase {
   bool has_errors = true;         ///< compared with rays
   bool is_single_pose = false;    ///< latency instead of rate
   bool is_intensity_only = false; ///< what polarization costs
+  bool is_default_path = false;   ///< through the light model, as every command asks it by default
+  bool has_library_materials = false; ///< of the telescope, as in examples/hst_maui.toml
 };
 
 /// All cases, in the order of the report.
@@ -31,7 +33,7 @@ std::vector<BenchCase> standard_cases();
 std::vector<BenchCase> cases_for_mesh(const std::string &file);
 
 /// The scene of a case: four materials (foil m = 200, cells 1000, white 20, metal 50) over its
-/// groups.
+/// groups, or those of the library.
 Result<Scene> case_scene(const BenchCase &of, Diagnostics &diagnostics);
 
 } // namespace umov::bench

@@ -38,17 +38,18 @@ struct BenchResult {
   bool has_errors = false;
 };
 
-double best_time(const Engine &engine, const std::vector<Pose> &poses, unsigned threads,
-                 double seconds) {
+/// Seconds a pose; `evaluate` lights poses.
+template <class Evaluate>
+double best_time(const Evaluate &evaluate, const std::vector<Pose> &poses, double seconds) {
   StokesTable table;
-  engine.evaluate(poses, table, threads); // caches warm
+  evaluate(poses, table); // caches warm
   double best = std::numeric_limits<double>::infinity();
   for (int k = 0; k < repetitions; ++k) {
     double spent = 0;
     std::size_t rounds = 0;
     while (spent < seconds / repetitions || rounds == 0) {
       const double begin = now_s();
-      engine.evaluate(poses, table, threads);
+      evaluate(poses, table);
       spent += now_s() - begin;
       ++rounds;
     }
@@ -78,49 +79,33 @@ public:
   Result<BenchResult> run(const BenchCase &one, Diagnostics &diagnostics) {
     BenchResult out;
     out.bands = one.bands;
-    const std::string key = fmt::format(
-        "{} {} {} {} {} {} {} {} {} {}", one.mesh, one.facets, one.bands, one.has_own_roughness,
-        static_cast<int>(one.visibility), one.masks.points, one.masks.narrow_cells,
-        one.masks.refine_above, one.cluster_rad, one.is_intensity_only);
-    if (key != key_) {
-      engine_.reset();
-      UMOV_ASSIGN(scene, case_scene(one, diagnostics));
-      scene_.emplace(std::move(scene));
-      EngineOptions options;
-      options.visibility = one.visibility;
-      options.masks = one.masks;
-      options.cluster_rad = one.cluster_rad;
-      options.is_intensity_only = one.is_intensity_only;
-      if (one.masks.refine_above > 0) // as LightMethod::Auto has it: no rays for what is dark
-        for (const double light : typical_light(*scene_))
-          options.floor_i.push_back(default_accuracy_floor(LightMethod::Auto) * light);
-      engine_.emplace(*scene_, options);
-      key_ = key;
-    }
+    UMOV_TRY(prepare(one, diagnostics));
     out.facts = engine_->facts();
     if (!restrict_engine(one.instruction_set))
       return fail(ErrorCode::Device, "this machine has no " + one.instruction_set);
     out.instruction_set = engine_instruction_set();
+    const auto evaluate = [&](std::span<const Pose> poses, StokesTable &table) {
+      LightTask task;
+      task.threads = one.threads;
+      if (model_)
+        (void)model_->evaluate(poses, {}, table, task);
+      else
+        (void)engine_->evaluate(poses, table, task);
+    };
     const auto probe = bench_poses(1, 64);
-    const double guess = best_time(*engine_, probe, 1, 0.01);
+    const double guess = best_time(evaluate, probe, 0.01);
     const auto count = static_cast<std::size_t>(
         std::clamp(request_.seconds / repetitions / guess, 256.0, 300'000.0));
     const auto poses = bench_poses(2, count);
     if (one.is_single_pose)
       out.latency_us = 1e6 * latency(*engine_, poses);
     else
-      out.rate = 1 / best_time(*engine_, poses, one.threads, request_.seconds);
+      out.rate = 1 / best_time(evaluate, poses, request_.seconds);
     if (one.has_errors && request_.geometries > 0) {
       const auto few = bench_poses(3, request_.geometries);
-      IntegrationOptions exact;
-      exact.accuracy = 5e-4;
-      const std::string mesh = fmt::format("{} {}", one.mesh, one.facets);
-      if (mesh != reference_of_) {
-        reference_ = Integrator(*scene_).evaluate(few, exact, 0);
-        reference_of_ = mesh;
-      }
+      look_at_reference(one, few);
       StokesTable table;
-      engine_->evaluate(few, table, 0);
+      evaluate(few, table);
       out.errors = compare_with_reference(table, reference_, one.bands / 2);
       out.has_errors = true;
     }
@@ -129,10 +114,53 @@ public:
   }
 
 private:
+  /// The engine of a case, and the light model where the case goes through it.
+  Result<void> prepare(const BenchCase &one, Diagnostics &diagnostics) {
+    const std::string key =
+        fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", one.mesh, one.facets, one.bands,
+                    one.has_own_roughness, static_cast<int>(one.visibility), one.masks.points,
+                    one.masks.narrow_cells, one.masks.refine_above, one.cluster_rad,
+                    one.is_intensity_only, one.has_library_materials, one.is_default_path);
+    if (key == key_)
+      return {};
+    engine_.reset();
+    model_.reset();
+    UMOV_ASSIGN(scene, case_scene(one, diagnostics));
+    scene_.emplace(std::move(scene));
+    EngineOptions options;
+    options.visibility = one.visibility;
+    options.masks = one.masks;
+    options.cluster_rad = one.cluster_rad;
+    options.is_intensity_only = one.is_intensity_only;
+    if (one.masks.refine_above > 0) // as LightMethod::Auto has it: no rays for what is dark
+      for (const double light : typical_light(*scene_))
+        options.floor_i.push_back(default_accuracy_floor(LightMethod::Auto) * light);
+    engine_.emplace(*scene_, options);
+    if (one.is_default_path) {
+      UMOV_ASSIGN(model, make_light(*scene_, {}, {}));
+      model_ = std::move(model);
+    }
+    key_ = key;
+    return {};
+  }
+
+  /// Light of these poses by rays, once a scene.
+  void look_at_reference(const BenchCase &one, const std::vector<Pose> &poses) {
+    const std::string scene =
+        fmt::format("{} {} {}", one.mesh, one.facets, one.has_library_materials);
+    if (scene == reference_of_)
+      return;
+    IntegrationOptions exact;
+    exact.accuracy = 5e-4;
+    reference_ = Integrator(*scene_).evaluate(poses, exact, 0);
+    reference_of_ = scene;
+  }
+
   const LightRequest &request_;
   std::string key_, reference_of_;
   std::optional<Scene> scene_;
   std::optional<Engine> engine_;
+  std::unique_ptr<LightModel> model_; ///< null: the engine by itself
   std::vector<PoseResult> reference_;
 };
 
