@@ -140,6 +140,13 @@ struct Tables {
   TruthTable truth;
 };
 
+bool is_glaring(const Recorded &r) {
+  double star = 0, sky = 0;
+  for (const ChannelCounts &c : r.channels)
+    star += c.mean_star, sky += c.mean_sky;
+  return sky > 10 * star;
+}
+
 Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
                         const Monitor &monitor, Tables &tables, Observation &out,
                         Diagnostics &diagnostics) {
@@ -149,7 +156,7 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
   const std::size_t times = 65'536 * 80 / (80 + wavelengths);
   const std::size_t block =
       std::clamp<std::size_t>(times / std::max<std::size_t>(1, s.nodes.size()), 1, 4096);
-  std::size_t unknown_twilight = 0;
+  std::size_t glaring = 0; // exposures in which the sky is far brighter than the object
   for (std::size_t begin = 0; begin < exposures.size(); begin += block) {
     if (monitor.is_cancelled())
       return fail(ErrorCode::Interrupted, "stopped; nothing was written");
@@ -167,7 +174,7 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
         return tl::unexpected(*recorded[k].error);
       tables.counts.add(part[k], recorded[k]);
       tables.truth.add(part[k], recorded[k]);
-      unknown_twilight += recorded[k].is_twilight_unknown ? 1u : 0u;
+      glaring += is_glaring(recorded[k]) ? 1u : 0u;
       const bool is_full =
           std::ranges::any_of(recorded[k].channels, [](const auto &c) { return c.is_saturated; });
       out.saturated += is_full ? 1u : 0u;
@@ -176,22 +183,61 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
     out.exposures += part.size();
     monitor.advance("exposures", begin + part.size(), exposures.size());
   }
-  if (unknown_twilight > 0)
-    diagnostics.warn(fmt::format("{} with the Sun above -5 deg: the sky's brightness in twilight "
-                                 "is only known below; give atmosphere.sky.mag",
-                                 counted(unknown_twilight, "exposure")));
+  if (glaring > 0)
+    diagnostics.warn(
+        fmt::format("{} with a sky more than ten times as bright as the object in the "
+                    "aperture: an error of one per cent of it is a tenth of the object",
+                    counted(glaring, "exposure")));
   return {};
 }
 
-/// Circumstances that the models do not reach.
-void warn_of_air(const std::vector<Exposure> &exposures, const Setup &s, Diagnostics &diagnostics) {
-  std::size_t low = 0;
-  for (const Exposure &e : exposures)
-    low += apparent_altitude(550, e.middle.altitude, s.surface).degrees() < 3 ? 1u : 0u;
+/// Circumstances that the models reach badly, or not at all.
+Result<void> check_air(const std::vector<Exposure> &exposures, const Setup &s,
+                       Diagnostics &diagnostics) {
+  const SkyOptions &sky = s.observation.sky;
+  std::size_t low = 0, day = 0, aside = 0;
+  for (const Exposure &e : exposures) {
+    const ObservingGeometry &g = e.middle;
+    low += apparent_altitude(550, g.altitude, s.surface).degrees() < 3 ? 1u : 0u;
+    day += is_day(sky, g.sun_altitude) ? 1u : 0u;
+    constexpr double last_twilight = -15, farthest = 50; // 40 deg from the zenith
+    aside += sky.has_twilight && !sky.mag && g.sun_altitude.degrees() > last_twilight &&
+                     g.altitude.degrees() < farthest
+                 ? 1u
+                 : 0u;
+  }
+  if (day > 0)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} of {} with the Sun above -5 deg, where the model of twilight knows "
+                            "no brightness: leave them out with time.only.sun_alt_max_deg = -5, or "
+                            "give atmosphere.sky.mag",
+                            counted(day, "exposure"), exposures.size()));
   if (low > 0)
     diagnostics.warn(fmt::format("{} below an apparent altitude of 3 deg: air mass is "
                                  "extrapolated there",
                                  counted(low, "exposure")));
+  if (aside > 0)
+    diagnostics.warn(
+        fmt::format("{} in twilight more than 40 deg from the zenith: the sky's "
+                    "brightness is that of the zenith, which is known; towards the Sun "
+                    "it is brighter",
+                    counted(aside, "exposure")));
+  return {};
+}
+
+/// What the instrument and the site say that can hardly be meant.
+void warn_of_setup(const Setup &s, double site_height_m, Diagnostics &diagnostics) {
+  const Detector &d = s.observation.instrument.detector;
+  const double numbers = (std::exp2(d.bits) - 1 - d.bias_adu) * d.gain_e_adu;
+  const bool has_numbers = d.model != DetectorModel::Ideal && d.model != DetectorModel::Counter;
+  if (has_numbers && d.em_gain <= 1 && d.well_e > numbers)
+    diagnostics.warn(
+        fmt::format("detector: a well of {:g} e is more than bits = {} with {:g} e/ADU "
+                    "tell ({:g} e): numbers fill first",
+                    d.well_e, d.bits, d.gain_e_adu, numbers));
+  if (constexpr double highest = 9000; site_height_m > highest)
+    diagnostics.warn(fmt::format("observer.alt_m = {:g}: higher than any mountain. It is in metres",
+                                 site_height_m));
 }
 
 Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands,
@@ -229,7 +275,8 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
       options.threads};
   out.light_s += seconds_since(began);
   warn_of_mosaic(setup, diagnostics);
-  warn_of_air(exposures, setup, diagnostics);
+  UMOV_TRY(check_air(exposures, setup, diagnostics));
+  warn_of_setup(setup, scenario.observer->altitude_m, diagnostics);
   Tables tables{CountsTable(setup), TruthTable(setup)};
   UMOV_TRY(run_blocks(setup, exposures, monitor, tables, out, diagnostics));
   out.counts.append(std::move(tables.counts).table());

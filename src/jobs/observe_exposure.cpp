@@ -32,7 +32,6 @@ Angle x_axis_from_zenith(const Instrument &instrument, const ObservingGeometry &
                           parallactic_angle(g), g.altitude);
 }
 
-
 } // namespace
 
 Result<LitBlock> light_of(const Setup &s, std::span<const Exposure> exposures,
@@ -95,9 +94,7 @@ ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, co
       out.truth += rotate_to<SkyNorth>(light_here, to_file) * (band.weight[k] * s.nodes[n].weight);
     }
   }
-  const auto sky = sky_light(s.sky, band, g);
-  out.is_twilight_unknown = sky.is_outside_fit;
-  light.sky = sky.per_arcsec2;
+  light.sky = sky_light(s.sky, band, g);
   light.altitude = g.altitude;
   const Angle seen = apparent_altitude(band.pivot_nm, g.altitude, s.surface);
   light.airmass = airmass(seen);

@@ -42,7 +42,6 @@ struct Recorded {
   Stokes<SkyNorth> truth; ///< in the frame of the files [W m-2 nm-1]
   Angle axis;             ///< of the instrument's x axis in that frame
   double airmass = 0, k_mag = 0, rate_rad_s = 0;
-  bool is_twilight_unknown = false;
   std::optional<Error> error;
 };
 

@@ -134,6 +134,12 @@ Result<void> read_sequence(const Node &node, ScenarioObservation &out) {
 Result<void> read_exposures(const Node &node, ScenarioObservation &out) {
   if (node.has("bands")) {
     UMOV_ASSIGN(bands, node.strings("bands"));
+    if (bands.empty())
+      return fail(
+          ErrorCode::BadInput,
+          "bands = []: one or more were expected, as [\"Bessell.V\"]; without the key those "
+          "of [bands] are taken",
+          node.where("bands"));
     out.bands = bands;
   }
   UMOV_TRY(read_at_least(node, "width_nm", 1e-6, out.width_nm));
@@ -147,6 +153,13 @@ Result<void> read_exposures(const Node &node, ScenarioObservation &out) {
                 node.where("cadence_s"));
   UMOV_TRY(read_sequence(node, out));
   UMOV_TRY(read_at_least(node, "aperture_fwhm", 0.01, out.aperture_fwhm));
+  if (constexpr double ring = 4; out.aperture_fwhm >= ring)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("aperture_fwhm = {}: the sky is taken from {} to 6 widths, and would hold "
+                    "the star; less than {} was expected",
+                    out.aperture_fwhm, ring, ring),
+        node.where("aperture_fwhm"));
   UMOV_TRY(read_at_least(node, "clock_error_s", 0, out.clock_error_s));
   UMOV_TRY(node.choice("level", "aperture", {"aperture"}, {"image"}));
   return {};
