@@ -129,7 +129,7 @@ def test_a_stop_does_not_wait_for_the_block(scene, umov, tmp_path):
 
 def test_wavelengths_stand_closer_where_colours_ask_for_it(scene, umov, tmp_path):
     """Gold through B: light above the air as umov run has it, which halves the nodes (docs/theory/bands.md)."""
-    path = scene('exposure_s = 1\nbands = ["Bessell.B"]', material="au", stop="2018-01-21T05:11:02Z")
+    path = scene('exposure_s = 1\nbands = ["Bessell.B"]', material="gold", stop="2018-01-21T05:11:02Z")
     assert umov("observe", path).code == 0
     truth = Table.read(tmp_path / "out/truth.ecsv")
     path.write_text(path.read_text().replace("[output]", '[bands]\nset = ["Bessell.B"]\n[output]')
@@ -147,7 +147,7 @@ def test_a_material_may_end_where_the_band_ends(scene, umov, tmp_path):
         "REFERENCES: made for a test\nDATA:\n  - type: tabulated nk\n    data: |\n"
         "        0.4 1.5 0.1\n        0.5 1.6 0.1\n        0.6 1.5 0.1\n")
     text = scene('exposure_s = 1\nbands = ["file:band.csv"]', material="own").read_text()
-    (tmp_path / "observe.toml").write_text(text + '\n[material.own]\nindex = "film.yml"\n')
+    (tmp_path / "observe.toml").write_text(text + '\n[material.own]\nindex = "film.yml"\ndistribution = { model = "beckmann", alpha = 0.3 }\n')
     done = umov("observe", "observe.toml")
     assert done.code == 0, done.err
     (tmp_path / "band.csv").write_text("# unit: nm\n# detector: photon\n390 0.5\n500 1\n600 0.5\n")

@@ -33,8 +33,8 @@ TEST(Programme, EveryBandMustBeSolvedByItself) {
   const auto none = Programme::make(wheel({{0, v}, {45, v}, {90, v}}), two_bands(), diagnostics);
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("no step in band"), std::string::npos);
-  const auto good = Programme::make(wheel({{0, v}, {0, r}, {60, v}, {60, r}, {120, ""}}), two_bands(),
-                                    diagnostics);
+  const auto good = Programme::make(wheel({{0, v}, {0, r}, {60, v}, {60, r}, {120, ""}}),
+                                    two_bands(), diagnostics);
   ASSERT_TRUE(good) << good.error().message;
   EXPECT_TRUE(diagnostics.empty());
   // A set is a round of all: three exposures of each band.
@@ -87,7 +87,7 @@ TEST(Sky, MoonlightIsSunlightThatTheAirScatters) {
   EXPECT_NEAR(thin, .52908 - 2.5 * 4.07 * std::log10(550.0328 / 439.8713), .02);
   sky.air.pressure_hpa = 1013.25;
   EXPECT_GT(magnitude("Bessell.B") - magnitude("Bessell.V"), thin); // thick air loses more blue
-  EXPECT_LT(magnitude("Bessell.V") - magnitude("Bessell.I"), .285);  // AB: bluer than the Sun
+  EXPECT_LT(magnitude("Bessell.V") - magnitude("Bessell.I"), .285); // AB: bluer than the Sun
 }
 
 } // namespace
