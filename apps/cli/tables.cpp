@@ -74,4 +74,15 @@ Result<void> check_output(const std::string &path) {
   return {};
 }
 
+Result<void> check_folder_name(const std::string &path) {
+  const std::string suffix = std::filesystem::path(path).extension().string();
+  if (std::ranges::find(table_suffixes(), suffix) == table_suffixes().end())
+    return {};
+  return fail(
+      ErrorCode::Usage,
+      fmt::format("-o {}: the name of a folder was expected, in which several files are put; "
+                  "output.formats says in which forms",
+                  path));
+}
+
 } // namespace umov::cli

@@ -25,5 +25,7 @@ Result<void> put_table(const std::string &path, const Table &table, const Common
 
 /// Refuses (Usage, Device) before any work what `put_table` would refuse after it.
 Result<void> check_output(const std::string &path);
+/// The name of an output folder: Usage for that of a table.
+Result<void> check_folder_name(const std::string &path);
 
 } // namespace umov::cli

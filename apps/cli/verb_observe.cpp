@@ -1,4 +1,5 @@
 #include "job_console.h"
+#include "tables.h"
 #include "verbs.h"
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@ Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnost
   UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.overrides));
   if (!o.output.empty())
     scenario.output_dir = o.output;
+  UMOV_TRY(check_folder_name(o.output));
   UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
   jobs::JobOptions options = job_options(common);
   options.allow_bad_checksum = o.allow_bad_checksum;

@@ -80,6 +80,15 @@ double counter_fano(const Detector &d, double rate) {
   return 1 / (x * x);
 }
 
+CorrectedCount corrected_count(const Detector &d, double told, double exposure_s) {
+  if (d.model != DetectorModel::Counter)
+    return {told, excess_variance(d), false};
+  constexpr double blind = .9; // dead for nine tenths of the time: a per cent there is one of ten
+  const double dead = told * d.dead_time_s / exposure_s;
+  const double kept = 1 - std::min(dead, blind);
+  return {told / kept, 1 / kept, dead > blind}; // 1 + n tau = 1/(1 - m tau)
+}
+
 PixelReading read_pixel(const Detector &d, double mean, double exposure_s, Draws &draws) {
   double electrons = draw_electrons(d, mean, exposure_s, draws);
   PixelReading out;

@@ -143,8 +143,10 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
                     static_cast<std::uint32_t>(channel), Stream::Light};
   Draws draws(key);
   const double star = out.mean_star * factor;
-  out.counts = draw_aperture(d, star + out.mean_sky, out.pixels, plan.exposure_s, draws);
-  out.excess2 = excess_variance(d);
+  out.recorded = draw_aperture(d, star + out.mean_sky, out.pixels, plan.exposure_s, draws);
+  const CorrectedCount corrected = corrected_count(d, out.recorded, plan.exposure_s);
+  out.counts = corrected.electrons;
+  out.excess2 = corrected.excess2;
   out.var_read = out.pixels * fixed_variance(d);
   const double ring = sky_pixels(light.airmass);
   const double per_pixel = out.excess2 * out.mean_sky / out.pixels + fixed_variance(d);
@@ -157,7 +159,7 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
   const double peak =
       star * lattice / share * peak_share(light.airmass) + out.mean_sky / out.pixels;
-  out.is_saturated = peak > saturation_e(d);
+  out.is_saturated = corrected.is_saturated || peak > saturation_e(d);
 }
 
 Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &plan,
@@ -177,10 +179,7 @@ Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &pla
     const double through = transmission(band_.nm[k], conditions_.air, light.airmass);
     const auto sky = at_polarimeter(k, light.sky, light.altitude, light.axis_zenith);
     const InstrumentMueller from_sky =
-        mirror_.empty()
-            ? axes_turned(light.axis)
-            : axes_turned(light.axis_zenith) * port(k, light.altitude) *
-                  axes_turned(Angle::radians(light.axis.radians() - light.axis_zenith.radians()));
+        axes_turned(light.axis_zenith) * port(k, light.altitude) * axes_turned(light.zenith);
     for (std::size_t c = 0; c < out.size(); ++c) {
       const PolarimeterChannel &channel = (*channels)[k][c];
       const StokesRow real = channel.row * own;

@@ -18,10 +18,24 @@ double pixel_scale_arcsec(const Telescope &t, double pixel_um) {
   return pixel_um * 1e-6 / t.focal_length_m / arcsec;
 }
 
-Angle axis_from_zenith(const Telescope &t, Angle x_axis, Angle parallactic_angle) {
+Angle axis_from_zenith(const Telescope &t, Angle x_axis, Angle parallactic_angle, Angle altitude) {
   if (t.mount == Mount::AltAz && !t.has_derotator)
     return x_axis;
-  return Angle::radians(x_axis.radians() - parallactic_angle.radians());
+  const Angle from_zenith = Angle::radians(x_axis.radians() - parallactic_angle.radians());
+  // The mirror swaps the hand and the altitude turns the image: done twice, both are undone.
+  return axis_on_sky(t, from_zenith, altitude);
+}
+
+Angle axis_on_sky(const Telescope &t, Angle axis, Angle altitude) {
+  switch (t.port) {
+  case TelescopePort::NasmythRight:
+    return Angle::radians(altitude.radians() - axis.radians());
+  case TelescopePort::NasmythLeft:
+    return Angle::radians(-altitude.radians() - axis.radians());
+  case TelescopePort::Cassegrain:
+    break;
+  }
+  return axis;
 }
 
 double share_inside(ImageProfile profile, double radius_fwhm) {

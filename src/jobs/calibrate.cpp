@@ -15,14 +15,6 @@ std::string note_of(const CountsFile &counts, const char *name) {
   return found == counts.notes.end() ? "" : found->second;
 }
 
-/// Where the instrument's x axis stood during a set.
-std::map<std::pair<std::string, std::int64_t>, double> axes_of(const CountsFile &counts) {
-  std::map<std::pair<std::string, std::int64_t>, double> out;
-  for (const CountRow &row : counts.rows)
-    out.try_emplace({row.name, row.set}, row.x_axis_pa_deg);
-  return out;
-}
-
 } // namespace
 
 Result<CalibrationFile> calibrate(const CountsFile &counts,
@@ -42,7 +34,6 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
       return fail(ErrorCode::BadInput,
                   "two bands, " + out.band + " and " + row.band + ": calibrate each by itself");
   UMOV_ASSIGN(table, reduce(counts, {}, {}, diagnostics));
-  const auto axes = axes_of(counts);
   std::vector<StandardMeasurement> data;
   for (std::size_t k = 0; k < table.rows(); ++k) {
     const std::string name = table.text("name", k);
@@ -50,8 +41,7 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
     const std::complex<double> z(table.number("q", k), table.number("u", k));
     if (star == standards.end() || !std::isfinite(z.real()))
       continue;
-    const auto set = static_cast<std::int64_t>(std::llround(table.number("set_id", k)));
-    const double axis = axes.at({name, set}) * pi / 180;
+    const double axis = table.number("x_axis_pa", k) * pi / 180;
     const double variance = (table.number("cov_qq", k) + table.number("cov_uu", k)) / 2;
     data.push_back({z * std::polar(1.0, -2 * axis), std::polar(star->p, 2 * star->angle_rad), axis,
                     std::sqrt(variance)});

@@ -81,7 +81,11 @@ Result<void> check(const ExposureRequest &r) {
     const char *name;
     double value, low, high;
   };
-  for (const Bound &b : {Bound{"--alt", r.altitude_deg, 3, 90},
+  for (const Bound &b : {Bound{"--mag", r.mag, -30, 40},
+                         {"--alt", r.altitude_deg, 3, 90},
+                         {"--height-m", r.height_m, -500, 9000},
+                         {"--sky-mag", r.sky_mag, -5, 40},
+                         {"--change-per-s", r.change_per_s, 0, 100},
                          {"--sd-p", r.sd_p, 1e-7, 1},
                          {"--nm", r.nm, 300, 1200},
                          {"--width-nm", r.width_nm, 1e-3, 1000},

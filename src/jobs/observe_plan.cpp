@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/core/text.h>
 #include <umov/io/passband_file.h>
-#include <umov/optics/band_grid.h>
 
 namespace umov::jobs {
 namespace {
@@ -33,6 +33,29 @@ std::vector<PolarimeterState> usual_states(PolarimeterType type) {
   }
 }
 
+/// Angles that a polarimeter of this type does not have.
+void warn_of_idle_angles(PolarimeterType type, const std::vector<SequenceStep> &sequence,
+                         Diagnostics &diagnostics) {
+  const bool has_analyser = type == PolarimeterType::PolarizerWheel ||
+                            type == PolarimeterType::RotatingRetarder ||
+                            type == PolarimeterType::Pem;
+  const bool has_plate = type == PolarimeterType::HwpDualBeam ||
+                         type == PolarimeterType::SpinningHwpDualBeam ||
+                         type == PolarimeterType::RotatingRetarder || type == PolarimeterType::Flc;
+  const auto warn = [&](const char *key, bool has_it, auto angle) {
+    if (!has_it &&
+        std::ranges::any_of(sequence, [&](const auto &step) { return angle(step) != 0; }))
+      diagnostics.warn(fmt::format("observation.sequence: {} says nothing to a polarimeter of type "
+                                   "\"{}\"",
+                                   key, name_of(type)));
+  };
+  warn("analyser_deg", has_analyser, [](const auto &step) { return step.state.analyser_deg; });
+  warn("plate_deg", has_plate, [](const auto &step) { return step.state.plate_deg; });
+  if (type == PolarimeterType::SpinningHwpDualBeam && sequence.size() > 1)
+    diagnostics.warn("observation.sequence: the plate turns by itself; of the steps only the first "
+                     "counts, as the angle at the start");
+}
+
 } // namespace
 
 Result<ObservedBands> observed_bands(const Scenario &scenario) {
@@ -47,30 +70,32 @@ Result<ObservedBands> observed_bands(const Scenario &scenario) {
       return fail(own.error().code, "observation.bands: " + own.error().message, {scenario.file});
     bands = std::move(*own);
   }
-  UMOV_ASSIGN(grid, BandGrid::make(bands));
   ObservedBands out;
-  out.nodes = grid.nodes();
-  for (Band &node : out.nodes)
-    node.curve = nullptr; // light is computed at the wavelength alone
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    UMOV_ASSIGN(response, bands[b].curve
-                              ? curve_band(*bands[b].curve)
-                              : narrow_band(bands[b].name, bands[b].wavelength.nm(), o.width_nm));
-    response.nm.clear();
-    response.weight.clear();
-    out.index.emplace_back();
-    for (const BandTerm &term : grid.terms()[b]) {
-      out.index.back().push_back(term.node);
-      response.nm.push_back(out.nodes[term.node].wavelength.nm());
-      response.weight.push_back(term.weight);
-    }
-    out.bands.push_back(std::move(response));
+  for (const Band &band : bands) {
+    UMOV_ASSIGN(response, band.curve ? curve_band(*band.curve)
+                                     : narrow_band(band.name, band.wavelength.nm(), o.width_nm));
+    out.responses.push_back(std::move(response));
   }
+  UMOV_ASSIGN(v_curve, find_passband("Bessell.V"));
+  UMOV_ASSIGN(v, curve_band(v_curve));
+  out.v = std::move(v);
+  out.bands = std::move(bands);
   return out;
 }
 
+BandResponse at_nodes(BandResponse response, const BandGrid &grid, std::size_t b) {
+  response.nm.clear();
+  response.weight.clear();
+  for (const BandTerm &term : grid.terms()[b]) {
+    response.nm.push_back(grid.nodes()[term.node].wavelength.nm());
+    response.weight.push_back(term.weight);
+  }
+  return response;
+}
+
 Result<Programme> Programme::make(const ScenarioObservation &o,
-                                  const std::vector<BandResponse> &bands) {
+                                  const std::vector<BandResponse> &bands,
+                                  Diagnostics &diagnostics) {
   const Polarimeter &p = o.instrument.polarimeter;
   Programme out;
   out.exposure_s_ = o.exposure_s;
@@ -105,30 +130,43 @@ Result<Programme> Programme::make(const ScenarioObservation &o,
       if (step.band.empty() || find(step.band) == b)
         out.steps_.push_back({step.state, b});
     }
-  out.set_size_ = is_simultaneous(p.type) ? 1 : steps.size();
-  UMOV_TRY(out.check(p, bands));
+  out.set_size_ = is_simultaneous(p.type) ? 1 : std::max<std::size_t>(1, out.steps_.size());
+  warn_of_idle_angles(p.type, o.sequence, diagnostics);
+  UMOV_TRY(out.check(p, bands, diagnostics));
   return out;
 }
 
-/// All states of a set together must tell what the type is made for.
-Result<void> Programme::check(const Polarimeter &p, const std::vector<BandResponse> &bands) const {
+/// The states of a set must tell, in each band by itself, what the type is made for.
+Result<void> Programme::check(const Polarimeter &p, const std::vector<BandResponse> &bands,
+                              Diagnostics &diagnostics) const {
   const std::size_t parameters = parameters_of(p.type);
-  if (parameters < 3)
-    return {};
-  for (const BandResponse &band : bands) {
+  for (std::size_t b = 0; b < bands.size(); ++b) {
     std::vector<StokesRow> rows;
-    for (std::size_t k = 0; k < set_size_; ++k) {
-      UMOV_ASSIGN(channels, polarimeter_channels(p, at(k).plan.state, band.pivot_nm));
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      if (steps_[k].band != b)
+        continue;
+      UMOV_ASSIGN(channels, polarimeter_channels(p, at(k).plan.state, bands[b].pivot_nm));
       for (const PolarimeterChannel &channel : channels)
         rows.push_back(channel.row);
     }
+    if (rows.empty())
+      return fail(ErrorCode::BadInput,
+                  fmt::format("observation.sequence has no step in band \"{}\"; add some, or leave "
+                              "it out of observation.bands",
+                              bands[b].name));
+    if (parameters < 3)
+      continue;
     const ModulationQuality quality = modulation_quality(rows, parameters);
     if (!std::isfinite(quality.condition) || rows.size() < parameters)
       return fail(ErrorCode::BadInput,
-                  fmt::format("the {} rows of observation.sequence cannot tell {} (condition "
-                              "number {:.3g}); give other angles",
-                              rows.size(), quality.missing.empty() ? "U" : quality.missing,
-                              quality.condition));
+                  fmt::format("the {} of observation.sequence in band \"{}\" cannot tell {} "
+                              "(condition number {:.3g}); give other angles",
+                              counted(rows.size(), "row"), bands[b].name,
+                              quality.missing.empty() ? "U" : quality.missing, quality.condition));
+    if (constexpr double poor = 10; quality.condition > poor)
+      diagnostics.warn(fmt::format("{}: the states tell the Stokes parameters badly (condition "
+                                   "number {:.3g}, 1.4 to 1.7 is good): their errors will be large",
+                                   bands[b].name, quality.condition));
   }
   return {};
 }

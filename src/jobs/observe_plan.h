@@ -1,18 +1,23 @@
 #pragma once
 // Private: which exposures are taken, with what, and in which bands.
 
+#include <umov/core/diagnostics.h>
 #include <umov/io/scenario.h>
+#include <umov/optics/band_grid.h>
 
 namespace umov::jobs {
 
-/// Bands with the few wavelengths that stand for them.
+/// Bands, and what the instrument makes of each.
 struct ObservedBands {
-  std::vector<BandResponse> bands;
-  std::vector<Band> nodes;                     ///< all wavelengths, each once
-  std::vector<std::vector<std::size_t>> index; ///< [band][node of the band] into nodes
+  std::vector<Band> bands;
+  std::vector<BandResponse> responses; ///< at one wavelength still: `at_nodes`
+  BandResponse v;                      ///< Bessell's V, in which moonlight is known
 };
 /// Those of the observation, else of the scenario.
 Result<ObservedBands> observed_bands(const Scenario &scenario);
+
+/// A band at the wavelengths of a grid, of which it is number `b`.
+BandResponse at_nodes(BandResponse response, const BandGrid &grid, std::size_t b);
 
 /// What exposure number k of the grid is set to.
 struct PlannedExposure {
@@ -22,24 +27,25 @@ struct PlannedExposure {
 /// Sequences of states and bands.
 class Programme {
 public:
-  /// BadInput where a band of the sequence is unknown, or the states cannot tell all parameters.
+  /// BadInput where a band of the sequence is unknown or not in it, or the states of one band
+  /// cannot tell all parameters; a warning where they do so badly, or say what the type does not
+  /// know.
   static Result<Programme> make(const ScenarioObservation &observation,
-                                const std::vector<BandResponse> &bands);
+                                const std::vector<BandResponse> &bands, Diagnostics &diagnostics);
   /// Exposure k.
   [[nodiscard]] PlannedExposure at(std::size_t k) const;
-  /// Exposures of a set.
-  [[nodiscard]] std::size_t set_size() const { return set_size_; }
 
 private:
   [[nodiscard]] Result<void> check(const Polarimeter &polarimeter,
-                                   const std::vector<BandResponse> &bands) const;
+                                   const std::vector<BandResponse> &bands,
+                                   Diagnostics &diagnostics) const;
   struct Step {
     PolarimeterState state;
     std::size_t band;
   };
   std::vector<Step> steps_;
   double exposure_s_ = 1, turn_per_exposure_ = 0, turn_per_cadence_ = 0;
-  std::size_t set_size_ = 1;
+  std::size_t set_size_ = 1; ///< exposures of a set: a round of all states in all bands
 };
 
 } // namespace umov::jobs

@@ -51,15 +51,16 @@ Result<PassModels> PassModels::of_scene(const PassModel &wanted, const JobOption
   for (std::size_t k = 0; k < scene.objects.size(); ++k) {
     const int norad = scene.objects[k].orbit ? scene.objects[k].orbit->norad : 0;
     UMOV_ASSIGN(object, load_object(scene, k, {.allow_old_elements = true}, diagnostics));
-    UMOV_ASSIGN(light,
-                PassLight::of_body({std::move(object.scene), object.attitude,
-                                    scene.objects[k].parts, scene.has_solar_disk, scene.magnitudes},
-                                   options_of(scene, options)));
+    UMOV_ASSIGN(
+        light, PassLight::of_body({std::move(object.scene), object.attitude, scene.objects[k].parts,
+                                   scene.has_solar_disk, scene.magnitudes, scene.air},
+                                  options_of(scene, options)));
     if (norad > 0)
       out.by_number_.insert_or_assign(norad, light);
     else
       out.other_ = light;
   }
+  out.has_air_ = scene.air.has_value();
   UMOV_ASSIGN(band, band_index(wanted.band, scene.bands));
   out.band_ = band;
   out.description_ = fmt::format("{}, {}", scene.file, scene.bands[band].name);

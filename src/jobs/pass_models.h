@@ -19,6 +19,8 @@ public:
   [[nodiscard]] bool is_by_number() const { return !by_number_.empty() && !other_; }
   [[nodiscard]] Result<void> keep_masks() const;
   [[nodiscard]] std::size_t band() const { return band_; }
+  /// Magnitudes behind the air are told too.
+  [[nodiscard]] bool has_air() const { return has_air_; }
   [[nodiscard]] const std::string &description() const { return description_; }
 
 private:
@@ -29,6 +31,7 @@ private:
   std::map<int, PassLight> by_number_;
   std::optional<PassLight> other_;
   std::size_t band_ = 0;
+  bool has_air_ = false;
   std::string description_ = "none: no magnitudes";
 };
 

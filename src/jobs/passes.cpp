@@ -193,6 +193,7 @@ Result<PassesResult> passes(const PassesRequest &request, const JobOptions &opti
   warn_if_outside_eop(request.start, request.stop, diagnostics);
   UMOV_ASSIGN(models, PassModels::make(request.model, options, diagnostics));
   out.model = models.description();
+  out.has_air = models.has_air();
   out.magnitudes = request.model.scene ? request.model.scene->magnitudes : MagnitudeSystem::AB;
   warn_of_unknown(out.orbits, models, diagnostics);
   const Tally tally = gather(

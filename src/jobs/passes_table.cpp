@@ -113,6 +113,12 @@ void PassColumns::add_light() {
   number("mag_max", unit.c_str(),
          fmt::format("faintest while sunlit; {:g} stands for fainter", faintest_magnitude).c_str(),
          [](E, P p) { return p.magnitude_max; });
+  if (result_.has_air) {
+    number("mag_obs_min", unit.c_str(), "brightest while sunlit, behind the air",
+           [](E, P p) { return p.magnitude_obs_min; });
+    number("mag_obs_max", unit.c_str(), "faintest while sunlit, behind the air",
+           [](E, P p) { return p.magnitude_obs_max; });
+  }
   number("p_max", "", "largest degree of linear polarization while sunlit",
          [](E, P p) { return p.p_max; });
   text("glints", "times of glints, joined by semicolons", [](E, P p) {

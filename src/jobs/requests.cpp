@@ -24,6 +24,8 @@ LightCurveRequest light_curve_request(const Scenario &scenario, const ScenarioOb
   out.magnitudes = scenario.magnitudes;
   out.earthshine = scenario.earthshine;
   out.has_moonlight = scenario.has_moonlight;
+  if (scenario.air)
+    out.air = air_over(*scenario.air, *scenario.observer);
   out.has_refracted_shadow = scenario.has_refracted_shadow;
   out.light = light_options(scenario, job);
   out.threads = job.threads;

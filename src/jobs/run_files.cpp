@@ -1,8 +1,8 @@
 // The files of a run's folder.
 
+#include "jobs/result_folder.h"
 #include "jobs/run_report.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 #include <umov/io/light_curve_table.h>
 #include <umov/jobs/run.h>
@@ -18,24 +18,12 @@ struct Written {
   const Diagnostics &diagnostics;
 };
 
-bool wants(const Scenario &scenario, const char *format) {
-  return std::find(scenario.formats.begin(), scenario.formats.end(), format) !=
-         scenario.formats.end();
-}
-
 Result<void> add_tables(const Written &run, RunFolder &folder) {
   const auto [table, passes] = run_tables(run.result);
   if (run.result.stopped)
     folder.spare_complete_run();
   folder.add("passes.ecsv", to_ecsv(passes));
-  if (wants(run.scenario, "ecsv"))
-    folder.add("lightcurve.ecsv", to_ecsv(table));
-  if (wants(run.scenario, "csv"))
-    folder.add("lightcurve.csv", to_csv(table));
-  if (wants(run.scenario, "fits")) {
-    UMOV_ASSIGN(bytes, to_fits(table));
-    folder.add("lightcurve.fits", std::move(bytes));
-  }
+  UMOV_TRY(add_table(table, "lightcurve", run.scenario, folder));
   return {};
 }
 
@@ -58,8 +46,7 @@ std::string log_of(const Written &run) {
   std::string out;
   for (const ObjectRun &one : run.result.objects)
     out += summarize(one.outcome);
-  for (const Warning &warning : run.diagnostics.warnings())
-    out += "warning: " + warning.text() + "\n";
+  out += warning_lines(run.diagnostics);
   if (run.result.stopped)
     out += "error: " + run.result.stopped->text() + "\n";
   return out;
@@ -95,22 +82,16 @@ Result<void> write_run(RunResult &result, const Scenario &scenario, const JobOpt
   const Written run{result, scenario, options, diagnostics};
   UMOV_TRY(add_tables(run, folder));
   UMOV_TRY(add_reports(run, folder));
-  folder.add("scenario.lock.toml", options_needed(options) + locked_scenario(scenario));
-  folder.add("log.txt", log_of(run));
+  std::vector<InputFile> inputs;
   for (const ObjectRun &one : result.objects) {
-    for (const InputFile &input : one.object.inputs)
-      if (const std::pair entry{input.path, input.sha256};
-          std::find(manifest.inputs.begin(), manifest.inputs.end(), entry) == manifest.inputs.end())
-        manifest.inputs.push_back(entry);
+    inputs.insert(inputs.end(), one.object.inputs.begin(), one.object.inputs.end());
     manifest.light.push_back({one.request.object, name_of(one.light.method), one.light.visibility,
                               one.light.instruction_set});
   }
-  manifest.seed = scenario.seed;
-  for (const Warning &warning : diagnostics.warnings())
-    manifest.warnings.push_back(warning.text());
   if (result.stopped)
     manifest.stopped = result.stopped->text();
-  folder.add("manifest.json", make_manifest(manifest));
+  add_records(scenario, options_needed(options), log_of(run), inputs, diagnostics,
+              std::move(manifest), folder);
   UMOV_TRY(folder.commit());
   if (!result.stopped || result.stopped->code != ErrorCode::Interrupted)
     result.journal.finish();

@@ -310,6 +310,11 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
                  cancel, blocks);
   truncate(out.curve, maker.fill(progress, out.stopped));
   count_rows(out);
+  if (request.air)
+    for (const LightCurveEpoch &epoch : out.curve.epochs)
+      for (std::size_t b = 0; b < out.curve.bands.size(); ++b)
+        out.curve.transmission.push_back(
+            band_transmission(light.scene().grid, b, *request.air, epoch.geometry.altitude));
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <umov/light/light_model.h>
 #include <umov/observation/track.h>
 #include <umov/photometry/radiometry.h>
@@ -19,6 +20,7 @@ struct PassLight::State {
   std::vector<MovingJoint> joints;
   bool has_solar_disk = true;
   std::vector<std::vector<GlintFlat>> flats; ///< of each joint's part, then of what stands still
+  std::optional<SiteAir> air;
 };
 
 namespace {
@@ -43,6 +45,7 @@ Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options)
   state->bands = std::move(colours);
   state->attitude = body.attitude;
   state->has_solar_disk = body.has_solar_disk;
+  state->air = body.air;
   const std::vector<Joint> joints = joints_of(body.joints);
   const std::vector<std::size_t> part_of = joint_of_groups(body.scene.mesh, joints);
   state->flats.resize(joints.size() + 1);
@@ -88,9 +91,10 @@ Result<void> PassLight::keep_masks() const {
 
 namespace {
 
-/// Takes one sample of light into the pass's ranges, as far as it is known.
+/// Takes one sample of light into the pass's ranges, as far as it is known. `share`: of it that the
+/// air lets through; NaN: not asked for.
 void take(const BandResult &light, const ObservingGeometry &g, const PhotometricBand &band,
-          SitePass &pass) {
+          double share, SitePass &pass) {
   const auto &[s, half_width] = light;
   const ObservedLight observed =
       observed_light(s.i, band, {g.sun_distance_km, g.range_km, g.sunlit});
@@ -100,6 +104,9 @@ void take(const BandResult &light, const ObservingGeometry &g, const Photometric
   // fmin and fmax take the number where one of the two is none.
   pass.magnitude_min = std::fmin(pass.magnitude_min, magnitude);
   pass.magnitude_max = std::fmax(pass.magnitude_max, magnitude);
+  const double behind = std::min(observed.magnitude - 2.5 * std::log10(share), faintest_magnitude);
+  pass.magnitude_obs_min = std::fmin(pass.magnitude_obs_min, behind);
+  pass.magnitude_obs_max = std::fmax(pass.magnitude_obs_max, behind);
   if (is_p_known(s.i, half_width))
     pass.p_max = std::fmax(pass.p_max, std::hypot(s.q, s.u) / s.i);
 }
@@ -164,7 +171,8 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
       const double share = at - static_cast<double>(k);
       const auto &a = state.by_phase[k * state.bands.size() + band],
                  &b = state.by_phase[(k + 1) * state.bands.size() + band];
-      take({a * (1 - share) + b * share, {}}, g, state.bands[band], pass);
+      take({a * (1 - share) + b * share, {}}, g, state.bands[band],
+           std::numeric_limits<double>::quiet_NaN(), pass);
     }
     return {};
   }
@@ -186,7 +194,11 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
   if (!state.light->evaluate(poses, angles, table, task))
     return fail(ErrorCode::Interrupted, stopped);
   for (std::size_t k = 0; k < poses.size(); ++k)
-    take(table.at(k, band), lit[k], state.bands[band], pass);
+    take(table.at(k, band), lit[k], state.bands[band],
+         state.air ? band_transmission(state.light->scene().grid, band, air_over(*state.air, site),
+                                       lit[k].altitude)
+                   : std::numeric_limits<double>::quiet_NaN(),
+         pass);
   return {};
 }
 

@@ -61,6 +61,10 @@ Result<void> check_curve(const std::vector<double> &nm, const std::vector<double
                                  "cent? Divide by 100.",
                                  response[i], nm[i]));
   }
+  if (constexpr double longest = 1e6; nm.back() > longest) // 1 mm: an energy curve is cut into nm
+    return problem(fmt::format("wavelength {:g} nm; at most {:g} nm was expected. Which unit are "
+                               "they in?",
+                               nm.back(), longest));
   if (nm.back() < 10)
     return problem(fmt::format("wavelengths {:g} to {:g} nm; are they in micrometres? Say um.",
                                nm.front(), nm.back()));

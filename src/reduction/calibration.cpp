@@ -56,15 +56,28 @@ Result<PolarimeterCalibration> calibrate_polarimeter(std::span<const StandardMea
   return out;
 }
 
+StokesRow calibrated_row(const PolarimeterCalibration &c, const StokesRow &row, double axis_rad) {
+  // (Q + iU) of the instrument = factor (Q + iU) e^(-2i axis) + offset I, and the row answers to
+  // it.
+  const StokesRow own = row_on_sky(row, Angle::radians(-axis_rad));
+  const Complex turned = c.factor * std::polar(1.0, -2 * axis_rad);
+  return {own[0] + own[1] * c.offset.real() + own[2] * c.offset.imag(),
+          own[1] * turned.real() + own[2] * turned.imag(),
+          own[2] * turned.real() - own[1] * turned.imag(), own[3]};
+}
+
+double common_variance(const PolarimeterCalibration &c, Complex own) {
+  return (c.offset_sd * c.offset_sd + std::norm(own) * c.factor_sd * c.factor_sd) /
+         std::norm(c.factor);
+}
+
 CalibratedTarget apply(const PolarimeterCalibration &c, Complex measured, double axis_rad,
                        double variance) {
   CalibratedTarget out;
   const Complex own = (measured - c.offset) / c.factor;
   out.value = own * std::polar(1.0, 2 * axis_rad);
-  const double square = std::norm(c.factor);
-  out.variance = variance / square;
-  out.common_variance =
-      (c.offset_sd * c.offset_sd + std::norm(own) * c.factor_sd * c.factor_sd) / square;
+  out.variance = variance / std::norm(c.factor);
+  out.common_variance = common_variance(c, own);
   return out;
 }
 

@@ -14,17 +14,21 @@ double log_poisson_gauss(double counts, double mean, double read_sd) {
   const double reach = 12 * (std::sqrt(mean) + read_sd + 1);
   const auto first = static_cast<std::int64_t>(std::max(0.0, std::min(mean, counts) - reach));
   const auto last = static_cast<std::int64_t>(std::max({mean, counts, 0.0}) + reach);
-  double largest = -std::numeric_limits<double>::infinity();
-  std::vector<double> terms;
+  // The sum is kept relative to its largest term so far.
+  double largest = -std::numeric_limits<double>::infinity(), sum = 0;
+  const double log_mean = std::log(mean);
+  double log_factorial = std::lgamma(static_cast<double>(first) + 1);
   for (std::int64_t k = first; k <= last; ++k) {
     const auto n = static_cast<double>(k);
     const double off = (counts - n) / read_sd;
-    terms.push_back(n * std::log(mean) - mean - std::lgamma(n + 1) - off * off / 2);
-    largest = std::max(largest, terms.back());
-  }
-  double sum = 0;
-  for (const double term : terms)
+    const double term = (k > 0 ? n * log_mean : 0) - mean - log_factorial - off * off / 2;
+    if (term > largest) {
+      sum *= std::exp(largest - term);
+      largest = term;
+    }
     sum += std::exp(term - largest);
+    log_factorial += std::log(n + 1);
+  }
   return largest + std::log(sum) - std::log(read_sd * std::sqrt(2 * pi));
 }
 

@@ -85,6 +85,131 @@ tl::unexpected<Error> indistinct() {
                                    "fewer harmonics or more analyser angles are needed");
 }
 
+/// Data as matrices, and what the fit needs of them.
+class SequenceSolver {
+public:
+  SequenceSolver(std::span<const TimedDatum> data, double period_s, int harmonics)
+      : data_(data), period_s_(period_s) {
+    const auto n = static_cast<Eigen::Index>(data.size());
+    basis_.resize(n, 1 + 2 * harmonics);
+    counts_.resize(n), sky_.resize(n), fixed_.resize(n), excess_.resize(n);
+    for (Eigen::Index r = 0; r < n; ++r) {
+      const TimedDatum &one = data[static_cast<std::size_t>(r)];
+      basis_.row(r) = basis_at(2 * pi * one.time_s / period_s, harmonics).transpose();
+      counts_(r) = one.datum.counts;
+      sky_(r) = one.datum.sky;
+      fixed_(r) = one.datum.fixed_variance;
+      excess_(r) = one.datum.excess2;
+      scale_ += one.datum.row[0] / static_cast<double>(n);
+      light_ += (one.datum.counts - one.datum.sky) / static_cast<double>(n);
+    }
+  }
+
+  [[nodiscard]] State flat(Eigen::Index fractions) const {
+    State out{Vector::Zero(basis_.cols()), Vector::Zero(fractions)};
+    out.series(0) = light_;
+    return out;
+  }
+  [[nodiscard]] State from(const SequenceFit &fit) const {
+    State out{Vector(basis_.cols()), Vector(fit.parameters - 1)};
+    for (Eigen::Index k = 0; k < out.series.size(); ++k)
+      out.series(k) = fit.series[static_cast<std::size_t>(k)] * scale_;
+    for (Eigen::Index k = 0; k < out.fractions.size(); ++k)
+      out.fractions(k) = fit.fractions.value[static_cast<std::size_t>(k)];
+    return out;
+  }
+
+  /// Gauss-Newton with the variance of the model, and of what is common to several counts.
+  Result<SequenceFit> solve(State state, std::span<const CommonError> common) const {
+    const Matrix effects = effects_of(common);
+    Matrix covariance;
+    SequenceFit out;
+    constexpr int rounds = 15;
+    for (int k = 0; k < rounds; ++k) {
+      const Linearised now = linearise(data_, basis_, state, scale_);
+      const Vector residual = counts_ - now.mean;
+      const Matrix weighted = inverse_times(now.mean, effects, now.jacobian).transpose();
+      const Matrix normal = weighted * now.jacobian;
+      if (!tells_apart(normal))
+        return indistinct();
+      const Eigen::LDLT<Matrix> factor(normal);
+      const Vector step = factor.solve(weighted * residual);
+      if (factor.info() != Eigen::Success || !step.allFinite())
+        return indistinct();
+      state.series += step.head(state.series.size());
+      state.fractions += step.tail(state.fractions.size());
+      covariance = factor.solve(Matrix::Identity(step.size(), step.size()));
+      out.chi2 = residual.dot(inverse_times(now.mean, effects, residual).col(0));
+    }
+    put(state, covariance, out);
+    return out;
+  }
+
+private:
+  /// J sqrt(Sigma), one column for each.
+  [[nodiscard]] Matrix effects_of(std::span<const CommonError> common) const {
+    Matrix out(counts_.size(), static_cast<Eigen::Index>(common.size()));
+    for (std::size_t c = 0; c < common.size(); ++c)
+      out.col(static_cast<Eigen::Index>(c)) =
+          Eigen::Map<const Vector>(common[c].effect.data(), counts_.size()) * common[c].sd;
+    return out;
+  }
+
+  /// (C_n)^-1 times a matrix: every exposure is a diagonal and what its channels share (Sherman &
+  /// Morrison).
+  [[nodiscard]] Matrix own_inverse_times(const Vector &mean, const Matrix &m) const {
+    const Vector weight = (mean.cwiseMax(1).cwiseProduct(excess_) + fixed_).cwiseInverse();
+    Matrix out = weight.asDiagonal() * m;
+    const Eigen::Index n = counts_.size();
+    for (Eigen::Index begin = 0, end = 0; begin < n; begin = end) {
+      const TimedDatum &first = data_[static_cast<std::size_t>(begin)];
+      while (end < n && data_[static_cast<std::size_t>(end)].exposure == first.exposure)
+        ++end;
+      if (!(first.flicker > 0))
+        continue;
+      const Eigen::Index count = end - begin;
+      const Vector effect = (mean - sky_).segment(begin, count) * first.flicker;
+      const Vector weighted = weight.segment(begin, count).cwiseProduct(effect);
+      const Eigen::RowVectorXd along = effect.transpose() * out.middleRows(begin, count);
+      out.middleRows(begin, count) -= weighted * along / (1 + effect.dot(weighted));
+    }
+    return out;
+  }
+
+  /// C^-1 times a matrix (Woodbury).
+  [[nodiscard]] Matrix inverse_times(const Vector &mean, const Matrix &effects,
+                                     const Matrix &m) const {
+    const Matrix plain = own_inverse_times(mean, m);
+    if (effects.cols() == 0)
+      return plain;
+    const Matrix weighted = own_inverse_times(mean, effects);
+    const Matrix small =
+        Matrix::Identity(effects.cols(), effects.cols()) + effects.transpose() * weighted;
+    return plain - weighted * Eigen::LLT<Matrix>(small).solve(effects.transpose() * plain);
+  }
+
+  void put(const State &state, const Matrix &covariance, SequenceFit &out) const {
+    const Eigen::Index terms = state.series.size(), fractions = state.fractions.size();
+    out.period_s = period_s_;
+    out.parameters = static_cast<int>(fractions) + 1;
+    out.dof = static_cast<int>(counts_.size() - terms - fractions);
+    out.mean_variance = covariance(0, 0) / (scale_ * scale_);
+    for (Eigen::Index k = 0; k < terms; ++k)
+      out.series.push_back(state.series(k) / scale_);
+    for (Eigen::Index a = 0; a < fractions; ++a) {
+      out.fractions.value[static_cast<std::size_t>(a)] = state.fractions(a);
+      for (Eigen::Index b = 0; b < fractions; ++b)
+        out.fractions.covariance[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
+            covariance(terms + a, terms + b);
+    }
+  }
+
+  std::span<const TimedDatum> data_;
+  double period_s_, scale_ = 0, light_ = 0;
+  Matrix basis_;
+  Vector counts_, sky_, fixed_, excess_;
+};
+
 } // namespace
 
 Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period_s, int harmonics,
@@ -97,50 +222,24 @@ Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period
                 fmt::format("{} counts for {} unknowns; a longer series, or fewer harmonics than "
                             "{}, is needed",
                             n, terms + fractions, harmonics));
-  double scale = 0, light = 0;
-  Matrix basis(n, terms);
-  Vector counts(n), fixed(n), excess(n), sky(n);
-  for (Eigen::Index r = 0; r < n; ++r) {
-    const TimedDatum &one = data[static_cast<std::size_t>(r)];
-    const double phase = 2 * pi * one.time_s / period_s;
-    basis.row(r) = basis_at(phase, harmonics).transpose();
-    counts(r) = one.datum.counts;
-    fixed(r) = one.datum.fixed_variance;
-    excess(r) = one.datum.excess2;
-    scale += one.datum.row[0] / static_cast<double>(n);
-    light += (one.datum.counts - one.datum.sky) / static_cast<double>(n);
-  }
-  State state{Vector::Zero(terms), Vector::Zero(fractions)};
-  state.series(0) = light;
-  Matrix covariance;
-  SequenceFit out;
-  constexpr int rounds = 15;
-  for (int k = 0; k < rounds; ++k) {
-    const Linearised now = linearise(data, basis, state, scale);
-    const Vector weight = (now.mean.cwiseMax(1).cwiseProduct(excess) + fixed).cwiseInverse();
-    const Matrix weighted = now.jacobian.transpose() * weight.asDiagonal();
-    const Eigen::LDLT<Matrix> factor(weighted * now.jacobian);
-    if (!tells_apart(weighted * now.jacobian))
-      return indistinct();
-    const Vector residual = counts - now.mean, step = factor.solve(weighted * residual);
-    if (factor.info() != Eigen::Success || !step.allFinite())
-      return indistinct();
-    state.series += step.head(terms);
-    state.fractions += step.tail(fractions);
-    covariance = factor.solve(Matrix::Identity(terms + fractions, terms + fractions));
-    out.chi2 = residual.dot(weight.cwiseProduct(residual));
-  }
-  out.dof = static_cast<int>(n - terms - fractions);
-  out.mean_variance = covariance(0, 0) / (scale * scale);
-  for (Eigen::Index k = 0; k < terms; ++k)
-    out.series.push_back(state.series(k) / scale);
-  for (Eigen::Index a = 0; a < fractions; ++a) {
-    out.fractions.value[static_cast<std::size_t>(a)] = state.fractions(a);
-    for (Eigen::Index b = 0; b < fractions; ++b)
-      out.fractions.covariance[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
-          covariance(terms + a, terms + b);
-  }
-  return out;
+  const SequenceSolver solver(data, period_s, harmonics);
+  return solver.solve(solver.flat(fractions), {});
+}
+
+Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, const SequenceFit &without,
+                                 std::span<const CommonError> common) {
+  const auto harmonics = static_cast<int>(without.series.size() / 2);
+  const SequenceSolver solver(data, without.period_s, harmonics);
+  return solver.solve(solver.from(without), common);
+}
+
+std::array<double, 4> stokes_at(const SequenceFit &fit, double time_s) {
+  const auto harmonics = static_cast<Eigen::Index>(fit.series.size() / 2);
+  const double brightness =
+      basis_at(2 * pi * time_s / fit.period_s, harmonics)
+          .dot(Eigen::Map<const Vector>(fit.series.data(), 1 + 2 * harmonics));
+  const auto &f = fit.fractions.value;
+  return {brightness, brightness * f[0], brightness * f[1], brightness * f[2]};
 }
 
 } // namespace umov

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <fmt/format.h>
+#include <set>
 #include <umov/instrument/polarimeter.h>
 
 namespace umov {
@@ -121,37 +122,48 @@ Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t par
 }
 
 std::vector<CommonError> common_errors(const ErrorPriors &priors,
-                                       std::span<const ChannelDatum> data, const StokesFit &fit,
-                                       double axis_rad) {
+                                       std::span<const ModelledDatum> data) {
   std::vector<CommonError> out;
   const auto add = [&](double sd, auto effect) {
     if (sd <= 0)
       return;
     CommonError one{{}, sd};
-    for (const ChannelDatum &datum : data)
-      one.effect.push_back(effect(datum));
+    for (const ModelledDatum &m : data)
+      one.effect.push_back(effect(m));
     out.push_back(std::move(one));
   };
-  const auto &s = fit.stokes;
-  const auto star = [&s](const ChannelDatum &d) {
-    return d.row[0] * s[0] + d.row[1] * s[1] + d.row[2] * s[2] + d.row[3] * s[3];
+  const auto star = [](const ModelledDatum &m) {
+    const auto &[i, q, u, v] = m.stokes;
+    return respond(m.datum.row, Stokes<InstrumentAxes>{i, q, u, v});
   };
-  const auto own_axes = [axis_rad](const ChannelDatum &d) {
-    return row_on_sky(d.row, Angle::radians(-axis_rad));
+  const auto own_axes = [](const ModelledDatum &m) {
+    return row_on_sky(m.datum.row, Angle::radians(-m.axis_rad));
   };
-  add(priors.instrumental, [&](const ChannelDatum &d) { return own_axes(d)[1] * s[0]; });
-  add(priors.instrumental, [&](const ChannelDatum &d) { return own_axes(d)[2] * s[0]; });
-  for (std::size_t k = 0; priors.gain > 0 && k < data.size(); ++k) {
-    CommonError one{std::vector<double>(data.size(), 0), priors.gain};
-    one.effect[k] = star(data[k]);
-    out.push_back(std::move(one));
-  }
+  add(priors.instrumental, [&](const auto &m) { return own_axes(m)[1] * m.stokes[0]; });
+  add(priors.instrumental, [&](const auto &m) { return own_axes(m)[2] * m.stokes[0]; });
+  std::set<std::size_t> channels;
+  for (const ModelledDatum &m : data)
+    channels.insert(m.channel);
+  for (const std::size_t channel : channels)
+    add(priors.gain, [&](const auto &m) { return m.channel == channel ? star(m) : 0; });
   add(priors.transparency, star);
-  add(priors.angle_rad,
-      [&](const ChannelDatum &d) { return 2 * (d.row[2] * s[1] - d.row[1] * s[2]); });
-  add(priors.efficiency, [&](const ChannelDatum &d) { return d.row[1] * s[1] + d.row[2] * s[2]; });
-  add(priors.sky, [](const ChannelDatum &d) { return d.sky; });
+  add(priors.angle_rad, [](const ModelledDatum &m) {
+    return 2 * (m.datum.row[2] * m.stokes[1] - m.datum.row[1] * m.stokes[2]);
+  });
+  add(priors.efficiency, [](const ModelledDatum &m) {
+    return m.datum.row[1] * m.stokes[1] + m.datum.row[2] * m.stokes[2];
+  });
+  add(priors.sky, [](const ModelledDatum &m) { return m.datum.sky; });
   return out;
+}
+
+std::vector<CommonError> common_errors(const ErrorPriors &priors,
+                                       std::span<const ChannelDatum> data, const StokesFit &fit,
+                                       double axis_rad) {
+  std::vector<ModelledDatum> modelled;
+  for (const ChannelDatum &datum : data)
+    modelled.push_back({datum, fit.stokes, axis_rad, modelled.size()});
+  return common_errors(priors, modelled);
 }
 
 StokesFractions fractions_of(const StokesFit &fit) {

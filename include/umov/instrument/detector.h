@@ -69,6 +69,15 @@ double counted_rate(const Detector &detector, double rate);
 /// Variance of its counts over their mean.
 double counter_fano(const Detector &detector, double rate);
 
+/// A sum of counts behind all corrections.
+struct CorrectedCount {
+  double electrons = 0, excess2 = 1; ///< variance over Poisson's
+  bool is_saturated = false;
+};
+/// What a counter told, with those that fell into its dead time: n = m/(1 - m tau), whose variance
+/// is n (1 + n tau). Of other detectors as it is.
+CorrectedCount corrected_count(const Detector &detector, double told, double exposure_s);
+
 /// One pixel, read out.
 struct PixelReading {
   int adu = 0;

@@ -69,8 +69,8 @@ struct ExposureLight {
   Stokes<SkyNorth> sky; ///< per square arc second, zenith axes [W m-2 nm-1 arcsec-2]
   double airmass = 1;
   Angle altitude;        ///< of the object
-  Angle axis_zenith;     ///< of the instrument's x axis, from the zenith direction
-  Angle axis;            ///< the same from the reference direction of the sky frame of the files
+  Angle axis_zenith;     ///< of the instrument's x axis in the focus (`axis_from_zenith`)
+  Angle zenith;          ///< position angle of the zenith in the sky frame of the files
   double rate_rad_s = 0; ///< of the object over the sky
   double transparency = 1;
 };
@@ -80,6 +80,7 @@ struct ChannelCounts {
   std::string channel;
   double analyser_deg = 0;
   double counts = 0;           ///< electrons in the aperture, sky included
+  double recorded = 0;         ///< the same as the detector tells them: a counter misses some
   double sky = 0, sky_err = 0; ///< of them, as the annulus says: sky and dark
   double pixels = 0;
   double var_read = 0; ///< [e2] of reading and rounding, all pixels

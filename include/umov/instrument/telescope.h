@@ -26,9 +26,13 @@ struct Telescope {
 double collecting_area_m2(const Telescope &telescope);
 /// Scale of the image [arcsec/px].
 double pixel_scale_arcsec(const Telescope &telescope, double pixel_um);
-/// Position angle of the instrument's x axis from the zenith direction. parallactic_angle: of the
-/// zenith from the pole.
-Angle axis_from_zenith(const Telescope &telescope, Angle x_axis, Angle parallactic_angle);
+/// Angle of the instrument's x axis in the focus: from the zenith direction, at a Nasmyth port from
+/// the vertical there, in its mirrored image. `parallactic_angle`: of the zenith from the pole;
+/// `altitude`: where the telescope points.
+Angle axis_from_zenith(const Telescope &telescope, Angle x_axis, Angle parallactic_angle,
+                       Angle altitude);
+/// Where on the sky that axis lies, from the zenith direction.
+Angle axis_on_sky(const Telescope &telescope, Angle axis_from_zenith, Angle altitude);
 
 /// Profile of a star's image.
 enum class ImageProfile { Gauss, Moffat }; ///< Moffat with exponent 4.765 (Trujillo et al. 2001)

@@ -50,6 +50,7 @@ struct PassesResult {
   std::vector<ObjectPass> found;  ///< by the time of rise
   std::string model;              ///< what the objects were taken for, in words
   MagnitudeSystem magnitudes = MagnitudeSystem::AB;
+  bool has_air = false;         ///< the scene has an atmosphere: magnitudes behind it too
   std::optional<Error> stopped; ///< Interrupted: passes of some objects are not there
 };
 

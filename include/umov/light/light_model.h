@@ -81,6 +81,11 @@ public:
   [[nodiscard]] bool evaluate(std::span<const Pose> poses, StokesTable &out,
                               const LightTask &task = {}) const;
 
+  /// The same at each wavelength of the scene's grid, for who weighs them otherwise: through air.
+  [[nodiscard]] bool evaluate_at_nodes(std::span<const Pose> poses,
+                                       std::span<const double> angles_rad, StokesTable &out,
+                                       const LightTask &task = {}) const;
+
   /// What is lit.
   [[nodiscard]] const Scene &scene() const { return scene_; }
   /// Its parts that turn.

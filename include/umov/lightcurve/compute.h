@@ -7,6 +7,7 @@
 #include <umov/core/journal.h>
 #include <umov/light/light_model.h>
 #include <umov/lightcurve/earth_light.h>
+#include <umov/lightcurve/extinction.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/observation/epochs.h>
 
@@ -27,6 +28,7 @@ struct LightCurveRequest {
   MagnitudeSystem magnitudes = MagnitudeSystem::AB;
   std::optional<EarthshineOptions> earthshine; ///< absent: none
   bool has_moonlight = false;
+  std::optional<Air> air; ///< over the site; absent: rows above the air alone
   /// Sunlight at the Earth's edge bent and reddened by its air: I takes `refracted_sunlight` of its
   /// band where `sunlit` of the geometry has none of it.
   bool has_refracted_shadow = false;

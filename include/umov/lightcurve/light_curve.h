@@ -71,6 +71,7 @@ struct LightCurve {
   std::vector<std::string> materials;     ///< in order of first use in the scene
   std::vector<LightCurveEpoch> epochs;
   std::vector<LightCurveSample> samples;  ///< [epoch * bands.size() + band]
+  std::vector<double> transmission;       ///< of the air, like samples; empty: none was asked for
   std::vector<SecondLight> second_lights; ///< those asked for
   std::vector<double> material_i; ///< direct light: [(epoch * materials + material) * bands + band]
 };

@@ -6,6 +6,7 @@
 #include <umov/attitude/attitude.h>
 #include <umov/light/glints.h>
 #include <umov/light/light_model.h>
+#include <umov/lightcurve/extinction.h>
 #include <umov/observation/track.h>
 #include <umov/orbit/passes.h>
 #include <umov/scene/scene.h>
@@ -19,6 +20,7 @@ struct PassBody {
   std::vector<MovingJoint> joints; ///< checked against the mesh
   bool has_solar_disk = true;      ///< the Sun as a uniform disk at its distance, or a point
   MagnitudeSystem magnitudes = MagnitudeSystem::AB;
+  std::optional<SiteAir> air = {}; ///< absent: magnitudes above the air alone
 };
 
 /// Light for ranges over a pass: magnitudes to a few hundredths, so accuracy .02.

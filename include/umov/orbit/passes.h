@@ -77,7 +77,10 @@ struct SitePass {
   // While sunlit, and only where PassSearch::on_pass says what the object is; else NaN and none.
   double magnitude_min = std::numeric_limits<double>::quiet_NaN(), ///< the brightest
       magnitude_max = std::numeric_limits<double>::quiet_NaN(),
-         p_max = std::numeric_limits<double>::quiet_NaN();
+         p_max = std::numeric_limits<double>::quiet_NaN(),
+         /// The same behind the air, where there is one.
+      magnitude_obs_min = std::numeric_limits<double>::quiet_NaN(),
+         magnitude_obs_max = std::numeric_limits<double>::quiet_NaN();
   std::vector<PassGlint> glints; ///< in order
 };
 

@@ -31,6 +31,15 @@ struct PolarimeterCalibration {
 /// or where one instrument angle alone cannot tell the offset from the star.
 Result<PolarimeterCalibration> calibrate_polarimeter(std::span<const StandardMeasurement> data);
 
+/// What a channel makes of light in the sky frame once the instrument's own terms are known: its
+/// row as designed, in that frame, behind the factor and the offset. Fitted with such rows, light
+/// and covariance come out calibrated, each exposure by its own axis.
+StokesRow calibrated_row(const PolarimeterCalibration &calibration, const StokesRow &row,
+                         double axis_rad);
+/// Variance of q and of u, each, that the errors of the calibration add; the same for a whole run.
+/// `own`: the target's q + iu.
+double common_variance(const PolarimeterCalibration &calibration, std::complex<double> own);
+
 /// A target with its calibration applied, in the sky frame.
 struct CalibratedTarget {
   std::complex<double> value;

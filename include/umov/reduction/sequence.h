@@ -1,6 +1,7 @@
 #pragma once
 // Exposures one after the other of a source that changes meanwhile.
 
+#include <array>
 #include <complex>
 #include <span>
 #include <umov/reduction/stokes_fit.h>
@@ -17,11 +18,15 @@ std::complex<double> false_polarization(std::span<const double> angles_rad,
 struct TimedDatum {
   double time_s = 0;
   ChannelDatum datum;
+  std::size_t exposure = 0; ///< neighbours of one exposure share its transparency
+  double flicker = 0;       ///< relative standard deviation of that
 };
 /// Brightness over time as a Fourier series, with q, u (and v) that stay.
 struct SequenceFit {
   std::vector<double> series; ///< mean, then cosine and sine of each harmonic
-  double mean_variance = 0;   ///< of the mean
+  double period_s = 0;
+  int parameters = 3;       ///< that were fitted: I, Q, U or all four
+  double mean_variance = 0; ///< of the mean
   StokesFractions fractions;
   double chi2 = 0;
   int dof = 0;
@@ -30,5 +35,11 @@ struct SequenceFit {
 /// change between two exposures is not taken for polarization. `parameters` 3 or 4.
 Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period_s, int harmonics,
                                  std::size_t parameters);
+/// The same with common errors on top (C = C_n + J Sigma J^T by one small matrix), begun at the
+/// fit without them.
+Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, const SequenceFit &without,
+                                 std::span<const CommonError> common);
+/// I, Q, U, V of a fit at a time.
+std::array<double, 4> stokes_at(const SequenceFit &fit, double time_s);
 
 } // namespace umov

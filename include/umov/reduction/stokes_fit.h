@@ -51,8 +51,17 @@ struct ErrorPriors {
   double efficiency = 0;   ///< of q, u
   double sky = 0;          ///< of the whole sky, relative
 };
-/// Their effects on the channels of a simultaneous set. `axis_rad`: of the instrument's x axis in
-/// the frame of the rows; `fit`: of the same data.
+/// A channel of an exposure, and what is known of it.
+struct ModelledDatum {
+  ChannelDatum datum;
+  std::array<double, 4> stokes{}; ///< of the model at its time
+  double axis_rad = 0;            ///< of the instrument's x axis in the frame of the rows
+  std::size_t channel = 0;        ///< those of one number share a gain
+};
+/// Effects of the priors on channels of one exposure or of many.
+std::vector<CommonError> common_errors(const ErrorPriors &priors,
+                                       std::span<const ModelledDatum> data);
+/// The same for the channels of one exposure, each with a gain of its own; `fit`: of the same data.
 std::vector<CommonError> common_errors(const ErrorPriors &priors,
                                        std::span<const ChannelDatum> data, const StokesFit &fit,
                                        double axis_rad);

@@ -31,7 +31,7 @@ BandObserver observer(const Instrument &instrument, const ObservingConditions &c
 ExposureLight star(double flux, double q, double u) {
   ExposureLight out;
   out.flux = {{flux, flux * q, flux * u, 0}};
-  out.axis = out.axis_zenith = Angle::degrees(30);
+  out.axis_zenith = Angle::degrees(30);
   out.altitude = Angle::degrees(60);
   return out;
 }
@@ -77,6 +77,62 @@ TEST(BandObserver, InstrumentalTermsAreNotInTheRows) {
   const double d = of("diattenuation_300"); // nine digits
   EXPECT_NEAR(spoilt->at(3).mean_star / clean->at(3).mean_star, 1 + .01 * d, 1e-11);
   EXPECT_NEAR(spoilt->at(0).mean_star / clean->at(0).mean_star, 1 - .01 * d, 1e-11);
+}
+
+TEST(BandObserver, CountersAreCorrectedForDeadTime) {
+  Instrument instrument = camera();
+  instrument.detector = {};
+  instrument.detector.pixel_um = 3.45;
+  instrument.detector.model = DetectorModel::Counter;
+  const BandObserver open = observer(instrument, no_air());
+  // Dead for a fifth of the time between two photons of channel 0: a sixth of them are missed.
+  const double mean = open.observe({0, .1, {}}, star(1e-12, 0, 0))->at(0).mean_star;
+  instrument.detector.dead_time_s = .2 * .1 / mean;
+  const BandObserver one = observer(instrument, no_air());
+  constexpr int trials = 20'000;
+  double told = 0, sum = 0, squares = 0, excess = 0;
+  for (std::uint32_t k = 0; k < trials; ++k) {
+    const auto n = one.observe({k, .1, {}}, star(1e-12, 0, 0))->at(0);
+    told += n.recorded / trials;
+    sum += n.counts / trials;
+    squares += n.counts * n.counts / trials;
+    excess += n.excess2 / trials;
+  }
+  const double se = std::sqrt(1.2 * mean / trials);
+  EXPECT_NEAR(told, mean / 1.2, 4 * se);
+  // Four standard errors, and a photon for the bend of 1/(1 - m tau) within its scatter.
+  EXPECT_NEAR(sum, mean, 4 * se + 1);
+  EXPECT_NEAR(excess, 1.2, 1e-3);
+  EXPECT_NEAR((squares - sum * sum) / (1.2 * mean), 1, 4 * std::sqrt(2. / trials));
+}
+
+/// Light along +Q of the sky, carried through the port to the instrument's x axis as it stands.
+TEST(BandObserver, ADerotatorKeepsTheAxisOnTheSky) {
+  Instrument instrument = camera();
+  instrument.telescope.has_derotator = true;
+  for (const auto port :
+       {TelescopePort::Cassegrain, TelescopePort::NasmythLeft, TelescopePort::NasmythRight}) {
+    instrument.telescope.port = port;
+    // A mirror as good as perfect: no polarization of its own.
+    const bool has_mirror = port != TelescopePort::Cassegrain;
+    const std::vector<std::complex<double>> eta(has_mirror ? 1 : 0, {1e4, 1e4});
+    const auto one = BandObserver::make(instrument, *narrow_band("nm:550", 550, 10), no_air(), eta);
+    for (const double parallactic : {-70., 0., 35.})
+      for (const double altitude : {15., 50., 80.}) {
+        const Angle up = Angle::degrees(altitude), pa = Angle::degrees(parallactic);
+        const Angle axis = axis_from_zenith(instrument.telescope, Angle::degrees(30), pa, up);
+        // Polarized along position angle 30 from north, in zenith axes.
+        const double twice = 2 * (30 - parallactic) * pi / 180;
+        const auto light =
+            one->at_polarimeter(0, {1, std::cos(twice), std::sin(twice), 0}, up, axis);
+        EXPECT_NEAR(light.q / light.i, 1, 1e-3); // 1 - R of the mirror
+        EXPECT_NEAR(light.u / light.i, 0, 1e-3);
+        EXPECT_NEAR(std::remainder(axis_on_sky(instrument.telescope, axis, up).degrees() -
+                                       (30 - parallactic),
+                                   360),
+                    0, 1e-9);
+      }
+  }
 }
 
 /// Standard deviation over mean of the counts of one channel, and of a ratio of two.

@@ -36,12 +36,13 @@ TEST(Telescope, TrailOfALens) {
 TEST(Telescope, AxesKeepToTheMountOrToTheSky) {
   Telescope t;
   const Angle x = Angle::degrees(30), eta = Angle::degrees(-36.8);
-  EXPECT_EQ(axis_from_zenith(t, x, eta).degrees(), x.degrees());
+  const Angle altitude = Angle::degrees(50);
+  EXPECT_EQ(axis_from_zenith(t, x, eta, altitude).degrees(), x.degrees());
   t.has_derotator = true;
-  const double derotated = axis_from_zenith(t, x, eta).degrees();
+  const double derotated = axis_from_zenith(t, x, eta, altitude).degrees();
   t.has_derotator = false;
   t.mount = Mount::Equatorial;
-  EXPECT_EQ(axis_from_zenith(t, x, eta).degrees(), derotated);
+  EXPECT_EQ(axis_from_zenith(t, x, eta, altitude).degrees(), derotated);
   EXPECT_NEAR(derotated, 66.8, 1e-12); // from north it is 30: 36.8 more from the zenith
 }
 

@@ -49,8 +49,25 @@ std::string word_after(const std::vector<std::string> &words, std::string_view k
   return {};
 }
 
+/// A line that speaks of units: it names them or the wavelengths, has one in brackets, or nothing
+/// else. In other words of a comment ("3.45 micron pixels") a unit is of something else.
+bool speaks_of_units(std::string_view line, const std::vector<std::string> &words) {
+  if (words.size() == 1)
+    return true;
+  for (const std::string &word : words)
+    for (const char *known : {"unit", "units", "wavelength", "wavelengths", "lambda", "wave"})
+      if (lower(word) == known)
+        return true;
+  for (std::size_t k = 0; k < line.size(); ++k)
+    if (line[k] == '(' || line[k] == '[')
+      if (const auto end = line.find_first_of(")]", k); end != std::string_view::npos)
+        if (unit_nm(trimmed(line.substr(k + 1, end - k - 1))) > 0)
+          return true;
+  return false;
+}
+
 /// Takes what a line of the header says. The unit that stands beside the word wavelength holds
-/// (ECSV: "name: wavelength, unit: Angstrom"), else the first that any line names.
+/// (ECSV: "name: wavelength, unit: Angstrom"), else the first that a line about units names.
 void take_header(std::string_view line, PassbandForm &form, bool &is_sure) {
   const auto words = words_of(line);
   const std::string kind = lower(word_after(words, "detector"));
@@ -58,7 +75,7 @@ void take_header(std::string_view line, PassbandForm &form, bool &is_sure) {
     form.detector = DetectorKind::Photon;
   else if (kind == "energy")
     form.detector = DetectorKind::Energy;
-  if (is_sure)
+  if (is_sure || !speaks_of_units(line, words))
     return;
   const bool is_named = std::ranges::any_of(
       words, [](const std::string &word) { return lower(word) == "wavelength"; });
@@ -83,7 +100,7 @@ double unit_nm(std::string_view name) {
                             "micrometers", "micrometre", "micrometres"})
     if (unit == known)
       return 1000;
-  for (const char *known : {"angstrom", "angstroms", "aa", "\xc3\xa5"})
+  for (const char *known : {"angstrom", "angstroms", "aa", "\xc3\xa5", "\xc3\x85", "\xe2\x84\xab"})
     if (unit == known)
       return 0.1;
   return 0;

@@ -69,10 +69,29 @@ Result<void> read_curve(const Node &node, const char *name, const Bounds &bounds
   return {};
 }
 
+/// Lengths that are of another unit: no focal ratio is under a quarter or in the hundreds.
+Result<void> check_focal_ratio(const Node &node, const Telescope &t) {
+  if (!(t.aperture_m > 0 && t.focal_length_m > 0))
+    return {};
+  const double ratio = t.focal_length_m / t.aperture_m;
+  if (ratio >= 0.25 && ratio <= 300)
+    return {};
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("focal_length_m = {} with aperture_m = {} is f/{:.3g}; both are in metres: "
+                  "is one of them in mm?",
+                  t.focal_length_m, t.aperture_m, ratio),
+      node.where(node.has("focal_length_m") ? "focal_length_m" : "aperture_m"));
+}
+
 Result<void> read_telescope(const Node &node, Telescope &out) {
-  UMOV_TRY(read_number(node, "aperture_m", positive, out.aperture_m));
+  UMOV_TRY(read_number(node, "aperture_m",
+                       {1e-12, 60, "a number above 0, up to 60 m (is it in mm?)"}, out.aperture_m));
   UMOV_TRY(read_number(node, "obstruction", {0, .999999, "0 to below 1"}, out.obstruction));
-  UMOV_TRY(read_number(node, "focal_length_m", positive, out.focal_length_m));
+  UMOV_TRY(read_number(node, "focal_length_m",
+                       {1e-12, 1000, "a number above 0, up to 1000 m (is it in mm?)"},
+                       out.focal_length_m));
+  UMOV_TRY(check_focal_ratio(node, out));
   UMOV_TRY(read_curve(node, "throughput", {0, 1, "0 to 1"}, out.throughput));
   const char *ports[] = {"cassegrain", "nasmyth_left", "nasmyth_right"};
   UMOV_ASSIGN(
@@ -87,6 +106,12 @@ Result<void> read_telescope(const Node &node, Telescope &out) {
                                  {"altaz", "equatorial"}));
   out.mount = mount == "altaz" ? Mount::AltAz : Mount::Equatorial;
   out.has_derotator = node.boolean("derotator", out.has_derotator);
+  if (out.mount == Mount::Equatorial && out.port != TelescopePort::Cassegrain)
+    return fail(ErrorCode::BadInput,
+                fmt::format("port = \"{}\" on an equatorial mount: a Nasmyth port lies on the "
+                            "altitude axis of an altaz one",
+                            port),
+                node.where(node.has("port") ? "port" : "mount"));
   return {};
 }
 
@@ -102,12 +127,18 @@ Result<void> read_shutter(const Node &node, Detector &out) {
   return {};
 }
 
+/// A converter makes numbers of the electrons.
+bool has_numbers(DetectorModel model) {
+  return model != DetectorModel::Ideal && model != DetectorModel::Counter;
+}
+
 Result<void> read_detector(const Node &node, Detector &out) {
   UMOV_ASSIGN(model, node.choice("model", name_of(out.model), detector_names()));
   const auto &names = detector_names();
   out.model =
       static_cast<DetectorModel>(std::find(names.begin(), names.end(), model) - names.begin());
-  UMOV_TRY(read_number(node, "pixel_um", positive, out.pixel_um));
+  UMOV_TRY(read_number(node, "pixel_um", {0.1, 1e4, "0.1 to 10000 um (is it in mm or m?)"},
+                       out.pixel_um));
   UMOV_TRY(read_number(node, "read_e", not_negative, out.read_e));
   UMOV_TRY(read_number(node, "dark_e_s", not_negative, out.dark_e_s));
   UMOV_TRY(read_number(node, "gain_e_adu", positive, out.gain_e_adu));
@@ -116,6 +147,10 @@ Result<void> read_detector(const Node &node, Detector &out) {
   UMOV_TRY(read_number(node, "nonlinearity", {0, .25, "0 to 0.25"}, out.nonlinearity));
   UMOV_TRY(read_number(node, "em_gain", {1, 1e5, "1 to 100000"}, out.em_gain));
   UMOV_TRY(read_number(node, "dead_time_s", {0, 1, "0 to 1"}, out.dead_time_s));
+  if (out.model == DetectorModel::Emccd && !(out.em_gain > 1))
+    return fail(ErrorCode::BadInput,
+                "an emccd needs em_gain above 1, that of its register; without one it is a ccd",
+                node.where(node.has("em_gain") ? "em_gain" : "model"));
   if (node.has("em_gain") && out.model != DetectorModel::Emccd && out.em_gain != 1)
     return fail(ErrorCode::BadInput,
                 fmt::format("em_gain = {} with model = \"{}\"; only an emccd multiplies",
@@ -126,6 +161,15 @@ Result<void> read_detector(const Node &node, Detector &out) {
     return fail(ErrorCode::BadInput, fmt::format("bits = {}; 1 to 32 was expected", bits),
                 node.where("bits"));
   out.bits = static_cast<int>(bits);
+  if (const double last = std::exp2(out.bits) - 1; has_numbers(out.model) && out.bias_adu >= last)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("bias_adu = {} with bits = {}: the largest number is {:g}, which leaves "
+                    "nothing for light",
+                    out.bias_adu, out.bits, last),
+        node.where(node.has("bias_adu") ? "bias_adu"
+                   : node.has("bits")   ? "bits"
+                                        : "model"));
   if (node.has("size_px")) {
     UMOV_ASSIGN(size, node.numbers("size_px"));
     if (size.size() != 2 || !(size[0] >= 1 && size[1] >= 1 && size[0] <= 1e5 && size[1] <= 1e5))
@@ -145,16 +189,20 @@ Result<void> read_layout(const Node &node, Polarimeter &out) {
     return {};
   std::vector<double> angles;
   const toml::array &rows = *node.get("layout")->as_array();
-  for (const toml::node &row : rows)
-    if (const toml::array *cells = row.as_array())
+  bool is_square = rows.size() == 2;
+  for (const toml::node &row : rows) {
+    const toml::array *cells = row.as_array();
+    is_square = is_square && cells != nullptr && cells->size() == 2;
+    if (cells != nullptr)
       for (const toml::node &cell : *cells)
         if (const auto angle = cell.value<double>())
           angles.push_back(*angle);
+  }
   std::vector<double> sorted = angles;
   for (double &angle : sorted)
     angle = std::fmod(std::fmod(angle, 180) + 180, 180);
   std::sort(sorted.begin(), sorted.end());
-  const bool is_fine = sorted.size() == 4 && rows.size() == 2 && sorted[0] != sorted[1] &&
+  const bool is_fine = is_square && sorted.size() == 4 && sorted[0] != sorted[1] &&
                        sorted[1] != sorted[2] && sorted[2] != sorted[3];
   if (!is_fine)
     return fail(ErrorCode::BadInput,
@@ -195,6 +243,12 @@ Result<void> read_polarimeter(const Node &node, bool is_whole, Polarimeter &out)
   UMOV_TRY(read_number(node, "x_axis_deg", {-360, 360, "-360 to 360"}, out.x_axis_deg));
   UMOV_TRY(read_number(node, "q0", {-1, 1, "-1 to 1"}, out.q0));
   UMOV_TRY(read_number(node, "u0", {-1, 1, "-1 to 1"}, out.u0));
+  if (std::hypot(out.q0, out.u0) > 1)
+    return fail(ErrorCode::BadInput,
+                fmt::format("q0 = {}, u0 = {}: together they polarize by {:.3g}; at most 1 was "
+                            "expected",
+                            out.q0, out.u0, std::hypot(out.q0, out.u0)),
+                node.where(node.has("q0") ? "q0" : "u0"));
   UMOV_ASSIGN(pupils, node.choice("pupils", out.has_separate_pupils ? "separate" : "common",
                                   {"common", "separate"}));
   out.has_separate_pupils = pupils == "separate";

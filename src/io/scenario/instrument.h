@@ -3,6 +3,7 @@
 
 #include "io/scenario/node.h"
 #include <umov/io/observation.h>
+#include <umov/lightcurve/extinction.h>
 
 namespace umov::scenario {
 
@@ -12,6 +13,10 @@ Result<void> read_instrument_tables(const Node &top, Instrument &out);
 /// [observation].
 Result<std::optional<ScenarioObservation>> read_observation(const Node &top,
                                                             const std::string &folder);
+/// What [observer] says of the air, or [atmosphere]; absent where neither does.
+Result<std::optional<SiteAir>> read_site_air(const Node &top);
+/// `atmosphere` of [observer] as TOML.
+std::string clear_air_toml(const SiteAir &air);
 /// The tables as TOML, those of the instrument included.
 std::string observation_toml(const ScenarioObservation &observation);
 /// [telescope], [detector] and [polarimeter].

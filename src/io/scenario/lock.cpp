@@ -46,10 +46,13 @@ std::string absolute_path(const std::filesystem::path &path) {
 std::string observer_and_time(const Scenario &s) {
   std::string out;
   if (s.observer)
-    out += fmt::format("\n[observer]\nname = {}\nlat_deg = {}\nlon_deg = {}\nalt_m = {}\n"
-                       "atmosphere = \"none\"\n",
+    out += fmt::format("\n[observer]\nname = {}\nlat_deg = {}\nlon_deg = {}\nalt_m = {}\n",
                        quoted(s.observer->name), degrees_text(s.observer->latitude),
                        degrees_text(s.observer->longitude), shortest(s.observer->altitude_m));
+  if (s.observer && !s.air)
+    out += "atmosphere = \"none\"\n";
+  else if (s.observer && !s.observation) // else [atmosphere] below says it
+    out += scenario::clear_air_toml(*s.air);
   if (s.time) {
     const EpochFilter &only = s.time->only;
     out +=

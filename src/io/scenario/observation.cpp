@@ -80,20 +80,17 @@ Result<void> read_sky(const Node &air, SkyOptions &out) {
   return {};
 }
 
-Result<void> read_atmosphere(const Node &top, ScenarioObservation &out) {
-  out.seeing.outer_scale_m = 25;
-  if (!top.has("atmosphere"))
-    return {};
-  UMOV_ASSIGN(air, top.child("atmosphere"));
-  out.has_own_pressure = air.has("pressure_hpa");
-  UMOV_TRY(read_at_least(air, "pressure_hpa", 0, out.air.pressure_hpa));
+Result<SiteAir> read_clear_air(const Node &node) {
+  SiteAir out;
+  out.has_own_pressure = node.has("pressure_hpa");
+  UMOV_TRY(read_at_least(node, "pressure_hpa", 0, out.air.pressure_hpa));
   if (constexpr double most = 1200; out.air.pressure_hpa > most)
     return fail(ErrorCode::BadInput,
                 fmt::format("pressure_hpa = {}; up to {} hPa was expected (1 hPa is 100 Pa)",
                             out.air.pressure_hpa, most),
-                air.where("pressure_hpa"));
-  if (air.has("aerosol")) {
-    UMOV_ASSIGN(aerosol, air.child("aerosol"));
+                node.where("pressure_hpa"));
+  if (node.has("aerosol")) {
+    UMOV_ASSIGN(aerosol, node.child("aerosol"));
     UMOV_TRY(read_at_least(aerosol, "tau_550", 0, out.air.aerosol_550));
     if (constexpr double most = 10; out.air.aerosol_550 > most)
       return fail(ErrorCode::BadInput,
@@ -102,8 +99,19 @@ Result<void> read_atmosphere(const Node &top, ScenarioObservation &out) {
                   aerosol.where("tau_550"));
     out.air.aerosol_exponent = aerosol.number("exponent", out.air.aerosol_exponent);
   }
-  UMOV_TRY(read_at_least(air, "ozone_du", 0, out.air.ozone_du));
-  UMOV_TRY(read_at_least(air, "water_cm", 0, out.air.water_cm));
+  UMOV_TRY(read_at_least(node, "ozone_du", 0, out.air.ozone_du));
+  UMOV_TRY(read_at_least(node, "water_cm", 0, out.air.water_cm));
+  return out;
+}
+
+Result<void> read_atmosphere(const Node &top, ScenarioObservation &out) {
+  out.seeing.outer_scale_m = 25;
+  if (!top.has("atmosphere"))
+    return {};
+  UMOV_ASSIGN(air, top.child("atmosphere"));
+  UMOV_ASSIGN(clear, read_clear_air(air));
+  out.air = clear.air;
+  out.has_own_pressure = clear.has_own_pressure;
   UMOV_TRY(read_seeing(air, out.seeing));
   UMOV_TRY(read_scintillation(air, out));
   UMOV_TRY(read_sky(air, out.sky));
@@ -134,6 +142,12 @@ Result<void> read_sequence(const Node &node, ScenarioObservation &out) {
 Result<void> read_exposures(const Node &node, ScenarioObservation &out) {
   if (node.has("bands")) {
     UMOV_ASSIGN(bands, node.strings("bands"));
+    if (bands.empty())
+      return fail(
+          ErrorCode::BadInput,
+          "bands = []: one or more were expected, as [\"Bessell.V\"]; without the key those "
+          "of [bands] are taken",
+          node.where("bands"));
     out.bands = bands;
   }
   UMOV_TRY(read_at_least(node, "width_nm", 1e-6, out.width_nm));
@@ -147,12 +161,56 @@ Result<void> read_exposures(const Node &node, ScenarioObservation &out) {
                 node.where("cadence_s"));
   UMOV_TRY(read_sequence(node, out));
   UMOV_TRY(read_at_least(node, "aperture_fwhm", 0.01, out.aperture_fwhm));
+  if (constexpr double ring = 4; out.aperture_fwhm >= ring)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("aperture_fwhm = {}: the sky is taken from {} to 6 widths, and would hold "
+                    "the star; less than {} was expected",
+                    out.aperture_fwhm, ring, ring),
+        node.where("aperture_fwhm"));
   UMOV_TRY(read_at_least(node, "clock_error_s", 0, out.clock_error_s));
   UMOV_TRY(node.choice("level", "aperture", {"aperture"}, {"image"}));
   return {};
 }
 
 } // namespace
+
+Result<std::optional<SiteAir>> read_site_air(const Node &top) {
+  const bool is_described = top.has("atmosphere");
+  if (top.has("observer")) {
+    UMOV_ASSIGN(observer, top.child("observer"));
+    if (const toml::node *value = observer.get("atmosphere"); value != nullptr) {
+      if (!value->is_table()) {
+        UMOV_ASSIGN(name, observer.choice("atmosphere", "none", {"none", "clear"}));
+        if (name == "none")
+          return std::optional<SiteAir>();
+      }
+      if (is_described)
+        return fail(ErrorCode::BadInput,
+                    "atmosphere beside [atmosphere]: leave one out, both say what air there is",
+                    observer.where("atmosphere"));
+      if (!value->is_table())
+        return std::optional(SiteAir());
+      UMOV_ASSIGN(node, observer.child("atmosphere"));
+      UMOV_ASSIGN(air, read_clear_air(node));
+      return std::optional(air);
+    }
+  }
+  if (!is_described)
+    return std::optional<SiteAir>();
+  UMOV_ASSIGN(node, top.child("atmosphere"));
+  UMOV_ASSIGN(air, read_clear_air(node));
+  return std::optional(air);
+}
+
+std::string clear_air_toml(const SiteAir &o) {
+  return fmt::format(
+      "atmosphere = {{ {}aerosol = {{ tau_550 = {}, exponent = {} }}, ozone_du = {}, "
+      "water_cm = {} }}\n",
+      o.has_own_pressure ? fmt::format("pressure_hpa = {}, ", shortest(o.air.pressure_hpa)) : "",
+      shortest(o.air.aerosol_550), shortest(o.air.aerosol_exponent), shortest(o.air.ozone_du),
+      shortest(o.air.water_cm));
+}
 
 Result<std::optional<ScenarioObservation>> read_observation(const Node &top,
                                                             const std::string &folder) {

@@ -68,7 +68,6 @@ Result<void> read_observer(const Node &top, Scenario &out) {
   if (!top.has("observer"))
     return {};
   UMOV_ASSIGN(node, top.child("observer"));
-  UMOV_TRY(node.choice("atmosphere", "none", {"none"}));
   if (node.has("name") && !node.has("lat_deg") && !node.has("lon_deg") && !node.has("alt_m")) {
     auto known = site_from(node.text("name", ""));
     if (!known)
@@ -399,6 +398,8 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(read_output(top, out));
   UMOV_ASSIGN(observation, scenario::read_observation(top, path.parent_path().string()));
   out.observation = observation;
+  UMOV_ASSIGN(air, scenario::read_site_air(top));
+  out.air = air;
   UMOV_ASSIGN(own, scenario::read_material_tables(top));
   UMOV_TRY(scenario::check_own_names(top, own));
   out.own_materials = own;

@@ -106,6 +106,20 @@ void add_light(RowColumns &t, PolarizationFrame frame, MagnitudeSystem magnitude
               [](E e, S, const Band &) { return e.has_glint; });
 }
 
+/// The same behind the air of the site.
+void add_observed(Table &table, const LightCurve &curve) {
+  std::vector<double> light, magnitude;
+  for (std::size_t k = 0; k < curve.samples.size(); ++k) {
+    light.push_back(curve.samples[k].irradiance * curve.transmission[k]);
+    magnitude.push_back(curve.samples[k].magnitude - 2.5 * std::log10(curve.transmission[k]));
+  }
+  table.add("I_obs", "W / (m2 nm)", "I behind the air of the site", std::move(light));
+  const std::string system = name_of(curve.magnitudes);
+  const std::string unit =
+      curve.magnitudes == MagnitudeSystem::Vega ? "mag" : "mag(" + system + ")";
+  table.add("mag_obs", unit, "mag behind the air; a limit where mag is one", std::move(magnitude));
+}
+
 void add_errors(RowColumns &t, PolarizationFrame frame) {
   t.of_sample("intensity_err", "m2 / sr", "numerical 95 % half-width",
               [](S s) { return s.half_width.i; });
@@ -186,6 +200,8 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   add_names(t, curve);
   add_geometry(t);
   add_light(t, frame, curve.magnitudes);
+  if (!curve.transmission.empty())
+    add_observed(table, curve);
   if (curve.bounces > 1) {
     t.of_sample("indirect_i", "", "part of I that touched several surfaces",
                 [](S s) { return s.indirect.i; });

@@ -41,6 +41,12 @@ bool LightModel::evaluate(std::span<const Pose> poses, std::span<const double> a
   return true;
 }
 
+bool LightModel::evaluate_at_nodes(std::span<const Pose> poses, std::span<const double> angles_rad,
+                                   StokesTable &out, const LightTask &task) const {
+  UMOV_EXPECTS(angles_rad.size() == poses.size() * joints_.size());
+  return light(poses, angles_rad, out, task);
+}
+
 std::vector<double> LightModel::of_bands(const std::vector<double> &nodes) const {
   std::vector<double> out;
   for (std::size_t b = 0; b < scene_.bands.size() && !nodes.empty(); ++b)

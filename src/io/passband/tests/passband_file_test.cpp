@@ -51,6 +51,26 @@ TEST(PassbandFile, UnitAndDetectorAreNeverGuessed) {
   expect_refused("500 1\n600 1\n", {"parsec"}, {"parsec", DetectorKind::Photon});
 }
 
+TEST(PassbandFile, UnitsAreThoseOfTheWavelengths) {
+  const std::string rows = "5000 0\n5500 1\n6000 0\n";
+  for (const char *unit : {"\xc3\x85", "\xe2\x84\xab", "\xc3\xa5"})
+    EXPECT_TRUE(read_passband_text(std::string("# unit: ") + unit + "\n# detector: photon\n" + rows,
+                                   "x.csv"))
+        << unit;
+  // A camera's pixels, or a film's thickness, in the comments.
+  const std::string camera = "# camera of 3.45 micron pixels, detector: photon\n";
+  expect_refused(camera + rows, {"the unit of the wavelengths is not said"});
+  const auto read = read_passband_text(camera + "# unit: Angstrom\n" + rows, "x.csv");
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_NEAR(read->wavelength_nm[1], 550, 1e-9);
+}
+
+TEST(PassbandFile, LongWavelengthsAreBounded) {
+  // An energy curve is cut into nanometres: one of kilometres would take gigabytes.
+  expect_refused("# unit: nm\n# detector: energy\n500 1\n2e6 1\n", {"1e+06"});
+  EXPECT_TRUE(read_passband_text("# unit: nm\n# detector: energy\n500 1\n1e6 1\n", "x.csv"));
+}
+
 TEST(PassbandFile, BadRowsNameTheirLine) {
   const std::string head = "# unit: nm\n# detector: photon\n";
   expect_refused(head + "500 1\n600 x\n", {"x.csv:4:", "two numbers"});

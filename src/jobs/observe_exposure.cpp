@@ -1,0 +1,131 @@
+#include "jobs/observe_exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <umov/core/parallel.h>
+#include <umov/frames/sky.h>
+#include <umov/photometry/radiometry.h>
+
+namespace umov::jobs {
+namespace {
+
+/// Position angle of the zenith in the frame of the files.
+Angle zenith_in(PolarizationFrame frame, const ObservingGeometry &g) {
+  switch (frame) {
+  case PolarizationFrame::Equatorial:
+    return position_angle(g.zenith - g.to_observer * dot(g.zenith, g.to_observer), {0, 0, 1},
+                          g.to_observer);
+  case PolarizationFrame::Scattering:
+    return Angle::radians(-g.pa_scat_altaz.radians());
+  case PolarizationFrame::AltAz:
+    break;
+  }
+  return {};
+}
+
+Angle parallactic_angle(const ObservingGeometry &g) {
+  return zenith_in(PolarizationFrame::Equatorial, g);
+}
+
+Angle x_axis_from_zenith(const Instrument &instrument, const ObservingGeometry &g) {
+  return axis_from_zenith(instrument.telescope, Angle::degrees(instrument.polarimeter.x_axis_deg),
+                          parallactic_angle(g), g.altitude);
+}
+
+} // namespace
+
+Result<LitBlock> light_of(const Setup &s, std::span<const Exposure> exposures,
+                          const Monitor &monitor) {
+  const std::size_t per = s.nodes.size();
+  std::vector<std::optional<Result<TrackPoint>>> placed(exposures.size() * per);
+  parallel_for(exposures.size(), s.threads, [&](std::size_t e) {
+    for (std::size_t n = 0; n < per; ++n)
+      placed[e * per + n] = s.track.at(plus_seconds(exposures[e].middle.time, s.nodes[n].offset_s));
+  });
+  LitBlock out;
+  std::vector<Pose> poses;
+  std::vector<double> angles;
+  for (auto &one : placed) {
+    if (!*one)
+      return tl::unexpected(one->error());
+    out.points.push_back(std::move(**one));
+    const TrackPoint &point = out.points.back();
+    poses.push_back(point.pose);
+    angles.insert(angles.end(), point.joint_angles_rad.begin(), point.joint_angles_rad.end());
+  }
+  LightTask task;
+  task.threads = s.threads;
+  task.cancel = monitor.cancel;
+  if (!s.light.evaluate_at_nodes(poses, angles, out.table, task))
+    return fail(ErrorCode::Interrupted, "stopped; nothing was written");
+  return out;
+}
+
+namespace {
+
+/// Light of one node of an exposure and a band, in the scattering plane, as irradiance at the site
+/// with the Sun's spectrum replaced by its mean in the band.
+Stokes<ScatteringPlane> irradiance_of(const BandResult &lit, const BandResponse &band,
+                                      const ObservingGeometry &g) {
+  return lit.stokes *
+         irradiance_at_observer(1, band.solar_mean, g.sun_distance_km, g.sunlit, g.range_km);
+}
+
+ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit,
+                       Recorded &out) {
+  const BandObserver &observer = s.observers[e.planned.band];
+  const BandResponse &band = observer.band();
+  const ObservingGeometry &g = e.middle;
+  ExposureLight light;
+  light.flux.resize(band.nm.size());
+  for (std::size_t n = 0; n < s.nodes.size(); ++n) {
+    const std::size_t at = number * s.nodes.size() + n;
+    const ObservingGeometry &now = lit.points[at].geometry;
+    const Angle x_axis = x_axis_from_zenith(s.observation.instrument, now);
+    const Angle to_file =
+        Angle::radians(-now.pa_scat_altaz.radians() - zenith_in(s.scenario.frame, now).radians());
+    for (std::size_t k = 0; k < band.nm.size(); ++k) {
+      const auto light_here =
+          irradiance_of(lit.table.at(at, s.terms[e.planned.band][k].node), band, now);
+      const auto zenith_axes =
+          rotate_to<SkyNorth>(light_here, Angle::radians(-now.pa_scat_altaz.radians()));
+      light.flux[k] +=
+          observer.at_polarimeter(k, zenith_axes, now.altitude, x_axis) * s.nodes[n].weight;
+      out.truth += rotate_to<SkyNorth>(light_here, to_file) * (band.weight[k] * s.nodes[n].weight);
+    }
+  }
+  light.sky = sky_light(s.sky, band, g);
+  light.altitude = g.altitude;
+  const Angle seen = apparent_altitude(band.pivot_nm, g.altitude, s.surface);
+  light.airmass = airmass(seen);
+  light.axis_zenith = x_axis_from_zenith(s.observation.instrument, g);
+  light.zenith = zenith_in(s.scenario.frame, g);
+  light.transparency = e.cloud;
+  const auto &first = lit.points[number * s.nodes.size()].geometry;
+  const auto &last = lit.points[(number + 1) * s.nodes.size() - 1].geometry;
+  light.rate_rad_s = angle_between(first.to_observer, last.to_observer) /
+                     std::max(1e-9, s.nodes.back().offset_s - s.nodes.front().offset_s);
+  return light;
+}
+
+} // namespace
+
+Recorded record(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit) {
+  Recorded out;
+  const BandObserver &observer = s.observers[e.planned.band];
+  const ExposureLight light = arriving(s, e, number, lit, out);
+  const Angle on_sky =
+      axis_on_sky(s.observation.instrument.telescope, light.axis_zenith, e.middle.altitude);
+  out.axis = Angle::radians(on_sky.radians() + light.zenith.radians());
+  out.airmass = light.airmass;
+  out.rate_rad_s = light.rate_rad_s;
+  out.k_mag = -2.5 * std::log10(observer.mean_transmission(light.airmass)) / light.airmass;
+  auto counts = observer.observe(e.planned.plan, light);
+  if (counts)
+    out.channels = std::move(*counts);
+  else
+    out.error = counts.error();
+  return out;
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,61 @@
+#pragma once
+// Private: an observation as it is carried out, exposure by exposure.
+
+#include "jobs/observe_plan.h"
+#include "jobs/observe_sky.h"
+
+#include <optional>
+#include <umov/atmosphere/refraction.h>
+#include <umov/instrument/exposure.h>
+#include <umov/jobs/monitor.h>
+#include <umov/light/light_model.h>
+#include <umov/observation/track.h>
+
+namespace umov::jobs {
+
+/// What an exposure is made of, before anything is computed.
+struct Exposure {
+  PlannedExposure planned;
+  ObservingGeometry middle;
+  Epoch<Utc> stamp; ///< as the clock of the telescope says
+  double cloud = 1;
+};
+
+/// Everything of one object that does not change from exposure to exposure.
+struct Setup {
+  const Scenario &scenario;
+  const ScenarioObservation &observation;
+  std::vector<std::vector<BandTerm>> terms; ///< [band]: nodes of the light that it is summed from
+  const LightModel &light;
+  const Track &track;
+  std::vector<BandObserver> observers; ///< per band
+  std::vector<ExposureNode> nodes;
+  std::string object;
+  SurfaceAir surface;
+  SkyModel sky;
+  unsigned threads = 0;
+};
+
+/// One exposure, finished.
+struct Recorded {
+  std::vector<ChannelCounts> channels;
+  Stokes<SkyNorth> truth; ///< in the frame of the files [W m-2 nm-1]
+  Angle axis;             ///< of the instrument's x axis in that frame
+  double airmass = 0, k_mag = 0, rate_rad_s = 0;
+  std::optional<Error> error;
+};
+
+/// The light of all nodes of some exposures.
+struct LitBlock {
+  std::vector<TrackPoint> points; ///< [exposure * nodes + node]
+  StokesTable table;
+};
+
+/// Of `exposures`; Interrupted when `monitor` says so.
+Result<LitBlock> light_of(const Setup &setup, std::span<const Exposure> exposures,
+                          const Monitor &monitor);
+/// What is recorded of exposure `number` of a block.
+Recorded record(const Setup &setup, const Exposure &exposure, std::size_t number,
+                const LitBlock &lit);
+
+} // namespace umov::jobs

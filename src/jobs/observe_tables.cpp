@@ -1,0 +1,145 @@
+#include "jobs/observe_tables.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+#include <umov/core/text.h>
+#include <umov/lightcurve/derived_errors.h>
+
+namespace umov::jobs {
+
+void CountsTable::add(const Exposure &e, const Recorded &r) {
+  for (const ChannelCounts &c : r.channels) {
+    time_.push_back(to_iso(e.stamp));
+    exposure_.push_back(e.planned.plan.index);
+    set_.push_back(static_cast<std::int64_t>(e.planned.set));
+    name_.push_back(s_.object);
+    band_.push_back(s_.observers[e.planned.band].band().name);
+    channel_.push_back(c.channel);
+    saturated_.push_back(c.is_saturated);
+    const double axis = std::fmod(std::fmod(r.axis.degrees(), 180) + 180, 180);
+    const double values[] = {c.analyser_deg,
+                             e.planned.plan.state.plate_deg,
+                             axis,
+                             c.counts,
+                             c.recorded / s_.observation.instrument.detector.gain_e_adu,
+                             c.sky,
+                             c.sky_err,
+                             c.pixels,
+                             c.var_read,
+                             c.excess2,
+                             r.airmass,
+                             r.k_mag,
+                             c.row[0],
+                             c.row[1],
+                             c.row[2],
+                             c.row[3],
+                             e.middle.phase_angle.degrees(),
+                             scattering_axis(e.middle, s_.scenario.frame).degrees(),
+                             c.scintillation};
+    for (std::size_t k = 0; k < std::size(values); ++k)
+      numbers_[k].push_back(values[k]);
+  }
+}
+
+Table CountsTable::table() && {
+  Table out;
+  out.add("time_utc", "", "UTC of the middle of the exposure", std::move(time_));
+  out.add("exposure", "", "number in the run", std::move(exposure_));
+  out.add("set_id", "", "exposures that belong together", std::move(set_));
+  out.add("name", "", "object", std::move(name_));
+  out.add("band", "", "band", std::move(band_));
+  out.add("channel", "", "beam, camera or orientation", std::move(channel_));
+  const char *const columns[][3] = {
+      {"analyser_deg", "deg", "angle of the analyser from the instrument's x axis"},
+      {"plate_deg", "deg", "angle of the plate in the middle of the exposure"},
+      {"x_axis_pa", "deg", "position angle of the instrument's x axis"},
+      {"counts", "electron", "in the aperture, sky included"},
+      {"counts_adu", "adu",
+       "the same in the camera's numbers, before a counter's dead time is made good"},
+      {"sky", "electron", "sky and dark in the aperture, from the ring around it"},
+      {"sky_err", "electron", "standard deviation of sky"},
+      {"n_pixel", "", "pixels in the aperture"},
+      {"var_read", "electron2", "variance of reading and rounding"},
+      {"excess2", "", "variance of multiplied electrons over Poisson's"},
+      {"airmass", "", "of the apparent altitude, Kasten & Young 1989"},
+      {"k_mag", "mag", "extinction per air mass in the band"},
+      {"w0", "electron m2 nm / W", "counts - sky = w0 I + w1 Q + w2 U + w3 V"},
+      {"w1", "electron m2 nm / W", "of Q"},
+      {"w2", "electron m2 nm / W", "of U"},
+      {"w3", "electron m2 nm / W", "of V"},
+      {"phase_angle", "deg", "Sun-object-observer"},
+      {"pa_scat", "deg", "position angle of the normal of the scattering plane"},
+      {"scint_sd", "", "relative standard deviation of the transparency by scintillation"}};
+  for (std::size_t k = 0; k < std::size(columns); ++k) {
+    if (k == 10)
+      out.add("saturated", "", "a pixel is full", std::move(saturated_));
+    out.add(columns[k][0], columns[k][1], columns[k][2], std::move(numbers_[k]));
+  }
+  return out;
+}
+
+void TruthTable::add(const Exposure &e, const Recorded &r) {
+  const BandResponse &band = s_.observers[e.planned.band].band();
+  time_.push_back(to_iso(e.middle.time));
+  name_.push_back(s_.object);
+  band_.push_back(band.name);
+  exposure_.push_back(e.planned.plan.index);
+  set_.push_back(static_cast<std::int64_t>(e.planned.set));
+  double electrons = 0, sky = 0;
+  for (const ChannelCounts &c : r.channels)
+    electrons += c.mean_star, sky += c.mean_sky;
+  const double i = r.truth.i;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  const double values[] = {i,
+                           i > 0 ? r.truth.q / i : none,
+                           i > 0 ? r.truth.u / i : none,
+                           i > 0 ? r.truth.v / i : none,
+                           i > 0 ? -2.5 * std::log10(i / band.zero_flux) : none,
+                           electrons,
+                           sky,
+                           e.middle.azimuth.degrees(),
+                           e.middle.altitude.degrees(),
+                           r.rate_rad_s * 180 / pi};
+  for (std::size_t k = 0; k < std::size(values); ++k)
+    numbers_[k].push_back(values[k]);
+}
+
+Table TruthTable::table() && {
+  Table out;
+  out.add("time_utc", "", "UTC of the middle of the exposure", std::move(time_));
+  out.add("exposure", "", "number in the run", std::move(exposure_));
+  out.add("set_id", "", "exposures that belong together", std::move(set_));
+  out.add("name", "", "object", std::move(name_));
+  out.add("band", "", "band", std::move(band_));
+  const char *const columns[][3] = {
+      {"I", "W / (m2 nm)", "mean over the exposure above the air, photon-weighted"},
+      {"q", "", "Q/I in the sky frame"},
+      {"u", "", "U/I in the sky frame"},
+      {"v", "", "V/I"},
+      {"mag", "mag(AB)", "AB magnitude above the air"},
+      {"star_e", "electron", "expected of the object in all channels"},
+      {"sky_e", "electron", "expected of sky and dark in all channels"},
+      {"az", "deg", "azimuth, geometric"},
+      {"alt", "deg", "altitude, geometric"},
+      {"rate", "deg / s", "motion over the sky"}};
+  for (std::size_t k = 0; k < std::size(columns); ++k)
+    out.add(columns[k][0], columns[k][1], columns[k][2], std::move(numbers_[k]));
+  return out;
+}
+
+void note_observation(Table &table, const Scenario &scenario, const ObservedBands &bands) {
+  const ScenarioObservation &o = *scenario.observation;
+  note_conventions(table);
+  table.note("pol_frame", name_of(scenario.frame));
+  table.note("instrument", o.instrument.name.empty() ? "in the scenario" : o.instrument.name);
+  table.note("polarimeter", name_of(o.instrument.polarimeter.type));
+  table.note("pupils", o.instrument.polarimeter.has_separate_pupils ? "separate" : "common");
+  table.note("parameters", fmt::format("{}", parameters_of(o.instrument.polarimeter.type)));
+  table.note("mag_system", "AB");
+  for (const BandResponse &band : bands.responses)
+    table.note("zero_flux " + band.name, shortest(band.zero_flux));
+  table.note("seed", fmt::format("{}", scenario.seed));
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,43 @@
+#pragma once
+// Private: the tables of an observation, filled exposure by exposure.
+
+#include "jobs/observe_exposure.h"
+
+#include <array>
+#include <umov/io/table.h>
+
+namespace umov::jobs {
+
+/// A row for each channel of an exposure.
+class CountsTable {
+public:
+  explicit CountsTable(const Setup &setup) : s_(setup) {}
+  void add(const Exposure &exposure, const Recorded &recorded);
+  [[nodiscard]] Table table() &&;
+
+private:
+  const Setup &s_;
+  std::vector<std::string> time_, name_, band_, channel_;
+  std::vector<std::int64_t> exposure_, set_;
+  std::vector<bool> saturated_;
+  std::array<std::vector<double>, 19> numbers_;
+};
+
+/// A row for each exposure: what was there to be seen.
+class TruthTable {
+public:
+  explicit TruthTable(const Setup &setup) : s_(setup) {}
+  void add(const Exposure &exposure, const Recorded &recorded);
+  [[nodiscard]] Table table() &&;
+
+private:
+  const Setup &s_;
+  std::vector<std::string> time_, name_, band_;
+  std::vector<std::int64_t> exposure_, set_;
+  std::array<std::vector<double>, 10> numbers_;
+};
+
+/// What a header says of the observation.
+void note_observation(Table &table, const Scenario &scenario, const ObservedBands &bands);
+
+} // namespace umov::jobs

@@ -1,0 +1,139 @@
+// Stokes parameters of sets of counts as a table.
+
+#include "jobs/reduced.h"
+
+#include <cmath>
+#include <limits>
+#include <umov/core/text.h>
+#include <umov/reduction/polarization.h>
+
+namespace umov::jobs {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// Columns of the result.
+class StokesTableWriter {
+public:
+  StokesTableWriter(const CountsFile &file, std::size_t parameters)
+      : file_(file), parameters_(parameters) {}
+
+  void add(const Reduced &r) {
+    time_.push_back(to_iso(r.middle.time));
+    name_.push_back(r.middle.name);
+    band_.push_back(r.middle.band);
+    system_.push_back("AB");
+    flags_.push_back(r.flags);
+    set_.push_back(r.middle.set);
+    const auto v = numbers(r);
+    for (std::size_t k = 0; k < v.size(); ++k)
+      columns_[k].push_back(v[k]);
+  }
+
+  Table table() && {
+    Table out;
+    out.add("time_utc", "", "UTC, middle of the set", std::move(time_));
+    out.add("set_id", "", "as in the counts", std::move(set_));
+    out.add("name", "", "object", std::move(name_));
+    out.add("band", "", "band", std::move(band_));
+    const char *const names[][3] = {
+        {"I_obs", "W / (m2 nm)", "irradiance above the air, from the counts"},
+        {"I_err", "W / (m2 nm)", "standard deviation"},
+        {"mag", "mag(AB)", "of I_obs"},
+        {"q", "", "Q/I in the sky frame"},
+        {"u", "", "U/I in the sky frame"},
+        {"v", "", "V/I"},
+        {"cov_qq", "", "variance of q"},
+        {"cov_uu", "", "variance of u"},
+        {"cov_qu", "", "covariance of q and u"},
+        {"cov_vv", "", "variance of v"},
+        {"p", "", "degree of linear polarization, biased"},
+        {"p_debiased", "", "Plaszczynski et al. 2014"},
+        {"p_lo", "", "95 % interval, Feldman & Cousins 1998"},
+        {"p_hi", "", "its upper end, a limit where p_lo is 0"},
+        {"pa", "deg", "position angle of polarization, [0, 180)"},
+        {"pa_err", "deg", "68.27 % half width"},
+        {"q_scat", "", "Q/I, + perpendicular to the scattering plane"},
+        {"u_scat", "", "U/I in the scattering frame"},
+        {"chi2", "", "of the fit"},
+        {"dof", "", "degrees of freedom"},
+        {"sky_share", "", "sky over object in the apertures"},
+        {"phase_angle", "deg", "Sun-object-observer, middle of the set"},
+        {"x_axis_pa", "deg", "position angle of the instrument's x axis, middle of the set"}};
+    for (std::size_t k = 0; k < std::size(names); ++k) {
+      out.add(names[k][0], names[k][1], names[k][2], std::move(columns_[k]));
+      if (k == 2)
+        out.add("mag_system", "", "system of mag", std::move(system_));
+    }
+    out.add("flags", "", "saturated, incomplete, faint, misfit, above_one", std::move(flags_));
+    return out;
+  }
+
+private:
+  [[nodiscard]] double zero_flux(const std::string &band) const {
+    const auto found = file_.notes.find("zero_flux " + band);
+    const auto value = found == file_.notes.end() ? std::nullopt : parse_number(found->second);
+    return value.value_or(nan);
+  }
+
+  [[nodiscard]] std::array<double, 23> numbers(const Reduced &r) const {
+    std::array<double, 23> out;
+    out.fill(nan);
+    const bool was_fitted = r.fit.covariance[0][0] > 0;
+    if (was_fitted) {
+      out[0] = r.fit.stokes[0];
+      out[1] = std::sqrt(r.fit.covariance[0][0]);
+      out[2] = out[0] > 0 ? -2.5 * std::log10(out[0] / zero_flux(r.middle.band)) : nan;
+      out[18] = r.fit.chi2;
+      out[19] = r.fit.dof;
+    }
+    out[20] = r.sky_share;
+    out[21] = r.middle.phase_angle_deg;
+    out[22] = r.middle.x_axis_pa_deg;
+    if (!r.is_solved)
+      return out;
+    const auto &f = r.fractions;
+    const auto &c = f.covariance;
+    const double q = f.value[0], u = f.value[1];
+    out[3] = q;
+    out[4] = u;
+    out[6] = c[0][0];
+    out[7] = c[1][1];
+    out[8] = c[0][1];
+    if (parameters_ == 4) {
+      out[5] = f.value[2];
+      out[9] = c[2][2];
+    }
+    const auto p = polarization_of(q, u, {{{c[0][0], c[0][1]}, {c[1][0], c[1][1]}}});
+    const double sd = std::sqrt((c[0][0] + c[1][1]) / 2);
+    const auto interval = degree_interval(p.p / sd);
+    out[10] = p.p;
+    out[11] = p.debiased;
+    out[12] = interval.low * sd;
+    out[13] = interval.high * sd;
+    out[14] = p.angle_rad * 180 / pi;
+    out[15] = p.angle_sd_rad * 180 / pi;
+    const double twice = 2 * r.middle.pa_scat_deg * pi / 180;
+    out[16] = q * std::cos(twice) + u * std::sin(twice);
+    out[17] = u * std::cos(twice) - q * std::sin(twice);
+    return out;
+  }
+
+  const CountsFile &file_;
+  std::size_t parameters_;
+  std::vector<std::string> time_, name_, band_, system_, flags_;
+  std::vector<std::int64_t> set_;
+  std::array<std::vector<double>, 23> columns_;
+};
+
+} // namespace
+
+Table stokes_table(const CountsFile &file, std::size_t parameters,
+                   std::span<const Reduced> reduced) {
+  StokesTableWriter writer(file, parameters);
+  for (const Reduced &r : reduced)
+    writer.add(r);
+  return std::move(writer).table();
+}
+
+} // namespace umov::jobs

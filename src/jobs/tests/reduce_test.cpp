@@ -1,0 +1,158 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <umov/core/quantity.h>
+#include <umov/jobs/reduce.h>
+
+namespace umov::jobs {
+namespace {
+
+constexpr double degree = pi / 180, electrons = 1e6;
+
+/// Light that does not change, as the tests know it.
+struct Source {
+  double q = .3, u = -.1;
+  PolarimeterCalibration instrument; ///< what the telescope does to it
+};
+
+Epoch<Utc> second(double s) { return plus_seconds(*utc_from_iso("2018-01-21T05:12:00Z"), s); }
+
+/// What an analyser of the instrument records, without noise.
+CountRow behind(const Source &source, double analyser_deg, double axis_deg, double time_s) {
+  CountRow out;
+  out.time = second(time_s);
+  out.exposure = std::lround(time_s);
+  out.band = "V";
+  out.x_axis_pa_deg = axis_deg;
+  const double a = 2 * analyser_deg * degree, on_sky = a + 2 * axis_deg * degree;
+  const std::complex<double> z = source.instrument.factor * std::complex(source.q, source.u) *
+                                     std::polar(1., -2 * axis_deg * degree) +
+                                 source.instrument.offset;
+  out.counts = electrons / 2 * (1 + z.real() * std::cos(a) + z.imag() * std::sin(a));
+  out.row = {.5, .5 * std::cos(on_sky), .5 * std::sin(on_sky), 0};
+  return out;
+}
+
+/// A wheel of four analysers, 10 s apart, while the field turns.
+CountsFile wheel(const Source &source, double first_axis, double step) {
+  CountsFile out;
+  for (int k = 0; k < 4; ++k) {
+    const double axis = first_axis + k * step;
+    CountRow row = behind(source, 45 * k, axis - 180 * std::floor(axis / 180), 10 * k);
+    row.pa_scat_deg = row.x_axis_pa_deg;
+    row.phase_angle_deg = 60 + 2 * k;
+    out.rows.push_back(row);
+  }
+  return out;
+}
+
+Table reduced(const CountsFile &file, const ReduceOptions &options = {}) {
+  Diagnostics diagnostics;
+  const auto out = reduce(file, options, {}, diagnostics);
+  EXPECT_TRUE(out) << out.error().message;
+  return *out;
+}
+
+TEST(Reduce, WhereTheLightCameFromIsOfTheMiddleOfASet) {
+  const Source source;
+  for (const double first : {10., 170.}) { // the second goes through 180
+    const Table table = reduced(wheel(source, first, 5));
+    const double middle = std::fmod(first + 7.5, 180), twice = 2 * middle * degree;
+    EXPECT_NEAR(table.number("x_axis_pa", 0), middle, 1e-9);
+    EXPECT_NEAR(table.number("phase_angle", 0), 63, 1e-9);
+    EXPECT_NEAR(table.number("q_scat", 0), .3 * std::cos(twice) - .1 * std::sin(twice), 1e-9);
+  }
+}
+
+TEST(Reduce, EveryExposureIsCalibratedByItsOwnAxis) {
+  Source source;
+  source.instrument.factor = std::polar(.9, 2 * 3 * degree);
+  source.instrument.offset = {.02, -.01};
+  ReduceOptions options;
+  options.calibration = source.instrument;
+  const Table table = reduced(wheel(source, 10, 12), options);
+  EXPECT_NEAR(table.number("q", 0), source.q, 1e-9); // exact but for rounding
+  EXPECT_NEAR(table.number("u", 0), source.u, 1e-9);
+}
+
+TEST(Reduce, TheCovarianceTurnsWithTheCalibration) {
+  // Twice as many exposures along q as along u; an instrument that stands 45 deg off takes one for
+  // the other.
+  Source source{0, 0, {}};
+  CountsFile file;
+  for (const double angle : {0., 90., 0., 90., 45., 135.}) {
+    file.rows.push_back(behind(source, angle, 0, 0));
+    file.rows.back().var_read = 1e5;
+  }
+  const Table plain = reduced(file);
+  ReduceOptions options;
+  options.calibration = PolarimeterCalibration{std::polar(.8, 90 * degree), {}, 0, 0, 0, 0};
+  const Table turned = reduced(file, options);
+  EXPECT_LT(plain.number("cov_qq", 0), .6 * plain.number("cov_uu", 0));
+  EXPECT_NEAR(turned.number("cov_uu", 0) * .64 / plain.number("cov_qq", 0), 1, 1e-9);
+  EXPECT_NEAR(turned.number("cov_qq", 0) * .64 / plain.number("cov_uu", 0), 1, 1e-9);
+  EXPECT_NEAR(turned.number("cov_qu", 0), -plain.number("cov_qu", 0) / .64, 1e-12);
+}
+
+/// Two beams behind a plate that steps, or one: 60 exposures of a body that turns in 20 s.
+CountsFile series(bool has_two_beams) {
+  const Source source;
+  CountsFile out;
+  for (int k = 0; k < 60; ++k)
+    for (const double beam : {0., 90.}) {
+      if (beam > 0 && !has_two_beams)
+        continue;
+      CountRow row = behind(source, 45 * k + beam, 0, k);
+      row.counts *= 1 + .3 * std::cos(2 * pi * k / 20);
+      row.channel = beam > 0 ? "x" : "o";
+      out.rows.push_back(row);
+    }
+  return out;
+}
+
+TEST(Reduce, ASeriesKnowsWhatIsNotKnownOfTheInstrument) {
+  ReduceOptions options;
+  options.period_s = 20;
+  options.harmonics = 1;
+  const Table known = reduced(series(false), options);
+  EXPECT_NEAR(known.number("q", 0), .3, 1e-9);
+  options.priors.instrumental = .002;
+  const Table unknown = reduced(series(false), options);
+  for (const char *name : {"cov_qq", "cov_uu"}) // an offset adds its variance, whatever the weights
+    EXPECT_NEAR((unknown.number(name, 0) - known.number(name, 0)) / 4e-6, 1, 1e-6) << name;
+  options.priors = {};
+  options.priors.gain = .01; // of the one channel: it is a factor of all light
+  EXPECT_NEAR(reduced(series(false), options).number("cov_qq", 0) / known.number("cov_qq", 0), 1,
+              1e-3);
+}
+
+TEST(Reduce, BeamsOfOneExposureFlickerTogetherInASeries) {
+  CountsFile file = series(true);
+  ReduceOptions options;
+  options.period_s = 20;
+  options.harmonics = 1;
+  const double still = reduced(file, options).number("cov_qq", 0);
+  for (CountRow &row : file.rows)
+    row.scintillation = .05;
+  // What both share says nothing of q: only the little that their sum told is lost.
+  const double one_pupil = reduced(file, options).number("cov_qq", 0);
+  EXPECT_LT(one_pupil / still, 1.2);
+  file.notes["pupils"] = "separate";
+  // 5 % on each of 60 counts along q: sd .05/sqrt(120) of q at least.
+  EXPECT_GT(reduced(file, options).number("cov_qq", 0), .8 * .05 * .05 / 120);
+}
+
+TEST(Reduce, FlagsTellWhatNoiseDoesNot) {
+  const Source source;
+  CountsFile file = wheel(source, 0, 0);
+  EXPECT_EQ(reduced(file).text("flags", 0), "");
+  file.rows[0].counts *= 1.1; // 50,000 electrons where 700 are noise
+  EXPECT_EQ(reduced(file).text("flags", 0), "misfit");
+  EXPECT_EQ(reduced(wheel({1.05, 0, {}}, 0, 0)).text("flags", 0), "above_one");
+  Diagnostics diagnostics;
+  ASSERT_TRUE(reduce(file, {}, {}, diagnostics));
+  ASSERT_EQ(diagnostics.warnings().size(), 1u);
+  EXPECT_NE(diagnostics.warnings()[0].text().find("misfit"), std::string::npos);
+}
+
+} // namespace
+} // namespace umov::jobs

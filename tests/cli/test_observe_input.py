@@ -1,0 +1,170 @@
+"""What umov observe, reduce and exposure refuse or warn of: every line tried."""
+import math
+import signal
+import subprocess
+import time
+
+import pytest
+from astropy.table import Table
+
+from conftest import ROOT, UMOV
+
+SCENE = """
+umov = 1
+instrument = "c11_imx250"
+[observer]
+name = "Maui"
+lat_deg = 20.7083
+lon_deg = -156.2578
+alt_m = {alt_m}
+[time]
+start = {start}
+stop = {stop}
+[[object]]
+name = "ball"
+orbit = {{ file = "{root}/data/tle/hst.tle", norad = 20580 }}
+mesh = {{ file = "sphere.obj", unit = "m", up = "+Z" }}
+materials = {{ default = "{material}" }}
+[atmosphere]
+seeing = {{ arcsec = 3 }}
+{air}
+[observation]
+{observation}
+[output]
+dir = "out"
+formats = ["ecsv"]
+"""
+
+
+@pytest.fixture
+def scene(umov, tmp_path):
+    """scene(observation, ...) writes observe.toml for a small sphere, five seconds of it."""
+    assert umov("mesh", "make", "sphere", "--radius", "0.2", "--facets", "1000", "-o", "sphere.obj").code == 0
+
+    def write(observation, air="", alt_m=3058, start="2018-01-21T05:11:00Z", stop="2018-01-21T05:11:05Z",
+              material="paint_white"):
+        if "bands" not in observation:
+            observation = 'bands = ["nm:550"]\n' + observation
+        (tmp_path / "observe.toml").write_text(SCENE.format(
+            observation=observation, air=air, alt_m=alt_m, start=start, stop=stop, material=material, root=ROOT))
+        return tmp_path / "observe.toml"
+
+    return write
+
+
+REFUSED = [
+    ("exposure_s = 1\n[telescope]\nfocal_length_m = 2794", "is it in mm"),
+    ("exposure_s = 1\n[telescope]\nfocal_length_m = 279", "is one of them in mm"),
+    ("exposure_s = 1\n[telescope]\naperture_m = 279.4", "is it in mm"),
+    ("exposure_s = 1\n[detector]\npixel_um = 3.45e-6", "is it in mm or m"),
+    ("exposure_s = 1\n[detector]\npixel_um = 0.00345", "is it in mm or m"),
+    ("exposure_s = 1\n[telescope]\nmount = \"equatorial\"\nport = \"nasmyth_left\"", "altitude axis"),
+    ("exposure_s = 1\n[detector]\nbits = 6\nbias_adu = 100", "nothing for light"),
+    ("exposure_s = 1\n[detector]\nmodel = \"emccd\"", "needs em_gain"),
+    ("exposure_s = 1\n[polarimeter]\nlayout = [[90, 45, 135], [0]]", "[[90, 45], [135, 0]]"),
+    ("exposure_s = 1\n[polarimeter]\nq0 = 0.9\nu0 = 0.9", "at most 1"),
+    ("exposure_s = 1\naperture_fwhm = 4.5", "would hold the star"),
+    ("exposure_s = 1\nbands = []", "one or more were expected"),
+]
+
+
+@pytest.mark.parametrize("observation, told", REFUSED)
+def test_what_is_refused(scene, umov, observation, told):
+    done = umov("observe", scene(observation))
+    assert done.code == 3, done.err
+    assert told in done.err and "observe.toml:" in done.err
+
+
+def test_day_is_refused(scene, umov):
+    day = dict(start="2018-01-21T01:40:00Z", stop="2018-01-21T03:40:00Z")  # some pass before sunset at 04:15
+    done = umov("observe", scene("exposure_s = 10", **day), "--set", "time.only={ sunlit = false }")
+    assert done.code == 3 and "sun_alt_max_deg" in done.err, done.err
+    done = umov("observe", scene("exposure_s = 10", air="sky = { mag = 8 }", **day))
+    assert done.code == 0, done.err
+
+
+WARNED = [
+    ("exposure_s = 1\n[detector]\nwell_e = 1e5", {}, "numbers fill first"),
+    ("exposure_s = 1", {"alt_m": 10033}, "is in metres"),
+    ("exposure_s = 1", {"air": "sky = { mag = 9 }"}, "more than ten times"),
+    ("exposure_s = 1\nsequence = [{ analyser_deg = 45 }]", {}, "says nothing to a polarimeter"),
+    ("exposure_s = 0.5\nsequence = [{ analyser_deg = 0 }, { analyser_deg = 4 }, { analyser_deg = 8 }]\n"
+     '[polarimeter]\ntype = "polarizer_wheel"', {}, "condition number"),
+    ("exposure_s = 1", {"start": "2018-01-21T05:09:30Z", "stop": "2018-01-21T05:09:40Z"}, "40 deg from the zenith"),
+]
+
+
+@pytest.mark.parametrize("observation, change, told", WARNED)
+def test_what_is_warned_of(scene, umov, observation, change, told):
+    done = umov("observe", scene(observation, **change))
+    assert done.code == 0 and told in done.err, done.err
+    assert "nan" not in (done.out + done.err)
+
+
+def test_a_table_is_no_folder(scene, umov, tmp_path):
+    done = umov("observe", scene("exposure_s = 1"), "-o", "x.csv")
+    assert done.code == 2 and "folder" in done.err
+    assert not (tmp_path / "x.csv").exists()
+
+
+@pytest.mark.parametrize("option, value", [("--mag", "nan"), ("--mag", "1e9"), ("--change-per-s", "-1"),
+                                           ("--sky-mag", "inf"), ("--height-m", "3e6"), ("--seeing", "nan")])
+def test_exposures_of_nonsense(umov, option, value):
+    done = umov("exposure", "--instrument", "usafa16", f"{option}={value}")
+    assert done.code == 2 and option in done.err, done.err
+
+
+def test_a_stop_does_not_wait_for_the_block(scene, umov, tmp_path):
+    # Some 100 exposures of three nodes each by rays to one in 100,000: minutes.
+    path = scene('exposure_s = 1\n[render]\nmethod = "rays"\naccuracy = 1e-5', stop="2018-01-21T05:12:40Z")
+    assert umov("mesh", "make", "dish", "-o", "sphere.obj").code == 0
+    running = subprocess.Popen([UMOV, "observe", path, "--threads", "1"], cwd=tmp_path, stderr=subprocess.PIPE,
+                               text=True)
+    time.sleep(2)
+    running.send_signal(signal.SIGINT)
+    _, said = running.communicate(timeout=60)
+    assert running.returncode == 130 and "stopped" in said, said
+    assert not (tmp_path / "out").exists()
+
+
+def test_wavelengths_stand_closer_where_colours_ask_for_it(scene, umov, tmp_path):
+    """Gold through B: light above the air as umov run has it, which halves the nodes (docs/theory/bands.md)."""
+    path = scene('exposure_s = 1\nbands = ["Bessell.B"]', material="gold", stop="2018-01-21T05:11:02Z")
+    assert umov("observe", path).code == 0
+    truth = Table.read(tmp_path / "out/truth.ecsv")
+    path.write_text(path.read_text().replace("[output]", '[bands]\nset = ["Bessell.B"]\n[output]')
+                    .replace("05:11:00Z", "05:11:00.5Z"))
+    assert umov("run", path, "-o", "run").code == 0
+    curve = Table.read(tmp_path / "run/lightcurve.ecsv")
+    # Three nodes of one second against its middle: the light of a sphere is smooth.
+    assert abs(truth["I"][0] / curve["I"][0] - 1) < 2e-5
+    assert abs(truth["q"][0] - curve["q"][0]) < 2e-5
+
+
+def test_a_material_may_end_where_the_band_ends(scene, umov, tmp_path):
+    (tmp_path / "band.csv").write_text("# unit: nm\n# detector: photon\n400 0.5\n500 1\n600 0.5\n")
+    (tmp_path / "film.yml").write_text(
+        "REFERENCES: made for a test\nDATA:\n  - type: tabulated nk\n    data: |\n"
+        "        0.4 1.5 0.1\n        0.5 1.6 0.1\n        0.6 1.5 0.1\n")
+    text = scene('exposure_s = 1\nbands = ["file:band.csv"]', material="own").read_text()
+    (tmp_path / "observe.toml").write_text(text + '\n[material.own]\nindex = "film.yml"\ndistribution = { model = "beckmann", alpha = 0.3 }\n')
+    done = umov("observe", "observe.toml")
+    assert done.code == 0, done.err
+    (tmp_path / "band.csv").write_text("# unit: nm\n# detector: photon\n390 0.5\n500 1\n600 0.5\n")
+    done = umov("observe", "observe.toml", "-o", "b")
+    assert done.code == 3 and "390" in done.err
+
+
+def test_angles_of_a_sequence_are_of_its_middle(scene, umov, tmp_path):
+    """Ten seconds of a wheel while the axis of scattering turns."""
+    text = 'exposure_s = 5\nsequence = [{ analyser_deg = 0 }, { analyser_deg = 60 }, { analyser_deg = 120 }]\n'
+    path = scene(text + '[polarimeter]\ntype = "polarizer_wheel"', air='scintillation = "none"',
+                 stop="2018-01-21T05:11:15Z")
+    assert umov("observe", path).code == 0
+    counts = Table.read(tmp_path / "out/counts.ecsv")
+    assert umov("reduce", "out/counts.ecsv", "-o", "s.ecsv").code == 0
+    row = Table.read(tmp_path / "s.ecsv")[0]
+    assert abs(row["phase_angle"] - counts["phase_angle"][1]) < 1e-9
+    twice = 2 * math.radians(counts["pa_scat"][1])
+    assert abs(row["q_scat"] - (row["q"] * math.cos(twice) + row["u"] * math.sin(twice))) < 1e-12
+    assert abs(counts["pa_scat"][0] - counts["pa_scat"][1]) > 0.5
