@@ -52,6 +52,7 @@
 #include <umov/io/mesh_file.h>
 #include <umov/io/obj.h>
 #include <umov/io/observation.h>
+#include <umov/io/observations_file.h>
 #include <umov/io/passband_file.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
