@@ -40,6 +40,17 @@
 #include <umov/instrument/observe.h>
 #include <umov/instrument/polarimeter.h>
 #include <umov/instrument/telescope.h>
+#include <umov/inverse/attitude_grid.h>
+#include <umov/inverse/curve_model.h>
+#include <umov/inverse/direction_table.h>
+#include <umov/inverse/likelihood.h>
+#include <umov/inverse/null_test.h>
+#include <umov/inverse/observed_curve.h>
+#include <umov/inverse/parameter.h>
+#include <umov/inverse/pose_search.h>
+#include <umov/inverse/spin_search.h>
+#include <umov/inverse/symmetry.h>
+#include <umov/inverse/unmix.h>
 #include <umov/io/attitude_file.h>
 #include <umov/io/calibration_file.h>
 #include <umov/io/ccsds.h>
