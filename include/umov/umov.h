@@ -86,11 +86,13 @@
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/ephemeris.h>
 #include <umov/jobs/exposure.h>
+#include <umov/jobs/invert.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
 #include <umov/jobs/mesh_description.h>
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/observe.h>
+#include <umov/jobs/observed_light.h>
 #include <umov/jobs/orbit_files.h>
 #include <umov/jobs/passes.h>
 #include <umov/jobs/pose_light.h>
