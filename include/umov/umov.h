@@ -40,6 +40,17 @@
 #include <umov/instrument/observe.h>
 #include <umov/instrument/polarimeter.h>
 #include <umov/instrument/telescope.h>
+#include <umov/inverse/attitude_grid.h>
+#include <umov/inverse/curve_model.h>
+#include <umov/inverse/direction_table.h>
+#include <umov/inverse/likelihood.h>
+#include <umov/inverse/null_test.h>
+#include <umov/inverse/observed_curve.h>
+#include <umov/inverse/parameter.h>
+#include <umov/inverse/pose_search.h>
+#include <umov/inverse/spin_search.h>
+#include <umov/inverse/symmetry.h>
+#include <umov/inverse/unmix.h>
 #include <umov/io/attitude_file.h>
 #include <umov/io/calibration_file.h>
 #include <umov/io/ccsds.h>
@@ -52,6 +63,7 @@
 #include <umov/io/mesh_file.h>
 #include <umov/io/obj.h>
 #include <umov/io/observation.h>
+#include <umov/io/observations_file.h>
 #include <umov/io/passband_file.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
@@ -74,11 +86,13 @@
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/ephemeris.h>
 #include <umov/jobs/exposure.h>
+#include <umov/jobs/invert.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
 #include <umov/jobs/mesh_description.h>
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/observe.h>
+#include <umov/jobs/observed_light.h>
 #include <umov/jobs/orbit_files.h>
 #include <umov/jobs/passes.h>
 #include <umov/jobs/pose_light.h>
@@ -104,6 +118,7 @@
 #include <umov/lightcurve/earth_light.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/lightcurve/pass_light.h>
+#include <umov/lightcurve/periodogram.h>
 #include <umov/observation/epochs.h>
 #include <umov/observation/moving_joints.h>
 #include <umov/observation/track.h>

@@ -10,8 +10,8 @@ namespace umov {
 namespace {
 
 /// Cells between blanks; quotes as in RFC 4180. Empty if a quote stays open.
-std::optional<std::vector<std::string>> blank_cells(std::string_view line) {
-  std::vector<std::string> out;
+std::optional<std::vector<CsvCell>> blank_cells(std::string_view line) {
+  std::vector<CsvCell> out;
   std::size_t i = 0;
   while (i < line.size()) {
     if (line[i] == ' ' || line[i] == '\t') {
@@ -19,6 +19,7 @@ std::optional<std::vector<std::string>> blank_cells(std::string_view line) {
       continue;
     }
     std::string cell;
+    const std::size_t column = i + 1;
     if (line[i] != '"') {
       const std::size_t end = std::min(line.find_first_of(" \t", i), line.size());
       cell = line.substr(i, end - i);
@@ -34,15 +35,13 @@ std::optional<std::vector<std::string>> blank_cells(std::string_view line) {
       }
       ++i;
     }
-    out.push_back(std::move(cell));
+    out.push_back({std::move(cell), column});
   }
   return out;
 }
 
 std::optional<std::vector<std::string>> cells_of(std::string_view line, bool has_blanks) {
-  if (has_blanks)
-    return blank_cells(line);
-  const auto cells = csv_cells(line);
+  const auto cells = has_blanks ? blank_cells(line) : csv_cells(line);
   if (!cells)
     return std::nullopt;
   std::vector<std::string> out;
@@ -51,9 +50,26 @@ std::optional<std::vector<std::string>> cells_of(std::string_view line, bool has
   return out;
 }
 
-/// A line of the header: `# - {"key": "value"}` of ECSV, or `# key: value`.
-void read_note(std::string_view line, std::map<std::string, std::string> &notes) {
+/// What stands behind `key` in a flow mapping of YAML, without quotes.
+std::string yaml_value(std::string_view text, std::string_view key) {
+  const std::size_t at = text.find(key);
+  if (at == std::string_view::npos)
+    return {};
+  std::string_view rest = trimmed(text.substr(at + key.size()));
+  if (rest.starts_with('"') || rest.starts_with('\''))
+    return std::string(rest.substr(1, rest.find(rest.front(), 1) - 1));
+  return std::string(trimmed(rest.substr(0, rest.find_first_of(",}"))));
+}
+
+/// A line of the header: `# - {name: ..., unit: ...}` or `# - {"key": "value"}` of ECSV, or
+/// `# key: value`.
+void read_note(std::string_view line, TextTable &table) {
   std::string_view text = trimmed(line.substr(1));
+  auto &notes = table.notes;
+  if (text.starts_with("- {name: ")) {
+    table.units[yaml_value(text, "name: ")] = yaml_value(text, ", unit: ");
+    return;
+  }
   if (text.starts_with("- {\"")) {
     const auto json = nlohmann::json::parse(text.substr(2), nullptr, false);
     if (json.is_object() && json.size() == 1 && json.begin()->is_string())
@@ -71,6 +87,11 @@ Result<void> add_header(TextTable &out, std::vector<std::string> cells, const Wh
     return fail(ErrorCode::BadInput,
                 fmt::format("column \"{}\" stands twice; leave one out", printable(*twice)), where);
   out.columns = std::move(cells);
+  // The line that CSV files of ours have above the names.
+  if (const auto told = out.notes.find("unit"); told != out.notes.end())
+    if (const auto units = csv_cells(told->second); units && units->size() == out.columns.size())
+      for (std::size_t c = 0; c < out.columns.size(); ++c)
+        out.units[out.columns[c]] = (*units)[c].text;
   return {};
 }
 
@@ -90,7 +111,7 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
     if (line.empty())
       continue;
     if (line.front() == '#') {
-      read_note(line, out.notes);
+      read_note(line, out);
       continue;
     }
     if (line.size() > line_max || out.rows.size() >= rows_max)
@@ -114,6 +135,25 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
     out.lines.push_back(number);
   }
   return out;
+}
+
+std::size_t column_of_cell(std::string_view text, std::size_t line, std::size_t cell) {
+  bool has_blanks = false, has_header = false;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view here = text.substr(0, end);
+    const std::string_view words = trimmed(here);
+    if (!has_header && !words.empty() && words.front() != '#') {
+      has_header = true;
+      has_blanks = here.find(',') == std::string_view::npos;
+    }
+    if (number == line) {
+      const auto cells = has_blanks ? blank_cells(here) : csv_cells(here);
+      return cells && cell < cells->size() ? (*cells)[cell].column : 0;
+    }
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return 0;
 }
 
 } // namespace umov

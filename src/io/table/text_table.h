@@ -15,9 +15,13 @@ struct TextTable {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::size_t> lines; ///< of each row
   std::map<std::string, std::string> notes;
+  std::map<std::string, std::string> units; ///< by column, where the header tells them
 };
 /// Blank-separated where the header is, else comma-separated. BadInput for an open quote, a ragged
 /// row or a column that stands twice.
 Result<TextTable> read_text_table(std::string_view text, const std::string &file);
+
+/// Where cell `cell` of line `line` (from 1) begins, for messages: columns count from 1.
+std::size_t column_of_cell(std::string_view text, std::size_t line, std::size_t cell);
 
 } // namespace umov

@@ -1,0 +1,97 @@
+#include "verb_invert.h"
+
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov::cli {
+namespace {
+
+Result<jobs::Inversion> answer(InvertVerb &o, const InvertJob &job, Diagnostics &diagnostics) {
+  const auto started = std::chrono::system_clock::now();
+  UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.overrides));
+  std::optional<RunFolder> folder;
+  if (!o.output.empty()) {
+    UMOV_ASSIGN(opened, RunFolder::open(o.output, o.common.force));
+    folder = std::move(opened);
+  }
+  o.request.errors.has_polarization = !o.is_intensity_only;
+  o.request.method = o.visibility == "rays"   ? LightMethod::Rays
+                     : o.visibility == "auto" ? LightMethod::Auto
+                                              : LightMethod::Masks;
+  JobConsole console(o.common);
+  UMOV_ASSIGN(found, job(scenario, o, console.monitor(o.common.verbose), diagnostics));
+  if (folder)
+    UMOV_TRY(jobs::write_inversion(found, scenario, manifest_of_command(o.common, started),
+                                   diagnostics, *folder));
+  return found;
+}
+
+Result<void> print(const jobs::Inversion &found, const InvertVerb &o) {
+  if (o.common.json)
+    return put("", found.json);
+  if (o.common.quiet)
+    return {};
+  UMOV_TRY(put("", found.summary + to_text(found.tables.front().table)));
+  if (!o.output.empty())
+    fmt::print("written to {}\n", printable(o.output));
+  return {};
+}
+
+} // namespace
+
+void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
+  CurveErrors &errors = o->request.errors;
+  verb.add_option(
+          "observations", o->request.observations,
+          "Light curves (ECSV or CSV), of umov reduce, umov run or your own: one fit of all")
+      ->required();
+  verb.add_option("--scenario", o->scenario, "Object, materials, orbit, site and bands")
+      ->required();
+  verb.add_option("-o,--output", o->output, "Output folder");
+  verb.add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
+  verb.add_option("--grid", o->request.grid, "Attitudes that are looked at first")
+      ->check(CLI::Range(1000, 5'000'000))
+      ->capture_default_str();
+  verb.add_option("--floor", errors.floor, "Error of the model, in parts of I; half of it in q, u")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb.add_option("--zero-point-sd", errors.zero_point_sd,
+                  "How well the zero point of each band is known, relative")
+      ->check(CLI::Range(1e-6, 100.0))
+      ->capture_default_str();
+  verb.add_option("--scale-sd", errors.scale_sd,
+                  "How well the absolute brightness is known, relative; 0: not at all")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  verb.add_flag("--clouds", errors.has_clouds, "Transparency is free at every epoch");
+  verb.add_option("--outliers", errors.outlier_share, "Share of measurements that are wrong")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
+  verb.add_flag("--intensity-only", o->is_intensity_only, "Leave q and u aside");
+  verb.add_option("--visibility", o->visibility, "How hiding is decided: masks, auto or rays")
+      ->check(CLI::IsMember({"masks", "auto", "rays"}))
+      ->capture_default_str();
+  verb.add_flag("--force", o->common.force, "Write into a folder that umov did not make");
+  verb.add_flag("-v,--verbose", o->common.verbose, "Also say what was done");
+  add_threads(verb, o->common);
+  add_cache(verb, o->common);
+  add_common(verb, o->common, true);
+}
+
+void run_invert(CLI::App &verb, const std::shared_ptr<InvertVerb> &o, const Exit &exit_with,
+                const InvertJob &job) {
+  verb.callback([o, exit_with, job] {
+    watch_interrupts();
+    Diagnostics diagnostics;
+    const auto found = answer(*o, job, diagnostics);
+    report(diagnostics, o->common);
+    if (!found)
+      return exit_with(report(found.error()));
+    const auto printed = print(*found, *o);
+    if (!printed)
+      return exit_with(report(printed.error()));
+    exit_with(found->verdict == jobs::Verdict::NoFit ? static_cast<int>(ErrorCode::Physics) : 0);
+  });
+}
+
+} // namespace umov::cli

@@ -1,0 +1,72 @@
+// umov invert pose, spin and material: their own options and their jobs.
+
+#include "verb_invert.h"
+
+namespace umov::cli {
+namespace {
+
+void add_pose(CLI::App &invert, const Exit &exit_with) {
+  auto *verb =
+      invert.add_subcommand("pose", "Which fixed attitudes explain a light curve, and how surely");
+  auto o = std::make_shared<InvertVerb>();
+  add_invert_options(*verb, o);
+  run_invert(*verb, o, exit_with,
+             [](const Scenario &scenario, const InvertVerb &asked, const jobs::Monitor &monitor,
+                Diagnostics &diagnostics) {
+               return jobs::invert_pose(scenario, asked.request, job_options(asked.common), monitor,
+                                        diagnostics);
+             });
+}
+
+void add_spin(CLI::App &invert, const Exit &exit_with) {
+  auto *verb = invert.add_subcommand(
+      "spin", "Which constant spins explain a light curve: period with aliases, axis, attitude");
+  auto o = std::make_shared<InvertVerb>();
+  auto spin = std::make_shared<jobs::SpinOptions>();
+  auto axis = std::make_shared<std::string>("any");
+  add_invert_options(*verb, o);
+  verb->add_option("--period", spin->period_s,
+                   "Of a whole turn [s], good to a few per cent; else from the periodogram")
+      ->check(CLI::Range(1e-3, 1e7));
+  verb->add_flag("!--no-aliases", spin->has_aliases, "Try that period alone");
+  verb->add_option("--axis", *axis, "Of the body: x, y, z (either sense), or any")
+      ->check(CLI::IsMember({"x", "y", "z", "any"}))
+      ->capture_default_str();
+  run_invert(*verb, o, exit_with,
+             [spin, axis](const Scenario &scenario, const InvertVerb &asked,
+                          const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+               spin->axis = *axis == "any" ? '\0' : axis->front();
+               return jobs::invert_spin(scenario, asked.request, *spin, job_options(asked.common),
+                                        monitor, diagnostics);
+             });
+}
+
+void add_unmixing(CLI::App &invert, const Exit &exit_with) {
+  auto *verb = invert.add_subcommand(
+      "material", "What a part is made of, in the scenario's attitude: which, or how much of each");
+  auto o = std::make_shared<InvertVerb>();
+  auto material = std::make_shared<jobs::MaterialOptions>();
+  add_invert_options(*verb, o);
+  verb->add_option("--group", material->group, "Group of the mesh")->required();
+  verb->add_option("--candidates", material->candidates, "Materials, separated by commas")
+      ->delimiter(',')
+      ->required();
+  run_invert(*verb, o, exit_with,
+             [material](const Scenario &scenario, const InvertVerb &asked,
+                        const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+               return jobs::invert_material(scenario, asked.request, *material,
+                                            job_options(asked.common), monitor, diagnostics);
+             });
+}
+
+} // namespace
+
+void add_invert(CLI::App &app, const Exit &exit_with) {
+  auto *invert = app.add_subcommand("invert", "From a light curve back to what made it");
+  invert->require_subcommand(1);
+  add_pose(*invert, exit_with);
+  add_spin(*invert, exit_with);
+  add_unmixing(*invert, exit_with);
+}
+
+} // namespace umov::cli

@@ -1,0 +1,258 @@
+#!/usr/bin/env python3
+"""Blind recovery of attitudes and spins: truth by rays on a finer tessellation, noise of photons, `umov invert pose` or `spin` on
+the coarser mesh by masks. Prints one line per curve and the summary.
+
+usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--umov PATH] [-- options of umov invert]
+OBJECT: agena, hst, box-wing or cubesat. --spin: the body turns about a random axis; the search is told its period to 1 %."""
+import argparse
+import json
+import math
+import pathlib
+import random
+import statistics
+import subprocess
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MATERIALS = {
+    "hst": dict(light_shield="film_aluminized", forward_shell="film_aluminized", equipment="film_silvered",
+                aft_shroud="film_silvered", door="film_aluminized", array_front="cell_silicon", array_back="mli_kapton",
+                array_frame="aluminium_anodized", antenna="paint_white", handrail="paint_white"),
+    "agena": dict(nozzle_titanium="titanium", rack_aluminium="aluminium", tank_aluminium="aluminium",
+                  paint_white="paint_white", paint_black="paint_black", cap_gold_kapton="mli_kapton"),
+    "box-wing": dict(bus="mli_kapton", panels="cell_silicon", tank="titanium", dish="paint_white"),
+    "cubesat": dict(body_px="aluminium_anodized", body_mx="cell_gaas", body_py="cell_gaas", body_my="paint_white",
+                    body_pz="mli_kapton", body_mz="aluminium_anodized", panel_px_front="cell_gaas",
+                    panel_px_back="paint_black", panel_px_edge="aluminium_anodized"),
+}
+MESH = {  # fitted, true
+    "hst": (["hst", "--sides", 36], ["hst", "--sides", 60]),
+    "agena": (["agena", "--sides", 36], ["agena", "--sides", 60]),
+    "box-wing": (["box-wing", "--facets", 600], ["box-wing", "--facets", 1500]),
+    "cubesat": (["cubesat", "--panels", 1], ["cubesat", "--panels", 1]),
+}
+SCENARIO = """umov = 1
+title = "blind"
+seed = {seed}
+[observer]
+lat_deg = 20.7083
+lon_deg = -156.2578
+alt_m = 3058
+[time]
+start = 2018-01-21T05:08:00Z
+stop = 2018-01-21T05:16:00Z
+step_s = {step}
+only = {{ alt_min_deg = 10, sunlit = true }}
+[[object]]
+name = "{name}"
+orbit = {{ file = "{root}/data/tle/hst.tle", norad = 20580 }}
+mesh = {{ file = "{mesh}", unit = "m", up = "+Z", normals = "smooth" }}
+attitude = {{ {law} }}
+[object.materials]
+{materials}
+[bands]
+set = "paper_rgb"
+[render]
+method = "{method}"
+[output]
+dir = "{out}"
+formats = ["csv"]
+"""
+
+
+def run(umov, *words, ok=(0,)):
+    done = subprocess.run([umov, *map(str, words)], capture_output=True, text=True)
+    if done.returncode not in ok:
+        raise SystemExit(f"{words}: {done.returncode}\n{done.stderr[-2000:]}")
+    return done.stdout
+
+
+def rows_of(path):
+    import csv
+    lines = [line for line in pathlib.Path(path).read_text().splitlines() if not line.startswith("#")]
+    return list(csv.DictReader(lines))
+
+
+def observed(rows, snr, rng, path):
+    """A table as an observer has it: SNR is that of I at its median; Q and U have sqrt(2) of its error."""
+    median = {}
+    for band in {r["band"] for r in rows}:
+        median[band] = statistics.median(float(r["intensity"]) for r in rows if r["band"] == band)
+    out = ["# pol_frame: equatorial", "time_utc,band,flux,flux_err,q,u,q_err,u_err"]
+    for r in rows:
+        true, m = float(r["intensity"]), median[r["band"]]
+        if not m > 0:
+            continue
+        sd = math.sqrt((0.8 * true * m + 0.2 * m * m) / snr**2)
+        scale = 3.1 * float(r["I"]) / true if true > 0 else None
+        if scale is None:
+            continue
+        seen = true + sd * rng.gauss(0, 1)
+        flux = f"{scale * seen:.6e},{scale * sd:.6e}"
+        if seen > 3 * sd and r["q"]:
+            e = math.sqrt(2) * sd / seen
+            out.append(f"{r['time_utc']},{r['band']},{flux},{float(r['q']) + e * rng.gauss(0, 1):.6f},"
+                       f"{float(r['u']) + e * rng.gauss(0, 1):.6f},{e:.6f},{e:.6f}")
+        else:
+            out.append(f"{r['time_utc']},{r['band']},{flux},,,,")
+    path.write_text("\n".join(out) + "\n")
+
+
+def random_attitude(rng):
+    q = [rng.gauss(0, 1) for _ in range(4)]
+    n = math.sqrt(sum(x * x for x in q))
+    return [x / n for x in q]
+
+
+def product(a, b):
+    return [a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+            a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+            a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+            a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]]
+
+
+def apart(a, b):
+    """Angle between two attitudes [deg]."""
+    return math.degrees(2 * math.acos(min(1.0, abs(sum(x * y for x, y in zip(a, b))))))
+
+
+def twins(truth, names):
+    """The truth and what the body's own turns make of it."""
+    out = [truth]
+    for text in names:
+        axis = "XYZ".index(text[-1])
+        if text.startswith("any"):
+            turns = [math.radians(a) for a in range(2, 360, 2)]
+        else:
+            word = text.split(" turn")[0]
+            turns = [math.pi] if word == "half" else [2 * math.pi * int(word.split()[0]) / (4 if "quarter" in word else 3)]
+        for angle in turns:
+            step = [math.cos(angle / 2), 0, 0, 0]
+            step[1 + axis] = math.sin(angle / 2)
+            out.append(product(truth, step))
+    return out
+
+
+def axis_of(q):
+    """Body +Z among the stars: v_body = conj(q) v q, so its components are a row of that matrix."""
+    w, x, y, z = q
+    return [2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z]
+
+
+def axis_apart(a, b):
+    return math.degrees(math.acos(max(-1.0, min(1.0, sum(x * y for x, y in zip(axis_of(a), axis_of(b)))))))
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("object", choices=MESH)
+    parser.add_argument("trials", type=int)
+    parser.add_argument("--snr", type=float, default=20)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--spin", type=float)
+    parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
+    parser.add_argument("--work", type=pathlib.Path)
+    parser.add_argument("rest", nargs="*")
+    o = parser.parse_args()
+    work = o.work or pathlib.Path(tempfile.mkdtemp())
+    work.mkdir(parents=True, exist_ok=True)
+    meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]
+    for mesh, words in zip(meshes, MESH[o.object]):
+        if not mesh.exists():
+            run(o.umov, "mesh", "make", *words, "-o", mesh, "-q")
+    if o.spin:
+        return spins(o, work, meshes)
+    poses(o, work, meshes)
+
+
+def inertial(q):
+    return f'mode = "inertial", quaternion = [{q[0]}, {q[1]}, {q[2]}, {q[3]}]'
+
+
+def make_curve(o, work, meshes, trial, law, step, rng):
+    """Scenarios of truth and fit, and what an observer has of the truth; returns its rows."""
+    materials = "\n".join(f'{k} = "{v}"' for k, v in MATERIALS[o.object].items())
+    for mesh, method, out, attitude, name in ((meshes[1], "rays", "truth", law, "true.toml"),
+                                              (meshes[0], "masks", "fit", inertial([1, 0, 0, 0]), "fit.toml")):
+        (work / name).write_text(SCENARIO.format(seed=o.seed + trial, name=o.object, root=ROOT, mesh=mesh, law=attitude, step=step,
+                                                 materials=materials, method=method, out=work / out))
+    run(o.umov, "run", work / "true.toml", "-o", work / "truth", "-q")
+    rows = rows_of(work / "truth/lightcurve.csv")
+    observed(rows, o.snr, rng, work / "obs.csv")
+    return rows
+
+
+def asked(o, work, question, *words):
+    began = time.time()
+    verdict = json.loads(run(o.umov, "invert", question, work / "obs.csv", "--scenario", work / "fit.toml", "-o", work / "answer",
+                             "--force", "--json", *words, *o.rest, ok=(0, 4)))
+    return verdict, time.time() - began
+
+
+def table_rows(path):
+    lines = [line.split() for line in path.read_text().splitlines() if line and not line.startswith("#")]
+    return [dict(zip(lines[0], line)) for line in lines[1:]]
+
+
+def spin_axis(q, rate):
+    """A vector of the body among the stars: q v conj(q)."""
+    w, x, y, z = q
+    v = product(product(q, [0, *rate]), [w, -x, -y, -z])[1:]
+    n = math.sqrt(sum(c * c for c in v))
+    return [c / n for c in v]
+
+
+def spins(o, work, meshes):
+    rng = random.Random(o.seed)
+    results = []
+    for trial in range(o.trials):
+        q, axis = random_attitude(rng), random_attitude(rng)[:3]
+        n = math.sqrt(sum(c * c for c in axis))
+        rate = [360 / o.spin * c / n for c in axis]
+        law = f'mode = "tumble", inertia = [1, 1, 1], rate_deg_s = {rate}, start = {{ {inertial(q)} }}'
+        make_curve(o, work, meshes, trial, law, o.spin / 10, rng)
+        told = o.spin * (1 + rng.uniform(-0.01, 0.01))
+        verdict, seconds = asked(o, work, "spin", "--period", told)
+        mode, period = table_rows(work / "answer/modes.ecsv")[0], table_rows(work / "answer/periods.ecsv")[0]
+        found = spin_axis([float(mode[k]) for k in ("qw", "qx", "qy", "qz")], [float(mode[k]) for k in ("rate_x", "rate_y", "rate_z")])
+        true = spin_axis(q, rate)
+        off = math.degrees(math.acos(max(-1.0, min(1.0, sum(a * b for a, b in zip(found, true))))))
+        relative = float(period["period_s"]) / o.spin - 1
+        results.append((off, abs(relative), off < 2 and abs(relative) < 0.01, seconds))
+        print(f"{o.object} spin {trial}: axis off {off:.3f} deg, period {relative:+.1e}, alias {period['alias']}, {verdict['verdict']}, "
+              f"chi2/dof {verdict['chi2'] / max(verdict['dof'], 1):.2f}, {seconds:.1f} s", flush=True)
+    print(f"{o.object} spin {o.spin:g} s, SNR {o.snr:g}, {len(results)} curves: found {sum(r[2] for r in results) / len(results):.2f}; "
+          f"median axis {statistics.median(r[0] for r in results):.3f} deg, period {statistics.median(r[1] for r in results):.1e}; "
+          f"{statistics.median(r[3] for r in results):.1f} s")
+
+
+def poses(o, work, meshes):
+    rng = random.Random(o.seed)
+    results = []
+    for trial in range(o.trials):
+        truth = random_attitude(rng)
+        rows = make_curve(o, work, meshes, trial, inertial(truth), 12, rng)
+        verdict, seconds = asked(o, work, "pose")
+        same = twins(truth, verdict["symmetries"])
+        errors = [min(apart(t, m["q"]) for t in same) for m in verdict["modes"]]
+        axis = min(axis_apart(t, verdict["modes"][0]["q"]) for t in same)
+        balls = [[float(x) for x in line.split()] for line in (work / "answer/set95.ecsv").read_text().splitlines()
+                 if line and not line.startswith("#") and not line.startswith("q")]
+        inside = any(apart(t, b[:4]) <= b[4] for t in same for b in balls)
+        phases = [float(r["phase_angle"]) for r in rows]
+        results.append((errors[0], min(errors), len(errors), inside, verdict["share_of_so3"], seconds, verdict["verdict"],
+                        verdict["chi2"] / max(verdict["dof"], 1), axis))
+        print(f"{o.object} {trial}: best {errors[0]:.3f} nearest {min(errors):.3f} +Z {axis:.3f} deg of {len(errors)}, in set {inside}, share "
+              f"{verdict['share_of_so3']:.1e}, chi2/dof {results[-1][7]:.2f}, {verdict['verdict']}, {seconds:.1f} s, "
+              f"{len(rows) // 3} epochs, phase {min(phases):.0f}-{max(phases):.0f}, {verdict['symmetries']}", flush=True)
+    n = len(results)
+    print(f"{o.object} SNR {o.snr:g}, {n} curves: best < 5 deg {sum(r[0] < 5 for r in results) / n:.2f}; nearest mode < 5 deg "
+          f"{sum(r[1] < 5 for r in results) / n:.2f}; in the 95 % set {sum(r[3] for r in results) / n:.2f}; median error of best "
+          f"{statistics.median(r[0] for r in results):.2f}, of nearest {statistics.median(r[1] for r in results):.3f}, of +Z {statistics.median(r[8] for r in results):.3f} deg; modes "
+          f"{statistics.median(r[2] for r in results):.0f}; share of SO(3) {statistics.median(r[4] for r in results):.1e}; chi2/dof "
+          f"{statistics.median(r[7] for r in results):.2f}; {statistics.median(r[5] for r in results):.1f} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,32 @@
+#pragma once
+// Light of an object between directions that were lit beforehand: coarse, and millions of poses per
+// second.
+
+#include <memory>
+#include <umov/inverse/curve_model.h>
+
+namespace umov {
+
+/// I and Q over pairs of directions (Sun, observer) on the grid of an octahedron, linear between
+/// its nodes. Good for a search, not for a fit: a lobe narrower than a cell is blurred.
+class DirectionTable {
+public:
+  /// Lights all pairs of (cells + 1)^2 directions, half of them by reciprocity (Sun and observer
+  /// swapped give the same I and Q), with a Sun of one size. Nothing if it was stopped.
+  static std::shared_ptr<const DirectionTable> make(const PoseLighting &light, std::size_t cells,
+                                                    double sun_radius_rad, unsigned threads);
+  /// Looks up; `table` is kept alive by it. U and V are 0.
+  static PoseLighting lighting(std::shared_ptr<const DirectionTable> table, unsigned threads);
+
+private:
+  struct Corner {
+    std::size_t node[4];
+    float weight[4];
+  };
+  [[nodiscard]] Corner corner_of(Vec3<Body> direction) const;
+
+  std::size_t cells_ = 0, bands_ = 0;
+  std::vector<float> light_; ///< [((sun * nodes + observer) * bands + band) * 2 + (I, Q)]
+};
+
+} // namespace umov

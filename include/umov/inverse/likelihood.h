@@ -1,0 +1,81 @@
+#pragma once
+// How likely measured I, q and u are if the object gives a certain light: docs/theory/inverse.md,
+// section 2.
+
+#include <span>
+#include <umov/inverse/observed_curve.h>
+#include <umov/inverse/parameter.h>
+#include <vector>
+
+namespace umov {
+
+/// What is not known beside the light itself.
+struct CurveErrors {
+  double floor = 0.02;         ///< error of the model, in parts of I; half of it for q and u
+  double floor_median = 0.01;  ///< more of it, in parts of the median I
+  double zero_point_sd = 0.02; ///< of each band's zero point, relative
+  double scale_sd = 0;         ///< of the common scale, relative; 0: any scale
+  bool has_clouds = false;     ///< transparency free at every epoch, common to its bands
+  double outlier_share = 0;    ///< of measurements whose error is `outlier_factor` times as large
+  double outlier_factor = 10;
+  bool has_polarization = true; ///< q and u are used where they are measured
+};
+
+/// Light of a model at all epochs and bands: [epoch * bands + band], scattering plane.
+struct ModelLight {
+  std::span<const double> i, q, u;
+  /// Numerical 95 % half-width of `i`, which is an error of its own in each row; may be empty.
+  std::span<const double> i_half_width = {};
+};
+
+/// A model held against a curve.
+struct Comparison {
+  /// -2 ln of the likelihood over scale and zero points, without constants of the data alone.
+  double minus_2_log = 0;
+  double chi2 = 0;  ///< of the best scale and zero points
+  double scale = 1; ///< observed over model
+  /// Whitened: chi2 is the sum of their squares where there are no outliers.
+  std::vector<double> residuals;
+};
+
+/// Measured I, q and u with their errors, ready to be compared with many models. Thread safe.
+class CurveLikelihood {
+public:
+  /// Of the samples of `epochs` alone, if there are any.
+  CurveLikelihood(const ObservedCurve &curve, const CurveErrors &errors,
+                  std::span<const std::size_t> epochs = {});
+
+  /// Holds a model against the curve.
+  [[nodiscard]] Comparison compare(const ModelLight &model) const;
+  /// Numbers that were measured.
+  [[nodiscard]] std::size_t measurements() const { return measurements_; }
+  /// Whitened residuals: measurements, and what the priors of zero points add.
+  [[nodiscard]] std::size_t residual_count() const;
+  /// Unknowns that `compare` integrates over.
+  [[nodiscard]] std::vector<Parameter> nuisances() const;
+  /// Median of the measured I; 0 if there is none.
+  [[nodiscard]] double median_i() const { return median_i_; }
+
+private:
+  struct Row {
+    std::size_t at = 0, group = 0; ///< in the model's light; of the gain: band, or epoch in clouds
+    double i = 0, weight = 0;      ///< 0: not measured
+    double q = 0, u = 0;
+    /// Rows of the inverse square root of the covariance of q, u; all 0: not measured.
+    double l_qq = 0, l_uq = 0, l_uu = 0;
+  };
+  struct Gains;
+  double weigh(const ModelLight &model, std::vector<double> &weights) const;
+  [[nodiscard]] Gains gains_of(const ModelLight &model, std::span<const double> weights) const;
+  double fill(const ModelLight &model, const Gains &gains, std::span<const double> weights,
+              std::vector<double> &residuals) const;
+
+  std::vector<Row> rows_;
+  std::vector<std::string> bands_;
+  CurveErrors errors_;
+  bool is_absolute_ = false;
+  std::size_t groups_ = 0, measurements_ = 0;
+  double median_i_ = 0;
+};
+
+} // namespace umov

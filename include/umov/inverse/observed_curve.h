@@ -1,0 +1,41 @@
+#pragma once
+// What an observer measured, in the terms of the light of an object: docs/theory/inverse.md.
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <umov/core/vec3.h>
+#include <vector>
+
+namespace umov {
+
+/// One moment: where the Sun and the observer stood, as seen from the object.
+struct ObservedEpoch {
+  double seconds = 0;             ///< since the first epoch of the curve
+  Vec3<Gcrs> to_sun, to_observer; ///< unit vectors at the object
+  double sun_radius_rad = 0;      ///< of its disk; 0: a point
+  double scattering_axis_rad = 0; ///< position angle of +Q_scat in the frame of the instrument
+};
+
+/// One band at one epoch. NaN: not measured.
+struct ObservedSample {
+  std::size_t epoch = 0, band = 0;
+  /// I in the units of the model [m2/sr], up to the unknown scale: distance and sunlight are taken
+  /// out; and its standard deviation.
+  double i = std::numeric_limits<double>::quiet_NaN();
+  double i_sd = 0;
+  /// Q/I and U/I in the scattering plane, with their covariance.
+  double q = std::numeric_limits<double>::quiet_NaN();
+  double u = std::numeric_limits<double>::quiet_NaN();
+  double cov_qq = 0, cov_uu = 0, cov_qu = 0;
+};
+
+/// All that was measured of one object.
+struct ObservedCurve {
+  std::vector<std::string> bands;
+  std::vector<ObservedEpoch> epochs;   ///< in order of time
+  std::vector<ObservedSample> samples; ///< in order of epochs
+  bool is_absolute = false;            ///< `i` is [m2/sr] itself: the scale is near 1
+};
+
+} // namespace umov

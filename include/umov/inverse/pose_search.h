@@ -1,0 +1,76 @@
+#pragma once
+// Which attitudes a curve allows: docs/theory/inverse.md, sections 3 to 5.
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <umov/core/result.h>
+#include <umov/inverse/curve_model.h>
+#include <vector>
+
+namespace umov {
+
+/// How a search is run.
+struct SearchOptions {
+  CurveErrors errors;
+  std::size_t grid = 60'000;  ///< attitudes that are looked at first
+  std::size_t starts = 100;   ///< of them, spread out, that are refined
+  std::size_t samples = 1000; ///< of the posterior
+  std::uint64_t seed = 0;     ///< of the samples
+  unsigned threads = 0;       ///< the answer does not depend on it
+  /// Told what is being done, and how much of it.
+  std::function<void(const char *what, std::size_t done, std::size_t total)> progress = {};
+};
+
+/// One way to be turned that explains the curve.
+struct PoseMode {
+  Turning turning;
+  /// Of the rotation vector in body axes [rad], and of the rate [rad/s] where it was free:
+  /// row-major, 3 x 3 or 6 x 6.
+  std::vector<double> covariance;
+  double weight = 0; ///< share of the posterior
+  double chi2 = 0, scale = 1;
+  /// Root of the largest variance of the attitude [rad].
+  [[nodiscard]] double sd_rad() const;
+};
+
+/// One draw from the posterior.
+struct PoseSample {
+  Turning turning;
+  double weight = 0; ///< they add up to 1
+  double minus_2_log = 0;
+};
+
+/// One ball of a set of attitudes.
+struct AttitudeBall {
+  Quaternion attitude;
+  double radius_rad = 0;
+};
+
+/// What a curve says about the attitude.
+struct PoseAnswer {
+  std::vector<PoseMode> modes;     ///< heaviest first
+  std::vector<PoseSample> samples; ///< of the posterior
+  std::vector<AttitudeBall> set95; ///< their union holds 95 % of it
+  double share_of_so3 = 0;         ///< volume of that union in parts of all attitudes
+  double log_evidence = 0;         ///< over a prior that takes all attitudes alike
+  double chi2 = 0;                 ///< of the best one
+  std::size_t measurements = 0, unknowns = 0;
+  /// The posterior is no few narrow peaks: its samples were followed from all attitudes on, and
+  /// covariances of modes say little.
+  bool is_broad = false;
+  std::size_t poses_lit = 0;
+};
+
+/// All fixed attitudes that explain a curve. Interrupted if the light stopped; BadInput for a curve
+/// without measurements.
+Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options);
+
+/// The same around given turnings with their rate free too: the last step of a search for a spin.
+Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,
+                               const SearchOptions &options);
+
+/// The attitude lies in the union of balls.
+bool is_in(std::span<const AttitudeBall> set, Quaternion attitude);
+
+} // namespace umov

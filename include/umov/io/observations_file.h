@@ -1,0 +1,51 @@
+#pragma once
+// Light curves as observers have them: of umov reduce, of umov run, or of anybody's pipeline.
+
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <umov/core/diagnostics.h>
+#include <umov/core/result.h>
+#include <umov/lightcurve/compute.h>
+#include <umov/time/epoch.h>
+#include <vector>
+
+namespace umov {
+
+/// One band at one time, as it was measured. NaN: not measured.
+struct ObservedRow {
+  Epoch<Utc> time{};
+  std::string band, site; ///< "": the file does not say
+  double flux = std::numeric_limits<double>::quiet_NaN();
+  double flux_err = std::numeric_limits<double>::quiet_NaN();
+  double mag = std::numeric_limits<double>::quiet_NaN(); ///< where there is no flux
+  double mag_err = std::numeric_limits<double>::quiet_NaN();
+  double q = std::numeric_limits<double>::quiet_NaN(); ///< fractions of I, in the file's frame
+  double u = std::numeric_limits<double>::quiet_NaN();
+  double cov_qq = std::numeric_limits<double>::quiet_NaN();
+  double cov_uu = std::numeric_limits<double>::quiet_NaN();
+  double cov_qu = 0;
+  std::size_t line = 0;
+};
+
+/// A file of observations.
+struct ObservationsFile {
+  std::string path;
+  std::vector<ObservedRow> rows;            ///< in order of time
+  PolarizationFrame frame{};                ///< of q and u
+  bool is_absolute = false;                 ///< fluxes are irradiances [W m-2 nm-1]
+  std::map<std::string, std::string> notes; ///< of its header
+};
+
+/// Reads ECSV (blank-separated) or CSV. Columns by name: time_utc or mjd_utc; band; I_obs, I or
+/// flux with I_err or flux_err, else mag with mag_err; q, u with cov_qq, cov_uu, cov_qu or q_err,
+/// u_err (q_scat and u_scat where there are no q, u); site; flags. Others are ignored. Empty cells
+/// and "nan" are gaps. q and u stand in `pol_frame` of the header. Rows whose flags say "saturated"
+/// and those without any measurement are left out with a warning. BadInput with line and column for
+/// what cannot be read, a negative error, more than one object, and two rows of one time, band and
+/// site.
+Result<ObservationsFile> read_observations_text(std::string_view text, const std::string &file,
+                                                Diagnostics &diagnostics);
+
+} // namespace umov

@@ -1,0 +1,89 @@
+#pragma once
+// From light curves back to how an object was turned.
+
+#include <string>
+#include <umov/inverse/null_test.h>
+#include <umov/inverse/pose_search.h>
+#include <umov/inverse/symmetry.h>
+#include <umov/io/run_folder.h>
+#include <umov/io/table.h>
+#include <umov/jobs/monitor.h>
+#include <umov/jobs/observed_light.h>
+#include <umov/jobs/requests.h>
+#include <umov/light/light_model.h>
+#include <vector>
+
+namespace umov::jobs {
+
+/// What is asked of the observations.
+struct InvertRequest {
+  std::vector<std::string> observations; ///< files; all of them are one fit
+  CurveErrors errors;
+  std::size_t grid = 60'000;
+  LightMethod method = LightMethod::Masks;
+};
+
+/// How sure the answer is.
+enum class Verdict {
+  Determined,   ///< one attitude, up to turns of the body that no light tells apart
+  Ambiguous,    ///< several
+  Undetermined, ///< a wide region, or all
+  NoFit         ///< none explains the data
+};
+/// "determined", "ambiguous", "undetermined" or "no_fit".
+const char *name_of(Verdict verdict);
+
+/// A table of the answer and the name of its file.
+struct NamedTable {
+  std::string name;
+  Table table;
+};
+
+/// An answer, ready to be written and printed.
+struct Inversion {
+  Verdict verdict = Verdict::Undetermined;
+  std::vector<NamedTable> tables; ///< the first is what a terminal shows
+  std::string summary;            ///< for a person
+  std::string json;               ///< verdict.json
+  std::string page;               ///< report.html; empty where this build makes none
+  std::vector<InputFile> inputs;
+  std::uint64_t seed = 0;
+};
+
+/// Which fixed attitudes explain the observations: modes, samples, the 95 % set, twins, fit. The
+/// scenario's attitude is not used; parts that follow the Sun or the observer do so.
+Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &request,
+                              const JobOptions &options, const Monitor &monitor,
+                              Diagnostics &diagnostics);
+
+/// What is known of a spin before.
+struct SpinOptions {
+  double period_s = 0;     ///< inertial; 0: from the periodogram, with its aliases
+  bool has_aliases = true; ///< a half, twice and four times the period are tried too
+  char axis = 0;           ///< 'x', 'y' or 'z' of the body, either sense; 0: any
+};
+
+/// Which constant spins explain the observations: periods with their aliases, axis, rate and
+/// attitude. BadInput where no period is given and the curve tells none.
+Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &request,
+                              const SpinOptions &spin, const JobOptions &options,
+                              const Monitor &monitor, Diagnostics &diagnostics);
+
+/// What a part of the body may consist of.
+struct MaterialOptions {
+  std::string group;                   ///< of the mesh
+  std::vector<std::string> candidates; ///< materials by name: of the scenario or the library
+};
+
+/// Which of the candidates a mesh group is of, and in which parts if of several; the scenario's
+/// attitude is taken as known. BadInput for a group, Usage for a material that there is not.
+Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest &request,
+                                  const MaterialOptions &material, const JobOptions &options,
+                                  const Monitor &monitor, Diagnostics &diagnostics);
+
+/// Puts an answer into a folder, at once.
+Result<void> write_inversion(const Inversion &inversion, const Scenario &scenario,
+                             ManifestInput manifest, const Diagnostics &diagnostics,
+                             RunFolder &folder);
+
+} // namespace umov::jobs

@@ -1,0 +1,33 @@
+#pragma once
+// Observations put beside the object that they are of: where it was, and in the model's units.
+
+#include <umov/inverse/observed_curve.h>
+#include <umov/io/observations_file.h>
+#include <umov/io/scenario.h>
+#include <vector>
+
+namespace umov::jobs {
+
+/// A curve with the places of its numbers.
+struct ObservedLightCurve {
+  ObservedCurve curve;
+  std::vector<std::size_t> column; ///< of each band of the curve among those of the scenario
+  std::vector<ObservingGeometry> geometry; ///< per epoch
+  std::vector<std::string> notes;          ///< what the data cannot tell by themselves
+  std::vector<InputFile> inputs;
+};
+
+/// Reads files of observations.
+Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::string> &paths,
+                                                        std::vector<InputFile> &inputs,
+                                                        Diagnostics &diagnostics);
+
+/// Puts them on the scenario's orbit, as seen from its observer or the site that a row names: I in
+/// [m2/sr] up to a scale, q and u in the scattering plane. Epochs in the Earth's shadow are left
+/// out with a warning. BadInput for a scenario without orbit or observer, a band that it has not,
+/// and curves without an epoch in sunlight; Physics where the orbit cannot be had.
+Result<ObservedLightCurve> observed_light_curve(const Scenario &scenario,
+                                                const std::vector<ObservationsFile> &files,
+                                                Diagnostics &diagnostics);
+
+} // namespace umov::jobs

@@ -1,0 +1,234 @@
+#include <umov/inverse/likelihood.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace umov {
+namespace {
+
+double median_of(std::vector<double> values) {
+  if (values.empty())
+    return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+} // namespace
+
+/// Factors between model and data, and the common scale behind them.
+struct CurveLikelihood::Gains {
+  std::vector<double> gain; ///< per group
+  double scale = 1;
+  double prior_chi2 = 0; ///< of the gains' own priors
+  double log_det = 0;    ///< what the integrals over scale and gains leave behind
+};
+
+CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &errors,
+                                 std::span<const std::size_t> epochs)
+    : bands_(curve.bands), errors_(errors), is_absolute_(curve.is_absolute) {
+  std::vector<double> measured;
+  for (const ObservedSample &s : curve.samples)
+    if (!std::isnan(s.i))
+      measured.push_back(s.i);
+  median_i_ = median_of(std::move(measured));
+  groups_ = errors.has_clouds ? curve.epochs.size() : curve.bands.size();
+  // A gain per epoch takes no zero points beside it: they are counted as errors of their own.
+  const double part =
+      errors.has_clouds ? std::hypot(errors.floor, errors.zero_point_sd) : errors.floor;
+  const double base = errors.floor_median * median_i_;
+  for (const ObservedSample &s : curve.samples) {
+    if (!epochs.empty() && std::ranges::find(epochs, s.epoch) == epochs.end())
+      continue;
+    Row row;
+    row.at = s.epoch * curve.bands.size() + s.band;
+    row.group = errors.has_clouds ? s.epoch : s.band;
+    const double of_model = part * std::max(0.0, s.i);
+    const double variance = s.i_sd * s.i_sd + of_model * of_model + base * base;
+    if (!std::isnan(s.i) && variance > 0) {
+      row.i = s.i;
+      row.weight = 1 / variance;
+      ++measurements_;
+    }
+    if (errors.has_polarization && !std::isnan(s.q)) {
+      const double more = errors.floor * errors.floor / 4;
+      // Cholesky of the covariance, inverted: L^-1 (q, u) has unit covariance.
+      const double a = std::sqrt(s.cov_qq + more), b = s.cov_qu / a;
+      const double c = std::sqrt(std::max(s.cov_uu + more - b * b, 1e-30));
+      row.q = s.q;
+      row.u = s.u;
+      row.l_qq = 1 / a;
+      row.l_uu = 1 / c;
+      row.l_uq = -b / (a * c);
+      measurements_ += 2;
+    }
+    if (row.weight > 0 || row.l_qq > 0)
+      rows_.push_back(row);
+  }
+}
+
+std::size_t CurveLikelihood::residual_count() const {
+  return 3 * rows_.size() + (errors_.has_clouds ? 0 : groups_) + 1;
+}
+
+/// Weights of the rows: those of the data, less where the model itself is not sure. Returns ln of
+/// what the variances have grown by.
+double CurveLikelihood::weigh(const ModelLight &model, std::vector<double> &weights) const {
+  weights.resize(rows_.size());
+  double cross = 0, square = 0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    weights[k] = rows_[k].weight;
+    const double m = model.i[rows_[k].at];
+    cross += rows_[k].weight * rows_[k].i * m;
+    square += rows_[k].weight * m * m;
+  }
+  if (model.i_half_width.empty() || !(square > 0))
+    return 0;
+  constexpr double half_width = 1.96; // of a normal error, in standard deviations
+  const double scale = std::max(cross / square, 0.0) / half_width;
+  double grown = 0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const double sd = scale * model.i_half_width[rows_[k].at];
+    const double factor = 1 + weights[k] * sd * sd;
+    weights[k] /= factor;
+    grown += std::log(factor);
+  }
+  return grown;
+}
+
+/// The best gains, by least squares: without clouds the gain of a band is normal around the scale,
+/// g_b = s (1 + z_b), which for a given s is linear, and so is s then (section 2 of the page).
+CurveLikelihood::Gains CurveLikelihood::gains_of(const ModelLight &model,
+                                                 std::span<const double> weights) const {
+  std::vector<double> cross(groups_, 0), square(groups_, 0);
+  double all_cross = 0, all_square = 0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const Row &row = rows_[k];
+    if (row.weight == 0)
+      continue;
+    const double m = model.i[row.at], w = weights[k];
+    cross[row.group] += w * row.i * m;
+    square[row.group] += w * m * m;
+    all_cross += w * row.i * m;
+    all_square += w * m * m;
+  }
+  constexpr double least = 1e-9; // light is not negative, however dark the data
+  Gains out;
+  out.gain.assign(groups_, 1);
+  if (!(all_square > 0))
+    return out;
+  const double first = std::max(all_cross / all_square, least);
+  out.scale = first;
+  if (errors_.has_clouds) {
+    for (std::size_t g = 0; g < groups_; ++g) {
+      out.gain[g] = square[g] > 0 ? std::max(cross[g] / square[g], least) : 1;
+      out.log_det += square[g] > 0 ? std::log1p(square[g] * first * first) : 0;
+    }
+    return out;
+  }
+  const double stiffness = 1 / std::pow(std::max(errors_.zero_point_sd, 1e-6) * first, 2);
+  double top = 0, bottom = 0;
+  for (std::size_t g = 0; g < groups_; ++g) {
+    const double part = stiffness / (square[g] + stiffness);
+    top += cross[g] * part;
+    bottom += square[g] * part;
+    out.log_det += std::log1p(square[g] / stiffness);
+  }
+  const bool has_scale_prior = is_absolute_ && errors_.scale_sd > 0;
+  if (has_scale_prior) { // around 1, on top of what the light says
+    top += 1 / (errors_.scale_sd * errors_.scale_sd);
+    bottom += 1 / (errors_.scale_sd * errors_.scale_sd);
+  }
+  out.scale = std::max(top / bottom, least);
+  out.log_det += std::log(bottom * out.scale * out.scale);
+  for (std::size_t g = 0; g < groups_; ++g) {
+    out.gain[g] = (cross[g] + stiffness * out.scale) / (square[g] + stiffness);
+    const double off = (out.gain[g] - out.scale) * std::sqrt(stiffness);
+    out.prior_chi2 += off * off;
+  }
+  if (has_scale_prior)
+    out.prior_chi2 += std::pow((out.scale - 1) / errors_.scale_sd, 2);
+  return out;
+}
+
+double CurveLikelihood::fill(const ModelLight &model, const Gains &gains,
+                             std::span<const double> weights,
+                             std::vector<double> &residuals) const {
+  residuals.assign(residual_count(), 0);
+  double chi2 = 0;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const Row &row = rows_[k];
+    const double m = model.i[row.at];
+    double *const r = &residuals[3 * k];
+    r[0] = std::sqrt(weights[k]) * (row.i - gains.gain[row.group] * m);
+    if (row.l_qq > 0) {
+      const double dq = row.q - (m > 0 ? model.q[row.at] / m : 0);
+      const double du = row.u - (m > 0 ? model.u[row.at] / m : 0);
+      r[1] = row.l_qq * dq;
+      r[2] = row.l_uq * dq + row.l_uu * du;
+    }
+    chi2 += r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+  }
+  residuals.back() = std::sqrt(gains.prior_chi2);
+  return chi2 + gains.prior_chi2;
+}
+
+Comparison CurveLikelihood::compare(const ModelLight &model) const {
+  Comparison out;
+  std::vector<double> weights;
+  const double grown = weigh(model, weights);
+  Gains gains = gains_of(model, weights);
+  out.chi2 = fill(model, gains, weights, out.residuals);
+  out.minus_2_log = out.chi2 + gains.log_det + grown;
+  out.scale = gains.scale;
+  if (!(errors_.outlier_share > 0))
+    return out;
+  // Each row is good, or with a small probability wrong by a larger error: expectation
+  // maximisation of the mixture, three rounds (Dempster, Laird & Rubin 1977).
+  const double wide = errors_.outlier_factor, share = errors_.outlier_share;
+  std::vector<double> trust(rows_.size(), 1);
+  constexpr int rounds = 3;
+  for (int round = 0; round < rounds; ++round) {
+    out.minus_2_log = gains.log_det + gains.prior_chi2 + grown;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      double *const r = &out.residuals[3 * k];
+      const double dof = (rows_[k].weight > 0 ? 1 : 0) + (rows_[k].l_qq > 0 ? 2 : 0);
+      const double x2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+      const double good = (1 - share) * std::exp(-x2 / 2);
+      const double bad = share * std::exp(-x2 / (2 * wide * wide)) / std::pow(wide, dof);
+      trust[k] = (good + bad / (wide * wide)) / (good + bad);
+      out.minus_2_log -= 2 * std::log(good + bad);
+    }
+    if (round + 1 < rounds) {
+      std::vector<double> trusted(weights);
+      for (std::size_t k = 0; k < rows_.size(); ++k)
+        trusted[k] *= trust[k];
+      gains = gains_of(model, trusted);
+      out.chi2 = fill(model, gains, weights, out.residuals);
+    }
+  }
+  out.scale = gains.scale;
+  for (std::size_t k = 0; k < rows_.size(); ++k) // least squares then see what the mixture does
+    for (std::size_t j = 0; j < 3; ++j)
+      out.residuals[3 * k + j] *= std::sqrt(trust[k]);
+  out.chi2 = 0;
+  for (const double r : out.residuals)
+    out.chi2 += r * r;
+  return out;
+}
+
+std::vector<Parameter> CurveLikelihood::nuisances() const {
+  std::vector<Parameter> out;
+  if (is_absolute_ && errors_.scale_sd > 0)
+    out.push_back({"scale", "", 0, 1e3, Prior::Normal, 1, errors_.scale_sd});
+  else
+    out.push_back({"scale", "", 1e-30, 1e30, Prior::LogFlat});
+  if (errors_.has_clouds)
+    out.push_back({"transparency of each epoch", "", 0, 1e30, Prior::Flat});
+  else
+    for (const std::string &band : bands_)
+      out.push_back({"zero point of " + band, "", -1, 1, Prior::Normal, 0, errors_.zero_point_sd});
+  return out;
+}
+
+} // namespace umov

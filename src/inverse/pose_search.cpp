@@ -1,0 +1,251 @@
+#include <umov/inverse/pose_search.h>
+
+#include "inverse/posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <umov/inverse/attitude_grid.h>
+
+namespace umov {
+
+using inverse::Freedom;
+using inverse::Samples;
+using inverse::TurningFit;
+
+namespace {
+
+constexpr double degree = pi / 180;
+
+/// A likelihood in which the model may be a quarter off: a glint narrower than a cell of the grid
+/// cannot veto it then.
+CurveErrors tempered(CurveErrors errors) {
+  errors.floor = std::hypot(errors.floor, 0.25);
+  errors.floor_median = std::hypot(errors.floor_median, 0.1);
+  errors.outlier_share = 0; // the floor forgives them
+  return errors;
+}
+
+/// Every n-th epoch, `count` of them at most, the ends among them.
+std::vector<std::size_t> spread(std::size_t epochs, std::size_t count) {
+  std::vector<std::size_t> out;
+  count = std::min(count, epochs);
+  for (std::size_t k = 0; k < count; ++k)
+    out.push_back(count < 2 ? 0 : k * (epochs - 1) / (count - 1));
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+Error stopped() { return {ErrorCode::Interrupted, "stopped by the user; nothing was written", {}}; }
+
+/// Attitudes in order of chi2, after `count` of them are left.
+void keep_best(std::vector<Turning> &turnings, const std::vector<Comparison> &compared,
+               std::size_t count) {
+  std::vector<std::size_t> order(turnings.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t k) { return compared[k].chi2; });
+  std::vector<Turning> out;
+  for (std::size_t k = 0; k < std::min(count, order.size()); ++k)
+    out.push_back(turnings[order[k]]);
+  turnings = std::move(out);
+}
+
+/// The grid, thinned out in three rounds: few epochs judge all attitudes, all epochs those left.
+Result<std::vector<Turning>> search_grid(const CurveModel &model, const SearchOptions &options) {
+  std::vector<Turning> left;
+  for (const Quaternion &q : attitude_grid(options.grid))
+    left.push_back({q, {}});
+  struct Round {
+    std::size_t epochs, part; ///< and which part of the grid is left after it
+  };
+  constexpr Round rounds[] = {{8, 6}, {20, 20}, {60, 40}};
+  const CurveErrors errors = tempered(options.errors);
+  for (std::size_t r = 0; r < std::size(rounds); ++r) {
+    if (options.progress)
+      options.progress("search", r, std::size(rounds));
+    const auto epochs = spread(model.curve().epochs.size(), rounds[r].epochs);
+    const CurveLikelihood likelihood(model.curve(), errors, epochs);
+    const auto compared = inverse::compare_all(model, likelihood, left, epochs, options.threads);
+    if (compared.empty())
+      return tl::unexpected(stopped());
+    keep_best(left, compared, std::max(options.grid / rounds[r].part, 10 * options.starts));
+    if (epochs.size() == model.curve().epochs.size() && r + 1 < std::size(rounds))
+      break; // they were judged by all epochs
+  }
+  return left;
+}
+
+/// The best, no two within `apart_rad`.
+std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t count,
+                                double apart_rad) {
+  std::vector<Turning> out;
+  for (const Turning &t : sorted) {
+    if (out.size() >= count)
+      break;
+    if (std::ranges::none_of(out, [&](const Turning &o) {
+          return angle_between(o.attitude, t.attitude) < apart_rad;
+        }))
+      out.push_back(t);
+  }
+  return out;
+}
+
+std::vector<double> covariance_of(const Eigen::MatrixXd &information, double span_s) {
+  // No unknown is less certain than "anything", 0.8 rad either way.
+  constexpr double widest = 0.8;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
+  const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(1 / (widest * widest));
+  Eigen::MatrixXd out =
+      eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  for (Eigen::Index k = 3; k < out.rows(); ++k) {
+    out.row(k) /= span_s;
+    out.col(k) /= span_s;
+  }
+  return {out.data(), out.data() + out.size()};
+}
+
+double log_det(const PoseMode &mode) {
+  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(mode.covariance.size())));
+  return Eigen::Map<const Eigen::MatrixXd>(mode.covariance.data(), n, n)
+      .llt()
+      .matrixL()
+      .toDenseMatrix()
+      .diagonal()
+      .array()
+      .log()
+      .sum();
+}
+
+/// Fits that are one and the same peak, joined; those that hold less than e^-15 of the best left
+/// out; weights by Laplace's integral.
+std::vector<PoseMode> modes_of(const std::vector<TurningFit> &fits, double span_s) {
+  std::vector<PoseMode> out;
+  double best = 1e300;
+  for (const TurningFit &fit : fits)
+    best = std::min(best, fit.at.minus_2_log);
+  for (const TurningFit &fit : fits) {
+    if (fit.at.minus_2_log > best + 30)
+      continue;
+    PoseMode mode{fit.turning, covariance_of(fit.information, span_s), 0, fit.at.chi2,
+                  fit.at.scale};
+    const bool is_known = std::ranges::any_of(out, [&](const PoseMode &other) {
+      const double apart = angle_between(other.turning.attitude, mode.turning.attitude);
+      // Another spin with the same attitude at second 0 is another mode.
+      const double turned_apart = norm(other.turning.rate_rad_s - mode.turning.rate_rad_s) * span_s;
+      return apart < std::max(1 * degree, 3 * std::min(other.sd_rad(), mode.sd_rad())) &&
+             turned_apart < 0.2;
+    });
+    if (is_known)
+      continue;
+    mode.weight = std::exp(-(fit.at.minus_2_log - best) / 2 + log_det(mode));
+    out.push_back(std::move(mode));
+    constexpr std::size_t most = 40;
+    if (out.size() == most)
+      break;
+  }
+  double sum = 0;
+  for (const PoseMode &mode : out)
+    sum += mode.weight;
+  for (PoseMode &mode : out)
+    mode.weight /= sum;
+  return out;
+}
+
+/// A few narrow peaks describe the posterior, and their samples bear it out.
+bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
+  constexpr double widest = 10 * degree;
+  constexpr double least = 60; // effective samples
+  constexpr std::size_t most = 20;
+  return samples.effective >= least && modes.size() <= most &&
+         std::ranges::none_of(
+             modes, [](const PoseMode &m) { return m.weight > 0.01 && m.sd_rad() > widest; });
+}
+
+Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &likelihood,
+                             std::vector<PoseMode> modes, const SearchOptions &options,
+                             bool may_be_broad) {
+  PoseAnswer out;
+  Samples samples = inverse::sample_modes(model, likelihood, modes, options);
+  if (!samples.draws.empty() && may_be_broad && !is_described(modes, samples)) {
+    out.is_broad = true;
+    samples = inverse::sample_all(model, likelihood, options);
+  }
+  if (samples.draws.empty())
+    return tl::unexpected(stopped());
+  std::ranges::stable_sort(modes, std::ranges::greater{}, &PoseMode::weight);
+  out.chi2 = 1e300;
+  for (const PoseMode &mode : modes)
+    out.chi2 = std::min(out.chi2, mode.chi2);
+  out.modes = std::move(modes);
+  out.samples = std::move(samples.draws);
+  out.log_evidence = samples.log_evidence;
+  out.set95 =
+      inverse::highest_density(out.samples, out.is_broad ? std::span<const PoseMode>()
+                                                         : std::span<const PoseMode>(out.modes));
+  out.share_of_so3 = inverse::share_of(out.set95);
+  out.measurements = likelihood.measurements();
+  out.poses_lit = model.poses_lit();
+  return out;
+}
+
+double span_of(const ObservedCurve &curve) {
+  return curve.epochs.empty() ? 1.0 : std::max(1.0, curve.epochs.back().seconds);
+}
+
+} // namespace
+
+double PoseMode::sd_rad() const {
+  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(covariance.size())));
+  const Eigen::MatrixXd all = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
+  const Eigen::Matrix3d attitude = all.topLeftCorner(3, 3);
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(attitude).eigenvalues()[2]);
+}
+
+Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options) {
+  const CurveLikelihood exact(model.curve(), options.errors);
+  if (exact.measurements() == 0)
+    return fail(ErrorCode::BadInput, "nothing was measured in any band that the model has");
+  UMOV_ASSIGN(left, search_grid(model, options));
+  const auto starts = spread_out(left, options.starts, 5 * degree);
+  const CurveLikelihood rough(model.curve(), tempered(options.errors));
+  const auto some = spread(model.curve().epochs.size(), 60);
+  if (options.progress)
+    options.progress("refine", 0, 2);
+  inverse::FitPlan first{Freedom::Attitude, 4, 0, 0, 2e-3, options.threads};
+  auto fits = inverse::fit_turnings(model, rough, starts, some, first);
+  if (fits.empty())
+    return tl::unexpected(stopped());
+  std::vector<Turning> second;
+  constexpr std::size_t kept = 30;
+  for (std::size_t k = 0; k < std::min(fits.size(), kept); ++k)
+    second.push_back(fits[k].turning);
+  if (options.progress)
+    options.progress("refine", 1, 2);
+  fits = inverse::fit_turnings(model, exact, second, {},
+                               {Freedom::Attitude, 12, 0, 0, 1e-3, options.threads});
+  if (fits.empty())
+    return tl::unexpected(stopped());
+  UMOV_ASSIGN(out, answer_of(model, exact, modes_of(fits, span_of(model.curve())), options, true));
+  out.unknowns = 4; // attitude and scale
+  return out;
+}
+
+Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,
+                               const SearchOptions &options) {
+  const CurveLikelihood exact(model.curve(), options.errors);
+  auto fits = inverse::fit_turnings(model, exact, {starts.begin(), starts.end()}, {},
+                                    {Freedom::AttitudeAndRate, 20, 6, 12, 1e-3, options.threads});
+  if (fits.empty())
+    return tl::unexpected(stopped());
+  UMOV_ASSIGN(out, answer_of(model, exact, modes_of(fits, span_of(model.curve())), options, false));
+  out.unknowns = 7; // attitude, rate and scale
+  return out;
+}
+
+bool is_in(std::span<const AttitudeBall> set, Quaternion attitude) {
+  return std::ranges::any_of(set, [&](const AttitudeBall &ball) {
+    return angle_between(ball.attitude, attitude) <= ball.radius_rad;
+  });
+}
+
+} // namespace umov

@@ -1,0 +1,389 @@
+#include "inverse/posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <umov/core/parallel.h>
+#include <umov/core/random.h>
+#include <umov/inverse/attitude_grid.h>
+
+namespace umov::inverse {
+namespace {
+
+constexpr double tail = 5; // degrees of freedom of the proposals
+
+double span_of(const CurveModel &model) {
+  const auto &epochs = model.curve().epochs;
+  return epochs.empty() ? 1.0 : std::max(1.0, epochs.back().seconds);
+}
+
+/// A mode as a density to draw from, in the units of Step.
+struct Proposal {
+  Turning centre;
+  Eigen::MatrixXd root, inverse_root;
+  double log_norm = 0, weight = 0;
+};
+
+/// Steps have rates in radians per span.
+Eigen::MatrixXd in_steps(const std::vector<double> &covariance, double span_s) {
+  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(covariance.size())));
+  Eigen::MatrixXd out = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
+  for (Eigen::Index k = 3; k < n; ++k) {
+    out.row(k) *= span_s;
+    out.col(k) *= span_s;
+  }
+  return out;
+}
+
+Proposal proposal_of(const PoseMode &mode, double span_s) {
+  Proposal out;
+  out.centre = mode.turning;
+  constexpr double wider = 1.3; // tails that are too short cost more than ones too long
+  const Eigen::MatrixXd covariance = in_steps(mode.covariance, span_s) * wider;
+  out.root = covariance.llt().matrixL();
+  out.inverse_root = out.root.inverse();
+  const auto n = static_cast<double>(covariance.rows());
+  out.log_norm = std::lgamma((tail + n) / 2) - std::lgamma(tail / 2) - n / 2 * std::log(tail * pi) -
+                 out.root.diagonal().array().log().sum();
+  return out;
+}
+
+Step step_between(const Turning &from, const Turning &to, Eigen::Index size, double span_s) {
+  Step out(size);
+  const Vec3<Body> turn = turn_between(from.attitude, to.attitude);
+  out.head(3) << turn.x, turn.y, turn.z;
+  if (size > 3) {
+    const Vec3<Body> rate = (to.rate_rad_s - from.rate_rad_s) * span_s;
+    out.tail(3) << rate.x, rate.y, rate.z;
+  }
+  return out;
+}
+
+/// ln density of a mixture in the measure in which all attitudes are alike.
+double log_density(const std::vector<Proposal> &mixture, const Turning &at, double span_s) {
+  double sum = 0;
+  for (const Proposal &p : mixture) {
+    const Step step = step_between(p.centre, at, p.root.rows(), span_s);
+    const double angle = step.head(3).norm();
+    const double bend = angle > 1e-6 ? std::sin(angle / 2) / (angle / 2) : 1; // of rotation vectors
+    const double x2 = (p.inverse_root * step).squaredNorm();
+    const auto n = static_cast<double>(step.size());
+    sum += p.weight * std::exp(p.log_norm - (tail + n) / 2 * std::log1p(x2 / tail)) /
+           std::max(bend * bend, 1e-6);
+  }
+  return std::log(sum + 1e-300);
+}
+
+/// Weights from logarithms, and what they add up to.
+double normalize(std::vector<PoseSample> &draws, std::vector<double> log_weight) {
+  const double highest = *std::ranges::max_element(log_weight);
+  double sum = 0;
+  for (std::size_t k = 0; k < draws.size(); ++k)
+    sum += draws[k].weight = std::exp(log_weight[k] - highest);
+  for (PoseSample &s : draws)
+    s.weight /= sum;
+  return highest + std::log(sum);
+}
+
+double effective_size(const std::vector<PoseSample> &draws) {
+  double squares = 0;
+  for (const PoseSample &s : draws)
+    squares += s.weight * s.weight;
+  return squares > 0 ? 1 / squares : 0;
+}
+
+/// Which mode a sample belongs to: the nearest, in units of its own spread.
+std::size_t nearest(const std::vector<Proposal> &mixture, const Turning &at, double span_s) {
+  std::size_t best = 0;
+  double least = 1e300;
+  for (std::size_t m = 0; m < mixture.size(); ++m) {
+    const Proposal &p = mixture[m];
+    const double x2 =
+        (p.inverse_root * step_between(p.centre, at, p.root.rows(), span_s)).squaredNorm();
+    if (x2 < least) {
+      least = x2;
+      best = m;
+    }
+  }
+  return best;
+}
+
+/// Weights and covariances of modes from their samples.
+void update(std::vector<PoseMode> &modes, const std::vector<Proposal> &mixture,
+            const std::vector<PoseSample> &draws, double span_s) {
+  const Eigen::Index n = mixture.front().root.rows();
+  std::vector<Eigen::MatrixXd> second(modes.size(), Eigen::MatrixXd::Zero(n, n));
+  std::vector<double> total(modes.size(), 0), squares(modes.size(), 0);
+  for (const PoseSample &s : draws) {
+    const std::size_t m = nearest(mixture, s.turning, span_s);
+    const Step step = step_between(mixture[m].centre, s.turning, n, span_s);
+    second[m] += s.weight * step * step.transpose();
+    total[m] += s.weight;
+    squares[m] += s.weight * s.weight;
+  }
+  for (std::size_t m = 0; m < modes.size(); ++m) {
+    modes[m].weight = total[m];
+    const double samples = squares[m] > 0 ? total[m] * total[m] / squares[m] : 0;
+    if (samples < 10 * static_cast<double>(n))
+      continue; // too few to tell a covariance
+    Eigen::MatrixXd covariance = second[m] / total[m];
+    for (Eigen::Index k = 3; k < n; ++k) {
+      covariance.row(k) /= span_s;
+      covariance.col(k) /= span_s;
+    }
+    std::copy_n(covariance.data(), n * n, modes[m].covariance.begin());
+  }
+}
+
+std::vector<Proposal> mixture_of(const std::vector<PoseMode> &modes, double span_s) {
+  std::vector<Proposal> out;
+  double sum = 0;
+  constexpr double least = 0.02; // a mode that seems light is looked at too
+  for (const PoseMode &mode : modes) {
+    out.push_back(proposal_of(mode, span_s));
+    sum += out.back().weight = std::max(mode.weight, least);
+  }
+  for (Proposal &p : out)
+    p.weight /= sum;
+  return out;
+}
+
+} // namespace
+
+Eigen::VectorXd normal_vector(std::uint64_t seed, std::uint32_t stream, std::uint64_t index,
+                              Eigen::Index size) {
+  Eigen::VectorXd out(size);
+  constexpr Eigen::Index per = 4;
+  constexpr std::uint64_t blocks = 8; // of four numbers, kept free for one index
+  for (Eigen::Index k = 0; k < size; k += per) {
+    const auto u = uniform4(seed, stream, index * blocks + static_cast<std::uint64_t>(k / per));
+    for (Eigen::Index j = 0; j < per && k + j < size; ++j) { // Box & Muller 1958
+      const auto pair = static_cast<std::size_t>(j / 2 * 2);
+      const double r = std::sqrt(-2 * std::log(u[pair])), a = 2 * pi * u[pair + 1];
+      out[k + j] = j % 2 == 0 ? r * std::cos(a) : r * std::sin(a);
+    }
+  }
+  return out;
+}
+
+Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
+                     std::vector<PoseMode> &modes, const SearchOptions &options) {
+  Samples out;
+  const double span = span_of(model);
+  constexpr int rounds = 2; // the second from the covariances of the first (Cappe et al. 2004)
+  for (int round = 0; round < rounds; ++round) {
+    const auto mixture = mixture_of(modes, span);
+    const Eigen::Index n = mixture.front().root.rows();
+    std::vector<Turning> drawn;
+    for (std::size_t m = 0, k = 0; m < mixture.size(); ++m) {
+      const auto count = static_cast<std::size_t>(
+          std::ceil(mixture[m].weight * static_cast<double>(options.samples)));
+      for (std::size_t j = 0; j < count; ++j, ++k) {
+        const auto z = normal_vector(options.seed, 0x706f7300u + static_cast<std::uint32_t>(round),
+                                     k, n + static_cast<Eigen::Index>(tail));
+        const double chi = z.tail(static_cast<Eigen::Index>(tail)).squaredNorm();
+        drawn.push_back(
+            stepped(mixture[m].centre, mixture[m].root * z.head(n) * std::sqrt(tail / chi), span));
+      }
+    }
+    const auto compared = compare_all(model, likelihood, drawn, {}, options.threads);
+    if (compared.empty())
+      return {};
+    std::vector<double> log_weight(drawn.size());
+    out.draws.assign(drawn.size(), {});
+    parallel_for(drawn.size(), options.threads, [&](std::size_t k) {
+      out.draws[k].turning = drawn[k];
+      out.draws[k].minus_2_log = compared[k].minus_2_log;
+      log_weight[k] = -compared[k].minus_2_log / 2 - log_density(mixture, drawn[k], span);
+    });
+    out.log_evidence = normalize(out.draws, log_weight) -
+                       std::log(static_cast<double>(drawn.size())) - std::log(8 * pi * pi);
+    out.effective = effective_size(out.draws);
+    update(modes, mixture, out.draws, span);
+  }
+  return out;
+}
+
+namespace {
+
+/// The next power of the likelihood that leaves half of the sample effective.
+double next_power(const std::vector<PoseSample> &draws, double power, double wanted) {
+  const auto effective = [&](double next) {
+    double sum = 0, squares = 0, least = 1e300;
+    for (const PoseSample &s : draws)
+      least = std::min(least, s.minus_2_log);
+    for (const PoseSample &s : draws) {
+      const double w = std::exp(-(next - power) * (s.minus_2_log - least) / 2);
+      sum += w;
+      squares += w * w;
+    }
+    return sum * sum / squares;
+  };
+  if (effective(1) >= wanted)
+    return 1;
+  double low = power, high = 1;
+  constexpr int halvings = 40;
+  for (int k = 0; k < halvings; ++k) {
+    const double middle = (low + high) / 2;
+    (effective(middle) >= wanted ? low : high) = middle;
+  }
+  return std::max(low, power + 1e-9);
+}
+
+/// Systematic resampling by the weights that a higher power gives; adds to the evidence.
+std::vector<PoseSample> resampled(const std::vector<PoseSample> &draws, double power, double next,
+                                  std::size_t count, double offset, double &log_evidence) {
+  std::vector<double> weight(draws.size());
+  double least = 1e300, sum = 0;
+  for (const PoseSample &s : draws)
+    least = std::min(least, s.minus_2_log);
+  for (std::size_t k = 0; k < draws.size(); ++k)
+    sum += weight[k] = std::exp(-(next - power) * (draws[k].minus_2_log - least) / 2);
+  log_evidence += std::log(sum / static_cast<double>(draws.size())) - (next - power) * least / 2;
+  std::vector<PoseSample> out;
+  double reached = 0;
+  std::size_t k = 0;
+  for (std::size_t j = 0; j < count; ++j) {
+    const double target = (static_cast<double>(j) + offset) / static_cast<double>(count) * sum;
+    while (k + 1 < draws.size() && reached + weight[k] < target)
+      reached += weight[k++];
+    out.push_back(draws[k]);
+    out.back().weight = 1 / static_cast<double>(count);
+  }
+  return out;
+}
+
+/// Distance of every sample to its `rank`-th neighbour that is not the same attitude.
+std::vector<double> neighbour_distances(const std::vector<PoseSample> &draws, std::size_t rank,
+                                        unsigned threads) {
+  std::vector<double> out(draws.size(), pi);
+  parallel_for(draws.size(), threads, [&](std::size_t k) {
+    std::vector<double> all;
+    for (const PoseSample &other : draws)
+      if (const double d = angle_between(draws[k].turning.attitude, other.turning.attitude);
+          d > 1e-7)
+        all.push_back(d);
+    if (all.size() < rank)
+      return;
+    const auto at = all.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+    std::nth_element(all.begin(), at, all.end());
+    out[k] = *at;
+  });
+  return out;
+}
+
+/// Metropolis steps of all particles under a power of the likelihood: isotropic, their lengths
+/// drawn over two decades about the particles' own distances, so that sheets, lines and peaks are
+/// all followed. False if it was stopped.
+bool move(const CurveModel &model, const CurveLikelihood &likelihood, const SearchOptions &options,
+          double power, std::uint32_t level, std::vector<PoseSample> &draws) {
+  auto apart = neighbour_distances(draws, 4, options.threads);
+  const auto middle = apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2);
+  std::nth_element(apart.begin(), middle, apart.end());
+  const double scale = *middle;
+  constexpr std::uint32_t steps = 4;
+  for (std::uint32_t step = 0; step < steps; ++step) {
+    std::vector<Turning> tried;
+    std::vector<double> coin;
+    for (std::size_t k = 0; k < draws.size(); ++k) {
+      const std::uint32_t stream = 0x736d6300u + level * steps + step;
+      const auto z = normal_vector(options.seed, stream, k, 3);
+      const auto u = uniform4(options.seed, stream + 0x10000u, k);
+      const double length = scale * std::pow(10, 1.7 * u[0] - 1.2);
+      tried.push_back(stepped(draws[k].turning, z * length, 1));
+      coin.push_back(u[1]);
+    }
+    const auto compared = compare_all(model, likelihood, tried, {}, options.threads);
+    if (compared.empty())
+      return false;
+    for (std::size_t k = 0; k < draws.size(); ++k)
+      if (std::log(coin[k]) < power * (draws[k].minus_2_log - compared[k].minus_2_log) / 2) {
+        draws[k].turning = tried[k];
+        draws[k].minus_2_log = compared[k].minus_2_log;
+      }
+  }
+  return true;
+}
+
+} // namespace
+
+Samples sample_all(const CurveModel &model, const CurveLikelihood &likelihood,
+                   const SearchOptions &options) {
+  constexpr std::size_t first = 20'000;
+  std::vector<Turning> begin;
+  for (const Quaternion &q : attitude_grid(std::min(first, options.grid)))
+    begin.push_back({q, {}});
+  const auto compared = compare_all(model, likelihood, begin, {}, options.threads);
+  if (compared.empty())
+    return {};
+  Samples out;
+  for (std::size_t k = 0; k < begin.size(); ++k)
+    out.draws.push_back({begin[k], 1 / static_cast<double>(begin.size()), compared[k].minus_2_log});
+  double power = 0;
+  for (std::uint32_t level = 0; power < 1; ++level) {
+    const double next = next_power(out.draws, power, static_cast<double>(options.samples) / 2);
+    const double offset = uniform4(options.seed, 0x72657300u, level)[0];
+    out.draws = resampled(out.draws, power, next, options.samples, offset, out.log_evidence);
+    power = next;
+    if (!move(model, likelihood, options, power, level, out.draws))
+      return {};
+    if (options.progress)
+      options.progress("posterior", static_cast<std::size_t>(power * 1000), 1000);
+  }
+  out.effective = effective_size(out.draws);
+  return out;
+}
+
+namespace {
+
+/// How large a ball may be: one standard deviation of the mode that its sample belongs to.
+double width_at(Quaternion attitude, std::span<const PoseMode> modes) {
+  double least = 1e300, width = 0;
+  for (const PoseMode &mode : modes)
+    if (const double d = angle_between(mode.turning.attitude, attitude) / mode.sd_rad();
+        d < least) {
+      least = d;
+      width = mode.sd_rad();
+    }
+  return width;
+}
+
+} // namespace
+
+std::vector<AttitudeBall> highest_density(const std::vector<PoseSample> &samples,
+                                          std::span<const PoseMode> modes) {
+  std::vector<PoseSample> inside = samples;
+  std::ranges::stable_sort(inside, {}, &PoseSample::minus_2_log);
+  double sum = 0;
+  std::size_t count = 0;
+  while (count < inside.size() && sum < 0.95)
+    sum += inside[count++].weight;
+  inside.resize(count);
+  const auto apart =
+      neighbour_distances(inside, std::min<std::size_t>(4, std::max<std::size_t>(count, 2) - 1), 0);
+  std::vector<double> sorted = apart;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  std::vector<AttitudeBall> out;
+  for (std::size_t k = 0; k < inside.size(); ++k) {
+    const Quaternion q = inside[k].turning.attitude;
+    const double largest = modes.empty() ? 3 * *middle : width_at(q, modes);
+    if (out.empty() || angle_between(q, out.back().attitude) > 1e-7)
+      out.push_back({q, std::min(apart[k], largest)});
+  }
+  return out;
+}
+
+double share_of(std::span<const AttitudeBall> set) {
+  double out = 0;
+  for (const AttitudeBall &ball : set) {
+    // Each place counts once: a ball's volume over the number of balls that hold its centre.
+    double holders = 0;
+    for (const AttitudeBall &other : set)
+      holders += angle_between(ball.attitude, other.attitude) <= other.radius_rad ? 1 : 0;
+    out += share_within(ball.radius_rad) / std::max(holders, 1.0);
+  }
+  return std::min(out, 1.0);
+}
+
+} // namespace umov::inverse

@@ -1,0 +1,239 @@
+#include <umov/inverse/spin_search.h>
+
+#include "inverse/posterior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <umov/inverse/attitude_grid.h>
+
+namespace umov {
+
+using inverse::Freedom;
+using inverse::TurningFit;
+
+namespace {
+
+constexpr double degree = pi / 180;
+
+Error stopped() { return {ErrorCode::Interrupted, "stopped by the user; nothing was written", {}}; }
+
+/// Directions spread evenly over the sphere (Fibonacci's lattice: Swinbank & Purser 2006).
+std::vector<Vec3<Body>> axes_of(const SpinRequest &request) {
+  if (request.axis)
+    return {*request.axis, *request.axis * -1};
+  std::vector<Vec3<Body>> out;
+  const double golden = pi * (3 - std::sqrt(5.0));
+  for (std::size_t k = 0; k < request.axes; ++k) {
+    const double z = 1 - (2 * static_cast<double>(k) + 1) / static_cast<double>(request.axes);
+    const double r = std::sqrt(1 - z * z), a = golden * static_cast<double>(k);
+    out.push_back({r * std::cos(a), r * std::sin(a), z});
+  }
+  return out;
+}
+
+/// Epochs within a stretch about second 0, `most` at most.
+std::vector<std::size_t> within(const ObservedCurve &curve, double half_s, std::size_t most) {
+  std::vector<std::size_t> all;
+  for (std::size_t e = 0; e < curve.epochs.size(); ++e)
+    if (std::abs(curve.epochs[e].seconds) <= half_s)
+      all.push_back(e);
+  if (all.size() <= most)
+    return all;
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < most; ++k)
+    out.push_back(all[k * (all.size() - 1) / (most - 1)]);
+  return out;
+}
+
+CurveErrors tempered(CurveErrors errors, double floor) {
+  errors.floor = std::hypot(errors.floor, floor);
+  errors.floor_median = std::hypot(errors.floor_median, floor / 2.5);
+  errors.outlier_share = 0;
+  return errors;
+}
+
+/// A turning and how well it does.
+struct Candidate {
+  Turning turning;
+  double chi2 = 0;
+};
+
+void keep_best(std::vector<Candidate> &all, std::size_t count) {
+  std::ranges::stable_sort(all, {}, &Candidate::chi2);
+  all.resize(std::min(all.size(), count));
+}
+
+/// The same attitude and the same spin, nearly.
+bool is_near(const Turning &a, const Turning &b, double angle) {
+  const Vec3<Body> u = normalized(a.rate_rad_s), v = normalized(b.rate_rad_s);
+  return angle_between(a.attitude, b.attitude) < angle && dot(u, v) > std::cos(angle);
+}
+
+/// Search of one period, on a curve whose second 0 is its middle.
+class PeriodSearch {
+public:
+  PeriodSearch(const CurveModel &coarse, const SpinRequest &request, const SearchOptions &options,
+               double period_s)
+      : coarse_(coarse), request_(request), options_(options), period_s_(period_s) {}
+
+  /// A few starts for the last fits; none if it was stopped.
+  std::vector<Turning> run();
+
+private:
+  bool look_at_grid(std::vector<Candidate> &found);
+  bool lengthen(std::vector<Candidate> &found);
+
+  const CurveModel &coarse_;
+  const SpinRequest &request_;
+  const SearchOptions &options_;
+  double period_s_;
+};
+
+bool PeriodSearch::look_at_grid(std::vector<Candidate> &found) {
+  const auto &curve = coarse_.curve();
+  constexpr std::size_t epochs_max = 16, kept = 1500;
+  const auto epochs = within(curve, 1.25 * period_s_, epochs_max);
+  const CurveLikelihood rough(curve, tempered(options_.errors, 0.25), epochs);
+  const auto attitudes = attitude_grid(request_.attitudes);
+  const double rate = 2 * pi / period_s_;
+  for (const Vec3<Body> &axis : axes_of(request_)) {
+    std::vector<Turning> tried;
+    for (const Quaternion &q : attitudes)
+      tried.push_back({q, axis * rate});
+    const auto compared = inverse::compare_all(coarse_, rough, tried, epochs, options_.threads);
+    if (compared.empty())
+      return false;
+    for (std::size_t k = 0; k < tried.size(); ++k)
+      found.push_back({tried[k], compared[k].chi2});
+    if (found.size() > 100'000)
+      keep_best(found, kept);
+  }
+  keep_best(found, kept);
+  return true;
+}
+
+/// Fits in six unknowns on stretches that double until they are the whole curve.
+bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
+  const auto &curve = coarse_.curve();
+  const double whole = std::max(-curve.epochs.front().seconds, curve.epochs.back().seconds);
+  std::size_t kept = 300;
+  constexpr std::size_t epochs_max = 120, last = 10;
+  for (double half = 1.25 * period_s_;; half *= 2) {
+    const auto epochs = within(curve, half, epochs_max);
+    const CurveLikelihood rough(curve, tempered(options_.errors, 0.15), epochs);
+    std::vector<Turning> starts;
+    for (const Candidate &c : found)
+      if (starts.size() < kept && std::ranges::none_of(starts, [&](const Turning &o) {
+            return is_near(o, c.turning, 1 * degree);
+          }))
+        starts.push_back(c.turning);
+    const auto fits =
+        inverse::fit_turnings(coarse_, rough, starts, epochs,
+                              {Freedom::AttitudeAndRate, 6, 2, kept / 2, 5e-3, options_.threads});
+    if (fits.empty())
+      return false;
+    found.clear();
+    for (const TurningFit &fit : fits)
+      found.push_back({fit.turning, fit.at.chi2});
+    if (half >= whole)
+      return true;
+    kept = std::max(last, kept / 3);
+  }
+}
+
+std::vector<Turning> PeriodSearch::run() {
+  std::vector<Candidate> found;
+  if (!look_at_grid(found) || !lengthen(found))
+    return {};
+  std::vector<Turning> out;
+  constexpr std::size_t most = 8;
+  for (const Candidate &c : found)
+    if (out.size() < most && std::ranges::none_of(out, [&](const Turning &o) {
+          return is_near(o, c.turning, 2 * degree);
+        }))
+      out.push_back(c.turning);
+  return out;
+}
+
+/// The attitude at another time of the same spin.
+Turning moved(const Turning &turning, double seconds) {
+  return {attitude_at(turning, seconds), turning.rate_rad_s};
+}
+
+/// A mode at another time: its covariance goes through the derivatives of the motion, which are
+/// taken by differences.
+void move(PoseMode &mode, double seconds) {
+  const Turning end = moved(mode.turning, seconds);
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(6, 6);
+  for (int k = 0; k < 6; ++k) {
+    const double h = k < 3 ? 1e-5 : 1e-5 / std::max(1.0, std::abs(seconds));
+    const Eigen::VectorXd step = Eigen::VectorXd::Unit(6, k) * h;
+    const Turning near = moved(inverse::stepped(mode.turning, step, 1), seconds);
+    const Vec3<Body> turn = turn_between(end.attitude, near.attitude) * (1 / h);
+    jacobian.col(k).head(3) << turn.x, turn.y, turn.z;
+  }
+  const Eigen::Map<Eigen::MatrixXd> covariance(mode.covariance.data(), 6, 6);
+  const Eigen::MatrixXd at_end = jacobian * covariance * jacobian.transpose();
+  std::copy_n(at_end.data(), at_end.size(), mode.covariance.begin());
+  mode.turning = end;
+}
+
+std::vector<SpinPeriod> periods_of(const PoseAnswer &answer, std::span<const double> tried) {
+  std::vector<SpinPeriod> out;
+  for (std::size_t t = 0; t < tried.size(); ++t) {
+    double weight = 0, mean = 0, square = 0;
+    for (const PoseSample &s : answer.samples) {
+      const double period = 2 * pi / norm(s.turning.rate_rad_s);
+      const auto nearest = std::ranges::min_element(
+          tried, {}, [&](double p) { return std::abs(std::log(p / period)); });
+      if (nearest - tried.begin() != static_cast<std::ptrdiff_t>(t))
+        continue;
+      weight += s.weight;
+      mean += s.weight * period;
+      square += s.weight * period * period;
+    }
+    if (!(weight > 1e-6))
+      continue;
+    mean /= weight;
+    out.push_back({mean, std::sqrt(std::max(0.0, square / weight - mean * mean)), weight, t});
+  }
+  std::ranges::stable_sort(out, std::ranges::greater{}, &SpinPeriod::weight);
+  return out;
+}
+
+} // namespace
+
+Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &light,
+                               const std::vector<std::size_t> &column, const SpinRequest &request,
+                               const SearchOptions &options) {
+  if (request.periods_s.empty() || curve.epochs.empty())
+    return fail(ErrorCode::BadInput, "no period to be tried, or no epoch");
+  ObservedCurve middle = curve;
+  const double shift = curve.epochs[curve.epochs.size() / 2].seconds;
+  for (ObservedEpoch &epoch : middle.epochs)
+    epoch.seconds -= shift;
+  const CurveModel model(middle, light, column);
+  const CurveModel coarse(middle, request.coarse ? request.coarse : light, column);
+  std::vector<Turning> starts;
+  for (std::size_t k = 0; k < request.periods_s.size(); ++k) {
+    if (options.progress)
+      options.progress("spin", k, request.periods_s.size() + 1);
+    const auto found = PeriodSearch(coarse, request, options, request.periods_s[k]).run();
+    if (found.empty())
+      return tl::unexpected(stopped());
+    starts.insert(starts.end(), found.begin(), found.end());
+  }
+  UMOV_ASSIGN(answer, refine_spin(model, starts, options));
+  for (PoseMode &mode : answer.modes)
+    move(mode, -shift);
+  for (PoseSample &sample : answer.samples)
+    sample.turning = moved(sample.turning, -shift);
+  answer.set95 = inverse::highest_density(answer.samples, answer.modes);
+  answer.share_of_so3 = inverse::share_of(answer.set95);
+  SpinAnswer out;
+  out.periods = periods_of(answer, request.periods_s);
+  out.pose = std::move(answer);
+  return out;
+}
+
+} // namespace umov

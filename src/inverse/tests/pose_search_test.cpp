@@ -1,0 +1,104 @@
+#include "inverse/tests/box_light.h"
+
+#include <umov/inverse/symmetry.h>
+
+namespace umov {
+namespace {
+
+TEST(PoseSearch, TheTruthIsInTheSetAsOftenAsItSays) {
+  const Box box;
+  int inside = 0, found = 0;
+  constexpr int trials = 20;
+  for (std::uint64_t t = 0; t < trials; ++t) {
+    const auto u = uniform4(99, 3, t);
+    const Quaternion truth = attitude_grid(100'003)[static_cast<std::size_t>(u[0] * 100'003)];
+    ObservedCurve curve = pass(24);
+    observe(curve, box, {truth, {}}, 30, t);
+    const CurveModel model(curve, box, {0, 1});
+    const auto answer = search_pose(model, small());
+    ASSERT_TRUE(answer) << answer.error().text();
+    inside += is_in(answer->set95, truth) ? 1 : 0;
+    // The search does not miss: nothing at the truth is better than what it found.
+    const CurveLikelihood likelihood(curve, small().errors);
+    ASSERT_TRUE(model.for_each(std::vector<Turning>{{truth, {}}}, {}, 1,
+                               [&](std::size_t, const ModelLight &light) {
+                                 found += answer->chi2 < likelihood.compare(light).chi2 + 1 ? 1 : 0;
+                               }));
+    EXPECT_LT(answer->share_of_so3, 0.05);
+  }
+  // 19 of 20 are expected; 16 or fewer come in 1.6 % of such tests.
+  EXPECT_GE(inside, 17);
+  EXPECT_EQ(found, trials);
+}
+
+TEST(PoseSearch, OneEpochNeverTellsItsReciprocalTwin) {
+  const Box box;
+  ObservedCurve curve = pass(1);
+  const Quaternion truth = turned({}, {0.4, -0.9, 0.3});
+  observe(curve, box, {truth, {}}, 100, 5);
+  const CurveModel model(curve, box, {0, 1});
+  const auto answer = search_pose(model, small());
+  ASSERT_TRUE(answer) << answer.error().text();
+  // Half a turn about the bisector swaps Sun and observer: the same light (reciprocity).
+  const auto body = rotation_from<Body, Gcrs>(truth);
+  const Vec3<Body> half =
+      normalized(body * curve.epochs[0].to_sun + body * curve.epochs[0].to_observer);
+  const Quaternion twin = turned(truth, half * pi);
+  EXPECT_TRUE(answer->is_broad);
+  EXPECT_TRUE(is_in(answer->set95, truth));
+  EXPECT_TRUE(is_in(answer->set95, twin));
+}
+
+TEST(PoseSearch, ABodyThatShinesAlikeFromEverySideTellsNothing) {
+  const PoseLighting sphere = [](std::span<const Pose> poses, StokesTable &out) {
+    out.resize(poses.size(), 2);
+    for (std::size_t k = 0; k < poses.size(); ++k)
+      for (std::size_t b = 0; b < 2; ++b)
+        out.put(k, b, {{2 + cos_phase(poses[k]), 0.1, 0, 0}, {}});
+    return true;
+  };
+  ObservedCurve curve = pass(12);
+  observe(curve, sphere, {}, 50, 1);
+  const CurveModel model(curve, sphere, {0, 1});
+  const auto answer = search_pose(model, small());
+  ASSERT_TRUE(answer) << answer.error().text();
+  EXPECT_TRUE(answer->is_broad);
+  EXPECT_GT(answer->share_of_so3, 0.5);
+  const auto symmetries = find_symmetries(sphere, 1);
+  ASSERT_EQ(symmetries.size(), 3u);
+  EXPECT_EQ(symmetries[0].text, "any turn about +X");
+}
+
+TEST(PoseSearch, SymmetriesOfABody) {
+  EXPECT_TRUE(find_symmetries(Box(), 1).empty());
+  const auto cube = find_symmetries(Box(true), 1);
+  ASSERT_EQ(cube.size(), 9u); // quarter, half and three quarters about each axis
+  EXPECT_EQ(cube[1].text, "half turn about +X");
+}
+
+TEST(PoseSearch, TheAnswerDoesNotDependOnThreads) {
+  const Box box;
+  ObservedCurve curve = pass(10);
+  observe(curve, box, {turned({}, {1, 0.5, -0.2}), {}}, 30, 3);
+  SearchOptions options = small();
+  options.threads = 1;
+  const CurveModel model(curve, box, {0, 1});
+  const auto one = search_pose(model, options);
+  options.threads = 3;
+  const auto three = search_pose(model, options);
+  ASSERT_TRUE(one && three);
+  ASSERT_EQ(one->samples.size(), three->samples.size());
+  EXPECT_EQ(one->log_evidence, three->log_evidence);
+  EXPECT_EQ(one->samples.back().minus_2_log, three->samples.back().minus_2_log);
+}
+
+TEST(PoseSearch, NothingMeasuredIsSaid) {
+  ObservedCurve curve = pass(3);
+  const CurveModel model(curve, Box(), {0, 1});
+  const auto answer = search_pose(model, small());
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, ErrorCode::BadInput);
+}
+
+} // namespace
+} // namespace umov

@@ -1,0 +1,71 @@
+#include "inverse/tests/box_light.h"
+
+#include <umov/inverse/direction_table.h>
+#include <umov/inverse/spin_search.h>
+#include <umov/light/poses.h>
+
+namespace umov {
+namespace {
+
+TEST(DirectionTable, IsNearTheLightBetweenItsNodes) {
+  const Box box;
+  const auto table = DirectionTable::make(box, 36, 0, 2);
+  ASSERT_TRUE(table);
+  const auto coarse = DirectionTable::lighting(table, 2);
+  std::vector<Pose> poses;
+  for (std::uint64_t k = 0; k < 500; ++k)
+    poses.push_back(random_pose(1, k, Angle::degrees(20 + 0.28 * static_cast<double>(k))));
+  StokesTable exact, looked_up;
+  ASSERT_TRUE(box(poses, exact) && coarse(poses, looked_up));
+  std::vector<double> off;
+  for (std::size_t k = 0; k < exact.i.size(); ++k)
+    off.push_back(std::abs(looked_up.i[k] - exact.i[k]) / (exact.i[k] + 0.1));
+  std::ranges::sort(off);
+  // 5 deg of a lobe 20 deg wide bend by a few per cent; edges of faces are kinks.
+  EXPECT_LT(off[off.size() / 2], 0.02);
+  EXPECT_LT(off[off.size() * 9 / 10], 0.1);
+}
+
+TEST(SpinSearch, PeriodAxisAndAttitudeComeBack) {
+  const Box box;
+  const auto coarse = DirectionTable::lighting(DirectionTable::make(box, 24, 0, 0), 0);
+  int found = 0;
+  constexpr int trials = 1;
+  for (std::uint64_t t = 0; t < trials; ++t) {
+    const auto u = uniform4(5, 1, t);
+    const Vec3<Body> axis = normalized(Vec3<Body>{u[0] - .5, u[1] - .5, u[2] - .5});
+    const double period = 60;
+    const Turning truth{attitude_grid(1009)[static_cast<std::size_t>(u[3] * 1009)],
+                        axis * (2 * pi / period)};
+    ObservedCurve curve = pass(80); // 800 s
+    observe(curve, box, truth, 50, t);
+    SpinRequest request;
+    request.periods_s = {period * 1.01, period * 2.02};
+    request.coarse = coarse;
+    request.attitudes = 2000;
+    request.axes = 100;
+    SearchOptions options = small();
+    const auto answer = search_spin(curve, box, {0, 1}, request, options);
+    ASSERT_TRUE(answer) << answer.error().text();
+    const PoseMode &best = answer->pose.modes.front();
+    const Vec3<Body> off = best.turning.rate_rad_s - truth.rate_rad_s;
+    const bool is_right = angle_between(best.turning.attitude, truth.attitude) < 5 * pi / 180 &&
+                          norm(off) < 0.01 * norm(truth.rate_rad_s);
+    found += is_right ? 1 : 0;
+    if (is_right) {
+      EXPECT_NEAR(answer->periods.front().period_s, period, 0.3);
+      EXPECT_EQ(answer->periods.front().tried, 0u); // not the alias
+      EXPECT_EQ(best.covariance.size(), 36u);
+    }
+  }
+  EXPECT_EQ(found, trials);
+}
+
+TEST(SpinSearch, WithoutAPeriodThereIsNone) {
+  const auto answer = search_spin(pass(4), Box(), {0, 1}, SpinRequest(), SearchOptions());
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().code, ErrorCode::BadInput);
+}
+
+} // namespace
+} // namespace umov

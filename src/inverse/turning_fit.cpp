@@ -1,0 +1,145 @@
+#include "inverse/turning_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <umov/inverse/attitude_grid.h>
+
+namespace umov::inverse {
+namespace {
+
+using Residuals = Eigen::Map<const Eigen::VectorXd>;
+
+/// One fit on its way.
+struct Running {
+  TurningFit fit;
+  std::vector<double> residuals;
+  Eigen::VectorXd gradient;
+  double damping = 1e-2;
+  bool is_done = false;
+};
+
+double span_of(const CurveModel &model) {
+  const auto &epochs = model.curve().epochs;
+  return epochs.empty() ? 1.0 : std::max(1.0, epochs.back().seconds);
+}
+
+/// J^T J and J^T r of all fits by differences of neighbours, lit together.
+bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
+                   std::vector<Running> &fits, std::span<const std::size_t> epochs,
+                   const FitPlan &plan) {
+  const auto free = static_cast<Eigen::Index>(plan.freedom);
+  const double span = span_of(model), h = plan.difference_rad;
+  std::vector<Turning> near;
+  for (const Running &one : fits)
+    for (Eigen::Index p = 0; p < free; ++p)
+      near.push_back(stepped(one.fit.turning, Step::Unit(free, p) * h, span));
+  const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true);
+  if (compared.empty() && !near.empty())
+    return false;
+  for (std::size_t k = 0; k < fits.size(); ++k) {
+    Running &one = fits[k];
+    const auto rows = static_cast<Eigen::Index>(one.residuals.size());
+    const Residuals r(one.residuals.data(), rows);
+    Eigen::MatrixXd jacobian(rows, free);
+    for (Eigen::Index p = 0; p < free; ++p) {
+      const auto &other =
+          compared[k * static_cast<std::size_t>(free) + static_cast<std::size_t>(p)];
+      jacobian.col(p) = (Residuals(other.residuals.data(), rows) - r) / h;
+    }
+    one.fit.information = jacobian.transpose() * jacobian;
+    one.gradient = jacobian.transpose() * r;
+  }
+  return true;
+}
+
+Step step_of(const Running &one) {
+  const Eigen::MatrixXd &a = one.fit.information;
+  const double largest = std::max(a.diagonal().maxCoeff(), 1e-12);
+  Eigen::MatrixXd damped = a;
+  damped.diagonal() += one.damping * (a.diagonal().array() + 1e-6 * largest).matrix();
+  Step step = -damped.ldlt().solve(one.gradient);
+  constexpr double longest = 0.15; // [rad]: beyond it the light is another one
+  const double length = step.norm();
+  return length > longest ? Step(step * (longest / length)) : step;
+}
+
+void keep_best(std::vector<Running> &fits, std::size_t count) {
+  std::ranges::stable_sort(fits, {}, [](const Running &r) { return r.fit.at.chi2; });
+  fits.resize(std::min(fits.size(), count));
+}
+
+} // namespace
+
+Turning stepped(const Turning &from, const Step &step, double span_s) {
+  Turning out = from;
+  out.attitude = turned(from.attitude, {step[0], step[1], step[2]});
+  if (step.size() >= 6)
+    out.rate_rad_s = out.rate_rad_s + Vec3<Body>{step[3], step[4], step[5]} * (1 / span_s);
+  return out;
+}
+
+std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,
+                                    std::span<const Turning> turnings,
+                                    std::span<const std::size_t> epochs, unsigned threads,
+                                    bool keeps_residuals) {
+  std::vector<Comparison> out(turnings.size());
+  const bool is_whole =
+      model.for_each(turnings, epochs, threads, [&](std::size_t k, const ModelLight &light) {
+        out[k] = likelihood.compare(light);
+        if (!keeps_residuals)
+          out[k].residuals = {};
+      });
+  return is_whole ? out : std::vector<Comparison>();
+}
+
+std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelihood &likelihood,
+                                     std::vector<Turning> starts,
+                                     std::span<const std::size_t> epochs, const FitPlan &plan) {
+  const double span = span_of(model);
+  const auto first = compare_all(model, likelihood, starts, epochs, plan.threads, true);
+  std::vector<Running> fits(first.size());
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    fits[k].fit.turning = starts[k];
+    fits[k].fit.at = first[k];
+    fits[k].residuals = first[k].residuals;
+  }
+  for (int iteration = 0; iteration <= plan.iterations && !fits.empty(); ++iteration) {
+    if (plan.cut_after > 0 && iteration == plan.cut_after)
+      keep_best(fits, plan.kept);
+    if (!differentiate(model, likelihood, fits, epochs, plan))
+      return {};
+    if (iteration == plan.iterations)
+      break; // the last derivatives are the covariance's
+    std::vector<Turning> tried;
+    for (const Running &one : fits)
+      tried.push_back(stepped(one.fit.turning, step_of(one), span));
+    const auto compared = compare_all(model, likelihood, tried, epochs, plan.threads, true);
+    if (compared.empty())
+      return {};
+    double gain = 0;
+    for (std::size_t k = 0; k < fits.size(); ++k) {
+      Running &one = fits[k];
+      if (compared[k].chi2 < one.fit.at.chi2) {
+        gain = std::max(gain, one.fit.at.chi2 - compared[k].chi2);
+        one.fit.turning = tried[k];
+        one.fit.at = compared[k];
+        one.residuals = compared[k].residuals;
+        one.damping = std::max(one.damping / 5, 1e-6);
+      } else {
+        one.damping *= 6;
+        gain = std::max(gain, one.damping < 1e2 ? 1.0 : 0.0);
+      }
+    }
+    if (gain < 0.02 && iteration > 2)
+      break;
+  }
+  keep_best(fits, fits.size());
+  std::vector<TurningFit> out;
+  for (Running &one : fits) {
+    one.fit.at.residuals = {};
+    out.push_back(std::move(one.fit));
+  }
+  return out;
+}
+
+} // namespace umov::inverse

@@ -1,0 +1,50 @@
+#pragma once
+// Private: many least-squares fits of turnings at once.
+
+#include <Eigen/Dense>
+#include <umov/inverse/curve_model.h>
+#include <vector>
+
+namespace umov::inverse {
+
+/// What is free: the attitude alone, or the rate too.
+enum class Freedom { Attitude = 3, AttitudeAndRate = 6 };
+
+/// Steps in the unknowns: rotation vector in body axes [rad], then the change of the rate in units
+/// that turn the body by one radian over the span of the curve.
+using Step = Eigen::Matrix<double, Eigen::Dynamic, 1>;
+
+/// A turning after a step.
+Turning stepped(const Turning &from, const Step &step, double span_s);
+
+/// One fit.
+struct TurningFit {
+  Turning turning;
+  Comparison at;               ///< without residuals
+  Eigen::MatrixXd information; ///< inverse covariance: J^T J of the whitened residuals
+};
+
+/// How fits are run.
+struct FitPlan {
+  Freedom freedom = Freedom::Attitude;
+  int iterations = 12;
+  int cut_after = 0; ///< iteration after which only the best `kept` go on; 0: all
+  std::size_t kept = 0;
+  double difference_rad = 2e-3; ///< of the derivatives: masks are steps on a finer scale
+  unsigned threads = 0;
+};
+
+/// Levenberg-Marquardt (Marquardt 1963) of all starts side by side, scale and zero points
+/// eliminated in each residual (variable projection: Golub & Pereyra 1973); sorted by chi2. Empty
+/// if it was stopped.
+std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelihood &likelihood,
+                                     std::vector<Turning> starts,
+                                     std::span<const std::size_t> epochs, const FitPlan &plan);
+
+/// -2 ln likelihood of each turning; empty if it was stopped.
+std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,
+                                    std::span<const Turning> turnings,
+                                    std::span<const std::size_t> epochs, unsigned threads,
+                                    bool keeps_residuals = false);
+
+} // namespace umov::inverse

@@ -1,0 +1,313 @@
+#include <umov/io/observations_file.h>
+
+#include "io/table/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <optional>
+#include <tuple>
+#include <umov/core/text.h>
+
+namespace umov {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// The columns that a file has of those that are understood; -1: none.
+struct Columns {
+  int time = -1, mjd = -1, band = -1, site = -1, name = -1, flags = -1, limit = -1;
+  int flux = -1, flux_err = -1, mag = -1, mag_err = -1;
+  int q = -1, u = -1, q_err = -1, u_err = -1, cov_qq = -1, cov_uu = -1, cov_qu = -1;
+  double q_unit = 1, u_unit = 1; ///< 0.01 for per cent
+  bool is_scattering = false;    ///< q and u are q_scat and u_scat
+};
+
+class Reader {
+public:
+  Reader(std::string_view text, const std::string &file, const TextTable &table)
+      : text_(text), file_(file), table_(table) {}
+
+  Result<Columns> columns() const;
+  Result<std::optional<ObservedRow>> row(const Columns &c, std::size_t k);
+  [[nodiscard]] std::string text(int column, std::size_t k) const {
+    return column < 0 ? std::string() : table_.rows[k][static_cast<std::size_t>(column)];
+  }
+  [[nodiscard]] Where where(std::size_t k, int column) const {
+    return {file_, table_.lines[k],
+            column < 0 ? 0
+                       : column_of_cell(text_, table_.lines[k], static_cast<std::size_t>(column))};
+  }
+  [[nodiscard]] std::size_t saturated() const { return saturated_; }
+
+private:
+  [[nodiscard]] int find(std::initializer_list<const char *> names) const;
+  [[nodiscard]] double scale_of(int column) const;
+  Result<double> number(int column, std::size_t k) const;
+  Result<double> error(int column, std::size_t k) const;
+  Result<Epoch<Utc>> time(const Columns &c, std::size_t k) const;
+  Result<void> read_polarization(const Columns &c, std::size_t k, ObservedRow &out) const;
+
+  std::string_view text_;
+  const std::string &file_;
+  const TextTable &table_;
+  std::size_t saturated_ = 0;
+};
+
+int Reader::find(std::initializer_list<const char *> names) const {
+  for (const char *name : names) {
+    const auto at = std::ranges::find(table_.columns, name);
+    if (at != table_.columns.end())
+      return static_cast<int>(at - table_.columns.begin());
+  }
+  return -1;
+}
+
+double Reader::scale_of(int column) const {
+  if (column < 0)
+    return 1;
+  const auto unit = table_.units.find(table_.columns[static_cast<std::size_t>(column)]);
+  return unit != table_.units.end() && (unit->second == "%" || unit->second == "percent") ? 0.01
+                                                                                          : 1;
+}
+
+Result<Columns> Reader::columns() const {
+  Columns c;
+  c.time = find({"time_utc"});
+  c.mjd = find({"mjd_utc", "mjd"});
+  c.band = find({"band", "filter"});
+  c.site = find({"site"});
+  c.name = find({"name", "object"});
+  c.flags = find({"flags"});
+  c.limit = find({"mag_limit"});
+  c.flux = find({"I_obs", "I", "flux"});
+  c.flux_err = find({"I_err", "flux_err"});
+  c.mag = find({"mag"});
+  c.mag_err = find({"mag_err"});
+  c.q = find({"q", "q_scat"});
+  c.u = find({"u", "u_scat"});
+  c.is_scattering = find({"q"}) < 0;
+  c.q_err = find({"q_err"});
+  c.u_err = find({"u_err"});
+  c.cov_qq = find({"cov_qq"});
+  c.cov_uu = find({"cov_uu"});
+  c.cov_qu = find({"cov_qu"});
+  c.q_unit = scale_of(c.q);
+  c.u_unit = scale_of(c.u);
+  const Where header{file_, table_.lines.empty() ? 0 : table_.lines.front() - 1};
+  const std::string found = fmt::format("{}", fmt::join(table_.columns, ", "));
+  if (c.time < 0 && c.mjd < 0)
+    return fail(ErrorCode::BadInput,
+                fmt::format("no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" was "
+                            "expected; there are {}",
+                            printable(found)),
+                header);
+  if (c.flux < 0 && c.mag < 0 && (c.q < 0 || c.u < 0))
+    return fail(ErrorCode::BadInput,
+                fmt::format("nothing measured: a column \"I\", \"flux\" or \"mag\", or \"q\" and "
+                            "\"u\", was expected; there are {}",
+                            printable(found)),
+                header);
+  if ((c.q < 0) != (c.u < 0))
+    return fail(ErrorCode::BadInput,
+                "q and u go together: one of them is missing; leave both out, or give both",
+                header);
+  return c;
+}
+
+Result<double> Reader::number(int column, std::size_t k) const {
+  const std::string cell = text(column, k);
+  if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "-")
+    return nan;
+  constexpr double most = 1e30; // squares of it are numbers still
+  if (const auto value = parse_number(cell); value && std::abs(*value) < most)
+    return *value;
+  return fail(ErrorCode::BadInput,
+              fmt::format("{} = \"{}\": a number was expected, or an empty cell for a gap",
+                          table_.columns[static_cast<std::size_t>(column)], printable(cell)),
+              where(k, column));
+}
+
+/// A standard deviation or a variance: 0 or more, NaN where there is none.
+Result<double> Reader::error(int column, std::size_t k) const {
+  UMOV_ASSIGN(value, number(column, k));
+  if (value < 0)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} = {}: an error is 0 or more; leave the cell empty where it is not "
+                            "known",
+                            table_.columns[static_cast<std::size_t>(column)], value),
+                where(k, column));
+  return value;
+}
+
+Result<Epoch<Utc>> Reader::time(const Columns &c, std::size_t k) const {
+  if (c.time >= 0) {
+    const auto read = utc_from_iso(text(c.time, k));
+    return read ? read : fail(ErrorCode::BadInput, read.error().message, where(k, c.time));
+  }
+  UMOV_ASSIGN(mjd, number(c.mjd, k));
+  constexpr double first = 41'317, last = 88'069; // 1972, when UTC began as it is, to 2100
+  if (!(mjd >= first && mjd < last))
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} = \"{}\": a modified Julian date (UTC) between {} and {} was "
+                            "expected; is it a Julian date? Take 2400000.5 off",
+                            table_.columns[static_cast<std::size_t>(c.mjd)],
+                            printable(text(c.mjd, k)), first, last),
+                where(k, c.mjd));
+  return Epoch<Utc>{2'400'000.5 + std::floor(mjd), mjd - std::floor(mjd)};
+}
+
+Result<void> Reader::read_polarization(const Columns &c, std::size_t k, ObservedRow &out) const {
+  if (c.q < 0)
+    return {};
+  UMOV_ASSIGN(q, number(c.q, k));
+  UMOV_ASSIGN(u, number(c.u, k));
+  if (std::isnan(q) || std::isnan(u))
+    return {};
+  out.q = q * c.q_unit;
+  out.u = u * c.u_unit;
+  if (c.cov_qq >= 0 && c.cov_uu >= 0) {
+    UMOV_ASSIGN(qq, error(c.cov_qq, k));
+    UMOV_ASSIGN(uu, error(c.cov_uu, k));
+    UMOV_ASSIGN(qu, number(c.cov_qu, k));
+    out.cov_qq = qq * c.q_unit * c.q_unit;
+    out.cov_uu = uu * c.u_unit * c.u_unit;
+    out.cov_qu = std::isnan(qu) ? 0 : qu * c.q_unit * c.u_unit;
+    if (out.cov_qu * out.cov_qu > out.cov_qq * out.cov_uu * (1 + 1e-9))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("cov_qu = {} is larger than sqrt(cov_qq cov_uu) = {}: that is no "
+                              "covariance",
+                              qu, std::sqrt(qq * uu)),
+                  where(k, c.cov_qu));
+    return {};
+  }
+  UMOV_ASSIGN(q_err, error(c.q_err, k));
+  UMOV_ASSIGN(u_err, error(c.u_err, k));
+  out.cov_qq = q_err * q_err * c.q_unit * c.q_unit;
+  out.cov_uu = u_err * u_err * c.u_unit * c.u_unit;
+  return {};
+}
+
+Result<std::optional<ObservedRow>> Reader::row(const Columns &c, std::size_t k) {
+  ObservedRow out;
+  out.line = table_.lines[k];
+  UMOV_ASSIGN(at, time(c, k));
+  out.time = at;
+  out.band = text(c.band, k);
+  out.site = text(c.site, k);
+  if (text(c.flags, k).find("saturated") != std::string::npos) {
+    ++saturated_;
+    return std::optional<ObservedRow>();
+  }
+  UMOV_ASSIGN(flux, number(c.flux, k));
+  UMOV_ASSIGN(flux_err, error(c.flux_err, k));
+  out.flux = flux;
+  out.flux_err = flux_err;
+  const std::string limit = text(c.limit, k);
+  if (std::isnan(flux) && limit != "True" && limit != "true" && limit != "1") {
+    UMOV_ASSIGN(mag, number(c.mag, k));
+    UMOV_ASSIGN(mag_err, error(c.mag_err, k));
+    out.mag = mag;
+    out.mag_err = mag_err;
+  }
+  UMOV_TRY(read_polarization(c, k, out));
+  if (std::isnan(out.flux) && std::isnan(out.mag) && std::isnan(out.q))
+    return std::optional<ObservedRow>();
+  return std::optional(std::move(out));
+}
+
+/// The frame of q and u: they are not understood without it.
+Result<PolarizationFrame> frame_of(const TextTable &table, const Columns &c,
+                                   const std::string &file) {
+  if (c.q < 0 || c.is_scattering)
+    return PolarizationFrame::Scattering;
+  const auto note = table.notes.find("pol_frame");
+  const std::string told = note == table.notes.end() ? "" : note->second;
+  for (const auto frame :
+       {PolarizationFrame::Equatorial, PolarizationFrame::AltAz, PolarizationFrame::Scattering})
+    if (told == name_of(frame))
+      return frame;
+  return fail(ErrorCode::BadInput,
+              fmt::format("pol_frame of the header is \"{}\": equatorial, altaz or scattering was "
+                          "expected. In a CSV write the line \"# pol_frame: equatorial\" above the "
+                          "names of the columns",
+                          printable(told)),
+              {file});
+}
+
+/// One measurement per time, band and site: two would contradict each other or be one, twice.
+Result<void> check_twice(const ObservationsFile &out, const std::string &file) {
+  for (std::size_t k = 1; k < out.rows.size(); ++k) {
+    const ObservedRow &a = out.rows[k - 1], &b = out.rows[k];
+    if (a.band == b.band && a.site == b.site && std::abs(seconds_between(a.time, b.time)) < 1e-6)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("a second row for {} in band \"{}\"; the first is line {}. One "
+                              "measurement per time, band and site was expected",
+                              to_iso(b.time), printable(b.band), a.line),
+                  {file, b.line});
+  }
+  return {};
+}
+
+/// Rows of one object: which one is not ours to choose.
+Result<void> check_name(const Reader &reader, const Columns &c, std::size_t rows) {
+  for (std::size_t k = 1; k < rows; ++k)
+    if (reader.text(c.name, k) != reader.text(c.name, 0))
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("a row of \"{}\" after rows of \"{}\": an inversion is of one object; "
+                      "keep the rows of one",
+                      printable(reader.text(c.name, k)), printable(reader.text(c.name, 0))),
+          reader.where(k, c.name));
+  return {};
+}
+
+bool is_irradiance(const TextTable &table, const Columns &c) {
+  if (c.flux < 0)
+    return false;
+  const auto unit = table.units.find(table.columns[static_cast<std::size_t>(c.flux)]);
+  return unit != table.units.end() && unit->second == "W / (m2 nm)";
+}
+
+} // namespace
+
+Result<ObservationsFile> read_observations_text(std::string_view text, const std::string &file,
+                                                Diagnostics &diagnostics) {
+  UMOV_ASSIGN(table, read_text_table(text, file));
+  Reader reader(text, file, table);
+  if (table.columns.empty() || table.rows.empty())
+    return fail(ErrorCode::BadInput, "no row of observations", {file});
+  UMOV_ASSIGN(columns, reader.columns());
+  UMOV_TRY(check_name(reader, columns, table.rows.size()));
+  ObservationsFile out;
+  out.path = file;
+  out.notes = table.notes;
+  out.is_absolute = is_irradiance(table, columns);
+  UMOV_ASSIGN(frame, frame_of(table, columns, file));
+  out.frame = frame;
+  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+    UMOV_ASSIGN(row, reader.row(columns, k));
+    if (row)
+      out.rows.push_back(std::move(*row));
+  }
+  const std::size_t empty = table.rows.size() - out.rows.size() - reader.saturated();
+  if (reader.saturated() > 0)
+    diagnostics.warn(
+        fmt::format("{} flagged as saturated left out", counted(reader.saturated(), "row")),
+        {file});
+  if (empty > 0)
+    diagnostics.warn(fmt::format("{} without a measurement left out", counted(empty, "row")),
+                     {file});
+  if (out.rows.empty())
+    return fail(ErrorCode::BadInput,
+                "no row holds a measurement: all are empty, nan or flagged as saturated", {file});
+  std::ranges::stable_sort(out.rows, [](const ObservedRow &a, const ObservedRow &b) {
+    const double apart = seconds_between(a.time, b.time);
+    return std::abs(apart) < 1e-6 ? std::tie(a.band, a.site) < std::tie(b.band, b.site) : apart < 0;
+  });
+  UMOV_TRY(check_twice(out, file));
+  return out;
+}
+
+} // namespace umov

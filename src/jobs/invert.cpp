@@ -1,0 +1,63 @@
+#include <umov/jobs/invert.h>
+
+#include "jobs/invert_light.h"
+#include "jobs/invert_tables.h"
+
+#include <fmt/format.h>
+
+namespace umov::jobs {
+
+Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &request,
+                              const JobOptions &options, const Monitor &monitor,
+                              Diagnostics &diagnostics) {
+  UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics));
+  const auto light = lighting_of(ready.light, options.threads, monitor);
+  const CurveModel model(ready.observed.curve, light, ready.observed.column);
+  UMOV_ASSIGN(answer, search_pose(model, search_options(scenario, request, options, monitor)));
+  const auto symmetries = find_symmetries(light, scenario.seed);
+  (void)ready.light.model().keep_masks(); // a cache that cannot be written costs time alone
+  const Judgement judgement = judge(answer, ready.observed.curve, request.errors, symmetries);
+  Inversion out;
+  out.verdict = judgement.verdict;
+  out.summary = summary_of(answer, judgement);
+  out.json = json_of("pose", answer, judgement, symmetries);
+  out.tables = {{"modes", modes_table(answer, false)},
+                {"set95", set_table(answer)},
+                {"samples", samples_table(answer, false)},
+                {"twins", twins_table(answer, symmetries)},
+                {"fit", fit_table(ready.observed, model, answer, request.errors)}};
+  out.page = page_of("Which attitude: " + scenario.title, out.tables[4].table, out.tables[0].table,
+                     out.summary);
+  out.inputs = ready.observed.inputs;
+  out.seed = scenario.seed;
+  monitor.tell(fmt::format("{} poses lit", answer.poses_lit));
+  return out;
+}
+
+Result<void> write_inversion(const Inversion &inversion, const Scenario &scenario,
+                             ManifestInput manifest, const Diagnostics &diagnostics,
+                             RunFolder &folder) {
+  const auto add = [&](const std::string &name, std::string bytes) {
+    manifest.files.push_back(name);
+    folder.add(name, std::move(bytes));
+  };
+  for (const NamedTable &one : inversion.tables)
+    add(one.name + ".ecsv", to_ecsv(one.table));
+  add("verdict.json", inversion.json);
+  if (!inversion.page.empty())
+    add("report.html", inversion.page);
+  add("scenario.lock.toml", locked_scenario(scenario));
+  std::string log = inversion.summary;
+  for (const Warning &warning : diagnostics.warnings()) {
+    log += "warning: " + warning.text() + "\n";
+    manifest.warnings.push_back(warning.text());
+  }
+  add("log.txt", std::move(log));
+  for (const InputFile &input : inversion.inputs)
+    manifest.inputs.emplace_back(input.path, input.sha256);
+  manifest.seed = inversion.seed;
+  folder.add("manifest.json", make_manifest(manifest));
+  return folder.commit();
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,230 @@
+#include "jobs/invert_light.h"
+#include "jobs/invert_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <umov/core/text.h>
+#include <umov/core/version.h>
+#include <umov/inverse/unmix.h>
+#include <umov/observation/track.h>
+
+namespace umov::jobs {
+namespace {
+
+/// Light of the object in its attitude, with the group of one material.
+class GroupLight {
+public:
+  GroupLight(const Scenario &scenario, const InvertRequest &request,
+             const ObservedLightCurve &observed, const JobOptions &options)
+      : scenario_(scenario), request_(request), observed_(observed), options_(options) {}
+
+  Result<EndMember> of(const std::string &group, const std::string &material,
+                       const Monitor &monitor) const;
+
+private:
+  Result<Scenario> with(const std::string &group, const std::string &material) const;
+
+  const Scenario &scenario_;
+  const InvertRequest &request_;
+  const ObservedLightCurve &observed_;
+  const JobOptions &options_;
+};
+
+Result<Scenario> GroupLight::with(const std::string &group, const std::string &material) const {
+  Scenario out = scenario_;
+  if (!out.own_materials.contains(material)) {
+    std::vector<std::string> known = material_library();
+    for (const auto &own : out.own_materials)
+      known.push_back(own.first);
+    if (std::ranges::find(known, material) == known.end()) {
+      const auto near = nearest_name(material, known);
+      return fail(ErrorCode::Usage,
+                  fmt::format("--candidates {}: there is no such material{}", printable(material),
+                              near ? fmt::format(". Did you mean \"{}\"?", *near)
+                                   : "; umov material list tells which there are"));
+    }
+  }
+  out.objects.front().materials[group] = {material, material};
+  return out;
+}
+
+Result<EndMember> GroupLight::of(const std::string &group, const std::string &material,
+                                 const Monitor &monitor) const {
+  UMOV_ASSIGN(scenario, with(group, material));
+  Diagnostics known; // those of the same files, told before
+  UMOV_ASSIGN(object, load_object(scenario, 0, {.allow_old_elements = true}, known));
+  const auto &moving = scenario.objects.front().parts;
+  UMOV_ASSIGN(
+      track, Track::make({*object.orbit, scenario.observer.value_or(Site()), ShadowModel::Ellipsoid,
+                          object.attitude, moving, scenario.has_solar_disk}));
+  LightOptions lit = light_options(scenario, options_);
+  lit.method = request_.method;
+  UMOV_ASSIGN(light, make_light(object.scene, joints_of(moving), lit));
+  std::vector<Pose> poses;
+  std::vector<double> angles;
+  for (const ObservingGeometry &geometry : observed_.geometry) {
+    UMOV_ASSIGN(point, track.place(geometry));
+    poses.push_back(point.pose);
+    angles.insert(angles.end(), point.joint_angles_rad.begin(), point.joint_angles_rad.end());
+  }
+  StokesTable table;
+  LightTask task;
+  task.threads = options_.threads;
+  task.cancel = monitor.cancel;
+  if (!light->evaluate(poses, angles, table, task))
+    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+  (void)light->keep_masks(); // a cache that cannot be written costs time alone
+  EndMember out{material, {}, {}, {}};
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    for (const std::size_t column : observed_.column) {
+      out.i.push_back(table.i[k * table.bands + column]);
+      out.q.push_back(table.q[k * table.bands + column]);
+      out.u.push_back(table.u[k * table.bands + column]);
+    }
+  return out;
+}
+
+/// Probability of each candidate alone, all of them alike before.
+std::vector<double> probabilities(const ObservedCurve &curve, const CurveErrors &errors,
+                                  const std::vector<EndMember> &members, double &chi2) {
+  const CurveLikelihood likelihood(curve, errors);
+  std::vector<double> value;
+  chi2 = 1e300;
+  for (const EndMember &m : members) {
+    const Comparison c = likelihood.compare({m.i, m.q, m.u});
+    value.push_back(c.minus_2_log);
+    chi2 = std::min(chi2, c.chi2);
+  }
+  const double best = *std::ranges::min_element(value);
+  double sum = 0;
+  for (double &v : value)
+    sum += v = std::exp(-(v - best) / 2);
+  for (double &v : value)
+    v /= sum;
+  return value;
+}
+
+/// A row of materials.ecsv.
+struct Row {
+  std::string names;
+  double probability = 0;
+  UnmixedGroup unmixed;
+};
+
+std::vector<Row> rows_of(const Unmixing &unmixed, const std::vector<EndMember> &members,
+                         const std::vector<double> &probability) {
+  std::vector<Row> out;
+  for (const UnmixedGroup &group : unmixed.groups) {
+    Row row{fmt::format("{}", fmt::join(group.names, "|")), 0, group};
+    for (std::size_t k = 0; k < members.size(); ++k)
+      if (std::ranges::find(group.names, members[k].name) != group.names.end())
+        row.probability += probability[k];
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+Table materials_table(const std::string &group, const std::vector<Row> &rows) {
+  std::vector<std::string> groups, names;
+  std::vector<double> probability, fraction, error, detectable;
+  for (const Row &row : rows) {
+    groups.push_back(group);
+    names.push_back(row.names);
+    probability.push_back(row.probability);
+    fraction.push_back(row.unmixed.fraction);
+    error.push_back(row.unmixed.fraction_err);
+    detectable.push_back(row.unmixed.detectable);
+  }
+  Table out;
+  out.add("group", "", "of the mesh", std::move(groups));
+  out.add("material", "", "those that cannot be told apart joined by |", std::move(names));
+  out.add("probability", "", "that the group is of this one alone", std::move(probability));
+  out.add("fraction", "", "of the group's area, if of several", std::move(fraction));
+  out.add("fraction_err", "", "standard deviation", std::move(error));
+  out.add("detectable", "", "smallest change of the fraction that shows at 3 sigma",
+          std::move(detectable));
+  note_conventions(out);
+  return out;
+}
+
+std::string json_of(const std::string &group, const std::vector<Row> &rows, const Unmixing &unmixed,
+                    Verdict verdict, double chi2, const std::vector<std::string> &notes) {
+  using nlohmann::ordered_json;
+  ordered_json out;
+  out["program"] = "umov";
+  out["version"] = version;
+  out["question"] = "material";
+  out["verdict"] = name_of(verdict);
+  out["group"] = group;
+  out["chi2_of_one"] = chi2;
+  out["chi2_of_mixture"] = unmixed.chi2;
+  out["measurements"] = unmixed.measurements;
+  out["condition"] = unmixed.condition;
+  ordered_json list = ordered_json::array();
+  for (const Row &row : rows)
+    list.push_back({{"materials", row.unmixed.names},
+                    {"probability", row.probability},
+                    {"fraction", row.unmixed.fraction},
+                    {"fraction_err", row.unmixed.fraction_err},
+                    {"detectable", row.unmixed.detectable}});
+  out["materials"] = list;
+  out["notes"] = notes;
+  return out.dump(1) + "\n";
+}
+
+/// One candidate (or what cannot be told from it) holds all; several do; or none fits.
+Verdict verdict_of(const std::vector<Row> &rows, const Unmixing &unmixed) {
+  const double dof = static_cast<double>(unmixed.measurements) - static_cast<double>(rows.size());
+  constexpr double unlikely = 1e-6;
+  if (dof > 0 && chi2_probability(unmixed.chi2, dof) < unlikely && unmixed.chi2 > 2 * dof)
+    return Verdict::NoFit;
+  if (rows.size() < 2)
+    return Verdict::Undetermined;
+  const bool is_one = std::ranges::any_of(rows, [](const Row &r) { return r.probability > 0.95; });
+  return is_one ? Verdict::Determined : Verdict::Ambiguous;
+}
+
+} // namespace
+
+Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest &request,
+                                  const MaterialOptions &material, const JobOptions &options,
+                                  const Monitor &monitor, Diagnostics &diagnostics) {
+  std::vector<InputFile> inputs;
+  UMOV_ASSIGN(files, read_observations(request.observations, inputs, diagnostics));
+  UMOV_ASSIGN(observed, observed_light_curve(scenario, files, diagnostics));
+  const GroupLight light(scenario, request, observed, options);
+  std::vector<EndMember> members;
+  for (const std::string &name : material.candidates) {
+    monitor.advance("candidates", members.size(), material.candidates.size());
+    UMOV_ASSIGN(member, light.of(material.group, name, monitor));
+    members.push_back(std::move(member));
+  }
+  double chi2 = 0;
+  const auto probability = probabilities(observed.curve, request.errors, members, chi2);
+  const Unmixing unmixed = unmix(observed.curve, request.errors, members);
+  const auto rows = rows_of(unmixed, members, probability);
+  Inversion out;
+  out.verdict = verdict_of(rows, unmixed);
+  std::vector<std::string> notes = limits_of(observed.curve);
+  if (rows.size() < 2)
+    notes.emplace_back("these observations tell none of the candidates from the others: the group "
+                       "gives too little light, or their light is alike");
+  out.summary =
+      fmt::format("{}: {} of {}; one material alone: chi-square {:.4g}, a mixture {:.4g}, "
+                  "of {} measurements; condition {:.3g}\n",
+                  name_of(out.verdict), material.group, scenario.objects.front().name, chi2,
+                  unmixed.chi2, unmixed.measurements, unmixed.condition);
+  for (const std::string &text : notes)
+    out.summary += "- " + text + "\n";
+  out.json = json_of(material.group, rows, unmixed, out.verdict, chi2, notes);
+  out.tables = {{"materials", materials_table(material.group, rows)}};
+  out.inputs = observed.inputs;
+  out.inputs.insert(out.inputs.end(), inputs.begin(), inputs.end());
+  out.seed = scenario.seed;
+  return out;
+}
+
+} // namespace umov::jobs

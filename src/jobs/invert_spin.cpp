@@ -1,0 +1,135 @@
+#include "jobs/invert_light.h"
+#include "jobs/invert_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/inverse/direction_table.h>
+#include <umov/inverse/spin_search.h>
+#include <umov/lightcurve/periodogram.h>
+
+namespace umov::jobs {
+namespace {
+
+/// The period of the band with most rows, as the light shows it (synodic).
+double shown_period(const ObservedCurve &curve) {
+  std::vector<double> seconds, magnitudes, best_seconds, best_magnitudes;
+  for (std::size_t b = 0; b < curve.bands.size(); ++b) {
+    seconds.clear();
+    magnitudes.clear();
+    for (const ObservedSample &s : curve.samples)
+      if (s.band == b && s.i > 0) {
+        seconds.push_back(curve.epochs[s.epoch].seconds);
+        magnitudes.push_back(-2.5 * std::log10(s.i));
+      }
+    if (seconds.size() > best_seconds.size()) {
+      best_seconds = seconds;
+      best_magnitudes = magnitudes;
+    }
+  }
+  return periodogram(best_seconds, best_magnitudes).best_s;
+}
+
+/// Periods to be tried: a body that looks alike from two or four sides shows a part of its own.
+Result<std::vector<double>> periods_to_try(const ObservedCurve &curve, const SpinOptions &spin) {
+  double base = spin.period_s;
+  if (!(base > 0))
+    base = shown_period(curve);
+  if (!(base > 0))
+    return fail(ErrorCode::BadInput,
+                "the curve tells no period: 12 brightnesses that change are needed, over more than "
+                "a turn. Give one with --period");
+  const double span = curve.epochs.back().seconds;
+  std::vector<double> out{base};
+  if (spin.has_aliases)
+    for (const double times : {2.0, 0.5, 4.0})
+      if (base * times < 2 * span)
+        out.push_back(base * times);
+  return out;
+}
+
+std::optional<Vec3<Body>> axis_of(char name) {
+  switch (name) {
+  case 'x':
+    return Vec3<Body>{1, 0, 0};
+  case 'y':
+    return Vec3<Body>{0, 1, 0};
+  case 'z':
+    return Vec3<Body>{0, 0, 1};
+  default:
+    return std::nullopt;
+  }
+}
+
+/// periods.ecsv.
+Table periods_table(const SpinAnswer &answer, const std::vector<double> &tried) {
+  std::vector<double> period, error, weight, alias;
+  for (const SpinPeriod &p : answer.periods) {
+    period.push_back(p.period_s);
+    error.push_back(p.period_err_s);
+    weight.push_back(p.weight);
+    alias.push_back(tried[p.tried] / tried.front());
+  }
+  Table out;
+  out.add("period_s", "s", "of the spin among the stars", std::move(period));
+  out.add("period_err", "s", "standard deviation", std::move(error));
+  out.add("weight", "", "share of the posterior", std::move(weight));
+  out.add("alias", "", "in parts of the period that was given or shown", std::move(alias));
+  note_conventions(out);
+  return out;
+}
+
+/// What makes a search for a spin quick: light of all pairs of directions, once.
+PoseLighting coarse_light(const PoseLighting &light, const ObservedCurve &curve, unsigned threads) {
+  constexpr std::size_t cells = 36; // 5 deg; 1.9 million pairs
+  auto table = DirectionTable::make(light, cells, curve.epochs.front().sun_radius_rad, threads);
+  return table ? DirectionTable::lighting(std::move(table), threads) : PoseLighting();
+}
+
+std::string spin_words(const SpinAnswer &answer) {
+  std::string out;
+  for (const SpinPeriod &p : answer.periods)
+    out += fmt::format("period {:.6g} +- {:.2g} s with {:.3g} % of the probability\n", p.period_s,
+                       p.period_err_s, 100 * p.weight);
+  return out;
+}
+
+} // namespace
+
+Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &request,
+                              const SpinOptions &spin, const JobOptions &options,
+                              const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics));
+  const ObservedCurve &curve = ready.observed.curve;
+  const auto light = lighting_of(ready.light, options.threads, monitor);
+  UMOV_ASSIGN(periods, periods_to_try(curve, spin));
+  monitor.advance("table of light", 0, 1);
+  SpinRequest asked;
+  asked.periods_s = periods;
+  asked.axis = axis_of(spin.axis);
+  asked.coarse = coarse_light(light, curve, options.threads);
+  if (!asked.coarse)
+    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+  UMOV_ASSIGN(answer, search_spin(curve, light, ready.observed.column, asked,
+                                  search_options(scenario, request, options, monitor)));
+  const auto symmetries = find_symmetries(light, scenario.seed);
+  (void)ready.light.model().keep_masks(); // a cache that cannot be written costs time alone
+  const Judgement judgement = judge(answer.pose, curve, request.errors, symmetries);
+  const CurveModel model(curve, light, ready.observed.column);
+  Inversion out;
+  out.verdict = judgement.verdict;
+  out.summary = spin_words(answer) + summary_of(answer.pose, judgement);
+  out.json = json_of("spin", answer.pose, judgement, symmetries);
+  out.tables = {{"modes", modes_table(answer.pose, true)},
+                {"periods", periods_table(answer, periods)},
+                {"set95", set_table(answer.pose)},
+                {"samples", samples_table(answer.pose, true)},
+                {"fit", fit_table(ready.observed, model, answer.pose, request.errors)}};
+  out.page = page_of("Which spin: " + scenario.title, out.tables[4].table, out.tables[0].table,
+                     out.summary);
+  out.inputs = ready.observed.inputs;
+  out.seed = scenario.seed;
+  return out;
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,57 @@
+#pragma once
+// Private: answers of an inversion as tables and words.
+
+#include <umov/jobs/invert.h>
+
+namespace umov::jobs {
+
+/// modes.ecsv; with rates where they were free.
+Table modes_table(const PoseAnswer &answer, bool has_rates);
+/// set95.ecsv.
+Table set_table(const PoseAnswer &answer);
+/// samples.ecsv.
+Table samples_table(const PoseAnswer &answer, bool has_rates);
+/// twins.ecsv: for every mode those of the body's own turns and of the other modes.
+Table twins_table(const PoseAnswer &answer, const std::vector<BodySymmetry> &symmetries);
+/// fit.ecsv: what was measured beside what the best turning gives.
+Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
+                const PoseAnswer &answer, const CurveErrors &errors);
+
+/// Chance that a chi-square of so many degrees of freedom is at least so large (Wilson & Hilferty
+/// 1931).
+double chi2_probability(double chi2, double dof);
+/// How far the samples spread about the mean direction of each body axis [deg], root mean square.
+std::array<double, 3> axis_spread_deg(const PoseAnswer &answer);
+/// Modes that are one and the same up to the body's own turns.
+struct Families {
+  std::size_t count = 0;
+  double heaviest = 0;   ///< share of the posterior
+  double spread_deg = 0; ///< of all samples about the heaviest mode and its twins, root mean square
+};
+Families families_of(const PoseAnswer &answer, const std::vector<BodySymmetry> &symmetries);
+
+/// What an answer is worth.
+Verdict verdict_of(const PoseAnswer &answer, const Families &families);
+/// What the data cannot tell by themselves: one epoch, one band, no polarization, no change.
+std::vector<std::string> limits_of(const ObservedCurve &curve);
+
+/// Everything that the summary and verdict.json say.
+struct Judgement {
+  Verdict verdict = Verdict::Undetermined;
+  Families families;
+  std::array<double, 3> axis_spread_deg{};
+  NullTest null_test;
+  std::vector<std::string> notes;
+  std::vector<Parameter> nuisances;
+};
+/// All of it, of an answer.
+Judgement judge(const PoseAnswer &answer, const ObservedCurve &curve, const CurveErrors &errors,
+                const std::vector<BodySymmetry> &symmetries);
+std::string json_of(const char *question, const PoseAnswer &answer, const Judgement &judgement,
+                    const std::vector<BodySymmetry> &symmetries);
+std::string summary_of(const PoseAnswer &answer, const Judgement &judgement);
+/// The data and the fit as a page; empty where this build makes none.
+std::string page_of(const std::string &title, const Table &fit, const Table &modes,
+                    const std::string &summary);
+
+} // namespace umov::jobs

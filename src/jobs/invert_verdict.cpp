@@ -1,0 +1,235 @@
+// What an answer is worth, in words and numbers.
+
+#include "jobs/invert_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <umov/core/text.h>
+#include <umov/core/version.h>
+#include <umov/io/plot_page.h>
+
+namespace umov::jobs {
+
+const char *name_of(Verdict verdict) {
+  switch (verdict) {
+  case Verdict::Determined:
+    return "determined";
+  case Verdict::Ambiguous:
+    return "ambiguous";
+  case Verdict::NoFit:
+    return "no_fit";
+  case Verdict::Undetermined:
+    break;
+  }
+  return "undetermined";
+}
+
+double chi2_probability(double chi2, double dof) {
+  if (!(dof > 0))
+    return 1;
+  const double k = 2 / (9 * dof);
+  const double z = (std::cbrt(chi2 / dof) - (1 - k)) / std::sqrt(k);
+  return std::erfc(z / std::sqrt(2.0)) / 2;
+}
+
+Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
+  const double dof =
+      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
+  constexpr double unlikely = 1e-6; // and a model twice as far off as it was taken to be
+  if (dof > 0 && chi2_probability(answer.chi2, dof) < unlikely && answer.chi2 > 2 * dof)
+    return Verdict::NoFit;
+  constexpr double wide = 0.01; // of all attitudes
+  if (answer.is_broad || answer.share_of_so3 > wide || answer.modes.empty())
+    return Verdict::Undetermined;
+  if (!(families.heaviest > 0.95))
+    return Verdict::Ambiguous;
+  constexpr double far_deg = 10; // a single peak as wide as that is no attitude
+  return families.spread_deg < far_deg ? Verdict::Determined : Verdict::Undetermined;
+}
+
+std::vector<std::string> limits_of(const ObservedCurve &curve) {
+  std::vector<std::string> out;
+  if (curve.epochs.size() == 1)
+    out.emplace_back(
+        "one epoch: half a turn about the bisector of Sun and observer leaves I, q and "
+        "u as they are (reciprocity), so two attitudes at least explain it; more "
+        "epochs at other directions decide");
+  const auto measured = [&](std::size_t b, auto take) {
+    return std::ranges::count_if(curve.samples, [&](const ObservedSample &s) {
+      return s.band == b && !std::isnan(take(s));
+    });
+  };
+  std::size_t with_light = 0;
+  bool has_q = false;
+  for (std::size_t b = 0; b < curve.bands.size(); ++b) {
+    const auto lights = measured(b, [](const ObservedSample &s) { return s.i; });
+    const auto fractions = measured(b, [](const ObservedSample &s) { return s.q; });
+    with_light += lights > 0 ? 1u : 0u;
+    has_q = has_q || fractions > 0;
+    if (lights + fractions == 0)
+      out.push_back("band " + curve.bands[b] + " holds no measurement");
+  }
+  if (with_light == 0)
+    out.emplace_back("no brightness was measured: q and u alone decide");
+  if (!has_q)
+    out.emplace_back("no q and u were measured: brightness alone decides");
+  if (curve.bands.size() == 1)
+    out.emplace_back("one band: colours would tell materials, and so sides of the body, apart");
+  double chi2 = 0, dof = 0;
+  for (std::size_t b = 0; b < curve.bands.size(); ++b) {
+    double sum = 0, weight = 0, squares = 0, count = 0;
+    for (const ObservedSample &s : curve.samples)
+      if (s.band == b && !std::isnan(s.i) && s.i_sd > 0) {
+        const double w = 1 / (s.i_sd * s.i_sd);
+        sum += w * s.i;
+        weight += w;
+        squares += w * s.i * s.i;
+        count += 1;
+      }
+    chi2 += weight > 0 ? squares - sum * sum / weight : 0;
+    dof += std::max(0.0, count - 1);
+  }
+  if (dof >= 3 && chi2_probability(chi2, dof) > 0.01)
+    out.emplace_back("the brightness does not change by more than its errors: what it allows is "
+                     "wide, and no single attitude of it is an answer");
+  return out;
+}
+
+Judgement judge(const PoseAnswer &answer, const ObservedCurve &curve, const CurveErrors &errors,
+                const std::vector<BodySymmetry> &symmetries) {
+  Judgement out;
+  out.families = families_of(answer, symmetries);
+  out.verdict = verdict_of(answer, out.families);
+  out.axis_spread_deg = axis_spread_deg(answer);
+  out.null_test = null_test(curve);
+  out.nuisances = CurveLikelihood(curve, errors).nuisances();
+  out.notes = limits_of(curve);
+  for (const BodySymmetry &s : symmetries)
+    out.notes.push_back("no light tells the body from itself after " + s.text);
+  if (out.null_test.is_flagged())
+    out.notes.push_back(fmt::format(
+        "U of the scattering plane is not 0, as a single reflection has it: polarization of the "
+        "instrument of ({:.4f} +- {:.4f}, {:.4f} +- {:.4f}) would explain it; calibrate, or "
+        "suspect light between surfaces",
+        out.null_test.q0, out.null_test.q0_sd, out.null_test.u0, out.null_test.u0_sd));
+  if (out.verdict == Verdict::NoFit)
+    out.notes.emplace_back("no attitude explains the data within their errors and --floor: is it "
+                           "this object, does it stand still, are its materials right?");
+  return out;
+}
+
+std::string json_of(const char *question, const PoseAnswer &answer, const Judgement &judgement,
+                    const std::vector<BodySymmetry> &symmetries) {
+  using nlohmann::ordered_json;
+  ordered_json out;
+  const double dof =
+      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
+  out["program"] = "umov";
+  out["version"] = version;
+  out["question"] = question;
+  out["verdict"] = name_of(judgement.verdict);
+  out["chi2"] = answer.chi2;
+  out["dof"] = dof;
+  out["p_value"] = chi2_probability(answer.chi2, dof);
+  out["log_evidence"] = answer.log_evidence;
+  out["families"] = judgement.families.count;
+  out["heaviest"] = judgement.families.heaviest;
+  out["spread_deg"] = judgement.families.spread_deg;
+  out["share_of_so3"] = answer.share_of_so3;
+  out["axis_spread_deg"] = judgement.axis_spread_deg;
+  ordered_json modes = ordered_json::array();
+  for (const PoseMode &mode : answer.modes) {
+    const Quaternion q = mode.turning.attitude;
+    modes.push_back({{"weight", mode.weight},
+                     {"q", {q.w, q.x, q.y, q.z}},
+                     {"sd_deg", mode.sd_rad() * 180 / pi},
+                     {"chi2", mode.chi2},
+                     {"scale", mode.scale}});
+  }
+  out["modes"] = modes;
+  ordered_json turns = ordered_json::array();
+  for (const BodySymmetry &s : symmetries)
+    turns.push_back(s.text);
+  out["symmetries"] = turns;
+  const NullTest &u = judgement.null_test;
+  out["u_null_test"] = {{"chi2_gain", u.chi2_gain}, {"q0", u.q0},
+                        {"q0_sd", u.q0_sd},         {"u0", u.u0},
+                        {"u0_sd", u.u0_sd},         {"flagged", u.is_flagged()}};
+  ordered_json unknowns = ordered_json::array();
+  for (const Parameter &p : judgement.nuisances)
+    unknowns.push_back({{"name", p.name}, {"prior", name_of(p.prior)}, {"sd", p.sd}});
+  out["nuisances"] = unknowns;
+  out["notes"] = judgement.notes;
+  return out.dump(1) + "\n";
+}
+
+std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
+  const double dof =
+      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
+  const Families &families = judgement.families;
+  std::string out = fmt::format(
+      "{}: {}, twins of the body counted as one; the heaviest holds {:.3g} % of the probability, "
+      "within {:.2g} deg (root mean square). 95 % set: {:.2g} % of all attitudes\n",
+      name_of(judgement.verdict), counted(families.count, "attitude"), 100 * families.heaviest,
+      families.spread_deg, 100 * answer.share_of_so3);
+  out += fmt::format("chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g}); body axes:",
+                     answer.chi2, dof, chi2_probability(answer.chi2, dof));
+  constexpr double unknown_deg = 45;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double spread = judgement.axis_spread_deg[k];
+    out += spread < unknown_deg ? fmt::format(" +{} to {:.2g} deg", "XYZ"[k], spread)
+                                : fmt::format(" +{} not known", "XYZ"[k]);
+    out += k < 2 ? "," : "\n";
+  }
+  for (const std::string &text : judgement.notes)
+    out += "- " + text + "\n";
+  return out;
+}
+
+std::string page_of(const std::string &title, const Table &fit, const Table &modes,
+                    const std::string &summary) {
+  const auto &bands = std::get<std::vector<std::string>>(fit.find("band")->cells);
+  std::vector<std::string> names = bands;
+  std::ranges::sort(names);
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  PlotFigure light{"Brightness: measured and fitted", "row", "I [m2/sr]", {}};
+  PlotFigure polarization{"Polarization: measured and fitted", "row", "q (scattering plane)", {}};
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    PlotLine seen{names[n], {}, {}, n}, fitted{names[n] + ", fit", {}, {}, n};
+    seen.has_markers = true;
+    PlotLine q_seen = seen, q_fitted = fitted;
+    for (std::size_t k = 0; k < bands.size(); ++k) {
+      if (bands[k] != names[n])
+        continue;
+      const auto x = static_cast<double>(k);
+      for (const auto &[line, column] : {std::pair{&seen, "intensity"},
+                                         {&fitted, "intensity_model"},
+                                         {&q_seen, "q_scat"},
+                                         {&q_fitted, "q_scat_model"}}) {
+        line->x.push_back(x);
+        line->y.push_back(fit.number(column, k));
+      }
+    }
+    light.lines.insert(light.lines.end(), {seen, fitted});
+    polarization.lines.insert(polarization.lines.end(), {q_seen, q_fitted});
+  }
+  std::vector<std::string> notes;
+  for (std::string_view rest = summary; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    notes.emplace_back(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  for (std::size_t k = 0; k < std::min<std::size_t>(modes.rows(), 10); ++k)
+    notes.push_back(fmt::format("mode {}: weight {:.3f}, q = ({:.5f}, {:.5f}, {:.5f}, {:.5f})",
+                                k + 1, modes.number("weight", k), modes.number("qw", k),
+                                modes.number("qx", k), modes.number("qy", k),
+                                modes.number("qz", k)));
+  const auto page = make_plot_page(title, {light, polarization}, notes);
+  return page ? *page : std::string();
+}
+
+} // namespace umov::jobs

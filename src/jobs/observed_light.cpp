@@ -1,0 +1,235 @@
+#include <umov/jobs/observed_light.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <map>
+#include <umov/core/files.h>
+#include <umov/core/text.h>
+#include <umov/io/sites.h>
+#include <umov/lightcurve/derived_errors.h>
+#include <umov/observation/track.h>
+#include <umov/photometry/radiometry.h>
+
+namespace umov::jobs {
+namespace {
+
+/// Orbit and site, ready to be asked; nothing here asks how the body is turned.
+Result<Track> track_of(const Trajectory &orbit, const Site &site) {
+  return Track::make({orbit, site, ShadowModel::Ellipsoid, InertialLaw{}, {}, true});
+}
+
+/// One row with what it needs to be understood.
+struct Placed {
+  const ObservedRow *row = nullptr;
+  const ObservationsFile *file = nullptr;
+  std::size_t band = 0; ///< among the scenario's
+  Site site;
+};
+
+class CurveMaker {
+public:
+  CurveMaker(const Scenario &scenario, const Trajectory &orbit,
+             std::vector<PhotometricBand> colours)
+      : scenario_(scenario), orbit_(orbit), colours_(std::move(colours)) {}
+
+  Result<void> add_file(const ObservationsFile &file);
+  Result<ObservedLightCurve> make(Diagnostics &diagnostics);
+
+private:
+  Result<std::size_t> band_of(const ObservationsFile &file, const ObservedRow &row) const;
+  Result<Site> site_of(const ObservationsFile &file, const ObservedRow &row);
+  Result<void> add_epoch(std::span<const Placed> rows, ObservedLightCurve &out);
+  [[nodiscard]] ObservedSample sample_of(const Placed &placed, const ObservingGeometry &g) const;
+
+  const Scenario &scenario_;
+  const Trajectory &orbit_;
+  std::vector<PhotometricBand> colours_;
+  std::map<std::string, Site> sites_;
+  std::vector<Placed> rows_;
+  std::size_t in_shadow_ = 0, below_horizon_ = 0, without_error_ = 0;
+};
+
+Result<std::size_t> CurveMaker::band_of(const ObservationsFile &file,
+                                        const ObservedRow &row) const {
+  std::vector<std::string> known;
+  for (const Band &band : scenario_.bands)
+    known.push_back(band.name);
+  if (row.band.empty() && known.size() == 1)
+    return std::size_t{0};
+  const auto found = std::ranges::find(known, row.band);
+  if (found != known.end())
+    return static_cast<std::size_t>(found - known.begin());
+  const auto near = nearest_name(row.band, known);
+  return fail(ErrorCode::BadInput,
+              fmt::format("band \"{}\" is not among those of {} ({}){}", printable(row.band),
+                          scenario_.file, fmt::join(known, ", "),
+                          near ? fmt::format(". Did you mean \"{}\"?", *near)
+                               : "; put it into its bands.set"),
+              {file.path, row.line});
+}
+
+Result<Site> CurveMaker::site_of(const ObservationsFile &file, const ObservedRow &row) {
+  if (row.site.empty()) {
+    if (scenario_.observer)
+      return *scenario_.observer;
+    return fail(ErrorCode::BadInput,
+                "neither the row names a site nor the scenario an [observer]; one of them is "
+                "needed",
+                {file.path, row.line});
+  }
+  const auto known = sites_.find(row.site);
+  if (known != sites_.end())
+    return known->second;
+  const auto site = site_from(row.site);
+  if (!site)
+    return fail(ErrorCode::BadInput, site.error().message, {file.path, row.line});
+  sites_[row.site] = *site;
+  return *site;
+}
+
+Result<void> CurveMaker::add_file(const ObservationsFile &file) {
+  for (const ObservedRow &row : file.rows) {
+    UMOV_ASSIGN(band, band_of(file, row));
+    UMOV_ASSIGN(site, site_of(file, row));
+    rows_.push_back({&row, &file, band, site});
+  }
+  return {};
+}
+
+ObservedSample CurveMaker::sample_of(const Placed &placed, const ObservingGeometry &g) const {
+  ObservedSample out;
+  const ObservedRow &row = *placed.row;
+  const PhotometricBand &colour = colours_[placed.band];
+  const double per_intensity =
+      irradiance_at_observer(1, colour.solar, g.sun_distance_km, g.sunlit, g.range_km);
+  if (!std::isnan(row.flux)) {
+    out.i = row.flux / per_intensity;
+    out.i_sd = std::isnan(row.flux_err) ? 0 : row.flux_err / per_intensity;
+  } else if (!std::isnan(row.mag)) {
+    out.i = colour.zero * std::pow(10, -0.4 * row.mag) / per_intensity;
+    const double relative = std::log(10.0) / 2.5 * (std::isnan(row.mag_err) ? 0 : row.mag_err);
+    out.i_sd = out.i * relative;
+  }
+  if (std::isnan(row.q))
+    return out;
+  const double twice = 2 * scattering_axis(g, placed.file->frame).radians();
+  const double c = std::cos(twice), s = std::sin(twice);
+  const double qq = std::isnan(row.cov_qq) ? 0 : row.cov_qq;
+  const double uu = std::isnan(row.cov_uu) ? 0 : row.cov_uu;
+  out.q = row.q * c + row.u * s;
+  out.u = row.u * c - row.q * s;
+  out.cov_qq = c * c * qq + s * s * uu + 2 * c * s * row.cov_qu;
+  out.cov_uu = s * s * qq + c * c * uu - 2 * c * s * row.cov_qu;
+  out.cov_qu = c * s * (uu - qq) + (c * c - s * s) * row.cov_qu;
+  return out;
+}
+
+/// Rows of one time and site.
+Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCurve &out) {
+  UMOV_ASSIGN(track, track_of(orbit_, rows.front().site));
+  const auto geometry = track.observe(rows.front().row->time);
+  if (!geometry)
+    return fail(geometry.error().code, geometry.error().message,
+                {rows.front().file->path, rows.front().row->line});
+  constexpr double least_sunlit = 0.5; // in less, the Earth's air decides what arrives
+  if (geometry->sunlit < least_sunlit) {
+    in_shadow_ += rows.size();
+    return {};
+  }
+  below_horizon_ += geometry->altitude.degrees() < 0 ? rows.size() : 0;
+  ObservedCurve &curve = out.curve;
+  const double seconds =
+      out.geometry.empty() ? 0 : seconds_between(geometry->time, out.geometry.front().time);
+  curve.epochs.push_back({seconds, geometry->to_sun, geometry->to_observer,
+                          scenario_.has_solar_disk ? sun_radius_rad(*geometry) : 0,
+                          scattering_axis(*geometry, rows.front().file->frame).radians()});
+  out.geometry.push_back(*geometry);
+  for (const Placed &placed : rows) {
+    const ObservedRow &row = *placed.row;
+    without_error_ += (!std::isnan(row.flux) && std::isnan(row.flux_err)) ||
+                              (!std::isnan(row.mag) && std::isnan(row.mag_err))
+                          ? 1u
+                          : 0u;
+    ObservedSample sample = sample_of(placed, *geometry);
+    sample.epoch = curve.epochs.size() - 1;
+    const auto at = std::ranges::find(out.column, placed.band);
+    sample.band = static_cast<std::size_t>(at - out.column.begin());
+    curve.samples.push_back(sample);
+  }
+  return {};
+}
+
+Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
+  std::ranges::stable_sort(rows_, [](const Placed &a, const Placed &b) {
+    return seconds_between(a.row->time, b.row->time) < -1e-6;
+  });
+  ObservedLightCurve out;
+  for (std::size_t b = 0; b < scenario_.bands.size(); ++b)
+    if (std::ranges::any_of(rows_, [&](const Placed &p) { return p.band == b; })) {
+      out.column.push_back(b);
+      out.curve.bands.push_back(scenario_.bands[b].name);
+    }
+  out.curve.is_absolute = std::ranges::all_of(
+      rows_, [](const Placed &p) { return p.file->is_absolute || std::isnan(p.row->flux); });
+  for (std::size_t begin = 0; begin < rows_.size();) {
+    std::size_t end = begin + 1;
+    while (end < rows_.size() && rows_[end].row->site == rows_[begin].row->site &&
+           std::abs(seconds_between(rows_[end].row->time, rows_[begin].row->time)) < 1e-6)
+      ++end;
+    UMOV_TRY(add_epoch(std::span(rows_).subspan(begin, end - begin), out));
+    begin = end;
+  }
+  if (in_shadow_ > 0)
+    diagnostics.warn(fmt::format("{} left out: the object was in the Earth's shadow by its orbit",
+                                 counted(in_shadow_, "row")));
+  if (below_horizon_ > 0)
+    diagnostics.warn(fmt::format("{} of an object below the horizon by its orbit: are times, site "
+                                 "and orbit right?",
+                                 counted(below_horizon_, "row")));
+  if (without_error_ > 0)
+    diagnostics.warn(fmt::format("{} with no error of I: taken as good as --floor allows",
+                                 counted(without_error_, "row")));
+  if (out.curve.epochs.empty())
+    return fail(ErrorCode::BadInput,
+                "no row is of a time at which the object stood in sunlight by its orbit: do times, "
+                "orbit and site belong together?",
+                {rows_.front().file->path});
+  return out;
+}
+
+} // namespace
+
+Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::string> &paths,
+                                                        std::vector<InputFile> &inputs,
+                                                        Diagnostics &diagnostics) {
+  std::vector<ObservationsFile> out;
+  constexpr std::size_t largest = 1u << 30;
+  for (const std::string &path : paths) {
+    UMOV_ASSIGN(text, read_file(path, largest));
+    UMOV_ASSIGN(file, read_observations_text(text, path, diagnostics));
+    out.push_back(std::move(file));
+    inputs.push_back({path, sha256_hex(text)});
+  }
+  return out;
+}
+
+Result<ObservedLightCurve> observed_light_curve(const Scenario &scenario,
+                                                const std::vector<ObservationsFile> &files,
+                                                Diagnostics &diagnostics) {
+  if (!scenario.objects.front().orbit)
+    return fail(ErrorCode::BadInput,
+                "holds no orbit: object.orbit = { file = ... } says where the object was",
+                {scenario.file});
+  UMOV_ASSIGN(object, load_object(scenario, 0, {.allow_old_elements = true}, diagnostics));
+  UMOV_ASSIGN(colours, photometric_bands(scenario.bands, scenario.magnitudes));
+  CurveMaker maker(scenario, *object.orbit, std::move(colours));
+  for (const ObservationsFile &file : files)
+    UMOV_TRY(maker.add_file(file));
+  UMOV_ASSIGN(out, maker.make(diagnostics));
+  out.inputs = object.inputs;
+  return out;
+}
+
+} // namespace umov::jobs

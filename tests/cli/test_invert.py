@@ -1,0 +1,243 @@
+"""umov invert: from light curves back. Truth is made by rays in another attitude, on another tessellation where the body
+is round, and by a second program text (noise and columns here); the fit looks light up in masks."""
+import json
+import math
+import random
+import statistics
+
+import pytest
+from astropy.table import Table
+
+from conftest import ROOT, read_csv
+
+SCENE = """umov = 1
+title = "test"
+seed = 3
+[observer]
+lat_deg = 20.7083
+lon_deg = -156.2578
+alt_m = 3058
+[time]
+start = 2018-01-21T05:08:00Z
+stop = 2018-01-21T05:16:00Z
+step_s = {step}
+only = {{ alt_min_deg = 10, sunlit = true }}
+[[object]]
+name = "cubesat"
+orbit = {{ file = "{root}/data/tle/hst.tle", norad = 20580 }}
+mesh = {{ file = "{mesh}.obj", unit = "m", up = "+Z" }}
+attitude = {{ mode = "inertial", quaternion = {q} }}
+[object.materials]
+{materials}
+[bands]
+set = "paper_rgb"
+[render]
+method = "{method}"
+[output]
+dir = "{out}"
+formats = ["csv", "ecsv"]
+pol_frame = "altaz"
+"""
+CUBESAT = """body_px = "aluminium_anodized"
+body_mx = "cell_gaas"
+body_py = "mli_kapton"
+body_my = "paint_white"
+body_pz = "mli_kapton"
+body_mz = "aluminium_anodized"
+panel_px_front = "cell_gaas"
+panel_px_back = "paint_black"
+panel_px_edge = "aluminium_anodized"
+"""
+TRUTHS = [[0.5, 0.5, -0.5, 0.5], [0.8, 0.0, 0.6, 0.0], [0.1, 0.7, 0.7, 0.1]]
+
+
+@pytest.fixture
+def scene(umov, tmp_path):
+    """scene(q, method, ...) writes a scenario of a cubesat with one panel; returns its name."""
+    assert umov("mesh", "make", "cubesat", "--panels", "1", "-o", "cubesat.obj", "-q").code == 0
+
+    def write(q, method, out, step=12, mesh="cubesat", materials=CUBESAT):
+        norm = math.sqrt(sum(x * x for x in q))
+        (tmp_path / f"{out}.toml").write_text(
+            SCENE.format(root=ROOT, q=[x / norm for x in q], method=method, out=out, step=step, mesh=mesh,
+                         materials=materials))
+        return f"{out}.toml"
+
+    return write
+
+
+def observe(folder, name, snr, seed):
+    """What an observer at a signal-to-noise ratio has of a run: noise is ours, not umov's."""
+    rng = random.Random(seed)
+    rows = read_csv(folder / "truth/lightcurve.csv")
+    out = ["# pol_frame: altaz", "time_utc,band,flux,flux_err,q,u,q_err,u_err"]
+    median = statistics.median(float(r["I"]) for r in rows)
+    for r in rows:
+        true = float(r["I"])
+        sd = math.sqrt((0.8 * true * median + 0.2 * median**2) / snr**2)
+        seen = true + sd * rng.gauss(0, 1)
+        line = f"{r['time_utc']},{r['band']},{seen * 1e12:.6f},{sd * 1e12:.6f},"
+        if seen > 3 * sd and r["q"]:
+            e = math.sqrt(2) * sd / seen
+            line += f"{float(r['q']) + e * rng.gauss(0, 1):.5f},{float(r['u']) + e * rng.gauss(0, 1):.5f},{e:.5f},{e:.5f}"
+        else:
+            line += ",,,"
+        out.append(line)
+    (folder / name).write_text("\n".join(out) + "\n")
+
+
+def apart(a, b):
+    return math.degrees(2 * math.acos(min(1, abs(sum(x * y for x, y in zip(a, b)))
+                                          / math.sqrt(sum(x * x for x in a) * sum(y * y for y in b)))))
+
+
+def in_set(folder, truth):
+    table = Table.read(folder / "set95.ecsv")
+    return any(apart(truth, [r["qw"], r["qx"], r["qy"], r["qz"]]) <= r["radius_deg"] for r in table)
+
+
+def test_blind_attitudes_are_found_or_lie_in_the_set(umov, scene, tmp_path):
+    near = inside = 0
+    for k, truth in enumerate(TRUTHS):
+        assert umov("run", scene(truth, "rays", "truth"), "-q").code == 0
+        observe(tmp_path, "obs.csv", 30, k)
+        done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "-o", "answer",
+                    "--force", "--json", "--grid", "30000")
+        assert done.code == 0, done.err
+        verdict = json.loads(done.out)
+        near += any(apart(truth, m["q"]) < max(3, 3 * m["sd_deg"]) for m in verdict["modes"])
+        inside += in_set(tmp_path / "answer", truth)
+        assert sum(m["weight"] for m in verdict["modes"]) <= 1 + 1e-9
+    assert near == 3
+    assert inside >= 2  # of 3 at 95 %: one outside is one in seven such tests
+
+
+def test_folder_has_the_tables_and_says_what_it_is(umov, scene, tmp_path):
+    assert umov("run", scene(TRUTHS[0], "rays", "truth", step=40), "-q").code == 0
+    done = umov("invert", "pose", "truth/lightcurve.ecsv", "--scenario", "truth.toml", "-o", "answer", "--grid", "20000")
+    assert done.code == 0, done.err
+    assert "no error of I" in done.err  # a run's light has none
+    modes = Table.read(tmp_path / "answer/modes.ecsv")
+    assert {"qw", "qx", "qy", "qz", "weight", "cov_xx", "cov_xy", "cov_zz"} <= set(modes.colnames)
+    assert str(modes["cov_xx"].unit) == "rad2"
+    assert min(apart(TRUTHS[0], [m["qw"], m["qx"], m["qy"], m["qz"]]) for m in modes) < 3
+    for name in ("set95.ecsv", "samples.ecsv", "twins.ecsv", "fit.ecsv", "verdict.json", "manifest.json",
+                 "scenario.lock.toml", "report.html"):
+        assert (tmp_path / "answer" / name).exists(), name
+    assert abs(sum(Table.read(tmp_path / "answer/samples.ecsv")["weight"]) - 1) < 1e-6
+    again = umov("invert", "pose", "truth/lightcurve.ecsv", "--scenario", "truth.toml", "-o", "answer", "--grid", "20000",
+                 "--threads", "1")
+    assert again.code == 0, again.err  # our own folder is replaced
+    assert (Table.read(tmp_path / "answer/modes.ecsv")["qw"] == modes["qw"]).all()
+
+
+def test_one_epoch_is_undetermined_and_says_why(umov, scene, tmp_path):
+    assert umov("run", scene(TRUTHS[1], "rays", "truth"), "-q").code == 0
+    observe(tmp_path, "obs.csv", 50, 1)
+    lines = (tmp_path / "obs.csv").read_text().splitlines()
+    (tmp_path / "one.csv").write_text("\n".join(lines[:5]) + "\n")  # three bands of one epoch
+    done = umov("invert", "pose", "one.csv", "--scenario", "truth.toml", "-o", "answer", "--json")
+    assert done.code == 0, done.err
+    verdict = json.loads(done.out)
+    assert verdict["verdict"] == "undetermined"
+    assert any("one epoch" in note for note in verdict["notes"])
+    assert in_set(tmp_path / "answer", TRUTHS[1])
+
+
+def test_a_sphere_tells_nothing(umov, scene, tmp_path):
+    assert umov("mesh", "make", "sphere", "--radius", "0.2", "--facets", "500", "-o", "ball.obj", "-q").code == 0
+    ball = scene([1, 0, 0, 0], "rays", "truth", mesh="ball", materials='default = "paint_white"', step=60)
+    assert umov("run", ball, "-q").code == 0
+    observe(tmp_path, "obs.csv", 30, 2)
+    done = umov("invert", "pose", "obs.csv", "--scenario", "truth.toml", "--json", "--grid", "10000")
+    assert done.code == 0, done.err
+    verdict = json.loads(done.out)
+    assert verdict["verdict"] == "undetermined"
+    assert verdict["share_of_so3"] > 0.5
+
+
+def test_another_object_is_no_fit(umov, scene, tmp_path):
+    assert umov("run", scene(TRUTHS[2], "rays", "truth"), "-q").code == 0
+    observe(tmp_path, "obs.csv", 200, 4)
+    mirror = "\n".join(line.split("=")[0] + '= "aluminium"' for line in CUBESAT.splitlines())
+    done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit", materials=mirror),
+                "--grid", "10000", "--floor", "0.01")
+    assert done.code == 4
+    assert "no_fit" in done.out
+
+
+@pytest.mark.parametrize("text, code, message", [
+    ("time_utc,band,I\n2018-01-21T05:12:00Z,nm:551,1\n", 3, 'obs.csv:2: band "nm:551" is not among those of'),
+    ("time_utc,band,I\n2018-01-21T05:12:00Z,nm:550,x\n", 3, "obs.csv:2:29: I = "),
+    ("time_utc,band,I,site\n2018-01-21T05:12:00Z,nm:550,1,nowhere\n", 3, "obs.csv:2: "),
+    ("time_utc,band,I\n2018-01-21T05:30:00Z,nm:550,1\n", 3, "no row is of a time at which the object stood in sunlight"),
+    ("time_utc,band,I\n", 3, "obs.csv: no row of observations"),
+])
+def test_bad_observations_have_their_place(umov, scene, tmp_path, text, code, message):
+    (tmp_path / "obs.csv").write_text(text)
+    done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"))
+    assert done.code == code
+    assert message in done.err, done.err
+
+
+def spinning(text, rate_deg_s, step):
+    """The same scenario with a body that turns about an axis of its own."""
+    at = text.index("attitude = ")
+    end = text.index("\n", at)
+    law = (f'attitude = {{ mode = "tumble", inertia = [1, 1, 1], rate_deg_s = {rate_deg_s}, epoch = 2018-01-21T05:08:00Z, '
+           f'start = {{ mode = "inertial", quaternion = [0.5, 0.5, -0.5, 0.5] }} }}')
+    return text[:at] + law + text[end:].replace("step_s = 12", f"step_s = {step}")
+
+
+def test_a_spin_comes_back_with_its_period_and_axis(umov, scene, tmp_path):
+    rate = [0.0, 0.0, 9.0]  # 40 s about the body's +Z
+    text = (tmp_path / scene([1, 0, 0, 0], "rays", "truth", step=4)).read_text()
+    (tmp_path / "truth.toml").write_text(spinning(text, rate, 4))
+    assert umov("run", "truth.toml", "-q").code == 0
+    observe(tmp_path, "obs.csv", 50, 7)
+    done = umov("invert", "spin", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--axis", "z", "--period",
+                "40.3", "-o", "answer", "--json")
+    assert done.code == 0, done.err
+    periods = Table.read(tmp_path / "answer/periods.ecsv")
+    # The heaviest period is the true one, not an alias; 1 % is what a body with four alike sides may leave.
+    assert abs(periods["period_s"][0] - 40) < 0.4
+    assert periods["alias"][0] == 1
+    mode = Table.read(tmp_path / "answer/modes.ecsv")[0]
+    assert abs(abs(mode["rate_z"]) - 9) < 0.1
+    assert abs(mode["rate_x"]) < 0.3 and abs(mode["rate_y"]) < 0.3
+    assert str(Table.read(tmp_path / "answer/modes.ecsv")["rate_z"].unit) == "deg / s"
+
+
+def test_a_curve_without_a_period_says_so(umov, scene, tmp_path):
+    (tmp_path / "obs.csv").write_text("time_utc,band,I\n2018-01-21T05:12:00Z,nm:550,1\n")
+    done = umov("invert", "spin", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"))
+    assert done.code == 3
+    assert "tells no period" in done.err
+
+
+def test_the_material_of_a_group_is_told_from_others(umov, scene, tmp_path):
+    q = TRUTHS[0]
+    assert umov("run", scene(q, "rays", "truth"), "-q").code == 0
+    observe(tmp_path, "obs.csv", 50, 8)
+    answers = {}
+    for group in ("body_my", "body_py", "panel_px_front"):
+        done = umov("invert", "material", "obs.csv", "--scenario", scene(q, "rays", "fit"), "--group", group,
+                    "--candidates", "paint_white,mli_kapton,cell_gaas", "--json")
+        assert done.code in (0, 4), done.err
+        answers[group] = json.loads(done.out)
+    for group, truth in (("body_my", "paint_white"), ("body_py", "mli_kapton"), ("panel_px_front", "cell_gaas")):
+        rows = answers[group]["materials"]
+        holder = next(r for r in rows if truth in r["materials"])
+        # The truth is never excluded; where the group is seen it is found.
+        assert holder["probability"] > 0.01 or len(rows) == 1
+        assert holder["fraction"] > 1 - max(5 * holder["fraction_err"], 0.1)
+    assert any(a["verdict"] == "determined" for a in answers.values())
+
+
+def test_unknown_groups_and_materials_are_named(umov, scene, tmp_path):
+    (tmp_path / "obs.csv").write_text("time_utc,band,I\n2018-01-21T05:12:00Z,nm:550,1\n")
+    fit = scene([1, 0, 0, 0], "masks", "fit")
+    done = umov("invert", "material", "obs.csv", "--scenario", fit, "--group", "bodi", "--candidates", "paint_white")
+    assert done.code == 3 and '"bodi" is no material of' in done.err
+    done = umov("invert", "material", "obs.csv", "--scenario", fit, "--group", "body_py", "--candidates", "paint_wite")
+    assert done.code == 2 and 'Did you mean "paint_white"?' in done.err
