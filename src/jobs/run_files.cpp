@@ -3,12 +3,17 @@
 #include "jobs/run_report.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <fmt/format.h>
+#include <umov/core/files.h>
+#include <umov/core/text.h>
 #include <umov/io/light_curve_table.h>
 #include <umov/jobs/run.h>
 
 namespace umov::jobs {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Everything that a finished run knows.
 struct Written {
@@ -75,6 +80,52 @@ std::string options_needed(const JobOptions &options) {
   return out.empty() ? "" : "# This run was made with" + out + ".\n";
 }
 
+fs::path absolute_path(const std::string &path) {
+  std::error_code code;
+  const auto full = fs::absolute(path, code);
+  return (code ? fs::path(path) : full).lexically_normal();
+}
+
+/// The folder that all files are under: their places among each other stay (a mesh names its MTL).
+fs::path common_folder(const std::vector<fs::path> &files) {
+  fs::path out = files.front().parent_path();
+  const auto is_under = [&](const fs::path &file) {
+    return std::mismatch(out.begin(), out.end(), file.begin(), file.end()).first == out.end();
+  };
+  while (!std::ranges::all_of(files, is_under) && out.has_relative_path())
+    out = out.parent_path();
+  return out;
+}
+
+void replace_all(std::string &text, const std::string &from, const std::string &to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+/// Copies of the inputs under inputs/, and a lock that names those. Device where one is not any
+/// more what was read.
+Result<void> keep_inputs(const std::vector<std::pair<std::string, std::string>> &inputs,
+                         RunFolder &folder, std::string &lock, std::vector<std::string> &files) {
+  std::vector<fs::path> full;
+  for (const auto &[path, hash] : inputs)
+    full.push_back(absolute_path(path));
+  if (full.empty())
+    return {};
+  const fs::path top = common_folder(full);
+  for (std::size_t k = 0; k < full.size(); ++k) {
+    UMOV_ASSIGN(bytes, read_file(full[k]));
+    if (sha256_hex(bytes) != inputs[k].second)
+      return fail(ErrorCode::Device,
+                  "was changed while the run went on: no copy of it can be kept. Run again.",
+                  {full[k].string()});
+    const std::string name = "inputs/" + full[k].lexically_relative(top).generic_string();
+    replace_all(lock, toml_text(full[k].string()), toml_text(name));
+    folder.add(name, std::move(bytes));
+    files.push_back(name);
+  }
+  return {};
+}
+
 } // namespace
 
 RunTables run_tables(const RunResult &run) {
@@ -83,6 +134,8 @@ RunTables run_tables(const RunResult &run) {
     out.light_curve.append(light_curve_table(one.outcome.curve, one.request.frame));
     out.passes.append(passes_table(one.outcome.passes, one.outcome.curve));
   }
+  if (run.has_all_csv_digits)
+    out.light_curve.clear_precision();
   if (run.stopped) {
     out.light_curve.note("status", "stopped early: " + run.stopped->message);
     out.passes.note("status", "stopped early: " + run.stopped->message);
@@ -95,7 +148,6 @@ Result<void> write_run(RunResult &result, const Scenario &scenario, const JobOpt
   const Written run{result, scenario, options, diagnostics};
   UMOV_TRY(add_tables(run, folder));
   UMOV_TRY(add_reports(run, folder));
-  folder.add("scenario.lock.toml", options_needed(options) + locked_scenario(scenario));
   folder.add("log.txt", log_of(run));
   for (const ObjectRun &one : result.objects) {
     for (const InputFile &input : one.object.inputs)
@@ -105,6 +157,10 @@ Result<void> write_run(RunResult &result, const Scenario &scenario, const JobOpt
     manifest.light.push_back({one.request.object, name_of(one.light.method), one.light.visibility,
                               one.light.instruction_set});
   }
+  std::string lock = options_needed(options) + locked_scenario(scenario);
+  if (scenario.keeps_inputs)
+    UMOV_TRY(keep_inputs(manifest.inputs, folder, lock, manifest.files));
+  folder.add("scenario.lock.toml", std::move(lock));
   manifest.seed = scenario.seed;
   for (const Warning &warning : diagnostics.warnings())
     manifest.warnings.push_back(warning.text());
