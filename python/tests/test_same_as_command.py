@@ -8,7 +8,8 @@ import umov
 from conftest import DATA, EXAMPLES
 from umov import _toml
 
-SHORT = {"time.start": "2018-01-21T05:05:00Z", "time.stop": "2018-01-21T05:15:00Z", "time.step_s": 20}
+SHORT = {"time.start": "2018-01-21T05:05:00Z", "time.stop": "2018-01-21T05:15:00Z", "time.step_s": 20,
+         "output.csv_digits": "all"}
 
 
 def columns_of(path):

@@ -21,7 +21,8 @@ Result<void> write_observation(const Observation &observation, const Scenario &s
       fmt::format("{}, {} rows of counts\n", counted(observation.exposures, "exposure"),
                   observation.counts.rows()) +
       warning_lines(diagnostics);
-  add_records(scenario, "", log, observation.inputs, diagnostics, std::move(manifest), folder);
+  UMOV_TRY(
+      add_records(scenario, "", log, observation.inputs, diagnostics, std::move(manifest), folder));
   return folder.commit();
 }
 

@@ -1,5 +1,7 @@
 #include "jobs/result_folder.h"
 
+#include "jobs/kept_inputs.h"
+
 #include <algorithm>
 
 namespace umov::jobs {
@@ -33,19 +35,24 @@ std::string warning_lines(const Diagnostics &diagnostics) {
   return out;
 }
 
-void add_records(const Scenario &scenario, const std::string &options_needed, std::string log,
-                 const std::vector<InputFile> &inputs, const Diagnostics &diagnostics,
-                 ManifestInput manifest, RunFolder &folder) {
-  folder.add("scenario.lock.toml", options_needed + locked_scenario(scenario));
+Result<void> add_records(const Scenario &scenario, const std::string &options_needed,
+                         std::string log, const std::vector<InputFile> &inputs,
+                         const Diagnostics &diagnostics, ManifestInput manifest,
+                         RunFolder &folder) {
   folder.add("log.txt", std::move(log));
   for (const InputFile &input : inputs)
     if (const std::pair entry{input.path, input.sha256};
         std::ranges::find(manifest.inputs, entry) == manifest.inputs.end())
       manifest.inputs.push_back(entry);
+  std::string lock = options_needed + locked_scenario(scenario);
+  if (scenario.keeps_inputs)
+    UMOV_TRY(keep_inputs(manifest.inputs, folder, lock, manifest.files));
+  folder.add("scenario.lock.toml", std::move(lock));
   manifest.seed = scenario.seed;
   for (const Warning &warning : diagnostics.warnings())
     manifest.warnings.push_back(warning.text());
   folder.add("manifest.json", make_manifest(manifest));
+  return {};
 }
 
 } // namespace umov::jobs

@@ -15,9 +15,10 @@ Result<std::vector<std::string>> add_table(const Table &table, const std::string
                                            const Scenario &scenario, RunFolder &folder);
 /// Warnings as lines of a log.
 std::string warning_lines(const Diagnostics &diagnostics);
-/// Locked scenario, log and manifest, with the files that were read, the seed and the warnings.
-void add_records(const Scenario &scenario, const std::string &options_needed, std::string log,
-                 const std::vector<InputFile> &inputs, const Diagnostics &diagnostics,
-                 ManifestInput manifest, RunFolder &folder);
+/// Locked scenario, log and manifest, with the files that were read (and copies of them where the
+/// scenario keeps them), the seed and the warnings.
+Result<void> add_records(const Scenario &scenario, const std::string &options_needed,
+                         std::string log, const std::vector<InputFile> &inputs,
+                         const Diagnostics &diagnostics, ManifestInput manifest, RunFolder &folder);
 
 } // namespace umov::jobs

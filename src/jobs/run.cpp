@@ -1,5 +1,6 @@
 #include <umov/jobs/run.h>
 
+#include "jobs/haze_spread.h"
 #include "jobs/job_journal.h"
 
 #include <algorithm>
@@ -161,6 +162,7 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
                               const JobOptions &options, const Monitor &monitor,
                               Diagnostics &diagnostics) {
   RunResult out;
+  out.has_all_csv_digits = scenario.has_all_csv_digits;
   UMOV_ASSIGN(journal, journal_of(objects, scenario, options, monitor, diagnostics));
   std::size_t with_rows = 0;
   for (std::size_t k = 0; k < objects.size(); ++k) {
@@ -174,6 +176,10 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
       out.stopped = outcome.error();
     }
     const bool is_empty = objects[k].outcome.curve.epochs.empty();
+    if (scenario.varies_haze && !is_empty && !out.stopped) {
+      UMOV_TRY(add_haze_spread(objects[k], {&journal, k}, monitor, diagnostics));
+      out.stopped = objects[k].outcome.stopped;
+    }
     with_rows += is_empty ? 0u : 1u;
     if (!is_empty)
       warn_of_accuracy(objects[k].outcome, scenario.light, objects[k].light.floor_i, diagnostics);

@@ -70,6 +70,8 @@ RunTables run_tables(const RunResult &run) {
     out.light_curve.append(light_curve_table(one.outcome.curve, one.request.frame));
     out.passes.append(passes_table(one.outcome.passes, one.outcome.curve));
   }
+  if (run.has_all_csv_digits)
+    out.light_curve.clear_precision();
   if (run.stopped) {
     out.light_curve.note("status", "stopped early: " + run.stopped->message);
     out.passes.note("status", "stopped early: " + run.stopped->message);
@@ -90,8 +92,8 @@ Result<void> write_run(RunResult &result, const Scenario &scenario, const JobOpt
   }
   if (result.stopped)
     manifest.stopped = result.stopped->text();
-  add_records(scenario, options_needed(options), log_of(run), inputs, diagnostics,
-              std::move(manifest), folder);
+  UMOV_TRY(add_records(scenario, options_needed(options), log_of(run), inputs, diagnostics,
+                       std::move(manifest), folder));
   UMOV_TRY(folder.commit());
   if (!result.stopped || result.stopped->code != ErrorCode::Interrupted)
     result.journal.finish();

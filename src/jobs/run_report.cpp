@@ -1,5 +1,7 @@
 #include "jobs/run_report.h"
 
+#include "jobs/haze_spread.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -166,6 +168,7 @@ std::string summarize(const LightCurveOutcome &outcome) {
                          100 * n.p_max);
     out += "\n";
   }
+  out += describe_spread(curve);
   const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),
                                   [](const LightCurveEpoch &e) { return e.is_dark; });
   if (dark > 0)
@@ -194,10 +197,12 @@ std::string summary_json(const LightCurveOutcome &outcome) {
   }
   const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),
                                   [](const LightCurveEpoch &e) { return e.is_dark; });
-  return Json{{"name", curve.object},          {"norad_cat_id", curve.norad_cat_id},
-              {"epochs", curve.epochs.size()}, {"dark", dark},
-              {"bands", std::move(bands)},     {"passes", std::move(passes)}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  Json out{{"name", curve.object},          {"norad_cat_id", curve.norad_cat_id},
+           {"epochs", curve.epochs.size()}, {"dark", dark},
+           {"bands", std::move(bands)},     {"passes", std::move(passes)}};
+  if (const MagnitudeSpread spread = magnitude_spread(curve); spread.samples > 0)
+    out["haze"] = {{"mag_median", spread.median}, {"mag_most", spread.most}};
+  return out.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 } // namespace umov::jobs

@@ -67,6 +67,24 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
   return scene;
 }
 
+Result<Scene> with_materials(const Scene &scene,
+                             const std::function<Material(const Material &)> &change) {
+  const auto changed = [&](const std::vector<Surface> &side) {
+    std::vector<Material> out;
+    for (const Surface &surface : side)
+      out.push_back(change(surface.material()));
+    return out;
+  };
+  const std::vector<Material> front = changed(scene.front), back = changed(scene.back);
+  UMOV_ASSIGN(materials, CompiledMaterials::make(scene.bands, front, back));
+  Scene out{scene.mesh, scene.normals, scene.bands, materials.grid(), {}, {}};
+  for (std::size_t g = 0; g < front.size(); ++g) {
+    out.front.push_back(materials.of(front[g]));
+    out.back.push_back(materials.of(back[g]));
+  }
+  return out;
+}
+
 Vec3<Body> direction_field(const Mesh &mesh, const Surface &surface, std::size_t triangle) {
   if (!surface.is_anisotropic())
     return {};

@@ -198,3 +198,86 @@ def test_a_long_search_is_told_before_it_starts(umov, scenario):
     span = ("--set", "time.start=2018-01-21", "--set", "time.stop=2018-01-25", "--set", "time.only.alt_min_deg=88")
     done = umov("run", scenario(), *span, "--set", "time.step_s=1")
     assert "looking for passes among 345601 epochs" in done.err, done.err
+
+
+def hazy(scenario, haze, *more):
+    """HST's orbit with a sphere that reflects nothing but by its haze."""
+    return scenario(("cube.obj", "sphere.obj"), ('default = "paper_al"', 'default = "mine"'),
+                    ('[bands]\nset = "paper_rgb"', '[material.mine]\nindex = { n = 1.0001, k = 0 }\n'
+                     'distribution = { model = "beckmann", alpha = 0.3 }\n'
+                     f'haze = {haze}\n[bands]\nset = "nm:550"'), *more)
+
+
+def test_the_spread_over_the_range_of_haze(umov, scenario, tmp_path):
+    """White haze alone is a Lambert surface: light goes with its albedo, magnitudes by 2.5 log10 of it (Pogson)."""
+    assert umov("mesh", "make", "sphere", "-o", "sphere.obj").code == 0
+    vary = ("[output]", '[materials]\nvary = ["haze"]\n[output]')
+    done = umov("run", hazy(scenario, "{ albedo = 0.1, range = [0.05, 0.25] }", vary))
+    assert done.code == 0 and "over the ranges of haze: magnitudes change by 1.75" in done.out, done.out + done.err
+    rows = Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv")
+    # The interface reflects 2.5e-9; three runs, each to the half-width of its light.
+    for row in rows:
+        share = row["intensity_err"] / row["intensity"]
+        assert row["intensity_low"] / row["intensity"] == pytest.approx(0.5, rel=2 * share + 1e-4)
+        assert row["intensity_high"] / row["intensity"] == pytest.approx(2.5, rel=2 * share + 1e-4)
+        assert row["mag"] - row["mag_low"] == pytest.approx(2.5 * math.log10(2.5), abs=3 * share + 2e-4)
+        assert row["mag_high"] - row["mag"] == pytest.approx(2.5 * math.log10(2), abs=3 * share + 2e-4)
+    plain = hazy(scenario, "{ albedo = 0.1, range = [0.05, 0.25] }")
+    assert umov("run", plain, "--set", "output.dir=plain").code == 0
+    other = Table.read(tmp_path / "plain/lightcurve.ecsv", format="ascii.ecsv")
+    assert "mag_low" not in other.colnames and list(other["intensity"]) == list(rows["intensity"])
+    assert umov("run", "out/scenario.lock.toml", "--set", "output.dir=again").code == 0
+    assert (tmp_path / "again/lightcurve.ecsv").read_bytes() == (tmp_path / "out/lightcurve.ecsv").read_bytes()
+
+
+def test_a_spread_that_cannot_be_is_told(umov, scenario):
+    assert umov("mesh", "make", "sphere", "-o", "sphere.obj").code == 0
+    vary = ("[output]", '[materials]\nvary = ["haze"]\n[output]')
+    done = umov("run", hazy(scenario, "{ albedo = 0.1 }", vary))
+    assert done.code == 0 and "no material of HST states a range of its haze" in done.err, done.err
+    done = umov("run", scenario(("[output]", '[materials]\nvary = ["roughness"]\n[output]')), "--dry-run")
+    assert done.code == 3 and '"haze" was expected' in done.err and ":" in done.err, done.err
+
+
+def test_a_csv_has_as_many_digits_as_its_errors_leave(umov, scenario, tmp_path):
+    done = umov("run", scenario())
+    assert done.code == 0, done.err
+    assert umov("run", "scenario.toml", "--set", "output.dir=all", "--set", "output.csv_digits=all").code == 0
+    short, full = (read_csv(tmp_path / f"{name}/lightcurve.csv") for name in ("out", "all"))
+    exact = Table.read(tmp_path / "out/lightcurve.ecsv", format="ascii.ecsv")
+    assert (tmp_path / "out/lightcurve.ecsv").read_bytes() == (tmp_path / "all/lightcurve.ecsv").read_bytes()
+    for few, many, row in zip(short, full, exact, strict=True):
+        for name in ("intensity", "mag", "q", "u", "p", "pa"):
+            assert float(many[name]) == row[name]
+            error = row[f"{name}_err"]
+            # Half of the last digit, which is the second one of the error, or the tenth of the value.
+            assert abs(float(few[name]) - row[name]) <= max(0.0501 * error, 5.01e-10 * abs(row[name]))
+            assert float(few[f"{name}_err"]) == pytest.approx(error, rel=0.05 + 1e-9)
+        for name, bound in (("alt", 5e-8), ("range", 5e-7), ("mjd_utc", 5e-9), ("qw", 5e-10)):
+            assert abs(float(few[name]) - row[name]) <= 1.001 * bound
+        assert few["time_utc"] == many["time_utc"]
+    assert (tmp_path / "out/lightcurve.csv").stat().st_size < 0.75 * (tmp_path / "all/lightcurve.csv").stat().st_size
+
+
+def test_a_folder_with_its_inputs_runs_elsewhere(umov, scenario, tmp_path):
+    (tmp_path / "nk.csv").write_text("wavelength_nm,n,k\n400,1.5,0.1\n700,1.5,0.1\n")
+    (tmp_path / "foil.toml").write_text('[material.foil]\nindex = "nk.csv"\ndistribution = { model = "beckmann", alpha = 0.1 }\n')
+    changed = scenario(('default = "paper_al"', 'default = "foil.toml"'),
+                       ("[output]", "[output]\nkeep_inputs = true"))
+    done = umov("run", changed)
+    assert done.code == 0, done.err
+    kept = {path.name for path in (tmp_path / "out/inputs").rglob("*") if path.is_file()}
+    assert {"hst.tle", "cube.obj", "nk.csv", "foil.toml"} <= kept
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    (tmp_path / "out").rename(elsewhere / "sent")
+    for name in ("nk.csv", "foil.toml", "cube.obj", changed):
+        (tmp_path / name).unlink()
+    done = umov("run", "elsewhere/sent/scenario.lock.toml", "-o", "again")
+    assert done.code == 0, done.err
+    assert (tmp_path / "again/lightcurve.ecsv").read_bytes() == (elsewhere / "sent/lightcurve.ecsv").read_bytes()
+    # The folder is umov's as a whole, until somebody puts a file of his own among the inputs.
+    assert umov("run", "again/scenario.lock.toml", "-o", "again").code == 0
+    (tmp_path / "again/inputs/mine.txt").write_text("x")
+    done = umov("run", "elsewhere/sent/scenario.lock.toml", "-o", "again")
+    assert done.code == 6 and "inputs" in done.err, done.err

@@ -19,7 +19,7 @@ public:
   /// Refuses (Device) what it must not or cannot write to, before any work is done.
   static Result<RunFolder> open(const std::filesystem::path &target, bool force);
 
-  /// A file of the folder, written at the end with all others.
+  /// A file of the folder, or of one in it ("inputs/x.obj"), written at the end with all others.
   void add(std::string name, std::string bytes) { files_[std::move(name)] = std::move(bytes); }
   /// For the rows of a run that stopped early: what stands in the target stays there, unless it is
   /// the rest of such a run itself; the files then go to "<target>.partial".
@@ -37,6 +37,7 @@ public:
 
 private:
   void step_aside(const std::string &suffix);
+  Result<void> write(const std::filesystem::path &folder, const std::string &name) const;
 
   std::string replaced_utc_;
   std::filesystem::path target_; ///< as the user named it

@@ -69,7 +69,9 @@ struct Scenario {
   std::optional<ScenarioTime> time;
   std::filesystem::path earth_orientation; ///< table in place of the compiled-in one; empty: that
   std::vector<ScenarioObject> objects;     ///< at least one
-  std::map<std::string, Material> own_materials;      ///< the [material.NAME] tables
+  std::map<std::string, Material> own_materials; ///< the [material.NAME] tables
+  bool varies_haze =
+      false; ///< [materials] vary: `umov run` shows the spread over the ranges of haze
   std::vector<BandEntry> band_set{{"paper_rgb", {}}}; ///< as [bands] names them
   std::vector<Band> bands;
   std::vector<InputFile> band_files; ///< curves that were read
@@ -80,6 +82,8 @@ struct Scenario {
   bool has_solar_disk = true;              ///< false: a point Sun
   std::filesystem::path output_dir{"out"}; ///< relative to the working folder
   std::vector<std::string> formats{"ecsv", "html"};
+  bool keeps_inputs = false;       ///< the folder gets copies of them, which its lock names
+  bool has_all_csv_digits = false; ///< false: as many as the errors leave
   PolarizationFrame frame = PolarizationFrame::Equatorial;
   std::optional<ScenarioObservation> observation; ///< [observation] and its instrument
   std::map<std::string, Where> places;            ///< where keys stand ("object.0.materials.front")
@@ -99,6 +103,9 @@ Result<void> check_complete_for_run(const Scenario &scenario);
 /// The scenario as TOML with every default written out and absolute paths; reading it gives the
 /// same scenario.
 std::string locked_scenario(const Scenario &scenario);
+
+/// A text as TOML has it, with its quotes.
+std::string toml_text(const std::string &text);
 
 /// JSON Schema (draft 2020-12) of the scenario, from the same table of keys that the reader checks.
 std::string scenario_schema_json();

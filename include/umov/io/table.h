@@ -15,12 +15,22 @@ namespace umov {
 using Cells = std::variant<std::vector<double>, std::vector<std::int64_t>, std::vector<std::string>,
                            std::vector<bool>>;
 
+/// How fine a CSV writes numbers; by default to all digits.
+struct Precision {
+  std::string error;   ///< the column of its half-width: as fine as two digits of that, ten at most
+  int decimals = 0;    ///< so many after the point
+  int significant = 0; ///< so many digits
+
+  bool operator==(const Precision &) const = default;
+};
+
 /// A named column with its unit.
 struct Column {
   std::string name;
   std::string unit;        ///< as astropy spells it ("W / (m2 nm)"); "" = dimensionless
   std::string description; ///< one line
   Cells cells;
+  Precision precision = {}; ///< of its CSV; all other forms have all digits
 };
 
 /// Columns of one length, in order, and what is said about the whole in a file's header.
@@ -33,6 +43,11 @@ public:
   void append(Table &&rows);
   /// Adds one line of the header ("object" -> "HST").
   void note(std::string key, std::string value);
+
+  /// How fine a CSV writes a column, if there is one of that name.
+  void set_precision(std::string_view name, Precision precision);
+  /// All columns to all digits.
+  void clear_precision();
 
   /// Number of rows.
   [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -58,9 +73,10 @@ private:
 /// Enhanced CSV 1.0 (Astropy APE 6): names, types, units and notes in the header, blank-separated
 /// rows, NaN as "nan". Every column but text and truth values carries a unit.
 std::string to_ecsv(const Table &table);
-/// RFC 4180 with LF; where there are notes, a first comment says how to read it; they follow as "#
-/// key: value", then "# unit: ..." above the header; NaN is an empty cell; a ' stands before a text
-/// that spreadsheets would compute as a formula.
+/// RFC 4180 with LF, numbers as fine as the precision of their column; where there are notes, a
+/// first comment says how to read it; they follow as "# key: value", then "# unit: ..." above the
+/// header; NaN is an empty cell; a ' stands before a text that spreadsheets would compute as a
+/// formula.
 std::string to_csv(const Table &table);
 /// A binary table of a FITS file (standard 4.0). BadInput for text that a column cannot hold.
 Result<std::string> to_fits(const Table &table);

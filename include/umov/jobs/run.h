@@ -23,6 +23,7 @@ struct ObjectRun {
 struct RunResult {
   std::vector<ObjectRun> objects; ///< those with rows
   std::optional<Error> stopped;   ///< Physics or Interrupted: rows before it are complete
+  bool has_all_csv_digits = false;
   Journal journal; ///< of the finished blocks: goes when the folder of a whole run is written
 };
 

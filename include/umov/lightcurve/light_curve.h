@@ -1,6 +1,8 @@
 #pragma once
 // A light curve as rows: one per epoch, object and band (product columns).
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <umov/attitude/attitude.h>
 #include <umov/light/light_model.h>
@@ -60,6 +62,23 @@ struct SecondLight {
   std::vector<double> irradiance;           ///< I at the observer [W m-2 nm-1]
 };
 
+/// Smallest and largest value, NaN where there is none.
+struct Extent {
+  double low = std::numeric_limits<double>::quiet_NaN();
+  double high = std::numeric_limits<double>::quiet_NaN();
+
+  /// Holds `value` too, unless that is NaN.
+  void take(double value) {
+    low = std::fmin(low, value);
+    high = std::fmax(high, value);
+  }
+};
+
+/// What a sample becomes over the ranges that are stated of its materials.
+struct SampleSpread {
+  Extent intensity, magnitude, p; ///< [m2/sr], of the curve's system, fraction
+};
+
 /// Epochs, and the light of each in every band.
 struct LightCurve {
   std::string object;
@@ -72,8 +91,13 @@ struct LightCurve {
   std::vector<LightCurveEpoch> epochs;
   std::vector<LightCurveSample> samples;  ///< [epoch * bands.size() + band]
   std::vector<double> transmission;       ///< of the air, like samples; empty: none was asked for
+  std::vector<SampleSpread> spread;       ///< of each sample, where asked for; else empty
   std::vector<SecondLight> second_lights; ///< those asked for
   std::vector<double> material_i; ///< direct light: [(epoch * materials + material) * bands + band]
 };
+
+/// Takes the samples of `other`, the same epochs in other circumstances, into the spread of
+/// `curve`. Epochs that `other` does not reach have none.
+void widen_spread(LightCurve &curve, const LightCurve &other);
 
 } // namespace umov

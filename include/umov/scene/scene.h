@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <umov/core/diagnostics.h>
 #include <umov/core/result.h>
 #include <umov/optics/band_grid.h>
@@ -35,6 +36,11 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
                          const std::vector<Material> &front, const std::vector<Material> &back,
                          Diagnostics &diagnostics, double crease_rad = default_crease_rad,
                          const std::string &file = {});
+
+/// The scene with each material replaced by what `change` makes of it; the mesh stays. BadInput
+/// from a material.
+Result<Scene> with_materials(const Scene &scene,
+                             const std::function<Material(const Material &)> &change);
 
 /// Direction field of a group's surface on a triangle, zero where it has none.
 Vec3<Body> direction_field(const Mesh &mesh, const Surface &surface, std::size_t triangle);

@@ -133,6 +133,19 @@ Json band_json(const LightCurve &curve, std::size_t band, std::size_t stride) {
            {"pa", each([](S s) { return s.pa_deg; })},
            {"q_scat", each([](S s) { return s.scattering.q; })},
            {"u_scat", each([](S s) { return s.scattering.u; })}};
+  if (!curve.spread.empty()) {
+    const auto spread = [&](const char *name, Extent SampleSpread::*of) {
+      const auto take = [&](double Extent::*end) {
+        return column(curve.epochs.size(), stride,
+                      [&](std::size_t i) { return curve.spread[i * bands + band].*of.*end; });
+      };
+      out[std::string(name) + "_low"] = take(&Extent::low);
+      out[std::string(name) + "_high"] = take(&Extent::high);
+    };
+    spread("intensity", &SampleSpread::intensity);
+    spread("mag", &SampleSpread::magnitude);
+    spread("p", &SampleSpread::p);
+  }
   if (curve.bounces > 1) {
     out["indirect_i"] = each([](S s) { return s.indirect.i; });
     out["indirect_q"] = each([](S s) { return s.indirect.q; });

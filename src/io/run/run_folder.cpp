@@ -58,6 +58,20 @@ bool is_further_page(std::string_view name) {
   return name.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+/// A folder in ours holds only files that the manifest lists ("inputs/mesh.obj").
+bool holds_only_listed(const fs::path &below, const fs::path &folder,
+                       const std::vector<std::string> &listed) {
+  std::error_code code;
+  fs::recursive_directory_iterator at(below, code);
+  for (; !code && at != fs::recursive_directory_iterator(); at.increment(code)) {
+    const std::string name = at->path().lexically_relative(folder).generic_string();
+    std::error_code unknown;
+    if (!at->is_directory(unknown) && std::find(listed.begin(), listed.end(), name) == listed.end())
+      return false;
+  }
+  return !code;
+}
+
 /// What a folder holds that umov did not write.
 std::vector<std::string> strangers_in(const fs::path &folder) {
   std::vector<std::string> out;
@@ -67,7 +81,9 @@ std::vector<std::string> strangers_in(const fs::path &folder) {
   for (const auto &entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
     if (std::find(std::begin(our_files), std::end(our_files), name) == std::end(our_files) &&
-        !is_further_page(name) && std::find(listed.begin(), listed.end(), name) == listed.end())
+        !is_further_page(name) && std::find(listed.begin(), listed.end(), name) == listed.end() &&
+        !(!listed.empty() && entry.is_directory(code) && !entry.is_symlink(code) &&
+          holds_only_listed(entry.path(), folder, listed)))
       out.push_back(name);
   }
   return out;
@@ -259,10 +275,18 @@ void RunFolder::step_aside(const std::string &suffix) {
   is_foreign_ = false;
 }
 
+Result<void> RunFolder::write(const fs::path &folder, const std::string &name) const {
+  std::error_code code;
+  if (const fs::path full = folder / name; full.parent_path() != folder)
+    if (fs::create_directories(full.parent_path(), code); code)
+      return trouble(full.parent_path(), "cannot be made: " + code.message());
+  return write_file_atomically(folder / name, files_.at(name));
+}
+
 Result<void> RunFolder::commit() {
   if (is_foreign_) {
     for (const auto &[name, bytes] : files_)
-      UMOV_TRY(write_file_atomically(real_ / name, bytes));
+      UMOV_TRY(write(real_, name));
     return {};
   }
   std::error_code code;
@@ -272,10 +296,10 @@ Result<void> RunFolder::commit() {
   Temporary fresh(made);
   // It tells which files are ours, also of what a kill leaves of this folder.
   if (const auto manifest = files_.find("manifest.json"); manifest != files_.end())
-    UMOV_TRY(write_file_atomically(fresh.path / manifest->first, manifest->second));
+    UMOV_TRY(write(fresh.path, manifest->first));
   for (const auto &[name, bytes] : files_)
     if (name != "manifest.json")
-      UMOV_TRY(write_file_atomically(fresh.path / name, bytes));
+      UMOV_TRY(write(fresh.path, name));
   if (!is_replaceable(real_)) // somebody put something of his own there while the run went on
     step_aside(".new");
   UMOV_TRY(put_in_place(fresh, real_));

@@ -215,6 +215,29 @@ Result<void> check_bands(const Material &material, const Scenario &scenario,
   return {};
 }
 
+/// Files that the materials of an object were read from, among its inputs, each once.
+Result<void> note_material_files(const Named &of, const std::vector<Material> &materials,
+                                 LoadedObject &out) {
+  std::vector<std::string> files;
+  for (const auto &[group, sides] : of.object.materials)
+    for (const std::string &name : {sides.front, sides.back})
+      if (scenario::is_material_file(name, of.scenario))
+        files.push_back(scenario::material_file(name, of.scenario));
+  for (const Material &material : materials) {
+    files.push_back(material.index.file);
+    for (const Layer &layer : material.layers)
+      files.push_back(layer.index.file);
+    files.push_back(material.distribution.file);
+    files.push_back(material.measured_file);
+  }
+  for (const std::string &file : files) {
+    const auto is_same = [&](const InputFile &input) { return input.path == file; };
+    if (!file.empty() && std::ranges::none_of(out.inputs, is_same))
+      UMOV_TRY(read_input(file, {of.scenario.file}, out));
+  }
+  return {};
+}
+
 } // namespace
 
 Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
@@ -250,6 +273,7 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
         UMOV_TRY(check_bands(*material, scenario, diagnostics));
         checked.push_back(*material);
       }
+  UMOV_TRY(note_material_files(of, checked, out));
   auto scene =
       make_scene(read.mesh, of.object.mesh.normals, scenario.bands, front, back, diagnostics,
                  of.object.mesh.crease_deg * pi / 180, of.object.mesh.file.string());

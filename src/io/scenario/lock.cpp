@@ -78,7 +78,13 @@ std::string orbit_toml(const ScenarioOrbit &orbit) {
                      three(s.state.position_km), three(s.state.velocity_km_s), orbit.norad);
 }
 
-std::string object(const ScenarioObject &o) {
+/// A material by its name, or by the file that it is in.
+std::string material_name(const std::string &name, const Scenario &s) {
+  return scenario::is_material_file(name, s) ? absolute_path(scenario::material_file(name, s))
+                                             : quoted(name);
+}
+
+std::string object(const ScenarioObject &o, const Scenario &s) {
   std::string out = fmt::format("\n[[object]]\nname = {}\n", quoted(o.name));
   if (o.orbit)
     out += orbit_toml(*o.orbit);
@@ -92,14 +98,16 @@ std::string object(const ScenarioObject &o) {
       frame, o.mesh.normals == NormalMode::Smooth ? "smooth" : "flat", shortest(o.mesh.crease_deg));
   out += "attitude = " + scenario::attitude_toml(o.attitude) + "\n\n[object.materials]\n";
   for (const auto &[name, sides] : o.materials)
-    out += fmt::format("{} = {{ front = {}, back = {} }}\n", quoted(name), quoted(sides.front),
-                       quoted(sides.back));
+    out += fmt::format("{} = {{ front = {}, back = {} }}\n", quoted(name),
+                       material_name(sides.front, s), material_name(sides.back, s));
   for (const MovingJoint &part : o.parts)
     out += "\n[[object.part]]\n" + scenario::part_toml(part);
   return out;
 }
 
 } // namespace
+
+std::string toml_text(const std::string &text) { return quoted(text); }
 
 std::string locked_scenario(const Scenario &s) {
   std::string out = "# Every default filled in; running this file repeats the run.\n";
@@ -112,7 +120,8 @@ std::string locked_scenario(const Scenario &s) {
   if (!s.earth_orientation.empty())
     out += fmt::format("\n[earth]\neop = {}\n", absolute_path(s.earth_orientation));
   for (const ScenarioObject &one : s.objects)
-    out += object(one);
+    out += object(one, s);
+  out += fmt::format("\n[materials]\nvary = {}\n", s.varies_haze ? "[\"haze\"]" : "[]");
   out += scenario::bands_toml(s);
   out += fmt::format(
       "\n[render]\nmethod = \"{}\"\nbounces = {}\nsun = \"{}\"\naccuracy = {}\n"
@@ -128,8 +137,10 @@ std::string locked_scenario(const Scenario &s) {
                        shortest(s.earthshine->accuracy));
   out += s.observation ? scenario::observation_toml(*s.observation)
                        : std::string("\n[detector]\nmodel = \"ideal\"\n");
-  out += fmt::format("\n[output]\ndir = {}\nformats = {}\npol_frame = \"{}\"\n",
-                     quoted(s.output_dir.string()), list(s.formats), name_of(s.frame));
+  out += fmt::format("\n[output]\ndir = {}\nformats = {}\ncsv_digits = \"{}\"\n"
+                     "keep_inputs = {}\npol_frame = \"{}\"\n",
+                     quoted(s.output_dir.string()), list(s.formats),
+                     s.has_all_csv_digits ? "all" : "error", s.keeps_inputs, name_of(s.frame));
   for (const auto &[name, material] : s.own_materials)
     out += "\n" + scenario::material_toml(material);
   return out;

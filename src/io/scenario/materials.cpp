@@ -259,12 +259,19 @@ Result<Material> read_material_text(const std::string &text, const std::string &
   }
 }
 
+bool is_material_file(const std::string &name, const Scenario &scenario) {
+  return name.ends_with(".toml") && !scenario.own_materials.contains(name);
+}
+
+std::string material_file(const std::string &name, const Scenario &scenario) {
+  return (fs::path(scenario.file).parent_path() / name).lexically_normal().string();
+}
+
 Result<Material> find_material(const std::string &name, const Scenario &scenario) {
   if (const auto own = scenario.own_materials.find(name); own != scenario.own_materials.end())
     return own->second;
-  if (name.ends_with(".toml"))
-    return read_material(
-        (fs::path(scenario.file).parent_path() / name).lexically_normal().string());
+  if (is_material_file(name, scenario))
+    return read_material(material_file(name, scenario));
   auto found = library_material(name);
   if (found)
     return found;

@@ -26,6 +26,9 @@ Result<Material> read_material_table(const Node &node, const std::string &name);
 Result<std::map<std::string, Material>> read_material_tables(const Node &top);
 /// A material that a scenario names: its own, a built-in one or a TOML file.
 Result<Material> find_material(const std::string &name, const Scenario &scenario);
+/// The name is that of a file; and where it is, beside the scenario.
+bool is_material_file(const std::string &name, const Scenario &scenario);
+std::string material_file(const std::string &name, const Scenario &scenario);
 /// TOML of one material table.
 std::string material_toml(const Material &material);
 /// A compiled-in material.

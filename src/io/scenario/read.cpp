@@ -347,6 +347,24 @@ Result<void> read_render(const Node &top, Scenario &out) {
   return {};
 }
 
+/// [materials]: what holds for all of them; those of an object are in [object.materials].
+Result<void> read_vary(const Node &top, Scenario &out) {
+  if (!top.has("materials"))
+    return {};
+  UMOV_ASSIGN(node, top.child("materials"));
+  if (!node.has("vary"))
+    return {};
+  UMOV_ASSIGN(names, node.strings("vary"));
+  for (const std::string &name : names)
+    if (name != "haze")
+      return fail(ErrorCode::BadInput,
+                  fmt::format("vary: \"{}\" has no stated range; \"haze\" was expected", name),
+                  node.where("vary"));
+  out.varies_haze = !names.empty();
+  out.places["materials.vary"] = node.where("vary");
+  return {};
+}
+
 Result<void> read_output(const Node &top, Scenario &out) {
   if (!top.has("output"))
     return {};
@@ -358,6 +376,9 @@ Result<void> read_output(const Node &top, Scenario &out) {
   out.frame = frame == "altaz"        ? PolarizationFrame::AltAz
               : frame == "scattering" ? PolarizationFrame::Scattering
                                       : PolarizationFrame::Equatorial;
+  UMOV_ASSIGN(digits, node.choice("csv_digits", "error", {"error", "all"}));
+  out.keeps_inputs = node.boolean("keep_inputs", false);
+  out.has_all_csv_digits = digits == "all";
   if (node.has("formats")) {
     UMOV_ASSIGN(formats, node.strings("formats"));
     if (formats.empty())
@@ -395,6 +416,7 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(read_time(top, out));
   UMOV_TRY(scenario::read_bands(top, path.parent_path(), out));
   UMOV_TRY(read_render(top, out));
+  UMOV_TRY(read_vary(top, out));
   UMOV_TRY(read_output(top, out));
   UMOV_ASSIGN(observation, scenario::read_observation(top, path.parent_path().string()));
   out.observation = observation;

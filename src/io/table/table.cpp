@@ -49,7 +49,19 @@ void Table::add(std::string name, std::string unit, std::string description, Cel
   if (columns_.empty())
     rows_ = std::visit([](const auto &c) { return c.size(); }, cells);
   std::visit(Resize{rows_}, cells);
-  columns_.push_back({std::move(name), std::move(unit), std::move(description), std::move(cells)});
+  columns_.push_back(
+      {std::move(name), std::move(unit), std::move(description), std::move(cells), {}});
+}
+
+void Table::set_precision(std::string_view name, Precision precision) {
+  for (Column &column : columns_)
+    if (column.name == name)
+      column.precision = precision;
+}
+
+void Table::clear_precision() {
+  for (Column &column : columns_)
+    column.precision = {};
 }
 
 void Table::note(std::string key, std::string value) {

@@ -76,6 +76,12 @@ void add_geometry(RowColumns &t) {
   t.of_epoch("airmass", "", "Kasten & Young 1989", [](E e) { return e.airmass; });
 }
 
+/// Vega's is no unit that readers of ECSV know.
+std::string magnitude_unit(MagnitudeSystem magnitudes) {
+  return magnitudes == MagnitudeSystem::Vega ? "mag"
+                                             : "mag(" + std::string(name_of(magnitudes)) + ")";
+}
+
 void add_light(RowColumns &t, PolarizationFrame frame, MagnitudeSystem magnitudes) {
   const auto axis = [frame](E e) { return scattering_axis(e.geometry, frame).degrees(); };
   t.of_sample("I", "W / (m2 nm)", "irradiance at the observer above the atmosphere",
@@ -94,8 +100,7 @@ void add_light(RowColumns &t, PolarizationFrame frame, MagnitudeSystem magnitude
   t.of_sample("u_scat", "", "U/I in the scattering frame", [](S s) { return s.scattering.u; });
   t.of_epoch("pa_scat", "deg", "position angle of the normal of the scattering plane", axis);
   const std::string system = name_of(magnitudes);
-  // Vega's is no unit that readers of ECSV know.
-  const std::string unit = magnitudes == MagnitudeSystem::Vega ? "mag" : "mag(" + system + ")";
+  const std::string unit = magnitude_unit(magnitudes);
   t.of_sample("mag", unit.c_str(), (system + " magnitude; empty where no light comes").c_str(),
               [](S s) { return s.magnitude; });
   t.add<bool>("mag_limit", "", "mag is a limit: the object is fainter",
@@ -151,6 +156,28 @@ void add_errors(RowColumns &t, PolarizationFrame frame) {
      [](D d, E, S s) { return s.p > 0 ? d.pa_deg() : std::numeric_limits<double>::quiet_NaN(); });
 }
 
+/// Over the ranges that materials state: [materials] vary.
+void add_spread(const LightCurve &curve, Table &table) {
+  const auto add = [&](const std::string &name, const std::string &unit, Extent SampleSpread::*of) {
+    std::vector<double> low, high;
+    for (const SampleSpread &s : curve.spread) {
+      low.push_back((s.*of).low);
+      high.push_back((s.*of).high);
+    }
+    table.add(name + "_low", unit, "smallest " + name + " over the ranges of haze", std::move(low));
+    table.add(name + "_high", unit, "largest " + name + " over the ranges of haze",
+              std::move(high));
+  };
+  if (curve.spread.empty())
+    return;
+  add("intensity", "m2 / sr", &SampleSpread::intensity);
+  add("mag", magnitude_unit(curve.magnitudes), &SampleSpread::magnitude);
+  add("p", "", &SampleSpread::p);
+  table.note("spread", "*_low, *_high: of three runs, with the haze of every material as given, at "
+                       "the low and at the high end of its stated range; all together, as dust "
+                       "and age would have them.");
+}
+
 /// Of bands with a curve: what summing them from few wavelengths may leave out.
 void add_band_errors(RowColumns &t) {
   const char *text = "error of the band's sum of wavelengths (change if every other is left out)";
@@ -192,6 +219,32 @@ void add_second_light(Table &table, const SecondLight &light) {
   add_error("_v_err", &Stokes<SkyNorth>::v);
 }
 
+/// A CSV is for people: values to two digits of their numerical error, places to a millimetre.
+void set_precisions(Table &table) {
+  for (const char *name : {"az", "alt", "ra", "dec", "phase_angle", "sun_alt", "pa_scat", "q_scat",
+                           "u_scat", "indirect_i", "indirect_q", "indirect_u", "indirect_v"})
+    table.set_precision(name, {.decimals = 7}); // .36 mas
+  for (const char *name : {"sunlit", "range", "range_rate", "airmass"})
+    table.set_precision(name, {.decimals = 6});
+  for (const char *name : {"qw", "qx", "qy", "qz"})
+    table.set_precision(name, {.decimals = 9});
+  for (const char *name : {"mjd_utc", "elset_age"})
+    table.set_precision(name, {.decimals = 8}); // a millisecond
+  table.set_precision("lambda_eff", {.decimals = 3});
+  table.set_precision("I", {.significant = 7});
+  for (const char *name : {"intensity", "mag", "q", "u", "v", "p", "pa"}) {
+    const std::string error = std::string(name) + "_err";
+    table.set_precision(name, {.error = error});
+    table.set_precision(std::string(name) + "_low", {.error = error});
+    table.set_precision(std::string(name) + "_high", {.error = error});
+  }
+  table.set_precision("dop", {.error = "p_err"});
+  const std::vector<Column> &columns = table.columns();
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (columns[c].name.ends_with("_err") || columns[c].name.starts_with("band_err_"))
+      table.set_precision(columns[c].name, {.significant = 2});
+}
+
 } // namespace
 
 Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
@@ -225,6 +278,8 @@ Table light_curve_table(const LightCurve &curve, PolarizationFrame frame) {
   add_errors(t, frame);
   if (has_curve(curve.bands))
     add_band_errors(t);
+  add_spread(curve, table);
+  set_precisions(table);
   note_conventions(table);
   note_curves(curve.bands, table);
   table.note("object", curve.object);

@@ -70,6 +70,27 @@ std::string terminal_cell(const Table &table, const Column &column, std::size_t 
   return table.text(column.name, row);
 }
 
+/// A number with as many digits as its column is written with in this row.
+double rounded(const Table &table, const Column &column, std::size_t row, double value) {
+  const Precision &precision = column.precision;
+  if (!std::isfinite(value) || value == 0 || precision == Precision{})
+    return value;
+  int digits = precision.significant;
+  if (digits == 0) {
+    int last = -precision.decimals; // power of ten of the last digit
+    if (!precision.error.empty()) {
+      const double error = table.number(precision.error, row);
+      if (!(error > 0) || !std::isfinite(error))
+        return value;
+      last = static_cast<int>(std::floor(std::log10(error))) - 1;
+    }
+    // Two digits of the value stay whatever its error is; ten are enough for those known exactly.
+    const int first = static_cast<int>(std::floor(std::log10(std::abs(value))));
+    digits = std::clamp(first - last + 1, 2, precision.error.empty() ? 16 : 10);
+  }
+  return parse_number(fmt::format("{:.{}e}", value, digits - 1)).value_or(value);
+}
+
 } // namespace
 
 std::string to_ecsv(const Table &table) {
@@ -132,7 +153,7 @@ void append_csv_rows(const Table &table, std::size_t begin, std::size_t end, std
         out += ',';
       if (const auto *numbers = std::get_if<std::vector<double>>(&column.cells)) {
         if (!std::isnan((*numbers)[row]))
-          out += shortest((*numbers)[row]);
+          out += shortest(rounded(table, column, row, (*numbers)[row]));
       } else if (const auto *text = std::get_if<std::vector<std::string>>(&column.cells)) {
         out += quoted_csv(without_formula((*text)[row]), ',');
       } else {

@@ -130,7 +130,7 @@ function range(values) {
 function csvText(table) {
   const field = (value) => {
     if (value === null || value === undefined || Number.isNaN(value)) return "";
-    const text = String(value);
+    const text = typeof value === "number" ? String(Number(value.toPrecision(9))) : String(value);
     return /[",\n\r]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text;
   };
   return ["# unit: " + table.columns.map((c) => c.unit || "''").join(","),

@@ -92,8 +92,8 @@ function limitTraces(pass, k, curve, key, edge, data) {
   });
 }
 
-/// Bands of the numerical half-widths behind a curve, one outline per stretch of neighbouring values.
-function errorTraces(pass, k, curve, key, data) {
+/// Bands behind a curve (`bounds` of each row), one outline per stretch of neighbouring values.
+function outlineTraces(pass, k, curve, bounds, opacity, key, data) {
   const x = [], y = [];
   for (const run of pass.runs) {
     let part = [];
@@ -101,18 +101,18 @@ function errorTraces(pass, k, curve, key, data) {
       if (part.length > 1) {
         const back = [...part].reverse();
         x.push(...part.map((i) => times[i]), ...back.map((i) => times[i]), null);
-        y.push(...part.map((i) => curve.bounds(i)[0]), ...back.map((i) => curve.bounds(i)[1]), null);
+        y.push(...part.map((i) => bounds(i)[0]), ...back.map((i) => bounds(i)[1]), null);
       }
       part = [];
     };
     for (const i of run) {
-      if (curve.at(i) !== null && curve.bounds(i)) part.push(i);
+      if (curve.at(i) !== null && bounds(i)) part.push(i);
       else close();
     }
     close();
   }
   if (x.length) data.push({
-    type: "scatter", mode: "lines", x, y, fill: "toself", fillcolor: faint(curve.colour, 0.22), line: { width: 0 }, hoverinfo: "skip",
+    type: "scatter", mode: "lines", x, y, fill: "toself", fillcolor: faint(curve.colour, opacity), line: { width: 0 }, hoverinfo: "skip",
     xaxis: "x" + (k ? k + 1 : ""), yaxis: "y" + key, name: plain(curve.name), legendgroup: curve.name, showlegend: false,
   });
 }
@@ -122,6 +122,14 @@ const within = (value, error, least = -Infinity, most = Infinity) => value === n
   : [Math.max(least, value - error), Math.min(most, value + error)];
 const withinFactor = (value, magError) => value === null || magError === null || !(magError > 0) ? null
   : [Math.max(1e-3 * value, value * (2 - 10 ** (0.4 * magError))), value * 10 ** (0.4 * magError)];
+
+/// From [materials] vary: what a value becomes over the ranges of haze, in the units of its axis.
+const spreadOf = (band, row, i) => {
+  const low = band[row.spread + "_low"][i], high = band[row.spread + "_high"][i];
+  return low === null || high === null ? null : [low * (row.factor || 1), high * (row.factor || 1)];
+};
+const hasSpread = bands.some((band) => band.mag_low);
+const spreadText = hasSpread ? " Wider and paler: what the stated ranges of the materials' haze make of it." : "";
 
 /// Rows of panels from `rows`: {title, at(band, row), bounds(band, row), cyclic, type, reversed, range, dtick, digits, unit,
 /// span, isLimit}, of the bands that `state` chooses.
@@ -143,11 +151,12 @@ function timeFigure(rows, state = {}) {
       ...(row.dtick ? { dtick: row.dtick } : {}), ...(row.type === "log" ? { exponentformat: "power" } : {}),
     });
     const curves = row.curves || chosenBands(state).map((b) => bands[b]).map((band) => ({ name: band.label, colour: band.colour, symbol: band.symbol, dash: band.dash,
-      bounds: row.bounds && ((i) => row.bounds(band, i)), value: (i) => row.at(band, i),
+      bounds: row.bounds && ((i) => row.bounds(band, i)), spread: row.spread && band[row.spread + "_low"] && ((i) => spreadOf(band, row, i)), value: (i) => row.at(band, i),
       isLimit: (i) => row.isLimit ? row.isLimit(band, i) : false, at: (i) => row.span && (row.isLimit(band, i) || (span && row.at(band, i) > span[0])) ? null : row.at(band, i) }));
     shown.forEach((pass, k) => curves.forEach((curve) => {
       if (row.span) limitTraces(pass, k, curve, key, span ? span[0] - 0.02 * (span[0] - span[1]) : Infinity, data);
-      if (curve.bounds) errorTraces(pass, k, curve, key, data);
+      if (curve.spread) outlineTraces(pass, k, curve, curve.spread, 0.13, key, data);
+      if (curve.bounds) outlineTraces(pass, k, curve, curve.bounds, 0.22, key, data);
       const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
       data.push({
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, customdata: line.row.map((i) => epochs.phase[i]),
@@ -166,9 +175,9 @@ function timeFigure(rows, state = {}) {
 
 const brightnessRows = {
   mag: { title: report.mag_system + " magnitude", at: (band, i) => band.mag[i], reversed: true, digits: "2f", unit: "mag",
-    bounds: (band, i) => within(band.mag[i], band.mag_err[i]), span: magnitudeSpan, isLimit: (band, i) => band.mag_limit[i] === 1 },
+    bounds: (band, i) => within(band.mag[i], band.mag_err[i]), span: magnitudeSpan, isLimit: (band, i) => band.mag_limit[i] === 1, spread: "mag" },
   irradiance: { title: "I [W m⁻² nm⁻¹]", at: (band, i) => positive(band.irradiance[i]), bounds: (band, i) => withinFactor(positive(band.irradiance[i]), band.mag_err[i]), type: "log", digits: "3e" },
-  intensity: { title: "intensity [m² sr⁻¹]", at: (band, i) => positive(band.intensity[i]), bounds: (band, i) => withinFactor(positive(band.intensity[i]), band.mag_err[i]), type: "log", digits: "3e" },
+  intensity: { title: "intensity [m² sr⁻¹]", at: (band, i) => positive(band.intensity[i]), bounds: (band, i) => withinFactor(positive(band.intensity[i]), band.mag_err[i]), type: "log", digits: "3e", spread: "intensity" },
 };
 
 const skyNorth = { equatorial: "celestial north", altaz: "the local zenith", scattering: "the normal of the scattering plane" }[report.frame];
@@ -177,9 +186,9 @@ const timeFigures = [
   {
     id: "brightness", isAgainstTime: true, title: "Brightness against time", height: () => isNarrow() ? 340 : 460,
     controls: [{ key: "scale", name: "Show", options: [["mag", "magnitude"], ["irradiance", "irradiance"], ["intensity", "intensity"]] }, bandControl],
-    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Shaded behind curves, here and below: numerical 95 % half-widths, often thinner than the line. Triangles: fainter than the point, or than the axis reaches. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
+    caption: "Magnitude and irradiance above the atmosphere; intensity without distance, eclipse and solar flux. Shaded behind curves, here and below: numerical 95 % half-widths, often thinner than the line." + spreadText + " Triangles: fainter than the point, or than the axis reaches. Marks below the curves, in all figures against time: dark (nothing is both lit and seen, so q and u are undefined), umbra (in the Earth's shadow), glint. Lines break there and between passes.",
     build: (state) => timeFigure([brightnessRows[state.scale]], state),
-    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["mag_err", "mag", (b, i) => b.mag_err[i]], ["mag_limit", "", (b, i) => b.mag_limit[i] ? "True" : "False"], ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
+    table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["mag_err", "mag", (b, i) => b.mag_err[i]], ["mag_limit", "", (b, i) => b.mag_limit[i] ? "True" : "False"], ...(hasSpread ? [["mag_low", "mag", (b, i) => b.mag_low[i]], ["mag_high", "mag", (b, i) => b.mag_high[i]]] : []), ["I", "W m-2 nm-1", (b, i) => b.irradiance[i]],
       ["intensity", "m2 sr-1", (b, i) => b.intensity[i]]]),
   },
   {
@@ -194,7 +203,7 @@ const timeFigures = [
     id: "p_pa", isAgainstTime: true, title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 460, controls: [bandControl],
     caption: "p in percent; position angle in [0°, 180°) from " + skyNorth + ". The angle is cyclic: no line joins 180° to 0°.",
     build: (state) => timeFigure([
-      { title: "p [%]", at: (band, i) => percent(band.p[i]), bounds: (band, i) => within(percent(band.p[i]), percent(band.p_err[i]), 0, 100), digits: "2f", unit: "%" },
+      { title: "p [%]", at: (band, i) => percent(band.p[i]), bounds: (band, i) => within(percent(band.p[i]), percent(band.p_err[i]), 0, 100), spread: "p", factor: 100, digits: "2f", unit: "%" },
       { title: "angle [°]", at: (band, i) => band.pa[i], cyclic: true, range: [0, 180], dtick: 45, digits: "1f", unit: "°",
         bounds: (band, i) => within(band.pa[i], band.pa_err[i], 0, 180) }], state),
     table: () => tidyTable([["p", "", (b, i) => b.p[i]], ["p_err", "", (b, i) => b.p_err[i]], ["pa", "deg", (b, i) => b.pa[i]], ["pa_err", "deg", (b, i) => b.pa_err[i]]]),

@@ -1,0 +1,2 @@
+// The target of precompiled headers needs a source.
+#include <algorithm>
