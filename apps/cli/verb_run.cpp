@@ -1,14 +1,12 @@
 #include "job_console.h"
+#include "run_console.h"
 #include "site_options.h"
 #include "verbs.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
-#include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/jobs/run.h>
 
@@ -61,14 +59,6 @@ Result<Scenario> read_with_options(const RunOptions &o) {
   return scenario;
 }
 
-void tell_of_objects(const RunOptions &o, const std::vector<jobs::ObjectRun> &objects,
-                     const Common &common) {
-  for (const jobs::ObjectRun &one : objects)
-    note(common, fmt::format("{}: fine; {}, {}", o.scenario,
-                             counted(one.object.scene.mesh.triangles.size(), "triangle"),
-                             counted(one.object.scene.bands.size(), "band")));
-}
-
 /// Reads and checks everything; the output folder last, as nothing is written.
 Result<void> check_alone(const RunOptions &o, const Scenario &scenario, const Common &common,
                          Diagnostics &diagnostics) {
@@ -78,29 +68,9 @@ Result<void> check_alone(const RunOptions &o, const Scenario &scenario, const Co
   JobConsole console(common);
   UMOV_ASSIGN(objects,
               jobs::load_run(scenario, options, console.monitor(common.verbose), diagnostics));
-  tell_of_objects(o, objects, common);
+  tell_of_objects(o.scenario, objects, common);
   UMOV_TRY(RunFolder::open(scenario.output_dir, common.force));
   return {};
-}
-
-/// Many epochs take a while until the first of them is lit: said before.
-void tell_of_search(const Scenario &scenario, const Common &common) {
-  const ScenarioTime &span = *scenario.time;
-  const double count = std::floor(seconds_between(span.stop, span.start) / span.step_s) + 1;
-  constexpr double many = 200'000; // about a second
-  if (count >= many)
-    note(common, fmt::format("looking for passes among {:.0f} epochs", count));
-}
-
-/// The folder and what is in it, for programs.
-void print_json(const jobs::RunResult &result, const RunFolder &folder) {
-  nlohmann::ordered_json objects = nlohmann::ordered_json::array();
-  for (const jobs::ObjectRun &one : result.objects)
-    objects.push_back(nlohmann::ordered_json::parse(jobs::summary_json(one.outcome)));
-  const nlohmann::ordered_json out{{"folder", folder.path().string()},
-                                   {"complete", !result.stopped},
-                                   {"objects", std::move(objects)}};
-  fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnostics) {
@@ -121,20 +91,7 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
               jobs::compute_run(std::move(objects), scenario, options, monitor, diagnostics));
   UMOV_TRY(jobs::write_run(result, scenario, options, manifest_of_command(common, started),
                            diagnostics, folder));
-  if (common.json)
-    print_json(result, folder);
-  else if (!common.quiet) {
-    for (const jobs::ObjectRun &one : result.objects)
-      fmt::print("{}", jobs::summarize(one.outcome));
-    fmt::print("written to {}{}\n", printable(folder.path().string()),
-               folder.replaced_utc().empty()
-                   ? ""
-                   : fmt::format(", in place of the run of {}", printable(folder.replaced_utc())));
-  }
-  const std::chrono::duration<double> spent = std::chrono::system_clock::now() - started;
-  if (common.verbose)
-    note(common, fmt::format("{:.1f} s on {} threads", spent.count(),
-                             resolve_threads(static_cast<unsigned>(common.threads))));
+  tell_of_run(result, folder, started, common);
   if (!result.stopped)
     return {};
   Error kept = *result.stopped;
