@@ -55,10 +55,10 @@ std::vector<std::uint32_t> LazyMasks::missing(std::span<const Pose> poses, bool 
   return out;
 }
 
-/// A few at a time, for whoever wants to stop.
+/// A few at a time for whoever may want to stop: threads wait for each other after each time.
 void LazyMasks::trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
                       const std::atomic<bool> *cancel) {
-  constexpr std::size_t at_once = 64;
+  const std::size_t at_once = cancel != nullptr ? 64 : 1024;
   while (!directions.empty() && !is_stopped(cancel)) {
     const std::size_t count = std::min(at_once, directions.size());
     tracer_.trace(directions.first(count), is_large, threads, store_);
