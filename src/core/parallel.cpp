@@ -11,8 +11,11 @@
 namespace umov {
 
 unsigned resolve_threads(unsigned requested) {
-  const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
-  return requested == 0 ? cores : std::min(requested, 1024u);
+  if (requested != 0)
+    return std::min(requested, 1024u);
+  // Asked once: the library opens files for it, which costs more than a pose.
+  static const unsigned cores = std::max(1u, std::thread::hardware_concurrency());
+  return cores;
 }
 
 void parallel_for(std::size_t count, unsigned threads,
