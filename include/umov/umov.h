@@ -104,6 +104,7 @@
 #include <umov/lightcurve/earth_light.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/lightcurve/pass_light.h>
+#include <umov/lightcurve/periodogram.h>
 #include <umov/observation/epochs.h>
 #include <umov/observation/moving_joints.h>
 #include <umov/observation/track.h>

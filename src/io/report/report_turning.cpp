@@ -1,6 +1,6 @@
 #include "io/report/report_turning.h"
 
-#include "io/report/periodogram.h"
+#include <umov/lightcurve/periodogram.h>
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "io/report/periodogram.h"
+#include <umov/lightcurve/periodogram.h>
 
 #include <algorithm>
 #include <cmath>
