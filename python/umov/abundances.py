@@ -103,6 +103,8 @@ class Sums:
         True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
         what it raises comes through.
 
+    Examples
+    --------
     >>> sums = umov.Sums(hst)
     >>> poses = umov.random_poses(100, phase_deg=60, seed=1)
     >>> made = sums.abundances(*poses)
@@ -157,6 +159,8 @@ class Sums:
             True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that
             called; what it raises comes through.
 
+        Notes
+        -----
         `InputError` where a material has a roughness that the sums do not serve.
         """
         if not isinstance(abundances, Abundances) or abundances._key != self._key:

@@ -70,8 +70,12 @@ class Engine:
         True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
         what it raises comes through.
 
+    Notes
+    -----
     `InputError` names the place in the scene that is wrong.
 
+    Examples
+    --------
     >>> engine = umov.Engine(hst, bands=["nm:550"], method="masks")
     >>> engine.evaluate([0, 0, 1], [0, 1, 1]).shape
     (1, 4)
@@ -130,6 +134,8 @@ class Engine:
             True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that
             called; what it raises comes through.
 
+        Notes
+        -----
         At phase 0 and 180 Q = U = 0; where nothing is both lit and seen all four are 0. `UsageError` for wrong shapes,
         NaN and directions of length 0. Signs: +Q perpendicular to the scattering plane, V > 0 right-handed
         (docs/conventions.md).
@@ -211,8 +217,12 @@ def random_poses(count: int, phase_deg: float, seed: int = 0, first: int = 0) ->
     first
         Number of the first pose.
 
+    Notes
+    -----
     Two arrays (count, 3) of unit vectors in the body frame. `UsageError` for numbers out of range.
 
+    Examples
+    --------
     >>> sun, observer = umov.random_poses(4, phase_deg=90)
     >>> bool(abs((sun * observer).sum(axis=1)).max() < 1e-15)
     True

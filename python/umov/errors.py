@@ -38,6 +38,8 @@ class Error(Exception):
     where
         The place in an input, if there is one.
 
+    Examples
+    --------
     >>> try:
     ...     umov.Material("paper_gold")
     ... except umov.Error as error:

@@ -123,6 +123,8 @@ class LightCurve:
         name
             Of the object; `UsageError` with the names for what is none.
 
+        Examples
+        --------
         >>> len(curve.object("HST").time) == len(curve.time)
         True
         """
@@ -183,6 +185,8 @@ class LightCurve:
         band
             Its name, or its number along the second axis.
 
+        Notes
+        -----
         `UsageError` with the names for what is none.
         """
         if isinstance(band, str) and band in self.bands:
@@ -215,6 +219,8 @@ class LightCurve:
         band
             Its name or number; None: columns (epoch, band).
 
+        Examples
+        --------
         >>> curve.to_timeseries("nm:550")["mag"].shape == curve.time.shape
         True
         """

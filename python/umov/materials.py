@@ -33,6 +33,8 @@ class Material:
         Of the library (`umov.materials()`), or a TOML file with one [material.NAME] table; `InputError` with the
         nearest name for what is neither.
 
+    Examples
+    --------
     >>> gold = umov.Material("paper_au")
     >>> gold.brdf(wavelength_nm=550, theta_i_deg=60, theta_o_deg=60, phi_deg=180).shape
     (4, 4)
@@ -140,6 +142,8 @@ class Material:
         wavelength_nm
             Of any shape [nm]; `InputError` outside the table's range.
 
+        Examples
+        --------
         >>> round(complex(umov.Material("paper_bk7").refractive_index(550)).real, 2)
         1.52
         """
@@ -182,10 +186,14 @@ def brdf(material: Union[str, Material], wavelength_nm: ArrayLike = 550.0, theta
     azimuth_deg
         Azimuth of the source from the surface's own x axis [deg]; matters where it has a grain.
 
+    Notes
+    -----
     Frames: each Stokes vector is referred to its own plane of the surface, +Q perpendicular to the scattering plane
     (docs/conventions.md). `UsageError` for angles out of range and shapes that do not broadcast, `InputError` outside
     the wavelengths of the material's tables.
 
+    Examples
+    --------
     >>> f = umov.brdf("paper_al", theta_i_deg=[10, 30, 50], theta_o_deg=30, phi_deg=180)
     >>> f.shape
     (3, 4, 4)

@@ -58,9 +58,13 @@ def observe(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, thre
     allow_old_elements
         Elements more than 30 days old are taken all the same.
 
+    Notes
+    -----
     `InputError` without an instrument, `NoResult` if no exposure falls in a pass, `NumericsError` if every one is
     saturated. Source: docs/theory/observing.md.
 
+    Examples
+    --------
     >>> umov.observe(EXAMPLES / "observe_hst.toml", set={"observation.cadence_s": 60}).counts.unit("counts")
     'electron'
     """
@@ -98,6 +102,8 @@ class Calibration:
     path
         A TOML file that `to_toml` or the command wrote.
 
+    Examples
+    --------
     >>> text = 'instrument = "mine"\\nband = "Bessell.V"\\nefficiency = 0.98\\n'
     >>> umov.Calibration.from_toml(text).to_dict()["efficiency"]
     0.98
@@ -174,9 +180,13 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
     progress
         True for a bar, or a callable (what, done, total).
 
+    Notes
+    -----
     q and u are fractions of I in the frame that the counts tell (`pol_frame`; IAU signs), pa in degrees.
     `InputError` where no set can be solved. Source: docs/theory/observing.md.
 
+    Examples
+    --------
     >>> seen = umov.observe(EXAMPLES / "observe_hst.toml", set={"observation.cadence_s": 20})
     >>> found = umov.reduce(seen)
     >>> 0 < len(found) <= seen.exposures, found.unit("pa")
@@ -211,8 +221,12 @@ def calibrate(counts: AnyCounts, standards: str | os.PathLike[str] | Table | QTa
     standards
         File or table with `name`, `p_percent` and `pa_deg` (from north through east); an unpolarized star has 0.
 
+    Notes
+    -----
     `InputError` where names, bands or the choice of standards do not do.
 
+    Examples
+    --------
     >>> rows = ["time_utc,set_id,name,band,counts,sky,sky_err,var_read,w0,w1,w2,w3"]
     >>> for name, q in (("calm", 0.0), ("striped", 0.10)):
     ...     for k, (w1, w2) in enumerate(((1, 0), (-1, 0), (0, 1), (0, -1))):
@@ -255,8 +269,12 @@ def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: f
     change_per_s
         Relative change of brightness in a second: what one analyser after the other takes for polarization.
 
+    Notes
+    -----
     Rows are a quantity, its value and unit. `InputError` for an unknown instrument or a number out of range.
 
+    Examples
+    --------
     >>> table = umov.exposure("c11_imx250", mag=6)
     >>> "time" in " ".join(table["quantity"])
     True
@@ -288,6 +306,8 @@ def instrument(name: str | os.PathLike[str]) -> dict[str, Any]:
     name
         Of `umov.instruments()`, or a TOML file; `InputError` with the nearest name for what is neither.
 
+    Examples
+    --------
     >>> umov.instrument("c11_imx250")["telescope"]["aperture_m"]
     0.2794
     """

@@ -105,6 +105,8 @@ def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, nor
     allow_old_elements
         Elements more than 30 days old are taken all the same.
 
+    Examples
+    --------
     >>> table = umov.passes(DATA / "tle/hst.tle", "maui", "2018-01-21T04:00Z", "2018-01-21T07:00Z")
     >>> print(table["culmination_utc"][0], table["culmination_alt"][0].round(1))
     2018-01-21T05:11:47.051Z 56.8 deg
@@ -166,8 +168,12 @@ def ephemeris(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, 
     allow_old_elements
         Elements more than 30 days old are taken all the same.
 
+    Notes
+    -----
     Angles in degrees, azimuth from north through east, airless; range in km; TEME and ITRS in km and km/s.
 
+    Examples
+    --------
     >>> table = umov.ephemeris(DATA / "tle/hst.tle", "maui", "2018-01-21T05:10Z", "2018-01-21T05:11Z",
     ...                        step_s=30)
     >>> len(table), table["range"].unit.to_string()
@@ -221,6 +227,8 @@ def propagate(orbit: AnyOrbit, times: AnyTime | Sequence[AnyTime], *, threads: i
     allow_old_elements
         Elements more than 30 days old are taken all the same.
 
+    Examples
+    --------
     >>> umov.propagate(DATA / "tle/hst.tle", "2018-01-21T05:00Z").velocity_km_s.shape
     (1, 1, 3)
     """

@@ -22,8 +22,12 @@ class Bands:
     mag_system
         Of the magnitudes: "AB" (default), "ST" or "Vega".
 
+    Notes
+    -----
     Names are looked up at once: `InputError` with the nearest one for what is none.
 
+    Examples
+    --------
     >>> umov.Bands(["Bessell.V", "nm:550"], mag_system="Vega")
     Bands(['Bessell.V', 'nm:550'], mag_system='Vega')
     >>> umov.Bands.from_toml(umov.Bands("paper_rgb").to_toml()) == umov.Bands("paper_rgb")
@@ -105,6 +109,8 @@ def band(name: str, *, unit: str = "", detector: str = "") -> Table:
     detector
         What the curve of a file multiplies, if it does not say: photon or energy.
 
+    Examples
+    --------
     >>> curve = umov.band("Bessell.V")
     >>> float(curve["wavelength"][curve["response"].argmax()])
     530.0

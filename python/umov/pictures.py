@@ -84,6 +84,8 @@ def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: 
         True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
         what it raises comes through.
 
+    Examples
+    --------
     >>> umov.render(EXAMPLES / "hst_maui.toml", shade="intensity", time="2018-01-21T05:11:00Z", side=64).shade
     'intensity'
     """
@@ -137,6 +139,8 @@ def mesh(scene: AnyScenario, *, object: int = 0, progress: Progress = None) -> M
         True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
         what it raises comes through.
 
+    Examples
+    --------
     >>> int(umov.mesh(hst).faces.max()) < len(umov.mesh(hst).vertices)
     True
     """

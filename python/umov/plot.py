@@ -57,6 +57,8 @@ def band_styles(curve: LightCurve) -> list[dict[str, Any]]:
     curve
         A light curve.
 
+    Examples
+    --------
     >>> [style["color"] for style in plot.band_styles(curve)]
     ['#0072b2', '#009e73', '#d55e00']
     """
@@ -107,6 +109,8 @@ def magnitude(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> bool(plot.magnitude(curve).yaxis_inverted())
     True
     """
@@ -126,6 +130,8 @@ def intensity(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> plot.intensity(curve).get_yscale()
     'log'
     """
@@ -144,6 +150,8 @@ def qu_time(curve: LightCurve, axes: tuple[Axes, Axes] | None = None) -> tuple[A
     axes
         Two, to draw into; None: a new figure.
 
+    Examples
+    --------
     >>> upper, lower = plot.qu_time(curve)
     >>> lower.get_ylabel()
     'u [%]'
@@ -167,6 +175,8 @@ def degree(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> plot.degree(curve).get_ylabel()
     'p [%]'
     """
@@ -183,6 +193,8 @@ def position_angle(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> [float(end) for end in plot.position_angle(curve).get_ylim()]
     [0.0, 180.0]
     """
@@ -201,6 +213,8 @@ def q_phase(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> plot.q_phase(curve).get_ylabel()
     'q_scat [%]'
     """
@@ -228,6 +242,8 @@ def pure_materials(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> axes = plot.pure_materials(curve, plot.q_phase(curve))
     >>> "film_silvered" in [text.get_text() for text in axes.get_legend().get_texts()]
     True
@@ -273,6 +289,8 @@ def contributions(curve: LightCurve, axes: Axes | None = None, *, band: str | in
     band
         Its name, or its number along the second axis.
 
+    Examples
+    --------
     >>> axes = plot.contributions(curve)
     >>> axes.get_ylabel(), len(axes.collections) == len(curve.contributions)
     ('share of the direct light', True)
@@ -320,6 +338,8 @@ def periodogram(curve: LightCurve, axes: Axes | None = None, *, band: str | int 
     band
         Its name, or its number along the second axis.
 
+    Examples
+    --------
     >>> tumbling = umov.run(EXAMPLES / "agena_maui.toml", set={
     ...     "time.step_s": 2, "object.attitude": {"mode": "spin", "axis": "+X", "period_s": 23.7}})
     >>> plot.periodogram(tumbling).get_xlabel()
@@ -357,6 +377,8 @@ def folded(curve: LightCurve, period_s: float, axes: Axes | None = None, *, band
     band
         Its name, or its number along the second axis.
 
+    Examples
+    --------
     >>> plot.folded(curve, period_s=41).get_xlabel()
     'turn of 41 s'
     """
@@ -386,6 +408,8 @@ def picture(image: Picture, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> plot.picture(umov.render(hst, sun=[1, 1, 1], observer=[0, 1, 1], side=64, samples=1)).get_title()
     'material'
     """
@@ -407,6 +431,8 @@ def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> plot.qu_plane(curve).get_xlabel()
     'q [%]'
     """
@@ -432,6 +458,8 @@ def three_bands(curve: LightCurve) -> list[int]:
     curve
         A light curve.
 
+    Examples
+    --------
     >>> plot.three_bands(curve)
     [0, 1, 2]
     """
@@ -451,6 +479,8 @@ def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> plot.q_rgb(curve).get_zlabel()
     'nm:650 [%]'
     """
@@ -476,6 +506,8 @@ def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> [text.get_text() for text in plot.colour_index(curve).get_legend().get_texts()]
     ['nm:425 − nm:550', 'nm:550 − nm:650']
     """
@@ -501,6 +533,8 @@ def sky_track(curve: LightCurve, axes: Any = None) -> Any:
     axes
         To draw into; None: a new figure.
 
+    Examples
+    --------
     >>> plot.sky_track(curve).name
     'polar'
     """
@@ -529,6 +563,8 @@ def overview(curve: LightCurve, figure: Figure | None = None) -> Figure:
     figure
         To draw into; None: a new one.
 
+    Examples
+    --------
     >>> len(plot.overview(curve).axes)
     6
     """

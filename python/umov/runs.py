@@ -47,6 +47,8 @@ def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: in
     allow_old_elements
         Elements more than 30 days old are taken all the same.
 
+    Examples
+    --------
     >>> curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
     >>> print(repr(curve).splitlines()[0])
     <umov.LightCurve HST: 6 epochs x 3 bands (nm:425, nm:550, nm:650)

@@ -19,6 +19,8 @@ def example(name: str) -> pathlib.Path:
         Such as "hst.obj" and "agena.obj" (meshes in metres, +Z up), "hst.tle" (elements), "hst_maui.toml" (a
         scenario); what is none of them is an `InputError` that lists them all.
 
+    Examples
+    --------
     >>> umov.example("hst.tle").read_text().splitlines()[0]
     'HST'
     """

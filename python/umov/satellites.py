@@ -84,8 +84,12 @@ class Satellite:
     parts
         Tables [[object.part]]: groups that turn about an axis.
 
+    Notes
+    -----
     Files are read when they are needed; an `InputError` then names file, line and what was expected.
 
+    Examples
+    --------
     >>> hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", orbit=DATA / "tle/hst.tle",
     ...                      attitude={"mode": "nadir"}, materials={"default": "film_silvered"}, name="HST")
     >>> hst
@@ -257,9 +261,13 @@ class Satellite:
         **options
             Those of `umov.run`: threads, cache, progress and so on.
 
+        Notes
+        -----
         Arrays (epoch, band), see `LightCurve`. `NoResult` if the object is never up, `NumericsError` where the orbit
         ends.
 
+        Examples
+        --------
         >>> curve = hst.light_curve("maui", "2018-01-21T05:10:00Z", "2018-01-21T05:10:20Z", step_s=10,
         ...                         bands=["nm:550"])
         >>> curve.I.shape

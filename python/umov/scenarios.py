@@ -42,8 +42,12 @@ class Scenario:
     set
         Changes of the scenario's keys, such as {"render.bounces": 2}.
 
+    Notes
+    -----
     `InputError` with file, line and column for an unknown key (and the nearest one) or a wrong value.
 
+    Examples
+    --------
     >>> scenario = umov.Scenario(EXAMPLES / "hst_maui.toml", set={"time.step_s": 5})
     >>> scenario.title, scenario.objects
     ('HST from Maui, polarized RGB', ['HST'])

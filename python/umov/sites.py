@@ -41,8 +41,12 @@ class Site:
     name
         Over that of the site.
 
+    Notes
+    -----
     `UsageError` where none or two of them are given, `InputError` for an unknown name or numbers out of range.
 
+    Examples
+    --------
     >>> umov.Site("paranal")
     Site('paranal', lat_deg=-24.6275, lon_deg=-70.4044, alt_m=2635.0)
     >>> umov.Site(lat_deg=20.7083, lon_deg=-156.2578, alt_m=3058, name="Maui").to_dict()["name"]

@@ -41,6 +41,8 @@ def q_rgb(curve: LightCurve, figure: Any = None) -> Any:
     figure
         A plotly Figure to add to; None: a new one.
 
+    Examples
+    --------
     >>> len(turnable.q_rgb(curve).data[0].x) == len(curve)
     True
     """
@@ -69,6 +71,8 @@ def mesh(scene: AnyScenario, figure: Any = None, *, object: int = 0) -> Any:
     object
         Number of the object, from 0.
 
+    Examples
+    --------
     >>> figure = turnable.mesh(hst)
     >>> "light_shield" in [trace.name for trace in figure.data]
     True
