@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import umov
 from astropy import units as u
-from astropy.coordinates import EarthLocation
+from astropy.coordinates import EarthLocation, SkyCoord
 from astropy.time import Time, TimeDelta
 from conftest import DATA, EXAMPLES, ROOT
 from hypothesis import HealthCheck, given, settings
@@ -134,7 +134,6 @@ def test_arrow_tables(curve):
 
 
 def test_a_direction_of_the_sky_may_be_astropys():
-    from astropy.coordinates import SkyCoord
     pointed = {"point": "+Z", "then": "+X", "toward": "sun"}
     made = [umov.Satellite(mesh="a.obj", materials="paper_al", attitude={**pointed, "at": at}).to_dict()["attitude"]["at"]
             for at in ({"ra_deg": 83.8, "dec_deg": -5.4}, SkyCoord(83.8, -5.4, unit="deg"),
@@ -290,6 +289,14 @@ def test_own_materials_go_with_the_satellite():
     lambda hst: umov.random_poses(-1, 60),
     lambda hst: umov.random_poses(1, 200),
     lambda hst: umov.materials()["colour"],
+    lambda hst: hst.light_curve("maui", START, STOP, pol_frame="galactic"),
+    lambda hst: umov.Engine(hst, ["nm:550"], method="masks").evaluate(SkyCoord(1, 2, unit="deg"), [0, 0, 1]),
+    lambda hst: umov.Engine(hst, ["nm:550"], method="masks").evaluate([0, 0, 1], EarthLocation.from_geodetic(0 * u.deg, 0 * u.deg)),
+    lambda hst: umov.Satellite(mesh="a.obj", materials="gold", attitude={"at": SkyCoord([1, 2], [3, 4], unit="deg")}),
+    lambda hst: umov.reduce(umov.bands()),
+    lambda hst: umov.reduce(EXAMPLES / "panel_brdf.csv", harmonics=0),
+    lambda hst: umov.exposure("c11_imx250", alt_deg=-5),
+    lambda hst: umov.observe(EXAMPLES / "hst_maui.toml"),
 ])
 def test_what_does_not_fit_is_refused(call, hst):
     with pytest.raises(umov.Error) as caught:
