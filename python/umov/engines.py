@@ -38,9 +38,7 @@ class Light(NamedTuple):
 class Engine:
     """An object ready to be lit from any direction: compiled once, then asked for as many poses as you like.
 
-    `scene` is a Satellite, Scenario, path or dictionary; orbit, time and observer are not used. `method`
-    and `accuracy` go over the scenario's; `laser` is the Stokes vector of an active source, `temperatures` [K]
-    ("300", "GROUP=350") ask for the body's own heat instead. Thread safe; pickled by its scenario.
+    Sunlight, or an active source (`laser`), or the body's own heat (`temperatures`). Thread safe; pickled by its scenario.
 
     Parameters
     ----------

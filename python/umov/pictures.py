@@ -54,9 +54,7 @@ def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: 
     """The object as the observer sees it, north up: the picture of `umov render`.
 
     With `sun` and `observer`, directions (3) in the body frame, from there, with `up` upwards; else on the
-    scenario's orbit at `time`, or where the first pass is brightest. `shade`: intensity, polarization, angle,
-    material or colour (three bands); `band`: whose, the middle one for "". `side` is in pixels, `samples` rays per
-    pixel and axis. `UsageError` for what does not go together, `NoResult` if nothing of the span is lit.
+    scenario's orbit at `time`, or where the first pass is brightest. `UsageError` for what does not go together, `NoResult` if nothing of the span is lit.
 
     Parameters
     ----------

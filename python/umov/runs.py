@@ -20,9 +20,6 @@ def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: in
         allow_old_elements: bool = False) -> LightCurve:
     """The light curve of a scenario, as the command `umov run` computes it, in memory.
 
-    `scenario`: path, dictionary, Scenario or text as for `Scenario`; `set`: changes of its keys;
-    `progress`: True for a bar, or a callable (what, done, total); `threads`: 0 for all cores (the bytes do
-    not depend on it); `cache`: masks of earlier runs, as the command keeps them, a folder, or False.
     Ctrl-C raises `Interrupted`, an orbit that ends `NumericsError`, with the finished rows in `partial`.
 
     Parameters

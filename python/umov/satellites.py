@@ -55,9 +55,7 @@ def _absolute(path: Any) -> Any:
 
 
 class Satellite:
-    """An [[object]] of a scenario. `mesh` is a file, a trimesh mesh or (vertices, faces); `orbit` a file,
-    TLE lines, an sgp4 Satrec, a skyfield EarthSatellite or a table; materials are names, files' names
-    or a `Material` each, by mesh material or "default".
+    """An [[object]] of a scenario: shape, orbit, attitude and materials.
 
     Parameters
     ----------
