@@ -192,7 +192,8 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
     >>> 0 < len(found) <= seen.exposures, found.unit("pa")
     (True, 'deg')
     """
-    if period_s is not None and not number(period_s, "period_s") > 0:
+    period = 0.0 if period_s is None else number(period_s, "period_s")
+    if period_s is not None and not period > 0:
         raise UsageError(f"period_s is {period_s!r}; a number above 0 was expected")
     if not 1 <= whole(harmonics, "harmonics") <= 100:
         raise UsageError(f"harmonics is {harmonics}; 1 to 100 was expected")
@@ -205,7 +206,7 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
     known = Calibration(calibration) if isinstance(calibration, (str, os.PathLike)) else calibration
     if known is not None and not isinstance(known, Calibration):
         raise UsageError(f"calibration is a {type(known).__name__}; a Calibration or its file was expected")
-    options = _umov.ReduceOptions(period_s or 0.0, int(harmonics), errors["q0_sd"], errors["gain_sd"],
+    options = _umov.ReduceOptions(period, int(harmonics), errors["q0_sd"], errors["gain_sd"],
                                   errors["angle_sd_deg"], errors["efficiency_sd"], errors["sky_sd"], whole(threads, "threads"))
     return Table(_umov.reduce(text, path, None if known is None else known._text, "" if known is None else known._path,
                               options, Watch(progress)))

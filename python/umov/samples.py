@@ -25,6 +25,6 @@ def example(name: str) -> pathlib.Path:
     'HST'
     """
     found = {path.name: path for path in sorted(_FILES.rglob("*.*")) if path.is_file()}
-    if name not in found:
+    if not isinstance(name, str) or name not in found:
         raise InputError(f"there is no example {name!r}; one of {', '.join(found)} was expected")
     return found[name]
