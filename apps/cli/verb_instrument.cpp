@@ -1,27 +1,14 @@
 #include "tables.h"
 #include "verbs.h"
 
-#include <fmt/format.h>
 #include <umov/io/observation.h>
+#include <umov/jobs/exposure.h>
 
 namespace umov::cli {
 namespace {
 
 Result<void> list(const std::string &output, const Common &common) {
-  std::vector<std::string> names, types, texts;
-  std::vector<double> apertures;
-  for (const std::string &name : instrument_names()) {
-    UMOV_ASSIGN(one, read_instrument(name));
-    names.push_back(name);
-    apertures.push_back(one.telescope.aperture_m);
-    types.emplace_back(name_of(one.polarimeter.type));
-    texts.push_back(one.description);
-  }
-  Table table;
-  table.add("name", "", "of the instrument", std::move(names));
-  table.add("aperture", "m", "diameter", std::move(apertures));
-  table.add("polarimeter", "", "type", std::move(types));
-  table.add("description", "", "what it is", std::move(texts));
+  UMOV_ASSIGN(table, jobs::instrument_list());
   return put_table(output, table, common);
 }
 

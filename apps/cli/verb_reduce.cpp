@@ -3,11 +3,9 @@
 #include "verbs.h"
 
 #include <algorithm>
-#include <fmt/format.h>
-#include <tuple>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
-#include <umov/io/calibration_file.h>
+#include <umov/jobs/calibrate.h>
 #include <umov/jobs/reduce.h>
 
 namespace umov::cli {
@@ -45,34 +43,6 @@ Result<void> read_model(const std::string &text, jobs::ReduceOptions &out) {
   return {};
 }
 
-/// A calibration of another instrument or band tells nothing; an old one little.
-Result<void> check_calibration(const CalibrationFile &file, const CountsFile &counts,
-                               const std::string &path, Diagnostics &diagnostics) {
-  const auto note = [&](const char *name) {
-    const auto found = counts.notes.find(name);
-    return found == counts.notes.end() ? std::string() : found->second;
-  };
-  const CountRow &first = counts.rows.front();
-  const auto strange =
-      std::ranges::find_if(counts.rows, [&](const CountRow &row) { return row.band != file.band; });
-  const CountRow &of_band = strange == counts.rows.end() ? first : *strange;
-  for (const auto &[what, own, other] :
-       {std::tuple{"instrument", file.instrument, note("instrument")},
-        {"band", file.band, of_band.band}})
-    if (!own.empty() && !other.empty() && own != other)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("this calibration is of the {} \"{}\", the counts are of \"{}\"; "
-                              "calibrate that one",
-                              what, own, other),
-                  {path});
-  constexpr double old_days = 30;
-  if (const auto made = utc_from_iso(file.made_utc))
-    if (const double days = seconds_between(first.time, *made) / 86400; days > old_days)
-      diagnostics.warn(fmt::format("the calibration is {:.0f} days older than the counts", days),
-                       {path});
-  return {};
-}
-
 Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
   jobs::ReduceOptions options;
@@ -85,7 +55,7 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
   if (!o.calibration.empty()) {
     UMOV_ASSIGN(read, read_file(o.calibration));
     UMOV_ASSIGN(file, read_calibration_text(read, o.calibration));
-    UMOV_TRY(check_calibration(file, counts, o.calibration, diagnostics));
+    UMOV_TRY(jobs::check_calibration(file, counts, o.calibration, diagnostics));
     options.calibration = file.calibration;
   }
   JobConsole console(common);

@@ -11,12 +11,13 @@ author = "the umov authors"
 copyright = "the umov authors, BSD 3-Clause"
 release = version = umov.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.viewcode"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 myst_enable_extensions = ["deflist", "attrs_inline"]
 myst_heading_anchors = 3
 root_doc = "index"
 exclude_patterns = ["extra"]
 
+napoleon_use_rtype = False
 default_role = "code"  # single backticks of docstrings
 add_module_names = False
 autodoc_member_order = "bysource"

@@ -12,9 +12,8 @@ import umov
 from astropy import units as u
 from astropy.time import Time
 
-DATA = Path(__file__).resolve().parents[2] / "data/tle"
 catalogue = Path(tempfile.mkdtemp()) / "catalogue.tle"
-catalogue.write_text("".join((DATA / name).read_text() for name in ("hst.tle", "agena733.tle")))
+catalogue.write_text("".join(umov.example(name).read_text() for name in ("hst.tle", "agena733.tle")))
 
 # %% [markdown]
 # Arrays (object, time, 3), views of the library's memory; astropy's times go in as they are.
@@ -31,8 +30,7 @@ figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 axes.plot(times.datetime64, radius.T - 6378.137, label=[str(number) for number in states.norad_cat_id])
 axes.set_ylabel("height above the equator's radius [km]")
 axes.legend(title="catalogue number")
-figure.savefig("catalogue.png")
-plt.close("all")
+plt.show()
 
 # %% [markdown]
 # The night's passes of all of them, sunlit in a dark sky.

@@ -3,13 +3,10 @@
 # When does the Hubble Space Telescope pass over Maui, and what does a polarimeter see of it?
 
 # %%
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import umov
 
-DATA = Path(__file__).resolve().parents[2] / "data"
-hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", normals="smooth", orbit=DATA / "tle/hst.tle",
+hst = umov.Satellite(mesh=umov.example("hst.obj"), unit="m", up="+Z", normals="smooth", orbit=umov.example("hst.tle"),
                      attitude={"point": "+Z", "at": {"ra_deg": 83.8, "dec_deg": -5.4}, "then": "+X", "toward": "sun"},
                      materials={"array_front": "cell_silicon", "array_back": "mli_kapton", "antenna": "paint_white",
                                 "light_shield": "film_aluminized", "forward_shell": "film_aluminized",
@@ -28,8 +25,8 @@ print(table["rise_utc", "culmination_alt", "set_utc", "mag_min", "p_max"])
 # %%
 curve = hst.light_curve("maui", table[0], step_s=5)
 print(curve)
-curve.plot().savefig("first_pass.png")
-plt.close("all")
+curve.plot()
+plt.show()
 
 # %% [markdown]
 # The same pass as a cloud of Q/I in three bands, to be turned with the mouse: one material alone would lie on a line.

@@ -11,7 +11,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import umov
 
-DATA = Path(__file__).resolve().parents[2] / "data"
 
 # %% [markdown]
 # A shape with named groups is a file: boxes from their middle and size. +Z looks at the Earth, the wings lie along +Y,
@@ -29,7 +28,7 @@ mesh = Path(tempfile.mkdtemp()) / "geo.obj"
 mesh.write_text("\n".join(lines) + "\n")
 
 # %%
-goes = umov.Satellite(mesh=mesh, unit="m", up="+Z", orbit=DATA / "tle/goes15.tle", name="GEO",
+goes = umov.Satellite(mesh=mesh, unit="m", up="+Z", orbit=umov.example("goes15.tle"), name="GEO",
                       attitude={"point": "+Z", "at": "nadir", "then": "+Y", "toward": "orbit_normal"},
                       materials={"body": "mli_kapton", "wing": "cell_silicon"},
                       parts=[{"name": "wings", "groups": ["wing"], "axis": "+Y", "face": "+X", "toward": "sun"}])
@@ -75,5 +74,4 @@ axes[0].tick_params("x", rotation=30)
 axes[0].legend()
 umov.plot.magnitude(night(goes, season, (7, 11), 60), axes[1])
 axes[1].set_title(season, fontsize="medium")
-figure.savefig("geo_night.png")
-plt.close("all")
+plt.show()

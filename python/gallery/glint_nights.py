@@ -5,15 +5,12 @@
 # 2003). Such a body, on the orbit of HST, over Maui for a week.
 
 # %%
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
 import umov
 from astropy.table import QTable
 from astropy.time import Time
 
-DATA = Path(__file__).resolve().parents[2] / "data"
 
 
 def antenna(azimuth_deg: float) -> list[list[float]]:
@@ -36,7 +33,7 @@ faces = [[4 * k + a, 4 * k + b, 4 * k + c] for k in range(3) for a, b, c in ((0,
 
 # %%
 def passes_for(yaw_deg: float) -> tuple[umov.Satellite, QTable]:
-    bird = umov.Satellite(mesh=(vertices, faces), orbit=DATA / "tle/hst.tle", name="antennas", materials="film_silvered",
+    bird = umov.Satellite(mesh=(vertices, faces), orbit=umov.example("hst.tle"), name="antennas", materials="film_silvered",
                           attitude={"point": "-Z", "at": "nadir", "then": "+X", "toward": "velocity", "yaw_deg": yaw_deg})
     return bird, umov.passes(bird, "maui", "2018-01-20T00:00Z", "2018-01-27T00:00Z", visible_only=True, bands=["nm:550"])
 
@@ -52,13 +49,14 @@ for yaw, (_, table) in zip(yaws, asked):
 # another night; between them the antennas are near the mirror direction and the pass is bright all the same.
 
 # %%
-figure, axes = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
+figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 best = np.array([table["mag_min"].value for _, table in asked])
 names = [str(when)[5:16] for when in asked[0][1]["culmination_utc"]]
-drawn = axes[0].pcolormesh(np.arange(best.shape[1] + 1), np.append(yaws, 120), best, cmap="cividis_r")
-axes[0].set_xticks(np.arange(len(names)) + 0.5, names, rotation=60, ha="right", fontsize="small")
-axes[0].set_ylabel("yaw [°]")
-figure.colorbar(drawn, ax=axes[0], label="brightest AB magnitude")
+drawn = axes.pcolormesh(np.arange(best.shape[1] + 1), np.append(yaws, 120), best, cmap="cividis_r")
+axes.set_xticks(np.arange(len(names)) + 0.5, names, rotation=60, ha="right", fontsize="small")
+axes.set_ylabel("yaw [°]")
+figure.colorbar(drawn, ax=axes, label="brightest AB magnitude")
+plt.show()
 
 # %% [markdown]
 # The brightest of all, second by second.
@@ -67,9 +65,8 @@ figure.colorbar(drawn, ax=axes[0], label="brightest AB magnitude")
 which, number = np.unravel_index(np.nanargmin(best), best.shape)
 bird, table = asked[int(which)]
 curve = bird.light_curve("maui", table[int(number)], step_s=0.5, bands=["nm:550"])
-umov.plot.magnitude(curve, axes[1])
+axes = umov.plot.magnitude(curve)
 for mark in str(table["glints"][int(number)]).split():
-    axes[1].axvline(Time(mark.rstrip("Z")).datetime64, color="#d55e00", linestyle=":")
-axes[1].set_title(f"yaw {yaws[which]}°: dotted where the glint was foretold", fontsize="medium")
-figure.savefig("glint_nights.png")
-plt.close("all")
+    axes.axvline(Time(mark.rstrip("Z")).datetime64, color="#d55e00", linestyle=":")
+axes.set_title(f"yaw {yaws[which]}°: dotted where the glint was foretold", fontsize="medium")
+plt.show()

@@ -30,5 +30,4 @@ for k, phase in enumerate((60, 140)):
         axes.scatter(q[::100, 0], q[::100, 1], q[::100, 2], s=6, color=colour, label=material)
     axes.set(title=f"{phase} deg", xlabel="425 nm [%]", ylabel="550 nm [%]", zlabel="650 nm [%]")
     axes.legend()
-figure.savefig("many_poses.png")
-plt.close("all")
+plt.show()

@@ -4,20 +4,17 @@
 # has the same columns.
 
 # %%
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
 import umov
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-print("\n".join((EXAMPLES / "panel_brdf.csv").read_text().splitlines()[2:5]))
+print("\n".join(umov.example("panel_brdf.csv").read_text().splitlines()[2:5]))
 
 # %% [markdown]
 # As a material: between the rows it is interpolated, beyond them refused.
 
 # %%
-panel = umov.Material(str(EXAMPLES / "measured_panel.toml"))
+panel = umov.Material(str(umov.example("measured_panel.toml")))
 print(panel, panel.range_nm, panel.source, sep="\n")
 try:
     panel.brdf(wavelength_nm=700)
@@ -37,8 +34,7 @@ for material, style in ((panel, "-"), (umov.Material("paint_white"), "--")):
 axes[0].set(xlabel="reflection [°]", ylabel="BRDF [1/sr]", title="light at 40°")
 axes[1].set(xlabel="reflection [°]", ylabel="Q/I [%]")
 axes[0].legend()
-figure.savefig("measured_brdf.png")
-plt.close("all")
+plt.show()
 
 # %% [markdown]
 # On an object: a sheet of one square metre, front as measured, back black.

@@ -14,13 +14,12 @@ from astropy.table import QTable
 from astropy.time import Time
 from numpy.typing import NDArray
 
-DATA = Path(__file__).resolve().parents[2] / "data"
 SPAN = ("2018-01-21T05:08:00Z", "2018-01-21T05:15:00Z")
 
 
 def telescope(shield: str) -> umov.Satellite:
     """HST with a story about its tube: foil or paint."""
-    return umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", normals="smooth", orbit=DATA / "tle/hst.tle",
+    return umov.Satellite(mesh=umov.example("hst.obj"), unit="m", up="+Z", normals="smooth", orbit=umov.example("hst.tle"),
                           attitude={"point": "+Z", "at": {"ra_deg": 83.8, "dec_deg": -5.4}, "then": "+X", "toward": "sun"},
                           materials={"array_front": "cell_silicon", "array_back": "mli_kapton", "antenna": "paint_white",
                                      "default": shield}, name="HST")
@@ -72,5 +71,4 @@ axes[0].set(ylabel="magnitude, mine − model", ylim=(1.5, -1.5))
 axes[1].set(ylabel="p, mine − model [%]")
 axes[1].tick_params("x", rotation=30)
 axes[0].legend(fontsize="small")
-figure.savefig("my_photometry.png")
-plt.close("all")
+plt.show()

@@ -24,8 +24,7 @@ for body, axis in zip((None, {"reflectance": 0.2}), axes):
     axis.set(title="with body light" if body else "surface alone", xlabel="incidence = reflection [°]")
 axes[0].set_ylabel("Q/I [%]")
 axes[0].legend()
-figure.savefig("roughness.png")
-plt.close("all")
+plt.show()
 
 # %% [markdown]
 # Brewster's angle of n = 1.5 is 56.3 deg: there all of the reflected light is polarized.

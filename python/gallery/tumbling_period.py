@@ -4,19 +4,16 @@
 # does it turn, and what does polarization add?
 
 # %%
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
 import umov
 from astropy import units as u
 from astropy.timeseries import LombScargle
 
-DATA = Path(__file__).resolve().parents[2] / "data"
 PERIOD_S = 23.7
 
 # %%
-agena = umov.Satellite(mesh=DATA / "mesh/agena.obj", unit="m", up="+Z", normals="smooth", orbit=DATA / "tle/agena733.tle",
+agena = umov.Satellite(mesh=umov.example("agena.obj"), unit="m", up="+Z", normals="smooth", orbit=umov.example("agena733.tle"),
                        attitude={"mode": "spin", "axis": "+X", "period_s": PERIOD_S}, name="Agena",
                        materials={"default": "aluminium"})
 table = umov.passes(agena.orbit_file, "maui", "2018-01-20T00:00Z", "2018-01-24T00:00Z", visible_only=True, norad=733)
@@ -61,5 +58,4 @@ drawn = axes[2].scatter(curve.phase_angle[lit], 100 * curve.q_scat[lit, 0], c=se
                         cmap="twilight")
 axes[2].set(xlabel="phase angle [°]", ylabel="q_scat [%]")
 figure.colorbar(drawn, ax=axes[2], label="turn")
-figure.savefig("tumbling_period.png")
-plt.close("all")
+plt.show()

@@ -6,7 +6,10 @@
 #include "errors.h"
 #include "options.h"
 
+#include <cstring>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 #include <umov/jobs/requests.h>
 #include <umov/light/engine.h>
@@ -137,6 +140,53 @@ nb::list names_of(const Abundances &abundances) {
   return out;
 }
 
+/// All of a table, for pickle.
+nb::tuple state_of(const Abundances &abundances) {
+  const AbundanceTable &t = abundances.table;
+  nb::list columns;
+  for (const AbundanceColumn &column : t.columns) {
+    std::vector<std::pair<std::string, bool>> sides;
+    for (const AbundanceColumn::Side &side : column.sides)
+      sides.emplace_back(side.group, side.is_back_surface);
+    columns.append(nb::make_tuple(sides, static_cast<int>(column.kind), column.shape));
+  }
+  const auto bytes = [](const auto &values) {
+    return nb::bytes(values.data(), values.size() * sizeof(values[0]));
+  };
+  return nb::make_tuple(columns, bytes(t.sum), bytes(t.half_width), bytes(t.bias),
+                        bytes(t.cos_phase), bytes(t.has_plane), bytes(t.is_dark));
+}
+
+template <class T> std::vector<T> values_from(const nb::bytes &bytes) {
+  std::vector<T> out(bytes.size() / sizeof(T));
+  std::memcpy(out.data(), bytes.c_str(), out.size() * sizeof(T));
+  return out;
+}
+
+using ColumnState = std::tuple<std::vector<std::pair<std::string, bool>>, int, double>;
+
+Abundances restored(const std::vector<ColumnState> &columns, const nb::bytes &sum,
+                    const nb::bytes &half_width, const nb::bytes &bias, const nb::bytes &cos_phase,
+                    const nb::bytes &has_plane, const nb::bytes &is_dark) {
+  Abundances out;
+  AbundanceTable &t = out.table;
+  for (const auto &[sides, kind, shape] : columns) {
+    AbundanceColumn &column = t.columns.emplace_back();
+    for (const auto &[group, is_back] : sides)
+      column.sides.push_back({group, is_back});
+    column.kind = static_cast<AbundanceColumn::Kind>(kind);
+    column.shape = shape;
+  }
+  t.sum = values_from<double>(sum), t.half_width = values_from<double>(half_width);
+  t.bias = values_from<double>(bias), t.cos_phase = values_from<double>(cos_phase);
+  t.has_plane = values_from<char>(has_plane), t.is_dark = values_from<char>(is_dark);
+  if (t.sum.size() != t.poses() * t.columns.size() || t.half_width.size() != t.sum.size() ||
+      t.bias.size() != t.sum.size() || t.has_plane.size() != t.poses() ||
+      t.is_dark.size() != t.poses())
+    take(Result<void>(fail(ErrorCode::BadInput, "a pickle of abundances whose parts do not fit")));
+  return out;
+}
+
 } // namespace
 
 void bind_abundances(nb::module_ &m) {
@@ -154,7 +204,9 @@ void bind_abundances(nb::module_ &m) {
           },
           nb::sig("def half_width(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def_prop_ro("columns", &names_of,
-                   nb::sig("def columns(self) -> list[tuple[str, float, list[str]]]"));
+                   nb::sig("def columns(self) -> list[tuple[str, float, list[str]]]"))
+      .def_prop_ro("state", &state_of, nb::sig("def state(self) -> tuple[typing.Any, ...]"))
+      .def_static("restore", &restored);
   nb::class_<Sums>(m, "Sums", "An engine that is asked for sums.")
       .def(nb::init<const Scenario &, const std::vector<Scenario> &, const jobs::JobOptions &,
                     nb::handle>(),

@@ -20,4 +20,6 @@ NB_MODULE(_umov, m) {
   umov::python::bind_orbit(m);
   umov::python::bind_picture(m);
   umov::python::bind_abundances(m);
+  umov::python::bind_observe(m);
+  umov::python::bind_bands(m);
 }

@@ -1,11 +1,9 @@
 // The loop that python/tests/test_overhead.py holds the package against: pose_loop SCENE COUNT. For
 // every line that it reads it lights COUNT random poses, on one thread, and prints the seconds by
 // the clock and of the processor.
-#include <chrono>
-#include <cstdio>
+#include "timed_loop.h"
+
 #include <cstdlib>
-#include <ctime>
-#include <iostream>
 #include <umov/jobs/pose_light.h>
 
 namespace {
@@ -24,27 +22,17 @@ umov::Result<void> run(const std::string &scene, std::size_t count) {
   }
   umov::LightTask task;
   task.threads = 1;
-  for (std::string line; std::getline(std::cin, line);) {
-    const std::clock_t begin_cpu = std::clock();
-    const auto begin = std::chrono::steady_clock::now();
-    umov::StokesTable table; // a caller keeps the results of each call
+  time_each_line([&] {
+    umov::StokesTable table;
     if (!light.evaluate(poses, table, task))
-      return umov::fail(umov::ErrorCode::Interrupted, "stopped");
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    const double processor = static_cast<double>(std::clock() - begin_cpu) / CLOCKS_PER_SEC;
-    std::printf("%.9f %.9f\n", spent.count(), processor);
-    std::fflush(stdout);
-  }
+      std::abort(); // nothing cancels it
+    return table;
+  });
   return {};
 }
 
 } // namespace
 
 int main(int argc, char **argv) {
-  if (argc != 3)
-    return 2;
-  const auto done = run(argv[1], std::strtoul(argv[2], nullptr, 10));
-  if (!done)
-    std::fprintf(stderr, "%s\n", done.error().text().c_str());
-  return done ? 0 : 1;
+  return argc == 3 ? exit_code_of(run(argv[1], std::strtoul(argv[2], nullptr, 10))) : 2;
 }

@@ -187,6 +187,100 @@ def test_pickles_are_equal(make):
     assert type(again) is type(one)
 
 
+@pytest.mark.parametrize("name", sorted(set(umov.__all__) - {"plot", "turnable"}))
+def test_every_public_object_goes_through_pickle(name, plate, tmp_path, monkeypatch):
+    """An object of every public class, and every function and class by itself."""
+    monkeypatch.chdir(tmp_path)
+    poses = umov.random_poses(5, 60)
+    made = {
+        "Abundances": lambda: umov.Sums(plate).abundances(*poses), "Bands": lambda: umov.Bands("paper_rgb"),
+        "Calibration": lambda: umov.Calibration.from_toml("efficiency = 1.0\n"),
+        "Coloured": lambda: umov.Sums(plate).apply(umov.Sums(plate).abundances(*poses)),
+        "Column": lambda: umov.Sums(plate).abundances(*poses).columns[0],
+        "Engine": lambda: umov.Engine(plate, bands=["nm:550"]), "Light": lambda: umov.Engine(plate).light(*poses),
+        "LightCurve": lambda: umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 120}),
+        "Material": lambda: umov.Material("gold"), "Mesh": lambda: umov.mesh(plate),
+        "Observation": lambda: umov.Observation(umov.bands(), umov.bands(), 1, 0),
+        "Picture": lambda: umov.render(plate, sun=[0, 0, 1], observer=[0, 1, 1], side=16, samples=1),
+        "Satellite": lambda: plate, "Scenario": lambda: umov.Scenario(plate), "Site": lambda: umov.Site("maui"),
+        "States": lambda: umov.propagate(DATA / "tle/hst.tle", "2018-01-21T05:00Z"),
+        "Sums": lambda: umov.Sums(plate), "Table": umov.bands, "Where": lambda: umov.Where("a", 1, 2)}
+    one = getattr(umov, name)
+    if isinstance(one, type) and issubclass(one, BaseException):
+        one = one("found; expected. Mend") if not issubclass(one, umov.Error) else one("found; expected. Mend", umov.Where("a", 1))
+    elif isinstance(one, type):
+        one = made[name]()
+    again = pickle.loads(pickle.dumps(one))
+    assert type(again) is type(one) and str(again) == str(one) if not callable(one) else again is one
+    if isinstance(one, umov.Error):
+        assert again.where == one.where and again.exit_code == one.exit_code
+
+
+def test_what_adapters_made_goes_to_another_process(plate, tmp_path):
+    """A pickle on a disk, read when the object that made its files is gone."""
+    scenario, sums = umov.Scenario(plate), umov.Sums(plate)
+    poses = umov.random_poses(5, 60)
+    made = sums.abundances(*poses)
+    (tmp_path / "a.pickle").write_bytes(pickle.dumps((scenario, sums, made, umov.Engine(plate), poses)))
+    script = f"""
+import pickle, sys, umov
+scenario, sums, made, engine, poses = pickle.load(open({str(tmp_path / "a.pickle")!r}, "rb"))
+sys.stdout.write(sums.apply(made).stokes.tobytes().hex() + umov.Engine(scenario).evaluate(*poses).tobytes().hex()
+                 + engine.evaluate(*poses).tobytes().hex())
+"""
+    folder = umov.Scenario(plate).to_dict()["object"][0]["mesh"]["file"]
+    hidden = folder + ".away"
+    os.rename(folder, hidden)
+    try:
+        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    finally:
+        os.rename(hidden, folder)
+    light = umov.Engine(plate).evaluate(*poses).tobytes().hex()
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == sums.apply(made).stokes.tobytes().hex() + light + light
+
+
+def test_sums_of_another_object_are_refused(plate, hst):
+    """They have other columns: to apply them would read beyond their end."""
+    ours, theirs = umov.Sums(hst), umov.Sums(plate)
+    poses = umov.random_poses(5, 60)
+    for one, other in ((ours, theirs), (theirs, ours)):
+        with pytest.raises(umov.UsageError, match="not of this object"):
+            one.apply(other.abundances(*poses))
+    with pytest.raises(umov.UsageError):
+        ours.apply(np.zeros((5, 3)))
+
+
+@pytest.mark.parametrize("name", ["Abundances", "Engine", "LightCurve", "Material", "Picture", "Satellite", "Scenario", "Site", "Sums",
+                                  "Table"])
+def test_objects_that_never_came_to_be_crash_nothing(name):
+    """Made without their constructor, as a failed one leaves them: every property and method ends in an exception."""
+    dead = getattr(umov, name).__new__(getattr(umov, name))
+    with pytest.raises(Exception):
+        repr(dead)
+    for key in [key for key in dir(type(dead)) if not key.startswith("_")]:
+        try:
+            found = getattr(dead, key)
+            if callable(found) and not isinstance(found, type(type(dead).__init__)):
+                found()
+        except Exception as error:
+            assert not isinstance(error, SystemError), key
+
+
+@pytest.mark.parametrize("name", sorted(key for key, one in vars(umov._umov).items() if isinstance(one, type)))
+@pytest.mark.filterwarnings("ignore:nanobind")
+def test_bare_objects_of_the_library_crash_nothing(name):
+    """What the library has under each object, without a value in it."""
+    dead = getattr(umov._umov, name).__new__(getattr(umov._umov, name))
+    for key in [key for key in dir(type(dead)) if not key.startswith("_")]:
+        try:
+            found = getattr(dead, key)
+            if callable(found):
+                found()
+        except Exception as error:
+            assert not isinstance(error, SystemError), key
+
+
 def test_pickled_results_are_the_same_bytes(tmp_path, plate):
     curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
     again = pickle.loads(pickle.dumps(curve))

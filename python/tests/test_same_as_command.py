@@ -127,6 +127,39 @@ def test_brdf(material, command, tmp_path):
             assert_same_numbers(ours[:, i, j], theirs[f"m{i}{j}"])
 
 
+def test_observe_and_reduce(command, tmp_path):
+    path, few = EXAMPLES / "observe_hst.toml", {"observation.cadence_s": 10, "observation.exposure_s": 0.02}
+    sets = [word for key, value in few.items() for word in ("--set", f"{key}={value}")]
+    command("observe", path, *sets, "-o", tmp_path / "out", "-q")
+    seen = umov.observe(path, set=few)
+    seen.counts.write(tmp_path / "counts.ecsv")
+    seen.truth.write(tmp_path / "truth.ecsv")
+    for name in ("counts.ecsv", "truth.ecsv"):
+        assert (tmp_path / name).read_bytes() == (tmp_path / "out" / name).read_bytes()
+    command("reduce", tmp_path / "out/counts.ecsv", "-o", tmp_path / "stokes.ecsv")
+    for counts in (seen, seen.counts, tmp_path / "counts.ecsv", seen.counts.to_qtable()):
+        umov.reduce(counts).write(tmp_path / "ours.ecsv")
+        assert (tmp_path / "ours.ecsv").read_bytes() == (tmp_path / "stokes.ecsv").read_bytes()
+    known = ["--q0-sd", 0.002, "--angle-sd-deg", 0.5]
+    command("reduce", tmp_path / "out/counts.ecsv", *known, "-o", tmp_path / "known.ecsv")
+    umov.reduce(seen, q0_sd=0.002, angle_sd_deg=0.5).write(tmp_path / "ours.ecsv")
+    assert (tmp_path / "ours.ecsv").read_bytes() == (tmp_path / "known.ecsv").read_bytes()
+    assert (tmp_path / "known.ecsv").read_bytes() != (tmp_path / "stokes.ecsv").read_bytes()
+
+
+@pytest.mark.parametrize(("words", "ours"), [
+    (("bands", "list"), lambda: umov.bands()),
+    (("bands", "show", "Bessell.V"), lambda: umov.band("Bessell.V")),
+    (("instrument", "list"), lambda: umov.instruments()),
+    (("material", "list"), lambda: umov.materials()),
+    (("exposure", "--instrument", "c11_imx250", "--mag", 6, "--alt", 30, "--nm", 650),
+     lambda: umov.exposure("c11_imx250", mag=6, alt_deg=30, wavelength_nm=650))])
+def test_lists(words, ours, command, tmp_path):
+    command(*words, "-o", tmp_path / "theirs.csv")
+    ours().write(tmp_path / "ours.csv")
+    assert (tmp_path / "ours.csv").read_bytes() == (tmp_path / "theirs.csv").read_bytes()
+
+
 def test_errors_have_the_text_of_the_command(command, tmp_path):
     (tmp_path / "bad.toml").write_text("umov = 1\n[observer]\nnaem = \"maui\"\n")
     told = command("run", tmp_path / "bad.toml", code=3)

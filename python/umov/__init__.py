@@ -19,9 +19,13 @@ from .errors import (DeviceError, Error, InputError, InternalError, Interrupted,
                      UmovWarning, UsageError, Where)
 from .light_curves import LightCurve
 from .materials import Material, brdf, materials
+from .observing import (Calibration, Observation, calibrate, exposure, instrument, instruments, observe,
+                        reduce)
 from .orbits import States, ephemeris, passes, propagate
+from .passbands import Bands, band, bands
 from .pictures import Mesh, Picture, mesh, render
 from .runs import run
+from .samples import example
 from .satellites import Satellite
 from .scenarios import Scenario, schema
 from .sites import Site, site_names
@@ -31,11 +35,13 @@ from .times import utc
 if TYPE_CHECKING:
     from . import plot, turnable
 
-__all__ = ["Abundances", "Coloured", "Column", "DeviceError", "Engine", "Error", "InputError", "InternalError", 
-           "Interrupted", "Light", "LightCurve", "Material", "Mesh", "NoResult", "NumericsError", "Picture", "Satellite",
-           "Scenario", "Site", "States", "Sums", "Table", "UmovWarning", "UsageError", "Where", "__version__",
-           "brdf", "conventions_version", "ephemeris", "materials", "mesh", "passes", "plot", "propagate",
-           "random_poses", "render", "run", "schema", "site_names", "source_revision", "turnable", "utc"]
+__all__ = ["Abundances", "Bands", "Calibration", "Coloured", "Column", "DeviceError", "Engine", "Error", "InputError",
+           "InternalError", "Interrupted", "Light", "LightCurve", "Material", "Mesh", "NoResult", "NumericsError",
+           "Observation", "Picture", "Satellite", "Scenario", "Site", "States", "Sums", "Table", "UmovWarning",
+           "UsageError", "Where", "__version__", "band", "bands", "brdf", "calibrate", "conventions_version",
+           "ephemeris", "example", "exposure", "instrument", "instruments", "materials", "mesh", "observe", "passes",
+           "plot", "propagate", "random_poses", "reduce", "render", "run", "schema", "site_names", "source_revision",
+           "turnable", "utc"]
 
 
 def __getattr__(name: str) -> Any:

@@ -23,7 +23,9 @@ class _Bar:
         self._what = ""
         self._bar: object = None
         try:
-            from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
+            with warnings.catch_warnings():  # a notebook without ipywidgets has a bar of letters, and need not be told so
+                warnings.simplefilter("ignore")
+                from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
             self._make: Callable[..., object] | None = tqdm
         except ImportError:
             self._make = None

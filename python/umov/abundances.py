@@ -1,6 +1,7 @@
 """Geometric sums of poses, made once, for as many materials and bands as you like."""
 from __future__ import annotations
 
+import hashlib
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -10,7 +11,8 @@ from numpy.typing import ArrayLike
 from . import _umov
 from ._jobs import Progress, Watch, job_options
 from .engines import Floats, directions
-from .satellites import Bands, Satellite, band_table
+from .errors import UsageError
+from .satellites import AnyBands, Satellite, band_changes
 from .scenarios import AnyScenario, Scenario
 
 __all__ = ["Abundances", "Coloured", "Column", "Sums"]
@@ -37,8 +39,9 @@ class Abundances:
     True
     """
 
-    def __init__(self, abundances: _umov.Abundances, shape: tuple[int, ...]) -> None:
+    def __init__(self, abundances: _umov.Abundances, shape: tuple[int, ...], key: str) -> None:
         self._abundances, self._shape = abundances, shape
+        self._key = key  # of the object whose sums they are
 
     @property
     def columns(self) -> list[Column]:
@@ -56,6 +59,16 @@ class Abundances:
         """95 % half-widths of the same."""
         flat = self._abundances.half_width
         return flat.reshape(*self._shape, flat.shape[-1])
+
+    def __repr__(self) -> str:
+        return f"<umov.Abundances: {' x '.join(map(str, self._shape)) or 'one'} poses, {len(self.columns)} columns>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restore, (self._abundances.state, self._shape, self._key)
+
+
+def _restore(state: Any, shape: tuple[int, ...], key: str) -> Abundances:
+    return Abundances(_umov.Abundances.restore(*state), shape, key)
 
 
 class Coloured(NamedTuple):
@@ -76,6 +89,22 @@ class Sums:
     Hiding is looked up in masks, as `Engine(method="masks")` does; where that mends mirrors by rays the half-widths
     tell how far these sums may be off.
 
+    Parameters
+    ----------
+    scene
+        A path, dictionary, Scenario or Satellite; orbit, time and observer are not used.
+    others
+        Scenes of the same mesh, whose roughness is served exactly besides.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
+        what it raises comes through.
+
+    Examples
+    --------
     >>> sums = umov.Sums(hst)
     >>> poses = umov.random_poses(100, phase_deg=60, seed=1)
     >>> made = sums.abundances(*poses)
@@ -88,27 +117,73 @@ class Sums:
         self.scenario = Scenario(scene)  #: what is lit
         self._source = scene
         self._others = [Scenario(one) for one in others]
-        self._threads = threads
+        self._threads, self._cache = threads, cache
+        told = "\n".join(one.to_toml() for one in (self.scenario, *self._others))
+        self._key = hashlib.sha256(told.encode()).hexdigest()
         self._sums = _umov.Sums(self.scenario._scenario, [one._scenario for one in self._others],
                                 job_options(threads, cache), Watch(progress))
 
     def abundances(self, sun: ArrayLike, observer: ArrayLike, *, progress: Progress = None) -> Abundances:
-        """Sums for directions (..., 3) in the body frame, of any length, which broadcast against each other."""
-        flat, shape = directions(sun, observer)
-        return Abundances(self._sums.abundances(*flat, self._threads, Watch(progress)), shape)
+        """Sums for directions (..., 3) in the body frame, of any length, which broadcast against each other.
 
-    def apply(self, abundances: Abundances, scene: AnyScenario | None = None, *, bands: Bands | None = None,
+        Parameters
+        ----------
+        sun
+            Directions (..., 3) from the object to the Sun, in the body frame, of any length; not 0, finite.
+        observer
+            The same to the observer. Both broadcast against each other.
+        progress
+            True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that
+            called; what it raises comes through.
+        """
+        flat, shape = directions(sun, observer)
+        return Abundances(self._sums.abundances(*flat, self._threads, Watch(progress)), shape, self._key)
+
+    def apply(self, abundances: Abundances, scene: AnyScenario | None = None, *, bands: AnyBands | None = None,
               materials: Mapping[str, Any] | str | None = None, progress: Progress = None) -> Coloured:
         """Stokes [m2/sr] (..., band, 4) in the scattering frame of the same poses, and half-widths, for the materials and bands of a
-        scene with the same mesh groups; without one for those of this, with `bands` or `materials` instead."""
+        scene with the same mesh groups; without one for those of this, with `bands` or `materials` instead.
+
+        Parameters
+        ----------
+        abundances
+            What `abundances` of this object gave.
+        scene
+            A scene with the same mesh groups, whose materials and bands are meant; None: this one.
+        bands
+            A set ("paper_rgb"), a list of names ("nm:550", "Bessell.V") or `umov.Bands`; None: those of the
+            scenario.
+        materials
+            Materials by mesh material or "default", over those of the scene.
+        progress
+            True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that
+            called; what it raises comes through.
+
+        Notes
+        -----
+        `InputError` where a material has a roughness that the sums do not serve.
+        """
+        if not isinstance(abundances, Abundances) or abundances._key != self._key:
+            raise UsageError("abundances are not of this object; what its own `abundances` gave was expected")
         asked = self._source if scene is None else scene
         if materials is not None:
             asked = _with_materials(Scenario(asked), materials)
-        changes = None if bands is None else {"bands.set": band_table(bands)["set"]}
-        stokes, half_width, _ = self._sums.apply(abundances._abundances, Scenario(asked, changes)._scenario,
+        stokes, half_width, _ = self._sums.apply(abundances._abundances, Scenario(asked, band_changes(bands))._scenario,
                                                  self._threads, Watch(progress))
         shape = (*abundances._shape, *stokes.shape[1:])
         return Coloured(stokes.reshape(shape), half_width.reshape(shape))
+
+    def __repr__(self) -> str:
+        return f"<umov.Sums of {', '.join(self.scenario.objects)}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"scene": self._source, "others": self._others, "threads": self._threads, "cache": self._cache,
+                "key": self._key}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        key = state.pop("key")
+        Sums.__init__(self, state.pop("scene"), **state)
+        self._key = key  # files of adapters lie elsewhere here, the sums are the same
 
 
 def _with_materials(scenario: Scenario, materials: Mapping[str, Any] | str) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._numbers import number, whole
 from .errors import UsageError
-from .satellites import Bands, band_table
+from .satellites import AnyBands, band_changes
 from .scenarios import AnyScenario, Scenario
 
 __all__ = ["Engine", "Light", "random_poses"]
@@ -38,10 +38,42 @@ class Light(NamedTuple):
 class Engine:
     """An object ready to be lit from any direction: compiled once, then asked for as many poses as you like.
 
-    `scene` is a Satellite, Scenario, path or dictionary; orbit, time and observer are not used. `method`
-    and `accuracy` go over the scenario's; `laser` is the Stokes vector of an active source, `temperatures` [K]
-    ("300", "GROUP=350") ask for the body's own heat instead. Thread safe; pickled by its scenario.
+    Sunlight, or an active source (`laser`), or the body's own heat (`temperatures`). Thread safe; pickled by its scenario.
 
+    Parameters
+    ----------
+    scene
+        A path, dictionary, Scenario or Satellite; orbit, time and observer are not used.
+    bands
+        A set ("paper_rgb"), a list of names ("nm:550", "Bessell.V") or `umov.Bands`; None: those of the scenario.
+    set
+        Changes of the scenario's keys, such as {"render.bounces": 2}.
+    method
+        How hiding is found: "masks" (looked up), "rays" (traced), "auto" (masks, mended by rays); None: the
+        scenario's.
+    accuracy
+        Relative 95 % half-width that is asked of I, 1e-6 to 1; None: the scenario's.
+    laser
+        Stokes vector (4) of an active source in the Sun's place; None: sunlight.
+    temperatures
+        Heat instead of reflected light: kelvin as texts, "300" for all or "GROUP=350"; Stokes parameters are then
+        in W/(sr nm).
+    mask_file
+        A file of masks to read and keep, instead of the cache.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
+        what it raises comes through.
+
+    Notes
+    -----
+    `InputError` names the place in the scene that is wrong.
+
+    Examples
+    --------
     >>> engine = umov.Engine(hst, bands=["nm:550"], method="masks")
     >>> engine.evaluate([0, 0, 1], [0, 1, 1]).shape
     (1, 4)
@@ -50,7 +82,7 @@ class Engine:
     (100, 1, 4)
     """
 
-    def __init__(self, scene: AnyScenario, bands: Bands | None = None, *, set: Mapping[str, Any] | None = None,
+    def __init__(self, scene: AnyScenario, bands: AnyBands | None = None, *, set: Mapping[str, Any] | None = None,
                  method: str | None = None, accuracy: float | None = None,
                  laser: Sequence[float] | None = None, temperatures: Sequence[str] = (),
                  mask_file: str | os.PathLike[str] | None = None, threads: int = 0,
@@ -61,9 +93,7 @@ class Engine:
             raise UsageError(f"accuracy is {accuracy!r}; a number from 1e-6 to 1 was expected")
         if laser is not None and len(laser) != 4:
             raise UsageError(f"laser has {len(laser)} numbers; I, Q, U, V were expected")
-        changes = dict(set or {})
-        if bands is not None:
-            changes["bands.set"] = band_table(bands)["set"]
+        changes = {**(set or {}), **band_changes(bands)}
         self.scenario = Scenario(scene, changes or None)  #: what is lit
         self._threads = threads
         self._options = {"method": method, "accuracy": accuracy, "laser": laser, "temperatures": list(temperatures),
@@ -90,13 +120,41 @@ class Engine:
     def evaluate(self, sun: ArrayLike, observer: ArrayLike, *, progress: Progress = None) -> Floats:
         """Stokes [m2/sr] (..., band, 4) in the scattering frame per unit solar irradiance, for directions
         (..., 3) in the body frame from the object to the Sun and to the observer, of any length, which
-        broadcast against each other."""
+        broadcast against each other.
+
+        Parameters
+        ----------
+        sun
+            Directions (..., 3) from the object to the Sun, in the body frame, of any length; not 0, finite.
+        observer
+            The same to the observer. Both broadcast against each other.
+        progress
+            True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that
+            called; what it raises comes through.
+
+        Notes
+        -----
+        At phase 0 and 180 Q = U = 0; where nothing is both lit and seen all four are 0. `UsageError` for wrong shapes,
+        NaN and directions of length 0. Signs: +Q perpendicular to the scattering plane, V > 0 right-handed
+        (docs/conventions.md).
+        """
         flat, shape = directions(sun, observer)
         out = self._light.stokes(*flat, self._threads, Watch(progress))
         return out.reshape(*shape, len(self.bands), 4)
 
     def light(self, sun: ArrayLike, observer: ArrayLike, *, progress: Progress = None) -> Light:
-        """The same with half-widths, and how each pose was lit."""
+        """The same with half-widths, and how each pose was lit.
+
+        Parameters
+        ----------
+        sun
+            Directions (..., 3) from the object to the Sun, in the body frame, of any length; not 0, finite.
+        observer
+            The same to the observer. Both broadcast against each other.
+        progress
+            True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that
+            called; what it raises comes through.
+        """
         flat, shape = directions(sun, observer)
         stokes, half_width, is_dark, method = self._light.light(*flat, self._threads, Watch(progress))
         full = (*shape, len(self.bands), 4)
@@ -146,6 +204,23 @@ def random_poses(count: int, phase_deg: float, seed: int = 0, first: int = 0) ->
     """Directions of Sun and observer, `phase_deg` apart and turned uniformly: poses `first` to
     `first + count` of the stream of `seed`, those of `umov signature --poses`.
 
+    Parameters
+    ----------
+    count
+        How many, up to 1e9.
+    phase_deg
+        Angle between both directions, 0 to 180 [deg].
+    seed
+        Of the generator (Philox), a whole number from 0.
+    first
+        Number of the first pose.
+
+    Notes
+    -----
+    Two arrays (count, 3) of unit vectors in the body frame. `UsageError` for numbers out of range.
+
+    Examples
+    --------
     >>> sun, observer = umov.random_poses(4, phase_deg=90)
     >>> bool(abs((sun * observer).sum(axis=1)).max() < 1e-15)
     True

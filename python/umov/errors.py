@@ -14,9 +14,9 @@ class Where(NamedTuple):
     Where(file='hst.tle', line=2, column=69)
     """
 
-    file: str = ""
-    line: int = 0
-    column: int = 0
+    file: str = ""  #: as messages name it
+    line: int = 0  #: from 1
+    column: int = 0  #: from 1
 
 
 class UmovWarning(UserWarning):
@@ -31,6 +31,15 @@ class Error(Exception):
     """Base of all errors. `str(error)` is what the command prints: place, what was found, what was
     expected, what to do.
 
+    Parameters
+    ----------
+    message
+        Found; expected. What to do.
+    where
+        The place in an input, if there is one.
+
+    Examples
+    --------
     >>> try:
     ...     umov.Material("paper_gold")
     ... except umov.Error as error:

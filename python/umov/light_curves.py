@@ -15,6 +15,7 @@ from .tables import Table
 
 if TYPE_CHECKING:
     import pandas
+    import pyarrow
     from astropy.coordinates import SkyCoord
     from astropy.table import QTable
     from astropy.time import Time
@@ -117,6 +118,13 @@ class LightCurve:
     def object(self, name: str) -> LightCurve:
         """The epochs of one object; no copy.
 
+        Parameters
+        ----------
+        name
+            Of the object; `UsageError` with the names for what is none.
+
+        Examples
+        --------
         >>> len(curve.object("HST").time) == len(curve.time)
         True
         """
@@ -145,11 +153,23 @@ class LightCurve:
         return len(self._jd[0])
 
     def unit(self, name: str) -> str:
-        """Unit of a column as astropy spells it; "" for none."""
+        """Unit of a column as astropy spells it; "" for none.
+
+        Parameters
+        ----------
+        name
+            Of the column.
+        """
         return self.table.unit(name)
 
     def quantity(self, name: str) -> Quantity:
-        """A column with its unit."""
+        """A column with its unit.
+
+        Parameters
+        ----------
+        name
+            Of the column; a magnitude comes as astropy's Magnitude.
+        """
         from astropy import units
         values = getattr(self, name) if isinstance(getattr(type(self), name, None), _Column) else self[name]
         unit = self.unit(name)
@@ -158,7 +178,17 @@ class LightCurve:
         return units.Quantity(values, unit=units.Unit(unit), copy=False)
 
     def band(self, band: str | int) -> int:
-        """Number of a band along the second axis."""
+        """Number of a band along the second axis.
+
+        Parameters
+        ----------
+        band
+            Its name, or its number along the second axis.
+
+        Notes
+        -----
+        `UsageError` with the names for what is none.
+        """
         if isinstance(band, str) and band in self.bands:
             return self.bands.index(band)
         if isinstance(band, int) and -len(self.bands) <= band < len(self.bands):
@@ -177,9 +207,20 @@ class LightCurve:
         """The same rows as a pandas DataFrame."""
         return self.table.to_pandas()
 
+    def to_arrow(self) -> pyarrow.Table:
+        """The same rows as a pyarrow Table."""
+        return self.table.to_arrow()
+
     def to_timeseries(self, band: str | int | None = None) -> TimeSeries:
         """An astropy TimeSeries, one row per epoch: columns (epoch, band), or of one band.
 
+        Parameters
+        ----------
+        band
+            Its name or number; None: columns (epoch, band).
+
+        Examples
+        --------
         >>> curve.to_timeseries("nm:550")["mag"].shape == curve.time.shape
         True
         """
@@ -220,7 +261,13 @@ class LightCurve:
 
     def to_lightkurve(self, band: str | int = 0) -> Any:
         """A lightkurve LightCurve of one band: flux is `I`, flux_err what the half-width means as one
-        standard deviation."""
+        standard deviation.
+
+        Parameters
+        ----------
+        band
+            Its name, or its number along the second axis.
+        """
         try:
             from lightkurve import LightCurve as Lightkurve  # type: ignore[import-not-found,unused-ignore]
         except ImportError as error:
@@ -233,11 +280,23 @@ class LightCurve:
                           meta={"LABEL": ", ".join(self.objects), "BAND": self.bands[which]})
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes .csv, .ecsv, .fits or .json: the bytes of the command's lightcurve file."""
+        """Writes .csv, .ecsv, .fits or .json: the bytes of the command's lightcurve file.
+
+        Parameters
+        ----------
+        path
+            Its suffix says the format; `UsageError` for another one, `DeviceError` where it cannot be written.
+        """
         self.table.write(path)
 
     def plot(self, figure: Figure | None = None) -> Figure:
-        """Magnitude, q and u, p and position angle over time, and Q against phase."""
+        """Magnitude, q and u, p and position angle over time, and Q against phase.
+
+        Parameters
+        ----------
+        figure
+            A matplotlib Figure to draw into; None: a new one.
+        """
         from . import plot
         return plot.overview(self, figure)
 
@@ -320,6 +379,10 @@ class _Part(LightCurve):
     def to_pandas(self) -> pandas.DataFrame:
         bands = len(self.bands)
         return super().to_pandas()[self._slice.start * bands:self._slice.stop * bands]
+
+    def to_arrow(self) -> pyarrow.Table:
+        bands = len(self.bands)
+        return super().to_arrow().slice(self._slice.start * bands, (self._slice.stop - self._slice.start) * bands)
 
     def _rows(self, table: QTable) -> QTable:
         bands = len(self.bands)

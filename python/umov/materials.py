@@ -27,6 +27,14 @@ def materials() -> Table:
 class Material:
     """A material: a name of the library or a TOML file, or with `from_dict` and `from_toml` one's own.
 
+    Parameters
+    ----------
+    name
+        Of the library (`umov.materials()`), or a TOML file with one [material.NAME] table; `InputError` with the
+        nearest name for what is neither.
+
+    Examples
+    --------
     >>> gold = umov.Material("paper_au")
     >>> gold.brdf(wavelength_nm=550, theta_i_deg=60, theta_o_deg=60, phi_deg=180).shape
     (4, 4)
@@ -43,14 +51,30 @@ class Material:
 
     @classmethod
     def from_toml(cls, text: str, path: str = "material.toml") -> Material:
-        """From a text with one [material.NAME] table that stands for the file `path`."""
+        """From a text with one [material.NAME] table that stands for the file `path`.
+
+        Parameters
+        ----------
+        text
+            TOML.
+        path
+            The file that it stands for: relative paths start there, messages name it.
+        """
         out = cls.__new__(cls)
         out._material, out.is_named = _umov.Material.parse(text, path), False
         return out
 
     @classmethod
     def from_dict(cls, name: str, table: Mapping[str, Any]) -> Material:
-        """From the table [material.NAME] of a scenario."""
+        """From the table [material.NAME] of a scenario.
+
+        Parameters
+        ----------
+        name
+            Its name.
+        table
+            Keys as in a scenario: `index`, `distribution`, `body` and so on (docs/keys.md).
+        """
         return cls.from_toml(_toml.text_of({"material": {name: table}}))
 
     @property
@@ -92,12 +116,34 @@ class Material:
     def brdf(self, wavelength_nm: ArrayLike = 550.0, theta_i_deg: ArrayLike = 0.0,
              theta_o_deg: ArrayLike = 0.0, phi_deg: ArrayLike = 0.0,
              azimuth_deg: ArrayLike = 0.0) -> NDArray[np.float64]:
-        """Mueller BRDF [1/sr] (..., 4, 4): see `umov.brdf`."""
+        """Mueller BRDF [1/sr] (..., 4, 4): see `umov.brdf`.
+
+        Parameters
+        ----------
+        wavelength_nm
+            Wavelength in vacuum [nm].
+        theta_i_deg
+            Angle of incidence from the normal, 0 to 90 [deg].
+        theta_o_deg
+            Angle of reflection from the normal, 0 to 90 [deg].
+        phi_deg
+            Azimuth of the observer minus that of the source, counter-clockwise about the outward normal [deg]: 0 is
+            the same side, 180 the mirror's.
+        azimuth_deg
+            Azimuth of the source from the surface's own x axis [deg]; matters where it has a grain.
+        """
         return brdf(self, wavelength_nm, theta_i_deg, theta_o_deg, phi_deg, azimuth_deg)
 
     def refractive_index(self, wavelength_nm: ArrayLike) -> NDArray[np.complex128]:
         """n + ik at wavelengths [nm], of the same shape.
 
+        Parameters
+        ----------
+        wavelength_nm
+            Of any shape [nm]; `InputError` outside the table's range.
+
+        Examples
+        --------
         >>> round(complex(umov.Material("paper_bk7").refractive_index(550)).real, 2)
         1.52
         """
@@ -124,6 +170,30 @@ def brdf(material: Union[str, Material], wavelength_nm: ArrayLike = 550.0, theta
     """Mueller BRDF [1/sr] in the scattering plane: angles from the normal [deg], `phi_deg` the azimuth of
     the observer minus that of the source, broadcast against each other to (..., 4, 4).
 
+    Parameters
+    ----------
+    material
+        A name, a TOML file or a Material.
+    wavelength_nm
+        Wavelength in vacuum [nm].
+    theta_i_deg
+        Angle of incidence from the normal, 0 to 90 [deg].
+    theta_o_deg
+        Angle of reflection from the normal, 0 to 90 [deg].
+    phi_deg
+        Azimuth of the observer minus that of the source, counter-clockwise about the outward normal [deg]: 0 is the
+        same side, 180 the mirror's.
+    azimuth_deg
+        Azimuth of the source from the surface's own x axis [deg]; matters where it has a grain.
+
+    Notes
+    -----
+    Frames: each Stokes vector is referred to its own plane of the surface, +Q perpendicular to the scattering plane
+    (docs/conventions.md). `UsageError` for angles out of range and shapes that do not broadcast, `InputError` outside
+    the wavelengths of the material's tables.
+
+    Examples
+    --------
     >>> f = umov.brdf("paper_al", theta_i_deg=[10, 30, 50], theta_o_deg=30, phi_deg=180)
     >>> f.shape
     (3, 4, 4)

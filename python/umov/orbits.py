@@ -12,7 +12,7 @@ from . import _umov, adapters
 from ._jobs import Progress, Watch, job_options
 from ._numbers import number, whole
 from .errors import Stopped, UsageError, raise_stopped
-from .satellites import Bands, Satellite
+from .satellites import AnyBands, Satellite
 from .scenarios import Scenario
 from .sites import AnySite, Site
 from .tables import Table
@@ -61,13 +61,52 @@ def _table(rows: _umov.Rows) -> QTable:
 
 def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, norad: Numbers = None,
            alt_min_deg: float = 10.0, sun_alt_max_deg: float = -6.0, visible_only: bool = False,
-           shadow: str = "ellipsoid", bands: Bands | None = None, band: str = "", threads: int = 0,
+           shadow: str = "ellipsoid", bands: AnyBands | None = None, band: str = "", threads: int = 0,
            cache: bool | str | os.PathLike[str] = True, progress: Progress = None,
            allow_bad_checksum: bool = False, allow_old_elements: bool = False) -> QTable:
     """Passes over a site as an astropy QTable with the columns of `umov passes`. `orbit` is a Satellite,
     whose magnitudes and glints are then told too, or a file, TLE lines, a Satrec or an EarthSatellite; a file
     may hold a whole catalogue. No pass is `NoResult`.
 
+    Parameters
+    ----------
+    orbit
+        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec or a skyfield EarthSatellite.
+    site
+        A name of `umov.site_names()`, a Site, an astropy EarthLocation, a skyfield topos or a table with lat_deg,
+        lon_deg and alt_m.
+    start
+        ISO 8601 with an offset or Z, an aware datetime or an astropy Time (any scale).
+    stop
+        The same; it is included, and may equal `start`.
+    norad
+        Catalogue number, or several, of a file that holds more; None: all.
+    alt_min_deg
+        Rise and set are at this altitude, airless [deg].
+    sun_alt_max_deg
+        Visible is what passes while the Sun is below [deg].
+    visible_only
+        Only passes that are sunlit in a dark sky at some time.
+    shadow
+        The Earth's: "ellipsoid" (default) or "sphere".
+    bands
+        Of the magnitudes, where `orbit` is a Satellite: as for `Engine`; None: paper_rgb.
+    band
+        Whose magnitudes are told; "": the middle one.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
+        what it raises comes through.
+    allow_bad_checksum
+        Elements with a wrong checksum are read all the same.
+    allow_old_elements
+        Elements more than 30 days old are taken all the same.
+
+    Examples
+    --------
     >>> table = umov.passes(DATA / "tle/hst.tle", "maui", "2018-01-21T04:00Z", "2018-01-21T07:00Z")
     >>> print(table["culmination_utc"][0], table["culmination_alt"][0].round(1))
     2018-01-21T05:11:47.051Z 56.8 deg
@@ -87,7 +126,7 @@ def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, nor
     return _table(rows)
 
 
-def _scene_of(satellite: Satellite, bands: Bands) -> dict[str, Any]:
+def _scene_of(satellite: Satellite, bands: AnyBands) -> dict[str, Any]:
     """The scene stands for whatever the file holds: without an orbit."""
     scene = satellite.to_scenario_dict(bands)
     scene["object"] = [{key: value for key, value in scene["object"][0].items() if key != "orbit"}]
@@ -100,6 +139,41 @@ def ephemeris(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, 
               allow_old_elements: bool = False) -> QTable:
     """Where an object stands as seen from a site: the rows of `umov orbit ephemeris`.
 
+    Parameters
+    ----------
+    orbit
+        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec or a skyfield EarthSatellite.
+    site
+        A name of `umov.site_names()`, a Site, an astropy EarthLocation, a skyfield topos or a table with lat_deg,
+        lon_deg and alt_m.
+    start
+        ISO 8601 with an offset or Z, an aware datetime or an astropy Time (any scale).
+    stop
+        The same; it is included, and may equal `start`.
+    step
+        Between epochs, an astropy Quantity of time or a timedelta.
+    step_s
+        The same as a plain number [s]; one of the two.
+    norad
+        Catalogue number, where the file holds several.
+    shadow
+        The Earth's: "ellipsoid" (default) or "sphere".
+    threads
+        0 for all cores; the bytes do not depend on it.
+    progress
+        True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
+        what it raises comes through.
+    allow_bad_checksum
+        Elements with a wrong checksum are read all the same.
+    allow_old_elements
+        Elements more than 30 days old are taken all the same.
+
+    Notes
+    -----
+    Angles in degrees, azimuth from north through east, airless; range in km; TEME and ITRS in km and km/s.
+
+    Examples
+    --------
     >>> table = umov.ephemeris(DATA / "tle/hst.tle", "maui", "2018-01-21T05:10Z", "2018-01-21T05:11Z",
     ...                        step_s=30)
     >>> len(table), table["range"].unit.to_string()
@@ -137,6 +211,24 @@ def propagate(orbit: AnyOrbit, times: AnyTime | Sequence[AnyTime], *, threads: i
     """SGP4 for every object of a file at every time: the numbers of `umov orbit propagate`. Objects that
     fail have a code and a warning; `NumericsError` if all of them do.
 
+    Parameters
+    ----------
+    orbit
+        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec or a skyfield EarthSatellite.
+    times
+        One time, a list of them, or an astropy Time of any shape (ISO 8601 with offset, aware datetime, Time).
+    threads
+        0 for all cores; the bytes do not depend on it.
+    progress
+        True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
+        what it raises comes through.
+    allow_bad_checksum
+        Elements with a wrong checksum are read all the same.
+    allow_old_elements
+        Elements more than 30 days old are taken all the same.
+
+    Examples
+    --------
     >>> umov.propagate(DATA / "tle/hst.tle", "2018-01-21T05:00Z").velocity_km_s.shape
     (1, 1, 3)
     """

@@ -31,7 +31,13 @@ class Picture:
         self.shade = shade  #: what its colours tell
 
     def write(self, path: str | os.PathLike[str]) -> None:
-        """Writes the file."""
+        """Writes the file.
+
+        Parameters
+        ----------
+        path
+            The PNG file.
+        """
         with open(path, "wb") as out:
             out.write(self.png)
 
@@ -48,10 +54,36 @@ def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: 
     """The object as the observer sees it, north up: the picture of `umov render`.
 
     With `sun` and `observer`, directions (3) in the body frame, from there, with `up` upwards; else on the
-    scenario's orbit at `time`, or where the first pass is brightest. `shade`: intensity, polarization, angle,
-    material or colour (three bands); `band`: whose, the middle one for "". `side` is in pixels, `samples` rays per
-    pixel and axis. `UsageError` for what does not go together, `NoResult` if nothing of the span is lit.
+    scenario's orbit at `time`, or where the first pass is brightest. `UsageError` for what does not go together, `NoResult` if nothing of the span is lit.
 
+    Parameters
+    ----------
+    scene
+        A path, dictionary, Scenario or Satellite.
+    shade
+        intensity, polarization, angle, material or colour (three bands).
+    band
+        Whose light, by name; "": the middle one.
+    sun
+        Direction (3) to the Sun in the body frame, of any length; with `observer`.
+    observer
+        The same to the observer.
+    up
+        What is upwards in the picture (3), body frame.
+    time
+        UTC on the scenario's orbit, instead of directions; None: where the first pass is brightest.
+    side
+        Of the picture [pixel], 1 to 4096.
+    samples
+        Rays per pixel and axis, 1 to 8.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    progress
+        True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
+        what it raises comes through.
+
+    Examples
+    --------
     >>> umov.render(EXAMPLES / "hst_maui.toml", shade="intensity", time="2018-01-21T05:11:00Z", side=64).shade
     'intensity'
     """
@@ -95,6 +127,18 @@ class Mesh(NamedTuple):
 def mesh(scene: AnyScenario, *, object: int = 0, progress: Progress = None) -> Mesh:
     """The triangles of an object of a scenario.
 
+    Parameters
+    ----------
+    scene
+        A path, dictionary, Scenario or Satellite.
+    object
+        Number of the object, from 0.
+    progress
+        True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
+        what it raises comes through.
+
+    Examples
+    --------
     >>> int(umov.mesh(hst).faces.max()) < len(umov.mesh(hst).vertices)
     True
     """

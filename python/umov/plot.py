@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _umov
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -51,6 +52,13 @@ def _axes(axes: Axes | None, projection: str | None = None) -> Axes:
 def band_styles(curve: LightCurve) -> list[dict[str, Any]]:
     """Colour and marker of each band, by wavelength.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+
+    Examples
+    --------
     >>> [style["color"] for style in plot.band_styles(curve)]
     ['#0072b2', '#009e73', '#d55e00']
     """
@@ -94,6 +102,15 @@ def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], 
 def magnitude(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Magnitude over time, bright at the top.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> bool(plot.magnitude(curve).yaxis_inverted())
     True
     """
@@ -106,6 +123,15 @@ def magnitude(curve: LightCurve, axes: Axes | None = None) -> Axes:
 def intensity(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Intensity without distance and solar flux over time.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> plot.intensity(curve).get_yscale()
     'log'
     """
@@ -117,6 +143,15 @@ def intensity(curve: LightCurve, axes: Axes | None = None) -> Axes:
 def qu_time(curve: LightCurve, axes: tuple[Axes, Axes] | None = None) -> tuple[Axes, Axes]:
     """q and u over time, in percent of I, in the sky frame.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        Two, to draw into; None: a new figure.
+
+    Examples
+    --------
     >>> upper, lower = plot.qu_time(curve)
     >>> lower.get_ylabel()
     'u [%]'
@@ -133,6 +168,15 @@ def qu_time(curve: LightCurve, axes: tuple[Axes, Axes] | None = None) -> tuple[A
 def degree(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Degree of linear polarization over time, in percent.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> plot.degree(curve).get_ylabel()
     'p [%]'
     """
@@ -142,6 +186,15 @@ def degree(curve: LightCurve, axes: Axes | None = None) -> Axes:
 def position_angle(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Position angle over time; it is cyclic, and no line joins 180 to 0 deg.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> [float(end) for end in plot.position_angle(curve).get_ylim()]
     [0.0, 180.0]
     """
@@ -153,6 +206,15 @@ def position_angle(curve: LightCurve, axes: Axes | None = None) -> Axes:
 def q_phase(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Q/I in the scattering frame against phase angle.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> plot.q_phase(curve).get_ylabel()
     'q_scat [%]'
     """
@@ -173,6 +235,15 @@ def pure_materials(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Q/I against phase angle of a surface of one material of the object alone, one reflection at its interface:
     thin lines to draw behind `q_phase`. A measured material has no interface and no line.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> axes = plot.pure_materials(curve, plot.q_phase(curve))
     >>> "film_silvered" in [text.get_text() for text in axes.get_legend().get_texts()]
     True
@@ -209,6 +280,17 @@ def _interfaces(curve: LightCurve) -> Iterator[tuple[str, dict[str, Any]]]:
 def contributions(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
     """Direct light of each material over time, as parts of all direct light, on top of each other.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+    band
+        Its name, or its number along the second axis.
+
+    Examples
+    --------
     >>> axes = plot.contributions(curve)
     >>> axes.get_ylabel(), len(axes.collections) == len(curve.contributions)
     ('share of the direct light', True)
@@ -230,37 +312,73 @@ def contributions(curve: LightCurve, axes: Axes | None = None, *, band: str | in
     return axes
 
 
-def _periodic(curve: LightCurve, band: str | int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Seconds and magnitudes at 1,000 km, where there is light."""
-    values = curve.mag[:, curve.band(band)] - 5 * np.log10(curve.range / 1000)
-    lit = np.isfinite(values)
-    if lit.sum() < 8:
-        raise UsageError(f"{lit.sum()} epochs have light; eight or more were expected")
-    return (curve.mjd_utc[lit] - curve.mjd_utc[0]) * 86400.0, values[lit]
+def _periodic(curve: LightCurve, band: str | int,
+              part: NDArray[np.intp] | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Seconds and magnitudes without range and eclipse, where there is light that is no mere limit."""
+    which = curve.band(band)
+    intensity = curve.intensity[:, which]
+    lit = (intensity > 0) & ~curve["mag_limit"][:, which]
+    if part is not None:
+        lit[np.setdiff1d(np.arange(len(lit)), part)] = False
+    whole, rest = (jd - jd[0] for jd in curve._jd)
+    return (whole[lit] + rest[lit]) * 86400.0, -2.5 * np.log10(intensity[lit])
 
 
-def periodogram(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0, harmonics: int = 4) -> Axes:
-    """Lomb-Scargle power of the magnitude at 1,000 km against period; a body that looks alike twice a turn peaks at
-    half its period as well. The highest peak stands in the title.
+def periodogram(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
+    """Lomb-Scargle power of the magnitude against period, as the report has it: a line for each pass, a parabola taken
+    off (range and phase angle change slowly), a floating mean (Zechmeister & Kuerster 2009). A body that looks alike
+    twice a turn peaks at half its period as well. The highest peak of all stands in the title.
 
-    >>> plot.periodogram(curve).get_xlabel()
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+    band
+        Its name, or its number along the second axis.
+
+    Examples
+    --------
+    >>> tumbling = umov.run(EXAMPLES / "agena_maui.toml", set={
+    ...     "time.step_s": 2, "object.attitude": {"mode": "spin", "axis": "+X", "period_s": 23.7}})
+    >>> plot.periodogram(tumbling).get_xlabel()
     'period [s]'
     """
-    from astropy.timeseries import LombScargle
     axes = _axes(axes)
-    seconds, values = _periodic(curve, band)
-    step, span = float(np.median(np.diff(seconds))), float(np.ptp(seconds))
-    frequency = np.linspace(1 / span, 0.5 / step, min(20_000, max(200, int(5 * span / step))))
-    power = LombScargle(seconds, values, nterms=min(harmonics, len(values) // 4)).power(frequency)
-    axes.plot(1 / frequency, power, color=THREE[0], linewidth=1)
-    axes.set(xlabel="period [s]", ylabel="power", xscale="log", title=f"{1 / frequency[int(np.argmax(power))]:.4g} s")
+    best = (0.0, 0.0)  # power, period
+    for number, part in enumerate(_passes(curve)):
+        seconds, values = _periodic(curve, band, part)
+        period, power, peak = _umov.periodogram(seconds, values)
+        if not len(power):
+            continue
+        axes.plot(period, power, color=MANY[number % len(MANY)], linewidth=1, label=str(curve.pass_id[part[0]]))
+        best = max(best, (float(power.max()), peak))
+    if not best[1]:
+        raise UsageError("no pass has twelve epochs with light that varies; a longer one or shorter steps were expected")
+    axes.set(xlabel="period [s]", ylabel="power", xscale="log", ylim=(0, 1), title=f"{best[1]:.4g} s")
     axes.grid(alpha=0.3)
+    if len(axes.lines) > 1:
+        axes.legend(fontsize="small")
     return axes
 
 
 def folded(curve: LightCurve, period_s: float, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
-    """Magnitude at 1,000 km against the part of a turn, coloured by time.
+    """Magnitude without range and eclipse against the part of a turn, coloured by time.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    period_s
+        Of the turn [s], above 0.
+    axes
+        To draw into; None: a new figure.
+    band
+        Its name, or its number along the second axis.
+
+    Examples
+    --------
     >>> plot.folded(curve, period_s=41).get_xlabel()
     'turn of 41 s'
     """
@@ -268,10 +386,12 @@ def folded(curve: LightCurve, period_s: float, axes: Axes | None = None, *, band
         raise UsageError(f"period_s is {period_s!r}; a number above 0 was expected")
     axes = _axes(axes)
     seconds, values = _periodic(curve, band)
+    if not len(seconds):
+        raise UsageError("no epoch has light; a curve with some was expected")
     drawn = axes.scatter(seconds / period_s % 1, values, c=seconds, cmap=PHASE_MAP, s=8)
     if not axes.yaxis_inverted():
         axes.invert_yaxis()
-    axes.set(xlabel=f"turn of {period_s:g} s", ylabel="AB magnitude at 1,000 km", xlim=(0, 1))
+    axes.set(xlabel=f"turn of {period_s:g} s", ylabel="magnitude, −2.5 lg intensity", xlim=(0, 1))
     axes.grid(alpha=0.3)
     if axes.figure is not None:
         axes.figure.colorbar(drawn, ax=axes, label="time [s]")
@@ -281,6 +401,15 @@ def folded(curve: LightCurve, period_s: float, axes: Axes | None = None, *, band
 def picture(image: Picture, axes: Axes | None = None) -> Axes:
     """A picture of `umov.render`, up as it was asked for.
 
+    Parameters
+    ----------
+    image
+        Of `umov.render`.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> plot.picture(umov.render(hst, sun=[1, 1, 1], observer=[0, 1, 1], side=64, samples=1)).get_title()
     'material'
     """
@@ -295,6 +424,15 @@ def picture(image: Picture, axes: Axes | None = None) -> Axes:
 def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """u against q, coloured by phase angle; bands differ by marker.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> plot.qu_plane(curve).get_xlabel()
     'q [%]'
     """
@@ -315,6 +453,13 @@ def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
 def three_bands(curve: LightCurve) -> list[int]:
     """Numbers of the shortest, the middle and the longest band. `UsageError` if there are fewer than three.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+
+    Examples
+    --------
     >>> plot.three_bands(curve)
     [0, 1, 2]
     """
@@ -327,6 +472,15 @@ def three_bands(curve: LightCurve) -> list[int]:
 def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
     """Q/I of short, middle and long wavelength as a cloud in three dimensions, coloured by phase angle.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> plot.q_rgb(curve).get_zlabel()
     'nm:650 [%]'
     """
@@ -345,6 +499,15 @@ def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
 def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Shorter minus longer wavelength over time, in magnitudes: larger is redder.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> [text.get_text() for text in plot.colour_index(curve).get_legend().get_texts()]
     ['nm:425 − nm:550', 'nm:550 − nm:650']
     """
@@ -363,6 +526,15 @@ def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
 def sky_track(curve: LightCurve, axes: Any = None) -> Any:
     """Where the object stood, north up and east to the left as one looks up, coloured by phase angle.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    axes
+        To draw into; None: a new figure.
+
+    Examples
+    --------
     >>> plot.sky_track(curve).name
     'polar'
     """
@@ -384,6 +556,15 @@ def sky_track(curve: LightCurve, axes: Any = None) -> Any:
 def overview(curve: LightCurve, figure: Figure | None = None) -> Figure:
     """Magnitude, q, u, p and position angle over time, and Q against phase, in one figure.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    figure
+        To draw into; None: a new one.
+
+    Examples
+    --------
     >>> len(plot.overview(curve).axes)
     6
     """

@@ -20,11 +20,32 @@ def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: in
         allow_old_elements: bool = False) -> LightCurve:
     """The light curve of a scenario, as the command `umov run` computes it, in memory.
 
-    `scenario`: path, dictionary, Scenario or text as for `Scenario`; `set`: changes of its keys;
-    `progress`: True for a bar, or a callable (what, done, total); `threads`: 0 for all cores (the bytes do
-    not depend on it); `cache`: masks of earlier runs, as the command keeps them, a folder, or False.
     Ctrl-C raises `Interrupted`, an orbit that ends `NumericsError`, with the finished rows in `partial`.
 
+    Parameters
+    ----------
+    scenario
+        A path, dictionary or Scenario.
+    set
+        Changes of the scenario's keys, such as {"render.bounces": 2}.
+    seed
+        Over the scenario's: a whole number from 0.
+    accuracy
+        Over the scenario's: relative 95 % half-width asked of I.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
+        what it raises comes through.
+    allow_bad_checksum
+        Elements with a wrong checksum are read all the same.
+    allow_old_elements
+        Elements more than 30 days old are taken all the same.
+
+    Examples
+    --------
     >>> curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 60})
     >>> print(repr(curve).splitlines()[0])
     <umov.LightCurve HST: 6 epochs x 3 bands (nm:425, nm:550, nm:650)

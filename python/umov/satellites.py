@@ -10,6 +10,7 @@ from . import _toml, adapters
 from ._jobs import Progress
 from ._numbers import number
 from .errors import UsageError
+from .passbands import Bands
 from .sites import AnySite, Site
 from .times import AnyTime, seconds, utc
 
@@ -21,16 +22,32 @@ if TYPE_CHECKING:
 
 __all__ = ["Satellite"]
 
-Bands = Union[str, Sequence[str]]
+AnyBands = Union[str, Sequence[str], Bands]
 
 
-def band_table(bands: Bands) -> dict[str, Any]:
+def band_table(bands: AnyBands) -> dict[str, Any]:
     """The [bands] table of a scenario."""
+    if isinstance(bands, Bands):
+        return bands.to_dict()
     return {"set": bands if isinstance(bands, str) else list(bands)}
+
+
+def band_changes(bands: AnyBands | None) -> dict[str, Any]:
+    """The same as changes of a scenario's keys."""
+    return {} if bands is None else {f"bands.{key}": value for key, value in band_table(bands).items()}
 
 
 def _without_none(value: Any) -> Any:
     return {k: v for k, v in value.items() if v is not None} if isinstance(value, Mapping) else value
+
+
+def _direction(value: Any) -> Any:
+    """A SkyCoord as the table of a scenario; all else as it is."""
+    if not hasattr(value, "icrs"):
+        return value
+    if not value.isscalar:
+        raise UsageError(f"a SkyCoord of shape {value.shape} is no direction; a single one was expected")
+    return {"ra_deg": float(value.icrs.ra.deg), "dec_deg": float(value.icrs.dec.deg)}
 
 
 def _absolute(path: Any) -> Any:
@@ -38,10 +55,39 @@ def _absolute(path: Any) -> Any:
 
 
 class Satellite:
-    """An [[object]] of a scenario. `mesh` is a file, a trimesh mesh or (vertices, faces); `orbit` a file,
-    TLE lines, an sgp4 Satrec, a skyfield EarthSatellite or a table; materials are names, files' names
-    or a `Material` each, by mesh material or "default".
+    """An [[object]] of a scenario: shape, orbit, attitude and materials.
 
+    Parameters
+    ----------
+    mesh
+        A file (OBJ, glTF, PLY, STL), a trimesh mesh or (vertices (N, 3), faces (M, 3) counted from 0).
+    unit
+        Of the mesh: m, mm, cm, in or ft; asked for where the format has none.
+    up
+        Axis of the file that becomes +Z of the body, such as "+Y"; asked for where the format has none.
+    orbit
+        A file, TLE lines, an sgp4 Satrec, a skyfield EarthSatellite or a table; None where no orbit is needed.
+    norad
+        Catalogue number, where the file holds several.
+    attitude
+        The table of a scenario: {"point": "+Z", "at": "nadir", "then": "+X", "toward": "velocity"}, {"mode":
+        "spin", ...}; a SkyCoord may stand for a direction of the sky. None: as the scenario's default.
+    materials
+        By mesh material or "default": a name, a TOML file, a `Material`, or {"front": ..., "back": ...}; one alone
+        is for all.
+    name
+        Of the object, in tables and reports.
+    normals
+        "flat" or "smooth"; None: as the file has them.
+    parts
+        Tables [[object.part]]: groups that turn about an axis.
+
+    Notes
+    -----
+    Files are read when they are needed; an `InputError` then names file, line and what was expected.
+
+    Examples
+    --------
     >>> hst = umov.Satellite(mesh=DATA / "mesh/hst.obj", unit="m", up="+Z", orbit=DATA / "tle/hst.tle",
     ...                      attitude={"mode": "nadir"}, materials={"default": "film_silvered"}, name="HST")
     >>> hst
@@ -59,7 +105,7 @@ class Satellite:
         self._own: dict[str, str] = {}
         self._table: dict[str, Any] = {
             "name": name, "orbit": self._orbit(orbit, norad), "mesh": self._mesh(mesh, unit, up, normals),
-            "attitude": dict(attitude) if attitude is not None else None,
+            "attitude": {key: _direction(value) for key, value in attitude.items()} if attitude is not None else None,
             "materials": self._materials(materials), "part": [dict(part) for part in parts] or None}
         self._table = {key: _without_none(value) for key, value in self._table.items() if value is not None}
         self._files = adapters.Files(self._texts) if self._texts else None
@@ -112,7 +158,13 @@ class Satellite:
 
     @classmethod
     def from_dict(cls, table: Mapping[str, Any]) -> Satellite:
-        """From an [[object]] table of a scenario, with the tables `material` of its own besides."""
+        """From an [[object]] table of a scenario, with the tables `material` of its own besides.
+
+        Parameters
+        ----------
+        table
+            Keys as in a scenario (docs/keys.md).
+        """
         from .materials import Material
         own = {name: Material.from_dict(name, one) for name, one in table.get("material", {}).items()}
 
@@ -127,7 +179,13 @@ class Satellite:
 
     @classmethod
     def from_toml(cls, text: str) -> Satellite:
-        """From a text with one [[object]] and its [material.NAME] tables, such as a scenario."""
+        """From a text with one [[object]] and its [material.NAME] tables, such as a scenario.
+
+        Parameters
+        ----------
+        text
+            TOML.
+        """
         import tomllib
         document = tomllib.loads(text)
         if len(document.get("object", ())) != 1:
@@ -148,26 +206,73 @@ class Satellite:
         own = table.pop("material", {})
         return _toml.text_of({"object": [table], **({"material": own} if own else {})}).lstrip()
 
-    def to_scenario_dict(self, bands: Bands = "paper_rgb", **sections: Any) -> dict[str, Any]:
-        """A whole scenario of this object; `sections` are its other tables, such as time or render."""
+    def to_scenario_dict(self, bands: AnyBands = "paper_rgb", **sections: Any) -> dict[str, Any]:
+        """A whole scenario of this object; `sections` are its other tables, such as time or render.
+
+        Parameters
+        ----------
+        bands
+            A set ("paper_rgb"), a list of names ("nm:550", "Bessell.V") or `umov.Bands`.
+        **sections
+            Other tables by name: `time={...}`.
+        """
         table = self.to_dict()
         own = table.pop("material", None)
         return {"umov": 1, "object": [table], "bands": band_table(bands), "material": own, **sections}
 
     def light_curve(self, site: AnySite, start: Any, stop: AnyTime | None = None, *,
-                    step: Quantity | Any = None, step_s: float | None = None, bands: Bands = "paper_rgb",
+                    step: Quantity | Any = None, step_s: float | None = None, bands: AnyBands = "paper_rgb",
                     alt_min_deg: float = 0.0, sun_alt_max_deg: float = 90.0, sunlit: bool = True,
                     seed: int = 0, pol_frame: str = "equatorial", render: Mapping[str, Any] | None = None,
                     **options: Any) -> LightCurve:
         """The light of this object over time as seen from a site, between two times or during a pass
         (a row of `umov.passes`). `options` are those of `umov.run`.
 
+        Parameters
+        ----------
+        site
+            A name of `umov.site_names()`, a Site, an astropy EarthLocation, a skyfield topos or a table with
+            lat_deg, lon_deg and alt_m.
+        start
+            ISO 8601 with an offset or Z, an aware datetime, an astropy Time; or a row of `umov.passes`, without
+            `stop`.
+        stop
+            The same; it is included.
+        step
+            Between epochs, an astropy Quantity of time or a timedelta.
+        step_s
+            The same as a plain number [s]; 1 if neither is given.
+        bands
+            A set ("paper_rgb"), a list of names ("nm:550", "Bessell.V") or `umov.Bands`.
+        alt_min_deg
+            Epochs below are left out [deg].
+        sun_alt_max_deg
+            Epochs with the Sun above are left out [deg].
+        sunlit
+            Epochs in the Earth's shadow are left out.
+        seed
+            Of the rays.
+        pol_frame
+            Of q, u and pa: "equatorial" (IAU), "altaz" or "scattering".
+        render
+            The table [render] of a scenario.
+        **options
+            Those of `umov.run`: threads, cache, progress and so on.
+
+        Notes
+        -----
+        Arrays (epoch, band), see `LightCurve`. `NoResult` if the object is never up, `NumericsError` where the orbit
+        ends.
+
+        Examples
+        --------
         >>> curve = hst.light_curve("maui", "2018-01-21T05:10:00Z", "2018-01-21T05:10:20Z", step_s=10,
         ...                         bands=["nm:550"])
         >>> curve.I.shape
         (3, 1)
         """
         from .runs import run
+        from .scenarios import Scenario
         if stop is None:
             start, stop = _span_of_pass(start)
         if step is not None and step_s is not None:
@@ -175,10 +280,11 @@ class Satellite:
         length = seconds(step) if step is not None else number(1.0 if step_s is None else step_s, "step_s")
         only = {"alt_min_deg": number(alt_min_deg, "alt_min_deg"),
                 "sun_alt_max_deg": number(sun_alt_max_deg, "sun_alt_max_deg"), "sunlit": sunlit}
-        scenario = self.to_scenario_dict(
+        scenario = Scenario(self.to_scenario_dict(
             bands, title=self.name, seed=seed, observer=Site(site).to_dict(),
             time={"start": utc(start), "stop": utc(stop), "step_s": length, "only": only},
-            render=dict(render) if render else None, output={"pol_frame": pol_frame})
+            render=dict(render) if render else None, output={"pol_frame": pol_frame}))
+        scenario._keep = self
         return run(scenario, **options)
 
     @property

@@ -5,7 +5,7 @@ import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Union
 
-from . import _toml, _umov
+from . import _toml, _umov, adapters
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -35,6 +35,19 @@ class Scenario:
     """A scenario, read and checked. Give a path, a dictionary or another scenario, and `set` for
     changes ("render.bounces": 2), as `--set` of the command does.
 
+    Parameters
+    ----------
+    source
+        A path, a dictionary, another Scenario or a Satellite.
+    set
+        Changes of the scenario's keys, such as {"render.bounces": 2}.
+
+    Notes
+    -----
+    `InputError` with file, line and column for an unknown key (and the nearest one) or a wrong value.
+
+    Examples
+    --------
     >>> scenario = umov.Scenario(EXAMPLES / "hst_maui.toml", set={"time.step_s": 5})
     >>> scenario.title, scenario.objects
     ('HST from Maui, polarized RGB', ['HST'])
@@ -59,14 +72,30 @@ class Scenario:
     @classmethod
     def from_toml(cls, text: str, path: str | os.PathLike[str] | None = None,
                   set: Changes | None = None) -> Scenario:
-        """From a text; `path` is the file that it stands for: relative paths start there."""
+        """From a text; `path` is the file that it stands for: relative paths start there.
+
+        Parameters
+        ----------
+        text
+            TOML.
+        path
+            The file that it stands for: relative paths start there.
+        set
+            Changes of the scenario's keys, such as {"render.bounces": 2}.
+        """
         out = cls.__new__(cls)
         out._scenario, out._keep = _parse(text, path, set), None
         return out
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> Scenario:
-        """From the tables of a scenario; relative paths start at the working folder."""
+        """From the tables of a scenario; relative paths start at the working folder.
+
+        Parameters
+        ----------
+        document
+            Tables as in a file.
+        """
         return cls(document)
 
     def to_toml(self) -> str:
@@ -114,7 +143,8 @@ class Scenario:
                 f"<pre>{html.escape(self.to_toml())}</pre></details>")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restore, (self.to_toml(), self.file)
+        files = _files_of(self)
+        return _restore, (self.to_toml(), self.file, None if files is None else (str(files.folder), files.texts))
 
 
 AnyScenario = Union[str, "os.PathLike[str]", Mapping[str, Any], Scenario, "Satellite"]
@@ -126,5 +156,17 @@ def _parse(text: str, path: str | os.PathLike[str] | None, changes: Changes | No
     return _umov.Scenario.parse(text, place, _change_list(changes))
 
 
-def _restore(text: str, file: str) -> Scenario:
-    return Scenario.from_toml(text, file)
+def _files_of(source: Any) -> adapters.Files | None:
+    """The files that adapters made for a scenario."""
+    while isinstance(source, Scenario):
+        source = source._keep
+    return source if isinstance(source, adapters.Files) else getattr(source, "_files", None)
+
+
+def _restore(text: str, file: str, made: tuple[str, adapters.Texts] | None = None) -> Scenario:
+    if made is None:
+        return Scenario.from_toml(text, file)
+    files = adapters.Files(made[1])  # in a folder of this process
+    out = Scenario.from_toml(text.replace(made[0], str(files.folder)), file)
+    out._keep = files
+    return out

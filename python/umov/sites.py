@@ -27,6 +27,26 @@ class Site:
     """A place on the WGS 84 ellipsoid: by name, by coordinates, or from an EarthLocation, a skyfield
     topos or the [observer] table of a scenario.
 
+    Parameters
+    ----------
+    site
+        A name of `umov.site_names()`, another Site, an EarthLocation, a skyfield topos or a table with lat_deg,
+        lon_deg and alt_m.
+    lat_deg
+        Geodetic latitude, north positive [deg].
+    lon_deg
+        Longitude, east positive [deg].
+    alt_m
+        Height above the ellipsoid [m].
+    name
+        Over that of the site.
+
+    Notes
+    -----
+    `UsageError` where none or two of them are given, `InputError` for an unknown name or numbers out of range.
+
+    Examples
+    --------
     >>> umov.Site("paranal")
     Site('paranal', lat_deg=-24.6275, lon_deg=-70.4044, alt_m=2635.0)
     >>> umov.Site(lat_deg=20.7083, lon_deg=-156.2578, alt_m=3058, name="Maui").to_dict()["name"]
@@ -51,12 +71,24 @@ class Site:
 
     @classmethod
     def from_dict(cls, table: Mapping[str, Any]) -> Site:
-        """From the [observer] table of a scenario."""
+        """From the [observer] table of a scenario.
+
+        Parameters
+        ----------
+        table
+            With lat_deg, lon_deg, alt_m and name, or a known name alone.
+        """
         return cls(table)
 
     @classmethod
     def from_toml(cls, text: str) -> Site:
-        """From a text with an [observer] table."""
+        """From a text with an [observer] table.
+
+        Parameters
+        ----------
+        text
+            TOML.
+        """
         import tomllib
         return cls(tomllib.loads(text).get("observer", {}))
 

@@ -24,6 +24,14 @@ def _is_astropy(time: Any) -> TypeGuard[Time]:
 def utc(time: AnyTime) -> str:
     """A time as the scenario writes it: ISO 8601, UTC, with Z.
 
+    Parameters
+    ----------
+    time
+        ISO 8601 with an offset or Z, an aware datetime or an astropy Time of any scale; `UsageError` for a time
+        without a zone, with the two lines that mend it.
+
+    Examples
+    --------
     >>> umov.utc("2018-01-21T06:00:00+02:00")
     '2018-01-21T04:00:00.000Z'
     >>> from astropy.time import Time

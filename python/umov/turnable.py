@@ -34,6 +34,15 @@ def q_rgb(curve: LightCurve, figure: Any = None) -> Any:
     """Q/I of short, middle and long wavelength [%] as a cloud in three dimensions, coloured by phase angle. Adds to
     a plotly Figure, or makes one. `UsageError` for fewer than three bands.
 
+    Parameters
+    ----------
+    curve
+        A light curve.
+    figure
+        A plotly Figure to add to; None: a new one.
+
+    Examples
+    --------
     >>> len(turnable.q_rgb(curve).data[0].x) == len(curve)
     True
     """
@@ -53,6 +62,17 @@ def q_rgb(curve: LightCurve, figure: Any = None) -> Any:
 def mesh(scene: AnyScenario, figure: Any = None, *, object: int = 0) -> Any:
     """The triangles of an object [m, body frame], a colour for each mesh material.
 
+    Parameters
+    ----------
+    scene
+        A path, dictionary, Scenario or Satellite.
+    figure
+        A plotly Figure to add to; None: a new one.
+    object
+        Number of the object, from 0.
+
+    Examples
+    --------
     >>> figure = turnable.mesh(hst)
     >>> "light_shield" in [trace.name for trace in figure.data]
     True

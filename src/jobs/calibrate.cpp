@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tuple>
 #include <umov/io/table.h>
 #include <umov/jobs/reduce.h>
 #include <umov/time/epoch.h>
@@ -52,6 +53,29 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
   UMOV_ASSIGN(calibration, calibrate_polarimeter(data));
   out.calibration = calibration;
   return out;
+}
+
+Result<void> check_calibration(const CalibrationFile &file, const CountsFile &counts,
+                               const std::string &path, Diagnostics &diagnostics) {
+  const CountRow &first = counts.rows.front();
+  const auto strange =
+      std::ranges::find_if(counts.rows, [&](const CountRow &row) { return row.band != file.band; });
+  const CountRow &of_band = strange == counts.rows.end() ? first : *strange;
+  for (const auto &[what, own, other] :
+       {std::tuple{"instrument", file.instrument, note_of(counts, "instrument")},
+        {"band", file.band, of_band.band}})
+    if (!own.empty() && !other.empty() && own != other)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("this calibration is of the {} \"{}\", the counts are of \"{}\"; "
+                              "calibrate that one",
+                              what, own, other),
+                  {path});
+  constexpr double old_days = 30;
+  if (const auto made = utc_from_iso(file.made_utc))
+    if (const double days = seconds_between(first.time, *made) / 86400; days > old_days)
+      diagnostics.warn(fmt::format("the calibration is {:.0f} days older than the counts", days),
+                       {path});
+  return {};
 }
 
 } // namespace umov::jobs

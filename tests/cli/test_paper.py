@@ -5,18 +5,19 @@ import json
 import math
 import re
 import subprocess
+import sys
 
 import pytest
 from conftest import ROOT, UMOV, anchors, read_csv
 
+sys.path.insert(0, str(ROOT / "tools/site"))
+import paper_pages  # noqa: E402
+
 
 @pytest.fixture(scope="module")
-def paper(tmp_path_factory):
-    """The folder of one whole run."""
-    out = tmp_path_factory.mktemp("paper") / "paper"
-    done = subprocess.run([UMOV, "paper", "-o", out], text=True, capture_output=True, timeout=1800)
-    assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-4000:]
-    return out
+def paper():
+    """The folder of one whole run of this build, which the documentation site shows too."""
+    return paper_pages.made(UMOV)
 
 
 def rows_of(paper, name):

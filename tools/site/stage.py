@@ -12,6 +12,7 @@ import sys
 
 import equations
 import gallery
+import paper_pages
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -58,12 +59,11 @@ def put_docs(pages: Pages) -> None:
 def put_gallery(pages: Pages) -> None:
     rows = ""
     for page in gallery.pages():
-        told = gallery.run(page)
-        made = gallery.markdown(page, told, pages.folder / "gallery/pictures")
-        for picture in (pages.folder / "gallery/pictures").glob(f"{page.stem}_*"):
-            pages.put(f"gallery/pictures/{picture.name}", picture.read_bytes())
-        pages.put(f"gallery/{page.stem}.md", made)
-        pages.put(f"extra/gallery/notebooks/{page.stem}.ipynb", gallery.notebook(told))
+        notebook = gallery.run(page)
+        for number, picture in enumerate(gallery.pictures(notebook), 1):
+            pages.put(f"gallery/pictures/{page.stem}_{number}.png", picture)
+        pages.put(f"gallery/{page.stem}.md", gallery.markdown(page, notebook, "pictures"))
+        pages.put(f"extra/gallery/notebooks/{page.stem}.ipynb", gallery.file_of(notebook))
         pages.put(f"extra/gallery/notebooks/{page.name}", page.read_bytes())
         rows += f"{page.stem}\n"
     head = ("# Gallery\nQuestions that people come with. Each page is a notebook and a script, and the tests run it;\n"
@@ -95,6 +95,16 @@ def put_command_line(pages: Pages, umov: str) -> None:
     pages.put("command_line.md", text)
 
 
+def put_paper(pages: Pages, umov: str) -> None:
+    """Verdicts with their pictures, and the page that the command wrote."""
+    # The tests make it anew after every change of the library, which takes minutes; a page may be of the day before.
+    folder = paper_pages.made(umov, is_fresh=False)
+    pages.put("paper.md", paper_pages.markdown(folder, "paper_pictures"))
+    for picture in paper_pages.pictures(folder):
+        pages.put(f"paper_pictures/{picture.name}", picture.read_bytes())
+    pages.put("extra/paper/index.html", (folder / "index.html").read_bytes())
+
+
 def put_plotly(pages: Pages) -> None:
     """The script of figures that turn: in the site, so that no page asks the network."""
     import plotly
@@ -107,6 +117,7 @@ def main(out: pathlib.Path, umov: str) -> None:
     put_docs(pages)
     put_gallery(pages)
     put_command_line(pages, umov)
+    put_paper(pages, umov)
     put_plotly(pages)
     pages.drop_others()
 

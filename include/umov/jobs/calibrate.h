@@ -14,4 +14,9 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
                                   const std::vector<PolarizedStandard> &standards,
                                   Diagnostics &diagnostics);
 
+/// Whether a calibration, read from `path`, belongs to counts: BadInput for another instrument or
+/// band, of which it tells nothing; a warning where it is a month older.
+Result<void> check_calibration(const CalibrationFile &file, const CountsFile &counts,
+                               const std::string &path, Diagnostics &diagnostics);
+
 } // namespace umov::jobs

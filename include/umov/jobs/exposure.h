@@ -1,5 +1,5 @@
 #pragma once
-// How long to expose: what an instrument makes of a star of a magnitude.
+// Instruments, and how long one must expose for a star of a magnitude.
 
 #include <umov/io/observation.h>
 #include <umov/io/table.h>
@@ -22,5 +22,8 @@ struct ExposureRequest {
 /// Rows of a quantity, its value and its unit: electrons, time for `sd_p`, time that fills a pixel,
 /// shares of each noise at that time, false polarization of analysers that follow each other.
 Result<Table> exposure(const ExposureRequest &request);
+
+/// Every compiled-in instrument: name, aperture, type of polarimeter, what it is.
+Result<Table> instrument_list();
 
 } // namespace umov::jobs

@@ -61,8 +61,32 @@ std::string yaml_value(std::string_view text, std::string_view key) {
   return std::string(trimmed(rest.substr(0, rest.find_first_of(",}"))));
 }
 
-/// A line of the header: `# - {name: ..., unit: ...}` or `# - {"key": "value"}` of ECSV, or
-/// `# key: value`.
+/// `key: value` or `key: 'value'` of YAML as astropy writes it; nothing where there are more keys.
+std::optional<std::pair<std::string, std::string>> yaml_pair(std::string_view text) {
+  const std::size_t colon = text.find(": ");
+  if (colon == std::string_view::npos)
+    return std::nullopt;
+  std::string_view rest = trimmed(text.substr(colon + 2));
+  std::string value;
+  if (!rest.starts_with('\'')) {
+    if (rest.find(", ") != std::string_view::npos)
+      return std::nullopt;
+    value = rest;
+  } else {
+    for (rest.remove_prefix(1); !rest.empty(); rest.remove_prefix(1)) {
+      if (rest.front() == '\'' && rest.size() == 1)
+        break;
+      if (rest.front() == '\'' && rest[1] != '\'')
+        return std::nullopt;
+      rest.remove_prefix(rest.front() == '\'' ? 1 : 0);
+      value += rest.front();
+    }
+  }
+  return std::pair(std::string(trimmed(text.substr(0, colon))), value);
+}
+
+/// A line of the header: `# - {name: ..., unit: ...}` or `# - {"key": "value"}` of ECSV, the same
+/// with YAML's quotes, or `# key: value`.
 void read_note(std::string_view line, TextTable &table) {
   std::string_view text = trimmed(line.substr(1));
   auto &notes = table.notes;
@@ -74,6 +98,11 @@ void read_note(std::string_view line, TextTable &table) {
     const auto json = nlohmann::json::parse(text.substr(2), nullptr, false);
     if (json.is_object() && json.size() == 1 && json.begin()->is_string())
       notes[json.begin().key()] = json.begin()->get<std::string>();
+    return;
+  }
+  if (text.starts_with("- {") && text.ends_with('}')) {
+    if (auto pair = yaml_pair(text.substr(3, text.size() - 4)))
+      notes.insert_or_assign(std::move(pair->first), std::move(pair->second));
     return;
   }
   if (const std::size_t colon = text.find(": "); colon != std::string_view::npos)

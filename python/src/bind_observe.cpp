@@ -1,0 +1,122 @@
+// What an instrument records, and what its counts tell.
+
+#include "attend.h"
+#include "bindings.h"
+#include "errors.h"
+#include "options.h"
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <umov/core/quantity.h>
+#include <umov/jobs/calibrate.h>
+#include <umov/jobs/exposure.h>
+#include <umov/jobs/observe.h>
+#include <umov/jobs/reduce.h>
+
+namespace umov::python {
+namespace {
+
+using nb::literals::operator""_a;
+
+jobs::Observation observe(const Scenario &scenario, const jobs::JobOptions &options,
+                          nb::handle watch) {
+  Attention attention(watch);
+  auto made = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return jobs::observe(scenario, options, monitor, diagnostics);
+  });
+  attention.settle(was_interrupted(made));
+  return take(std::move(made));
+}
+
+/// `counts` and `calibration` are texts that stand for files of the names beside them.
+Table reduce(const std::string &counts, const std::string &counts_path,
+             const std::optional<std::string> &calibration, const std::string &calibration_path,
+             const jobs::ReduceOptions &given, nb::handle watch) {
+  Attention attention(watch);
+  auto made = attend(
+      attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<Table> {
+        jobs::ReduceOptions options = given;
+        UMOV_ASSIGN(rows, read_counts_text(counts, counts_path, diagnostics));
+        if (calibration) {
+          UMOV_ASSIGN(file, read_calibration_text(*calibration, calibration_path));
+          UMOV_TRY(jobs::check_calibration(file, rows, calibration_path, diagnostics));
+          options.calibration = file.calibration;
+        }
+        return jobs::reduce(rows, options, monitor, diagnostics);
+      });
+  attention.settle(was_interrupted(made));
+  return take(std::move(made));
+}
+
+std::string calibrate(const std::string &counts, const std::string &counts_path,
+                      const std::string &standards, const std::string &standards_path,
+                      nb::handle watch) {
+  Attention attention(watch);
+  auto made = attend(attention,
+                     [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<std::string> {
+                       UMOV_ASSIGN(rows, read_counts_text(counts, counts_path, diagnostics));
+                       UMOV_ASSIGN(stars, read_standards_text(standards, standards_path));
+                       UMOV_ASSIGN(found, jobs::calibrate(rows, stars, diagnostics));
+                       return calibration_as_toml(found);
+                     });
+  attention.settle(false);
+  return take(std::move(made));
+}
+
+void bind_options(nb::module_ &m) {
+  nb::class_<jobs::ReduceOptions>(m, "ReduceOptions", "How counts are reduced.")
+      .def(
+          "__init__",
+          [](jobs::ReduceOptions *self, double period_s, int harmonics, double q0_sd,
+             double gain_sd, double angle_sd_deg, double efficiency_sd, double sky_sd,
+             unsigned threads) {
+            new (self) jobs::ReduceOptions();
+            self->period_s = period_s;
+            self->harmonics = harmonics;
+            self->priors = {q0_sd, gain_sd, 0, angle_sd_deg * pi / 180, efficiency_sd, sky_sd};
+            self->threads = threads;
+          },
+          "period_s"_a, "harmonics"_a, "q0_sd"_a, "gain_sd"_a, "angle_sd_deg"_a, "efficiency_sd"_a,
+          "sky_sd"_a, "threads"_a);
+  nb::class_<jobs::ExposureRequest>(m, "ExposureRequest", "How bright, how high, how exact.")
+      .def(nb::init<>())
+      .def_rw("instrument", &jobs::ExposureRequest::instrument)
+      .def_rw("mag", &jobs::ExposureRequest::mag)
+      .def_rw("altitude_deg", &jobs::ExposureRequest::altitude_deg)
+      .def_rw("height_m", &jobs::ExposureRequest::height_m)
+      .def_rw("sd_p", &jobs::ExposureRequest::sd_p)
+      .def_rw("nm", &jobs::ExposureRequest::nm)
+      .def_rw("width_nm", &jobs::ExposureRequest::width_nm)
+      .def_rw("sky_mag", &jobs::ExposureRequest::sky_mag)
+      .def_rw("seeing_arcsec", &jobs::ExposureRequest::seeing_arcsec)
+      .def_rw("change_per_s", &jobs::ExposureRequest::change_per_s);
+}
+
+} // namespace
+
+void bind_observe(nb::module_ &m) {
+  bind_options(m);
+  nb::class_<jobs::Observation>(m, "Observation", "Counts and truth.")
+      .def_prop_ro(
+          "counts", [](const jobs::Observation &o) { return &o.counts; },
+          nb::rv_policy::reference_internal)
+      .def_prop_ro(
+          "truth", [](const jobs::Observation &o) { return &o.truth; },
+          nb::rv_policy::reference_internal)
+      .def_ro("exposures", &jobs::Observation::exposures)
+      .def_ro("saturated", &jobs::Observation::saturated);
+  m.def("observe", &observe, "scenario"_a, "options"_a, "watch"_a.none());
+  m.def("reduce", &reduce, "counts"_a, "counts_path"_a, "calibration"_a.none(),
+        "calibration_path"_a, "options"_a, "watch"_a.none());
+  m.def("calibrate", &calibrate, "counts"_a, "counts_path"_a, "standards"_a, "standards_path"_a,
+        "watch"_a.none());
+  m.def("exposure",
+        [](const jobs::ExposureRequest &request) { return take(jobs::exposure(request)); });
+  m.def("instrument_list", [] { return take(jobs::instrument_list()); });
+  m.def(
+      "instrument",
+      [](const std::string &name) { return instrument_as_toml(take(read_instrument(name))); },
+      "name"_a);
+}
+
+} // namespace umov::python
