@@ -1,4 +1,5 @@
-// Included before the sources of a release, precompiled: what nearly all of them read (UmovTargets.cmake).
+// Included before the sources of a release, precompiled: what nearly all of them read
+// (UmovTargets.cmake).
 #include <algorithm>
 #include <array>
 #include <atomic>

@@ -40,12 +40,11 @@ Result<void> add_haze_spread(ObjectRun &one, KeptBlocks blocks, const Monitor &m
     KeptBlocks kept = blocks; // parts of their own beside those of the objects
     kept.part |= std::uint64_t{is_high ? 2u : 1u} << 32;
     const std::string what = std::string("haze at its ") + (is_high ? "most" : "least");
-    UMOV_ASSIGN(other, compute_light_curve(
-                           one.request, *models.light, models.many_directions.get(),
-                           [&](std::size_t done, std::size_t total) {
-                             monitor.advance(what, done, total);
-                           },
-                           monitor.cancel != nullptr ? *monitor.cancel : never, kept));
+    UMOV_ASSIGN(
+        other, compute_light_curve(
+                   one.request, *models.light, models.many_directions.get(),
+                   [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
+                   monitor.cancel != nullptr ? *monitor.cancel : never, kept));
     widen_spread(one.outcome.curve, other.curve);
     if (other.stopped) {
       one.outcome.stopped = other.stopped;

@@ -6,7 +6,8 @@
 namespace umov::jobs {
 
 /// The light curve of an object once more with every haze at each end of its stated range, into the
-/// spread of its samples. A stop is told by `outcome.stopped`; rows that it left out have no spread.
+/// spread of its samples. A stop is told by `outcome.stopped`; rows that it left out have no
+/// spread.
 Result<void> add_haze_spread(ObjectRun &one, KeptBlocks blocks, const Monitor &monitor,
                              Diagnostics &diagnostics);
 
