@@ -91,7 +91,7 @@ void add_mesh_make(CLI::App &mesh, const Exit &exit_with) {
                    "mli (--width --crumple-slope), cylinder "
                    "(--radius --length --sides), chamfered-cube (--edge --chamfer), cigar "
                    "(--semi-axes --facets), hst (--sides --array-angle-deg), agena (--sides), "
-                   "box-wing (--bus --wing --yoke: a group for each face and side; or --facets "
+                   "box-wing (--bus --wing --yoke: a group for each face and side, fronts of the wings to +Z; or --facets "
                    "--crumple: the benchmark's), cubesat (--units --panels), rocket-body (--length "
                    "--diameter --nozzle --sides), dish (--diameter --focus --sides), "
                    "rough-surface (--cells "

@@ -30,7 +30,8 @@ struct Canvas {
   std::span<std::uint8_t> rgb;
   std::uint32_t side;
 
-  void fill(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height, Rgb colour) {
+  void fill(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height,
+            Rgb colour) {
     for (std::uint32_t row = y; row < std::min(y + height, side); ++row)
       for (std::uint32_t column = x; column < std::min(x + width, side); ++column)
         for (std::size_t k = 0; k < 3; ++k)
