@@ -8,6 +8,7 @@ option(UMOV_WARNINGS_AS_ERRORS "Treat warnings as errors" OFF)
 set(UMOV_SANITIZE "" CACHE STRING "address (with undefined behaviour) or thread; empty: none")
 set(UMOV_SANITIZE_MODULES "" CACHE STRING
     "Only these modules with the sanitizer, all others as fast as they compile; empty: all of them")
+option(UMOV_QUICK_TO_COMPILE "Release: common headers precompiled, and -O1 where nothing is computed" ON)
 option(UMOV_FUZZ "Build tests/fuzz as fuzzers (clang): libFuzzer, coverage of the readers" OFF)
 
 # umov_plain: without sanitizers, for modules that need none.
@@ -36,7 +37,7 @@ endif()
 # hundred files. Other builds include what they say, so that nothing is forgotten.
 add_library(umov_common_headers STATIC ${CMAKE_CURRENT_LIST_DIR}/common_headers.cpp)
 target_link_libraries(umov_common_headers PRIVATE umov_flags fmt::fmt tl::expected)
-if(CMAKE_BUILD_TYPE STREQUAL Release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND NOT UMOV_SANITIZE)
+if(UMOV_QUICK_TO_COMPILE AND CMAKE_BUILD_TYPE STREQUAL Release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   target_precompile_headers(umov_common_headers PRIVATE ${CMAKE_CURRENT_LIST_DIR}/common_headers.h)
   set(UMOV_COMMON_HEADERS ON)
 endif()
@@ -45,7 +46,7 @@ endif()
 # nothing else; the light itself is not in it.
 function(umov_quick_to_compile)
   foreach(target IN LISTS ARGN)
-    if(TARGET ${target} AND CMAKE_BUILD_TYPE STREQUAL Release)
+    if(TARGET ${target} AND UMOV_QUICK_TO_COMPILE AND CMAKE_BUILD_TYPE STREQUAL Release)
       target_compile_options(${target} PRIVATE -O1)
     endif()
   endforeach()

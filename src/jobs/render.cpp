@@ -137,6 +137,7 @@ Result<std::string> png_of(const RenderRequest &request, const std::vector<Raste
       frames.push_back(std::move(rgb));
     } else {
       frames.push_back(shade(rasters.front(), shading_of(request.shade), white));
+      draw_colour_bar(frames.back(), request.side, shading_of(request.shade));
     }
   }
   return frames.size() == 1

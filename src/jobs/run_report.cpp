@@ -138,6 +138,12 @@ Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject
                                        .seed = request.light.seed},
                                       joints_of(request.track.joints)));
   input.key_frames = std::move(frames);
+  UMOV_ASSIGN(
+      film,
+      make_film(object.scene, outcome.curve, 36,
+                {.size = 200, .band = object.scene.bands.size() / 2, .threads = request.threads},
+                joints_of(request.track.joints)));
+  input.film = std::move(film);
   input.key_frame_materials = material_names(object.scene);
   input.turning = turning_periods(request.track.attitude);
   input.manifest = manifest_lines(scenario, object);

@@ -1,5 +1,7 @@
 #include <umov/picture/keyframe.h>
 
+#include "picture/position_angle.h"
+
 #include <umov/picture/colours.h>
 
 #include <algorithm>
@@ -22,23 +24,6 @@ Rgb intensity_rgb(const KeyFrameSample &s, double white) {
   const double tone = tone_of(s.radiance, white);
   // Hue tells light from no light: slate is unlit, warm grey is reflected sunlight.
   return mix(ground, {255, 250, 240}, tone);
-}
-
-/// Colours of equal lightness round the circle (Ottosson 2020, Oklab: L = .72, chroma .12), pale
-/// where there is little polarization.
-Rgb position_angle_rgb(double pa_rad, double p) {
-  const double chroma = 0.12 * std::min(1., p / 0.1), hue = 2 * pa_rad + 29 * pi / 180;
-  const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
-  const double l = std::pow(0.72 + 0.3963377774 * a + 0.2158037573 * b, 3);
-  const double m = std::pow(0.72 - 0.1055613458 * a - 0.0638541728 * b, 3);
-  const double s = std::pow(0.72 - 0.0894841775 * a - 1.2914855480 * b, 3);
-  const auto srgb = [](double linear) {
-    const double c = std::clamp(linear, 0., 1.);
-    return 255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055);
-  };
-  return {srgb(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
-          srgb(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
-          srgb(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
 Rgb sample_rgb(const KeyFrameSample &s, KeyFrameShading shading, double white, double pa_scat) {
@@ -81,6 +66,21 @@ std::vector<std::uint8_t> pixels(std::size_t side, std::size_t samples, Colour &
 }
 
 } // namespace
+
+Rgb position_angle_rgb(double pa_rad, double p) {
+  const double chroma = 0.12 * std::min(1., p / 0.1), hue = 2 * pa_rad + 29 * pi / 180;
+  const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
+  const double l = std::pow(0.72 + 0.3963377774 * a + 0.2158037573 * b, 3);
+  const double m = std::pow(0.72 - 0.1055613458 * a - 0.0638541728 * b, 3);
+  const double s = std::pow(0.72 - 0.0894841775 * a - 1.2914855480 * b, 3);
+  const auto srgb = [](double linear) {
+    const double c = std::clamp(linear, 0., 1.);
+    return 255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055);
+  };
+  return {srgb(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+          srgb(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+          srgb(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
 
 double common_exposure(std::span<const KeyFrameRaster> rasters) {
   std::vector<float> lit;

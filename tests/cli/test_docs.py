@@ -37,6 +37,24 @@ def test_my_satellite_in_five_steps(tmp_path):
     assert (tmp_path / "out/mysat/light/lightcurve.csv").exists()
 
 
+def test_three_nights(tmp_path):
+    """The recipes, one after the other, and what they say comes out."""
+    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "docs/recipes.md").read_text(), re.DOTALL)
+    assert len(blocks) == 3
+    for name in ("data", ".deps", "examples"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/umov").symlink_to(UMOV)
+    script = 'set -e\nPATH="$PWD/bin:$PATH"\n' + "\n".join(blocks)
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    found = float(re.search(r"strongest: ([0-9.]+) s", done.stdout).group(1))
+    # Two terms: the period or its half; a pass turns the bisector by up to a few hundredths of a turn per turn.
+    assert min(abs(found - 47), abs(found - 23.5) * 2) < 0.03 * 47, done.stdout
+    assert (tmp_path / "out/geo/night/report.html").exists() and (tmp_path / "out/geo/sky.html").exists()
+    assert len((tmp_path / "out/geo/night.csv").read_text().splitlines()) > 5
+
+
 def test_links_of_the_pages_lead_somewhere():
     pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")]
     for page in pages:

@@ -3,6 +3,10 @@ import math
 import struct
 import zlib
 
+import matplotlib
+import matplotlib.image
+import numpy as np
+
 from conftest import ROOT
 
 SCENE = """umov = 1
@@ -44,6 +48,20 @@ def test_picture_from_directions(umov, tmp_path):
         assert struct.unpack(">II", kinds["IHDR"][:8]) == (64, 64)
     pictures = {(tmp_path / f"{shade}.png").read_bytes() for shade in ("I", "p", "pa", "material")}
     assert len(pictures) == 4
+
+
+def test_a_picture_of_p_has_the_bar_of_its_colours(umov, tmp_path):
+    scene(umov, tmp_path)
+    for shade in ("I", "p"):
+        done = umov("render", "scene.toml", "--sun", 1, 0, 0, "--observer", 0, 1, 0, "--size", 400,
+                    "--shade", shade, "-o", f"{shade}.png")
+        assert done.code == 0, done.err
+    bar = matplotlib.image.imread(tmp_path / "p.png")[300:388, 10, :3]
+    # viridis by its own maker at p = 0, 1/8, ... 1 and straight lines between (polarization_scale); 8 bits of colour.
+    stops, value = np.linspace(0, 1, 9), 1 - (np.arange(88) + 0.5) / 88
+    wanted = np.transpose([np.interp(value, stops, channel) for channel in matplotlib.colormaps["viridis"](stops)[:, :3].T])
+    assert np.abs(bar - wanted).max() < 0.006
+    assert (np.ptp(matplotlib.image.imread(tmp_path / "I.png")[300:388, 10, :3], axis=0) == 0).all()
 
 
 def test_animation_of_a_pass(umov, tmp_path):

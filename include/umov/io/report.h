@@ -34,6 +34,12 @@ struct ReportKeyFrame {
   double white = 0; ///< radiance that is white in the picture of brightness; 0: not told
 };
 
+/// One picture of the object as it turns.
+struct ReportFilmFrame {
+  std::string time; ///< UTC
+  std::string png;  ///< bytes of the file
+};
+
 /// A point of a whole pass, shadowed parts included, for the sky track.
 struct SkyTrackPoint {
   Epoch<Utc> time{};
@@ -58,6 +64,7 @@ struct ReportInput {
   std::vector<SkyTrackPoint> sky_track = {}; ///< empty: the epochs of the curve alone
   std::vector<PureMaterialCurve> pure_materials = {};
   std::vector<ReportKeyFrame> key_frames = {};
+  std::vector<ReportFilmFrame> film = {};            ///< in order of time; empty: none is shown
   std::vector<std::string> key_frame_materials = {}; ///< material_names(scene): fixes the colours
   std::vector<std::pair<std::string, std::string>> manifest = {}; ///< shown as given, in order
   std::vector<TurningPeriod> turning = {}; ///< not empty: periodogram and folded curve are shown

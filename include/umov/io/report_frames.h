@@ -23,4 +23,10 @@ Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const Li
                                                     const KeyFrameOptions &options,
                                                     const std::vector<Joint> &joints = {});
 
+/// The object through its longest lit pass, in at most `count` pictures of brightness, one exposure
+/// for all; none where fewer than three epochs are lit.
+Result<std::vector<ReportFilmFrame>> make_film(const Scene &scene, const LightCurve &curve,
+                                               std::size_t count, const KeyFrameOptions &options,
+                                               const std::vector<Joint> &joints = {});
+
 } // namespace umov

@@ -8,6 +8,9 @@
 
 namespace umov {
 
+/// Half width of the widest lobe that still mirrors the Sun: a paint that shines all over does not.
+inline constexpr double widest_glint_rad = 0.2;
+
 /// Facets of one normal and material, seen from the side that the normal faces.
 struct GlintFlat {
   Vec3<Body> normal;         ///< unit, out of the side that reflects
@@ -19,7 +22,7 @@ struct GlintFlat {
 /// Flats that can glint: of `flat` normals, at least `least_share` of the largest one's area, lobes
 /// no wider than `widest_rad`; the largest first.
 std::vector<GlintFlat> glint_flats(const Scene &scene, double least_share = 0.02,
-                                   double widest_rad = 0.2);
+                                   double widest_rad = widest_glint_rad);
 
 /// Unit vectors to Sun and observer, body frame.
 struct GlintView {

@@ -101,6 +101,10 @@ double common_exposure(std::span<const KeyFrameRaster> rasters);
 std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading,
                                 double white);
 
+/// Puts a bar of the colours with its numbers into the lower left corner of a picture of p or of
+/// the position angle; other and small pictures stay as they are.
+void draw_colour_bar(std::span<std::uint8_t> rgb, std::uint32_t side, KeyFrameShading shading);
+
 /// The object in colour, from rasters of one view in three bands: red, green, blue. Each channel is
 /// compressed alike, so what is grey reflects all three alike. BadInput unless they fit.
 Result<std::vector<std::uint8_t>> shade_colour(std::span<const KeyFrameRaster> red_green_blue,

@@ -231,6 +231,13 @@ Json key_frames_json(const std::vector<ReportKeyFrame> &frames) {
   return out;
 }
 
+Json film_json(const std::vector<ReportFilmFrame> &film) {
+  Json out = Json::array();
+  for (const ReportFilmFrame &frame : film)
+    out.push_back({{"time", frame.time}, {"src", "data:image/png;base64," + base64(frame.png)}});
+  return out;
+}
+
 Result<void> check(const ReportInput &input) {
   const LightCurve &c = input.curve;
   const std::size_t rows = c.epochs.size() * c.bands.size();
@@ -285,6 +292,7 @@ Result<std::string> report_data(const ReportInput &input) {
       {"sky_track", sky_track_json(input.sky_track)},
       {"pure_materials", pure_json(input.pure_materials)},
       {"key_frames", key_frames_json(input.key_frames)},
+      {"film", film_json(input.film)},
       {"polarization_scale", polarization_scale()},
       {"turning", turning_json(input)},
       {"manifest", std::move(manifest)},

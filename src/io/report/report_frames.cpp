@@ -99,6 +99,25 @@ Result<ReportKeyFrame> picture_set(const KeyFrameRaster &raster, const LightCurv
   return out;
 }
 
+/// The rasters of some epochs, one band.
+Result<std::vector<KeyFrameRaster>> trace_epochs(const Scene &scene, const LightCurve &curve,
+                                                 std::span<const std::size_t> epochs,
+                                                 const KeyFrameOptions &options,
+                                                 const std::vector<Joint> &joints) {
+  const KeyFrameStage stage(scene, joints, options.bounces);
+  std::vector<KeyFrameRaster> out;
+  for (const std::size_t i : epochs) {
+    if (i >= curve.epochs.size())
+      return fail(ErrorCode::Internal,
+                  fmt::format("key frame of epoch {}; the curve has {}", i, curve.epochs.size()));
+    const LightCurveEpoch &at = curve.epochs[i];
+    UMOV_ASSIGN(one, stage.trace({at.pose, celestial_north(at)}, at.joint_angles_rad, options,
+                                 std::span(&options.band, 1)));
+    out.push_back(std::move(one.front()));
+  }
+  return out;
+}
+
 } // namespace
 
 Vec3<Body> celestial_north(const LightCurveEpoch &epoch) {
@@ -116,21 +135,34 @@ Result<std::vector<ReportKeyFrame>> make_key_frames(const Scene &scene, const Li
                                                     std::span<const std::size_t> epochs,
                                                     const KeyFrameOptions &options,
                                                     const std::vector<Joint> &joints) {
-  const KeyFrameStage stage(scene, joints, options.bounces);
-  std::vector<KeyFrameRaster> rasters;
-  for (const std::size_t i : epochs) {
-    if (i >= curve.epochs.size())
-      return fail(ErrorCode::Internal,
-                  fmt::format("key frame of epoch {}; the curve has {}", i, curve.epochs.size()));
-    const LightCurveEpoch &at = curve.epochs[i];
-    UMOV_ASSIGN(one, stage.trace({at.pose, celestial_north(at)}, at.joint_angles_rad, options,
-                                 std::span(&options.band, 1)));
-    rasters.push_back(std::move(one.front()));
-  }
+  UMOV_ASSIGN(rasters, trace_epochs(scene, curve, epochs, options, joints));
   std::vector<ReportKeyFrame> out;
   for (std::size_t k = 0; k < epochs.size(); ++k) {
     UMOV_ASSIGN(frame, picture_set(rasters[k], curve, epochs[k], options.band));
     out.push_back(std::move(frame));
+  }
+  return out;
+}
+
+Result<std::vector<ReportFilmFrame>> make_film(const Scene &scene, const LightCurve &curve,
+                                               std::size_t count, const KeyFrameOptions &options,
+                                               const std::vector<Joint> &joints) {
+  const auto passes = lit_passes(curve);
+  const auto longest = std::ranges::max_element(
+      passes, {}, [](const std::vector<std::size_t> &lit) { return lit.size(); });
+  std::vector<ReportFilmFrame> out;
+  if (longest == passes.end() || longest->size() < 3 || count < 2)
+    return out;
+  std::vector<std::size_t> epochs;
+  const std::size_t pictures = std::min(count, longest->size());
+  for (std::size_t k = 0; k < pictures; ++k)
+    epochs.push_back((*longest)[k * (longest->size() - 1) / (pictures - 1)]);
+  UMOV_ASSIGN(rasters, trace_epochs(scene, curve, epochs, options, joints));
+  const double white = common_exposure(rasters);
+  for (std::size_t k = 0; k < pictures; ++k) {
+    UMOV_ASSIGN(png, encode_png(options.size, options.size,
+                                shade(rasters[k], KeyFrameShading::Intensity, white)));
+    out.push_back({to_iso(curve.epochs[epochs[k]].geometry.time), std::move(png)});
   }
   return out;
 }

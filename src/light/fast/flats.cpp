@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <umov/light/glints.h>
 
 namespace umov {
 
@@ -31,9 +32,11 @@ std::vector<Engine::State::Flat> Engine::State::find_flats() const {
       const Element &e = elements.list[classes.element[c.first]];
       if (!e.is_flat)
         continue;
-      const double reach =
-          surface_of_slot(scene, c.slot).half_width_rad() + 0.5 * sun_radius_at_1au_rad;
-      out.push_back({c.normal, std::cos(std::min(reach, pi)), g, lane, slot[g]});
+      const double half_width = surface_of_slot(scene, c.slot).half_width_rad();
+      if (!(half_width <= widest_glint_rad))
+        continue;
+      out.push_back(
+          {c.normal, std::cos(half_width + 0.5 * sun_radius_at_1au_rad), g, lane, slot[g]});
     }
   return out;
 }

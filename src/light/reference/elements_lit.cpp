@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <umov/light/glints.h>
 
 namespace umov {
 namespace {
@@ -248,8 +249,9 @@ private:
   [[nodiscard]] bool is_near_glint(const Element &e, double side, const Surface &surface) const {
     if (!(dot(pose_.half, pose_.half) > 0))
       return false;
-    return angle_between(side * e.normal[0], pose_.half) <=
-           surface.half_width_rad() + 0.5 * sun_radius_at_1au_rad;
+    const double half_width = surface.half_width_rad();
+    return half_width <= widest_glint_rad && angle_between(side * e.normal[0], pose_.half) <=
+                                                 half_width + 0.5 * sun_radius_at_1au_rad;
   }
 
   void finish() {

@@ -128,5 +128,15 @@ TEST(IntegratorEdges, GlintOfAFlatWithinItsLobe) {
   EXPECT_EQ(share(4.92), 0);
 }
 
+TEST(IntegratorEdges, ALobeAsWideAsAPaintsMirrorsNothing) {
+  // cos^m of half width acos(2^(-1/m)): 12.0 deg at m = 31, beyond .2 rad = 11.46 deg; 11.1 at 36.
+  for (const double m : {31., 36.}) {
+    const Integrator plate(
+        scene_of(sheet(0, 1, 0, 1, 0, "sheet"), NormalMode::Flat, {interface_of("paper_al", m)}));
+    const Vec3<Body> sun{0.6, 0, 0.8}, observer{-0.6, 0, 0.8};
+    EXPECT_NEAR(plate.evaluate({sun, observer}, {}).glint_share, m > 33 ? 1 : 0, 1e-12) << m;
+  }
+}
+
 } // namespace
 } // namespace umov

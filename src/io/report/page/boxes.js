@@ -123,6 +123,45 @@ function exposureText(frame) {
   return times < 1.05 ? " · exposed shortest of all" : " · exposed " + (times < 10 ? times.toFixed(1) : Number(times.toPrecision(2)).toLocaleString("en")) + " times as long";
 }
 
+/// The object through a pass: drawn at the time of the cursor, or played.
+const film = {
+  frames: report.film.map((frame) => ({ ...frame, clock: milliseconds(frame.time) })),
+  at: 0,
+  timer: 0,
+  fill(parent) {
+    if (!this.frames.length) return;
+    this.image = element("img", { alt: "The object as it turns", width: 200, height: 200 });
+    this.slider = element("input", { type: "range", min: 0, max: this.frames.length - 1, value: 0, "aria-label": "Time" });
+    this.label = element("b", {});
+    this.button = element("button", { type: "button", class: "plain", onclick: () => this.play(!this.timer) }, "Play");
+    this.slider.addEventListener("input", () => { this.play(false); this.to(Number(this.slider.value), true); });
+    parent.append(element("figure", { class: "film" }, this.image,
+      element("div", {}, this.label, this.slider, this.button,
+        element("p", { class: "caption" }, "The object through its longest lit pass, one exposure for all pictures (asinh). It follows the cursor in the figures against time."))));
+    this.to(0);
+  },
+  to(k, isByHand) {
+    this.at = k;
+    this.image.src = this.frames[k].src;
+    this.label.textContent = this.frames[k].time.slice(0, 19).replace("T", " ");
+    this.slider.value = k;
+    if (isByHand) cursor.show(plotTime(this.frames[k].time), null);
+  },
+  /// The picture nearest to a time of its pass.
+  follow(clockTime) {
+    if (!this.frames.length || this.timer || clockTime < this.frames[0].clock - 60000 || clockTime > this.frames[this.frames.length - 1].clock + 60000) return;
+    const off = this.frames.map((frame) => Math.abs(frame.clock - clockTime));
+    const nearest = off.indexOf(Math.min(...off));
+    if (nearest !== this.at) this.to(nearest);
+  },
+  play(isOn) {
+    clearInterval(this.timer);
+    this.timer = isOn ? setInterval(() => this.to((this.at + 1) % this.frames.length, true), 200) : 0;
+    this.button.textContent = isOn ? "Pause" : "Play";
+    if (!isOn) cursor.hide();
+  },
+};
+
 function fillKeyFrames() {
   if (!report.key_frames.length) return;
   const frames = report.key_frames.map((frame, k) => element("figure", { class: "frame", "data-time": frame.time },
@@ -135,4 +174,5 @@ function fillKeyFrames() {
   byId("frames").append(element("h2", {}, "The object as the observer sees it"), frameLegend(),
     element("p", { class: "caption" }, "Celestial north up, east left; each picture of brightness has its own exposure, told below it, on a logarithmic-like (asinh) scale; material darker in shadow. The arrow points to the side of the Sun."),
     element("div", { class: "frame-grid" }, ...frames));
+  film.fill(byId("frames"));
 }

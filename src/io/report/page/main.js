@@ -38,6 +38,7 @@ function fillFigures() {
   drawAll();
 }
 
+if (window.matchMedia("(prefers-color-scheme: dark)").matches) setTheme("dark");
 for (const fill of [fillSummary, fillWarnings, fillBoxes, fillKeyFrames])
   try {
     fill();
@@ -61,7 +62,6 @@ window.addEventListener("beforeprint", () => {
   if (wasDark) setTheme("light");
   paper.isPrinting = true;
   drawAll();
-  for (const card of cards) Plotly.Plots.resize(card.plot);
 });
 window.addEventListener("afterprint", () => {
   if (wasDark) setTheme("dark");

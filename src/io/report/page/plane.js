@@ -115,7 +115,7 @@ const brightnessPhaseFigure = {
     const ends = range(data.flatMap((trace) => trace.y));
     const faint = ends ? Math.min(ends[1], ends[0] + 12) : 1, pad = ends ? Math.max(0.1, 0.05 * (faint - ends[0])) : 0;
     return { data, layout: layout({ hovermode: "closest", xaxis: axis({ title: "phase angle [°]" }),
-      yaxis: axis({ title: state.scale === "mag" ? "AB magnitude" : "-2.5 log intensity", range: ends ? [faint + pad, ends[0] - pad] : [1, 0] }) }) };
+      yaxis: axis({ title: state.scale === "mag" ? report.mag_system + " magnitude" : "-2.5 log intensity", range: ends ? [faint + pad, ends[0] - pad] : [1, 0] }) }) };
   },
   table: () => tidyTable([["mag", "mag", (b, i) => b.mag[i]], ["intensity", "m2 sr-1", (b, i) => b.intensity[i]]]),
 };

@@ -29,6 +29,7 @@ function layout(extra) {
     hoverlabel: { font: { size: 12 } },
     // On a touch screen a drag scrolls the page.
     dragmode: isTouch ? false : "zoom",
+    ...(paper.isPrinting ? { width: paper.width } : { autosize: true }),
     ...extra,
   };
 }
@@ -85,7 +86,7 @@ function choice(name, options, current, onChange) {
 
 const fileStem = (report.object || "object").replace(/[^A-Za-z0-9_-]+/g, "_") + "_";
 
-const paper = { isPrinting: false }; // two figures stand on a sheet
+const paper = { isPrinting: false, width: 650 }; // two figures stand on a sheet, A4 or Letter, inside its margins
 
 /// One cursor through all figures against time and the pictures: where the pointer is in one of them, a line stands
 /// in the others, and the picture nearest in time is framed.
@@ -102,6 +103,7 @@ const cursor = {
   show(time, source) {
     for (const card of this.cards) if (card !== source) this.place(card, time);
     const at = Date.parse(time.replace(" ", "T") + "Z");
+    if (source) film.follow(at);
     const frames = [...document.querySelectorAll(".frame")];
     const off = frames.map((frame) => Math.abs(milliseconds(frame.dataset.time) - at));
     const nearest = off.length ? off.indexOf(Math.min(...off)) : -1;
