@@ -102,6 +102,7 @@
 #include <umov/lightcurve/compute.h>
 #include <umov/lightcurve/derived_errors.h>
 #include <umov/lightcurve/earth_light.h>
+#include <umov/lightcurve/extinction.h>
 #include <umov/lightcurve/light_curve.h>
 #include <umov/lightcurve/pass_light.h>
 #include <umov/observation/epochs.h>
