@@ -119,7 +119,8 @@ std::vector<PlotFigure> figures_of_counts(const Table &counts, const Table &trut
       continue;
     const double n = counts.number("counts", row), mean = expected(counts, row, truth, at->second);
     const double star = std::max(0.0, mean - counts.number("sky", row));
-    const double f2 = counts.number("excess2", row), flicker = counts.number("scint_sd", row) * star;
+    const double f2 = counts.number("excess2", row),
+                 flicker = counts.number("scint_sd", row) * star;
     const double sky = f2 * counts.number("sky", row) + std::pow(counts.number("sky_err", row), 2);
     const double read = counts.number("var_read", row), air = flicker * flicker;
     const double variance = f2 * star + sky + read + air;
@@ -146,11 +147,21 @@ std::vector<PlotFigure> figures_of_counts(const Table &counts, const Table &trut
     lines[k].name += ", expected";
   lines.insert(lines.end(), points.begin(), points.end());
   return {{"Counts in the aperture", clock.title(), "electrons", lines, false, false, {}},
-          {"What the model leaves", clock.title(), "(counts - expected)/error",
-           std::move(left).all(), false, false, {}},
+          {"What the model leaves",
+           clock.title(),
+           "(counts - expected)/error",
+           std::move(left).all(),
+           false,
+           false,
+           {}},
           histogram_of(pulls),
-          {"Noise of the first channel", clock.title(), "share of the variance",
-           std::move(budget).all(), false, false, {}}};
+          {"Noise of the first channel",
+           clock.title(),
+           "share of the variance",
+           std::move(budget).all(),
+           false,
+           false,
+           {}}};
 }
 
 std::vector<PlotFigure> figures_of_truth(const Table &truth) {
@@ -163,10 +174,20 @@ std::vector<PlotFigure> figures_of_truth(const Table &truth) {
     fractions.add("q " + band, clock(row), truth.number("q", row));
     fractions.add("u " + band, clock(row), truth.number("u", row));
   }
-  return {{"What was there: brightness", clock.title(), "-mag (AB), above the air",
-           std::move(mags).all(), false, false, {}},
-          {"What was there: polarization", clock.title(), "q, u in the sky frame",
-           std::move(fractions).all(), false, false, {}}};
+  return {{"What was there: brightness",
+           clock.title(),
+           "-mag (AB), above the air",
+           std::move(mags).all(),
+           false,
+           false,
+           {}},
+          {"What was there: polarization",
+           clock.title(),
+           "q, u in the sky frame",
+           std::move(fractions).all(),
+           false,
+           false,
+           {}}};
 }
 
 } // namespace
@@ -189,7 +210,8 @@ Result<std::string> observation_page(const Observation &observation, const std::
 Result<std::string> stokes_page(const Table &stokes, const std::string &title,
                                 const Diagnostics &diagnostics) {
   const Clock clock(stokes);
-  Lines plane(true), ellipses(false), bars(false), degree(true), limits(true), mags(true), tests(true);
+  Lines plane(true), ellipses(false), bars(false), degree(true), limits(true), mags(true),
+      tests(true);
   for (std::size_t row = 0; row < stokes.rows(); ++row) {
     const std::string band = stokes.text("band", row);
     const double t = clock(row), q = stokes.number("q", row), u = stokes.number("u", row);
@@ -235,10 +257,20 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
       title,
       {{"Polarization", "q", "u", std::move(points), false, false, {}},
        {"Degree of linear polarization", clock.title(), "p", std::move(p), false, false, {}},
-       {"Brightness", clock.title(), "-mag (AB), above the air", std::move(mags).all(), false, false,
+       {"Brightness",
+        clock.title(),
+        "-mag (AB), above the air",
+        std::move(mags).all(),
+        false,
+        false,
         {}},
-       {"Fits: what noise does not explain", clock.title(), "chi2/dof", std::move(tests).all(), false,
-        false, {}}},
+       {"Fits: what noise does not explain",
+        clock.title(),
+        "chi2/dof",
+        std::move(tests).all(),
+        false,
+        false,
+        {}}},
       notes);
 }
 

@@ -1,5 +1,5 @@
-// The worked chain of docs/theory/observing.md: HST at 2018-01-21T05:12:00Z through air, telescope and
-// polarization camera, and back. Numbers of an independent program in numpy.
+// The worked chain of docs/theory/observing.md: HST at 2018-01-21T05:12:00Z through air, telescope
+// and polarization camera, and back. Numbers of an independent program in numpy.
 #include <cmath>
 #include <gtest/gtest.h>
 #include <umov/atmosphere/refraction.h>
@@ -66,11 +66,11 @@ TEST(Chain, CountsAndBack) {
   const double expected_sky[] = {.24824592, .11939782, .10314835, .23199645};
   const Instrument camera = *read_instrument("c11_imx250");
   // V = 21.2 mag/arcsec2 on 50 arcsec2; AB 0 gives 8.916819e9 photons s-1 m-2.
-  const double sky = 8.916819e9 * std::pow(10, -.4 * 21.2) *
-                     collecting_area_m2(camera.telescope) * .35 * exposure_s * 50;
-  const SkyPolarization twilight = scattered_sky(
-      horizontal_direction(Angle::degrees(253.969112), Angle::degrees(-14.897084)),
-      horizontal_direction(Angle::degrees(140.523474), altitude), .8);
+  const double sky = 8.916819e9 * std::pow(10, -.4 * 21.2) * collecting_area_m2(camera.telescope) *
+                     .35 * exposure_s * 50;
+  const SkyPolarization twilight =
+      scattered_sky(horizontal_direction(Angle::degrees(253.969112), Angle::degrees(-14.897084)),
+                    horizontal_direction(Angle::degrees(140.523474), altitude), .8);
   const auto rows = camera_rows();
   std::vector<ChannelDatum> data;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -87,20 +87,22 @@ TEST(Chain, CountsAndBack) {
   EXPECT_NEAR(q * std::sin(twice) + u * std::cos(twice), .18882253, 3e-8);
   EXPECT_NEAR(std::sqrt(f.covariance[0][0]), .11984, 5e-6);
   EXPECT_NEAR(std::sqrt(f.covariance[1][1]), .11873, 5e-6);
-  const auto p = polarization_of(q, u, {{{f.covariance[0][0], f.covariance[0][1]},
-                                         {f.covariance[1][0], f.covariance[1][1]}}});
+  const auto p = polarization_of(
+      q, u, {{{f.covariance[0][0], f.covariance[0][1]}, {f.covariance[1][0], f.covariance[1][1]}}});
   EXPECT_NEAR(p.debiased, .48634879, 3e-8);
   EXPECT_NEAR(std::fmod(p.angle_rad * 180 / pi + axis_deg, 180), 11.093944, 3e-6);
 }
 
 TEST(Chain, AMisjudgedTwilightIsTakenForMaterial) {
-  // Sky of V = 15, polarized by .5 as the object would be, a tenth of it left in: .0122 of the star.
+  // Sky of V = 15, polarized by .5 as the object would be, a tenth of it left in: .0122 of the
+  // star.
   const double psi = 11.093944, star = 41236.31 * exposure_s * .84, share = .244;
   const auto rows = camera_rows();
   std::vector<ChannelDatum> data;
   for (const StokesRow &row : rows) {
     const double sky = share * star * respond(row, in_camera(.5, psi));
-    data.push_back({star * row[0] + sky, .9 * sky, 0, 1, row_on_sky(row, Angle::degrees(axis_deg))});
+    data.push_back(
+        {star * row[0] + sky, .9 * sky, 0, 1, row_on_sky(row, Angle::degrees(axis_deg))});
   }
   const StokesFit fit = *fit_stokes(data, 3);
   const double twice = 2 * psi * pi / 180, q = fit.stokes[1] / star, u = fit.stokes[2] / star;
