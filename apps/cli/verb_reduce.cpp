@@ -12,7 +12,7 @@ namespace umov::cli {
 namespace {
 
 struct ReduceVerb {
-  std::string counts, output, calibration, model = "static";
+  std::string counts, output, page, calibration, model = "static";
   std::vector<std::string> columns;
   double q0_sd = 0, gain_sd = 0, angle_sd_deg = 0, efficiency_sd = 0, sky_sd = 0;
 };
@@ -60,6 +60,10 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
   }
   JobConsole console(common);
   UMOV_ASSIGN(table, jobs::reduce(counts, options, console.monitor(false), diagnostics));
+  if (!o.page.empty()) {
+    UMOV_ASSIGN(page, jobs::stokes_page(table, "Stokes parameters of " + o.counts, diagnostics));
+    UMOV_TRY(put(o.page, page));
+  }
   UMOV_ASSIGN(shown, chosen_columns(table, o.columns,
                                     {"time_utc", "band", "mag", "q", "u", "v", "p_debiased", "p_lo",
                                      "p_hi", "pa", "pa_err", "flags"},
@@ -88,6 +92,7 @@ void add_reduce(CLI::App &app, const Exit &exit_with) {
   prior("--angle-sd-deg", o->angle_sd_deg, "How well the instrument's angle is known [deg]");
   prior("--efficiency-sd", o->efficiency_sd, "How well the efficiency is known");
   prior("--sky-sd", o->sky_sd, "How well the whole sky is known, relative");
+  verb->add_option("--page", o->page, "Also a page of plots: x.html");
   add_table_output(*verb, o->output);
   add_columns(*verb, o->columns);
   add_threads(*verb, *common);

@@ -1,5 +1,6 @@
 // The files of an observation's folder.
 
+#include "jobs/observe_pages.h"
 #include "jobs/result_folder.h"
 
 #include <fmt/format.h>
@@ -16,6 +17,11 @@ Result<void> write_observation(const Observation &observation, const Scenario &s
         {"truth", &observation.truth}}) {
     UMOV_ASSIGN(files, add_table(*table, name, scenario, folder));
     manifest.files.insert(manifest.files.end(), files.begin(), files.end());
+  }
+  if (wants(scenario, "html")) {
+    const std::string title = scenario.title.empty() ? "Counts" : scenario.title;
+    UMOV_ASSIGN(page, observation_page(observation, title, diagnostics));
+    folder.add("report.html", std::move(page));
   }
   const std::string log =
       fmt::format("{}, {} rows of counts\n", counted(observation.exposures, "exposure"),

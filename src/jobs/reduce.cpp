@@ -9,6 +9,7 @@
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/reduction/sequence.h>
+#include <utility>
 
 namespace umov::jobs {
 namespace {
@@ -175,19 +176,25 @@ Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
 }
 
 /// A change of brightness from exposure to exposure looks like polarization where analysers follow
-/// each other: told in figures.
+/// each other: told in figures, from one set of a band to its next.
 void warn_of_drift(const std::vector<Set> &sets, const std::vector<Reduced> &reduced,
                    Diagnostics &diagnostics) {
   std::vector<double> drifts, errors;
-  for (std::size_t k = 1; k < reduced.size(); ++k) {
-    const Reduced &a = reduced[k - 1], &b = reduced[k];
-    const auto steps =
-        static_cast<double>(sets[k].rows.back().exposure - sets[k].rows.front().exposure + 1);
-    const bool is_sequence = steps >= 3 && sets[k].rows.size() == static_cast<std::size_t>(steps);
-    if (!is_sequence || !a.is_solved || !b.is_solved || a.middle.band != b.middle.band ||
-        a.middle.name != b.middle.name)
+  std::map<std::pair<std::string, std::string>, std::size_t> before;
+  for (std::size_t k = 0; k < reduced.size(); ++k) {
+    const Reduced &b = reduced[k];
+    const std::vector<CountRow> &rows = sets[k].rows;
+    const auto states = static_cast<double>(rows.back().exposure - rows.front().exposure + 1);
+    const bool is_sequence = states >= 3 && rows.size() == static_cast<std::size_t>(states);
+    if (!is_sequence || !b.is_solved)
       continue;
-    drifts.push_back(std::abs(b.fit.stokes[0] / a.fit.stokes[0] - 1) / steps);
+    const auto [at, is_first] = before.try_emplace({b.middle.name, b.middle.band}, k);
+    const std::size_t last = std::exchange(at->second, k);
+    if (is_first)
+      continue;
+    const auto steps =
+        static_cast<double>(rows.front().exposure - sets[last].rows.front().exposure);
+    drifts.push_back(std::abs(b.fit.stokes[0] / reduced[last].fit.stokes[0] - 1) / steps);
     errors.push_back(std::sqrt(b.fractions.covariance[0][0]));
   }
   if (drifts.empty())

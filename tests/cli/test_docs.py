@@ -55,6 +55,36 @@ def test_three_nights(tmp_path):
     assert len((tmp_path / "out/geo/night.csv").read_text().splitlines()) > 5
 
 
+def test_why_the_polarization_was_wrong(tmp_path):
+    """Every block of the page, and the figures that it names."""
+    from astropy.table import Table
+    import numpy
+    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "docs/howto/wrong_polarization.md").read_text(), re.DOTALL)
+    assert len(blocks) == 4
+    (tmp_path / "data").symlink_to(ROOT / "data")
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/umov").symlink_to(UMOV)
+    script = 'set -e\nPATH="$PWD/bin:$PATH"\n' + "\n".join(blocks)
+    done = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "while the analyser turns" in done.stderr and "misfit" in done.stderr
+
+    def errors(name, counts):
+        truth, out = Table.read(tmp_path / f"out/wheel/{counts}/truth.ecsv"), []
+        for row in Table.read(tmp_path / f"out/wheel/{name}.ecsv"):
+            if "incomplete" in str(row["flags"]) or "saturated" in str(row["flags"]):
+                continue
+            own = truth[(truth["band"] == row["band"])]
+            if name != "series":
+                own = own[own["set_id"] == row["set_id"]]
+            light = own["I"] / sum(own["I"])
+            out += [row["q"] - sum(own["q"] * light), row["u"] - sum(own["u"] * light)]
+        return numpy.sqrt(numpy.mean(numpy.square(out)))
+
+    wheel, series, mosaic = errors("static", "counts"), errors("series", "counts"), errors("mosaic", "mosaic")
+    assert 0.12 < wheel < 0.25 and series < wheel / 5 and mosaic < wheel / 10
+
+
 def test_links_of_the_pages_lead_somewhere():
     pages = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").rglob("*.md")]
     for page in pages:

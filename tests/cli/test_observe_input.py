@@ -168,3 +168,17 @@ def test_angles_of_a_sequence_are_of_its_middle(scene, umov, tmp_path):
     twice = 2 * math.radians(counts["pa_scat"][1])
     assert abs(row["q_scat"] - (row["q"] * math.cos(twice) + row["u"] * math.sin(twice))) < 1e-12
     assert abs(counts["pa_scat"][0] - counts["pa_scat"][1]) > 0.5
+
+
+def test_pages_of_plots(scene, umov, tmp_path):
+    path = scene("exposure_s = 0.2")
+    path.write_text(path.read_text().replace('["ecsv"]', '["ecsv", "html"]'))
+    assert umov("observe", path).code == 0
+    page = (tmp_path / "out/report.html").read_text()
+    for title in ("Counts in the aperture", "What the model leaves", "Pulls of the counts", "Noise of the first channel",
+                  "What was there"):
+        assert title in page
+    assert umov("reduce", "out/counts.ecsv", "-o", "s.ecsv", "--page", "s.html").code == 0
+    page = (tmp_path / "s.html").read_text()
+    for title in ("Polarization", "Degree of linear polarization", "Brightness", "chi2/dof"):
+        assert title in page

@@ -26,4 +26,9 @@ struct ReduceOptions {
 Result<Table> reduce(const CountsFile &counts, const ReduceOptions &options, const Monitor &monitor,
                      Diagnostics &diagnostics);
 
+/// A page of plots of that table: the q-u plane with ellipses, degree with its intervals,
+/// brightness, and how well the fits do. Internal if this build has no plotting script.
+Result<std::string> stokes_page(const Table &stokes, const std::string &title,
+                                const Diagnostics &diagnostics);
+
 } // namespace umov::jobs

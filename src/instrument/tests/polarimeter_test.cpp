@@ -1,5 +1,7 @@
 #include "instrument/tests/anchor.h"
 
+#include <Eigen/Dense>
+#include <complex>
 #include <gtest/gtest.h>
 #include <umov/instrument/polarimeter.h>
 
@@ -46,6 +48,42 @@ TEST(Elements, TurnsUndoEachOther) {
   for (std::size_t r = 0; r < 4; ++r)
     for (std::size_t c = 0; c < 4; ++c)
       EXPECT_NEAR(back.m[r][c], r == c ? 1 : 0, 1e-14);
+}
+
+/// Smallest eigenvalue of the coherency matrix: a Mueller matrix that fields can make has none
+/// below 0 (Cloude 1986, Optik 75, 26).
+double smallest_coherency(const InstrumentMueller &mueller) {
+  using Complex = std::complex<double>;
+  using Pauli = Eigen::Matrix2cd;
+  const Complex i(0, 1);
+  Pauli sigma[4];
+  sigma[0] << 1, 0, 0, 1;
+  sigma[1] << 1, 0, 0, -1;
+  sigma[2] << 0, 1, 1, 0;
+  sigma[3] << 0, -i, i, 0;
+  Eigen::Matrix4cd sum = Eigen::Matrix4cd::Zero();
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4; ++b)
+      for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c)
+          sum(r, c) += mueller.m[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] / 4 *
+                       sigma[a](r / 2, c / 2) * std::conj(sigma[b](r % 2, c % 2));
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix4cd>(sum).eigenvalues()(0);
+}
+
+TEST(Elements, FieldsCanMakeThem) {
+  for (const double angle : {0., 17., 45., 100.}) {
+    const Angle at = Angle::degrees(angle);
+    for (const InstrumentMueller &element :
+         {polarizer(300, at), polarizer(infinite, at), retarder(Angle::degrees(131.8), at),
+          turned(diattenuating_retarder(.9, .3, Angle::degrees(70)), at), axes_turned(at),
+          behind(polarizer(100, at), retarder(Angle::degrees(90), Angle::degrees(22.5)))})
+      EXPECT_GE(smallest_coherency(element), -1e-12);
+  }
+  // A wrong sign in the lower block is found: no field makes it.
+  InstrumentMueller wrong = retarder(Angle::degrees(70), Angle());
+  wrong.m[3][2] = -wrong.m[3][2];
+  EXPECT_LT(smallest_coherency(wrong), -.1);
 }
 
 TEST(Elements, PolarizerWithExtinction) { // nine digits

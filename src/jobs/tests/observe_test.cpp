@@ -3,8 +3,12 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <umov/atmosphere/sky_polarization.h>
+#include <umov/core/files.h>
 #include <umov/io/passband_file.h>
+#include <umov/io/tle.h>
 #include <umov/orbit/moon.h>
+#include <umov/orbit/trajectory.h>
 
 namespace umov::jobs {
 namespace {
@@ -88,6 +92,34 @@ TEST(Sky, MoonlightIsSunlightThatTheAirScatters) {
   sky.air.pressure_hpa = 1013.25;
   EXPECT_GT(magnitude("Bessell.B") - magnitude("Bessell.V"), thin); // thick air loses more blue
   EXPECT_LT(magnitude("Bessell.V") - magnitude("Bessell.I"), .285); // AB: bluer than the Sun
+}
+
+TEST(Sky, SunlitSkyIsPolarizedAsAnObjectThere) {
+  // Every minute of a day of three orbits (tests/data/ephemeris): low, low and geostationary.
+  Diagnostics diagnostics;
+  const std::string file = UMOV_SOURCE_DIR "/tests/data/ephemeris/elements.tle";
+  const auto sets = read_tle(*read_file(file), file, {}, diagnostics);
+  const Site site = *make_site("maui", 20.7083, -156.2578, 3058);
+  const Epoch<Utc> start = *utc_from_iso("2018-01-21T00:00:00Z");
+  std::size_t rows = 0;
+  for (const ElementSet &set : *sets) {
+    if (set.norad_cat_id != 20580 && set.norad_cat_id != 733 && set.norad_cat_id != 36411)
+      continue;
+    const Trajectory orbit(set);
+    for (int minute = 0; minute < 1440; ++minute) {
+      const Epoch<Utc> time = plus_seconds(start, 60. * minute);
+      const auto g = umov::observe(*orbit.at(time), time, site, ShadowModel::Ellipsoid);
+      const auto sun = horizontal_direction(g.sun_azimuth, g.sun_altitude);
+      const auto object = horizontal_direction(g.azimuth, g.altitude);
+      const double apart = angle_between(sun, object) * 180 / pi;
+      if (!(g.altitude.degrees() > 0) || apart < 5 || apart > 175)
+        continue;
+      const double off = scattered_sky(sun, object, 1).axis.degrees() - g.pa_scat_altaz.degrees();
+      EXPECT_NEAR(std::remainder(off, 180), 0, .01) << to_iso(time);
+      ++rows;
+    }
+  }
+  EXPECT_GT(rows, 1500u);
 }
 
 } // namespace

@@ -141,6 +141,24 @@ TEST(Reduce, BeamsOfOneExposureFlickerTogetherInASeries) {
   EXPECT_GT(reduced(file, options).number("cov_qq", 0), .8 * .05 * .05 / 120);
 }
 
+TEST(Reduce, DriftIsToldThoughOtherBandsComeBetween) {
+  CountsFile file;
+  for (int k = 0; k < 32;
+       ++k) { // four analysers in V, four in R, and so on, 1 % brighter each time
+    CountRow row = behind({0, 0, {}}, 45 * (k % 4), 0, k);
+    row.counts *= 1 + .01 * k;
+    row.band = k / 4 % 2 == 0 ? "V" : "R";
+    row.set = k / 8;
+    file.rows.push_back(row);
+  }
+  Diagnostics diagnostics;
+  ASSERT_TRUE(reduce(file, {}, {}, diagnostics));
+  ASSERT_FALSE(diagnostics.empty());
+  // .08 in eight exposures, of 1.0 to 1.3 times the first light.
+  const std::string text = diagnostics.warnings()[0].text();
+  EXPECT_NE(text.find("brightness changes by 0.0"), std::string::npos) << text;
+}
+
 TEST(Reduce, FlagsTellWhatNoiseDoesNot) {
   const Source source;
   CountsFile file = wheel(source, 0, 0);

@@ -1,0 +1,277 @@
+// The page of an observation: what was counted, what was there, and what makes the noise.
+
+#include "jobs/observe_pages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <umov/core/quantity.h>
+#include <umov/core/text.h>
+#include <umov/io/plot_page.h>
+#include <umov/jobs/reduce.h>
+#include <umov/time/epoch.h>
+
+namespace umov::jobs {
+namespace {
+
+constexpr const char *dashes[] = {"solid", "dash", "dot", "dashdot"};
+
+PlotLine line(std::string name, std::size_t number, bool has_markers) {
+  return {std::move(name), {}, {}, number, dashes[number % std::size(dashes)], {}, has_markers, {}};
+}
+
+/// One line for each name, in the order in which they come.
+class Lines {
+public:
+  explicit Lines(bool has_markers) : has_markers_(has_markers) {}
+  PlotLine &of(const std::string &name) {
+    const auto [at, is_new] = index_.try_emplace(name, lines_.size());
+    if (is_new)
+      lines_.push_back(line(name, lines_.size(), has_markers_));
+    return lines_[at->second];
+  }
+  void add(const std::string &name, double x, double y) {
+    PlotLine &one = of(name);
+    one.x.push_back(x);
+    one.y.push_back(y);
+  }
+  [[nodiscard]] std::vector<PlotLine> all() && { return std::move(lines_); }
+
+private:
+  bool has_markers_;
+  std::map<std::string, std::size_t> index_;
+  std::vector<PlotLine> lines_;
+};
+
+/// Seconds since the first row.
+class Clock {
+public:
+  explicit Clock(const Table &table) : table_(table), first_(time(0)) {}
+  double operator()(std::size_t row) const { return seconds_between(time(row), first_); }
+  [[nodiscard]] std::string title() const { return "seconds since " + to_iso(first_); }
+
+private:
+  [[nodiscard]] Epoch<Utc> time(std::size_t row) const {
+    return utc_from_iso(table_.text("time_utc", row)).value_or(Epoch<Utc>{});
+  }
+  const Table &table_;
+  Epoch<Utc> first_;
+};
+
+/// What the light above the air makes of a row: its own w and sky.
+double expected(const Table &counts, std::size_t row, const Table &truth, std::size_t of) {
+  const double i = truth.number("I", of);
+  const double dark = i > 0 ? 1 : 0; // q, u and v of no light are none
+  double out = counts.number("sky", row) + counts.number("w0", row) * i;
+  if (dark > 0)
+    for (const auto &[w, part] : {std::pair{"w1", "q"}, {"w2", "u"}, {"w3", "v"}})
+      out += counts.number(w, row) * i * truth.number(part, of);
+  return out;
+}
+
+/// Rows of the truth by object and exposure.
+std::map<std::pair<std::string, std::string>, std::size_t> truths(const Table &truth) {
+  std::map<std::pair<std::string, std::string>, std::size_t> out;
+  for (std::size_t k = 0; k < truth.rows(); ++k)
+    out[{truth.text("name", k), truth.text("exposure", k)}] = k;
+  return out;
+}
+
+/// Pages of millions of points open nowhere: every n-th exposure is shown.
+std::size_t stride_of(const Table &truth) {
+  constexpr std::size_t most = 3000;
+  return (truth.rows() + most - 1) / most;
+}
+
+PlotFigure histogram_of(const std::vector<double> &pulls) {
+  PlotFigure out{"Pulls of the counts", "(counts - expected)/error", "share", {}, false, false, {}};
+  PlotLine found = line("counts", 0, false), normal = line("normal", 1, false);
+  constexpr int bins = 24;
+  constexpr double width = 0.5, first = -6;
+  std::vector<double> sums(bins, 0);
+  for (const double pull : pulls)
+    if (const double k = std::floor((pull - first) / width); k >= 0 && k < bins)
+      sums[static_cast<std::size_t>(k)] += 1 / static_cast<double>(pulls.size());
+  for (int k = 0; k < bins; ++k)
+    for (const double edge : {0., 1.}) { // steps
+      found.x.push_back(first + (k + edge) * width);
+      found.y.push_back(sums[static_cast<std::size_t>(k)]);
+    }
+  for (double x = first; x <= -first; x += 0.1) {
+    normal.x.push_back(x);
+    normal.y.push_back(width / std::sqrt(2 * pi) * std::exp(-x * x / 2));
+  }
+  out.lines = {std::move(found), std::move(normal)};
+  return out;
+}
+
+/// Counts, what they should be, and what is left.
+std::vector<PlotFigure> figures_of_counts(const Table &counts, const Table &truth) {
+  const auto of = truths(truth);
+  const Clock clock(counts);
+  const std::size_t stride = stride_of(truth);
+  Lines measured(true), model(false), left(true), budget(false);
+  std::vector<double> pulls;
+  for (std::size_t row = 0; row < counts.rows(); ++row) {
+    const auto at = of.find({counts.text("name", row), counts.text("exposure", row)});
+    if (at == of.end())
+      continue;
+    const double n = counts.number("counts", row), mean = expected(counts, row, truth, at->second);
+    const double star = std::max(0.0, mean - counts.number("sky", row));
+    const double f2 = counts.number("excess2", row),
+                 flicker = counts.number("scint_sd", row) * star;
+    const double sky = f2 * counts.number("sky", row) + std::pow(counts.number("sky_err", row), 2);
+    const double read = counts.number("var_read", row), air = flicker * flicker;
+    const double variance = f2 * star + sky + read + air;
+    const double pull = (n - mean) / std::sqrt(variance);
+    if (counts.text("saturated", row) != "true")
+      pulls.push_back(pull);
+    if (at->second % stride != 0)
+      continue;
+    const std::string channel = counts.text("band", row) + " " + counts.text("channel", row);
+    const double t = clock(row);
+    measured.add(channel, t, n);
+    model.add(channel, t, mean);
+    left.add(channel, t, pull);
+    if (row > 0 && counts.text("exposure", row) == counts.text("exposure", row - 1))
+      continue;
+    for (const auto &[name, part] : {std::pair{"photons of the object", f2 * star},
+                                     {"sky and dark", sky},
+                                     {"reading", read},
+                                     {"scintillation", air}})
+      budget.add(name, t, part / variance);
+  }
+  std::vector<PlotLine> lines = std::move(model).all(), points = std::move(measured).all();
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    lines[k].name += ", expected";
+  lines.insert(lines.end(), points.begin(), points.end());
+  return {{"Counts in the aperture", clock.title(), "electrons", lines, false, false, {}},
+          {"What the model leaves",
+           clock.title(),
+           "(counts - expected)/error",
+           std::move(left).all(),
+           false,
+           false,
+           {}},
+          histogram_of(pulls),
+          {"Noise of the first channel",
+           clock.title(),
+           "share of the variance",
+           std::move(budget).all(),
+           false,
+           false,
+           {}}};
+}
+
+std::vector<PlotFigure> figures_of_truth(const Table &truth) {
+  const Clock clock(truth);
+  const std::size_t stride = stride_of(truth);
+  Lines mags(false), fractions(false);
+  for (std::size_t row = 0; row < truth.rows(); row += stride) {
+    const std::string band = truth.text("band", row);
+    mags.add(band, clock(row), -truth.number("mag", row));
+    fractions.add("q " + band, clock(row), truth.number("q", row));
+    fractions.add("u " + band, clock(row), truth.number("u", row));
+  }
+  return {{"What was there: brightness",
+           clock.title(),
+           "-mag (AB), above the air",
+           std::move(mags).all(),
+           false,
+           false,
+           {}},
+          {"What was there: polarization",
+           clock.title(),
+           "q, u in the sky frame",
+           std::move(fractions).all(),
+           false,
+           false,
+           {}}};
+}
+
+} // namespace
+
+Result<std::string> observation_page(const Observation &observation, const std::string &title,
+                                     const Diagnostics &diagnostics) {
+  std::vector<PlotFigure> figures = figures_of_counts(observation.counts, observation.truth);
+  for (PlotFigure &one : figures_of_truth(observation.truth))
+    figures.push_back(std::move(one));
+  std::vector<std::string> notes{
+      fmt::format("{}, {} saturated. Expected counts are those of the light that was there, in "
+                  "transparent air; clouds and the instrument's own polarization are in the counts "
+                  "alone.",
+                  counted(observation.exposures, "exposure"), observation.saturated)};
+  for (const Warning &warning : diagnostics.warnings())
+    notes.push_back("warning: " + warning.text());
+  return make_plot_page(title, figures, notes);
+}
+
+Result<std::string> stokes_page(const Table &stokes, const std::string &title,
+                                const Diagnostics &diagnostics) {
+  const Clock clock(stokes);
+  Lines plane(true), ellipses(false), bars(false), degree(true), limits(true), mags(true),
+      tests(true);
+  for (std::size_t row = 0; row < stokes.rows(); ++row) {
+    const std::string band = stokes.text("band", row);
+    const double t = clock(row), q = stokes.number("q", row), u = stokes.number("u", row);
+    mags.add(band, t, -stokes.number("mag", row));
+    if (stokes.number("dof", row) > 0)
+      tests.add(band, t, stokes.number("chi2", row) / stokes.number("dof", row));
+    if (!std::isfinite(q))
+      continue;
+    plane.add(band, q, u);
+    const double a = stokes.number("cov_qq", row), b = stokes.number("cov_uu", row);
+    const double c = stokes.number("cov_qu", row), s = std::sqrt(a);
+    for (int k = 0; k <= 24; ++k) { // the ellipse of one standard deviation, by Cholesky's root
+      const double x = std::cos(2 * pi * k / 24), y = std::sin(2 * pi * k / 24);
+      ellipses.add(band, q + s * x, u + c / s * x + std::sqrt(std::max(0.0, b - c * c / a)) * y);
+    }
+    ellipses.add(band, std::nan(""), std::nan(""));
+    if (stokes.number("p_lo", row) > 0)
+      degree.add(band, t, stokes.number("p_debiased", row));
+    else
+      limits.add(band + ", upper limit", t, stokes.number("p_hi", row));
+    PlotLine &bar = bars.of(band + ", 95 %");
+    for (const double y : {stokes.number("p_lo", row), stokes.number("p_hi", row), std::nan("")}) {
+      bar.x.push_back(t);
+      bar.y.push_back(y);
+    }
+  }
+  std::vector<PlotLine> points = std::move(plane).all(), p = std::move(degree).all();
+  for (PlotLine &one : std::move(ellipses).all()) {
+    one.dash = "solid"; // of the colour of its points
+    points.push_back(std::move(one));
+  }
+  for (PlotLine &one : std::move(bars).all()) {
+    one.dash = "solid";
+    p.push_back(std::move(one));
+  }
+  for (PlotLine &one : std::move(limits).all())
+    p.push_back(std::move(one));
+  std::vector<std::string> notes{"Ellipses: one standard deviation. Bars: 95 % intervals of the "
+                                 "degree; points where it is detected, else the upper limit."};
+  for (const Warning &warning : diagnostics.warnings())
+    notes.push_back("warning: " + warning.text());
+  return make_plot_page(
+      title,
+      {{"Polarization", "q", "u", std::move(points), false, false, {}},
+       {"Degree of linear polarization", clock.title(), "p", std::move(p), false, false, {}},
+       {"Brightness",
+        clock.title(),
+        "-mag (AB), above the air",
+        std::move(mags).all(),
+        false,
+        false,
+        {}},
+       {"Fits: what noise does not explain",
+        clock.title(),
+        "chi2/dof",
+        std::move(tests).all(),
+        false,
+        false,
+        {}}},
+      notes);
+}
+
+} // namespace umov::jobs
