@@ -2,7 +2,7 @@
 """Blind recovery of attitudes and spins: truth by rays on a finer tessellation, noise of photons, `umov invert pose` or `spin` on
 the coarser mesh by masks. Prints one line per curve and the summary.
 
-usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--umov PATH] [-- options of umov invert]
+usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--umov PATH] [options of umov invert]
 OBJECT: agena, hst, box-wing or cubesat. --spin: the body turns about a random axis; the search is told its period to 1 %."""
 import argparse
 import json
@@ -153,8 +153,7 @@ def main():
     parser.add_argument("--spin", type=float)
     parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
-    parser.add_argument("rest", nargs="*")
-    o = parser.parse_args()
+    o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     meshes = [work / f"{o.object}_{k}.obj" for k in ("fit", "true")]

@@ -48,10 +48,13 @@ std::shared_ptr<const DirectionTable> DirectionTable::make(const PoseLighting &l
   auto out = std::make_shared<DirectionTable>();
   out->cells_ = cells;
   const std::size_t row = cells + 1, nodes = row * row;
-  std::vector<Vec3<Body>> directions(nodes);
-  for (std::size_t k = 0; k < nodes; ++k)
-    directions[k] = direction_at(2 * static_cast<double>(k % row) / static_cast<double>(cells) - 1,
-                                 2 * static_cast<double>(k / row) / static_cast<double>(cells) - 1);
+  const auto at = [&](std::size_t step) {
+    return 2 * static_cast<double>(step) / static_cast<double>(cells) - 1;
+  };
+  std::vector<Vec3<Body>> directions;
+  for (std::size_t y = 0; y < row; ++y)
+    for (std::size_t x = 0; x < row; ++x)
+      directions.push_back(direction_at(at(x), at(y)));
   StokesTable lit;
   std::vector<Pose> poses;
   constexpr std::size_t at_once = 64; // directions of the Sun whose light is held at a time

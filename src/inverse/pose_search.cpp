@@ -167,8 +167,13 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &lik
   PoseAnswer out;
   Samples samples = inverse::sample_modes(model, likelihood, modes, options);
   if (!samples.draws.empty() && may_be_broad && !is_described(modes, samples)) {
-    out.is_broad = true;
-    samples = inverse::sample_all(model, likelihood, options);
+    Samples all = inverse::sample_all(model, likelihood, options);
+    // Either can miss probability, hardly find too much: peaks that particles from afar did not
+    // come upon lack in their evidence.
+    constexpr double missed = 1; // e-fold
+    out.is_broad = all.draws.empty() || all.log_evidence > samples.log_evidence - missed;
+    if (out.is_broad)
+      samples = std::move(all);
   }
   if (samples.draws.empty())
     return tl::unexpected(stopped());
