@@ -68,7 +68,7 @@ std::string signed_bytes(std::string_view input, const MaskStore &lists) {
   take(lists.groups.size() * sizeof(backend::GroupMask));
   for (const MaskTableStore *table : {&lists.small, &lists.large}) {
     take(table->offset.size() * sizeof(std::uint32_t));
-    take(table->row.size() * sizeof(backend::MaskRow));
+    take(table->row.size() * sizeof(MaskRow));
   }
   take(rest.size());
   const std::uint64_t value = sum.value();
