@@ -71,6 +71,8 @@ void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   verb.add_option("--visibility", o->visibility, "How hiding is decided: masks, auto or rays")
       ->check(CLI::IsMember({"masks", "auto", "rays"}))
       ->capture_default_str();
+  verb.add_flag("--allow-old-elements", o->request.allow_old_elements,
+                "Take elements over 30 days from the observations");
   verb.add_flag("--force", o->common.force, "Write into a folder that umov did not make");
   verb.add_flag("-v,--verbose", o->common.verbose, "Also say what was done");
   add_threads(verb, o->common);

@@ -43,7 +43,7 @@ CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &
     Row row;
     row.at = s.epoch * curve.bands.size() + s.band;
     row.group = errors.has_clouds ? s.epoch : s.band;
-    const double of_model = part * std::max(0.0, s.i);
+    const double of_model = std::max(part, best_relative) * std::max(0.0, s.i);
     const double variance = s.i_sd * s.i_sd + of_model * of_model + base * base;
     if (!std::isnan(s.i) && variance > 0) {
       row.i = s.i;
@@ -51,10 +51,10 @@ CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &
       ++measurements_;
     }
     if (errors.has_polarization && !std::isnan(s.q)) {
-      const double more = errors.floor * errors.floor / 4;
+      const double more = errors.floor * errors.floor / 4, least = best_relative * best_relative;
       // Cholesky of the covariance, inverted: L^-1 (q, u) has unit covariance.
-      const double a = std::sqrt(s.cov_qq + more), b = s.cov_qu / a;
-      const double c = std::sqrt(std::max(s.cov_uu + more - b * b, 1e-30));
+      const double a = std::sqrt(std::max(s.cov_qq + more, least)), b = s.cov_qu / a;
+      const double c = std::sqrt(std::max(s.cov_uu + more - b * b, least));
       row.q = s.q;
       row.u = s.u;
       row.l_qq = 1 / a;

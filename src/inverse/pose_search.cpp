@@ -124,7 +124,7 @@ std::vector<PoseMode> modes_of(const std::vector<TurningFit> &fits, double span_
   for (const TurningFit &fit : fits)
     best = std::min(best, fit.at.minus_2_log);
   for (const TurningFit &fit : fits) {
-    if (fit.at.minus_2_log > best + 30)
+    if (!(fit.at.minus_2_log <= best + 30)) // nor what is no number
       continue;
     PoseMode mode{fit.turning, covariance_of(fit.information, span_s), 0, fit.at.chi2,
                   fit.at.scale};
@@ -209,7 +209,8 @@ double PoseMode::sd_rad() const {
 Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options) {
   const CurveLikelihood exact(model.curve(), options.errors);
   if (exact.measurements() == 0)
-    return fail(ErrorCode::BadInput, "nothing was measured in any band that the model has");
+    return fail(ErrorCode::BadInput,
+                "nothing was measured: no row has light with an error or above 0, nor q and u");
   UMOV_ASSIGN(left, search_grid(model, options));
   const auto starts = spread_out(left, options.starts, 5 * degree);
   const CurveLikelihood rough(model.curve(), tempered(options.errors));

@@ -105,10 +105,11 @@ Whitened whitened(const ObservedCurve &curve, const CurveErrors &errors,
   Index row = 0;
   for (const ObservedSample &s : curve.samples) {
     const std::size_t at = s.epoch * curve.bands.size() + s.band;
-    if (std::isnan(s.i))
+    if (std::isnan(s.i) || !(s.i > 0 || s.i_sd > 0))
       continue;
     const double light = std::max(s.i, 0.0);
-    const double sd = std::sqrt(s.i_sd * s.i_sd + std::pow(errors.floor * light, 2) +
+    const double floor = std::max(errors.floor, best_relative);
+    const double sd = std::sqrt(s.i_sd * s.i_sd + std::pow(floor * light, 2) +
                                 std::pow(errors.floor_median * median, 2));
     for (Index k = 0; k < n; ++k)
       out.columns(row, k) = members[static_cast<std::size_t>(k)].i[at] / sd;
@@ -119,9 +120,9 @@ Whitened whitened(const ObservedCurve &curve, const CurveErrors &errors,
     ++out.measurements;
     if (!errors.has_polarization || std::isnan(s.q) || !(light > 0))
       continue;
-    const double more = errors.floor * errors.floor / 4;
-    const double q_sd = light * std::sqrt(s.cov_qq + more);
-    const double u_sd = light * std::sqrt(s.cov_uu + more);
+    const double more = errors.floor * errors.floor / 4, least = best_relative * best_relative;
+    const double q_sd = light * std::sqrt(std::max(s.cov_qq + more, least));
+    const double u_sd = light * std::sqrt(std::max(s.cov_uu + more, least));
     for (Index k = 0; k < n; ++k) {
       const EndMember &m = members[static_cast<std::size_t>(k)];
       out.columns(row, k) = (m.q[at] - s.q * m.i[at]) / q_sd;

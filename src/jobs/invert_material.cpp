@@ -187,6 +187,16 @@ Verdict verdict_of(const std::vector<Row> &rows, const Unmixing &unmixed) {
   return is_one ? Verdict::Determined : Verdict::Ambiguous;
 }
 
+/// Each once.
+Result<void> check_candidates(const std::vector<std::string> &names) {
+  for (std::size_t k = 1; k < names.size(); ++k)
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(k))
+      return fail(ErrorCode::Usage, fmt::format("--candidates: {} stands twice; name each once",
+                                                printable(names[k])));
+  return {};
+}
+
 } // namespace
 
 Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest &request,
@@ -194,7 +204,15 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
                                   const Monitor &monitor, Diagnostics &diagnostics) {
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, inputs, diagnostics));
-  UMOV_ASSIGN(observed, observed_light_curve(scenario, files, diagnostics));
+  UMOV_ASSIGN(observed,
+              observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
+  UMOV_TRY(check_candidates(material.candidates));
+  if (std::ranges::all_of(observed.curve.samples,
+                          [](const ObservedSample &s) { return std::isnan(s.i); }))
+    return fail(ErrorCode::BadInput,
+                "no row has light: materials are told apart by I, flux or mag, and by q and u in "
+                "parts of it; add such a column",
+                {request.observations.front()});
   const GroupLight light(scenario, request, observed, options);
   std::vector<EndMember> members;
   for (const std::string &name : material.candidates) {

@@ -38,6 +38,7 @@ void replace_all(std::string &text, const std::string &from, const std::string &
 Result<void> keep_inputs(const std::vector<std::pair<std::string, std::string>> &inputs,
                          RunFolder &folder, std::string &lock, std::vector<std::string> &files) {
   std::vector<fs::path> full;
+  full.reserve(inputs.size());
   for (const auto &[path, hash] : inputs)
     full.push_back(absolute_path(path));
   if (full.empty())

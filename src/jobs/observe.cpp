@@ -153,7 +153,7 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
   // About 5 kB for each time within an exposure at which the light is computed, and 64 bytes more
   // for each wavelength: 300 MB together.
   const std::size_t wavelengths = s.light.scene().grid.nodes().size();
-  const std::size_t times = 65'536 * 80 / (80 + wavelengths);
+  const std::size_t times = std::size_t{65'536} * 80 / (80 + wavelengths);
   const std::size_t block =
       std::clamp<std::size_t>(times / std::max<std::size_t>(1, s.nodes.size()), 1, 4096);
   std::size_t glaring = 0; // exposures in which the sky is far brighter than the object

@@ -207,27 +207,22 @@ Result<std::string> observation_page(const Observation &observation, const std::
   return make_plot_page(title, figures, notes);
 }
 
-Result<std::string> stokes_page(const Table &stokes, const std::string &title,
-                                const Diagnostics &diagnostics) {
-  const Clock clock(stokes);
-  Lines plane(true), ellipses(false), bars(false), degree(true), limits(true), mags(true),
-      tests(true);
-  for (std::size_t row = 0; row < stokes.rows(); ++row) {
+namespace {
+
+/// The lines of a page of reduced sets.
+struct StokesLines {
+  Lines plane{true}, ellipses{false}, bars{false}, degree{true}, limits{true}, mags{true},
+      tests{true};
+
+  void add(const Table &stokes, std::size_t row, double t) {
     const std::string band = stokes.text("band", row);
-    const double t = clock(row), q = stokes.number("q", row), u = stokes.number("u", row);
     mags.add(band, t, -stokes.number("mag", row));
     if (stokes.number("dof", row) > 0)
       tests.add(band, t, stokes.number("chi2", row) / stokes.number("dof", row));
-    if (!std::isfinite(q))
-      continue;
-    plane.add(band, q, u);
-    const double a = stokes.number("cov_qq", row), b = stokes.number("cov_uu", row);
-    const double c = stokes.number("cov_qu", row), s = std::sqrt(a);
-    for (int k = 0; k <= 24; ++k) { // the ellipse of one standard deviation, by Cholesky's root
-      const double x = std::cos(2 * pi * k / 24), y = std::sin(2 * pi * k / 24);
-      ellipses.add(band, q + s * x, u + c / s * x + std::sqrt(std::max(0.0, b - c * c / a)) * y);
-    }
-    ellipses.add(band, std::nan(""), std::nan(""));
+    if (!std::isfinite(stokes.number("q", row)))
+      return;
+    plane.add(band, stokes.number("q", row), stokes.number("u", row));
+    add_ellipse(stokes, row, band);
     if (stokes.number("p_lo", row) > 0)
       degree.add(band, t, stokes.number("p_debiased", row));
     else
@@ -238,16 +233,39 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
       bar.y.push_back(y);
     }
   }
-  std::vector<PlotLine> points = std::move(plane).all(), p = std::move(degree).all();
-  for (PlotLine &one : std::move(ellipses).all()) {
+
+  /// Of one standard deviation, by Cholesky's root.
+  void add_ellipse(const Table &stokes, std::size_t row, const std::string &band) {
+    const double q = stokes.number("q", row), u = stokes.number("u", row);
+    const double a = stokes.number("cov_qq", row), b = stokes.number("cov_uu", row);
+    const double c = stokes.number("cov_qu", row), s = std::sqrt(a);
+    constexpr int steps = 24;
+    for (int k = 0; k <= steps; ++k) {
+      const double x = std::cos(2 * pi * k / steps), y = std::sin(2 * pi * k / steps);
+      ellipses.add(band, q + s * x, u + c / s * x + std::sqrt(std::max(0.0, b - c * c / a)) * y);
+    }
+    ellipses.add(band, std::nan(""), std::nan(""));
+  }
+};
+
+} // namespace
+
+Result<std::string> stokes_page(const Table &stokes, const std::string &title,
+                                const Diagnostics &diagnostics) {
+  const Clock clock(stokes);
+  StokesLines lines;
+  for (std::size_t row = 0; row < stokes.rows(); ++row)
+    lines.add(stokes, row, clock(row));
+  std::vector<PlotLine> points = std::move(lines.plane).all(), p = std::move(lines.degree).all();
+  for (PlotLine &one : std::move(lines.ellipses).all()) {
     one.dash = "solid"; // of the colour of its points
     points.push_back(std::move(one));
   }
-  for (PlotLine &one : std::move(bars).all()) {
+  for (PlotLine &one : std::move(lines.bars).all()) {
     one.dash = "solid";
     p.push_back(std::move(one));
   }
-  for (PlotLine &one : std::move(limits).all())
+  for (PlotLine &one : std::move(lines.limits).all())
     p.push_back(std::move(one));
   std::vector<std::string> notes{"Ellipses: one standard deviation. Bars: 95 % intervals of the "
                                  "degree; points where it is detected, else the upper limit."};
@@ -260,14 +278,14 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
        {"Brightness",
         clock.title(),
         "-mag (AB), above the air",
-        std::move(mags).all(),
+        std::move(lines.mags).all(),
         false,
         false,
         {}},
        {"Fits: what noise does not explain",
         clock.title(),
         "chi2/dof",
-        std::move(tests).all(),
+        std::move(lines.tests).all(),
         false,
         false,
         {}}},

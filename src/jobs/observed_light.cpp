@@ -161,6 +161,13 @@ Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCu
   return {};
 }
 
+/// Something is a measurement: above 0, or with an error.
+bool has_light(const ObservedCurve &curve) {
+  return std::ranges::any_of(curve.samples, [](const ObservedSample &s) {
+    return (!std::isnan(s.i) && (s.i > 0 || s.i_sd > 0)) || !std::isnan(s.q);
+  });
+}
+
 Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
   std::ranges::stable_sort(rows_, [](const Placed &a, const Placed &b) {
     return seconds_between(a.row->time, b.row->time) < -1e-6;
@@ -196,6 +203,27 @@ Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
                 "no row is of a time at which the object stood in sunlight by its orbit: do times, "
                 "orbit and site belong together?",
                 {rows_.front().file->path});
+  if (!has_light(out.curve))
+    return fail(ErrorCode::BadInput,
+                "no row has light: each I, flux or mag is 0 or less, without an error. Are units "
+                "and signs right?",
+                {rows_.front().file->path});
+  return out;
+}
+
+/// The scenario at the times of the observations: its orbit is asked for those.
+Scenario over_the_rows(const Scenario &scenario, const std::vector<ObservationsFile> &files) {
+  Scenario out = scenario;
+  ScenarioTime span = scenario.time.value_or(ScenarioTime{});
+  span.start = span.stop = files.front().rows.front().time;
+  for (const ObservationsFile &file : files)
+    for (const ObservedRow &row : file.rows) {
+      if (seconds_between(row.time, span.start) < 0)
+        span.start = row.time;
+      if (seconds_between(row.time, span.stop) > 0)
+        span.stop = row.time;
+    }
+  out.time = span;
   return out;
 }
 
@@ -217,12 +245,13 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
 
 Result<ObservedLightCurve> observed_light_curve(const Scenario &scenario,
                                                 const std::vector<ObservationsFile> &files,
-                                                Diagnostics &diagnostics) {
+                                                bool allow_old_elements, Diagnostics &diagnostics) {
   if (!scenario.objects.front().orbit)
     return fail(ErrorCode::BadInput,
                 "holds no orbit: object.orbit = { file = ... } says where the object was",
                 {scenario.file});
-  UMOV_ASSIGN(object, load_object(scenario, 0, {.allow_old_elements = true}, diagnostics));
+  UMOV_ASSIGN(object, load_object(over_the_rows(scenario, files), 0,
+                                  {.allow_old_elements = allow_old_elements}, diagnostics));
   UMOV_ASSIGN(colours, photometric_bands(scenario.bands, scenario.magnitudes));
   CurveMaker maker(scenario, *object.orbit, std::move(colours));
   for (const ObservationsFile &file : files)

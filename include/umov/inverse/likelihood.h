@@ -21,6 +21,10 @@ struct CurveErrors {
   bool has_polarization = true; ///< q and u are used where they are measured
 };
 
+/// No measurement is taken for better than this part of I, whatever its errors say: what is left of
+/// an error of 0 would not be finite.
+inline constexpr double best_relative = 1e-6;
+
 /// Light of a model at all epochs and bands: [epoch * bands + band], scattering plane.
 struct ModelLight {
   std::span<const double> i, q, u;

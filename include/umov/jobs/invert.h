@@ -21,6 +21,7 @@ struct InvertRequest {
   CurveErrors errors;
   std::size_t grid = 60'000;
   LightMethod method = LightMethod::Masks;
+  bool allow_old_elements = false; ///< over 30 days from the observations
 };
 
 /// How sure the answer is.

@@ -24,6 +24,29 @@ struct Columns {
   bool is_scattering = false;    ///< q and u are q_scat and u_scat
 };
 
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return text;
+}
+
+/// A word of a list of flags, however they are parted and written.
+bool has_flag(const std::string &flags, std::string_view wanted) {
+  const std::string text = lower_case(flags);
+  const auto is_part = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+  };
+  for (auto begin = text.begin(); begin != text.end();) {
+    begin = std::find_if(begin, text.end(), is_part);
+    const auto end = std::find_if_not(begin, text.end(), is_part);
+    if (std::string_view(begin, end) == wanted)
+      return true;
+    begin = end;
+  }
+  return false;
+}
+
 class Reader {
 public:
   Reader(std::string_view text, const std::string &file, const TextTable &table)
@@ -45,6 +68,8 @@ private:
   [[nodiscard]] int find(std::initializer_list<const char *> names) const;
   [[nodiscard]] double scale_of(int column) const;
   Result<double> number(int column, std::size_t k) const;
+  Result<double> magnitude(int column, std::size_t k) const;
+  Result<bool> limit(const Columns &c, std::size_t k) const;
   Result<double> error(int column, std::size_t k) const;
   Result<Epoch<Utc>> time(const Columns &c, std::size_t k) const;
   Result<void> read_polarization(const Columns &c, std::size_t k, ObservedRow &out) const;
@@ -129,6 +154,32 @@ Result<double> Reader::number(int column, std::size_t k) const {
               where(k, column));
 }
 
+Result<double> Reader::magnitude(int column, std::size_t k) const {
+  UMOV_ASSIGN(value, number(column, k));
+  constexpr double brightest = -40, faintest = 60; // the Sun has -27
+  if (value < brightest || value > faintest)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} = {}: a magnitude from {} to {} was expected; leave the cell empty "
+                            "for a gap",
+                            table_.columns[static_cast<std::size_t>(column)], value, brightest,
+                            faintest),
+                where(k, column));
+  return value;
+}
+
+/// The magnitude of the row is a limit.
+Result<bool> Reader::limit(const Columns &c, std::size_t k) const {
+  const std::string cell = lower_case(text(c.limit, k));
+  if (cell == "true" || cell == "t" || cell == "1" || cell == "yes")
+    return true;
+  if (cell.empty() || cell == "false" || cell == "f" || cell == "0" || cell == "no")
+    return false;
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("mag_limit = \"{}\": True or False was expected", printable(text(c.limit, k))),
+      where(k, c.limit));
+}
+
 /// A standard deviation or a variance: 0 or more, NaN where there is none.
 Result<double> Reader::error(int column, std::size_t k) const {
   UMOV_ASSIGN(value, number(column, k));
@@ -167,6 +218,13 @@ Result<void> Reader::read_polarization(const Columns &c, std::size_t k, Observed
     return {};
   out.q = q * c.q_unit;
   out.u = u * c.u_unit;
+  constexpr double most = 2; // noise alone takes q beyond 1, not so far
+  if (std::abs(out.q) > most || std::abs(out.u) > most)
+    return fail(ErrorCode::BadInput,
+                fmt::format("q = {}, u = {}: parts of I were expected. In per cent? Then give the "
+                            "columns the unit %",
+                            out.q, out.u),
+                where(k, c.q));
   if (c.cov_qq >= 0 && c.cov_uu >= 0) {
     UMOV_ASSIGN(qq, error(c.cov_qq, k));
     UMOV_ASSIGN(uu, error(c.cov_uu, k));
@@ -196,7 +254,7 @@ Result<std::optional<ObservedRow>> Reader::row(const Columns &c, std::size_t k) 
   out.time = at;
   out.band = text(c.band, k);
   out.site = text(c.site, k);
-  if (text(c.flags, k).find("saturated") != std::string::npos) {
+  if (has_flag(text(c.flags, k), "saturated")) {
     ++saturated_;
     return std::optional<ObservedRow>();
   }
@@ -204,9 +262,9 @@ Result<std::optional<ObservedRow>> Reader::row(const Columns &c, std::size_t k) 
   UMOV_ASSIGN(flux_err, error(c.flux_err, k));
   out.flux = flux;
   out.flux_err = flux_err;
-  const std::string limit = text(c.limit, k);
-  if (std::isnan(flux) && limit != "True" && limit != "true" && limit != "1") {
-    UMOV_ASSIGN(mag, number(c.mag, k));
+  UMOV_ASSIGN(is_limit, limit(c, k));
+  if (std::isnan(flux) && !is_limit) {
+    UMOV_ASSIGN(mag, magnitude(c.mag, k));
     UMOV_ASSIGN(mag_err, error(c.mag_err, k));
     out.mag = mag;
     out.mag_err = mag_err;
