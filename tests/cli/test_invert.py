@@ -172,12 +172,31 @@ def test_another_object_is_no_fit(umov, scene, tmp_path):
     ("time_utc,band,I,site\n2018-01-21T05:12:00Z,nm:550,1,nowhere\n", 3, "obs.csv:2: "),
     ("time_utc,band,I\n2018-01-21T05:30:00Z,nm:550,1\n", 3, "no row is of a time at which the object stood in sunlight"),
     ("time_utc,band,I\n", 3, "obs.csv: no row of observations"),
+    ("time_utc,band,mag\n2018-01-21T05:12:00Z,nm:550,-500\n", 3, "obs.csv:2:29: mag = -500: a magnitude from -40 to 60"),
+    ("time_utc,band,mag,mag_limit\n2018-01-21T05:12:00Z,nm:550,10,perhaps\n", 3, 'obs.csv:2:32: mag_limit = "perhaps"'),
+    ("time_utc,band,mag,mag_limit\n2018-01-21T05:12:00Z,nm:550,10,TRUE\n", 3, "no row holds a measurement"),
+    ("time_utc,band,I,flags\n2018-01-21T05:12:00Z,nm:550,1,SATURATED\n", 3, "no row holds a measurement"),
+    ("# pol_frame: altaz\ntime_utc,band,q,u\n2018-01-21T05:12:00Z,nm:550,10,5\n", 3, "obs.csv:3:29: q = 10, u = 5: parts of I"),
+    ("time_utc,band,I\n2018-01-21T05:12:00Z,nm:550,0\n", 3, "no row has light"),
+    ("time_utc,band,I\n1975-01-21T05:12:00Z,nm:550,1\n", 3, "d from the span asked for; 30 d is the limit"),
 ])
 def test_bad_observations_have_their_place(umov, scene, tmp_path, text, code, message):
     (tmp_path / "obs.csv").write_text(text)
     done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"))
     assert done.code == code
     assert message in done.err, done.err
+
+
+def test_errors_of_0_have_an_end(umov, scene, tmp_path):
+    """q and u without errors at --floor 0: an answer, and materials that polarization alone does not tell apart."""
+    rows = "".join(f"2018-01-21T05:{m}:00Z,nm:550,0.1,0.05\n" for m in range(10, 15))
+    (tmp_path / "obs.csv").write_text("# pol_frame: altaz\ntime_utc,band,q,u\n" + rows)
+    fit = scene([1, 0, 0, 0], "masks", "fit")
+    done = umov("invert", "pose", "obs.csv", "--scenario", fit, "--grid", "1000", "--floor", "0")
+    assert done.code in (0, 4)
+    assert "nan" not in done.out
+    done = umov("invert", "material", "obs.csv", "--scenario", fit, "--group", "body_px", "--candidates", "paint_white,cell_gaas")
+    assert done.code == 3 and "no row has light" in done.err
 
 
 def spinning(text, rate_deg_s, step):

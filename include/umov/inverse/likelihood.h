@@ -23,7 +23,7 @@ struct CurveErrors {
 
 /// No measurement is taken for better than this part of I, whatever its errors say: what is left of
 /// an error of 0 would not be finite.
-inline constexpr double best_relative = 1e-6;
+inline constexpr double best_relative = 1e-4;
 
 /// Light of a model at all epochs and bands: [epoch * bands + band], scattering plane.
 struct ModelLight {
