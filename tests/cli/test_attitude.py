@@ -37,8 +37,8 @@ def turn_between(a, b):
     return 2 * math.degrees(math.acos(min(1.0, abs(sum(x * y for x, y in zip(a, b))))))
 
 
-def light_curve(umov, name, folder):
-    done = umov("run", name, "--quiet")
+def light_curve(umov, name, folder, *options):
+    done = umov("run", name, "--quiet", *options)
     assert done.code == 0, done.err
     return read_csv(folder / "out/lightcurve.csv")
 
@@ -50,7 +50,8 @@ def test_an_attitude_message_is_what_the_run_uses(umov, scenario, tmp_path):
         half = math.radians(0.3 * 60 * k)
         lines.append(f"2018-01-21T05:{k:02d}:00 0 0 {math.sin(half):.12f} {math.cos(half):.12f}")
     (tmp_path / "hst.aem").write_text(AEM.format(stop="2018-01-21T05:30:00", rows="\n".join(lines)))
-    rows = light_curve(umov, scenario(('mode = "nadir"', 'mode = "aem", file = "hst.aem"')), tmp_path)
+    rows = light_curve(umov, scenario(('mode = "nadir"', 'mode = "aem", file = "hst.aem"')), tmp_path,
+                       "--set", 'output.csv_digits="all"')
     for row, q in zip(rows, quaternions(rows)):
         minutes, seconds = map(float, row["time_utc"][14:-1].split(":"))
         half = math.radians(0.3 * (60 * minutes + seconds))

@@ -105,7 +105,7 @@ def test_run_in_vega_magnitudes(umov, tmp_path):
     assert umov("mesh", "make", "sphere", "-o", "ball.obj").code == 0
     text = (ROOT / "examples/hst_maui.toml").read_text()
     assert "[bands]" in text
-    sets = ["--set", "time.step_s=60", "--set", "output.formats=[\"csv\", \"html\"]"]
+    sets = ["--set", "time.step_s=60", "--set", "output.formats=[\"csv\", \"html\"]", "--set", 'output.csv_digits="all"']
     for system, name in (("Vega", "a"), ("AB", "b")):
         done = umov("run", ROOT / "examples/hst_maui.toml", *sets, "--set", 'bands.set=["Bessell.V", "Bessell.I"]',
                     "--set", f"bands.mag_system={system}", "-o", name)
