@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+#include <tuple>
 #include <umov/io/table.h>
 #include <umov/io/table_sink.h>
 
@@ -73,6 +75,14 @@ void bind_table(nb::module_ &m) {
       .def_prop_ro("names", [](const Table &t) { return texts_of(t, &Column::name); })
       .def_prop_ro("units", [](const Table &t) { return texts_of(t, &Column::unit); })
       .def_prop_ro("descriptions", [](const Table &t) { return texts_of(t, &Column::description); })
+      .def_prop_ro("precisions",
+                   [](const Table &t) {
+                     std::vector<std::tuple<std::string, int, int>> out;
+                     for (const Column &column : t.columns())
+                       out.emplace_back(column.precision.error, column.precision.decimals,
+                                        column.precision.significant);
+                     return out;
+                   })
       .def_prop_ro("notes", &Table::notes)
       .def(
           "column",
@@ -82,6 +92,13 @@ void bind_table(nb::module_ &m) {
           "name"_a,
           nb::sig("def column(self, name: str) -> numpy.typing.NDArray[typing.Any] | list[str]"))
       .def("add", &add_column, "name"_a, "unit"_a, "description"_a, "values"_a)
+      .def(
+          "set_precision",
+          [](Table &t, const std::string &name, const std::string &error, int decimals,
+             int significant) {
+            t.set_precision(name, {error, decimals, significant});
+          },
+          "name"_a, "error"_a, "decimals"_a, "significant"_a)
       .def("note", &Table::note, "key"_a, "value"_a)
       .def("csv", [](const Table &t) { return to_csv(t); })
       .def("ecsv", [](const Table &t) { return to_ecsv(t); })

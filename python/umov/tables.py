@@ -18,17 +18,21 @@ if TYPE_CHECKING:
 
 __all__ = ["Table"]
 
+#: Name, unit, description, values; column of its error, decimals and digits of a CSV.
+_Column = tuple[str, str, str, Any, tuple[str, int, int]]
 
-def _pack(table: _umov.Table) -> tuple[list[tuple[str, str, str, Any]], list[tuple[str, str]]]:
-    columns = [(name, unit, text, table.column(name))
-               for name, unit, text in zip(table.names, table.units, table.descriptions)]
+
+def _pack(table: _umov.Table) -> tuple[list[_Column], list[tuple[str, str]]]:
+    columns = [(name, unit, text, table.column(name), precision)
+               for name, unit, text, precision in zip(table.names, table.units, table.descriptions, table.precisions)]
     return columns, list(table.notes)
 
 
-def _unpack(columns: list[tuple[str, str, str, Any]], notes: list[tuple[str, str]]) -> _umov.Table:
+def _unpack(columns: list[_Column], notes: list[tuple[str, str]]) -> _umov.Table:
     out = _umov.Table()
-    for name, unit, text, values in columns:
+    for name, unit, text, values, precision in columns:
         out.add(name, unit, text, values)
+        out.set_precision(name, *precision)
     for key, value in notes:
         out.note(key, value)
     return out
@@ -166,5 +170,5 @@ class Table:
         return _restore, _pack(self._table)
 
 
-def _restore(columns: list[tuple[str, str, str, Any]], notes: list[tuple[str, str]]) -> Table:
+def _restore(columns: list[_Column], notes: list[tuple[str, str]]) -> Table:
     return Table(_unpack(columns, notes))
