@@ -80,7 +80,7 @@ public:
     BenchResult out;
     out.bands = one.bands;
     UMOV_TRY(prepare(one, diagnostics));
-    out.facts = engine_->facts();
+    out.facts = facts_;
     if (!restrict_engine(one.instruction_set))
       return fail(ErrorCode::Device, "this machine has no " + one.instruction_set);
     out.instruction_set = engine_instruction_set();
@@ -135,10 +135,18 @@ private:
     if (one.masks.refine_above > 0) // as LightMethod::Auto has it: no rays for what is dark
       for (const double light : typical_light(*scene_))
         options.floor_i.push_back(default_accuracy_floor(LightMethod::Auto) * light);
-    engine_.emplace(*scene_, options);
     if (one.is_default_path) {
       UMOV_ASSIGN(model, make_light(*scene_, {}, {}));
       model_ = std::move(model);
+      const LightFacts &facts = model_->facts();
+      facts_ = {};
+      facts_.triangles = facts.triangles;
+      facts_.classes = facts.classes;
+      facts_.setup_s = facts.setup_s;
+      facts_.mask_bytes = model_->mask_bytes();
+    } else {
+      engine_.emplace(*scene_, options);
+      facts_ = engine_->facts();
     }
     key_ = key;
     return {};
@@ -161,6 +169,7 @@ private:
   std::optional<Scene> scene_;
   std::optional<Engine> engine_;
   std::unique_ptr<LightModel> model_; ///< null: the engine by itself
+  EngineFacts facts_;                 ///< of either
   std::vector<PoseResult> reference_;
 };
 

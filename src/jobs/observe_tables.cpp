@@ -8,13 +8,25 @@
 
 namespace umov::jobs {
 
+void ExposureColumns::add(const Setup &setup, const Exposure &exposure, const Epoch<Utc> &time) {
+  time_.push_back(to_iso(time));
+  exposure_.push_back(exposure.planned.plan.index);
+  set_.push_back(static_cast<std::int64_t>(exposure.planned.set));
+  name_.push_back(setup.object);
+  band_.push_back(setup.observers[exposure.planned.band].band().name);
+}
+
+void ExposureColumns::put(Table &table) && {
+  table.add("time_utc", "", "UTC of the middle of the exposure", std::move(time_));
+  table.add("exposure", "", "number in the run", std::move(exposure_));
+  table.add("set_id", "", "exposures that belong together", std::move(set_));
+  table.add("name", "", "object", std::move(name_));
+  table.add("band", "", "band", std::move(band_));
+}
+
 void CountsTable::add(const Exposure &e, const Recorded &r) {
   for (const ChannelCounts &c : r.channels) {
-    time_.push_back(to_iso(e.stamp));
-    exposure_.push_back(e.planned.plan.index);
-    set_.push_back(static_cast<std::int64_t>(e.planned.set));
-    name_.push_back(s_.object);
-    band_.push_back(s_.observers[e.planned.band].band().name);
+    exposures_.add(s_, e, e.stamp);
     channel_.push_back(c.channel);
     saturated_.push_back(c.is_saturated);
     const double axis = std::fmod(std::fmod(r.axis.degrees(), 180) + 180, 180);
@@ -44,11 +56,7 @@ void CountsTable::add(const Exposure &e, const Recorded &r) {
 
 Table CountsTable::table() && {
   Table out;
-  out.add("time_utc", "", "UTC of the middle of the exposure", std::move(time_));
-  out.add("exposure", "", "number in the run", std::move(exposure_));
-  out.add("set_id", "", "exposures that belong together", std::move(set_));
-  out.add("name", "", "object", std::move(name_));
-  out.add("band", "", "band", std::move(band_));
+  std::move(exposures_).put(out);
   out.add("channel", "", "beam, camera or orientation", std::move(channel_));
   const char *const columns[][3] = {
       {"analyser_deg", "deg", "angle of the analyser from the instrument's x axis"},
@@ -81,11 +89,7 @@ Table CountsTable::table() && {
 
 void TruthTable::add(const Exposure &e, const Recorded &r) {
   const BandResponse &band = s_.observers[e.planned.band].band();
-  time_.push_back(to_iso(e.middle.time));
-  name_.push_back(s_.object);
-  band_.push_back(band.name);
-  exposure_.push_back(e.planned.plan.index);
-  set_.push_back(static_cast<std::int64_t>(e.planned.set));
+  exposures_.add(s_, e, e.middle.time);
   double electrons = 0, sky = 0;
   for (const ChannelCounts &c : r.channels)
     electrons += c.mean_star, sky += c.mean_sky;
@@ -107,11 +111,7 @@ void TruthTable::add(const Exposure &e, const Recorded &r) {
 
 Table TruthTable::table() && {
   Table out;
-  out.add("time_utc", "", "UTC of the middle of the exposure", std::move(time_));
-  out.add("exposure", "", "number in the run", std::move(exposure_));
-  out.add("set_id", "", "exposures that belong together", std::move(set_));
-  out.add("name", "", "object", std::move(name_));
-  out.add("band", "", "band", std::move(band_));
+  std::move(exposures_).put(out);
   const char *const columns[][3] = {
       {"I", "W / (m2 nm)", "mean over the exposure above the air, photon-weighted"},
       {"q", "", "Q/I in the sky frame"},

@@ -8,6 +8,17 @@
 
 namespace umov::jobs {
 
+/// What the rows of both tables begin with.
+class ExposureColumns {
+public:
+  void add(const Setup &setup, const Exposure &exposure, const Epoch<Utc> &time);
+  void put(Table &table) &&;
+
+private:
+  std::vector<std::string> time_, name_, band_;
+  std::vector<std::int64_t> exposure_, set_;
+};
+
 /// A row for each channel of an exposure.
 class CountsTable {
 public:
@@ -17,8 +28,8 @@ public:
 
 private:
   const Setup &s_;
-  std::vector<std::string> time_, name_, band_, channel_;
-  std::vector<std::int64_t> exposure_, set_;
+  ExposureColumns exposures_;
+  std::vector<std::string> channel_;
   std::vector<bool> saturated_;
   std::array<std::vector<double>, 19> numbers_;
 };
@@ -32,8 +43,7 @@ public:
 
 private:
   const Setup &s_;
-  std::vector<std::string> time_, name_, band_;
-  std::vector<std::int64_t> exposure_, set_;
+  ExposureColumns exposures_;
   std::array<std::vector<double>, 10> numbers_;
 };
 

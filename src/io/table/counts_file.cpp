@@ -59,14 +59,9 @@ Result<void> check_columns(const Cells &cells, const TextTable &table, const std
   return {};
 }
 
-/// Truth as tables and spreadsheets write it.
-Result<bool> truth_of(const Cells &cells, const std::string &name, std::size_t row) {
-  std::string cell = cells.text(name, row);
-  std::ranges::transform(cell, cell.begin(), [](unsigned char c) { return std::tolower(c); });
-  if (cell == "true" || cell == "1")
-    return true;
-  if (cell.empty() || cell == "false" || cell == "0")
-    return false;
+Result<bool> truth_in(const Cells &cells, const std::string &name, std::size_t row) {
+  if (const auto value = truth_of(cells.text(name, row)))
+    return *value;
   return fail(ErrorCode::BadInput,
               fmt::format("{} = \"{}\"; True or False was expected", name,
                           printable(cells.text(name, row))),
@@ -159,7 +154,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
     row.name = cells.text("name", k);
     row.band = cells.text("band", k);
     row.channel = cells.text("channel", k);
-    UMOV_ASSIGN(is_saturated, truth_of(cells, "saturated", k));
+    UMOV_ASSIGN(is_saturated, truth_in(cells, "saturated", k));
     row.is_saturated = is_saturated;
     UMOV_TRY(read_numbers(cells, k, row));
     if (!std::isfinite(row.counts) || !std::isfinite(row.sky)) {

@@ -24,13 +24,6 @@ struct Columns {
   bool is_scattering = false;    ///< q and u are q_scat and u_scat
 };
 
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
-
 /// A word of a list of flags, however they are parted and written.
 bool has_flag(const std::string &flags, std::string_view wanted) {
   const std::string text = lower_case(flags);
@@ -169,11 +162,8 @@ Result<double> Reader::magnitude(int column, std::size_t k) const {
 
 /// The magnitude of the row is a limit.
 Result<bool> Reader::limit(const Columns &c, std::size_t k) const {
-  const std::string cell = lower_case(text(c.limit, k));
-  if (cell == "true" || cell == "t" || cell == "1" || cell == "yes")
-    return true;
-  if (cell.empty() || cell == "false" || cell == "f" || cell == "0" || cell == "no")
-    return false;
+  if (const auto value = truth_of(text(c.limit, k)))
+    return *value;
   return fail(
       ErrorCode::BadInput,
       fmt::format("mag_limit = \"{}\": True or False was expected", printable(text(c.limit, k))),

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <umov/core/text.h>
 
 namespace umov {
@@ -125,6 +124,22 @@ Result<void> add_header(TextTable &out, std::vector<std::string> cells, const Wh
 }
 
 } // namespace
+
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return text;
+}
+
+std::optional<bool> truth_of(std::string cell) {
+  cell = lower_case(std::move(cell));
+  if (cell == "true" || cell == "1")
+    return true;
+  if (cell.empty() || cell == "false" || cell == "0")
+    return false;
+  return std::nullopt;
+}
 
 Result<TextTable> read_text_table(std::string_view text, const std::string &file) {
   constexpr std::size_t rows_max = 20'000'000, line_max = 100'000;

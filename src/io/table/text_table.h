@@ -2,6 +2,7 @@
 // Private: a table of texts, from CSV or ECSV.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <umov/core/result.h>
@@ -23,5 +24,10 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
 
 /// Where cell `cell` of line `line` (from 1) begins, for messages: columns count from 1.
 std::size_t column_of_cell(std::string_view text, std::size_t line, std::size_t cell);
+
+/// ASCII letters as small ones.
+std::string lower_case(std::string text);
+/// Truth as tables and spreadsheets write it, an empty cell being false; nothing for other words.
+std::optional<bool> truth_of(std::string cell);
 
 } // namespace umov
