@@ -69,6 +69,22 @@ Result<std::vector<Material>> telescope_materials(const Mesh &mesh) {
   return out;
 }
 
+/// Gold, silicon, aluminium and a smoother gold over the groups.
+Result<std::vector<Material>> rough_metals(const Mesh &mesh) {
+  const std::pair<const char *, double> of[] = {
+      {"paper_au", 0.3}, {"paper_asi", 0.2}, {"paper_al", 0.25}, {"paper_au", 0.15}};
+  std::vector<Material> out;
+  for (std::size_t g = 0; g < mesh.groups.size(); ++g) {
+    const auto &[name, alpha] = of[g % 4];
+    UMOV_ASSIGN(material, builtin_material(name));
+    material.body.reset();
+    material.distribution = {"ggx", {{"alpha", alpha}}, {}, {}, {}};
+    material.shadowing = Shadowing::Separable;
+    out.push_back(std::move(material));
+  }
+  return out;
+}
+
 } // namespace
 
 std::vector<BenchCase> standard_cases() {
@@ -153,6 +169,20 @@ std::vector<BenchCase> standard_cases() {
   };
   add_telescope("hst of the library, fast masks", false);
   add_telescope("hst of the library, default", true);
+  for (const char *mesh : {"box-wing", "hst"})
+    for (const BetweenMethod between : {BetweenMethod::Paths, BetweenMethod::Chains})
+      for (const std::size_t bands : {1u, 3u})
+        if (between == BetweenMethod::Chains || bands == 1)
+          add(fmt::format("{} between five surfaces, {} band{}, {}", mesh, bands,
+                          bands == 1 ? "" : "s", name_of(between)),
+              [&](BenchCase &c) {
+                c.mesh = mesh;
+                c.bands = bands;
+                c.has_rough_metals = c.is_default_path = true;
+                c.bounces = 5;
+                c.between = between;
+                c.has_errors = false;
+              });
   add("agena, fast masks and rays", [](BenchCase &c) { c.mesh = "agena"; });
   add("crumpled, 1,000,000 triangles, clustered", [](BenchCase &c) {
     c.mesh = "foil";
@@ -189,6 +219,10 @@ Result<Scene> case_scene(const BenchCase &of, Diagnostics &diagnostics) {
   if (of.has_library_materials) {
     UMOV_ASSIGN(materials, telescope_materials(mesh));
     return make_scene(mesh, of.normals, bands, materials, materials, diagnostics);
+  }
+  if (of.has_rough_metals) {
+    UMOV_ASSIGN(metals, rough_metals(mesh));
+    return make_scene(mesh, of.normals, bands, metals, metals, diagnostics);
   }
   const char *names[] = {"paper_au", "paper_asi", "paper_spectralon", "paper_al"};
   const double exponents[] = {200, 1000, 20, 50};

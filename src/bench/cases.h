@@ -3,6 +3,7 @@
 
 #include <string>
 #include <umov/light/engine.h>
+#include <umov/light/light_model.h>
 #include <vector>
 
 namespace umov::bench {
@@ -24,6 +25,9 @@ struct BenchCase {
   bool is_single_pose = false;    ///< latency instead of rate
   bool is_intensity_only = false; ///< what polarization costs
   bool is_default_path = false;   ///< through the light model, as every command asks it by default
+  bool has_rough_metals = false;  ///< GGX of alpha 0.15 to 0.3, as tests/cli/test_bounces.py
+  std::size_t bounces = 1;        ///< more than 1: through the light model, without errors
+  BetweenMethod between = BetweenMethod::Auto;
   bool has_library_materials = false; ///< of the telescope, as in examples/hst_maui.toml
 };
 

@@ -92,10 +92,12 @@ public:
       else
         (void)engine_->evaluate(poses, table, task);
     };
-    const auto probe = bench_poses(1, 64);
+    // Paths between surfaces take a tenth of a second a pose.
+    const bool is_slow = one.bounces > 1 && one.between == BetweenMethod::Paths;
+    const auto probe = bench_poses(1, is_slow ? 4 : 64);
     const double guess = best_time(evaluate, probe, 0.01);
     const auto count = static_cast<std::size_t>(
-        std::clamp(request_.seconds / repetitions / guess, 256.0, 300'000.0));
+        std::clamp(request_.seconds / repetitions / guess, is_slow ? 8.0 : 256.0, 300'000.0));
     const auto poses = bench_poses(2, count);
     if (one.is_single_pose)
       out.latency_us = 1e6 * latency(*engine_, poses);
@@ -120,7 +122,8 @@ private:
         fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", one.mesh, one.facets, one.bands,
                     one.has_own_roughness, static_cast<int>(one.visibility), one.masks.points,
                     one.masks.narrow_cells, one.masks.refine_above, one.cluster_rad,
-                    one.is_intensity_only, one.has_library_materials, one.is_default_path);
+                    one.is_intensity_only, one.has_library_materials, one.is_default_path) +
+        fmt::format(" {} {} {}", one.has_rough_metals, one.bounces, name_of(one.between));
     if (key == key_)
       return {};
     engine_.reset();
@@ -136,7 +139,10 @@ private:
       for (const double light : typical_light(*scene_))
         options.floor_i.push_back(default_accuracy_floor(LightMethod::Auto) * light);
     if (one.is_default_path) {
-      UMOV_ASSIGN(model, make_light(*scene_, {}, {}));
+      LightOptions light;
+      light.bounces = one.bounces;
+      light.between = one.between;
+      UMOV_ASSIGN(model, make_light(*scene_, {}, light));
       model_ = std::move(model);
       const LightFacts &facts = model_->facts();
       facts_ = {};

@@ -68,6 +68,7 @@ LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &r
   LightOptions out = light_options(scenario, options);
   out.method = request.method.value_or(out.method);
   out.accuracy = request.accuracy.value_or(out.accuracy);
+  out.between = request.between.value_or(out.between);
   out.seed = request.seed.value_or(scenario.seed);
   out.source = source;
   out.mask_file = request.mask_file;
@@ -120,6 +121,8 @@ bool PoseLight::evaluate(std::span<const Pose> poses, StokesTable &out,
 
 std::size_t PoseLight::block() const {
   const LightMethod method = state_->model->facts().method;
+  if (state_->options.bounces > 1 && state_->options.between == BetweenMethod::Chains)
+    return 4096;
   if (state_->options.bounces > 1 || method == LightMethod::Rays)
     return 512;
   return method == LightMethod::Auto ? 4096 : 1u << 17;

@@ -40,6 +40,24 @@ void describe(const SignatureRequest &request, const PoseLight &light, Table &ta
   if (request.source == Source::Laser)
     table.note("limits", laser_limits);
   table.note("visibility", visibility);
+  if (light.options().bounces > 1)
+    table.note("between surfaces", name_of(light.options().between));
+}
+
+/// Chains cost seconds before the first pose, and are worth it where poses are many and do not tell
+/// about each other.
+BetweenMethod between_for(const PoseList &poses) {
+  constexpr std::size_t many = 256, looked_at = 1000;
+  constexpr double far_rad = 0.1;
+  if (poses.count < many)
+    return BetweenMethod::Paths;
+  std::size_t far = 0;
+  const std::size_t count = std::min(poses.count, looked_at);
+  for (std::size_t k = 1; k < count; ++k) {
+    const Pose a = poses.at(k - 1), b = poses.at(k);
+    far += angle_between(a.sun, b.sun) + angle_between(a.observer, b.observer) > far_rad ? 1 : 0;
+  }
+  return 2 * far > count ? BetweenMethod::Chains : BetweenMethod::Paths;
 }
 
 /// What the rows depend on.
@@ -49,10 +67,10 @@ std::string job_of(const Scenario &scenario, const PoseList &poses, const Signat
   const Stokes<ScatteringPlane> &s = light.source;
   return job_text(scenario, pose_light.inputs(),
                   fmt::format("signature of {}; source {} {} {} {} {} {}; method {}, accuracy {}, "
-                              "seed {}",
+                              "seed {}, between {}",
                               poses.origin, static_cast<int>(request.source), s.i, s.q, s.u, s.v,
                               fmt::join(request.temperatures, ","), name_of(light.method),
-                              light.accuracy, light.seed));
+                              light.accuracy, light.seed, name_of(light.between)));
 }
 
 /// A block of poses from their numbers to rows.
@@ -119,7 +137,10 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_TRY(PoseLight::check(scenario, request));
   monitor.tell("preparing the scene ...");
   const bool had_file = file_exists(request.mask_file);
-  UMOV_ASSIGN(light, PoseLight::make(scenario, request, options, diagnostics));
+  SignatureRequest decided = request;
+  const BetweenMethod between = request.between.value_or(scenario.light.between);
+  decided.between = between == BetweenMethod::Auto ? between_for(poses) : between;
+  UMOV_ASSIGN(light, PoseLight::make(scenario, decided, options, diagnostics));
   const LightModel &model = light.model();
   UMOV_ASSIGN(journal,
               open_journal(options, job_of(scenario, poses, request, light), monitor, diagnostics));

@@ -38,10 +38,11 @@ struct SignatureRequest {
   Stokes<ScatteringPlane> state{1, 0, 0, 0};
   /// Thermal: "300" K of the whole body, "GROUP=K" of a part.
   std::vector<std::string> temperatures;
-  std::optional<LightMethod> method; ///< over the scenario's
-  std::optional<double> accuracy;    ///< over the scenario's
-  std::optional<std::uint64_t> seed; ///< over the scenario's: of point sets and paths
-  std::filesystem::path mask_file;   ///< LightOptions::mask_file
+  std::optional<LightMethod> method;    ///< over the scenario's
+  std::optional<double> accuracy;       ///< over the scenario's
+  std::optional<std::uint64_t> seed;    ///< over the scenario's: of point sets and paths
+  std::optional<BetweenMethod> between; ///< over the scenario's
+  std::filesystem::path mask_file;      ///< LightOptions::mask_file
 };
 
 /// Rows of all poses into `sink`, block by block: memory does not grow with their number. The

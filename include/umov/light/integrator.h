@@ -13,6 +13,13 @@
 
 namespace umov {
 
+/// How light of more than one surface is drawn.
+enum class BetweenMethod : std::uint8_t {
+  Auto,  ///< by whoever asks for the light: chains for many poses far apart, else paths
+  Paths, ///< for each pose, shared by poses that follow each other closely
+  Chains ///< drawn once for the body and asked by each pose; paths for what they cannot tell
+};
+
 /// How well a pose is to be known.
 struct IntegrationOptions {
   double accuracy = 0.005; ///< wanted relative 95 % half-width of I
@@ -26,6 +33,7 @@ struct IntegrationOptions {
   /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
   /// Up to 64. Convex meshes have direct light alone.
   std::size_t bounces = 1;
+  BetweenMethod between = BetweenMethod::Paths; ///< Auto is Paths
 };
 
 /// Light of one pose in all bands.

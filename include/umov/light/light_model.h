@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <umov/core/result.h>
+#include <umov/light/integrator.h>
 #include <umov/light/light_task.h>
 #include <umov/light/stokes_table.h>
 #include <umov/scene/articulation.h>
@@ -37,6 +38,7 @@ struct LightOptions {
   /// Surfaces that the light may touch: 1 is direct light, more adds sampled paths between parts.
   /// Up to 64.
   std::size_t bounces = 1;
+  BetweenMethod between = BetweenMethod::Auto; ///< how that light is drawn; Auto here: paths
   std::uint64_t seed = 0; ///< of point sets and paths; results depend on it within the error only
   /// Light of the source per unit irradiance, in the scattering plane: sunlight, or a laser's
   /// (which takes rays).
@@ -118,6 +120,8 @@ private:
 
 /// "rays", "masks" or "auto".
 const char *name_of(LightMethod method);
+/// "auto", "paths" or "chains".
+const char *name_of(BetweenMethod method);
 /// The floor that holds where none is given.
 double default_accuracy_floor(LightMethod method);
 

@@ -154,6 +154,10 @@ const std::vector<Key> &keys() {
        "photon or energy: what the curve multiplies; absent: the file says"},
       {"render", "bounces", Integer, fmt::format("{}", light.bounces),
        "surfaces that the light may touch, 1 to 64; 1: direct light"},
+      {"render", "between", String, fmt::format("\"{}\"", name_of(light.between)),
+       "how light of more than one surface is drawn: paths for each pose, chains once for the "
+       "body, "
+       "or auto: chains for many poses far apart, else paths"},
       {"render", "sun", String, "\"disk\"", "disk (695,700 km at its distance) or point"},
       {"render", "method", String, fmt::format("\"{}\"", name_of(light.method)),
        "how hiding is decided: rays, masks, or auto: masks mended by rays to the accuracy asked"},

@@ -124,10 +124,10 @@ std::string locked_scenario(const Scenario &s) {
   out += fmt::format("\n[materials]\nvary = {}\n", s.varies_haze ? "[\"haze\"]" : "[]");
   out += scenario::bands_toml(s);
   out += fmt::format(
-      "\n[render]\nmethod = \"{}\"\nbounces = {}\nsun = \"{}\"\naccuracy = {}\n"
+      "\n[render]\nmethod = \"{}\"\nbounces = {}\nbetween = \"{}\"\nsun = \"{}\"\naccuracy = {}\n"
       "accuracy_floor = {}\n",
-      name_of(s.light.method), s.light.bounces, s.has_solar_disk ? "disk" : "point",
-      shortest(s.light.accuracy),
+      name_of(s.light.method), s.light.bounces, name_of(s.light.between),
+      s.has_solar_disk ? "disk" : "point", shortest(s.light.accuracy),
       shortest(s.light.accuracy_floor.value_or(default_accuracy_floor(s.light.method))));
   out += fmt::format("moonlight = {}\nshadow_edge = \"{}\"\n", s.has_moonlight,
                      s.has_refracted_shadow ? "refracted" : "geometric");

@@ -314,6 +314,11 @@ Result<void> read_render(const Node &top, Scenario &out) {
       return fail(ErrorCode::BadInput, fmt::format("bounces = {}; 1 to 64 was expected", bounces),
                   node.where("bounces"));
     out.light.bounces = static_cast<std::size_t>(bounces);
+    UMOV_ASSIGN(between,
+                node.choice("between", name_of(out.light.between), {"auto", "paths", "chains"}));
+    out.light.between = between == "paths"    ? BetweenMethod::Paths
+                        : between == "chains" ? BetweenMethod::Chains
+                                              : BetweenMethod::Auto;
     UMOV_TRY(read_method(node, out.light));
     if (node.has("accuracy"))
       out.places["render.accuracy"] = node.where("accuracy");

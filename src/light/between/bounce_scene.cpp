@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace umov {
+namespace {
+
+constexpr double offset_of_size = 1e-5;
+
+} // namespace
+
 BounceScene::BounceScene(const Scene &scene, const std::vector<VisibleSides> &sides)
     : scene_(scene), sides_(sides) {
   Vec3<Body> low{INFINITY, INFINITY, INFINITY}, high = -1 * low;
@@ -52,6 +58,47 @@ void BounceScene::group_triangles() {
     if (groups_.count <= groups_max)
       return;
   }
+}
+
+Vertex BounceScene::vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> towards) const {
+  const Mesh &mesh = scene_.mesh;
+  const Triangle &triangle = mesh.triangles[t];
+  const double side = dot(normal_[t], towards) < 0 ? -1 : 1;
+  const double weight[3] = {1 - b1 - b2, b1, b2};
+  Vertex out;
+  out.face = side * normal_[t];
+  out.normal = out.face;
+  Vec3<Body> bent{};
+  bool is_smooth = scene_.normals == NormalMode::Smooth;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.point += weight[k] * mesh.positions[triangle.vertex[k]];
+    is_smooth = is_smooth && triangle.normal[k] != no_index;
+    if (is_smooth)
+      bent += weight[k] * mesh.normals[triangle.normal[k]];
+  }
+  if (is_smooth && norm(bent) > 0)
+    out.normal = normalized(dot(bent, out.face) < 0 ? -bent : bent);
+  out.point += out.face * (offset_of_size * size_m_);
+  out.surface = &surface_of_side(scene_, triangle, side > 0);
+  out.triangle = t;
+  out.is_front = side > 0;
+  const bool is_own_back = side <= 0 && triangle.back == triangle.front;
+  out.sampler = is_own_back ? &back_sampler_[triangle.back]
+                            : &front_sampler_[side > 0 ? triangle.front : triangle.back];
+  out.field = direction_field(mesh, *out.surface, t);
+  return out;
+}
+
+bool BounceScene::next(const Occluder &occluder, const Vertex &from, Vec3<Body> direction,
+                       Vertex &to, double &distance) const {
+  if (!(dot(from.face, direction) > 0))
+    return false;
+  const Occluder::Hit hit = occluder.nearest(from.point, direction);
+  if (hit.triangle == no_index)
+    return false;
+  to = vertex_on(hit.triangle, static_cast<double>(hit.u), static_cast<double>(hit.v), -direction);
+  distance = hit.distance_m;
+  return distance > 0;
 }
 
 } // namespace umov

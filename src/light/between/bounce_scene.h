@@ -6,15 +6,38 @@
 #include "light/between/directions.h"
 
 #include <umov/scene/scene.h>
+#include <umov/shape/occluder.h>
 #include <umov/shape/topology.h>
 
 namespace umov {
+
+/// A point of the surface, on the side that faces where the path came from.
+struct Vertex {
+  Vec3<Body> point{}, face{}, normal{}; ///< face: geometric, normal: shading; out of that side
+  Vec3<Body> field{};
+  const Surface *surface = nullptr;
+  const Sampler *sampler = nullptr;
+  bool is_by_mirror = false; ///< the path goes on from here (towards the Sun) as from a mirror
+  std::uint32_t triangle = 0;
+  bool is_front = true;
+};
 
 /// What does not depend on the pose.
 class BounceScene {
 public:
   /// Both must live. `sides` of the scene's mesh.
   BounceScene(const Scene &scene, const std::vector<VisibleSides> &sides);
+
+  /// The point of a triangle with two barycentric coordinates, lifted off the side faced.
+  [[nodiscard]] Vertex vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> towards) const;
+  /// The next surface along a ray, if there is one.
+  bool next(const Occluder &occluder, const Vertex &from, Vec3<Body> direction, Vertex &to,
+            double &distance) const;
+  [[nodiscard]] const Scene &scene() const { return scene_; }
+  /// Per triangle.
+  [[nodiscard]] const std::vector<VisibleSides> &sides() const { return sides_; }
+  [[nodiscard]] const std::vector<double> &areas() const { return area_m2_; }
+  [[nodiscard]] Vec3<Body> normal(std::uint32_t triangle) const { return normal_[triangle]; }
 
 private:
   friend class PathSampler;

@@ -78,9 +78,11 @@ class Rounds {
 public:
   Rounds(const BounceScene &scene, const Occluder &occluder, std::span<const Pose> poses,
          std::span<const double> place, const IntegrationOptions &options, unsigned threads,
-         const std::atomic<bool> *cancel, const ThermalEmission *emission)
-      : emission_(emission), scene_(scene), occluder_(occluder), poses_(poses), options_(options),
-        threads_(threads), cancel_(cancel), runs_(runs_of(place)), learnt_(poses.size()) {
+         const std::atomic<bool> *cancel, const ThermalEmission *emission,
+         const ChainSurfaces *chains)
+      : emission_(emission), chains_(chains), scene_(scene), occluder_(occluder), poses_(poses),
+        options_(options), threads_(threads), cancel_(cancel), runs_(runs_of(place)),
+        learnt_(poses.size()) {
     for (std::size_t r = 0; r < replicates; ++r)
       lattices_.emplace_back(options.seed, r);
   }
@@ -99,6 +101,8 @@ private:
   void draw_pose(std::size_t pose, std::size_t first, std::size_t count, PathLearning &before,
                  SeriesSums &sums) {
     PathSampler sampler(scene_, occluder_, poses_[pose], options_, emission_);
+    if (chains_ != nullptr)
+      sampler.leave_to(*chains_);
     if (sampler.has_any()) {
       PathLearning known;
       known.add(before, memory);
@@ -118,6 +122,7 @@ private:
   }
 
   const ThermalEmission *emission_;
+  const ChainSurfaces *chains_;
   const BounceScene &scene_;
   const Occluder &occluder_;
   std::span<const Pose> poses_;
@@ -176,7 +181,8 @@ void smooth(std::span<const double> place, const SeriesSums &sums, std::vector<I
 std::vector<IndirectLight>
 indirect_light(const BounceScene &scene, const Occluder &occluder, std::span<const Pose> poses,
                const IntegrationOptions &options, std::span<const double> direct_i,
-               unsigned threads, const std::atomic<bool> *cancel, const ThermalEmission *emission) {
+               unsigned threads, const std::atomic<bool> *cancel, const ThermalEmission *emission,
+               const ChainSurfaces *chains) {
   if (poses.empty())
     return {};
   const std::size_t n = poses.size(), bands = direct_i.size() / n;
@@ -185,7 +191,7 @@ indirect_light(const BounceScene &scene, const Occluder &occluder, std::span<con
     one.bands.resize(bands);
   const std::vector<double> place = turns(poses);
   SeriesSums sums(n, bands);
-  Rounds rounds(scene, occluder, poses, place, options, threads, cancel, emission);
+  Rounds rounds(scene, occluder, poses, place, options, threads, cancel, emission, chains);
   std::vector<char> is_open(n, 1);
   std::vector<double> draws(n);
   const std::size_t most = std::max(trusted_draws, options.max_points / replicates);

@@ -1,5 +1,6 @@
 #include "light/between/path_sampler.h"
 
+#include "light/between/beam_axes.h"
 #include "light/between/directions.h"
 
 #include <cmath>
@@ -10,26 +11,11 @@ namespace {
 
 using Light = PathSampler::Light;
 
-constexpr double offset_of_size = 1e-5;
-
 /// Streams of random numbers: one for each surface of a path from either end, and one of its own
 /// for the first step of a picture's paths (equal numbers for two steps would tie them together).
 constexpr std::uint32_t observer_stream = 0xB0D,
                         sun_stream = observer_stream + PathSampler::surfaces_max,
                         picture_stream = 0xB0B;
-
-/// Axis +Q of a beam that leaves towards `out` and came from direction `in`: the normal of the
-/// plane.
-Vec3<Body> plane_normal(Vec3<Body> out, Vec3<Body> in) {
-  const Vec3<Body> s = cross(out, in);
-  return norm(s) > 1e-14 ? normalized(s) : any_perpendicular(out);
-}
-
-/// Light that travels along k, from axes s to axes t.
-Light turned(const Light &light, Vec3<Body> s, Vec3<Body> t, Vec3<Body> k) {
-  return rotate_to<ScatteringPlane>(light,
-                                    Angle::radians(std::atan2(dot(t, cross(k, s)), dot(t, s))));
-}
 
 } // namespace
 
@@ -62,39 +48,10 @@ AreaChoice PathSampler::facing(Vec3<Body> direction) const {
   return {std::move(triangles), of_.area_m2_, of_.groups_};
 }
 
-Vertex PathSampler::vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> towards) const {
-  const Mesh &mesh = scene_.mesh;
-  const Triangle &triangle = mesh.triangles[t];
-  const double side = dot(of_.normal_[t], towards) < 0 ? -1 : 1;
-  const double weight[3] = {1 - b1 - b2, b1, b2};
-  Vertex out;
-  out.face = side * of_.normal_[t];
-  out.normal = out.face;
-  Vec3<Body> bent{};
-  bool is_smooth = scene_.normals == NormalMode::Smooth;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.point += weight[k] * mesh.positions[triangle.vertex[k]];
-    is_smooth = is_smooth && triangle.normal[k] != no_index;
-    if (is_smooth)
-      bent += weight[k] * mesh.normals[triangle.normal[k]];
-  }
-  if (is_smooth && norm(bent) > 0)
-    out.normal = normalized(dot(bent, out.face) < 0 ? -bent : bent);
-  out.point += out.face * (offset_of_size * of_.size_m_);
-  out.surface = &surface_of_side(scene_, triangle, side > 0);
-  out.triangle = t;
-  out.is_front = side > 0;
-  const bool is_own_back = side <= 0 && triangle.back == triangle.front;
-  out.sampler = is_own_back ? &of_.back_sampler_[triangle.back]
-                            : &of_.front_sampler_[side > 0 ? triangle.front : triangle.back];
-  out.field = direction_field(mesh, *out.surface, t);
-  return out;
-}
-
 Vertex PathSampler::vertex_at(const AreaChoice &choice, double x, double u, double v,
                               Vec3<Body> towards) const {
   const double root = std::sqrt(u); // even over the triangle
-  return vertex_on(choice.at(x), root * (1 - v), root * v, towards);
+  return of_.vertex_on(choice.at(x), root * (1 - v), root * v, towards);
 }
 
 bool PathSampler::is_free(Vec3<Body> from, Vec3<Body> direction) {
@@ -106,18 +63,12 @@ bool PathSampler::is_free(Vec3<Body> from, Vec3<Body> direction) {
 
 bool PathSampler::next(const Vertex &from, Vec3<Body> direction, Vertex &to, double &distance) {
   ++rays_;
-  if (!(dot(from.face, direction) > 0))
-    return false;
-  const Occluder::Hit hit = occluder_.nearest(from.point, direction);
-  if (hit.triangle == no_index)
-    return false;
-  to = vertex_on(hit.triangle, static_cast<double>(hit.u), static_cast<double>(hit.v), -direction);
-  distance = hit.distance_m;
-  return distance > 0;
+  return of_.next(occluder_, from, direction, to, distance);
 }
 
 Light PathSampler::scattered(const Vertex &at, std::size_t band, Vec3<Body> in, Vec3<Body> out,
-                             double disk, bool is_by_mirror, const Light &light) const {
+                             double disk, bool is_by_mirror, const Light &light,
+                             bool is_lobe_alone) const {
   const double cosine = dot(at.normal, in);
   if (!(cosine > 0) || !(dot(at.normal, out) > 0))
     return {};
@@ -125,16 +76,20 @@ Light PathSampler::scattered(const Vertex &at, std::size_t band, Vec3<Body> in, 
   if (is_by_mirror) // the one direction there is: radiance is kept but for Fresnel
     return at.surface->mueller(band, l_v) * light * at.surface->mirror_part(band, cosine);
   const auto on = directions_on(at.normal, at.field, in, out, l_v, disk);
+  if (is_lobe_alone)
+    return at.surface->mueller(band, l_v) * light *
+           (at.surface->specular(band, on) / dot(at.normal, out));
   return at.surface->brdf(band, on) * light * cosine;
 }
 
 Light PathSampler::carried(const Vertex *x, const Vec3<Body> *step, std::size_t count,
-                           std::size_t band, Light light, Vec3<Body> axis, Vec3<Body> beam) const {
+                           std::size_t band, Light light, Vec3<Body> axis, Vec3<Body> beam,
+                           bool is_lobe_alone) const {
   for (std::size_t i = count; i-- > 0 && light.i != 0;) {
     const Vec3<Body> out = i == 0 ? pose_.observer : -step[i - 1], from = -beam;
     const Vec3<Body> plane = plane_normal(out, from);
-    light =
-        scattered(x[i], band, from, out, 0, x[i].is_by_mirror, turned(light, axis, plane, beam));
+    light = scattered(x[i], band, from, out, 0, x[i].is_by_mirror, turned(light, axis, plane, beam),
+                      is_lobe_alone && i == 0);
     axis = plane;
     beam = out;
   }
@@ -142,15 +97,15 @@ Light PathSampler::carried(const Vertex *x, const Vec3<Body> *step, std::size_t 
 }
 
 Light PathSampler::along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
-                         std::size_t band, SunEnd end) const {
+                         std::size_t band, SunEnd end, bool is_lobe_alone) const {
   const std::size_t last = count - 1;
   const Vec3<Body> out = last == 0 ? pose_.observer : -step[last - 1];
   const Vec3<Body> plane = plane_normal(out, pose_.sun);
   // A mirror shows the Sun only as a disk: a point Sun leaves all but the mirror.
   const double disk = end == SunEnd::Disk ? pose_.sun_radius_rad : 0;
   const Light light = scattered(x[last], band, pose_.sun, out, disk, end == SunEnd::Mirror,
-                                turned(options_.source, plane_, plane, -pose_.sun));
-  return carried(x, step, last, band, light, plane, out);
+                                turned(options_.source, plane_, plane, -pose_.sun), is_lobe_alone);
+  return carried(x, step, last, band, light, plane, out, is_lobe_alone);
 }
 
 Light PathSampler::emitted(const Vertex *x, const Vec3<Body> *step, std::size_t last,
@@ -192,9 +147,16 @@ double PathSampler::sun_over_observer(const Vertex *x, const Vec3<Body> *step,
 
 double PathSampler::add_path(const Vertex *x, const Vec3<Body> *step, std::size_t count,
                              double weight, SunEnd end, std::vector<Light> &sum) const {
+  const ChainPart by_chains =
+      chains_ == nullptr
+          ? ChainPart::Nothing
+          : chains_->part(chains_->kind_of(x[0].surface), chains_->kind_of(x[count - 1].surface));
+  if (by_chains == ChainPart::Whole)
+    return 0;
   double first = 0;
   for (std::size_t b = 0; b < bands_; ++b) {
-    const Light light = along(x, step, count, b, end) * weight;
+    const Light light =
+        along(x, step, count, b, end, by_chains == ChainPart::WithoutLobes) * weight;
     sum[b] += light;
     first += b == 0 ? light.i : 0;
   }
@@ -211,7 +173,7 @@ double PathSampler::from_observer(const Vertex &first, const std::array<double, 
 
 void PathSampler::look(const SurfacePoint &at, std::uint64_t stream, std::vector<Light> &sum) {
   const auto u = uniform4(options_.seed, picture_stream, stream);
-  const Vertex first = vertex_on(at.triangle, at.second, at.third, pose_.observer);
+  const Vertex first = of_.vertex_on(at.triangle, at.second, at.third, pose_.observer);
   if (dot(first.normal, pose_.observer) > 0)
     go_on(first, 1, true, {0, 0, 0, u[0], u[1], u[2]}, stream, sum);
 }

@@ -3,6 +3,7 @@
 
 #include "light/between/area_choice.h"
 #include "light/between/bounce_scene.h"
+#include "light/between/chain_surfaces.h"
 #include "light/between/directions.h"
 #include "light/between/lattice.h"
 
@@ -12,17 +13,6 @@
 #include <umov/shape/occluder.h>
 
 namespace umov {
-
-/// A point of the surface, on the side that faces where the path came from.
-struct Vertex {
-  Vec3<Body> point{}, face{}, normal{}; ///< face: geometric, normal: shading; out of that side
-  Vec3<Body> field{};
-  const Surface *surface = nullptr;
-  const Sampler *sampler = nullptr;
-  bool is_by_mirror = false; ///< the path goes on from here (towards the Sun) as from a mirror
-  std::uint32_t triangle = 0;
-  bool is_front = true;
-};
 
 /// What the paths of a pose have learnt, for the next one.
 struct PathLearning {
@@ -59,6 +49,8 @@ public:
     seen_.start_from(other.seen);
     lit_.start_from(other.lit);
   }
+  /// From now on paths carry only what chains leave out (ChainSurfaces::part).
+  void leave_to(const ChainSurfaces &chains) { chains_ = &chains; }
   [[nodiscard]] PathLearning learnt() const { return {seen_.learnt(), lit_.learnt()}; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
 
@@ -68,7 +60,6 @@ private:
   enum class SunEnd { Disk, WithoutMirror, Mirror };
 
   [[nodiscard]] AreaChoice facing(Vec3<Body> direction) const;
-  [[nodiscard]] Vertex vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> towards) const;
   [[nodiscard]] Vertex vertex_at(const AreaChoice &choice, double x, double u, double v,
                                  Vec3<Body> towards) const;
   bool is_free(Vec3<Body> from, Vec3<Body> direction);
@@ -77,12 +68,13 @@ private:
   /// f (n.in) applied to light that comes from direction `in` and leaves to `out`. The light's axes
   /// are those of this plane, before and after.
   [[nodiscard]] Light scattered(const Vertex &at, std::size_t band, Vec3<Body> in, Vec3<Body> out,
-                                double disk, bool is_by_mirror, const Light &light) const;
+                                double disk, bool is_by_mirror, const Light &light,
+                                bool is_lobe_alone = false) const;
   /// Light that travels along `beam` to x[count-1] with its axis +Q, then on to x[0] and to the
   /// observer, in the pose's axes.
   [[nodiscard]] Light carried(const Vertex *x, const Vec3<Body> *step, std::size_t count,
-                              std::size_t band, Light light, Vec3<Body> axis,
-                              Vec3<Body> beam) const;
+                              std::size_t band, Light light, Vec3<Body> axis, Vec3<Body> beam,
+                              bool is_lobe_alone = false) const;
   /// Light that x[last] emits.
   [[nodiscard]] Light emitted(const Vertex *x, const Vec3<Body> *step, std::size_t last,
                               std::size_t band) const;
@@ -91,7 +83,7 @@ private:
   /// Light of the Sun that goes x[count-1] ... x[0] and then to the observer, in the pose's axes.
   /// `step[i]`: direction from x[i] to x[i+1].
   [[nodiscard]] Light along(const Vertex *x, const Vec3<Body> *step, std::size_t count,
-                            std::size_t band, SunEnd end) const;
+                            std::size_t band, SunEnd end, bool is_lobe_alone) const;
   /// How much likelier a path without mirrors is drawn from the Sun's side than from this one.
   [[nodiscard]] double sun_over_observer(const Vertex *x, const Vec3<Body> *step,
                                          std::size_t count) const;
@@ -118,6 +110,7 @@ private:
   std::size_t bands_;
   AreaChoice seen_, lit_;
   const ThermalEmission *emission_;
+  const ChainSurfaces *chains_ = nullptr;
   Vec3<Body> plane_; ///< normal of the pose's scattering plane
   std::uint64_t rays_ = 0;
   // The path at hand. Room for it on the stack would be set to zero for each: a seventh of the

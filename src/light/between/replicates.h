@@ -9,7 +9,7 @@ namespace umov {
 
 inline constexpr std::size_t replicates = 16;
 /// Two-sided 95 % quantile of Student's t with 15 degrees of freedom.
-inline constexpr double student_95 = 2.131449545559323;
+inline constexpr double student_of_replicates = 2.131449545559323;
 
 struct MeanOfReplicates {
   double mean = 0, deviation = 0; ///< deviation: standard error of the mean

@@ -96,7 +96,7 @@ Smoothed LocalFits::at(std::size_t k, std::span<const double> value, std::size_t
     if (low > high)
       break;
     const double widening = window.weight.size() > 1 ? choice : 1;
-    out = {mean, widening * student_95 * deviation, window.draws, w};
+    out = {mean, widening * student_of_replicates * deviation, window.draws, w};
   }
   return out;
 }

@@ -143,6 +143,18 @@ const char *name_of(LightMethod method) {
   return "";
 }
 
+const char *name_of(BetweenMethod method) {
+  switch (method) {
+  case BetweenMethod::Auto:
+    return "auto";
+  case BetweenMethod::Paths:
+    return "paths";
+  case BetweenMethod::Chains:
+    return "chains";
+  }
+  return "";
+}
+
 double default_accuracy_floor(LightMethod method) { return method == LightMethod::Auto ? 0.1 : 0; }
 
 namespace {

@@ -13,6 +13,7 @@ IntegrationOptions integration_of(const LightOptions &options, std::vector<doubl
   out.seed = options.seed;
   out.source = options.source;
   out.bounces = options.bounces;
+  out.between = options.between;
   out.floor_i = std::move(floor_i);
   if (options.max_points > 0)
     out.max_points = options.max_points;
@@ -35,7 +36,10 @@ std::vector<std::uint32_t> material_of_slots(const Scene &scene,
 RayTracer::RayTracer(const Scene &scene, const std::vector<Joint> &joints,
                      IntegrationOptions options, const std::vector<std::string> &materials)
     : scene_(scene), joints_(joints), options_(std::move(options)),
-      material_of_(material_of_slots(scene, materials)), materials_(materials.size()) {}
+      material_of_(material_of_slots(scene, materials)), materials_(materials.size()) {
+  if (!joints_.empty()) // another body at every pose: nothing to share
+    options_.between = BetweenMethod::Paths;
+}
 
 const Integrator &RayTracer::integrator() const {
   std::call_once(is_made_, [this] { integrator_ = std::make_unique<const Integrator>(scene_); });

@@ -1,12 +1,14 @@
 #include <umov/light/integrator.h>
 
 #include "light/between/bounce_scene.h"
+#include "light/between/chain_store.h"
 #include "light/between/indirect.h"
 #include "light/between/path_sampler.h"
 #include "light/reference/visibility.h"
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <umov/core/parallel.h>
@@ -43,6 +45,20 @@ struct Integrator::State {
     });
     return {*bounces, *occluder};
   }
+  /// Chains of up to so many surfaces; null where they cannot draw anything.
+  const ChainStore *chains(const IntegrationOptions &options) const {
+    const auto &source = options.source;
+    if (options.between != BetweenMethod::Chains ||
+        !(source.i == 1 && source.q == 0 && source.u == 0 && source.v == 0))
+      return nullptr;
+    const PathGround ground = paths();
+    const WriteLock lock(store_mutex);
+    auto &store = stores[{options.bounces, options.seed}];
+    if (!store)
+      store = std::make_unique<const ChainStore>(ground.scene, ground.occluder, options.bounces,
+                                                 options.seed);
+    return store->surfaces().has_any() ? store.get() : nullptr;
+  }
 
   Scene scene;
   bool is_convex;
@@ -53,6 +69,8 @@ struct Integrator::State {
 private:
   mutable std::once_flag has_bounces;
   mutable std::optional<BounceScene> bounces;
+  mutable Mutex store_mutex;
+  mutable std::map<std::pair<std::size_t, std::uint64_t>, std::unique_ptr<const ChainStore>> stores;
 };
 
 Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>(scene)) {}
@@ -119,24 +137,68 @@ void add(const IndirectLight &light, PoseResult &out) {
     out.glint_share *= direct / out.bands[0].stokes.i;
 }
 
-std::vector<IndirectLight> by_paths(const PathGround &ground, std::span<const Pose> poses,
-                                    std::span<const double> direct_i,
-                                    const IntegrationOptions &options, unsigned threads,
-                                    const std::atomic<bool> *cancel,
-                                    const ThermalEmission *emission) {
+std::vector<IndirectLight>
+by_paths(const PathGround &ground, std::span<const Pose> poses, std::span<const double> direct_i,
+         const IntegrationOptions &options, unsigned threads, const std::atomic<bool> *cancel,
+         const ThermalEmission *emission, const ChainSurfaces *chains = nullptr) {
   constexpr std::size_t block = 1024; // poses whose sums are held at a time
   const std::size_t bands = poses.empty() ? 0 : direct_i.size() / poses.size();
   std::vector<IndirectLight> out;
   for (std::size_t begin = 0; begin < poses.size(); begin += block) {
     const std::size_t count = std::min(block, poses.size() - begin);
-    auto part =
-        indirect_light(ground.scene, ground.occluder, poses.subspan(begin, count), options,
-                       direct_i.subspan(begin * bands, count * bands), threads, cancel, emission);
+    auto part = indirect_light(ground.scene, ground.occluder, poses.subspan(begin, count), options,
+                               direct_i.subspan(begin * bands, count * bands), threads, cancel,
+                               emission, chains);
     if (part.empty())
       return {};
     std::move(part.begin(), part.end(), std::back_inserter(out));
   }
   return out;
+}
+
+/// The rows `which` of some table.
+template <class T>
+std::vector<T> rows(std::span<const T> all, const std::vector<std::size_t> &which,
+                    std::size_t width) {
+  std::vector<T> out;
+  for (const std::size_t k : which)
+    out.insert(out.end(), all.begin() + static_cast<std::ptrdiff_t>(k * width),
+               all.begin() + static_cast<std::ptrdiff_t>((k + 1) * width));
+  return out;
+}
+
+/// Chains, and paths for what they leave out and for poses that met too few of them.
+std::vector<IndirectLight> by_chains(const ChainStore &store, const PathGround &ground,
+                                     std::span<const Pose> poses, std::span<const double> direct_i,
+                                     const IntegrationOptions &options, unsigned threads,
+                                     const std::atomic<bool> *cancel) {
+  const std::size_t bands = poses.empty() ? 0 : direct_i.size() / poses.size();
+  ChainStore::Answer found = store.light(poses, direct_i, options, threads, cancel);
+  std::vector<std::size_t> enough, few;
+  for (std::size_t k = 0; k < found.is_enough.size(); ++k)
+    (found.is_enough[k] != 0 ? enough : few).push_back(k);
+  const auto draw = [&](const std::vector<std::size_t> &which, std::span<const double> beside,
+                        const ChainSurfaces *chains) {
+    const std::vector<Pose> at = rows<Pose>(poses, which, 1);
+    return by_paths(ground, at, rows<double>(beside, which, bands), options, threads, cancel,
+                    nullptr, chains);
+  };
+  auto alone = draw(few, direct_i, nullptr);
+  for (std::size_t k = 0; k < alone.size(); ++k)
+    found.light[few[k]] = std::move(alone[k]);
+  if (!store.surfaces().needs_paths() || enough.empty())
+    return is_stopped(cancel) ? std::vector<IndirectLight>{} : std::move(found.light);
+  std::vector<double> beside(direct_i.begin(), direct_i.end());
+  for (std::size_t k = 0; k < beside.size(); ++k)
+    beside[k] += found.light[k / bands].bands[k % bands].stokes.i;
+  const auto more = draw(enough, beside, &store.surfaces());
+  for (std::size_t k = 0; k < more.size(); ++k) {
+    IndirectLight &to = found.light[enough[k]];
+    to.rays += more[k].rays;
+    for (std::size_t b = 0; b < bands; ++b)
+      umov::add(more[k].bands[b], to.bands[b]);
+  }
+  return is_stopped(cancel) ? std::vector<IndirectLight>{} : std::move(found.light);
 }
 
 } // namespace
@@ -152,6 +214,8 @@ std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
   std::vector<double> refers_to(direct_i.begin(), direct_i.end());
   for (std::size_t at = 0; at < refers_to.size() && !options.floor_i.empty(); ++at)
     refers_to[at] = std::max(refers_to[at], options.floor_i[at % bands]);
+  if (const ChainStore *store = state_->chains(options))
+    return by_chains(*store, state_->paths(), poses, refers_to, options, threads, cancel);
   return by_paths(state_->paths(), poses, refers_to, options, threads, cancel, nullptr);
 }
 

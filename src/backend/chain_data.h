@@ -1,0 +1,94 @@
+#pragma once
+// Private to src/light: chains of light between surfaces as the vector unit reads them, 16 side by
+// side. docs/theory/bounces.md, "Chains".
+
+#include "backend/scene_data.h"
+
+namespace umov::backend {
+
+inline constexpr std::size_t chain_products_max = 3;
+
+/// One product of diffuse light: factor p(n.l) p(n.v), polynomials in t = 2 (1 + bend) c/(c + bend)
+/// - 1.
+struct ChainProduct {
+  float factor = 0, bend = 1;
+  bool is_as_reflected = false; ///< polarized as one reflection
+  bool is_polarized = false;    ///< about the plane of emission, by `polarizing`
+  float profile[kernel::polynomial_degree + 1]{};
+  float polarizing[kernel::polynomial_degree + 1]{};
+};
+
+/// A surface in one band.
+struct ChainSurface {
+  kernel::LobeConstants<float> lobe;
+  bool has_lobe = true;
+  bool is_lobe_of_first = false; ///< that of the first band
+  float bend = 1;                ///< of the reflection of a facet, over the cosine of incidence
+  float a[kernel::polynomial_degree + 1]{}, b[kernel::polynomial_degree + 1]{};
+  float z_real[kernel::polynomial_degree + 1]{}, z_imaginary[kernel::polynomial_degree + 1]{};
+  std::uint32_t products = 0;
+  ChainProduct product[chain_products_max];
+};
+
+/// The constants of a lobe in single precision.
+kernel::LobeConstants<float> to_float(const kernel::LobeConstants<double> &from);
+
+/// One end of 16 chains: unit vectors, components by lanes.
+struct ChainEnds {
+  float normal[3][lanes], along[3][lanes], axis[3][lanes];
+};
+/// 16 chains, one of each replicate; without weight where there is none.
+struct alignas(64) ChainBlock {
+  ChainEnds p, q;
+  float from_p[lanes], from_q[lanes]; ///< weight with the observer at p, at q
+};
+/// Matrices of 16 chains in one band, by lanes.
+struct alignas(64) ChainMatrix {
+  float m[16][lanes];
+};
+
+/// Blocks whose ends have the same surfaces.
+struct ChainRun {
+  std::uint32_t first = 0, count = 0;
+  std::uint32_t kind_p = 0, kind_q = 0; ///< of surface
+  std::uint32_t matrix = 0; ///< first of `matrices`, bands of a block side by side; unless straight
+  bool is_straight = true;
+  bool is_without_lobes = false; ///< less what goes from the lobe of one end to that of the other
+};
+
+/// In which directions of a grid each end is free: [direction * blocks + block], a bit per lane.
+struct ChainMasks {
+  std::size_t blocks = 0;
+  View<const std::uint16_t> p, q;
+};
+
+struct ChainData {
+  View<const ChainBlock> blocks;
+  View<const ChainMatrix> matrices;
+  View<const ChainSurface> surfaces; ///< [kind * bands + band]
+  ChainMasks masks;
+  std::size_t bands = 0;
+};
+
+/// A pose as chains see it.
+struct ChainPose {
+  float sun[3]{}, observer[3]{}, plane[3]{}; ///< normal of the scattering plane: axis +Q
+  GridLook at_sun, at_observer;
+};
+
+/// Light by lanes in one band.
+struct ChainLight {
+  double i[lanes]{}, q[lanes]{}, u[lanes]{}, v[lanes]{};
+};
+struct ChainSums {
+  View<ChainLight> bands;
+  double squares = 0; ///< sum of I^2 of the chains in the first band, one by one
+};
+inline constexpr std::size_t chain_bands_max = 8; ///< more go in parts
+
+/// Adds what the chains of some blocks of a run carry from the Sun to the observer, `blocks` of
+/// them from number `begin` of the run on, in bands from `band` on, chain_bands_max at most.
+void sum_chains(const ChainData &data, const ChainRun &run, std::size_t begin, std::size_t blocks,
+                std::size_t band, const ChainPose &pose, ChainSums &out);
+
+} // namespace umov::backend

@@ -1,0 +1,221 @@
+// Chains of light between surfaces for each instruction set, chosen when the program runs.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "backend/simd/chains_simd.cpp"
+#include <hwy/foreach_target.h>
+// foreach_target comes first: it includes this file once for each instruction set.
+#include "backend/simd/lanes.inl.h"
+
+#include "backend/chain_data.h"
+#include "kernel/chain_end.inl.h"
+
+#include "kernel/begin.h"
+
+using Axes = Triple<Lanes>;
+
+HWY_INLINE Axes everywhere(const float *v) { return {Lanes(v[0]), Lanes(v[1]), Lanes(v[2])}; }
+HWY_INLINE Axes load_axes(const float (*v)[backend::lanes], std::size_t s) {
+  const FloatTag d;
+  return {hn::Load(d, v[0] + s), hn::Load(d, v[1] + s), hn::Load(d, v[2] + s)};
+}
+
+/// 16 bits of each of the three directions around one.
+struct ThreeWords {
+  std::uint32_t word[3];
+  [[nodiscard]] HWY_INLINE std::uint32_t any() const { return word[0] | word[1] | word[2]; }
+  /// Interpolated between the three, for the lanes from s on.
+  [[nodiscard]] HWY_INLINE Lanes share(const backend::GridLook &look, std::size_t s) const {
+    const FloatTag d;
+    Lanes sum(0.0f);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint64_t bits = word[k] >> s;
+      const auto mask = hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t *>(&bits));
+      sum = sum + Lanes(hn::IfThenElseZero(mask, hn::Set(d, look.weight[k])));
+    }
+    return sum;
+  }
+};
+
+struct EndAxes {
+  Axes normal, along, axis;
+  HWY_INLINE EndAxes(const backend::ChainEnds &of, std::size_t s)
+      : normal(load_axes(of.normal, s)), along(load_axes(of.along, s)), axis(load_axes(of.axis, s)) {
+  }
+};
+
+/// The blocks of one run for one pose.
+class ChainLoop {
+public:
+  HWY_INLINE ChainLoop(const backend::ChainData &data, const backend::ChainRun &run,
+                       std::size_t band, const backend::ChainPose &pose, backend::ChainSums &out)
+      : data_(data), run_(run), band_(band),
+        bands_(data.bands - band < backend::chain_bands_max ? data.bands - band
+                                                            : backend::chain_bands_max),
+        pose_(pose), out_(out), sun_(everywhere(pose.sun)), observer_(everywhere(pose.observer)),
+        plane_(everywhere(pose.plane)) {}
+
+  HWY_INLINE void add(std::size_t begin, std::size_t count) {
+    for (std::size_t k = begin; k < begin + count; ++k) {
+      const std::size_t block = run_.first + k;
+      const ThreeWords lit_p = words(data_.masks.p, pose_.at_sun, block),
+                       lit_q = words(data_.masks.q, pose_.at_sun, block),
+                       seen_p = words(data_.masks.p, pose_.at_observer, block),
+                       seen_q = words(data_.masks.q, pose_.at_observer, block);
+      if ((lit_q.any() & seen_p.any()) != 0)
+        add_block<false>(k, block, seen_p, lit_q);
+      if ((lit_p.any() & seen_q.any()) != 0)
+        add_block<true>(k, block, seen_q, lit_p);
+    }
+  }
+
+private:
+  HWY_INLINE ThreeWords words(const backend::View<const std::uint16_t> &from,
+                              const backend::GridLook &look, std::size_t block) const {
+    ThreeWords out;
+    for (std::size_t k = 0; k < 3; ++k)
+      out.word[k] = from[look.direction[k] * data_.masks.blocks + block];
+    return out;
+  }
+  [[nodiscard]] HWY_INLINE const backend::ChainSurface &surface(std::uint32_t kind,
+                                                                std::size_t b) const {
+    return data_.surfaces[kind * data_.bands + band_ + b];
+  }
+
+  /// With the observer at one end: at q if the chains are taken from behind.
+  template <bool is_reversed>
+  HWY_INLINE void add_block(std::size_t k, std::size_t block, const ThreeWords &seen,
+                            const ThreeWords &lit) {
+    const FloatTag d;
+    const backend::ChainBlock &at = data_.blocks[block];
+    for (std::size_t s = 0; s < backend::lanes; s += hn::Lanes(d)) {
+      const EndAxes a(is_reversed ? at.q : at.p, s), b(is_reversed ? at.p : at.q, s);
+      const auto end_a = chain_end_at(a.normal, a.along, observer_),
+                 end_b = chain_end_at(b.normal, b.along, sun_);
+      Lanes weight = Lanes(hn::Load(d, (is_reversed ? at.from_q : at.from_p) + s)) *
+                     seen.share(pose_.at_observer, s) * lit.share(pose_.at_sun, s);
+      const LaneMask counts = (end_a.n_e > Lanes(0.0f)) & (end_b.n_e > Lanes(0.0f)) &
+                              (weight > Lanes(0.0f));
+      if (!any(counts))
+        continue;
+      weight = select(counts, weight, Lanes(0.0f));
+      add_bands<is_reversed>(k, s, a, b, end_a, end_b, weight);
+    }
+  }
+
+  template <bool is_reversed>
+  HWY_INLINE void add_bands(std::size_t k, std::size_t s, const EndAxes &a, const EndAxes &b,
+                            const ChainEndAt<Lanes> &end_a, const ChainEndAt<Lanes> &end_b,
+                            Lanes weight) {
+    const std::uint32_t kind_a = is_reversed ? run_.kind_q : run_.kind_p,
+                        kind_b = is_reversed ? run_.kind_p : run_.kind_q;
+    const auto turn = turn_at_sun(b.along, b.axis, sun_);
+    const auto turns = turns_at_observer(a.normal, a.along, a.axis, observer_, plane_);
+    const auto straight = beam_turn(b.axis, a.axis, b.along);
+    Lanes lobe_a(0.0f), lobe_b(0.0f);
+    for (std::size_t band = 0; band < bands_; ++band) {
+      const auto &of_a = surface(kind_a, band), &of_b = surface(kind_b, band);
+      if (of_a.has_lobe && (band == 0 || !of_a.is_lobe_of_first))
+        lobe_a = chain_lobe(of_a.lobe, end_a);
+      if (of_b.has_lobe && (band == 0 || !of_b.is_lobe_of_first))
+        lobe_b = chain_lobe(of_b.lobe, end_b);
+      const auto entered = chain_entered(of_b, lobe_b, end_b, turn);
+      const auto pass = [&](const Beam<Lanes> &light) HWY_ATTR {
+        return run_.is_straight ? turned(light, straight)
+                                : between<is_reversed>(k, band, s, light);
+      };
+      const auto in = pass(entered.whole);
+      auto to_lobe = in;
+      if (run_.is_without_lobes)
+        to_lobe = pass(Beam<Lanes>{entered.whole.i - entered.lobe.i,
+                                   entered.whole.q - entered.lobe.q,
+                                   entered.whole.u - entered.lobe.u, entered.whole.v});
+      const auto light = chain_left(of_a, lobe_a, end_a, turns, in, to_lobe);
+      put(band, s, light, weight);
+    }
+  }
+
+  /// Light carried through what lies between; from behind by the transposed matrix with the signs
+  /// of U, by reciprocity.
+  template <bool is_reversed>
+  HWY_INLINE Beam<Lanes> between(std::size_t k, std::size_t band, std::size_t s,
+                                 const Beam<Lanes> &light) const {
+    const FloatTag d;
+    const backend::ChainMatrix &m =
+        data_.matrices[run_.matrix + k * data_.bands + band_ + band];
+    const auto entry = [&](std::size_t row, std::size_t column) HWY_ATTR {
+      return Lanes(hn::Load(d, m.m[is_reversed ? 4 * column + row : 4 * row + column] + s));
+    };
+    const Lanes u = is_reversed ? -light.u : light.u;
+    const auto row = [&](std::size_t r) HWY_ATTR {
+      return entry(r, 0) * light.i + entry(r, 1) * light.q + entry(r, 2) * u +
+             entry(r, 3) * light.v;
+    };
+    const Lanes out_u = row(2);
+    return {row(0), row(1), is_reversed ? -out_u : out_u, row(3)};
+  }
+
+  HWY_INLINE void put(std::size_t band, std::size_t s, const Beam<Lanes> &light, Lanes weight) {
+    const FloatTag d;
+    HWY_ALIGN float part[4][16];
+    const Lanes i = light.i * weight;
+    hn::Store(i.v, d, part[0]);
+    hn::Store((light.q * weight).v, d, part[1]);
+    hn::Store((light.u * weight).v, d, part[2]);
+    hn::Store((light.v * weight).v, d, part[3]);
+    backend::ChainLight &to = out_.bands[band_ + band];
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
+      to.i[s + k] += static_cast<double>(part[0][k]);
+      to.q[s + k] += static_cast<double>(part[1][k]);
+      to.u[s + k] += static_cast<double>(part[2][k]);
+      to.v[s + k] += static_cast<double>(part[3][k]);
+    }
+    if (band_ + band == 0)
+      out_.squares += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, (i * i).v)));
+  }
+
+  const backend::ChainData &data_;
+  const backend::ChainRun &run_;
+  std::size_t band_, bands_;
+  const backend::ChainPose &pose_;
+  backend::ChainSums &out_;
+  Axes sun_, observer_, plane_;
+};
+
+void sum_chains_here(const backend::ChainData &data, const backend::ChainRun &run,
+                     std::size_t begin, std::size_t blocks, std::size_t band,
+                     const backend::ChainPose &pose, backend::ChainSums &out) {
+  ChainLoop(data, run, band, pose, out).add(begin, blocks);
+}
+
+#include "kernel/end.h"
+
+#if HWY_ONCE
+namespace umov::kernel {
+HWY_EXPORT(sum_chains_here);
+} // namespace umov::kernel
+
+namespace umov::backend {
+
+void sum_chains(const ChainData &data, const ChainRun &run, std::size_t begin, std::size_t blocks,
+                std::size_t band, const ChainPose &pose, ChainSums &out) {
+  using namespace kernel; // the table of HWY_EXPORT stands there
+  HWY_DYNAMIC_DISPATCH(sum_chains_here)(data, run, begin, blocks, band, pose, out);
+}
+
+kernel::LobeConstants<float> to_float(const kernel::LobeConstants<double> &from) {
+  kernel::LobeConstants<float> out;
+  const auto rounded = [](double x) { return static_cast<float>(x); };
+  out.kind = from.kind;
+  out.joint = from.joint;
+  out.shape = rounded(from.shape);
+  out.peak = rounded(from.peak);
+  out.per_width2 = rounded(from.per_width2);
+  for (std::size_t k = 0; k <= kernel::polynomial_degree; ++k)
+    out.masking[k] = rounded(from.masking[k]);
+  out.masking_limit = rounded(from.masking_limit);
+  out.masking_scale = rounded(from.masking_scale);
+  return out;
+}
+
+} // namespace umov::backend
+#endif

@@ -1,0 +1,272 @@
+#include "light/between/chain_rays.h"
+
+#include "light/between/beam_axes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <umov/core/random.h>
+
+namespace umov {
+namespace {
+
+using Light = Stokes<ScatteringPlane>;
+using Matrix = Mueller<ScatteringPlane, ScatteringPlane>;
+
+constexpr std::uint32_t shift_stream = 0xC4A1, walk_stream = 0xC4A2, look_stream = 0xC4E2,
+                        thinning_stream = 0xC4A0 + 0x80;
+constexpr double least_cosine = 1e-6;
+
+/// Kronecker's sequence in the four dimensions of a ray with the powers of the root of x^5 = x + 1
+/// (Roberts 2018), shifted.
+std::array<double, 4> lattice(const std::array<double, 4> &shift, std::size_t index) {
+  constexpr double root = 1.1673039782614187;
+  std::array<double, 4> out{};
+  double power = 1;
+  for (std::size_t d = 0; d < out.size(); ++d) {
+    power /= root;
+    const double x = shift[d] + power * static_cast<double>(index);
+    out[d] = x - std::floor(x);
+  }
+  return out;
+}
+
+/// Light that travels along k, from axes s to axes t, as a matrix.
+Matrix turn_of(Vec3<Body> s, Vec3<Body> t, Vec3<Body> k) {
+  Matrix out;
+  for (std::size_t c = 0; c < 4; ++c) {
+    Light e{c == 0 ? 1.0 : 0, c == 1 ? 1.0 : 0, c == 2 ? 1.0 : 0, c == 3 ? 1.0 : 0};
+    e = turned(e, s, t, k);
+    const double column[4] = {e.i, e.q, e.u, e.v};
+    for (std::size_t r = 0; r < 4; ++r)
+      out.m[r][c] = column[r];
+  }
+  return out;
+}
+
+/// Cosine from the shading normal over that from the facet.
+double bend_of(const Vertex &at, Vec3<Body> d) {
+  return dot(at.normal, d) / std::max(dot(at.face, d), least_cosine);
+}
+
+Vec3<Body> axis_of(const Vertex &at, Vec3<Body> along) {
+  const Vec3<Body> s = cross(at.normal, along);
+  return norm(s) > 1e-9 ? normalized(s) : any_perpendicular(along);
+}
+
+} // namespace
+
+/// A way as far as it has come.
+struct ChainRays::Walk {
+  Vertex first;
+  Vec3<Body> along;
+  double forward = 0, backward = 0;
+  std::vector<Matrix> matrix; ///< per band, to the axis of the first end
+  Vec3<Body> axis;            ///< that they start from, of the beam along -back
+  bool is_straight = true;
+};
+
+ChainRays::ChainRays(const BounceScene &scene, const Occluder &occluder,
+                     const ChainSurfaces &surfaces, std::size_t bounces, std::uint64_t seed)
+    : scene_(scene), occluder_(occluder), surfaces_(surfaces), bounces_(bounces),
+      bands_(scene.scene().grid.nodes().size()), seed_(seed) {
+  double sum = 0;
+  for (const bool is_back : {false, true})
+    for (std::uint32_t t = 0; t < scene.areas().size(); ++t)
+      if (is_back ? scene.sides()[t].back : scene.sides()[t].front) {
+        side_.push_back(2 * t + (is_back ? 1 : 0));
+        sum_.push_back(sum += scene.areas()[t]);
+      }
+}
+
+Vertex ChainRays::start(double x, double v) const {
+  const double at = x * sum_.back();
+  const std::size_t k = std::min<std::size_t>(
+      sum_.size() - 1,
+      static_cast<std::size_t>(std::upper_bound(sum_.begin(), sum_.end(), at) - sum_.begin()));
+  const std::uint32_t t = side_[k] / 2;
+  const double part = std::clamp(1 - (sum_[k] - at) / scene_.areas()[t], 0.0, 1.0);
+  const double root = std::sqrt(part);
+  const Vec3<Body> n = scene_.normal(t);
+  return scene_.vertex_on(t, root * (1 - v), root * v, side_[k] % 2 != 0 ? -n : n);
+}
+
+ChainEnd ChainRays::end_at(const Vertex &at, Vec3<Body> along) const {
+  return {at.point,   at.face,    at.normal,           at.field, along, axis_of(at, along),
+          at.surface, at.sampler, surfaces_.kind_of(at.surface)};
+}
+
+void ChainRays::put(const Walk &walk, const Vertex &last, Vec3<Body> back, ChainList &out) const {
+  if (!(dot(last.normal, back) > least_cosine))
+    return;
+  Chain c;
+  c.p = end_at(walk.first, walk.along);
+  c.q = end_at(last, back);
+  if (surfaces_.part(c.p.kind, c.q.kind) == ChainPart::Nothing)
+    return;
+  c.from_p = walk.forward * bend_of(walk.first, walk.along);
+  c.from_q = walk.backward * bend_of(last, back);
+  c.is_straight = walk.is_straight;
+  if (!walk.is_straight) {
+    c.matrix = static_cast<std::uint32_t>(out.between.size() / (16 * bands_));
+    const Matrix start = turn_of(c.q.axis, walk.axis, back);
+    c.transmitted = 0;
+    for (const Matrix &after : walk.matrix) {
+      const Matrix m = after * start;
+      for (const auto &row : m.m)
+        for (const double x : row)
+          out.between.push_back(static_cast<float>(x));
+      c.transmitted += m.m[0][0] / static_cast<double>(bands_);
+    }
+  }
+  out.chains.push_back(c);
+}
+
+bool ChainRays::step(Walk &walk, Vertex &at, Vec3<Body> &back,
+                     const std::array<double, 4> &u) const {
+  const Direction d = at.sampler->draw(at.normal, back, u[0], u[1], u[2]);
+  Vertex to;
+  double distance = 0;
+  if (!(d.density > 0) || !scene_.next(occluder_, at, d.to, to, distance))
+    return false;
+  const Vec3<Body> plane = plane_normal(back, d.to);
+  const double cosine = dot(at.normal, d.to);
+  if (!(cosine > 0) || !(dot(at.normal, back) > 0))
+    return false;
+  const Matrix last = turn_of(plane, walk.axis, back);
+  const auto on = directions_on(at.normal, at.field, d.to, back,
+                                std::clamp(dot(d.to, back), -1.0, 1.0), 0);
+  double strongest = 0;
+  for (std::size_t b = 0; b < bands_; ++b) {
+    Matrix f = d.is_by_mirror ? at.surface->mueller(b, on.l_v) : at.surface->brdf(b, on);
+    const double scale =
+        (d.is_by_mirror ? at.surface->mirror_part(b, cosine) : cosine) / d.density;
+    for (auto &row : f.m)
+      for (double &x : row)
+        x *= scale;
+    walk.matrix[b] = walk.matrix[b] * (last * f);
+    strongest = std::max(strongest, walk.matrix[b].m[0][0]);
+  }
+  walk.backward *= bend_of(at, back) / bend_of(at, d.to);
+  walk.axis = plane;
+  walk.is_straight = false;
+  at = to;
+  back = -d.to;
+  return strongest > 0;
+}
+
+ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t count) const {
+  ChainList out;
+  const auto shift = uniform4(seed_, shift_stream, replicate);
+  const double weight = pi * sum_.back() / static_cast<double>(count);
+  Walk walk;
+  for (std::size_t i = first; i < first + count; ++i) {
+    const auto x = lattice(shift, i);
+    walk.first = start(x[0], x[1]);
+    const Vec3<Body> n = walk.first.face, a = any_perpendicular(n), b = cross(n, a);
+    const double sine = std::sqrt(1 - x[2]), turn = 2 * pi * x[3];
+    walk.along =
+        n * std::sqrt(x[2]) + a * (sine * std::cos(turn)) + b * (sine * std::sin(turn));
+    Vertex at;
+    double distance = 0;
+    if (!(dot(walk.first.normal, walk.along) > least_cosine) ||
+        !scene_.next(occluder_, walk.first, walk.along, at, distance))
+      continue;
+    walk.forward = walk.backward = weight;
+    walk.axis = axis_of(walk.first, walk.along);
+    walk.matrix.assign(bands_, turn_of(walk.axis, walk.axis, -walk.along));
+    walk.is_straight = true;
+    Vec3<Body> back = -walk.along;
+    put(walk, at, back, out);
+    const std::uint64_t stream = (static_cast<std::uint64_t>(replicate) << 56U) + i;
+    for (std::size_t k = 2; k < bounces_; ++k) {
+      if (!step(walk, at, back,
+                uniform4(seed_, walk_stream + static_cast<std::uint32_t>(k), stream)))
+        break;
+      put(walk, at, back, out);
+    }
+  }
+  return out;
+}
+
+double ChainRays::importance(const ChainEnd &end, const std::array<double, 4> &u,
+                             std::uint64_t stream) const {
+  constexpr std::size_t looks = 4;
+  std::size_t free = 0;
+  for (std::size_t k = 0; k < looks; ++k) {
+    const auto x = k == 0 ? u : uniform4(seed_, look_stream + static_cast<std::uint32_t>(k), stream);
+    const Direction d = end.sampler->draw(end.normal, end.along, x[0], x[1], x[2]);
+    if (!(dot(d.to, end.face) > 0))
+      continue;
+    unsigned char is_free = 0;
+    occluder_.is_free(std::span(&end.point, 1), d.to, std::span(&is_free, 1));
+    free += is_free;
+  }
+  return surfaces_.strength(end.kind, dot(end.normal, end.along)) *
+         std::sqrt((static_cast<double>(free) + 0.25) / looks);
+}
+
+std::uint64_t likeness(const Chain &chain) {
+  const auto cell = [](Vec3<Body> a, double cells) {
+    const auto f = [&](double x) {
+      return static_cast<std::uint64_t>(std::clamp((x * 0.5 + 0.5) * cells, 0.0, cells - 1));
+    };
+    const auto n = static_cast<std::uint64_t>(cells);
+    return (f(a.x) * n + f(a.y)) * n + f(a.z);
+  };
+  std::uint64_t out = chain.is_straight ? 0 : 1;
+  out = out << 12U | (chain.p.kind & 4095U);
+  out = out << 12U | (chain.q.kind & 4095U);
+  out = out << 9U | cell(chain.p.normal, 8);
+  out = out << 9U | cell(chain.q.normal, 8);
+  return out << 8U | cell(chain.p.along, 6);
+}
+
+ChainList ChainRays::thinned(const ChainList &all, std::size_t replicate, std::size_t first,
+                             std::size_t kept) const {
+  std::vector<double> matters;
+  const std::uint64_t begin = (static_cast<std::uint64_t>(replicate) << 56U) + first * bounces_;
+  for (std::size_t k = 0; k < all.chains.size(); ++k) {
+    const Chain &c = all.chains[k];
+    const std::uint64_t stream = 2 * (begin + k);
+    matters.push_back((c.from_p + c.from_q) * c.transmitted *
+                      importance(c.p, uniform4(seed_, look_stream, stream), stream) *
+                      importance(c.q, uniform4(seed_, look_stream, stream + 1), stream + 1));
+  }
+  // Chances are `scale` times what matters, at most 1, and add up to `kept`.
+  double low = 0, high = 1e30;
+  for (int k = 0; k < 200; ++k) {
+    const double middle = k < 100 ? std::sqrt(std::max(low, 1e-30) * high) : (low + high) / 2;
+    double sum = 0;
+    for (const double x : matters)
+      sum += std::min(1.0, middle * x);
+    (sum > static_cast<double>(kept) ? high : low) = middle;
+  }
+  std::vector<std::size_t> order(all.chains.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::uint64_t> key;
+  for (const Chain &c : all.chains)
+    key.push_back(likeness(c));
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return key[a] < key[b]; });
+  ChainList out;
+  double reached = uniform4(seed_, thinning_stream, begin)[0];
+  for (const std::size_t k : order) {
+    const double chance = std::min(1.0, low * matters[k]);
+    reached += chance;
+    if (reached < 1)
+      continue;
+    reached -= 1;
+    Chain &c = out.chains.emplace_back(all.chains[k]);
+    c.from_p /= chance;
+    c.from_q /= chance;
+    if (c.is_straight)
+      continue;
+    const auto from = all.between.begin() + static_cast<std::ptrdiff_t>(c.matrix * 16 * bands_);
+    c.matrix = static_cast<std::uint32_t>(out.between.size() / (16 * bands_));
+    out.between.insert(out.between.end(), from, from + static_cast<std::ptrdiff_t>(16 * bands_));
+  }
+  return out;
+}
+
+} // namespace umov

@@ -1,0 +1,48 @@
+#pragma once
+// Private: chains drawn over all pairs of points that see each other, and on from there.
+
+#include "light/between/chain.h"
+#include "light/between/chain_surfaces.h"
+
+#include <umov/shape/occluder.h>
+
+namespace umov {
+
+/// Draws chains; what it is made from must live.
+class ChainRays {
+public:
+  ChainRays(const BounceScene &scene, const Occluder &occluder, const ChainSurfaces &surfaces,
+            std::size_t bounces, std::uint64_t seed);
+
+  /// `count` rays of one replicate, from number `first` of its lattice on, and the chains of 2 to
+  /// `bounces` surfaces that they find. An estimate by all of them has the mean it should.
+  [[nodiscard]] ChainList draw(std::size_t replicate, std::size_t first, std::size_t count) const;
+  /// The same thinned to about `kept`, each as likely to stay as it matters over all poses, its
+  /// weight growing as it gets rarer, and evenly among like ones.
+  [[nodiscard]] ChainList thinned(const ChainList &all, std::size_t replicate, std::size_t first,
+                                  std::size_t kept) const;
+
+private:
+  struct Walk;
+  [[nodiscard]] Vertex start(double x, double v) const;
+  [[nodiscard]] ChainEnd end_at(const Vertex &at, Vec3<Body> along) const;
+  void put(const Walk &walk, const Vertex &last, Vec3<Body> back, ChainList &out) const;
+  /// One surface further: false where the walk ends.
+  [[nodiscard]] bool step(Walk &walk, Vertex &at, Vec3<Body> &back,
+                          const std::array<double, 4> &u) const;
+  [[nodiscard]] double importance(const ChainEnd &end, const std::array<double, 4> &u,
+                                  std::uint64_t stream) const;
+
+  const BounceScene &scene_;
+  const Occluder &occluder_;
+  const ChainSurfaces &surfaces_;
+  std::size_t bounces_, bands_;
+  std::uint64_t seed_;
+  std::vector<std::uint32_t> side_; ///< 2 * triangle + (1 for its back)
+  std::vector<double> sum_;         ///< areas of the sides, added up
+};
+
+/// Order in which like chains stand together: surfaces, normals, directions.
+std::uint64_t likeness(const Chain &chain);
+
+} // namespace umov

@@ -1,0 +1,152 @@
+#include "light/between/chain_store.h"
+
+#include <algorithm>
+#include <cmath>
+#include <umov/core/parallel.h>
+
+namespace umov {
+namespace {
+
+/// Chains of each level, of all replicates; with the levels below they are four times as many as
+/// those.
+constexpr std::array<std::size_t, ChainStore::levels> chains_of{16'384, 49'152, 196'608};
+/// Rays for each chain that stays: most meet nothing, or do not matter.
+constexpr std::size_t rays_per_chain = 24;
+/// Poses that are lit in turn by the chains that the cache has.
+constexpr std::size_t poses_together = 16;
+/// Fewer chains than this, counted by their light, (sum I)^2 / sum I^2, are too few to tell how far
+/// off they are.
+constexpr double least_chains = 48;
+
+constexpr double weight_of(std::size_t level) { return static_cast<double>(chains_of[level]); }
+
+BandResult result_of(const backend::ChainLight &sum, double weight) {
+  BandResult out;
+  const auto put = [&](const double (&from)[replicates], double &mean, double &half_width) {
+    std::array<double, replicates> value{};
+    for (std::size_t r = 0; r < replicates; ++r)
+      value[r] = from[r] / weight;
+    const MeanOfReplicates found = mean_of_replicates(value);
+    mean = found.mean;
+    half_width = student_of_replicates * found.deviation;
+  };
+  put(sum.i, out.stokes.i, out.half_width.i);
+  put(sum.q, out.stokes.q, out.half_width.q);
+  put(sum.u, out.stokes.u, out.half_width.u);
+  put(sum.v, out.stokes.v, out.half_width.v);
+  return out;
+}
+
+double total_of(const backend::ChainLight &sum) {
+  double out = 0;
+  for (const double x : sum.i)
+    out += x;
+  return out;
+}
+
+} // namespace
+
+/// What the poses have gathered so far.
+struct ChainStore::Climb {
+  std::vector<std::size_t> open;           ///< poses
+  std::vector<backend::ChainLight> sum;    ///< [pose * bands + band], weighted by level
+  std::vector<double> squares;             ///< per pose
+};
+
+ChainStore::ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
+                       std::uint64_t seed)
+    : surfaces_(scene.scene()), rays_(scene, occluder, surfaces_, bounces, seed),
+      occluder_(occluder), bands_(scene.scene().grid.nodes().size()) {}
+
+const ChainLevel &ChainStore::level(std::size_t index, unsigned threads) const {
+  const WriteLock lock(mutex_);
+  if (!level_[index]) {
+    std::size_t first = 0;
+    for (std::size_t k = 0; k < index; ++k)
+      first += chains_of[k] * rays_per_chain / replicates;
+    level_[index] = std::make_unique<const ChainLevel>(
+        rays_, surfaces_, occluder_, bands_, first, chains_of[index] * rays_per_chain / replicates,
+        chains_of[index], threads);
+  }
+  return *level_[index];
+}
+
+void ChainStore::add_level(std::size_t index, std::span<const Pose> poses, Climb &climb,
+                           unsigned threads, const std::atomic<bool> *cancel) const {
+  const ChainLevel &from = level(index, threads);
+  const std::size_t groups = (climb.open.size() + poses_together - 1) / poses_together;
+  parallel_for(groups, threads, [&](std::size_t group) {
+    if (is_stopped(cancel))
+      return;
+    const std::size_t begin = group * poses_together,
+                      count = std::min(poses_together, climb.open.size() - begin);
+    std::vector<backend::ChainPose> at;
+    std::vector<backend::ChainLight> light(count * bands_);
+    std::vector<backend::ChainSums> sums(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      at.push_back(chain_pose(poses[climb.open[begin + k]]));
+      sums[k].bands = {light.data() + k * bands_, bands_};
+    }
+    from.add(at, sums);
+    const double weight = weight_of(index);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t pose = climb.open[begin + k];
+      climb.squares[pose] += weight * weight * sums[k].squares;
+      for (std::size_t b = 0; b < bands_; ++b) {
+        backend::ChainLight &to = climb.sum[pose * bands_ + b];
+        const backend::ChainLight &more = sums[k].bands[b];
+        for (std::size_t r = 0; r < replicates; ++r) {
+          to.i[r] += weight * more.i[r];
+          to.q[r] += weight * more.q[r];
+          to.u[r] += weight * more.u[r];
+          to.v[r] += weight * more.v[r];
+        }
+      }
+    }
+  });
+}
+
+ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<const double> direct_i,
+                                     const IntegrationOptions &options, unsigned threads,
+                                     const std::atomic<bool> *cancel) const {
+  Answer out;
+  out.light.resize(poses.size());
+  out.is_enough.assign(poses.size(), 1);
+  Climb climb;
+  climb.sum.resize(poses.size() * bands_);
+  climb.squares.resize(poses.size());
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    climb.open.push_back(k);
+  double weight = 0;
+  for (std::size_t index = 0; index < levels && !climb.open.empty(); ++index) {
+    add_level(index, poses, climb, threads, cancel);
+    if (is_stopped(cancel))
+      return {};
+    weight += weight_of(index);
+    std::vector<std::size_t> left;
+    for (const std::size_t k : climb.open) {
+      IndirectLight &light = out.light[k];
+      light.bands.assign(bands_, {});
+      const double total = total_of(climb.sum[k * bands_]);
+      const bool is_enough = !(total > 0) || total * total >= least_chains * climb.squares[k];
+      bool is_met = is_enough && total > 0;
+      for (std::size_t b = 0; b < bands_; ++b) {
+        light.bands[b] = result_of(climb.sum[k * bands_ + b], weight);
+        is_met = is_met && light.bands[b].half_width.i <=
+                               options.accuracy *
+                                   (direct_i[k * bands_ + b] + light.bands[b].stokes.i);
+      }
+      out.is_enough[k] = is_enough ? 1 : 0;
+      if (!is_met)
+        left.push_back(k);
+    }
+    climb.open = std::move(left);
+  }
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    if (!has_scattering_plane(poses[k]))
+      for (BandResult &band : out.light[k].bands)
+        band.stokes.q = band.stokes.u = band.half_width.q = band.half_width.u = 0;
+  return out;
+}
+
+} // namespace umov

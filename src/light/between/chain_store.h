@@ -1,0 +1,49 @@
+#pragma once
+// Private: light between surfaces for many poses, from chains that are drawn once.
+
+#include "light/between/chain_level.h"
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <umov/core/locks.h>
+#include <umov/light/integrator.h>
+#include <umov/light/light_task.h>
+
+namespace umov {
+
+/// Chains of one body, in levels that are drawn when a pose first needs them. The bytes of an
+/// answer depend on scene, bounces and seed, not on threads or on what was asked before. Thread
+/// safe; what it is made from must live.
+class ChainStore {
+public:
+  ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
+             std::uint64_t seed);
+
+  struct Answer {
+    std::vector<IndirectLight> light;
+    std::vector<char> is_enough; ///< per pose: enough chains were met to believe the half-widths
+  };
+  /// Each pose climbs until the half-width of I is below options.accuracy of the whole, direct_i
+  /// included, or the levels end. Empty if `cancel` became true.
+  [[nodiscard]] Answer light(std::span<const Pose> poses, std::span<const double> direct_i,
+                             const IntegrationOptions &options, unsigned threads,
+                             const std::atomic<bool> *cancel) const;
+  [[nodiscard]] const ChainSurfaces &surfaces() const { return surfaces_; }
+  static constexpr std::size_t levels = 3;
+
+private:
+  struct Climb;
+  [[nodiscard]] const ChainLevel &level(std::size_t index, unsigned threads) const;
+  void add_level(std::size_t index, std::span<const Pose> poses, Climb &climb, unsigned threads,
+                 const std::atomic<bool> *cancel) const;
+
+  ChainSurfaces surfaces_;
+  ChainRays rays_;
+  const Occluder &occluder_;
+  std::size_t bands_;
+  mutable Mutex mutex_;
+  mutable std::array<std::unique_ptr<const ChainLevel>, levels> level_;
+};
+
+} // namespace umov

@@ -1,0 +1,178 @@
+#include "light/between/chain_surfaces.h"
+
+#include "light/fast/chebyshev.h"
+#include "light/fast/lobe_fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <umov/core/random.h>
+
+namespace umov {
+namespace {
+
+/// Product of the widths (rms slopes) of two lobes below which chains, that have to meet both by
+/// chance, are too few: GGX of alpha 0.1 twice.
+constexpr double least_widths = 0.0049;
+/// What a polynomial may miss, in parts of the largest value.
+constexpr double fit_error = 5e-4;
+constexpr std::size_t cosines = 32;
+
+/// Values at Chebyshev's nodes of t = 2 (1 + bend) c/(c + bend) - 1 as powers of t; false if it
+/// does not follow.
+template <class Function>
+bool fit(const Function &f, double bend, float *out, double scale) {
+  NodeValues value{};
+  const auto cosine = [&](double t) {
+    const double x = (t + 1) / (2 * (1 + bend));
+    return std::min(1.0, bend * x / (1 - x));
+  };
+  for (std::size_t i = 0; i < chebyshev_nodes; ++i)
+    value[i] = f(cosine(chebyshev_node(i)));
+  const Coefficients c = fit_polynomial(value, kernel::polynomial_degree);
+  double worst = 0;
+  for (int k = 0; k <= 200; ++k) {
+    const double t = -1 + 0.01 * k;
+    double sum = 0;
+    for (std::size_t n = c.size(); n-- > 0;)
+      sum = sum * t + c[n];
+    worst = std::max(worst, std::abs(sum - f(cosine(t))));
+  }
+  std::transform(c.begin(), c.end(), out, [](double x) { return static_cast<float>(x); });
+  return worst <= fit_error * scale;
+}
+
+bool fit_reflection(const Surface &surface, std::size_t band, backend::ChainSurface &out) {
+  const double scale = surface.reflection(band, 0).a;
+  for (const double bend : {1e3, 1.0, 0.3, 0.1}) {
+    out.bend = static_cast<float>(bend);
+    bool is_good = true;
+    const auto each = [&](float *to, auto part) {
+      is_good = is_good && fit([&](double c) { return part(surface.reflection(band, c)); }, bend,
+                               to, scale);
+    };
+    each(out.a, [](const MuellerEntries &m) { return m.a; });
+    each(out.b, [](const MuellerEntries &m) { return m.b; });
+    each(out.z_real, [](const MuellerEntries &m) { return m.z.real(); });
+    each(out.z_imaginary, [](const MuellerEntries &m) { return m.z.imag(); });
+    if (is_good)
+      return true;
+  }
+  return false;
+}
+
+bool fit_products(const Surface &surface, std::size_t band, backend::ChainSurface &out) {
+  if (!surface.has_diffuse())
+    return true;
+  const auto products = surface.separable_diffuse(band);
+  if (!products || products->size() > backend::chain_products_max)
+    return false;
+  for (const Surface::SeparableDiffuse &from : *products) {
+    backend::ChainProduct &to = out.product[out.products++];
+    to.factor = static_cast<float>(from.factor);
+    to.is_as_reflected = from.is_single_bounce;
+    to.is_polarized = static_cast<bool>(from.polarizing);
+    bool is_good = false;
+    for (const double bend : {1e3, 1.0, 0.3, 0.1}) {
+      to.bend = static_cast<float>(bend);
+      is_good = fit(from.profile, bend, to.profile, 1) &&
+                (!to.is_polarized || fit([&](double c) { return from.polarizing(c) * (1 - c * c); },
+                                         bend, to.polarizing, 1));
+      if (is_good)
+        break;
+    }
+    if (!is_good)
+      return false;
+  }
+  return true;
+}
+
+bool compile(const Surface &surface, std::size_t band, backend::ChainSurface &out) {
+  const Distribution *normals = surface.normals(band);
+  if (normals == nullptr || surface.has_mirror() || surface.is_anisotropic())
+    return false;
+  const auto lobe = fit_lobe(*normals, surface.material().shadowing);
+  if (!lobe)
+    return false;
+  out.lobe = backend::to_float(*lobe);
+  out.has_lobe = surface.reflection(band, 0.01).a > 0;
+  return (!out.has_lobe || fit_reflection(surface, band, out)) && fit_products(surface, band, out);
+}
+
+bool is_left_to_paths(const Surface &surface) {
+  return surface.has_mirror() || surface.material().measured;
+}
+
+} // namespace
+
+ChainSurfaces::ChainSurfaces(const Scene &scene) {
+  const std::size_t bands = scene.grid.nodes().size();
+  for (const auto *side : {&scene.front, &scene.back})
+    for (const Surface &surface : *side) {
+      std::uint32_t kind = 0;
+      while (kind < surface_.size() && !surface_[kind]->is_same(surface))
+        ++kind;
+      if (kind == surface_.size())
+        surface_.push_back(&surface);
+      kind_[&surface] = kind;
+    }
+  fast_.resize(surface_.size() * bands);
+  for (std::uint32_t kind = 0; kind < surface_.size(); ++kind) {
+    bool is_fast = true;
+    for (std::size_t b = 0; b < bands && is_fast; ++b) {
+      backend::ChainSurface &to = fast_[kind * bands + b];
+      is_fast = compile(*surface_[kind], b, to);
+      to.is_lobe_of_first = b > 0 && surface_[kind]->is_specular_grey();
+    }
+    is_fast_.push_back(is_fast ? 1 : 0);
+  }
+  for (std::uint32_t a = 0; a < surface_.size(); ++a)
+    for (std::uint32_t b = 0; b < surface_.size(); ++b) {
+      needs_paths_ = needs_paths_ || part(a, b) != ChainPart::Whole;
+      has_any_ = has_any_ || part(a, b) != ChainPart::Nothing;
+    }
+  tabulate_strength(bands);
+}
+
+ChainPart ChainSurfaces::part(std::uint32_t a, std::uint32_t b) const {
+  if (is_left_to_paths(*surface_[a]) || is_left_to_paths(*surface_[b]))
+    return ChainPart::Nothing;
+  const bool is_narrow = surface_[a]->width() * surface_[b]->width() < least_widths;
+  return is_narrow ? ChainPart::WithoutLobes : ChainPart::Whole;
+}
+
+void ChainSurfaces::tabulate_strength(std::size_t bands) {
+  constexpr std::size_t draws = 512;
+  const Vec3<Body> normal{0, 0, 1};
+  for (const Surface *surface : surface_) {
+    std::vector<double> &out = strength_.emplace_back(cosines + 1);
+    if (is_left_to_paths(*surface))
+      continue;
+    const Sampler sampler(*surface);
+    for (std::size_t k = 0; k <= cosines; ++k) {
+      const double c = std::max(0.02, static_cast<double>(k) / cosines);
+      const Vec3<Body> w{std::sqrt(1 - c * c), 0, c};
+      for (std::size_t i = 0; i < draws; ++i) {
+        const auto u = uniform4(0, 0xC4A0, k * draws + i);
+        const Direction d = sampler.draw(normal, w, u[0], u[1], u[2]);
+        if (!(d.density > 0))
+          continue;
+        const auto on = directions_on(normal, {}, d.to, w, dot(d.to, w), 0);
+        for (std::size_t b = 0; b < bands; ++b) {
+          const double f = surface->brdf(b, on).m[0][0] * d.to.z;
+          out[k] += f * f / d.density / static_cast<double>(draws * bands);
+        }
+      }
+      out[k] = std::sqrt(out[k] / (4 * pi));
+    }
+  }
+}
+
+double ChainSurfaces::strength(std::uint32_t kind, double cosine) const {
+  const std::vector<double> &at = strength_[kind];
+  const double x = std::clamp(cosine, 0.0, 1.0) * cosines;
+  const auto k = std::min(static_cast<std::size_t>(x), cosines - 1);
+  return at[k] + (x - static_cast<double>(k)) * (at[k + 1] - at[k]);
+}
+
+} // namespace umov

@@ -1,0 +1,50 @@
+#pragma once
+// Private: the distinct surfaces of a scene as ends of chains.
+
+#include "backend/chain_data.h"
+#include "light/between/directions.h"
+
+#include <umov/scene/scene.h>
+#include <unordered_map>
+#include <vector>
+
+namespace umov {
+
+/// Who draws the light that enters at one surface and leaves at another.
+enum class ChainPart : std::uint8_t {
+  Whole,          ///< chains
+  WithoutLobes,   ///< chains, but for the lobe of one seen by the lobe of the other: both are narrow
+  Nothing         ///< paths: a mirror, or a measured surface
+};
+
+/// Compiled surfaces, each counted once, with how finely they scatter and, where there is one, the
+/// form in which the vector unit computes them.
+class ChainSurfaces {
+public:
+  explicit ChainSurfaces(const Scene &scene);
+  [[nodiscard]] std::uint32_t kind_of(const Surface *surface) const { return kind_.at(surface); }
+  [[nodiscard]] std::size_t size() const { return surface_.size(); }
+  [[nodiscard]] const Surface &surface(std::uint32_t kind) const { return *surface_[kind]; }
+  [[nodiscard]] ChainPart part(std::uint32_t a, std::uint32_t b) const;
+  /// What paths have to draw besides.
+  [[nodiscard]] bool needs_paths() const { return needs_paths_; }
+  /// Some light can be drawn by chains at all.
+  [[nodiscard]] bool has_any() const { return has_any_; }
+  /// Per kind and band; `is_fast` of a kind says whether it holds.
+  [[nodiscard]] bool is_fast(std::uint32_t kind) const { return is_fast_[kind] != 0; }
+  [[nodiscard]] const std::vector<backend::ChainSurface> &fast() const { return fast_; }
+  /// rms over all outer directions of what an end scatters per solid angle, by the cosine between
+  /// its normal and the chain.
+  [[nodiscard]] double strength(std::uint32_t kind, double cosine) const;
+
+private:
+  void tabulate_strength(std::size_t bands);
+  std::vector<const Surface *> surface_;
+  std::unordered_map<const Surface *, std::uint32_t> kind_;
+  std::vector<char> is_fast_;
+  std::vector<backend::ChainSurface> fast_;
+  std::vector<std::vector<double>> strength_;
+  bool needs_paths_ = false, has_any_ = false;
+};
+
+} // namespace umov

@@ -1,0 +1,188 @@
+// Light between surfaces by chains that are drawn once: against closed forms, and against paths.
+
+#include "light/tests/integrator_cases.h"
+
+#include <algorithm>
+
+namespace umov {
+namespace {
+
+using namespace cases;
+
+IntegrationOptions by_chains(std::size_t bounces, double accuracy = 0.005) {
+  IntegrationOptions out;
+  out.bounces = bounces;
+  out.accuracy = accuracy;
+  out.between = BetweenMethod::Chains;
+  return out;
+}
+
+/// GGX with the Smith masking of each direction by itself.
+Material rough(const std::string &index, double alpha) {
+  Material out = interface_of(index, 1);
+  out.distribution = {"ggx", {{"alpha", alpha}}, {}, {}, {}};
+  out.shadowing = Shadowing::Separable;
+  return out;
+}
+
+/// A floor, a wall and a second wall, their inner sides facing each other.
+Mesh three_plates() {
+  Mesh mesh = corner();
+  const std::array<std::uint32_t, 3> none{no_index, no_index, no_index};
+  mesh.groups.push_back("side");
+  mesh.positions.push_back({1, 0, 1});
+  mesh.triangles.push_back({{0, 1, 6}, none, 2, 2});
+  mesh.triangles.push_back({{0, 6, 4}, none, 2, 2});
+  return mesh;
+}
+
+TEST(Chains, WhiteCavityThroughItsHole) {
+  // bounces_test.cpp has the formula: J_k = phi rho^k (1 - f)^(k - 2) A_hole cos v / (pi A).
+  const Cavity c = cavity(20'000, 50);
+  const double rho = 0.8, f = c.hole_area / c.whole_area;
+  Material nothing = builtin_material("paper_spectralon").value();
+  nothing.body.reset();
+  const Integrator integrator(scene_of_sides(c.mesh, {nothing}, {grey(rho)}));
+  const Pose pose{normalized(Vec3<Body>{0.2, 0, 1}), normalized(Vec3<Body>{-0.1, 0.2, 1})};
+  for (const std::size_t bounces : {2u, 5u, 12u}) {
+    const PoseResult light = integrator.evaluate(pose, by_chains(bounces));
+    double expected = 0;
+    for (std::size_t k = 2; k <= bounces; ++k)
+      expected +=
+          std::pow(rho, static_cast<double>(k)) * std::pow(1 - f, static_cast<double>(k) - 2);
+    expected *= dot(c.opening, pose.sun) * dot(c.opening, pose.observer) / (pi * c.whole_area);
+    // Chords for arcs: 20,000 facets are 0.1 % short of the sphere, some of it per bounce.
+    const double sure = light.bands[1].half_width.i / expected;
+    EXPECT_NEAR(light.indirect[1].i / expected, 1, 1.5 * sure + 5e-3) << bounces;
+    EXPECT_LT(sure, 0.05);
+    EXPECT_LT(std::abs(light.indirect[1].q), 2e-3 * light.indirect[1].i); // Lambert: unpolarized
+  }
+}
+
+TEST(Chains, TwoLambertPlatesByTheirFormFactor) {
+  // As in bounces_test.cpp: 0.200044 (Siegel & Howell 2002, configuration 16).
+  const double rho = 0.6;
+  const Integrator plates(scene_of(corner(), NormalMode::Flat, {grey(rho)}));
+  const PoseResult light = plates.evaluate({{0, 0, 1}, {1, 0, 0}}, by_chains(2, 1e-4));
+  const double expected = rho * rho * 0.200044 / pi;
+  EXPECT_NEAR(light.bands[1].stokes.i, expected, 3e-3 * expected);
+  EXPECT_NEAR(light.bands[1].stokes.i, expected, 1.5 * light.bands[1].half_width.i);
+}
+
+TEST(Chains, SunAndObserverExchangedGiveTheSameLight) {
+  // Each chain is taken from both of its ends, so reciprocity holds chain by chain: single precision
+  // of some ten thousand sums.
+  Material paint = builtin_material("paint_white").value();
+  const Integrator plates(scene_of(three_plates(), NormalMode::Flat,
+                                   {rough("paper_au", 0.25), paint, rough("paper_al", 0.15)}));
+  std::size_t lit = 0;
+  for (std::uint64_t i = 0; i < 24; ++i) {
+    const Pose there = random_pose(i);
+    const auto a = plates.evaluate(there, by_chains(4)),
+               b = plates.evaluate({there.observer, there.sun}, by_chains(4));
+    for (std::size_t band = 0; band < 3; ++band) {
+      const auto &x = a.indirect[band], &y = b.indirect[band];
+      EXPECT_NEAR(x.i, y.i, 1e-5 * x.i) << i;
+      EXPECT_NEAR(x.q, y.q, 2e-5 * x.i) << i;
+      EXPECT_NEAR(x.u, -y.u, 2e-5 * x.i) << i;
+      EXPECT_NEAR(x.v, y.v, 2e-5 * x.i) << i;
+      lit += x.i > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(lit, 20u);
+}
+
+/// Mean square of the difference between chains and paths over its expected size, of I, Q, U, V.
+std::array<double, 4> against_paths(const Scene &scene, std::size_t bounces, std::size_t poses) {
+  const Integrator integrator(scene);
+  std::vector<Pose> at;
+  for (std::uint64_t i = 0; i < poses; ++i)
+    at.push_back(random_pose(i));
+  IntegrationOptions paths = by_chains(bounces, 1e-3);
+  paths.between = BetweenMethod::Paths;
+  paths.max_points = 1u << 19;
+  const auto a = integrator.evaluate(at, by_chains(bounces, 1e-3), 2),
+             b = integrator.evaluate(at, paths, 2);
+  std::array<double, 4> out{};
+  double count = 0;
+  for (std::size_t k = 0; k < poses; ++k)
+    for (std::size_t band = 0; band < a[k].bands.size(); band += 2) {
+      if (!(b[k].indirect[band].i > 0.02 * b[k].bands[band].stokes.i))
+        continue;
+      ++count;
+      const auto add = [&](double Stokes<ScatteringPlane>::*part, double &to) {
+        const double error = std::hypot(a[k].bands[band].half_width.*part,
+                                        b[k].bands[band].half_width.*part) /
+                             1.96;
+        const double z = (a[k].bands[band].stokes.*part - b[k].bands[band].stokes.*part) / error;
+        to += z * z;
+      };
+      add(&Stokes<ScatteringPlane>::i, out[0]);
+      add(&Stokes<ScatteringPlane>::q, out[1]);
+      add(&Stokes<ScatteringPlane>::u, out[2]);
+      add(&Stokes<ScatteringPlane>::v, out[3]);
+    }
+  EXPECT_GT(count, 12);
+  for (double &x : out)
+    x /= count;
+  return out;
+}
+
+/// Bands of a pose go together and poses share their chains: a mean square of 2 is no wonder, one
+/// that a wrong sign or factor gives is above 100.
+constexpr double most_square = 2.5;
+
+TEST(Chains, AgreeWithPathsOnRoughMetals) {
+  const auto square = against_paths(
+      scene_of(three_plates(), NormalMode::Flat,
+               {rough("paper_au", 0.25), rough("paper_al", 0.15), interface_of("paper_au", 60)}),
+      4, 24);
+  for (const double x : square)
+    EXPECT_LT(x, most_square);
+}
+
+TEST(Chains, AgreeWithPathsOnPaintsFoilsAndWeaves) {
+  for (const char *name : {"paint_white", "mli_kapton", "carbon_composite", "aluminium_brushed"}) {
+    const auto square =
+        against_paths(scene_of(three_plates(), NormalMode::Flat,
+                               {builtin_material(name).value(), rough("paper_al", 0.2)}),
+                      3, 16);
+    // V of paint and metal is rounding where there is none.
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_LT(square[k], most_square) << name << ' ' << k;
+  }
+}
+
+TEST(Chains, PathsDrawWhatGoesBetweenNarrowLobesAndMirrors) {
+  const auto narrow = against_paths(
+      scene_of(three_plates(), NormalMode::Flat, {rough("paper_al", 0.04), grey(0.5)}), 3, 16);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_LT(narrow[k], most_square) << k;
+  const auto mirror = against_paths(
+      scene_of(three_plates(), NormalMode::Flat, {mirror_of("paper_al"), grey(0.5)}), 3, 16);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_LT(mirror[k], most_square) << k;
+}
+
+TEST(Chains, TheSameBytesForAnyThreadsAndAnySplit) {
+  const Scene scene = scene_of(three_plates(), NormalMode::Flat,
+                               {rough("paper_au", 0.25), grey(0.5)});
+  std::vector<Pose> poses;
+  for (std::uint64_t i = 0; i < 40; ++i)
+    poses.push_back(random_pose(i));
+  const auto whole = Integrator(scene).evaluate(poses, by_chains(4, 0.02), 2);
+  const Integrator other(scene);
+  for (const std::size_t first : {std::size_t{17}, std::size_t{0}}) { // the later part first
+    const std::vector<Pose> part(poses.begin() + static_cast<std::ptrdiff_t>(first),
+                                 poses.begin() + static_cast<std::ptrdiff_t>(first + 17));
+    const auto found = other.evaluate(part, by_chains(4, 0.02), 1);
+    for (std::size_t k = 0; k < part.size(); ++k) {
+      EXPECT_EQ(found[k].bands[1].stokes.i, whole[first + k].bands[1].stokes.i);
+      EXPECT_EQ(found[k].bands[2].stokes.v, whole[first + k].bands[2].stokes.v);
+      EXPECT_EQ(found[k].bands[0].half_width.q, whole[first + k].bands[0].half_width.q);
+    }
+  }
+}
+
+} // namespace
+} // namespace umov
