@@ -55,8 +55,8 @@ UMOV_KERNEL R chain_lobe(const LobeConstants<T> &lobe, const ChainEndAt<R> &at) 
                     : lobe.kind == LobeKind::Beckmann
                         ? beckmann(sine2, max(cosine2, R(1e-12)), R(lobe.shape))
                         : R(lobe.peak) * exp2(R(lobe.shape) * log2_of_one_minus(apart));
-  const R g = joint_masking(lobe.joint, lobe_masking(lobe, n_e), lobe_masking(lobe, n_w), n_e, n_w,
-                            at.e_w);
+  const R g =
+      joint_masking(lobe.joint, lobe_masking(lobe, n_e), lobe_masking(lobe, n_w), n_e, n_w, at.e_w);
   return density * g * R(0.25) / n_w;
 }
 

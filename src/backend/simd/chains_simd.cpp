@@ -39,8 +39,8 @@ struct ThreeWords {
 struct EndAxes {
   Axes normal, along, axis;
   HWY_INLINE EndAxes(const backend::ChainEnds &of, std::size_t s)
-      : normal(load_axes(of.normal, s)), along(load_axes(of.along, s)), axis(load_axes(of.axis, s)) {
-  }
+      : normal(load_axes(of.normal, s)), along(load_axes(of.along, s)),
+        axis(load_axes(of.axis, s)) {}
 };
 
 /// The blocks of one run for one pose.
@@ -93,8 +93,8 @@ private:
                  end_b = chain_end_at(b.normal, b.along, sun_);
       Lanes weight = Lanes(hn::Load(d, (is_reversed ? at.from_q : at.from_p) + s)) *
                      seen.share(pose_.at_observer, s) * lit.share(pose_.at_sun, s);
-      const LaneMask counts = (end_a.n_e > Lanes(0.0f)) & (end_b.n_e > Lanes(0.0f)) &
-                              (weight > Lanes(0.0f));
+      const LaneMask counts =
+          (end_a.n_e > Lanes(0.0f)) & (end_b.n_e > Lanes(0.0f)) & (weight > Lanes(0.0f));
       if (!any(counts))
         continue;
       weight = select(counts, weight, Lanes(0.0f));
@@ -120,15 +120,14 @@ private:
         lobe_b = chain_lobe(of_b.lobe, end_b);
       const auto entered = chain_entered(of_b, lobe_b, end_b, turn);
       const auto pass = [&](const Beam<Lanes> &light) HWY_ATTR {
-        return run_.is_straight ? turned(light, straight)
-                                : between<is_reversed>(k, band, s, light);
+        return run_.is_straight ? turned(light, straight) : between<is_reversed>(k, band, s, light);
       };
       const auto in = pass(entered.whole);
       auto to_lobe = in;
       if (run_.is_without_lobes)
-        to_lobe = pass(Beam<Lanes>{entered.whole.i - entered.lobe.i,
-                                   entered.whole.q - entered.lobe.q,
-                                   entered.whole.u - entered.lobe.u, entered.whole.v});
+        to_lobe =
+            pass(Beam<Lanes>{entered.whole.i - entered.lobe.i, entered.whole.q - entered.lobe.q,
+                             entered.whole.u - entered.lobe.u, entered.whole.v});
       const auto light = chain_left(of_a, lobe_a, end_a, turns, in, to_lobe);
       put(band, s, light, weight);
     }
@@ -140,8 +139,7 @@ private:
   HWY_INLINE Beam<Lanes> between(std::size_t k, std::size_t band, std::size_t s,
                                  const Beam<Lanes> &light) const {
     const FloatTag d;
-    const backend::ChainMatrix &m =
-        data_.matrices[run_.matrix + k * data_.bands + band_ + band];
+    const backend::ChainMatrix &m = data_.matrices[run_.matrix + k * data_.bands + band_ + band];
     const auto entry = [&](std::size_t row, std::size_t column) HWY_ATTR {
       return Lanes(hn::Load(d, m.m[is_reversed ? 4 * column + row : 4 * row + column] + s));
     };

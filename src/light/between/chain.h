@@ -24,9 +24,9 @@ struct Chain {
   /// Area times solid angle over how likely it was drawn, with the cosines at the chain's side of
   /// each surface: with the observer at p, and with the observer at q.
   double from_p = 0, from_q = 0;
-  bool is_straight = true;     ///< nothing in between
-  std::uint32_t matrix = 0;    ///< into ChainList::between, else
-  double transmitted = 1;      ///< of I, over all bands: how much it counts
+  bool is_straight = true;  ///< nothing in between
+  std::uint32_t matrix = 0; ///< into ChainList::between, else
+  double transmitted = 1;   ///< of I, over all bands: how much it counts
 };
 
 /// Chains with the Mueller matrices of what lies between their ends, from the axis of q to that of

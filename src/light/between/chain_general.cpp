@@ -116,11 +116,9 @@ void ChainLevel::add_one(const backend::ChainRun &run, std::size_t block, std::s
                       (is_q ? field_q_ : field_p_)[block * replicates + lane],
                       surfaces_.surface(is_q ? run.kind_q : run.kind_p)};
   };
-  const GeneralChain chain{end(is_reversed), end(!is_reversed), is_reversed,
-                           run.is_straight
-                               ? nullptr
-                               : &matrix_[run.matrix + (block - run.first) * bands_],
-                           lane};
+  const GeneralChain chain{
+      end(is_reversed), end(!is_reversed), is_reversed,
+      run.is_straight ? nullptr : &matrix_[run.matrix + (block - run.first) * bands_], lane};
   if (!(dot(chain.seen.normal, observer) > 0) || !(dot(chain.lit.normal, sun) > 0))
     return;
   const double weight =

@@ -38,7 +38,7 @@ void put_end(const ChainEnd &from, backend::ChainEnds &to, std::size_t lane) {
 
 backend::ChainPose chain_pose(const Pose &pose) {
   backend::ChainPose out;
-  const auto put = [](Vec3<Body> from, float (&to)[3]) {
+  const auto put = [](Vec3<Body> from, float(&to)[3]) {
     to[0] = static_cast<float>(from.x);
     to[1] = static_cast<float>(from.y);
     to[2] = static_cast<float>(from.z);
@@ -87,9 +87,8 @@ std::vector<ChainLevel::Placed> ChainLevel::arrange(const std::vector<ChainList>
     std::size_t longest = 0;
     const Chain *any = nullptr;
     for (auto &of_one : like) {
-      std::stable_sort(of_one.begin(), of_one.end(), [](const Chain *a, const Chain *b) {
-        return likeness(*a) < likeness(*b);
-      });
+      std::stable_sort(of_one.begin(), of_one.end(),
+                       [](const Chain *a, const Chain *b) { return likeness(*a) < likeness(*b); });
       longest = std::max(longest, of_one.size());
       any = of_one.empty() ? any : of_one.front();
     }

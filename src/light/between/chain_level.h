@@ -47,7 +47,7 @@ private:
   std::vector<backend::ChainBlock> block_;
   std::vector<backend::ChainMatrix> matrix_;
   std::vector<backend::ChainRun> runs_;
-  std::vector<char> is_general_;         ///< per run: lit one by one
+  std::vector<char> is_general_;              ///< per run: lit one by one
   std::vector<Vec3<Body>> field_p_, field_q_; ///< of those, [block * 16 + lane]
   std::vector<std::uint16_t> free_p_, free_q_;
   backend::ChainData view_;

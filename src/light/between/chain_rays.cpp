@@ -92,7 +92,8 @@ Vertex ChainRays::start(double x, double v) const {
 }
 
 ChainEnd ChainRays::end_at(const Vertex &at, Vec3<Body> along) const {
-  return {at.point,   at.face,    at.normal,           at.field, along, axis_of(at, along),
+  return {at.point,   at.face,    at.normal,
+          at.field,   along,      axis_of(at, along),
           at.surface, at.sampler, surfaces_.kind_of(at.surface)};
 }
 
@@ -134,13 +135,12 @@ bool ChainRays::step(Walk &walk, Vertex &at, Vec3<Body> &back,
   if (!(cosine > 0) || !(dot(at.normal, back) > 0))
     return false;
   const Matrix last = turn_of(plane, walk.axis, back);
-  const auto on = directions_on(at.normal, at.field, d.to, back,
-                                std::clamp(dot(d.to, back), -1.0, 1.0), 0);
+  const auto on =
+      directions_on(at.normal, at.field, d.to, back, std::clamp(dot(d.to, back), -1.0, 1.0), 0);
   double strongest = 0;
   for (std::size_t b = 0; b < bands_; ++b) {
     Matrix f = d.is_by_mirror ? at.surface->mueller(b, on.l_v) : at.surface->brdf(b, on);
-    const double scale =
-        (d.is_by_mirror ? at.surface->mirror_part(b, cosine) : cosine) / d.density;
+    const double scale = (d.is_by_mirror ? at.surface->mirror_part(b, cosine) : cosine) / d.density;
     for (auto &row : f.m)
       for (double &x : row)
         x *= scale;
@@ -165,8 +165,7 @@ ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t 
     walk.first = start(x[0], x[1]);
     const Vec3<Body> n = walk.first.face, a = any_perpendicular(n), b = cross(n, a);
     const double sine = std::sqrt(1 - x[2]), turn = 2 * pi * x[3];
-    walk.along =
-        n * std::sqrt(x[2]) + a * (sine * std::cos(turn)) + b * (sine * std::sin(turn));
+    walk.along = n * std::sqrt(x[2]) + a * (sine * std::cos(turn)) + b * (sine * std::sin(turn));
     Vertex at;
     double distance = 0;
     if (!(dot(walk.first.normal, walk.along) > least_cosine) ||
@@ -194,7 +193,8 @@ double ChainRays::importance(const ChainEnd &end, const std::array<double, 4> &u
   constexpr std::size_t looks = 4;
   std::size_t free = 0;
   for (std::size_t k = 0; k < looks; ++k) {
-    const auto x = k == 0 ? u : uniform4(seed_, look_stream + static_cast<std::uint32_t>(k), stream);
+    const auto x =
+        k == 0 ? u : uniform4(seed_, look_stream + static_cast<std::uint32_t>(k), stream);
     const Direction d = end.sampler->draw(end.normal, end.along, x[0], x[1], x[2]);
     if (!(dot(d.to, end.face) > 0))
       continue;

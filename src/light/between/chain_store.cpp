@@ -18,11 +18,15 @@ constexpr std::size_t poses_together = 16;
 /// off they are.
 constexpr double least_chains = 48;
 
+/// What all replicates miss together, in parts of the light: visibility between the directions of
+/// the ends' grid (measured against a path tracer on HST: docs/theory/bounces.md).
+constexpr double visibility_error = 0.015;
+
 constexpr double weight_of(std::size_t level) { return static_cast<double>(chains_of[level]); }
 
 BandResult result_of(const backend::ChainLight &sum, double weight) {
   BandResult out;
-  const auto put = [&](const double (&from)[replicates], double &mean, double &half_width) {
+  const auto put = [&](const double(&from)[replicates], double &mean, double &half_width) {
     std::array<double, replicates> value{};
     for (std::size_t r = 0; r < replicates; ++r)
       value[r] = from[r] / weight;
@@ -34,6 +38,11 @@ BandResult result_of(const backend::ChainLight &sum, double weight) {
   put(sum.q, out.stokes.q, out.half_width.q);
   put(sum.u, out.stokes.u, out.half_width.u);
   put(sum.v, out.stokes.v, out.half_width.v);
+  const Stokes<ScatteringPlane> &s = out.stokes;
+  const double polarized = visibility_error * std::hypot(s.q, s.u, s.v);
+  out.half_width.i = std::hypot(out.half_width.i, visibility_error * s.i);
+  for (double *part : {&out.half_width.q, &out.half_width.u, &out.half_width.v})
+    *part = std::hypot(*part, polarized);
   return out;
 }
 
@@ -48,9 +57,9 @@ double total_of(const backend::ChainLight &sum) {
 
 /// What the poses have gathered so far.
 struct ChainStore::Climb {
-  std::vector<std::size_t> open;           ///< poses
-  std::vector<backend::ChainLight> sum;    ///< [pose * bands + band], weighted by level
-  std::vector<double> squares;             ///< per pose
+  std::vector<std::size_t> open;        ///< poses
+  std::vector<backend::ChainLight> sum; ///< [pose * bands + band], weighted by level
+  std::vector<double> squares;          ///< per pose
 };
 
 ChainStore::ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
@@ -119,6 +128,8 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
     climb.open.push_back(k);
   double weight = 0;
   for (std::size_t index = 0; index < levels && !climb.open.empty(); ++index) {
+    if (index > 0 && weight + weight_of(index) > static_cast<double>(options.max_points))
+      break;
     add_level(index, poses, climb, threads, cancel);
     if (is_stopped(cancel))
       return {};
@@ -129,12 +140,13 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
       light.bands.assign(bands_, {});
       const double total = total_of(climb.sum[k * bands_]);
       const bool is_enough = !(total > 0) || total * total >= least_chains * climb.squares[k];
-      bool is_met = is_enough && total > 0;
+      // Where 16 k chains meet nothing there is nothing, beside any direct light.
+      bool is_met = is_enough && (total > 0 || direct_i[k * bands_] > 0);
       for (std::size_t b = 0; b < bands_; ++b) {
         light.bands[b] = result_of(climb.sum[k * bands_ + b], weight);
-        is_met = is_met && light.bands[b].half_width.i <=
-                               options.accuracy *
-                                   (direct_i[k * bands_ + b] + light.bands[b].stokes.i);
+        is_met =
+            is_met && light.bands[b].half_width.i <=
+                          options.accuracy * (direct_i[k * bands_ + b] + light.bands[b].stokes.i);
       }
       out.is_enough[k] = is_enough ? 1 : 0;
       if (!is_met)

@@ -25,7 +25,8 @@ public:
     std::vector<char> is_enough; ///< per pose: enough chains were met to believe the half-widths
   };
   /// Each pose climbs until the half-width of I is below options.accuracy of the whole, direct_i
-  /// included, or the levels end. Empty if `cancel` became true.
+  /// included, or the levels end, or options.max_points chains are spent. Empty if `cancel` became
+  /// true.
   [[nodiscard]] Answer light(std::span<const Pose> poses, std::span<const double> direct_i,
                              const IntegrationOptions &options, unsigned threads,
                              const std::atomic<bool> *cancel) const;

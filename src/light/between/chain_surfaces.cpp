@@ -20,8 +20,7 @@ constexpr std::size_t cosines = 32;
 
 /// Values at Chebyshev's nodes of t = 2 (1 + bend) c/(c + bend) - 1 as powers of t; false if it
 /// does not follow.
-template <class Function>
-bool fit(const Function &f, double bend, float *out, double scale) {
+template <class Function> bool fit(const Function &f, double bend, float *out, double scale) {
   NodeValues value{};
   const auto cosine = [&](double t) {
     const double x = (t + 1) / (2 * (1 + bend));
@@ -48,8 +47,8 @@ bool fit_reflection(const Surface &surface, std::size_t band, backend::ChainSurf
     out.bend = static_cast<float>(bend);
     bool is_good = true;
     const auto each = [&](float *to, auto part) {
-      is_good = is_good && fit([&](double c) { return part(surface.reflection(band, c)); }, bend,
-                               to, scale);
+      is_good = is_good &&
+                fit([&](double c) { return part(surface.reflection(band, c)); }, bend, to, scale);
     };
     each(out.a, [](const MuellerEntries &m) { return m.a; });
     each(out.b, [](const MuellerEntries &m) { return m.b; });

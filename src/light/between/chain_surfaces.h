@@ -12,9 +12,9 @@ namespace umov {
 
 /// Who draws the light that enters at one surface and leaves at another.
 enum class ChainPart : std::uint8_t {
-  Whole,          ///< chains
-  WithoutLobes,   ///< chains, but for the lobe of one seen by the lobe of the other: both are narrow
-  Nothing         ///< paths: a mirror, or a measured surface
+  Whole,        ///< chains
+  WithoutLobes, ///< chains, but for the lobe of one seen by the lobe of the other: both are narrow
+  Nothing       ///< paths: a mirror, or a measured surface
 };
 
 /// Compiled surfaces, each counted once, with how finely they scatter and, where there is one, the

@@ -9,8 +9,10 @@ namespace {
 
 using namespace cases;
 
+/// The first level alone: a test draws 16 k chains in a second or two.
 IntegrationOptions by_chains(std::size_t bounces, double accuracy = 0.005) {
   IntegrationOptions out;
+  out.max_points = 1u << 14;
   out.bounces = bounces;
   out.accuracy = accuracy;
   out.between = BetweenMethod::Chains;
@@ -23,6 +25,14 @@ Material rough(const std::string &index, double alpha) {
   out.distribution = {"ggx", {{"alpha", alpha}}, {}, {}, {}};
   out.shadowing = Shadowing::Separable;
   return out;
+}
+
+/// Directions into that corner.
+Pose into_corner(std::uint64_t index) {
+  const auto u = uniform4(11, 3, index);
+  const auto w = uniform4(11, 4, index);
+  return {normalized(Vec3<Body>{0.1 + u[0], 0.1 + u[1], 0.1 + u[2]}),
+          normalized(Vec3<Body>{0.1 + w[0], 0.1 + w[1], 0.1 + w[2]})};
 }
 
 /// A floor, a wall and a second wall, their inner sides facing each other.
@@ -38,22 +48,22 @@ Mesh three_plates() {
 
 TEST(Chains, WhiteCavityThroughItsHole) {
   // bounces_test.cpp has the formula: J_k = phi rho^k (1 - f)^(k - 2) A_hole cos v / (pi A).
-  const Cavity c = cavity(20'000, 50);
+  const Cavity c = cavity(5'000, 50);
   const double rho = 0.8, f = c.hole_area / c.whole_area;
   Material nothing = builtin_material("paper_spectralon").value();
   nothing.body.reset();
   const Integrator integrator(scene_of_sides(c.mesh, {nothing}, {grey(rho)}));
   const Pose pose{normalized(Vec3<Body>{0.2, 0, 1}), normalized(Vec3<Body>{-0.1, 0.2, 1})};
-  for (const std::size_t bounces : {2u, 5u, 12u}) {
+  for (const std::size_t bounces : {2u, 5u}) {
     const PoseResult light = integrator.evaluate(pose, by_chains(bounces));
     double expected = 0;
     for (std::size_t k = 2; k <= bounces; ++k)
       expected +=
           std::pow(rho, static_cast<double>(k)) * std::pow(1 - f, static_cast<double>(k) - 2);
     expected *= dot(c.opening, pose.sun) * dot(c.opening, pose.observer) / (pi * c.whole_area);
-    // Chords for arcs: 20,000 facets are 0.1 % short of the sphere, some of it per bounce.
+    // Chords for arcs: 5,000 facets are 0.2 % short of the sphere, some of it per bounce.
     const double sure = light.bands[1].half_width.i / expected;
-    EXPECT_NEAR(light.indirect[1].i / expected, 1, 1.5 * sure + 5e-3) << bounces;
+    EXPECT_NEAR(light.indirect[1].i / expected, 1, 1.5 * sure + 1e-2) << bounces;
     EXPECT_LT(sure, 0.05);
     EXPECT_LT(std::abs(light.indirect[1].q), 2e-3 * light.indirect[1].i); // Lambert: unpolarized
   }
@@ -65,19 +75,19 @@ TEST(Chains, TwoLambertPlatesByTheirFormFactor) {
   const Integrator plates(scene_of(corner(), NormalMode::Flat, {grey(rho)}));
   const PoseResult light = plates.evaluate({{0, 0, 1}, {1, 0, 0}}, by_chains(2, 1e-4));
   const double expected = rho * rho * 0.200044 / pi;
-  EXPECT_NEAR(light.bands[1].stokes.i, expected, 3e-3 * expected);
+  EXPECT_NEAR(light.bands[1].stokes.i, expected, 2e-2 * expected);
   EXPECT_NEAR(light.bands[1].stokes.i, expected, 1.5 * light.bands[1].half_width.i);
 }
 
 TEST(Chains, SunAndObserverExchangedGiveTheSameLight) {
-  // Each chain is taken from both of its ends, so reciprocity holds chain by chain: single precision
-  // of some ten thousand sums.
+  // Each chain is taken from both of its ends, so reciprocity holds chain by chain: single
+  // precision of some ten thousand sums.
   Material paint = builtin_material("paint_white").value();
   const Integrator plates(scene_of(three_plates(), NormalMode::Flat,
                                    {rough("paper_au", 0.25), paint, rough("paper_al", 0.15)}));
   std::size_t lit = 0;
-  for (std::uint64_t i = 0; i < 24; ++i) {
-    const Pose there = random_pose(i);
+  for (std::uint64_t i = 0; i < 12; ++i) {
+    const Pose there = into_corner(i);
     const auto a = plates.evaluate(there, by_chains(4)),
                b = plates.evaluate({there.observer, there.sun}, by_chains(4));
     for (std::size_t band = 0; band < 3; ++band) {
@@ -89,7 +99,7 @@ TEST(Chains, SunAndObserverExchangedGiveTheSameLight) {
       lit += x.i > 0 ? 1 : 0;
     }
   }
-  EXPECT_GT(lit, 20u);
+  EXPECT_EQ(lit, 36u);
 }
 
 /// Mean square of the difference between chains and paths over its expected size, of I, Q, U, V.
@@ -97,10 +107,10 @@ std::array<double, 4> against_paths(const Scene &scene, std::size_t bounces, std
   const Integrator integrator(scene);
   std::vector<Pose> at;
   for (std::uint64_t i = 0; i < poses; ++i)
-    at.push_back(random_pose(i));
-  IntegrationOptions paths = by_chains(bounces, 1e-3);
+    at.push_back(into_corner(i));
+  IntegrationOptions paths = by_chains(bounces, 2e-3);
   paths.between = BetweenMethod::Paths;
-  paths.max_points = 1u << 19;
+  paths.max_points = 1u << 18;
   const auto a = integrator.evaluate(at, by_chains(bounces, 1e-3), 2),
              b = integrator.evaluate(at, paths, 2);
   std::array<double, 4> out{};
@@ -111,9 +121,8 @@ std::array<double, 4> against_paths(const Scene &scene, std::size_t bounces, std
         continue;
       ++count;
       const auto add = [&](double Stokes<ScatteringPlane>::*part, double &to) {
-        const double error = std::hypot(a[k].bands[band].half_width.*part,
-                                        b[k].bands[band].half_width.*part) /
-                             1.96;
+        const double error =
+            std::hypot(a[k].bands[band].half_width.*part, b[k].bands[band].half_width.*part) / 1.96;
         const double z = (a[k].bands[band].stokes.*part - b[k].bands[band].stokes.*part) / error;
         to += z * z;
       };
@@ -122,7 +131,7 @@ std::array<double, 4> against_paths(const Scene &scene, std::size_t bounces, std
       add(&Stokes<ScatteringPlane>::u, out[2]);
       add(&Stokes<ScatteringPlane>::v, out[3]);
     }
-  EXPECT_GT(count, 12);
+  EXPECT_GT(count, 8);
   for (double &x : out)
     x /= count;
   return out;
@@ -136,7 +145,7 @@ TEST(Chains, AgreeWithPathsOnRoughMetals) {
   const auto square = against_paths(
       scene_of(three_plates(), NormalMode::Flat,
                {rough("paper_au", 0.25), rough("paper_al", 0.15), interface_of("paper_au", 60)}),
-      4, 24);
+      4, 16);
   for (const double x : square)
     EXPECT_LT(x, most_square);
 }
@@ -146,7 +155,7 @@ TEST(Chains, AgreeWithPathsOnPaintsFoilsAndWeaves) {
     const auto square =
         against_paths(scene_of(three_plates(), NormalMode::Flat,
                                {builtin_material(name).value(), rough("paper_al", 0.2)}),
-                      3, 16);
+                      3, 8);
     // V of paint and metal is rounding where there is none.
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_LT(square[k], most_square) << name << ' ' << k;
@@ -155,21 +164,21 @@ TEST(Chains, AgreeWithPathsOnPaintsFoilsAndWeaves) {
 
 TEST(Chains, PathsDrawWhatGoesBetweenNarrowLobesAndMirrors) {
   const auto narrow = against_paths(
-      scene_of(three_plates(), NormalMode::Flat, {rough("paper_al", 0.04), grey(0.5)}), 3, 16);
+      scene_of(three_plates(), NormalMode::Flat, {rough("paper_al", 0.04), grey(0.5)}), 3, 8);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_LT(narrow[k], most_square) << k;
   const auto mirror = against_paths(
-      scene_of(three_plates(), NormalMode::Flat, {mirror_of("paper_al"), grey(0.5)}), 3, 16);
+      scene_of(three_plates(), NormalMode::Flat, {mirror_of("paper_al"), grey(0.5)}), 3, 8);
   for (std::size_t k = 0; k < 3; ++k)
     EXPECT_LT(mirror[k], most_square) << k;
 }
 
 TEST(Chains, TheSameBytesForAnyThreadsAndAnySplit) {
-  const Scene scene = scene_of(three_plates(), NormalMode::Flat,
-                               {rough("paper_au", 0.25), grey(0.5)});
+  const Scene scene =
+      scene_of(three_plates(), NormalMode::Flat, {rough("paper_au", 0.25), grey(0.5)});
   std::vector<Pose> poses;
   for (std::uint64_t i = 0; i < 40; ++i)
-    poses.push_back(random_pose(i));
+    poses.push_back(into_corner(i));
   const auto whole = Integrator(scene).evaluate(poses, by_chains(4, 0.02), 2);
   const Integrator other(scene);
   for (const std::size_t first : {std::size_t{17}, std::size_t{0}}) { // the later part first
