@@ -40,6 +40,10 @@ struct Named {
   [[nodiscard]] Where place(const std::string &key) const {
     return umov::place(scenario, fmt::format("object.{}.{}", number, key));
   }
+  /// The key that says what a group of the mesh is made of.
+  [[nodiscard]] std::string material_key(const std::string &group) const {
+    return "materials." + (object.materials.contains(group) ? group : "default");
+  }
 };
 
 /// For the whole process, as Earth orientation is.
@@ -166,51 +170,60 @@ std::pair<double, double> range_of(const Band &band) {
   return {band.curve->wavelength_nm.front(), band.curve->wavelength_nm.back()};
 }
 
-/// Which compiled-in tables cover both ends of a band.
-std::string tables_that_cover(const std::string &name, double first_nm, double last_nm) {
-  std::vector<std::string> out = indices_covering(name, Wavelength::nm(first_nm));
-  const auto also = indices_covering(name, Wavelength::nm(last_nm));
-  std::erase_if(out,
-                [&](const std::string &one) { return std::ranges::find(also, one) == also.end(); });
-  return out.empty() ? "" : fmt::format(" Tables that cover it: {}.", fmt::join(out, ", "));
+/// Every table that a material asks for its light.
+std::vector<const IndexTable *> tables_of(const Material &material) {
+  std::vector<const IndexTable *> out{&material.index};
+  for (const Layer &layer : material.layers)
+    out.push_back(&layer.index);
+  return out;
 }
 
-/// A band that an index does not cover: which compiled-in tables would. What a table that holds its
+bool covers(const IndexTable &table, const Band &band) {
+  const auto [first, last] = range_of(band);
+  if (!band.curve)
+    return index_at(table, band.wavelength).has_value();
+  const WavelengthRange known = umov::range_of(table);
+  return table.holds_ends || (first >= known.first_nm && last <= known.last_nm);
+}
+
+/// What could stand in a material's place: the library's of which all is known in the band.
+std::string materials_that_cover(const Band &band) {
+  std::vector<std::string> out;
+  for (const std::string &name : material_library()) {
+    const auto one = read_material(name);
+    const auto knows = [&](const IndexTable *table) { return covers(*table, band); };
+    if (one && !one->measured && std::ranges::all_of(tables_of(*one), knows))
+      out.push_back(name);
+  }
+  return fmt::format(" Materials that cover it: {}.", fmt::join(out, ", "));
+}
+
+/// A band that an index does not cover: whose it is, and what would. What a table that holds its
 /// ends is asked beyond them is told.
-Result<void> check_bands(const Material &material, const Scenario &scenario,
+Result<void> check_bands(const Material &material, const Named &of, const std::string &key,
                          Diagnostics &diagnostics) {
   if (material.measured)
     return {};
-  std::vector<const IndexTable *> tables{&material.index};
-  for (const Layer &layer : material.layers)
-    tables.push_back(&layer.index);
-  for (const Band &band : scenario.bands)
-    for (const IndexTable *table : tables) {
+  for (const Band &band : of.scenario.bands)
+    for (const IndexTable *table : tables_of(material)) {
       const auto [first, last] = range_of(band);
       const WavelengthRange known = umov::range_of(*table);
-      const bool is_covered = first >= known.first_nm && last <= known.last_nm;
-      if (band.curve && table->holds_ends && !is_covered) {
+      if (!covers(*table, band))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} = \"{}\": its index \"{}\" covers {:g}-{:g} nm; band \"{}\" "
+                                "needs {}. Extrapolation is off.{}",
+                                key, material.name, table->name, known.first_nm, known.last_nm,
+                                band.name,
+                                band.curve ? fmt::format("{:g}-{:g} nm", first, last)
+                                           : fmt::format("{:g} nm", first),
+                                materials_that_cover(band)),
+                    of.place(key));
+      if (band.curve && (first < known.first_nm || last > known.last_nm))
         diagnostics.warn(fmt::format("material \"{}\" is known at {:g}-{:g} nm; band \"{}\" "
                                      "({:g}-{:g} nm) takes the values at the ends beyond",
                                      material.name, known.first_nm, known.last_nm, band.name, first,
                                      last),
-                         {scenario.file});
-      } else if (band.curve && !is_covered) {
-        return fail(ErrorCode::BadInput,
-                    fmt::format("material \"{}\": index \"{}\" covers {:g}-{:g} nm; band \"{}\" "
-                                "needs {:g}-{:g} nm. Extrapolation is off.{}",
-                                material.name, table->name, known.first_nm, known.last_nm,
-                                band.name, first, last,
-                                tables_that_cover(table->name, first, last)),
-                    {scenario.file});
-      } else if (!band.curve) {
-        if (const auto eta = index_at(*table, band.wavelength); !eta)
-          return fail(ErrorCode::BadInput,
-                      fmt::format("material \"{}\", band \"{}\": {}{}", material.name, band.name,
-                                  eta.error().message,
-                                  tables_that_cover(table->name, first, first)),
-                      {scenario.file});
-      }
+                         {of.scenario.file});
     }
   return {};
 }
@@ -270,7 +283,7 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   for (std::size_t i = 0; i < front.size(); ++i)
     for (const Material *material : {&front[i], &back[i]})
       if (std::find(checked.begin(), checked.end(), *material) == checked.end()) {
-        UMOV_TRY(check_bands(*material, scenario, diagnostics));
+        UMOV_TRY(check_bands(*material, of, of.material_key(read.mesh.groups[i]), diagnostics));
         checked.push_back(*material);
       }
   UMOV_TRY(note_material_files(of, checked, out));
