@@ -298,6 +298,14 @@ def test_a_band_that_a_material_does_not_cover_is_told_where_it_stands(umov, sce
     assert "cell_gaas" in named and "film_silvered" in named and "film_aluminized" not in named, done.err
 
 
+def test_a_tail_of_a_band_is_taken_from_the_end_of_a_table_and_told(umov, scenario):
+    """Below the 400 nm from which PET is known Gaia's G has a few percent of its response (Riello et al. 2021)."""
+    done = umov("run", scenario(GAAS, ('set = "paper_rgb"', 'set = "gaia.G"')), "--dry-run")
+    assert done.code == 0, done.err
+    share = float(re.search(r"the ends beyond, ([0-9.]+) % of its response", done.err).group(1))
+    assert 1 < share < 5, done.err
+
+
 @pytest.mark.parametrize("material", ["cell_gaas", "germanium_kapton", "cell_silicon"])
 def test_what_flies_is_known_to_the_end_of_the_red_filters(umov, scenario, material):
     done = umov("run", scenario((GAAS[0], GAAS[1].replace("film_aluminized", material)),

@@ -170,20 +170,34 @@ std::pair<double, double> range_of(const Band &band) {
   return {band.curve->wavelength_nm.front(), band.curve->wavelength_nm.back()};
 }
 
-/// Every table that a material asks for its light.
-std::vector<const IndexTable *> tables_of(const Material &material) {
-  std::vector<const IndexTable *> out{&material.index};
-  for (const Layer &layer : material.layers)
+/// Every table that a material (const or not) asks for its light.
+auto tables_of(auto &material) {
+  std::vector<decltype(&material.index)> out{&material.index};
+  for (auto &layer : material.layers)
     out.push_back(&layer.index);
   return out;
 }
 
+/// The part of a curve's response outside a range of wavelengths.
+double tail_of(const Passband &curve, const WavelengthRange &known) {
+  double whole = 0, outside = 0;
+  for (std::size_t k = 1; k < curve.wavelength_nm.size(); ++k) {
+    const double a = curve.wavelength_nm[k - 1], b = curve.wavelength_nm[k];
+    const double area = 0.5 * (curve.response[k - 1] + curve.response[k]) * (b - a);
+    const double inside = std::min(b, known.last_nm) - std::max(a, known.first_nm);
+    whole += area;
+    outside += area * (1 - std::clamp(inside / (b - a), 0.0, 1.0));
+  }
+  return whole > 0 ? outside / whole : 0;
+}
+
+/// So little of a band that its light hardly depends on what is taken there.
+constexpr double negligible_tail = 0.05;
+
 bool covers(const IndexTable &table, const Band &band) {
-  const auto [first, last] = range_of(band);
   if (!band.curve)
     return index_at(table, band.wavelength).has_value();
-  const WavelengthRange known = umov::range_of(table);
-  return table.holds_ends || (first >= known.first_nm && last <= known.last_nm);
+  return table.holds_ends || tail_of(*band.curve, umov::range_of(table)) <= negligible_tail;
 }
 
 /// What could stand in a material's place: the library's of which all is known in the band.
@@ -220,12 +234,23 @@ Result<void> check_bands(const Material &material, const Named &of, const std::s
                     of.place(key));
       if (band.curve && (first < known.first_nm || last > known.last_nm))
         diagnostics.warn(fmt::format("material \"{}\" is known at {:g}-{:g} nm; band \"{}\" "
-                                     "({:g}-{:g} nm) takes the values at the ends beyond",
+                                     "({:g}-{:g} nm) takes the values at the ends beyond, {:.2g} % "
+                                     "of its response",
                                      material.name, known.first_nm, known.last_nm, band.name, first,
-                                     last),
+                                     last, 100 * tail_of(*band.curve, known)),
                          {of.scenario.file});
     }
   return {};
+}
+
+/// After the check: tables that end within a band's tail hold their ends there.
+void hold_tails(Material &material, const std::vector<Band> &bands) {
+  for (IndexTable *table : tables_of(material)) {
+    const WavelengthRange known = umov::range_of(*table);
+    for (const Band &band : bands)
+      if (band.curve && tail_of(*band.curve, known) > 0)
+        table->holds_ends = true;
+  }
 }
 
 /// Files that the materials of an object were read from, among its inputs, each once.
@@ -286,6 +311,9 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
         UMOV_TRY(check_bands(*material, of, of.material_key(read.mesh.groups[i]), diagnostics));
         checked.push_back(*material);
       }
+  for (auto *side : {&front, &back})
+    for (Material &material : *side)
+      hold_tails(material, scenario.bands);
   UMOV_TRY(note_material_files(of, checked, out));
   auto scene =
       make_scene(read.mesh, of.object.mesh.normals, scenario.bands, front, back, diagnostics,

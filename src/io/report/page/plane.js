@@ -25,7 +25,7 @@ function pureLabel(curve, m, shown) {
   const share = (m + 0.5) / pureMaterials.length;
   const wanted = shown.x[0] + (0.39 + 0.33 * share) * (shown.x[1] - shown.x[0]);
   const seen = curve.phase.map((x, i) => ({ x, y: percent(curve.q_scat[i]) }))
-    .filter((at) => at.y !== null && at.x >= shown.x[0] && at.x <= shown.x[1] && at.y >= shown.y[0] && at.y <= shown.y[1]);
+    .filter((at) => at.y !== null && at.x >= shown.x[0] && at.x <= shown.x[1] && at.y >= shown.y[0] && at.y <= shown.y[1] - 0.1 * (shown.y[1] - shown.y[0])); // below the legend
   return seen.sort((a, b) => Math.abs(a.x - wanted) - Math.abs(b.x - wanted))[0] || null;
 }
 
