@@ -65,7 +65,7 @@ Result<void> check_alone(const RunOptions &o, const Scenario &scenario, const Co
   jobs::JobOptions options = job_options(common);
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   UMOV_ASSIGN(objects,
               jobs::load_run(scenario, options, console.monitor(common.verbose), diagnostics));
   tell_of_objects(o.scenario, objects, common);
@@ -83,7 +83,7 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
   options.journal = folder.journal_path();
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   const jobs::Monitor monitor = console.monitor(common.verbose);
   UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
   tell_of_search(scenario, common);

@@ -50,7 +50,7 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   UMOV_ASSIGN(poses, o.geometry.empty() ? jobs::random_poses(o.poses, o.phases_deg, seed)
                                         : jobs::poses_from_file(o.geometry));
   UMOV_TRY(tell_size(o.output, poses.count * scenario.bands.size(), common));
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   const auto sink = sink_for(o.output, common);
   jobs::JobOptions options = job_options(common);
   options.journal = Journal::name_for(o.output);

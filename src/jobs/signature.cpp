@@ -129,6 +129,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   task.cancel = monitor.cancel;
   PoseBlocks blocks(poses, light, journal, task);
   std::size_t done = 0;
+  monitor.advance("poses", 0, poses.count);
   while (done < poses.count && !monitor.is_cancelled()) {
     const std::size_t count = std::min(block, poses.count - done);
     if (!blocks.light({0, done / block}, done, count))
