@@ -34,11 +34,15 @@
 #include <umov/instrument/detector.h>
 #include <umov/instrument/draws.h>
 #include <umov/instrument/exposure.h>
+#include <umov/instrument/frame_observer.h>
+#include <umov/instrument/frame_photometry.h>
 #include <umov/instrument/mirrors.h>
 #include <umov/instrument/mosaic.h>
 #include <umov/instrument/mueller.h>
 #include <umov/instrument/observe.h>
+#include <umov/instrument/pixel_image.h>
 #include <umov/instrument/polarimeter.h>
+#include <umov/instrument/raw_frame.h>
 #include <umov/instrument/telescope.h>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/inverse/curve_model.h>
@@ -57,6 +61,7 @@
 #include <umov/io/counts_file.h>
 #include <umov/io/elements_file.h>
 #include <umov/io/exr.h>
+#include <umov/io/fits_image.h>
 #include <umov/io/index_file.h>
 #include <umov/io/light_curve_table.h>
 #include <umov/io/measured_file.h>
@@ -75,6 +80,7 @@
 #include <umov/io/sites.h>
 #include <umov/io/sky_page.h>
 #include <umov/io/standards_file.h>
+#include <umov/io/stars_file.h>
 #include <umov/io/story_page.h>
 #include <umov/io/table.h>
 #include <umov/io/table_sink.h>

@@ -163,7 +163,6 @@ def test_a_drift_is_told_in_figures(scene, umov, tmp_path):
 
 
 BAD = [("exposure_s = 0", "exposure_s = 0"), ("exposure_s = 1\ncadence_s = 0.5", "cannot overlap"),
-       ('exposure_s = 1\nlevel = "image"', "level"),
        ("exposure_s = 1\n[telescope]\nobstruction = 1", "0 to below 1"),
        ("exposure_s = 1\n[telescope]\naperture_m = 0", "above 0"),
        ("exposure_s = 1\n[telescope]\nthroughput = 1.2", "0 to 1"),

@@ -84,6 +84,16 @@ Result<void> check_focal_ratio(const Node &node, const Telescope &t) {
       node.where(node.has("focal_length_m") ? "focal_length_m" : "aperture_m"));
 }
 
+constexpr const char *tracking_names[] = {"satellite", "sidereal", "fixed"};
+
+Result<void> read_tracking(const Node &node, Telescope &out) {
+  const auto &names = tracking_names;
+  UMOV_ASSIGN(tracking, node.choice("tracking", names[static_cast<int>(out.tracking)],
+                                    {names[0], names[1], names[2]}));
+  out.tracking = static_cast<Tracking>(std::find(names, names + 3, tracking) - names);
+  return read_number(node, "tracking_error_arcsec", not_negative, out.tracking_error_arcsec);
+}
+
 Result<void> read_telescope(const Node &node, Telescope &out) {
   UMOV_TRY(read_number(node, "aperture_m",
                        {1e-12, 60, "a number above 0, up to 60 m (is it in mm?)"}, out.aperture_m));
@@ -106,6 +116,7 @@ Result<void> read_telescope(const Node &node, Telescope &out) {
                                  {"altaz", "equatorial"}));
   out.mount = mount == "altaz" ? Mount::AltAz : Mount::Equatorial;
   out.has_derotator = node.boolean("derotator", out.has_derotator);
+  UMOV_TRY(read_tracking(node, out));
   if (out.mount == Mount::Equatorial && out.port != TelescopePort::Cassegrain)
     return fail(ErrorCode::BadInput,
                 fmt::format("port = \"{}\" on an equatorial mount: a Nasmyth port lies on the "
@@ -313,10 +324,12 @@ std::string instrument_tables_toml(const Instrument &i) {
   const char *ports[] = {"cassegrain", "nasmyth_left", "nasmyth_right"};
   std::string out = fmt::format(
       "\n[telescope]\naperture_m = {}\nobstruction = {}\nfocal_length_m = {}\nthroughput = {}\n"
-      "port = \"{}\"\nmirror = {}\nmount = \"{}\"\nderotator = {}\n",
+      "port = \"{}\"\nmirror = {}\nmount = \"{}\"\nderotator = {}\ntracking = \"{}\"\n"
+      "tracking_error_arcsec = {}\n",
       shortest(t.aperture_m), shortest(t.obstruction), shortest(t.focal_length_m),
       curve_toml(t.throughput), ports[static_cast<int>(t.port)], quoted(t.mirror),
-      t.mount == Mount::AltAz ? "altaz" : "equatorial", t.has_derotator);
+      t.mount == Mount::AltAz ? "altaz" : "equatorial", t.has_derotator,
+      tracking_names[static_cast<int>(t.tracking)], shortest(t.tracking_error_arcsec));
   out += fmt::format(
       "\n[detector]\nmodel = \"{}\"\npixel_um = {}\n{}"
       "read_e = {}\ndark_e_s = {}\ngain_e_adu = {}\nbits = {}\nbias_adu = {}\n"
