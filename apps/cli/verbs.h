@@ -30,6 +30,7 @@ void add_orbit_convert(CLI::App &orbit, const Exit &exit_with);
 void add_paper(CLI::App &app, const Exit &exit_with);
 void add_passes(CLI::App &app, const Exit &exit_with);
 void add_render(CLI::App &app, const Exit &exit_with);
+void add_scale(CLI::App &app, const Exit &exit_with);
 void add_schema(CLI::App &app, const Exit &exit_with);
 void add_completion(CLI::App &app, const Exit &exit_with);
 void add_man(CLI::App &app, const Exit &exit_with);
