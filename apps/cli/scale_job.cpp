@@ -52,8 +52,9 @@ Result<void> refuse_output(const std::string &output, const PartOptions &part) {
                                       ": the rows of a job in parts go to its folder; umov scale "
                                       "merge FOLDER -o TABLE puts them together");
   if (!part.shard.empty() || !part.range.empty())
-    return fail(ErrorCode::Usage, "--shard and --range: a job in parts is cut by umov scale itself; "
-                                  "--per-shard says how long its shards are");
+    return fail(ErrorCode::Usage,
+                "--shard and --range: a job in parts is cut by umov scale itself; "
+                "--per-shard says how long its shards are");
   return {};
 }
 
@@ -65,8 +66,8 @@ Result<std::unique_ptr<jobs::RangedJob>> verb_in_parts(const std::string &verb,
               : verb == "passes"  ? passes_in_parts(arguments, setting, diagnostics)
               : verb == "run"
                   ? run_in_parts(arguments, setting, diagnostics)
-                  : Result<RangedVerb>(fail(ErrorCode::Usage,
-                                            verb + ": signature, passes or run was expected"));
+                  : Result<RangedVerb>(
+                        fail(ErrorCode::Usage, verb + ": signature, passes or run was expected"));
   if (!made)
     return tl::unexpected(made.error());
   if (made->job->total() == 0)

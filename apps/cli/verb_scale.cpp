@@ -34,8 +34,7 @@ Result<void> ask_about(const scale::Plan &plan, const ScaleJobOptions &o) {
                             "another disk, or ask for less.",
                             plan.gigabytes, static_cast<double>(room.available) / 1e9),
                 {o.folder});
-  if (o.may_cost_much ||
-      (plan.core_hours < many_core_hours && plan.gigabytes < many_gigabytes))
+  if (o.may_cost_much || (plan.core_hours < many_core_hours && plan.gigabytes < many_gigabytes))
     return {};
   if (::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0) {
     fmt::print(stderr, "Begin? [y/N] ");
@@ -111,12 +110,14 @@ void add_scale_job(CLI::App &scale, ScaleJobOptions &o) {
   scale.add_option("folder", o.folder, "Folder of the job")->required();
   scale.add_option("verb", o.verb,
                    "To begin a job: signature, passes or run, with its own arguments behind it");
-  scale.add_option("--per-shard", o.per_shard,
-                   "Poses, objects or passes of a shard; by default what takes 10 to 120 s")
+  scale
+      .add_option("--per-shard", o.per_shard,
+                  "Poses, objects or passes of a shard; by default what takes 10 to 120 s")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
-  scale.add_option("--isa", o.instruction_set,
-                   "Instruction set that all machines have, for the same bytes on unlike ones; "
-                   "default: the best of this one")
+  scale
+      .add_option("--isa", o.instruction_set,
+                  "Instruction set that all machines have, for the same bytes on unlike ones; "
+                  "default: the best of this one")
       ->check(CLI::IsMember({"avx512", "avx2", "sse4", "baseline"}));
   scale.add_flag("--yes", o.may_cost_much, "Begin also above 100 core-h or 100 GB");
 }

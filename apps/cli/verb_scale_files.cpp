@@ -28,8 +28,8 @@ CLI::App *add_folder_verb(CLI::App &scale, const Exit &exit_with, const char *na
   verb->callback([=] {
     watch_interrupts();
     const auto folder = scale::JobFolder::open(*path);
-    const auto done = folder ? what(*folder, *common)
-                             : Result<void>(tl::unexpected(folder.error()));
+    const auto done =
+        folder ? what(*folder, *common) : Result<void>(tl::unexpected(folder.error()));
     exit_with(done ? 0 : report(done.error()));
   });
   return verb;
@@ -52,9 +52,9 @@ Result<void> tell_status(const scale::JobFolder &folder, const Common &common) {
                                "\"is_held\": {}}}\n",
                                all, there.size(), failed.size(), bytes, folder.lock().total,
                                folder.lock().unit, there.size() == all, !holders.empty()));
-  std::string text = fmt::format("{} of {} shards are done ({} {} in all), {:.3g} GB\n",
-                                 there.size(), all, folder.lock().total, folder.lock().unit,
-                                 static_cast<double>(bytes) / 1e9);
+  std::string text =
+      fmt::format("{} of {} shards are done ({} {} in all), {:.3g} GB\n", there.size(), all,
+                  folder.lock().total, folder.lock().unit, static_cast<double>(bytes) / 1e9);
   for (const scale::FailedShard &one : failed)
     text += fmt::format("shard {} failed ({}, tried {} times): {}\n", one.index, one.code,
                         one.attempts, one.message);
@@ -66,9 +66,8 @@ Result<void> check_files(const scale::JobFolder &folder, const Common &common) {
   JobConsole console(common);
   UMOV_ASSIGN(verdict, scale::verify(folder, console.monitor(false)));
   if (!verdict.is_whole())
-    return fail(ErrorCode::BadInput,
-                scale::describe(verdict, folder) + ". umov scale repair " +
-                    folder.path().string() + " makes them anew.");
+    return fail(ErrorCode::BadInput, scale::describe(verdict, folder) + ". umov scale repair " +
+                                         folder.path().string() + " makes them anew.");
   return put("", scale::describe(verdict, folder) + "\n");
 }
 
@@ -116,8 +115,8 @@ Result<void> write_script(ScriptOptions &o, const Common &common, Diagnostics &d
   o.settings.program = own_program();
   o.settings.tasks = std::min(o.settings.tasks, folder.lock().shards());
   // Twice what is predicted, as batch systems end what takes longer.
-  const double predicted = 3600 * scale::plan_of(folder.lock(), plan).core_hours /
-                           static_cast<double>(plan.cores);
+  const double predicted =
+      3600 * scale::plan_of(folder.lock(), plan).core_hours / static_cast<double>(plan.cores);
   o.settings.wall_s = std::max(600.0, 2 * predicted);
   return put(o.output, o.system == "slurm" ? scale::slurm_script(folder, o.settings)
                                            : scale::condor_script(folder, o.settings));

@@ -27,9 +27,9 @@ struct ScaleRunOptions {
 /// Dask is Python's: the same folder, done by umov.scale.
 Result<void> run_on_cluster(const ScaleRunOptions &o, const scale::JobFolder &folder) {
   const std::string path = folder.path().string(), program = own_program();
-  const char *const words[] = {"python3",        "-m",         "umov.scale",      "run",
-                               path.c_str(),     "--cluster",  o.cluster.c_str(), "--program",
-                               program.c_str(),  nullptr};
+  const char *const words[] = {"python3",       "-m",        "umov.scale",      "run",
+                               path.c_str(),    "--cluster", o.cluster.c_str(), "--program",
+                               program.c_str(), nullptr};
   ::execvp(words[0], const_cast<char *const *>(words));
   return fail(ErrorCode::Device,
               "--cluster takes Python with the package umov[scale]; without it umov scale run "
@@ -37,11 +37,12 @@ Result<void> run_on_cluster(const ScaleRunOptions &o, const scale::JobFolder &fo
 }
 
 void tell(const scale::RunTally &tally, const scale::JobFolder &folder, const Common &common) {
-  std::string text = fmt::format("{} of {} shards done, {} of them before; {:.1f} s of CPU",
-                                 tally.there_before + tally.done, tally.wanted, tally.there_before,
-                                 tally.cpu_s);
+  std::string text =
+      fmt::format("{} of {} shards done, {} of them before; {:.1f} s of CPU",
+                  tally.there_before + tally.done, tally.wanted, tally.there_before, tally.cpu_s);
   if (tally.failed == 0 && tally.wanted == folder.lock().shards())
-    text += fmt::format(". umov scale merge {} -o TABLE puts them together", folder.path().string());
+    text +=
+        fmt::format(". umov scale merge {} -o TABLE puts them together", folder.path().string());
   note(common, text);
 }
 

@@ -21,7 +21,6 @@ import sys
 import sysconfig
 import threading
 import time
-from collections.abc import Iterator
 from typing import Any
 
 from .errors import (DeviceError, Error, InputError, InternalError, Interrupted, NoResult, NumericsError,
@@ -293,7 +292,7 @@ def _shard(index: int, program: str, folder: str, threads: int, timeout_s: float
     why: dict[str, Any] = {}
     for attempt in range(1, 4):
         with _idle_lock:
-            server = _idle.setdefault(key, []).pop() if _idle.get(key) else None
+            server = _idle[key].pop() if _idle.get(key) else None
         try:
             server = server or _Server(program, folder, threads)
         except OSError as problem:
@@ -301,7 +300,7 @@ def _shard(index: int, program: str, folder: str, threads: int, timeout_s: float
         line = server.ask(index, timeout_s)
         if line:
             with _idle_lock:
-                _idle[key].append(server)
+                _idle.setdefault(key, []).append(server)
             return {**json.loads(line), "attempts": attempt}
         if line is None:
             server.process.kill()
@@ -424,7 +423,8 @@ class _Driver:
 
     def _take(self, future: Any) -> None:
         if future.status != "finished":
-            self._stop(DeviceError(f"the Dask scheduler let a shard go ({future.status})"))
+            why = future.exception() if future.status == "error" else future.status
+            self._stop(DeviceError(f"Dask lost a shard ({why})"))
             return
         record = future.result()
         future.release()
@@ -576,7 +576,7 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     return result
 
 
-def _main() -> Iterator[int]:
+def _main() -> int:
     parser = argparse.ArgumentParser(prog="python -m umov.scale", description="The cluster's side of umov scale run.")
     parser.add_argument("do", choices=["run"])
     parser.add_argument("folder")
@@ -590,9 +590,10 @@ def _main() -> Iterator[int]:
             quiet=False)
     except (Error, Interrupted) as error:
         print(f"error: {error}", file=sys.stderr)
-        yield error.exit_code
-    yield 0
+        return error.exit_code
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(next(_main()))
+    from umov import scale  # not as __main__, which workers do not have
+    sys.exit(scale._main())

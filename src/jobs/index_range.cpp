@@ -30,9 +30,9 @@ IndexRange share_of(std::size_t total, std::size_t part, std::size_t of) {
 Result<JobPart> JobPart::shard(const std::string &text) {
   const auto read = two_counts(text, '/');
   if (!read || read->first >= read->second)
-    return fail(ErrorCode::Usage,
-                fmt::format("--shard {}: K/N with K from 0 to N - 1 was expected, such as 0/8",
-                            text));
+    return fail(
+        ErrorCode::Usage,
+        fmt::format("--shard {}: K/N with K from 0 to N - 1 was expected, such as 0/8", text));
   JobPart out;
   out.shard_ = Share{read->first, read->second};
   out.text_ = text;

@@ -31,17 +31,18 @@ Result<std::string> identity_of(const PassesRequest &r, const JobOptions &option
     UMOV_ASSIGN(material, read_file(r.model.material));
     inputs.push_back({r.model.material, sha256_hex(material)});
   }
-  return job_text(
-      scene, inputs,
-      fmt::format("passes of {}; site {} {:.17g} {:.17g} {:.17g}; {} to {}; above {:.17g}, dark below {:.17g}, "
-                  "shadow {}; {} {}; model {} {:.17g} {} {}; scene {}; old {} bad {}",
-                  fmt::join(r.norad, ","), r.site.name, r.site.latitude.degrees(),
-                  r.site.longitude.degrees(), r.site.altitude_m, to_iso_exact(r.start),
-                  to_iso_exact(r.stop), r.altitude_min.degrees(), r.sun_altitude_max.degrees(),
-                  static_cast<int>(r.shadow), r.is_visible_only, r.keep_going,
-                  static_cast<int>(r.model.body), r.model.size_m, r.model.material, r.model.band,
-                  r.model.scene.has_value(), options.allow_old_elements,
-                  options.allow_bad_checksum));
+  return job_text(scene, inputs,
+                  fmt::format("passes of {}; site {} {:.17g} {:.17g} {:.17g}; {} to {}; above "
+                              "{:.17g}, dark below {:.17g}, "
+                              "shadow {}; {} {}; model {} {:.17g} {} {}; scene {}; old {} bad {}",
+                              fmt::join(r.norad, ","), r.site.name, r.site.latitude.degrees(),
+                              r.site.longitude.degrees(), r.site.altitude_m, to_iso_exact(r.start),
+                              to_iso_exact(r.stop), r.altitude_min.degrees(),
+                              r.sun_altitude_max.degrees(), static_cast<int>(r.shadow),
+                              r.is_visible_only, r.keep_going, static_cast<int>(r.model.body),
+                              r.model.size_m, r.model.material, r.model.band,
+                              r.model.scene.has_value(), options.allow_old_elements,
+                              options.allow_bad_checksum));
 }
 
 class RangedPasses final : public RangedJob {
@@ -75,9 +76,8 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<RangedJob>> ranged_passes(const PassesRequest &request,
-                                                 const JobOptions &options,
-                                                 Diagnostics &diagnostics) {
+Result<std::unique_ptr<RangedJob>>
+ranged_passes(const PassesRequest &request, const JobOptions &options, Diagnostics &diagnostics) {
   UMOV_ASSIGN(identity, identity_of(request, options));
   UMOV_ASSIGN(searcher, PassSearcher::make(request, options, diagnostics));
   return std::make_unique<RangedPasses>(std::move(searcher), std::move(identity));

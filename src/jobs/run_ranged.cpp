@@ -104,11 +104,11 @@ private:
     UMOV_TRY(make_ready(k, monitor));
     ObjectRun &one = objects_[k];
     one.passes = wanted;
-    UMOV_ASSIGN(outcome,
-                compute_wanted(
-                    one, models_,
-                    [&](std::size_t done, std::size_t of) { monitor.advance("epochs", done, of); },
-                    cancel_of(monitor), {}));
+    UMOV_ASSIGN(outcome, compute_wanted(one, models_,
+                                        [&](std::size_t done, std::size_t of) {
+                                          monitor.advance("epochs", done, of);
+                                        },
+                                        cancel_of(monitor), {}));
     one.outcome = std::move(outcome);
     if (varies_haze_ && !one.outcome.stopped)
       UMOV_TRY(add_haze_spread(one, {}, monitor, diagnostics));
@@ -134,9 +134,9 @@ Result<std::unique_ptr<RangedJob>> ranged_run(const Scenario &scenario, const Jo
   std::vector<InputFile> inputs;
   for (const ObjectRun &one : objects)
     inputs.insert(inputs.end(), one.object.inputs.begin(), one.object.inputs.end());
-  std::string identity = job_text(scenario, inputs,
-                                  fmt::format("run; bad {} old {}", options.allow_bad_checksum,
-                                              options.allow_old_elements));
+  std::string identity = job_text(
+      scenario, inputs,
+      fmt::format("run; bad {} old {}", options.allow_bad_checksum, options.allow_old_elements));
   std::vector<std::size_t> passes = layout;
   if (passes.size() != objects.size()) {
     UMOV_ASSIGN(counted, count_passes(objects, options.threads, monitor));

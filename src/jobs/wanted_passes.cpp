@@ -39,8 +39,8 @@ Result<void> take_part(std::vector<ObjectRun> &objects, const JobPart &part,
   }
   std::erase_if(objects, [](const ObjectRun &one) { return one.passes->count == 0; });
   if (objects.empty())
-    return fail(ErrorCode::Nothing, fmt::format("part {} of {} passes has none of them",
-                                                part.text(), total));
+    return fail(ErrorCode::Nothing,
+                fmt::format("part {} of {} passes has none of them", part.text(), total));
   return {};
 }
 

@@ -1,7 +1,7 @@
 #include <umov/scale/job_folder.h>
 
-#include <charconv>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -149,8 +149,8 @@ void JobFolder::sweep() const {
 
 void JobFolder::tell_failed(const FailedShard &failed) const {
   const jobs::IndexRange range = lock_.range(failed.index);
-  const json out{{"index", failed.index},     {"first", range.first},
-                 {"count", range.count},      {"code", failed.code},
+  const json out{{"index", failed.index},       {"first", range.first},
+                 {"count", range.count},        {"code", failed.code},
                  {"attempts", failed.attempts}, {"message", failed.message},
                  {"host", failed.host}};
   // What cannot be told here stands among the missing all the same.

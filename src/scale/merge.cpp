@@ -94,8 +94,8 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
   const JobLock &lock = folder.lock();
   const auto wanted = std::ranges::find(lock.tables, table);
   if (wanted == lock.tables.end())
-    return fail(ErrorCode::Usage, fmt::format("--table {}: the job has {}", table,
-                                              fmt::join(lock.tables, ", ")));
+    return fail(ErrorCode::Usage,
+                fmt::format("--table {}: the job has {}", table, fmt::join(lock.tables, ", ")));
   const auto number = static_cast<std::size_t>(wanted - lock.tables.begin());
   const bool is_sorted = number == 0 && !lock.order.empty();
   UMOV_ASSIGN(shards, all_shards(folder));
@@ -173,8 +173,11 @@ Result<void> write_manifest(const JobFolder &folder) {
     const auto size = std::filesystem::file_size(folder.file_of(shard), unknown);
     bytes += unknown ? 0 : size;
     const jobs::IndexRange range = folder.lock().range(shard.index);
-    list.push_back({{"file", shard.name}, {"first", range.first}, {"count", range.count},
-                    {"bytes", unknown ? 0 : size}, {"sha256_128", shard.sha256}});
+    list.push_back({{"file", shard.name},
+                    {"first", range.first},
+                    {"count", range.count},
+                    {"bytes", unknown ? 0 : size},
+                    {"sha256_128", shard.sha256}});
   }
   const nlohmann::json out{{"program", std::string("umov ") + version},
                            {"key", folder.key()},

@@ -58,8 +58,8 @@ Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monit
   for (std::size_t round = 0;; ++round) {
     Sampled now; // each round has twice the pieces of the one before, or pieces twice as long
     for (std::size_t n = 0; n < 4; ++n) {
-      const auto first = static_cast<std::size_t>(spread_point(++k) *
-                                                  static_cast<double>(total - length + 1));
+      const auto first =
+          static_cast<std::size_t>(spread_point(++k) * static_cast<double>(total - length + 1));
       Counted counted;
       const double cpu = cpu_seconds();
       UMOV_TRY(job.rows({first, length}, counted, monitor, told_at_the_begin));
@@ -99,8 +99,8 @@ std::size_t shard_length(const jobs::RangedJob &job, const Rate &rate,
 
 Plan plan_of(const JobLock &lock, const PlanSettings &settings) {
   const auto total = static_cast<double>(lock.total);
-  const double workers = std::max(1.0, static_cast<double>(settings.cores) /
-                                           static_cast<double>(settings.threads));
+  const double workers =
+      std::max(1.0, static_cast<double>(settings.cores) / static_cast<double>(settings.threads));
   const double cpu_s = lock.rate.cpu_s * total + lock.rate.setup_cpu_s * workers;
   Plan out;
   out.total = lock.total;
@@ -108,8 +108,8 @@ Plan plan_of(const JobLock &lock, const PlanSettings &settings) {
   out.shards = lock.shards();
   out.core_hours = cpu_s / 3600;
   out.gigabytes = lock.rate.bytes * total / 1e9;
-  out.shard_s = lock.rate.cpu_s * static_cast<double>(lock.per_shard) /
-                static_cast<double>(settings.threads);
+  out.shard_s =
+      lock.rate.cpu_s * static_cast<double>(lock.per_shard) / static_cast<double>(settings.threads);
   out.wall_s = std::max(out.shard_s, cpu_s / static_cast<double>(settings.cores));
   out.setup_cpu_s = lock.rate.setup_cpu_s;
   return out;
@@ -123,14 +123,10 @@ std::string describe(const Plan &plan, const std::string &unit) {
 }
 
 std::string to_json(const Plan &plan) {
-  const nlohmann::json out{{"total", plan.total},
-                           {"shards", plan.shards},
-                           {"per_shard", plan.per_shard},
-                           {"core_hours", plan.core_hours},
-                           {"gigabytes", plan.gigabytes},
-                           {"wall_s", plan.wall_s},
-                           {"shard_s", plan.shard_s},
-                           {"setup_cpu_s", plan.setup_cpu_s}};
+  const nlohmann::json out{{"total", plan.total},         {"shards", plan.shards},
+                           {"per_shard", plan.per_shard}, {"core_hours", plan.core_hours},
+                           {"gigabytes", plan.gigabytes}, {"wall_s", plan.wall_s},
+                           {"shard_s", plan.shard_s},     {"setup_cpu_s", plan.setup_cpu_s}};
   return out.dump(1) + "\n";
 }
 

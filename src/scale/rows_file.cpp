@@ -59,7 +59,8 @@ AboutTable about_table(const json &from, std::size_t end) {
     out.notes.emplace_back(note.at(0).get<std::string>(), note.at(1).get<std::string>());
   for (const json &one : from.at("columns")) {
     const json &precision = one.at("precision");
-    out.columns.push_back({one.at("name").get<std::string>(), one.at("unit").get<std::string>(),
+    out.columns.push_back({one.at("name").get<std::string>(),
+                           one.at("unit").get<std::string>(),
                            one.at("description").get<std::string>(),
                            no_cells(one.at("type").get<std::string>()),
                            {precision.at(0).get<std::string>(), precision.at(1).get<int>(),

@@ -123,12 +123,13 @@ Result<void> RowsWriter::add(std::size_t table, Table &&rows) {
 
 Result<std::string> RowsWriter::finish() {
   const RowsHead &head = state_->head;
-  const std::string text = json{{"key", head.key},
-                                {"index", head.index},
-                                {"first", head.range.first},
-                                {"count", head.range.count},
-                                {"tables", state_->tables}}
-                               .dump();
+  const std::string text = json{
+      {"key", head.key},
+      {"index", head.index},
+      {"first", head.range.first},
+      {"count", head.range.count},
+      {"tables",
+       state_->tables}}.dump();
   UMOV_ASSIGN(begin, state_->place(text));
   UMOV_TRY(state_->write(bytes_of(std::vector<std::uint64_t>{begin, text.size()})));
   UMOV_TRY(state_->write(rows_magic));

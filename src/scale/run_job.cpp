@@ -136,8 +136,9 @@ private:
       return folder_.forget_failed(record->index);
     }
     if (code == ErrorCode::Device || code == ErrorCode::Interrupted)
-      return stop({code, fmt::format("{} umov scale run {} goes on when that is mended.",
-                                     record->message, folder_.path().string()),
+      return stop({code,
+                   fmt::format("{} umov scale run {} goes on when that is mended.", record->message,
+                               folder_.path().string()),
                    {}});
     give_up(record->index, record->code, attempts_[record->index] + 1, record->message);
   }
@@ -153,11 +154,10 @@ private:
     let_go(k);
     if (!index || stopped_)
       return;
-    const std::string what =
-        !why.empty() ? why
-        : code > 128 ? fmt::format("its process was ended by signal {} ({})", code - 128,
-                                   ::strsignal(code - 128))
-                     : fmt::format("its process ended with {}", code);
+    const std::string what = !why.empty() ? why
+                             : code > 128 ? fmt::format("its process was ended by signal {} ({})",
+                                                        code - 128, ::strsignal(code - 128))
+                                          : fmt::format("its process ended with {}", code);
     if (const std::size_t attempts = ++attempts_[*index]; attempts >= attempts_max)
       give_up(*index, code, attempts, what);
     else
@@ -170,9 +170,9 @@ private:
     const double timeout =
         settings_.timeout_s > 0 ? settings_.timeout_s : std::max(60.0, 10 * predicted);
     const double since_stop =
-        stopped_ ? std::chrono::duration<double>(WorkerProcess::Clock::now() - stopped_since_)
-                       .count()
-                 : 0;
+        stopped_
+            ? std::chrono::duration<double>(WorkerProcess::Clock::now() - stopped_since_).count()
+            : 0;
     for (std::size_t k = workers_.size(); k-- > 0;)
       if (since_stop > patience_after_stop_s) {
         workers_[k].leave(milliseconds(6000));

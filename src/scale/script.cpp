@@ -25,7 +25,8 @@ std::string slurm_script(const JobFolder &folder, const ScriptSettings &s) {
   const auto minutes = static_cast<long>(std::ceil(s.wall_s / 60));
   return fmt::format(
       "#!/bin/bash\n"
-      "# {0} shards of {1} {2} each, shared among {3} tasks; finished shards are left out, so that\n"
+      "# {0} shards of {1} {2} each, shared among {3} tasks; finished shards are left out, so "
+      "that\n"
       "# the same script goes on after whatever ended it. Then: {4} scale merge {5} -o TABLE\n"
       "#SBATCH --job-name=umov\n"
       "#SBATCH --array=0-{6}\n"
@@ -47,7 +48,8 @@ std::string slurm_script(const JobFolder &folder, const ScriptSettings &s) {
 std::string condor_script(const JobFolder &folder, const ScriptSettings &s) {
   const std::string path = folder.path().string();
   return fmt::format(
-      "# {0} shards of {1} {2} each, shared among {3} tasks; finished shards are left out, so that\n"
+      "# {0} shards of {1} {2} each, shared among {3} tasks; finished shards are left out, so "
+      "that\n"
       "# the same file goes on after whatever ended it. The folder must be seen by all machines.\n"
       "executable = {4}\n"
       "arguments = \"scale run '{5}' --part $(Process)/{3} --threads {6} -q\"\n"

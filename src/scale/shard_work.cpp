@@ -43,11 +43,12 @@ Result<void> fill(const JobFolder &folder, jobs::RangedJob &job, const jobs::Mon
 } // namespace
 
 std::string to_json(const ShardRecord &r) {
-  const json out{{"index", r.index},     {"status", status_names[static_cast<std::size_t>(r.status)]},
-                 {"code", r.code},       {"message", r.message.substr(0, 500)},
-                 {"file", r.file},       {"sha256", r.sha256},
-                 {"rows", r.rows},       {"bytes", r.bytes},
-                 {"seconds", r.seconds}, {"cpu_s", r.cpu_s}};
+  const json out{
+      {"index", r.index},     {"status", status_names[static_cast<std::size_t>(r.status)]},
+      {"code", r.code},       {"message", r.message.substr(0, 500)},
+      {"file", r.file},       {"sha256", r.sha256},
+      {"rows", r.rows},       {"bytes", r.bytes},
+      {"seconds", r.seconds}, {"cpu_s", r.cpu_s}};
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

@@ -56,9 +56,8 @@ Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, co
                                                     const JobOptions &options,
                                                     Diagnostics &diagnostics);
 /// `umov passes` by objects.
-Result<std::unique_ptr<RangedJob>> ranged_passes(const PassesRequest &request,
-                                                 const JobOptions &options,
-                                                 Diagnostics &diagnostics);
+Result<std::unique_ptr<RangedJob>>
+ranged_passes(const PassesRequest &request, const JobOptions &options, Diagnostics &diagnostics);
 /// `umov run` by passes, object after object. `layout` as the job gave it once; empty: the passes
 /// are looked for.
 Result<std::unique_ptr<RangedJob>> ranged_run(const Scenario &scenario, const JobOptions &options,

@@ -23,8 +23,8 @@ struct RowsHead {
 class RowsWriter final : public jobs::RangeSink {
 public:
   /// Device if it cannot be made. `path` is where it grows; its name comes with `commit`.
-  static Result<RowsWriter> open(const std::filesystem::path &path,
-                                 std::vector<std::string> tables, RowsHead head);
+  static Result<RowsWriter> open(const std::filesystem::path &path, std::vector<std::string> tables,
+                                 RowsHead head);
   RowsWriter(RowsWriter &&) noexcept;
   RowsWriter &operator=(RowsWriter &&) noexcept;
   ~RowsWriter() override;

@@ -7,8 +7,8 @@ namespace umov::scale {
 
 /// What the script asks the batch system for.
 struct ScriptSettings {
-  std::string program;    ///< umov
-  std::size_t tasks = 1;  ///< of the array: each takes its share of the shards
+  std::string program;   ///< umov
+  std::size_t tasks = 1; ///< of the array: each takes its share of the shards
   std::size_t threads = 1;
   std::size_t memory_mb = 2000; ///< of each task
   double wall_s = 3600;         ///< of each task

@@ -87,7 +87,8 @@ TEST_F(JobFolders, ListShardsOfTheirKeyAlone) {
   ASSERT_TRUE(folder);
   const Shard mine = folder->named(2, std::string(64, 'a'));
   std::ofstream(folder->file_of(mine)) << "x";
-  std::ofstream(path / "shards" / "00000001-ffffffffffffffff-aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa.rows");
+  std::ofstream(path / "shards" /
+                "00000001-ffffffffffffffff-aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa.rows");
   std::ofstream(path / "shards" / "notes.txt");
   const auto there = folder->shards();
   ASSERT_TRUE(there);
