@@ -75,12 +75,15 @@ def test_rows_are_opened_lazily(scene):
 
 
 def test_workers_that_are_killed_cost_no_byte(scene):
-    """Every second something of the cluster is killed by signal 9; nothing is left over."""
-    job, stop = job_of(scene, 1500), threading.Event()
+    """Once the cluster is up, a worker or its child is killed by signal 9, five times, so far
+    apart that a worker can start again between; nothing is left over."""
+    job, stop = job_of(scene, 3000), threading.Event()
     me, killed = psutil.Process(), []
 
     def storm():
-        while not stop.wait(1.5):
+        while not list(pathlib.Path("out/shards").glob("*.rows")) and not stop.wait(0.1):
+            pass
+        while len(killed) < 5 and not stop.wait(0.3 if not killed else 6):
             victims = [p for p in me.children(recursive=True) if "scale worker" in " ".join(p.cmdline())
                        or "spawn_main" in " ".join(p.cmdline())]
             if victims:

@@ -353,9 +353,12 @@ class _Cluster:
         if workers < 1:
             raise UsageError(f"cluster {cluster}: local:N with a number of workers was expected")
         security = distributed.Security.temporary() if tls else None
-        local = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, host="127.0.0.1",
-                                         dashboard_address="127.0.0.1:0", security=security,
-                                         protocol="tls" if tls else "tcp", silence_logs=50)
+        try:
+            local = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, host="127.0.0.1",
+                                             dashboard_address="127.0.0.1:0", security=security,
+                                             protocol="tls" if tls else "tcp", silence_logs=50)
+        except (RuntimeError, OSError) as problem:
+            raise DeviceError(f"the workers of {cluster} do not start: {problem}") from problem
         self.is_local = True
         self.client = distributed.Client(local, security=security)
         self._ours = [self.client, local]

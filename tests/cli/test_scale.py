@@ -81,7 +81,7 @@ def test_passes_in_parts_are_the_plain_ones(umov, tmp_path, workers):
 
 
 def test_a_run_in_parts_is_the_plain_one(umov, scenario, tmp_path):
-    name = scenario(("stop = 2018-01-21T05:12:00Z", "stop = 2018-01-21T20:00:00Z"),
+    name = scenario(("stop = 2018-01-21T05:12:00Z", "stop = 2018-01-22T08:00:00Z"),
                     ("sun_alt_max_deg = -6, sunlit = true", "sunlit = true"))
     assert umov("run", name, "-o", "plain").code == 0
     done = umov("scale", "run", "--per-shard", 1, "job", "run", name)
