@@ -73,6 +73,7 @@ int run(int argc, char **argv) {
   cli::add_period(app, exit_with);
   cli::add_paper(app, exit_with);
   cli::add_render(app, exit_with);
+  cli::add_scale(app, exit_with);
   cli::add_schema(app, exit_with);
   cli::add_doctor(app, exit_with);
   cli::add_completion(app, exit_with);

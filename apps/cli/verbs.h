@@ -31,6 +31,7 @@ void add_paper(CLI::App &app, const Exit &exit_with);
 void add_passes(CLI::App &app, const Exit &exit_with);
 void add_period(CLI::App &app, const Exit &exit_with);
 void add_render(CLI::App &app, const Exit &exit_with);
+void add_scale(CLI::App &app, const Exit &exit_with);
 void add_schema(CLI::App &app, const Exit &exit_with);
 void add_completion(CLI::App &app, const Exit &exit_with);
 void add_man(CLI::App &app, const Exit &exit_with);

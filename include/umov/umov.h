@@ -92,6 +92,7 @@
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/ephemeris.h>
 #include <umov/jobs/exposure.h>
+#include <umov/jobs/index_range.h>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
@@ -103,6 +104,7 @@
 #include <umov/jobs/passes.h>
 #include <umov/jobs/period.h>
 #include <umov/jobs/pose_light.h>
+#include <umov/jobs/ranged_job.h>
 #include <umov/jobs/reduce.h>
 #include <umov/jobs/render.h>
 #include <umov/jobs/requests.h>

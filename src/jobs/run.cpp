@@ -3,6 +3,7 @@
 #include "jobs/haze_spread.h"
 #include "jobs/job_journal.h"
 #include "jobs/run_report.h"
+#include "jobs/wanted_passes.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -135,9 +136,8 @@ Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks bloc
   monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
   UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene));
   one.light = models.light->facts();
-  auto out = compute_light_curve(
-      one.request, *models.light, models.many_directions.get(),
-      [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
+  auto out = compute_wanted(
+      one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
       monitor.cancel != nullptr ? *monitor.cancel : never, blocks);
   UMOV_TRY(models.keep_masks());
   return out;
@@ -149,7 +149,8 @@ Result<Journal> journal_of(const std::vector<ObjectRun> &objects, const Scenario
   std::vector<InputFile> inputs;
   for (const ObjectRun &one : objects)
     inputs.insert(inputs.end(), one.object.inputs.begin(), one.object.inputs.end());
-  return open_journal(options, job_text(scenario, inputs, "run"), monitor, diagnostics);
+  return open_journal(options, job_text(scenario, inputs, "run" + options.part.text()), monitor,
+                      diagnostics);
 }
 
 } // namespace
@@ -182,6 +183,9 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
                               Diagnostics &diagnostics) {
   RunResult out;
   out.has_all_csv_digits = scenario.has_all_csv_digits;
+  static const std::atomic<bool> never{false};
+  if (!options.part.is_whole())
+    UMOV_TRY(take_part(objects, options.part, monitor.cancel != nullptr ? *monitor.cancel : never));
   UMOV_ASSIGN(journal, journal_of(objects, scenario, options, monitor, diagnostics));
   std::size_t with_rows = 0;
   for (std::size_t k = 0; k < objects.size(); ++k) {
