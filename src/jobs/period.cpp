@@ -48,6 +48,11 @@ std::vector<std::string> bands_of(const ObservationsFile &file) {
   return out;
 }
 
+/// The longest periods that are tried take more than any peak.
+bool is_slow(const Periodogram &found, const std::vector<PeriodPeak> &peaks) {
+  return !found.power.empty() && (peaks.empty() || found.power.front() > peaks.front().power);
+}
+
 /// Rows of the answer, column by column.
 struct Rows {
   std::vector<std::string> time, band;
@@ -86,11 +91,11 @@ Table table_of(Rows &&rows, const std::string &path) {
           std::move(rows.power));
   out.add("false_alarm", "", "chance that white noise has a peak as high",
           std::move(rows.false_alarm));
-  out.set_precision("span", {.decimals = 3});
-  out.set_precision("period", {.error = "period_err"});
-  out.set_precision("period_err", {.significant = 2});
-  out.set_precision("power", {.decimals = 4});
-  out.set_precision("false_alarm", {.significant = 3});
+  out.set_precision("span", {"", 3, 0});
+  out.set_precision("period", {"period_err", 0, 0});
+  out.set_precision("period_err", {"", 0, 2});
+  out.set_precision("power", {"", 4, 0});
+  out.set_precision("false_alarm", {"", 0, 3});
   return out;
 }
 
@@ -108,11 +113,13 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
     bands = {request.band};
   }
   Rows rows;
-  std::size_t too_few = 0;
+  std::size_t too_few = 0, too_slow = 0;
   for (const std::string &band : bands)
     for (const Stretch &one : stretches_of(observations, band, request.gap_s)) {
       constexpr std::size_t all = 1000;
-      auto peaks = highest_peaks(periodogram(one.seconds, one.magnitudes), one.seconds, all);
+      const Periodogram found = periodogram(one.seconds, one.magnitudes);
+      auto peaks = highest_peaks(found, one.seconds, all);
+      too_slow += is_slow(found, peaks) ? 1u : 0u;
       std::erase_if(peaks, [&](const PeriodPeak &peak) {
         return peak.period_s < request.shortest_s || peak.period_s > request.longest_s;
       });
@@ -120,6 +127,13 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
       too_few += peaks.empty() ? 1u : 0u;
       rows.add(one, peaks);
     }
+  if (too_slow > 0)
+    diagnostics.warn(
+        fmt::format("in {} most of the change is slower than half the stretch: a trend, "
+                    "or a period too long to be told; the peaks listed are what is "
+                    "left",
+                    counted(too_slow, "stretch", "stretches")),
+        {observations.path});
   if (rows.period.empty())
     return fail(ErrorCode::Nothing,
                 fmt::format("{} shows no period: twelve brightnesses without a gap of {:g} s that "

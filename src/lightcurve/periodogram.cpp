@@ -154,9 +154,8 @@ std::vector<PeriodPeak> highest_peaks(const Periodogram &of, std::span<const dou
   const double step = (highest - first) / static_cast<double>(size - 1);
   const double span = seconds.back() - seconds.front(), n = static_cast<double>(seconds.size());
   std::vector<std::size_t> tops;
-  for (std::size_t k = 0; k < size; ++k)
-    if ((k == 0 || of.power[k] >= of.power[k - 1]) &&
-        (k + 1 == size || of.power[k] > of.power[k + 1]))
+  for (std::size_t k = 1; k + 1 < size; ++k) // what still grows at an end has its peak elsewhere
+    if (of.power[k] >= of.power[k - 1] && of.power[k] > of.power[k + 1])
       tops.push_back(k);
   std::ranges::sort(tops, [&](std::size_t a, std::size_t b) { return of.power[a] > of.power[b]; });
   std::vector<PeriodPeak> out;

@@ -27,7 +27,7 @@ TEST(Period, EachPassTellsItsOwn) {
   Diagnostics diagnostics;
   const auto file = read_observations_text(two_passes(), "two.csv", diagnostics);
   ASSERT_TRUE(file) << file.error().text();
-  const auto found = period(*file, {.peaks = 1}, diagnostics);
+  const auto found = period(*file, {"", 1}, diagnostics);
   ASSERT_TRUE(found) << found.error().text();
   ASSERT_EQ(found->rows(), 2u);
   // A grid of five values a peak and a parabola through three of them: a hundredth of the width.
@@ -42,11 +42,11 @@ TEST(Period, RangeAndBandAreKeptTo) {
   Diagnostics diagnostics;
   const auto file = read_observations_text(two_passes(), "two.csv", diagnostics);
   ASSERT_TRUE(file);
-  const auto found = period(*file, {.peaks = 3, .longest_s = 10}, diagnostics);
+  const auto found = period(*file, {"", 3, 0, 10}, diagnostics);
   ASSERT_TRUE(found) << found.error().text();
   for (std::size_t k = 0; k < found->rows(); ++k)
     EXPECT_LE(found->number("period", k), 10);
-  const auto unknown = period(*file, {.band = "B"}, diagnostics);
+  const auto unknown = period(*file, {"B"}, diagnostics);
   ASSERT_FALSE(unknown);
   EXPECT_NE(unknown.error().message.find("it has V"), std::string::npos);
 }
