@@ -19,19 +19,20 @@ Result<void> take_range(LibraryVerb &o) {
   if (o.range.empty())
     return {};
   const std::size_t colon = o.range.find(':');
-  const auto number = [](const std::string &text) -> std::optional<std::size_t> {
-    if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != text.npos)
-      return std::nullopt;
-    return static_cast<std::size_t>(std::stoul(text));
+  constexpr std::size_t none = static_cast<std::size_t>(-1);
+  const auto number = [](const std::string &text) {
+    const bool is_number =
+        !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == text.npos;
+    return is_number ? static_cast<std::size_t>(std::stoul(text)) : none;
   };
-  const auto first = number(o.range.substr(0, colon));
-  const auto end = colon == o.range.npos ? std::nullopt : number(o.range.substr(colon + 1));
-  if (!first || !end || *end < *first)
+  const std::size_t first = number(o.range.substr(0, colon));
+  const std::size_t end = colon == o.range.npos ? none : number(o.range.substr(colon + 1));
+  if (first == none || end == none || end < first)
     return fail(
         ErrorCode::Usage,
         fmt::format("--range {}: FIRST:END was expected, counted from 0, as 0:500", o.range));
-  o.request.first = *first;
-  o.request.count = *end - *first;
+  o.request.first = first;
+  o.request.count = end - first;
   return {};
 }
 

@@ -1,7 +1,6 @@
 #include <umov/inverse/identify.h>
 
-#include "inverse/octahedron.h"
-#include "inverse/turning_fit.h"
+#include "inverse/quick_look.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,72 +9,7 @@
 
 namespace umov {
 
-using inverse::DirectionGrid;
-
-QuickLook::QuickLook(const ObservedCurve &curve, const std::vector<std::size_t> &column,
-                     std::size_t cells, std::size_t attitudes, unsigned threads) {
-  constexpr std::size_t most = 8;            // epochs
-  constexpr double off_i = 0.3, off_q = .05; // of the nearest node, 4 deg away
-  const std::size_t all = curve.epochs.size();
-  epochs_ = std::min(most, all);
-  std::vector<std::size_t> slot(all, all), chosen;
-  for (std::size_t k = 0; k < epochs_; ++k) {
-    chosen.push_back(epochs_ < 2 ? 0 : k * (all - 1) / (epochs_ - 1));
-    slot[chosen.back()] = k;
-  }
-  for (const ObservedSample &s : curve.samples) {
-    if (slot[s.epoch] == all || !(s.i > 0))
-      continue;
-    Row row{slot[s.epoch], column[s.band], static_cast<float>(std::log(s.i)), 0, 0, 0};
-    row.weight_i = static_cast<float>(1 / (std::pow(s.i_sd / s.i, 2) + off_i * off_i));
-    if (!std::isnan(s.q)) {
-      row.q = static_cast<float>(s.q);
-      row.weight_q = static_cast<float>(1 / (s.cov_qq + off_q * off_q));
-    }
-    rows_.push_back(row);
-  }
-  const DirectionGrid grid{cells};
-  const auto turned = attitude_grid(attitudes);
-  pair_.resize(turned.size() * epochs_);
-  parallel_for(turned.size(), threads, [&](std::size_t a) {
-    for (std::size_t k = 0; k < epochs_; ++k) {
-      const Pose pose = pose_at({turned[a], {}}, curve.epochs[chosen[k]]);
-      pair_[a * epochs_ + k] = static_cast<std::uint32_t>(
-          inverse::pair_of(grid.nearest(pose.sun), grid.nearest(pose.observer), grid.nodes()));
-    }
-  });
-}
-
-double QuickLook::score(const Signature &signature) const {
-  constexpr float most = 16; // what one number may cost: a glint between nodes vetoes nothing
-  const auto step = static_cast<float>(signature.ln_step);
-  const auto least = static_cast<float>(signature.ln_least);
-  const float dark = least - 1;
-  float best = 1e30f;
-  std::vector<float> ln_ratio(rows_.size());
-  for (std::size_t a = 0; a * epochs_ < pair_.size(); ++a) {
-    const std::uint32_t *const pair = &pair_[a * epochs_];
-    float sum = 0, weight = 0, cost = 0;
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const Row &row = rows_[r];
-      const std::uint16_t *const at =
-          &signature.code[(pair[row.epoch] * signature.bands + row.band) * 2];
-      const float ln_i = at[0] == 0 ? dark : least + step * static_cast<float>(at[0] - 1);
-      ln_ratio[r] = row.ln_i - ln_i;
-      sum += row.weight_i * ln_ratio[r];
-      weight += row.weight_i;
-      const float dq = row.q - (static_cast<float>(at[1]) - 32768.f) * (1 / 32767.f);
-      cost += std::min(row.weight_q * dq * dq, most);
-    }
-    const float scale = sum / weight; // whatever the size and distance
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const float off = ln_ratio[r] - scale;
-      cost += std::min(rows_[r].weight_i * off * off, most);
-    }
-    best = std::min(best, cost);
-  }
-  return static_cast<double>(best) / static_cast<double>(std::max<std::size_t>(rows_.size(), 1));
-}
+using inverse::QuickLook;
 
 namespace {
 
@@ -194,7 +128,8 @@ Result<IdentityAnswer> identify(const ObservedCurve &curve, const std::vector<st
     parallel_for(std::min(together, library.size() - begin), search.threads, [&](std::size_t k) {
       IdentityCandidate &one = out.candidates[begin + k];
       one.which = begin + k;
-      one.rank_score = look.score(library[begin + k]);
+      one.rank_score =
+          look.score(library[begin + k], with_table(search.errors, library[begin + k]));
     });
   }
   std::ranges::stable_sort(out.candidates, {}, &IdentityCandidate::rank_score);

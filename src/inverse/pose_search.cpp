@@ -222,13 +222,46 @@ Result<Peaks> peaks_of(const CurveModel &model, const CurveLikelihood &likelihoo
   }
 }
 
+/// Attitudes that were judged best, and of how many.
+struct Judged {
+  std::span<const Turning> best;
+  std::size_t of = 0;
+};
+
+/// Evidence that judged attitudes hold away from all peaks, in parts of that of the peaks: where
+/// little light was seen there are more peaks than fits. Less than 0 if it was stopped.
+double evidence_beside(const CurveModel &model, const CurveLikelihood &likelihood,
+                       const Peaks &peaks, const Judged &judged, unsigned threads) {
+  std::vector<Turning> beside;
+  const double cell = grid_spacing_rad(judged.of);
+  for (const Turning &t : judged.best)
+    if (std::ranges::none_of(peaks.modes, [&](const PoseMode &m) {
+          return angle_between(m.turning.attitude, t.attitude) < std::max(cell, 3 * m.sd_rad());
+        }))
+      beside.push_back(t);
+  if (beside.empty())
+    return 0;
+  const auto compared = inverse::compare_all(model, likelihood, beside, {}, threads);
+  if (compared.empty())
+    return -1;
+  double out = 0;
+  for (const Comparison &c : compared)
+    out += std::exp(std::min(-c.minus_2_log / 2 - peaks.samples.log_evidence, 50.0));
+  return out / static_cast<double>(judged.of);
+}
+
+/// `judged`: none where the fits came from elsewhere than all attitudes.
 Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &likelihood,
                              const std::vector<TurningFit> &fits, Freedom freedom,
-                             const SearchOptions &options) {
+                             const Judged &judged, const SearchOptions &options) {
   PoseAnswer out;
   UMOV_ASSIGN(peaks, peaks_of(model, likelihood, fits, freedom, options));
+  const double beside = evidence_beside(model, likelihood, peaks, judged, options.threads);
+  if (beside < 0)
+    return tl::unexpected(stopped());
   auto &[modes, samples, is_settled] = peaks;
-  if (freedom == Freedom::Attitude && !is_described(modes, samples)) {
+  constexpr double much = 0.01; // a fifth of what a set of 95 % may leave out
+  if (judged.of > 0 && (beside > much || !is_described(modes, samples))) {
     Samples all = inverse::sample_all(model, likelihood, options);
     if (all.draws.empty())
       return tl::unexpected(stopped());
@@ -238,6 +271,8 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &lik
     out.is_broad = all.log_evidence > samples.log_evidence - missed;
     if (out.is_broad)
       samples = std::move(all);
+    else if (beside > much)
+      is_settled = false;
   }
   out.is_settled = is_settled || out.is_broad;
   out.effective = samples.effective;
@@ -290,7 +325,7 @@ Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &opt
   fits = inverse::fit_turnings(model, exact, second, {}, last_steps(Freedom::Attitude, options));
   if (fits.empty())
     return tl::unexpected(stopped());
-  UMOV_ASSIGN(out, answer_of(model, exact, fits, Freedom::Attitude, options));
+  UMOV_ASSIGN(out, answer_of(model, exact, fits, Freedom::Attitude, {left, options.grid}, options));
   out.unknowns = 4; // attitude and scale
   return out;
 }
@@ -302,7 +337,7 @@ Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning>
                                     last_steps(Freedom::AttitudeAndRate, options));
   if (fits.empty())
     return tl::unexpected(stopped());
-  UMOV_ASSIGN(out, answer_of(model, exact, fits, Freedom::AttitudeAndRate, options));
+  UMOV_ASSIGN(out, answer_of(model, exact, fits, Freedom::AttitudeAndRate, {}, options));
   out.unknowns = 7; // attitude, rate and scale
   return out;
 }

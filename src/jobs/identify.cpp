@@ -109,7 +109,7 @@ Table identity_table(const IdentityAnswer &answer, const std::vector<Signature> 
   out.add("log_evidence", "", "over all attitudes; differences count", std::move(evidence));
   out.add("chi2", "", "of its best attitude", std::move(chi2));
   out.add("measurements", "", "that it was held against", std::move(measurements));
-  out.add("first_look", "", "robust chi-square per number, which chose those fitted",
+  out.add("first_look", "", "-2 ln of the best rough likelihood, which chose those fitted",
           std::move(rank));
   note_conventions(out);
   return out;

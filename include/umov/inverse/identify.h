@@ -35,31 +35,10 @@ struct IdentityAnswer {
   double none_log_evidence = 0;
 };
 
-/// The first look at one object: the least robust chi-square per number over attitudes, each of
-/// which is given by its pairs of directions at some epochs.
-class QuickLook {
-public:
-  /// `column`: which band of the signatures each band of the curve is.
-  QuickLook(const ObservedCurve &curve, const std::vector<std::size_t> &column, std::size_t cells,
-            std::size_t attitudes, unsigned threads);
-  [[nodiscard]] double score(const Signature &signature) const;
-  /// Numbers that it holds against each other.
-  [[nodiscard]] std::size_t measurements() const { return rows_.size(); }
-
-private:
-  struct Row {
-    std::size_t epoch = 0, band = 0;
-    float ln_i = 0, weight_i = 0, q = 0, weight_q = 0;
-  };
-  std::vector<Row> rows_;
-  std::vector<std::uint32_t> pair_; ///< [attitude * epochs + epoch]
-  std::size_t epochs_ = 0;
-};
-
-/// All objects at a first look, the best by their evidence over all attitudes, beside that of an
-/// object akin to one of them but another. All signatures have the same cells and bands.
-/// Interrupted if the light stopped; BadInput for a curve without brightness, Usage for an empty
-/// library.
+/// All objects at a first look, which refines their best attitudes roughly; the best by their
+/// evidence over all attitudes, beside that of an object akin to one of them but another. All
+/// signatures have the same cells and bands. Interrupted if the light stopped; BadInput for a curve
+/// without brightness, Usage for an empty library.
 Result<IdentityAnswer> identify(const ObservedCurve &curve, const std::vector<std::size_t> &column,
                                 std::span<const Signature> library, const IdentifyOptions &options);
 
