@@ -1,6 +1,7 @@
-// umov library build, and umov identify.
+// umov library build.
 
-#include "verb_invert.h"
+#include "job_console.h"
+#include "verbs.h"
 
 #include <fmt/format.h>
 #include <umov/jobs/library.h>
@@ -75,24 +76,9 @@ void add_build(CLI::App &library, const Exit &exit_with) {
 } // namespace
 
 void add_library(CLI::App &app, const Exit &exit_with) {
-  auto *library = app.add_subcommand("library", "Signatures of many objects, to identify one");
+  auto *library = app.add_subcommand("library", "Signatures of many objects");
   library->require_subcommand(1);
   add_build(*library, exit_with);
-}
-
-void add_identify(CLI::App &app, const Exit &exit_with) {
-  auto *verb = app.add_subcommand(
-      "identify", "Which object of a library gave a light curve, whatever its attitude, or none");
-  auto o = std::make_shared<InvertVerb>();
-  auto folder = std::make_shared<std::string>();
-  add_invert_options(*verb, o);
-  verb->add_option("--library", *folder, "Folder that umov library build made")->required();
-  run_invert(*verb, o, exit_with,
-             [folder](const Scenario &scenario, const InvertVerb &asked,
-                      const jobs::Monitor &monitor, Diagnostics &diagnostics) {
-               return jobs::identify_object(scenario, asked.request, *folder,
-                                            job_options(asked.common), monitor, diagnostics);
-             });
 }
 
 } // namespace umov::cli

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""A seeded blind set through the whole observing chain: poses, spins and identities of objects in random attitudes, recorded by
+"""A seeded blind set through the whole observing chain: poses and spins of objects in random attitudes, recorded by
 `umov observe` (a finer mesh than the fitted one, air, sky, noise of a polarization camera whose filters take turns), reduced by
-`umov reduce`, and asked of `umov invert pose`, `invert spin` and `identify`. The truth stays in this program.
+`umov reduce`, and asked of `umov invert pose` and `invert spin`. The truth stays in this program.
 Prints a line a curve; writes the table, with what made it in its header.
 
-usage: blind_set.py [--each 20] [--seed 60] [--kinds pose,spin,identity] [-o bench/inverse/blind_set.csv] [--umov PATH] [--work DIR]"""
+usage: blind_set.py [--each 20] [--seed 60] [--kinds pose,spin] [-o bench/inverse/blind_set.csv] [--umov PATH] [--work DIR]"""
 import argparse
 import json
 import math
@@ -22,29 +22,15 @@ bands = ["nm:425", "nm:550", "nm:650"]
 exposure_s = {exposure}
 cadence_s = {cadence}
 """
-# What the library knows: the objects of blind.py, and the same shapes of other materials.
-OTHERS = {
-    "cubesat_dark": ("cubesat", {"cell_gaas": "paint_black", "paint_white": "mli_kapton"}),
-    "cubesat_white": ("cubesat", {"cell_gaas": "paint_white", "mli_kapton": "aluminium_anodized"}),
-    "agena_kapton": ("agena", {"paint_white": "mli_kapton", "paint_black": "aluminium_anodized"}),
-    "agena_black": ("agena", {"paint_white": "paint_black"}),
-    "boxwing_white": ("box-wing", {"mli_kapton": "paint_white"}),
-    "boxwing_gaas": ("box-wing", {"cell_silicon": "cell_gaas", "mli_kapton": "aluminium_anodized"}),
-}
-
-
 def objects():
     """Name -> (shape, materials)."""
-    out = {name: (name, blind.MATERIALS[name]) for name in ("cubesat", "agena", "box-wing")}
-    for name, (shape, swap) in OTHERS.items():
-        out[name] = (shape, {g: swap.get(m, m) for g, m in blind.MATERIALS[shape].items()})
-    return out
+    return {name: (name, blind.MATERIALS[name]) for name in ("cubesat", "agena")}
 
 
 class Chain:
     def __init__(self, o, work):
         self.o, self.work = o, work
-        for shape in ("cubesat", "agena", "box-wing"):
+        for shape in ("cubesat", "agena"):
             for words, kind in zip(blind.MESH[shape], ("fit", "true")):
                 path = work / f"{shape}_{kind}.obj"
                 if not path.exists():
@@ -108,28 +94,11 @@ def spin(chain, name, rng, seed, period=40.0):
     return answer["verdict"], off[0], off[0] < 2, min(off) < 2, seconds
 
 
-def identity(chain, name, rng, seed):
-    chain.observe(name, blind.inertial(blind.random_attitude(rng)), 4, seed)
-    answer, seconds = chain.ask("identify", chain.work / "stokes.csv", "--scenario", chain.work / "fit.toml", "--library",
-                                chain.work / "lib")
-    if answer["verdict"] == "refused":
-        return "refused", float("nan"), False, False, seconds
-    shares = [(c["probability"], c["name"]) for c in answer["candidates"]] + [(answer["none_of_these"], "none of these")]
-    shares.sort(reverse=True)
-    inside, total = False, 0.0
-    for share, who in shares:
-        inside = inside or who == name
-        total += share
-        if total >= 0.95:
-            break
-    return answer["verdict"], dict((w, s) for s, w in shares).get(name, 0.0), shares[0][1] == name, inside, seconds
-
-
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--each", type=int, default=20)
     parser.add_argument("--seed", type=int, default=60)
-    parser.add_argument("--kinds", default="pose,spin,identity")
+    parser.add_argument("--kinds", default="pose,spin")
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path)
@@ -137,16 +106,12 @@ def main():
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     chain, names, lines = Chain(o, work), list(objects()), []
-    if "identity" in o.kinds:
-        for name in names:
-            (work / f"{name}.toml").write_text(chain.scenario(name, "fit", blind.inertial([1, 0, 0, 0]), 4, "masks", 1))
-        blind.run(o.umov, "library", "build", *(work / f"{n}.toml" for n in names), "-o", work / "lib", "-q")
     for kind in o.kinds.split(","):
         right = inside = 0
         for trial in range(o.each):
             rng = random.Random(f"{o.seed} {kind} {trial}")
-            name = names[trial % len(names)] if kind == "identity" else ("cubesat", "agena")[trial % 2]
-            verdict, value, is_right, is_inside, seconds = {"pose": pose, "spin": spin, "identity": identity}[kind](
+            name = names[trial % len(names)]
+            verdict, value, is_right, is_inside, seconds = {"pose": pose, "spin": spin}[kind](
                 chain, name, rng, o.seed + trial)
             right += is_right
             inside += is_right or is_inside
@@ -156,7 +121,7 @@ def main():
     if o.output:
         version = subprocess.run([str(o.umov), "--version"], capture_output=True, text=True).stdout.strip()
         head = [f"# made by: blind_set.py --each {o.each} --seed {o.seed} --kinds {o.kinds}; {version}",
-                "# value: error of the best attitude [deg], of the best axis [deg], probability of the true object",
+                "# value: error of the best attitude [deg], of the best axis [deg]",
                 "kind,trial,object,verdict,value,right,in_set,seconds"]
         o.output.write_text("\n".join(head + lines) + "\n")
 

@@ -44,7 +44,6 @@
 #include <umov/inverse/curve_model.h>
 #include <umov/inverse/direction_table.h>
 #include <umov/inverse/health.h>
-#include <umov/inverse/identify.h>
 #include <umov/inverse/likelihood.h>
 #include <umov/inverse/null_test.h>
 #include <umov/inverse/observed_curve.h>

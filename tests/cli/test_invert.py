@@ -361,37 +361,6 @@ def test_other_colours_come_from_the_abundances(umov, library, tmp_path):
     assert max(abs(x - y) for x, y in zip(a, b)) <= 2
 
 
-def test_the_object_of_a_curve_is_named(umov, library, scene, tmp_path):
-    for name in ("metal", "white"):
-        truth = (tmp_path / scene(TRUTHS[0], "rays", "truth")).read_text()
-        (tmp_path / "truth.toml").write_text(variant(truth, name))
-        assert umov("run", "truth.toml", "-q").code == 0
-        observe(tmp_path, "obs.csv", 50, 1)
-        done = umov("identify", "obs.csv", "--library", "lib", "--scenario", "plain.toml", "-o", "answer", "--json")
-        assert done.code in (0, 4), done.err
-        answer = json.loads(done.out)
-        assert answer["candidates"][0]["name"] == name
-        table = Table.read(tmp_path / "answer/identity.ecsv")
-        assert table["name"][-1] == "none of these"
-        assert abs(sum(table["probability"]) - 1) < 1e-6
-    (tmp_path / "one.csv").write_text("\n".join((tmp_path / "obs.csv").read_text().splitlines()[:5]) + "\n")
-    done = umov("identify", "one.csv", "--library", "lib", "--scenario", "plain.toml", "--json")
-    assert json.loads(done.out)["verdict"] != "determined"  # one epoch names nobody
-
-
-def test_libraries_that_are_none_are_refused(umov, library, tmp_path):
-    (tmp_path / "obs.csv").write_text("time_utc,band,I,I_err\n2018-01-21T05:12:00Z,nm:550,1,.1\n")
-    ask = lambda folder: umov("identify", "obs.csv", "--library", folder, "--scenario", "plain.toml")
-    (tmp_path / "void").mkdir()
-    assert ask("void").code == 3 and "holds no signature" in ask("void").err
-    assert ask("nowhere").code == 3
-    data = bytearray((tmp_path / "lib/dark.umovsig").read_bytes())
-    data[5000] ^= 1
-    (tmp_path / "lib/dark.umovsig").write_bytes(data)
-    done = ask("lib")
-    assert done.code == 3 and "dark.umovsig" in done.err and "checksum" in done.err
-
-
 def test_health_tells_a_drift_from_none_and_what_would_show(umov, scene, tmp_path):
     q = TRUTHS[0]
     fit = scene(q, "rays", "fit")

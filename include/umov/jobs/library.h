@@ -1,7 +1,12 @@
 #pragma once
-// Libraries of signatures, and which of their objects a light curve is of.
+// Libraries of signatures.
 
-#include <umov/jobs/invert.h>
+#include <string>
+#include <umov/core/diagnostics.h>
+#include <umov/io/table.h>
+#include <umov/jobs/monitor.h>
+#include <umov/jobs/requests.h>
+#include <vector>
 
 namespace umov::jobs {
 
@@ -26,12 +31,5 @@ struct LibraryBuilt {
 /// Interrupted after a stop, with the finished ones kept.
 Result<LibraryBuilt> build_library(const LibraryRequest &request, const JobOptions &options,
                                    const Monitor &monitor, Diagnostics &diagnostics);
-
-/// Which object of the library in `folder` gave the observations, over all its attitudes. The
-/// scenario tells orbit, site and bands alone. BadInput for a library that is empty, mixed or lacks
-/// a band.
-Result<Inversion> identify_object(const Scenario &scenario, const InvertRequest &request,
-                                  const std::string &folder, const JobOptions &options,
-                                  const Monitor &monitor, Diagnostics &diagnostics);
 
 } // namespace umov::jobs
