@@ -19,6 +19,7 @@ void add_mesh(CLI::App &app, const Exit &exit_with);
 void add_mesh_make(CLI::App &mesh, const Exit &exit_with);
 void add_instrument(CLI::App &app, const Exit &exit_with);
 void add_invert(CLI::App &app, const Exit &exit_with);
+void add_library(CLI::App &app, const Exit &exit_with);
 void add_observe(CLI::App &app, const Exit &exit_with);
 void add_calibrate(CLI::App &app, const Exit &exit_with);
 void add_exposure(CLI::App &app, const Exit &exit_with);

@@ -47,11 +47,13 @@
 #include <umov/inverse/attitude_grid.h>
 #include <umov/inverse/curve_model.h>
 #include <umov/inverse/direction_table.h>
+#include <umov/inverse/health.h>
 #include <umov/inverse/likelihood.h>
 #include <umov/inverse/null_test.h>
 #include <umov/inverse/observed_curve.h>
 #include <umov/inverse/parameter.h>
 #include <umov/inverse/pose_search.h>
+#include <umov/inverse/signature.h>
 #include <umov/inverse/spin_search.h>
 #include <umov/inverse/symmetry.h>
 #include <umov/inverse/unmix.h>
@@ -77,6 +79,7 @@
 #include <umov/io/report_frames.h>
 #include <umov/io/run_folder.h>
 #include <umov/io/scenario.h>
+#include <umov/io/signature_file.h>
 #include <umov/io/sites.h>
 #include <umov/io/sky_page.h>
 #include <umov/io/standards_file.h>
@@ -94,6 +97,7 @@
 #include <umov/jobs/exposure.h>
 #include <umov/jobs/index_range.h>
 #include <umov/jobs/invert.h>
+#include <umov/jobs/library.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
 #include <umov/jobs/mesh_description.h>
