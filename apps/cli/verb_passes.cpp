@@ -67,7 +67,7 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   options.part = part;
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   UMOV_ASSIGN(result, jobs::passes(request, options, console.monitor(true), diagnostics));
   Table table = jobs::passes_table(request, result);
   if (result.stopped)

@@ -69,7 +69,7 @@ Result<void> check_alone(const RunOptions &o, const Scenario &scenario, const Co
   jobs::JobOptions options = job_options(common);
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   UMOV_ASSIGN(objects,
               jobs::load_run(scenario, options, console.monitor(common.verbose), diagnostics));
   tell_of_objects(o.scenario, objects, common);
@@ -89,7 +89,7 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   options.journal = folder.journal_path();
   UMOV_ASSIGN(part, part_of(o.part));
   options.part = part;
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   const jobs::Monitor monitor = console.monitor(common.verbose);
   UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
   tell_of_search(scenario, common);

@@ -60,7 +60,7 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
   UMOV_ASSIGN(poses, poses_of(o, scenario));
   UMOV_ASSIGN(range, part.of(poses.count, "poses"));
   UMOV_TRY(tell_size(o.output, range.count * scenario.bands.size(), common));
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   const auto sink = sink_for(o.output, common);
   jobs::JobOptions options = job_options(common);
   options.journal = Journal::name_for(o.output);

@@ -29,6 +29,7 @@ void add_orbit_show(CLI::App &orbit, const Exit &exit_with);
 void add_orbit_convert(CLI::App &orbit, const Exit &exit_with);
 void add_paper(CLI::App &app, const Exit &exit_with);
 void add_passes(CLI::App &app, const Exit &exit_with);
+void add_period(CLI::App &app, const Exit &exit_with);
 void add_render(CLI::App &app, const Exit &exit_with);
 void add_scale(CLI::App &app, const Exit &exit_with);
 void add_schema(CLI::App &app, const Exit &exit_with);

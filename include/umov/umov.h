@@ -96,6 +96,7 @@
 #include <umov/jobs/observed_light.h>
 #include <umov/jobs/orbit_files.h>
 #include <umov/jobs/passes.h>
+#include <umov/jobs/period.h>
 #include <umov/jobs/pose_light.h>
 #include <umov/jobs/ranged_job.h>
 #include <umov/jobs/reduce.h>

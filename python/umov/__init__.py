@@ -23,6 +23,7 @@ from .observing import (Calibration, Observation, calibrate, exposure, instrumen
                         reduce)
 from .orbits import States, ephemeris, passes, propagate
 from .passbands import Bands, band, bands
+from .periods import period
 from .pictures import Mesh, Picture, mesh, render
 from .runs import run
 from .samples import example
@@ -40,7 +41,8 @@ __all__ = ["Abundances", "Bands", "Calibration", "Coloured", "Column", "DeviceEr
            "Observation", "Picture", "Satellite", "Scenario", "Site", "States", "Sums", "Table", "UmovWarning",
            "UsageError", "Where", "__version__", "band", "bands", "brdf", "calibrate", "conventions_version",
            "ephemeris", "example", "exposure", "instrument", "instruments", "materials", "mesh", "observe", "passes",
-           "plot", "propagate", "random_poses", "reduce", "render", "run", "scale", "schema", "site_names", "source_revision",
+           "period", "plot", "propagate", "random_poses", "reduce", "render", "run", "scale", "schema", "site_names",
+           "source_revision",
            "turnable", "utc"]
 
 

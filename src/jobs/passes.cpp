@@ -103,6 +103,7 @@ std::vector<Found> search_all(const PassesRequest &request, const std::vector<Tr
   std::vector<Found> out(orbits.size());
   Mutex lock;
   std::size_t done = 0;
+  monitor.advance("objects", 0, orbits.size());
   parallel_for(orbits.size(), threads, [&](std::size_t i) {
     if (monitor.is_cancelled())
       return;

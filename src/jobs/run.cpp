@@ -2,6 +2,7 @@
 
 #include "jobs/haze_spread.h"
 #include "jobs/job_journal.h"
+#include "jobs/run_report.h"
 #include "jobs/wanted_passes.h"
 
 #include <algorithm>
@@ -112,10 +113,27 @@ void warn_of_earth(const LightCurveOutcome &outcome, const EarthshineOptions &op
                     patches_bound * options.patches, worst, patches_bound));
 }
 
+/// A turn that is seen a few times only looks like another one (aliasing), and its flashes fall
+/// between the rows.
+void warn_of_step(const ObjectRun &one, double step_s, Diagnostics &diagnostics) {
+  constexpr double rows_per_turn = 8; // four for each half, where two sides are alike
+  const auto periods = turning_periods(one.request.track.attitude);
+  const auto fastest = std::ranges::min_element(periods, {}, &TurningPeriod::seconds);
+  if (fastest == periods.end() || step_s * rows_per_turn <= fastest->seconds)
+    return;
+  diagnostics.warn(
+      fmt::format("{} turns in {:.3g} s ({}) and step_s = {:g} sees it {:.2g} times in "
+                  "a turn: flashes are missed and the period shown may be false. "
+                  "Take step_s = {:.1g} or less",
+                  one.request.object, fastest->seconds, fastest->name, step_s,
+                  fastest->seconds / step_s, fastest->seconds / (2 * rows_per_turn)));
+}
+
 Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks blocks,
                                   const Monitor &monitor) {
   static const std::atomic<bool> never{false};
   const std::string what = is_alone ? "light curve" : one.request.object;
+  monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
   UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene));
   one.light = models.light->facts();
   auto out = compute_wanted(
@@ -149,6 +167,7 @@ Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptio
     for (const InputFile &input : object.inputs)
       monitor.tell(fmt::format("read {} (SHA-256 {})", input.path, input.sha256));
     out.push_back({std::move(object), std::move(request), {}, {}});
+    warn_of_step(out.back(), scenario.time->step_s, diagnostics);
   }
   if (constexpr double long_step_s = 300; scenario.time->step_s > long_step_s)
     diagnostics.warn(

@@ -207,6 +207,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
                            monitor, diagnostics));
   PoseBlocks blocks(poses, light, &journal, task_of(options, monitor));
   std::size_t done = 0;
+  monitor.advance("poses", 0, range.count);
   while (done < range.count && !monitor.is_cancelled()) {
     if (!blocks.light(range.first + done, range))
       break;

@@ -103,6 +103,13 @@ void sum_facets_here(const SceneData<float> &scene, const Masks *masks, const Ma
   FacetLoops<SimdMachine>(scene, masks, model, pose, out).run();
 }
 
+void list_weighed_here(const SceneData<float> &scene, const Masks *masks,
+                       const MaskErrorModel &model, const PoseData<float> &pose,
+                       backend::WeighedList &out) {
+  backend::PoseSums unused;
+  FacetLoops<SimdMachine>(scene, masks, model, pose, unused).list_weighed(out);
+}
+
 #include "kernel/end.h"
 
 #if HWY_ONCE
@@ -110,6 +117,7 @@ void sum_facets_here(const SceneData<float> &scene, const Masks *masks, const Ma
 
 namespace umov::kernel {
 HWY_EXPORT(sum_facets_here);
+HWY_EXPORT(list_weighed_here);
 } // namespace umov::kernel
 
 namespace umov::backend {
@@ -118,6 +126,12 @@ void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErr
                 const PoseData<float> &pose, backend::PoseSums &out) {
   using namespace kernel; // the table of HWY_EXPORT stands there
   HWY_DYNAMIC_DISPATCH(sum_facets_here)(scene, masks, model, pose, out);
+}
+
+void list_weighed(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
+                  const PoseData<float> &pose, WeighedList &out) {
+  using namespace kernel;
+  HWY_DYNAMIC_DISPATCH(list_weighed_here)(scene, masks, model, pose, out);
 }
 
 bool choose_instruction_set(InstructionSet set) {
