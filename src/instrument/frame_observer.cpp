@@ -38,9 +38,9 @@ private:
   const ExposureLight &light_;
   const FramePlan &scene_;
   bool is_mosaic_;
-  std::vector<ChannelCounts> whole_;   ///< of all of the star, and of the sky in a pixel
-  std::vector<ChannelLight> moments_;  ///< [moment][channel]
-  ChannelLight of_unit_;               ///< of an unpolarized flux of 1
+  std::vector<ChannelCounts> whole_;  ///< of all of the star, and of the sky in a pixel
+  std::vector<ChannelLight> moments_; ///< [moment][channel]
+  ChannelLight of_unit_;              ///< of an unpolarized flux of 1
   std::vector<double> transparency_;
 };
 
@@ -74,7 +74,8 @@ Result<void> Exposing::expect() {
 std::vector<FramePoint> Exposing::path() const {
   std::vector<FramePoint> out;
   constexpr std::size_t pieces = 8; // a trail is all but straight
-  const std::size_t n = scene_.object.size(), step = std::max<std::size_t>(1, (n + pieces - 1) / pieces);
+  const std::size_t n = scene_.object.size(),
+                    step = std::max<std::size_t>(1, (n + pieces - 1) / pieces);
   for (std::size_t k = 0; k < n; k += step)
     out.push_back(scene_.object[k].at);
   out.push_back(scene_.object.back().at);
@@ -90,7 +91,8 @@ std::vector<FramePoint> Exposing::path() const {
 LatticeValues Exposing::lattice(const ChannelLight &of, std::size_t plane, double factor) const {
   LatticeValues out;
   for (std::size_t p = 0; p < 4; ++p)
-    out[p] = factor * (is_mosaic_ ? 4 * of[p] * transparency_[p] : of[plane] * transparency_[plane]);
+    out[p] =
+        factor * (is_mosaic_ ? 4 * of[p] * transparency_[p] : of[plane] * transparency_[plane]);
   return out;
 }
 
@@ -102,9 +104,9 @@ PixelFrame Exposing::object(std::size_t plane) const {
     const LatticeValues light = lattice(moments_[k], plane, moment.weight);
     for (std::size_t p = 0; p < 4; ++p)
       waiting[p] += light[p];
-    const bool stays = k + 1 < scene_.object.size() &&
-                       std::hypot(scene_.object[k + 1].at.x - moment.at.x,
-                                  scene_.object[k + 1].at.y - moment.at.y) < 1e-3;
+    const bool stays =
+        k + 1 < scene_.object.size() && std::hypot(scene_.object[k + 1].at.x - moment.at.x,
+                                                   scene_.object[k + 1].at.y - moment.at.y) < 1e-3;
     if (stays)
       continue;
     image_.add(out, moment.at.x, moment.at.y, waiting);
@@ -171,8 +173,7 @@ void Exposing::measure(std::size_t plane, const RawFrame &raw, const PixelFrame 
 void Exposing::fit(std::size_t plane, const RawFrame &raw, FramedExposure &out) const {
   const Detector &d = o_.instrument().detector;
   const double radius = o_.conditions().sky_outer_fwhm * image_.fwhm_px();
-  const StarFit found =
-      fit_star(d, raw, image_, scene_.object.front().at, radius, is_mosaic_);
+  const StarFit found = fit_star(d, raw, image_, scene_.object.front().at, radius, is_mosaic_);
   const double places = is_mosaic_ ? 4 : 1;
   for (std::size_t p = 0; p < (is_mosaic_ ? 4u : 1u); ++p) {
     ChannelCounts c = whole_[is_mosaic_ ? p : plane];
@@ -217,10 +218,8 @@ Result<FramedExposure> Exposing::make() {
       background[p] = whole_[is_mosaic_ ? p : plane].mean_sky;
     const DrawKey key{conditions.seed, conditions.object, plan_.index,
                       static_cast<std::uint32_t>(plane), 0};
-    RawFrame raw =
-        draw_frame(o_.instrument().detector, light, background, plan_.exposure_s, key);
-    const bool is_fitted =
-        scene_.photometry == FramePhotometry::Image && aperture.path.size() == 1;
+    RawFrame raw = draw_frame(o_.instrument().detector, light, background, plan_.exposure_s, key);
+    const bool is_fitted = scene_.photometry == FramePhotometry::Image && aperture.path.size() == 1;
     if (is_fitted)
       fit(plane, raw, out);
     else

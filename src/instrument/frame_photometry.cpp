@@ -33,7 +33,8 @@ void for_pixels(int columns, int rows, const std::vector<FramePoint> &path, doub
   const auto cut = [](double x, int last) {
     return static_cast<int>(std::clamp(x, -1., static_cast<double>(last)));
   };
-  for (int row = std::max(0, cut(low.y - radius, rows)); row <= cut(high.y + radius, rows - 1); ++row)
+  for (int row = std::max(0, cut(low.y - radius, rows)); row <= cut(high.y + radius, rows - 1);
+       ++row)
     for (int column = std::max(0, cut(low.x - radius, columns));
          column <= cut(high.x + radius, columns - 1); ++column) {
       const double d2 = squared_distance({double(column), double(row)}, path);
@@ -58,7 +59,8 @@ std::array<FrameSum, 4> sum_frame(const Detector &d, const RawFrame &frame,
   std::array<double, 4> ring{}, squares{};
   const double r2 = aperture.radius * aperture.radius;
   const double inner2 = aperture.ring_inner * aperture.ring_inner;
-  for_pixels(frame.columns, frame.rows, aperture.path, std::max(aperture.ring_outer, aperture.radius),
+  for_pixels(frame.columns, frame.rows, aperture.path,
+             std::max(aperture.ring_outer, aperture.radius),
              [&](std::size_t at, std::size_t place, double d2) {
                const std::size_t p = is_mosaic ? place : 0;
                const double e = electrons_of(d, {frame.adu[at], false});

@@ -70,9 +70,7 @@ private:
 };
 
 /// Steps of a pixel: an even number, so that a pixel's edge lies on the grid.
-int steps_for(double fwhm) {
-  return 2 * std::clamp(static_cast<int>(std::ceil(8 / fwhm)), 1, 4);
-}
+int steps_for(double fwhm) { return 2 * std::clamp(static_cast<int>(std::ceil(8 / fwhm)), 1, 4); }
 
 /// Weights of four equal steps -1, 0, 1, 2 at t in [0, 1).
 std::array<double, 4> cubic(double t) {
@@ -87,8 +85,7 @@ PixelFrame PixelFrame::blank(int columns, int rows) {
           std::vector<double>(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))};
 }
 
-PixelImage::PixelImage(ImageProfile profile, double fwhm_px)
-    : fwhm_(std::clamp(fwhm_px, .5, 64.)) {
+PixelImage::PixelImage(ImageProfile profile, double fwhm_px) : fwhm_(std::clamp(fwhm_px, .5, 64.)) {
   // A Moffat image of this exponent has 7e-6 of its light beyond six widths.
   const double widths = profile == ImageProfile::Gauss ? 2.2 : 6;
   reach_ = static_cast<int>(std::ceil(widths * fwhm_)) + 1;
@@ -125,7 +122,8 @@ void PixelImage::add(PixelFrame &frame, double x, double y, const LatticeValues 
   for (int b = 0; b < 4; ++b)
     for (int a = 0; a < 4; ++a) {
       stamps[4 * b + a] = stamp(phase_x - 1 + a, phase_y - 1 + b);
-      weights[4 * b + a] = weight_x[static_cast<std::size_t>(a)] * weight_y[static_cast<std::size_t>(b)];
+      weights[4 * b + a] =
+          weight_x[static_cast<std::size_t>(a)] * weight_y[static_cast<std::size_t>(b)];
     }
   const int left = static_cast<int>(whole_x) - reach_, top = static_cast<int>(whole_y) - reach_;
   const int from = std::max(0, -left), to = std::min(side_, frame.columns - left);
@@ -142,7 +140,8 @@ void PixelImage::add(PixelFrame &frame, double x, double y, const LatticeValues 
     const double even = light[lattice_place(left, top + row)];
     const double odd = light[lattice_place(left + 1, top + row)];
     for (int c = from; c < to; ++c) // interpolation may go below 0 by a rounding in the wings
-      out[left + c] += std::max(0., line[static_cast<std::size_t>(c)]) * ((c & 1) != 0 ? odd : even);
+      out[left + c] +=
+          std::max(0., line[static_cast<std::size_t>(c)]) * ((c & 1) != 0 ? odd : even);
   }
 }
 

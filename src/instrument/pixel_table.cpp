@@ -84,7 +84,8 @@ void PixelTable::fill(std::vector<double> probability) {
   while (!small.empty() && !large.empty()) {
     const std::size_t less = small.back(), more = large.back();
     small.pop_back();
-    threshold_[less] = static_cast<std::uint32_t>(std::min(probability[less] * 4294967296., 4294967295.));
+    threshold_[less] =
+        static_cast<std::uint32_t>(std::min(probability[less] * 4294967296., 4294967295.));
     alias_[less] = static_cast<std::uint32_t>(more);
     probability[more] -= 1 - probability[less];
     if (probability[more] < 1) {

@@ -18,7 +18,9 @@ public:
       const FramePoint &start, double radius, bool is_mosaic)
       : image_(image), fixed_(fixed_variance(detector)), excess_(excess_variance(detector)),
         places_(is_mosaic ? 4 : 1) {
-    const auto from = [&](double x) { return std::max(0, static_cast<int>(std::ceil(x - radius))); };
+    const auto from = [&](double x) {
+      return std::max(0, static_cast<int>(std::ceil(x - radius)));
+    };
     const auto to = [&](double x, int size) {
       return std::min(size, static_cast<int>(std::floor(x + radius)) + 1);
     };
@@ -28,14 +30,15 @@ public:
     data_.resize(static_cast<Eigen::Index>(blank_.value.size()));
     for (int row = 0; row < blank_.rows; ++row)
       for (int column = 0; column < blank_.columns; ++column) {
-        const auto at = static_cast<std::size_t>(top_ + row) * static_cast<std::size_t>(frame.columns) +
-                        static_cast<std::size_t>(left_ + column);
+        const auto at =
+            static_cast<std::size_t>(top_ + row) * static_cast<std::size_t>(frame.columns) +
+            static_cast<std::size_t>(left_ + column);
         data_(static_cast<Eigen::Index>(place_.size())) =
             electrons_of(detector, {frame.adu[at], false});
         place_.push_back(is_mosaic ? lattice_place(left_ + column, top_ + row) : 0);
-        is_saturated_ = is_saturated_ ||
-                        std::binary_search(frame.saturated.begin(), frame.saturated.end(),
-                                           static_cast<std::uint32_t>(at));
+        is_saturated_ =
+            is_saturated_ || std::binary_search(frame.saturated.begin(), frame.saturated.end(),
+                                                static_cast<std::uint32_t>(at));
       }
   }
   [[nodiscard]] bool is_saturated() const { return is_saturated_; }

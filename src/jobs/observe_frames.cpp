@@ -67,8 +67,8 @@ FrameView::FrameView(const Setup &setup, const Exposure &exposure)
   middle_ = at(e_.middle);
   Draws draws({s_.scenario.seed, s_.observers[e_.planned.band].conditions().object,
                e_.planned.plan.index, 0, 0xf01e}); // apart from light, sky and air
-  const double error = o.instrument.telescope.tracking_error_arcsec /
-                       s_.observers[e_.planned.band].pixel_arcsec();
+  const double error =
+      o.instrument.telescope.tracking_error_arcsec / s_.observers[e_.planned.band].pixel_arcsec();
   const double dx = error * draws.normal(), dy = error * draws.normal();
   origin_ = {(o.frame_px[0] - 1) / 2. + dx, (o.frame_px[1] - 1) / 2. + dy};
 }
@@ -212,7 +212,8 @@ FitsImage fits_of(const Setup &s, const Exposure &e, const Recorded &r) {
       {"POLTYPE", std::string(name_of(i.polarimeter.type)), "kind of polarimeter"},
       {"ANALYSER", plan.state.analyser_deg, "[deg] from the x axis"},
       {"PLATE", plan.state.plate_deg, "[deg] from the x axis"},
-      {"XAXISPA", r.axis.degrees(), fmt::format("[deg] of the x axis, {}", name_of(s.scenario.frame))},
+      {"XAXISPA", r.axis.degrees(),
+       fmt::format("[deg] of the x axis, {}", name_of(s.scenario.frame))},
       {"SETID", static_cast<std::int64_t>(e.planned.set), "as in counts"}};
   const auto &angles = i.polarimeter.angles_deg;
   if (i.polarimeter.type == PolarimeterType::Mosaic)

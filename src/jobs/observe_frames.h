@@ -34,9 +34,8 @@ private:
   [[nodiscard]] Axes at(const ObservingGeometry &g) const;
   [[nodiscard]] Angle axis_pa(const ObservingGeometry &g) const;
   [[nodiscard]] std::optional<FramePoint> image(const Axes &axes, Vec3<Gcrs> direction) const;
-  [[nodiscard]] std::optional<FrameStar> star(const FieldStar &star,
-                                              std::span<const TrackPoint> points,
-                                              double fwhm_px) const;
+  [[nodiscard]] std::optional<FrameStar>
+  star(const FieldStar &star, std::span<const TrackPoint> points, double fwhm_px) const;
 
   const Setup &s_;
   const Exposure &e_;

@@ -42,8 +42,8 @@ struct FramePlane {
 struct FramedExposure {
   std::vector<FramePlane> planes;
   std::vector<ChannelCounts> channels;
-  bool has_star_in_aperture = false;  ///< other light of more than a hundredth of the object's
-  bool is_cut = false;                ///< the aperture reaches over the frame's edge
+  bool has_star_in_aperture = false; ///< other light of more than a hundredth of the object's
+  bool is_cut = false;               ///< the aperture reaches over the frame's edge
 };
 
 /// Draws the frames of one exposure and takes counts from them; of a state that was prepared, from

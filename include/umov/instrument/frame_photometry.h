@@ -13,7 +13,7 @@ struct FramePoint {
 /// Where counts are summed: pixels whose centre lies within a radius of the path of the image's
 /// centre, the sky in a ring about it.
 struct FrameAperture {
-  std::vector<FramePoint> path; ///< one point, or a trail
+  std::vector<FramePoint> path;                      ///< one point, or a trail
   double radius = 0, ring_inner = 0, ring_outer = 0; ///< [px]
 };
 
@@ -41,9 +41,9 @@ double light_in(const PixelFrame &light, const FrameAperture &aperture);
 /// pixels the star stands.
 struct StarFit {
   FramePoint centre;
-  LatticeValues electrons{};   ///< of the whole star, as if all pixels were of the place
-  LatticeValues variance{};    ///< of them, the sky's share and the place's in it
-  LatticeValues background{};  ///< electrons of a pixel
+  LatticeValues electrons{};  ///< of the whole star, as if all pixels were of the place
+  LatticeValues variance{};   ///< of them, the sky's share and the place's in it
+  LatticeValues background{}; ///< electrons of a pixel
   bool is_saturated = false, has_converged = false;
 };
 /// Fits place, brightness and background by least squares with the variance of the model, in a box

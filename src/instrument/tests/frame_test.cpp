@@ -72,8 +72,8 @@ TEST(PixelImage, AliasOfTheMosaic) {
   struct Case {
     double fwhm, tolerance;
   };
-  // The closed form leaves the third harmonic of the lattice out: 4/(3 pi) exp(-9 pi^2 sigma^2/2) in
-  // x and in y, together 2.8e-4 at 1 px; from 1.5 px on it is below 2e-8.
+  // The closed form leaves the third harmonic of the lattice out: 4/(3 pi) exp(-9 pi^2 sigma^2/2)
+  // in x and in y, together 2.8e-4 at 1 px; from 1.5 px on it is below 2e-8.
   for (const Case &one : {Case{1, 2.9e-4}, {1.5, 1e-6}, {2, 1e-6}, {3, 1e-6}, {4, 1e-6}}) {
     const double sigma = width_sigma(one.fwhm);
     double worst = 0;
