@@ -3,6 +3,7 @@
 #include "run_console.h"
 #include "scale_job.h"
 #include "site_options.h"
+#include "tables.h"
 #include "verbs.h"
 
 #include <algorithm>
@@ -55,6 +56,7 @@ Result<Scenario> read_with_options(const RunOptions &o) {
                                                          });
   if (!o.output.empty())
     scenario.output_dir = o.output;
+  UMOV_TRY(check_folder_name(o.output));
   if (!o.earth_orientation.empty())
     scenario.earth_orientation = o.earth_orientation;
   if (!is_named)

@@ -100,6 +100,7 @@
 #include <umov/jobs/library.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
+#include <umov/jobs/measurement_files.h>
 #include <umov/jobs/mesh_description.h>
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/observe.h>
