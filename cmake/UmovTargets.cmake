@@ -52,6 +52,16 @@ function(umov_quick_to_compile)
   endforeach()
 endfunction()
 
+# umov_in_pieces(FILES TARGET ...): so many sources as one, where each spends its time on instantiating what the others do
+# too (CLI11, Eigen). Other builds compile them one by one, so that every file keeps its own includes.
+function(umov_in_pieces files)
+  foreach(target IN LISTS ARGN)
+    if(TARGET ${target} AND UMOV_QUICK_TO_COMPILE AND CMAKE_BUILD_TYPE STREQUAL Release)
+      set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
+    endif()
+  endforeach()
+endfunction()
+
 function(umov_module name)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   # Flags, and header-only libraries that no public header includes: needed to build umov, not to

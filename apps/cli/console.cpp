@@ -54,9 +54,12 @@ std::string safe(const std::string &text) {
   return out;
 }
 
-/// A standard error that takes nothing more is no reason to end: fmt::print would throw.
+/// A standard error that takes nothing more is no reason to end: fmt::print would throw. What a bar
+/// has drawn on this line goes.
 template <class... T> void say(fmt::format_string<T...> format, T &&...values) {
-  const std::string text = fmt::format(format, std::forward<T>(values)...);
+  static const bool is_terminal = ::isatty(STDERR_FILENO) != 0;
+  const std::string text =
+      (is_terminal ? "\r\033[K" : "") + fmt::format(format, std::forward<T>(values)...);
   std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
@@ -107,52 +110,6 @@ Result<void> flush_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     return standard_output_lost();
   return {};
-}
-
-ProgressBar::ProgressBar(std::string what, const Common &common)
-    : what_(std::move(what)), is_terminal_(::isatty(STDERR_FILENO) != 0), is_on_(!common.quiet),
-      begin_(std::chrono::steady_clock::now()), last_(begin_) {}
-
-ProgressBar::~ProgressBar() {
-  if (is_terminal_ && has_drawn_)
-    say("\r\033[K");
-}
-
-/// Time left at the rate of the last 20 s; nothing is promised in the first seconds, when caches
-/// fill and rates say little.
-std::string ProgressBar::left(std::size_t done, std::size_t total) const {
-  using namespace std::chrono;
-  const auto &[from, first] = lately_.front();
-  const auto &[to, last] = lately_.back();
-  const double spent = duration<double>(to - from).count();
-  if (duration<double>(to - begin_).count() < 3 || last <= first || !(spent > 1))
-    return "time left not known yet";
-  const double rest = static_cast<double>(total - done) * spent / static_cast<double>(last - first);
-  return rest < 100 ? fmt::format("{:.0f} s left", rest)
-                    : fmt::format("{:.0f} min left", rest / 60);
-}
-
-void ProgressBar::update(std::size_t done, std::size_t total) {
-  using namespace std::chrono;
-  const auto now = steady_clock::now();
-  const auto pause = is_terminal_ ? milliseconds(100) : milliseconds(5000);
-  if (!is_on_ || total == 0 || now - last_ < pause)
-    return;
-  last_ = now;
-  has_drawn_ = true;
-  const double share = static_cast<double>(done) / static_cast<double>(total);
-  lately_.emplace_back(now, done);
-  while (lately_.size() > 2 && now - lately_.front().first > seconds(20))
-    lately_.pop_front();
-  if (!is_terminal_) {
-    say("{}: {} of {}, {}\n", what_, done, total, left(done, total));
-    return;
-  }
-  constexpr int width = 30;
-  const int full = static_cast<int>(share * width);
-  say("\r\033[K{} [{:=<{}}{:<{}}] {:3.0f} %  {}", what_, "", full, "", width - full, 100 * share,
-      left(done, total));
-  std::fflush(stderr);
 }
 
 const std::atomic<bool> &interrupted() { return interrupt_flag; }

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
-#include <deque>
 #include <functional>
 #include <string>
 #include <umov/core/diagnostics.h>
@@ -41,22 +40,6 @@ void note(const Common &common, const std::string &text);
 Result<void> put(const std::string &path, const std::string &bytes);
 /// What was printed has arrived. Device if not: the disk is full, or nobody reads.
 Result<void> flush_output();
-
-/// Progress on stderr: a bar that redraws on a terminal, else one line every five seconds.
-class ProgressBar {
-public:
-  ProgressBar(std::string what, const Common &common);
-  ~ProgressBar();
-  void update(std::size_t done, std::size_t total);
-
-private:
-  [[nodiscard]] std::string left(std::size_t done, std::size_t total) const;
-  std::string what_;
-  bool is_terminal_, is_on_, has_drawn_ = false;
-  std::chrono::steady_clock::time_point begin_, last_;
-  /// What was done when, lately: the rate of now, not that of a slow beginning.
-  std::deque<std::pair<std::chrono::steady_clock::time_point, std::size_t>> lately_;
-};
 
 /// Set by the first Ctrl-C or termination signal; a second one ends the program at once.
 const std::atomic<bool> &interrupted();

@@ -15,7 +15,7 @@ jobs::Monitor JobConsole::monitor(bool with_remarks) {
   out.progress = [this](const std::string &what, std::size_t done, std::size_t total) {
     if (!bar_ || what != what_) {
       what_ = what;
-      bar_.emplace(what, common_);
+      bar_.emplace(what, wait_, common_.quiet);
     }
     bar_->update(done, total);
   };

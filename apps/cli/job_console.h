@@ -2,6 +2,7 @@
 // Jobs on a terminal: their progress, their log, and where their tables go.
 
 #include "console.h"
+#include "progress_bar.h"
 
 #include <memory>
 #include <optional>
@@ -12,16 +13,21 @@
 
 namespace umov::cli {
 
+/// Why the first rows of a shape take longest.
+inline constexpr const char *tracing_masks = "the first run of a shape traces what hides what";
+
 /// Draws the progress of a job; lives as long as the job runs.
 class JobConsole {
 public:
-  explicit JobConsole(const Common &common) : common_(common) {}
+  /// `wait`: what takes the time before the first piece is done, if anybody can say.
+  explicit JobConsole(const Common &common, std::string wait = {})
+      : common_(common), wait_(std::move(wait)) {}
   /// `with_remarks`: lines of the job's log are shown too.
   jobs::Monitor monitor(bool with_remarks);
 
 private:
   const Common &common_;
-  std::string what_;
+  std::string wait_, what_;
   std::optional<ProgressBar> bar_;
 };
 

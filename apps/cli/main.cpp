@@ -68,12 +68,13 @@ int run(int argc, char **argv) {
   cli::add_exposure(app, exit_with);
   cli::add_instrument(app, exit_with);
   cli::add_invert(app, exit_with);
+  cli::add_library(app, exit_with);
   cli::add_orbit(app, exit_with);
   cli::add_passes(app, exit_with);
-#ifdef UMOV_WITH_PAPER
+  cli::add_period(app, exit_with);
   cli::add_paper(app, exit_with);
-#endif
   cli::add_render(app, exit_with);
+  cli::add_scale(app, exit_with);
   cli::add_schema(app, exit_with);
   cli::add_doctor(app, exit_with);
   cli::add_completion(app, exit_with);

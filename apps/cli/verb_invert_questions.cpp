@@ -1,4 +1,4 @@
-// umov invert pose, spin and material: their own options and their jobs.
+// umov invert pose, spin, material and health: their own options and their jobs.
 
 #include "verb_invert.h"
 
@@ -59,6 +59,30 @@ void add_unmixing(CLI::App &invert, const Exit &exit_with) {
              });
 }
 
+void add_health(CLI::App &invert, const Exit &exit_with) {
+  auto *verb = invert.add_subcommand(
+      "health",
+      "What has changed on the body, in the scenario's attitude, and the least that shows");
+  auto o = std::make_shared<InvertVerb>();
+  auto health = std::make_shared<jobs::HealthOptions>();
+  add_invert_options(*verb, o);
+  verb->add_option("--drift", health->drifts,
+                   "GROUP=MATERIAL: a group of the mesh and what it may be turning into")
+      ->required();
+  verb->add_option("--baseline", health->baseline,
+                   "Light curves of before: changes are counted from them");
+  verb->add_option("--attitude-sd", health->attitude_sd_deg,
+                   "How well the attitude is known, about each axis [deg]")
+      ->check(CLI::Range(0.0, 30.0))
+      ->capture_default_str();
+  run_invert(*verb, o, exit_with,
+             [health](const Scenario &scenario, const InvertVerb &asked,
+                      const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+               return jobs::invert_health(scenario, asked.request, *health,
+                                          job_options(asked.common), monitor, diagnostics);
+             });
+}
+
 } // namespace
 
 void add_invert(CLI::App &app, const Exit &exit_with) {
@@ -67,6 +91,7 @@ void add_invert(CLI::App &app, const Exit &exit_with) {
   add_pose(*invert, exit_with);
   add_spin(*invert, exit_with);
   add_unmixing(*invert, exit_with);
+  add_health(*invert, exit_with);
 }
 
 } // namespace umov::cli

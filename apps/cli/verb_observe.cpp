@@ -26,13 +26,22 @@ Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnost
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
   JobConsole console(common);
-  UMOV_ASSIGN(result,
-              jobs::observe(scenario, options, console.monitor(common.verbose), diagnostics));
+  jobs::FrameSink take_frame;
+  if (scenario.observation && scenario.observation->makes_frames) {
+    UMOV_ASSIGN(frames, folder.subfolder("frames"));
+    take_frame = [frames](const std::string &name, const FitsImage &image) {
+      return write_fits_image(frames / name, image);
+    };
+  }
+  UMOV_ASSIGN(result, jobs::observe(scenario, options, console.monitor(common.verbose), diagnostics,
+                                    take_frame));
   UMOV_TRY(jobs::write_observation(result, scenario, manifest_of_command(common, started),
                                    diagnostics, folder));
   note(common, fmt::format("{}, {} rows of counts; light {:.1f} s, counts {:.1f} s",
                            counted(result.exposures, "exposure"), result.counts.rows(),
                            result.light_s, result.counts_s));
+  if (result.frames > 0)
+    note(common, fmt::format("{} in frames/", counted(result.frames, "frame")));
   if (!common.quiet)
     fmt::print("written to {}\n", printable(folder.path().string()));
   return {};

@@ -1,6 +1,7 @@
 // umov paper: the paper's figures and claims, remade.
 
 #include "job_console.h"
+#include "progress_bar.h"
 #include "verbs.h"
 
 #include <fmt/format.h>
@@ -49,7 +50,7 @@ Result<void> make(const PaperVerb &o, const Common &common) {
   if (o.only.empty())
     note(common, fmt::format("{} figures and claims: about eight minutes of one core", ids.size()));
   std::vector<PaperFigure> figures;
-  ProgressBar bar("figures", common);
+  ProgressBar bar("figures", "", common.quiet);
   for (const std::string &id : ids) {
     if (interrupted())
       return fail(ErrorCode::Interrupted,

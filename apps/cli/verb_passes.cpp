@@ -1,11 +1,13 @@
 // umov passes: when the objects of a file pass over a site.
 
 #include "job_console.h"
+#include "part_options.h"
+#include "scale_job.h"
 #include "site_options.h"
 #include "tables.h"
 #include "verbs.h"
 
-#include <umov/jobs/passes.h>
+#include <umov/jobs/ranged_job.h>
 
 namespace umov::cli {
 namespace {
@@ -19,6 +21,7 @@ struct PassesOptions {
   double size_m = 1, altitude_min_deg = 10, sun_altitude_max_deg = -6;
   bool is_visible_only = false, allow_bad_checksum = false, keep_going = false,
        allow_old_elements = false;
+  PartOptions part;
 };
 
 Result<jobs::PassModel> model_of(const PassesOptions &o) {
@@ -60,9 +63,11 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
   UMOV_TRY(check_output(o.output));
   UMOV_ASSIGN(request, request_of(o, common));
   jobs::JobOptions options = job_options(common);
+  UMOV_ASSIGN(part, part_of(o.part));
+  options.part = part;
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   UMOV_ASSIGN(result, jobs::passes(request, options, console.monitor(true), diagnostics));
   Table table = jobs::passes_table(request, result);
   if (result.stopped)
@@ -96,38 +101,62 @@ void add_pass_model(CLI::App &verb, PassesOptions &o) {
   verb.add_option("--band", o.band, "Band of the magnitudes; default: the middle one");
 }
 
+void declare(CLI::App &verb, PassesOptions &o, Common &common) {
+  verb.add_option("--orbit", o.orbit, "TLE, 3LE, OMM, OEM or OPM file")->required();
+  verb.add_option("--norad", o.norad, "Catalogue numbers, separated by commas; else all")
+      ->delimiter(',');
+  add_site(verb, o.site);
+  verb.add_option("--start", o.start, "Begin, such as 2018-01-21T04:00:00Z")->required();
+  verb.add_option("--stop", o.stop, "End")->required();
+  verb.add_option("--alt-min-deg", o.altitude_min_deg, "Rise and set are at this altitude")
+      ->check(CLI::Range(-90.0, 90.0))
+      ->capture_default_str();
+  verb.add_option("--sun-alt-max-deg", o.sun_altitude_max_deg,
+                  "The sky is dark with the Sun below this altitude")
+      ->check(CLI::Range(-90.0, 90.0))
+      ->capture_default_str();
+  verb.add_flag("--visible", o.is_visible_only, "Only passes sunlit in a dark sky for some time");
+  verb.add_option("--shadow", o.shadow, "The Earth that casts the shadow")
+      ->check(CLI::IsMember({"ellipsoid", "sphere"}))
+      ->capture_default_str();
+  verb.add_flag("--allow-bad-checksum", o.allow_bad_checksum, "Read lines with a wrong checksum");
+  verb.add_flag("--keep-going", o.keep_going, "Report bad sets and keep the others");
+  verb.add_flag("--allow-old-elements", o.allow_old_elements, "Take elements over 30 days old");
+  add_pass_model(verb, o);
+  verb.add_option("--chart", o.chart, "Sky chart of the passes, with a table (HTML)");
+  add_part(verb, o.part, "objects");
+  add_table_output(verb, o.output);
+  add_columns(verb, o.columns);
+  add_threads(verb, common);
+  add_common(verb, common, true);
+}
+
+jobs::JobOptions options_of(const PassesOptions &o, jobs::JobOptions options) {
+  options.allow_bad_checksum = o.allow_bad_checksum;
+  options.allow_old_elements = o.allow_old_elements;
+  return options;
+}
+
 } // namespace
+
+Result<RangedVerb> passes_in_parts(const std::vector<std::string> &arguments,
+                                   const PartsSetting &setting, Diagnostics &diagnostics) {
+  CLI::App verb("When objects pass over a site", "passes");
+  PassesOptions o;
+  Common common;
+  declare(verb, o, common);
+  UMOV_TRY(parse_verb(verb, arguments));
+  UMOV_TRY(refuse_output(o.output, o.part));
+  UMOV_ASSIGN(request, request_of(o, common));
+  UMOV_ASSIGN(job, jobs::ranged_passes(request, options_of(o, setting.options), diagnostics));
+  return RangedVerb{std::move(job), o.site.earth_orientation};
+}
 
 void add_passes(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand("passes", "When objects pass over a site, and in which light");
   auto o = std::make_shared<PassesOptions>();
   auto common = std::make_shared<Common>();
-  verb->add_option("--orbit", o->orbit, "TLE, 3LE, OMM, OEM or OPM file")->required();
-  verb->add_option("--norad", o->norad, "Catalogue numbers, separated by commas; else all")
-      ->delimiter(',');
-  add_site(*verb, o->site);
-  verb->add_option("--start", o->start, "Begin, such as 2018-01-21T04:00:00Z")->required();
-  verb->add_option("--stop", o->stop, "End")->required();
-  verb->add_option("--alt-min-deg", o->altitude_min_deg, "Rise and set are at this altitude")
-      ->check(CLI::Range(-90.0, 90.0))
-      ->capture_default_str();
-  verb->add_option("--sun-alt-max-deg", o->sun_altitude_max_deg,
-                   "The sky is dark with the Sun below this altitude")
-      ->check(CLI::Range(-90.0, 90.0))
-      ->capture_default_str();
-  verb->add_flag("--visible", o->is_visible_only, "Only passes sunlit in a dark sky for some time");
-  verb->add_option("--shadow", o->shadow, "The Earth that casts the shadow")
-      ->check(CLI::IsMember({"ellipsoid", "sphere"}))
-      ->capture_default_str();
-  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum, "Read lines with a wrong checksum");
-  verb->add_flag("--keep-going", o->keep_going, "Report bad sets and keep the others");
-  verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
-  add_pass_model(*verb, *o);
-  verb->add_option("--chart", o->chart, "Sky chart of the passes, with a table (HTML)");
-  add_table_output(*verb, o->output);
-  add_columns(*verb, o->columns);
-  add_threads(*verb, *common);
-  add_common(*verb, *common, true);
+  declare(*verb, *o, *common);
   verb->callback([=] {
     watch_interrupts();
     Diagnostics diagnostics;

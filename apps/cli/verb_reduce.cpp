@@ -3,29 +3,39 @@
 #include "verbs.h"
 
 #include <algorithm>
+#include <chrono>
+#include <fmt/chrono.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <umov/jobs/calibrate.h>
+#include <umov/jobs/measurement_files.h>
 #include <umov/jobs/reduce.h>
 
 namespace umov::cli {
 namespace {
 
 struct ReduceVerb {
-  std::string counts, output, page, calibration, model = "static";
+  std::string counts, output, page, calibration, tdm, score, model = "static";
   std::vector<std::string> columns;
   double q0_sd = 0, gain_sd = 0, angle_sd_deg = 0, efficiency_sd = 0, sky_sd = 0;
 };
 
-/// "static", "fourier:PERIOD" or "fourier:PERIOD:HARMONICS".
+/// "static", "fourier:PERIOD", "fourier:PERIOD:HARMONICS" or "spline:KNOTS".
 Result<void> read_model(const std::string &text, jobs::ReduceOptions &out) {
   if (text == "static")
     return {};
   const auto wrong = [&] {
-    return fail(ErrorCode::Usage,
-                "--model " + text +
-                    ": static, fourier:PERIOD_S or fourier:PERIOD_S:HARMONICS was expected");
+    return fail(ErrorCode::Usage, "--model " + text +
+                                      ": static, fourier:PERIOD_S, fourier:PERIOD_S:HARMONICS or "
+                                      "spline:KNOTS_S was expected");
   };
+  if (text.starts_with("spline:")) {
+    const auto knot = parse_number(text.substr(7));
+    if (!knot || !(*knot > 0))
+      return wrong();
+    out.knot_s = *knot;
+    return {};
+  }
   if (!text.starts_with("fourier:"))
     return wrong();
   const std::string rest = text.substr(8);
@@ -40,6 +50,26 @@ Result<void> read_model(const std::string &text, jobs::ReduceOptions &out) {
   if (!harmonics || !(*harmonics >= 1 && *harmonics <= 100))
     return wrong();
   out.harmonics = static_cast<int>(*harmonics);
+  return {};
+}
+
+/// The forms in which others take magnitudes.
+Result<void> put_measurements(const ReduceVerb &o, const CountsFile &counts, const Table &stokes) {
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+  const jobs::MeasurementNotes notes{counts.notes, o.output == "-" ? "" : o.output,
+                                     fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(seconds))};
+  if (!o.tdm.empty()) {
+    UMOV_ASSIGN(text, jobs::as_tdm(stokes, notes));
+    UMOV_TRY(put(o.tdm, text));
+  }
+  if (!o.score.empty()) {
+    UMOV_ASSIGN(table, jobs::as_score(stokes, notes));
+    std::string text = to_csv(table);
+    while (text.starts_with('#')) // the repository takes no header
+      text.erase(0, text.find('\n') + 1);
+    UMOV_TRY(put(o.score, text));
+  }
   return {};
 }
 
@@ -64,6 +94,7 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
     UMOV_ASSIGN(page, jobs::stokes_page(table, "Stokes parameters of " + o.counts, diagnostics));
     UMOV_TRY(put(o.page, page));
   }
+  UMOV_TRY(put_measurements(o, counts, table));
   UMOV_ASSIGN(shown, chosen_columns(table, o.columns,
                                     {"time_utc", "band", "mag", "q", "u", "v", "p_debiased", "p_lo",
                                      "p_hi", "pa", "pa_err", "flags"},
@@ -82,7 +113,7 @@ void add_reduce(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--calibration", o->calibration, "Of umov calibrate: taken out of q and u");
   verb->add_option("--model", o->model,
                    "static: every set by itself; fourier:PERIOD_S: brightness as a series over "
-                   "time, q and u constant")
+                   "time, q and u constant; spline:KNOTS_S: the same without a period")
       ->capture_default_str();
   const auto prior = [&](const char *name, double &value, const char *text) {
     verb->add_option(name, value, text)->check(CLI::Range(0.0, 1e3))->capture_default_str();
@@ -92,6 +123,9 @@ void add_reduce(CLI::App &app, const Exit &exit_with) {
   prior("--angle-sd-deg", o->angle_sd_deg, "How well the instrument's angle is known [deg]");
   prior("--efficiency-sd", o->efficiency_sd, "How well the efficiency is known");
   prior("--sky-sd", o->sky_sd, "How well the whole sky is known, relative");
+  verb->add_option("--tdm", o->tdm, "Also magnitudes as a CCSDS Tracking Data Message");
+  verb->add_option("--score", o->score,
+                   "Also magnitudes as a table for the IAU's repository SCORE");
   verb->add_option("--page", o->page, "Also a page of plots: x.html");
   add_table_output(*verb, o->output);
   add_columns(*verb, o->columns);

@@ -68,7 +68,7 @@ Result<void> run_render(const RenderOptions &o, const Common &common, Diagnostic
   jobs::JobOptions options = job_options(common);
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   UMOV_ASSIGN(done, jobs::render(scenario, request, options, console.monitor(true), diagnostics));
   UMOV_TRY(put(o.output, done.bytes));
   std::string when = done.first_utc.empty() ? "" : ", " + done.first_utc;

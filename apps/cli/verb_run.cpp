@@ -1,6 +1,9 @@
 #include "job_console.h"
+#include "part_options.h"
 #include "run_console.h"
+#include "scale_job.h"
 #include "site_options.h"
+#include "tables.h"
 #include "verbs.h"
 
 #include <algorithm>
@@ -8,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <umov/core/text.h>
+#include <umov/jobs/ranged_job.h>
 #include <umov/jobs/run.h>
 
 namespace umov::cli {
@@ -19,6 +23,7 @@ struct RunOptions {
   std::int64_t seed = -1;
   double accuracy = 0;
   bool dry_run = false, allow_bad_checksum = false, allow_old_elements = false;
+  PartOptions part;
 };
 
 /// A scenario may come from others: a folder that it names outside the working folder is made, but
@@ -51,6 +56,7 @@ Result<Scenario> read_with_options(const RunOptions &o) {
                                                          });
   if (!o.output.empty())
     scenario.output_dir = o.output;
+  UMOV_TRY(check_folder_name(o.output));
   if (!o.earth_orientation.empty())
     scenario.earth_orientation = o.earth_orientation;
   if (!is_named)
@@ -65,7 +71,7 @@ Result<void> check_alone(const RunOptions &o, const Scenario &scenario, const Co
   jobs::JobOptions options = job_options(common);
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
-  JobConsole console(common);
+  JobConsole console(common, tracing_masks);
   UMOV_ASSIGN(objects,
               jobs::load_run(scenario, options, console.monitor(common.verbose), diagnostics));
   tell_of_objects(o.scenario, objects, common);
@@ -83,7 +89,9 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   options.allow_bad_checksum = o.allow_bad_checksum;
   options.allow_old_elements = o.allow_old_elements;
   options.journal = folder.journal_path();
-  JobConsole console(common);
+  UMOV_ASSIGN(part, part_of(o.part));
+  options.part = part;
+  JobConsole console(common, tracing_masks);
   const jobs::Monitor monitor = console.monitor(common.verbose);
   UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
   tell_of_search(scenario, common);
@@ -100,7 +108,46 @@ Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnos
   return tl::unexpected(kept);
 }
 
+void declare(CLI::App &verb, RunOptions &o, Common &common) {
+  verb.add_option("scenario", o.scenario, "Scenario file (TOML); see umov schema")->required();
+  verb.add_option("-o,--output", o.output, "Output folder, over the scenario's output.dir");
+  verb.add_option("--set", o.overrides, "KEY=VALUE over a key of the scenario");
+  verb.add_option("--seed", o.seed, "Over the scenario's seed")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
+  verb.add_option("--accuracy", o.accuracy, "Relative 95 % half-width asked of I")
+      ->check(CLI::Range(1e-6, 1.0));
+  verb.add_option("--device", o.device, fmt::format("{} or auto", fmt::join(device_names(), ", ")))
+      ->capture_default_str();
+  add_earth_orientation(verb, o.earth_orientation);
+  add_part(verb, o.part, "passes of all objects");
+  verb.add_flag("--dry-run", o.dry_run, "Read and check everything, compute nothing");
+  verb.add_flag("--force", common.force, "Write into a folder that umov did not make");
+  verb.add_flag("--allow-bad-checksum", o.allow_bad_checksum, "Read elements with a bad checksum");
+  verb.add_flag("--allow-old-elements", o.allow_old_elements, "Take elements over 30 days old");
+  verb.add_flag("-v,--verbose", common.verbose, "Also say what was read and how long it took");
+  add_threads(verb, common);
+  add_cache(verb, common);
+  add_common(verb, common, true);
+}
+
 } // namespace
+
+Result<RangedVerb> run_in_parts(const std::vector<std::string> &arguments,
+                                const PartsSetting &setting, Diagnostics &diagnostics) {
+  CLI::App verb("Light curve of a scenario", "run");
+  RunOptions o;
+  Common common;
+  declare(verb, o, common);
+  UMOV_TRY(parse_verb(verb, arguments));
+  UMOV_TRY(refuse_output(o.output, o.part));
+  o.output = "."; // nothing is written there: the rows go to the shards
+  UMOV_ASSIGN(scenario, read_with_options(o));
+  jobs::JobOptions options = setting.options;
+  options.allow_bad_checksum = o.allow_bad_checksum;
+  options.allow_old_elements = o.allow_old_elements;
+  UMOV_ASSIGN(job, jobs::ranged_run(scenario, options, setting.layout, {}, diagnostics));
+  return RangedVerb{std::move(job), scenario.earth_orientation.string()};
+}
 
 void add_run(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand("run", "Light curve of a scenario: tables, report, manifest");
@@ -108,26 +155,7 @@ void add_run(CLI::App &app, const Exit &exit_with) {
   auto common = std::make_shared<Common>();
   verb->footer("Ended early, by Ctrl-C or a kill, the same command goes on where it was: finished "
                "rows are kept beside the folder, in NAME.rows.partial, until the run is complete.");
-  verb->add_option("scenario", o->scenario, "Scenario file (TOML); see umov schema")->required();
-  verb->add_option("-o,--output", o->output, "Output folder, over the scenario's output.dir");
-  verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
-  verb->add_option("--seed", o->seed, "Over the scenario's seed")
-      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
-  verb->add_option("--accuracy", o->accuracy, "Relative 95 % half-width asked of I")
-      ->check(CLI::Range(1e-6, 1.0));
-  verb->add_option("--device", o->device,
-                   fmt::format("{} or auto", fmt::join(device_names(), ", ")))
-      ->capture_default_str();
-  add_earth_orientation(*verb, o->earth_orientation);
-  verb->add_flag("--dry-run", o->dry_run, "Read and check everything, compute nothing");
-  verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
-  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum,
-                 "Read elements with a bad checksum");
-  verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
-  verb->add_flag("-v,--verbose", common->verbose, "Also say what was read and how long it took");
-  add_threads(*verb, *common);
-  add_cache(*verb, *common);
-  add_common(*verb, *common, true);
+  declare(*verb, *o, *common);
   verb->callback([o, common, exit_with] {
     if (o->device != "auto" &&
         std::ranges::find(device_names(), o->device) == device_names().end()) {

@@ -1,10 +1,12 @@
 #include "job_console.h"
+#include "part_options.h"
+#include "scale_job.h"
 #include "signature_files.h"
 #include "tables.h"
 #include "verbs.h"
 
 #include <umov/core/journal.h>
-#include <umov/jobs/signature.h>
+#include <umov/jobs/ranged_job.h>
 
 namespace umov::cli {
 namespace {
@@ -19,6 +21,8 @@ struct SignatureOptions {
   std::uint64_t seed = 0;
   bool has_seed = false;
   double accuracy = 0;
+  PartOptions part;
+  CLI::Option *geometry_option = nullptr, *poses_option = nullptr, *seed_option = nullptr;
 };
 
 jobs::SignatureRequest request_of(const SignatureOptions &o) {
@@ -41,24 +45,103 @@ jobs::SignatureRequest request_of(const SignatureOptions &o) {
   return out;
 }
 
+Result<jobs::PoseList> poses_of(const SignatureOptions &o, const Scenario &scenario) {
+  if (!o.geometry.empty())
+    return jobs::poses_from_file(o.geometry);
+  return jobs::random_poses(o.poses, o.phases_deg, o.has_seed ? o.seed : scenario.seed);
+}
+
 Result<void> run_signature(const SignatureOptions &o, const Common &common,
                            Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
   UMOV_TRY(check_mask_file(o.masks));
+  UMOV_ASSIGN(part, part_of(o.part));
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
-  const std::uint64_t seed = o.has_seed ? o.seed : scenario.seed;
-  UMOV_ASSIGN(poses, o.geometry.empty() ? jobs::random_poses(o.poses, o.phases_deg, seed)
-                                        : jobs::poses_from_file(o.geometry));
-  UMOV_TRY(tell_size(o.output, poses.count * scenario.bands.size(), common));
-  JobConsole console(common);
+  UMOV_ASSIGN(poses, poses_of(o, scenario));
+  UMOV_ASSIGN(range, part.of(poses.count, "poses"));
+  UMOV_TRY(tell_size(o.output, range.count * scenario.bands.size(), common));
+  JobConsole console(common, tracing_masks);
   const auto sink = sink_for(o.output, common);
   jobs::JobOptions options = job_options(common);
   options.journal = Journal::name_for(o.output);
+  options.part = part;
   return jobs::signature(scenario, poses, request_of(o), *sink, options, console.monitor(true),
                          diagnostics);
 }
 
+void declare(CLI::App &verb, SignatureOptions &o, Common &common) {
+  verb.add_option("scene", o.scene, "Scenario file; orbit, time and observer are not used")
+      ->required();
+  o.geometry_option =
+      verb.add_option("--geometry", o.geometry,
+                      "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame; with a "
+                      "column pose, rows in turn of one number are one pose and keep it");
+  o.poses_option = verb.add_option("--poses", o.poses, "Random poses for each phase angle")
+                       ->check(CLI::Range(1, 10'000'000));
+  auto *phase = verb.add_option("--phase", o.phases_deg, "Phase angles [deg], separated by commas")
+                    ->delimiter(',');
+  o.geometry_option->excludes(o.poses_option)->excludes(phase);
+  o.poses_option->needs(phase);
+  phase->needs(o.poses_option);
+  verb.add_option("--source", o.source,
+                  "sun, laser: a point source of any polarization, or thermal: the body's own "
+                  "heat; give the "
+                  "wavelength of the last two as the band")
+      ->check(CLI::IsMember({"sun", "laser", "thermal"}))
+      ->capture_default_str();
+  verb.add_option("--state", o.state,
+                  "Laser: Stokes I Q U V of the incoming light in the scattering frame")
+      ->expected(4);
+  verb.add_option("--temperature", o.temperatures,
+                  "Thermal: K of the whole body, or GROUP=K of a part; may stand several times")
+      ->allow_extra_args(false);
+  o.seed_option = verb.add_option("--seed", o.seed, "Of the random poses; default: the scenario's")
+                      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
+  verb.add_option("--set", o.overrides, "KEY=VALUE over a key of the scenario");
+  verb.add_option("--accuracy", o.accuracy, "Relative 95 % half-width asked of I")
+      ->check(CLI::Range(1e-6, 1.0));
+  verb.add_option("--visibility", o.visibility,
+                  "rays: each pose to the accuracy asked; masks: looked up between directions "
+                  "traced beforehand, thousands of times faster, each row with its error; auto: "
+                  "masks, and rays where they miss the accuracy. Default: the scenario's "
+                  "render.method")
+      ->check(CLI::IsMember({"auto", "rays", "masks"}));
+  verb.add_option("--masks", o.masks,
+                  "File to keep the masks in: read if it exists, made if not. For one mesh, its "
+                  "material groups and one accuracy");
+  add_part(verb, o.part, "poses");
+  add_table_output(verb, o.output);
+  add_threads(verb, common);
+  add_cache(verb, common);
+  add_common(verb, common, true);
+}
+
+/// What CLI11 cannot say.
+Result<void> check_directions(SignatureOptions &o) {
+  o.has_seed = o.seed_option->count() > 0;
+  if ((o.geometry_option->count() == 0 || o.geometry.empty()) && o.poses_option->count() == 0)
+    return fail(ErrorCode::Usage,
+                "say for which directions: --geometry TABLE, or --poses N --phase DEG");
+  return {};
+}
+
 } // namespace
+
+Result<RangedVerb> signature_in_parts(const std::vector<std::string> &arguments,
+                                      const PartsSetting &setting, Diagnostics &diagnostics) {
+  CLI::App verb("Stokes of an object for directions", "signature");
+  SignatureOptions o;
+  Common common;
+  declare(verb, o, common);
+  UMOV_TRY(parse_verb(verb, arguments));
+  UMOV_TRY(check_directions(o));
+  UMOV_TRY(refuse_output(o.output, o.part));
+  UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
+  UMOV_ASSIGN(poses, poses_of(o, scenario));
+  UMOV_ASSIGN(job,
+              jobs::ranged_signature(scenario, poses, request_of(o), setting.options, diagnostics));
+  return RangedVerb{std::move(job), ""};
+}
 
 void add_signature(CLI::App &app, const Exit &exit_with) {
   auto *verb =
@@ -68,58 +151,10 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
   verb->footer(
       "With -o FILE and ended early, by Ctrl-C or a kill, the same command goes on where it "
       "was: finished rows are kept in FILE.rows.partial until the table is complete.");
-  verb->add_option("scene", o->scene, "Scenario file; orbit, time and observer are not used")
-      ->required();
-  auto *geometry =
-      verb->add_option("--geometry", o->geometry,
-                       "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame; with a "
-                       "column pose, rows in turn of one number are one pose and keep it");
-  auto *poses = verb->add_option("--poses", o->poses, "Random poses for each phase angle")
-                    ->check(CLI::Range(1, 10'000'000));
-  auto *phase =
-      verb->add_option("--phase", o->phases_deg, "Phase angles [deg], separated by commas")
-          ->delimiter(',');
-  geometry->excludes(poses)->excludes(phase);
-  poses->needs(phase);
-  phase->needs(poses);
-  verb->add_option("--source", o->source,
-                   "sun, laser: a point source of any polarization, or thermal: the body's own "
-                   "heat; give the "
-                   "wavelength of the last two as the band")
-      ->check(CLI::IsMember({"sun", "laser", "thermal"}))
-      ->capture_default_str();
-  verb->add_option("--state", o->state,
-                   "Laser: Stokes I Q U V of the incoming light in the scattering frame")
-      ->expected(4);
-  verb->add_option("--temperature", o->temperatures,
-                   "Thermal: K of the whole body, or GROUP=K of a part; may stand several times")
-      ->allow_extra_args(false);
-  auto *seed = verb->add_option("--seed", o->seed, "Of the random poses; default: the scenario's")
-                   ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
-  verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
-  verb->add_option("--accuracy", o->accuracy, "Relative 95 % half-width asked of I")
-      ->check(CLI::Range(1e-6, 1.0));
-  verb->add_option("--visibility", o->visibility,
-                   "rays: each pose to the accuracy asked; masks: looked up between directions "
-                   "traced beforehand, thousands of times faster, each row with its error; auto: "
-                   "masks, and rays where they miss the accuracy. Default: the scenario's "
-                   "render.method")
-      ->check(CLI::IsMember({"auto", "rays", "masks"}));
-  verb->add_option("--masks", o->masks,
-                   "File to keep the masks in: read if it exists, made if not. For one mesh, its "
-                   "material groups and one accuracy");
-  add_table_output(*verb, o->output);
-  add_threads(*verb, *common);
-  add_cache(*verb, *common);
-  add_common(*verb, *common, true);
-  verb->callback([o, common, exit_with, seed, geometry, poses] {
-    if ((geometry->count() == 0 || o->geometry.empty()) && poses->count() == 0) {
-      exit_with(report(Error{ErrorCode::Usage,
-                             "say for which directions: --geometry TABLE, or --poses N --phase DEG",
-                             {}}));
-      return;
-    }
-    o->has_seed = seed->count() > 0;
+  declare(*verb, *o, *common);
+  verb->callback([o, common, exit_with] {
+    if (const auto said = check_directions(*o); !said)
+      return exit_with(report(said.error()));
     watch_interrupts();
     Diagnostics diagnostics;
     const auto done = run_signature(*o, *common, diagnostics);

@@ -2,7 +2,7 @@
 """Blind recovery of attitudes and spins: truth by rays on a finer tessellation, noise of photons, `umov invert pose` or `spin` on
 the coarser mesh by masks. Prints one line per curve and the summary.
 
-usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--umov PATH] [options of umov invert]
+usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--only TRIAL] [--umov PATH] [options of umov invert]
 OBJECT: agena, hst, box-wing or cubesat. --spin: the body turns about a random axis; the search is told its period to 1 %."""
 import argparse
 import json
@@ -151,6 +151,7 @@ def main():
     parser.add_argument("--snr", type=float, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--spin", type=float)
+    parser.add_argument("--only", type=int, help="of the trials, this one alone (the others' curves are made, for the same noise)")
     parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert
@@ -212,6 +213,8 @@ def spins(o, work, meshes):
         law = f'mode = "tumble", inertia = [1, 1, 1], rate_deg_s = {rate}, start = {{ {inertial(q)} }}'
         make_curve(o, work, meshes, trial, law, o.spin / 10, rng)
         told = o.spin * (1 + rng.uniform(-0.01, 0.01))
+        if o.only not in (None, trial):
+            continue
         verdict, seconds = asked(o, work, "spin", "--period", told)
         mode, period = table_rows(work / "answer/modes.ecsv")[0], table_rows(work / "answer/periods.ecsv")[0]
         found = spin_axis([float(mode[k]) for k in ("qw", "qx", "qy", "qz")], [float(mode[k]) for k in ("rate_x", "rate_y", "rate_z")])
@@ -232,6 +235,8 @@ def poses(o, work, meshes):
     for trial in range(o.trials):
         truth = random_attitude(rng)
         rows = make_curve(o, work, meshes, trial, inertial(truth), 12, rng)
+        if o.only not in (None, trial):
+            continue
         verdict, seconds = asked(o, work, "pose")
         same = twins(truth, verdict["symmetries"])
         errors = [min(apart(t, m["q"]) for t in same) for m in verdict["modes"]]

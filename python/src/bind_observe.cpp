@@ -6,11 +6,13 @@
 #include "options.h"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <umov/core/quantity.h>
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/exposure.h>
 #include <umov/jobs/observe.h>
+#include <umov/jobs/period.h>
 #include <umov/jobs/reduce.h>
 
 namespace umov::python {
@@ -45,6 +47,19 @@ Table reduce(const std::string &counts, const std::string &counts_path,
         return jobs::reduce(rows, options, monitor, diagnostics);
       });
   attention.settle(was_interrupted(made));
+  return take(std::move(made));
+}
+
+/// `text` stands for a file of that path.
+Table period(const std::string &text, const std::string &path, const std::string &band,
+             std::size_t peaks, std::pair<double, double> reach_s, double gap_s, nb::handle watch) {
+  Attention attention(watch);
+  auto made =
+      attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Table> {
+        UMOV_ASSIGN(rows, read_observations_text(text, path, diagnostics));
+        return jobs::period(rows, {band, peaks, reach_s.first, reach_s.second, gap_s}, diagnostics);
+      });
+  attention.settle(false);
   return take(std::move(made));
 }
 
@@ -109,6 +124,8 @@ void bind_observe(nb::module_ &m) {
   m.def("reduce", &reduce, "counts"_a, "counts_path"_a, "calibration"_a.none(),
         "calibration_path"_a, "options"_a, "watch"_a.none());
   m.def("calibrate", &calibrate, "counts"_a, "counts_path"_a, "standards"_a, "standards_path"_a,
+        "watch"_a.none());
+  m.def("period", &period, "text"_a, "path"_a, "band"_a, "peaks"_a, "reach_s"_a, "gap_s"_a,
         "watch"_a.none());
   m.def("exposure",
         [](const jobs::ExposureRequest &request) { return take(jobs::exposure(request)); });

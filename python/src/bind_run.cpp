@@ -83,8 +83,8 @@ void bind_run(nb::module_ &m) {
           "__init__",
           [](jobs::JobOptions *self, unsigned threads, const std::string &mask_cache,
              bool allow_bad_checksum, bool allow_old_elements) {
-            new (self)
-                jobs::JobOptions{threads, mask_cache, {}, allow_bad_checksum, allow_old_elements};
+            new (self) jobs::JobOptions{threads, mask_cache,         {},
+                                        {},      allow_bad_checksum, allow_old_elements};
           },
           "threads"_a, "mask_cache"_a, "allow_bad_checksum"_a, "allow_old_elements"_a);
   nb::class_<Run>(m, "Run", "What a run computed.")

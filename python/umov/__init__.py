@@ -23,6 +23,7 @@ from .observing import (Calibration, Observation, calibrate, exposure, instrumen
                         reduce)
 from .orbits import States, ephemeris, passes, propagate
 from .passbands import Bands, band, bands
+from .periods import period
 from .pictures import Mesh, Picture, mesh, render
 from .runs import run
 from .samples import example
@@ -33,20 +34,20 @@ from .tables import Table
 from .times import utc
 
 if TYPE_CHECKING:
-    from . import plot, turnable
+    from . import plot, scale, turnable
 
 __all__ = ["Abundances", "Bands", "Calibration", "Coloured", "Column", "DeviceError", "Engine", "Error", "InputError",
            "InternalError", "Interrupted", "Light", "LightCurve", "Material", "Mesh", "NoResult", "NumericsError",
            "Observation", "Picture", "Satellite", "Scenario", "Site", "States", "Sums", "Table", "UmovWarning",
            "UsageError", "Where", "__version__", "band", "bands", "brdf", "calibrate", "conventions_version",
            "ephemeris", "example", "exposure", "instrument", "instruments", "materials", "mesh", "observe", "passes",
-           "plot", "propagate", "random_poses", "reduce", "render", "run", "schema", "site_names", "source_revision",
+           "period", "plot", "propagate", "random_poses", "reduce", "render", "run", "scale", "schema", "site_names", "source_revision",
            "turnable", "utc"]
 
 
 def __getattr__(name: str) -> Any:
-    """`umov.plot` and `umov.turnable`, loaded when they are asked for."""
-    if name in ("plot", "turnable"):
+    """`umov.plot`, `umov.scale` and `umov.turnable`, loaded when they are asked for."""
+    if name in ("plot", "scale", "turnable"):
         import importlib
         return importlib.import_module("." + name, __name__)
     raise AttributeError(f"module 'umov' has no attribute {name!r}")

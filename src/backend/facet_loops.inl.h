@@ -85,11 +85,7 @@ public:
     bool is_any_left_out = false;
     for (const Chunk &chunk : scene_.chunks) {
       const SlotTerms &slot = scene_.slots[chunk.slot];
-      GatherTask<T> task;
-      task.reach = reach_of(slot);
-      task.has_aside = slot.is_polarized;
-      task.has_ids = slot.is_general;
-      task.has_doubts = model_.has_doubts && masks_ != nullptr;
+      const GatherTask<T> task = task_of(slot);
       is_any_left_out = is_any_left_out || task.reach < T(2);
       lit_.gather(chunk, task);
       if (lit_.count() == 0)
@@ -116,22 +112,35 @@ public:
     }
   }
 
-  /// All facets that face both directions, with the area of each that is looked up as free and how
-  /// uncertain it is, with doubts (GatherTask).
-  UMOV_KERNEL void list_facing(SeenListOf<S> &out) {
-    out.clear();
-    GatherTask<T> task;
-    task.has_ids = task.has_doubts = true;
+  /// Facets that have light, with the area of each that is looked up as free, how uncertain that
+  /// is, and what it weighs in the sums.
+  UMOV_KERNEL void list_weighed(backend::WeighedListOf<S> &out) {
+    out.facets.clear();
     for (const Chunk &chunk : scene_.chunks) {
+      const SlotTerms &slot = scene_.slots[chunk.slot];
+      GatherTask<T> task = task_of(slot);
+      task.has_ids = true;
       lit_.gather(chunk, task);
+      const std::size_t first = out.facets.size();
       for (std::size_t k = 0; k < lit_.count(); ++k)
-        out.push({lit_.group(k), lit_.lane(k), chunk.slot, static_cast<S>(lit_.area_of(k)),
-                  square(static_cast<S>(lit_.deviation_of(k)))});
+        out.facets.push({lit_.group(k), lit_.lane(k), chunk.slot, static_cast<S>(lit_.area_of(k)),
+                         square(static_cast<S>(lit_.deviation_of(k)))});
+      if (lit_.count() > 0 && !slot.is_general)
+        weigh(slot, first, out);
     }
   }
 
 private:
   UMOV_KERNEL static S square(S x) { return x * x; }
+
+  [[nodiscard]] UMOV_KERNEL GatherTask<T> task_of(const SlotTerms &slot) const {
+    GatherTask<T> task;
+    task.reach = reach_of(slot);
+    task.has_aside = slot.is_polarized;
+    task.has_ids = slot.is_general;
+    task.has_doubts = model_.has_doubts && masks_ != nullptr;
+    return task;
+  }
 
   /// 1 - n.h of the farthest facets that any lobe of a slot without other light has light from.
   [[nodiscard]] UMOV_KERNEL T reach_of(const SlotTerms &slot) const {
@@ -228,6 +237,36 @@ private:
     if (is_clustered)
       out_.specular_bias[lobe] += Machine::total(bias);
     add_lobe(lobe, sum, variance, linear);
+  }
+
+  /// Weights of what was gathered, which `out` holds from `first` on.
+  UMOV_KERNEL void weigh(const SlotTerms &slot, std::size_t first,
+                         backend::WeighedListOf<S> &out) const {
+    S *const to = out.weights.data() + first * out.terms;
+    alignas(64) T w[width];
+    const auto put = [&](std::size_t k, std::size_t term, R weight) {
+      Machine::store_any(weight, w);
+      for (std::size_t j = 0; j < width && k + j < lit_.count(); ++j)
+        to[(k + j) * out.terms + term] = static_cast<S>(w[j]);
+    };
+    for (std::size_t k = 0; k < lit_.count(); k += width) {
+      const R n_l = lit_.n_l(k), n_v = lit_.n_v(k), apart = lit_.apart(k);
+      for (std::size_t l = 0; l < slot.lobe_count; ++l) {
+        const std::size_t lobe = slot.lobe_first + l;
+        put(k, l,
+            lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet,
+                         from_half(pose_.facet, apart, n_l, n_v)) *
+                lobe_shadowing(scene_.lobes[lobe], pose_.facet, n_l, n_v) * R(T(0.25)));
+      }
+      if (slot.product_count == 0)
+        continue;
+      ProfileValues<R> values = profile_values<R, T>(scene_, slot, n_l, n_v);
+      if (slot.is_polarized)
+        values.turn = emission_turn(pose_.facet, lit_.aside(k), n_l, n_v);
+      for (std::size_t p = 0; p < slot.product_count; ++p)
+        put(k, slot.lobe_count + p,
+            values.template product<T>(scene_.products[slot.product_first + p]));
+    }
   }
 
   UMOV_KERNEL void add_lobe(std::size_t lobe, R sum, R variance, R linear) {

@@ -197,10 +197,21 @@ void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskEr
 void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
                 const PoseData<float> &pose, PoseSums &out);
 
-/// All facets of a pose that face Sun and observer, with the areas that the masks give and how
-/// uncertain these are; `out` is emptied first.
-void list_facing(const SceneData<double> &scene, const Masks &masks, const MaskErrorModel &model,
-                 const PoseData<double> &pose, SeenList &out);
+/// Facets with what each weighs in the sums: light per unit area without its colour.
+template <class S> struct WeighedListOf {
+  SeenListOf<S> facets;
+  View<S> weights;       ///< [facet * terms + term]: lobes of its slot, then products
+  std::size_t terms = 0; ///< of the slot that has most
+};
+using WeighedList = WeighedListOf<double>;
+
+/// The facets of a pose that have light, with the areas that the masks give and how uncertain these
+/// are; with doubts those too of which the masks hide all. `out` is emptied first; weights of
+/// general slots are not set.
+void list_weighed(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
+                  const PoseData<double> &pose, WeighedList &out);
+void list_weighed(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
+                  const PoseData<float> &pose, WeighedList &out);
 
 /// Facets of which something is both lit and seen, without variances: of all groups, or of those of
 /// some chunks.
@@ -208,12 +219,8 @@ void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErr
                const PoseData<double> &pose, SeenList &out);
 void list_seen(const SceneData<double> &scene, View<const Chunk> chunks, const Masks *masks,
                const MaskErrorModel &model, const PoseData<double> &pose, SeenList &out);
-/// Light of one facet per unit area without its colour: per lobe of its slot, then per product.
-/// `weight` has room for all of them.
-void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
-                 const SeenFacet &facet, double *weight);
 
-/// Which instruction sets `sum_facets` for float may use.
+/// Which instruction sets the loops for float may use.
 enum class InstructionSet { Best, Baseline, Sse4, Avx2, Avx512 };
 /// Restricts the choice, for tests and benchmarks; false if this machine lacks it.
 bool choose_instruction_set(InstructionSet set);

@@ -62,6 +62,13 @@ bool file_exists(const fs::path &path) {
   return fs::exists(path, unknown);
 }
 
+std::filesystem::path tidy_path(const std::filesystem::path &path) {
+  std::error_code code;
+  auto tidy = path.lexically_normal();
+  const bool is_there = std::filesystem::exists(path, code) && !code;
+  return is_there && !std::filesystem::equivalent(path, tidy, code) ? path : tidy;
+}
+
 Result<std::string> read_file(const fs::path &path, std::size_t limit_bytes) {
   std::error_code code;
   const auto status = fs::status(path, code);

@@ -98,7 +98,7 @@ PixelReading read_pixel(const Detector &d, double mean, double exposure_s, Draws
   const bool is_counted = d.model == DetectorModel::Ideal || d.model == DetectorModel::Counter;
   const double g = register_gain(d);
   const double x = bent(d, electrons) * g + (is_counted ? 0 : d.read_e * draws.normal());
-  const double last = std::exp2(d.bits) - 1;
+  const double last = std::min(std::exp2(d.bits), 2147483648.) - 1; // of a 32-bit whole number
   const double number = std::floor(x / d.gain_e_adu + d.bias_adu + 0.5);
   out.is_saturated = is_full || number >= last;
   out.adu = static_cast<int>(std::clamp(number, 0.0, last));

@@ -162,17 +162,14 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   out.is_saturated = corrected.is_saturated || peak > saturation_e(d);
 }
 
-Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &plan,
-                                                         const ExposureLight &light) const {
+Result<std::vector<ChannelCounts>> BandObserver::expected(const ExposurePlan &plan,
+                                                          const ExposureLight &light, double share,
+                                                          double arcsec2) const {
   const Channels *channels = channels_of(plan.state);
   if (channels == nullptr)
     return fail(ErrorCode::Internal, "a state of the polarimeter was not prepared");
   const Polarimeter &polarimeter = instrument_.polarimeter;
-  const Detector &d = instrument_.detector;
-  const double radius = conditions_.aperture_fwhm * fwhm_arcsec(light.airmass);
-  const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
   const InstrumentMueller own = instrumental_polarization(polarimeter.q0, polarimeter.u0);
-  const double pixels = aperture_pixels(light.airmass);
   std::vector<ChannelCounts> out(channels->front().size());
   for (std::size_t k = 0; k < band_.nm.size(); ++k) {
     const double bare = rate_[k] * plan.exposure_s;
@@ -184,22 +181,38 @@ Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &pla
       const PolarimeterChannel &channel = (*channels)[k][c];
       const StokesRow real = channel.row * own;
       out[c].mean_star += bare * through * share * respond(real, light.flux[k]);
-      out[c].mean_sky += bare * pi * radius * radius * respond(real, sky);
+      out[c].mean_sky += bare * arcsec2 * respond(real, sky);
       out[c].row = out[c].row + (channel.row * from_sky) * (bare * through * share);
     }
   }
   const double sd = scintillation_sd(plan.exposure_s, light.airmass, light.rate_rad_s);
   for (std::size_t c = 0; c < out.size(); ++c) {
-    const auto pupil = polarimeter.has_separate_pupils ? static_cast<std::uint32_t>(c) : 0;
-    Draws air({conditions_.seed, conditions_.object, plan.index, pupil, Stream::Air});
-    const double factor =
-        light.transparency * (sd > 0 ? std::exp(sd * air.normal() - sd * sd / 2) : 1);
     out[c].channel = (*channels)[0][c].name;
     out[c].analyser_deg = (*channels)[0][c].analyser_deg;
-    out[c].pixels = pixels;
     out[c].scintillation = sd;
-    out[c].mean_sky += d.dark_e_s * plan.exposure_s * pixels;
-    draw(plan, light, c, factor, out[c]);
+  }
+  return out;
+}
+
+double BandObserver::transparency(const ExposurePlan &plan, const ExposureLight &light,
+                                  std::size_t channel) const {
+  const double sd = scintillation_sd(plan.exposure_s, light.airmass, light.rate_rad_s);
+  const bool is_apart = instrument_.polarimeter.has_separate_pupils;
+  const auto pupil = is_apart ? static_cast<std::uint32_t>(channel) : 0;
+  Draws air({conditions_.seed, conditions_.object, plan.index, pupil, Stream::Air});
+  return light.transparency * (sd > 0 ? std::exp(sd * air.normal() - sd * sd / 2) : 1);
+}
+
+Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &plan,
+                                                         const ExposureLight &light) const {
+  const double radius = conditions_.aperture_fwhm * fwhm_arcsec(light.airmass);
+  const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
+  UMOV_ASSIGN(out, expected(plan, light, share, pi * radius * radius));
+  const double pixels = aperture_pixels(light.airmass);
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    out[c].pixels = pixels;
+    out[c].mean_sky += instrument_.detector.dark_e_s * plan.exposure_s * pixels;
+    draw(plan, light, c, transparency(plan, light, c), out[c]);
   }
   return out;
 }

@@ -1,60 +1,24 @@
 #include <umov/inverse/direction_table.h>
 
+#include "inverse/octahedron.h"
+
 #include <algorithm>
 #include <cmath>
 #include <umov/core/parallel.h>
 
 namespace umov {
-namespace {
-
-/// The direction of a point of the square [-1, 1]^2 that an octahedron is unfolded onto (Cigolle et
-/// al. 2014, JCGT 3(2), "A Survey of Efficient Representations for Independent Unit Vectors").
-Vec3<Body> direction_at(double x, double y) {
-  const double z = 1 - std::abs(x) - std::abs(y);
-  Vec3<Body> out{x, y, z};
-  if (z < 0) {
-    out.x = (1 - std::abs(y)) * (x >= 0 ? 1 : -1);
-    out.y = (1 - std::abs(x)) * (y >= 0 ? 1 : -1);
-  }
-  return normalized(out);
-}
-
-/// And back.
-std::pair<double, double> square_of(Vec3<Body> v) {
-  const double sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-  const double x = v.x / sum, y = v.y / sum;
-  if (v.z >= 0)
-    return {x, y};
-  return {(1 - std::abs(y)) * (x >= 0 ? 1 : -1), (1 - std::abs(x)) * (y >= 0 ? 1 : -1)};
-}
-
-} // namespace
-
-DirectionTable::Corner DirectionTable::corner_of(Vec3<Body> direction) const {
-  const auto [x, y] = square_of(direction);
-  const auto n = static_cast<double>(cells_);
-  const double a = std::clamp((x + 1) / 2 * n, 0.0, n), b = std::clamp((y + 1) / 2 * n, 0.0, n);
-  const double i = std::min(std::floor(a), n - 1), j = std::min(std::floor(b), n - 1);
-  const auto fx = static_cast<float>(a - i), fy = static_cast<float>(b - j);
-  const std::size_t row = cells_ + 1;
-  const std::size_t node = static_cast<std::size_t>(j) * row + static_cast<std::size_t>(i);
-  return {{node, node + 1, node + row, node + row + 1},
-          {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
-}
+using inverse::DirectionGrid;
 
 std::shared_ptr<const DirectionTable> DirectionTable::make(const PoseLighting &light,
                                                            std::size_t cells, double sun_radius_rad,
                                                            unsigned threads) {
   auto out = std::make_shared<DirectionTable>();
   out->cells_ = cells;
-  const std::size_t row = cells + 1, nodes = row * row;
-  const auto at = [&](std::size_t step) {
-    return 2 * static_cast<double>(step) / static_cast<double>(cells) - 1;
-  };
+  const DirectionGrid grid{cells};
+  const std::size_t nodes = grid.nodes();
   std::vector<Vec3<Body>> directions;
-  for (std::size_t y = 0; y < row; ++y)
-    for (std::size_t x = 0; x < row; ++x)
-      directions.push_back(direction_at(at(x), at(y)));
+  for (std::size_t n = 0; n < nodes; ++n)
+    directions.push_back(grid.direction(n));
   StokesTable lit;
   std::vector<Pose> poses;
   constexpr std::size_t at_once = 64; // directions of the Sun whose light is held at a time
@@ -92,7 +56,8 @@ std::shared_ptr<const DirectionTable> DirectionTable::make(const PoseLighting &l
 PoseLighting DirectionTable::lighting(std::shared_ptr<const DirectionTable> table,
                                       unsigned threads) {
   return [table, threads](std::span<const Pose> poses, StokesTable &out) {
-    const std::size_t bands = table->bands_, nodes = (table->cells_ + 1) * (table->cells_ + 1);
+    const DirectionGrid grid{table->cells_};
+    const std::size_t bands = table->bands_, nodes = grid.nodes();
     out.bands = bands; // only what a search reads is made ready
     out.i.resize(poses.size() * bands);
     out.q.resize(poses.size() * bands);
@@ -100,8 +65,8 @@ PoseLighting DirectionTable::lighting(std::shared_ptr<const DirectionTable> tabl
     constexpr std::size_t chunk = 4096;
     parallel_for((poses.size() + chunk - 1) / chunk, threads, [&](std::size_t c) {
       for (std::size_t k = c * chunk; k < std::min(poses.size(), (c + 1) * chunk); ++k) {
-        const Corner sun = table->corner_of(poses[k].sun);
-        const Corner observer = table->corner_of(poses[k].observer);
+        const DirectionGrid::Corner sun = grid.corner(poses[k].sun);
+        const DirectionGrid::Corner observer = grid.corner(poses[k].observer);
         for (std::size_t b = 0; b < bands; ++b) {
           float i = 0, q = 0;
           for (std::size_t s = 0; s < 4; ++s)

@@ -1,21 +1,11 @@
 #include <umov/inverse/likelihood.h>
 
+#include "inverse/sample_errors.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace umov {
-namespace {
-
-double median_of(std::vector<double> values) {
-  if (values.empty())
-    return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-} // namespace
-
 /// Factors between model and data, and the common scale behind them.
 struct CurveLikelihood::Gains {
   std::vector<double> gain; ///< per group
@@ -27,39 +17,27 @@ struct CurveLikelihood::Gains {
 CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &errors,
                                  std::span<const std::size_t> epochs)
     : bands_(curve.bands), errors_(errors), is_absolute_(curve.is_absolute) {
-  std::vector<double> measured;
-  for (const ObservedSample &s : curve.samples)
-    if (!std::isnan(s.i))
-      measured.push_back(s.i);
-  median_i_ = median_of(std::move(measured));
+  median_i_ = inverse::median_of_i(curve);
   groups_ = errors.has_clouds ? curve.epochs.size() : curve.bands.size();
-  // A gain per epoch takes no zero points beside it: they are counted as errors of their own.
-  const double part =
-      errors.has_clouds ? std::hypot(errors.floor, errors.zero_point_sd) : errors.floor;
-  const double base = errors.floor_median * median_i_;
   for (const ObservedSample &s : curve.samples) {
     if (!epochs.empty() && std::ranges::find(epochs, s.epoch) == epochs.end())
       continue;
     Row row;
     row.at = s.epoch * curve.bands.size() + s.band;
     row.group = errors.has_clouds ? s.epoch : s.band;
-    const double of_model = std::max(part, best_relative) * std::max(0.0, s.i);
-    const double variance = s.i_sd * s.i_sd + of_model * of_model + base * base;
-    if (!std::isnan(s.i) && variance > 0) {
+    const inverse::SampleErrors known = inverse::errors_of(s, errors, median_i_);
+    log_variance_ += known.log_variance;
+    if (known.i_variance > 0) {
       row.i = s.i;
-      row.weight = 1 / variance;
+      row.weight = 1 / known.i_variance;
       ++measurements_;
     }
-    if (errors.has_polarization && !std::isnan(s.q)) {
-      const double more = errors.floor * errors.floor / 4, least = best_relative * best_relative;
-      // Cholesky of the covariance, inverted: L^-1 (q, u) has unit covariance.
-      const double a = std::sqrt(std::max(s.cov_qq + more, least)), b = s.cov_qu / a;
-      const double c = std::sqrt(std::max(s.cov_uu + more - b * b, least));
+    if (known.l_qq > 0) {
       row.q = s.q;
       row.u = s.u;
-      row.l_qq = 1 / a;
-      row.l_uu = 1 / c;
-      row.l_uq = -b / (a * c);
+      row.l_qq = known.l_qq;
+      row.l_uu = known.l_uu;
+      row.l_uq = known.l_uq;
       measurements_ += 2;
     }
     if (row.weight > 0 || row.l_qq > 0)

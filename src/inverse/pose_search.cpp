@@ -116,8 +116,8 @@ double log_det(const PoseMode &mode) {
       .sum();
 }
 
-/// Fits that are one and the same peak, joined; those that hold less than e^-15 of the best left
-/// out; weights by Laplace's integral.
+/// Fits, best first, that are one and the same peak, joined; those that hold less than e^-15 of the
+/// best left out; weights by Laplace's integral.
 std::vector<PoseMode> modes_of(const std::vector<TurningFit> &fits, double span_s) {
   std::vector<PoseMode> out;
   double best = 1e300;
@@ -126,8 +126,9 @@ std::vector<PoseMode> modes_of(const std::vector<TurningFit> &fits, double span_
   for (const TurningFit &fit : fits) {
     if (!(fit.at.minus_2_log <= best + 30)) // nor what is no number
       continue;
-    PoseMode mode{fit.turning, covariance_of(fit.information, span_s), 0, fit.at.chi2,
-                  fit.at.scale};
+    PoseMode mode{
+        fit.turning,     covariance_of(fit.information, span_s), 0, fit.at.chi2, fit.at.scale,
+        fit.is_converged};
     const bool is_known = std::ranges::any_of(out, [&](const PoseMode &other) {
       const double apart = angle_between(other.turning.attitude, mode.turning.attitude);
       // Another spin with the same attitude at second 0 is another mode.
@@ -161,22 +162,120 @@ bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
              modes, [](const PoseMode &m) { return m.weight > 0.01 && m.sd_rad() > widest; });
 }
 
+double span_of(const ObservedCurve &curve) {
+  return curve.epochs.empty() ? 1.0 : std::max(1.0, curve.epochs.back().seconds);
+}
+
+/// How the last fits are run. Glints hold two directions a hundred times better than the third:
+/// along such a valley, which bends, a dozen steps reach nothing.
+inverse::FitPlan last_steps(Freedom freedom, const SearchOptions &options) {
+  return {freedom, 200, 12, 12, 1e-3, options.threads};
+}
+
+/// Peaks, and samples drawn from them.
+struct Peaks {
+  std::vector<PoseMode> modes;
+  Samples samples;
+  bool is_settled = true;
+};
+
+/// Draws that fit better than any of the fits: these had not come to rest, or missed a peak.
+std::vector<Turning> better_draws(const Samples &samples, const std::vector<TurningFit> &fits) {
+  constexpr double better = 1; // in -2 ln of the likelihood, which masks make rough by less
+  constexpr std::size_t most = 4;
+  double best = 1e300;
+  for (const TurningFit &fit : fits)
+    best = std::min(best, fit.at.minus_2_log);
+  std::vector<PoseSample> found;
+  for (const PoseSample &s : samples.draws)
+    if (s.minus_2_log < best - better)
+      found.push_back(s);
+  std::ranges::stable_sort(found, {}, &PoseSample::minus_2_log);
+  std::vector<Turning> out;
+  for (std::size_t k = 0; k < std::min(most, found.size()); ++k)
+    out.push_back(found[k].turning);
+  return out;
+}
+
+/// Samples around the fits, which go on from a draw that fits better.
+Result<Peaks> peaks_of(const CurveModel &model, const CurveLikelihood &likelihood,
+                       std::vector<TurningFit> fits, Freedom freedom,
+                       const SearchOptions &options) {
+  Peaks out;
+  constexpr int rounds = 4;
+  for (int round = 0;; ++round) {
+    std::ranges::stable_sort(fits, {}, [](const TurningFit &f) { return f.at.minus_2_log; });
+    out.modes = modes_of(fits, span_of(model.curve()));
+    out.samples = inverse::sample_modes(model, likelihood, out.modes, options);
+    if (out.samples.draws.empty())
+      return tl::unexpected(stopped());
+    const auto better = better_draws(out.samples, fits);
+    out.is_settled = better.empty() && std::ranges::none_of(out.modes, [](const PoseMode &m) {
+                       return m.weight > 0.01 && !m.is_converged;
+                     });
+    if (better.empty() || round + 1 == rounds)
+      return out;
+    auto more = inverse::fit_turnings(model, likelihood, better, {}, last_steps(freedom, options));
+    if (more.empty())
+      return tl::unexpected(stopped());
+    fits.insert(fits.end(), more.begin(), more.end());
+  }
+}
+
+/// Attitudes that were judged best, and of how many.
+struct Judged {
+  std::span<const Turning> best;
+  std::size_t of = 0;
+};
+
+/// Evidence that judged attitudes hold away from all peaks, in parts of that of the peaks: where
+/// little light was seen there are more peaks than fits. Less than 0 if it was stopped.
+double evidence_beside(const CurveModel &model, const CurveLikelihood &likelihood,
+                       const Peaks &peaks, const Judged &judged, unsigned threads) {
+  std::vector<Turning> beside;
+  const double cell = grid_spacing_rad(judged.of);
+  for (const Turning &t : judged.best)
+    if (std::ranges::none_of(peaks.modes, [&](const PoseMode &m) {
+          return angle_between(m.turning.attitude, t.attitude) < std::max(cell, 3 * m.sd_rad());
+        }))
+      beside.push_back(t);
+  if (beside.empty())
+    return 0;
+  const auto compared = inverse::compare_all(model, likelihood, beside, {}, threads);
+  if (compared.empty())
+    return -1;
+  double out = 0;
+  for (const Comparison &c : compared)
+    out += std::exp(std::min(-c.minus_2_log / 2 - peaks.samples.log_evidence, 50.0));
+  return out / static_cast<double>(judged.of);
+}
+
+/// `judged`: none where the fits came from elsewhere than all attitudes.
 Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &likelihood,
-                             std::vector<PoseMode> modes, const SearchOptions &options,
-                             bool may_be_broad) {
+                             const std::vector<TurningFit> &fits, Freedom freedom,
+                             const Judged &judged, const SearchOptions &options) {
   PoseAnswer out;
-  Samples samples = inverse::sample_modes(model, likelihood, modes, options);
-  if (!samples.draws.empty() && may_be_broad && !is_described(modes, samples)) {
+  UMOV_ASSIGN(peaks, peaks_of(model, likelihood, fits, freedom, options));
+  const double beside = evidence_beside(model, likelihood, peaks, judged, options.threads);
+  if (beside < 0)
+    return tl::unexpected(stopped());
+  auto &[modes, samples, is_settled] = peaks;
+  constexpr double much = 0.01; // a fifth of what a set of 95 % may leave out
+  if (judged.of > 0 && (beside > much || !is_described(modes, samples))) {
     Samples all = inverse::sample_all(model, likelihood, options);
+    if (all.draws.empty())
+      return tl::unexpected(stopped());
     // Either can miss probability, hardly find too much: peaks that particles from afar did not
     // come upon lack in their evidence.
     constexpr double missed = 1; // e-fold
-    out.is_broad = all.draws.empty() || all.log_evidence > samples.log_evidence - missed;
+    out.is_broad = all.log_evidence > samples.log_evidence - missed;
     if (out.is_broad)
       samples = std::move(all);
+    else if (beside > much)
+      is_settled = false;
   }
-  if (samples.draws.empty())
-    return tl::unexpected(stopped());
+  out.is_settled = is_settled || out.is_broad;
+  out.effective = samples.effective;
   std::ranges::stable_sort(modes, std::ranges::greater{}, &PoseMode::weight);
   out.chi2 = 1e300;
   for (const PoseMode &mode : modes)
@@ -191,10 +290,6 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &lik
   out.measurements = likelihood.measurements();
   out.poses_lit = model.poses_lit();
   return out;
-}
-
-double span_of(const ObservedCurve &curve) {
-  return curve.epochs.empty() ? 1.0 : std::max(1.0, curve.epochs.back().seconds);
 }
 
 } // namespace
@@ -227,11 +322,10 @@ Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &opt
     second.push_back(fits[k].turning);
   if (options.progress)
     options.progress("refine", 1, 2);
-  fits = inverse::fit_turnings(model, exact, second, {},
-                               {Freedom::Attitude, 12, 0, 0, 1e-3, options.threads});
+  fits = inverse::fit_turnings(model, exact, second, {}, last_steps(Freedom::Attitude, options));
   if (fits.empty())
     return tl::unexpected(stopped());
-  UMOV_ASSIGN(out, answer_of(model, exact, modes_of(fits, span_of(model.curve())), options, true));
+  UMOV_ASSIGN(out, answer_of(model, exact, fits, Freedom::Attitude, {left, options.grid}, options));
   out.unknowns = 4; // attitude and scale
   return out;
 }
@@ -240,10 +334,10 @@ Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning>
                                const SearchOptions &options) {
   const CurveLikelihood exact(model.curve(), options.errors);
   auto fits = inverse::fit_turnings(model, exact, {starts.begin(), starts.end()}, {},
-                                    {Freedom::AttitudeAndRate, 20, 6, 12, 1e-3, options.threads});
+                                    last_steps(Freedom::AttitudeAndRate, options));
   if (fits.empty())
     return tl::unexpected(stopped());
-  UMOV_ASSIGN(out, answer_of(model, exact, modes_of(fits, span_of(model.curve())), options, false));
+  UMOV_ASSIGN(out, answer_of(model, exact, fits, Freedom::AttitudeAndRate, {}, options));
   out.unknowns = 7; // attitude, rate and scale
   return out;
 }

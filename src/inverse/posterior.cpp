@@ -170,8 +170,10 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
                      std::vector<PoseMode> &modes, const SearchOptions &options) {
   Samples out;
   const double span = span_of(model);
-  constexpr int rounds = 2; // the second from the covariances of the first (Cappe et al. 2004)
-  for (int round = 0; round < rounds; ++round) {
+  // Each round from the covariances of the one before (Cappe et al. 2004).
+  constexpr int least = 2, most = 6;
+  constexpr double enough = 100; // effective samples
+  for (int round = 0; round < least || (round < most && out.effective < enough); ++round) {
     const auto mixture = mixture_of(modes, span);
     const Eigen::Index n = mixture.front().root.rows();
     std::vector<Turning> drawn;

@@ -15,8 +15,18 @@ struct Running {
   std::vector<double> residuals;
   Eigen::VectorXd gradient;
   double damping = 1e-2;
-  bool is_done = false;
+  int idle = 0;          ///< iterations in a row that gained next to nothing
+  bool has_moved = true; ///< since its derivatives were taken
 };
+
+/// Those that still move.
+std::vector<Running *> moving(std::vector<Running> &fits) {
+  std::vector<Running *> out;
+  for (Running &one : fits)
+    if (!one.fit.is_converged)
+      out.push_back(&one);
+  return out;
+}
 
 double span_of(const CurveModel &model) {
   const auto &epochs = model.curve().epochs;
@@ -25,19 +35,20 @@ double span_of(const CurveModel &model) {
 
 /// J^T J and J^T r of all fits by differences of neighbours, lit together.
 bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
-                   std::vector<Running> &fits, std::span<const std::size_t> epochs,
+                   std::vector<Running *> fits, std::span<const std::size_t> epochs,
                    const FitPlan &plan) {
+  std::erase_if(fits, [](const Running *one) { return !one->has_moved; });
   const auto free = static_cast<Eigen::Index>(plan.freedom);
   const double span = span_of(model), h = plan.difference_rad;
   std::vector<Turning> near;
-  for (const Running &one : fits)
+  for (const Running *one : fits)
     for (Eigen::Index p = 0; p < free; ++p)
-      near.push_back(stepped(one.fit.turning, Step::Unit(free, p) * h, span));
+      near.push_back(stepped(one->fit.turning, Step::Unit(free, p) * h, span));
   const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true);
   if (compared.empty() && !near.empty())
     return false;
   for (std::size_t k = 0; k < fits.size(); ++k) {
-    Running &one = fits[k];
+    Running &one = *fits[k];
     const auto rows = static_cast<Eigen::Index>(one.residuals.size());
     const Residuals r(one.residuals.data(), rows);
     Eigen::MatrixXd jacobian(rows, free);
@@ -61,6 +72,26 @@ Step step_of(const Running &one) {
   constexpr double longest = 0.15; // [rad]: beyond it the light is another one
   const double length = step.norm();
   return length > longest ? Step(step * (longest / length)) : step;
+}
+
+/// Takes a step that gained, shortens the next if it did not. At the bottom neither gains: a valley
+/// that bends gives little in each step and much in a hundred of them, so that few gains of little
+/// are no end.
+void take(Running &one, const Turning &tried, const Comparison &compared) {
+  constexpr double least = 0.01, stuck = 1e5; // of chi-square; of the damping
+  constexpr int patience = 3;
+  const double gain = one.fit.at.chi2 - compared.chi2;
+  one.has_moved = gain > 0;
+  if (one.has_moved) {
+    one.fit.turning = tried;
+    one.fit.at = compared;
+    one.residuals = compared.residuals;
+    one.damping = std::max(one.damping / 5, 1e-6);
+    one.idle = gain < least ? one.idle + 1 : 0;
+  } else {
+    one.damping *= 6;
+  }
+  one.fit.is_converged = one.idle >= patience || !(one.damping < stuck);
 }
 
 void keep_best(std::vector<Running> &fits, std::size_t count) {
@@ -103,36 +134,28 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
     fits[k].fit.at = first[k];
     fits[k].residuals = first[k].residuals;
   }
-  for (int iteration = 0; iteration <= plan.iterations && !fits.empty(); ++iteration) {
+  for (int iteration = 0; iteration < plan.iterations; ++iteration) {
     if (plan.cut_after > 0 && iteration == plan.cut_after)
       keep_best(fits, plan.kept);
-    if (!differentiate(model, likelihood, fits, epochs, plan))
+    const auto active = moving(fits);
+    if (active.empty())
+      break;
+    if (!differentiate(model, likelihood, active, epochs, plan))
       return {};
-    if (iteration == plan.iterations)
-      break; // the last derivatives are the covariance's
     std::vector<Turning> tried;
-    for (const Running &one : fits)
-      tried.push_back(stepped(one.fit.turning, step_of(one), span));
+    for (const Running *one : active)
+      tried.push_back(stepped(one->fit.turning, step_of(*one), span));
     const auto compared = compare_all(model, likelihood, tried, epochs, plan.threads, true);
     if (compared.empty())
       return {};
-    double gain = 0;
-    for (std::size_t k = 0; k < fits.size(); ++k) {
-      Running &one = fits[k];
-      if (compared[k].chi2 < one.fit.at.chi2) {
-        gain = std::max(gain, one.fit.at.chi2 - compared[k].chi2);
-        one.fit.turning = tried[k];
-        one.fit.at = compared[k];
-        one.residuals = compared[k].residuals;
-        one.damping = std::max(one.damping / 5, 1e-6);
-      } else {
-        one.damping *= 6;
-        gain = std::max(gain, one.damping < 1e2 ? 1.0 : 0.0);
-      }
-    }
-    if (gain < 0.02 && iteration > 2)
-      break;
+    for (std::size_t k = 0; k < active.size(); ++k)
+      take(*active[k], tried[k], compared[k]);
   }
+  std::vector<Running *> all;
+  for (Running &one : fits)
+    all.push_back(&one);
+  if (!differentiate(model, likelihood, all, epochs, plan)) // the covariance's
+    return {};
   keep_best(fits, fits.size());
   std::vector<TurningFit> out;
   for (Running &one : fits) {

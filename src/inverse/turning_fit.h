@@ -22,6 +22,7 @@ struct TurningFit {
   Turning turning;
   Comparison at;               ///< without residuals
   Eigen::MatrixXd information; ///< inverse covariance: J^T J of the whitened residuals
+  bool is_converged = false;   ///< further steps gain next to nothing
 };
 
 /// How fits are run.

@@ -1,5 +1,7 @@
 #include <umov/inverse/unmix.h>
 
+#include "inverse/whitened.h"
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +14,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using inverse::whitened;
+using inverse::Whitened;
 
 /// Least squares over some of the columns; the others stay 0.
 VectorXd solve_active(const MatrixXd &a, const VectorXd &b, const std::vector<bool> &is_active) {
@@ -66,79 +70,6 @@ VectorXd nnls(const MatrixXd &a, const VectorXd &b) {
   return x.cwiseMax(0);
 }
 
-/// Everything whitened: rows of I, then of Q - q I and U - u I.
-struct Whitened {
-  MatrixXd columns;
-  VectorXd right;
-  std::size_t measurements = 0;
-};
-
-/// A zero point moves a band's I together: C = D + z^2 v v^T, of which the inverse root is a
-/// projection along the whitened v.
-void whiten_band(MatrixXd &columns, VectorXd &right, const std::vector<Index> &rows,
-                 const VectorXd &v) {
-  const double length2 = v.squaredNorm();
-  if (!(length2 > 0))
-    return;
-  const double part = (1 - 1 / std::sqrt(1 + length2)) / length2;
-  const auto take = [&](auto &&column) {
-    double along = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      along += v[static_cast<Index>(k)] * column[rows[k]];
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      column[rows[k]] -= part * along * v[static_cast<Index>(k)];
-  };
-  for (Index c = 0; c < columns.cols(); ++c)
-    take(columns.col(c));
-  take(right);
-}
-
-Whitened whitened(const ObservedCurve &curve, const CurveErrors &errors,
-                  const std::vector<EndMember> &members) {
-  const auto n = static_cast<Index>(members.size());
-  const double median = CurveLikelihood(curve, errors).median_i();
-  Whitened out;
-  out.columns = MatrixXd::Zero(static_cast<Index>(3 * curve.samples.size()), n);
-  out.right = VectorXd::Zero(out.columns.rows());
-  std::vector<std::vector<Index>> rows(curve.bands.size());
-  std::vector<std::vector<double>> common(curve.bands.size());
-  Index row = 0;
-  for (const ObservedSample &s : curve.samples) {
-    const std::size_t at = s.epoch * curve.bands.size() + s.band;
-    if (std::isnan(s.i) || !(s.i > 0 || s.i_sd > 0))
-      continue;
-    const double light = std::max(s.i, 0.0);
-    const double floor = std::max(errors.floor, best_relative);
-    const double sd = std::sqrt(s.i_sd * s.i_sd + std::pow(floor * light, 2) +
-                                std::pow(errors.floor_median * median, 2));
-    for (Index k = 0; k < n; ++k)
-      out.columns(row, k) = members[static_cast<std::size_t>(k)].i[at] / sd;
-    out.right[row] = s.i / sd;
-    rows[s.band].push_back(row);
-    common[s.band].push_back(errors.zero_point_sd * light / sd);
-    ++row;
-    ++out.measurements;
-    if (!errors.has_polarization || std::isnan(s.q) || !(light > 0))
-      continue;
-    const double more = errors.floor * errors.floor / 4, least = best_relative * best_relative;
-    const double q_sd = light * std::sqrt(std::max(s.cov_qq + more, least));
-    const double u_sd = light * std::sqrt(std::max(s.cov_uu + more, least));
-    for (Index k = 0; k < n; ++k) {
-      const EndMember &m = members[static_cast<std::size_t>(k)];
-      out.columns(row, k) = (m.q[at] - s.q * m.i[at]) / q_sd;
-      out.columns(row + 1, k) = (m.u[at] - s.u * m.i[at]) / u_sd;
-    }
-    row += 2;
-    out.measurements += 2;
-  }
-  out.columns.conservativeResize(row, n);
-  out.right.conservativeResize(row);
-  for (std::size_t b = 0; b < rows.size(); ++b)
-    whiten_band(out.columns, out.right, rows[b],
-                Eigen::Map<const VectorXd>(common[b].data(), static_cast<Index>(common[b].size())));
-  return out;
-}
-
 /// Which end members the data hold apart: the number of each one's group.
 std::vector<std::size_t> groups_of(const Whitened &w, double scale) {
   const auto n = static_cast<std::size_t>(w.columns.cols());
@@ -183,6 +114,7 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
   const Whitened w = whitened(curve, errors, members);
   Unmixing out;
   out.measurements = w.measurements;
+  out.left_out = w.left_out;
   out.condition = condition_of(w.columns);
   const VectorXd all = nnls(w.columns, w.right);
   out.scale = all.sum();

@@ -1,5 +1,7 @@
 #include "jobs/haze_spread.h"
 
+#include "jobs/wanted_passes.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -41,8 +43,8 @@ Result<void> add_haze_spread(ObjectRun &one, KeptBlocks blocks, const Monitor &m
     kept.part |= std::uint64_t{is_high ? 2u : 1u} << 32;
     const std::string what = std::string("haze at its ") + (is_high ? "most" : "least");
     UMOV_ASSIGN(
-        other, compute_light_curve(
-                   one.request, *models.light, models.many_directions.get(),
+        other, compute_wanted(
+                   one, models,
                    [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
                    monitor.cancel != nullptr ? *monitor.cancel : never, kept));
     widen_spread(one.outcome.curve, other.curve);

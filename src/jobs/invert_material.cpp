@@ -1,4 +1,4 @@
-#include "jobs/invert_light.h"
+#include "jobs/invert_group.h"
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
@@ -13,79 +13,6 @@
 
 namespace umov::jobs {
 namespace {
-
-/// Light of the object in its attitude, with the group of one material.
-class GroupLight {
-public:
-  GroupLight(const Scenario &scenario, const InvertRequest &request,
-             const ObservedLightCurve &observed, const JobOptions &options)
-      : scenario_(scenario), request_(request), observed_(observed), options_(options) {}
-
-  Result<EndMember> of(const std::string &group, const std::string &material,
-                       const Monitor &monitor) const;
-
-private:
-  Result<Scenario> with(const std::string &group, const std::string &material) const;
-
-  const Scenario &scenario_;
-  const InvertRequest &request_;
-  const ObservedLightCurve &observed_;
-  const JobOptions &options_;
-};
-
-Result<Scenario> GroupLight::with(const std::string &group, const std::string &material) const {
-  Scenario out = scenario_;
-  if (!out.own_materials.contains(material)) {
-    std::vector<std::string> known = material_library();
-    for (const auto &own : out.own_materials)
-      known.push_back(own.first);
-    if (std::ranges::find(known, material) == known.end()) {
-      const auto near = nearest_name(material, known);
-      return fail(ErrorCode::Usage,
-                  fmt::format("--candidates {}: there is no such material{}", printable(material),
-                              near ? fmt::format(". Did you mean \"{}\"?", *near)
-                                   : "; umov material list tells which there are"));
-    }
-  }
-  out.objects.front().materials[group] = {material, material};
-  return out;
-}
-
-Result<EndMember> GroupLight::of(const std::string &group, const std::string &material,
-                                 const Monitor &monitor) const {
-  UMOV_ASSIGN(scenario, with(group, material));
-  Diagnostics known; // those of the same files, told before
-  UMOV_ASSIGN(object, load_object(scenario, 0, {.allow_old_elements = true}, known));
-  const auto &moving = scenario.objects.front().parts;
-  UMOV_ASSIGN(
-      track, Track::make({*object.orbit, scenario.observer.value_or(Site()), ShadowModel::Ellipsoid,
-                          object.attitude, moving, scenario.has_solar_disk}));
-  LightOptions lit = light_options(scenario, options_);
-  lit.method = request_.method;
-  UMOV_ASSIGN(light, make_light(object.scene, joints_of(moving), lit));
-  std::vector<Pose> poses;
-  std::vector<double> angles;
-  for (const ObservingGeometry &geometry : observed_.geometry) {
-    UMOV_ASSIGN(point, track.place(geometry));
-    poses.push_back(point.pose);
-    angles.insert(angles.end(), point.joint_angles_rad.begin(), point.joint_angles_rad.end());
-  }
-  StokesTable table;
-  LightTask task;
-  task.threads = options_.threads;
-  task.cancel = monitor.cancel;
-  if (!light->evaluate(poses, angles, table, task))
-    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
-  (void)light->keep_masks(); // a cache that cannot be written costs time alone
-  EndMember out{material, {}, {}, {}};
-  for (std::size_t k = 0; k < poses.size(); ++k)
-    for (const std::size_t column : observed_.column) {
-      out.i.push_back(table.i[k * table.bands + column]);
-      out.q.push_back(table.q[k * table.bands + column]);
-      out.u.push_back(table.u[k * table.bands + column]);
-    }
-  return out;
-}
 
 /// Probability of each candidate alone, all of them alike before.
 std::vector<double> probabilities(const ObservedCurve &curve, const CurveErrors &errors,
@@ -227,6 +154,13 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   Inversion out;
   out.verdict = verdict_of(rows, unmixed);
   std::vector<std::string> notes = limits_of(observed.curve);
+  if (unmixed.left_out > 0)
+    notes.push_back(fmt::format("{} with q and u but without light above 0: left out of the "
+                                "mixture, whose q and u need the I that they are parts of",
+                                counted(unmixed.left_out, "row")));
+  if (request.errors.has_clouds)
+    notes.emplace_back("--clouds: the probabilities allow for them, the fractions take the sky for "
+                       "clear");
   if (rows.size() < 2)
     notes.emplace_back("these observations tell none of the candidates from the others: the group "
                        "gives too little light, or their light is alike");

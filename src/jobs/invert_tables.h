@@ -32,6 +32,8 @@ Families families_of(const PoseAnswer &answer, const std::vector<BodySymmetry> &
 
 /// What an answer is worth.
 Verdict verdict_of(const PoseAnswer &answer, const Families &families);
+/// The brightness of no band changes by more than its errors.
+bool is_steady(const ObservedCurve &curve);
 /// What the data cannot tell by themselves: one epoch, one band, no polarization, no change.
 std::vector<std::string> limits_of(const ObservedCurve &curve);
 

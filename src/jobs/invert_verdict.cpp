@@ -45,10 +45,31 @@ Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
   constexpr double wide = 0.01; // of all attitudes
   if (answer.is_broad || answer.share_of_so3 > wide || answer.modes.empty())
     return Verdict::Undetermined;
+  constexpr double few = 20; // a set of 95 % wants more effective samples than that
+  if (!answer.is_settled || answer.effective < few)
+    return Verdict::Undetermined;
   if (!(families.heaviest > 0.95))
     return Verdict::Ambiguous;
   constexpr double far_deg = 10; // a single peak as wide as that is no attitude
   return families.spread_deg < far_deg ? Verdict::Determined : Verdict::Undetermined;
+}
+
+bool is_steady(const ObservedCurve &curve) {
+  double chi2 = 0, dof = 0;
+  for (std::size_t b = 0; b < curve.bands.size(); ++b) {
+    double sum = 0, weight = 0, squares = 0, count = 0;
+    for (const ObservedSample &s : curve.samples)
+      if (s.band == b && !std::isnan(s.i) && s.i_sd > 0) {
+        const double w = 1 / (s.i_sd * s.i_sd);
+        sum += w * s.i;
+        weight += w;
+        squares += w * s.i * s.i;
+        count += 1;
+      }
+    chi2 += weight > 0 ? squares - sum * sum / weight : 0;
+    dof += std::max(0.0, count - 1);
+  }
+  return dof >= 3 && chi2_probability(chi2, dof) > 0.01;
 }
 
 std::vector<std::string> limits_of(const ObservedCurve &curve) {
@@ -79,21 +100,7 @@ std::vector<std::string> limits_of(const ObservedCurve &curve) {
     out.emplace_back("no q and u were measured: brightness alone decides");
   if (curve.bands.size() == 1)
     out.emplace_back("one band: colours would tell materials, and so sides of the body, apart");
-  double chi2 = 0, dof = 0;
-  for (std::size_t b = 0; b < curve.bands.size(); ++b) {
-    double sum = 0, weight = 0, squares = 0, count = 0;
-    for (const ObservedSample &s : curve.samples)
-      if (s.band == b && !std::isnan(s.i) && s.i_sd > 0) {
-        const double w = 1 / (s.i_sd * s.i_sd);
-        sum += w * s.i;
-        weight += w;
-        squares += w * s.i * s.i;
-        count += 1;
-      }
-    chi2 += weight > 0 ? squares - sum * sum / weight : 0;
-    dof += std::max(0.0, count - 1);
-  }
-  if (dof >= 3 && chi2_probability(chi2, dof) > 0.01)
+  if (is_steady(curve))
     out.emplace_back("the brightness does not change by more than its errors: what it allows is "
                      "wide, and no single attitude of it is an answer");
   return out;
@@ -104,6 +111,11 @@ Judgement judge(const PoseAnswer &answer, const ObservedCurve &curve, const Curv
   Judgement out;
   out.families = families_of(answer, symmetries);
   out.verdict = verdict_of(answer, out.families);
+  // What a note says the data cannot tell is not told, however narrow a fit came out.
+  if (out.verdict == Verdict::Determined && is_steady(curve))
+    out.verdict = Verdict::Undetermined;
+  if (out.verdict == Verdict::Determined && curve.epochs.size() == 1)
+    out.verdict = Verdict::Ambiguous;
   out.axis_spread_deg = axis_spread_deg(answer);
   out.null_test = null_test(curve);
   out.nuisances = CurveLikelihood(curve, errors).nuisances();
@@ -116,6 +128,13 @@ Judgement judge(const PoseAnswer &answer, const ObservedCurve &curve, const Curv
         "instrument of ({:.4f} +- {:.4f}, {:.4f} +- {:.4f}) would explain it; calibrate, or "
         "suspect light between surfaces",
         out.null_test.q0, out.null_test.q0_sd, out.null_test.u0, out.null_test.u0_sd));
+  if (!answer.is_settled)
+    out.notes.emplace_back("the search did not come to rest: a better attitude than these may be "
+                           "near; a larger --grid or --floor may help");
+  if (out.verdict == Verdict::Undetermined && answer.is_settled && answer.effective < 20)
+    out.notes.emplace_back(fmt::format("the samples are worth {:.1f} of the posterior's own: too "
+                                       "few to say how sure the attitude is",
+                                       answer.effective));
   if (out.verdict == Verdict::NoFit)
     out.notes.emplace_back("no attitude explains the data within their errors and --floor: is it "
                            "this object, does it stand still, are its materials right?");
@@ -140,6 +159,8 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   out["heaviest"] = judgement.families.heaviest;
   out["spread_deg"] = judgement.families.spread_deg;
   out["share_of_so3"] = answer.share_of_so3;
+  out["settled"] = answer.is_settled;
+  out["effective_samples"] = answer.effective;
   out["axis_spread_deg"] = judgement.axis_spread_deg;
   ordered_json modes = ordered_json::array();
   for (const PoseMode &mode : answer.modes) {

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 fs::path absolute_path(const std::string &path) {
   std::error_code code;
   const auto full = fs::absolute(path, code);
-  return (code ? fs::path(path) : full).lexically_normal();
+  return tidy_path(code ? fs::path(path) : full);
 }
 
 /// The folder that all files are under: their places among each other stay (a mesh names its MTL).

@@ -1,5 +1,6 @@
 #include <umov/jobs/observe.h>
 
+#include "jobs/observe_frames.h"
 #include "jobs/observe_tables.h"
 
 #include <algorithm>
@@ -131,6 +132,9 @@ double shortest_feature_s(const Track &track, const std::vector<Exposure> &expos
   return rate > 0 ? disk_rad / rate : 0;
 }
 
+/// Of two times, where 0 is none.
+double shorter(double a, double b) { return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b); }
+
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -138,6 +142,31 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 struct Tables {
   CountsTable counts;
   TruthTable truth;
+  const FrameSink &take_frame;
+};
+
+/// What is told of many frames together.
+struct FrameTroubles {
+  std::size_t cut = 0, crowded = 0, lost = 0;
+  void add(const Recorded &r) {
+    cut += r.frames->is_cut ? 1u : 0u;
+    crowded += r.frames->has_star_in_aperture ? 1u : 0u;
+    lost += std::ranges::any_of(r.channels, [](const auto &c) { return std::isnan(c.counts); });
+  }
+  void warn(Diagnostics &diagnostics) const {
+    if (cut > 0)
+      diagnostics.warn(fmt::format("{} with an aperture that reaches over the edge: enlarge "
+                                   "observation.frame_px, or shorten the trail",
+                                   counted(cut, "frame")));
+    if (crowded > 0)
+      diagnostics.warn(fmt::format("{} with a star in the aperture that has more than a hundredth "
+                                   "of the object's light: it is in the counts",
+                                   counted(crowded, "frame")));
+    if (lost > 0)
+      diagnostics.warn(fmt::format("{} in which the star's image could not be fitted: its counts "
+                                   "are no numbers",
+                                   counted(lost, "frame")));
+  }
 };
 
 bool is_glaring(const Recorded &r) {
@@ -153,9 +182,16 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
   // About 5 kB for each time within an exposure at which the light is computed, and 64 bytes more
   // for each wavelength: 300 MB together.
   const std::size_t wavelengths = s.light.scene().grid.nodes().size();
+  const auto &o = s.observation;
+  // 12 bytes a pixel while a frame is made: 100 MB together.
+  const std::size_t pixels =
+      static_cast<std::size_t>(o.frame_px[0]) * static_cast<std::size_t>(o.frame_px[1]);
+  const std::size_t most =
+      o.makes_frames ? std::clamp<std::size_t>(8'000'000 / pixels, 1, 4096) : 4096;
   const std::size_t times = std::size_t{65'536} * 80 / (80 + wavelengths);
   const std::size_t block =
-      std::clamp<std::size_t>(times / std::max<std::size_t>(1, s.nodes.size()), 1, 4096);
+      std::clamp<std::size_t>(times / std::max<std::size_t>(1, s.nodes.size()), 1, most);
+  FrameTroubles troubles;
   std::size_t glaring = 0; // exposures in which the sky is far brighter than the object
   for (std::size_t begin = 0; begin < exposures.size(); begin += block) {
     if (monitor.is_cancelled())
@@ -172,6 +208,15 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
     for (std::size_t k = 0; k < part.size(); ++k) {
       if (recorded[k].error)
         return tl::unexpected(*recorded[k].error);
+      if (recorded[k].frames) {
+        troubles.add(recorded[k]);
+        ++out.frames;
+        if (tables.take_frame)
+          UMOV_TRY(tables.take_frame(
+              frame_name(s.observers.front().conditions().object, part[k].planned.plan.index),
+              fits_of(s, part[k], recorded[k])));
+        recorded[k].frames.reset();
+      }
       tables.counts.add(part[k], recorded[k]);
       tables.truth.add(part[k], recorded[k]);
       glaring += is_glaring(recorded[k]) ? 1u : 0u;
@@ -183,6 +228,7 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
     out.exposures += part.size();
     monitor.advance("exposures", begin + part.size(), exposures.size());
   }
+  troubles.warn(diagnostics);
   if (glaring > 0)
     diagnostics.warn(
         fmt::format("{} with a sky more than ten times as bright as the object in the "
@@ -242,7 +288,8 @@ void warn_of_setup(const Setup &s, double site_height_m, Diagnostics &diagnostic
 
 Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands,
                             const Programme &programme, std::uint32_t object,
-                            const JobOptions &options, const Monitor &monitor, Observation &out,
+                            const JobOptions &options, const Monitor &monitor,
+                            const FrameSink &take_frame, Observation &out,
                             Diagnostics &diagnostics) {
   UMOV_ASSIGN(loaded,
               load_object(scenario, object,
@@ -261,6 +308,9 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
   for (const Exposure &e : exposures)
     if (!observers[e.planned.band].is_prepared(e.planned.plan.state))
       UMOV_TRY(observers[e.planned.band].prepare(e.planned.plan.state));
+  UMOV_ASSIGN(stars, field_of(*scenario.observation, out.inputs));
+  PixelImages images(scenario.observation->seeing.profile);
+  const double width = observers.front().fwhm_arcsec(1);
   const Setup setup{
       scenario,
       *scenario.observation,
@@ -268,16 +318,20 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
       *models.light,
       track,
       std::move(observers),
-      exposure_nodes(scenario.observation->exposure_s, shortest_feature_s(track, exposures)),
+      exposure_nodes(scenario.observation->exposure_s,
+                     shorter(shortest_feature_s(track, exposures),
+                             trail_feature_s(*scenario.observation, track, exposures, width))),
       request.object,
       {conditions.air.pressure_hpa, 283.15, 4},
       {scenario.observation->sky, conditions.air, bands.v},
+      std::move(stars),
+      images,
       options.threads};
   out.light_s += seconds_since(began);
   warn_of_mosaic(setup, diagnostics);
   UMOV_TRY(check_air(exposures, setup, diagnostics));
   warn_of_setup(setup, scenario.observer->altitude_m, diagnostics);
-  Tables tables{CountsTable(setup), TruthTable(setup)};
+  Tables tables{CountsTable(setup), TruthTable(setup), take_frame};
   UMOV_TRY(run_blocks(setup, exposures, monitor, tables, out, diagnostics));
   out.counts.append(std::move(tables.counts).table());
   out.truth.append(std::move(tables.truth).table());
@@ -287,7 +341,8 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
 } // namespace
 
 Result<Observation> observe(const Scenario &given, const JobOptions &options,
-                            const Monitor &monitor, Diagnostics &diagnostics) {
+                            const Monitor &monitor, Diagnostics &diagnostics,
+                            const FrameSink &take_frame) {
   UMOV_TRY(check_complete_for_run(given));
   if (!given.observation)
     return fail(ErrorCode::BadInput,
@@ -303,7 +358,7 @@ Result<Observation> observe(const Scenario &given, const JobOptions &options,
   Observation out;
   for (std::size_t k = 0; k < scenario.objects.size(); ++k)
     UMOV_TRY(observe_object(scenario, bands, programme, static_cast<std::uint32_t>(k), options,
-                            monitor, out, diagnostics));
+                            monitor, take_frame, out, diagnostics));
   if (out.exposures == 0)
     return fail(ErrorCode::Nothing, "no exposure falls in a pass; umov passes tells when there is "
                                     "one");

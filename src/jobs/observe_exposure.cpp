@@ -1,4 +1,4 @@
-#include "jobs/observe_exposure.h"
+#include "jobs/observe_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,7 @@
 #include <umov/photometry/radiometry.h>
 
 namespace umov::jobs {
-namespace {
 
-/// Position angle of the zenith in the frame of the files.
 Angle zenith_in(PolarizationFrame frame, const ObservingGeometry &g) {
   switch (frame) {
   case PolarizationFrame::Equatorial:
@@ -23,16 +21,10 @@ Angle zenith_in(PolarizationFrame frame, const ObservingGeometry &g) {
   return {};
 }
 
-Angle parallactic_angle(const ObservingGeometry &g) {
-  return zenith_in(PolarizationFrame::Equatorial, g);
-}
-
 Angle x_axis_from_zenith(const Instrument &instrument, const ObservingGeometry &g) {
   return axis_from_zenith(instrument.telescope, Angle::degrees(instrument.polarimeter.x_axis_deg),
-                          parallactic_angle(g), g.altitude);
+                          zenith_in(PolarizationFrame::Equatorial, g), g.altitude);
 }
-
-} // namespace
 
 Result<LitBlock> light_of(const Setup &s, std::span<const Exposure> exposures,
                           const Monitor &monitor) {
@@ -71,13 +63,17 @@ Stokes<ScatteringPlane> irradiance_of(const BandResult &lit, const BandResponse 
          irradiance_at_observer(1, band.solar_mean, g.sun_distance_km, g.sunlit, g.range_km);
 }
 
+/// Light of each node of the exposure, as it reaches the polarimeter.
+using Moments = std::vector<std::vector<Stokes<InstrumentAxes>>>;
+
 ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit,
-                       Recorded &out) {
+                       Recorded &out, Moments &moments) {
   const BandObserver &observer = s.observers[e.planned.band];
   const BandResponse &band = observer.band();
   const ObservingGeometry &g = e.middle;
   ExposureLight light;
   light.flux.resize(band.nm.size());
+  moments.resize(s.nodes.size());
   for (std::size_t n = 0; n < s.nodes.size(); ++n) {
     const std::size_t at = number * s.nodes.size() + n;
     const ObservingGeometry &now = lit.points[at].geometry;
@@ -89,8 +85,10 @@ ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, co
           irradiance_of(lit.table.at(at, s.terms[e.planned.band][k].node), band, now);
       const auto zenith_axes =
           rotate_to<SkyNorth>(light_here, Angle::radians(-now.pa_scat_altaz.radians()));
-      light.flux[k] +=
-          observer.at_polarimeter(k, zenith_axes, now.altitude, x_axis) * s.nodes[n].weight;
+      const auto here = observer.at_polarimeter(k, zenith_axes, now.altitude, x_axis);
+      light.flux[k] += here * s.nodes[n].weight;
+      if (s.observation.makes_frames)
+        moments[n].push_back(here);
       out.truth += rotate_to<SkyNorth>(light_here, to_file) * (band.weight[k] * s.nodes[n].weight);
     }
   }
@@ -113,13 +111,27 @@ ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, co
 Recorded record(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit) {
   Recorded out;
   const BandObserver &observer = s.observers[e.planned.band];
-  const ExposureLight light = arriving(s, e, number, lit, out);
+  Moments moments;
+  const ExposureLight light = arriving(s, e, number, lit, out, moments);
   const Angle on_sky =
       axis_on_sky(s.observation.instrument.telescope, light.axis_zenith, e.middle.altitude);
   out.axis = Angle::radians(on_sky.radians() + light.zenith.radians());
   out.airmass = light.airmass;
   out.rate_rad_s = light.rate_rad_s;
   out.k_mag = -2.5 * std::log10(observer.mean_transmission(light.airmass)) / light.airmass;
+  if (s.observation.makes_frames) {
+    const std::span<const TrackPoint> points(&lit.points[number * s.nodes.size()], s.nodes.size());
+    const double width = observer.fwhm_arcsec(light.airmass) / observer.pixel_arcsec();
+    auto framed = observe_frames(observer, s.images, e.planned.plan, light,
+                                 FrameView(s, e).plan(points, std::move(moments), width));
+    if (!framed) {
+      out.error = framed.error();
+      return out;
+    }
+    out.channels = std::move(framed->channels);
+    out.frames = std::move(*framed);
+    return out;
+  }
   auto counts = observer.observe(e.planned.plan, light);
   if (counts)
     out.channels = std::move(*counts);

@@ -7,6 +7,8 @@
 #include <optional>
 #include <umov/atmosphere/refraction.h>
 #include <umov/instrument/exposure.h>
+#include <umov/instrument/frame_observer.h>
+#include <umov/io/stars_file.h>
 #include <umov/jobs/monitor.h>
 #include <umov/light/light_model.h>
 #include <umov/observation/track.h>
@@ -33,6 +35,8 @@ struct Setup {
   std::string object;
   SurfaceAir surface;
   SkyModel sky;
+  std::vector<FieldStar> stars; ///< of the frames' field
+  PixelImages &images;
   unsigned threads = 0;
 };
 
@@ -42,6 +46,7 @@ struct Recorded {
   Stokes<SkyNorth> truth; ///< in the frame of the files [W m-2 nm-1]
   Angle axis;             ///< of the instrument's x axis in that frame
   double airmass = 0, k_mag = 0, rate_rad_s = 0;
+  std::optional<FramedExposure> frames; ///< where they are made
   std::optional<Error> error;
 };
 
@@ -51,6 +56,10 @@ struct LitBlock {
   StokesTable table;
 };
 
+/// Position angle of the zenith in the frame of the files.
+Angle zenith_in(PolarizationFrame frame, const ObservingGeometry &g);
+/// Of the instrument's x axis in the focus, from the zenith.
+Angle x_axis_from_zenith(const Instrument &instrument, const ObservingGeometry &g);
 /// Of `exposures`; Interrupted when `monitor` says so.
 Result<LitBlock> light_of(const Setup &setup, std::span<const Exposure> exposures,
                           const Monitor &monitor);

@@ -17,7 +17,7 @@ bool is_day(const SkyOptions &options, Angle sun_altitude);
 /// Dark sky, twilight and moonlight, each with its polarization, in zenith axes [W m-2 nm-1
 /// arcsec-2]; not by day. Moonlight is known in V: in other
 /// bands it is sunlight as bright there, scattered by as much as the air takes away in the band
-/// (the course of Noll et al. 2012 and Jones et al. 2013). That the Moon is redder than the Sun,
+/// (assumed; Jones et al. 2013, A&A 560, A91, compute it). That the Moon is redder than the Sun,
 /// and that its light is scattered more than once, is left out.
 Stokes<SkyNorth> sky_light(const SkyModel &sky, const BandResponse &band,
                            const ObservingGeometry &geometry);

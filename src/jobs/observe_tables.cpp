@@ -48,7 +48,10 @@ void CountsTable::add(const Exposure &e, const Recorded &r) {
                              c.row[3],
                              e.middle.phase_angle.degrees(),
                              scattering_axis(e.middle, s_.scenario.frame).degrees(),
-                             c.scintillation};
+                             c.scintillation,
+                             e.middle.right_ascension.degrees(),
+                             e.middle.declination.degrees(),
+                             e.middle.range_km};
     for (std::size_t k = 0; k < std::size(values); ++k)
       numbers_[k].push_back(values[k]);
   }
@@ -78,7 +81,10 @@ Table CountsTable::table() && {
       {"w3", "electron m2 nm / W", "of V"},
       {"phase_angle", "deg", "Sun-object-observer"},
       {"pa_scat", "deg", "position angle of the normal of the scattering plane"},
-      {"scint_sd", "", "relative standard deviation of the transparency by scintillation"}};
+      {"scint_sd", "", "relative standard deviation of the transparency by scintillation"},
+      {"ra", "deg", "of the object, topocentric, geometric, ICRS axes"},
+      {"dec", "deg", "the same"},
+      {"range", "km", "of the object"}};
   for (std::size_t k = 0; k < std::size(columns); ++k) {
     if (k == 10)
       out.add("saturated", "", "a pixel is full", std::move(saturated_));
@@ -140,6 +146,13 @@ void note_observation(Table &table, const Scenario &scenario, const ObservedBand
   for (const BandResponse &band : bands.responses)
     table.note("zero_flux " + band.name, shortest(band.zero_flux));
   table.note("seed", fmt::format("{}", scenario.seed));
+  table.note("site", scenario.observer->name);
+  table.note("site_lat_deg", shortest(scenario.observer->latitude.degrees()));
+  table.note("site_lon_deg", shortest(scenario.observer->longitude.degrees()));
+  table.note("site_alt_m", shortest(scenario.observer->altitude_m));
+  if (scenario.objects.size() == 1 && scenario.objects.front().orbit &&
+      scenario.objects.front().orbit->norad > 0)
+    table.note("norad", fmt::format("{}", scenario.objects.front().orbit->norad));
 }
 
 } // namespace umov::jobs

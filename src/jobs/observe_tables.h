@@ -31,7 +31,7 @@ private:
   ExposureColumns exposures_;
   std::vector<std::string> channel_;
   std::vector<bool> saturated_;
-  std::array<std::vector<double>, 19> numbers_;
+  std::array<std::vector<double>, 22> numbers_;
 };
 
 /// A row for each exposure: what was there to be seen.

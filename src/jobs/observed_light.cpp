@@ -138,7 +138,11 @@ Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCu
     in_shadow_ += rows.size();
     return {};
   }
-  below_horizon_ += geometry->altitude.degrees() < 0 ? rows.size() : 0;
+  constexpr double least_altitude_deg = -1; // refraction lifts by half a degree
+  if (geometry->altitude.degrees() < least_altitude_deg) {
+    below_horizon_ += rows.size();
+    return {};
+  }
   ObservedCurve &curve = out.curve;
   const double seconds =
       out.geometry.empty() ? 0 : seconds_between(geometry->time, out.geometry.front().time);
@@ -192,16 +196,16 @@ Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
     diagnostics.warn(fmt::format("{} left out: the object was in the Earth's shadow by its orbit",
                                  counted(in_shadow_, "row")));
   if (below_horizon_ > 0)
-    diagnostics.warn(fmt::format("{} of an object below the horizon by its orbit: are times, site "
-                                 "and orbit right?",
+    diagnostics.warn(fmt::format("{} left out: the object was below the horizon by its orbit; are "
+                                 "times, site and orbit right?",
                                  counted(below_horizon_, "row")));
   if (without_error_ > 0)
     diagnostics.warn(fmt::format("{} with no error of I: taken as good as --floor allows",
                                  counted(without_error_, "row")));
   if (out.curve.epochs.empty())
     return fail(ErrorCode::BadInput,
-                "no row is of a time at which the object stood in sunlight by its orbit: do times, "
-                "orbit and site belong together?",
+                "no row is of a time at which the object stood in sunlight by its orbit, above the "
+                "site's horizon: do times, orbit and site belong together?",
                 {rows_.front().file->path});
   if (!has_light(out.curve))
     return fail(ErrorCode::BadInput,

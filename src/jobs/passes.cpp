@@ -1,6 +1,6 @@
 #include <umov/jobs/passes.h>
 
-#include "jobs/pass_models.h"
+#include "jobs/pass_searcher.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,6 +103,7 @@ std::vector<Found> search_all(const PassesRequest &request, const std::vector<Tr
   std::vector<Found> out(orbits.size());
   Mutex lock;
   std::size_t done = 0;
+  monitor.advance("objects", 0, orbits.size());
   parallel_for(orbits.size(), threads, [&](std::size_t i) {
     if (monitor.is_cancelled())
       return;
@@ -149,15 +150,11 @@ std::string problem_of(const Result<SitePasses> &found) {
   return out;
 }
 
-struct Tally {
-  std::size_t searched = 0, failed = 0;
-};
-
 /// Passes of all objects by the time of rise; warnings for the first objects that failed.
-Tally gather(const PassesRequest &request, std::vector<Found> &&all, PassesResult &out,
-             Diagnostics &diagnostics) {
+SearchTally gather(const PassesRequest &request, std::vector<Found> &&all, PassesResult &out,
+                   Diagnostics &diagnostics) {
   constexpr std::size_t told_max = 10;
-  Tally tally;
+  SearchTally tally;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!all[i])
       continue;
@@ -174,44 +171,71 @@ Tally gather(const PassesRequest &request, std::vector<Found> &&all, PassesResul
   if (tally.failed > told_max)
     diagnostics.warn(fmt::format("{} more objects like these", tally.failed - told_max));
   std::stable_sort(out.found.begin(), out.found.end(),
-                   [](const ObjectPass &a, const ObjectPass &b) {
-                     return seconds_between(a.pass.rise.time, b.pass.rise.time) < 0;
+                   [&request](const ObjectPass &a, const ObjectPass &b) {
+                     return rise_order(request, a.pass) < rise_order(request, b.pass);
                    });
   return tally;
 }
 
 } // namespace
 
-Result<PassesResult> passes(const PassesRequest &request, const JobOptions &options,
-                            const Monitor &monitor, Diagnostics &diagnostics) {
+double rise_order(const PassesRequest &request, const SitePass &pass) {
+  return seconds_between(pass.rise.time, request.start);
+}
+
+Result<PassSearcher> PassSearcher::make(const PassesRequest &request, const JobOptions &options,
+                                        Diagnostics &diagnostics) {
   if (seconds_between(request.stop, request.start) < 0)
     return fail(ErrorCode::Usage, "--stop lies before --start");
-  PassesResult out;
+  PassSearcher out;
   UMOV_ASSIGN(orbits, read_orbits(request, options, diagnostics));
-  out.orbits = std::move(orbits);
   warn_if_beyond_leap_seconds(request.stop, diagnostics);
   warn_if_outside_eop(request.start, request.stop, diagnostics);
   UMOV_ASSIGN(models, PassModels::make(request.model, options, diagnostics));
-  out.model = models.description();
-  out.has_air = models.has_air();
-  out.magnitudes = request.model.scene ? request.model.scene->magnitudes : MagnitudeSystem::AB;
-  warn_of_unknown(out.orbits, models, diagnostics);
-  const Tally tally = gather(
-      request, search_all(request, out.orbits, models, options.threads, monitor), out, diagnostics);
-  UMOV_TRY(models.keep_masks());
-  if (tally.searched < out.orbits.size())
-    out.stopped = Error{ErrorCode::Interrupted,
-                        fmt::format("stopped by the user after {} of {} objects", tally.searched,
-                                    out.orbits.size()),
-                        {}};
-  else if (tally.failed == out.orbits.size() && out.found.empty())
+  warn_of_unknown(orbits, models, diagnostics);
+  out.request_ = request;
+  out.threads_ = options.threads;
+  out.orbits_ = std::move(orbits);
+  out.models_ = std::move(models);
+  return out;
+}
+
+FoundPasses PassSearcher::search(IndexRange range, const Monitor &monitor,
+                                 Diagnostics &diagnostics) const {
+  FoundPasses out;
+  const auto first = orbits_.begin() + static_cast<std::ptrdiff_t>(range.first);
+  out.result.orbits.assign(first, first + static_cast<std::ptrdiff_t>(range.count));
+  out.result.model = models_.description();
+  out.result.has_air = models_.has_air();
+  out.result.magnitudes =
+      request_.model.scene ? request_.model.scene->magnitudes : MagnitudeSystem::AB;
+  out.tally = gather(request_, search_all(request_, out.result.orbits, models_, threads_, monitor),
+                     out.result, diagnostics);
+  if (out.tally.searched < range.count)
+    out.result.stopped = Error{
+        ErrorCode::Interrupted,
+        fmt::format("stopped by the user after {} of {} objects", out.tally.searched, range.count),
+        {}};
+  return out;
+}
+
+Result<PassesResult> passes(const PassesRequest &request, const JobOptions &options,
+                            const Monitor &monitor, Diagnostics &diagnostics) {
+  UMOV_ASSIGN(searcher, PassSearcher::make(request, options, diagnostics));
+  UMOV_ASSIGN(range, options.part.of(searcher.objects(), "objects"));
+  FoundPasses found = searcher.search(range, monitor, diagnostics);
+  PassesResult &out = found.result;
+  UMOV_TRY(searcher.keep_masks());
+  if (out.stopped)
+    return std::move(out);
+  if (found.tally.failed == out.orbits.size() && out.found.empty() && !out.orbits.empty())
     return fail(ErrorCode::Physics, "no pass before the orbit of every object ends",
                 {request.orbit});
-  else if (out.found.empty())
+  if (out.found.empty())
     return fail(ErrorCode::Nothing, fmt::format("no {}pass above {:g} deg in this span",
                                                 request.is_visible_only ? "visible " : "",
                                                 request.altitude_min.degrees()));
-  return out;
+  return std::move(out);
 }
 
 } // namespace umov::jobs

@@ -82,6 +82,9 @@ CountRow middle_of(Rows rows) {
   const double share = step > 0 ? (half - seconds_between(a.time, out.time)) / step : 0;
   out.time = plus_seconds(out.time, half);
   out.x_axis_pa_deg = between_axes(a.x_axis_pa_deg, b.x_axis_pa_deg, share);
+  out.ra_deg = a.ra_deg + share * std::remainder(b.ra_deg - a.ra_deg, 360);
+  out.dec_deg = a.dec_deg + share * (b.dec_deg - a.dec_deg);
+  out.range_km = a.range_km + share * (b.range_km - a.range_km);
   out.pa_scat_deg = between_axes(a.pa_scat_deg, b.pa_scat_deg, share);
   out.phase_angle_deg = a.phase_angle_deg + share * (b.phase_angle_deg - a.phase_angle_deg);
   return out;
@@ -136,6 +139,52 @@ void judge(Reduced &r, const ReduceOptions &options) {
     add_flag(r.flags, "above_one");
 }
 
+/// q and u of the plate's first half turn against those of its second, which should be the same.
+void put_null_test(Rows rows, const std::vector<ChannelDatum> &data, std::size_t parameters,
+                   Reduced &out) {
+  if (parameters < 3)
+    return;
+  std::array<std::vector<ChannelDatum>, 2> halves;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    halves[std::fmod(std::fmod(rows[k].plate_deg, 180) + 180, 180) < 90 ? 0 : 1].push_back(data[k]);
+  if (halves[0].size() < parameters || halves[1].size() < parameters)
+    return;
+  const auto first = fit_stokes(halves[0], parameters), second = fit_stokes(halves[1], parameters);
+  if (!first || !second || !(first->stokes[0] > 0 && second->stokes[0] > 0))
+    return;
+  const auto a = fractions_of(*first), b = fractions_of(*second);
+  for (std::size_t k = 0; k < 2; ++k)
+    out.null[k] = (a.value[k] - b.value[k]) / 2;
+}
+
+/// Gaps within what is reduced together: brightness may have changed unseen.
+void warn_of_gaps(const std::vector<CountRow> &rows, bool is_series, Diagnostics &diagnostics) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < rows.size(); ++k)
+    if (const double step = seconds_between(rows[k].time, rows[k - 1].time); step > 1e-9)
+      steps.push_back(step);
+  if (steps.size() < 4)
+    return;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double usual = *middle;
+  std::size_t gaps = 0;
+  double longest = 0;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    const double step = seconds_between(rows[k].time, rows[k - 1].time);
+    const bool is_together = is_series || rows[k].set == rows[k - 1].set;
+    if (!is_together || rows[k].name != rows[k - 1].name || !(step > 10 * usual))
+      continue;
+    ++gaps;
+    longest = std::max(longest, step);
+  }
+  if (gaps > 0)
+    diagnostics.warn(
+        fmt::format("{} of up to {:.3g} s within {}, where exposures follow each other "
+                    "every {:.3g} s: what changed meanwhile is taken for polarization",
+                    counted(gaps, "gap"), longest, is_series ? "a series" : "a set", usual));
+}
+
 Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
               const ReduceOptions &options) {
   Reduced out;
@@ -162,6 +211,7 @@ Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
   }
   out.fit = *fit;
   out.fractions = fractions_of(*fit);
+  put_null_test(set.rows, data, parameters, out);
   double sky = 0, counts = 0;
   for (const ChannelDatum &d : data)
     sky += d.sky, counts += d.counts;
@@ -220,8 +270,10 @@ Result<SequenceFit> fit_series(Rows rows, std::size_t parameters, bool has_separ
     data.push_back({seconds_between(rows[k].time, rows.front().time), datum_of(rows[k], options),
                     has_separate_pupils ? k : static_cast<std::size_t>(rows[k].exposure),
                     rows[k].scintillation});
-  UMOV_ASSIGN(fit, fit_sequence(data, options.period_s, options.harmonics,
-                                std::max<std::size_t>(3, parameters)));
+  const std::size_t unknowns = std::max<std::size_t>(3, parameters);
+  UMOV_ASSIGN(fit, options.knot_s > 0
+                       ? fit_spline(data, options.knot_s, unknowns)
+                       : fit_sequence(data, options.period_s, options.harmonics, unknowns));
   std::vector<ModelledDatum> modelled;
   const auto gains = gains_of(rows);
   for (std::size_t k = 0; k < rows.size(); ++k)
@@ -245,7 +297,7 @@ Result<std::vector<Reduced>> over_time(const CountsFile &file, std::size_t param
     Reduced one;
     one.middle = middle_of(rows);
     one.fractions = fit.fractions;
-    one.fit.stokes[0] = fit.series[0];
+    one.fit.stokes[0] = fit.mean;
     one.fit.covariance[0][0] = fit.mean_variance;
     one.fit.chi2 = fit.chi2;
     one.fit.dof = fit.dof;
@@ -307,7 +359,8 @@ void warn_of_rows(const std::vector<Reduced> &reduced, Diagnostics &diagnostics)
 
 void note(Table &table, const CountsFile &file) {
   note_conventions(table);
-  for (const char *key : {"pol_frame", "instrument", "polarimeter"})
+  for (const char *key : {"pol_frame", "instrument", "polarimeter", "site", "site_lat_deg",
+                          "site_lon_deg", "site_alt_m", "norad"})
     if (const auto found = file.notes.find(key); found != file.notes.end())
       table.note(key, found->second);
   table.note("POLCCONV", "IAU");
@@ -321,10 +374,11 @@ Result<Table> reduce(const CountsFile &file, const ReduceOptions &options, const
   const auto pupils = file.notes.find("pupils");
   const bool has_separate_pupils = pupils != file.notes.end() && pupils->second == "separate";
   UMOV_ASSIGN(reduced,
-              options.period_s > 0
+              options.period_s > 0 || options.knot_s > 0
                   ? over_time(file, parameters, has_separate_pupils, options)
                   : set_by_set(file, parameters, has_separate_pupils, options, diagnostics));
   monitor.advance("sets", reduced.size(), reduced.size());
+  warn_of_gaps(file.rows, options.period_s > 0 || options.knot_s > 0, diagnostics);
   warn_of_rows(reduced, diagnostics);
   Table out = stokes_table(file, parameters, reduced);
   note(out, file);

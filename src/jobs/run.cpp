@@ -2,6 +2,8 @@
 
 #include "jobs/haze_spread.h"
 #include "jobs/job_journal.h"
+#include "jobs/run_report.h"
+#include "jobs/wanted_passes.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -111,15 +113,31 @@ void warn_of_earth(const LightCurveOutcome &outcome, const EarthshineOptions &op
                     patches_bound * options.patches, worst, patches_bound));
 }
 
+/// A turn that is seen a few times only looks like another one (aliasing), and its flashes fall
+/// between the rows.
+void warn_of_step(const ObjectRun &one, double step_s, Diagnostics &diagnostics) {
+  constexpr double rows_per_turn = 8; // four for each half, where two sides are alike
+  const auto periods = turning_periods(one.request.track.attitude);
+  const auto fastest = std::ranges::min_element(periods, {}, &TurningPeriod::seconds);
+  if (fastest == periods.end() || step_s * rows_per_turn <= fastest->seconds)
+    return;
+  diagnostics.warn(
+      fmt::format("{} turns in {:.3g} s ({}) and step_s = {:g} sees it {:.2g} times in "
+                  "a turn: flashes are missed and the period shown may be false. "
+                  "Take step_s = {:.1g} or less",
+                  one.request.object, fastest->seconds, fastest->name, step_s,
+                  fastest->seconds / step_s, fastest->seconds / (2 * rows_per_turn)));
+}
+
 Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks blocks,
                                   const Monitor &monitor) {
   static const std::atomic<bool> never{false};
   const std::string what = is_alone ? "light curve" : one.request.object;
+  monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
   UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene));
   one.light = models.light->facts();
-  auto out = compute_light_curve(
-      one.request, *models.light, models.many_directions.get(),
-      [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
+  auto out = compute_wanted(
+      one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
       monitor.cancel != nullptr ? *monitor.cancel : never, blocks);
   UMOV_TRY(models.keep_masks());
   return out;
@@ -131,7 +149,8 @@ Result<Journal> journal_of(const std::vector<ObjectRun> &objects, const Scenario
   std::vector<InputFile> inputs;
   for (const ObjectRun &one : objects)
     inputs.insert(inputs.end(), one.object.inputs.begin(), one.object.inputs.end());
-  return open_journal(options, job_text(scenario, inputs, "run"), monitor, diagnostics);
+  return open_journal(options, job_text(scenario, inputs, "run" + options.part.text()), monitor,
+                      diagnostics);
 }
 
 } // namespace
@@ -148,6 +167,7 @@ Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptio
     for (const InputFile &input : object.inputs)
       monitor.tell(fmt::format("read {} (SHA-256 {})", input.path, input.sha256));
     out.push_back({std::move(object), std::move(request), {}, {}});
+    warn_of_step(out.back(), scenario.time->step_s, diagnostics);
   }
   if (constexpr double long_step_s = 300; scenario.time->step_s > long_step_s)
     diagnostics.warn(
@@ -163,6 +183,9 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
                               Diagnostics &diagnostics) {
   RunResult out;
   out.has_all_csv_digits = scenario.has_all_csv_digits;
+  static const std::atomic<bool> never{false};
+  if (!options.part.is_whole())
+    UMOV_TRY(take_part(objects, options.part, monitor.cancel != nullptr ? *monitor.cancel : never));
   UMOV_ASSIGN(journal, journal_of(objects, scenario, options, monitor, diagnostics));
   std::size_t with_rows = 0;
   for (std::size_t k = 0; k < objects.size(); ++k) {

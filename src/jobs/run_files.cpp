@@ -64,12 +64,16 @@ std::string options_needed(const JobOptions &options) {
 
 } // namespace
 
+void append_tables(const ObjectRun &object, RunTables &tables) {
+  const LightCurveOutcome &outcome = object.outcome;
+  tables.light_curve.append(light_curve_table(outcome.curve, object.request.frame));
+  tables.passes.append(passes_table(outcome.passes, outcome.curve));
+}
+
 RunTables run_tables(const RunResult &run) {
   RunTables out;
-  for (const ObjectRun &one : run.objects) {
-    out.light_curve.append(light_curve_table(one.outcome.curve, one.request.frame));
-    out.passes.append(passes_table(one.outcome.passes, one.outcome.curve));
-  }
+  for (const ObjectRun &one : run.objects)
+    append_tables(one, out);
   if (run.has_all_csv_digits)
     out.light_curve.clear_precision();
   if (run.stopped) {

@@ -85,7 +85,14 @@ PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
 
 namespace {
 
-/// Periods that a law has by itself; none where it follows its targets alone.
+std::string title_of(const Scenario &scenario, const LightCurveRequest &request) {
+  if (scenario.title.empty())
+    return request.object;
+  return scenario.objects.size() == 1 ? scenario.title : scenario.title + ": " + request.object;
+}
+
+} // namespace
+
 std::vector<TurningPeriod> turning_periods(const AttitudeLaw &law) {
   std::vector<TurningPeriod> out;
   if (const auto *spin = std::get_if<SpinLaw>(&law); spin && spin->rate_rad_s != 0)
@@ -105,14 +112,6 @@ std::vector<TurningPeriod> turning_periods(const AttitudeLaw &law) {
     return turning_periods(*unsteady->law);
   return out;
 }
-
-std::string title_of(const Scenario &scenario, const LightCurveRequest &request) {
-  if (scenario.title.empty())
-    return request.object;
-  return scenario.objects.size() == 1 ? scenario.title : scenario.title + ": " + request.object;
-}
-
-} // namespace
 
 Result<std::string> make_run_report(const Scenario &scenario, const LoadedObject &object,
                                     const LightCurveRequest &request,

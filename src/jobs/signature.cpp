@@ -8,6 +8,7 @@
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
 #include <umov/jobs/pose_light.h>
+#include <umov/jobs/ranged_job.h>
 
 namespace umov::jobs {
 namespace {
@@ -76,23 +77,41 @@ std::string job_of(const Scenario &scenario, const PoseList &poses, const Signat
 /// A block of poses from their numbers to rows.
 class PoseBlocks {
 public:
-  PoseBlocks(const PoseList &poses, const PoseLight &light, Journal &journal, LightTask task)
+  PoseBlocks(const PoseList &poses, const PoseLight &light, Journal *journal, LightTask task)
       : poses_(poses), light_(light), journal_(journal), task_(task) {}
 
-  /// False if the task was cancelled.
-  bool light(Journal::Block block, std::size_t begin, std::size_t count) {
-    take(begin, count);
-    if (const auto kept = journal_.find(block);
-        kept && from_bytes(*kept, results_) && results_.poses() == count)
+  /// Lights what a range has of the block that `at` lies in, all of it before `at` apart. Light
+  /// between surfaces is shared by the poses of a block, which is then lit as a whole. False if the
+  /// task was cancelled.
+  bool light(std::size_t at, IndexRange range) {
+    const std::size_t length = light_.block(), number = at / length;
+    const std::size_t block_end = std::min((number + 1) * length, poses_.count);
+    wanted_ = {at, std::min(range.end(), block_end) - at};
+    lit_ = wanted_;
+    if (light_.options().bounces > 1)
+      lit_ = {number * length, block_end - number * length};
+    take(lit_.first, lit_.count);
+    const Journal::Block block{0, number};
+    if (const auto kept = journal_ != nullptr ? journal_->find(block) : std::nullopt;
+        kept && from_bytes(*kept, results_) && results_.poses() == lit_.count)
       return true;
     if (!light_.evaluate(part_, results_, task_))
       return false;
-    journal_.keep(block, to_bytes(results_));
+    if (journal_ != nullptr)
+      journal_->keep(block, to_bytes(results_));
     return true;
   }
-  [[nodiscard]] Table rows(bool is_emitted) const {
-    return SignatureRows::of(numbers_, part_, light_.model().scene().bands, results_, task_.threads)
-        .table(is_emitted);
+  /// How many poses of the range were lit.
+  [[nodiscard]] std::size_t count() const { return wanted_.count; }
+  /// Their rows.
+  [[nodiscard]] Table rows(const SignatureRequest &request) const {
+    const auto &bands = light_.model().scene().bands;
+    Table out = SignatureRows::of(numbers_, part_, bands, results_, task_.threads)
+                    .table(request.source == Source::Thermal);
+    describe(request, light_, out);
+    if (lit_.count == wanted_.count)
+      return out;
+    return out.part((wanted_.first - lit_.first) * bands.size(), wanted_.count * bands.size());
   }
 
 private:
@@ -109,12 +128,26 @@ private:
   }
   const PoseList &poses_;
   const PoseLight &light_;
-  Journal &journal_;
+  Journal *journal_;
   LightTask task_;
+  IndexRange wanted_, lit_;
   StokesTable results_;
   std::vector<Pose> part_;
   std::vector<std::int64_t> numbers_;
 };
+
+LightTask task_of(const JobOptions &options, const Monitor &monitor) {
+  LightTask task;
+  task.threads = options.threads;
+  task.cancel = monitor.cancel;
+  return task;
+}
+
+Error stopped_after(std::size_t done, std::size_t total) {
+  return {ErrorCode::Interrupted,
+          fmt::format("stopped by the user after {} of {} poses", done, total),
+          {}};
+}
 
 /// What the log says of the masks in the end.
 void tell_of_masks(const LightModel &model, const std::filesystem::path &file, bool had_file,
@@ -129,12 +162,60 @@ void tell_of_masks(const LightModel &model, const std::filesystem::path &file, b
                      : "masks are kept in " + file.string());
 }
 
+/// The poses of a signature, ready to be lit.
+class RangedSignature final : public RangedJob {
+public:
+  RangedSignature(PoseList poses, SignatureRequest request, JobOptions options, PoseLight light,
+                  std::string identity)
+      : poses_(std::move(poses)), request_(std::move(request)), options_(std::move(options)),
+        light_(std::move(light)), identity_(std::move(identity)) {}
+
+  [[nodiscard]] std::string unit() const override { return "poses"; }
+  [[nodiscard]] std::size_t total() const override { return poses_.count; }
+  [[nodiscard]] std::size_t grain() const override {
+    return std::min<std::size_t>(light_.block(), 4096);
+  }
+  [[nodiscard]] std::string identity() const override { return identity_; }
+  [[nodiscard]] std::vector<std::string> tables() const override { return {"signature"}; }
+  [[nodiscard]] Result<void> keep() const override { return light_.model().keep_masks(); }
+  Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,
+                    Diagnostics & /*diagnostics*/) override {
+    PoseBlocks blocks(poses_, light_, nullptr, task_of(options_, monitor));
+    for (std::size_t at = range.first; at < range.end(); at += blocks.count()) {
+      if (monitor.is_cancelled() || !blocks.light(at, range))
+        return tl::unexpected(stopped_after(at - range.first, range.count));
+      UMOV_TRY(sink.add(0, blocks.rows(request_)));
+      monitor.advance("poses", at + blocks.count() - range.first, range.count);
+    }
+    return {};
+  }
+
+private:
+  PoseList poses_;
+  SignatureRequest request_;
+  JobOptions options_;
+  PoseLight light_;
+  std::string identity_;
+};
+
 } // namespace
+
+Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, const PoseList &poses,
+                                                    const SignatureRequest &request,
+                                                    const JobOptions &options,
+                                                    Diagnostics &diagnostics) {
+  UMOV_TRY(PoseLight::check(scenario, request));
+  UMOV_ASSIGN(light, PoseLight::make(scenario, request, options, diagnostics));
+  std::string identity = job_of(scenario, poses, request, light);
+  return std::make_unique<RangedSignature>(poses, request, options, std::move(light),
+                                           std::move(identity));
+}
 
 Result<void> signature(const Scenario &scenario, const PoseList &poses,
                        const SignatureRequest &request, TableSink &sink, const JobOptions &options,
                        const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_TRY(PoseLight::check(scenario, request));
+  UMOV_ASSIGN(range, options.part.of(poses.count, "poses"));
   monitor.tell("preparing the scene ...");
   const bool had_file = file_exists(request.mask_file);
   SignatureRequest decided = request;
@@ -143,31 +224,22 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_ASSIGN(light, PoseLight::make(scenario, decided, options, diagnostics));
   const LightModel &model = light.model();
   UMOV_ASSIGN(journal,
-              open_journal(options, job_of(scenario, poses, request, light), monitor, diagnostics));
-  const std::size_t block = light.block();
-  LightTask task;
-  task.threads = options.threads;
-  task.cancel = monitor.cancel;
-  PoseBlocks blocks(poses, light, journal, task);
+              open_journal(options, job_of(scenario, poses, request, light) + options.part.text(),
+                           monitor, diagnostics));
+  PoseBlocks blocks(poses, light, &journal, task_of(options, monitor));
   std::size_t done = 0;
-  while (done < poses.count && !monitor.is_cancelled()) {
-    const std::size_t count = std::min(block, poses.count - done);
-    if (!blocks.light({0, done / block}, done, count))
+  monitor.advance("poses", 0, range.count);
+  while (done < range.count && !monitor.is_cancelled()) {
+    if (!blocks.light(range.first + done, range))
       break;
-    Table table = blocks.rows(request.source == Source::Thermal);
-    describe(request, light, table);
-    UMOV_TRY(sink.add(std::move(table)));
-    done += count;
-    monitor.advance("poses", done, poses.count);
+    UMOV_TRY(sink.add(blocks.rows(request)));
+    done += blocks.count();
+    monitor.advance("poses", done, range.count);
   }
   if (journal.problem())
     diagnostics.warn(journal.problem()->text());
-  if (done < poses.count)
-    return tl::unexpected(with_way_on(
-        sink.stop({ErrorCode::Interrupted,
-                   fmt::format("stopped by the user after {} of {} poses", done, poses.count),
-                   {}}),
-        journal));
+  if (done < range.count)
+    return tl::unexpected(with_way_on(sink.stop(stopped_after(done, range.count)), journal));
   UMOV_TRY(sink.finish());
   journal.finish();
   UMOV_TRY(model.keep_masks()); // last: the rows are complete without it

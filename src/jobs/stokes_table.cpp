@@ -59,7 +59,13 @@ public:
         {"dof", "", "degrees of freedom"},
         {"sky_share", "", "sky over object in the apertures"},
         {"phase_angle", "deg", "Sun-object-observer, middle of the set"},
-        {"x_axis_pa", "deg", "position angle of the instrument's x axis, middle of the set"}};
+        {"x_axis_pa", "deg", "position angle of the instrument's x axis, middle of the set"},
+        {"null_q", "",
+         "half of q of the plate's first half turn minus the second's: 0 but for noise"},
+        {"null_u", "", "the same of u"},
+        {"ra", "deg", "of the object, ICRS axes, middle of the set"},
+        {"dec", "deg", "the same"},
+        {"range", "km", "of the object"}};
     for (std::size_t k = 0; k < std::size(names); ++k) {
       out.add(names[k][0], names[k][1], names[k][2], std::move(columns_[k]));
       if (k == 2)
@@ -76,8 +82,8 @@ private:
     return value.value_or(nan);
   }
 
-  [[nodiscard]] std::array<double, 23> numbers(const Reduced &r) const {
-    std::array<double, 23> out;
+  [[nodiscard]] std::array<double, 28> numbers(const Reduced &r) const {
+    std::array<double, 28> out;
     out.fill(nan);
     const bool was_fitted = r.fit.covariance[0][0] > 0;
     if (was_fitted) {
@@ -90,8 +96,13 @@ private:
     out[20] = r.sky_share;
     out[21] = r.middle.phase_angle_deg;
     out[22] = r.middle.x_axis_pa_deg;
+    out[25] = r.middle.ra_deg - 360 * std::floor(r.middle.ra_deg / 360);
+    out[26] = r.middle.dec_deg;
+    out[27] = r.middle.range_km;
     if (!r.is_solved)
       return out;
+    out[23] = r.null[0];
+    out[24] = r.null[1];
     const auto &f = r.fractions;
     const auto &c = f.covariance;
     const double q = f.value[0], u = f.value[1];
@@ -123,7 +134,7 @@ private:
   std::size_t parameters_;
   std::vector<std::string> time_, name_, band_, system_, flags_;
   std::vector<std::int64_t> set_;
-  std::array<std::vector<double>, 23> columns_;
+  std::array<std::vector<double>, 28> columns_;
 };
 
 } // namespace

@@ -260,6 +260,23 @@ void truncate(LightCurve &curve, std::size_t rows) {
   curve.epochs.resize(rows);
 }
 
+/// Leaves out what was lit only because its block was.
+void drop_front(LightCurve &curve, std::size_t rows) {
+  rows = std::min(rows, curve.epochs.size());
+  const auto drop = [](auto &values, std::size_t count) {
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
+  };
+  const std::size_t samples = rows * curve.bands.size();
+  drop(curve.epochs, rows);
+  drop(curve.samples, samples);
+  drop(curve.material_i, samples * curve.materials.size());
+  for (SecondLight &second : curve.second_lights) {
+    drop(second.intensity, samples);
+    drop(second.half_width, samples);
+    drop(second.irradiance, samples);
+  }
+}
+
 /// After a stop some passes have fewer rows, or none and are not told of.
 void count_rows(LightCurveOutcome &out) {
   for (Pass &pass : out.passes)
@@ -290,16 +307,38 @@ Result<LightModels> make_light_models(const LightCurveRequest &request, const Sc
   return out;
 }
 
-Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
-                                              const LightModel &light,
-                                              const LightModel *many_directions,
-                                              const Progress &progress,
-                                              const std::atomic<bool> &cancel, KeptBlocks blocks) {
+PassCut cut_passes(const KeptEpochs &all, std::size_t first, std::size_t count,
+                   const LightModel &light, const LightCurveRequest &request) {
+  std::size_t begin = 0, rows = 0;
+  for (std::size_t p = 0; p < first + count; ++p)
+    (p < first ? begin : rows) += all.passes[p].rows;
+  std::size_t from = begin, behind = begin + rows;
+  if (request.light.bounces > 1) { // a block shares its paths: it is lit as a whole
+    const std::size_t grain = grain_of(light, request.light.bounces);
+    from = begin / grain * grain;
+    behind = std::min(all.geometry.size(), (behind + grain - 1) / grain * grain);
+  }
+  const auto at = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
+  PassCut out{all, begin - from, rows};
+  out.kept.geometry.assign(all.geometry.begin() + at(from), all.geometry.begin() + at(behind));
+  out.kept.pass.assign(all.pass.begin() + at(from), all.pass.begin() + at(behind));
+  return out;
+}
+
+Result<KeptEpochs> kept_epochs(const LightCurveRequest &request, const std::atomic<bool> &cancel) {
   if (const ElementSet *set = request.track.orbit.elements())
     UMOV_TRY(request.track.orbit.at(set->epoch)); // elements that cannot even start
+  UMOV_ASSIGN(track, Track::make(request.track));
+  return keep_epochs(track, request.span, request.only, request.threads, cancel);
+}
+
+Result<LightCurveOutcome> compute_cut(const LightCurveRequest &request, PassCut cut,
+                                      const LightModel &light, const LightModel *many_directions,
+                                      const Progress &progress, const std::atomic<bool> &cancel,
+                                      KeptBlocks blocks) {
   UMOV_ASSIGN(colours, photometric_bands(light.scene().bands, request.magnitudes));
   UMOV_ASSIGN(track, Track::make(request.track));
-  UMOV_ASSIGN(kept, keep_epochs(track, request.span, request.only, request.threads, cancel));
+  const KeptEpochs &kept = cut.kept;
   LightCurveOutcome out;
   out.curve = empty_curve(request, light, kept.geometry.size());
   out.passes = kept.passes;
@@ -308,7 +347,8 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
   out.stopped = kept.stopped;
   RowMaker maker(request, light, many_directions, track, kept, std::move(colours), out.curve,
                  cancel, blocks);
-  truncate(out.curve, maker.fill(progress, out.stopped));
+  truncate(out.curve, std::min(maker.fill(progress, out.stopped), cut.before + cut.rows));
+  drop_front(out.curve, cut.before);
   count_rows(out);
   if (request.air)
     for (const LightCurveEpoch &epoch : out.curve.epochs)
@@ -316,6 +356,17 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
         out.curve.transmission.push_back(
             band_transmission(light.scene().grid, b, *request.air, epoch.geometry.altitude));
   return out;
+}
+
+Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
+                                              const LightModel &light,
+                                              const LightModel *many_directions,
+                                              const Progress &progress,
+                                              const std::atomic<bool> &cancel, KeptBlocks blocks) {
+  UMOV_ASSIGN(kept, kept_epochs(request, cancel));
+  const std::size_t rows = kept.geometry.size();
+  return compute_cut(request, {std::move(kept), 0, rows}, light, many_directions, progress, cancel,
+                     blocks);
 }
 
 Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, const Scene &scene,

@@ -122,6 +122,60 @@ Periodogram periodogram(std::span<const double> seconds, std::span<const double>
   return out;
 }
 
+namespace {
+
+/// Of one peak of power z among n values: the chance that white noise has one as high anywhere
+/// below `highest_hz`.
+double false_alarm(double z, std::span<const double> seconds, double highest_hz) {
+  const auto n = static_cast<double>(seconds.size());
+  double mean = 0, spread = 0;
+  for (const double t : seconds)
+    mean += t / n;
+  for (const double t : seconds)
+    spread += (t - mean) * (t - mean) / n;
+  const double free = n - 3, mean_free = n - 1; // after a sine, and after the mean alone
+  const double width = highest_hz * std::sqrt(4 * pi * spread);
+  const double gamma =
+      std::sqrt(2 / mean_free) * std::exp(std::lgamma(mean_free / 2) - std::lgamma((n - 2) / 2));
+  const double single = std::pow(1 - z, 0.5 * free);
+  const double crossings =
+      gamma * width * std::pow(1 - z, 0.5 * (free - 1)) * std::sqrt(0.5 * mean_free * z);
+  return -std::expm1(std::log1p(-single) - crossings);
+}
+
+} // namespace
+
+std::vector<PeriodPeak> highest_peaks(const Periodogram &of, std::span<const double> seconds,
+                                      std::size_t most) {
+  const std::size_t size = of.power.size();
+  if (size < 3)
+    return {};
+  const double first = 1 / of.period_s.front(), highest = 1 / of.period_s.back();
+  const double step = (highest - first) / static_cast<double>(size - 1);
+  const double span = seconds.back() - seconds.front(), n = static_cast<double>(seconds.size());
+  std::vector<std::size_t> tops;
+  for (std::size_t k = 1; k + 1 < size; ++k) // what still grows at an end has its peak elsewhere
+    if (of.power[k] >= of.power[k - 1] && of.power[k] > of.power[k + 1])
+      tops.push_back(k);
+  std::ranges::sort(tops, [&](std::size_t a, std::size_t b) { return of.power[a] > of.power[b]; });
+  std::vector<PeriodPeak> out;
+  for (const std::size_t top : tops) {
+    const double frequency = peak_frequency(of, top, step);
+    const auto is_shoulder = [&](const PeriodPeak &higher) {
+      return std::abs(1 / higher.period_s - frequency) < 1.5 / span;
+    };
+    if (out.size() == most)
+      break;
+    if (std::ranges::any_of(out, is_shoulder))
+      continue;
+    const double z = std::clamp(of.power[top], 1e-12, 1 - 1e-12);
+    const double frequency_sd = std::sqrt(3 * (1 - z) / (n * z)) / (pi * span);
+    out.push_back({1 / frequency, frequency_sd / (frequency * frequency), z,
+                   false_alarm(z, seconds, highest)});
+  }
+  return out;
+}
+
 Periodogram with_fewer_values(const Periodogram &full, std::size_t count) {
   const std::size_t size = full.power.size();
   if (size <= count)

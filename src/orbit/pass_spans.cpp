@@ -145,13 +145,15 @@ std::vector<Stretch> stretches(const Samples &samples, const Function &above) {
   return out;
 }
 
-/// Walks on while the altitude grows; returns where it no longer does.
-double walk_uphill(const Altitude &altitude, double step_s) {
-  constexpr double longest_s = 21'600; // what still climbs after that hardly moves: no summit
+/// Walks on while the altitude grows; returns where it no longer does. Nothing where it still
+/// climbs after an hour: what stands in the sky for hours has no summit that a night would be
+/// called by.
+std::optional<double> walk_uphill(const Altitude &altitude, double step_s) {
+  constexpr double longest_s = 3600; // longer than any passage of a low orbit
   double best = 0, highest = altitude(0);
   for (double next; (next = altitude(best + step_s)) > highest; highest = next)
     if (std::abs(best += step_s) > longest_s)
-      return 0;
+      return {};
   return best;
 }
 
@@ -222,10 +224,13 @@ PassSpans find_pass_spans(const Trajectory &orbit, const Site &site, Epoch<Utc> 
 Epoch<Utc> culmination_near(const Trajectory &orbit, const Site &site, Epoch<Utc> near) {
   const Altitude altitude(orbit, site, near);
   constexpr double stride_s = 10; // shorter than any passage above the horizon
-  const double before = walk_uphill(altitude, -stride_s);
-  const double summit = before < 0 ? before : walk_uphill(altitude, stride_s);
-  const double top = maximum(altitude, summit - stride_s, summit + stride_s, crossing_tolerance_s);
-  return altitude.time(altitude(top) > altitude(summit) ? top : summit); // where an orbit ends
+  const auto before = walk_uphill(altitude, -stride_s);
+  const auto summit = before && *before < 0 ? before : walk_uphill(altitude, stride_s);
+  if (!before || !summit)
+    return near;
+  const double top =
+      maximum(altitude, *summit - stride_s, *summit + stride_s, crossing_tolerance_s);
+  return altitude.time(altitude(top) > altitude(*summit) ? top : *summit); // where an orbit ends
 }
 
 } // namespace umov

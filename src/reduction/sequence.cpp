@@ -12,7 +12,7 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
 /// 1, cos, sin, cos 2, sin 2 ... of the phase.
-Vector basis_at(double phase, Eigen::Index harmonics) {
+Vector fourier_at(double phase, Eigen::Index harmonics) {
   Vector out(1 + 2 * harmonics);
   out(0) = 1;
   for (Eigen::Index k = 1; k <= harmonics; ++k) {
@@ -21,6 +21,25 @@ Vector basis_at(double phase, Eigen::Index harmonics) {
     out(2 * k) = std::sin(turned);
   }
   return out;
+}
+
+Vector basis_at(const BrightnessBasis &basis, double time_s) {
+  if (!(basis.knot_s > 0))
+    return fourier_at(2 * pi * time_s / basis.period_s, basis.harmonics);
+  Vector out = Vector::Zero(basis.pieces + 3);
+  const double x =
+      std::clamp((time_s - basis.begin_s) / basis.knot_s, 0., static_cast<double>(basis.pieces));
+  const int piece = std::min(static_cast<int>(x), basis.pieces - 1);
+  const double u = x - piece, v = 1 - u;
+  out.segment<4>(piece) << v * v * v, (3 * u - 6) * u * u + 4, (3 * v - 6) * v * v + 4, u * u * u;
+  return out / 6;
+}
+
+/// What of the series is its mean.
+Vector mean_of(const BrightnessBasis &basis, const Matrix &rows) {
+  if (basis.knot_s > 0)
+    return rows.colwise().mean().transpose();
+  return Vector::Unit(rows.cols(), 0);
 }
 
 /// Series and fractions, the series scaled so that its mean is in counts.
@@ -82,20 +101,21 @@ bool tells_apart(const Matrix &normal) {
 
 tl::unexpected<Error> indistinct() {
   return fail(ErrorCode::BadInput, "the series does not tell brightness and polarization apart; "
-                                   "fewer harmonics or more analyser angles are needed");
+                                   "fewer harmonics, knots further apart (and than the gaps "
+                                   "between the counts), or more analyser angles are needed");
 }
 
 /// Data as matrices, and what the fit needs of them.
 class SequenceSolver {
 public:
-  SequenceSolver(std::span<const TimedDatum> data, double period_s, int harmonics)
-      : data_(data), period_s_(period_s) {
+  SequenceSolver(std::span<const TimedDatum> data, const BrightnessBasis &made_of)
+      : data_(data), made_of_(made_of) {
     const auto n = static_cast<Eigen::Index>(data.size());
-    basis_.resize(n, 1 + 2 * harmonics);
+    basis_.resize(n, basis_at(made_of, data.front().time_s).size());
     counts_.resize(n), sky_.resize(n), fixed_.resize(n), excess_.resize(n);
     for (Eigen::Index r = 0; r < n; ++r) {
       const TimedDatum &one = data[static_cast<std::size_t>(r)];
-      basis_.row(r) = basis_at(2 * pi * one.time_s / period_s, harmonics).transpose();
+      basis_.row(r) = basis_at(made_of, one.time_s).transpose();
       counts_(r) = one.datum.counts;
       sky_(r) = one.datum.sky;
       fixed_(r) = one.datum.fixed_variance;
@@ -107,7 +127,10 @@ public:
 
   [[nodiscard]] State flat(Eigen::Index fractions) const {
     State out{Vector::Zero(basis_.cols()), Vector::Zero(fractions)};
-    out.series(0) = light_;
+    if (made_of_.knot_s > 0)
+      out.series.setConstant(light_); // splines add up to one
+    else
+      out.series(0) = light_;
     return out;
   }
   [[nodiscard]] State from(const SequenceFit &fit) const {
@@ -190,10 +213,12 @@ private:
 
   void put(const State &state, const Matrix &covariance, SequenceFit &out) const {
     const Eigen::Index terms = state.series.size(), fractions = state.fractions.size();
-    out.period_s = period_s_;
+    out.basis = made_of_;
     out.parameters = static_cast<int>(fractions) + 1;
     out.dof = static_cast<int>(counts_.size() - terms - fractions);
-    out.mean_variance = covariance(0, 0) / (scale_ * scale_);
+    const Vector mean = mean_of(made_of_, basis_);
+    out.mean = mean.dot(state.series) / scale_;
+    out.mean_variance = mean.dot(covariance.topLeftCorner(terms, terms) * mean) / (scale_ * scale_);
     for (Eigen::Index k = 0; k < terms; ++k)
       out.series.push_back(state.series(k) / scale_);
     for (Eigen::Index a = 0; a < fractions; ++a) {
@@ -205,39 +230,62 @@ private:
   }
 
   std::span<const TimedDatum> data_;
-  double period_s_, scale_ = 0, light_ = 0;
+  BrightnessBasis made_of_;
+  double scale_ = 0, light_ = 0;
   Matrix basis_;
   Vector counts_, sky_, fixed_, excess_;
 };
 
 } // namespace
 
-Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period_s, int harmonics,
-                                 std::size_t parameters) {
+namespace {
+
+Result<SequenceFit> fit_basis(std::span<const TimedDatum> data, const BrightnessBasis &basis,
+                              Eigen::Index terms, std::size_t parameters, const char *fewer) {
   const auto n = static_cast<Eigen::Index>(data.size());
-  const Eigen::Index terms = 1 + 2 * harmonics;
   const auto fractions = static_cast<Eigen::Index>(parameters) - 1;
   if (n <= terms + fractions)
     return fail(ErrorCode::BadInput,
-                fmt::format("{} counts for {} unknowns; a longer series, or fewer harmonics than "
-                            "{}, is needed",
-                            n, terms + fractions, harmonics));
-  const SequenceSolver solver(data, period_s, harmonics);
+                fmt::format("{} counts for {} unknowns; a longer series, or {}, is needed", n,
+                            terms + fractions, fewer));
+  const SequenceSolver solver(data, basis);
   return solver.solve(solver.flat(fractions), {});
+}
+
+} // namespace
+
+Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period_s, int harmonics,
+                                 std::size_t parameters) {
+  const std::string fewer = fmt::format("fewer harmonics than {}", harmonics);
+  return fit_basis(data, {period_s, harmonics, 0, 0, 0}, 1 + 2 * harmonics, parameters,
+                   fewer.c_str());
+}
+
+Result<SequenceFit> fit_spline(std::span<const TimedDatum> data, double knot_s,
+                               std::size_t parameters) {
+  if (data.empty())
+    return fail(ErrorCode::BadInput, "a series without counts");
+  const auto [first, last] = std::ranges::minmax(data, {}, &TimedDatum::time_s);
+  const double span = std::max(last.time_s - first.time_s, 1e-9);
+  const double pieces = std::max(1., std::ceil(span / knot_s - 1e-9));
+  if (constexpr double most = 1000; pieces > most)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{:g} knots {:g} s apart; up to {:g} can be fitted, so that {:.3g} s "
+                            "is the least distance",
+                            pieces, knot_s, most, span / most));
+  const BrightnessBasis basis{0, 0, span / pieces, first.time_s, static_cast<int>(pieces)};
+  return fit_basis(data, basis, basis.pieces + 3, parameters, "knots further apart");
 }
 
 Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, const SequenceFit &without,
                                  std::span<const CommonError> common) {
-  const auto harmonics = static_cast<int>(without.series.size() / 2);
-  const SequenceSolver solver(data, without.period_s, harmonics);
+  const SequenceSolver solver(data, without.basis);
   return solver.solve(solver.from(without), common);
 }
 
 std::array<double, 4> stokes_at(const SequenceFit &fit, double time_s) {
-  const auto harmonics = static_cast<Eigen::Index>(fit.series.size() / 2);
-  const double brightness =
-      basis_at(2 * pi * time_s / fit.period_s, harmonics)
-          .dot(Eigen::Map<const Vector>(fit.series.data(), 1 + 2 * harmonics));
+  const Vector basis = basis_at(fit.basis, time_s);
+  const double brightness = basis.dot(Eigen::Map<const Vector>(fit.series.data(), basis.size()));
   const auto &f = fit.fractions.value;
   return {brightness, brightness * f[0], brightness * f[1], brightness * f[2]};
 }

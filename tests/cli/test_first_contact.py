@@ -281,3 +281,126 @@ def test_a_folder_with_its_inputs_runs_elsewhere(umov, scenario, tmp_path):
     (tmp_path / "again/inputs/mine.txt").write_text("x")
     done = umov("run", "elsewhere/sent/scenario.lock.toml", "-o", "again")
     assert done.code == 6 and "inputs" in done.err, done.err
+
+
+GAAS = ('[object.materials]\ndefault = "paper_al"\n', '[object.materials]\ndefault = "film_aluminized"\n')
+
+
+def test_a_band_that_a_material_does_not_cover_is_told_where_it_stands(umov, scenario, tmp_path):
+    """PET is known from 400 nm on, Bessell's B begins at 360."""
+    name = scenario(GAAS, ('set = "paper_rgb"', 'set = "Bessell.B"'))
+    done = umov("run", name, "--dry-run")
+    lines = (tmp_path / name).read_text().splitlines()
+    line = next(k for k, text in enumerate(lines, 1) if text.startswith("default ="))
+    assert done.code == 3 and f"{name}:{line}:" in done.err, done.err
+    assert 'materials.default = "film_aluminized"' in done.err and "PET_Zhang" in done.err, done.err
+    named = done.err.split("Materials that cover it: ")[1]
+    assert "cell_gaas" in named and "film_silvered" in named and "film_aluminized" not in named, done.err
+
+
+def test_a_tail_of_a_band_is_taken_from_the_end_of_a_table_and_told(umov, scenario):
+    """Below the 400 nm from which PET is known Gaia's G has a few percent of its response (Riello et al. 2021)."""
+    done = umov("run", scenario(GAAS, ('set = "paper_rgb"', 'set = "gaia.G"')), "--dry-run")
+    assert done.code == 0, done.err
+    share = float(re.search(r"the ends beyond, ([0-9.]+) % of its response", done.err).group(1))
+    assert 1 < share < 5, done.err
+
+
+@pytest.mark.parametrize("material", ["cell_gaas", "germanium_kapton", "cell_silicon"])
+def test_what_flies_is_known_to_the_end_of_the_red_filters(umov, scenario, material):
+    done = umov("run", scenario((GAAS[0], GAAS[1].replace("film_aluminized", material)),
+                                ('set = "paper_rgb"', 'set = ["Bessell.R", "Bessell.I"]')), "--dry-run")
+    assert done.code == 0, done.err
+
+
+def test_a_step_that_is_too_long_for_a_turn_is_told(umov, scenario):
+    spin = ('attitude = { mode = "nadir" }',
+            'attitude = { mode = "spin", axis = "+Y", period_s = 50, epoch = 2018-01-21T05:00:00Z }')
+    done = umov("run", scenario(spin), "--dry-run")  # a step of 20 s
+    assert done.code == 0 and "turns in 50 s (spin)" in done.err and "step_s = 20" in done.err, done.err
+    done = umov("run", scenario(spin), "--dry-run", "--set", "time.step_s=5")
+    assert done.code == 0 and "turns in" not in done.err, done.err
+
+
+def test_a_mesh_behind_a_link_and_dots_is_found(umov, scenario, tmp_path):
+    """`link/../x` is beside what the link points to."""
+    path, mesh = tmp_path / scenario(), tmp_path / "cube.obj"
+    there = tmp_path / "elsewhere" / "deep"
+    there.mkdir(parents=True)
+    for one in (mesh, mesh.with_suffix(".mtl")):
+        one.rename(there.parent / one.name)
+    (tmp_path / "link").symlink_to(there)
+    path.write_text(path.read_text().replace(f'"{mesh.name}"', f'"link/../{mesh.name}"'))
+    done = umov("run", path.name, "-o", "out")
+    assert done.code == 0, done.err
+    assert umov("run", "out/scenario.lock.toml", "--dry-run").code == 0  # and by its lock again
+
+
+def test_a_message_about_a_table_stands_at_its_header(umov, tmp_path):
+    text = "umov = 1\n\n\n[observer]\nlat_deg = 1\nlon_deg = 2\nalt_m = 3\n\n\n\n[[object]]\nname = \"x\"\n\n\n[time]\nstep_s = 1\n"
+    (tmp_path / "s.toml").write_text(text)
+    done = umov("run", "s.toml", "--dry-run")
+    assert done.code == 3 and "s.toml:15:1: [time]" in done.err, done.err
+
+
+def test_a_night_of_what_never_sets_is_named_by_its_highest_time_in_it(umov):
+    done = umov("passes", "--orbit", ROOT / "data/tle/goes15.tle", "-s", "kitt peak", "--start", "2018-02-10T02:00:00Z",
+                "--stop", "2018-02-10T13:00:00Z", "--allow-old-elements", "--json")
+    assert done.code == 0, done.err
+    row = json.loads(done.out)[0]
+    when = row["pass_id"].split("-")[1]
+    assert "20180210T020000Z" <= when <= "20180210T130000Z", row
+
+
+def on_a_terminal(*arguments, cwd):
+    """What umov draws on a terminal."""
+    here, there = pty.openpty()
+    run = subprocess.Popen([UMOV, *map(str, arguments)], cwd=cwd, stdout=subprocess.DEVNULL, stderr=there)
+    os.close(there)
+    drawn = b""
+    while True:
+        try:
+            part = os.read(here, 4096)
+        except OSError:
+            break
+        if not part:
+            break
+        drawn += part
+    run.wait()
+    os.close(here)
+    return run.returncode, drawn.decode()
+
+
+def test_a_first_run_moves_and_says_why_on_a_terminal_only(umov, tmp_path):
+    """New masks of HST take a second or more: a line every quarter of it."""
+    run = ("run", ROOT / "examples/hst_maui.toml", "--set", "time.step_s=30", "--no-cache")
+    code, drawn = on_a_terminal(*run, "-o", "a", cwd=tmp_path)
+    assert code == 0 and "light curve [" in drawn, drawn
+    assert "the first run of a shape traces what hides what" in drawn, drawn
+    done = umov(*run, "-o", "b")
+    assert done.code == 0 and "light curve" not in done.err and "\r" not in done.err, done.err
+
+
+def test_the_period_of_a_table_of_anybodys_is_that_of_astropy(umov, tmp_path):
+    import numpy as np
+    from astropy.timeseries import LombScargle
+    seconds = np.sort(np.random.default_rng(3).uniform(0, 300, 200))
+    mag = 7 + 0.3 * np.sin(2 * np.pi * seconds / 13.7) + np.random.default_rng(4).normal(0, 0.1, 200)
+    days = 60000 + seconds / 86400
+    rows = "\n".join(f"{day:.12f},{m:.6f}" for day, m in zip(days, mag))
+    (tmp_path / "mine.csv").write_text("mjd_utc,mag\n" + rows + "\n")
+    done = umov("period", "mine.csv", "--peaks", 1, "--json")
+    assert done.code == 0, done.err
+    found = json.loads(done.out)[0]
+    x = (seconds - seconds[0]) / (seconds[-1] - seconds[0])
+    rest = mag - np.polyval(np.polyfit(x, mag, 2), x)
+    search = LombScargle(seconds, rest)
+    near = np.linspace(0.95 / 13.7, 1.05 / 13.7, 20001)
+    power = search.power(near)
+    # A parabola through three of five values a peak finds its top to a few hundredths of the error of the period.
+    assert found["period"] == pytest.approx(1 / near[power.argmax()], abs=0.3 * found["period_err"])
+    assert found["power"] == pytest.approx(power.max(), rel=0.1)  # the highest of the grid, not of the parabola
+    assert abs(found["period"] - 13.7) < 4 * found["period_err"]
+    # Noise alone: 200 values of it are hardly ever as high.
+    assert found["false_alarm"] < 1e-10
+    assert umov("period", "mine.csv", "--band", "V").code == 3

@@ -260,3 +260,127 @@ def test_unknown_groups_and_materials_are_named(umov, scene, tmp_path):
     assert done.code == 3 and '"bodi" is no material of' in done.err
     done = umov("invert", "material", "obs.csv", "--scenario", fit, "--group", "body_py", "--candidates", "paint_wite")
     assert done.code == 2 and 'Did you mean "paint_white"?' in done.err
+
+
+def constant(path, snr, seed, bands=("nm:425", "nm:550", "nm:650")):
+    rng = random.Random(seed)
+    rows = [f"2018-01-21T05:{10 + k // 4:02d}:{15 * (k % 4):02d}Z,{b},{1 + rng.gauss(0, 1) / snr:.5f},{1 / snr:.5f}"
+            for k in range(16) for b in bands]
+    path.write_text("time_utc,band,flux,flux_err\n" + "\n".join(rows) + "\n")
+
+
+def test_constant_light_is_never_a_sure_attitude(umov, scene, tmp_path):
+    for seed, snr in enumerate((3, 20)):
+        constant(tmp_path / "obs.csv", snr, seed)
+        done = umov("invert", "pose", "obs.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json")
+        assert done.code in (0, 4), done.err
+        verdict = json.loads(done.out)
+        assert verdict["verdict"] in ("undetermined", "no_fit", "ambiguous")
+
+
+def test_a_band_without_numbers_changes_nothing(umov, scene, tmp_path):
+    assert umov("run", scene(TRUTHS[0], "rays", "truth", step=40), "-q").code == 0
+    observe(tmp_path, "obs.csv", 50, 1)
+    lines = (tmp_path / "obs.csv").read_text().splitlines()
+    kept = [line for line in lines if ",nm:650," not in line]
+    empty = [line if ",nm:650," not in line else ",".join(line.split(",")[:2]) + ",nan,nan,,,," for line in lines]
+    answers = []
+    for rows in (kept, empty):
+        (tmp_path / "some.csv").write_text("\n".join(rows) + "\n")
+        done = umov("invert", "pose", "some.csv", "--scenario", scene([1, 0, 0, 0], "masks", "fit"), "--grid", "10000", "--json")
+        assert done.code == 0, done.err
+        answers.append(json.loads(done.out))
+    assert answers[0]["modes"] == answers[1]["modes"]
+    assert "left out" in done.err or "no measurement" in done.err
+
+
+def test_times_that_contradict_are_refused_or_left_out(umov, scene, tmp_path):
+    fit = scene([1, 0, 0, 0], "masks", "fit")
+    (tmp_path / "obs.csv").write_text("time_utc,band,I,I_err\n2018-01-21T05:12:00Z,nm:550,1,.1\n2018-01-21T05:12:00Z,nm:550,9,.1\n")
+    done = umov("invert", "pose", "obs.csv", "--scenario", fit)
+    assert done.code == 3 and "obs.csv:3" in done.err  # one time, two brightnesses
+    rows = "".join(f"2018-01-21T06:{m}:00Z,nm:550,1,.1\n" for m in range(20, 30))  # the other side of the Earth
+    (tmp_path / "obs.csv").write_text("time_utc,band,I,I_err\n" + rows)
+    done = umov("invert", "pose", "obs.csv", "--scenario", fit)
+    assert done.code == 3 and "do times, orbit and site belong together?" in done.err
+
+
+def variant(text, name):
+    """The same scene with other materials: another object."""
+    swap = {"metal": [("mli_kapton", "aluminium"), ("paint_white", "aluminium_anodized")],
+            "dark": [("mli_kapton", "paint_black"), ("aluminium_anodized", "paint_black")],
+            "white": [("mli_kapton", "paint_white"), ("aluminium_anodized", "paint_white"), ("cell_gaas", "paint_white")]}
+    for old, new in swap[name]:
+        text = text.replace(f'"{old}"', f'"{new}"')
+    return text
+
+
+@pytest.fixture
+def library(umov, scene, tmp_path):
+    """Four cubesats, in tmp_path/lib."""
+    text = (tmp_path / scene([1, 0, 0, 0], "masks", "plain")).read_text()
+    for name in ("metal", "dark", "white"):
+        (tmp_path / f"{name}.toml").write_text(variant(text, name))
+    done = umov("library", "build", "plain.toml", "metal.toml", "dark.toml", "white.toml", "-o", "lib", "--json")
+    assert done.code == 0, done.err
+    return json.loads(done.out)
+
+
+def test_a_library_is_built_in_ranges_and_goes_on(umov, library, tmp_path):
+    assert [row["state"] for row in library] == ["made"] * 4
+    assert all(row["poses"] == 97461 and 0 < row["error"] < 1 for row in library)
+    first = {name: (tmp_path / "lib" / f"{name}.umovsig").read_bytes() for name in ("plain", "white")}
+    again = umov("library", "build", "plain.toml", "metal.toml", "dark.toml", "white.toml", "-o", "lib", "--json")
+    assert [row["state"] for row in json.loads(again.out)] == ["was there"] * 4
+    names = ["plain.toml", "metal.toml", "dark.toml", "white.toml"]
+    for part in ("0:1", "3:9"):  # as two machines would
+        assert umov("library", "build", *names, "-o", "parts", "--range", part, "-q", "--threads", "1").code == 0
+    assert sorted(p.name for p in (tmp_path / "parts").iterdir()) == ["plain.umovsig", "white.umovsig"]
+    for name, data in first.items():
+        assert (tmp_path / "parts" / f"{name}.umovsig").read_bytes() == data
+    for words in (["--range", "3:1"], ["--range", "x"]):
+        assert umov("library", "build", *names, "-o", "parts", *words).code == 2
+
+
+def test_other_colours_come_from_the_abundances(umov, library, tmp_path):
+    if not all(row["abundances"] for row in library):
+        pytest.skip("materials without abundances")
+    text = (tmp_path / "metal.toml").read_text()
+    old = (tmp_path / "lib/metal.umovsig").read_bytes()
+    (tmp_path / "metal.toml").write_text(text.replace('set = "paper_rgb"', 'set = ["nm:450", "nm:550", "nm:700"]'))
+    done = umov("library", "build", "metal.toml", "-o", "lib", "--json")
+    assert json.loads(done.out)[0]["state"] == "recoloured", done.err
+    recoloured = (tmp_path / "lib/metal.umovsig").read_bytes()
+    assert umov("library", "build", "metal.toml", "-o", "fresh", "-q").code == 0
+    fresh = (tmp_path / "fresh/metal.umovsig").read_bytes()
+    assert len(fresh) == len(recoloured) and recoloured != old
+    # Codes of I apart by sums kept as floats (1e-7) at most: one step of 3e-4.
+    begin = 80 + int.from_bytes(fresh[32:40], "little")
+    count = 97461 * 3 * 2
+    a, b = (memoryview(data[begin:begin + 2 * count]).cast("H") for data in (fresh, recoloured))
+    assert max(abs(x - y) for x, y in zip(a, b)) <= 2
+
+
+def test_health_tells_a_drift_from_none_and_what_would_show(umov, scene, tmp_path):
+    q = TRUTHS[0]
+    fit = scene(q, "rays", "fit")
+    words = ["--scenario", fit, "--drift", "body_my=paint_black", "--drift", "panel_px_front=paint_white", "--json"]
+    found = {}
+    for state, materials in (("new", CUBESAT), ("old", CUBESAT.replace('panel_px_front = "cell_gaas"',
+                                                                       'panel_px_front = "paint_white"'))):
+        assert umov("run", scene(q, "rays", "truth", materials=materials), "-q").code == 0
+        observe(tmp_path, f"{state}.csv", 50, 4)
+        done = umov("invert", "health", f"{state}.csv", *words, "-o", state)
+        assert done.code in (0, 4), done.err
+        found[state] = {row["parameter"]: row for row in json.loads(done.out)["health"]}
+        table = Table.read(tmp_path / state / "health.ecsv")
+        assert list(table["parameter"]) == ["body_my=paint_black", "panel_px_front=paint_white"]
+    assert all(abs(row["sigma"]) < 4 for row in found["new"].values())
+    panel = found["old"]["panel_px_front=paint_white"]
+    if panel["visible"]:
+        assert panel["sigma"] > 3
+        assert abs(panel["change"] - 1) < 5 * panel["detectable"]
+    same = umov("invert", "health", "new.csv", *words, "--baseline", "new.csv")
+    assert all(abs(row["sigma"]) < 1e-6 for row in json.loads(same.out)["health"])
+    assert umov("invert", "health", "new.csv", "--scenario", fit, "--drift", "body_my").code == 2
+    assert umov("invert", "health", "new.csv", "--scenario", fit, "--drift", "bodi=paint_black").code == 3

@@ -163,7 +163,6 @@ def test_a_drift_is_told_in_figures(scene, umov, tmp_path):
 
 
 BAD = [("exposure_s = 0", "exposure_s = 0"), ("exposure_s = 1\ncadence_s = 0.5", "cannot overlap"),
-       ('exposure_s = 1\nlevel = "image"', "level"),
        ("exposure_s = 1\n[telescope]\nobstruction = 1", "0 to below 1"),
        ("exposure_s = 1\n[telescope]\naperture_m = 0", "above 0"),
        ("exposure_s = 1\n[telescope]\nthroughput = 1.2", "0 to 1"),
@@ -228,6 +227,53 @@ def test_own_counts_are_reduced(umov, tmp_path):
     row = Table.read(tmp_path / "own.ecsv")[0]
     assert abs(row["q"] - 0.19940) < 2e-4 and abs(row["u"] - 0.01584) < 2e-4
     assert abs(math.sqrt(row["cov_qq"]) - 0.014814) < 2e-5
+
+
+def test_magnitudes_for_others(scene, umov, tmp_path):
+    """A TDM that umov reads again, and the columns of SCORE's template."""
+    path = scene("c11_imx250", "exposure_s = 1")
+    assert umov("observe", path).code == 0
+    done = umov("reduce", "out/counts.ecsv", "-o", "s.ecsv", "--tdm", "s.tdm", "--score", "s.csv")
+    assert done.code == 0, done.err
+    stokes = Table.read(tmp_path / "s.ecsv")
+    lines = (tmp_path / "s.tdm").read_text().splitlines()
+    mags = [line.split() for line in lines if line.startswith("MAG ")]
+    assert len(mags) == len(stokes) and abs(float(mags[0][3]) - stokes["mag"][0]) < 1e-5
+    for word in ("CCSDS_TDM_VERS = 2.0", "ANGLE_TYPE", "RADEC", "INTEGRATION_REF", "MIDDLE", "s.ecsv"):
+        assert word in "\n".join(lines)
+    score = Table.read(tmp_path / "s.csv", format="ascii.csv")
+    assert score.colnames[:3] == ["satellite_name", "norad_cat_id", "observation_time_utc"] and len(score.colnames) == 27
+    assert score["norad_cat_id"][0] == 20580 and abs(score["observer_latitude_deg"][0] - 20.7083) < 1e-6
+    assert abs(score["satellite_right_ascension_deg"][0] - stokes["ra"][0]) < 1e-5
+
+
+def test_brightness_without_a_period(scene, umov, tmp_path):
+    _, _, _ = observed(umov, tmp_path, scene("usafa16", "exposure_s = 2", seconds=59), "--model", "spline:20")
+    row = Table.read(tmp_path / "stokes.ecsv")[0]
+    assert 0 < row["mag"] < 20 and row["dof"] > 0
+    assert umov("reduce", "out/counts.ecsv", "--model", "spline:0").code == 2
+
+
+def test_half_turns_of_a_plate_test_each_other(scene, umov, tmp_path):
+    plates = ", ".join(f"{{ plate_deg = {22.5 * k} }}" for k in range(8))
+    stokes, _, _ = observed(umov, tmp_path, scene("hwp_wollaston_1m", f"exposure_s = 0.02\ncadence_s = 0.1\nsequence = [{plates}]",
+                                                  air='scintillation = "none"'))
+    # Two independent halves: half their difference is as uncertain as their mean.
+    pulls_of = [row["null_q"] / math.sqrt(row["cov_qq"]) for row in stokes]
+    n = len(pulls_of)
+    assert n > 50 and abs(statistics.mean(pulls_of)) < 4 / math.sqrt(n) + 0.1
+    assert abs(statistics.stdev(pulls_of) - 1) < 4 / math.sqrt(2 * n) + 0.1
+
+
+def test_gaps_are_told(umov, tmp_path):
+    rows = COUNTS.splitlines()
+    late = [row.replace("05:12:00", f"05:{minute}") for row, minute in
+            zip(rows[1:], ("12:00", "12:01", "12:02", "12:03"))]
+    more = [row.replace("05:12:00Z,1", f"05:{minute}Z,2") for row, minute in
+            zip(rows[1:], ("12:04", "12:05", "12:06", "32:07"))]
+    (tmp_path / "gap.csv").write_text("\n".join([rows[0], *late, *more]) + "\n")
+    done = umov("reduce", "gap.csv")
+    assert done.code == 0 and "1 gap of up to" in done.err, done.err
 
 
 BAD_COUNTS = [(COUNTS.replace(",var_read", ",read"), "var_read"), (COUNTS.replace("234", "-234"), "variances"),

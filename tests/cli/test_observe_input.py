@@ -65,6 +65,11 @@ REFUSED = [
     ("exposure_s = 1\n[polarimeter]\nq0 = 0.9\nu0 = 0.9", "at most 1"),
     ("exposure_s = 1\naperture_fwhm = 4.5", "would hold the star"),
     ("exposure_s = 1\nbands = []", "one or more were expected"),
+    ("exposure_s = 1\n[polarimeter]\nretardance_deg = 90", "says nothing to a polarimeter of type \"mosaic\""),
+    ("exposure_s = 1\n[polarimeter]\nangles_deg = [0, 60, 120]", "angles_deg says nothing"),
+    ("exposure_s = 1\n[polarimeter]\nperiod_s = 2", "period_s says nothing"),
+    ("exposure_s = 1\n[polarimeter]\ntype = \"none\"\nq0 = 0.1", "q0 says nothing"),
+    ("exposure_s = 1\n[detector]\ndead_time_s = 1e-6", "only a counter"),
 ]
 
 

@@ -9,6 +9,10 @@
 
 namespace umov {
 
+/// A path without "." and "..", where it names the same file without them: behind a link ".." is
+/// the folder that the link points into. As it is where there is no such file with them.
+std::filesystem::path tidy_path(const std::filesystem::path &path);
+
 /// Whether something stands at a path; false also where that cannot be told.
 [[nodiscard]] bool file_exists(const std::filesystem::path &path);
 

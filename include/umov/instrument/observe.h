@@ -106,6 +106,14 @@ public:
   /// Expected and drawn counts of all channels; of a state that was prepared, from any thread.
   [[nodiscard]] Result<std::vector<ChannelCounts>> observe(const ExposurePlan &plan,
                                                            const ExposureLight &light) const;
+  /// Expected counts and rows of all channels, of the part `share` of a star and `arcsec2` of sky
+  /// for a channel that takes all of the light; without dark current and scintillation.
+  [[nodiscard]] Result<std::vector<ChannelCounts>> expected(const ExposurePlan &plan,
+                                                            const ExposureLight &light,
+                                                            double share, double arcsec2) const;
+  /// Transparency of a channel's air in an exposure: cloud, and scintillation as it is drawn.
+  [[nodiscard]] double transparency(const ExposurePlan &plan, const ExposureLight &light,
+                                    std::size_t channel) const;
   /// Makes the channels of a state.
   [[nodiscard]] Result<void> prepare(const PolarimeterState &state);
   /// It has them.
@@ -115,6 +123,10 @@ public:
 
   /// The band.
   [[nodiscard]] const BandResponse &band() const { return band_; }
+  /// What it was made of.
+  [[nodiscard]] const Instrument &instrument() const { return instrument_; }
+  /// As above.
+  [[nodiscard]] const ObservingConditions &conditions() const { return conditions_; }
   /// Full width of a star at an air mass [arcsec], and of a pixel.
   [[nodiscard]] double fwhm_arcsec(double airmass) const;
   /// As above.

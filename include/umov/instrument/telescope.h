@@ -10,6 +10,9 @@ enum class TelescopePort { Cassegrain, NasmythLeft, NasmythRight };
 /// What carries it.
 enum class Mount { AltAz, Equatorial };
 
+/// What the telescope follows while it exposes.
+enum class Tracking { Satellite, Sidereal, Fixed };
+
 /// A telescope.
 struct Telescope {
   double aperture_m = 0;
@@ -20,6 +23,8 @@ struct Telescope {
   std::string mirror = "Al_Rakic"; ///< index of the flat mirror of a Nasmyth port
   Mount mount = Mount::AltAz;
   bool has_derotator = false; ///< turns the whole instrument with the sky
+  Tracking tracking = Tracking::Satellite;
+  double tracking_error_arcsec = 1; ///< of each exposure, standard deviation in x and in y
 };
 
 /// Light-collecting area [m2].

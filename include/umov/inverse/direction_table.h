@@ -19,12 +19,6 @@ public:
   static PoseLighting lighting(std::shared_ptr<const DirectionTable> table, unsigned threads);
 
 private:
-  struct Corner {
-    std::size_t node[4];
-    float weight[4];
-  };
-  [[nodiscard]] Corner corner_of(Vec3<Body> direction) const;
-
   std::size_t cells_ = 0, bands_ = 0;
   std::vector<float> light_; ///< [((sun * nodes + observer) * bands + band) * 2 + (I, Q)]
 };

@@ -59,6 +59,9 @@ public:
   [[nodiscard]] std::vector<Parameter> nuisances() const;
   /// Median of the measured I; 0 if there is none.
   [[nodiscard]] double median_i() const { return median_i_; }
+  /// ln of all variances, which `compare` leaves out: to be added to -2 ln of the likelihood where
+  /// models of different errors are compared.
+  [[nodiscard]] double log_variance() const { return log_variance_; }
 
 private:
   struct Row {
@@ -79,7 +82,7 @@ private:
   CurveErrors errors_;
   bool is_absolute_ = false;
   std::size_t groups_ = 0, measurements_ = 0;
-  double median_i_ = 0;
+  double median_i_ = 0, log_variance_ = 0;
 };
 
 } // namespace umov

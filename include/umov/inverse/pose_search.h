@@ -30,6 +30,7 @@ struct PoseMode {
   std::vector<double> covariance;
   double weight = 0; ///< share of the posterior
   double chi2 = 0, scale = 1;
+  bool is_converged = true; ///< further steps gain next to nothing
   /// Root of the largest variance of the attitude [rad].
   [[nodiscard]] double sd_rad() const;
 };
@@ -59,6 +60,9 @@ struct PoseAnswer {
   /// The posterior is no few narrow peaks: its samples were followed from all attitudes on, and
   /// covariances of modes say little.
   bool is_broad = false;
+  /// Every mode that matters is a bottom: its fit came to rest and no sample fits better.
+  bool is_settled = true;
+  double effective = 0; ///< size of an unweighted sample as good as `samples`
   std::size_t poses_lit = 0;
 };
 

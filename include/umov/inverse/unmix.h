@@ -27,13 +27,14 @@ struct Unmixing {
   std::vector<UnmixedGroup> groups; ///< in the order of their first members
   double chi2 = 0, scale = 1;
   std::size_t measurements = 0;
+  std::size_t left_out = 0; ///< samples whose q and u stand without an I above 0: they say nothing
   double condition = 1; ///< of the end members, whitened and of unit length, before any was joined
 };
 
 /// Least squares with fractions of 0 or more (Lawson & Hanson 1974, chapter 23). I and, where q and
 /// u were measured, Q - q I and U - u I, which are linear in the fractions and free of the error of
-/// I. End members are joined where a pair's condition is above 200 or where three standard
-/// deviations do not part them, whatever the scale.
+/// I. The sky is taken for clear. End members are joined where a pair's condition is above 200 or
+/// where three standard deviations do not part them, whatever the scale.
 Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
                const std::vector<EndMember> &members);
 

@@ -1,6 +1,7 @@
 #pragma once
 // Counts of an observation in a file: of umov observe, or of anybody's pipeline.
 
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ struct CountRow {
   double counts = 0, sky = 0, sky_err = 0, var_read = 0, excess2 = 1;
   double scintillation = 0; ///< relative standard deviation of the exposure's transparency
   double x_axis_pa_deg = 0, phase_angle_deg = 0, pa_scat_deg = 0, airmass = 0;
+  double plate_deg = 0;
+  double ra_deg = std::numeric_limits<double>::quiet_NaN(), dec_deg = ra_deg,
+         range_km = ra_deg; ///< of the object
   bool is_saturated = false;
   StokesRow row{};
 };

@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <umov/instrument/observe.h>
+#include <umov/instrument/frame_observer.h>
 #include <vector>
 
 namespace umov {
@@ -40,6 +40,10 @@ struct ScenarioObservation {
   std::vector<SequenceStep> sequence; ///< empty: that of the polarimeter's type
   double aperture_fwhm = 2;
   double clock_error_s = 0.001;
+  bool makes_frames = false;
+  std::array<int, 2> frame_px{256, 256}; ///< columns, rows
+  std::string stars;                     ///< file of the field's, empty: none
+  FramePhotometry photometry = FramePhotometry::Aperture;
 };
 
 /// Names of the instruments that are compiled in.

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <umov/core/result.h>
 #include <utility>
@@ -21,6 +22,10 @@ public:
 
   /// A file of the folder, or of one in it ("inputs/x.obj"), written at the end with all others.
   void add(std::string name, std::string bytes) { files_[std::move(name)] = std::move(bytes); }
+  /// A folder within the new one ("frames") for files that are too many to be held in memory:
+  /// whoever asks writes into it, and `commit` puts it in place with all others. Of its files those
+  /// count as umov's whose names begin with its own, less the s: "frames/frame_000001.fits".
+  Result<std::filesystem::path> subfolder(const std::string &name);
   /// For the rows of a run that stopped early: what stands in the target stays there, unless it is
   /// the rest of such a run itself; the files then go to "<target>.partial".
   void spare_complete_run();
@@ -37,6 +42,8 @@ public:
 
 private:
   void step_aside(const std::string &suffix);
+  Result<void> begin();
+  Result<void> put_into_foreign();
   Result<void> write(const std::filesystem::path &folder, const std::string &name) const;
 
   std::string replaced_utc_;
@@ -44,6 +51,8 @@ private:
   std::filesystem::path real_;   ///< where that is
   bool is_foreign_ = false;
   std::map<std::string, std::string> files_;
+  struct Staged; ///< the new folder, where it was begun before `commit`
+  std::shared_ptr<Staged> staged_;
 };
 
 /// What manifest.json says besides versions and build.

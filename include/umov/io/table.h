@@ -17,7 +17,8 @@ using Cells = std::variant<std::vector<double>, std::vector<std::int64_t>, std::
 
 /// How fine a CSV writes numbers; by default to all digits.
 struct Precision {
-  std::string error;   ///< the column of its half-width: as fine as two digits of that, ten at most
+  std::string error =
+      {};              ///< the column of its half-width: as fine as two digits of that, ten at most
   int decimals = 0;    ///< so many after the point
   int significant = 0; ///< so many digits
 
@@ -41,6 +42,10 @@ public:
   void add(std::string name, std::string unit, std::string description, Cells cells);
   /// Rows of a table with the same columns; an empty table becomes that one.
   void append(Table &&rows);
+  /// Rows [first, first + count), with all that is said of them.
+  [[nodiscard]] Table part(std::size_t first, std::size_t count) const;
+  /// Leaves a column out, if there is one of that name.
+  void remove(std::string_view name);
   /// Adds one line of the header ("object" -> "HST").
   void note(std::string key, std::string value);
 

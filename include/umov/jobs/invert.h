@@ -82,6 +82,20 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
                                   const MaterialOptions &material, const JobOptions &options,
                                   const Monitor &monitor, Diagnostics &diagnostics);
 
+/// What may have changed on the body since it was modelled.
+struct HealthOptions {
+  std::vector<std::string> drifts; ///< "GROUP=MATERIAL": towards which material, 1 being all of it
+  std::vector<std::string> baseline; ///< observations of before: changes are counted from them
+  double attitude_sd_deg = 0.1;      ///< how well the scenario's attitude is known, each body axis
+};
+
+/// How far groups of the mesh have drifted towards other materials, each with the smallest change
+/// that would show; the scenario's attitude is taken as known to `attitude_sd_deg`. BadInput for a
+/// group, Usage for a material that there is not.
+Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &request,
+                                const HealthOptions &health, const JobOptions &options,
+                                const Monitor &monitor, Diagnostics &diagnostics);
+
 /// Puts an answer into a folder, at once.
 Result<void> write_inversion(const Inversion &inversion, const Scenario &scenario,
                              ManifestInput manifest, const Diagnostics &diagnostics,

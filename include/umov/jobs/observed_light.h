@@ -23,10 +23,10 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
                                                         Diagnostics &diagnostics);
 
 /// Puts them on the scenario's orbit, as seen from its observer or the site that a row names: I in
-/// [m2/sr] up to a scale, q and u in the scattering plane. Epochs in the Earth's shadow are left
-/// out with a warning. BadInput for a scenario without orbit or observer, elements over 30 days
-/// away unless allowed, a band that it has not, and curves without an epoch in sunlight; Physics
-/// where the orbit cannot be had.
+/// [m2/sr] up to a scale, q and u in the scattering plane. Epochs in the Earth's shadow
+/// and below the horizon are left out with a warning. BadInput for a scenario without orbit or
+/// observer, elements over 30 days away unless allowed, a band that it has not, and curves without
+/// an epoch in sunlight; Physics where the orbit cannot be had.
 Result<ObservedLightCurve> observed_light_curve(const Scenario &scenario,
                                                 const std::vector<ObservationsFile> &files,
                                                 bool allow_old_elements, Diagnostics &diagnostics);

@@ -54,8 +54,9 @@ struct PassesResult {
   std::optional<Error> stopped; ///< Interrupted: passes of some objects are not there
 };
 
-/// Searches all objects side by side. Nothing if there is no pass; Physics if every orbit ends
-/// within the span; warnings tell of old elements and of objects that failed.
+/// Searches all objects side by side, or those that JobOptions::part has of them. Nothing if there
+/// is no pass; Physics if every orbit ends within the span; warnings tell of old elements and of
+/// objects that failed.
 Result<PassesResult> passes(const PassesRequest &request, const JobOptions &options,
                             const Monitor &monitor, Diagnostics &diagnostics);
 

@@ -16,6 +16,8 @@ struct ReduceOptions {
   /// of a tumbling object. 0: every set by itself.
   double period_s = 0;
   int harmonics = 3;
+  /// The same with splines, knots this far apart [s], where there is no period. 0: none.
+  double knot_s = 0;
   ErrorPriors priors; ///< of the instrument, beside the scintillation that the file tells
   std::optional<PolarimeterCalibration> calibration; ///< its offset and factor are taken out
   unsigned threads = 0;

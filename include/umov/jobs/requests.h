@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 #include <umov/io/scenario.h>
+#include <umov/jobs/index_range.h>
 #include <vector>
 
 namespace umov::jobs {
@@ -15,6 +16,7 @@ struct JobOptions {
   /// File for the finished blocks of a job: the same job goes on from it after a kill, and removes
   /// it when it is done. Empty: none are kept.
   std::filesystem::path journal;
+  JobPart part; ///< of the poses of a signature, objects of a search, passes of a run
   bool allow_bad_checksum = false; ///< of orbital elements
   bool allow_old_elements = false; ///< over 30 days from the span
 };

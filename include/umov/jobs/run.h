@@ -1,6 +1,7 @@
 #pragma once
 // The main job: light curves of the objects of a scenario, and the folder that tells of them.
 
+#include <memory>
 #include <optional>
 #include <umov/core/journal.h>
 #include <umov/io/run_folder.h>
@@ -17,6 +18,10 @@ struct ObjectRun {
   LightCurveRequest request;
   LightCurveOutcome outcome;
   LightFacts light; ///< how it was lit
+  /// The passes of it that are wanted; absent: all.
+  std::optional<IndexRange> passes = {};
+  /// The epochs of all of them, where they are known already.
+  std::shared_ptr<const KeptEpochs> kept = {};
 };
 
 /// What a run computed.
@@ -31,10 +36,10 @@ struct RunResult {
 Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptions &options,
                                         const Monitor &monitor, Diagnostics &diagnostics);
 
-/// Object after object; the first stop ends it, with the rows so far kept. What the same run
-/// finished before it was ended is taken from JobOptions::journal: the same bytes. Nothing if there
-/// is no row at all, with the next pass that would give one; warnings tell of rows that missed the
-/// accuracy.
+/// Object after object, or of their passes those that JobOptions::part has; the first stop ends it,
+/// with the rows so far kept. What the same run finished before it was ended is taken from
+/// JobOptions::journal: the same bytes. Nothing if there is no row at all, with the next pass that
+/// would give one; warnings tell of rows that missed the accuracy.
 Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &scenario,
                               const JobOptions &options, const Monitor &monitor,
                               Diagnostics &diagnostics);
@@ -45,6 +50,8 @@ struct RunTables {
 };
 /// Those of all objects, one object after the other: what the files of its folder hold.
 RunTables run_tables(const RunResult &run);
+/// Adds those of one object.
+void append_tables(const ObjectRun &object, RunTables &tables);
 
 /// Tables, reports, locked scenario, log and manifest (`manifest` holds what the caller knows of
 /// the command; inputs, seed, warnings and method are added), put in place at once.

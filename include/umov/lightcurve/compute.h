@@ -77,6 +77,22 @@ Result<LightCurveOutcome>
 compute_light_curve(const LightCurveRequest &request, const LightModel &light,
                     const LightModel *many_directions, const Progress &progress,
                     const std::atomic<bool> &cancel, KeptBlocks blocks = {});
+/// Some of the passes of a span, with the epochs that must be lit beside theirs.
+struct PassCut {
+  KeptEpochs kept;        ///< whole blocks where light between surfaces is shared in blocks
+  std::size_t before = 0; ///< epochs of it that lie before the first pass wanted
+  std::size_t rows = 0;   ///< epochs of the passes wanted
+};
+/// Passes [first, first + count) of all that were kept: their rows are those of the whole span.
+PassCut cut_passes(const KeptEpochs &all, std::size_t first, std::size_t count,
+                   const LightModel &light, const LightCurveRequest &request);
+/// The epochs that a request keeps. Physics for elements that cannot even start; Interrupted.
+Result<KeptEpochs> kept_epochs(const LightCurveRequest &request, const std::atomic<bool> &cancel);
+/// The light curve of a cut; `passes_seen` and gaps are those of the whole span.
+Result<LightCurveOutcome> compute_cut(const LightCurveRequest &request, PassCut cut,
+                                      const LightModel &light, const LightModel *many_directions,
+                                      const Progress &progress, const std::atomic<bool> &cancel,
+                                      KeptBlocks blocks = {});
 /// The same with models made for `request`.
 Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, const Scene &scene,
                                               const Progress &progress,

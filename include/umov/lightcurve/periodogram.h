@@ -22,6 +22,19 @@ struct Periodogram {
 /// values, no span, or no variance.
 Periodogram periodogram(std::span<const double> seconds, std::span<const double> magnitudes);
 
+/// A period that stands out.
+struct PeriodPeak {
+  double period_s = 0, period_err_s = 0; ///< standard deviation, if what is left is noise
+  double power = 0;                      ///< part of the variance that a sine takes
+  double false_alarm = 1;                ///< how likely noise alone has a peak as high
+};
+
+/// The highest peaks of a periodogram of `count` values at `seconds`, the highest first, each its
+/// own: what stands within 1.5 / span of a higher one is its shoulder. Errors: Montgomery &
+/// O'Donoghue (1999); false alarms: Baluev (2008, MNRAS 385, 1279, Eqs. 5, 6).
+std::vector<PeriodPeak> highest_peaks(const Periodogram &of, std::span<const double> seconds,
+                                      std::size_t most);
+
 /// The same with at most `count` values: of neighbours the highest stays.
 Periodogram with_fewer_values(const Periodogram &full, std::size_t count);
 

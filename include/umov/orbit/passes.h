@@ -47,7 +47,7 @@ PassSpans find_pass_spans(const Trajectory &orbit, const Site &site, Epoch<Utc> 
 
 /// Time of culmination to 1 ms of the pass that is above the horizon at `near`, beyond the ends of
 /// any span: the altitude is followed uphill from `near`. `near` itself where the altitude goes on
-/// growing for six hours, or hardly changes.
+/// growing for an hour, as that of a geostationary object does.
 Epoch<Utc> culmination_near(const Trajectory &orbit, const Site &site, Epoch<Utc> near);
 
 /// The middle of the penumbra: half of the Sun's disk is behind the Earth.

@@ -21,10 +21,19 @@ struct TimedDatum {
   std::size_t exposure = 0; ///< neighbours of one exposure share its transparency
   double flicker = 0;       ///< relative standard deviation of that
 };
-/// Brightness over time as a Fourier series, with q, u (and v) that stay.
-struct SequenceFit {
-  std::vector<double> series; ///< mean, then cosine and sine of each harmonic
+/// What brightness over time is made of: a Fourier series (mean, then cosine and sine of each
+/// harmonic), or cubic B-splines on even knots.
+struct BrightnessBasis {
   double period_s = 0;
+  int harmonics = 0;
+  double knot_s = 0, begin_s = 0; ///< distance of knots, 0: a Fourier series; the first of them
+  int pieces = 0;                 ///< between knots
+};
+/// Brightness over time, with q, u (and v) that stay.
+struct SequenceFit {
+  std::vector<double> series; ///< coefficients of the basis
+  BrightnessBasis basis;
+  double mean = 0;          ///< brightness: of the Fourier series, or over the data's times
   int parameters = 3;       ///< that were fitted: I, Q, U or all four
   double mean_variance = 0; ///< of the mean
   StokesFractions fractions;
@@ -35,6 +44,9 @@ struct SequenceFit {
 /// change between two exposures is not taken for polarization. `parameters` 3 or 4.
 Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period_s, int harmonics,
                                  std::size_t parameters);
+/// The same with splines, for light that has no period: knots every `knot_s` or a little less.
+Result<SequenceFit> fit_spline(std::span<const TimedDatum> data, double knot_s,
+                               std::size_t parameters);
 /// The same with common errors on top (C = C_n + J Sigma J^T by one small matrix), begun at the
 /// fit without them.
 Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, const SequenceFit &without,

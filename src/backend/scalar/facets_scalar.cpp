@@ -74,10 +74,10 @@ void sum_facets(const SceneData<double> &scene, const Masks *masks, const MaskEr
   kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, out).run();
 }
 
-void list_facing(const SceneData<double> &scene, const Masks &masks, const MaskErrorModel &model,
-                 const PoseData<double> &pose, SeenList &out) {
+void list_weighed(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
+                  const PoseData<double> &pose, WeighedList &out) {
   PoseSums unused;
-  kernel::FacetLoops<ScalarMachine>(scene, &masks, model, pose, unused).list_facing(out);
+  kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_weighed(out);
 }
 
 void list_seen(const SceneData<double> &scene, const Masks *masks, const MaskErrorModel &model,
@@ -89,26 +89,6 @@ void list_seen(const SceneData<double> &scene, View<const Chunk> chunks, const M
                const MaskErrorModel &model, const PoseData<double> &pose, SeenList &out) {
   PoseSums unused;
   kernel::FacetLoops<ScalarMachine>(scene, masks, model, pose, unused).list_seen(chunks, out);
-}
-
-void weigh_facet(const SceneData<double> &scene, const PoseData<double> &pose,
-                 const SeenFacet &facet, double *weight) {
-  const FacetGroup<double> &f = scene.groups[facet.group];
-  const SlotTerms &slot = scene.slots[facet.slot];
-  const double x = f.nx[facet.lane], y = f.ny[facet.lane], z = f.nz[facet.lane];
-  const auto along = [&](const double *d) { return x * d[0] + y * d[1] + z * d[2]; };
-  const double n_l = std::max(along(pose.facet.sun), 0.0);
-  const double n_v = std::max(along(pose.facet.observer), 0.0);
-  for (std::size_t k = 0; k < slot.lobe_count; ++k)
-    *weight++ = kernel::lobe_weight(scene.lobes[slot.lobe_first + k],
-                                    pose.lobes[slot.lobe_first + k], pose.facet, x, y, z, n_l, n_v);
-  if (slot.product_count == 0)
-    return;
-  auto values = kernel::profile_values<double, double>(scene, slot, n_l, n_v);
-  if (slot.is_polarized)
-    values.turn = kernel::emission_turn(pose.facet, along(pose.facet.across), n_l, n_v);
-  for (std::size_t p = 0; p < slot.product_count; ++p)
-    *weight++ = values.product<double>(scene.products[slot.product_first + p]);
 }
 
 } // namespace umov::backend

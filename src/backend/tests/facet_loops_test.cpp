@@ -205,16 +205,17 @@ TEST(FacetLoops, DoubtsCountFacetsThatMasksCallFreeOrHidden) {
   const Heap<double> heap;
   const RandomMasks masks;
   std::vector<SeenFacet> room(group_count * lanes);
-  SeenList facing(room);
-  list_facing(heap.scene(), masks.view, {1.5F, 0.25F}, heap.pose, facing);
+  std::vector<double> weights(room.size() * (lobe_count + 2));
+  WeighedList facing{SeenList(room), weights, lobe_count + 2};
+  list_weighed(heap.scene(), &masks.view, {1.5F, 0.25F, true}, heap.pose, facing);
   Summed plain, doubtful;
   sum_facets(heap.scene(), &masks.view, {1.5F, 0.25F}, heap.pose, plain.sums);
   sum_facets(heap.scene(), &masks.view, {1.5F, 0.25F, true}, heap.pose, doubtful.sums);
   double variance = plain.sums.product_variance[0], linear = 0;
   std::size_t hidden = 0;
-  for (const SeenFacet &facet : facing) {
-    double weight[lobe_count + 2];
-    weigh_facet(heap.scene(), heap.pose, facet, weight);
+  for (std::size_t k = 0; k < facing.facets.size(); ++k) {
+    const SeenFacet &facet = facing.facets[k];
+    const double *weight = weights.data() + k * facing.terms;
     const double whole = heap.groups[facet.group].area[facet.lane], n = 64;
     const double doubt = 1.5 * (1 / n) * (1 - 1 / n) / (n * std::sqrt(n)) * whole * whole;
     variance += weight[lobe_count] * weight[lobe_count] * doubt;

@@ -78,6 +78,85 @@ TEST(TracedBeam, NasmythIsTheClosedRule) {
   }
 }
 
+using Field = std::array<std::complex<double>, 3>;
+
+Field operator+(const Field &a, const Field &b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+Field along(Vec3<Enu> v, std::complex<double> amount) {
+  return {v.x * amount, v.y * amount, v.z * amount};
+}
+std::complex<double> part(const Field &e, Vec3<Enu> v) {
+  return e[0] * v.x + e[1] * v.y + e[2] * v.z;
+}
+
+/// The electric field behind a mirror (Fresnel's amplitudes of a metal, Born & Wolf section 1.5),
+/// with no word of Stokes parameters.
+Field reflected(const Field &e, Vec3<Enu> k, Vec3<Enu> n, std::complex<double> eta) {
+  const double cosine = std::abs(dot(k, n));
+  const Vec3<Enu> out = k - n * (2 * dot(k, n));
+  const Vec3<Enu> s = normalized(cross(k, out));
+  const std::complex<double> root = std::sqrt(eta * eta - (1 - cosine * cosine));
+  const std::complex<double> rs = (cosine - root) / (cosine + root);
+  const std::complex<double> rp = (eta * eta * cosine - root) / (eta * eta * cosine + root);
+  return along(s, rs * part(e, s)) + along(cross(out, s), rp * part(e, cross(k, s)));
+}
+
+std::array<double, 4> stokes_of(const Field &e, Vec3<Enu> x, Vec3<Enu> k) {
+  const auto a = part(e, x), b = part(e, cross(k, x));
+  return {std::norm(a) + std::norm(b), std::norm(a) - std::norm(b), 2 * std::real(std::conj(a) * b),
+          2 * std::imag(std::conj(a) * b)};
+}
+
+/// O11: a train of seven mirrors, none in the plane of another, on a site that is turned anyhow.
+TEST(TracedBeam, SevenMirrorsAsFieldsGiveThem) {
+  const std::complex<double> eta = aluminium(550);
+  std::array<std::array<double, 16>, 2> found{};
+  for (int site = 0; site < 2; ++site) {
+    const auto turned_site = [&](Vec3<Enu> v) {
+      if (site == 0)
+        return v;
+      const double a = 1.1, b = -.6; // about the vertical, then about east
+      const Vec3<Enu> w{std::cos(a) * v.x - std::sin(a) * v.y,
+                        std::sin(a) * v.x + std::cos(a) * v.y, v.z};
+      return Vec3<Enu>{w.x, std::cos(b) * w.y - std::sin(b) * w.z,
+                       std::sin(b) * w.y + std::cos(b) * w.z};
+    };
+    const Vec3<Enu> x0 = turned_site({1, 0, 0}), k0 = turned_site({0, 0, -1});
+    const Vec3<Enu> last = turned_site(normalized(Vec3<Enu>{.3, .5, -.2}));
+    TracedBeam beam(x0, k0);
+    // Fields along x, at 45 deg, and turning: with those across they tell every column.
+    const Vec3<Enu> y0 = cross(k0, x0);
+    const double h = std::sqrt(.5);
+    const std::complex<double> i(0, 1);
+    std::array<Field, 4> fields{along(x0, 1), along(y0, 1), along(x0, h) + along(y0, h),
+                                along(x0, h) + along(y0, h * i)};
+    Vec3<Enu> k = k0;
+    for (int m = 0; m < 7; ++m) {
+      const Vec3<Enu> n =
+          turned_site(normalized(Vec3<Enu>{std::sin(1.3 * m), std::cos(2.1 * m), .9}));
+      for (Field &field : fields)
+        field = reflected(field, k, n, eta);
+      beam.reflect(n, eta);
+      k = k - n * (2 * dot(k, n));
+    }
+    beam.turn_to(last);
+    const Vec3<Enu> x = normalized(last - k * dot(last, k));
+    std::array<std::array<double, 4>, 4> s;
+    for (std::size_t f = 0; f < 4; ++f)
+      s[f] = stokes_of(fields[f], x, k);
+    const auto &m = beam.matrix().m;
+    for (std::size_t r = 0; r < 4; ++r) {
+      EXPECT_NEAR(m[r][0], (s[0][r] + s[1][r]) / 2, 1e-12) << r;
+      EXPECT_NEAR(m[r][1], (s[0][r] - s[1][r]) / 2, 1e-12) << r;
+      EXPECT_NEAR(m[r][2], s[2][r] - (s[0][r] + s[1][r]) / 2, 1e-12) << r;
+      EXPECT_NEAR(m[r][3], s[3][r] - (s[0][r] + s[1][r]) / 2, 1e-12) << r;
+      for (std::size_t c = 0; c < 4; ++c)
+        found[static_cast<std::size_t>(site)][4 * r + c] = m[r][c];
+    }
+  }
+  for (std::size_t k = 0; k < 16; ++k)
+    EXPECT_NEAR(found[0][k], found[1][k], 1e-12);
+}
+
 TEST(TracedBeam, EveryMirrorTurnsCircularLightOver) {
   // The field goes on turning as it did while the light comes back.
   TracedBeam beam({1, 0, 0}, {0, 0, -1});

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <umov/core/quantity.h>
 #include <umov/core/random.h>
 #include <umov/inverse/unmix.h>
@@ -114,6 +115,15 @@ TEST(Unmix, WhatIsNotThereIsZero) {
   const Case c = mixture(0, 1, 4);
   const Unmixing found = unmix(c.curve, errors, c.members);
   EXPECT_LT(found.groups[0].fraction, 3 * found.groups[0].fraction_err);
+}
+
+TEST(Unmix, SaysHowManyRowsOfPolarizationStandWithoutLight) {
+  Case c = mixture(0.3, 0.7, 1);
+  c.curve.samples[0].i = std::numeric_limits<double>::quiet_NaN();
+  c.curve.samples[5].i = 0;
+  const Unmixing found = unmix(c.curve, CurveErrors{}, c.members);
+  EXPECT_EQ(found.left_out, 2u);
+  EXPECT_EQ(found.measurements, 3 * 78u + 1); // the dark row is a measurement of I still
 }
 
 } // namespace

@@ -72,6 +72,22 @@ bool holds_only_listed(const fs::path &below, const fs::path &folder,
   return !code;
 }
 
+constexpr const char *frames = "frames", *frame_files = "frame_";
+
+/// A folder of nothing but frames.
+bool holds_frames_only(const fs::path &folder) {
+  if (folder.filename() != frames)
+    return false;
+  std::error_code code;
+  for (const auto &entry : fs::directory_iterator(folder, code)) {
+    const std::string name = entry.path().filename().string();
+    std::error_code unknown;
+    if (!name.starts_with(frame_files) || !name.ends_with(".fits") || entry.is_directory(unknown))
+      return false;
+  }
+  return !code;
+}
+
 /// What a folder holds that umov did not write.
 std::vector<std::string> strangers_in(const fs::path &folder) {
   std::vector<std::string> out;
@@ -81,7 +97,9 @@ std::vector<std::string> strangers_in(const fs::path &folder) {
   for (const auto &entry : fs::directory_iterator(folder, code)) {
     const std::string name = entry.path().filename().string();
     if (std::find(std::begin(our_files), std::end(our_files), name) == std::end(our_files) &&
-        !is_further_page(name) && std::find(listed.begin(), listed.end(), name) == listed.end() &&
+        !is_further_page(name) &&
+        !(entry.is_directory(code) && !entry.is_symlink(code) && holds_frames_only(entry.path())) &&
+        std::find(listed.begin(), listed.end(), name) == listed.end() &&
         !(!listed.empty() && entry.is_directory(code) && !entry.is_symlink(code) &&
           holds_only_listed(entry.path(), folder, listed)))
       out.push_back(name);
@@ -283,17 +301,55 @@ Result<void> RunFolder::write(const fs::path &folder, const std::string &name) c
   return write_file_atomically(folder / name, files_.at(name));
 }
 
-Result<void> RunFolder::commit() {
-  if (is_foreign_) {
-    for (const auto &[name, bytes] : files_)
-      UMOV_TRY(write(real_, name));
+struct RunFolder::Staged {
+  explicit Staged(fs::path made) : folder(std::move(made)) {}
+  Temporary folder;
+};
+
+Result<fs::path> RunFolder::subfolder(const std::string &name) {
+  UMOV_TRY(begin());
+  const fs::path out = staged_->folder.path / name;
+  std::error_code code;
+  if (fs::create_directories(out, code); code)
+    return trouble(out, "cannot be made: " + code.message());
+  return out;
+}
+
+Result<void> RunFolder::begin() {
+  if (staged_)
     return {};
-  }
   std::error_code code;
   fs::create_directories(real_.parent_path(), code);
   remove_abandoned(real_);
   UMOV_ASSIGN(made, make_beside(real_));
-  Temporary fresh(made);
+  staged_ = std::make_shared<Staged>(made);
+  return {};
+}
+
+/// Into a folder of the user's: what was begun beside it moves there, folder by folder.
+Result<void> RunFolder::put_into_foreign() {
+  for (const auto &[name, bytes] : files_)
+    UMOV_TRY(write(real_, name));
+  std::error_code code;
+  if (staged_)
+    for (const auto &entry : fs::directory_iterator(staged_->folder.path, code)) {
+      const fs::path to = real_ / entry.path().filename();
+      if (fs::exists(to) && !holds_frames_only(to))
+        return trouble(to, "holds files that umov did not write. Choose another folder.");
+      fs::remove_all(to, code);
+      fs::rename(entry.path(), to, code);
+      if (code)
+        return trouble(to, "cannot be put in place: " + code.message());
+    }
+  return {};
+}
+
+Result<void> RunFolder::commit() {
+  if (is_foreign_)
+    return put_into_foreign();
+  std::error_code code;
+  UMOV_TRY(begin());
+  Temporary &fresh = staged_->folder;
   // It tells which files are ours, also of what a kill leaves of this folder.
   if (const auto manifest = files_.find("manifest.json"); manifest != files_.end())
     UMOV_TRY(write(fresh.path, manifest->first));
@@ -308,6 +364,7 @@ Result<void> RunFolder::commit() {
     ::fsync(fd);
     ::close(fd);
   }
+  staged_.reset(); // with it what stood there before
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <umov/core/files.h>
 #include <umov/core/text.h>
 
 namespace umov::scenario {
@@ -203,7 +204,7 @@ Result<TableLaw> read_table(const Node &node, const std::filesystem::path &folde
   UMOV_TRY(forbid(node, "mode = \"aem\"",
                   {"axis", "rate_deg_s", "period_s", "epoch", "start", "inertia", "pieces"}));
   UMOV_TRY(node.require("file"));
-  return TableLaw{(folder / node.text("file", "")).lexically_normal().string(), nullptr};
+  return TableLaw{tidy_path(folder / node.text("file", "")).string(), nullptr};
 }
 
 Result<PiecewiseLaw> read_pieces(const Node &node, const std::filesystem::path &folder,
@@ -292,7 +293,7 @@ std::string law_toml(const TableLaw &law) {
   std::error_code code;
   const auto full = std::filesystem::absolute(law.file, code);
   return fmt::format("{{ mode = \"aem\", file = {} }}",
-                     quoted(code ? law.file : full.lexically_normal().string()));
+                     quoted(code ? law.file : tidy_path(full).string()));
 }
 
 /// An inline table with one more key at its end.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <umov/core/files.h>
 #include <umov/core/text.h>
 
 namespace umov::scenario {
@@ -58,7 +59,7 @@ Result<std::vector<BandEntry>> read_set(const Node &bands, const fs::path &folde
   }
   for (BandEntry &entry : out)
     if (entry.name.starts_with("file:"))
-      entry.name = "file:" + (folder / entry.name.substr(5)).lexically_normal().string();
+      entry.name = "file:" + tidy_path(folder / entry.name.substr(5)).string();
   return out;
 }
 
@@ -107,7 +108,7 @@ std::string bands_toml(const Scenario &of) {
     if (is_file) {
       std::error_code code;
       const auto full = fs::absolute(entry.name.substr(5), code);
-      name = code ? entry.name.substr(5) : full.lexically_normal().string();
+      name = code ? entry.name.substr(5) : tidy_path(full).string();
     }
     std::string more;
     if (!entry.form.unit.empty())

@@ -84,6 +84,16 @@ Result<void> check_focal_ratio(const Node &node, const Telescope &t) {
       node.where(node.has("focal_length_m") ? "focal_length_m" : "aperture_m"));
 }
 
+constexpr const char *tracking_names[] = {"satellite", "sidereal", "fixed"};
+
+Result<void> read_tracking(const Node &node, Telescope &out) {
+  const auto &names = tracking_names;
+  UMOV_ASSIGN(tracking, node.choice("tracking", names[static_cast<int>(out.tracking)],
+                                    {names[0], names[1], names[2]}));
+  out.tracking = static_cast<Tracking>(std::find(names, names + 3, tracking) - names);
+  return read_number(node, "tracking_error_arcsec", not_negative, out.tracking_error_arcsec);
+}
+
 Result<void> read_telescope(const Node &node, Telescope &out) {
   UMOV_TRY(read_number(node, "aperture_m",
                        {1e-12, 60, "a number above 0, up to 60 m (is it in mm?)"}, out.aperture_m));
@@ -106,6 +116,7 @@ Result<void> read_telescope(const Node &node, Telescope &out) {
                                  {"altaz", "equatorial"}));
   out.mount = mount == "altaz" ? Mount::AltAz : Mount::Equatorial;
   out.has_derotator = node.boolean("derotator", out.has_derotator);
+  UMOV_TRY(read_tracking(node, out));
   if (out.mount == Mount::Equatorial && out.port != TelescopePort::Cassegrain)
     return fail(ErrorCode::BadInput,
                 fmt::format("port = \"{}\" on an equatorial mount: a Nasmyth port lies on the "
@@ -156,6 +167,12 @@ Result<void> read_detector(const Node &node, Detector &out) {
                 fmt::format("em_gain = {} with model = \"{}\"; only an emccd multiplies",
                             out.em_gain, name_of(out.model)),
                 node.where("em_gain"));
+  if (node.has("dead_time_s") && out.model != DetectorModel::Counter && out.dead_time_s != 0)
+    return fail(ErrorCode::BadInput,
+                fmt::format("dead_time_s = {} with model = \"{}\"; only a counter is dead after "
+                            "a photon",
+                            out.dead_time_s, name_of(out.model)),
+                node.where("dead_time_s"));
   const auto bits = node.integer("bits", out.bits);
   if (bits < 1 || bits > 32)
     return fail(ErrorCode::BadInput, fmt::format("bits = {}; 1 to 32 was expected", bits),
@@ -230,11 +247,41 @@ Result<void> check_polarimeter(const Node &node, const Polarimeter &p, bool has_
   return {};
 }
 
+/// Keys of [polarimeter] that say something to a type.
+bool says_something(const std::string &key, PolarimeterType type) {
+  const bool has_plate = type == PolarimeterType::HwpDualBeam ||
+                         type == PolarimeterType::SpinningHwpDualBeam ||
+                         type == PolarimeterType::RotatingRetarder || type == PolarimeterType::Flc;
+  if (key == "layout")
+    return type == PolarimeterType::Mosaic;
+  if (key == "angles_deg" || key == "pupils")
+    return type == PolarimeterType::FourCamera;
+  if (key == "retardance_deg" || key == "plate_zero_deg")
+    return has_plate;
+  if (key == "period_s")
+    return type == PolarimeterType::SpinningHwpDualBeam;
+  return type != PolarimeterType::None;
+}
+
+/// What is given and not used is a slip: of the key, or of the type.
+Result<void> refuse_idle_keys(const Node &node, PolarimeterType type) {
+  for (const char *key : {"layout", "angles_deg", "pupils", "retardance_deg", "plate_zero_deg",
+                          "period_s", "extinction", "q0", "u0"})
+    if (node.has(key) && !says_something(key, type))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} says nothing to a polarimeter of type \"{}\"; leave it out, or "
+                              "give the type that has it",
+                              key, name_of(type)),
+                  node.where(key));
+  return {};
+}
+
 Result<void> read_polarimeter(const Node &node, bool is_whole, Polarimeter &out) {
   const auto &names = polarimeter_names();
   UMOV_ASSIGN(type, node.choice("type", name_of(out.type), names));
   out.type =
       static_cast<PolarimeterType>(std::find(names.begin(), names.end(), type) - names.begin());
+  UMOV_TRY(refuse_idle_keys(node, out.type));
   UMOV_TRY(read_layout(node, out));
   UMOV_TRY(read_curve(node, "extinction", {1, 1e12, "more than 1"}, out.extinction));
   UMOV_TRY(read_curve(node, "retardance_deg", {-720, 720, "-720 to 720"}, out.retardance_deg));
@@ -271,21 +318,25 @@ std::string curve_toml(const Tabulated &curve) {
 
 std::string polarimeter_toml(const Polarimeter &p) {
   std::string out = fmt::format("\n[polarimeter]\ntype = \"{}\"\n", name_of(p.type));
+  const auto put = [&](const char *key, const std::string &value) {
+    if (says_something(key, p.type))
+      out += fmt::format("{} = {}\n", key, value);
+  };
   const auto &a = p.angles_deg;
   if (p.type == PolarimeterType::Mosaic)
-    out += fmt::format("layout = [[{}, {}], [{}, {}]]\n", shortest(a[0]), shortest(a[1]),
-                       shortest(a[2]), shortest(a[3]));
-  else if (!a.empty())
-    out += fmt::format("angles_deg = {}\n", list_toml(a));
+    put("layout", fmt::format("[[{}, {}], [{}, {}]]", shortest(a[0]), shortest(a[1]),
+                              shortest(a[2]), shortest(a[3])));
+  put("angles_deg", list_toml(a));
   if (std::isfinite(p.extinction.value.front()))
-    out += fmt::format("extinction = {}\n", curve_toml(p.extinction));
-  out += fmt::format("retardance_deg = {}\nplate_zero_deg = {}\n", curve_toml(p.retardance_deg),
-                     shortest(p.plate_zero_deg));
-  if (p.period_s > 0)
-    out += fmt::format("period_s = {}\n", shortest(p.period_s));
-  return out + fmt::format("pupils = \"{}\"\nx_axis_deg = {}\nq0 = {}\nu0 = {}\n",
-                           p.has_separate_pupils ? "separate" : "common", shortest(p.x_axis_deg),
-                           shortest(p.q0), shortest(p.u0));
+    put("extinction", curve_toml(p.extinction));
+  put("retardance_deg", curve_toml(p.retardance_deg));
+  put("plate_zero_deg", shortest(p.plate_zero_deg));
+  put("period_s", shortest(p.period_s));
+  put("pupils", p.has_separate_pupils ? "\"separate\"" : "\"common\"");
+  put("x_axis_deg", shortest(p.x_axis_deg));
+  put("q0", shortest(p.q0));
+  put("u0", shortest(p.u0));
+  return out;
 }
 
 } // namespace
@@ -313,10 +364,12 @@ std::string instrument_tables_toml(const Instrument &i) {
   const char *ports[] = {"cassegrain", "nasmyth_left", "nasmyth_right"};
   std::string out = fmt::format(
       "\n[telescope]\naperture_m = {}\nobstruction = {}\nfocal_length_m = {}\nthroughput = {}\n"
-      "port = \"{}\"\nmirror = {}\nmount = \"{}\"\nderotator = {}\n",
+      "port = \"{}\"\nmirror = {}\nmount = \"{}\"\nderotator = {}\ntracking = \"{}\"\n"
+      "tracking_error_arcsec = {}\n",
       shortest(t.aperture_m), shortest(t.obstruction), shortest(t.focal_length_m),
       curve_toml(t.throughput), ports[static_cast<int>(t.port)], quoted(t.mirror),
-      t.mount == Mount::AltAz ? "altaz" : "equatorial", t.has_derotator);
+      t.mount == Mount::AltAz ? "altaz" : "equatorial", t.has_derotator,
+      tracking_names[static_cast<int>(t.tracking)], shortest(t.tracking_error_arcsec));
   out += fmt::format(
       "\n[detector]\nmodel = \"{}\"\npixel_um = {}\n{}"
       "read_e = {}\ndark_e_s = {}\ngain_e_adu = {}\nbits = {}\nbias_adu = {}\n"

@@ -40,6 +40,10 @@ struct Named {
   [[nodiscard]] Where place(const std::string &key) const {
     return umov::place(scenario, fmt::format("object.{}.{}", number, key));
   }
+  /// The key that says what a group of the mesh is made of.
+  [[nodiscard]] std::string material_key(const std::string &group) const {
+    return "materials." + (object.materials.contains(group) ? group : "default");
+  }
 };
 
 /// For the whole process, as Earth orientation is.
@@ -166,53 +170,87 @@ std::pair<double, double> range_of(const Band &band) {
   return {band.curve->wavelength_nm.front(), band.curve->wavelength_nm.back()};
 }
 
-/// Which compiled-in tables cover both ends of a band.
-std::string tables_that_cover(const std::string &name, double first_nm, double last_nm) {
-  std::vector<std::string> out = indices_covering(name, Wavelength::nm(first_nm));
-  const auto also = indices_covering(name, Wavelength::nm(last_nm));
-  std::erase_if(out,
-                [&](const std::string &one) { return std::ranges::find(also, one) == also.end(); });
-  return out.empty() ? "" : fmt::format(" Tables that cover it: {}.", fmt::join(out, ", "));
+/// Every table that a material (const or not) asks for its light.
+auto tables_of(auto &material) {
+  std::vector<decltype(&material.index)> out{&material.index};
+  for (auto &layer : material.layers)
+    out.push_back(&layer.index);
+  return out;
 }
 
-/// A band that an index does not cover: which compiled-in tables would. What a table that holds its
+/// The part of a curve's response outside a range of wavelengths.
+double tail_of(const Passband &curve, const WavelengthRange &known) {
+  double whole = 0, outside = 0;
+  for (std::size_t k = 1; k < curve.wavelength_nm.size(); ++k) {
+    const double a = curve.wavelength_nm[k - 1], b = curve.wavelength_nm[k];
+    const double area = 0.5 * (curve.response[k - 1] + curve.response[k]) * (b - a);
+    const double inside = std::min(b, known.last_nm) - std::max(a, known.first_nm);
+    whole += area;
+    outside += area * (1 - std::clamp(inside / (b - a), 0.0, 1.0));
+  }
+  return whole > 0 ? outside / whole : 0;
+}
+
+/// So little of a band that its light hardly depends on what is taken there.
+constexpr double negligible_tail = 0.05;
+
+bool covers(const IndexTable &table, const Band &band) {
+  if (!band.curve)
+    return index_at(table, band.wavelength).has_value();
+  return table.holds_ends || tail_of(*band.curve, umov::range_of(table)) <= negligible_tail;
+}
+
+/// What could stand in a material's place: the library's of which all is known in the band.
+std::string materials_that_cover(const Band &band) {
+  std::vector<std::string> out;
+  for (const std::string &name : material_library()) {
+    const auto one = read_material(name);
+    const auto knows = [&](const IndexTable *table) { return covers(*table, band); };
+    if (one && !one->measured && std::ranges::all_of(tables_of(*one), knows))
+      out.push_back(name);
+  }
+  return fmt::format(" Materials that cover it: {}.", fmt::join(out, ", "));
+}
+
+/// A band that an index does not cover: whose it is, and what would. What a table that holds its
 /// ends is asked beyond them is told.
-Result<void> check_bands(const Material &material, const Scenario &scenario,
+Result<void> check_bands(const Material &material, const Named &of, const std::string &key,
                          Diagnostics &diagnostics) {
   if (material.measured)
     return {};
-  std::vector<const IndexTable *> tables{&material.index};
-  for (const Layer &layer : material.layers)
-    tables.push_back(&layer.index);
-  for (const Band &band : scenario.bands)
-    for (const IndexTable *table : tables) {
+  for (const Band &band : of.scenario.bands)
+    for (const IndexTable *table : tables_of(material)) {
       const auto [first, last] = range_of(band);
       const WavelengthRange known = umov::range_of(*table);
-      const bool is_covered = first >= known.first_nm && last <= known.last_nm;
-      if (band.curve && table->holds_ends && !is_covered) {
-        diagnostics.warn(fmt::format("material \"{}\" is known at {:g}-{:g} nm; band \"{}\" "
-                                     "({:g}-{:g} nm) takes the values at the ends beyond",
-                                     material.name, known.first_nm, known.last_nm, band.name, first,
-                                     last),
-                         {scenario.file});
-      } else if (band.curve && !is_covered) {
+      if (!covers(*table, band))
         return fail(ErrorCode::BadInput,
-                    fmt::format("material \"{}\": index \"{}\" covers {:g}-{:g} nm; band \"{}\" "
-                                "needs {:g}-{:g} nm. Extrapolation is off.{}",
-                                material.name, table->name, known.first_nm, known.last_nm,
-                                band.name, first, last,
-                                tables_that_cover(table->name, first, last)),
-                    {scenario.file});
-      } else if (!band.curve) {
-        if (const auto eta = index_at(*table, band.wavelength); !eta)
-          return fail(ErrorCode::BadInput,
-                      fmt::format("material \"{}\", band \"{}\": {}{}", material.name, band.name,
-                                  eta.error().message,
-                                  tables_that_cover(table->name, first, first)),
-                      {scenario.file});
-      }
+                    fmt::format("{} = \"{}\": its index \"{}\" covers {:g}-{:g} nm; band \"{}\" "
+                                "needs {}. Extrapolation is off.{}",
+                                key, material.name, table->name, known.first_nm, known.last_nm,
+                                band.name,
+                                band.curve ? fmt::format("{:g}-{:g} nm", first, last)
+                                           : fmt::format("{:g} nm", first),
+                                materials_that_cover(band)),
+                    of.place(key));
+      if (band.curve && (first < known.first_nm || last > known.last_nm))
+        diagnostics.warn(fmt::format("material \"{}\" is known at {:g}-{:g} nm; band \"{}\" "
+                                     "({:g}-{:g} nm) takes the values at the ends beyond, {:.2g} % "
+                                     "of its response",
+                                     material.name, known.first_nm, known.last_nm, band.name, first,
+                                     last, 100 * tail_of(*band.curve, known)),
+                         {of.scenario.file});
     }
   return {};
+}
+
+/// After the check: tables that end within a band's tail hold their ends there.
+void hold_tails(Material &material, const std::vector<Band> &bands) {
+  for (IndexTable *table : tables_of(material)) {
+    const WavelengthRange known = umov::range_of(*table);
+    for (const Band &band : bands)
+      if (band.curve && tail_of(*band.curve, known) > 0)
+        table->holds_ends = true;
+  }
 }
 
 /// Files that the materials of an object were read from, among its inputs, each once.
@@ -270,9 +308,12 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   for (std::size_t i = 0; i < front.size(); ++i)
     for (const Material *material : {&front[i], &back[i]})
       if (std::find(checked.begin(), checked.end(), *material) == checked.end()) {
-        UMOV_TRY(check_bands(*material, scenario, diagnostics));
+        UMOV_TRY(check_bands(*material, of, of.material_key(read.mesh.groups[i]), diagnostics));
         checked.push_back(*material);
       }
+  for (auto *side : {&front, &back})
+    for (Material &material : *side)
+      hold_tails(material, scenario.bands);
   UMOV_TRY(note_material_files(of, checked, out));
   auto scene =
       make_scene(read.mesh, of.object.mesh.normals, scenario.bands, front, back, diagnostics,

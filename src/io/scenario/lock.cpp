@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <umov/core/files.h>
 #include <umov/core/text.h>
 
 namespace umov {
@@ -40,7 +41,7 @@ std::string list(const std::vector<std::string> &items) {
 std::string absolute_path(const std::filesystem::path &path) {
   std::error_code code;
   const auto full = std::filesystem::absolute(path, code);
-  return quoted((code ? path : full).lexically_normal().string());
+  return quoted(tidy_path(code ? path : full).string());
 }
 
 std::string observer_and_time(const Scenario &s) {

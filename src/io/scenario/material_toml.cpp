@@ -1,6 +1,7 @@
 #include "io/scenario/parts.h"
 
 #include <fmt/format.h>
+#include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <umov/io/index_file.h>
 
@@ -24,7 +25,7 @@ std::string index_toml(const IndexTable &table) {
       return quoted(table.name);
   if (!table.file.empty())
     return fmt::format("{{ file = {} }}",
-                       quoted(std::filesystem::absolute(table.file).lexically_normal().string()));
+                       quoted(tidy_path(std::filesystem::absolute(table.file)).string()));
   const auto &n = std::get<Tabulated>(table.n);
   if (n.wavelength_nm.empty())
     return fmt::format("{{ n = {}, k = {} }}", shortest(n.value[0]), shortest(table.k.value[0]));
@@ -46,7 +47,7 @@ std::string distribution_toml(const DistributionChoice &choice) {
   for (const auto &[name, value] : choice.parameters)
     out += ", " + name + " = " + shortest(value);
   if (!choice.file.empty())
-    out += ", file = " + quoted(std::filesystem::absolute(choice.file).lexically_normal().string());
+    out += ", file = " + quoted(tidy_path(std::filesystem::absolute(choice.file)).string());
   return out + " }\n";
 }
 
@@ -85,9 +86,8 @@ std::string material_toml(const Material &m) {
   std::string out = fmt::format("[material.{}]\n", quoted(m.name)) + texts_toml(m);
   if (m.measured)
     return out +
-           fmt::format(
-               "table = {}\naccept = true\n",
-               quoted(std::filesystem::absolute(m.measured_file).lexically_normal().string()));
+           fmt::format("table = {}\naccept = true\n",
+                       quoted(tidy_path(std::filesystem::absolute(m.measured_file)).string()));
   out += "index = " + index_toml(m.index) + "\n";
   if (!m.layers.empty())
     out += layers_toml(m.layers);

@@ -18,7 +18,7 @@ const std::vector<std::string> interreflection_names{"none", "unpolarized", "sin
 
 /// A file that a material names, from the folder of the file that names it.
 fs::path beside(const Node &node, const std::string &file) {
-  return (fs::path(node.file()).parent_path() / file).lexically_normal();
+  return tidy_path(fs::path(node.file()).parent_path() / file);
 }
 
 /// Numbers in place: { n, k } or { wavelength_nm, n, k }.
@@ -264,7 +264,7 @@ bool is_material_file(const std::string &name, const Scenario &scenario) {
 }
 
 std::string material_file(const std::string &name, const Scenario &scenario) {
-  return (fs::path(scenario.file).parent_path() / name).lexically_normal().string();
+  return tidy_path(fs::path(scenario.file).parent_path() / name).string();
 }
 
 Result<Material> find_material(const std::string &name, const Scenario &scenario) {

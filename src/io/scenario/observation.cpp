@@ -2,6 +2,7 @@
 
 #include "io/scenario/parts.h"
 
+#include <cmath>
 #include <fmt/format.h>
 #include <umov/core/text.h>
 
@@ -139,7 +140,36 @@ Result<void> read_sequence(const Node &node, ScenarioObservation &out) {
   return {};
 }
 
-Result<void> read_exposures(const Node &node, ScenarioObservation &out) {
+Result<void> read_frames(const Node &node, const std::string &folder, ScenarioObservation &out) {
+  UMOV_ASSIGN(level, node.choice("level", "aperture", {"aperture", "image"}));
+  out.makes_frames = level == "image";
+  UMOV_ASSIGN(photometry, node.choice("photometry", "aperture", {"aperture", "image"}));
+  out.photometry = photometry == "image" ? FramePhotometry::Image : FramePhotometry::Aperture;
+  out.stars = node.text("stars", "");
+  if (!out.stars.empty() && !out.stars.starts_with('/') && !folder.empty())
+    out.stars = folder + "/" + out.stars;
+  if (!out.makes_frames)
+    for (const char *name : {"frame_px", "stars", "photometry"})
+      if (node.has(name))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} is of frames, and level = \"{}\" makes none; add level = "
+                                "\"image\" or leave it out",
+                                name, level),
+                    node.where(name));
+  if (!node.has("frame_px"))
+    return {};
+  UMOV_ASSIGN(size, node.numbers("frame_px"));
+  constexpr double least = 16, most = 16384;
+  const auto fits = [&](double x) { return x >= least && x <= most && x == std::floor(x); };
+  if (size.size() != 2 || !fits(size[0]) || !fits(size[1]))
+    return fail(ErrorCode::BadInput,
+                fmt::format("frame_px: [columns, rows], each {} to {}, was expected", least, most),
+                node.where("frame_px"));
+  out.frame_px = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  return {};
+}
+
+Result<void> read_exposures(const Node &node, const std::string &folder, ScenarioObservation &out) {
   if (node.has("bands")) {
     UMOV_ASSIGN(bands, node.strings("bands"));
     if (bands.empty())
@@ -169,8 +199,7 @@ Result<void> read_exposures(const Node &node, ScenarioObservation &out) {
                     out.aperture_fwhm, ring, ring),
         node.where("aperture_fwhm"));
   UMOV_TRY(read_at_least(node, "clock_error_s", 0, out.clock_error_s));
-  UMOV_TRY(node.choice("level", "aperture", {"aperture"}, {"image"}));
-  return {};
+  return read_frames(node, folder, out);
 }
 
 } // namespace
@@ -228,7 +257,7 @@ Result<std::optional<ScenarioObservation>> read_observation(const Node &top,
   if (!top.has("observation"))
     return std::optional<ScenarioObservation>();
   UMOV_ASSIGN(node, top.child("observation"));
-  UMOV_TRY(read_exposures(node, out));
+  UMOV_TRY(read_exposures(node, folder, out));
   for (const auto &[name, value] :
        {std::pair{"telescope.aperture_m", out.instrument.telescope.aperture_m},
         {"telescope.focal_length_m", out.instrument.telescope.focal_length_m},
@@ -288,6 +317,13 @@ std::string observation_toml(const ScenarioObservation &o) {
                      "aperture_fwhm = {}\nclock_error_s = {}\n",
                      shortest(o.exposure_s), shortest(o.cadence_s), shortest(o.width_nm),
                      shortest(o.aperture_fwhm), shortest(o.clock_error_s));
+  if (o.makes_frames) {
+    out +=
+        fmt::format("level = \"image\"\nframe_px = [{}, {}]\nphotometry = \"{}\"\n", o.frame_px[0],
+                    o.frame_px[1], o.photometry == FramePhotometry::Image ? "image" : "aperture");
+    if (!o.stars.empty())
+      out += "stars = " + quoted(o.stars) + "\n";
+  }
   std::string bands, steps;
   for (const std::string &band : o.bands)
     bands += (bands.empty() ? "" : ", ") + quoted(band);

@@ -169,7 +169,7 @@ Result<void> read_mesh(const Node &object, const fs::path &folder, Scenario &out
   UMOV_TRY(node.require("file"));
   UMOV_ASSIGN(normals, node.choice("normals", "flat", {"flat", "smooth"}));
   ScenarioMesh &mesh = out.objects.back().mesh;
-  mesh.file = (folder / node.text("file", "")).lexically_normal();
+  mesh.file = tidy_path(folder / node.text("file", ""));
   mesh.unit = node.text("unit", "");
   mesh.up = node.text("up", "");
   mesh.normals = normals == "smooth" ? NormalMode::Smooth : NormalMode::Flat;
@@ -227,7 +227,7 @@ Result<void> read_orbit(const Node &object, const fs::path &folder, Scenario &ou
         return fail(ErrorCode::BadInput,
                     fmt::format("{} has no meaning with file; leave one of them out", name),
                     orbit.where(name));
-    one.file = (folder / orbit.text("file", "")).lexically_normal();
+    one.file = tidy_path(folder / orbit.text("file", ""));
   }
   out.objects.back().orbit = one;
   return {};

@@ -1,5 +1,7 @@
-// In the place of fits_table.cpp where umov is built without CFITSIO.
+// In the place of fits_table.cpp and fits_image.cpp where umov is built without CFITSIO.
 #include "io/table/fits_table.h"
+
+#include <umov/io/fits_image.h>
 
 namespace umov {
 namespace {
@@ -33,5 +35,8 @@ Result<void> FitsTable::close() { return absent(); }
 Result<std::string> FitsTable::take() { return absent(); }
 
 Result<std::string> to_fits(const Table & /*table*/) { return absent(); }
+Result<void> write_fits_image(const std::filesystem::path &path, const FitsImage & /*image*/) {
+  return absent(path);
+}
 
 } // namespace umov

@@ -95,6 +95,28 @@ void Table::append(Table &&rows) {
   rows_ += rows.rows_;
 }
 
+Table Table::part(std::size_t first, std::size_t count) const {
+  Table out;
+  out.notes_ = notes_;
+  out.rows_ = count;
+  const auto begin = static_cast<std::ptrdiff_t>(first);
+  const auto end = static_cast<std::ptrdiff_t>(first + count);
+  for (const Column &column : columns_)
+    out.columns_.push_back({column.name, column.unit, column.description,
+                            std::visit(
+                                [&](const auto &cells) -> Cells {
+                                  return std::decay_t<decltype(cells)>(cells.begin() + begin,
+                                                                       cells.begin() + end);
+                                },
+                                column.cells),
+                            column.precision});
+  return out;
+}
+
+void Table::remove(std::string_view name) {
+  std::erase_if(columns_, [name](const Column &column) { return column.name == name; });
+}
+
 Result<Table> with_columns(const Table &table, const std::vector<std::string> &names) {
   Table out;
   for (const std::string &name : names) {

@@ -143,6 +143,7 @@ std::optional<bool> truth_of(std::string cell) {
 
 Result<TextTable> read_text_table(std::string_view text, const std::string &file) {
   constexpr std::size_t rows_max = 20'000'000, line_max = 100'000;
+  constexpr std::size_t cells_max = 50'000'000; // some 50 bytes each: 2.5 GB
   TextTable out;
   bool has_blanks = false;
   std::size_t number = 0;
@@ -162,6 +163,13 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
       return fail(ErrorCode::BadInput, "this is longer than a table of counts; is it one?", where);
     if (out.columns.empty())
       has_blanks = line.find(',') == std::string_view::npos;
+    if ((out.rows.size() + 1) * out.columns.size() > cells_max)
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("more than {} cells, which would fill the memory; split the table, or "
+                      "leave out columns",
+                      cells_max),
+          where);
     auto cells = cells_of(line, has_blanks);
     if (!cells)
       return fail(ErrorCode::BadInput, "a quote is not closed in this row; close it with \"",

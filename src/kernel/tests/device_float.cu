@@ -82,11 +82,11 @@ __global__ void sum_poses(backend::SceneData<float> scene, backend::Masks masks,
 
 __global__ void list_facets(backend::SceneData<float> scene, backend::Masks masks,
                             backend::MaskErrorModel model, const backend::PoseData<float> *pose,
-                            backend::PoseSumsOf<float> *sums, backend::SeenListOf<float> *facing,
+                            backend::PoseSumsOf<float> *sums, backend::WeighedListOf<float> *weighed,
                             backend::SeenListOf<float> *seen) {
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   kernel::FacetLoops<DeviceMachine> loops(scene, &masks, model, pose[i], sums[i]);
-  loops.list_facing(facing[i]);
+  loops.list_weighed(weighed[i]);
   loops.list_seen(scene.chunks, seen[i]);
 }
 

@@ -173,18 +173,12 @@ void ArticulatedEngine::State::sum(Workspace &work) const {
 void ArticulatedEngine::State::list(std::size_t which, PartWork &part) const {
   const Engine::State &engine = *parts[which]->engine;
   Engine::State::Workspace &own = part.own;
-  if (refine_above > 0)
-    return engine.list_uncertain(part.pose, part.prepared, own);
-  own.uncertain.reset(engine.views.whole.groups.size() * backend::lanes);
-  backend::list_seen(engine.views.whole, engine.hiding(), mask_error, part.prepared.pose,
-                     own.uncertain);
-  own.uncertain.truncate(static_cast<std::size_t>(
-      std::remove_if(own.uncertain.begin(), own.uncertain.end(),
-                     [&](const backend::SeenFacet &facet) {
-                       return !own.tracer->has_others_before(facet, part.pose);
-                     }) -
-      own.uncertain.begin()));
-  engine.weigh_uncertain(part.pose, part.prepared, own);
+  engine.list_uncertain(part.pose, part.prepared, refine_above > 0 ? doubtful_error : mask_error,
+                        own);
+  if (!(refine_above > 0))
+    own.uncertain.keep_if([&](const backend::SeenFacet &facet) {
+      return own.tracer->has_others_before(facet, part.pose);
+    });
 }
 
 /// Whether another part hides something of a facet; if so its share is traced, all parts in the
@@ -192,7 +186,7 @@ void ArticulatedEngine::State::list(std::size_t which, PartWork &part) const {
 void ArticulatedEngine::State::look_at_facet(const Engine::State &engine, std::size_t k,
                                              PartWork &part) const {
   Engine::State::Workspace &own = part.own;
-  const backend::SeenFacet &facet = own.uncertain[k];
+  const backend::SeenFacet &facet = own.uncertain.facets[k];
   const double whole = engine.compiled.data.groups[facet.group].area[facet.lane];
   const double missed = refine_above > 0 ? 0.9 * refine_above / normal_95 : others_missed;
   const std::size_t points = first_points(own.error_per_area[k] * whole / missed);
@@ -201,7 +195,7 @@ void ArticulatedEngine::State::look_at_facet(const Engine::State &engine, std::s
     own.is_mended = true;
     return engine.trace_facet(part.pose, k, points, own);
   }
-  own.uncertain[k].variance +=
+  own.uncertain.facets[k].variance +=
       facet.area * facet.area * share_variance(1, static_cast<double>(free.points));
 }
 
@@ -209,19 +203,20 @@ void ArticulatedEngine::State::look_at_facet(const Engine::State &engine, std::s
 void ArticulatedEngine::State::look_at_others(std::size_t which, PartWork &part) const {
   const Engine::State &engine = *parts[which]->engine;
   engine.weigh_errors(part.own);
-  for (std::size_t k = 0; k < part.own.uncertain.size(); ++k) {
-    const double before = part.own.uncertain[k].variance;
-    if (part.own.tracer->has_others_before(part.own.uncertain[k], part.pose))
+  for (std::size_t k = 0; k < part.own.uncertain.facets.size(); ++k) {
+    const double before = part.own.uncertain.facets[k].variance;
+    if (part.own.tracer->has_others_before(part.own.uncertain.facets[k], part.pose))
       look_at_facet(engine, k, part);
     if (!(refine_above > 0)) // the sums hold what there was before
-      engine.add_variance(k, std::max(part.own.uncertain[k].variance - before, 0.0), part.own);
+      engine.add_variance(k, std::max(part.own.uncertain.facets[k].variance - before, 0.0),
+                          part.own);
   }
   take_roots(engine, part);
 }
 
 void ArticulatedEngine::State::take_roots(const Engine::State &engine, PartWork &part) const {
   if (refine_above > 0)
-    engine.take_variances(part.own);
+    engine.add_up_variances(part.own);
   engine.take_roots(part.own, true);
 }
 
@@ -247,7 +242,7 @@ void ArticulatedEngine::State::mend(Workspace &work) const {
     PartWork &part = work.parts[p];
     if (!part.has_light || !engine.is_uncertain(work.total, 1, part.own) || !(variance[p] > 0))
       continue;
-    engine.trace(part.pose, variance[p] / all, part.own);
+    engine.trace(part.pose, part.prepared, variance[p] / all, part.own);
     part.own.is_mended = true;
     take_roots(engine, part);
   }

@@ -241,6 +241,8 @@ Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out
       poses, task,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
         out.is_dark[row] = s.sum(pose, at, work) ? 0 : 1;
+        if (work.has_variances)
+          s.sum_variances(work);
         if (out.is_dark[row] == 0)
           put_abundances(s.compiled, work.sums, row, out);
       });

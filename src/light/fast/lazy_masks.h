@@ -24,6 +24,11 @@ public:
 
   /// What the loops read: it holds for poses that were ensured, while their lock is held.
   [[nodiscard]] const backend::Masks &view() const { return view_; }
+  /// Points of a class, in the order of their bits.
+  [[nodiscard]] std::span<const Occluder::Point> points(std::uint32_t group,
+                                                        std::uint32_t lane) const {
+    return tracer_.points(view_.groups[group], lane);
+  }
   [[nodiscard]] std::size_t bytes() const;
   /// Rows were traced since the masks were made or read.
   [[nodiscard]] bool has_grown() const { return has_grown_; }

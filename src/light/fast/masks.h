@@ -34,6 +34,12 @@ public:
   /// Adds the rows of directions that have none yet.
   void trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
              MaskStore &masks) const;
+  /// What the bits of a lane stand for, in their order.
+  [[nodiscard]] std::span<const Occluder::Point> points(const backend::GroupMask &group,
+                                                        std::uint32_t lane) const {
+    return group.is_large ? large_[group.entry + lane].points[0].origin
+                          : small_[group.entry].points[lane].origin;
+  }
 
 private:
   std::vector<MaskEntry> small_, large_;

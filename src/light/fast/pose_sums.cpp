@@ -23,7 +23,7 @@ void Engine::State::sum_facets(const Prepared &at, SumsStore &out) const {
 
 bool Engine::State::add_up(const Pose &pose, const Prepared &at, Workspace &work) const {
   sum_facets(at, work.sums);
-  work.is_mended = false;
+  work.is_mended = work.has_variances = false;
   if (!work.sums.is_any_seen && !doubts_darkness())
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
@@ -165,10 +165,10 @@ void Engine::State::colour_by_material(std::span<const std::uint32_t> material, 
     for (std::size_t b = 0; b < bands(); ++b)
       intensity[material[slot] * bands() + b] += (work.light.i[b] - before[b]) * compiled.area_m2;
   }
-  if (compiled.general_classes == 0)
-    return;
-  work.light.add(work.general);
-  for (std::size_t slot = 0; slot < work.general_i.size() / bands(); ++slot)
+  if (compiled.general_classes > 0)
+    work.light.add(work.general);
+  take_variances(work);
+  for (std::size_t slot = 0; compiled.general_classes > 0 && slot < compiled.slots.size(); ++slot)
     for (std::size_t b = 0; b < bands(); ++b)
       intensity[material[slot] * bands() + b] +=
           work.general_i[slot * bands() + b] * compiled.area_m2;
@@ -181,6 +181,19 @@ void Engine::State::colour(Workspace &work) const {
       compiled.colours.add_slot(slot, sums_of(slot, work), work.factors, work.light);
   if (compiled.general_classes > 0)
     work.light.add(work.general);
+  take_variances(work);
+}
+
+/// Variances facet by facet in place of those of the sums.
+void Engine::State::take_variances(Workspace &work) const {
+  if (!work.has_variances)
+    return;
+  work.light.var_i = work.variances.var_i;
+  work.light.var_q = work.variances.var_q;
+  if (!compiled.has_u && compiled.general_classes == 0)
+    return;
+  work.light.var_u = work.variances.var_u;
+  work.light.var_v = work.variances.var_v;
 }
 
 } // namespace umov

@@ -115,6 +115,34 @@ TracedShare RefineTracer::trace_others(const backend::SeenFacet &facet, std::siz
   return {static_cast<double>(left_.size()) / static_cast<double>(count), count};
 }
 
+/// Drops of asked_ those that are hidden in a direction which they ask for.
+void RefineTracer::ask(std::span<const Occluder::Point> points, Vec3<Body> direction,
+                       bool DoubtfulPoint::*asks) {
+  left_.clear();
+  for (const DoubtfulPoint &p : asked_)
+    if (p.*asks)
+      left_.push_back(points[p.index]);
+  directions_.assign(left_.size(),
+                     {static_cast<float>(direction.x), static_cast<float>(direction.y),
+                      static_cast<float>(direction.z)});
+  free_.resize(left_.size());
+  occluder_.is_free(left_, directions_, free_);
+  std::size_t kept = 0, k = 0;
+  for (const DoubtfulPoint &p : asked_)
+    if (!(p.*asks) || free_[k++] != 0)
+      asked_[kept++] = p;
+  asked_.resize(kept);
+}
+
+std::size_t RefineTracer::trace_doubtful(std::span<const Occluder::Point> points,
+                                         std::span<const DoubtfulPoint> doubtful,
+                                         const Pose &pose) {
+  asked_.assign(doubtful.begin(), doubtful.end());
+  ask(points, pose.sun, &DoubtfulPoint::asks_sun);
+  ask(points, pose.observer, &DoubtfulPoint::asks_observer);
+  return asked_.size();
+}
+
 TracedShare RefineTracer::trace(const backend::SeenFacet &facet, std::size_t wanted,
                                 const Pose &pose) {
   const std::size_t count = take(facet, wanted);

@@ -3,6 +3,7 @@
 
 #include "backend/scene_data.h"
 #include "light/fast/mask_points.h"
+#include "light/fast/point_bits.h"
 #include "light/fast/spheres.h"
 
 #include <memory>
@@ -72,12 +73,19 @@ public:
   [[nodiscard]] bool has_others_before(const backend::SeenFacet &facet, const Pose &pose) const;
   /// `wanted` points of a class, spread over all of it.
   TracedShare trace(const backend::SeenFacet &facet, std::size_t wanted, const Pose &pose);
+  /// How many of a class's points, which the masks are of, are free towards both: only those are
+  /// traced that they doubt.
+  std::size_t trace_doubtful(std::span<const Occluder::Point> points,
+                             std::span<const DoubtfulPoint> doubtful, const Pose &pose);
+  [[nodiscard]] bool has_others() const { return !others_.empty(); }
   /// The same, as if nothing but the other parts hid anything.
   TracedShare trace_others(const backend::SeenFacet &facet, std::size_t wanted, const Pose &pose);
 
 private:
   std::size_t take(const backend::SeenFacet &facet, std::size_t wanted);
   void keep_free(Vec3<Body> direction);
+  void ask(std::span<const Occluder::Point> points, Vec3<Body> direction,
+           bool DoubtfulPoint::*asks);
   void keep_free_of_others(const Sphere &bounds, Vec3<Body> direction);
   void keep_free_of(const OtherPart &other, Vec3<Body> direction);
   void drop_hidden();
@@ -87,6 +95,7 @@ private:
   std::span<const OtherPart> others_;
   std::vector<Occluder::Point> left_, moved_, directions_;
   std::vector<unsigned char> free_;
+  std::vector<DoubtfulPoint> asked_;
 };
 
 } // namespace umov

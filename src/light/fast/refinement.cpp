@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace umov {
 /// Sampling leaves 0.6 n^-3/4 at worst.
@@ -49,50 +48,65 @@ bool Engine::State::is_uncertain(const BandLight &all, double unit_m2,
   return false;
 }
 
-/// The light of one uncertain facet per unit area, and its weights in the sums.
-void Engine::State::weigh(const Pose &pose, const Prepared &at, std::size_t k,
-                          Workspace &work) const {
-  const backend::SeenFacet &facet = work.uncertain[k];
-  const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-  Stokes<ScatteringPlane> *light = work.facet_light.data() + k * bands();
-  if (terms.is_general)
-    return light_of_general(pose, at, facet, work, light);
-  double *weight = work.weights.data() + k * terms_max();
-  backend::weigh_facet(views.whole, at.pose, facet, weight);
-  const double *none = work.nothing.data();
-  work.part.reset(bands(), compiled.has_u);
-  compiled.colours.add_slot(facet.slot,
-                            {weight, none, none, weight + terms.lobe_count, none, false},
-                            work.factors, work.part);
-  for (std::size_t b = 0; b < bands(); ++b)
-    light[b] = {work.part.i[b], work.part.q[b], compiled.has_u ? work.part.u[b] : 0, 0};
-}
-
-void Engine::State::list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
-  work.uncertain.reset(views.whole.groups.size() * backend::lanes);
-  if (masks)
-    backend::list_facing(views.whole, *hiding(), mask_error, at.pose, work.uncertain);
+void Engine::State::list_uncertain(const Pose &pose, const Prepared &at,
+                                   const backend::MaskErrorModel &error, Workspace &work) const {
+  work.uncertain.reset(views.whole.groups.size() * backend::lanes, terms_max());
+  if (options.is_double)
+    backend::list_weighed(views.whole, hiding(), error, at.pose, work.uncertain);
   else
-    backend::list_seen(views.whole, nullptr, mask_error, at.pose, work.uncertain);
-  for (backend::SeenFacet &facet : work.uncertain)
-    facet.variance *= static_cast<double>(mask_series);
-  weigh_uncertain(pose, at, work);
+    backend::list_weighed(views.single, hiding(), error, at.single, work.uncertain);
+  const std::size_t count = work.uncertain.facets.size();
+  work.points.assign(count, 0);
+  work.facet_light.resize(count * bands());
+  std::uint32_t slot = no_index; // facets of one slot follow each other
+  for (std::size_t k = 0; k < count; ++k) {
+    const backend::SeenFacet &facet = work.uncertain.facets[k];
+    Stokes<ScatteringPlane> *light = work.facet_light.data() + k * bands();
+    if (compiled.data.slots[facet.slot].is_general) {
+      light_of_general(pose, at, facet, work, light);
+      continue;
+    }
+    if (facet.slot != slot)
+      light_units(facet.slot, work);
+    slot = facet.slot;
+    colour_facet(work.uncertain.weights_of(k), compiled.data.slots[slot], work, light);
+  }
 }
 
-void Engine::State::weigh_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const {
-  work.nothing.assign(terms_max(), 0);
-  work.facet_light.assign(work.uncertain.size() * bands(), {});
-  work.weights.assign(work.uncertain.size() * terms_max(), 0);
-  work.points.assign(work.uncertain.size(), 0);
-  for (std::size_t k = 0; k < work.uncertain.size(); ++k)
-    weigh(pose, at, k, work);
+/// Light of one facet with a kernel per unit area.
+void Engine::State::colour_facet(const double *weight, const backend::SlotTerms &terms,
+                                 const Workspace &work, Stokes<ScatteringPlane> *light) const {
+  std::fill_n(light, bands(), Stokes<ScatteringPlane>{});
+  for (std::size_t t = 0; t < terms.lobe_count + terms.product_count; ++t)
+    for (std::size_t b = 0; b < bands(); ++b)
+      light[b] += work.unit_light[t * bands() + b] * weight[t];
+}
+
+/// Light per unit of each term of a slot.
+void Engine::State::light_units(std::uint32_t slot, Workspace &work) const {
+  const backend::SlotTerms &terms = compiled.data.slots[slot];
+  const std::size_t count = terms.lobe_count + terms.product_count;
+  work.unit.assign(2 * count, 0); // a one among zeros, and zeros
+  work.unit_light.resize(count * bands());
+  const double *one = work.unit.data(), *none = one + count;
+  for (std::size_t t = 0; t < count; ++t) {
+    work.unit[t] = 1;
+    work.part.reset(bands(), compiled.has_u);
+    compiled.colours.add_slot(slot, {one, none, none, one + terms.lobe_count, none, false},
+                              work.factors, work.part);
+    work.unit[t] = 0;
+    for (std::size_t b = 0; b < bands(); ++b)
+      work.unit_light[t * bands() + b] = {work.part.i[b], work.part.q[b],
+                                          compiled.has_u ? work.part.u[b] : 0, 0};
+  }
 }
 
 /// Error of I, or of Q at constant Q/I, per area of each uncertain facet, in parts of the light of
 /// the whole: of the band where it is worst.
 void Engine::State::weigh_errors(Workspace &work) const {
-  work.error_per_area.assign(work.uncertain.size(), 0);
-  for (std::size_t k = 0; k < work.uncertain.size(); ++k)
+  const std::size_t count = work.uncertain.facets.size();
+  work.error_per_area.assign(count, 0);
+  for (std::size_t k = 0; k < count; ++k)
     for (std::size_t b = 0; b < bands(); ++b) {
       const auto &light = work.facet_light[k * bands() + b];
       const double worst =
@@ -101,10 +115,36 @@ void Engine::State::weigh_errors(Workspace &work) const {
     }
 }
 
+/// Variances of the light from those that the facets have now: of every facet that could be seen,
+/// each with all its light, where those of the sums add up the deviations of lobes and products.
+void Engine::State::add_up_variances(Workspace &work) const {
+  BandLight &out = work.variances;
+  out.reset(bands(), true);
+  std::vector<double> &alike = out.i; // deviations that are looked up, added up
+  for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k) {
+    const double variance = work.uncertain.facets[k].variance;
+    const double deviation = work.points[k] != 0 ? 0 : std::sqrt(variance);
+    for (std::size_t b = 0; b < bands(); ++b) {
+      const auto &s = work.facet_light[k * bands() + b];
+      out.var_i[b] += s.i * s.i * variance;
+      out.var_q[b] += s.q * s.q * variance;
+      out.var_u[b] += s.u * s.u * variance;
+      out.var_v[b] += s.v * s.v * variance;
+      alike[b] += s.i * deviation;
+      out.q[b] += s.q * deviation;
+    }
+  }
+  for (std::size_t b = 0; b < bands(); ++b) {
+    out.var_i[b] += mask_alike * alike[b] * alike[b];
+    out.var_q[b] += mask_alike * out.q[b] * out.q[b];
+  }
+  work.has_variances = true;
+}
+
 /// Puts the share of a facet's area that rays find in place of the looked-up one.
 void Engine::State::trace_facet(const Pose &pose, std::size_t k, std::size_t points,
                                 Workspace &work) const {
-  backend::SeenFacet &facet = work.uncertain[k];
+  backend::SeenFacet &facet = work.uncertain.facets[k];
   const double whole = compiled.data.groups[facet.group].area[facet.lane];
   const TracedShare traced = work.tracer->trace(facet, points, pose);
   change_area(k, whole * traced.share - facet.area, work);
@@ -112,10 +152,29 @@ void Engine::State::trace_facet(const Pose &pose, std::size_t k, std::size_t poi
   work.points[k] = traced.points;
 }
 
+/// The first look at a class: rays for those of the points that the masks know which they doubt,
+/// as long as nothing else comes before the part.
+void Engine::State::look_closer(const Pose &pose, const Prepared &at, std::size_t k, double wanted,
+                                Workspace &work) const {
+  backend::SeenFacet &facet = work.uncertain.facets[k];
+  const double whole = compiled.data.groups[facet.group].area[facet.lane];
+  if (!masks || work.tracer->has_others())
+    return trace_facet(pose, k, first_points(work.error_per_area[k] * whole / wanted), work);
+  const auto points = masks->points(facet.group, facet.lane);
+  std::size_t free = split_points(*hiding(), at.pose, facet.group, facet.lane, work.doubtful);
+
+  free += work.tracer->trace_doubtful(points, work.doubtful, pose);
+  const auto count = static_cast<double>(points.size());
+  const double share = static_cast<double>(free) / count;
+  change_area(k, whole * share - facet.area, work);
+  facet.variance = whole * whole * share_variance(share, count);
+  work.points[k] = points.size();
+}
+
 void Engine::State::change_area(std::size_t k, double change, Workspace &work) const {
-  backend::SeenFacet &facet = work.uncertain[k];
+  backend::SeenFacet &facet = work.uncertain.facets[k];
   const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-  const double *weights = work.weights.data() + k * terms_max();
+  const double *weights = work.uncertain.weights_of(k);
   facet.area += change;
   for (std::size_t l = 0; l < terms.lobe_count; ++l)
     work.sums.specular[terms.lobe_first + l] += weights[l] * change;
@@ -132,9 +191,9 @@ void Engine::State::change_area(std::size_t k, double change, Workspace &work) c
 }
 
 void Engine::State::add_variance(std::size_t k, double variance, Workspace &work) const {
-  const backend::SeenFacet &facet = work.uncertain[k];
+  const backend::SeenFacet &facet = work.uncertain.facets[k];
   const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-  const double *weights = work.weights.data() + k * terms_max();
+  const double *weights = work.uncertain.weights_of(k);
   for (std::size_t l = 0; l < terms.lobe_count; ++l)
     work.sums.specular_variance[terms.lobe_first + l] += weights[l] * weights[l] * variance;
   for (std::size_t p = 0; p < terms.product_count; ++p) {
@@ -152,28 +211,34 @@ void Engine::State::add_variance(std::size_t k, double variance, Workspace &work
 
 /// Traces the classes that make most of the error, the worst first, until what the others leave is
 /// well below what is allowed; gives the variance that these leave, in parts of the light's square.
-double Engine::State::trace_worst(const Pose &pose, double wanted, Workspace &work) const {
+double Engine::State::trace_worst(const Pose &pose, const Prepared &at, double wanted,
+                                  Workspace &work) const {
   double variance = 0, linear = 0; // of what is still looked up
+  double traced = 0;               // variance of what no longer is
   const auto relative = [&](std::size_t k) {
-    return work.error_per_area[k] * work.error_per_area[k] * work.uncertain[k].variance;
+    return work.error_per_area[k] * work.error_per_area[k] * work.uncertain.facets[k].variance;
   };
-  for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
+  work.worst.clear();
+  for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k) {
+    if (work.points[k] > 0) {
+      traced += relative(k);
+      continue;
+    }
     variance += relative(k);
     linear += std::sqrt(relative(k));
+    work.worst.emplace_back(relative(k), no_index - static_cast<std::uint32_t>(k));
   }
-  work.order.resize(work.uncertain.size());
-  std::iota(work.order.begin(), work.order.end(), 0u);
-  std::sort(work.order.begin(), work.order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(-relative(a), a) < std::pair(-relative(b), b);
-  });
   const auto left = [&] { return variance + mask_alike * linear * linear; };
-  for (const std::uint32_t k : work.order) {
-    if (left() <= 0.5 * wanted * wanted)
-      break;
-    variance = std::max(variance - relative(k), 0.0);
-    linear = std::max(linear - std::sqrt(relative(k)), 0.0);
-    const double whole = compiled.data.groups[work.uncertain[k].group].area[work.uncertain[k].lane];
-    trace_facet(pose, k, first_points(work.error_per_area[k] * whole / wanted), work);
+  std::make_heap(work.worst.begin(), work.worst.end());
+  const double most = wanted * wanted;
+  while (!work.worst.empty() && left() > 0.3 * most && left() + traced > most) {
+    const auto [error, from_end] = work.worst.front();
+    std::pop_heap(work.worst.begin(), work.worst.end());
+    work.worst.pop_back();
+    variance = std::max(variance - error, 0.0);
+    linear = std::max(linear - std::sqrt(error), 0.0);
+    look_closer(pose, at, no_index - from_end, wanted, work);
+    traced += relative(no_index - from_end);
   }
   return left();
 }
@@ -184,10 +249,10 @@ double Engine::State::trace_worst(const Pose &pose, double wanted, Workspace &wo
 bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work) const {
   double now = 0, growth = 0; // at equal marginal gain
   const auto variance = [&](std::size_t k) {
-    return work.error_per_area[k] * work.error_per_area[k] * work.uncertain[k].variance;
+    return work.error_per_area[k] * work.error_per_area[k] * work.uncertain.facets[k].variance;
   };
   // Variance of one point: c = v n^1.5; n_k = s c_k^0.4 leaves the sum of c_k^0.4 s^-1.5.
-  for (std::size_t k = 0; k < work.uncertain.size(); ++k)
+  for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k)
     if (work.points[k] > 0) {
       now += variance(k);
       growth += std::pow(variance(k) * std::pow(static_cast<double>(work.points[k]), 1.5), 0.4);
@@ -196,7 +261,7 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
     return false;
   const double scale = std::pow(growth / (0.8 * allowed), 2.0 / 3);
   bool is_any = false;
-  for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
+  for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k) {
     if (work.points[k] == 0)
       continue;
     const double n = static_cast<double>(work.points[k]);
@@ -211,29 +276,27 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
 }
 
 /// Rays, until the variance that is left is `part` of what the accuracy allows.
-void Engine::State::trace(const Pose &pose, double part, Workspace &work) const {
+void Engine::State::trace(const Pose &pose, const Prepared &at, double part,
+                          Workspace &work) const {
   const double wanted = 0.9 * options.masks.refine_above / normal_95 * std::sqrt(part);
   constexpr int looks_max = 3;
   weigh_errors(work);
-  const double left = trace_worst(pose, wanted, work);
+  const double left = trace_worst(pose, at, wanted, work);
   for (int look = 1; look < looks_max; ++look)
     if (!trace_more(pose, wanted * wanted - left, work))
       break;
 }
 
 /// Variances of the sums from those that the facets have now.
-void Engine::State::take_variances(Workspace &work) const {
+void Engine::State::sum_variances(Workspace &work) const {
   for (const backend::View<double> column :
        {work.sums.specular_variance, work.sums.product_variance, work.sums.specular_linear,
-        work.sums.product_linear, backend::View<double>(work.general.var_i),
-        backend::View<double>(work.general.var_q), backend::View<double>(work.general.var_u),
-        backend::View<double>(work.general.var_v)})
+        work.sums.product_linear})
     std::fill(column.begin(), column.end(), 0);
-  for (std::size_t k = 0; k < work.uncertain.size(); ++k) {
-    const backend::SeenFacet &facet = work.uncertain[k];
+  for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k) {
+    const backend::SeenFacet &facet = work.uncertain.facets[k];
     const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
-    const double *weights = work.weights.data() + k * terms_max(),
-                 deviation = std::sqrt(facet.variance);
+    const double *weights = work.uncertain.weights_of(k), deviation = std::sqrt(facet.variance);
     const auto add = [&](double weight, double &variance, double &linear) {
       variance += weight * weight * facet.variance;
       linear += work.points[k] != 0 ? 0 : std::abs(weight) * deviation;
@@ -244,32 +307,24 @@ void Engine::State::take_variances(Workspace &work) const {
     for (std::size_t p = 0; p < terms.product_count; ++p)
       add(weights[terms.lobe_count + p], work.sums.product_variance[terms.product_first + p],
           work.sums.product_linear[terms.product_first + p]);
-    for (std::size_t b = 0; terms.is_general && b < bands(); ++b) {
-      const auto &s = work.facet_light[k * bands() + b];
-      work.general.var_i[b] += s.i * s.i * facet.variance;
-      work.general.var_q[b] += s.q * s.q * facet.variance;
-      work.general.var_u[b] += s.u * s.u * facet.variance;
-      work.general.var_v[b] += s.v * s.v * facet.variance;
-    }
   }
   add_alike(work.sums);
 }
 
-/// Variances of every facet that could be seen, in place of those of the sums, which know nothing
-/// of what is looked up as wholly free or hidden; rays for those that make the error, if there is
-/// too much of it.
+/// Rays for the facets that make the error, if there is too much of it.
 void Engine::State::mend(const Pose &pose, const Prepared &at, Workspace &work) const {
-  list_uncertain(pose, at, work);
-  take_variances(work);
-  take_roots(work);
-  colour(work);
-  refer_to(work.light, compiled.area_m2, work);
-  work.is_mended = is_uncertain(work.light, compiled.area_m2, work);
+  list_uncertain(pose, at, doubtful_error, work);
+  add_up_variances(work);
+  work.is_mended = is_uncertain(work.variances, compiled.area_m2, work);
   if (!work.is_mended)
     return;
-  trace(pose, 1, work);
-  take_variances(work);
-  take_roots(work);
+  // What rays find may be less light than the masks said, and the same error more of it.
+  for (int round = 0; round < 2 && is_uncertain(work.variances, compiled.area_m2, work); ++round) {
+    trace(pose, at, 1, work);
+    add_up_variances(work);
+    colour(work);
+    refer_to(work.light, compiled.area_m2, work);
+  }
 }
 
 } // namespace umov

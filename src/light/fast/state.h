@@ -77,13 +77,16 @@ struct Engine::State {
     // Of `mend`:
     std::vector<double> reference; ///< per band: what relative errors refer to
     std::vector<double> q_share;   ///< per band: Q/I of the whole
-    std::vector<double> nothing;
-    SeenStore uncertain;
-    std::vector<double> weights;                      ///< [uncertain * terms_max + term]
+    WeighedStore uncertain;
     std::vector<Stokes<ScatteringPlane>> facet_light; ///< [uncertain * bands + band], per area
-    std::vector<std::uint32_t> order;
-    std::vector<double> error_per_area; ///< per uncertain facet, in parts of the whole light
-    std::vector<std::size_t> points;    ///< per uncertain facet: traced; 0: looked up
+    std::vector<double> unit;                         ///< a one among zeros
+    std::vector<Stokes<ScatteringPlane>> unit_light;  ///< of one slot: [term * bands + band]
+    BandLight variances;                              ///< of the whole, facet by facet
+    bool has_variances = false;                       ///< they take the place of those of the sums
+    std::vector<std::pair<double, std::uint32_t>> worst; ///< error and which, as a heap
+    std::vector<double> error_per_area;  ///< per uncertain facet, in parts of the whole light
+    std::vector<DoubtfulPoint> doubtful; ///< points of one class
+    std::vector<std::size_t> points;     ///< per uncertain facet: traced; 0: looked up
     std::optional<RefineTracer> tracer;
     bool is_mended = false;        ///< rays were traced for this pose
     std::vector<double> general_i; ///< [slot * bands + band], of the facets without a kernel
@@ -127,6 +130,7 @@ struct Engine::State {
   void add_general(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// `may_vary`: something has added variances besides masks and listed facets.
   void take_roots(Workspace &work, bool may_vary = false) const;
+  void take_variances(Workspace &work) const;
   void add_rounding(Workspace &work) const;
   void light_of_general(const Pose &pose, const Prepared &at, const backend::SeenFacet &facet,
                         const Workspace &work, Stokes<ScatteringPlane> *bands) const;
@@ -139,18 +143,25 @@ struct Engine::State {
   [[nodiscard]] bool is_uncertain(const BandLight &all, double unit_m2,
                                   const Workspace &work) const;
   void mend(const Pose &pose, const Prepared &at, Workspace &work) const;
-  void list_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const;
-  void weigh(const Pose &pose, const Prepared &at, std::size_t k, Workspace &work) const;
-  void weigh_uncertain(const Pose &pose, const Prepared &at, Workspace &work) const;
+  /// The facets of a pose into work.uncertain.
+  void list_uncertain(const Pose &pose, const Prepared &at, const backend::MaskErrorModel &error,
+                      Workspace &work) const;
+  void light_units(std::uint32_t slot, Workspace &work) const;
+  void colour_facet(const double *weight, const backend::SlotTerms &terms, const Workspace &work,
+                    Stokes<ScatteringPlane> *light) const;
   void weigh_errors(Workspace &work) const;
-  void trace(const Pose &pose, double part, Workspace &work) const;
-  double trace_worst(const Pose &pose, double wanted, Workspace &work) const;
+  void trace(const Pose &pose, const Prepared &at, double part, Workspace &work) const;
+  double trace_worst(const Pose &pose, const Prepared &at, double wanted, Workspace &work) const;
+  void look_closer(const Pose &pose, const Prepared &at, std::size_t k, double wanted,
+                   Workspace &work) const;
   bool trace_more(const Pose &pose, double allowed, Workspace &work) const;
   void trace_facet(const Pose &pose, std::size_t k, std::size_t points, Workspace &work) const;
   void change_area(std::size_t k, double change, Workspace &work) const;
   /// A variance of the seen area of work.uncertain[k] besides what the sums hold.
   void add_variance(std::size_t k, double variance, Workspace &work) const;
-  void take_variances(Workspace &work) const;
+  void add_up_variances(Workspace &work) const;
+  /// Those of the sums, for whoever asks for sums.
+  void sum_variances(Workspace &work) const;
 };
 
 } // namespace umov

@@ -112,6 +112,33 @@ private:
   std::size_t size_ = 0;
 };
 
+/// Weighed facets with their own room.
+struct WeighedStore : backend::WeighedList {
+  /// Empty, with room for so many of so many terms.
+  void reset(std::size_t most, std::size_t of_terms) {
+    facet_room_.reset(most);
+    facets = facet_room_;
+    weight_room_.resize(std::max(weight_room_.size(), most * of_terms));
+    weights = weight_room_;
+    terms = of_terms;
+  }
+  [[nodiscard]] const double *weights_of(std::size_t k) const { return weights.data() + k * terms; }
+  /// Leaves those for which keep(facet) is true, in their order.
+  template <class Keep> void keep_if(const Keep &keep) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < facets.size(); ++k)
+      if (keep(facets[k])) {
+        facets[kept] = facets[k];
+        std::copy_n(weights_of(k), terms, weights.data() + kept++ * terms);
+      }
+    facets.truncate(kept);
+  }
+
+private:
+  SeenStore facet_room_;
+  std::vector<double> weight_room_;
+};
+
 /// Sums with their own room.
 struct SumsStore : backend::PoseSums {
   SumsStore() = default;

@@ -98,6 +98,29 @@ TEST(Sequence, RawCountsTellATumblingBodysPolarization) {
   EXPECT_GT(differenced, 3);
 }
 
+TEST(Sequence, SplinesNeedNoPeriod) {
+  double s = 0, ss = 0;
+  constexpr std::uint32_t trials = 200; // mean .07, sd .05
+  for (std::uint32_t t = 0; t < trials; ++t) {
+    const auto data = tumbling(t);
+    const auto fit =
+        fit_spline(data, 1, 3); // the shortest wave, 3.65 s, over three and a half knots
+    ASSERT_TRUE(fit);
+    const double pull = (fit->fractions.value[0] - .1) / std::sqrt(fit->fractions.covariance[0][0]);
+    s += pull, ss += pull * pull;
+    EXPECT_NEAR(fit->mean / 2e4, 1, .05); // eight turns and a fifth
+  }
+  const double mean = s / trials;
+  EXPECT_NEAR(mean, 0, .3);
+  EXPECT_NEAR(std::sqrt(ss / trials - mean * mean), 1, .2);
+}
+
+TEST(Sequence, TooManyKnotsAreRefused) {
+  const auto data = tumbling(0);
+  EXPECT_FALSE(fit_spline(data, 1e-3, 3));
+  EXPECT_FALSE(fit_spline(std::span(data).first(5), .25, 3));
+}
+
 TEST(Sequence, TooShortSeriesAreRefused) {
   const auto data = tumbling(0);
   EXPECT_FALSE(fit_sequence(std::span(data).first(8), 7.3, 3, 3));

@@ -33,8 +33,8 @@ function passTable() {
   const body = report.passes.map((pass) => {
     const own = passes.filter((p) => p.id === pass.id).flatMap((p) => p.rows);
     const p = greatestP(own);
-    const cells = [pass.id, (pass.open_start ? "before " : "") + pass.rise.slice(0, 19).replace("T", " "), pass.culmination.slice(11, 19),
-      (pass.open_end ? "after " : "") + pass.set.slice(11, 19), pass.altitude_max.toFixed(1) + "°", String(pass.rows),
+    const cells = [pass.id, (pass.open_start ? "before " : "") + pass.rise.slice(0, 19).replace("T", " "), pass.culmination.slice(pass.culmination.slice(0, 10) === pass.rise.slice(0, 10) ? 11 : 0, 19).replace("T", " "),
+      (pass.open_end ? "after " : "") + pass.set.slice(pass.set.slice(0, 10) === pass.rise.slice(0, 10) ? 11 : 0, 19).replace("T", " "), pass.altitude_max.toFixed(1) + "°", String(pass.rows),
       magnitudeText(own), p ? fixed(100 * p.p, 1) + " %" : "undefined"];
     return element("tr", {}, ...cells.map((cell, k) => element("td", { "data-label": head[k] }, cell)));
   });

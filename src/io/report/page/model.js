@@ -109,7 +109,8 @@ const percent = (value) => value === null ? null : 100 * value;
 const positive = (value) => value > 0 ? value : null;
 const fixed = (value, digits) => value === null || !Number.isFinite(value) ? "" : value.toFixed(digits);
 
-const bandControl = { key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].label])] };
+/// One band leaves nothing to choose: a control of one option is not shown.
+const bandControl = { key: "band", name: "Band", options: [["all", "all"], ...byWavelength.map((b) => [b, bands[b].label])].slice(bands.length === 1 ? 1 : 0) };
 const chosenBands = (state) => byWavelength.filter((b) => state.band === undefined || state.band === "all" || state.band === b);
 
 /// A colour of six digits, seen through.

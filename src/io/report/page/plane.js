@@ -21,14 +21,24 @@ function joined(x, y) {
 
 /// Where the name of a pure-material curve stands: each material at its own phase angle, so that
 /// names of like curves do not cover each other.
-function pureLabel(curve, m) {
-  const wanted = 70 + 60 * (m + 0.5) / pureMaterials.length;
-  let best = 0;
-  curve.phase.forEach((value, i) => { if (Math.abs(value - wanted) < Math.abs(curve.phase[best] - wanted)) best = i; });
-  return { x: curve.phase[best], y: percent(curve.q_scat[best]) };
+function pureLabel(curve, m, shown) {
+  const share = (m + 0.5) / pureMaterials.length;
+  const wanted = shown.x[0] + (0.39 + 0.33 * share) * (shown.x[1] - shown.x[0]);
+  const seen = curve.phase.map((x, i) => ({ x, y: percent(curve.q_scat[i]) }))
+    .filter((at) => at.y !== null && at.x >= shown.x[0] && at.x <= shown.x[1] && at.y >= shown.y[0] && at.y <= shown.y[1] - 0.1 * (shown.y[1] - shown.y[0])); // below the legend
+  return seen.sort((a, b) => Math.abs(a.x - wanted) - Math.abs(b.x - wanted))[0] || null;
 }
 
-function pureTraces(data, plan, shownBand) {
+/// What the axes of Q against phase reach: the object's own values with room about them, or all.
+function phaseReach(state) {
+  const x = range(shownRows().map((i) => epochs.phase[i]));
+  const y = range(chosenBands(state).flatMap((b) => shownRows().map((i) => percent(bands[b].q_scat[i]))));
+  if (state.reach === "all" || !x || !y) return { x: [0, 180], y: [-105, 105] };
+  const wide = Math.max(10, 0.15 * (x[1] - x[0])), high = Math.max(1, 0.25 * (y[1] - y[0]));
+  return { x: [Math.max(0, x[0] - wide), Math.min(180, x[1] + wide)], y: [Math.max(-105, y[0] - high), Math.min(105, y[1] + high)] };
+}
+
+function pureTraces(data, plan, shownBand, shown) {
   const theme = themeColours();
   report.pure_materials.forEach((curve) => {
     if (shownBand !== "all" && curve.band !== shownBand) return;
@@ -40,8 +50,8 @@ function pureTraces(data, plan, shownBand) {
       hovertemplate: "%{y:.1f} % at %{x}°<extra>" + plain(curve.material + " " + bands[curve.band].label) + "</extra>",
     });
     if (shownBand !== "all") {
-      const at = pureLabel(curve, m);
-      plan.annotations.push({ x: at.x, y: at.y, text: plain(curve.material), showarrow: false, yshift: 8, font: { size: 10, color: theme.soft }, bgcolor: theme.card, opacity: 0.85, borderpad: 1 });
+      const at = pureLabel(curve, m, shown);
+      if (at) plan.annotations.push({ x: at.x, y: at.y, text: plain(curve.material), showarrow: false, yshift: 8, font: { size: 10, color: theme.soft }, bgcolor: theme.card, opacity: 0.85, borderpad: 1 });
     }
   });
   if (shownBand === "all") // one grey line per material explains the dashes
@@ -53,14 +63,15 @@ function pureTraces(data, plan, shownBand) {
 
 const phaseFigure = {
   id: "q_phase", title: "Q against phase angle", height: () => isNarrow() ? 420 : 460,
-  controls: [bandControl],
+  controls: [bandControl, { key: "reach", name: "Axes", options: [["object", "this object"], ["all", "all there is"]].slice(0, pureMaterials.length ? 2 : 1) }],
   caption: "q_scat in percent, positive perpendicular to the scattering plane"
-    + (pureMaterials.length ? "; thin lines behind: a surface of one material alone, single bounce, without body light." : "."),
+    + (pureMaterials.length ? "; thin lines behind: a surface of one material alone, single bounce, without body light. Most of them go beyond the axes of this object." : "."),
   build: (state) => {
     const data = [];
+    const shown = phaseReach(state);
     const plan = layout({ annotations: [], hovermode: "closest",
-      xaxis: axis({ title: "phase angle [°]", range: [0, 180], dtick: 30 }), yaxis: axis({ title: "q_scat [%]" }) });
-    pureTraces(data, plan, state.band);
+      xaxis: axis({ title: "phase angle [°]", range: shown.x, nticks: isNarrow() ? 6 : 9 }), yaxis: axis({ title: "q_scat [%]", range: shown.y }) });
+    pureTraces(data, plan, state.band, shown);
     chosenBands(state).forEach((b) => {
       const line = joined((i) => epochs.phase[i], (i) => percent(bands[b].q_scat[i]));
       data.push({
@@ -209,14 +220,58 @@ function trackOf(pass) {
   return rows.length ? { source: track, rows } : { source: epochs, rows: pass.rows };
 }
 
+/// The shown tracks as azimuths and altitudes, where all of them together are smaller than a dot would be on the
+/// whole sky: a geostationary object, or a minute of a pass.
+function closeUp() {
+  const points = shownPasses().flatMap((pass) => {
+    const { source, rows } = trackOf(pass);
+    return rows.map((i) => ({ az: source.az[i], alt: source.alt[i] }));
+  });
+  if (!points.length) return null;
+  const first = points[0].az;
+  const az = range(points.map((at) => first + ((at.az - first + 540) % 360) - 180)), alt = range(points.map((at) => at.alt));
+  const wide = (az[1] - az[0]) * Math.cos(alt[0] * Math.PI / 180);
+  return Math.max(wide, alt[1] - alt[0]) < 5 ? { az, alt, first, reach: Math.max(wide, alt[1] - alt[0], 0.02) } : null;
+}
+
+/// Azimuth against altitude, as one looks at it, to one scale.
+function closeUpPlot(near, isAngle, colours) {
+  const theme = themeColours();
+  const stretch = 1 / Math.max(0.05, Math.cos(near.alt[0] * Math.PI / 180));
+  const azimuth = (value) => near.first + ((value - near.first + 540) % 360) - 180;
+  const data = [];
+  shownPasses().forEach((pass) => {
+    const { source, rows } = trackOf(pass);
+    data.push({ type: "scatter", mode: "lines", x: rows.map((i) => azimuth(source.az[i])), y: rows.map((i) => source.alt[i]),
+      line: { color: theme.line, width: 5 }, hoverinfo: "skip", showlegend: false });
+    data.push({ type: "scatter", mode: "markers", x: pass.rows.map((i) => azimuth(epochs.az[i])), y: pass.rows.map((i) => epochs.alt[i]),
+      text: pass.rows.map((i) => epochs.time[i]), customdata: pass.rows.map((i) => epochs.phase[i]), showlegend: false,
+      marker: { size: 6, color: pass.rows.map((i) => isAngle ? bands[middleBand].pa[i] : epochs.phase[i]), coloraxis: "coloraxis" },
+      hovertemplate: "%{text}<br>azimuth %{x:.3f}°, altitude %{y:.3f}°<br>phase %{customdata:.1f}°<extra></extra>" });
+    [[rows[0], "circle-open", "top center"], [rows[rows.length - 1], "x-thin-open", "bottom center"]].forEach(([i, symbol, place]) => data.push({
+      type: "scatter", mode: "markers+text", x: [azimuth(source.az[i])], y: [source.alt[i]], text: [source.time[i].slice(11, 16)], textposition: place,
+      marker: { size: 8, symbol, color: theme.text, line: { width: 2 } }, hoverinfo: "skip", showlegend: false }));
+  });
+  const middle = (near.alt[0] + near.alt[1]) / 2, half = 0.7 * near.reach;
+  return { data, layout: layout({ coloraxis: colours, hovermode: "closest", margin: { l: 60, r: 18, t: 8, b: 104 },
+    xaxis: axis({ title: "azimuth [°]", range: [(near.az[0] + near.az[1]) / 2 - half * stretch, (near.az[0] + near.az[1]) / 2 + half * stretch], nticks: 5 }),
+    yaxis: axis({ title: "altitude [°]", range: [middle - half, middle + half], scaleanchor: "x", scaleratio: stretch }) }) };
+}
+
 const skyFigure = {
   id: "sky", title: "Track in the sky", height: () => isNarrow() ? 440 : 460,
   controls: [{ key: "colour", name: "Colour", options: [["phase", "phase angle"], ["pa", "position angle"]] }],
-  caption: "Looking up: north at the top, east at the left, the horizon outside. Grey: in the Earth's shadow (also where no light is computed).",
+  caption: "Looking up: north at the top, east at the left, the horizon outside; close up, as one faces it, where the object hardly moves. "
+    + "Grey: in the Earth's shadow (also where no light is computed).",
   build: (state) => {
     const theme = themeColours();
     const data = [];
     const isAngle = state.colour === "pa" && bands.length > 0;
+    const colours = isAngle
+      ? { colorscale: cyclicScale, cmin: 0, cmax: 180, colorbar: colourBar("position angle, " + bands[middleBand].label + " [°]", { tickvals: [0, 45, 90, 135, 180], y: -0.1 }) }
+      : phaseAxis({ y: -0.1 });
+    const near = closeUp();
+    if (near) return closeUpPlot(near, isAngle, { ...colours, colorbar: { ...colours.colorbar, y: -0.18 } });
     const shadow = { r: [], theta: [] };
     shownPasses().forEach((pass) => {
       const track = trackOf(pass);
@@ -244,9 +299,6 @@ const skyFigure = {
     });
     if (shadow.r.length)
       data.push({ type: "scatterpolar", mode: "markers", ...shadow, name: "in the Earth's shadow", marker: { size: 6, symbol: "diamond", color: "#7f8794" }, hoverinfo: "skip", showlegend: true });
-    const colours = isAngle
-      ? { colorscale: cyclicScale, cmin: 0, cmax: 180, colorbar: colourBar("position angle, " + bands[middleBand].label + " [°]", { tickvals: [0, 45, 90, 135, 180], y: -0.1 }) }
-      : phaseAxis({ y: -0.1 });
     return { data, layout: layout({
       coloraxis: colours, margin: isNarrow() ? { l: 46, r: 46, t: 26, b: 84 } : { l: 62, r: 62, t: 26, b: 84 }, dragmode: false,
       polar: {

@@ -80,6 +80,24 @@ function magnitudeSpan(shown) {
   return [faint + pad, known[0] - pad];
 }
 
+/// What an axis in percent reaches: all values, and of their errors those that are no wider than the curve is high. One
+/// stretch of light too faint to be known would else flatten all the rest.
+const percentSpan = (name) => (shown) => {
+  const values = [], ends = [];
+  for (const i of shown.flatMap((pass) => pass.rows))
+    for (const band of bands) {
+      values.push(percent(band[name][i]));
+      const ends_of = within(percent(band[name][i]), percent(band[name + "_err"][i]));
+      if (ends_of) ends.push(ends_of);
+    }
+  const known = range(values);
+  if (!known) return null;
+  const high = Math.max(known[1] - known[0], 1);
+  const all = range([...known, ...ends.filter((one) => one[1] - one[0] <= high).flat()]);
+  const pad = Math.max(0.05 * (all[1] - all[0]), 0.05);
+  return [all[0] - pad, all[1] + pad];
+};
+
 /// Triangles that point to where the object is: limits, and what is fainter than the axis reaches.
 function limitTraces(pass, k, curve, key, edge, data) {
   const rows = pass.rows.filter((i) => curve.value(i) !== null && (curve.isLimit(i) || curve.value(i) > edge));
@@ -195,15 +213,15 @@ const timeFigures = [
     id: "qu", isAgainstTime: true, title: "q and u against time", height: () => isNarrow() ? 400 : 460, controls: [bandControl],
     caption: "Fractions of I in percent, in the sky frame: +q towards " + skyNorth + ", +u 45° from it.",
     build: (state) => timeFigure([
-      { title: "q [%]", at: (band, i) => percent(band.q[i]), bounds: (band, i) => within(percent(band.q[i]), percent(band.q_err[i]), -100, 100), digits: "2f", unit: "%" },
-      { title: "u [%]", at: (band, i) => percent(band.u[i]), bounds: (band, i) => within(percent(band.u[i]), percent(band.u_err[i]), -100, 100), digits: "2f", unit: "%" }], state),
+      { title: "q [%]", at: (band, i) => percent(band.q[i]), bounds: (band, i) => within(percent(band.q[i]), percent(band.q_err[i]), -100, 100), span: percentSpan("q"), digits: "2f", unit: "%" },
+      { title: "u [%]", at: (band, i) => percent(band.u[i]), bounds: (band, i) => within(percent(band.u[i]), percent(band.u_err[i]), -100, 100), span: percentSpan("u"), digits: "2f", unit: "%" }], state),
     table: () => tidyTable([["q", "", (b, i) => b.q[i]], ["q_err", "", (b, i) => b.q_err[i]], ["u", "", (b, i) => b.u[i]], ["u_err", "", (b, i) => b.u_err[i]]]),
   },
   {
     id: "p_pa", isAgainstTime: true, title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 460, controls: [bandControl],
     caption: "p in percent; position angle in [0°, 180°) from " + skyNorth + ". The angle is cyclic: no line joins 180° to 0°.",
     build: (state) => timeFigure([
-      { title: "p [%]", at: (band, i) => percent(band.p[i]), bounds: (band, i) => within(percent(band.p[i]), percent(band.p_err[i]), 0, 100), spread: "p", factor: 100, digits: "2f", unit: "%" },
+      { title: "p [%]", at: (band, i) => percent(band.p[i]), bounds: (band, i) => within(percent(band.p[i]), percent(band.p_err[i]), 0, 100), span: percentSpan("p"), spread: "p", factor: 100, digits: "2f", unit: "%" },
       { title: "angle [°]", at: (band, i) => band.pa[i], cyclic: true, range: [0, 180], dtick: 45, digits: "1f", unit: "°",
         bounds: (band, i) => within(band.pa[i], band.pa_err[i], 0, 180) }], state),
     table: () => tidyTable([["p", "", (b, i) => b.p[i]], ["p_err", "", (b, i) => b.p_err[i]], ["pa", "deg", (b, i) => b.pa[i]], ["pa_err", "deg", (b, i) => b.pa_err[i]]]),

@@ -1,0 +1,81 @@
+#include "scale_job.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/core/files.h>
+#include <umov/core/text.h>
+
+namespace umov::cli {
+namespace {
+
+/// A job whose rows depend on one more file.
+class WithFile final : public jobs::RangedJob {
+public:
+  WithFile(std::unique_ptr<jobs::RangedJob> job, const std::string &file,
+           const std::string &contents)
+      : job_(std::move(job)),
+        identity_(job_->identity() + fmt::format("{} {}\n", sha256_hex(contents), file)) {}
+  [[nodiscard]] std::string unit() const override { return job_->unit(); }
+  [[nodiscard]] std::size_t total() const override { return job_->total(); }
+  [[nodiscard]] std::size_t grain() const override { return job_->grain(); }
+  [[nodiscard]] std::string identity() const override { return identity_; }
+  [[nodiscard]] std::vector<std::size_t> layout() const override { return job_->layout(); }
+  [[nodiscard]] std::vector<std::string> tables() const override { return job_->tables(); }
+  [[nodiscard]] std::string order() const override { return job_->order(); }
+  Result<void> rows(jobs::IndexRange range, jobs::RangeSink &sink, const jobs::Monitor &monitor,
+                    Diagnostics &diagnostics) override {
+    return job_->rows(range, sink, monitor, diagnostics);
+  }
+  [[nodiscard]] Result<void> keep() const override { return job_->keep(); }
+
+private:
+  std::unique_ptr<jobs::RangedJob> job_;
+  std::string identity_;
+};
+
+} // namespace
+
+Result<void> parse_verb(CLI::App &verb, const std::vector<std::string> &arguments) {
+  std::vector<std::string> words(arguments.rbegin(), arguments.rend()); // as CLI11 takes them
+  try {
+    verb.parse(words);
+  } catch (const CLI::ParseError &problem) {
+    return fail(ErrorCode::Usage,
+                fmt::format("{}. See umov {} --help.", problem.what(), verb.get_name()));
+  }
+  return {};
+}
+
+Result<void> refuse_output(const std::string &output, const PartOptions &part) {
+  if (!output.empty())
+    return fail(ErrorCode::Usage, "-o " + output +
+                                      ": the rows of a job in parts go to its folder; umov scale "
+                                      "merge FOLDER -o TABLE puts them together");
+  if (!part.shard.empty() || !part.range.empty())
+    return fail(ErrorCode::Usage,
+                "--shard and --range: a job in parts is cut by umov scale itself; "
+                "--per-shard says how long its shards are");
+  return {};
+}
+
+Result<std::unique_ptr<jobs::RangedJob>> verb_in_parts(const std::string &verb,
+                                                       const std::vector<std::string> &arguments,
+                                                       const PartsSetting &setting,
+                                                       Diagnostics &diagnostics) {
+  auto made = verb == "signature" ? signature_in_parts(arguments, setting, diagnostics)
+              : verb == "passes"  ? passes_in_parts(arguments, setting, diagnostics)
+              : verb == "run"
+                  ? run_in_parts(arguments, setting, diagnostics)
+                  : Result<RangedVerb>(
+                        fail(ErrorCode::Usage, verb + ": signature, passes or run was expected"));
+  if (!made)
+    return tl::unexpected(made.error());
+  if (made->job->total() == 0)
+    return fail(ErrorCode::Nothing, "the job has no " + made->job->unit());
+  if (made->file.empty())
+    return std::move(made->job);
+  UMOV_ASSIGN(contents, read_file(made->file));
+  return std::make_unique<WithFile>(std::move(made->job), made->file, contents);
+}
+
+} // namespace umov::cli

@@ -1,0 +1,84 @@
+// umov library build.
+
+#include "job_console.h"
+#include "verbs.h"
+
+#include <fmt/format.h>
+#include <umov/jobs/library.h>
+
+namespace umov::cli {
+namespace {
+
+struct LibraryVerb {
+  jobs::LibraryRequest request;
+  std::string range;
+  Common common;
+};
+
+/// "500:1000": from the 500th on, before the 1000th, counted from 0.
+Result<void> take_range(LibraryVerb &o) {
+  if (o.range.empty())
+    return {};
+  const std::size_t colon = o.range.find(':');
+  constexpr std::size_t none = static_cast<std::size_t>(-1);
+  const auto number = [](const std::string &text) {
+    const bool is_number =
+        !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == text.npos;
+    return is_number ? static_cast<std::size_t>(std::stoul(text)) : none;
+  };
+  const std::size_t first = number(o.range.substr(0, colon));
+  const std::size_t end = colon == o.range.npos ? none : number(o.range.substr(colon + 1));
+  if (first == none || end == none || end < first)
+    return fail(
+        ErrorCode::Usage,
+        fmt::format("--range {}: FIRST:END was expected, counted from 0, as 0:500", o.range));
+  o.request.first = first;
+  o.request.count = end - first;
+  return {};
+}
+
+Result<void> build(LibraryVerb &o, Diagnostics &diagnostics) {
+  UMOV_TRY(take_range(o));
+  JobConsole console(o.common);
+  UMOV_ASSIGN(built, jobs::build_library(o.request, job_options(o.common),
+                                         console.monitor(o.common.verbose), diagnostics));
+  if (o.common.json)
+    return put("", to_json(built.table));
+  return o.common.quiet ? Result<void>() : put("", to_text(built.table));
+}
+
+void add_build(CLI::App &library, const Exit &exit_with) {
+  auto *verb = library.add_subcommand(
+      "build", "Light and abundances of objects over all directions, one file each");
+  auto o = std::make_shared<LibraryVerb>();
+  verb->add_option("scenarios", o->request.scenarios,
+                   "Scenarios of one object each; the file's name is the object's")
+      ->required();
+  verb->add_option("-o,--output", o->request.folder, "Folder of the library")->required();
+  verb->add_option("--cells", o->request.cells,
+                   "Directions: (cells + 1)^2 of Sun and observer, 20: 97,461 pairs, 9 deg apart")
+      ->check(CLI::Range(4, 60))
+      ->capture_default_str();
+  verb->add_option("--range", o->range, "FIRST:END of the scenarios, for one of several machines");
+  add_threads(*verb, o->common);
+  add_cache(*verb, o->common);
+  verb->add_flag("-v,--verbose", o->common.verbose, "Also say what was done");
+  add_common(*verb, o->common, true);
+  verb->callback([o, exit_with] {
+    watch_interrupts();
+    Diagnostics diagnostics;
+    const auto done = build(*o, diagnostics);
+    report(diagnostics, o->common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace
+
+void add_library(CLI::App &app, const Exit &exit_with) {
+  auto *library = app.add_subcommand("library", "Signatures of many objects");
+  library->require_subcommand(1);
+  add_build(*library, exit_with);
+}
+
+} // namespace umov::cli

@@ -1,0 +1,60 @@
+// umov period: how the brightness of a light curve repeats.
+
+#include "tables.h"
+#include "verbs.h"
+
+#include <umov/core/files.h>
+#include <umov/jobs/period.h>
+
+namespace umov::cli {
+namespace {
+
+struct PeriodVerb {
+  std::string observations, output;
+  std::vector<std::string> columns;
+  jobs::PeriodRequest request;
+};
+
+Result<void> run_period(const PeriodVerb &o, const Common &common, Diagnostics &diagnostics) {
+  UMOV_TRY(check_output(o.output));
+  constexpr std::size_t largest = 1u << 30;
+  UMOV_ASSIGN(text, read_file(o.observations, largest));
+  UMOV_ASSIGN(rows, read_observations_text(text, o.observations, diagnostics));
+  UMOV_ASSIGN(table, jobs::period(rows, o.request, diagnostics));
+  UMOV_ASSIGN(shown, chosen_columns(table, o.columns, {}, o.output, common));
+  return put_table(o.output, shown, common);
+}
+
+} // namespace
+
+void add_period(CLI::App &app, const Exit &exit_with) {
+  auto *verb = app.add_subcommand("period", "Periods that a light curve shows, ours or your own");
+  auto o = std::make_shared<PeriodVerb>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("observations", o->observations,
+                   "CSV or ECSV with time_utc (or mjd_utc) and mag or flux; lightcurve.ecsv of a "
+                   "run, stokes.ecsv of umov reduce")
+      ->required();
+  verb->add_option("--band", o->request.band, "Only this band; else each by itself");
+  verb->add_option("--peaks", o->request.peaks, "How many of each stretch and band")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  verb->add_option("--shortest-s", o->request.shortest_s, "Leave out shorter periods [s]")
+      ->check(CLI::Range(0.0, 1e9));
+  verb->add_option("--longest-s", o->request.longest_s, "Leave out longer periods [s]")
+      ->check(CLI::Range(0.0, 1e9));
+  verb->add_option("--gap-s", o->request.gap_s, "A longer gap begins a new stretch [s]")
+      ->check(CLI::Range(1.0, 1e9))
+      ->capture_default_str();
+  add_table_output(*verb, o->output);
+  add_columns(*verb, o->columns);
+  add_common(*verb, *common, true);
+  verb->callback([o, common, exit_with] {
+    Diagnostics diagnostics;
+    const auto done = run_period(*o, *common, diagnostics);
+    report(diagnostics, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace umov::cli

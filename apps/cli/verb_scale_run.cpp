@@ -1,0 +1,153 @@
+// umov scale run, and the process that it starts for its shards.
+
+#include "job_console.h"
+#include "verb_scale.h"
+
+#include <csignal>
+#include <filesystem>
+#include <fmt/format.h>
+#include <umov/core/parallel.h>
+#include <umov/core/text.h>
+#include <umov/light/engine.h>
+#include <umov/scale/merge.h>
+#include <umov/scale/run_job.h>
+#include <unistd.h>
+
+namespace umov::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ScaleRunOptions {
+  ScaleJobOptions job;
+  scale::RunSettings settings;
+  std::string part, cluster;
+};
+
+/// Dask is Python's: the same folder, done by umov.scale.
+Result<void> run_on_cluster(const ScaleRunOptions &o, const scale::JobFolder &folder) {
+  const std::string path = folder.path().string(), program = own_program();
+  const char *const words[] = {"python3",       "-m",        "umov.scale",      "run",
+                               path.c_str(),    "--cluster", o.cluster.c_str(), "--program",
+                               program.c_str(), nullptr};
+  ::execvp(words[0], const_cast<char *const *>(words));
+  return fail(ErrorCode::Device,
+              "--cluster takes Python with the package umov[scale]; without it umov scale run "
+              "works on this machine, and umov scale script for a batch system");
+}
+
+void tell(const scale::RunTally &tally, const scale::JobFolder &folder, const Common &common) {
+  std::string text =
+      fmt::format("{} of {} shards done, {} of them before; {:.1f} s of CPU",
+                  tally.there_before + tally.done, tally.wanted, tally.there_before, tally.cpu_s);
+  if (tally.failed == 0 && tally.wanted == folder.lock().shards())
+    text +=
+        fmt::format(". umov scale merge {} -o TABLE puts them together", folder.path().string());
+  note(common, text);
+}
+
+Result<void> run_scale(ScaleRunOptions &o, const Common &common, Diagnostics &diagnostics) {
+  if (!o.part.empty()) {
+    UMOV_ASSIGN(part, jobs::JobPart::shard(o.part));
+    o.settings.part = part;
+  }
+  o.settings.threads = static_cast<std::size_t>(common.threads);
+  o.settings.program = own_program();
+  const std::size_t cores = resolve_threads(static_cast<unsigned>(common.threads));
+  scale::PlanSettings plan;
+  plan.cores = common.threads > 0 ? cores * o.settings.workers : cores;
+  plan.threads = std::max<std::size_t>(1, plan.cores / o.settings.workers);
+  UMOV_ASSIGN(folder, folder_of(o.job, plan, common, diagnostics));
+  if (!o.cluster.empty())
+    return run_on_cluster(o, folder);
+  JobConsole console(common);
+  UMOV_ASSIGN(tally, scale::run_job(folder, o.settings, console.monitor(true)));
+  tell(tally, folder, common);
+  if (tally.failed > 0) {
+    const scale::FailedShard &first = tally.failures.front();
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} could not be done; shard {}: {}. All of them stand in {}/failed; "
+                            "umov scale run {} tries them again.",
+                            counted(tally.failed, "shard"), first.index, first.message,
+                            folder.path().string(), folder.path().string()));
+  }
+  if (o.settings.part.is_whole())
+    UMOV_TRY(scale::write_manifest(folder));
+  return {};
+}
+
+/// The job of a folder, made ready where it was begun.
+Result<void> work(const std::string &path, const Common &common) {
+  UMOV_ASSIGN(folder, scale::JobFolder::open(path));
+  const scale::JobLock &lock = folder.lock();
+  if (!lock.instruction_set.empty() && !restrict_engine(lock.instruction_set))
+    return fail(ErrorCode::Device, "this machine has no " + lock.instruction_set +
+                                       ", which the job is held to. Leave it out.");
+  std::error_code code;
+  fs::current_path(lock.directory, code);
+  if (code)
+    return fail(ErrorCode::BadInput,
+                "the job was begun here, and its files are looked for from here: " + code.message(),
+                {lock.directory});
+  PartsSetting parts;
+  parts.options = job_options(common);
+  parts.options.mask_cache = folder.path() / "masks";
+  parts.layout = lock.layout;
+  Diagnostics told_at_the_begin;
+  UMOV_ASSIGN(job, verb_in_parts(lock.verb, lock.arguments, parts, told_at_the_begin));
+  UMOV_TRY(scale::check_same_job(folder, *job));
+  return scale::serve_shards(folder, *job);
+}
+
+} // namespace
+
+void add_scale_run(CLI::App &scale, const Exit &exit_with) {
+  auto *verb = scale.add_subcommand(
+      "run", "Do what is missing of a job; with a verb behind the folder, begin it");
+  auto o = std::make_shared<ScaleRunOptions>();
+  auto common = std::make_shared<Common>();
+  verb->footer("Ended in any way, umov scale run FOLDER goes on where it was.");
+  add_scale_job(*verb, o->job);
+  verb->add_option("--workers", o->settings.workers,
+                   "Processes at a time; one with all threads serves most jobs best")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  verb->add_option("--part", o->part,
+                   "K/N: of the shards the K-th of N shares, from 0, as a task of an array job");
+  verb->add_flag("--join", o->settings.joins, "Take part in a job that another umov is at");
+  verb->add_option("--timeout-s", o->settings.timeout_s,
+                   "Of a shard; default: ten times what is predicted, at least 60")
+      ->check(CLI::Range(0.1, 1e7));
+  verb->add_option("--cluster", o->cluster,
+                   "local:N, or the address of a Dask scheduler; takes the Python package "
+                   "umov[scale]");
+  add_threads(*verb, *common);
+  add_common(*verb, *common, false);
+  verb->callback([=] {
+    take_arguments(*verb, o->job);
+    watch_interrupts();
+    Diagnostics diagnostics;
+    const auto done = run_scale(*o, *common, diagnostics);
+    report(diagnostics, *common);
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+void add_scale_worker(CLI::App &scale, const Exit &exit_with) {
+  auto *verb = scale.add_subcommand(
+      "worker", "Shards whose numbers come line by line on the standard input; a record of each");
+  auto folder = std::make_shared<std::string>();
+  auto common = std::make_shared<Common>();
+  verb->add_option("folder", *folder, "Folder of the job")->required();
+  add_threads(*verb, *common);
+  add_common(*verb, *common, false);
+  verb->callback([=] {
+    std::signal(SIGINT, SIG_IGN); // who started it says when it ends
+    const auto done = work(*folder, *common);
+    if (!done)
+      scale::refuse_shards(done.error());
+    exit_with(done ? 0 : report(done.error()));
+  });
+}
+
+} // namespace umov::cli

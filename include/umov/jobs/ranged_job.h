@@ -1,0 +1,67 @@
+#pragma once
+// Jobs as lists: made ready once, then asked for any range of their indices, with the same rows
+// whatever else is asked for.
+
+#include <memory>
+#include <string>
+#include <umov/core/diagnostics.h>
+#include <umov/io/table.h>
+#include <umov/jobs/index_range.h>
+#include <umov/jobs/monitor.h>
+#include <umov/jobs/passes.h>
+#include <umov/jobs/signature.h>
+#include <vector>
+
+namespace umov::jobs {
+
+/// Takes the rows of a range: for each table of the job its blocks in order.
+class RangeSink {
+public:
+  virtual ~RangeSink() = default;
+  /// Rows of table `table` of RangedJob::tables.
+  virtual Result<void> add(std::size_t table, Table &&rows) = 0;
+};
+
+/// A job that was read, checked and made ready. `rows` may be called any number of times, from one
+/// thread at a time.
+class RangedJob {
+public:
+  virtual ~RangedJob() = default;
+  /// What is counted, in the plural: "poses".
+  [[nodiscard]] virtual std::string unit() const = 0;
+  /// How many.
+  [[nodiscard]] virtual std::size_t total() const = 0;
+  /// Ranges begin at a multiple of it, for speed: their rows are the same anywhere.
+  [[nodiscard]] virtual std::size_t grain() const { return 1; }
+  /// All that the rows depend on: differs whenever they could.
+  [[nodiscard]] virtual std::string identity() const = 0;
+  /// What it took to find `total`, so that who has it need not look again.
+  [[nodiscard]] virtual std::vector<std::size_t> layout() const { return {}; }
+  /// Names of its tables.
+  [[nodiscard]] virtual std::vector<std::string> tables() const = 0;
+  /// Column of the first table by which rows of all ranges are put in order (stable) and which is
+  /// then left out; "": they stand in the order of the indices.
+  [[nodiscard]] virtual std::string order() const { return ""; }
+  /// The rows of a range, at least one block of each table (without rows if there are none).
+  /// Interrupted after a stop.
+  virtual Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,
+                            Diagnostics &diagnostics) = 0;
+  /// Keeps what was learnt for the next process: masks.
+  [[nodiscard]] virtual Result<void> keep() const { return {}; }
+};
+
+/// `umov signature` by poses.
+Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, const PoseList &poses,
+                                                    const SignatureRequest &request,
+                                                    const JobOptions &options,
+                                                    Diagnostics &diagnostics);
+/// `umov passes` by objects.
+Result<std::unique_ptr<RangedJob>>
+ranged_passes(const PassesRequest &request, const JobOptions &options, Diagnostics &diagnostics);
+/// `umov run` by passes, object after object. `layout` as the job gave it once; empty: the passes
+/// are looked for.
+Result<std::unique_ptr<RangedJob>> ranged_run(const Scenario &scenario, const JobOptions &options,
+                                              const std::vector<std::size_t> &layout,
+                                              const Monitor &monitor, Diagnostics &diagnostics);
+
+} // namespace umov::jobs

@@ -1,0 +1,201 @@
+"""Jobs in parts on a Dask cluster. Skipped, saying so, where Dask is not installed."""
+import json
+import os
+import pathlib
+import signal
+import stat
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+from conftest import EXAMPLES, UMOV
+
+import umov
+
+pytest.importorskip("distributed", reason="Dask is not installed: umov[scale] is not tested")
+psutil = pytest.importorskip("psutil")
+
+
+@pytest.fixture
+def scene(tmp_path, monkeypatch):
+    """A box with wings, lit by rays: some ten milliseconds a pose."""
+    monkeypatch.chdir(tmp_path)
+    subprocess.run([UMOV, "mesh", "make", "cubesat", "--units", "3", "--panels", "2", "-o", "sat.obj"], check=True)
+    (tmp_path / "sat.toml").write_text("""umov = 1
+[[object]]
+name = "sat"
+mesh = { file = "sat.obj", unit = "m", up = "+Z", normals = "flat" }
+[object.materials]
+default = "paper_al"
+[bands]
+set = "paper_rgb"
+""")
+    return "sat.toml"
+
+
+def job_of(scene, poses=400):
+    return umov.scale.Job("signature", scene, poses=poses, phase=60, visibility="rays", accuracy=0.05)
+
+
+def plain_bytes(job, name="plain.csv"):
+    subprocess.run([UMOV, *job.words, "-q", "-o", name], check=True)
+    return pathlib.Path(name).read_bytes()
+
+
+def merged_bytes(result):
+    result.merge("merged.csv")
+    return pathlib.Path("merged.csv").read_bytes()
+
+
+@pytest.mark.parametrize("cluster", [None, "local:1", "local:2"])
+def test_clusters_give_the_plain_bytes(scene, cluster):
+    job = job_of(scene)
+    result = umov.scale.run(job, "out", cluster=cluster, per_shard=60)
+    assert not result.missing and not result.failed and result.status["is_complete"]
+    assert merged_bytes(result) == plain_bytes(job)
+    assert (result.folder / "manifest.json").exists()
+
+
+def test_rows_are_opened_lazily(scene):
+    result = umov.scale.run(job_of(scene, 100), "out", per_shard=30)
+    plain_bytes(job_of(scene, 100))
+    rows = result.rows()
+    lines = [line for line in pathlib.Path("plain.csv").read_text().splitlines() if not line.startswith("#")]
+    assert len(rows) == len(lines) - 1 == 300
+    column = lines[0].split(",").index("intensity")
+    plain = [float(line.split(",")[column]) for line in lines[1:]]
+    assert rows["intensity"].tolist() == plain
+    assert rows.row(157)["intensity"] == plain[157] and rows.row(157)["band"] == lines[158].split(",")[1]
+    assert result.dask_array(["intensity"]).sum().compute() == pytest.approx(sum(plain), rel=1e-12)
+    dataset = result.to_parquet("parquet")
+    assert dataset.count_rows() == 300
+    assert dataset.to_table(columns=["intensity"])["intensity"].to_pylist() == plain
+
+
+def test_workers_that_are_killed_cost_no_byte(scene):
+    """Once the cluster is up, a worker or its child is killed by signal 9, five times, so far
+    apart that a worker can start again between; nothing is left over."""
+    job, stop = job_of(scene, 3000), threading.Event()
+    me, killed = psutil.Process(), []
+
+    def storm():
+        while not list(pathlib.Path("out/shards").glob("*.rows")) and not stop.wait(0.1):
+            pass
+        while len(killed) < 5 and not stop.wait(0.3 if not killed else 6):
+            victims = [p for p in me.children(recursive=True) if "scale worker" in " ".join(p.cmdline())
+                       or "spawn_main" in " ".join(p.cmdline())]
+            if victims:
+                victim = victims[len(killed) % len(victims)]
+                killed.append(victim.pid)
+                victim.kill()
+
+    thread = threading.Thread(target=storm, daemon=True)
+    thread.start()
+    try:
+        result = umov.scale.run(job, "out", cluster="local:2", per_shard=25)
+    finally:
+        stop.set()
+        thread.join()
+    assert killed
+    assert merged_bytes(result) == plain_bytes(job)
+    assert not list((result.folder / "tmp").iterdir())
+    time.sleep(6)
+    assert not [p for p in psutil.process_iter(["cmdline"])
+                if str(result.folder) in " ".join(p.info["cmdline"] or [])]
+
+
+def wrapper(tmp_path, body):
+    """A command that does what `body` says before a shard, and is umov otherwise."""
+    script = tmp_path / "umov_that_fails"
+    script.write_text(f"""#!{sys.executable}
+import os, signal, subprocess, sys, time
+if sys.argv[1:3] != ["scale", "worker"]:
+    os.execv({str(UMOV)!r}, [{str(UMOV)!r}, *sys.argv[1:]])
+child = subprocess.Popen([{str(UMOV)!r}, *sys.argv[1:]], stdin=subprocess.PIPE)
+for line in sys.stdin:
+    index = int(line)
+    {body}
+    child.stdin.write(line.encode())
+    child.stdin.flush()
+child.stdin.close()
+""")
+    script.chmod(script.stat().st_mode | stat.S_IXUSR)
+    return str(script)
+
+
+def test_poison_is_told_and_the_others_are_done(scene, tmp_path):
+    """One shard crashes its process, one hangs: three trials each, and 18 of 20 are there."""
+    program = wrapper(tmp_path, "if index == 3: os.kill(os.getpid(), signal.SIGSEGV)\n"
+                                "    if index == 7: time.sleep(1000)")
+    begin = time.monotonic()
+    with pytest.raises(umov.InputError, match="2 shards could not be done"):
+        umov.scale.run(job_of(scene), "out", cluster="local:2", per_shard=20, timeout_s=5, program=program)
+    assert time.monotonic() - begin < 300
+    result = umov.scale.Result("out")
+    assert result.missing == [3, 7]
+    assert [(one["index"], one["code"], one["attempts"]) for one in result.failed] == \
+        [(3, 128 + signal.SIGSEGV, 3), (7, 128 + signal.SIGKILL, 3)]
+    again = umov.scale.run(None, "out")
+    assert not again.missing and not again.failed
+    assert merged_bytes(again) == plain_bytes(job_of(scene))
+
+
+def test_ctrl_c_then_the_printed_command(scene):
+    job = job_of(scene, 4000)
+    subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "20", "out", *job.words], check=True)
+    driver = subprocess.Popen([sys.executable, "-m", "umov.scale", "run", "out", "--cluster", "local:2"],
+                              stderr=subprocess.PIPE, text=True)
+    until = time.monotonic() + 90
+    while not list(pathlib.Path("out/shards").iterdir()) and time.monotonic() < until:
+        time.sleep(0.1)
+    driver.send_signal(signal.SIGINT)
+    _, err = driver.communicate(timeout=90)
+    assert driver.returncode == 130 and "umov scale run" in err, err
+    assert 0 < len(umov.scale.Result("out").files) < 200
+    done = umov.scale.run(None, "out")
+    assert merged_bytes(done) == plain_bytes(job)
+
+
+def test_a_second_client_is_refused(scene):
+    subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "20", "out", *job_of(scene).words], check=True)
+    with subprocess.Popen([UMOV, "scale", "hold", "out"], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as holder:
+        holder.stdout.readline()
+        with pytest.raises(umov.DeviceError, match="another umov is at work"):
+            umov.scale.run(None, "out", cluster="local:1")
+        holder.stdin.close()
+
+
+@pytest.mark.parametrize("cluster", ["tcp://10.1.2.3:8786", "10.1.2.3:8786", "local:0", "local:x"])
+def test_addresses_that_are_refused(scene, cluster):
+    with pytest.raises(umov.UsageError):
+        umov.scale.run(job_of(scene), "out", cluster=cluster, per_shard=100)
+
+
+def test_nothing_listens_but_on_the_loopback(scene):
+    """Every listening socket of this process and of all below it, while a cluster is up."""
+    from umov.scale import _Cluster
+    cluster = _Cluster("local:1", True)
+    try:
+        cluster.client.wait_for_workers(1, timeout=60)
+        addresses = set()
+        for process in [psutil.Process(), *psutil.Process().children(recursive=True)]:
+            for one in process.net_connections("inet"):
+                if one.status == psutil.CONN_LISTEN:
+                    addresses.add(one.laddr.ip)
+        assert addresses == {"127.0.0.1"}
+        import distributed
+        with pytest.raises(Exception):
+            distributed.Client(cluster.client.scheduler.address.replace("tls", "tcp"), timeout=5)
+        with pytest.raises(Exception):
+            distributed.Client(cluster.client.scheduler.address, timeout=5,
+                               security=distributed.Security.temporary())
+    finally:
+        cluster.close()
+
+
+def test_plan_says_what_is_to_come(scene):
+    plan = umov.scale.plan(job_of(scene, 2000), cores=1)
+    assert plan.total == 2000 and plan.shards >= 1 and plan.core_hours > 0
+    assert not pathlib.Path("not-made").exists()

@@ -1,0 +1,65 @@
+"""How the brightness of a light curve repeats."""
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Union
+
+from . import _umov
+from ._jobs import Watch
+from ._numbers import number, whole
+from .errors import UsageError
+from .light_curves import LightCurve
+from .observing import _text_of
+from .tables import Table
+
+if TYPE_CHECKING:
+    from astropy.table import QTable
+
+__all__ = ["period"]
+
+AnyLight = Union[str, "os.PathLike[str]", LightCurve, Table, "QTable"]
+
+
+def period(light: AnyLight, *, band: str = "", peaks: int = 5, shortest_s: float = 0.0, longest_s: float = 1e300,
+           gap_s: float = 1200.0) -> Table:
+    """Periods that a light curve shows: the rows of `umov period`, the highest peak of each stretch first.
+
+    Parameters
+    ----------
+    light
+        A LightCurve, or a file (CSV, ECSV), Table or astropy table with time_utc (or mjd_utc) and mag or flux.
+    band
+        Only this one; "" for each by itself.
+    peaks
+        How many of each stretch and band, 1 to 1000.
+    shortest_s
+        Shorter periods are left out [s].
+    longest_s
+        Longer periods are left out [s].
+    gap_s
+        A longer gap begins a new stretch: another pass [s].
+
+    Notes
+    -----
+    Lomb-Scargle with a floating mean of the magnitudes less a parabola in time; periods are synodic, and of a body with two
+    like sides half a turn shows. `NoResult` where no stretch has twelve brightnesses. Sources: Zechmeister & Kuerster (2009) for
+    the periodogram, Montgomery & O'Donoghue (1999) for errors, Baluev (2008) for false alarms.
+
+    Examples
+    --------
+    >>> from astropy.table import Table
+    >>> import numpy as np
+    >>> t = np.arange(0, 120, 0.5)
+    >>> seen = Table({"mjd_utc": 60000 + t / 86400, "mag": 7 + 0.3 * np.sin(2 * np.pi * t / 8.2)})
+    >>> found = umov.period(seen, peaks=1)
+    >>> round(float(found["period"][0]), 1), found.unit("period")
+    (8.2, 's')
+    """
+    if not 1 <= whole(peaks, "peaks") <= 1000:
+        raise UsageError(f"peaks is {peaks!r}; 1 to 1000 was expected")
+    gap = number(gap_s, "gap_s")
+    if not gap >= 1:
+        raise UsageError(f"gap_s is {gap_s!r}; 1 s or more was expected")
+    text, path = _text_of(light.table if isinstance(light, LightCurve) else light, "light")
+    reach = (number(shortest_s, "shortest_s"), number(longest_s, "longest_s"))
+    return Table(_umov.period(text, path, str(band), int(peaks), reach, gap, Watch(None)))

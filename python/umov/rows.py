@@ -1,0 +1,157 @@
+"""Rows of a job in parts, mapped from the files of its shards (docs/scale.md has their form)."""
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import struct
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from .errors import InputError, UsageError, Where
+
+__all__ = ["Rows"]
+
+_MAGIC = b"UMOVROW1"
+_TYPES = {"float64": "<f8", "int64": "<i8", "text": "<u4", "bool": "|u1"}
+
+
+def _about(path: pathlib.Path) -> dict[str, Any]:
+    """What the end of a file says of it."""
+    with path.open("rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(0, size - 24))
+        tail = file.read(24)
+        if len(tail) < 24 or tail[16:] != _MAGIC:
+            raise InputError("is no whole file of rows; umov scale verify tells more", Where(str(path)))
+        begin, length = struct.unpack("<QQ", tail[:16])
+        file.seek(begin)
+        out: dict[str, Any] = json.loads(file.read(length))
+        return out
+
+
+class Rows:
+    """Rows of one table of many files: opened at once, read where they are asked for.
+
+    Parameters
+    ----------
+    files
+        Files of shards, in order.
+    table
+        Name of the table.
+
+    Examples
+    --------
+    >>> rows = result.rows()  # doctest: +SKIP
+    >>> rows["intensity"].mean()  # doctest: +SKIP
+    """
+
+    def __init__(self, files: Sequence[pathlib.Path], table: str) -> None:
+        self.files, self.table = list(files), table
+        self._heads: dict[int, dict[str, Any]] = {}
+        self._starts: list[int] | None = None
+        if not self.files:
+            raise InputError("no shard is there")
+        head = self._head(0)
+        self.columns: list[str] = [column["name"] for column in head["columns"]]
+        self.units: dict[str, str] = {column["name"]: column["unit"] for column in head["columns"]}
+        self._kinds: dict[str, str] = {column["name"]: column["type"] for column in head["columns"]}
+
+    def _head(self, file: int) -> dict[str, Any]:
+        if file not in self._heads:
+            tables = {one["name"]: one for one in _about(self.files[file])["tables"]}
+            if self.table not in tables:
+                raise UsageError(f"table {self.table}: the job has {', '.join(tables)}")
+            self._heads[file] = tables[self.table]
+        return self._heads[file]
+
+    @property
+    def _blocks(self) -> list[tuple[int, int, int]]:
+        return [(f, b, block["rows"]) for f in range(len(self.files)) for b, block in enumerate(self._head(f)["blocks"])]
+
+    @property
+    def lengths(self) -> list[int]:
+        """Rows of each block."""
+        return [rows for _, _, rows in self._blocks]
+
+    def __len__(self) -> int:
+        return sum(self._head(f)["rows"] for f in range(len(self.files)))
+
+    def block(self, number: int, column: str) -> Any:
+        """One column of one block: mapped, and as texts where it holds text.
+
+        Parameters
+        ----------
+        number
+            Of the block.
+        column
+            Its name.
+        """
+        file, block, _ = self._blocks[number]
+        return self._read(file, block, column)
+
+    def _read(self, file: int, block: int, column: str) -> Any:
+        if column not in self._kinds:
+            raise UsageError(f"column {column}: there are {', '.join(self.columns)}")
+        about = self._head(file)["blocks"][block]
+        place, rows = about["columns"][self.columns.index(column)], about["rows"]
+        kind = self._kinds[column]
+        if rows == 0:
+            return np.empty(0, dtype=object if kind == "text" else _TYPES[kind])
+        values = np.memmap(self.files[file], dtype=_TYPES[kind], mode="r", offset=place["at"], shape=(rows,))
+        if kind == "bool":
+            return values.view(np.bool_)
+        return self._texts(file, place)[values] if kind == "text" else values
+
+    def _texts(self, file: int, place: dict[str, int]) -> Any:
+        ends = np.memmap(self.files[file], dtype="<u8", mode="r", offset=place["ends"], shape=(place["texts"],))
+        words = bytes(np.memmap(self.files[file], dtype="u1", mode="r", offset=place["words"],
+                                shape=(int(ends[-1]),))) if ends[-1] else b""
+        begins = np.concatenate([[0], ends[:-1]]).astype(int)
+        return np.array([words[a:int(b)].decode() for a, b in zip(begins, ends)], dtype=object)
+
+    def __getitem__(self, column: str) -> Any:
+        """A whole column in memory."""
+        return np.concatenate([self._read(f, b, column) for f, b, _ in self._blocks])
+
+    def row(self, number: int) -> dict[str, Any]:
+        """One row: only its cells are fetched.
+
+        Parameters
+        ----------
+        number
+            From 0.
+        """
+        if self._starts is None:
+            self._starts = np.concatenate([[0], np.cumsum(self.lengths)]).tolist()
+        if not 0 <= number < self._starts[-1]:
+            raise UsageError(f"row {number}: there are {self._starts[-1]}")
+        block = int(np.searchsorted(self._starts, number, side="right")) - 1
+        return {name: self.block(block, name)[number - self._starts[block]] for name in self.columns}
+
+    def blocks(self, columns: Sequence[str] | None = None) -> Iterator[dict[str, Any]]:
+        """Block after block: memory does not grow with their number.
+
+        Parameters
+        ----------
+        columns
+            Those wanted; by default all.
+        """
+        for file, block, _ in self._blocks:
+            yield {name: self._read(file, block, name) for name in columns or self.columns}
+
+    def to_arrow(self) -> Any:
+        """All rows as a pyarrow table; texts as dictionaries, units in the fields."""
+        import pyarrow as pa
+        fields, batches = [], []
+        for name in self.columns:
+            kind = {"float64": pa.float64(), "int64": pa.int64(), "bool": pa.bool_(),
+                    "text": pa.string()}[self._kinds[name]]
+            fields.append(pa.field(name, kind, metadata={"unit": self.units[name]}))
+        schema = pa.schema(fields)
+        for block in self.blocks():
+            batches.append(pa.record_batch([pa.array(block[name], type=schema.field(name).type)
+                                            for name in self.columns], schema=schema))
+        return pa.Table.from_batches(batches, schema=schema)

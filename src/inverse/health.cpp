@@ -1,0 +1,88 @@
+#include <umov/inverse/health.h>
+
+#include "inverse/whitened.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umov {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// What a unit of the parameter adds to the light.
+EndMember slope_of(const LightChange &change, const EndMember &before) {
+  EndMember out{change.name, {}, {}, {}};
+  for (std::size_t k = 0; k < before.i.size(); ++k) {
+    out.i.push_back((change.light.i[k] - before.i[k]) / change.step);
+    out.q.push_back((change.light.q[k] - before.q[k]) / change.step);
+    out.u.push_back((change.light.u[k] - before.u[k]) / change.step);
+  }
+  return out;
+}
+
+/// Least squares with priors as further rows: x, its covariance, and chi-square.
+struct Fit {
+  VectorXd x;
+  MatrixXd covariance;
+  double chi2 = 0;
+};
+
+Fit fit_of(const MatrixXd &columns, const VectorXd &right, const VectorXd &prior_weight) {
+  Fit out;
+  MatrixXd normal = columns.transpose() * columns;
+  normal.diagonal() += prior_weight;
+  const auto solver = normal.completeOrthogonalDecomposition();
+  out.covariance = solver.pseudoInverse();
+  out.x = out.covariance * (columns.transpose() * right);
+  out.chi2 = (right - columns * out.x).squaredNorm() +
+             (prior_weight.array() * out.x.array().square()).sum();
+  return out;
+}
+
+} // namespace
+
+Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const EndMember &before,
+                    const std::vector<LightChange> &changes,
+                    const std::vector<LightChange> &unknowns) {
+  std::vector<EndMember> members{before};
+  for (const LightChange &one : unknowns)
+    members.push_back(slope_of(one, before));
+  for (const LightChange &one : changes)
+    members.push_back(slope_of(one, before));
+  const auto w = inverse::whitened(curve, errors, members);
+  const auto fixed = static_cast<Index>(1 + unknowns.size());
+  // The unknowns' columns are in units of the scale, which the object as it was tells well enough.
+  const VectorXd alone = w.columns.col(0);
+  const double scale = alone.dot(w.right) / std::max(alone.squaredNorm(), 1e-300);
+  VectorXd prior = VectorXd::Zero(fixed + 1);
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    prior[static_cast<Index>(k + 1)] = 1 / std::pow(std::max(scale, 1e-300) * unknowns[k].sd, 2);
+  MatrixXd columns(w.columns.rows(), fixed + 1);
+  columns.leftCols(fixed) = w.columns.leftCols(fixed);
+  Health out;
+  out.measurements = w.measurements;
+  out.chi2 = fit_of(columns.leftCols(fixed), w.right, prior.head(fixed)).chi2;
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    columns.col(fixed) = w.columns.col(fixed + static_cast<Index>(k));
+    const Fit fit = fit_of(columns, w.right, prior);
+    HealthRow row;
+    row.name = changes[k].name;
+    // p = x_p / x_0, to first order in both.
+    const double x0 = std::max(fit.x[0], 1e-300);
+    row.change = fit.x[fixed] / x0;
+    const double variance = fit.covariance(fixed, fixed) -
+                            2 * row.change * fit.covariance(0, fixed) +
+                            row.change * row.change * fit.covariance(0, 0);
+    row.change_err = std::sqrt(std::max(variance, 0.0)) / x0;
+    row.sigma = row.change_err > 0 ? row.change / row.change_err : 0;
+    row.detectable = 3 * row.change_err;
+    row.chi2_gain = out.chi2 - fit.chi2;
+    out.rows.push_back(std::move(row));
+  }
+  return out;
+}
+
+} // namespace umov

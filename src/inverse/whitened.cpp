@@ -1,0 +1,88 @@
+#include "inverse/whitened.h"
+
+#include "inverse/sample_errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umov::inverse {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// A zero point moves a band's I together: C = D + z^2 v v^T, of which the inverse root is a
+/// projection along the whitened v.
+void whiten_band(MatrixXd &columns, VectorXd &right, const std::vector<Index> &rows,
+                 const VectorXd &v) {
+  const double length2 = v.squaredNorm();
+  if (!(length2 > 0))
+    return;
+  const double part = (1 - 1 / std::sqrt(1 + length2)) / length2;
+  const auto take = [&](auto &&column) {
+    double along = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      along += v[static_cast<Index>(k)] * column[rows[k]];
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      column[rows[k]] -= part * along * v[static_cast<Index>(k)];
+  };
+  for (Index c = 0; c < columns.cols(); ++c)
+    take(columns.col(c));
+  take(right);
+}
+
+} // namespace
+
+Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
+                  const std::vector<EndMember> &members) {
+  errors.has_clouds = false; // a free gain per epoch would leave equations that 0 solves
+  const auto n = static_cast<Index>(members.size());
+  const double median = median_of_i(curve);
+  Whitened out;
+  out.columns = MatrixXd::Zero(static_cast<Index>(3 * curve.samples.size()), n);
+  out.right = VectorXd::Zero(out.columns.rows());
+  std::vector<std::vector<Index>> rows(curve.bands.size());
+  std::vector<std::vector<double>> common(curve.bands.size());
+  Index row = 0;
+  for (const ObservedSample &s : curve.samples) {
+    const std::size_t at = s.epoch * curve.bands.size() + s.band;
+    const SampleErrors known = errors_of(s, errors, median);
+    const double light = std::max(s.i, 0.0);
+    if (!(known.i_variance > 0) || !(s.i > 0 || s.i_sd > 0)) {
+      out.left_out += known.l_qq > 0 ? 1u : 0u; // of its q and u I is a factor
+      continue;
+    }
+    const double sd = std::sqrt(known.i_variance);
+    for (Index k = 0; k < n; ++k)
+      out.columns(row, k) = members[static_cast<std::size_t>(k)].i[at] / sd;
+    out.right[row] = s.i / sd;
+    rows[s.band].push_back(row);
+    common[s.band].push_back(errors.zero_point_sd * light / sd);
+    ++row;
+    ++out.measurements;
+    if (!(known.l_qq > 0))
+      continue;
+    if (!(light > 0)) {
+      ++out.left_out;
+      continue;
+    }
+    for (Index k = 0; k < n; ++k) {
+      const EndMember &m = members[static_cast<std::size_t>(k)];
+      const double dq = (m.q[at] - s.q * m.i[at]) / light, du = (m.u[at] - s.u * m.i[at]) / light;
+      out.columns(row, k) = known.l_qq * dq;
+      out.columns(row + 1, k) = known.l_uq * dq + known.l_uu * du;
+    }
+    row += 2;
+    out.measurements += 2;
+  }
+  out.columns.conservativeResize(row, n);
+  out.right.conservativeResize(row);
+  for (std::size_t b = 0; b < rows.size(); ++b)
+    whiten_band(out.columns, out.right, rows[b],
+                Eigen::Map<const VectorXd>(common[b].data(), static_cast<Index>(common[b].size())));
+  return out;
+}
+
+} // namespace umov::inverse

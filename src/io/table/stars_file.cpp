@@ -1,0 +1,49 @@
+#include <umov/io/stars_file.h>
+
+#include "io/table/text_table.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov {
+namespace {
+
+struct Wanted {
+  const char *name;
+  double low, high;
+  double FieldStar::*value;
+};
+constexpr Wanted wanted[] = {{"ra_deg", 0, 360, &FieldStar::ra_deg},
+                             {"dec_deg", -90, 90, &FieldStar::dec_deg},
+                             {"mag", -30, 40, &FieldStar::mag}};
+
+} // namespace
+
+Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std::string &file) {
+  UMOV_ASSIGN(table, read_text_table(text, file));
+  std::vector<FieldStar> out(table.rows.size());
+  for (const Wanted &one : wanted) {
+    const auto found = std::find(table.columns.begin(), table.columns.end(), one.name);
+    if (found == table.columns.end())
+      return fail(ErrorCode::BadInput,
+                  fmt::format("stars without the column \"{}\"; ra_deg, dec_deg and mag were "
+                              "expected",
+                              one.name),
+                  {file});
+    const auto column = static_cast<std::size_t>(found - table.columns.begin());
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+      const std::string &cell = table.rows[row][column];
+      const auto value = parse_number(cell);
+      if (!value || !(*value >= one.low && *value <= one.high))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} = \"{}\"; a number from {} to {} was expected", one.name,
+                                printable(cell), one.low, one.high),
+                    {file, table.lines[row]});
+      out[row].*one.value = *value;
+    }
+  }
+  return out;
+}
+
+} // namespace umov

@@ -1,0 +1,315 @@
+#include <umov/jobs/library.h>
+
+#include "jobs/job_journal.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <umov/core/files.h>
+#include <umov/core/text.h>
+#include <umov/io/signature_file.h>
+#include <umov/jobs/pose_light.h>
+#include <umov/light/engine.h>
+
+namespace umov::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A signature on its way to its file.
+struct Making {
+  SignatureText text;
+  PackedLight light;
+  double error = 0;
+  std::vector<float> sums;
+  const char *state = "made";
+};
+
+/// Light by sums before any colour: for objects without parts that turn, in single wavelengths.
+class SummedLight {
+public:
+  SummedLight(const Scene &scene, const JobOptions &options, double accuracy)
+      : engine_(scene, engine_options(options, accuracy)), scene_(scene), options_(options) {}
+
+  /// False where this scene has no sums, or it was stopped.
+  bool make(std::size_t cells, const Monitor &monitor, Making &out, StokesTable &light) const;
+  /// Light of sums that a file holds; false where they do not serve these materials.
+  bool colour(const SignatureView &kept, StokesTable &light) const;
+
+private:
+  static EngineOptions engine_options(const JobOptions &options, double accuracy) {
+    EngineOptions out;
+    out.threads = options.threads;
+    out.masks = masks_for(accuracy);
+    out.is_lazy = true;
+    out.mask_cache = options.mask_cache;
+    return out;
+  }
+  [[nodiscard]] static std::vector<std::string> words_of(const AbundanceTable &sums);
+  Engine engine_;
+  const Scene &scene_;
+  const JobOptions &options_;
+};
+
+std::vector<std::string> SummedLight::words_of(const AbundanceTable &sums) {
+  std::vector<std::string> out;
+  for (const AbundanceColumn &column : sums.columns) {
+    std::string text = column.kind == AbundanceColumn::Kind::Specular
+                           ? fmt::format("lobe {:.9g}", column.shape)
+                           : std::string("body");
+    for (const AbundanceColumn::Side &side : column.sides)
+      text += fmt::format(" {}{}", side.is_back_surface ? "back of " : "", side.group);
+    out.push_back(std::move(text));
+  }
+  return out;
+}
+
+void append(const StokesTable &part, StokesTable &all) {
+  all.bands = part.bands;
+  all.i.insert(all.i.end(), part.i.begin(), part.i.end());
+  all.q.insert(all.q.end(), part.q.begin(), part.q.end());
+}
+
+constexpr std::size_t block = 1u << 14; // poses whose sums are held at a time
+
+bool SummedLight::make(std::size_t cells, const Monitor &monitor, Making &out,
+                       StokesTable &light) const {
+  const auto tables = engine_.tables_for(scene_);
+  if (!tables)
+    return false;
+  const std::size_t pairs = signature_pairs(cells);
+  AbundanceTable sums;
+  StokesTable part;
+  for (std::size_t begin = 0; begin < pairs && !monitor.is_cancelled(); begin += block) {
+    const std::size_t end = std::min(begin + block, pairs);
+    const auto poses = signature_poses(cells, begin, end, out.text.sun_radius_rad);
+    if (!engine_.abundances(poses, sums, options_.threads))
+      return false;
+    tables->apply(sums, part, options_.threads);
+    append(part, light);
+    for (const double sum : sums.sum)
+      out.sums.push_back(static_cast<float>(sum));
+  }
+  out.text.columns = words_of(sums);
+  engine_.keep_masks();
+  return !monitor.is_cancelled();
+}
+
+bool SummedLight::colour(const SignatureView &kept, StokesTable &light) const {
+  const auto tables = engine_.tables_for(scene_);
+  const std::size_t cells = kept.signature.cells;
+  AbundanceTable sums;
+  const Pose one = signature_poses(cells, 1, 2, kept.text.sun_radius_rad).front();
+  if (!tables || kept.text.columns.empty() || !engine_.abundances({&one, 1}, sums, 1) ||
+      words_of(sums) != kept.text.columns)
+    return false;
+  const std::size_t pairs = signature_pairs(cells), columns = kept.text.columns.size();
+  StokesTable part;
+  for (std::size_t begin = 0; begin < pairs; begin += block) {
+    const std::size_t end = std::min(begin + block, pairs);
+    const auto poses = signature_poses(cells, begin, end, kept.text.sun_radius_rad);
+    const auto from = kept.abundances.subspan(begin * columns, poses.size() * columns);
+    sums.sum.assign(from.begin(), from.end());
+    sums.half_width.assign(sums.sum.size(), 0);
+    sums.bias.assign(sums.sum.size(), 0);
+    sums.cos_phase.clear();
+    sums.has_plane.clear();
+    sums.is_dark.clear();
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      sums.cos_phase.push_back(cos_phase(poses[k]));
+      sums.has_plane.push_back(has_scattering_plane(poses[k]) ? 1 : 0);
+      const auto row = from.subspan(k * columns, columns);
+      sums.is_dark.push_back(std::ranges::all_of(row, [](float s) { return s == 0; }) ? 1 : 0);
+    }
+    tables->apply(sums, part, options_.threads);
+    append(part, light);
+  }
+  return true;
+}
+
+/// Light of whatever has no sums.
+bool light_pairs(const PoseLight &from, std::size_t cells, const JobOptions &options,
+                 const Monitor &monitor, StokesTable &light) {
+  LightTask task;
+  task.threads = options.threads;
+  task.cancel = monitor.cancel;
+  StokesTable part;
+  const std::size_t pairs = signature_pairs(cells);
+  for (std::size_t begin = 0; begin < pairs; begin += block) {
+    const auto poses =
+        signature_poses(cells, begin, std::min(begin + block, pairs), from.sun_radius_rad());
+    if (monitor.is_cancelled() || !from.evaluate(poses, part, task))
+      return false;
+    append(part, light);
+  }
+  return true;
+}
+
+/// What abundances depend on apart from materials: places, facets, normals, how hiding is decided.
+std::string shape_of(const PoseLight &light) {
+  const Mesh &mesh = light.model().scene().mesh;
+  std::string bytes = fmt::format("{} {}", static_cast<int>(light.model().scene().normals),
+                                  light.options().accuracy);
+  const auto add = [&](const auto &list) {
+    bytes.append(reinterpret_cast<const char *>(list.data()), list.size() * sizeof(list[0]));
+  };
+  add(mesh.positions);
+  add(mesh.normals);
+  for (const Triangle &triangle : mesh.triangles) {
+    add(triangle.vertex);
+    add(triangle.normal);
+    bytes += fmt::format("{} {} ", triangle.front, triangle.back);
+  }
+  for (const std::string &group : mesh.groups)
+    bytes += group + '\n';
+  return sha256_hex(bytes);
+}
+
+/// One object of a library.
+class SignatureMaker {
+public:
+  SignatureMaker(const LibraryRequest &request, const JobOptions &options, const Monitor &monitor,
+                 Diagnostics &diagnostics)
+      : request_(request), options_(options), monitor_(monitor), diagnostics_(diagnostics) {}
+
+  Result<void> make(const std::string &path, const std::string &name);
+  [[nodiscard]] Table table() const;
+
+private:
+  Result<Making> light(const Scenario &scenario, const PoseLight &own, const std::string &name,
+                       const std::string &job, const fs::path &file) const;
+  void tell(const Making &made);
+
+  const LibraryRequest &request_;
+  const JobOptions &options_;
+  const Monitor &monitor_;
+  Diagnostics &diagnostics_;
+  std::vector<std::string> name_, state_;
+  std::vector<std::int64_t> poses_, columns_;
+  std::vector<double> error_;
+};
+
+Result<void> SignatureMaker::make(const std::string &path, const std::string &name) {
+  UMOV_ASSIGN(scenario, read_scenario(path, {}));
+  SignatureRequest asked;
+  asked.method = LightMethod::Masks;
+  UMOV_ASSIGN(own, PoseLight::make(scenario, asked, options_, diagnostics_));
+  const std::string job = sha256_hex(
+      job_text(scenario, own.inputs(), fmt::format("signature of {} cells", request_.cells)));
+  const fs::path file = fs::path(request_.folder) / (name + ".umovsig");
+  if (file_exists(file))
+    if (const auto kept = SignatureFile::open(file, true); kept && kept->view().text.job == job) {
+      Making there;
+      there.text = kept->view().text;
+      there.error = kept->view().signature.error;
+      there.state = "was there";
+      tell(there);
+      return {};
+    }
+  UMOV_ASSIGN(made, light(scenario, own, name, job, file));
+  UMOV_TRY(write_file_atomically(
+      file, signature_bytes(made.text, request_.cells, made.light, made.error, made.sums)));
+  (void)own.model().keep_masks(); // a cache that cannot be written costs time alone
+  tell(made);
+  return {};
+}
+
+Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &own,
+                                     const std::string &name, const std::string &job,
+                                     const fs::path &file) const {
+  Making out;
+  out.text = {name, job, shape_of(own), {}, {}, own.sun_radius_rad()};
+  for (const Band &band : scenario.bands)
+    out.text.bands.push_back(band.name);
+  StokesTable light;
+  bool is_lit = false;
+  const bool has_sums = own.model().joints().empty() && own.model().scene().grid.is_plain() &&
+                        own.options().bounces <= 1;
+  if (has_sums) {
+    const SummedLight sums(own.model().scene(), options_, own.options().accuracy);
+    const auto kept = file_exists(file) ? SignatureFile::open(file, true)
+                                        : Result<SignatureFile>(fail(ErrorCode::BadInput, "none"));
+    if (kept && kept->view().signature.cells == request_.cells &&
+        kept->view().text.sun_radius_rad == out.text.sun_radius_rad &&
+        kept->view().text.shape == out.text.shape && sums.colour(kept->view(), light)) {
+      is_lit = true;
+      out.state = "recoloured";
+      out.text.columns = kept->view().text.columns;
+      out.sums.assign(kept->view().abundances.begin(), kept->view().abundances.end());
+    } else {
+      light = {};
+      is_lit = sums.make(request_.cells, monitor_, out, light);
+    }
+  }
+  if (!is_lit) {
+    light = {};
+    out.sums.clear();
+    out.text.columns.clear();
+    if (!light_pairs(own, request_.cells, options_, monitor_, light))
+      return fail(ErrorCode::Interrupted,
+                  "stopped by the user; finished objects stay, and the same command goes on");
+  }
+  out.light = pack_light(light);
+  const Signature signature{
+      name, request_.cells, light.bands, out.light.ln_least, out.light.ln_step, 0, out.light.code};
+  out.error = interpolation_error(
+      signature,
+      [&](std::span<const Pose> poses, StokesTable &to) {
+        LightTask task;
+        task.threads = options_.threads;
+        return own.evaluate(poses, to, task);
+      },
+      scenario.seed);
+  return out;
+}
+
+void SignatureMaker::tell(const Making &made) {
+  name_.push_back(made.text.name);
+  state_.emplace_back(made.state);
+  poses_.push_back(static_cast<std::int64_t>(signature_pairs(request_.cells)));
+  columns_.push_back(static_cast<std::int64_t>(made.text.columns.size()));
+  error_.push_back(made.error);
+}
+
+Table SignatureMaker::table() const {
+  Table out;
+  out.add("name", "", "of the object", name_);
+  out.add("poses", "", "pairs of Sun and observer", poses_);
+  out.add("abundances", "", "sums kept for each, so that materials can be changed; 0: light alone",
+          columns_);
+  out.add("error", "", "of I between the nodes, in parts of it: two of three poses are better",
+          error_);
+  out.add("state", "", "made, recoloured from its abundances, or was there", state_);
+  return out;
+}
+
+} // namespace
+
+Result<LibraryBuilt> build_library(const LibraryRequest &request, const JobOptions &options,
+                                   const Monitor &monitor, Diagnostics &diagnostics) {
+  std::vector<std::string> names;
+  for (const std::string &path : request.scenarios) {
+    names.push_back(fs::path(path).stem().string());
+    if (std::ranges::count(names, names.back()) > 1)
+      return fail(
+          ErrorCode::Usage,
+          fmt::format("two scenarios are named {}: the objects of a library are named after "
+                      "their files; rename one",
+                      printable(names.back())));
+  }
+  std::error_code problem;
+  fs::create_directories(request.folder, problem);
+  if (problem)
+    return fail(ErrorCode::Device, "cannot make the folder: " + problem.message(),
+                {request.folder});
+  SignatureMaker maker(request, options, monitor, diagnostics);
+  const std::size_t first = std::min(request.first, names.size());
+  const std::size_t end = first + std::min(request.count, names.size() - first);
+  for (std::size_t k = first; k < end; ++k) {
+    monitor.advance("objects", k - first, end - first);
+    UMOV_TRY(maker.make(request.scenarios[k], names[k]));
+  }
+  return LibraryBuilt{maker.table()};
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,150 @@
+#include <umov/jobs/period.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <umov/core/text.h>
+#include <umov/lightcurve/periodogram.h>
+
+namespace umov::jobs {
+namespace {
+
+/// Brightness of one band without a long gap, in magnitudes.
+struct Stretch {
+  std::string band;
+  Epoch<Utc> begin{};
+  std::vector<double> seconds, magnitudes;
+};
+
+/// What a row says of brightness; NaN where it says nothing.
+double magnitude_of(const ObservedRow &row) {
+  return row.flux > 0 ? -2.5 * std::log10(row.flux) : row.mag;
+}
+
+std::vector<Stretch> stretches_of(const ObservationsFile &file, const std::string &band,
+                                  double gap_s) {
+  std::vector<Stretch> out;
+  for (const ObservedRow &row : file.rows) {
+    const double magnitude = magnitude_of(row);
+    if (row.band != band || !std::isfinite(magnitude))
+      continue;
+    const double seconds = out.empty() ? 0 : seconds_between(row.time, out.back().begin);
+    if (out.empty() || seconds - out.back().seconds.back() > gap_s) {
+      out.push_back({band, row.time, {0}, {magnitude}});
+    } else {
+      out.back().seconds.push_back(seconds);
+      out.back().magnitudes.push_back(magnitude);
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> bands_of(const ObservationsFile &file) {
+  std::vector<std::string> out;
+  for (const ObservedRow &row : file.rows)
+    if (std::ranges::find(out, row.band) == out.end())
+      out.push_back(row.band);
+  return out;
+}
+
+/// The longest periods that are tried take more than any peak.
+bool is_slow(const Periodogram &found, const std::vector<PeriodPeak> &peaks) {
+  return !found.power.empty() && (peaks.empty() || found.power.front() > peaks.front().power);
+}
+
+/// Rows of the answer, column by column.
+struct Rows {
+  std::vector<std::string> time, band;
+  std::vector<std::int64_t> epochs, rank;
+  std::vector<double> span, period, error, power, false_alarm;
+
+  void add(const Stretch &of, std::span<const PeriodPeak> peaks) {
+    for (std::size_t k = 0; k < peaks.size(); ++k) {
+      time.push_back(to_iso(of.begin));
+      band.push_back(of.band);
+      epochs.push_back(static_cast<std::int64_t>(of.seconds.size()));
+      rank.push_back(static_cast<std::int64_t>(k + 1));
+      span.push_back(of.seconds.back());
+      period.push_back(peaks[k].period_s);
+      error.push_back(peaks[k].period_err_s);
+      power.push_back(peaks[k].power);
+      false_alarm.push_back(peaks[k].false_alarm);
+    }
+  }
+};
+
+Table table_of(Rows &&rows, const std::string &path) {
+  Table out;
+  out.note("what", "periods that the light of " + path + " shows, by Lomb-Scargle");
+  out.note("synodic", "they are of the light as the observer saw it: a spin is off by the turn of "
+                      "the bisector of Sun and observer, and two like sides show half of it");
+  out.add("time_utc", "", "begin of the stretch", std::move(rows.time));
+  out.add("band", "", "band", std::move(rows.band));
+  out.add("epochs", "", "brightnesses in the stretch", std::move(rows.epochs));
+  out.add("span", "s", "from the first to the last", std::move(rows.span));
+  out.add("rank", "", "1: the highest peak", std::move(rows.rank));
+  out.add("period", "s", "of the peak", std::move(rows.period));
+  out.add("period_err", "s", "standard deviation, if what the sine leaves is noise",
+          std::move(rows.error));
+  out.add("power", "", "part of the variance that a sine of that period takes",
+          std::move(rows.power));
+  out.add("false_alarm", "", "chance that white noise has a peak as high",
+          std::move(rows.false_alarm));
+  out.set_precision("span", {"", 3, 0});
+  out.set_precision("period", {"period_err", 0, 0});
+  out.set_precision("period_err", {"", 0, 2});
+  out.set_precision("power", {"", 4, 0});
+  out.set_precision("false_alarm", {"", 0, 3});
+  return out;
+}
+
+} // namespace
+
+Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
+                     Diagnostics &diagnostics) {
+  std::vector<std::string> bands = bands_of(observations);
+  if (!request.band.empty()) {
+    if (std::ranges::find(bands, request.band) == bands.end())
+      return fail(ErrorCode::BadInput,
+                  fmt::format("holds no band \"{}\"; it has {}", printable(request.band),
+                              printable(fmt::format("{}", fmt::join(bands, ", ")))),
+                  {observations.path});
+    bands = {request.band};
+  }
+  Rows rows;
+  std::size_t too_few = 0, too_slow = 0;
+  for (const std::string &band : bands)
+    for (const Stretch &one : stretches_of(observations, band, request.gap_s)) {
+      constexpr std::size_t all = 1000;
+      const Periodogram found = periodogram(one.seconds, one.magnitudes);
+      auto peaks = highest_peaks(found, one.seconds, all);
+      too_slow += is_slow(found, peaks) ? 1u : 0u;
+      std::erase_if(peaks, [&](const PeriodPeak &peak) {
+        return peak.period_s < request.shortest_s || peak.period_s > request.longest_s;
+      });
+      peaks.resize(std::min(peaks.size(), request.peaks));
+      too_few += peaks.empty() ? 1u : 0u;
+      rows.add(one, peaks);
+    }
+  if (too_slow > 0)
+    diagnostics.warn(
+        fmt::format("in {} most of the change is slower than half the stretch: a trend, "
+                    "or a period too long to be told; the peaks listed are what is "
+                    "left",
+                    counted(too_slow, "stretch", "stretches")),
+        {observations.path});
+  if (rows.period.empty())
+    return fail(ErrorCode::Nothing,
+                fmt::format("{} shows no period: twelve brightnesses without a gap of {:g} s that "
+                            "change otherwise than evenly are needed",
+                            observations.path, request.gap_s));
+  if (too_few > 0)
+    diagnostics.warn(fmt::format("{} with fewer than twelve brightnesses, or with no peak in the "
+                                 "range asked for, left out",
+                                 counted(too_few, "stretch", "stretches")),
+                     {observations.path});
+  return table_of(std::move(rows), observations.path);
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,181 @@
+#include <umov/scale/job_folder.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <umov/core/files.h>
+#include <umov/core/temporary.h>
+#include <unistd.h>
+
+namespace umov::scale {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr const char *job_file = "job.json";
+/// Above so many shards they stand in folders of a thousand.
+constexpr std::size_t flat_shards = 10'000, per_folder = 1000;
+
+std::string number_of(std::size_t index) { return fmt::format("{:08d}", index); }
+
+tl::unexpected<Error> device(const std::string &what, const fs::path &path) {
+  return fail(ErrorCode::Device,
+              fmt::format("cannot {}: {}. Choose another folder.", what, std::strerror(errno)),
+              {path.string()});
+}
+
+Result<JobLock> read_lock(const fs::path &folder) {
+  UMOV_ASSIGN(text, read_file(folder / job_file));
+  return lock_from_json(text, (folder / job_file).string());
+}
+
+/// Puts a file in place unless one of that name is there: of two who try at once one succeeds.
+Result<bool> create(const fs::path &path, const std::string &bytes) {
+  const fs::path temporary = temporary_name(path);
+  UMOV_TRY(write_file_atomically(temporary, bytes));
+  const int linked = ::link(temporary.c_str(), path.c_str());
+  const int cause = errno;
+  ::unlink(temporary.c_str());
+  if (linked != 0 && cause != EEXIST) {
+    errno = cause;
+    return device("write", path);
+  }
+  return linked == 0;
+}
+
+/// "00000012-KEY-SHA.rows" of a job with that key.
+std::optional<Shard> shard_of(const std::string &name, const std::string &key) {
+  if (name.size() != 8 + 1 + 16 + 1 + 32 + 5 || !name.ends_with(".rows") ||
+      name.compare(8, 18, "-" + key + "-") != 0)
+    return std::nullopt;
+  Shard out{0, name, name.substr(26, 32)};
+  const auto read = std::from_chars(name.data(), name.data() + 8, out.index);
+  if (read.ptr != name.data() + 8 ||
+      out.sha256.find_first_not_of("0123456789abcdef") != std::string::npos)
+    return std::nullopt;
+  return out;
+}
+
+} // namespace
+
+JobFolder::JobFolder(fs::path path, JobLock lock)
+    : path_(std::move(path)), lock_(std::move(lock)), key_(lock_.key()) {}
+
+Result<JobFolder> JobFolder::open(const fs::path &path) {
+  UMOV_ASSIGN(lock, read_lock(path));
+  return JobFolder(fs::absolute(path), std::move(lock));
+}
+
+Result<JobFolder> JobFolder::begin(const fs::path &path, const JobLock &lock) {
+  std::error_code code;
+  const bool has_job = file_exists(path / job_file);
+  if (!has_job && fs::exists(path, code) && !fs::is_empty(path, code))
+    return fail(ErrorCode::Device,
+                "holds something else than a job of umov scale. Name a new folder.",
+                {path.string()});
+  for (const char *part : {"shards", "tmp", "failed"})
+    if (fs::create_directories(path / part, code); code)
+      return fail(ErrorCode::Device, "cannot be made: " + code.message(), {(path / part).string()});
+  UMOV_ASSIGN(is_new, create(path / job_file, to_json(lock)));
+  JobFolder ours(fs::absolute(path), lock);
+  if (is_new)
+    return ours;
+  UMOV_ASSIGN(there, read_lock(path));
+  if (there.key() == ours.key_)
+    return JobFolder(fs::absolute(path), std::move(there));
+  std::string difference = first_difference(there.identity, lock.identity);
+  if (difference.empty())
+    difference = fmt::format("was {} {} of {} in shards of {}, is {} {} of {} in shards of {}",
+                             there.verb, there.unit, there.total, there.per_shard, lock.verb,
+                             lock.unit, lock.total, lock.per_shard);
+  return fail(ErrorCode::BadInput,
+              "is the folder of another job: " + difference +
+                  ". Name another folder, or go on with that job: umov scale run " + path.string(),
+              {path.string()});
+}
+
+fs::path JobFolder::folder_of(std::size_t index) const {
+  const fs::path all = path_ / "shards";
+  return lock_.shards() > flat_shards ? all / fmt::format("{:05d}", index / per_folder) : all;
+}
+
+fs::path JobFolder::file_of(const Shard &shard) const {
+  return folder_of(shard.index) / shard.name;
+}
+
+Shard JobFolder::named(std::size_t index, const std::string &sha256) const {
+  const std::string sum = sha256.substr(0, 32);
+  std::error_code exists;
+  fs::create_directories(folder_of(index), exists);
+  return {index, fmt::format("{}-{}-{}.rows", number_of(index), key_, sum), sum};
+}
+
+fs::path JobFolder::growing(std::size_t index) const {
+  return path_ / "tmp" / (number_of(index) + ".rows");
+}
+
+Result<Shards> JobFolder::shards() const {
+  Shards out;
+  try {
+    for (const auto &entry : fs::recursive_directory_iterator(path_ / "shards"))
+      if (const auto shard = shard_of(entry.path().filename().string(), key_))
+        if (shard->index < lock_.shards())
+          out[shard->index].push_back(*shard);
+  } catch (const fs::filesystem_error &problem) {
+    return fail(ErrorCode::Device, std::string("cannot be listed: ") + problem.what(),
+                {(path_ / "shards").string()});
+  }
+  return out;
+}
+
+std::optional<Shard> JobFolder::find(std::size_t index) const {
+  std::error_code unknown;
+  const std::string begin = number_of(index);
+  for (const auto &entry : fs::directory_iterator(folder_of(index), unknown))
+    if (const std::string name = entry.path().filename().string(); name.starts_with(begin))
+      if (const auto shard = shard_of(name, key_))
+        return shard;
+  return std::nullopt;
+}
+
+void JobFolder::sweep() const {
+  std::error_code unknown;
+  for (const auto &entry : fs::directory_iterator(path_ / "tmp", unknown))
+    fs::remove(entry.path(), unknown);
+}
+
+void JobFolder::tell_failed(const FailedShard &failed) const {
+  const jobs::IndexRange range = lock_.range(failed.index);
+  const json out{{"index", failed.index},       {"first", range.first},
+                 {"count", range.count},        {"code", failed.code},
+                 {"attempts", failed.attempts}, {"message", failed.message},
+                 {"host", failed.host}};
+  // What cannot be told here stands among the missing all the same.
+  (void)write_file_atomically(path_ / "failed" / (number_of(failed.index) + ".json"),
+                              out.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+}
+
+void JobFolder::forget_failed(std::size_t index) const {
+  std::error_code unknown;
+  fs::remove(path_ / "failed" / (number_of(index) + ".json"), unknown);
+}
+
+std::vector<FailedShard> JobFolder::failed() const {
+  std::vector<FailedShard> out;
+  std::error_code unknown;
+  for (const auto &entry : fs::directory_iterator(path_ / "failed", unknown)) {
+    const auto text = read_file(entry.path());
+    const json all = text ? json::parse(*text, nullptr, false) : json();
+    if (!all.is_object())
+      continue;
+    out.push_back({all.value("index", std::size_t{0}), all.value("code", 0),
+                   all.value("attempts", std::size_t{1}), all.value("message", std::string()),
+                   all.value("host", std::string())});
+  }
+  return out;
+}
+
+} // namespace umov::scale

@@ -1,0 +1,91 @@
+#include <umov/scale/job_folder.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <umov/core/text.h>
+
+namespace umov::scale {
+
+using nlohmann::json;
+
+std::string JobLock::key() const {
+  return sha256_hex(fmt::format("umov scale 1\n{}\n{} in {}\n{}", verb, total, per_shard, identity))
+      .substr(0, 16);
+}
+
+jobs::IndexRange JobLock::range(std::size_t shard) const {
+  const std::size_t first = shard * per_shard;
+  return {first, std::min(per_shard, total - first)};
+}
+
+std::string to_json(const JobLock &lock) {
+  const json out{{"umov_scale", 1},
+                 {"key", lock.key()},
+                 {"verb", lock.verb},
+                 {"arguments", lock.arguments},
+                 {"directory", lock.directory},
+                 {"instruction_set", lock.instruction_set},
+                 {"unit", lock.unit},
+                 {"total", lock.total},
+                 {"per_shard", lock.per_shard},
+                 {"shards", lock.shards()},
+                 {"layout", lock.layout},
+                 {"tables", lock.tables},
+                 {"order", lock.order},
+                 {"predicted",
+                  {{"cpu_s", lock.rate.cpu_s},
+                   {"bytes", lock.rate.bytes},
+                   {"setup_cpu_s", lock.rate.setup_cpu_s}}},
+                 {"job", lock.identity}};
+  return out.dump(1) + "\n";
+}
+
+Result<JobLock> lock_from_json(const std::string &text, const std::string &file) {
+  JobLock out;
+  try {
+    const json all = json::parse(text);
+    if (all.at("umov_scale").get<int>() != 1)
+      throw std::runtime_error("of another version of the form");
+    all.at("verb").get_to(out.verb);
+    all.at("arguments").get_to(out.arguments);
+    all.at("directory").get_to(out.directory);
+    all.at("instruction_set").get_to(out.instruction_set);
+    all.at("unit").get_to(out.unit);
+    all.at("total").get_to(out.total);
+    all.at("per_shard").get_to(out.per_shard);
+    all.at("layout").get_to(out.layout);
+    all.at("tables").get_to(out.tables);
+    all.at("order").get_to(out.order);
+    all.at("job").get_to(out.identity);
+    out.rate = {all.at("predicted").at("cpu_s").get<double>(),
+                all.at("predicted").at("bytes").get<double>(),
+                all.at("predicted").at("setup_cpu_s").get<double>()};
+    if (out.per_shard == 0 || out.tables.empty())
+      throw std::runtime_error("without shards or tables");
+    if (all.at("key").get<std::string>() != out.key())
+      throw std::runtime_error("its key does not fit what it says: it was changed by hand");
+  } catch (const std::exception &problem) {
+    return fail(ErrorCode::BadInput,
+                fmt::format("is no job of umov scale: {}. Name the folder of one, or begin a job "
+                            "in a new folder.",
+                            problem.what()),
+                {file});
+  }
+  return out;
+}
+
+std::string first_difference(const std::string &was, const std::string &is) {
+  std::size_t a = 0, b = 0;
+  while (a < was.size() || b < is.size()) {
+    const std::string one = was.substr(a, was.find('\n', a) - a);
+    const std::string other = is.substr(b, is.find('\n', b) - b);
+    if (one != other)
+      return fmt::format("was \"{}\", is \"{}\"", one.substr(0, 200), other.substr(0, 200));
+    a = std::min(was.size(), a + one.size() + 1);
+    b = std::min(is.size(), b + other.size() + 1);
+  }
+  return "";
+}
+
+} // namespace umov::scale

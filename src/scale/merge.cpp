@@ -1,0 +1,191 @@
+#include <umov/scale/merge.h>
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <umov/core/files.h>
+#include <umov/core/version.h>
+#include <umov/scale/rows_file.h>
+
+namespace umov::scale {
+namespace {
+
+/// The file of a shard whose bytes are those of its name.
+Result<RowsFile> open_checked(const JobFolder &folder, const Shard &shard) {
+  const std::string name = folder.file_of(shard).string();
+  UMOV_ASSIGN(file, RowsFile::open(name));
+  if (file.sha256().substr(0, shard.sha256.size()) != shard.sha256)
+    return fail(ErrorCode::BadInput,
+                "its bytes are not those of its name: the file is damaged. umov scale repair " +
+                    folder.path().string() + " makes it anew.",
+                {name});
+  return std::move(file);
+}
+
+/// The one file of each shard, in order.
+Result<std::vector<Shard>> all_shards(const JobFolder &folder) {
+  UMOV_ASSIGN(there, folder.shards());
+  std::vector<Shard> out;
+  std::vector<std::size_t> missing;
+  for (std::size_t k = 0; k < folder.lock().shards(); ++k) {
+    const auto found = there.find(k);
+    if (found == there.end()) {
+      missing.push_back(k);
+    } else if (found->second.size() > 1) {
+      return fail(ErrorCode::BadInput,
+                  fmt::format("shard {} is there with unlike bytes ({} and {}): two programs or "
+                              "machines do not agree. umov scale repair makes it anew.",
+                              k, found->second[0].name, found->second[1].name),
+                  {folder.path().string()});
+    } else {
+      out.push_back(found->second.front());
+    }
+  }
+  if (missing.empty())
+    return out;
+  const std::size_t told = std::min<std::size_t>(missing.size(), 10);
+  return fail(ErrorCode::BadInput,
+              fmt::format("{} of {} shards are missing: {}{}. umov scale run {} makes them.",
+                          missing.size(), folder.lock().shards(),
+                          fmt::join(missing.begin(),
+                                    missing.begin() + static_cast<std::ptrdiff_t>(told), ", "),
+                          told < missing.size() ? ", ..." : "", folder.path().string()),
+              {folder.path().string()});
+}
+
+/// Rows of a table in another order.
+Table permuted(const Table &table, const std::vector<std::size_t> &rows) {
+  Table out;
+  for (const auto &[key, value] : table.notes())
+    out.note(key, value);
+  for (const Column &column : table.columns()) {
+    out.add(column.name, column.unit, column.description,
+            std::visit(
+                [&rows](const auto &cells) -> Cells {
+                  std::decay_t<decltype(cells)> put;
+                  put.reserve(rows.size());
+                  for (const std::size_t row : rows)
+                    put.push_back(cells[row]);
+                  return put;
+                },
+                column.cells));
+    out.set_precision(column.name, column.precision);
+  }
+  return out;
+}
+
+/// All rows by a column, which goes; ties stay in the order of the shards.
+Table in_order(const Table &table, const std::string &by) {
+  const auto &key = std::get<std::vector<double>>(table.find(by)->cells);
+  std::vector<std::size_t> rows(table.rows());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::ranges::stable_sort(rows, {}, [&key](std::size_t row) { return key[row]; });
+  Table out = permuted(table, rows);
+  out.remove(by);
+  return out;
+}
+
+} // namespace
+
+Result<void> merge(const JobFolder &folder, const std::string &table, TableSink &sink,
+                   const jobs::Monitor &monitor) {
+  const JobLock &lock = folder.lock();
+  const auto wanted = std::ranges::find(lock.tables, table);
+  if (wanted == lock.tables.end())
+    return fail(ErrorCode::Usage,
+                fmt::format("--table {}: the job has {}", table, fmt::join(lock.tables, ", ")));
+  const auto number = static_cast<std::size_t>(wanted - lock.tables.begin());
+  const bool is_sorted = number == 0 && !lock.order.empty();
+  UMOV_ASSIGN(shards, all_shards(folder));
+  Table all; // of a table that is sorted; of an empty one its columns
+  std::size_t rows = 0;
+  for (const Shard &shard : shards) {
+    if (monitor.is_cancelled())
+      return tl::unexpected(sink.stop({ErrorCode::Interrupted, "stopped by the user", {}}));
+    UMOV_ASSIGN(file, open_checked(folder, shard));
+    for (std::size_t b = 0; b < file.blocks(number); ++b) {
+      UMOV_ASSIGN(block, file.block(number, b));
+      rows += block.rows();
+      if (is_sorted || (rows == 0 && all.columns().empty()))
+        all.append(std::move(block));
+      else if (block.rows() > 0)
+        UMOV_TRY(sink.add(std::move(block)));
+    }
+    monitor.advance("shards", shard.index + 1, shards.size());
+  }
+  if (rows == 0)
+    return fail(ErrorCode::Nothing, "the job has no row: nothing was found in any shard");
+  if (is_sorted)
+    UMOV_TRY(sink.add(in_order(all, lock.order)));
+  return sink.finish();
+}
+
+Result<Verdict> verify(const JobFolder &folder, const jobs::Monitor &monitor) {
+  UMOV_ASSIGN(there, folder.shards());
+  Verdict out;
+  out.shards = folder.lock().shards();
+  for (std::size_t k = 0; k < out.shards; ++k) {
+    if (monitor.is_cancelled())
+      return fail(ErrorCode::Interrupted, "stopped by the user");
+    const auto found = there.find(k);
+    if (found == there.end()) {
+      out.missing.push_back(k);
+      continue;
+    }
+    std::vector<Shard> good;
+    for (const Shard &shard : found->second)
+      (open_checked(folder, shard) ? good : out.damaged).push_back(shard);
+    if (good.size() > 1)
+      out.doubled.insert(out.doubled.end(), good.begin(), good.end());
+    out.done += good.size() == 1 ? 1U : 0U;
+    monitor.advance("shards", k + 1, out.shards);
+  }
+  return out;
+}
+
+std::string describe(const Verdict &verdict, const JobFolder &folder) {
+  std::string out = fmt::format("{} of {} shards are whole", verdict.done, verdict.shards);
+  if (!verdict.missing.empty())
+    out += fmt::format("; {} missing, the first is {}", verdict.missing.size(),
+                       verdict.missing.front());
+  for (const Shard &shard : verdict.damaged)
+    out += "; damaged: " + folder.file_of(shard).string();
+  for (const Shard &shard : verdict.doubled)
+    out += "; not the only one of its shard: " + folder.file_of(shard).string();
+  return out;
+}
+
+void remove_bad(const JobFolder &folder, const Verdict &verdict) {
+  std::error_code unknown;
+  for (const auto *bad : {&verdict.damaged, &verdict.doubled})
+    for (const Shard &shard : *bad)
+      std::filesystem::remove(folder.file_of(shard), unknown);
+}
+
+Result<void> write_manifest(const JobFolder &folder) {
+  UMOV_ASSIGN(shards, all_shards(folder));
+  nlohmann::json list = nlohmann::json::array();
+  std::size_t bytes = 0;
+  std::error_code unknown;
+  for (const Shard &shard : shards) {
+    const auto size = std::filesystem::file_size(folder.file_of(shard), unknown);
+    bytes += unknown ? 0 : size;
+    const jobs::IndexRange range = folder.lock().range(shard.index);
+    list.push_back({{"file", shard.name},
+                    {"first", range.first},
+                    {"count", range.count},
+                    {"bytes", unknown ? 0 : size},
+                    {"sha256_128", shard.sha256}});
+  }
+  const nlohmann::json out{{"program", std::string("umov ") + version},
+                           {"key", folder.key()},
+                           {"unit", folder.lock().unit},
+                           {"total", folder.lock().total},
+                           {"bytes", bytes},
+                           {"shards", std::move(list)}};
+  return write_file_atomically(folder.path() / "manifest.json", out.dump(1) + "\n");
+}
+
+} // namespace umov::scale

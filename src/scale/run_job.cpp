@@ -1,0 +1,217 @@
+#include <umov/scale/run_job.h>
+
+#include "scale/worker_process.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <deque>
+#include <fmt/format.h>
+#include <map>
+#include <poll.h>
+#include <random>
+#include <umov/core/parallel.h>
+#include <umov/scale/lease.h>
+#include <unistd.h>
+
+namespace umov::scale {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t attempts_max = 3;
+constexpr double patience_after_stop_s = 30;
+
+std::string this_host() {
+  std::array<char, 256> name{};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+/// The loop over workers.
+class Pool {
+public:
+  Pool(const JobFolder &folder, const RunSettings &settings, const jobs::Monitor &monitor)
+      : folder_(folder), settings_(settings), monitor_(monitor) {}
+
+  Result<RunTally> run() {
+    UMOV_TRY(find_missing());
+    const std::size_t there = tally_.there_before;
+    while (!workers_.empty() || may_start()) {
+      if (!stopped_ && monitor_.is_cancelled())
+        stop({ErrorCode::Interrupted, "", {}});
+      UMOV_TRY(start_workers());
+      if (workers_.empty())
+        break;
+      wait();
+      end_what_hangs();
+      monitor_.advance("shards", there + tally_.done + tally_.failed, tally_.wanted);
+    }
+    if (!stopped_)
+      return tally_;
+    if (stopped_->code == ErrorCode::Interrupted)
+      stopped_->message =
+          fmt::format("stopped by the user after {} of {} shards. umov scale run {} goes on.",
+                      there + tally_.done, tally_.wanted, folder_.path().string());
+    return tl::unexpected(*stopped_);
+  }
+
+private:
+  Result<void> find_missing() {
+    const JobLock &lock = folder_.lock();
+    UMOV_ASSIGN(part, settings_.part.of(lock.shards(), "shards"));
+    UMOV_ASSIGN(there, folder_.shards());
+    tally_.wanted = part.count;
+    for (std::size_t k = part.first; k < part.end(); ++k)
+      if (!there.contains(k))
+        missing_.push_back(k);
+    tally_.there_before = part.count - missing_.size();
+    if (settings_.joins && !missing_.empty()) { // far from where the others are
+      std::random_device somewhere;
+      const auto at = static_cast<std::ptrdiff_t>(somewhere() % missing_.size());
+      std::rotate(missing_.begin(), missing_.begin() + at, missing_.end());
+    }
+    return {};
+  }
+  [[nodiscard]] bool may_start() const { return !stopped_ && !missing_.empty(); }
+  void stop(Error why) {
+    if (!stopped_)
+      stopped_since_ = WorkerProcess::Clock::now();
+    stopped_ = std::move(why);
+  }
+  Result<void> start_workers() {
+    while (may_start() && workers_.size() < settings_.workers) {
+      const std::size_t cores = resolve_threads(0);
+      const std::size_t threads = settings_.threads > 0
+                                      ? settings_.threads
+                                      : std::max<std::size_t>(1, cores / settings_.workers);
+      UMOV_ASSIGN(worker, WorkerProcess::start({settings_.program, "scale", "worker",
+                                                folder_.path().string(), "--threads",
+                                                std::to_string(threads), "-q"}));
+      workers_.push_back(std::move(worker));
+      give(workers_.back());
+    }
+    return {};
+  }
+  /// The next shard that nobody has done meanwhile. False: there is none, and it may go.
+  bool give(WorkerProcess &worker) {
+    if (!may_start())
+      return false;
+    worker.ask(missing_.front());
+    missing_.pop_front();
+    return true;
+  }
+  void wait() {
+    std::vector<pollfd> ends;
+    for (const WorkerProcess &worker : workers_)
+      ends.push_back({worker.output(), POLLIN, 0});
+    ::poll(ends.data(), ends.size(), 200);
+    for (std::size_t k = workers_.size(); k-- > 0;)
+      if ((ends[k].revents & (POLLIN | POLLHUP)) != 0)
+        hear(k);
+  }
+  void hear(std::size_t k) {
+    WorkerProcess &worker = workers_[k];
+    const bool lives = worker.read();
+    while (const auto line = worker.line()) {
+      take(*line);
+      if (!give(worker)) {
+        worker.leave(milliseconds(10'000)); // it keeps its masks
+        return let_go(k);
+      }
+    }
+    if (!lives)
+      lose(k, "");
+  }
+  void let_go(std::size_t k) { workers_.erase(workers_.begin() + static_cast<std::ptrdiff_t>(k)); }
+  void take(const std::string &line) {
+    const auto record = record_from_json(line);
+    if (!record)
+      return stop(record.error());
+    tally_.cpu_s += record->cpu_s;
+    const auto code = static_cast<ErrorCode>(record->code);
+    if (record->status == ShardRecord::Status::Refused)
+      return stop({code, record->message, {}});
+    if (record->status != ShardRecord::Status::Failed) {
+      ++tally_.done;
+      return folder_.forget_failed(record->index);
+    }
+    if (code == ErrorCode::Device || code == ErrorCode::Interrupted)
+      return stop({code,
+                   fmt::format("{} umov scale run {} goes on when that is mended.", record->message,
+                               folder_.path().string()),
+                   {}});
+    give_up(record->index, record->code, attempts_[record->index] + 1, record->message);
+  }
+  void give_up(std::size_t index, int code, std::size_t attempts, const std::string &message) {
+    ++tally_.failed;
+    tally_.failures.push_back({index, code, attempts, message, this_host()});
+    folder_.tell_failed(tally_.failures.back());
+  }
+  /// A worker that is no more, or shall not be: its shard is tried again, but not for ever.
+  void lose(std::size_t k, const std::string &why) {
+    const auto index = workers_[k].index();
+    const int code = workers_[k].end();
+    let_go(k);
+    if (!index || stopped_)
+      return;
+    const std::string what = !why.empty() ? why
+                             : code > 128 ? fmt::format("its process was ended by signal {} ({})",
+                                                        code - 128, ::strsignal(code - 128))
+                                          : fmt::format("its process ended with {}", code);
+    if (const std::size_t attempts = ++attempts_[*index]; attempts >= attempts_max)
+      give_up(*index, code, attempts, what);
+    else
+      missing_.push_back(*index); // behind the others, which it shall not hold up
+  }
+  void end_what_hangs() {
+    const JobLock &lock = folder_.lock();
+    const double predicted =
+        lock.rate.setup_cpu_s + lock.rate.cpu_s * static_cast<double>(lock.per_shard);
+    const double timeout =
+        settings_.timeout_s > 0 ? settings_.timeout_s : std::max(60.0, 10 * predicted);
+    const double since_stop =
+        stopped_
+            ? std::chrono::duration<double>(WorkerProcess::Clock::now() - stopped_since_).count()
+            : 0;
+    for (std::size_t k = workers_.size(); k-- > 0;)
+      if (since_stop > patience_after_stop_s) {
+        workers_[k].leave(milliseconds(6000));
+        let_go(k);
+      } else if (workers_[k].busy_s() > timeout) {
+        lose(k, fmt::format("it was not done after {:.0f} s", timeout));
+      }
+  }
+
+  const JobFolder &folder_;
+  const RunSettings &settings_;
+  const jobs::Monitor &monitor_;
+  RunTally tally_;
+  std::deque<std::size_t> missing_;
+  std::map<std::size_t, std::size_t> attempts_;
+  std::vector<WorkerProcess> workers_;
+  std::optional<Error> stopped_;
+  WorkerProcess::Clock::time_point stopped_since_{};
+};
+
+} // namespace
+
+Result<RunTally> run_job(const JobFolder &folder, const RunSettings &settings,
+                         const jobs::Monitor &monitor) {
+  std::string part = settings.part.text();
+  for (const char sign : {'/', ':'})
+    if (const std::size_t at = part.find(sign); at != std::string::npos)
+      part.replace(at, 1, sign == '/' ? "-of-" : "-and-");
+  std::optional<Lease> lease;
+  if (!settings.joins) {
+    UMOV_ASSIGN(taken, Lease::take(folder.path(), part));
+    lease.emplace(std::move(taken));
+    if (part.empty())
+      folder.sweep();
+  }
+  auto out = Pool(folder, settings, monitor).run();
+  if (lease && part.empty())
+    folder.sweep();
+  return out;
+}
+
+} // namespace umov::scale

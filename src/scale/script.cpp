@@ -1,0 +1,69 @@
+#include <umov/scale/script.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace umov::scale {
+namespace {
+
+/// For a shell: within single quotes, unless it needs none.
+std::string quoted(const std::string &text) {
+  if (text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                             "_-./:+,=@%") == std::string::npos)
+    return text;
+  std::string out = "'";
+  for (const char c : text)
+    out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+} // namespace
+
+std::string slurm_script(const JobFolder &folder, const ScriptSettings &s) {
+  const std::string path = folder.path().string();
+  const auto minutes = static_cast<long>(std::ceil(s.wall_s / 60));
+  return fmt::format(
+      "#!/bin/bash\n"
+      "# {0} shards of {1} {2} each, shared among {3} tasks; finished shards are left out, so "
+      "that\n"
+      "# the same script goes on after whatever ended it. Then: {4} scale merge {5} -o TABLE\n"
+      "#SBATCH --job-name=umov\n"
+      "#SBATCH --array=0-{6}\n"
+      "#SBATCH --ntasks=1\n"
+      "#SBATCH --cpus-per-task={7}\n"
+      "#SBATCH --mem={8}M\n"
+      "#SBATCH --time={9:02d}:{10:02d}:00\n"
+      "#SBATCH --requeue\n"
+      "#SBATCH --output={11}\n"
+      "{12}"
+      "exec {4} scale run {5} --part \"$SLURM_ARRAY_TASK_ID/{3}\" \\\n"
+      "     --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" -q\n",
+      folder.lock().shards(), folder.lock().per_shard, folder.lock().unit, s.tasks,
+      quoted(s.program), quoted(path), s.tasks - 1, s.threads, s.memory_mb, minutes / 60,
+      minutes % 60, quoted(path + "/log/%A_%a.txt"),
+      s.partition.empty() ? "" : "#SBATCH --partition=" + s.partition + "\n");
+}
+
+std::string condor_script(const JobFolder &folder, const ScriptSettings &s) {
+  const std::string path = folder.path().string();
+  return fmt::format(
+      "# {0} shards of {1} {2} each, shared among {3} tasks; finished shards are left out, so "
+      "that\n"
+      "# the same file goes on after whatever ended it. The folder must be seen by all machines.\n"
+      "executable = {4}\n"
+      "arguments = \"scale run '{5}' --part $(Process)/{3} --threads {6} -q\"\n"
+      "transfer_executable = false\n"
+      "should_transfer_files = no\n"
+      "request_cpus = {6}\n"
+      "request_memory = {7}MB\n"
+      "+MaxRuntime = {8:.0f}\n"
+      "output = {5}/log/$(Cluster)_$(Process).out\n"
+      "error = {5}/log/$(Cluster)_$(Process).err\n"
+      "log = {5}/log/$(Cluster).log\n"
+      "queue {3}\n",
+      folder.lock().shards(), folder.lock().per_shard, folder.lock().unit, s.tasks, s.program, path,
+      s.threads, s.memory_mb, s.wall_s);
+}
+
+} // namespace umov::scale

@@ -1,0 +1,117 @@
+#include <umov/scale/shard_work.h>
+
+#include <chrono>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <umov/core/text.h>
+#include <umov/scale/rows_file.h>
+
+namespace umov::scale {
+namespace {
+
+using nlohmann::json;
+constexpr std::array<const char *, 4> status_names{"done", "there", "failed", "refused"};
+
+double cpu_seconds() {
+  struct rusage used {};
+  ::getrusage(RUSAGE_SELF, &used);
+  const auto seconds = [](const timeval &t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+/// Computes, writes and names the file.
+Result<void> fill(const JobFolder &folder, jobs::RangedJob &job, const jobs::Monitor &monitor,
+                  ShardRecord &record) {
+  const jobs::IndexRange range = folder.lock().range(record.index);
+  UMOV_ASSIGN(writer, RowsWriter::open(folder.growing(record.index), job.tables(),
+                                       {folder.key(), record.index, range}));
+  Diagnostics told_at_the_begin;
+  UMOV_TRY(job.rows(range, writer, monitor, told_at_the_begin));
+  UMOV_ASSIGN(sum, writer.finish());
+  const Shard shard = folder.named(record.index, sum);
+  UMOV_TRY(writer.commit_as(folder.file_of(shard)));
+  record.file = shard.name;
+  record.sha256 = sum;
+  record.rows = writer.rows();
+  record.bytes = writer.bytes();
+  return {};
+}
+
+} // namespace
+
+std::string to_json(const ShardRecord &r) {
+  const json out{
+      {"index", r.index},     {"status", status_names[static_cast<std::size_t>(r.status)]},
+      {"code", r.code},       {"message", r.message.substr(0, 500)},
+      {"file", r.file},       {"sha256", r.sha256},
+      {"rows", r.rows},       {"bytes", r.bytes},
+      {"seconds", r.seconds}, {"cpu_s", r.cpu_s}};
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+Result<ShardRecord> record_from_json(const std::string &line) {
+  try {
+    const json all = json::parse(line);
+    const auto status = all.at("status").get<std::string>();
+    ShardRecord out;
+    for (std::size_t k = 0; k < status_names.size(); ++k)
+      if (status == status_names[k])
+        out.status = static_cast<ShardRecord::Status>(k);
+    out.index = all.at("index").get<std::size_t>();
+    all.at("code").get_to(out.code);
+    all.at("message").get_to(out.message);
+    all.at("file").get_to(out.file);
+    all.at("sha256").get_to(out.sha256);
+    out.rows = all.at("rows").get<std::size_t>();
+    out.bytes = all.at("bytes").get<std::size_t>();
+    all.at("seconds").get_to(out.seconds);
+    all.at("cpu_s").get_to(out.cpu_s);
+    return out;
+  } catch (const json::exception &problem) {
+    return fail(ErrorCode::Internal, fmt::format("a worker said \"{}\": {}", line, problem.what()));
+  }
+}
+
+Result<void> check_same_job(const JobFolder &folder, const jobs::RangedJob &job) {
+  const std::string difference = first_difference(folder.lock().identity, job.identity());
+  if (difference.empty() && folder.lock().total == job.total())
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("the job was begun with another program, instruction set or other "
+                          "inputs: {}. Put them back (an instruction set: begin the job with --isa "
+                          "and one that all machines have), or begin anew in another folder.",
+                          difference.empty() ? "other numbers of " + job.unit() : difference),
+              {(folder.path() / "job.json").string()});
+}
+
+ShardRecord do_shard(const JobFolder &folder, jobs::RangedJob &job, std::size_t index,
+                     const jobs::Monitor &monitor) {
+  ShardRecord out;
+  out.index = index;
+  if (const auto there = folder.find(index)) {
+    out.status = ShardRecord::Status::There;
+    out.file = there->name;
+    return out;
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  const double cpu = cpu_seconds();
+  auto done = Result<void>();
+  try {
+    done = fill(folder, job, monitor, out);
+  } catch (const std::bad_alloc &) {
+    done = fail(ErrorCode::Device, "out of memory; ask for smaller shards with --per-shard");
+  }
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  out.cpu_s = cpu_seconds() - cpu;
+  if (!done) {
+    out.status = ShardRecord::Status::Failed;
+    out.code = static_cast<int>(done.error().code);
+    out.message = done.error().text();
+  }
+  return out;
+}
+
+} // namespace umov::scale

@@ -1,0 +1,138 @@
+// The folder that is the whole state of a job.
+
+#include <umov/scale/job_folder.h>
+#include <umov/scale/lease.h>
+#include <umov/scale/plan.h>
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+
+namespace umov::scale {
+namespace {
+
+namespace fs = std::filesystem;
+
+JobLock a_job() {
+  JobLock out;
+  out.verb = "signature";
+  out.arguments = {"s.toml", "--poses", "100"};
+  out.directory = "/somewhere";
+  out.identity = "umov 1\ninput a\nseed 1\n";
+  out.unit = "poses";
+  out.total = 100;
+  out.per_shard = 30;
+  out.layout = {60, 40};
+  out.tables = {"signature"};
+  return out;
+}
+
+class JobFolders : public ::testing::Test {
+protected:
+  void SetUp() override {
+    path = fs::path(::testing::TempDir()) /
+           ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(path);
+  }
+  fs::path path;
+};
+
+TEST_F(JobFolders, CutAJobIntoRangesThatCoverIt) {
+  const JobLock job = a_job();
+  ASSERT_EQ(job.shards(), 4u);
+  std::size_t next = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(job.range(k).first, next);
+    next = job.range(k).end();
+  }
+  EXPECT_EQ(next, 100u);
+}
+
+TEST_F(JobFolders, KeepTheirJob) {
+  ASSERT_TRUE(JobFolder::begin(path, a_job()));
+  const auto again = JobFolder::open(path);
+  ASSERT_TRUE(again) << again.error().text();
+  EXPECT_EQ(to_json(again->lock()), to_json(a_job()));
+  EXPECT_TRUE(JobFolder::begin(path, a_job())); // the same job goes on
+}
+
+TEST_F(JobFolders, OfAnotherJobAreRefusedWithTheLineThatDiffers) {
+  ASSERT_TRUE(JobFolder::begin(path, a_job()));
+  JobLock other = a_job();
+  other.identity = "umov 1\ninput a\nseed 2\n";
+  const auto refused = JobFolder::begin(path, other);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::BadInput);
+  EXPECT_NE(refused.error().message.find("was \"seed 1\", is \"seed 2\""), std::string::npos)
+      << refused.error().message;
+}
+
+TEST_F(JobFolders, WithSomethingElseInThemAreRefused) {
+  fs::create_directories(path);
+  std::ofstream(path / "thesis.tex") << "\n";
+  EXPECT_FALSE(JobFolder::begin(path, a_job()));
+  EXPECT_FALSE(fs::exists(path / "job.json"));
+}
+
+TEST_F(JobFolders, ChangedByHandAreRefused) {
+  std::string text = to_json(a_job());
+  text.replace(text.find("\"total\": 100"), 12, "\"total\": 200");
+  const auto read = lock_from_json(text, "job.json");
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("changed by hand"), std::string::npos);
+}
+
+TEST_F(JobFolders, ListShardsOfTheirKeyAlone) {
+  const auto folder = JobFolder::begin(path, a_job());
+  ASSERT_TRUE(folder);
+  const Shard mine = folder->named(2, std::string(64, 'a'));
+  std::ofstream(folder->file_of(mine)) << "x";
+  std::ofstream(path / "shards" /
+                "00000001-ffffffffffffffff-aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa.rows");
+  std::ofstream(path / "shards" / "notes.txt");
+  const auto there = folder->shards();
+  ASSERT_TRUE(there);
+  ASSERT_EQ(there->size(), 1u);
+  EXPECT_EQ(there->begin()->first, 2u);
+  EXPECT_EQ(folder->find(2)->name, mine.name);
+  EXPECT_FALSE(folder->find(1));
+}
+
+TEST_F(JobFolders, TellOfFailuresUntilTheyAreForgotten) {
+  const auto folder = JobFolder::begin(path, a_job());
+  ASSERT_TRUE(folder);
+  folder->tell_failed({3, 139, 3, "its process was ended", "here"});
+  ASSERT_EQ(folder->failed().size(), 1u);
+  EXPECT_EQ(folder->failed()[0].code, 139);
+  folder->forget_failed(3);
+  EXPECT_TRUE(folder->failed().empty());
+}
+
+TEST_F(JobFolders, AreHeldByOneAtATime) {
+  fs::create_directories(path);
+  {
+    const auto lease = Lease::take(path, "");
+    ASSERT_TRUE(lease);
+    EXPECT_FALSE(Lease::take(path, ""));
+    EXPECT_FALSE(Lease::take(path, "0-of-2"));
+    EXPECT_NE(lease_holders(path), "");
+  }
+  EXPECT_EQ(lease_holders(path), "");
+  const auto one = Lease::take(path, "0-of-2"), other = Lease::take(path, "1-of-2");
+  EXPECT_TRUE(one && other); // parts do not meet
+  EXPECT_FALSE(Lease::take(path, ""));
+}
+
+TEST_F(JobFolders, OfAMillionShardsArePlannedAtOnce) {
+  JobLock job = a_job();
+  job.total = 1'000'000'000'000;
+  job.per_shard = 1'000'000;
+  job.rate = {1e-6, 36, 10};
+  const Plan plan = plan_of(job, {1000, 10, 0});
+  EXPECT_EQ(plan.shards, 1'000'000u);
+  EXPECT_NEAR(plan.core_hours, (1e6 + 100 * 10) / 3600, 1e-6); // a hundred processes begin
+  EXPECT_NEAR(plan.gigabytes, 36'000, 1e-6);
+}
+
+} // namespace
+} // namespace umov::scale

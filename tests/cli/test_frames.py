@@ -1,0 +1,181 @@
+"""umov observe with level = "image": frames as FITS files, and the counts that are taken from them."""
+import math
+import statistics
+
+import numpy
+import pytest
+from astropy.io import fits
+from astropy.table import Table
+from astropy.wcs import WCS
+
+from conftest import ROOT
+from test_observe import pulls
+
+SCENE = """
+umov = 1
+seed = 11
+instrument = "{instrument}"
+[observer]
+name = "Maui"
+lat_deg = 20.7083
+lon_deg = -156.2578
+alt_m = 3058
+[time]
+start = 2018-01-21T05:11:00Z
+stop = 2018-01-21T05:11:{stop}Z
+[[object]]
+name = "ball"
+orbit = {{ file = "{root}/data/tle/hst.tle", norad = 20580 }}
+mesh = {{ file = "sphere.obj", unit = "m", up = "+Z" }}
+materials = {{ default = "paint_white" }}
+[atmosphere]
+seeing = {{ arcsec = {seeing} }}
+scintillation = "none"
+sky = {{ mag = 20.0, p = 0.3 }}
+[telescope]
+{telescope}
+[observation]
+bands = ["nm:550"]
+width_nm = 50
+{observation}
+[output]
+dir = "out"
+formats = ["ecsv"]
+pol_frame = "altaz"
+"""
+
+
+@pytest.fixture
+def scene(umov, tmp_path):
+    """scene(observation, ...) writes observe.toml for a small white sphere."""
+    assert umov("mesh", "make", "sphere", "--radius", "1", "--facets", "1000", "-o", "sphere.obj").code == 0
+
+    def write(observation, telescope="", instrument="c11_imx250", stop="10", seeing=1):
+        (tmp_path / "observe.toml").write_text(SCENE.format(
+            observation=observation, telescope=telescope, instrument=instrument, stop=stop, seeing=seeing, root=ROOT))
+        return tmp_path / "observe.toml"
+
+    return write
+
+
+def frames(tmp_path):
+    return sorted((tmp_path / "out/frames").glob("frame_*.fits"))
+
+
+# A tracked star, a trail of some 70 px, and a fit of the image where it is two pixels wide.
+AGREE = [("c11_imx250", 'exposure_s = 0.02\nframe_px = [72, 72]', "", 1, 500),
+         ("c11_imx250", 'exposure_s = 0.01\nframe_px = [160, 160]', 'tracking = "sidereal"', 1, 500),
+         ("c11_imx250", 'exposure_s = 0.02\nframe_px = [72, 72]\nphotometry = "image"', "", 0.6, 500),
+         ("hwp_wollaston_1m", 'exposure_s = 0.004\ncadence_s = 0.01\nframe_px = [64, 64]', "", 1.6, 200)]
+
+
+@pytest.mark.parametrize("instrument, observation, telescope, seeing, least", AGREE)
+def test_frames_tell_what_apertures_tell(scene, umov, tmp_path, instrument, observation, telescope, seeing, least):
+    path = scene(observation + '\nlevel = "image"', telescope, instrument, seeing=seeing)
+    done = umov("observe", path)
+    assert done.code == 0, done.err
+    counts, truth = Table.read(tmp_path / "out/counts.ecsv"), Table.read(tmp_path / "out/truth.ecsv")
+    light = {row["exposure"]: (row["I"], row["I"] * row["q"], row["I"] * row["u"]) for row in truth}
+    expected = [sum(row[f"w{k}"] * light[row["exposure"]][k] for k in range(3)) for row in counts]
+    found = sum(counts["counts"] - counts["sky"])
+    # A per mille, and four standard errors of the photons.
+    assert abs(found / sum(expected) - 1) < 1e-3 + 4 / math.sqrt(found)
+    assert umov("reduce", "out/counts.ecsv", "-o", "stokes.ecsv").code == 0
+    for name, values in pulls(Table.read(tmp_path / "stokes.ecsv"), truth).items():
+        n = len(values)
+        assert n >= least
+        # Four standard errors, and .05 of a pull: a box of pixels leaves .0004 in q.
+        assert abs(statistics.mean(values)) < 4 / math.sqrt(n) + 0.05, name
+        assert abs(statistics.stdev(values) - 1) < 4 / math.sqrt(2 * n) + 0.05, name
+
+
+@pytest.mark.parametrize("mount", ["altaz", "equatorial"])
+def test_world_coordinates_are_those_of_the_field(scene, umov, tmp_path, mount):
+    """Stars at known places, while the telescope follows the stars or the object; astropy reads the header."""
+    base = 'exposure_s = 0.01\nlevel = "image"\nframe_px = [200, 200]'
+    steady = f'tracking_error_arcsec = 0\nmount = "{mount}"\n'
+    assert umov("observe", scene(base, steady, stop="00.01")).code == 0
+    with fits.open(frames(tmp_path)[0]) as file:
+        world = WCS(file[0].header)
+    places = [(40.3, 150.2), (160.7, 60.4)]
+    lines = ["ra_deg,dec_deg,mag"]
+    for x, y in places:
+        sky = world.pixel_to_world(x, y)
+        lines.append(f"{float(sky.ra.deg)!r},{float(sky.dec.deg)!r},3.5")
+    (tmp_path / "stars.csv").write_text("\n".join(lines) + "\n")
+    path = scene(base + '\nstars = "stars.csv"', steady + 'tracking = "sidereal"', stop="00.01")
+    done = umov("observe", path, "--force")
+    assert done.code == 0, done.err
+    with fits.open(frames(tmp_path)[0]) as file:
+        data = file[0].data.astype(float) - file[0].header["BIASLVL"]
+        assert file[0].header["EXPTIME"] == 0.01 and file[0].header["INSTRUME"] == "c11_imx250"
+    rows, columns = numpy.mgrid[0:200, 0:200]
+    for x, y in places:
+        near = (abs(columns - x) < 12) & (abs(rows - y) < 12)
+        light = numpy.where(near, data - numpy.median(data), 0)
+        # The object's trail is a straight line through the middle; a star of 3.5 mag is 3e4 electrons here.
+        assert abs((light * columns).sum() / light.sum() - x) < 0.3
+        assert abs((light * rows).sum() / light.sum() - y) < 0.3
+
+
+def test_what_is_not_followed_trails(scene, umov, tmp_path):
+    observation = 'exposure_s = 0.02\nlevel = "image"\nframe_px = [256, 256]'
+    assert umov("observe", scene(observation, 'tracking_error_arcsec = 0\ntracking = "fixed"', stop="00.02")).code == 0
+    with fits.open(frames(tmp_path)[0]) as file:
+        data = file[0].data.astype(float) - numpy.median(file[0].data)
+        scale = file[0].header["PIXSCALE"]
+    truth = Table.read(tmp_path / "out/truth.ecsv")[0]
+    rows, columns = numpy.nonzero(data > 0.3 * data.max())
+    places = numpy.stack([columns - columns.mean(), rows - rows.mean()], axis=1)
+    along = places @ numpy.linalg.svd(places, full_matrices=False)[2][0]
+    expected = truth["rate"] * 3600 * 0.02 / scale  # the mount stands still: all of the motion over the sky
+    assert abs(numpy.ptp(along) - expected) < 6  # beyond its ends the trail fades over a width of 4 px
+
+
+def test_frames_do_not_depend_on_threads_and_replace_older_ones(scene, umov, tmp_path):
+    path = scene('exposure_s = 0.05\ncadence_s = 1\nlevel = "image"', stop="06")
+    assert umov("observe", path, "--threads", 1).code == 0
+    one = [file.read_bytes() for file in frames(tmp_path)]
+    assert umov("observe", path, "--threads", 2).code == 0
+    assert one == [file.read_bytes() for file in frames(tmp_path)] and len(one) == 6
+    assert umov("observe", path, "--set", "observation.cadence_s=2").code == 0
+    assert len(frames(tmp_path)) == 3
+    (tmp_path / "out/frames/mine.txt").write_text("x")
+    done = umov("observe", path)
+    assert done.code != 0 and (tmp_path / "out/frames/mine.txt").exists()
+    assert [file for file in tmp_path.iterdir() if file.name.startswith(".out")] == []
+
+
+def test_frames_of_the_locked_scenario(scene, umov, tmp_path):
+    (tmp_path / "stars.csv").write_text("ra_deg,dec_deg,mag\n10,20,5\n")
+    path = scene('exposure_s = 0.05\ncadence_s = 1\nlevel = "image"\nstars = "stars.csv"\nframe_px = [64, 80]', stop="02")
+    assert umov("observe", path).code == 0
+    assert umov("observe", "out/scenario.lock.toml", "-o", "again").code == 0
+    assert [f.read_bytes() for f in frames(tmp_path)] == \
+        [f.read_bytes() for f in sorted((tmp_path / "again/frames").glob("*.fits"))]
+
+
+REFUSED = [("exposure_s = 1\nframe_px = [64, 64]", "level"), ('exposure_s = 1\nlevel = "image"\nframe_px = [64]', "rows"),
+           ('exposure_s = 1\nlevel = "image"\nframe_px = [4, 4]', "16"),
+           ('exposure_s = 1\nlevel = "picture"', "image"), ('exposure_s = 1\nlevel = "image"\nphotometry = "sum"', "aperture")]
+
+
+@pytest.mark.parametrize("observation, told", REFUSED)
+def test_what_is_refused(scene, umov, observation, told):
+    done = umov("observe", scene(observation))
+    assert done.code == 3 and told in done.err and "observe.toml:" in done.err, done.err
+
+
+def test_fields_that_are_refused(scene, umov, tmp_path):
+    path = scene('exposure_s = 1\nlevel = "image"\nstars = "stars.csv"')
+    for text, told in (("ra_deg,dec_deg\n1,2\n", "mag"), ("ra_deg,dec_deg,mag\n1,95,3\n", "-90 to 90"),
+                       ("ra_deg,dec_deg,mag\n1,x,3\n", "stars.csv:2")):
+        (tmp_path / "stars.csv").write_text(text)
+        done = umov("observe", path)
+        assert done.code == 3 and told in done.err, done.err
+
+
+def test_troubles_are_told(scene, umov, tmp_path):
+    path = scene('exposure_s = 0.02\nlevel = "image"\nframe_px = [64, 64]', 'tracking = "sidereal"', stop="00.06")
+    done = umov("observe", path)
+    assert done.code == 0 and "frame_px" in done.err, done.err

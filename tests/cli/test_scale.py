@@ -1,0 +1,253 @@
+"""Jobs in parts: whatever ends them, the merged bytes are those of the plain command."""
+import json
+import os
+import random
+import re
+import signal
+import subprocess
+import time
+
+import pytest
+
+from conftest import ROOT, UMOV
+
+SITE = ("-s", "maui", "--start", "2018-01-21T00:00:00Z", "--stop", "2018-01-21T12:00:00Z")
+
+
+def signature_of(scenario, poses=400):
+    return ["signature", scenario(), "--poses", poses, "--phase", "60", "--accuracy", "0.05"]
+
+
+def slow_signature_of(umov, scenario, poses):
+    """Of a body that hides itself, by rays: milliseconds a pose, so that there is something to end."""
+    command = signature_of(scenario, poses)[:-1] + ["0.02", "--visibility", "rays"]
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+    return command
+
+
+def plain(umov, command, *output):
+    done = umov(*command, "-o", output[0])
+    assert done.code == 0, done.err
+
+
+def start(tmp_path, *arguments):
+    return subprocess.Popen([UMOV, *map(str, arguments)], cwd=tmp_path, stdout=subprocess.DEVNULL,
+                            stderr=subprocess.PIPE, text=True)
+
+
+def children(pid):
+    """Processes that a process has started."""
+    found = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True)
+    return [int(line) for line in found.stdout.split()]
+
+
+def wait_for(what, timeout_s=60):
+    until = time.monotonic() + timeout_s
+    while time.monotonic() < until:
+        if found := what():
+            return found
+        time.sleep(0.02)
+    raise AssertionError("it did not come")
+
+
+def shards(folder):
+    return sorted(path.name for path in (folder / "shards").rglob("*.rows"))
+
+
+@pytest.mark.parametrize("suffix", ["csv", "fits"])
+@pytest.mark.parametrize("per_shard", [400, 123])
+def test_a_signature_in_parts_is_the_plain_one(umov, scenario, tmp_path, suffix, per_shard):
+    command = signature_of(scenario)
+    plain(umov, command, f"plain.{suffix}")
+    done = umov("scale", "run", "--per-shard", per_shard, "job", *command)
+    assert done.code == 0, done.err
+    assert umov("scale", "merge", "job", "-o", f"merged.{suffix}").code == 0
+    assert (tmp_path / f"merged.{suffix}").read_bytes() == (tmp_path / f"plain.{suffix}").read_bytes()
+    manifest = json.loads((tmp_path / "job/manifest.json").read_text())
+    assert [one["file"] for one in manifest["shards"]] == shards(tmp_path / "job")
+    assert not list((tmp_path / "job/tmp").iterdir())
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_passes_in_parts_are_the_plain_ones(umov, tmp_path, workers):
+    orbits = (ROOT / "tests/data/tle/mixed_979_2018-01-20.tle").read_text().splitlines()[:45]
+    (tmp_path / "fifteen.tle").write_text("\n".join(orbits) + "\n")
+    command = ["passes", "--orbit", "fifteen.tle", *SITE]
+    plain(umov, command, "plain.csv")
+    done = umov("scale", "run", "--per-shard", 4, "--workers", workers, "job", *command)
+    assert done.code == 0, done.err
+    assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
+    assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+
+
+def test_a_run_in_parts_is_the_plain_one(umov, scenario, tmp_path):
+    name = scenario(("stop = 2018-01-21T05:12:00Z", "stop = 2018-01-22T08:00:00Z"),
+                    ("sun_alt_max_deg = -6, sunlit = true", "sunlit = true"))
+    assert umov("run", name, "-o", "plain").code == 0
+    done = umov("scale", "run", "--per-shard", 1, "job", "run", name)
+    assert done.code == 0, done.err
+    assert len(shards(tmp_path / "job")) > 1
+    for table in ("lightcurve.csv", "lightcurve.ecsv", "passes.ecsv"):
+        merged = umov("scale", "merge", "job", "--table", table.split(".")[0], "-o", table)
+        assert merged.code == 0, merged.err
+        assert (tmp_path / table).read_bytes() == (tmp_path / "plain" / table).read_bytes()
+
+
+def test_tasks_of_an_array_share_the_shards(umov, scenario, tmp_path):
+    command = signature_of(scenario)
+    plain(umov, command, "plain.csv")
+    script = umov("scale", "script", "slurm", "--tasks", 3, "--per-shard", 50, "job", *command)
+    assert script.code == 0 and "#SBATCH --array=0-2" in script.out
+    assert re.search(r"scale run \S*job --part \"\$SLURM_ARRAY_TASK_ID/3\"", script.out)
+    condor = umov("scale", "script", "condor", "--tasks", 3, "job")
+    assert condor.code == 0 and "queue 3" in condor.out
+    for task in (2, 0, 1):
+        assert umov("scale", "run", "job", "--part", f"{task}/3").code == 0
+    assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
+    assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+
+
+def test_kills_of_workers_and_of_all_cost_no_byte(umov, scenario, tmp_path):
+    """Ten times something of the job is killed by signal 9; no process is left over."""
+    command = slow_signature_of(umov, scenario, 3000)
+    lock = umov("scale", "lock", "--per-shard", 30, "job", *command)
+    assert lock.code == 0, lock.err
+    rng, finished = random.Random(7), set()
+    for _ in range(10):
+        job = start(tmp_path, "scale", "run", "job", "--threads", 1, "-q")
+        workers = wait_for(lambda: children(job.pid) or job.poll() is not None)
+        if workers is True:
+            break
+        time.sleep(rng.uniform(0.2, 2.0))
+        victim = rng.choice([job.pid, workers[0]])
+        os.kill(victim, signal.SIGKILL)
+        if victim != job.pid:
+            time.sleep(0.5)
+            job.send_signal(signal.SIGINT)
+        job.wait(60)
+        wait_for(lambda: not [pid for pid in workers if alive(pid)], 20)
+        there = set(shards(tmp_path / "job"))
+        assert finished <= there  # what was finished stays
+        finished = there
+    assert umov("scale", "run", "job").code == 0
+    assert not list((tmp_path / "job/tmp").iterdir())
+    plain(umov, command, "plain.csv")
+    assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
+    assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+
+
+def alive(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def test_ctrl_c_says_how_to_go_on(umov, scenario, tmp_path):
+    command = slow_signature_of(umov, scenario, 20000)
+    assert umov("scale", "lock", "--per-shard", 20, "job", *command).code == 0
+    job = start(tmp_path, "scale", "run", "job", "-q")
+    wait_for(lambda: shards(tmp_path / "job"))
+    job.send_signal(signal.SIGINT)
+    _, err = job.communicate(timeout=60)
+    assert job.returncode == 130 and f"umov scale run {tmp_path / 'job'} goes on" in err, err
+    assert not list((tmp_path / "job/tmp").iterdir())
+
+
+def test_a_worker_that_hangs_is_ended(umov, scenario, tmp_path):
+    command = slow_signature_of(umov, scenario, 2000)
+    assert umov("scale", "lock", "--per-shard", 500, "job", *command).code == 0
+    job = start(tmp_path, "scale", "run", "job", "-q", "--timeout-s", 60)
+    worker = wait_for(lambda: children(job.pid))[0]
+    time.sleep(1)
+    os.kill(worker, signal.SIGSTOP)
+    job.kill()
+    job.wait(10)
+    os.kill(worker, signal.SIGKILL)
+    assert umov("scale", "run", "job").code == 0
+    assert umov("scale", "verify", "job").code == 0
+
+
+def test_a_damaged_or_missing_shard_is_found_and_made_anew(umov, scenario, tmp_path):
+    command = signature_of(scenario)
+    plain(umov, command, "plain.csv")
+    assert umov("scale", "run", "--per-shard", 100, "job", *command).code == 0
+    files = shards(tmp_path / "job")
+    bad = tmp_path / "job/shards" / files[1]
+    bytes_ = bytearray(bad.read_bytes())
+    bytes_[200] ^= 1
+    bad.write_bytes(bytes_)
+    merged = umov("scale", "merge", "job", "-o", "merged.csv")
+    assert merged.code == 3 and files[1] in merged.err
+    assert not (tmp_path / "merged.csv").exists()
+    assert umov("scale", "verify", "job").code == 3
+    assert umov("scale", "repair", "job").code == 0
+    (tmp_path / "job/shards" / files[3]).unlink()
+    merged = umov("scale", "merge", "job", "-o", "merged.csv")
+    assert merged.code == 3 and "1 of 4 shards are missing: 3" in merged.err
+    assert umov("scale", "run", "job").code == 0
+    assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
+    assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+
+
+def test_unlike_bytes_of_one_shard_are_told(umov, scenario, tmp_path):
+    assert umov("scale", "run", "--per-shard", 200, "job", *signature_of(scenario)).code == 0
+    first = shards(tmp_path / "job")[0]
+    other = first[:26] + "0" * 32 + ".rows"
+    (tmp_path / "job/shards" / other).write_bytes((tmp_path / "job/shards" / first).read_bytes())
+    merged = umov("scale", "merge", "job", "-o", "merged.csv")
+    assert merged.code == 3 and "unlike bytes" in merged.err and other in merged.err
+
+
+def test_a_second_one_is_refused_unless_it_joins(umov, scenario, tmp_path):
+    command = slow_signature_of(umov, scenario, 4000)
+    assert umov("scale", "lock", "--per-shard", 20, "job", *command).code == 0
+    job = start(tmp_path, "scale", "run", "job", "-q", "--threads", 1)
+    wait_for(lambda: shards(tmp_path / "job"))
+    refused = umov("scale", "run", "job", "-q")
+    assert refused.code == 6 and f"{job.pid}" in refused.err and "--join" in refused.err, refused.err
+    assert "at work" in umov("scale", "status", "job").out
+    assert umov("scale", "run", "job", "-q", "--join", "--threads", 1).code == 0
+    assert job.wait(120) == 0
+    assert len(shards(tmp_path / "job")) == 200
+
+
+def test_another_job_or_changed_inputs_are_refused(umov, scenario, tmp_path):
+    command = signature_of(scenario)
+    assert umov("scale", "run", "--per-shard", 200, "job", *command).code == 0
+    other = umov("scale", "run", "--per-shard", 200, "job", *command[:-1], "0.06")
+    assert other.code == 3 and "0.06" in other.err and "was " in other.err, other.err
+    (tmp_path / "job/shards" / shards(tmp_path / "job")[0]).unlink()
+    with open(tmp_path / "cube.obj", "a") as mesh:
+        mesh.write("# changed\n")
+    changed = umov("scale", "run", "job")
+    assert changed.code == 3 and "cube.obj" in changed.err, changed.err
+
+
+@pytest.mark.parametrize("arguments,code,said", [
+    (["render", "s.toml"], 2, "signature, passes or run"),
+    (["signature", "nothing.toml", "--poses", "5", "--phase", "60"], 3, "nothing.toml"),
+    (["signature", "scenario.toml"], 2, "--geometry"),
+    (["signature", "scenario.toml", "--poses", "5", "--phase", "60", "-o", "x.csv"], 2, "scale merge"),
+    (["signature", "scenario.toml", "--poses", "5", "--phase", "60", "--shard", "0/2"], 2, "--per-shard"),
+])
+def test_what_is_wrong_is_said_before_anything_is_made(umov, scenario, tmp_path, arguments, code, said):
+    scenario()
+    done = umov("scale", "run", "job", *arguments)
+    assert done.code == code and said in done.err, done.err
+    assert not (tmp_path / "job").exists()
+
+
+def test_a_folder_of_something_else_is_left_alone(umov, scenario, tmp_path):
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis/chapter.tex").write_text("")
+    assert umov("scale", "run", "thesis", *signature_of(scenario)).code == 6
+    assert [path.name for path in (tmp_path / "thesis").iterdir()] == ["chapter.tex"]
+
+
+def test_too_much_asks_first(umov, scenario, tmp_path):
+    done = umov("scale", "run", "job", "signature", scenario(), "--poses", 10000000, "--phase",
+                ",".join(str(10 + 0.1 * k) for k in range(200)))
+    assert done.code in (2, 6), done.err  # 2: --yes is wanted; 6: there is no room for it here
+    assert not (tmp_path / "job/job.json").exists()
