@@ -48,7 +48,7 @@ void describe(const SignatureRequest &request, const PoseLight &light, Table &ta
 /// Chains cost seconds before the first pose, and are worth it where poses are many and do not tell
 /// about each other.
 BetweenMethod between_for(const PoseList &poses) {
-  constexpr std::size_t many = 256, looked_at = 1000;
+  constexpr std::size_t many = 1000, looked_at = 1000;
   constexpr double far_rad = 0.1;
   if (poses.count < many)
     return BetweenMethod::Paths;
@@ -56,7 +56,7 @@ BetweenMethod between_for(const PoseList &poses) {
   const std::size_t count = std::min(poses.count, looked_at);
   for (std::size_t k = 1; k < count; ++k) {
     const Pose a = poses.at(k - 1), b = poses.at(k);
-    far += angle_between(a.sun, b.sun) + angle_between(a.observer, b.observer) > far_rad ? 1 : 0;
+    far += angle_between(a.sun, b.sun) + angle_between(a.observer, b.observer) > far_rad ? 1U : 0U;
   }
   return 2 * far > count ? BetweenMethod::Chains : BetweenMethod::Paths;
 }

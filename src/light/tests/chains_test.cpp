@@ -39,6 +39,7 @@ Material paint() {
 Material brushed() {
   Material out = interface_of("paper_al", 1);
   out.distribution = {"ashikhmin_shirley", {{"nu", 20}, {"nv", 60}}, {}, {}, {}};
+  out.direction = Vec3<Body>{1, 0, 0};
   return out;
 }
 
@@ -96,7 +97,8 @@ TEST(Chains, TwoLambertPlatesByTheirFormFactor) {
 
 TEST(Chains, SunAndObserverExchangedGiveTheSameLight) {
   // Each chain is taken from both of its ends, so reciprocity holds chain by chain: single
-  // precision of some ten thousand sums.
+  // precision of some ten thousand sums. I alone: Q, U, V of sunlight there are what polarized
+  // light would give in I back (Sekera 1966).
   const Integrator plates(scene_of(three_plates(), NormalMode::Flat,
                                    {rough("paper_au", 0.25), paint(), rough("paper_al", 0.15)}));
   std::size_t lit = 0;
@@ -107,9 +109,6 @@ TEST(Chains, SunAndObserverExchangedGiveTheSameLight) {
     for (std::size_t band = 0; band < 3; ++band) {
       const auto &x = a.indirect[band], &y = b.indirect[band];
       EXPECT_NEAR(x.i, y.i, 1e-5 * x.i) << i;
-      EXPECT_NEAR(x.q, y.q, 2e-5 * x.i) << i;
-      EXPECT_NEAR(x.u, -y.u, 2e-5 * x.i) << i;
-      EXPECT_NEAR(x.v, y.v, 2e-5 * x.i) << i;
       lit += x.i > 0 ? 1 : 0;
     }
   }
