@@ -1,0 +1,118 @@
+// How a job in parts begins: what it is, what it will cost, where it goes on.
+
+#include "verb_scale.h"
+
+#include "job_console.h"
+
+#include <ctime>
+#include <filesystem>
+#include <fmt/format.h>
+#include <iostream>
+#include <umov/core/files.h>
+#include <umov/light/engine.h>
+#include <unistd.h>
+
+namespace umov::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Above these somebody is asked first.
+constexpr double many_core_hours = 100, many_gigabytes = 100;
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+Result<void> ask_about(const scale::Plan &plan, const ScaleJobOptions &o) {
+  std::error_code code;
+  const auto room = fs::space(fs::absolute(o.folder).parent_path(), code);
+  if (!code && plan.gigabytes * 1e9 > static_cast<double>(room.available))
+    return fail(ErrorCode::Device,
+                fmt::format("about {:.2g} GB will be written, and {:.2g} GB are free. Choose "
+                            "another disk, or ask for less.",
+                            plan.gigabytes, static_cast<double>(room.available) / 1e9),
+                {o.folder});
+  if (o.may_cost_much || (plan.core_hours < many_core_hours && plan.gigabytes < many_gigabytes))
+    return {};
+  if (::isatty(STDIN_FILENO) != 0 && ::isatty(STDERR_FILENO) != 0) {
+    fmt::print(stderr, "Begin? [y/N] ");
+    std::string answer;
+    std::getline(std::cin, answer);
+    if (answer == "y" || answer == "Y")
+      return {};
+    return fail(ErrorCode::Interrupted, "not begun");
+  }
+  return fail(ErrorCode::Usage,
+              fmt::format("{:.0f} core-h and {:.0f} GB: --yes says that so much is meant",
+                          plan.core_hours, plan.gigabytes));
+}
+
+Result<void> hold_to(const std::string &instruction_set) {
+  if (instruction_set.empty() || restrict_engine(instruction_set))
+    return {};
+  return fail(ErrorCode::Device, "this machine has no " + instruction_set +
+                                     ". Leave it out of the job, or begin one with an --isa that "
+                                     "all machines have.");
+}
+
+} // namespace
+
+std::string own_program() {
+  std::error_code code;
+  const fs::path self = fs::read_symlink("/proc/self/exe", code);
+  return code ? command_line().front() : self.string();
+}
+
+Result<scale::JobLock> measured_job(const ScaleJobOptions &o, const scale::PlanSettings &settings,
+                                    const Common &common, Diagnostics &diagnostics,
+                                    std::unique_ptr<jobs::RangedJob> &job) {
+  UMOV_TRY(hold_to(o.instruction_set));
+  PartsSetting parts;
+  parts.options.threads = 1; // CPU seconds of a core are what is told
+  parts.options.mask_cache = fs::absolute(o.folder) / "masks";
+  note(common, "reading the job and measuring some of it ...");
+  const double before = cpu_seconds();
+  UMOV_ASSIGN(made, verb_in_parts(o.verb, o.arguments, parts, diagnostics));
+  job = std::move(made);
+  scale::JobLock out;
+  out.verb = o.verb;
+  out.arguments = o.arguments;
+  out.directory = fs::current_path().string();
+  out.instruction_set = o.instruction_set;
+  out.identity = job->identity();
+  out.unit = job->unit();
+  out.total = job->total();
+  out.layout = job->layout();
+  out.tables = job->tables();
+  out.order = job->order();
+  jobs::Monitor monitor;
+  monitor.cancel = &interrupted();
+  UMOV_ASSIGN(rate, scale::measure(*job, cpu_seconds() - before, monitor));
+  out.rate = rate;
+  scale::PlanSettings wanted = settings;
+  wanted.per_shard = o.per_shard;
+  out.per_shard = scale::shard_length(*job, rate, wanted);
+  return out;
+}
+
+Result<scale::JobFolder> folder_of(const ScaleJobOptions &o, const scale::PlanSettings &settings,
+                                   const Common &common, Diagnostics &diagnostics) {
+  const bool is_there = file_exists(fs::path(o.folder) / "job.json");
+  if (o.verb.empty() || is_there) {
+    UMOV_ASSIGN(folder, scale::JobFolder::open(o.folder));
+    const bool is_same = o.verb == folder.lock().verb && o.arguments == folder.lock().arguments &&
+                         (o.per_shard == 0 || o.per_shard == folder.lock().per_shard);
+    if (o.verb.empty() || is_same)
+      return std::move(folder);
+  }
+  std::unique_ptr<jobs::RangedJob> job;
+  UMOV_ASSIGN(lock, measured_job(o, settings, common, diagnostics, job));
+  const scale::Plan plan = scale::plan_of(lock, settings);
+  note(common, scale::describe(plan, lock.unit));
+  if (!is_there)
+    UMOV_TRY(ask_about(plan, o));
+  UMOV_ASSIGN(folder, scale::JobFolder::begin(o.folder, lock));
+  UMOV_TRY(job->keep()); // masks that were traced already serve all workers
+  return std::move(folder);
+}
+
+} // namespace umov::cli
