@@ -123,7 +123,7 @@ Result<std::vector<Exposure>> exposures_of(const Scenario &scenario, const Track
 /// Times in which the light may change most: a flat mirror's flash lasts as long as the Sun's disk,
 /// seen by the half vector, takes to pass.
 double shortest_feature_s(const Track &track, const std::vector<Exposure> &exposures) {
-  constexpr double disk_rad = 0.2665 * pi / 180;
+  constexpr double disk_rad = sun_radius_at_1au_rad;
   std::vector<ObservingGeometry> samples;
   const std::size_t step = std::max<std::size_t>(1, exposures.size() / 200);
   for (std::size_t k = 0; k < exposures.size(); k += step)

@@ -109,6 +109,9 @@ Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureReque
   state->inputs = std::move(object.inputs);
   state->sun_radius_rad = is_sun && scenario.has_solar_disk ? sun_radius_at_1au_rad : 0;
   state->parts.emplace(scenario.objects.front().parts, is_sun, scenario.file, diagnostics);
+  // A body that is another one at every pose shares nothing, and a pose by itself is not worth it.
+  if (!state->parts->joints().empty() || state->options.between == BetweenMethod::Auto)
+    state->options.between = BetweenMethod::Paths;
   UMOV_ASSIGN(model, light_of(object.scene, state->parts->joints(), request, state->options));
   state->model = std::move(model);
   return PoseLight(std::move(state));

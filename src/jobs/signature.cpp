@@ -61,6 +61,16 @@ BetweenMethod between_for(const PoseList &poses) {
   return 2 * far > count ? BetweenMethod::Chains : BetweenMethod::Paths;
 }
 
+/// The request with how light between surfaces is drawn: by all poses of the job, however it is
+/// cut.
+SignatureRequest decided(const Scenario &scenario, const PoseList &poses,
+                         const SignatureRequest &request) {
+  SignatureRequest out = request;
+  const BetweenMethod between = request.between.value_or(scenario.light.between);
+  out.between = between == BetweenMethod::Auto ? between_for(poses) : between;
+  return out;
+}
+
 /// What the rows depend on.
 std::string job_of(const Scenario &scenario, const PoseList &poses, const SignatureRequest &request,
                    const PoseLight &pose_light) {
@@ -205,7 +215,8 @@ Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, co
                                                     const JobOptions &options,
                                                     Diagnostics &diagnostics) {
   UMOV_TRY(PoseLight::check(scenario, request));
-  UMOV_ASSIGN(light, PoseLight::make(scenario, request, options, diagnostics));
+  UMOV_ASSIGN(light,
+              PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
   std::string identity = job_of(scenario, poses, request, light);
   return std::make_unique<RangedSignature>(poses, request, options, std::move(light),
                                            std::move(identity));
@@ -218,10 +229,8 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_ASSIGN(range, options.part.of(poses.count, "poses"));
   monitor.tell("preparing the scene ...");
   const bool had_file = file_exists(request.mask_file);
-  SignatureRequest decided = request;
-  const BetweenMethod between = request.between.value_or(scenario.light.between);
-  decided.between = between == BetweenMethod::Auto ? between_for(poses) : between;
-  UMOV_ASSIGN(light, PoseLight::make(scenario, decided, options, diagnostics));
+  UMOV_ASSIGN(light,
+              PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
   const LightModel &model = light.model();
   UMOV_ASSIGN(journal,
               open_journal(options, job_of(scenario, poses, request, light) + options.part.text(),

@@ -223,8 +223,9 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
   out.side = options.size * options.samples;
   out.samples = options.samples;
   out.half_width_m = camera.half_width;
-  const Vec3<Body> s = cross(v, view.pose.sun); // +Q of the scattering frame (physics: v x l)
-  if (norm(s) > 1e-12)
+  const Vec3<Body> s =
+      cross(v, view.pose.sun); // +Q of the scattering frame (v x l; docs/conventions.md)
+  if (has_scattering_plane(view.pose))
     out.pa_scat_rad = std::atan2(dot(s, cross(v, camera.up)), dot(s, camera.up));
   out.materials = material_names(scene);
   for (const Surface &surface : scene.front)

@@ -25,7 +25,7 @@ struct PixelFrame {
 using LatticeValues = std::array<double, 4>;
 /// The place of a pixel.
 inline std::size_t lattice_place(int column, int row) {
-  return static_cast<std::size_t>(2 * (row & 1) + (column & 1));
+  return 2 * static_cast<std::size_t>(row & 1) + static_cast<std::size_t>(column & 1);
 }
 
 /// The light of a star in each pixel (a box that answers evenly), for a star at any phase: a table

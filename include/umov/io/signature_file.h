@@ -50,6 +50,7 @@ public:
   SignatureFile &operator=(const SignatureFile &) = delete;
   ~SignatureFile();
 
+  /// What it holds; valid as long as this is.
   [[nodiscard]] const SignatureView &view() const { return view_; }
 
 private:

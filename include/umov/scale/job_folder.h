@@ -32,6 +32,7 @@ struct JobLock {
 
   /// What the bytes of a shard depend on, as 16 hexadecimal digits.
   [[nodiscard]] std::string key() const;
+  /// How many.
   [[nodiscard]] std::size_t shards() const { return (total + per_shard - 1) / per_shard; }
   /// The indices of a shard.
   [[nodiscard]] jobs::IndexRange range(std::size_t shard) const;
@@ -70,8 +71,11 @@ public:
   /// A folder with its job.json.
   static Result<JobFolder> open(const std::filesystem::path &path);
 
+  /// Where it is.
   [[nodiscard]] const std::filesystem::path &path() const { return path_; }
+  /// What job it holds.
   [[nodiscard]] const JobLock &lock() const { return lock_; }
+  /// JobLock::key of that.
   [[nodiscard]] const std::string &key() const { return key_; }
   /// What is there. Names of other jobs are not counted.
   [[nodiscard]] Result<Shards> shards() const;
@@ -86,8 +90,11 @@ public:
   /// Removes what killed processes left half done. Only where nobody is at work.
   void sweep() const;
 
+  /// Keeps what is known of a shard that cannot be made, for whoever works next.
   void tell_failed(const FailedShard &failed) const;
+  /// It shall be tried again.
   void forget_failed(std::size_t index) const;
+  /// Those that are kept.
   [[nodiscard]] std::vector<FailedShard> failed() const;
 
 private:

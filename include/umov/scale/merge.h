@@ -17,6 +17,7 @@ struct Verdict {
   std::size_t shards = 0, done = 0;
   std::vector<std::size_t> missing;
   std::vector<Shard> damaged, doubled;
+  /// Every shard is there once, undamaged.
   [[nodiscard]] bool is_whole() const {
     return missing.empty() && damaged.empty() && doubled.empty();
   }

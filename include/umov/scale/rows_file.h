@@ -36,6 +36,7 @@ public:
   Result<void> commit_as(const std::filesystem::path &path);
   /// Rows of the first table so far.
   [[nodiscard]] std::size_t rows() const;
+  /// Bytes of the file.
   [[nodiscard]] std::size_t bytes() const;
 
 private:
@@ -55,7 +56,9 @@ public:
   RowsFile &operator=(RowsFile &&) noexcept;
   ~RowsFile();
 
+  /// What stands before the rows.
   [[nodiscard]] const RowsHead &head() const;
+  /// Names of the tables.
   [[nodiscard]] const std::vector<std::string> &tables() const;
   /// Number of blocks of a table.
   [[nodiscard]] std::size_t blocks(std::size_t table) const;
@@ -65,6 +68,7 @@ public:
   [[nodiscard]] Result<Table> block(std::size_t table, std::size_t number) const;
   /// SHA-256 of all its bytes.
   [[nodiscard]] std::string sha256() const;
+  /// Bytes of the file.
   [[nodiscard]] std::size_t bytes() const;
 
 private:

@@ -9,6 +9,7 @@ namespace umov::scale {
 
 /// What is told of a shard: at most a kilobyte, never its rows.
 struct ShardRecord {
+  /// How it ended.
   enum class Status {
     Done,
     There, ///< somebody else had done it
