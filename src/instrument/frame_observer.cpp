@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <umov/instrument/frame_observer.h>
 
 #include <algorithm>
@@ -236,8 +237,14 @@ Result<FramedExposure> observe_frames(const BandObserver &observer, PixelImages 
                                       const FramePlan &scene) {
   if (scene.object.empty() || scene.columns < 1 || scene.rows < 1)
     return fail(ErrorCode::Internal, "a frame without pixels or object");
-  const PixelImage &image =
-      images.of(observer.fwhm_arcsec(light.airmass) / observer.pixel_arcsec());
+  const double fwhm_px = observer.fwhm_arcsec(light.airmass) / observer.pixel_arcsec();
+  if (!(fwhm_px >= narrowest_image_px && fwhm_px <= widest_image_px))
+    return fail(ErrorCode::BadInput,
+                fmt::format("a star's image is {:.3g} px wide (a pixel is {:.3g} arcsec): frames "
+                            "hold {} to {} px. Change atmosphere.seeing or the camera's pixels, or "
+                            "take observation.level = \"aperture\".",
+                            fwhm_px, observer.pixel_arcsec(), narrowest_image_px, widest_image_px));
+  const PixelImage &image = images.of(fwhm_px);
   return Exposing(observer, image, plan, light, scene).make();
 }
 

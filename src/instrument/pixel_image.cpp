@@ -85,7 +85,8 @@ PixelFrame PixelFrame::blank(int columns, int rows) {
           std::vector<double>(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))};
 }
 
-PixelImage::PixelImage(ImageProfile profile, double fwhm_px) : fwhm_(std::clamp(fwhm_px, .5, 64.)) {
+PixelImage::PixelImage(ImageProfile profile, double fwhm_px)
+    : fwhm_(std::clamp(fwhm_px, narrowest_image_px, widest_image_px)) {
   // A Moffat image of this exponent has 7e-6 of its light beyond six widths.
   const double widths = profile == ImageProfile::Gauss ? 2.2 : 6;
   reach_ = static_cast<int>(std::ceil(widths * fwhm_)) + 1;

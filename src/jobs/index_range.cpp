@@ -51,12 +51,20 @@ Result<JobPart> JobPart::range(const std::string &text) {
 }
 
 Result<IndexRange> JobPart::of(std::size_t total, const std::string &unit) const {
-  if (shard_)
-    return share_of(total, shard_->part, shard_->of);
+  if (shard_) {
+    const IndexRange share = share_of(total, shard_->part, shard_->of);
+    if (share.count == 0 && total > 0)
+      return fail(ErrorCode::Nothing,
+                  fmt::format("--shard {}: the job has {} {}, of which this part has none. Take no "
+                              "more than {} parts.",
+                              text_, total, unit, total));
+    return share;
+  }
   if (!range_)
     return IndexRange{0, total};
   if (range_->first > total || range_->count > total - range_->first)
-    return fail(ErrorCode::Usage, fmt::format("--range {}: the job has {} {}", text_, total, unit));
+    return fail(ErrorCode::Usage,
+                fmt::format("--range {}: the job has {} {}, counted from 0", text_, total, unit));
   return *range_;
 }
 

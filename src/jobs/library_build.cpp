@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
+#include <umov/core/version.h>
 #include <umov/io/signature_file.h>
 #include <umov/jobs/pose_light.h>
 #include <umov/light/engine.h>
@@ -145,11 +147,31 @@ bool light_pairs(const PoseLight &from, std::size_t cells, const JobOptions &opt
   return true;
 }
 
-/// What abundances depend on apart from materials: places, facets, normals, how hiding is decided.
-std::string shape_of(const PoseLight &light) {
-  const Mesh &mesh = light.model().scene().mesh;
-  std::string bytes = fmt::format("{} {}", static_cast<int>(light.model().scene().normals),
-                                  light.options().accuracy);
+/// What sums over the facets depend on of a material: its lobe. Profiles of body light and haze are
+/// fitted to the material itself, so that those sums are of one `job` alone.
+std::string lobe_of(const Material &material, const std::string &job) {
+  const bool has_profiles = material.body || material.haze || material.apparent_roughness ||
+                            material.measured || material.interreflection != Interreflection::None;
+  const DistributionChoice &lobe = material.distribution;
+  std::string out = fmt::format("{} {} {} {}\n", has_profiles ? job : "", lobe.model,
+                                fmt::join(lobe.angle_deg, ","), fmt::join(lobe.density, ","));
+  for (const auto &[name, value] : lobe.parameters)
+    out += fmt::format("{} {} ", name, value);
+  const Vec3<Body> along = material.direction.value_or(Vec3<Body>{});
+  return out + fmt::format("{} {} {} {} {}\n", static_cast<int>(material.shadowing),
+                           material.direction.has_value(), along.x, along.y, along.z);
+}
+
+/// What abundances depend on apart from the optical constants: places, facets, normals, lobes, how
+/// hiding is decided, and the program that made them.
+std::string shape_of(const PoseLight &light, const std::string &job) {
+  const Scene &scene = light.model().scene();
+  const Mesh &mesh = scene.mesh;
+  std::string bytes = fmt::format("umov {} {} {} {}\n", version, source_revision,
+                                  static_cast<int>(scene.normals), light.options().accuracy);
+  for (const auto *side : {&scene.front, &scene.back})
+    for (const Surface &surface : *side)
+      bytes += lobe_of(surface.material(), job);
   const auto add = [&](const auto &list) {
     bytes.append(reinterpret_cast<const char *>(list.data()), list.size() * sizeof(list[0]));
   };
@@ -218,7 +240,7 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
                                      const std::string &name, const std::string &job,
                                      const fs::path &file) const {
   Making out;
-  out.text = {name, job, shape_of(own), {}, {}, own.sun_radius_rad()};
+  out.text = {name, job, shape_of(own, job), {}, {}, own.sun_radius_rad()};
   for (const Band &band : scenario.bands)
     out.text.bands.push_back(band.name);
   StokesTable light;

@@ -113,11 +113,17 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
     bands = {request.band};
   }
   Rows rows;
+  if (!(request.shortest_s < request.longest_s))
+    return fail(ErrorCode::Usage, fmt::format("periods from {:g} to {:g} s: none lies between",
+                                              request.shortest_s, request.longest_s));
   std::size_t too_few = 0, too_slow = 0;
+  double cut_s = 0; // periods below were not looked at
   for (const std::string &band : bands)
     for (const Stretch &one : stretches_of(observations, band, request.gap_s)) {
       constexpr std::size_t all = 1000;
       const Periodogram found = periodogram(one.seconds, one.magnitudes);
+      if (found.is_cut)
+        cut_s = std::max(cut_s, found.period_s.back());
       auto peaks = highest_peaks(found, one.seconds, all);
       too_slow += is_slow(found, peaks) ? 1u : 0u;
       std::erase_if(peaks, [&](const PeriodPeak &peak) {
@@ -134,11 +140,17 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
                     "left",
                     counted(too_slow, "stretch", "stretches")),
         {observations.path});
+  if (cut_s > request.shortest_s)
+    diagnostics.warn(fmt::format("a stretch is so long that periods below {:.4g} s were not looked "
+                                 "at; a shorter --gap-s makes more and shorter stretches of it",
+                                 cut_s),
+                     {observations.path});
   if (rows.period.empty())
-    return fail(ErrorCode::Nothing,
-                fmt::format("{} shows no period: twelve brightnesses without a gap of {:g} s that "
-                            "change otherwise than evenly are needed",
-                            observations.path, request.gap_s));
+    return fail(
+        ErrorCode::Nothing,
+        fmt::format("{} shows no period: twelve brightnesses without a gap of {:g} s that "
+                    "change otherwise than evenly are needed, with a peak in the range asked for",
+                    observations.path, request.gap_s));
   if (too_few > 0)
     diagnostics.warn(fmt::format("{} with fewer than twelve brightnesses, or with no peak in the "
                                  "range asked for, left out",

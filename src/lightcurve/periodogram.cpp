@@ -112,6 +112,7 @@ Periodogram periodogram(std::span<const double> seconds, std::span<const double>
   const double wanted = (0.5 / median_step(seconds) - first) / step + 1;
   const double able = most_products / static_cast<double>(count);
   const auto frequencies = static_cast<std::size_t>(std::clamp(wanted, 1.0, able));
+  out.is_cut = wanted > able;
   Phasors phasors(seconds, first, step);
   for (std::size_t f = 0; f < frequencies; ++f, phasors.advance()) {
     out.period_s.push_back(1 / (first + static_cast<double>(f) * step));

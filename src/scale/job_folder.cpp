@@ -122,7 +122,8 @@ Result<Shards> JobFolder::shards() const {
   try {
     for (const auto &entry : fs::recursive_directory_iterator(path_ / "shards"))
       if (const auto shard = shard_of(entry.path().filename().string(), key_))
-        if (shard->index < lock_.shards())
+        if (shard->index < lock_.shards() && entry.path() == file_of(*shard) &&
+            entry.is_regular_file()) // a copy elsewhere is none of ours
           out[shard->index].push_back(*shard);
   } catch (const fs::filesystem_error &problem) {
     return fail(ErrorCode::Device, std::string("cannot be listed: ") + problem.what(),
@@ -171,9 +172,15 @@ std::vector<FailedShard> JobFolder::failed() const {
     const json all = text ? json::parse(*text, nullptr, false) : json();
     if (!all.is_object())
       continue;
-    out.push_back({all.value("index", std::size_t{0}), all.value("code", 0),
-                   all.value("attempts", std::size_t{1}), all.value("message", std::string()),
-                   all.value("host", std::string())});
+    try {
+      FailedShard one{all.value("index", std::size_t{0}), all.value("code", 0),
+                      all.value("attempts", std::size_t{1}), all.value("message", std::string()),
+                      all.value("host", std::string())};
+      if (one.index < lock_.shards())
+        out.push_back(std::move(one));
+    } catch (const json::exception &) {
+      continue; // damaged: the shard is tried again as if nothing were known
+    }
   }
   return out;
 }

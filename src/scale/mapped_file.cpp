@@ -16,7 +16,7 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path &path) {
     return fail(ErrorCode::BadInput, std::string("cannot be read: ") + std::strerror(errno),
                 {path.string()});
   };
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0)
     return problem();
   struct stat about {};
@@ -30,6 +30,8 @@ Result<MappedFile> MappedFile::open(const std::filesystem::path &path) {
     }
   }
   ::close(descriptor);
+  if (!S_ISREG(about.st_mode))
+    return fail(ErrorCode::BadInput, "is no file; a file was expected", {path.string()});
   if (out.data_ == nullptr && about.st_size > 0)
     return problem();
   return out;

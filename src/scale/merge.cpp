@@ -21,6 +21,16 @@ Result<RowsFile> open_checked(const JobFolder &folder, const Shard &shard) {
                 "its bytes are not those of its name: the file is damaged. umov scale repair " +
                     folder.path().string() + " makes it anew.",
                 {name});
+  const RowsHead &head = file.head();
+  const jobs::IndexRange range = folder.lock().range(shard.index);
+  if (head.key != folder.key() || head.index != shard.index || head.range.first != range.first ||
+      head.range.count != range.count || file.tables() != folder.lock().tables)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("it holds other rows than its name says (shard {}): a file was renamed. "
+                    "umov scale repair {} makes it anew.",
+                    head.index, folder.path().string()),
+        {name});
   return std::move(file);
 }
 

@@ -70,8 +70,16 @@ void WorkerProcess::ask(std::size_t index) {
   index_ = index;
   since_ = Clock::now();
   const std::string line = std::to_string(index) + "\n";
-  // One that died meanwhile is found by its end.
-  [[maybe_unused]] const ssize_t written = ::write(input_, line.data(), line.size());
+  // One that died meanwhile is found by its end: its pipe shall not end this process.
+  sigset_t pipe, before;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &pipe, &before);
+  if (::write(input_, line.data(), line.size()) < 0 && errno == EPIPE) {
+    const timespec now{};
+    sigtimedwait(&pipe, nullptr, &now); // takes what is pending
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
 double WorkerProcess::busy_s() const {

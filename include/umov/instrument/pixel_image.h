@@ -21,6 +21,9 @@ struct PixelFrame {
   }
 };
 
+/// Full widths at half maximum that an image may have [px].
+inline constexpr double narrowest_image_px = 0.5, widest_image_px = 64;
+
 /// A number for each place in a 2 x 2 mosaic, 2 (row mod 2) + column mod 2; all alike without one.
 using LatticeValues = std::array<double, 4>;
 /// The place of a pixel.

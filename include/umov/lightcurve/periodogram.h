@@ -14,6 +14,7 @@ struct Periodogram {
   std::vector<double> power; ///< part of the variance that a sine of that period takes, in [0, 1]
   double best_s = 0;         ///< of the highest power, between the grid's frequencies
   std::array<double, 3> trend{};
+  bool is_cut = false; ///< shorter periods were left out: 3e8 products did not reach them
 };
 
 /// Of magnitudes at times in order: less a parabola in time (range and phase angle change slowly),

@@ -16,7 +16,7 @@ Result<SignatureFile> SignatureFile::open(const std::filesystem::path &path, boo
   const auto refuse = [&](const std::string &what) {
     return fail(ErrorCode::BadInput, what, {path.string()});
   };
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0)
     return refuse(std::string("cannot be opened: ") + std::strerror(errno));
   struct stat about {};
