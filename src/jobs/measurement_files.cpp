@@ -56,6 +56,37 @@ ccsds::Record record_of(const Table &stokes, std::size_t row) {
   return out;
 }
 
+/// In the order of the repository's template; empty ones are for the observer to fill in.
+std::vector<std::string> score_columns() {
+  return {"satellite_name",
+          "norad_cat_id",
+          "observation_time_utc",
+          "observation_time_uncertainty_sec",
+          "apparent_magnitude",
+          "apparent_magnitude_uncertainty",
+          "observer_latitude_deg",
+          "observer_longitude_deg",
+          "observer_altitude_m",
+          "limiting_magnitude",
+          "instrument",
+          "observing_mode",
+          "observing_filter",
+          "observer_email",
+          "observer_orcid",
+          "satellite_right_ascension_deg",
+          "satellite_declination_deg",
+          "sigma_2_ra",
+          "sigma_ra_sigma_dec",
+          "sigma_2_dec",
+          "range_to_satellite_km",
+          "range_to_satellite_uncertainty_km",
+          "range_rate_of_satellite_km_per_sec",
+          "range_rate_of_satellite_uncertainty_km_per_sec",
+          "comments",
+          "data_archive_link",
+          "mpc_code"};
+}
+
 } // namespace
 
 Result<std::string> as_tdm(const Table &stokes, const MeasurementNotes &notes) {
@@ -86,34 +117,6 @@ Result<Table> as_score(const Table &stokes, const MeasurementNotes &from) {
                   fmt::format("the counts do not say where they were taken: add the line \"# {}: "
                               "...\" to their header, as umov observe does",
                               key));
-  // In the order of the repository's template; empty ones are for the observer to fill in.
-  const std::vector<std::string> columns{"satellite_name",
-                                         "norad_cat_id",
-                                         "observation_time_utc",
-                                         "observation_time_uncertainty_sec",
-                                         "apparent_magnitude",
-                                         "apparent_magnitude_uncertainty",
-                                         "observer_latitude_deg",
-                                         "observer_longitude_deg",
-                                         "observer_altitude_m",
-                                         "limiting_magnitude",
-                                         "instrument",
-                                         "observing_mode",
-                                         "observing_filter",
-                                         "observer_email",
-                                         "observer_orcid",
-                                         "satellite_right_ascension_deg",
-                                         "satellite_declination_deg",
-                                         "sigma_2_ra",
-                                         "sigma_ra_sigma_dec",
-                                         "sigma_2_dec",
-                                         "range_to_satellite_km",
-                                         "range_to_satellite_uncertainty_km",
-                                         "range_rate_of_satellite_km_per_sec",
-                                         "range_rate_of_satellite_uncertainty_km_per_sec",
-                                         "comments",
-                                         "data_archive_link",
-                                         "mpc_code"};
   std::map<std::string, std::vector<std::string>> cells;
   const auto number = [&](const char *column, std::size_t row, const char *form) {
     const double value = stokes.number(column, row);
@@ -143,7 +146,7 @@ Result<Table> as_score(const Table &stokes, const MeasurementNotes &from) {
     cells["comments"].push_back("AB magnitude above the air");
   }
   Table out;
-  for (const std::string &name : columns) {
+  for (const std::string &name : score_columns()) {
     auto &found = cells[name];
     found.resize(rows);
     out.add(name, "", "", std::move(found));

@@ -3,6 +3,7 @@ is round, and by a second program text (noise and columns here); the fit looks l
 import json
 import math
 import random
+import re
 import statistics
 
 import pytest
@@ -342,14 +343,27 @@ def test_a_library_is_built_in_ranges_and_goes_on(umov, library, tmp_path):
         assert umov("library", "build", *names, "-o", "parts", *words).code == 2
 
 
-def test_other_colours_come_from_the_abundances(umov, library, tmp_path):
-    if not all(row["abundances"] for row in library):
-        pytest.skip("materials without abundances")
-    text = (tmp_path / "metal.toml").read_text()
+def test_other_colours_come_from_the_abundances(umov, scene, tmp_path):
+    """Sums of lobes serve any optical constants; another lobe is another sum."""
+    (tmp_path / "film.yml").write_text(
+        "REFERENCES: made for a test\nDATA:\n  - type: tabulated nk\n    data: |\n"
+        "        0.4 1.2 3.1\n        0.55 0.9 6.2\n        0.8 1.6 7.4\n")
+    head, materials, rest = re.split(r"(?s)(\[object\.materials\]\n.*?\n)(?=\[)",
+                                     (tmp_path / scene([1, 0, 0, 0], "masks", "plain")).read_text(), maxsplit=1)
+    text = (head + re.sub(r'"\w+"', '"own"', materials) + rest +
+            '\n[material.own]\nindex = "film.yml"\ndistribution = { model = "beckmann", alpha = 0.15 }\n')
+
+    def state(changed):
+        (tmp_path / "metal.toml").write_text(changed)
+        done = umov("library", "build", "metal.toml", "-o", "lib", "--json")
+        assert done.code == 0, done.err
+        return json.loads(done.out)[0]["state"]
+
+    assert state(text) == "made"
+    assert state(text.replace('"beckmann"', '"ggx"')) == "made"
+    assert state(text) == "made"
     old = (tmp_path / "lib/metal.umovsig").read_bytes()
-    (tmp_path / "metal.toml").write_text(text.replace('set = "paper_rgb"', 'set = ["nm:450", "nm:550", "nm:700"]'))
-    done = umov("library", "build", "metal.toml", "-o", "lib", "--json")
-    assert json.loads(done.out)[0]["state"] == "recoloured", done.err
+    assert state(text.replace('set = "paper_rgb"', 'set = ["nm:450", "nm:550", "nm:700"]')) == "recoloured"
     recoloured = (tmp_path / "lib/metal.umovsig").read_bytes()
     assert umov("library", "build", "metal.toml", "-o", "fresh", "-q").code == 0
     fresh = (tmp_path / "fresh/metal.umovsig").read_bytes()

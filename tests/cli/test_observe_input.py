@@ -155,9 +155,9 @@ def test_a_material_may_end_where_the_band_ends(scene, umov, tmp_path):
     (tmp_path / "observe.toml").write_text(text + '\n[material.own]\nindex = "film.yml"\ndistribution = { model = "beckmann", alpha = 0.3 }\n')
     done = umov("observe", "observe.toml")
     assert done.code == 0, done.err
-    (tmp_path / "band.csv").write_text("# unit: nm\n# detector: photon\n390 0.5\n500 1\n600 0.5\n")
+    (tmp_path / "band.csv").write_text("# unit: nm\n# detector: photon\n340 0.5\n500 1\n600 0.5\n")
     done = umov("observe", "observe.toml", "-o", "b")
-    assert done.code == 3 and "390" in done.err
+    assert done.code == 3 and "340" in done.err
 
 
 def test_angles_of_a_sequence_are_of_its_middle(scene, umov, tmp_path):
