@@ -170,9 +170,9 @@ function timeFigure(rows, state = {}) {
     });
     const curves = row.curves || chosenBands(state).map((b) => bands[b]).map((band) => ({ name: band.label, colour: band.colour, symbol: band.symbol, dash: band.dash,
       bounds: row.bounds && ((i) => row.bounds(band, i)), spread: row.spread && band[row.spread + "_low"] && ((i) => spreadOf(band, row, i)), value: (i) => row.at(band, i),
-      isLimit: (i) => row.isLimit ? row.isLimit(band, i) : false, at: (i) => row.span && (row.isLimit(band, i) || (span && row.at(band, i) > span[0])) ? null : row.at(band, i) }));
+      isLimit: (i) => row.isLimit ? row.isLimit(band, i) : false, at: (i) => row.isLimit && (row.isLimit(band, i) || (span && row.at(band, i) > span[0])) ? null : row.at(band, i) }));
     shown.forEach((pass, k) => curves.forEach((curve) => {
-      if (row.span) limitTraces(pass, k, curve, key, span ? span[0] - 0.02 * (span[0] - span[1]) : Infinity, data);
+      if (row.isLimit) limitTraces(pass, k, curve, key, span ? span[0] - 0.02 * (span[0] - span[1]) : Infinity, data);
       if (curve.spread) outlineTraces(pass, k, curve, curve.spread, 0.13, key, data);
       if (curve.bounds) outlineTraces(pass, k, curve, curve.bounds, 0.22, key, data);
       const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
