@@ -19,6 +19,7 @@
 #include <umov/core/golden_section.h>
 #include <umov/core/journal.h>
 #include <umov/core/locks.h>
+#include <umov/core/mapped_file.h>
 #include <umov/core/parallel.h>
 #include <umov/core/quantity.h>
 #include <umov/core/random.h>

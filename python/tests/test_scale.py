@@ -175,8 +175,8 @@ def test_addresses_that_are_refused(scene, cluster):
 
 def test_nothing_listens_but_on_the_loopback(scene):
     """Every listening socket of this process and of all below it, while a cluster is up."""
-    from umov.scale import _Cluster
-    cluster = _Cluster("local:1", True)
+    from umov._scale_driver import Cluster
+    cluster = Cluster("local:1", True)
     try:
         cluster.client.wait_for_workers(1, timeout=60)
         addresses = set()

@@ -39,7 +39,7 @@ class _Bar:
         if what != self._what:
             self._what, self._bar = what, self._make(total=total, desc=what)
         bar: object = self._bar
-        bar.n = done  # type: ignore[attr-defined]
+        bar.n, bar.total = done, total  # type: ignore[attr-defined]  # a first word of a stage may not know its length
         bar.refresh()  # type: ignore[attr-defined]
 
 

@@ -162,7 +162,7 @@ _CLASSES: dict[int, type[Error]] = {one.exit_code: one for one in (
     InternalError, UsageError, InputError, NumericsError, NoResult, DeviceError)}
 
 
-def error_from(told: Stopped) -> BaseException:
+def error_from(told: Stopped) -> Error | Interrupted:
     """The exception for what the library tells: code, message, file, line, column."""
     code, message, file, line, column = told
     if code == Interrupted.exit_code:
@@ -173,6 +173,5 @@ def error_from(told: Stopped) -> BaseException:
 def raise_stopped(told: Stopped, partial: object) -> NoReturn:
     """Raises the reason why a job ended early, with what it had done."""
     error = error_from(told)
-    if isinstance(error, (Error, Interrupted)):
-        error.partial = partial
+    error.partial = partial
     raise error

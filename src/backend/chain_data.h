@@ -30,9 +30,6 @@ struct ChainSurface {
   ChainProduct product[chain_products_max];
 };
 
-/// The constants of a lobe in single precision.
-kernel::LobeConstants<float> to_float(const kernel::LobeConstants<double> &from);
-
 /// One end of 16 chains: unit vectors, components by lanes.
 struct ChainEnds {
   float normal[3][lanes], along[3][lanes], axis[3][lanes];

@@ -253,10 +253,7 @@ private:
       const R n_l = lit_.n_l(k), n_v = lit_.n_v(k), apart = lit_.apart(k);
       for (std::size_t l = 0; l < slot.lobe_count; ++l) {
         const std::size_t lobe = slot.lobe_first + l;
-        put(k, l,
-            lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet,
-                         from_half(pose_.facet, apart, n_l, n_v)) *
-                lobe_shadowing(scene_.lobes[lobe], pose_.facet, n_l, n_v) * R(T(0.25)));
+        put(k, l, lobe_weight(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet, apart, n_l, n_v));
       }
       if (slot.product_count == 0)
         continue;

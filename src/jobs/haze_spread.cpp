@@ -25,7 +25,6 @@ bool has_any_range(const Scene &scene) {
 
 Result<void> add_haze_spread(ObjectRun &one, KeptBlocks blocks, const Monitor &monitor,
                              Diagnostics &diagnostics) {
-  static const std::atomic<bool> never{false};
   const Scene &scene = one.object.scene;
   if (!has_any_range(scene)) {
     diagnostics.warn(fmt::format("[materials] vary: no material of {} states a range of its haze. "
@@ -46,7 +45,7 @@ Result<void> add_haze_spread(ObjectRun &one, KeptBlocks blocks, const Monitor &m
         other, compute_wanted(
                    one, models,
                    [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
-                   monitor.cancel != nullptr ? *monitor.cancel : never, kept));
+                   monitor.cancel_flag(), kept));
     widen_spread(one.outcome.curve, other.curve);
     if (other.stopped) {
       one.outcome.stopped = other.stopped;

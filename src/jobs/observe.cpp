@@ -94,7 +94,6 @@ Result<std::vector<Exposure>> exposures_of(const Scenario &scenario, const Track
                                            const LightCurveRequest &request,
                                            const Programme &programme, std::uint32_t object,
                                            const Monitor &monitor) {
-  static const std::atomic<bool> never{false};
   const ScenarioObservation &o = *scenario.observation;
   const double half = o.exposure_s / 2;
   EpochSpan span{plus_seconds(request.span.start, half), plus_seconds(request.span.stop, -half),
@@ -103,8 +102,7 @@ Result<std::vector<Exposure>> exposures_of(const Scenario &scenario, const Track
     return fail(
         ErrorCode::BadInput,
         fmt::format("observation.exposure_s = {} is longer than the span of [time]", o.exposure_s));
-  UMOV_ASSIGN(kept, keep_epochs(track, span, request.only, request.threads,
-                                monitor.cancel != nullptr ? *monitor.cancel : never));
+  UMOV_ASSIGN(kept, keep_epochs(track, span, request.only, request.threads, monitor.cancel_flag()));
   Draws clock({scenario.seed, object, 0, 0, 0xc10c});
   const double clock_error = o.clock_error_s * clock.normal();
   Cloud cloud(o, scenario.seed, object);

@@ -57,10 +57,9 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderRequest &request, const S
     wanted.span.start = wanted.span.stop = *request.time;
     wanted.only = {Angle::degrees(-90), {}, false};
   }
-  const std::atomic<bool> never{false};
-  UMOV_ASSIGN(outcome, compute_light_curve(
-                           wanted, object.scene, [](std::size_t, std::size_t) {},
-                           monitor.cancel != nullptr ? *monitor.cancel : never));
+  UMOV_ASSIGN(outcome,
+              compute_light_curve(
+                  wanted, object.scene, [](std::size_t, std::size_t) {}, monitor.cancel_flag()));
   if (outcome.stopped)
     return tl::unexpected(*outcome.stopped);
   std::vector<Shot> out;

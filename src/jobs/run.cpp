@@ -131,14 +131,13 @@ void warn_of_step(const ObjectRun &one, double step_s, Diagnostics &diagnostics)
 
 Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks blocks,
                                   const Monitor &monitor) {
-  static const std::atomic<bool> never{false};
   const std::string what = is_alone ? "light curve" : one.request.object;
   monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
   UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene));
   one.light = models.light->facts();
   auto out = compute_wanted(
       one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
-      monitor.cancel != nullptr ? *monitor.cancel : never, blocks);
+      monitor.cancel_flag(), blocks);
   UMOV_TRY(models.keep_masks());
   return out;
 }
@@ -183,9 +182,8 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
                               Diagnostics &diagnostics) {
   RunResult out;
   out.has_all_csv_digits = scenario.has_all_csv_digits;
-  static const std::atomic<bool> never{false};
   if (!options.part.is_whole())
-    UMOV_TRY(take_part(objects, options.part, monitor.cancel != nullptr ? *monitor.cancel : never));
+    UMOV_TRY(take_part(objects, options.part, monitor.cancel_flag()));
   UMOV_ASSIGN(journal, journal_of(objects, scenario, options, monitor, diagnostics));
   std::size_t with_rows = 0;
   for (std::size_t k = 0; k < objects.size(); ++k) {

@@ -12,12 +12,6 @@
 namespace umov::jobs {
 namespace {
 
-const std::atomic<bool> never{false};
-
-const std::atomic<bool> &cancel_of(const Monitor &monitor) {
-  return monitor.cancel != nullptr ? *monitor.cancel : never;
-}
-
 /// Passes of each object. An orbit that ends within the span ends the whole.
 Result<std::vector<std::size_t>> count_passes(const std::vector<ObjectRun> &objects,
                                               unsigned threads, const Monitor &monitor) {
@@ -25,7 +19,7 @@ Result<std::vector<std::size_t>> count_passes(const std::vector<ObjectRun> &obje
   parallel_for(objects.size(), threads, [&](std::size_t k) {
     LightCurveRequest alone = objects[k].request;
     alone.threads = 1; // objects are side by side
-    const auto kept = kept_epochs(alone, cancel_of(monitor));
+    const auto kept = kept_epochs(alone, monitor.cancel_flag());
     if (!kept)
       found[k] = tl::unexpected(kept.error());
     else if (kept->stopped)
@@ -87,7 +81,7 @@ private:
     UMOV_TRY(keep());
     if (ready_ < objects_.size())
       objects_[ready_].kept.reset();
-    UMOV_ASSIGN(kept, kept_epochs(objects_[k].request, cancel_of(monitor)));
+    UMOV_ASSIGN(kept, kept_epochs(objects_[k].request, monitor.cancel_flag()));
     if (kept.passes.size() != layout_[k])
       return fail(ErrorCode::BadInput,
                   fmt::format("{} has {} passes here and {} where the job was begun: another "
@@ -108,7 +102,7 @@ private:
                                         [&](std::size_t done, std::size_t of) {
                                           monitor.advance("epochs", done, of);
                                         },
-                                        cancel_of(monitor), {}));
+                                        monitor.cancel_flag(), {}));
     one.outcome = std::move(outcome);
     if (varies_haze_ && !one.outcome.stopped)
       UMOV_TRY(add_haze_spread(one, {}, monitor, diagnostics));

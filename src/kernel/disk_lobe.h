@@ -113,7 +113,23 @@ inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage 
   }
 }
 
-/// The same in single precision.
+/// The constants of a lobe in single precision.
+inline LobeConstants<float> round_lobe(const LobeConstants<double> &from) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  LobeConstants<float> out;
+  out.kind = from.kind;
+  out.joint = from.joint;
+  out.shape = f(from.shape);
+  out.peak = f(from.peak);
+  out.per_width2 = f(from.per_width2);
+  for (std::size_t k = 0; k <= polynomial_degree; ++k)
+    out.masking[k] = f(from.masking[k]);
+  out.masking_limit = f(from.masking_limit);
+  out.masking_scale = f(from.masking_scale);
+  return out;
+}
+
+/// What the pose makes of it, likewise.
 inline void round_lobe_at_pose(const LobeAtPose<double> &from, LobeAtPose<float> &to) {
   const auto f = [](double x) { return static_cast<float>(x); };
   to.peak = f(from.peak);

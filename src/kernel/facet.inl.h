@@ -57,12 +57,11 @@ UMOV_KERNEL R lobe_shadowing(const LobeConstants<T> &lobe, const FacetPose<T> &p
                        R(pose.cos_phase));
 }
 
-/// w (n.l)(n.v) = D G2/4 [1/sr] of a facet that faces both directions.
+/// w (n.l)(n.v) = D G2/4 [1/sr] of a facet that faces both directions; `apart`: 1 - n.h.
 template <class R, class T>
 UMOV_KERNEL R lobe_weight(const LobeConstants<T> &lobe, const LobeAtPose<T> &at,
-                          const FacetPose<T> &pose, R nx, R ny, R nz, R n_l, R n_v) {
+                          const FacetPose<T> &pose, R apart, R n_l, R n_v) {
   const R g = lobe_shadowing(lobe, pose, n_l, n_v);
-  const R apart = apart_from_half(pose, nx, ny, nz);
   return lobe_density(lobe, at, pose, from_half(pose, apart, n_l, n_v)) * g * R(T(0.25));
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <mutex>
@@ -80,6 +81,12 @@ struct Lease::State {
   bool is_over = false;
   std::thread renewing;
 
+  static std::unique_ptr<State> of(const fs::path &file) {
+    auto out = std::make_unique<State>();
+    out->file = file;
+    out->renewing = std::thread([held = out.get()] { held->renew(); });
+    return out;
+  }
   void renew() {
     std::unique_lock lock(mutex);
     while (!ended.wait_for(lock, renewed_each, [this] { return is_over; }))
@@ -120,10 +127,17 @@ Result<Lease> Lease::take(const fs::path &folder, const std::string &part) {
   fs::remove(file, unknown); // of a process that was killed
   if (!make(file))
     return busy(holder_of(file));
-  auto state = std::make_unique<State>();
-  state->file = file;
-  state->renewing = std::thread([held = state.get()] { held->renew(); });
-  return Lease(std::move(state));
+  return Lease(State::of(file));
+}
+
+Result<Lease> Lease::join(const fs::path &folder) {
+  const fs::path file = folder / fmt::format("lease-with-{}-{}", this_host(), ::getpid());
+  std::error_code unknown;
+  fs::remove(file, unknown); // of a process that had our number
+  if (!make(file))
+    return fail(ErrorCode::Device, fmt::format("cannot be made: {}", ::strerror(errno)),
+                {file.string()});
+  return Lease(State::of(file));
 }
 
 bool Lease::is_alone() const { return held_in(state_->file.parent_path()).size() <= 1; }

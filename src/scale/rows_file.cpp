@@ -1,11 +1,11 @@
 #include <umov/scale/rows_file.h>
 
-#include "scale/mapped_file.h"
 #include "scale/rows_form.h"
 
 #include <algorithm>
 #include <cstring>
 #include <fmt/format.h>
+#include <umov/core/mapped_file.h>
 #include <umov/core/text.h>
 
 namespace umov::scale {

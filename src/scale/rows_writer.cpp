@@ -1,9 +1,9 @@
 #include <umov/scale/rows_file.h>
 
-#include "scale/mapped_file.h"
 #include "scale/rows_form.h"
 
 #include <map>
+#include <umov/core/mapped_file.h>
 #include <umov/core/text.h>
 
 namespace umov::scale {

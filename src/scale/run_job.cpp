@@ -201,15 +201,12 @@ Result<RunTally> run_job(const JobFolder &folder, const RunSettings &settings,
   for (const char sign : {'/', ':'})
     if (const std::size_t at = part.find(sign); at != std::string::npos)
       part.replace(at, 1, sign == '/' ? "-of-" : "-and-");
-  std::optional<Lease> lease;
-  if (!settings.joins) {
-    UMOV_ASSIGN(taken, Lease::take(folder.path(), part));
-    lease.emplace(std::move(taken));
-    if (part.empty())
-      folder.sweep();
-  }
+  UMOV_ASSIGN(lease,
+              settings.joins ? Lease::join(folder.path()) : Lease::take(folder.path(), part));
+  if (lease.is_alone()) // what grows beside us is somebody's
+    folder.sweep();
   auto out = Pool(folder, settings, monitor).run();
-  if (lease && part.empty())
+  if (lease.is_alone())
     folder.sweep();
   return out;
 }

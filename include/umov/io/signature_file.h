@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <umov/core/mapped_file.h>
 #include <umov/core/result.h>
 #include <umov/inverse/signature.h>
 #include <vector>
@@ -44,20 +45,13 @@ class SignatureFile {
 public:
   /// BadInput as parse_signature, or where there is no such file.
   static Result<SignatureFile> open(const std::filesystem::path &path, bool checks_all = false);
-  SignatureFile(SignatureFile &&other) noexcept;
-  SignatureFile &operator=(SignatureFile &&other) noexcept;
-  SignatureFile(const SignatureFile &) = delete;
-  SignatureFile &operator=(const SignatureFile &) = delete;
-  ~SignatureFile();
-
   /// What it holds; valid as long as this is.
   [[nodiscard]] const SignatureView &view() const { return view_; }
 
 private:
   SignatureFile() = default;
-  void *bytes_ = nullptr;
-  std::size_t size_ = 0;
-  SignatureView view_;
+  MappedFile mapped_;
+  SignatureView view_; ///< of its bytes
 };
 
 } // namespace umov

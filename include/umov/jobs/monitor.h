@@ -17,6 +17,11 @@ struct Monitor {
   /// Set to true from any thread to have the job stop soon, with what is complete kept.
   const std::atomic<bool> *cancel = nullptr;
 
+  /// What `cancel` is, or what is never true.
+  [[nodiscard]] const std::atomic<bool> &cancel_flag() const {
+    static const std::atomic<bool> never{false};
+    return cancel != nullptr ? *cancel : never;
+  }
   /// A line of the log, if anybody listens.
   void tell(const std::string &text) const {
     if (remark)

@@ -27,6 +27,11 @@ template <class Basis> struct Stokes {
   constexpr Stokes &operator+=(Stokes b) { return *this = *this + b; }
 };
 
+/// Unpolarized light of one unit: what sunlight is to a surface.
+template <class Basis> constexpr bool is_sunlight(const Stokes<Basis> &light) {
+  return light.i == 1 && light.q == 0 && light.u == 0 && light.v == 0;
+}
+
 /// The same light in axes of another basis. `axis` is the angle of the NEW reference axis counted
 /// from the old one, counter-clockwise as seen by the observer (physics: Q' = Q cos 2x + U sin 2x).
 /// From the scattering plane to the sky pass minus the position angle of +Q_scat.

@@ -14,6 +14,8 @@ public:
   /// `part`: "" for the whole job, else "K-of-N": whoever has the whole and whoever has the same
   /// part are in the way. Device naming them.
   static Result<Lease> take(const std::filesystem::path &folder, const std::string &part);
+  /// Of one who works beside others, whoever they are. Device where it cannot be written.
+  static Result<Lease> join(const std::filesystem::path &folder);
   Lease(Lease &&) noexcept;
   Lease &operator=(Lease &&) noexcept;
   ~Lease(); ///< gives it back

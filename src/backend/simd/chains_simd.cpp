@@ -200,20 +200,5 @@ void sum_chains(const ChainData &data, const ChainRun &run, std::size_t begin, s
   HWY_DYNAMIC_DISPATCH(sum_chains_here)(data, run, begin, blocks, band, pose, out);
 }
 
-kernel::LobeConstants<float> to_float(const kernel::LobeConstants<double> &from) {
-  kernel::LobeConstants<float> out;
-  const auto rounded = [](double x) { return static_cast<float>(x); };
-  out.kind = from.kind;
-  out.joint = from.joint;
-  out.shape = rounded(from.shape);
-  out.peak = rounded(from.peak);
-  out.per_width2 = rounded(from.per_width2);
-  for (std::size_t k = 0; k <= kernel::polynomial_degree; ++k)
-    out.masking[k] = rounded(from.masking[k]);
-  out.masking_limit = rounded(from.masking_limit);
-  out.masking_scale = rounded(from.masking_scale);
-  return out;
-}
-
 } // namespace umov::backend
 #endif

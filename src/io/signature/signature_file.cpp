@@ -176,4 +176,13 @@ std::string signature_bytes(const SignatureText &text, std::size_t cells, const 
   return out;
 }
 
+Result<SignatureFile> SignatureFile::open(const std::filesystem::path &path, bool checks_all) {
+  SignatureFile out;
+  UMOV_ASSIGN(mapped, MappedFile::open(path));
+  UMOV_ASSIGN(view, parse_signature(mapped.bytes(), path.string(), checks_all));
+  out.mapped_ = std::move(mapped);
+  out.view_ = std::move(view);
+  return out;
+}
+
 } // namespace umov

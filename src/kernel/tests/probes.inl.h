@@ -146,14 +146,14 @@ template <class R, class T, class Put> UMOV_KERNEL void probe_facet(R x, const P
       at.peak = T(6);
       at.along = kind == LobeKind::Ggx ? T(0.01) : kind == LobeKind::Beckmann ? T(-11) : T(0.5);
       at.across = kind == LobeKind::Ggx ? T(0.02) : kind == LobeKind::Beckmann ? T(-10) : T(0.25);
-      put(lobe_weight(lobe, at, pose, nx, ny, nz, n_l, n_v));
+      put(lobe_weight(lobe, at, pose, apart_from_half(pose, nx, ny, nz), n_l, n_v));
       at.is_corrected = true;
       at.correction = {T(30),    T(25),    T(0.99), T(-0.01), T(-0.02),  T(0.002),
                        T(0.003), T(0.004), T(1e-4), T(2e-4),  T(1.5e-4), T(3e-4)};
-      put(lobe_weight(lobe, at, pose, nx, ny, nz, n_l, n_v));
+      put(lobe_weight(lobe, at, pose, apart_from_half(pose, nx, ny, nz), n_l, n_v));
       at.uses_chords = true;
       at.chords = {T(5), T(2), T(0.5), T(0.75), T(0.02), T(0.03)};
-      put(lobe_weight(lobe, at, pose, nx, ny, nz, n_l, n_v));
+      put(lobe_weight(lobe, at, pose, apart_from_half(pose, nx, ny, nz), n_l, n_v));
     }
 }
 

@@ -1,5 +1,7 @@
 #include "light/between/chain_surfaces.h"
 
+#include "kernel/disk_lobe.h"
+
 #include "light/fast/chebyshev.h"
 #include "light/fast/lobe_fit.h"
 
@@ -93,7 +95,7 @@ bool compile(const Surface &surface, std::size_t band, backend::ChainSurface &ou
   const auto lobe = fit_lobe(*normals, surface.material().shadowing);
   if (!lobe)
     return false;
-  out.lobe = backend::to_float(*lobe);
+  out.lobe = kernel::round_lobe(*lobe);
   out.has_lobe = surface.reflection(band, 0.01).a > 0;
   return (!out.has_lobe || fit_reflection(surface, band, out)) && fit_products(surface, band, out);
 }

@@ -1,5 +1,7 @@
 #include "light/fast/compile.h"
 
+#include "kernel/disk_lobe.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -131,24 +133,6 @@ CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypoth
   return out;
 }
 
-namespace {
-
-kernel::LobeConstants<float> round_lobe(const kernel::LobeConstants<double> &from) {
-  const auto f = [](double x) { return static_cast<float>(x); };
-  kernel::LobeConstants<float> out;
-  out.kind = from.kind;
-  out.joint = from.joint;
-  out.shape = f(from.shape);
-  out.peak = f(from.peak);
-  out.per_width2 = f(from.per_width2);
-  std::transform(std::begin(from.masking), std::end(from.masking), out.masking, f);
-  out.masking_limit = f(from.masking_limit);
-  out.masking_scale = f(from.masking_scale);
-  return out;
-}
-
-} // namespace
-
 SceneStore<float> round_scene(const SceneStore<double> &from) {
   const auto f = [](double x) { return static_cast<float>(x); };
   SceneStore<float> out;
@@ -169,11 +153,11 @@ SceneStore<float> round_scene(const SceneStore<double> &from) {
     std::transform(std::begin(error.value), std::end(error.value), to.value, f);
   }
   for (const auto &lobe : from.lobes)
-    out.lobes.push_back(round_lobe(lobe));
+    out.lobes.push_back(kernel::round_lobe(lobe));
   for (const auto &family : from.families) {
     auto &to = out.families.emplace_back();
     to.node_count = family.node_count;
-    std::transform(std::begin(family.node), std::end(family.node), to.node, round_lobe);
+    std::transform(std::begin(family.node), std::end(family.node), to.node, kernel::round_lobe);
     for (std::size_t lobe = 0; lobe < backend::family_lobes_max; ++lobe)
       std::transform(std::begin(family.weight[lobe]), std::end(family.weight[lobe]),
                      to.weight[lobe], f);

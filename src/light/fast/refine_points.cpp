@@ -63,24 +63,26 @@ void RefineTracer::drop_hidden() {
   left_.resize(kept);
 }
 
-void RefineTracer::keep_free(Vec3<Body> direction) {
-  directions_.assign(left_.size(),
+/// Which of some points are free in a direction, into free_.
+void RefineTracer::test(const Occluder &occluder, std::span<const Occluder::Point> points,
+                        Vec3<Body> direction) {
+  directions_.assign(points.size(),
                      {static_cast<float>(direction.x), static_cast<float>(direction.y),
                       static_cast<float>(direction.z)});
-  free_.resize(left_.size());
-  occluder_.is_free(left_, directions_, free_);
+  free_.resize(points.size());
+  occluder.is_free(points, directions_, free_);
+}
+
+void RefineTracer::keep_free(Vec3<Body> direction) {
+  test(occluder_, left_, direction);
   drop_hidden();
 }
 
 void RefineTracer::keep_free_of(const OtherPart &other, Vec3<Body> direction) {
-  const Vec3<Body> d = other.there.turn * direction;
   moved_.clear();
   for (const Occluder::Point &p : left_)
     moved_.push_back(other.occluder->to_point(other.there.place(occluder_.from_point(p))));
-  directions_.assign(left_.size(),
-                     {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)});
-  free_.resize(left_.size());
-  other.occluder->is_free(moved_, directions_, free_);
+  test(*other.occluder, moved_, other.there.turn * direction);
   drop_hidden();
 }
 
@@ -122,11 +124,7 @@ void RefineTracer::ask(std::span<const Occluder::Point> points, Vec3<Body> direc
   for (const DoubtfulPoint &p : asked_)
     if (p.*asks)
       left_.push_back(points[p.index]);
-  directions_.assign(left_.size(),
-                     {static_cast<float>(direction.x), static_cast<float>(direction.y),
-                      static_cast<float>(direction.z)});
-  free_.resize(left_.size());
-  occluder_.is_free(left_, directions_, free_);
+  test(occluder_, left_, direction);
   std::size_t kept = 0, k = 0;
   for (const DoubtfulPoint &p : asked_)
     if (!(p.*asks) || free_[k++] != 0)

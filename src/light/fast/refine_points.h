@@ -83,6 +83,8 @@ public:
 
 private:
   std::size_t take(const backend::SeenFacet &facet, std::size_t wanted);
+  void test(const Occluder &occluder, std::span<const Occluder::Point> points,
+            Vec3<Body> direction);
   void keep_free(Vec3<Body> direction);
   void ask(std::span<const Occluder::Point> points, Vec3<Body> direction,
            bool DoubtfulPoint::*asks);

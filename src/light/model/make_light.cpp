@@ -104,10 +104,6 @@ std::vector<double> typical_light(const Engine &unhidden) {
   return out;
 }
 
-bool is_sunlight(const Stokes<ScatteringPlane> &source) {
-  return source.i == 1 && source.q == 0 && source.u == 0 && source.v == 0;
-}
-
 /// Masks hold for sunlight. A convex body needs no rays: its light by the reference is exact, where
 /// the engine's joined normals err by more than their half-widths tell.
 bool takes_rays(const Scene &scene, const std::vector<Joint> &joints, const LightOptions &options) {

@@ -47,9 +47,7 @@ struct Integrator::State {
   }
   /// Chains of up to so many surfaces; null where they cannot draw anything.
   const ChainStore *chains(const IntegrationOptions &options) const {
-    const auto &source = options.source;
-    if (options.between != BetweenMethod::Chains ||
-        !(source.i == 1 && source.q == 0 && source.u == 0 && source.v == 0))
+    if (options.between != BetweenMethod::Chains || !is_sunlight(options.source))
       return nullptr;
     const PathGround ground = paths();
     const WriteLock lock(store_mutex);

@@ -1,4 +1,4 @@
-#include "scale/mapped_file.h"
+#include <umov/core/mapped_file.h>
 
 #include <cerrno>
 #include <cstring>
@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <utility>
 
-namespace umov::scale {
+namespace umov {
 
 Result<MappedFile> MappedFile::open(const std::filesystem::path &path) {
   const auto problem = [&path] {
@@ -48,4 +48,4 @@ MappedFile::~MappedFile() {
     ::munmap(const_cast<char *>(data_), size_);
 }
 
-} // namespace umov::scale
+} // namespace umov

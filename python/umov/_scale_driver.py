@@ -1,0 +1,217 @@
+"""Who does which shard of a job's folder on a Dask cluster, and what is told of it."""
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import pathlib
+import queue
+import subprocess
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from ._scale_worker import do_shard
+from .errors import DeviceError, Error, Interrupted, UsageError, error_from
+
+if TYPE_CHECKING:
+    from .scale import Result
+
+#: What Dask is told, in one place. A worker that dies was ended from outside, as what crashes is a process of its
+#: own: no shard is to blame, however often its worker goes.
+SETTINGS = {"distributed.scheduler.allowed-failures": 1000, "distributed.scheduler.worker-ttl": "60s",
+            "distributed.scheduler.worker-saturation": 1.0, "distributed.worker.memory.terminate": 0.95}
+_PATIENCE_S = 30.0  # of shards in hand after Ctrl-C
+_LOSSES = 10  # of workers without a shard done between them, after which it is said that none will be
+
+
+def _loopback(address: str) -> bool:
+    host = address.rsplit("://", 1)[-1].rsplit(":", 1)[0]
+    return host in ("localhost", "::1", "[::1]") or host.startswith("127.")
+
+
+class Cluster:
+    """A Dask client for whatever was given, and what of it is ours to close."""
+
+    def __init__(self, cluster: Any, tls: bool) -> None:
+        try:
+            dask: Any = importlib.import_module("dask")
+            distributed: Any = importlib.import_module("distributed")
+        except ImportError as missing:
+            raise DeviceError(f"a cluster takes the package {missing.name}. pip install umov[scale]; without a cluster "
+                              "umov works on this machine.") from missing
+        self._ours: list[Any] = []
+        self.client: Any = None
+        dask.config.set(SETTINGS)
+        self.is_local = False
+        if isinstance(cluster, distributed.Client):
+            self.client = cluster
+        elif isinstance(cluster, str) and cluster.startswith("local:"):
+            self._start_local(cluster, tls, distributed)
+        elif isinstance(cluster, str):
+            if not cluster.startswith("tls://") and not _loopback(cluster):
+                raise UsageError(f"cluster {cluster}: tls://HOST:PORT was expected. Who reaches a Dask scheduler runs "
+                                 "programs as its owner: start it with certificates (distributed.comm.tls).")
+            self.client = distributed.Client(cluster, timeout=30)
+            self._ours = [self.client]
+        else:
+            self.client = cluster.get_client()
+            self._ours = [self.client]
+
+    def _start_local(self, cluster: str, tls: bool, distributed: Any) -> None:
+        try:
+            workers = int(cluster.removeprefix("local:"))
+        except ValueError:
+            workers = 0
+        if workers < 1:
+            raise UsageError(f"cluster {cluster}: local:N with a number of workers was expected")
+        security = distributed.Security.temporary() if tls else None
+        try:
+            local = distributed.LocalCluster(n_workers=workers, threads_per_worker=1, host="127.0.0.1",
+                                             dashboard_address="127.0.0.1:0", security=security,
+                                             protocol="tls" if tls else "tcp", silence_logs=50)
+        except (RuntimeError, OSError) as problem:
+            raise DeviceError(f"the workers of {cluster} do not start: {problem}") from problem
+        self.is_local = True
+        self.client = distributed.Client(local, security=security)
+        self._ours = [self.client, local]
+
+    def close(self) -> None:
+        for one in self._ours:
+            try:
+                one.close()
+            except Exception:  # noqa: BLE001  a scheduler that is gone cannot be closed
+                pass
+
+    def workers(self) -> set[str]:
+        return set(self.client.scheduler_info(n_workers=-1)["workers"])
+
+
+class Driver:
+    """Gives shards to a cluster, so many at a time, until none is missing."""
+
+    def __init__(self, result: Result, cluster: Cluster, threads: int, timeout_s: float | None, quiet: bool) -> None:
+        lock = result.lock
+        predicted = lock["predicted"]["setup_cpu_s"] + lock["predicted"]["cpu_s"] * lock["per_shard"]
+        self.result, self.cluster, self.quiet = result, cluster, quiet
+        self.arguments = (result._umov, str(result.folder), threads, timeout_s or max(60.0, 10 * predicted))
+        self.todo = iter(result.missing)
+        self.futures: dict[str, Any] = {}
+        self.ended: queue.Queue[Any] = queue.Queue()
+        self.left = len(result.missing)
+        self.done = self.failed = self.lost = 0
+        self.known: set[str] = set()
+        self.told = self.looked = time.monotonic()
+        self.stopped: Error | Interrupted | None = None
+        self.stopped_at = 0.0
+        self.resume = f"umov scale run {result.folder} goes on."
+
+    def run(self) -> None:
+        self._submit(max(200, 4 * len(self.cluster.workers())))
+        while self.futures:
+            try:
+                self._watch()
+                try:
+                    future = self.ended.get(timeout=0.5)
+                except queue.Empty:
+                    if self.stopped and time.monotonic() - self.stopped_at > _PATIENCE_S:
+                        break
+                    continue
+                if self.futures.pop(future.key, None) is None:
+                    continue  # it was taken back
+                self._take(future)
+                if not self.stopped:
+                    self._submit(1)
+            except KeyboardInterrupt:
+                if self.stopped:
+                    break
+                self._stop(Interrupted("stopped by the user"))
+        if self.stopped:
+            raise type(self.stopped)(f"{str(self.stopped).rstrip('.')}. {self.resume}")
+
+    def _submit(self, count: int) -> None:
+        for _, index in zip(range(count), self.todo):
+            # No two clients' tasks of one name: what a second one asks for is its own.
+            future = self.cluster.client.submit(do_shard, index, *self.arguments, pure=False,
+                                                key=f"umov-{self.result.lock['key']}-{index}-{os.getpid()}")
+            self.futures[future.key] = future
+            future.add_done_callback(self.ended.put)
+
+    def _take(self, future: Any) -> None:
+        if future.status != "finished":
+            why = future.exception() if future.status == "error" else future.status
+            self._stop(DeviceError(f"Dask lost a shard ({why})"))
+            return
+        record = future.result()
+        future.release()
+        self.known = set()
+        self.lost = 0
+        if record["status"] in ("done", "there"):
+            self.done += 1
+        elif record["status"] == "refused" or record["code"] in (6, 130):
+            self._stop(error_from((record["code"], record["message"], "", 0, 0)))
+        else:
+            self.failed += 1
+            self._tell_failed(record)
+
+    def _tell_failed(self, record: dict[str, Any]) -> None:
+        lock, index = self.result.lock, record["index"]
+        first = index * lock["per_shard"]
+        text = {"index": index, "first": first, "count": min(lock["per_shard"], lock["total"] - first),
+                "code": record["code"], "attempts": record.get("attempts", 1), "message": record["message"], "host": ""}
+        (self.result.folder / "failed" / f"{index:08d}.json").write_text(json.dumps(text, indent=1))
+
+    def _stop(self, why: Error | Interrupted) -> None:
+        """Nothing new is begun; what no worker has begun is taken back."""
+        if self.stopped:
+            return
+        self.stopped, self.stopped_at = why, time.monotonic()
+        try:
+            running = {key for keys in self.cluster.client.processing().values() for key in keys}
+            waiting = [future for key, future in self.futures.items() if key not in running]
+            for future in waiting:
+                del self.futures[future.key]
+            self.cluster.client.cancel(waiting)
+        except Exception:  # noqa: BLE001  a scheduler that is gone has nothing that could be taken back
+            self.futures.clear()
+
+    def _watch(self) -> None:
+        """Once in two seconds: does the scheduler live, do workers live long enough, is it time for a line."""
+        now = time.monotonic()
+        if now - self.looked < 2:
+            return
+        self.looked = now
+        if self.cluster.client.status not in ("running", "connecting"):
+            self.futures.clear()
+            self._stop(DeviceError("the Dask scheduler is gone; finished shards are kept"))
+            return
+        workers = self.cluster.workers()
+        self.lost += len(self.known - workers)
+        self.known = workers
+        if self.lost == _LOSSES:
+            predicted = self.result.lock["predicted"]["cpu_s"] * self.result.lock["per_shard"]
+            print(f"{_LOSSES} workers were lost without a shard done between them: a shard takes about "
+                  f"{predicted:.0f} s, which is longer than they live. Shorter shards (--per-shard) or longer lives "
+                  "are needed.", file=sys.stderr, flush=True)
+        if not self.quiet and now - self.told > 5:
+            self.told = now
+            print(f"shards {self.done} of {self.left}, {self.failed} failed, {len(workers)} workers", file=sys.stderr,
+                  flush=True)
+
+
+class Hold:
+    """The command's lease on the folder."""
+
+    def __init__(self, program: str, folder: pathlib.Path) -> None:
+        self.process = subprocess.Popen([program, "scale", "hold", str(folder), "-q"], stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                        start_new_session=True)  # Ctrl-C is for who holds it
+        assert self.process.stdout and self.process.stderr
+        if self.process.stdout.readline() != "held\n":
+            text = self.process.stderr.read().strip().removeprefix("error: ")
+            raise error_from((self.process.wait(), text, "", 0, 0))
+
+    def end(self) -> None:
+        assert self.process.stdin
+        self.process.stdin.close()
+        self.process.wait()

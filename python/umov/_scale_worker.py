@@ -1,0 +1,85 @@
+"""What runs in a Dask worker: processes of the command that do shards, so that a crash costs a shard's time alone."""
+from __future__ import annotations
+
+import atexit
+import json
+import select
+import subprocess
+import threading
+from typing import Any
+
+
+class _Server:
+    """A process of the command that does shards; ends with this one, as its standard input does."""
+
+    def __init__(self, program: str, folder: str, threads: int) -> None:
+        self.process = subprocess.Popen([program, "scale", "worker", folder, "--threads", str(threads), "-q"],
+                                        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+
+    def ask(self, index: int, timeout_s: float) -> str | None:
+        """The record, "" if the process ended before it gave one, None if it took too long."""
+        assert self.process.stdin and self.process.stdout
+        try:
+            self.process.stdin.write(b"%d\n" % index)
+            self.process.stdin.flush()
+        except OSError:
+            return ""
+        if not select.select([self.process.stdout], [], [], timeout_s)[0]:
+            return None
+        return self.process.stdout.readline().decode()
+
+    def end(self, patience_s: float = 0.0) -> int:
+        """Its exit code; negative for a signal. With patience it keeps its masks first."""
+        if self.process.stdin:
+            try:
+                self.process.stdin.close()
+            except OSError:
+                pass
+        try:
+            return self.process.wait(patience_s) if patience_s else self.process.poll() or self._kill()
+        except subprocess.TimeoutExpired:
+            return self._kill()
+
+    def _kill(self) -> int:
+        try:
+            return self.process.wait(0.5)  # it may be ending by itself, and its own code is wanted
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            return self.process.wait()
+
+
+_idle: dict[tuple[str, str, int], list[_Server]] = {}
+_idle_lock = threading.Lock()
+
+
+@atexit.register
+def _end_all() -> None:
+    for servers in _idle.values():
+        for server in servers:
+            server.end(5.0)
+
+
+def do_shard(index: int, program: str, folder: str, threads: int, timeout_s: float) -> dict[str, Any]:
+    """One shard, in a Dask worker. Never raises: what went wrong is in the record."""
+    key = (program, folder, threads)
+    why: dict[str, Any] = {}
+    for attempt in range(1, 4):
+        with _idle_lock:
+            server = _idle[key].pop() if _idle.get(key) else None
+        try:
+            server = server or _Server(program, folder, threads)
+        except OSError as problem:
+            return {"index": index, "status": "failed", "code": 6, "message": f"{program}: {problem}"}
+        line = server.ask(index, timeout_s)
+        if line:
+            with _idle_lock:
+                _idle.setdefault(key, []).append(server)
+            return {**json.loads(line), "attempts": attempt}
+        if line is None:
+            server.process.kill()
+        code = server.end()
+        message = (f"it was not done after {timeout_s:.0f} s" if line is None else
+                   f"its process was ended by signal {-code}" if code < 0 else f"its process ended with {code}")
+        why = {"index": index, "status": "failed", "code": 128 - code if code < 0 else code, "message": message,
+               "attempts": attempt}
+    return why
