@@ -99,6 +99,7 @@
 #include <umov/jobs/index_range.h>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/library.h>
+#include <umov/jobs/material_check.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
 #include <umov/jobs/measurement_files.h>
