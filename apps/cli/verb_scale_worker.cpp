@@ -5,7 +5,7 @@
 
 #include <csignal>
 #include <filesystem>
-#include <umov/light/engine.h>
+#include <umov/light/instruction_set.h>
 #include <umov/scale/shard_work.h>
 
 namespace umov::cli {

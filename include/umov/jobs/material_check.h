@@ -11,7 +11,7 @@ namespace umov::jobs {
 
 /// Which materials, and how thoroughly.
 struct MaterialCheckRequest {
-  std::vector<std::string> names; ///< or TOML files
+  std::vector<std::string> names;              ///< or TOML files
   std::uint64_t geometries = 10'000, seed = 0; ///< random pairs of directions, per band
 };
 

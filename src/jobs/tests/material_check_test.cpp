@@ -9,8 +9,8 @@ const std::vector<double> &numbers(const Table &table, const char *name) {
   return std::get<std::vector<double>>(table.find(name)->cells);
 }
 
-// Mirrors give all light away once where the surface is smooth: at slope 0.02 next to no ray meets a
-// second facet, so that traced and modelled fractions are 1 within the slope itself.
+// Mirrors give all light away once where the surface is smooth: at slope 0.02 next to no ray meets
+// a second facet, so that traced and modelled fractions are 1 within the slope itself.
 TEST(RoughSurface, AlmostSmoothScattersOnce) {
   RoughSurfaceRequest request;
   request.slope = 0.02, request.cells = 64, request.realisations = 2, request.rays = 4000;
