@@ -7,9 +7,10 @@ class SampledBetweenLight final : public BetweenLight {
 public:
   explicit SampledBetweenLight(const Scene &scene) : integrator_(scene) {}
 
-  [[nodiscard]] std::vector<Stokes<ScatteringPlane>>
-  radiance(const Pose &pose, std::span<const SurfacePoint> points,
-           const BetweenLightOptions &options, std::uint64_t first) const override {
+  [[nodiscard]] std::vector<Stokes<ScatteringPlane>> radiance(const Pose &pose,
+                                                              std::span<const SurfacePoint> points,
+                                                              const BetweenLightOptions &options,
+                                                              std::uint64_t first) const override {
     IntegrationOptions integration;
     integration.bounces = options.bounces;
     integration.seed = options.seed;
