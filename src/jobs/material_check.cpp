@@ -27,7 +27,7 @@ Result<std::vector<SurfaceAudit>> audits_of(const std::vector<Material> &materia
   return found;
 }
 
-Table table_of(const std::vector<std::string> &names, const std::vector<SurfaceAudit> &audits) {
+Table audit_table(const std::vector<std::string> &names, const std::vector<SurfaceAudit> &audits) {
   std::vector<double> reciprocity, cloude, albedo, gap, p;
   std::vector<std::string> verdict;
   for (const SurfaceAudit &a : audits) {
@@ -64,7 +64,7 @@ Result<MaterialCheck> check_materials(const MaterialCheckRequest &request, unsig
   UMOV_ASSIGN(audits, audits_of(materials, request, threads));
   for (const SurfaceAudit &audit : audits)
     out.bad += audit.is_fine() ? 0u : 1u;
-  out.table = table_of(request.names, audits);
+  out.table = audit_table(request.names, audits);
   return out;
 }
 

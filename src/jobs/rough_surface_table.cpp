@@ -12,16 +12,16 @@
 namespace umov::jobs {
 namespace {
 
-struct Masking {
+struct NamedMasking {
   Shadowing shadowing;
   const char *name;
 };
-constexpr std::array<Masking, 4> maskings{{{Shadowing::Ashikhmin, "ashikhmin"},
-                                           {Shadowing::Smith, "smith"},
-                                           {Shadowing::SmithDirectional, "smith_dir"},
-                                           {Shadowing::Separable, "separable"}}};
+constexpr std::array<NamedMasking, 4> maskings{{{Shadowing::Ashikhmin, "ashikhmin"},
+                                                {Shadowing::Smith, "smith"},
+                                                {Shadowing::SmithDirectional, "smith_dir"},
+                                                {Shadowing::Separable, "separable"}}};
 
-struct Mean {
+struct SurfaceMean {
   double sum = 0, squares = 0;
   std::size_t count = 0;
   void add(double x) {
@@ -38,20 +38,20 @@ struct Mean {
   }
 };
 
-struct Traced {
-  Mean once;
+struct TracedSurfaces {
+  SurfaceMean once;
   SingleScatter mean;
 };
 
 /// How many of the surfaces are traced.
-struct Progress {
+struct SurfaceProgress {
   const Monitor &monitor;
   std::size_t done = 0, total = 0;
 };
 
-Result<Traced> trace(const RoughSurfaceRequest &request, double theta_rad, unsigned threads,
-                     Progress &progress) {
-  Traced out;
+Result<TracedSurfaces> trace_surfaces(const RoughSurfaceRequest &request, double theta_rad,
+                                      unsigned threads, SurfaceProgress &progress) {
+  TracedSurfaces out;
   for (std::size_t r = 0; r < request.realisations; ++r) {
     if (progress.monitor.is_cancelled())
       return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
@@ -71,9 +71,9 @@ Result<Traced> trace(const RoughSurfaceRequest &request, double theta_rad, unsig
 }
 
 /// What the model with one joint masking says, beside what was traced.
-struct Compared {
+struct ModelColumns {
   std::vector<double> once, distance;
-  void add(const SingleScatter &model, const Traced &traced) {
+  void add(const SingleScatter &model, const TracedSurfaces &traced) {
     once.push_back(model.once);
     double sum = 0;
     for (std::size_t b = 0; b < model.flux.size(); ++b)
@@ -82,7 +82,7 @@ struct Compared {
   }
 };
 
-Result<void> check(const RoughSurfaceRequest &request) {
+Result<void> check_surfaces(const RoughSurfaceRequest &request) {
   if (request.realisations < 1 || request.rays < 1)
     return fail(ErrorCode::BadInput,
                 fmt::format("{} realisations with {} rays; at least one of each was expected",
@@ -98,16 +98,16 @@ Result<void> check(const RoughSurfaceRequest &request) {
 
 Result<Table> rough_surface_table(const RoughSurfaceRequest &request, unsigned threads,
                                   const Monitor &monitor) {
-  UMOV_TRY(check(request));
+  UMOV_TRY(check_surfaces(request));
   // The slopes along an axis are Gaussian, so that the normals are Beckmann's.
   UMOV_ASSIGN(normals, make_distribution(
                            {"beckmann", {{"alpha", std::sqrt(2.0) * request.slope}}, {}, {}, {}}));
-  Progress progress{monitor, 0, request.theta_deg.size() * request.realisations};
+  SurfaceProgress progress{monitor, 0, request.theta_deg.size() * request.realisations};
   std::vector<double> once, error;
-  std::array<Compared, maskings.size()> models;
+  std::array<ModelColumns, maskings.size()> models;
   for (const double deg : request.theta_deg) {
     const double theta = deg * pi / 180;
-    UMOV_ASSIGN(traced, trace(request, theta, threads, progress));
+    UMOV_ASSIGN(traced, trace_surfaces(request, theta, threads, progress));
     once.push_back(traced.once.value());
     error.push_back(traced.once.error());
     for (std::size_t k = 0; k < maskings.size(); ++k)
