@@ -84,6 +84,7 @@ Result<void> read_numbers(const Cells &cells, std::size_t row, CountRow &out) {
                           {"phase_angle", &out.phase_angle_deg},
                           {"pa_scat", &out.pa_scat_deg},
                           {"airmass", &out.airmass},
+                          {"k_mag", &out.k_mag},
                           {"plate_deg", &out.plate_deg},
                           {"ra", &out.ra_deg},
                           {"dec", &out.dec_deg},
