@@ -52,12 +52,15 @@ Table reduce(const std::string &counts, const std::string &counts_path,
 
 /// `text` stands for a file of that path.
 Table period(const std::string &text, const std::string &path, const std::string &band,
-             std::size_t peaks, std::pair<double, double> reach_s, double gap_s, nb::handle watch) {
+             std::size_t peaks, std::pair<double, double> reach_s,
+             std::pair<double, double> gap_s_and_chance, nb::handle watch) {
   Attention attention(watch);
   auto made =
       attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Table> {
         UMOV_ASSIGN(rows, read_observations_text(text, path, diagnostics));
-        return jobs::period(rows, {band, peaks, reach_s.first, reach_s.second, gap_s}, diagnostics);
+        const auto [gap_s, chance] = gap_s_and_chance;
+        return jobs::period(rows, {band, peaks, reach_s.first, reach_s.second, gap_s, chance},
+                            diagnostics);
       });
   attention.settle(false);
   return take(std::move(made));
@@ -104,6 +107,7 @@ void bind_options(nb::module_ &m) {
       .def_rw("width_nm", &jobs::ExposureRequest::width_nm)
       .def_rw("sky_mag", &jobs::ExposureRequest::sky_mag)
       .def_rw("seeing_arcsec", &jobs::ExposureRequest::seeing_arcsec)
+      .def_rw("exposure_s", &jobs::ExposureRequest::exposure_s)
       .def_rw("change_per_s", &jobs::ExposureRequest::change_per_s);
 }
 
