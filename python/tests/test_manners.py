@@ -197,6 +197,7 @@ def test_every_public_object_goes_through_pickle(name, plate, tmp_path, monkeypa
         "Calibration": lambda: umov.Calibration.from_toml("efficiency = 1.0\n"),
         "Coloured": lambda: umov.Sums(plate).apply(umov.Sums(plate).abundances(*poses)),
         "Column": lambda: umov.Sums(plate).abundances(*poses).columns[0],
+        "Fit": lambda: umov.Fit(clouds=True), "Inversion": lambda: umov.Inversion("no_fit", {"modes": umov.bands()}, {}, "none", ""),
         "Engine": lambda: umov.Engine(plate, bands=["nm:550"]), "Light": lambda: umov.Engine(plate).light(*poses),
         "LightCurve": lambda: umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 120}),
         "Material": lambda: umov.Material("gold"), "Mesh": lambda: umov.mesh(plate),
