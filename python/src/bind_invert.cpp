@@ -72,7 +72,8 @@ Table build_library(const std::vector<std::string> &scenarios, const std::string
 }
 
 void bind_request(nb::module_ &m) {
-  nb::class_<Request>(m, "InvertRequest", "Observations, and how well they and the model are known.")
+  nb::class_<Request>(m, "InvertRequest",
+                      "Observations, and how well they and the model are known.")
       .def(
           "__init__",
           [](Request *self, std::vector<std::string> observations, std::size_t grid,
