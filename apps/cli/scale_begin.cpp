@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <iostream>
 #include <umov/core/files.h>
-#include <umov/light/engine.h>
+#include <umov/light/instruction_set.h>
 #include <unistd.h>
 
 namespace umov::cli {

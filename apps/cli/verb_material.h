@@ -5,6 +5,7 @@
 #include "verbs.h"
 
 #include <memory>
+#include <umov/jobs/material_check.h>
 
 namespace umov::cli {
 
@@ -25,10 +26,7 @@ void add_import(CLI::App &material, const Exit &exit_with);
 /// `umov material check --explicit`: a ray-traced height field against the statistical model.
 struct ExplicitOptions {
   bool is_wanted = false;
-  double slope = 0.3, hurst = 0;
-  std::vector<double> theta_deg{60};
-  int cells = 256, correlation_cells = 8, realisations = 4;
-  std::uint64_t rays = 200'000, seed = 0;
+  jobs::RoughSurfaceRequest request;
 };
 std::shared_ptr<ExplicitOptions> add_explicit_options(CLI::App &verb);
 Result<void> check_explicit(const ExplicitOptions &options, const std::string &output,

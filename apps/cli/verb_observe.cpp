@@ -1,5 +1,6 @@
+#include "doubtful_elements.h"
+#include "folder_options.h"
 #include "job_console.h"
-#include "tables.h"
 #include "verbs.h"
 
 #include <fmt/format.h>
@@ -12,19 +13,15 @@ namespace {
 struct ObserveOptions {
   std::string scenario, output;
   std::vector<std::string> overrides;
-  bool allow_bad_checksum = false, allow_old_elements = false;
+  DoubtfulElements elements;
 };
 
 Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnostics &diagnostics) {
   const auto started = std::chrono::system_clock::now();
   UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.overrides));
-  if (!o.output.empty())
-    scenario.output_dir = o.output;
-  UMOV_TRY(check_folder_name(o.output));
+  UMOV_TRY(take_folder(scenario, o.output, o.overrides));
   UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
-  jobs::JobOptions options = job_options(common);
-  options.allow_bad_checksum = o.allow_bad_checksum;
-  options.allow_old_elements = o.allow_old_elements;
+  const jobs::JobOptions options = with_elements(job_options(common), o.elements);
   JobConsole console(common);
   jobs::FrameSink take_frame;
   if (scenario.observation && scenario.observation->makes_frames) {
@@ -59,9 +56,7 @@ void add_observe(CLI::App &app, const Exit &exit_with) {
   verb->add_option("-o,--output", o->output, "Output folder, over the scenario's output.dir");
   verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
   verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
-  verb->add_flag("--allow-bad-checksum", o->allow_bad_checksum,
-                 "Read elements with a bad checksum");
-  verb->add_flag("--allow-old-elements", o->allow_old_elements, "Take elements over 30 days old");
+  add_elements(*verb, o->elements);
   verb->add_flag("-v,--verbose", common->verbose, "Also say what was read");
   add_threads(*verb, *common);
   add_cache(*verb, *common);

@@ -1,5 +1,6 @@
 // umov orbit ephemeris, umov orbit propagate: where objects stand.
 
+#include "doubtful_elements.h"
 #include "job_console.h"
 #include "site_options.h"
 #include "tables.h"
@@ -16,22 +17,15 @@ struct OrbitOptions {
   std::vector<std::string> at;
   int norad = 0;
   double step_s = 60;
-  bool allow_bad_checksum = false, keep_going = false, allow_old_elements = false;
+  bool keep_going = false;
+  DoubtfulElements elements;
 };
 
 void add_file_options(CLI::App &verb, OrbitOptions &o) {
   verb.add_option("--orbit", o.orbit, "TLE, 3LE or OMM (KVN, XML, JSON, CSV) file")->required();
-  verb.add_flag("--allow-bad-checksum", o.allow_bad_checksum, "Read lines with a wrong checksum");
-  verb.add_flag("--allow-old-elements", o.allow_old_elements, "Take elements over 30 days old");
+  add_elements(verb, o.elements);
   verb.add_flag("--keep-going", o.keep_going, "Report bad sets and keep the others");
   add_table_output(verb, o.output);
-}
-
-jobs::JobOptions options_of(const OrbitOptions &o, const Common &common) {
-  jobs::JobOptions out = job_options(common);
-  out.allow_bad_checksum = o.allow_bad_checksum;
-  out.allow_old_elements = o.allow_old_elements;
-  return out;
 }
 
 Result<void> put_outcome(const OrbitOptions &o, const jobs::TableOutcome &out,
@@ -54,7 +48,8 @@ Result<void> run_ephemeris(const OrbitOptions &o, const Common &common, Diagnost
   JobConsole console(common);
   UMOV_ASSIGN(out,
               jobs::ephemeris({o.orbit, o.norad, site, start, stop, o.step_s, shadow, o.keep_going},
-                              options_of(o, common), console.monitor(true), diagnostics));
+                              with_elements(job_options(common), o.elements), console.monitor(true),
+                              diagnostics));
   return put_outcome(o, out, common);
 }
 
@@ -66,8 +61,8 @@ Result<void> run_propagate(const OrbitOptions &o, const Common &common, Diagnost
     request.times.push_back(time);
   }
   JobConsole console(common);
-  UMOV_ASSIGN(out, jobs::catalogue_states(request, options_of(o, common), console.monitor(true),
-                                          diagnostics));
+  UMOV_ASSIGN(out, jobs::catalogue_states(request, with_elements(job_options(common), o.elements),
+                                          console.monitor(true), diagnostics));
   return put_outcome(o, out, common);
 }
 

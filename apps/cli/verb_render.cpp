@@ -1,5 +1,6 @@
 // umov render: the object as the observer sees it.
 
+#include "doubtful_elements.h"
 #include "job_console.h"
 #include "verbs.h"
 
@@ -16,7 +17,7 @@ struct RenderOptions {
   std::vector<std::string> overrides;
   std::vector<double> sun, observer, up{0, 0, 1};
   std::size_t object = 1;
-  bool allow_bad_checksum = false, allow_old_elements = false;
+  DoubtfulElements elements;
 };
 
 Result<Vec3<Body>> direction(const std::vector<double> &xyz, const std::string &option) {
@@ -65,9 +66,7 @@ Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
 Result<void> run_render(const RenderOptions &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_ASSIGN(request, request_of(o));
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
-  jobs::JobOptions options = job_options(common);
-  options.allow_bad_checksum = o.allow_bad_checksum;
-  options.allow_old_elements = o.allow_old_elements;
+  const jobs::JobOptions options = with_elements(job_options(common), o.elements);
   JobConsole console(common, tracing_masks);
   UMOV_ASSIGN(done, jobs::render(scenario, request, options, console.monitor(true), diagnostics));
   UMOV_TRY(put(o.output, done.bytes));
@@ -105,8 +104,7 @@ void add_what(CLI::App &verb, RenderOptions &o) {
       ->capture_default_str();
   verb.add_option("--object", o.object, "Which [[object]], from 1")->capture_default_str();
   verb.add_option("--set", o.overrides, "KEY=VALUE over a key of the scenario");
-  verb.add_flag("--allow-bad-checksum", o.allow_bad_checksum, "Read elements with a bad checksum");
-  verb.add_flag("--allow-old-elements", o.allow_old_elements, "Take elements over 30 days old");
+  add_elements(verb, o.elements);
 }
 
 void add_picture(CLI::App &verb, RenderOptions &o) {

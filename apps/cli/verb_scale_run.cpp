@@ -1,22 +1,17 @@
-// umov scale run, and the process that it starts for its shards.
+// umov scale run.
 
 #include "job_console.h"
 #include "verb_scale.h"
 
-#include <csignal>
-#include <filesystem>
 #include <fmt/format.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
-#include <umov/light/engine.h>
 #include <umov/scale/merge.h>
 #include <umov/scale/run_job.h>
 #include <unistd.h>
 
 namespace umov::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct ScaleRunOptions {
   ScaleJobOptions job;
@@ -76,29 +71,6 @@ Result<void> run_scale(ScaleRunOptions &o, const Common &common, Diagnostics &di
   return {};
 }
 
-/// The job of a folder, made ready where it was begun.
-Result<void> work(const std::string &path, const Common &common) {
-  UMOV_ASSIGN(folder, scale::JobFolder::open(path));
-  const scale::JobLock &lock = folder.lock();
-  if (!lock.instruction_set.empty() && !restrict_engine(lock.instruction_set))
-    return fail(ErrorCode::Device, "this machine has no " + lock.instruction_set +
-                                       ", which the job is held to. Leave it out.");
-  std::error_code code;
-  fs::current_path(lock.directory, code);
-  if (code)
-    return fail(ErrorCode::BadInput,
-                "the job was begun here, and its files are looked for from here: " + code.message(),
-                {lock.directory});
-  PartsSetting parts;
-  parts.options = job_options(common);
-  parts.options.mask_cache = folder.path() / "masks";
-  parts.layout = lock.layout;
-  Diagnostics told_at_the_begin;
-  UMOV_ASSIGN(job, verb_in_parts(lock.verb, lock.arguments, parts, told_at_the_begin));
-  UMOV_TRY(scale::check_same_job(folder, *job));
-  return scale::serve_shards(folder, *job);
-}
-
 } // namespace
 
 void add_scale_run(CLI::App &scale, const Exit &exit_with) {
@@ -129,23 +101,6 @@ void add_scale_run(CLI::App &scale, const Exit &exit_with) {
     Diagnostics diagnostics;
     const auto done = run_scale(*o, *common, diagnostics);
     report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
-}
-
-void add_scale_worker(CLI::App &scale, const Exit &exit_with) {
-  auto *verb = scale.add_subcommand(
-      "worker", "Shards whose numbers come line by line on the standard input; a record of each");
-  auto folder = std::make_shared<std::string>();
-  auto common = std::make_shared<Common>();
-  verb->add_option("folder", *folder, "Folder of the job")->required();
-  add_threads(*verb, *common);
-  add_common(*verb, *common, false);
-  verb->callback([=] {
-    std::signal(SIGINT, SIG_IGN); // who started it says when it ends
-    const auto done = work(*folder, *common);
-    if (!done)
-      scale::refuse_shards(done.error());
     exit_with(done ? 0 : report(done.error()));
   });
 }

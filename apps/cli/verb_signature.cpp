@@ -1,7 +1,7 @@
 #include "job_console.h"
-#include "part_options.h"
 #include "scale_job.h"
 #include "signature_files.h"
+#include "signature_options.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -10,46 +10,6 @@
 
 namespace umov::cli {
 namespace {
-
-struct SignatureOptions {
-  std::string scene, geometry, output, visibility, source = "sun";
-  std::string masks; ///< file to keep them in
-  std::vector<std::string> overrides;
-  std::vector<double> phases_deg, state{1, 0, 0, 0};
-  std::vector<std::string> temperatures; ///< K, or group=K
-  std::size_t poses = 0;
-  std::uint64_t seed = 0;
-  bool has_seed = false;
-  double accuracy = 0;
-  PartOptions part;
-  CLI::Option *geometry_option = nullptr, *poses_option = nullptr, *seed_option = nullptr;
-};
-
-jobs::SignatureRequest request_of(const SignatureOptions &o) {
-  using Source = jobs::SignatureRequest::Source;
-  jobs::SignatureRequest out;
-  out.source = o.source == "laser"     ? Source::Laser
-               : o.source == "thermal" ? Source::Thermal
-                                       : Source::Sun;
-  out.state = {o.state[0], o.state[1], o.state[2], o.state[3]};
-  out.temperatures = o.temperatures;
-  if (!o.visibility.empty())
-    out.method = o.visibility == "rays"    ? LightMethod::Rays
-                 : o.visibility == "masks" ? LightMethod::Masks
-                                           : LightMethod::Auto;
-  if (o.accuracy > 0)
-    out.accuracy = o.accuracy;
-  if (o.has_seed)
-    out.seed = o.seed;
-  out.mask_file = o.masks;
-  return out;
-}
-
-Result<jobs::PoseList> poses_of(const SignatureOptions &o, const Scenario &scenario) {
-  if (!o.geometry.empty())
-    return jobs::poses_from_file(o.geometry);
-  return jobs::random_poses(o.poses, o.phases_deg, o.has_seed ? o.seed : scenario.seed);
-}
 
 Result<void> run_signature(const SignatureOptions &o, const Common &common,
                            Diagnostics &diagnostics) {
@@ -69,62 +29,6 @@ Result<void> run_signature(const SignatureOptions &o, const Common &common,
                          diagnostics);
 }
 
-void declare(CLI::App &verb, SignatureOptions &o, Common &common) {
-  verb.add_option("scene", o.scene, "Scenario file; orbit, time and observer are not used")
-      ->required();
-  o.geometry_option =
-      verb.add_option("--geometry", o.geometry,
-                      "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame; with a "
-                      "column pose, rows in turn of one number are one pose and keep it");
-  o.poses_option = verb.add_option("--poses", o.poses, "Random poses for each phase angle")
-                       ->check(CLI::Range(1, 10'000'000));
-  auto *phase = verb.add_option("--phase", o.phases_deg, "Phase angles [deg], separated by commas")
-                    ->delimiter(',');
-  o.geometry_option->excludes(o.poses_option)->excludes(phase);
-  o.poses_option->needs(phase);
-  phase->needs(o.poses_option);
-  verb.add_option("--source", o.source,
-                  "sun, laser: a point source of any polarization, or thermal: the body's own "
-                  "heat; give the "
-                  "wavelength of the last two as the band")
-      ->check(CLI::IsMember({"sun", "laser", "thermal"}))
-      ->capture_default_str();
-  verb.add_option("--state", o.state,
-                  "Laser: Stokes I Q U V of the incoming light in the scattering frame")
-      ->expected(4);
-  verb.add_option("--temperature", o.temperatures,
-                  "Thermal: K of the whole body, or GROUP=K of a part; may stand several times")
-      ->allow_extra_args(false);
-  o.seed_option = verb.add_option("--seed", o.seed, "Of the random poses; default: the scenario's")
-                      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
-  verb.add_option("--set", o.overrides, "KEY=VALUE over a key of the scenario");
-  verb.add_option("--accuracy", o.accuracy, "Relative 95 % half-width asked of I")
-      ->check(CLI::Range(1e-6, 1.0));
-  verb.add_option("--visibility", o.visibility,
-                  "rays: each pose to the accuracy asked; masks: looked up between directions "
-                  "traced beforehand, thousands of times faster, each row with its error; auto: "
-                  "masks, and rays where they miss the accuracy. Default: the scenario's "
-                  "render.method")
-      ->check(CLI::IsMember({"auto", "rays", "masks"}));
-  verb.add_option("--masks", o.masks,
-                  "File to keep the masks in: read if it exists, made if not. For one mesh, its "
-                  "material groups and one accuracy");
-  add_part(verb, o.part, "poses");
-  add_table_output(verb, o.output);
-  add_threads(verb, common);
-  add_cache(verb, common);
-  add_common(verb, common, true);
-}
-
-/// What CLI11 cannot say.
-Result<void> check_directions(SignatureOptions &o) {
-  o.has_seed = o.seed_option->count() > 0;
-  if ((o.geometry_option->count() == 0 || o.geometry.empty()) && o.poses_option->count() == 0)
-    return fail(ErrorCode::Usage,
-                "say for which directions: --geometry TABLE, or --poses N --phase DEG");
-  return {};
-}
-
 } // namespace
 
 Result<RangedVerb> signature_in_parts(const std::vector<std::string> &arguments,
@@ -132,7 +36,7 @@ Result<RangedVerb> signature_in_parts(const std::vector<std::string> &arguments,
   CLI::App verb("Stokes of an object for directions", "signature");
   SignatureOptions o;
   Common common;
-  declare(verb, o, common);
+  add_signature_options(verb, o, common);
   UMOV_TRY(parse_verb(verb, arguments));
   UMOV_TRY(check_directions(o));
   UMOV_TRY(refuse_output(o.output, o.part));
@@ -151,7 +55,7 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
   verb->footer(
       "With -o FILE and ended early, by Ctrl-C or a kill, the same command goes on where it "
       "was: finished rows are kept in FILE.rows.partial until the table is complete.");
-  declare(*verb, *o, *common);
+  add_signature_options(*verb, *o, *common);
   verb->callback([o, common, exit_with] {
     if (const auto said = check_directions(*o); !said)
       return exit_with(report(said.error()));

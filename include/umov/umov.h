@@ -99,6 +99,7 @@
 #include <umov/jobs/index_range.h>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/library.h>
+#include <umov/jobs/material_check.h>
 #include <umov/jobs/material_page.h>
 #include <umov/jobs/material_tables.h>
 #include <umov/jobs/measurement_files.h>
@@ -119,11 +120,15 @@
 #include <umov/kernel/lobe.h>
 #include <umov/light/abundances.h>
 #include <umov/light/articulated_engine.h>
+#include <umov/light/between_light.h>
+#include <umov/light/blocks.h>
 #include <umov/light/engine.h>
 #include <umov/light/engine_audit.h>
 #include <umov/light/glints.h>
+#include <umov/light/instruction_set.h>
 #include <umov/light/integrator.h>
 #include <umov/light/light_model.h>
+#include <umov/light/light_sums.h>
 #include <umov/light/light_task.h>
 #include <umov/light/poses.h>
 #include <umov/light/stokes_table.h>

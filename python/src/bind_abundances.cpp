@@ -12,7 +12,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 #include <umov/jobs/requests.h>
-#include <umov/light/engine.h>
+#include <umov/light/light_sums.h>
 #include <umov/light/poses.h>
 #include <umov/scene/pose.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 using nb::literals::operator""_a;
 
-/// The engine of one object, and the sums of poses that it was asked for.
+/// One object, and the sums of poses that it was asked for.
 class Sums {
 public:
   Sums(const Scenario &scenario, const std::vector<Scenario> &others,
@@ -31,28 +31,29 @@ public:
       return make(scenario, others, options, diagnostics);
     });
     attention.settle(false);
-    engine_ = std::make_unique<Engine>(take(std::move(made)));
+    light_ = take(std::move(made));
     sun_radius_rad_ = scenario.has_solar_disk ? sun_radius_at_1au_rad : 0;
   }
 
-  [[nodiscard]] const Engine &engine() const { return *engine_; }
+  [[nodiscard]] const LightSums &light() const { return *light_; }
   [[nodiscard]] double sun_radius_rad() const { return sun_radius_rad_; }
 
 private:
-  static Result<Engine> make(const Scenario &scenario, const std::vector<Scenario> &others,
-                             const jobs::JobOptions &options, Diagnostics &diagnostics) {
+  static Result<std::unique_ptr<LightSums>> make(const Scenario &scenario,
+                                                 const std::vector<Scenario> &others,
+                                                 const jobs::JobOptions &options,
+                                                 Diagnostics &diagnostics) {
     UMOV_ASSIGN(object, load_object(scenario, 0, {}, diagnostics));
-    EngineOptions how;
+    SumsOptions how;
     how.mask_cache = options.mask_cache;
     how.threads = options.threads;
-    how.is_lazy = true;
     for (const Scenario &other : others) {
       UMOV_ASSIGN(loaded, load_object(other, 0, {}, diagnostics));
       how.hypotheses.push_back(std::move(loaded.scene));
     }
-    return Engine(object.scene, how);
+    return make_sums(object.scene, how);
   }
-  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<LightSums> light_;
   double sun_radius_rad_ = 0;
 };
 
@@ -83,7 +84,7 @@ Abundances sums_of(const Sums &sums, const Vectors &sun, const Vectors &observer
   auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &) -> Result<Abundances> {
     UMOV_ASSIGN(poses, poses_from(sun, observer, sums.sun_radius_rad()));
     Abundances out;
-    UMOV_TRY(sums.engine().abundances(poses, out.table, threads));
+    UMOV_TRY(sums.light().evaluate(poses, out.table, threads));
     return out;
   });
   attention.settle(false);
@@ -101,7 +102,7 @@ nb::tuple applied(const Sums &sums, const Abundances &abundances, const Scenario
   auto made =
       attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Done> {
         UMOV_ASSIGN(object, load_object(scenario, 0, {}, diagnostics));
-        UMOV_ASSIGN(tables, sums.engine().tables_for(object.scene));
+        UMOV_ASSIGN(tables, sums.light().tables_for(object.scene));
         Done out;
         tables.apply(abundances.table, out.table, threads);
         out.diffuse_error = tables.diffuse_error();
@@ -207,7 +208,7 @@ void bind_abundances(nb::module_ &m) {
                    nb::sig("def columns(self) -> list[tuple[str, float, list[str]]]"))
       .def_prop_ro("state", &state_of, nb::sig("def state(self) -> tuple[typing.Any, ...]"))
       .def_static("restore", &restored);
-  nb::class_<Sums>(m, "Sums", "An engine that is asked for sums.")
+  nb::class_<Sums>(m, "Sums", "An object that is asked for sums.")
       .def(nb::init<const Scenario &, const std::vector<Scenario> &, const jobs::JobOptions &,
                     nb::handle>(),
            "scenario"_a, "others"_a, "options"_a, "watch"_a.none())

@@ -11,6 +11,7 @@
 #include <limits>
 #include <map>
 #include <umov/light/engine_audit.h>
+#include <umov/light/instruction_set.h>
 #include <umov/light/light_model.h>
 #include <umov/light/poses.h>
 

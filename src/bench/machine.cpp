@@ -7,7 +7,7 @@
 #include <thread>
 #include <umov/bench/bench.h>
 #include <umov/core/version.h>
-#include <umov/light/engine.h>
+#include <umov/light/instruction_set.h>
 
 namespace umov::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <umov/core/files.h>
 #include <umov/io/elements_file.h>
-#include <umov/light/engine.h>
+#include <umov/light/instruction_set.h>
 #include <umov/orbit/sgp4.h>
 
 namespace umov::bench {

@@ -1,5 +1,6 @@
 #include <umov/inverse/health.h>
 
+#include "inverse/dense.h"
 #include "inverse/whitened.h"
 
 #include <algorithm>
@@ -32,11 +33,10 @@ struct Fit {
 
 Fit fit_of(const MatrixXd &columns, const VectorXd &right, const VectorXd &prior_weight) {
   Fit out;
-  MatrixXd normal = columns.transpose() * columns;
+  MatrixXd normal = inverse::gram(columns);
   normal.diagonal() += prior_weight;
-  const auto solver = normal.completeOrthogonalDecomposition();
-  out.covariance = solver.pseudoInverse();
-  out.x = out.covariance * (columns.transpose() * right);
+  out.covariance = inverse::pseudo_inverse(normal);
+  out.x = out.covariance * inverse::transposed_times(columns, right);
   out.chi2 = (right - columns * out.x).squaredNorm() +
              (prior_weight.array() * out.x.array().square()).sum();
   return out;

@@ -1,35 +1,37 @@
 #include <umov/inverse/null_test.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 
 namespace umov {
 
 NullTest null_test(const ObservedCurve &curve, const std::vector<double> &model_u) {
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  double qq = 0, qu = 0, uu = 0; // of the normal equations
+  double of_q = 0, of_u = 0;
   NullTest out;
   for (std::size_t k = 0; k < curve.samples.size(); ++k) {
     const ObservedSample &s = curve.samples[k];
     if (std::isnan(s.u) || !(s.cov_uu > 0))
       continue;
     const double twice = 2 * curve.epochs[s.epoch].scattering_axis_rad;
-    const Eigen::Vector2d row(-std::sin(twice), std::cos(twice));
+    const double by_q = -std::sin(twice), by_u = std::cos(twice);
     const double u = s.u - (model_u.empty() ? 0 : model_u[k]);
-    normal += row * row.transpose() / s.cov_uu;
-    right += row * u / s.cov_uu;
+    qq += by_q * by_q / s.cov_uu;
+    qu += by_q * by_u / s.cov_uu;
+    uu += by_u * by_u / s.cov_uu;
+    of_q += by_q * u / s.cov_uu;
+    of_u += by_u * u / s.cov_uu;
     ++out.measurements;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(normal);
-  if (out.measurements == 0 || !(eigen.eigenvalues()[0] > 1e-9 * eigen.eigenvalues()[1]))
+  // Less than 1e-9 of the larger eigenvalue: one direction is all that was measured.
+  const double middle = (qq + uu) / 2, apart = std::hypot((qq - uu) / 2, qu);
+  if (out.measurements == 0 || !(middle - apart > 1e-9 * (middle + apart)))
     return out;
-  const Eigen::Matrix2d covariance = normal.inverse();
-  const Eigen::Vector2d best = covariance * right;
-  out.q0 = best[0];
-  out.u0 = best[1];
-  out.q0_sd = std::sqrt(covariance(0, 0));
-  out.u0_sd = std::sqrt(covariance(1, 1));
-  out.chi2_gain = right.dot(best);
+  const double determinant = qq * uu - qu * qu;
+  out.q0 = (uu * of_q - qu * of_u) / determinant;
+  out.u0 = (qq * of_u - qu * of_q) / determinant;
+  out.q0_sd = std::sqrt(uu / determinant);
+  out.u0_sd = std::sqrt(qq / determinant);
+  out.chi2_gain = of_q * out.q0 + of_u * out.u0;
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include <umov/inverse/pose_search.h>
 
+#include "inverse/dense.h"
 #include "inverse/posterior.h"
 
 #include <algorithm>
@@ -93,10 +94,10 @@ std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t 
 std::vector<double> covariance_of(const Eigen::MatrixXd &information, double span_s) {
   // No unknown is less certain than "anything", 0.8 rad either way.
   constexpr double widest = 0.8;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-  const Eigen::VectorXd values = eigen.eigenvalues().cwiseMax(1 / (widest * widest));
-  Eigen::MatrixXd out =
-      eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
+  const inverse::SymmetricEigen eigen = inverse::symmetric_eigen(information);
+  const Eigen::VectorXd values = eigen.values.cwiseMax(1 / (widest * widest));
+  Eigen::MatrixXd out = inverse::product(eigen.vectors * values.cwiseInverse().asDiagonal(),
+                                         eigen.vectors.transpose());
   for (Eigen::Index k = 3; k < out.rows(); ++k) {
     out.row(k) /= span_s;
     out.col(k) /= span_s;
@@ -106,10 +107,7 @@ std::vector<double> covariance_of(const Eigen::MatrixXd &information, double spa
 
 double log_det(const PoseMode &mode) {
   const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(mode.covariance.size())));
-  return Eigen::Map<const Eigen::MatrixXd>(mode.covariance.data(), n, n)
-      .llt()
-      .matrixL()
-      .toDenseMatrix()
+  return inverse::cholesky_root(Eigen::Map<const Eigen::MatrixXd>(mode.covariance.data(), n, n))
       .diagonal()
       .array()
       .log()
@@ -297,8 +295,7 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &lik
 double PoseMode::sd_rad() const {
   const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(covariance.size())));
   const Eigen::MatrixXd all = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
-  const Eigen::Matrix3d attitude = all.topLeftCorner(3, 3);
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(attitude).eigenvalues()[2]);
+  return std::sqrt(inverse::symmetric_eigen(all.topLeftCorner(3, 3)).values[2]);
 }
 
 Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options) {

@@ -1,5 +1,7 @@
 #include "inverse/posterior.h"
 
+#include "inverse/dense.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -40,8 +42,8 @@ Proposal proposal_of(const PoseMode &mode, double span_s) {
   out.centre = mode.turning;
   constexpr double wider = 1.3; // tails that are too short cost more than ones too long
   const Eigen::MatrixXd covariance = in_steps(mode.covariance, span_s) * wider;
-  out.root = covariance.llt().matrixL();
-  out.inverse_root = out.root.inverse();
+  out.root = inverse::cholesky_root(covariance);
+  out.inverse_root = inverse::inverse_of(out.root);
   const auto n = static_cast<double>(covariance.rows());
   out.log_norm = std::lgamma((tail + n) / 2) - std::lgamma(tail / 2) - n / 2 * std::log(tail * pi) -
                  out.root.diagonal().array().log().sum();

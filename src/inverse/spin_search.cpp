@@ -1,5 +1,6 @@
 #include <umov/inverse/spin_search.h>
 
+#include "inverse/dense.h"
 #include "inverse/posterior.h"
 
 #include <algorithm>
@@ -173,7 +174,8 @@ void move(PoseMode &mode, double seconds) {
     jacobian.col(k).head(3) << turn.x, turn.y, turn.z;
   }
   const Eigen::Map<Eigen::MatrixXd> covariance(mode.covariance.data(), 6, 6);
-  const Eigen::MatrixXd at_end = jacobian * covariance * jacobian.transpose();
+  const Eigen::MatrixXd at_end =
+      inverse::product(inverse::product(jacobian, covariance), jacobian.transpose());
   std::copy_n(at_end.data(), at_end.size(), mode.covariance.begin());
   mode.turning = end;
 }

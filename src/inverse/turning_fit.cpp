@@ -1,5 +1,7 @@
 #include "inverse/turning_fit.h"
 
+#include "inverse/dense.h"
+
 #include <algorithm>
 #include <cmath>
 #include <umov/inverse/attitude_grid.h>
@@ -57,8 +59,8 @@ bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
           compared[k * static_cast<std::size_t>(free) + static_cast<std::size_t>(p)];
       jacobian.col(p) = (Residuals(other.residuals.data(), rows) - r) / h;
     }
-    one.fit.information = jacobian.transpose() * jacobian;
-    one.gradient = jacobian.transpose() * r;
+    one.fit.information = gram(jacobian);
+    one.gradient = transposed_times(jacobian, r);
   }
   return true;
 }
@@ -68,7 +70,7 @@ Step step_of(const Running &one) {
   const double largest = std::max(a.diagonal().maxCoeff(), 1e-12);
   Eigen::MatrixXd damped = a;
   damped.diagonal() += one.damping * (a.diagonal().array() + 1e-6 * largest).matrix();
-  Step step = -damped.ldlt().solve(one.gradient);
+  Step step = -solve_symmetric(damped, one.gradient);
   constexpr double longest = 0.15; // [rad]: beyond it the light is another one
   const double length = step.norm();
   return length > longest ? Step(step * (longest / length)) : step;

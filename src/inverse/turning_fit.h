@@ -1,7 +1,7 @@
 #pragma once
 // Private: many least-squares fits of turnings at once.
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <umov/inverse/curve_model.h>
 #include <vector>
 

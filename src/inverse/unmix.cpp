@@ -1,8 +1,8 @@
 #include <umov/inverse/unmix.h>
 
+#include "inverse/dense.h"
 #include "inverse/whitened.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,7 +29,7 @@ VectorXd solve_active(const MatrixXd &a, const VectorXd &b, const std::vector<bo
   MatrixXd part(a.rows(), static_cast<Index>(at.size()));
   for (std::size_t k = 0; k < at.size(); ++k)
     part.col(static_cast<Index>(k)) = a.col(at[k]);
-  const VectorXd x = part.colPivHouseholderQr().solve(b);
+  const VectorXd x = inverse::least_squares(part, b);
   for (std::size_t k = 0; k < at.size(); ++k)
     out[at[k]] = x[static_cast<Index>(k)];
   return out;
@@ -39,9 +39,9 @@ VectorXd nnls(const MatrixXd &a, const VectorXd &b) {
   const auto n = static_cast<std::size_t>(a.cols());
   std::vector<bool> is_active(n, false);
   VectorXd x = VectorXd::Zero(a.cols());
-  const double tolerance = 1e-10 * (a.transpose() * b).cwiseAbs().maxCoeff();
+  const double tolerance = 1e-10 * inverse::transposed_times(a, b).cwiseAbs().maxCoeff();
   for (std::size_t round = 0; round < 3 * n + 10; ++round) {
-    const VectorXd gradient = a.transpose() * (b - a * x);
+    const VectorXd gradient = inverse::transposed_times(a, b - a * x);
     Index best = -1;
     for (Index k = 0; k < a.cols(); ++k)
       if (!is_active[static_cast<std::size_t>(k)] && gradient[k] > tolerance &&
@@ -92,7 +92,7 @@ std::vector<std::size_t> groups_of(const Whitened &w, double scale) {
 double condition_of(const MatrixXd &columns) {
   MatrixXd unit = columns;
   unit.colwise().normalize();
-  const auto values = unit.jacobiSvd().singularValues();
+  const VectorXd values = inverse::singular_values(unit);
   return values[0] / std::max(values[values.size() - 1], 1e-300);
 }
 
@@ -140,8 +140,7 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
   }
   const VectorXd x = nnls(joined, w.right);
   const double sum = std::max(x.sum(), 1e-300);
-  const MatrixXd covariance =
-      (joined.transpose() * joined).completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd covariance = inverse::pseudo_inverse(inverse::gram(joined));
   for (Index g = 0; g < x.size(); ++g) {
     // f = x_g / sum x, to first order.
     VectorXd slope = VectorXd::Constant(x.size(), -x[g] / (sum * sum));

@@ -1,7 +1,7 @@
 #pragma once
 // Private: a curve and light that adds up, as rows of equal weight.
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <umov/inverse/unmix.h>
 
 namespace umov::inverse {

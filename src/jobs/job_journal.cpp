@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
-#include <umov/light/engine.h>
+#include <umov/light/instruction_set.h>
 
 namespace umov::jobs {
 

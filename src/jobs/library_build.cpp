@@ -11,7 +11,7 @@
 #include <umov/core/version.h>
 #include <umov/io/signature_file.h>
 #include <umov/jobs/pose_light.h>
-#include <umov/light/engine.h>
+#include <umov/light/light_sums.h>
 
 namespace umov::jobs {
 namespace {
@@ -31,7 +31,8 @@ struct Making {
 class SummedLight {
 public:
   SummedLight(const Scene &scene, const JobOptions &options, double accuracy)
-      : engine_(scene, engine_options(options, accuracy)), scene_(scene), options_(options) {}
+      : sums_(make_sums(scene, sums_options(options, accuracy))), scene_(scene), options_(options) {
+  }
 
   /// False where this scene has no sums, or it was stopped.
   bool make(std::size_t cells, const Monitor &monitor, Making &out, StokesTable &light) const;
@@ -39,16 +40,15 @@ public:
   bool colour(const SignatureView &kept, StokesTable &light) const;
 
 private:
-  static EngineOptions engine_options(const JobOptions &options, double accuracy) {
-    EngineOptions out;
-    out.threads = options.threads;
-    out.masks = masks_for(accuracy);
-    out.is_lazy = true;
+  static SumsOptions sums_options(const JobOptions &options, double accuracy) {
+    SumsOptions out;
+    out.accuracy = accuracy;
     out.mask_cache = options.mask_cache;
+    out.threads = options.threads;
     return out;
   }
   [[nodiscard]] static std::vector<std::string> words_of(const AbundanceTable &sums);
-  Engine engine_;
+  std::unique_ptr<LightSums> sums_;
   const Scene &scene_;
   const JobOptions &options_;
 };
@@ -76,7 +76,7 @@ constexpr std::size_t block = 1u << 14; // poses whose sums are held at a time
 
 bool SummedLight::make(std::size_t cells, const Monitor &monitor, Making &out,
                        StokesTable &light) const {
-  const auto tables = engine_.tables_for(scene_);
+  const auto tables = sums_->tables_for(scene_);
   if (!tables)
     return false;
   const std::size_t pairs = signature_pairs(cells);
@@ -85,7 +85,7 @@ bool SummedLight::make(std::size_t cells, const Monitor &monitor, Making &out,
   for (std::size_t begin = 0; begin < pairs && !monitor.is_cancelled(); begin += block) {
     const std::size_t end = std::min(begin + block, pairs);
     const auto poses = signature_poses(cells, begin, end, out.text.sun_radius_rad);
-    if (!engine_.abundances(poses, sums, options_.threads))
+    if (!sums_->evaluate(poses, sums, options_.threads))
       return false;
     tables->apply(sums, part, options_.threads);
     append(part, light);
@@ -93,16 +93,16 @@ bool SummedLight::make(std::size_t cells, const Monitor &monitor, Making &out,
       out.sums.push_back(static_cast<float>(sum));
   }
   out.text.columns = words_of(sums);
-  engine_.keep_masks();
+  sums_->keep_masks();
   return !monitor.is_cancelled();
 }
 
 bool SummedLight::colour(const SignatureView &kept, StokesTable &light) const {
-  const auto tables = engine_.tables_for(scene_);
+  const auto tables = sums_->tables_for(scene_);
   const std::size_t cells = kept.signature.cells;
   AbundanceTable sums;
   const Pose one = signature_poses(cells, 1, 2, kept.text.sun_radius_rad).front();
-  if (!tables || kept.text.columns.empty() || !engine_.abundances({&one, 1}, sums, 1) ||
+  if (!tables || kept.text.columns.empty() || !sums_->evaluate({&one, 1}, sums, 1) ||
       words_of(sums) != kept.text.columns)
     return false;
   const std::size_t pairs = signature_pairs(cells), columns = kept.text.columns.size();

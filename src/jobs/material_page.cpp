@@ -14,7 +14,6 @@ namespace umov::jobs {
 namespace {
 
 constexpr double rad = pi / 180;
-const char *const dashes[] = {"solid", "dash", "dot", "dashdot"};
 
 /// One material with its bands.
 struct Subject {
@@ -39,7 +38,7 @@ std::vector<PlotLine> lines_over(const std::vector<Subject> &subjects, const std
   for (const Subject &s : subjects)
     for (std::size_t b = 0; b < s.bands.size(); ++b) {
       PlotLine line{
-          s.name + " " + s.bands[b].name, x, {}, subjects.size() > 1 ? s.colour : b, dashes[b % 4]};
+          s.name + " " + s.bands[b].name, x, {}, subjects.size() > 1 ? s.colour : b, plot_dash(b)};
       for (const double at : x)
         line.y.push_back(value(s, b, at));
       out.push_back(std::move(line));

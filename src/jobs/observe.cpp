@@ -187,15 +187,15 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
   const std::size_t most =
       o.makes_frames ? std::clamp<std::size_t>(8'000'000 / pixels, 1, 4096) : 4096;
   const std::size_t times = std::size_t{65'536} * 80 / (80 + wavelengths);
-  const std::size_t block =
+  const std::size_t at_once =
       std::clamp<std::size_t>(times / std::max<std::size_t>(1, s.nodes.size()), 1, most);
   FrameTroubles troubles;
   std::size_t glaring = 0; // exposures in which the sky is far brighter than the object
-  for (std::size_t begin = 0; begin < exposures.size(); begin += block) {
+  for (std::size_t begin = 0; begin < exposures.size(); begin += at_once) {
     if (monitor.is_cancelled())
       return fail(ErrorCode::Interrupted, "stopped; nothing was written");
     const std::span<const Exposure> part(exposures.data() + begin,
-                                         std::min(block, exposures.size() - begin));
+                                         std::min(at_once, exposures.size() - begin));
     const auto lit_from = std::chrono::steady_clock::now();
     UMOV_ASSIGN(lit, light_of(s, part, monitor));
     out.light_s += seconds_since(lit_from);

@@ -15,10 +15,8 @@
 namespace umov::jobs {
 namespace {
 
-constexpr const char *dashes[] = {"solid", "dash", "dot", "dashdot"};
-
 PlotLine line(std::string name, std::size_t number, bool has_markers) {
-  return {std::move(name), {}, {}, number, dashes[number % std::size(dashes)], {}, has_markers, {}};
+  return {std::move(name), {}, {}, number, plot_dash(number), {}, has_markers, {}};
 }
 
 /// One line for each name, in the order in which they come.

@@ -95,8 +95,31 @@ Result<std::vector<Trajectory>> read_orbits(const PassesRequest &request, const 
   return std::vector<Trajectory>{orbit};
 }
 
-/// Of one object; empty where the job was stopped before its turn.
-using Found = std::optional<Result<SitePasses>>;
+/// The passes of one object, and the light of each where a model says what it is.
+struct ObjectPasses {
+  Result<SitePasses> geometry;
+  std::vector<PassBrightness> light;
+};
+/// Empty where the job was stopped before the object's turn.
+using Found = std::optional<ObjectPasses>;
+
+ObjectPasses search_one(const PassesRequest &request, const Trajectory &orbit,
+                        const PassModels &models, const std::atomic<bool> *cancel) {
+  std::vector<PassBrightness> lights;
+  PassSearch search{request.altitude_min, request.sun_altitude_max, request.shadow, {}};
+  if (const PassLight *model = models.of(orbit.norad_cat_id()))
+    search.on_pass = [&](const SitePass &,
+                         std::span<const ObservingGeometry> samples) -> Result<void> {
+      UMOV_ASSIGN(light, model->describe(orbit, request.site, request.shadow, models.band(),
+                                         samples, cancel));
+      lights.push_back(std::move(light));
+      return {};
+    };
+  auto geometry = find_passes(orbit, request.site, request.start, request.stop, search);
+  if (geometry)
+    lights.resize(geometry->passes.size());
+  return {std::move(geometry), std::move(lights)};
+}
 
 std::vector<Found> search_all(const PassesRequest &request, const std::vector<Trajectory> &orbits,
                               const PassModels &models, unsigned threads, const Monitor &monitor) {
@@ -107,14 +130,9 @@ std::vector<Found> search_all(const PassesRequest &request, const std::vector<Tr
   parallel_for(orbits.size(), threads, [&](std::size_t i) {
     if (monitor.is_cancelled())
       return;
-    PassSearch search{request.altitude_min, request.sun_altitude_max, request.shadow, {}};
-    if (const PassLight *light = models.of(orbits[i].norad_cat_id()))
-      search.on_pass = [&, light](SitePass &pass, std::span<const ObservingGeometry> samples) {
-        return light->describe(orbits[i], request.site, request.shadow, models.band(), samples,
-                               pass, monitor.cancel);
-      };
-    out[i] = find_passes(orbits[i], request.site, request.start, request.stop, search);
-    if (!*out[i] && out[i]->error().code == ErrorCode::Interrupted)
+    out[i] = search_one(request, orbits[i], models, monitor.cancel);
+    const Result<SitePasses> &geometry = out[i]->geometry;
+    if (!geometry && geometry.error().code == ErrorCode::Interrupted)
       return out[i].reset(); // as if it had not been begun
     const WriteLock guard(lock);
     monitor.advance("objects", ++done, orbits.size());
@@ -159,14 +177,15 @@ SearchTally gather(const PassesRequest &request, std::vector<Found> &&all, Passe
     if (!all[i])
       continue;
     ++tally.searched;
-    if (const std::string problem = problem_of(*all[i]); !problem.empty())
+    Result<SitePasses> &geometry = all[i]->geometry;
+    if (const std::string problem = problem_of(geometry); !problem.empty())
       if (tally.failed++ < told_max)
         diagnostics.warn(problem);
-    if (!*all[i])
+    if (!geometry)
       continue;
-    for (SitePass &pass : all[i]->value().passes)
-      if (!request.is_visible_only || pass.visible_s > 0)
-        out.found.push_back({i, std::move(pass)});
+    for (std::size_t k = 0; k < geometry->passes.size(); ++k)
+      if (SitePass &pass = geometry->passes[k]; !request.is_visible_only || pass.visible_s > 0)
+        out.found.push_back({i, std::move(pass), std::move(all[i]->light[k])});
   }
   if (tally.failed > told_max)
     diagnostics.warn(fmt::format("{} more objects like these", tally.failed - told_max));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <type_traits>
 #include <umov/core/text.h>
 #include <umov/observation/epochs.h>
 #include <umov/photometry/radiometry.h>
@@ -35,6 +36,7 @@ std::string shadow_time(const SitePass &pass, bool is_entry) {
 
 using E = const Trajectory &;
 using P = const SitePass &;
+using L = const PassBrightness &;
 
 /// Columns of a value for each pass.
 class PassColumns {
@@ -59,7 +61,10 @@ private:
   template <class Value, class Take> std::vector<Value> values(Take take) const {
     std::vector<Value> out;
     for (const ObjectPass &one : result_.found)
-      out.push_back(take(result_.orbits[one.object], one.pass));
+      if constexpr (std::is_invocable_v<Take, L>)
+        out.push_back(take(one.light));
+      else
+        out.push_back(take(result_.orbits[one.object], one.pass));
     return out;
   }
   const PassesResult &result_;
@@ -109,27 +114,27 @@ void PassColumns::add_light() {
   const std::string unit =
       result_.magnitudes == MagnitudeSystem::Vega ? "mag" : "mag(" + system + ")";
   number("mag_min", unit.c_str(), "brightest while sunlit; empty where no model is given",
-         [](E, P p) { return p.magnitude_min; });
+         [](L l) { return l.magnitude_min; });
   number("mag_max", unit.c_str(),
          fmt::format("faintest while sunlit; {:g} stands for fainter", faintest_magnitude).c_str(),
-         [](E, P p) { return p.magnitude_max; });
+         [](L l) { return l.magnitude_max; });
   if (result_.has_air) {
     number("mag_obs_min", unit.c_str(), "brightest while sunlit, behind the air",
-           [](E, P p) { return p.magnitude_obs_min; });
+           [](L l) { return l.magnitude_obs_min; });
     number("mag_obs_max", unit.c_str(), "faintest while sunlit, behind the air",
-           [](E, P p) { return p.magnitude_obs_max; });
+           [](L l) { return l.magnitude_obs_max; });
   }
   number("p_max", "", "largest degree of linear polarization while sunlit",
-         [](E, P p) { return p.p_max; });
-  text("glints", "times of glints, joined by semicolons", [](E, P p) {
+         [](L l) { return l.p_max; });
+  text("glints", "times of glints, joined by semicolons", [](L l) {
     std::string out;
-    for (const PassGlint &glint : p.glints)
+    for (const PassGlint &glint : l.glints)
       out += (out.empty() ? "" : ";") + to_iso(glint.time);
     return out;
   });
-  text("glint_widths", "how long each lasts [s]", [](E, P p) {
+  text("glint_widths", "how long each lasts [s]", [](L l) {
     std::string out;
-    for (const PassGlint &glint : p.glints)
+    for (const PassGlint &glint : l.glints)
       out += fmt::format("{}{:.3f}", out.empty() ? "" : ";", glint.width_s);
     return out;
   });

@@ -54,7 +54,7 @@ bool is_slow(const Periodogram &found, const std::vector<PeriodPeak> &peaks) {
 }
 
 /// Rows of the answer, column by column.
-struct Rows {
+struct PeriodRows {
   std::vector<std::string> time, band;
   std::vector<std::int64_t> epochs, rank;
   std::vector<double> span, period, error, power, false_alarm;
@@ -74,7 +74,7 @@ struct Rows {
   }
 };
 
-Table table_of(Rows &&rows, const std::string &path) {
+Table table_of(PeriodRows &&rows, const std::string &path) {
   Table out;
   out.note("what", "periods that the light of " + path + " shows, by Lomb-Scargle");
   out.note("synodic", "they are of the light as the observer saw it: a spin is off by the turn of "
@@ -112,7 +112,7 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
                   {observations.path});
     bands = {request.band};
   }
-  Rows rows;
+  PeriodRows rows;
   if (!(request.shortest_s < request.longest_s))
     return fail(ErrorCode::Usage, fmt::format("periods from {:g} to {:g} s: none lies between",
                                               request.shortest_s, request.longest_s));

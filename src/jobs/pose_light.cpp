@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
+#include <umov/light/blocks.h>
 
 namespace umov::jobs {
 namespace {
@@ -122,14 +123,7 @@ bool PoseLight::evaluate(std::span<const Pose> poses, StokesTable &out,
   return state_->model->evaluate(poses, state_->parts->of(poses), out, task);
 }
 
-std::size_t PoseLight::block() const {
-  const LightMethod method = state_->model->facts().method;
-  if (state_->options.bounces > 1 && state_->options.between == BetweenMethod::Chains)
-    return 4096;
-  if (state_->options.bounces > 1 || method == LightMethod::Rays)
-    return 512;
-  return method == LightMethod::Auto ? 4096 : 1u << 17;
-}
+std::size_t PoseLight::block() const { return list_block(*state_->model, state_->options); }
 
 double PoseLight::sun_radius_rad() const { return state_->sun_radius_rad; }
 const LightModel &PoseLight::model() const { return *state_->model; }

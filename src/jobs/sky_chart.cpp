@@ -31,7 +31,8 @@ void add_points(const Trajectory &orbit, const SitePass &pass, const PassesReque
   }
 }
 
-SkyTrack track_of(const Trajectory &orbit, const SitePass &pass, const PassesRequest &request) {
+SkyTrack track_of(const Trajectory &orbit, const ObjectPass &found, const PassesRequest &request) {
+  const SitePass &pass = found.pass;
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const bool is_lit = pass.sunlit_share > 0;
   SkyTrack out;
@@ -41,8 +42,8 @@ SkyTrack track_of(const Trajectory &orbit, const SitePass &pass, const PassesReq
   out.culmination = to_iso(pass.culmination.time);
   out.set = pass.is_set_cut ? "" : to_iso(pass.set.time);
   out.altitude_max = pass.culmination.altitude.degrees();
-  out.magnitude_min = pass.magnitude_min;
-  out.magnitude_max = pass.magnitude_max;
+  out.magnitude_min = found.light.magnitude_min;
+  out.magnitude_max = found.light.magnitude_max;
   out.phase_min = is_lit ? pass.phase_min.degrees() : none;
   out.phase_max = is_lit ? pass.phase_max.degrees() : none;
   out.visible_s = pass.visible_s;
@@ -58,8 +59,8 @@ std::vector<std::size_t> chosen(const PassesResult &result) {
   if (out.size() <= passes_max)
     return out;
   const auto rank = [&](std::size_t k) {
-    const SitePass &pass = result.found[k].pass;
-    const double faint = std::isnan(pass.magnitude_min) ? 99 : pass.magnitude_min;
+    const auto &[object, pass, light] = result.found[k];
+    const double faint = std::isnan(light.magnitude_min) ? 99 : light.magnitude_min;
     return std::tuple(faint, pass.visible_s > 0 ? 0 : 1, -pass.culmination.altitude.degrees());
   };
   std::ranges::stable_sort(out, [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
@@ -78,8 +79,8 @@ std::string sky_chart(const PassesRequest &request, const PassesResult &result) 
   bool has_magnitudes = false;
   for (const std::size_t k : drawn) {
     const ObjectPass &one = result.found[k];
-    page.tracks.push_back(track_of(result.orbits[one.object], one.pass, request));
-    has_magnitudes = has_magnitudes || !std::isnan(one.pass.magnitude_min);
+    page.tracks.push_back(track_of(result.orbits[one.object], one, request));
+    has_magnitudes = has_magnitudes || !std::isnan(one.light.magnitude_min);
   }
   page.model = has_magnitudes ? result.model : "";
   page.notes = {

@@ -8,27 +8,11 @@
 #include <fmt/format.h>
 #include <umov/core/parallel.h>
 #include <umov/frames/sky.h>
+#include <umov/light/blocks.h>
 #include <umov/photometry/radiometry.h>
 
 namespace umov {
 namespace {
-
-/// Rows that are lit together: also the grain of progress, cancelling and stopping. Rays take
-/// tenths of a second each, masks microseconds; with light between surfaces the rows of a block
-/// share their paths.
-std::size_t grain_of(const LightModel &light, std::size_t bounces) {
-  if (bounces > 1)
-    return 256;
-  switch (light.facts().method) {
-  case LightMethod::Rays:
-    return 32;
-  case LightMethod::Auto:
-    return 512;
-  case LightMethod::Masks:
-    return 16'384;
-  }
-  return 32;
-}
 
 /// Fills the rows of a curve, block by block.
 class RowMaker {
@@ -204,7 +188,7 @@ std::size_t RowMaker::fill_block(Journal::Block block, std::size_t begin, std::s
 
 std::size_t RowMaker::fill(const Progress &progress, std::optional<Error> &stopped) {
   const std::size_t rows = kept_.geometry.size();
-  const std::size_t grain = grain_of(light_, request_.light.bounces);
+  const std::size_t grain = series_block(light_, request_.light);
   for (std::size_t begin = 0; begin < rows; begin += grain) {
     const std::size_t count = std::min(grain, rows - begin);
     std::optional<Error> here; // the selection may have stopped before, at a later row
@@ -314,7 +298,7 @@ PassCut cut_passes(const KeptEpochs &all, std::size_t first, std::size_t count,
     (p < first ? begin : rows) += all.passes[p].rows;
   std::size_t from = begin, behind = begin + rows;
   if (request.light.bounces > 1) { // a block shares its paths: it is lit as a whole
-    const std::size_t grain = grain_of(light, request.light.bounces);
+    const std::size_t grain = series_block(light, request.light);
     from = begin / grain * grain;
     behind = std::min(all.geometry.size(), (behind + grain - 1) / grain * grain);
   }

@@ -94,7 +94,7 @@ namespace {
 /// Takes one sample of light into the pass's ranges, as far as it is known. `share`: of it that the
 /// air lets through; NaN: not asked for.
 void take(const BandResult &light, const ObservingGeometry &g, const PhotometricBand &band,
-          double share, SitePass &pass) {
+          double share, PassBrightness &pass) {
   const auto &[s, half_width] = light;
   const ObservedLight observed =
       observed_light(s.i, band, {g.sun_distance_km, g.range_km, g.sunlit});
@@ -114,9 +114,10 @@ void take(const BandResult &light, const ObservingGeometry &g, const Photometric
 } // namespace
 
 /// Glints of flats that give more than half of the light then; their geometries join `lit`.
-Result<void> PassLight::add_glints(const State &state, const Track &track,
-                                   const std::atomic<bool> *cancel,
-                                   std::vector<ObservingGeometry> &lit, SitePass &pass) {
+Result<std::vector<PassGlint>> PassLight::glints_of(const State &state, const Track &track,
+                                                    const std::atomic<bool> *cancel,
+                                                    std::vector<ObservingGeometry> &lit) {
+  std::vector<PassGlint> out;
   const Epoch<Utc> origin = lit.front().time;
   const std::vector<Joint> &joints = state.light->joints();
   const double last_s = seconds_between(lit.back().time, origin);
@@ -148,22 +149,24 @@ Result<void> PassLight::add_glints(const State &state, const Track &track,
       return fail(ErrorCode::Interrupted, stopped);
     if (!(point.geometry.sunlit > 0) || !(table.glint_share[0] > 0.5))
       continue;
-    pass.glints.push_back({point.geometry.time, glint.width_s});
+    out.push_back({point.geometry.time, glint.width_s});
     lit.push_back(point.geometry);
   }
-  return {};
+  return out;
 }
 
-Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
-                                 std::size_t band, std::span<const ObservingGeometry> samples,
-                                 SitePass &pass, const std::atomic<bool> *cancel) const {
+Result<PassBrightness> PassLight::describe(const Trajectory &orbit, const Site &site,
+                                           ShadowModel shadow, std::size_t band,
+                                           std::span<const ObservingGeometry> samples,
+                                           const std::atomic<bool> *cancel) const {
   const State &state = *state_;
+  PassBrightness pass;
   std::vector<ObservingGeometry> lit;
   for (const ObservingGeometry &g : samples)
     if (g.sunlit > 0)
       lit.push_back(g);
   if (lit.empty())
-    return {};
+    return pass;
   if (!state.by_phase.empty()) {
     for (const ObservingGeometry &g : lit) {
       const double at = g.phase_angle.degrees() / phase_step_deg;
@@ -174,12 +177,13 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
       take({a * (1 - share) + b * share, {}}, g, state.bands[band],
            std::numeric_limits<double>::quiet_NaN(), pass);
     }
-    return {};
+    return pass;
   }
   UMOV_ASSIGN(track, Track::make({orbit, site, shadow, state.attitude, state.joints,
                                   state.has_solar_disk}));
-  UMOV_TRY(
-      add_glints(state, track, cancel, lit, pass)); // first: their peaks count for the magnitudes
+  // First: their peaks count for the magnitudes.
+  UMOV_ASSIGN(glints, glints_of(state, track, cancel, lit));
+  pass.glints = std::move(glints);
   std::vector<Pose> poses;
   std::vector<double> angles;
   for (const ObservingGeometry &g : lit) {
@@ -199,7 +203,7 @@ Result<void> PassLight::describe(const Trajectory &orbit, const Site &site, Shad
                                        lit[k].altitude)
                    : std::numeric_limits<double>::quiet_NaN(),
          pass);
-  return {};
+  return pass;
 }
 
 } // namespace umov

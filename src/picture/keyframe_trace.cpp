@@ -208,7 +208,7 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
                                                      const KeyFrameView &view,
                                                      const KeyFrameOptions &options,
                                                      std::span<const std::size_t> bands,
-                                                     const Integrator *between) {
+                                                     const BetweenLight *between) {
   UMOV_TRY(check(scene, options, bands));
   const Vec3<Body> v = view.pose.observer;
   const Vec3<Body> across = view.up - v * dot(view.up, v);
@@ -244,10 +244,8 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
       std::vector<SurfacePoint> points;
       for (const Seen &point : seen)
         points.push_back(point.at);
-      IntegrationOptions integration;
-      integration.bounces = options.bounces;
-      integration.seed = options.seed;
-      more = between->indirect_radiance(view.pose, points, integration, options.paths, row * side);
+      more = between->radiance(view.pose, points, {options.bounces, options.paths, options.seed},
+                               row * side);
     }
     for (std::size_t b = 0; b < bands.size(); ++b) {
       const std::span<KeyFrameSample> line(rasters[b].points.data() + row * side, side);
@@ -263,21 +261,20 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
 KeyFrameStage::KeyFrameStage(const Scene &scene, std::vector<Joint> joints, std::size_t bounces)
     : scene_(scene), joints_(std::move(joints)), still_(scene.mesh) {
   if (bounces > 1)
-    between_.emplace(scene);
+    between_ = make_between_light(scene);
 }
 
 Result<std::vector<KeyFrameRaster>>
 KeyFrameStage::trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,
                      const KeyFrameOptions &options, std::span<const std::size_t> bands) const {
   if (joint_angles_rad.empty())
-    return trace_key_frames(scene_, still_, view, options, bands, between_ ? &*between_ : nullptr);
+    return trace_key_frames(scene_, still_, view, options, bands, between_.get());
   Scene turned = scene_;
   turned.mesh = posed(scene_.mesh, joints_, joint_angles_rad);
-  std::optional<Integrator> between;
+  std::unique_ptr<BetweenLight> between;
   if (between_)
-    between.emplace(turned);
-  return trace_key_frames(turned, Occluder(turned.mesh), view, options, bands,
-                          between ? &*between : nullptr);
+    between = make_between_light(turned);
+  return trace_key_frames(turned, Occluder(turned.mesh), view, options, bands, between.get());
 }
 
 } // namespace umov

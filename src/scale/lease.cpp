@@ -1,5 +1,7 @@
 #include <umov/scale/lease.h>
 
+#include "scale/this_process.h"
+
 #include <cerrno>
 #include <chrono>
 #include <condition_variable>
@@ -22,11 +24,6 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds renewed_each{30};
 /// One that was not renewed for so long is nobody's.
 constexpr double stale_s = 120;
-
-std::string this_host() {
-  char name[256] = {};
-  return ::gethostname(name, sizeof name - 1) == 0 ? name : "unknown";
-}
 
 /// "HOST PID" of a lease that holds, else "".
 std::string holder_of(const fs::path &file) {

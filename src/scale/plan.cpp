@@ -1,11 +1,12 @@
 #include <umov/scale/plan.h>
 
+#include "scale/this_process.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sys/resource.h>
 
 namespace umov::scale {
 namespace {
@@ -25,13 +26,6 @@ public:
   }
   double bytes = 0;
 };
-
-double cpu_seconds() {
-  struct rusage used {};
-  ::getrusage(RUSAGE_SELF, &used);
-  return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
-         1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-}
 
 /// The k-th of the points of van der Corput (1935) in base 2: however many, they lie evenly.
 double spread_point(std::size_t k) {

@@ -9,9 +9,9 @@
 #include <umov/core/text.h>
 
 namespace umov::scale {
-namespace {
 
-using nlohmann::json;
+/// How a file is laid out, as its foot tells it.
+namespace rows {
 
 /// Where the cells of a column of a block stand.
 struct Place {
@@ -28,6 +28,16 @@ struct AboutTable {
   std::vector<Block> blocks;
   std::size_t rows = 0;
 };
+
+} // namespace rows
+
+namespace {
+
+using nlohmann::json;
+
+using rows::AboutTable;
+using rows::Block;
+using rows::Place;
 
 Cells no_cells(const std::string &type) {
   if (type == cell_types[0])

@@ -1,9 +1,9 @@
 #include <umov/scale/run_job.h>
 
+#include "scale/this_process.h"
 #include "scale/worker_process.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <deque>
 #include <fmt/format.h>
@@ -12,7 +12,6 @@
 #include <random>
 #include <umov/core/parallel.h>
 #include <umov/scale/lease.h>
-#include <unistd.h>
 
 namespace umov::scale {
 namespace {
@@ -21,11 +20,6 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t attempts_max = 3;
 constexpr double patience_after_stop_s = 30;
-
-std::string this_host() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
 
 /// The loop over workers.
 class Pool {

@@ -1,9 +1,10 @@
 #include <umov/scale/shard_work.h>
 
+#include "scale/this_process.h"
+
 #include <chrono>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
 #include <umov/core/text.h>
 #include <umov/scale/rows_file.h>
 
@@ -12,15 +13,6 @@ namespace {
 
 using nlohmann::json;
 constexpr std::array<const char *, 4> status_names{"done", "there", "failed", "refused"};
-
-double cpu_seconds() {
-  struct rusage used {};
-  ::getrusage(RUSAGE_SELF, &used);
-  const auto seconds = [](const timeval &t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(used.ru_utime) + seconds(used.ru_stime);
-}
 
 /// Computes, writes and names the file.
 Result<void> fill(const JobFolder &folder, jobs::RangedJob &job, const jobs::Monitor &monitor,

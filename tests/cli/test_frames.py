@@ -8,52 +8,21 @@ from astropy.io import fits
 from astropy.table import Table
 from astropy.wcs import WCS
 
-from conftest import ROOT
+from sphere_over_maui import make_sphere, write_scene
 from test_observe import pulls
 
-SCENE = """
-umov = 1
-seed = 11
-instrument = "{instrument}"
-[observer]
-name = "Maui"
-lat_deg = 20.7083
-lon_deg = -156.2578
-alt_m = 3058
-[time]
-start = 2018-01-21T05:11:00Z
-stop = 2018-01-21T05:11:{stop}Z
-[[object]]
-name = "ball"
-orbit = {{ file = "{root}/data/tle/hst.tle", norad = 20580 }}
-mesh = {{ file = "sphere.obj", unit = "m", up = "+Z" }}
-materials = {{ default = "paint_white" }}
-[atmosphere]
-seeing = {{ arcsec = {seeing} }}
-scintillation = "none"
-sky = {{ mag = 20.0, p = 0.3 }}
-[telescope]
-{telescope}
-[observation]
-bands = ["nm:550"]
-width_nm = 50
-{observation}
-[output]
-dir = "out"
-formats = ["ecsv"]
-pol_frame = "altaz"
-"""
+BAND = 'bands = ["nm:550"]\nwidth_nm = 50\n'
 
 
 @pytest.fixture
 def scene(umov, tmp_path):
     """scene(observation, ...) writes observe.toml for a small white sphere."""
-    assert umov("mesh", "make", "sphere", "--radius", "1", "--facets", "1000", "-o", "sphere.obj").code == 0
+    make_sphere(umov, 1)
 
     def write(observation, telescope="", instrument="c11_imx250", stop="10", seeing=1):
-        (tmp_path / "observe.toml").write_text(SCENE.format(
-            observation=observation, telescope=telescope, instrument=instrument, stop=stop, seeing=seeing, root=ROOT))
-        return tmp_path / "observe.toml"
+        air = f'seeing = {{ arcsec = {seeing} }}\nscintillation = "none"\nsky = {{ mag = 20.0, p = 0.3 }}'
+        return write_scene(tmp_path, BAND + observation, instrument=instrument, seed=11, atmosphere=air,
+                           telescope=telescope, stop=f"2018-01-21T05:11:{stop}Z")
 
     return write
 

@@ -98,5 +98,7 @@ def test_a_folder_elsewhere_is_replaced_only_if_the_user_names_it(umov, scenario
     second = run()
     assert second.returncode == 3 and "name it yourself" in second.stderr, second.stderr
     assert (elsewhere / "manifest.json").read_bytes() == manifest
+    counts = subprocess.run([UMOV, "observe", name], cwd=work, text=True, capture_output=True)
+    assert counts.returncode == 3 and "name it yourself" in counts.stderr, counts.stderr
     assert run("-o", str(elsewhere)).returncode == 0
     assert (elsewhere / "manifest.json").read_bytes() != manifest

@@ -5,49 +5,19 @@ import statistics
 import pytest
 from astropy.table import Table
 
-from conftest import ROOT
+from sphere_over_maui import make_sphere, write_scene
 
-CUBE = """
-umov = 1
-seed = 7
-instrument = "{instrument}"
-[observer]
-name = "Maui"
-lat_deg = 20.7083
-lon_deg = -156.2578
-alt_m = 3058
-[time]
-start = 2018-01-21T05:11:00Z
-stop = 2018-01-21T05:12:{seconds:02}Z
-[[object]]
-name = "cube"
-orbit = {{ file = "{root}/data/tle/hst.tle", norad = 20580 }}
-mesh = {{ file = "sphere.obj", unit = "m", up = "+Z" }}
-materials = {{ default = "paint_white" }}
-[atmosphere]
-seeing = {{ arcsec = 3 }}
-{air}
-[observation]
-bands = ["nm:550"]
-width_nm = 50
-{observation}
-[output]
-dir = "out"
-formats = ["ecsv"]
-pol_frame = "{frame}"
-"""
+BAND = 'bands = ["nm:550"]\nwidth_nm = 50\n'
 
 
 @pytest.fixture
 def scene(umov, tmp_path):
     """scene(instrument, observation, ...) writes observe.toml for a small white sphere."""
-    assert umov("mesh", "make", "sphere", "--radius", "0.2", "--facets", "1000", "-o", "sphere.obj").code == 0
+    make_sphere(umov, 0.2)
 
     def write(instrument, observation, air="", frame="altaz", seconds=0):
-        (tmp_path / "observe.toml").write_text(
-            CUBE.format(instrument=instrument, observation=observation, air=air, root=ROOT, frame=frame,
-                        seconds=seconds))
-        return tmp_path / "observe.toml"
+        return write_scene(tmp_path, BAND + observation, instrument=instrument, seed=7, frame=frame,
+                           atmosphere="seeing = { arcsec = 3 }\n" + air, stop=f"2018-01-21T05:12:{seconds:02}Z")
 
     return write
 

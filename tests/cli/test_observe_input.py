@@ -7,47 +7,19 @@ import time
 import pytest
 from astropy.table import Table
 
-from conftest import ROOT, UMOV
-
-SCENE = """
-umov = 1
-instrument = "c11_imx250"
-[observer]
-name = "Maui"
-lat_deg = 20.7083
-lon_deg = -156.2578
-alt_m = {alt_m}
-[time]
-start = {start}
-stop = {stop}
-[[object]]
-name = "ball"
-orbit = {{ file = "{root}/data/tle/hst.tle", norad = 20580 }}
-mesh = {{ file = "sphere.obj", unit = "m", up = "+Z" }}
-materials = {{ default = "{material}" }}
-[atmosphere]
-seeing = {{ arcsec = 3 }}
-{air}
-[observation]
-{observation}
-[output]
-dir = "out"
-formats = ["ecsv"]
-"""
+from conftest import UMOV
+from sphere_over_maui import make_sphere, write_scene
 
 
 @pytest.fixture
 def scene(umov, tmp_path):
     """scene(observation, ...) writes observe.toml for a small sphere, five seconds of it."""
-    assert umov("mesh", "make", "sphere", "--radius", "0.2", "--facets", "1000", "-o", "sphere.obj").code == 0
+    make_sphere(umov, 0.2)
 
-    def write(observation, air="", alt_m=3058, start="2018-01-21T05:11:00Z", stop="2018-01-21T05:11:05Z",
-              material="paint_white"):
+    def write(observation, air="", **more):
         if "bands" not in observation:
             observation = 'bands = ["nm:550"]\n' + observation
-        (tmp_path / "observe.toml").write_text(SCENE.format(
-            observation=observation, air=air, alt_m=alt_m, start=start, stop=stop, material=material, root=ROOT))
-        return tmp_path / "observe.toml"
+        return write_scene(tmp_path, observation, atmosphere="seeing = { arcsec = 3 }\n" + air, **more)
 
     return write
 

@@ -17,6 +17,8 @@ struct PlotLine {
   bool has_markers = false;             ///< points without a line
   std::vector<double> z = {};           ///< of a figure in space
 };
+/// A way of drawing lines for each of the first four, and then again.
+const char *plot_dash(std::size_t number);
 /// One figure: its axes and lines.
 struct PlotFigure {
   std::string title, x_title, y_title;

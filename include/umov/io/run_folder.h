@@ -19,6 +19,10 @@ class RunFolder {
 public:
   /// Refuses (Device) what it must not or cannot write to, before any work is done.
   static Result<RunFolder> open(const std::filesystem::path &target, bool force);
+  /// For a `target` that a scenario file names, not the user, who may have that file from others:
+  /// outside the working folder one may be made, but BadInput for one that is there already.
+  static Result<void> check_named_by_file(const std::filesystem::path &target,
+                                          const std::filesystem::path &file);
 
   /// A file of the folder, or of one in it ("inputs/x.obj"), written at the end with all others.
   void add(std::string name, std::string bytes) { files_[std::move(name)] = std::move(bytes); }

@@ -7,6 +7,7 @@
 #include <umov/io/table.h>
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/requests.h>
+#include <umov/lightcurve/pass_light.h>
 #include <umov/orbit/passes.h>
 #include <vector>
 
@@ -38,10 +39,11 @@ struct PassesRequest {
   PassModel model;
 };
 
-/// A pass and whose it is.
+/// A pass, whose it is and its light.
 struct ObjectPass {
   std::size_t object = 0; ///< into PassesResult::orbits
   SitePass pass;
+  PassBrightness light; ///< where a model says what the object is
 };
 
 /// Passes found, and how the search ended.

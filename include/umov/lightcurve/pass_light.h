@@ -1,6 +1,7 @@
 #pragma once
 // How bright and how polarized an object is along its passes, and when it glints.
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <umov/attitude/attitude.h>
@@ -8,8 +9,9 @@
 #include <umov/light/light_model.h>
 #include <umov/lightcurve/extinction.h>
 #include <umov/observation/track.h>
-#include <umov/orbit/passes.h>
+#include <umov/orbit/ephemeris.h>
 #include <umov/scene/scene.h>
+#include <vector>
 
 namespace umov {
 
@@ -26,6 +28,23 @@ struct PassBody {
 /// Light for ranges over a pass: magnitudes to a few hundredths, so accuracy .02.
 LightOptions pass_light_options(LightMethod method = LightMethod::Auto);
 
+/// A flat that mirrors the Sun to the site.
+struct PassGlint {
+  Epoch<Utc> time;    ///< normal and half vector nearest
+  double width_s = 0; ///< for which the half vector is within the lobe
+};
+
+/// The light of a pass while it is sunlit; NaN and none where nothing is known of it.
+struct PassBrightness {
+  double magnitude_min = std::numeric_limits<double>::quiet_NaN(), ///< the brightest
+      magnitude_max = std::numeric_limits<double>::quiet_NaN(),
+         /// The same behind the air, where there is one.
+      magnitude_obs_min = std::numeric_limits<double>::quiet_NaN(),
+         magnitude_obs_max = std::numeric_limits<double>::quiet_NaN(),
+         p_max = std::numeric_limits<double>::quiet_NaN(); ///< largest degree of polarization
+  std::vector<PassGlint> glints;                           ///< in order
+};
+
 /// What an object is made of and how it moves; ready for many passes.
 class PassLight {
 public:
@@ -35,21 +54,21 @@ public:
   static Result<PassLight> of_sphere(double radius_m, const Material &material,
                                      const std::vector<Band> &bands);
 
-  /// Fills magnitudes, largest p and glints of a pass from its samples (those with sunlight), in
-  /// one band. Samples whose I is not three times its half-width count for neither magnitude, those
+  /// Magnitudes, largest p and glints of a pass from its samples (those with sunlight), in one
+  /// band. Samples whose I is not three times its half-width count for neither magnitude, those
   /// whose p is not known to 0.1 not for p. Glints: candidates of flats, of parts that turn too,
   /// that give more than half of the light at their time. Interrupted if `cancel` became true.
-  Result<void> describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
-                        std::size_t band, std::span<const ObservingGeometry> samples,
-                        SitePass &pass, const std::atomic<bool> *cancel = nullptr) const;
+  Result<PassBrightness> describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
+                                  std::size_t band, std::span<const ObservingGeometry> samples,
+                                  const std::atomic<bool> *cancel = nullptr) const;
   /// LightModel::keep_masks.
   [[nodiscard]] Result<void> keep_masks() const;
 
 private:
   struct State;
-  static Result<void> add_glints(const State &state, const Track &track,
-                                 const std::atomic<bool> *cancel,
-                                 std::vector<ObservingGeometry> &lit, SitePass &pass);
+  static Result<std::vector<PassGlint>> glints_of(const State &state, const Track &track,
+                                                  const std::atomic<bool> *cancel,
+                                                  std::vector<ObservingGeometry> &lit);
   std::shared_ptr<const State> state_;
 };
 

@@ -2,7 +2,6 @@
 // When an object passes over a site.
 
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <umov/core/diagnostics.h>
@@ -56,12 +55,6 @@ struct ShadowCrossing {
   bool is_entry = true; ///< into the shadow
 };
 
-/// A flat that mirrors the Sun to the site.
-struct PassGlint {
-  Epoch<Utc> time;    ///< normal and half vector nearest
-  double width_s = 0; ///< for which the half vector is within the lobe
-};
-
 /// A pass as seen from a site, described.
 struct SitePass {
   ObservingGeometry rise, culmination, set; ///< rise and set: where it crosses the altitude
@@ -74,14 +67,6 @@ struct SitePass {
   double sunlit_share = 0;    ///< of the time between rise and set
   double visible_s = 0;       ///< sunlit, with the site's Sun below PassSearch::sun_altitude_max
   Angle phase_min, phase_max; ///< while sunlit; 0 if never
-  // While sunlit, and only where PassSearch::on_pass says what the object is; else NaN and none.
-  double magnitude_min = std::numeric_limits<double>::quiet_NaN(), ///< the brightest
-      magnitude_max = std::numeric_limits<double>::quiet_NaN(),
-         p_max = std::numeric_limits<double>::quiet_NaN(),
-         /// The same behind the air, where there is one.
-      magnitude_obs_min = std::numeric_limits<double>::quiet_NaN(),
-         magnitude_obs_max = std::numeric_limits<double>::quiet_NaN();
-  std::vector<PassGlint> glints; ///< in order
 };
 
 /// What counts as a pass.
@@ -90,7 +75,7 @@ struct PassSearch {
   Angle sun_altitude_max = Angle::degrees(-6); ///< of `visible_s`
   ShadowModel shadow = ShadowModel::Ellipsoid;
   /// Called with every pass and its samples, some seconds apart from rise to set.
-  std::function<Result<void>(SitePass &, std::span<const ObservingGeometry>)> on_pass;
+  std::function<Result<void>(const SitePass &, std::span<const ObservingGeometry>)> on_pass;
 };
 
 /// Passes described, in order, and how far the orbit goes.

@@ -2,11 +2,11 @@
 // Pictures of the object as the observer sees it: parallel rays, celestial north up, east left.
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <umov/core/result.h>
-#include <umov/light/integrator.h>
+#include <umov/light/between_light.h>
 #include <umov/light/light_model.h>
 #include <umov/picture/channel.h>
 #include <umov/scene/articulation.h>
@@ -70,7 +70,7 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
                                                      const KeyFrameView &view,
                                                      const KeyFrameOptions &options,
                                                      std::span<const std::size_t> bands,
-                                                     const Integrator *between = nullptr);
+                                                     const BetweenLight *between = nullptr);
 
 /// A scene ready for pictures with its parts at any angles; it must outlive this.
 class KeyFrameStage {
@@ -87,7 +87,7 @@ private:
   const Scene &scene_;
   std::vector<Joint> joints_;
   Occluder still_;
-  std::optional<Integrator> between_; ///< of the mesh as it is
+  std::unique_ptr<BetweenLight> between_; ///< of the mesh as it is
 };
 
 /// The radiance shown as white: the 99th percentile over the lit points of all pictures, so that

@@ -11,14 +11,14 @@ namespace {
 /// Every element without children below a node, down to the depth that the schema has.
 Result<void> take_leaves(pugi::xml_node node, int depth, const XmlLines &lines,
                          const std::string &file, Message &out) {
-  constexpr int deepest = 6;
+  constexpr int xml_deepest = 6;
   for (const pugi::xml_node child : node.children()) {
     if (child.type() != pugi::node_element)
       continue;
     const std::string name = child.name();
     const bool is_leaf =
         !child.find_child([](pugi::xml_node n) { return n.type() == pugi::node_element; });
-    if (!is_leaf && depth < deepest) {
+    if (!is_leaf && depth < xml_deepest) {
       UMOV_TRY(take_leaves(child, depth + 1, lines, file, out));
     } else if (name == "USER_DEFINED") {
       UMOV_TRY(put(out, file, "USER_DEFINED_" + std::string(child.attribute("parameter").value()),

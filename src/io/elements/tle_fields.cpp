@@ -11,8 +11,6 @@ namespace umov::tle {
 
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 /// Columns `first` to `last` (from 1, both included) of a line, with the name of what they hold.
 class Field {
 public:

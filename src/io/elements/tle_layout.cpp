@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t full_length = 69;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }
 
 /// A character outside ASCII that pasted element sets are known to hold.

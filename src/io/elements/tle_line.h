@@ -8,6 +8,8 @@
 
 namespace umov::tle {
 
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 /// A line without its end and without trailing blanks.
 struct Line {
   std::string_view text;

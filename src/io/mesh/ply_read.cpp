@@ -113,10 +113,10 @@ struct VertexRow {
   bool has_normal = false, has_texture = false;
 };
 
-class Reader {
+class PlyReader {
 public:
-  Reader(std::string_view bytes, const std::string &file, const ply::Header &header,
-         const MeshFileOptions &options)
+  PlyReader(std::string_view bytes, const std::string &file, const ply::Header &header,
+            const MeshFileOptions &options)
       : header_(header), file_(file), values_(bytes, header, file), max_(options.max_triangles),
         polygons_(out_.mesh, options.max_triangles) {}
 
@@ -145,7 +145,7 @@ private:
   std::vector<std::uint32_t> sizes_;   ///< corners of each face
 };
 
-tl::unexpected<Error> Reader::broken(const Element &element, std::size_t row) const {
+tl::unexpected<Error> PlyReader::broken(const Element &element, std::size_t row) const {
   return fail(ErrorCode::BadInput,
               fmt::format("{} {} of {}: {} stands where a number was expected. {}", element.name,
                           row + 1, element.count, values_.found(), again),
@@ -153,7 +153,7 @@ tl::unexpected<Error> Reader::broken(const Element &element, std::size_t row) co
 }
 
 /// A file cannot hold more rows than bytes: believed counts would be reserved and walked.
-Result<void> Reader::check_counts() const {
+Result<void> PlyReader::check_counts() const {
   std::size_t least = 0;
   for (const Element &element : header_.elements) {
     std::size_t row = 0;
@@ -177,7 +177,7 @@ Result<void> Reader::check_counts() const {
   return {};
 }
 
-Result<VertexRow> Reader::vertex_row(const Element &element) const {
+Result<VertexRow> PlyReader::vertex_row(const Element &element) const {
   VertexRow out;
   const auto find = [&](const char *name) {
     std::size_t i = 0;
@@ -203,8 +203,8 @@ Result<VertexRow> Reader::vertex_row(const Element &element) const {
 }
 
 /// One list of a row; its length is never believed beyond the bytes that are left.
-Result<void> Reader::read_list(const Property &property, const Element &element, std::size_t row,
-                               std::vector<double> &out) {
+Result<void> PlyReader::read_list(const Property &property, const Element &element, std::size_t row,
+                                  std::vector<double> &out) {
   out.clear();
   double count = 0;
   if (!values_.next(property.count, count))
@@ -224,7 +224,7 @@ Result<void> Reader::read_list(const Property &property, const Element &element,
   return {};
 }
 
-Result<void> Reader::read_vertices(const Element &element) {
+Result<void> PlyReader::read_vertices(const Element &element) {
   UMOV_ASSIGN(row, vertex_row(element));
   has_normals_ = row.has_normal;
   std::vector<double> values(element.properties.size()), list;
@@ -256,7 +256,7 @@ Result<void> Reader::read_vertices(const Element &element) {
   return {};
 }
 
-Result<void> Reader::read_faces(const Element &element) {
+Result<void> PlyReader::read_faces(const Element &element) {
   std::vector<double> list;
   double ignored = 0;
   std::size_t triangles = 0;
@@ -287,7 +287,7 @@ Result<void> Reader::read_faces(const Element &element) {
   return {};
 }
 
-Result<void> Reader::skip(const Element &element) {
+Result<void> PlyReader::skip(const Element &element) {
   std::vector<double> list;
   double ignored = 0;
   for (std::size_t i = 0; i < element.count; ++i)
@@ -301,7 +301,7 @@ Result<void> Reader::skip(const Element &element) {
 }
 
 /// After everything was read: nothing says that the vertices come first.
-Result<void> Reader::make_faces() {
+Result<void> PlyReader::make_faces() {
   const std::size_t vertices = out_.mesh.positions.size();
   std::size_t at = 0;
   std::vector<Corner> corners;
@@ -322,7 +322,7 @@ Result<void> Reader::make_faces() {
   return {};
 }
 
-Result<MeshFile> Reader::read(Diagnostics &diagnostics) {
+Result<MeshFile> PlyReader::read(Diagnostics &diagnostics) {
   UMOV_TRY(check_counts());
   bool has_strips = false;
   for (const Element &element : header_.elements) {
@@ -351,7 +351,7 @@ Result<MeshFile> Reader::read(Diagnostics &diagnostics) {
 Result<MeshFile> read_ply(std::string_view bytes, const std::string &file,
                           const MeshFileOptions &options, Diagnostics &diagnostics) {
   UMOV_ASSIGN(header, ply::read_header(bytes, file));
-  return Reader(bytes, file, header, options).read(diagnostics);
+  return PlyReader(bytes, file, header, options).read(diagnostics);
 }
 
 } // namespace umov::mesh_io

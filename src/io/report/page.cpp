@@ -3,8 +3,6 @@
 #include <umov/core/embedded.h>
 #include <umov/io/report.h>
 
-UMOV_EMBEDDED(report_plotly)
-UMOV_EMBEDDED(report_plotly_licence)
 UMOV_EMBEDDED(plot_page_figure_js)
 
 namespace umov {

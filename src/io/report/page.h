@@ -5,7 +5,12 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <umov/core/embedded.h>
 #include <umov/core/result.h>
+
+// The drawing script, and its licence beside it.
+UMOV_EMBEDDED(report_plotly)
+UMOV_EMBEDDED(report_plotly_licence)
 
 namespace umov {
 

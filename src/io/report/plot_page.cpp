@@ -24,6 +24,11 @@ Json numbers(const std::vector<double> &values) {
 
 } // namespace
 
+const char *plot_dash(std::size_t number) {
+  constexpr const char *dashes[] = {"solid", "dash", "dot", "dashdot"};
+  return dashes[number % std::size(dashes)];
+}
+
 Json figure_json(const PlotFigure &figure) {
   Json lines = Json::array();
   for (const PlotLine &line : figure.lines) {

@@ -17,8 +17,6 @@ UMOV_EMBEDDED(report_js_plane)
 UMOV_EMBEDDED(report_js_turning)
 UMOV_EMBEDDED(report_js_boxes)
 UMOV_EMBEDDED(report_js_main)
-UMOV_EMBEDDED(report_plotly_licence)
-UMOV_EMBEDDED(report_plotly)
 
 namespace umov {
 namespace {

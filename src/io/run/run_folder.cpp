@@ -235,6 +235,19 @@ Result<void> put_in_place(Temporary &fresh, const fs::path &full) {
 
 } // namespace
 
+Result<void> RunFolder::check_named_by_file(const fs::path &target, const fs::path &file) {
+  std::error_code code;
+  const fs::path inside =
+      fs::absolute(target, code).lexically_normal().lexically_relative(fs::current_path(code));
+  if (inside.empty() || *inside.begin() != ".." || !fs::exists(target, code))
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("output.dir = \"{0}\" is outside the working folder and is there "
+                          "already. To replace it name it yourself: -o {0}",
+                          target.string()),
+              {file.string()});
+}
+
 Result<RunFolder> RunFolder::open(const fs::path &target, bool force) {
   RunFolder out;
   std::error_code code;

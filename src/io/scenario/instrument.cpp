@@ -302,13 +302,6 @@ Result<void> read_polarimeter(const Node &node, bool is_whole, Polarimeter &out)
   return check_polarimeter(node, out, is_whole || node.has("x_axis_deg"));
 }
 
-std::string list_toml(const std::vector<double> &values) {
-  std::string out;
-  for (const double one : values)
-    out += (out.empty() ? "" : ", ") + shortest(one);
-  return "[" + out + "]";
-}
-
 std::string curve_toml(const Tabulated &curve) {
   if (curve.wavelength_nm.empty())
     return shortest(curve.value.front());

@@ -6,10 +6,6 @@
 #include <umov/io/index_file.h>
 
 namespace umov::scenario {
-namespace {
-
-const char *const shadowing_names[] = {"ashikhmin", "smith", "smith_directional", "separable"};
-const char *const interreflection_names[] = {"none", "unpolarized", "single_bounce_q"};
 
 std::string list_toml(const std::vector<double> &values) {
   std::string out;
@@ -17,6 +13,8 @@ std::string list_toml(const std::vector<double> &values) {
     out += (out.empty() ? "" : ", ") + shortest(v);
   return "[" + out + "]";
 }
+
+namespace {
 
 /// By name where it is compiled in, by file where it was read from one, else in place.
 std::string index_toml(const IndexTable &table) {

@@ -12,10 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> shadowing_names{"ashikhmin", "smith", "smith_directional",
-                                               "separable"};
-const std::vector<std::string> interreflection_names{"none", "unpolarized", "single_bounce_q"};
-
 /// A file that a material names, from the folder of the file that names it.
 fs::path beside(const Node &node, const std::string &file) {
   return tidy_path(fs::path(node.file()).parent_path() / file);

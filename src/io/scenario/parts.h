@@ -6,6 +6,14 @@
 
 namespace umov::scenario {
 
+/// [1, 2.5] with the fewest digits that read back as the same numbers.
+std::string list_toml(const std::vector<double> &values);
+/// Words of keys of a material, in the order of their enumerations.
+inline const std::vector<std::string> shadowing_names{"ashikhmin", "smith", "smith_directional",
+                                                      "separable"};
+inline const std::vector<std::string> interreflection_names{"none", "unpolarized",
+                                                            "single_bounce_q"};
+
 /// What an attitude takes from the scenario around it.
 struct AttitudeContext {
   std::uint64_t seed = 0;               ///< of libration

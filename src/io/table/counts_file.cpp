@@ -13,9 +13,9 @@ namespace umov {
 namespace {
 
 /// Reads cells by the name of their column.
-class Cells {
+class CountCells {
 public:
-  Cells(const TextTable &table, const std::string &file) : table_(table), file_(file) {}
+  CountCells(const TextTable &table, const std::string &file) : table_(table), file_(file) {}
 
   [[nodiscard]] Where where(std::size_t row) const { return {file_, table_.lines[row]}; }
   [[nodiscard]] std::optional<std::size_t> column(const std::string &name) const {
@@ -47,7 +47,8 @@ private:
   const std::string &file_;
 };
 
-Result<void> check_columns(const Cells &cells, const TextTable &table, const std::string &file) {
+Result<void> check_columns(const CountCells &cells, const TextTable &table,
+                           const std::string &file) {
   for (const char *name : {"time_utc", "set_id", "band", "counts", "sky", "sky_err", "var_read",
                            "w0", "w1", "w2", "w3"})
     if (!cells.column(name))
@@ -59,7 +60,7 @@ Result<void> check_columns(const Cells &cells, const TextTable &table, const std
   return {};
 }
 
-Result<bool> truth_in(const Cells &cells, const std::string &name, std::size_t row) {
+Result<bool> truth_in(const CountCells &cells, const std::string &name, std::size_t row) {
   if (const auto value = truth_of(cells.text(name, row)))
     return *value;
   return fail(ErrorCode::BadInput,
@@ -68,7 +69,7 @@ Result<bool> truth_in(const Cells &cells, const std::string &name, std::size_t r
               cells.where(row));
 }
 
-Result<void> read_numbers(const Cells &cells, std::size_t row, CountRow &out) {
+Result<void> read_numbers(const CountCells &cells, std::size_t row, CountRow &out) {
   struct Field {
     const char *name;
     double *value;
@@ -144,7 +145,7 @@ Result<void> check_row(const CountRow &row, const Where &where) {
 Result<CountsFile> read_counts_text(std::string_view text, const std::string &file,
                                     Diagnostics &diagnostics) {
   UMOV_ASSIGN(table, read_text_table(text, file));
-  const Cells cells(table, file);
+  const CountCells cells(table, file);
   UMOV_TRY(check_columns(cells, table, file));
   CountsFile out;
   out.notes = table.notes;

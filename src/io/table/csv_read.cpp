@@ -8,10 +8,10 @@ namespace umov {
 
 namespace {
 
-class Reader {
+class CsvReader {
 public:
-  Reader(std::string_view text, const std::string &file, const std::vector<std::string> &required,
-         const std::vector<std::string> &optional)
+  CsvReader(std::string_view text, const std::string &file,
+            const std::vector<std::string> &required, const std::vector<std::string> &optional)
       : text_(text), file_(file), required_(required), optional_(optional) {}
 
   Result<Table> read() {
@@ -130,7 +130,7 @@ private:
 Result<Table> read_csv(std::string_view text, const std::string &file,
                        const std::vector<std::string> &required,
                        const std::vector<std::string> &optional) {
-  return Reader(text, file, required, optional).read();
+  return CsvReader(text, file, required, optional).read();
 }
 
 } // namespace umov

@@ -13,10 +13,8 @@
 namespace umov {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 /// The columns that a file has of those that are understood; -1: none.
-struct Columns {
+struct ObservationColumns {
   int time = -1, mjd = -1, band = -1, site = -1, name = -1, flags = -1, limit = -1;
   int flux = -1, flux_err = -1, mag = -1, mag_err = -1;
   int q = -1, u = -1, q_err = -1, u_err = -1, cov_qq = -1, cov_uu = -1, cov_qu = -1;
@@ -40,13 +38,13 @@ bool has_flag(const std::string &flags, std::string_view wanted) {
   return false;
 }
 
-class Reader {
+class ObservationReader {
 public:
-  Reader(std::string_view text, const std::string &file, const TextTable &table)
+  ObservationReader(std::string_view text, const std::string &file, const TextTable &table)
       : text_(text), file_(file), table_(table) {}
 
-  Result<Columns> columns() const;
-  Result<std::optional<ObservedRow>> row(const Columns &c, std::size_t k);
+  Result<ObservationColumns> columns() const;
+  Result<std::optional<ObservedRow>> row(const ObservationColumns &c, std::size_t k);
   [[nodiscard]] std::string text(int column, std::size_t k) const {
     return column < 0 ? std::string() : table_.rows[k][static_cast<std::size_t>(column)];
   }
@@ -62,10 +60,11 @@ private:
   [[nodiscard]] double scale_of(int column) const;
   Result<double> number(int column, std::size_t k) const;
   Result<double> magnitude(int column, std::size_t k) const;
-  Result<bool> limit(const Columns &c, std::size_t k) const;
+  Result<bool> limit(const ObservationColumns &c, std::size_t k) const;
   Result<double> error(int column, std::size_t k) const;
-  Result<Epoch<Utc>> time(const Columns &c, std::size_t k) const;
-  Result<void> read_polarization(const Columns &c, std::size_t k, ObservedRow &out) const;
+  Result<Epoch<Utc>> time(const ObservationColumns &c, std::size_t k) const;
+  Result<void> read_polarization(const ObservationColumns &c, std::size_t k,
+                                 ObservedRow &out) const;
 
   std::string_view text_;
   const std::string &file_;
@@ -73,7 +72,7 @@ private:
   std::size_t saturated_ = 0;
 };
 
-int Reader::find(std::initializer_list<const char *> names) const {
+int ObservationReader::find(std::initializer_list<const char *> names) const {
   for (const char *name : names) {
     const auto at = std::ranges::find(table_.columns, name);
     if (at != table_.columns.end())
@@ -82,7 +81,7 @@ int Reader::find(std::initializer_list<const char *> names) const {
   return -1;
 }
 
-double Reader::scale_of(int column) const {
+double ObservationReader::scale_of(int column) const {
   if (column < 0)
     return 1;
   const auto unit = table_.units.find(table_.columns[static_cast<std::size_t>(column)]);
@@ -90,8 +89,8 @@ double Reader::scale_of(int column) const {
                                                                                           : 1;
 }
 
-Result<Columns> Reader::columns() const {
-  Columns c;
+Result<ObservationColumns> ObservationReader::columns() const {
+  ObservationColumns c;
   c.time = find({"time_utc"});
   c.mjd = find({"mjd_utc", "mjd"});
   c.band = find({"band", "filter"});
@@ -134,10 +133,10 @@ Result<Columns> Reader::columns() const {
   return c;
 }
 
-Result<double> Reader::number(int column, std::size_t k) const {
+Result<double> ObservationReader::number(int column, std::size_t k) const {
   const std::string cell = text(column, k);
   if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "-")
-    return nan;
+    return std::numeric_limits<double>::quiet_NaN();
   constexpr double most = 1e30; // squares of it are numbers still
   if (const auto value = parse_number(cell); value && std::abs(*value) < most)
     return *value;
@@ -147,7 +146,7 @@ Result<double> Reader::number(int column, std::size_t k) const {
               where(k, column));
 }
 
-Result<double> Reader::magnitude(int column, std::size_t k) const {
+Result<double> ObservationReader::magnitude(int column, std::size_t k) const {
   UMOV_ASSIGN(value, number(column, k));
   constexpr double brightest = -40, faintest = 60; // the Sun has -27
   if (value < brightest || value > faintest)
@@ -161,7 +160,7 @@ Result<double> Reader::magnitude(int column, std::size_t k) const {
 }
 
 /// The magnitude of the row is a limit.
-Result<bool> Reader::limit(const Columns &c, std::size_t k) const {
+Result<bool> ObservationReader::limit(const ObservationColumns &c, std::size_t k) const {
   if (const auto value = truth_of(text(c.limit, k)))
     return *value;
   return fail(
@@ -171,7 +170,7 @@ Result<bool> Reader::limit(const Columns &c, std::size_t k) const {
 }
 
 /// A standard deviation or a variance: 0 or more, NaN where there is none.
-Result<double> Reader::error(int column, std::size_t k) const {
+Result<double> ObservationReader::error(int column, std::size_t k) const {
   UMOV_ASSIGN(value, number(column, k));
   if (value < 0)
     return fail(ErrorCode::BadInput,
@@ -182,7 +181,7 @@ Result<double> Reader::error(int column, std::size_t k) const {
   return value;
 }
 
-Result<Epoch<Utc>> Reader::time(const Columns &c, std::size_t k) const {
+Result<Epoch<Utc>> ObservationReader::time(const ObservationColumns &c, std::size_t k) const {
   if (c.time >= 0) {
     const auto read = utc_from_iso(text(c.time, k));
     return read ? read : fail(ErrorCode::BadInput, read.error().message, where(k, c.time));
@@ -199,7 +198,8 @@ Result<Epoch<Utc>> Reader::time(const Columns &c, std::size_t k) const {
   return Epoch<Utc>{2'400'000.5 + std::floor(mjd), mjd - std::floor(mjd)};
 }
 
-Result<void> Reader::read_polarization(const Columns &c, std::size_t k, ObservedRow &out) const {
+Result<void> ObservationReader::read_polarization(const ObservationColumns &c, std::size_t k,
+                                                  ObservedRow &out) const {
   if (c.q < 0)
     return {};
   UMOV_ASSIGN(q, number(c.q, k));
@@ -237,7 +237,8 @@ Result<void> Reader::read_polarization(const Columns &c, std::size_t k, Observed
   return {};
 }
 
-Result<std::optional<ObservedRow>> Reader::row(const Columns &c, std::size_t k) {
+Result<std::optional<ObservedRow>> ObservationReader::row(const ObservationColumns &c,
+                                                          std::size_t k) {
   ObservedRow out;
   out.line = table_.lines[k];
   UMOV_ASSIGN(at, time(c, k));
@@ -266,7 +267,7 @@ Result<std::optional<ObservedRow>> Reader::row(const Columns &c, std::size_t k) 
 }
 
 /// The frame of q and u: they are not understood without it.
-Result<PolarizationFrame> frame_of(const TextTable &table, const Columns &c,
+Result<PolarizationFrame> frame_of(const TextTable &table, const ObservationColumns &c,
                                    const std::string &file) {
   if (c.q < 0 || c.is_scattering)
     return PolarizationFrame::Scattering;
@@ -299,7 +300,8 @@ Result<void> check_twice(const ObservationsFile &out, const std::string &file) {
 }
 
 /// Rows of one object: which one is not ours to choose.
-Result<void> check_name(const Reader &reader, const Columns &c, std::size_t rows) {
+Result<void> check_name(const ObservationReader &reader, const ObservationColumns &c,
+                        std::size_t rows) {
   for (std::size_t k = 1; k < rows; ++k)
     if (reader.text(c.name, k) != reader.text(c.name, 0))
       return fail(
@@ -311,7 +313,7 @@ Result<void> check_name(const Reader &reader, const Columns &c, std::size_t rows
   return {};
 }
 
-bool is_irradiance(const TextTable &table, const Columns &c) {
+bool is_irradiance(const TextTable &table, const ObservationColumns &c) {
   if (c.flux < 0)
     return false;
   const auto unit = table.units.find(table.columns[static_cast<std::size_t>(c.flux)]);
@@ -323,7 +325,7 @@ bool is_irradiance(const TextTable &table, const Columns &c) {
 Result<ObservationsFile> read_observations_text(std::string_view text, const std::string &file,
                                                 Diagnostics &diagnostics) {
   UMOV_ASSIGN(table, read_text_table(text, file));
-  Reader reader(text, file, table);
+  ObservationReader reader(text, file, table);
   if (table.columns.empty() || table.rows.empty())
     return fail(ErrorCode::BadInput, "no row of observations", {file});
   UMOV_ASSIGN(columns, reader.columns());

@@ -1,6 +1,6 @@
 #include "backend/scene_data.h"
 
-#include <umov/light/engine.h>
+#include <umov/light/instruction_set.h>
 #include <utility>
 
 namespace umov {

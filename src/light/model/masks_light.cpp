@@ -4,6 +4,7 @@
 #include <chrono>
 #include <fmt/format.h>
 #include <umov/core/files.h>
+#include <umov/light/instruction_set.h>
 
 namespace umov {
 namespace {

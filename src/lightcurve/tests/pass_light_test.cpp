@@ -30,12 +30,10 @@ std::vector<ObservingGeometry> samples() {
   return out;
 }
 
-SitePass described(const PassLight &light, const std::vector<ObservingGeometry> &at) {
-  SitePass pass;
-  const auto done =
-      light.describe(line.trajectory(), origin_site, ShadowModel::Ellipsoid, 0, at, pass);
-  EXPECT_TRUE(done) << done.error().text();
-  return pass;
+PassBrightness described(const PassLight &light, const std::vector<ObservingGeometry> &at) {
+  const auto pass = light.describe(line.trajectory(), origin_site, ShadowModel::Ellipsoid, 0, at);
+  EXPECT_TRUE(pass) << pass.error().text();
+  return pass.value_or(PassBrightness());
 }
 
 /// A white Lambert sphere: J = 2/(3 pi) r^2 (sin a + (pi - a) cos a) (Russell 1916).
@@ -55,7 +53,7 @@ TEST(PassLight, ALambertSphereFollowsItsPhaseFunction) {
     low = std::min(low, sphere_magnitude(2, g, bands[0]));
     high = std::max(high, sphere_magnitude(2, g, bands[0]));
   }
-  const SitePass pass = described(white_sphere(), at);
+  const PassBrightness pass = described(white_sphere(), at);
   // 5000 facets and steps of half a degree: 2 % of I.
   EXPECT_NEAR(pass.magnitude_min, low, 0.02);
   EXPECT_NEAR(pass.magnitude_max, high, 0.02);
@@ -72,7 +70,7 @@ TEST(PassLight, ABodyThatIsASphereIsLitLikeOne) {
   const auto body =
       PassLight::of_body({*scene, {TwoAxisLaw{}}, {}}, pass_light_options(LightMethod::Rays));
   ASSERT_TRUE(body) << body.error().text();
-  const SitePass a = described(*body, at), b = described(white_sphere(), at);
+  const PassBrightness a = described(*body, at), b = described(white_sphere(), at);
   EXPECT_NEAR(a.magnitude_min, b.magnitude_min, 0.03);
   EXPECT_NEAR(a.magnitude_max, b.magnitude_max, 0.03);
 }
@@ -81,7 +79,7 @@ TEST(PassLight, WhatIsNeverLitHasNoMagnitude) {
   auto at = samples();
   for (ObservingGeometry &g : at)
     g.sunlit = 0;
-  const SitePass pass = described(white_sphere(), at);
+  const PassBrightness pass = described(white_sphere(), at);
   EXPECT_TRUE(std::isnan(pass.magnitude_min));
   EXPECT_TRUE(std::isnan(pass.p_max));
 }

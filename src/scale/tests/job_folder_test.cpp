@@ -3,6 +3,7 @@
 #include <umov/scale/job_folder.h>
 #include <umov/scale/lease.h>
 #include <umov/scale/plan.h>
+#include <umov/scale/status.h>
 
 #include <filesystem>
 #include <fstream>
@@ -72,6 +73,28 @@ TEST_F(JobFolders, WithSomethingElseInThemAreRefused) {
   std::ofstream(path / "thesis.tex") << "\n";
   EXPECT_FALSE(JobFolder::begin(path, a_job()));
   EXPECT_FALSE(fs::exists(path / "job.json"));
+}
+
+TEST_F(JobFolders, SayHowFarTheyAre) {
+  const auto folder = JobFolder::begin(path, a_job());
+  ASSERT_TRUE(folder);
+  const Shard first = folder->named(0, std::string(64, 'a'));
+  fs::create_directories(folder->file_of(first).parent_path());
+  std::ofstream(folder->file_of(first)) << "12345";
+  FailedShard failed;
+  failed.index = 2, failed.code = 5, failed.message = "not physical", failed.attempts = 3;
+  folder->tell_failed(failed);
+  const auto status = status_of(*folder);
+  ASSERT_TRUE(status) << status.error().text();
+  EXPECT_EQ(status->done, 1u);
+  EXPECT_EQ(status->shards, 4u);
+  EXPECT_EQ(status->bytes, 5u);
+  ASSERT_EQ(status->failed.size(), 1u);
+  const std::string text = describe(*status);
+  EXPECT_NE(text.find("1 of 4 shards are done (100 poses in all)"), std::string::npos) << text;
+  EXPECT_NE(text.find("shard 2 failed (5, tried 3 times): not physical"), std::string::npos);
+  EXPECT_NE(text.find("nobody is at work"), std::string::npos);
+  EXPECT_NE(to_json(*status).find("\"is_complete\": false, \"is_held\": false"), std::string::npos);
 }
 
 TEST_F(JobFolders, ChangedByHandAreRefused) {

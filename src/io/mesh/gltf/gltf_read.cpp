@@ -28,9 +28,9 @@ struct Pending {
   std::string path; ///< its own
 };
 
-class Reader {
+class GltfReader {
 public:
-  Reader(Document &document, std::size_t max_triangles)
+  GltfReader(Document &document, std::size_t max_triangles)
       : document_(document), primitives_(document, max_triangles), max_(max_triangles) {}
 
   Result<MeshFile> read(Diagnostics &diagnostics);
@@ -56,8 +56,8 @@ private:
   bool has_textures_ = false;
 };
 
-Result<std::vector<std::size_t>> Reader::node_list(const Json &from, const char *key,
-                                                   const std::string &place) const {
+Result<std::vector<std::size_t>> GltfReader::node_list(const Json &from, const char *key,
+                                                       const std::string &place) const {
   std::vector<std::size_t> out;
   const auto list = from.find(key);
   if (list == from.end())
@@ -71,7 +71,7 @@ Result<std::vector<std::size_t>> Reader::node_list(const Json &from, const char 
   return out;
 }
 
-Result<std::vector<std::size_t>> Reader::roots(Diagnostics &diagnostics) const {
+Result<std::vector<std::size_t>> GltfReader::roots(Diagnostics &diagnostics) const {
   const std::size_t scenes = document_.size("scenes");
   if (scenes > 0) {
     UMOV_ASSIGN(given, document_.index(document_.json(), "scene", "the document", "scenes"));
@@ -94,8 +94,8 @@ Result<std::vector<std::size_t>> Reader::roots(Diagnostics &diagnostics) const {
   return out;
 }
 
-Result<void> Reader::push(const std::vector<std::size_t> &nodes, const Placement &parent,
-                          const std::string &path, std::size_t depth) {
+Result<void> GltfReader::push(const std::vector<std::size_t> &nodes, const Placement &parent,
+                              const std::string &path, std::size_t depth) {
   std::set<std::string> names;
   std::vector<Pending> found;
   for (const std::size_t node : nodes) {
@@ -120,7 +120,8 @@ Result<void> Reader::push(const std::vector<std::size_t> &nodes, const Placement
   return {};
 }
 
-Result<void> Reader::add(const Primitive &primitive, const Placement &place, std::uint32_t group) {
+Result<void> GltfReader::add(const Primitive &primitive, const Placement &place,
+                             std::uint32_t group) {
   Mesh &mesh = out_.mesh;
   if (++instances_ > most_instances || mesh.triangles.size() + primitive.triangles.size() > max_)
     return too_many_triangles(max_, {document_.file()});
@@ -160,7 +161,7 @@ Result<void> Reader::add(const Primitive &primitive, const Placement &place, std
   return {};
 }
 
-Result<void> Reader::take_node(const Pending &at) {
+Result<void> GltfReader::take_node(const Pending &at) {
   const Json &json = document_.entry("nodes", at.node);
   const std::string place = fmt::format("nodes[{}]", at.node);
   UMOV_ASSIGN(own, gltf::placement_of(document_, at.node));
@@ -189,7 +190,7 @@ Result<void> Reader::take_node(const Pending &at) {
   return push(children, here, at.path, at.depth + 1);
 }
 
-Result<MeshFile> Reader::read(Diagnostics &diagnostics) {
+Result<MeshFile> GltfReader::read(Diagnostics &diagnostics) {
   out_.format = "glTF";
   is_reached_.assign(document_.size("nodes"), false);
   UMOV_ASSIGN(first, roots(diagnostics));
@@ -224,7 +225,7 @@ Result<MeshFile> read_gltf(std::string_view bytes, const std::filesystem::path &
                            const MeshFileOptions &options, Diagnostics &diagnostics) {
   const std::size_t max_elements = 3 * options.max_triangles;
   UMOV_ASSIGN(document, Document::open(bytes, path, max_elements));
-  return Reader(document, options.max_triangles).read(diagnostics);
+  return GltfReader(document, options.max_triangles).read(diagnostics);
 }
 
 } // namespace umov::mesh_io

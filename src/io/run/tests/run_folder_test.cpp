@@ -50,6 +50,20 @@ TEST_F(RunFolderTest, LeavesAForeignFolderAlone) {
   EXPECT_EQ(entries(), 2u);
 }
 
+TEST_F(RunFolderTest, OfAFileOfOthersIsNotReplacedOutsideTheWorkingFolder) {
+  const auto refused = RunFolder::check_named_by_file(base_, "from/others.toml");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::BadInput);
+  EXPECT_NE(refused.error().message.find("name it yourself: -o"), std::string::npos);
+  EXPECT_TRUE(RunFolder::check_named_by_file(base_ / "new", "from/others.toml"));
+  const fs::path before = fs::current_path();
+  fs::current_path(base_);
+  fs::create_directory("out");
+  EXPECT_TRUE(RunFolder::check_named_by_file("out", "from/others.toml"));
+  EXPECT_FALSE(RunFolder::check_named_by_file("out/../..", "from/others.toml"));
+  fs::current_path(before);
+}
+
 // Names are bytes: a Latin-1 one must not end a run that is done.
 TEST(Manifest, TakesNamesThatAreNotUtf8) {
   ManifestInput input;

@@ -1,0 +1,26 @@
+// umov scale merge.
+
+#include "job_console.h"
+#include "scale_folder_verb.h"
+#include "tables.h"
+
+#include <umov/scale/merge.h>
+
+namespace umov::cli {
+
+void add_scale_merge(CLI::App &scale, const Exit &exit_with) {
+  auto output = std::make_shared<std::string>(), table = std::make_shared<std::string>();
+  auto *verb = add_folder_verb(
+      scale, exit_with, "merge", "The table that the plain command would have written", false,
+      [=](const scale::JobFolder &folder, const Common &common) -> Result<void> {
+        UMOV_TRY(check_output(*output));
+        JobConsole console(common);
+        const auto sink = sink_for(*output, common);
+        return scale::merge(folder, table->empty() ? folder.lock().tables.front() : *table, *sink,
+                            console.monitor(false));
+      });
+  add_table_output(*verb, *output);
+  verb->add_option("--table", *table, "Of a run: lightcurve (default) or passes");
+}
+
+} // namespace umov::cli

@@ -1,0 +1,53 @@
+#pragma once
+// The one way from poses to geometric sums, which every set of materials and bands is applied to.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <umov/light/abundances.h>
+#include <umov/scene/pose.h>
+#include <umov/scene/scene.h>
+#include <vector>
+
+namespace umov {
+
+/// How the sums of an object are made.
+struct SumsOptions {
+  /// Typical error of I that its masks are made for, and no pose is mended by rays. Absent: fast
+  /// masks (0.2 to 0.5 %), poses that they leave uncertain mended.
+  std::optional<double> accuracy = {};
+  /// Other materials on the same mesh that the sums must serve exactly too.
+  std::vector<Scene> hypotheses = {};
+  std::filesystem::path mask_cache = {}; ///< folder of masks of earlier jobs; empty: none are kept
+  unsigned threads = 0;                  ///< of the preparation; 0: all cores
+};
+
+/// An object ready to be summed from any direction of sunlight, its parts as the mesh has them.
+/// Thread safe.
+class LightSums {
+public:
+  virtual ~LightSums() = default;
+  LightSums(const LightSums &) = delete;
+  LightSums &operator=(const LightSums &) = delete;
+
+  /// Sums of every pose before any colour. BadInput if a material has none (measured or
+  /// anisotropic surfaces: they are lit facet by facet).
+  virtual Result<void> evaluate(std::span<const Pose> poses, AbundanceTable &out,
+                                unsigned threads = 1) const = 0;
+  /// What other materials and bands (of a scene with the same mesh groups) make of these sums.
+  /// Their roughness and shadowing must be those of the object's own or of its hypotheses; BadInput
+  /// says which is not. Body light of others is expressed in the profiles that there are: see
+  /// MaterialTables::diffuse_error.
+  [[nodiscard]] virtual Result<MaterialTables> tables_for(const Scene &materials) const = 0;
+  /// Keeps what was learnt of the masks for later jobs (SumsOptions::mask_cache), in silence.
+  virtual void keep_masks() const = 0;
+
+protected:
+  LightSums() = default;
+};
+
+/// The sums of a scene.
+std::unique_ptr<LightSums> make_sums(const Scene &scene, const SumsOptions &options);
+
+} // namespace umov
