@@ -154,4 +154,12 @@ Result<Table> as_score(const Table &stokes, const MeasurementNotes &from) {
   return out;
 }
 
+Result<std::string> score_text(const Table &stokes, const MeasurementNotes &notes) {
+  UMOV_ASSIGN(table, as_score(stokes, notes));
+  std::string text = to_csv(table);
+  while (text.starts_with('#'))
+    text.erase(0, text.find('\n') + 1);
+  return text;
+}
+
 } // namespace umov::jobs
