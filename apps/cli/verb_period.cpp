@@ -23,9 +23,9 @@ Result<void> run_period(const PeriodVerb &o, const Common &common, Diagnostics &
   UMOV_ASSIGN(table, jobs::period(rows, o.request, diagnostics));
   UMOV_ASSIGN(shown, chosen_columns(table, o.columns, {}, o.output, common));
   UMOV_TRY(put_table(o.output, shown, common));
-  for (const auto &[key, text] : table.notes())
+  for (const auto &[key, said] : table.notes())
     if (key == "spin")
-      note(common, text);
+      note(common, said);
   return {};
 }
 

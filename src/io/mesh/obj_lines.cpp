@@ -66,8 +66,11 @@ Result<double> number(const Lines &lines, const Word &word) {
 
 std::string name_from(const std::vector<Word> &words, std::size_t first) {
   std::string out;
-  for (std::size_t i = first; i < words.size(); ++i)
-    out += (out.empty() ? "" : " ") + std::string(words[i].text);
+  for (std::size_t i = first; i < words.size(); ++i) {
+    if (!out.empty())
+      out += ' ';
+    out += words[i].text;
+  }
   return out;
 }
 
