@@ -1,7 +1,9 @@
 #include "console.h"
 #include "verbs.h"
 
+#include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -22,6 +24,22 @@ void collect_names(const CLI::App &app, std::vector<std::string> &names) {
       names.push_back("--" + name);
   for (const CLI::App *verb : app.get_subcommands([](const CLI::App *) { return true; }))
     names.push_back(verb->get_name());
+}
+
+/// CLI11's Range lets nan pass: no comparison with it holds. No option of umov means it, nor
+/// infinity.
+void refuse_what_is_no_number(CLI::App &app) {
+  const CLI::Validator finite(
+      [](std::string &text) {
+        const bool is_finite = std::isfinite(std::strtod(text.c_str(), nullptr));
+        return is_finite ? std::string() : "a finite number was expected, not " + text;
+      },
+      std::string());
+  for (CLI::Option *option : app.get_options())
+    if (option->get_type_name().find("FLOAT") != std::string::npos)
+      option->check(finite);
+  for (CLI::App *verb : app.get_subcommands([](CLI::App *) { return true; }))
+    refuse_what_is_no_number(*verb);
 }
 
 const CLI::App &deepest(const CLI::App &app) {
@@ -79,6 +97,7 @@ int run(int argc, char **argv) {
   cli::add_doctor(app, exit_with);
   cli::add_completion(app, exit_with);
   cli::add_man(app, exit_with);
+  refuse_what_is_no_number(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success &done) { // --help, --version

@@ -21,10 +21,13 @@ void add_exposure(CLI::App &app, const Exit &exit_with) {
   number("--height-m", o->height_m, "Height of the site [m]");
   number("--sd-p", o->sd_p, "Wanted standard deviation of the degree of polarization");
   number("--nm", o->nm, "Wavelength [nm]");
-  number("--width-nm", o->width_nm, "Width of the band [nm]");
+  number("--width-nm", o->width_nm,
+         "Width of the band [nm]; of V about 80, of nm:550 in observe 10");
   number("--sky-mag", o->sky_mag, "Sky, AB [mag / arcsec2]");
   number("--seeing", o->seeing_arcsec, "Width of a star at the zenith [arcsec]");
   number("--change-per-s", o->change_per_s, "Relative change of brightness in a second");
+  number("--exposure-s", o->exposure_s,
+         "Of a frame [s]; 0: until p is known, or half of what fills a pixel");
   add_table_output(*verb, *output);
   add_common(*verb, *common, true);
   verb->callback([=] {
@@ -34,6 +37,9 @@ void add_exposure(CLI::App &app, const Exit &exit_with) {
       return;
     }
     const auto done = put_table(*output, *table, *common);
+    for (const auto &[key, text] : table->notes())
+      if (done && key == "verdict")
+        note(*common, text);
     exit_with(done ? 0 : report(done.error()));
   });
 }

@@ -3,7 +3,7 @@
 #include "job_console.h"
 #include "verbs.h"
 
-#include <fmt/format.h>
+#include <umov/jobs/index_range.h>
 #include <umov/jobs/library.h>
 
 namespace umov::cli {
@@ -15,25 +15,13 @@ struct LibraryVerb {
   Common common;
 };
 
-/// "500:1000": from the 500th on, before the 1000th, counted from 0.
 Result<void> take_range(LibraryVerb &o) {
   if (o.range.empty())
     return {};
-  const std::size_t colon = o.range.find(':');
-  constexpr std::size_t none = static_cast<std::size_t>(-1);
-  const auto number = [](const std::string &text) {
-    const bool is_number =
-        !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == text.npos;
-    return is_number ? static_cast<std::size_t>(std::stoul(text)) : none;
-  };
-  const std::size_t first = number(o.range.substr(0, colon));
-  const std::size_t end = colon == o.range.npos ? none : number(o.range.substr(colon + 1));
-  if (first == none || end == none || end < first)
-    return fail(
-        ErrorCode::Usage,
-        fmt::format("--range {}: FIRST:END was expected, counted from 0, as 0:500", o.range));
-  o.request.first = first;
-  o.request.count = end - first;
+  UMOV_ASSIGN(part, jobs::JobPart::range(o.range));
+  UMOV_ASSIGN(range, part.of(o.request.scenarios.size(), "scenarios"));
+  o.request.first = range.first;
+  o.request.count = range.count;
   return {};
 }
 
@@ -59,7 +47,8 @@ void add_build(CLI::App &library, const Exit &exit_with) {
                    "Directions: (cells + 1)^2 of Sun and observer, 20: 97,461 pairs, 9 deg apart")
       ->check(CLI::Range(4, 60))
       ->capture_default_str();
-  verb->add_option("--range", o->range, "FIRST:END of the scenarios, for one of several machines");
+  verb->add_option("--range", o->range,
+                   "FIRST:COUNT of the scenarios, counted from 0, for one of several machines");
   add_threads(*verb, o->common);
   add_cache(*verb, o->common);
   verb->add_flag("-v,--verbose", o->common.verbose, "Also say what was done");

@@ -61,6 +61,7 @@ Result<void> look(const ReadOptions &options, const Common &common, bool check) 
 }
 
 void add_input(CLI::App &verb, ReadOptions &options) {
+  options.frame.is_of_command = true;
   verb.add_option("file", options.file,
                   "Mesh: OBJ, glTF, GLB, STL, PLY, COLLADA (.dae), 3DS or OFF")
       ->required();

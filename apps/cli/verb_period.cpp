@@ -22,7 +22,11 @@ Result<void> run_period(const PeriodVerb &o, const Common &common, Diagnostics &
   UMOV_ASSIGN(rows, read_observations_text(text, o.observations, diagnostics));
   UMOV_ASSIGN(table, jobs::period(rows, o.request, diagnostics));
   UMOV_ASSIGN(shown, chosen_columns(table, o.columns, {}, o.output, common));
-  return put_table(o.output, shown, common);
+  UMOV_TRY(put_table(o.output, shown, common));
+  for (const auto &[key, text] : table.notes())
+    if (key == "spin")
+      note(common, text);
+  return {};
 }
 
 } // namespace
@@ -45,6 +49,10 @@ void add_period(CLI::App &app, const Exit &exit_with) {
       ->check(CLI::Range(0.0, 1e9));
   verb->add_option("--gap-s", o->request.gap_s, "A longer gap begins a new stretch [s]")
       ->check(CLI::Range(1.0, 1e9))
+      ->capture_default_str();
+  verb->add_option("--false-alarm", o->request.false_alarm,
+                   "Leave out peaks that noise alone has more often than this; 1: none")
+      ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   add_table_output(*verb, o->output);
   add_columns(*verb, o->columns);

@@ -64,10 +64,7 @@ Result<void> put_measurements(const ReduceVerb &o, const CountsFile &counts, con
     UMOV_TRY(put(o.tdm, text));
   }
   if (!o.score.empty()) {
-    UMOV_ASSIGN(table, jobs::as_score(stokes, notes));
-    std::string text = to_csv(table);
-    while (text.starts_with('#')) // the repository takes no header
-      text.erase(0, text.find('\n') + 1);
+    UMOV_ASSIGN(text, jobs::score_text(stokes, notes));
     UMOV_TRY(put(o.score, text));
   }
   return {};

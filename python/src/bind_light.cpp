@@ -187,12 +187,6 @@ nb::tuple light_of(Light &light, const Vectors &sun, const Vectors &observer, un
                         is_dark.shaped({count}), method.shaped({count}));
 }
 
-LightMethod method_from(const std::string &word) {
-  return word == "rays"    ? LightMethod::Rays
-         : word == "masks" ? LightMethod::Masks
-                           : LightMethod::Auto;
-}
-
 void make_light_for(Light *self, const Scenario &scenario, const std::optional<std::string> &method,
                     const std::optional<double> &accuracy, const std::vector<double> &laser,
                     const std::vector<std::string> &temperatures, const std::string &mask_file,

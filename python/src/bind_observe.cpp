@@ -11,6 +11,7 @@
 #include <umov/core/quantity.h>
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/exposure.h>
+#include <umov/jobs/measurement_files.h>
 #include <umov/jobs/observe.h>
 #include <umov/jobs/period.h>
 #include <umov/jobs/reduce.h>
@@ -20,11 +21,17 @@ namespace {
 
 using nb::literals::operator""_a;
 
+/// Frames go into the folder `frames`, which is there, or nowhere if it is "".
 jobs::Observation observe(const Scenario &scenario, const jobs::JobOptions &options,
-                          nb::handle watch) {
+                          const std::string &frames, nb::handle watch) {
+  jobs::FrameSink take_frame;
+  if (!frames.empty())
+    take_frame = [&frames](const std::string &name, const FitsImage &image) {
+      return write_fits_image(std::filesystem::path(frames) / name, image);
+    };
   Attention attention(watch);
   auto made = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
-    return jobs::observe(scenario, options, monitor, diagnostics);
+    return jobs::observe(scenario, options, monitor, diagnostics, take_frame);
   });
   attention.settle(was_interrupted(made));
   return take(std::move(made));
@@ -52,12 +59,31 @@ Table reduce(const std::string &counts, const std::string &counts_path,
 
 /// `text` stands for a file of that path.
 Table period(const std::string &text, const std::string &path, const std::string &band,
-             std::size_t peaks, std::pair<double, double> reach_s, double gap_s, nb::handle watch) {
+             std::size_t peaks, std::pair<double, double> reach_s,
+             std::pair<double, double> gap_s_and_chance, nb::handle watch) {
   Attention attention(watch);
   auto made =
       attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Table> {
         UMOV_ASSIGN(rows, read_observations_text(text, path, diagnostics));
-        return jobs::period(rows, {band, peaks, reach_s.first, reach_s.second, gap_s}, diagnostics);
+        const auto [gap_s, chance] = gap_s_and_chance;
+        return jobs::period(rows, {band, peaks, reach_s.first, reach_s.second, gap_s, chance},
+                            diagnostics);
+      });
+  attention.settle(false);
+  return take(std::move(made));
+}
+
+/// The text of a file in which others take the magnitudes of `stokes`; `counts` as for reduce.
+std::string measurements(const Table &stokes, const std::string &counts,
+                         const std::string &counts_path, const std::string &form,
+                         const std::string &ecsv, const std::string &created_utc,
+                         nb::handle watch) {
+  Attention attention(watch);
+  auto made = attend(
+      attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<std::string> {
+        UMOV_ASSIGN(rows, read_counts_text(counts, counts_path, diagnostics));
+        const jobs::MeasurementNotes notes{rows.notes, ecsv, created_utc};
+        return form == "tdm" ? jobs::as_tdm(stokes, notes) : jobs::score_text(stokes, notes);
       });
   attention.settle(false);
   return take(std::move(made));
@@ -82,17 +108,18 @@ void bind_options(nb::module_ &m) {
   nb::class_<jobs::ReduceOptions>(m, "ReduceOptions", "How counts are reduced.")
       .def(
           "__init__",
-          [](jobs::ReduceOptions *self, double period_s, int harmonics, double q0_sd,
+          [](jobs::ReduceOptions *self, double period_s, int harmonics, double knot_s, double q0_sd,
              double gain_sd, double angle_sd_deg, double efficiency_sd, double sky_sd,
              unsigned threads) {
             new (self) jobs::ReduceOptions();
             self->period_s = period_s;
             self->harmonics = harmonics;
+            self->knot_s = knot_s;
             self->priors = {q0_sd, gain_sd, 0, angle_sd_deg * pi / 180, efficiency_sd, sky_sd};
             self->threads = threads;
           },
-          "period_s"_a, "harmonics"_a, "q0_sd"_a, "gain_sd"_a, "angle_sd_deg"_a, "efficiency_sd"_a,
-          "sky_sd"_a, "threads"_a);
+          "period_s"_a, "harmonics"_a, "knot_s"_a, "q0_sd"_a, "gain_sd"_a, "angle_sd_deg"_a,
+          "efficiency_sd"_a, "sky_sd"_a, "threads"_a);
   nb::class_<jobs::ExposureRequest>(m, "ExposureRequest", "How bright, how high, how exact.")
       .def(nb::init<>())
       .def_rw("instrument", &jobs::ExposureRequest::instrument)
@@ -104,6 +131,7 @@ void bind_options(nb::module_ &m) {
       .def_rw("width_nm", &jobs::ExposureRequest::width_nm)
       .def_rw("sky_mag", &jobs::ExposureRequest::sky_mag)
       .def_rw("seeing_arcsec", &jobs::ExposureRequest::seeing_arcsec)
+      .def_rw("exposure_s", &jobs::ExposureRequest::exposure_s)
       .def_rw("change_per_s", &jobs::ExposureRequest::change_per_s);
 }
 
@@ -119,14 +147,17 @@ void bind_observe(nb::module_ &m) {
           "truth", [](const jobs::Observation &o) { return &o.truth; },
           nb::rv_policy::reference_internal)
       .def_ro("exposures", &jobs::Observation::exposures)
-      .def_ro("saturated", &jobs::Observation::saturated);
-  m.def("observe", &observe, "scenario"_a, "options"_a, "watch"_a.none());
+      .def_ro("saturated", &jobs::Observation::saturated)
+      .def_ro("frames", &jobs::Observation::frames);
+  m.def("observe", &observe, "scenario"_a, "options"_a, "frames"_a, "watch"_a.none());
   m.def("reduce", &reduce, "counts"_a, "counts_path"_a, "calibration"_a.none(),
         "calibration_path"_a, "options"_a, "watch"_a.none());
   m.def("calibrate", &calibrate, "counts"_a, "counts_path"_a, "standards"_a, "standards_path"_a,
         "watch"_a.none());
   m.def("period", &period, "text"_a, "path"_a, "band"_a, "peaks"_a, "reach_s"_a, "gap_s"_a,
         "watch"_a.none());
+  m.def("measurements", &measurements, "stokes"_a, "counts"_a, "counts_path"_a, "form"_a, "ecsv"_a,
+        "created_utc"_a, "watch"_a.none());
   m.def("exposure",
         [](const jobs::ExposureRequest &request) { return take(jobs::exposure(request)); });
   m.def("instrument_list", [] { return take(jobs::instrument_list()); });

@@ -15,6 +15,7 @@ void bind_orbit(nanobind::module_ &m);
 void bind_picture(nanobind::module_ &m);
 void bind_abundances(nanobind::module_ &m);
 void bind_observe(nanobind::module_ &m);
+void bind_invert(nanobind::module_ &m);
 void bind_bands(nanobind::module_ &m);
 
 } // namespace umov::python

@@ -21,5 +21,6 @@ NB_MODULE(_umov, m) {
   umov::python::bind_picture(m);
   umov::python::bind_abundances(m);
   umov::python::bind_observe(m);
+  umov::python::bind_invert(m);
   umov::python::bind_bands(m);
 }

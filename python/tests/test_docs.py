@@ -17,21 +17,27 @@ import gallery as pages  # noqa: E402
 
 PUBLIC = sorted(name for name in umov.__all__ if callable(getattr(umov, name)))
 MODULES = ["engines", "errors", "light_curves", "materials", "orbits", "plot", "runs", "satellites", "scenarios",
-           "sites", "tables", "times", "abundances", "pictures", "turnable", "observing", "passbands", "samples"]
+           "sites", "tables", "times", "abundances", "pictures", "turnable", "observing", "passbands", "samples", "periods", "inversions", "libraries",
+           "measurements", "scale", "rows"]
 
 
-@pytest.mark.parametrize("name", PUBLIC)
+SCALE = importlib.import_module("umov.scale")
+
+
+@pytest.mark.parametrize("name", [*PUBLIC, *(f"scale.{name}" for name in SCALE.__all__)])
 def test_has_an_example(name):
-    assert ">>>" in (inspect.getdoc(getattr(umov, name)) or ""), f"umov.{name} has no example"
+    one = getattr(SCALE, name.removeprefix("scale.")) if "." in name else getattr(umov, name)
+    assert ">>>" in (inspect.getdoc(one) or ""), f"umov.{name} has no example"
 
 
 #: Made by calls, not by users: their class says which.
-MADE_BY_CALLS = {"Abundances", "LightCurve", "Picture", "Table"}
+MADE_BY_CALLS = {"Abundances", "LightCurve", "Picture", "Plan", "Table"}
 
 
 def callables():
     """Every public function, and every public method and constructor of every public class, by its name."""
-    for module in (umov, importlib.import_module("umov.plot"), importlib.import_module("umov.turnable")):
+    for module in (umov, importlib.import_module("umov.plot"), importlib.import_module("umov.turnable"),
+                   importlib.import_module("umov.scale")):
         for name in module.__all__:
             one = getattr(module, name)
             if inspect.isfunction(one):
@@ -69,6 +75,13 @@ def test_every_attribute_is_told_of():
             if not re.search(rf"^    {field}: .*#: \S", inspect.getsource(one), re.MULTILINE):
                 silent.append(f"{name}.{field}")
     assert not silent
+
+
+def test_every_name_is_on_a_page_of_the_site():
+    pages = "".join(path.read_text() for path in (ROOT / "docs/site/api").glob("*.md"))
+    errors = umov.errors.__all__  # one page has them all
+    missing = [name for name in PUBLIC if name not in errors and not re.search(rf"auto\w+:: umov\.{name}(\(\))?\n", pages)]
+    assert not missing and all(name in pages for name in errors)
 
 
 @pytest.fixture(scope="module")

@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
+AGENA_PASS = EXAMPLES / "agena_pass.csv"
 START, STOP = "2018-01-21T05:08:00Z", "2018-01-21T05:09:00Z"
 
 
@@ -297,6 +298,19 @@ def test_own_materials_go_with_the_satellite():
     lambda hst: umov.reduce(EXAMPLES / "panel_brdf.csv", harmonics=0),
     lambda hst: umov.exposure("c11_imx250", alt_deg=-5),
     lambda hst: umov.observe(EXAMPLES / "hst_maui.toml"),
+    lambda hst: umov.reduce(EXAMPLES / "panel_brdf.csv", period_s=5, knot_s=5),
+    lambda hst: umov.tdm(umov.bands().to_qtable(), EXAMPLES / "panel_brdf.csv"),
+    lambda hst: umov.invert_pose(AGENA_PASS, EXAMPLES / "agena_maui.toml", fit=umov.Fit(grid=3)),
+    lambda hst: umov.invert_pose(AGENA_PASS, EXAMPLES / "agena_maui.toml", fit={"grid": 3000}),
+    lambda hst: umov.invert_pose([], EXAMPLES / "agena_maui.toml"),
+    lambda hst: umov.invert_pose(umov.bands(), EXAMPLES / "agena_maui.toml"),
+    lambda hst: umov.invert_spin(AGENA_PASS, EXAMPLES / "agena_maui.toml", axis="w"),
+    lambda hst: umov.invert_material(AGENA_PASS, EXAMPLES / "agena_maui.toml", group="wing", candidates=["gold"]),
+    lambda hst: umov.invert_material(AGENA_PASS, EXAMPLES / "agena_maui.toml", group="body", candidates="gold"),
+    lambda hst: umov.invert_health(AGENA_PASS, EXAMPLES / "agena_maui.toml", drift={"wing": "gold"}),
+    lambda hst: umov.invert_health(AGENA_PASS, EXAMPLES / "agena_maui.toml", drift={}),
+    lambda hst: umov.build_library([], "lib"),
+    lambda hst: umov.build_library([EXAMPLES / "agena_maui.toml"], "lib", cells=3),
 ])
 def test_what_does_not_fit_is_refused(call, hst):
     with pytest.raises(umov.Error) as caught:
@@ -401,6 +415,15 @@ CALLS = {
     "counts": umov.reduce, "period_s": lambda x: umov.reduce(EXAMPLES / "panel_brdf.csv", period_s=x),
     "standards": lambda x: umov.calibrate(EXAMPLES / "panel_brdf.csv", x), "instrument": umov.instrument,
     "mag": lambda x: umov.exposure("c11_imx250", mag=x), "sd_p": lambda x: umov.exposure("c11_imx250", sd_p=x),
+    "light": lambda x: umov.period(x), "gap_s": lambda x: umov.period(AGENA_PASS, gap_s=x),
+    "pose": lambda x: umov.invert_pose(x, EXAMPLES / "agena_maui.toml"),
+    "fit": lambda x: umov.invert_pose(AGENA_PASS, EXAMPLES / "agena_maui.toml", fit=x),
+    "drift": lambda x: umov.invert_health(AGENA_PASS, EXAMPLES / "agena_maui.toml", drift=x),
+    "candidates": lambda x: umov.invert_material(AGENA_PASS, EXAMPLES / "agena_maui.toml", group="body", candidates=x),
+    "library": lambda x: umov.build_library(x, "/dev/null/lib"),
+    "folder": lambda x: umov.build_library(["nothing.toml"], x) if not isinstance(x, str) else None,
+    "stokes": lambda x: umov.score(x, EXAMPLES / "panel_brdf.csv"),
+    "frames": lambda x: umov.observe(EXAMPLES / "hst_maui.toml", frames=x) if not isinstance(x, (str, bytes)) else None,
     "Bands": umov.Bands, "band": umov.band, "example": umov.example,
     "attitude": lambda x: umov.Satellite(mesh="a.obj", materials="gold", attitude={"at": x}).to_toml(),
 }

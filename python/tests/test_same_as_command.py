@@ -1,5 +1,6 @@
 """What Python computes has the bytes that the command writes."""
 import csv
+import json
 import warnings
 
 import numpy as np
@@ -145,6 +146,97 @@ def test_observe_and_reduce(command, tmp_path):
     umov.reduce(seen, q0_sd=0.002, angle_sd_deg=0.5).write(tmp_path / "ours.ecsv")
     assert (tmp_path / "ours.ecsv").read_bytes() == (tmp_path / "known.ecsv").read_bytes()
     assert (tmp_path / "known.ecsv").read_bytes() != (tmp_path / "stokes.ecsv").read_bytes()
+
+
+def test_splines_and_what_others_take_of_them(command, tmp_path):
+    path, few = EXAMPLES / "observe_hst.toml", {"observation.cadence_s": 10, "observation.exposure_s": 0.02}
+    seen = umov.observe(path, set=few)
+    seen.counts.write(tmp_path / "counts.ecsv")
+    command("reduce", "counts.ecsv", "-o", "stokes.ecsv", "--tdm", "a.tdm", "--score", "a.csv")
+    stokes = umov.reduce(seen)
+    told = (tmp_path / "a.tdm").read_text()
+    made = next(line.split("=")[1].strip() for line in told.splitlines() if line.startswith("CREATION_DATE"))
+    assert umov.tdm(stokes, seen, ecsv="stokes.ecsv", created=made.rstrip("Z") + "Z") == told
+    assert umov.score(stokes, tmp_path / "counts.ecsv") == (tmp_path / "a.csv").read_text()
+    command("reduce", "counts.ecsv", "-o", "splined.ecsv", "--model", "spline:60")
+    umov.reduce(seen, knot_s=60).write(tmp_path / "ours.ecsv")
+    assert (tmp_path / "ours.ecsv").read_bytes() == (tmp_path / "splined.ecsv").read_bytes()
+
+
+def test_frames(command, tmp_path):
+    path = EXAMPLES / "observe_hst.toml"
+    few = {"observation.level": "image", "observation.cadence_s": 120, "observation.exposure_s": 0.02}
+    sets = [word for key, value in few.items() for word in ("--set", f"{key}={value}")]
+    command("observe", path, *sets, "-o", tmp_path / "out", "-q")
+    seen = umov.observe(path, set=few, frames=tmp_path / "ours")
+    theirs = sorted((tmp_path / "out/frames").iterdir())
+    assert seen.frames == len(theirs) > 0
+    assert [one.name for one in theirs] == sorted(one.name for one in (tmp_path / "ours").iterdir())
+    for one in theirs:
+        assert one.read_bytes() == (tmp_path / "ours" / one.name).read_bytes()
+    seen.counts.write(tmp_path / "counts.ecsv")
+    assert (tmp_path / "counts.ecsv").read_bytes() == (tmp_path / "out/counts.ecsv").read_bytes()
+    with pytest.raises(umov.DeviceError):  # they are there already
+        umov.observe(path, set=few, frames=tmp_path / "ours")
+
+
+AGENA, HST = EXAMPLES / "agena_maui.toml", EXAMPLES / "hst_maui.toml"
+
+
+GREEN = {"bands.set": ["nm:550"]}
+
+
+@pytest.mark.parametrize(("words", "scenario", "changes", "ours"), [
+    (["pose", "--grid", 1000, "--outliers", 0.05, "--floor", 0.03], AGENA,
+     {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 20},
+     lambda light: umov.invert_pose(light, AGENA, set=GREEN, fit=umov.Fit(grid=1000, outliers=0.05, floor=0.03))),
+    (["spin", "--period", 23.7, "--no-aliases", "--axis", "x", "--grid", 1000, "--intensity-only"], AGENA,
+     {"object.attitude": {"mode": "spin", "axis": "+X", "period_s": 23.7}, "time.step_s": 3,
+      "time.start": "2018-01-21T05:18:00Z", "time.stop": "2018-01-21T05:20:00Z"},
+     lambda light: umov.invert_spin(light, AGENA, period_s=23.7, aliases=False, axis="x", set=GREEN,
+                                    fit=umov.Fit(grid=1000, intensity_only=True))),
+    (["material", "--group", "array_front", "--candidates", "cell_silicon,paint_white"], HST, {"time.step_s": 30},
+     lambda light: umov.invert_material(light, HST, group="array_front", candidates=["cell_silicon", "paint_white"],
+                                        set=GREEN)),
+    (["health", "--drift", "array_front=paint_white", "--attitude-sd", 0.2, "--scale-sd", 0.1], HST, {"time.step_s": 30},
+     lambda light: umov.invert_health(light, HST, drift={"array_front": "paint_white"}, attitude_sd_deg=0.2, set=GREEN,
+                                      fit=umov.Fit(scale_sd=0.1)))])
+def test_inversions(words, scenario, changes, ours, command, tmp_path):
+    """Of a file and of a light curve in memory: verdict, every table and the page."""
+    curve = umov.run(scenario, set={**changes, **GREEN})
+    curve.write(tmp_path / "light.ecsv")
+    command("invert", words[0], "light.ecsv", "--scenario", scenario, *words[1:], "--set", 'bands.set=["nm:550"]',
+            "-o", "theirs", "-q")
+    theirs = tmp_path / "theirs"
+    for light in (tmp_path / "light.ecsv", curve):
+        found = ours(light)
+        assert sorted(one.stem for one in theirs.glob("*.ecsv")) == sorted(found.tables)
+        for name, table in found.tables.items():
+            table.write(tmp_path / "ours.ecsv")
+            assert (tmp_path / "ours.ecsv").read_bytes() == (theirs / f"{name}.ecsv").read_bytes(), name
+        assert found.values == json.loads((theirs / "verdict.json").read_text())
+        assert found.verdict == found.values["verdict"]
+        assert not found.page or found.page == (theirs / "report.html").read_text()
+
+
+def test_changes_are_counted_from_a_baseline():
+    curve = umov.run(HST, set={"time.step_s": 30})
+    twice = [curve, curve]
+    found = umov.invert_health(twice, HST, drift={"array_front": "paint_white"}, baseline=twice)
+    assert abs(found.tables["health"]["sigma"][0]) < 1e-6
+
+
+def test_a_library(command, tmp_path):
+    for name in ("one", "two"):
+        (tmp_path / f"{name}.toml").write_text(umov.Scenario(HST).to_toml())
+    command("library", "build", "one.toml", "two.toml", "-o", "theirs", "--cells", 4, "-q")
+    paths = [tmp_path / "one.toml", tmp_path / "two.toml"]
+    made = umov.build_library(paths, tmp_path / "ours", cells=4, count=1)
+    assert list(made["state"]) == ["made"] and list(made["name"]) == ["one"]
+    made = umov.build_library(paths, tmp_path / "ours", cells=4)
+    assert list(made["state"]) == ["was there", "made"] and set(made["poses"]) == {325}
+    for name in ("one", "two"):
+        assert (tmp_path / f"ours/{name}.umovsig").read_bytes() == (tmp_path / f"theirs/{name}.umovsig").read_bytes()
 
 
 @pytest.mark.parametrize(("words", "ours"), [

@@ -17,8 +17,11 @@ from .abundances import Abundances, Coloured, Column, Sums
 from .engines import Engine, Light, random_poses
 from .errors import (DeviceError, Error, InputError, InternalError, Interrupted, NoResult, NumericsError,
                      UmovWarning, UsageError, Where)
+from .inversions import Fit, Inversion, invert_health, invert_material, invert_pose, invert_spin
+from .libraries import build_library
 from .light_curves import LightCurve
 from .materials import Material, brdf, materials
+from .measurements import score, tdm
 from .observing import (Calibration, Observation, calibrate, exposure, instrument, instruments, observe,
                         reduce)
 from .orbits import States, ephemeris, passes, propagate
@@ -36,13 +39,14 @@ from .times import utc
 if TYPE_CHECKING:
     from . import plot, scale, turnable
 
-__all__ = ["Abundances", "Bands", "Calibration", "Coloured", "Column", "DeviceError", "Engine", "Error", "InputError",
-           "InternalError", "Interrupted", "Light", "LightCurve", "Material", "Mesh", "NoResult", "NumericsError",
-           "Observation", "Picture", "Satellite", "Scenario", "Site", "States", "Sums", "Table", "UmovWarning",
-           "UsageError", "Where", "__version__", "band", "bands", "brdf", "calibrate", "conventions_version",
-           "ephemeris", "example", "exposure", "instrument", "instruments", "materials", "mesh", "observe", "passes",
-           "period", "plot", "propagate", "random_poses", "reduce", "render", "run", "scale", "schema", "site_names", "source_revision",
-           "turnable", "utc"]
+__all__ = ["Abundances", "Bands", "Calibration", "Coloured", "Column", "DeviceError", "Engine", "Error", "Fit",
+           "InputError", "InternalError", "Interrupted", "Inversion", "Light", "LightCurve", "Material", "Mesh",
+           "NoResult", "NumericsError", "Observation", "Picture", "Satellite", "Scenario", "Site", "States", "Sums",
+           "Table", "UmovWarning", "UsageError", "Where", "__version__", "band", "bands", "brdf", "build_library",
+           "calibrate", "conventions_version", "ephemeris", "example", "exposure", "instrument", "instruments",
+           "invert_health", "invert_material", "invert_pose", "invert_spin", "materials", "mesh", "observe", "passes",
+           "period", "plot", "propagate", "random_poses", "reduce", "render", "run", "scale", "schema", "score",
+           "site_names", "source_revision", "tdm", "turnable", "utc"]
 
 
 def __getattr__(name: str) -> Any:

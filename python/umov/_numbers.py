@@ -49,3 +49,18 @@ def whole(value: Any, name: str, last: int = 2**31 - 1) -> int:
     if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not 0 <= value <= last:
         raise UsageError(f"{name} is {value!r}; a whole number from 0 to {last} was expected")
     return int(value)
+
+
+def between(value: Any, name: str, least: float, most: float) -> float:
+    """A number within limits, both allowed."""
+    out = number(value, name)
+    if not least <= out <= most:
+        raise UsageError(f"{name} is {value!r}; a number from {least:g} to {most:g} was expected")
+    return out
+
+
+def whole_between(value: Any, name: str, least: int, most: int) -> int:
+    """A whole number within limits, both allowed."""
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not least <= value <= most:
+        raise UsageError(f"{name} is {value!r}; a whole number from {least} to {most} was expected")
+    return int(value)

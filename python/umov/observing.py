@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._numbers import number, whole
-from .errors import InputError, UsageError
+from .errors import DeviceError, InputError, UsageError
 from .scenarios import AnyScenario, Scenario
 from .tables import Table
 
@@ -31,13 +31,14 @@ class Observation(NamedTuple):
     truth: Table  #: a row per exposure: what a reduction should find; the columns of truth.ecsv
     exposures: int  #: how many
     saturated: int  #: of them, with a channel that is full
+    frames: int = 0  #: pictures that were made, with `level = "image"`
 
 
 AnyCounts = Union[str, "os.PathLike[str]", Observation, Table, "QTable"]
 
 
-def observe(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, threads: int = 0,
-            cache: bool | str | os.PathLike[str] = True, progress: Progress = None,
+def observe(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None,
+            frames: str | os.PathLike[str] | None = None, threads: int = 0, cache: bool | str | os.PathLike[str] = True, progress: Progress = None,
             allow_bad_checksum: bool = False, allow_old_elements: bool = False) -> Observation:
     """Counts that an instrument would record of a scenario: the tables of `umov observe`, in memory.
 
@@ -47,6 +48,9 @@ def observe(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, thre
         With [observation] and an instrument; path, dictionary or Scenario.
     set
         Changes of its keys, such as {"observation.exposure_s": 0.1}.
+    frames
+        A folder, made if need be, for the frames of `observation.level = "image"`: a FITS file with its WCS for each
+        exposure, which must not be there yet. None: counts are taken from frames that go nowhere.
     threads
         0 for all cores; the bytes do not depend on it.
     cache
@@ -70,8 +74,19 @@ def observe(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, thre
     """
     asked = Scenario(scenario, set)
     done = _umov.observe(asked._scenario, job_options(threads, cache, allow_bad_checksum, allow_old_elements),
-                         Watch(progress))
-    return Observation(Table(done.counts), Table(done.truth), done.exposures, done.saturated)
+                         "" if frames is None else _folder(frames), Watch(progress))
+    return Observation(Table(done.counts), Table(done.truth), done.exposures, done.saturated, done.frames)
+
+
+def _folder(path: Any) -> str:
+    """A folder that is there."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise UsageError(f"frames is a {type(path).__name__}; the name of a folder was expected")
+    try:
+        os.makedirs(path, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise DeviceError(f"{os.fspath(path)}: cannot be made ({error}); a folder for frames was expected") from error
+    return os.path.abspath(path)
 
 
 def _text_of(table: Any, what: str) -> tuple[str, str]:
@@ -148,7 +163,7 @@ class Calibration:
 
 
 def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[str] | None = None,
-           period_s: float | None = None, harmonics: int = 3, q0_sd: float = 0.0, gain_sd: float = 0.0,
+           period_s: float | None = None, harmonics: int = 3, knot_s: float | None = None, q0_sd: float = 0.0, gain_sd: float = 0.0,
            angle_sd_deg: float = 0.0, efficiency_sd: float = 0.0, sky_sd: float = 0.0, threads: int = 0,
            progress: Progress = None) -> Table:
     """Stokes parameters with their errors from counts: the rows of `umov reduce`, one per set.
@@ -165,6 +180,8 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
         on a tumbling object. None: every set by itself.
     harmonics
         Of that series, 1 to 100.
+    knot_s
+        The same with splines, knots this far apart [s], where there is no period.
     q0_sd
         How well the instrument's own q and u are known (standard deviation).
     gain_sd
@@ -197,6 +214,11 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
         raise UsageError(f"period_s is {period_s!r}; a number above 0 was expected")
     if not 1 <= whole(harmonics, "harmonics") <= 100:
         raise UsageError(f"harmonics is {harmonics}; 1 to 100 was expected")
+    knot = 0.0 if knot_s is None else number(knot_s, "knot_s")
+    if knot_s is not None and not knot > 0:
+        raise UsageError(f"knot_s is {knot_s!r}; a number above 0 was expected")
+    if knot and period:
+        raise UsageError("period_s and knot_s were both given; one of them was expected")
     given = {"q0_sd": q0_sd, "gain_sd": gain_sd, "angle_sd_deg": angle_sd_deg, "efficiency_sd": efficiency_sd,
              "sky_sd": sky_sd}
     errors = {name: number(value, name) for name, value in given.items()}
@@ -206,7 +228,7 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
     known = Calibration(calibration) if isinstance(calibration, (str, os.PathLike)) else calibration
     if known is not None and not isinstance(known, Calibration):
         raise UsageError(f"calibration is a {type(known).__name__}; a Calibration or its file was expected")
-    options = _umov.ReduceOptions(period, int(harmonics), errors["q0_sd"], errors["gain_sd"],
+    options = _umov.ReduceOptions(period, int(harmonics), knot, errors["q0_sd"], errors["gain_sd"],
                                   errors["angle_sd_deg"], errors["efficiency_sd"], errors["sky_sd"], whole(threads, "threads"))
     return Table(_umov.reduce(text, path, None if known is None else known._text, "" if known is None else known._path,
                               options, Watch(progress)))
@@ -244,7 +266,7 @@ def calibrate(counts: AnyCounts, standards: str | os.PathLike[str] | Table | QTa
 
 def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: float = 45.0, height_m: float = 0.0,
              sd_p: float = 0.01, wavelength_nm: float = 550.0, width_nm: float = 80.0, sky_mag: float = 21.0,
-             seeing_arcsec: float = 2.0, change_per_s: float = 0.0) -> Table:
+             seeing_arcsec: float = 1.0, change_per_s: float = 0.0, exposure_s: float = 0.0) -> Table:
     """How long an instrument must expose for an error of p: the rows of `umov exposure`.
 
     Parameters
@@ -269,6 +291,8 @@ def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: f
         Width of a star at the zenith [arcsec].
     change_per_s
         Relative change of brightness in a second: what one analyser after the other takes for polarization.
+    exposure_s
+        Of a frame [s], of which the note `verdict` speaks; 0: until p is known, or half of what fills a pixel.
 
     Notes
     -----
@@ -287,6 +311,7 @@ def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: f
     request.nm, request.width_nm = number(wavelength_nm, "wavelength_nm"), number(width_nm, "width_nm")
     request.sky_mag, request.seeing_arcsec = number(sky_mag, "sky_mag"), number(seeing_arcsec, "seeing_arcsec")
     request.change_per_s = number(change_per_s, "change_per_s")
+    request.exposure_s = number(exposure_s, "exposure_s")
     return Table(_umov.exposure(request))
 
 

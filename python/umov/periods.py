@@ -21,7 +21,7 @@ AnyLight = Union[str, "os.PathLike[str]", LightCurve, Table, "QTable"]
 
 
 def period(light: AnyLight, *, band: str = "", peaks: int = 5, shortest_s: float = 0.0, longest_s: float = 1e300,
-           gap_s: float = 1200.0) -> Table:
+           gap_s: float = 1200.0, false_alarm: float = 0.01) -> Table:
     """Periods that a light curve shows: the rows of `umov period`, the highest peak of each stretch first.
 
     Parameters
@@ -38,11 +38,14 @@ def period(light: AnyLight, *, band: str = "", peaks: int = 5, shortest_s: float
         Longer periods are left out [s].
     gap_s
         A longer gap begins a new stretch: another pass [s].
+    false_alarm
+        Peaks that noise alone has more often than this are left out; 1 leaves none out.
 
     Notes
     -----
     Lomb-Scargle with a floating mean of the magnitudes less a parabola in time; periods are synodic, and of a body with two
-    like sides half a turn shows. `NoResult` where no stretch has twelve brightnesses. Sources: Zechmeister & Kuerster (2009) for
+    like sides half a turn shows: the column `meaning` names parts, multiples and aliases of higher peaks, the note `spin` what
+    they may mean. `NoResult` where no stretch has twelve brightnesses, or none stands out of noise. Sources: Zechmeister & Kuerster (2009) for
     the periodogram, Montgomery & O'Donoghue (1999) for errors, Baluev (2008) for false alarms.
 
     Examples
@@ -60,6 +63,9 @@ def period(light: AnyLight, *, band: str = "", peaks: int = 5, shortest_s: float
     gap = number(gap_s, "gap_s")
     if not gap >= 1:
         raise UsageError(f"gap_s is {gap_s!r}; 1 s or more was expected")
+    chance = number(false_alarm, "false_alarm")
+    if not 0 <= chance <= 1:
+        raise UsageError(f"false_alarm is {false_alarm!r}; 0 to 1 was expected")
     text, path = _text_of(light.table if isinstance(light, LightCurve) else light, "light")
     reach = (number(shortest_s, "shortest_s"), number(longest_s, "longest_s"))
-    return Table(_umov.period(text, path, str(band), int(peaks), reach, gap, Watch(None)))
+    return Table(_umov.period(text, path, str(band), int(peaks), reach, (gap, chance), Watch(None)))

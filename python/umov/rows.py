@@ -44,8 +44,10 @@ class Rows:
 
     Examples
     --------
-    >>> rows = result.rows()  # doctest: +SKIP
-    >>> rows["intensity"].mean()  # doctest: +SKIP
+    >>> job = umov.scale.Job("signature", EXAMPLES / "agena_maui.toml", poses=20, phase=60)
+    >>> rows = umov.scale.run(job, "agena_rows").rows()
+    >>> bool(rows["intensity"].mean() > 0)
+    True
     """
 
     def __init__(self, files: Sequence[pathlib.Path], table: str) -> None:

@@ -62,7 +62,12 @@ class Job:
 
 @dataclasses.dataclass(frozen=True)
 class Plan:
-    """What a job will cost."""
+    """What a job will cost, as `plan` tells it.
+
+    >>> job = umov.scale.Job("signature", EXAMPLES / "agena_maui.toml", poses=1000, phase=60)
+    >>> umov.scale.plan(job).total
+    1000
+    """
 
     total: int  #: poses, objects or passes
     shards: int  #: files
@@ -109,15 +114,32 @@ def plan(job: Job, *, cores: int | None = None, program: str | None = None) -> P
 
     Examples
     --------
-    >>> umov.scale.plan(job).shards  # doctest: +SKIP
-    40
+    >>> umov.scale.plan(umov.scale.Job("signature", EXAMPLES / "agena_maui.toml", poses=1000, phase=60)).shards
+    1
     """
     more = ["--cores", cores] if cores else []
     return Plan(**json.loads(_call(_program(program), "plan", "--json", "-q", *more, "not-made", *job.words)))
 
 
 class Result:
-    """The folder of a job: rows that are there, opened when they are asked for."""
+    """The folder of a job: rows that are there, opened when they are asked for.
+
+    Parameters
+    ----------
+    folder
+        That `run` or the command made.
+    program
+        The command umov; by default the one beside this package.
+
+    Examples
+    --------
+    >>> job = umov.scale.Job("signature", EXAMPLES / "agena_maui.toml", poses=20, phase=60)
+    >>> result = umov.scale.run(job, "agena_result")
+    >>> umov.scale.Result("agena_result").missing
+    []
+    >>> len(result.rows()), result.status["is_complete"]
+    (60, True)
+    """
 
     def __init__(self, folder: str | os.PathLike[str], program: str | None = None) -> None:
         self.folder = pathlib.Path(folder).absolute()
@@ -265,8 +287,9 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
 
     Examples
     --------
-    >>> result = umov.scale.run(job, "lib/hst", cluster="local:8")  # doctest: +SKIP
-    >>> result.merge("hst.fits")  # doctest: +SKIP
+    >>> job = umov.scale.Job("signature", EXAMPLES / "agena_maui.toml", poses=20, phase=60)
+    >>> result = umov.scale.run(job, "agena_run")  # with cluster="local:8" on eight workers
+    >>> result.merge("agena.csv")
     """
     umov = _program(program)
     words = job.words if job else []

@@ -1,5 +1,7 @@
 #include <umov/jobs/exposure.h>
 
+#include "jobs/observe_plan.h"
+
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/photometry/radiometry.h>
@@ -89,11 +91,50 @@ Result<void> check(const ExposureRequest &r) {
                          {"--sd-p", r.sd_p, 1e-7, 1},
                          {"--nm", r.nm, 300, 1200},
                          {"--width-nm", r.width_nm, 1e-3, 1000},
-                         {"--seeing", r.seeing_arcsec, 1e-3, 100}})
+                         {"--seeing", r.seeing_arcsec, 1e-3, 100},
+                         {"--exposure-s", r.exposure_s, 0, 1e6}})
     if (!(b.value >= b.low && b.value <= b.high))
       return fail(ErrorCode::Usage,
                   fmt::format("{} {}: {} to {} was expected", b.name, b.value, b.low, b.high));
   return {};
+}
+
+/// One frame: how long, what it reaches, and how full it makes the brightest pixel.
+struct Frame {
+  double seconds = 0, snr = 0, sd_p = 0, full = 0;
+  bool is_given = false;
+};
+
+Frame frame_of(const Rates &r, double excess2, double factor, double seconds, double fills_s) {
+  const double star = r.star * seconds;
+  const double variance = excess2 * (r.star + r.sky + r.dark) * seconds + r.fixed;
+  const double flicker2 = r.scintillation * r.scintillation / seconds;
+  return {seconds, 1 / std::sqrt(variance / (star * star) + flicker2),
+          std::sqrt(factor * variance) / star, seconds / fills_s, false};
+}
+
+/// What a frame reaches, what it fails at, and what helps, in a sentence.
+std::string verdict_of(const Frame &frame, double sd_p, double fills_s, bool is_sequence) {
+  const double frames = std::ceil(std::pow(frame.sd_p / sd_p, 2) - 1e-9);
+  const char *of = is_sequence ? " of each analyser" : "";
+  std::string out = fmt::format("One exposure of {:.3g} s{}: S/N {:.3g}, error of p {:.2g}; ",
+                                frame.seconds, of, frame.snr, frame.sd_p);
+  if (frame.full >= 1)
+    return out + fmt::format("it saturates (the brightest pixel is full after {:.3g} s). Expose at "
+                             "most {:.3g} s and take more frames, defocus, or take a narrower band",
+                             fills_s, fills_s / 2);
+  out += fmt::format("the brightest pixel is {:.2g} % full, so it does not saturate. ",
+                     100 * frame.full);
+  if (frames <= 1)
+    return out + fmt::format("That is the error of p asked for, {:g}", sd_p);
+  out += fmt::format("{:.0f} of them{} tell p to {:g}", frames, of, sd_p);
+  constexpr double many = 1000;
+  if (frames > many)
+    out += frame.full < 0.1
+               ? "; longer ones read less noise, and a wider band or more aperture has "
+                 "more light"
+               : "; a wider band or more aperture has more light";
+  return out;
 }
 
 } // namespace
@@ -114,6 +155,10 @@ Result<Table> exposure(const ExposureRequest &r) {
   const double f2 = excess_variance(instrument.detector), factor = is_full ? 3 : 2;
   const double t = time_for(rates, f2, r.sd_p, factor);
   const double all = f2 * (rates.star + rates.sky + rates.dark) * t + rates.fixed;
+  const double fills_s = saturation_e(instrument.detector) / rates.peak;
+  const auto states = static_cast<double>(usual_states(type).size());
+  const double taken = r.exposure_s > 0 ? r.exposure_s : std::min(t / states, fills_s / 2);
+  const Frame frame = frame_of(rates, f2, factor / states, taken, fills_s);
   Sheet out;
   out.add("zero_point", 2.5 * std::log10(observer.rate_per_flux() * band.zero_flux), "mag(AB)",
           "of 1 electron a second, no air, no polarizer");
@@ -123,8 +168,7 @@ Result<Table> exposure(const ExposureRequest &r) {
           is_full ? "of a whole sequence, until q, u and v are known to sd_p"
                   : "of all states together, until p is known to sd_p");
   out.add("electrons", rates.star * t, "electron", "detected in that time");
-  out.add("saturation", saturation_e(instrument.detector) / rates.peak, "s",
-          "exposure that fills the brightest pixel");
+  out.add("saturation", fills_s, "s", "exposure that fills the brightest pixel");
   out.add("share_star", f2 * rates.star * t / all, "", "of the variance: the object's own photons");
   out.add("share_sky", f2 * rates.sky * t / all, "", "the sky's");
   out.add("share_dark", f2 * rates.dark * t / all, "", "dark current");
@@ -136,7 +180,9 @@ Result<Table> exposure(const ExposureRequest &r) {
   if (!is_simultaneous(type) && r.change_per_s > 0)
     out.add("false_p", std::sqrt(2.0) * r.change_per_s * t / 4, "",
             "of four states in a row while brightness changes as told");
-  return std::move(out).table();
+  Table table = std::move(out).table();
+  table.note("verdict", verdict_of(frame, r.sd_p, fills_s, states > 1));
+  return table;
 }
 
 Result<Table> instrument_list() {

@@ -127,7 +127,7 @@ Result<Table> as_score(const Table &stokes, const MeasurementNotes &from) {
     if (!has_magnitude(stokes, row))
       continue;
     ++rows;
-    const double relative = stokes.number("I_err", row) / stokes.number("I_obs", row);
+    const double relative = stokes.number("I_err", row) / stokes.number("I", row);
     cells["satellite_name"].push_back(stokes.text("name", row));
     cells["norad_cat_id"].push_back(note_of(from, "norad", ""));
     cells["observation_time_utc"].push_back(stokes.text("time_utc", row));
@@ -152,6 +152,14 @@ Result<Table> as_score(const Table &stokes, const MeasurementNotes &from) {
     out.add(name, "", "", std::move(found));
   }
   return out;
+}
+
+Result<std::string> score_text(const Table &stokes, const MeasurementNotes &notes) {
+  UMOV_ASSIGN(table, as_score(stokes, notes));
+  std::string text = to_csv(table);
+  while (text.starts_with('#'))
+    text.erase(0, text.find('\n') + 1);
+  return text;
 }
 
 } // namespace umov::jobs

@@ -272,7 +272,8 @@ Result<void> check_air(const std::vector<Exposure> &exposures, const Setup &s,
 /// What the instrument and the site say that can hardly be meant.
 void warn_of_setup(const Setup &s, double site_height_m, Diagnostics &diagnostics) {
   const Detector &d = s.observation.instrument.detector;
-  const double numbers = (std::exp2(d.bits) - 1 - d.bias_adu) * d.gain_e_adu;
+  // The bias takes a little of it; a well that is a few per cent over is every maker's choice.
+  const double numbers = std::exp2(d.bits) * d.gain_e_adu;
   const bool has_numbers = d.model != DetectorModel::Ideal && d.model != DetectorModel::Counter;
   if (has_numbers && d.em_gain <= 1 && d.well_e > numbers)
     diagnostics.warn(

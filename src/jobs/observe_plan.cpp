@@ -7,9 +7,6 @@
 #include <umov/io/passband_file.h>
 
 namespace umov::jobs {
-namespace {
-
-/// States that a polarimeter of this type goes through where nothing else is said.
 std::vector<PolarimeterState> usual_states(PolarimeterType type) {
   const auto plates = [](std::initializer_list<double> angles) {
     std::vector<PolarimeterState> out;
@@ -32,6 +29,8 @@ std::vector<PolarimeterState> usual_states(PolarimeterType type) {
     return {{}};
   }
 }
+
+namespace {
 
 /// Angles that a polarimeter of this type does not have.
 void warn_of_idle_angles(PolarimeterType type, const std::vector<SequenceStep> &sequence,

@@ -7,6 +7,9 @@
 
 namespace umov::jobs {
 
+/// States that a polarimeter of this type goes through where nothing else is said.
+std::vector<PolarimeterState> usual_states(PolarimeterType type);
+
 /// Bands, and what the instrument makes of each.
 struct ObservedBands {
   std::vector<Band> bands;

@@ -3,6 +3,7 @@
 #include "jobs/observe_pages.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
@@ -81,6 +82,43 @@ std::size_t stride_of(const Table &truth) {
   constexpr std::size_t most = 3000;
   return (truth.rows() + most - 1) / most;
 }
+
+/// Values with errors, of which an axis shows those that are known. A set in the penumbra, whose
+/// errors are as wide as all there is, would flatten the rest.
+class Known {
+public:
+  void add(double value, double error) {
+    if (std::isfinite(value) && error >= 0)
+      values_.push_back({value, error});
+  }
+  /// Of the better known half the values with their errors, and of the others the values whose
+  /// errors are no wider than those reach; {0, 0} of none.
+  [[nodiscard]] std::array<double, 2> span() const {
+    if (values_.empty())
+      return {};
+    std::vector<double> errors;
+    for (const Value &v : values_)
+      errors.push_back(v.error);
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    double low = INFINITY, high = -INFINITY;
+    for (const Value &v : values_)
+      if (v.error <= *middle)
+        low = std::min(low, v.value - v.error), high = std::max(high, v.value + v.error);
+    const double reach = high - low, first = low, last = high;
+    for (const Value &v : values_)
+      if (2 * v.error <= reach && v.value > first - reach && v.value < last + reach)
+        low = std::min(low, v.value - v.error), high = std::max(high, v.value + v.error);
+    const double pad = std::max(0.05 * (high - low), 1e-6);
+    return {low - pad, high + pad};
+  }
+
+private:
+  struct Value {
+    double value, error;
+  };
+  std::vector<Value> values_;
+};
 
 PlotFigure histogram_of(const std::vector<double> &pulls) {
   PlotFigure out{"Pulls of the counts", "(counts - expected)/error", "share", {}, false, false, {}};
@@ -166,19 +204,27 @@ std::vector<PlotFigure> figures_of_truth(const Table &truth) {
   const Clock clock(truth);
   const std::size_t stride = stride_of(truth);
   Lines mags(false), fractions(false);
+  Known known;
   for (std::size_t row = 0; row < truth.rows(); row += stride) {
     const std::string band = truth.text("band", row);
-    mags.add(band, clock(row), -truth.number("mag", row));
+    mags.add(band, clock(row), truth.number("mag", row));
+    known.add(truth.number("mag", row), 0);
     fractions.add("q " + band, clock(row), truth.number("q", row));
     fractions.add("u " + band, clock(row), truth.number("u", row));
   }
+  constexpr double deepest =
+      12.5; // magnitudes: what fades in the penumbra leaves the rest its height
+  std::array<double, 2> mag = known.span();
+  mag[1] = std::min(mag[1], mag[0] + deepest);
   return {{"What was there: brightness",
            clock.title(),
-           "-mag (AB), above the air",
+           "mag (AB), above the air",
            std::move(mags).all(),
            false,
            false,
-           {}},
+           {},
+           {},
+           {mag[1], mag[0]}},
           {"What was there: polarization",
            clock.title(),
            "q, u in the sky frame",
@@ -207,44 +253,104 @@ Result<std::string> observation_page(const Observation &observation, const std::
 
 namespace {
 
-/// The lines of a page of reduced sets.
+/// The lines of a page of reduced sets, and what their axes reach.
 struct StokesLines {
-  Lines plane{true}, ellipses{false}, bars{false}, degree{true}, limits{true}, mags{true},
-      tests{true};
+  Lines plane{true}, ellipses{false}, points{true}, bars{false}, degree{true}, intervals{false},
+      limits{true}, mags{true}, tests{true};
+  Known q, u, p, mag;
+  std::size_t stride = 1;   ///< every n-th set has an ellipse, if its errors are not far wider
+  double widest = INFINITY; ///< than those of most
 
   void add(const Table &stokes, std::size_t row, double t) {
     const std::string band = stokes.text("band", row);
-    mags.add(band, t, -stokes.number("mag", row));
+    if (stokes.number("I", row) > 3 * stokes.number("I_err", row)) { // else nothing was seen
+      mags.add(band, t, stokes.number("mag", row));
+      mag.add(stokes.number("mag", row),
+              1.0857 * stokes.number("I_err", row) / stokes.number("I", row));
+    }
     if (stokes.number("dof", row) > 0)
       tests.add(band, t, stokes.number("chi2", row) / stokes.number("dof", row));
     if (!std::isfinite(stokes.number("q", row)))
       return;
+    add_fractions(stokes, row, t, band);
+    add_degree(stokes, row, t, band);
+  }
+
+  void add_fractions(const Table &stokes, std::size_t row, double t, const std::string &band) {
     plane.add(band, stokes.number("q", row), stokes.number("u", row));
-    add_ellipse(stokes, row, band);
-    if (stokes.number("p_lo", row) > 0)
+    if (row % stride == 0 && stokes.number("cov_qq", row) < widest * widest)
+      add_ellipse(stokes, row, band);
+    for (const auto &[name, variance, known] :
+         {std::tuple{"q", "cov_qq", &q}, std::tuple{"u", "cov_uu", &u}}) {
+      const double value = stokes.number(name, row), sd = std::sqrt(stokes.number(variance, row));
+      const std::string line_name = fmt::format("{} {}", name, band);
+      points.add(line_name, t, value);
+      for (const double y : {value - sd, value + sd, std::nan("")})
+        bars.add(line_name, t, y);
+      known->add(value, sd);
+    }
+  }
+
+  void add_degree(const Table &stokes, std::size_t row, double t, const std::string &band) {
+    const double low = stokes.number("p_lo", row), high = stokes.number("p_hi", row);
+    if (low > 0)
       degree.add(band, t, stokes.number("p_debiased", row));
     else
-      limits.add(band + ", upper limit", t, stokes.number("p_hi", row));
-    PlotLine &bar = bars.of(band + ", 95 %");
-    for (const double y : {stokes.number("p_lo", row), stokes.number("p_hi", row), std::nan("")}) {
-      bar.x.push_back(t);
-      bar.y.push_back(y);
-    }
+      limits.add(band + ", upper limit", t, high);
+    p.add(low > 0 ? stokes.number("p_debiased", row) : high, (high - low) / 2);
+    for (const double y : {low, high, std::nan("")})
+      intervals.add(band + ", 95 %", t, y);
   }
 
   /// Of one standard deviation, by Cholesky's root.
   void add_ellipse(const Table &stokes, std::size_t row, const std::string &band) {
-    const double q = stokes.number("q", row), u = stokes.number("u", row);
+    const double q0 = stokes.number("q", row), u0 = stokes.number("u", row);
     const double a = stokes.number("cov_qq", row), b = stokes.number("cov_uu", row);
     const double c = stokes.number("cov_qu", row), s = std::sqrt(a);
     constexpr int steps = 24;
     for (int k = 0; k <= steps; ++k) {
       const double x = std::cos(2 * pi * k / steps), y = std::sin(2 * pi * k / steps);
-      ellipses.add(band, q + s * x, u + c / s * x + std::sqrt(std::max(0.0, b - c * c / a)) * y);
+      ellipses.add(band, q0 + s * x, u0 + c / s * x + std::sqrt(std::max(0.0, b - c * c / a)) * y);
     }
     ellipses.add(band, std::nan(""), std::nan(""));
   }
 };
+
+/// Of q, over the sets that have one; no bound without any.
+double median_error(const Table &stokes) {
+  std::vector<double> out;
+  for (std::size_t row = 0; row < stokes.rows(); ++row)
+    if (const double sd = std::sqrt(stokes.number("cov_qq", row)); std::isfinite(sd))
+      out.push_back(sd);
+  if (out.empty())
+    return INFINITY;
+  const auto middle = out.begin() + static_cast<std::ptrdiff_t>(out.size() / 2);
+  std::nth_element(out.begin(), middle, out.end());
+  return *middle;
+}
+
+/// Points, and lines of the same colours behind them.
+std::vector<PlotLine> with_bars(Lines points, Lines bars) {
+  std::vector<PlotLine> out = std::move(bars).all();
+  for (PlotLine &one : out) {
+    one.dash = "solid"; // of the colour of its points
+    one.is_faint = true;
+    one.name += one.name.ends_with('%') ? "" : ", error";
+  }
+  for (PlotLine &one : std::move(points).all())
+    out.push_back(std::move(one));
+  return out;
+}
+
+void add_figure(std::vector<PlotFigure> &out, PlotFigure figure) {
+  if (!figure.lines.empty()) // nothing was seen: an empty frame says less than none
+    out.push_back(std::move(figure));
+}
+
+/// No degree lies below 0.
+std::array<double, 2> from_zero(std::array<double, 2> span) {
+  return span[0] == span[1] ? span : std::array{-0.02 * span[1], std::min(span[1], 1.05)};
+}
 
 } // namespace
 
@@ -252,42 +358,74 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
                                 const Diagnostics &diagnostics) {
   const Clock clock(stokes);
   StokesLines lines;
+  constexpr std::size_t most_ellipses = 300; // more hide each other
+  lines.stride = (stokes.rows() + most_ellipses - 1) / most_ellipses;
+  lines.widest = 4 * median_error(stokes);
   for (std::size_t row = 0; row < stokes.rows(); ++row)
     lines.add(stokes, row, clock(row));
-  std::vector<PlotLine> points = std::move(lines.plane).all(), p = std::move(lines.degree).all();
-  for (PlotLine &one : std::move(lines.ellipses).all()) {
-    one.dash = "solid"; // of the colour of its points
-    points.push_back(std::move(one));
-  }
-  for (PlotLine &one : std::move(lines.bars).all()) {
-    one.dash = "solid";
-    p.push_back(std::move(one));
-  }
+  const std::string time = clock.title();
+  const auto q = lines.q.span(), u = lines.u.span(), mag = lines.mag.span();
+  const std::array both{std::min(q[0], u[0]), std::max(q[1], u[1])};
+  std::vector<PlotLine> p = with_bars(std::move(lines.degree), std::move(lines.intervals));
   for (PlotLine &one : std::move(lines.limits).all())
     p.push_back(std::move(one));
-  std::vector<std::string> notes{"Ellipses: one standard deviation. Bars: 95 % intervals of the "
-                                 "degree; points where it is detected, else the upper limit."};
+  std::vector<PlotFigure> figures;
+  add_figure(figures, {"q and u against time",
+                       time,
+                       "q, u in the sky frame",
+                       with_bars(std::move(lines.points), std::move(lines.bars)),
+                       false,
+                       false,
+                       {},
+                       {},
+                       both});
+  add_figure(figures, {"Degree of linear polarization",
+                       time,
+                       "p",
+                       std::move(p),
+                       false,
+                       false,
+                       {},
+                       {},
+                       from_zero(lines.p.span())});
+  add_figure(figures, {"Brightness",
+                       time,
+                       "mag (AB), above the air",
+                       std::move(lines.mags).all(),
+                       false,
+                       false,
+                       {},
+                       {},
+                       {mag[1], mag[0]}});
+  add_figure(figures, {"Polarization",
+                       "q",
+                       "u",
+                       with_bars(std::move(lines.plane), std::move(lines.ellipses)),
+                       false,
+                       false,
+                       {},
+                       q,
+                       u});
+  add_figure(figures, {"Fits: what noise does not explain",
+                       time,
+                       "chi2/dof",
+                       std::move(lines.tests).all(),
+                       false,
+                       false,
+                       {},
+                       {},
+                       {}});
+  std::vector<std::string> notes{
+      "Ellipses and bars of q and u: one standard deviation. Bars of p: 95 % intervals; points "
+      "where "
+      "it is detected, else the upper limit. Axes reach what is known: sets with errors wider than "
+      "that, as in the penumbra, lie outside (a double click shows all).",
+  };
+  if (lines.stride > 1)
+    notes.push_back(fmt::format("One set in {} has its ellipse.", lines.stride));
   for (const Warning &warning : diagnostics.warnings())
     notes.push_back("warning: " + warning.text());
-  return make_plot_page(
-      title,
-      {{"Polarization", "q", "u", std::move(points), false, false, {}},
-       {"Degree of linear polarization", clock.title(), "p", std::move(p), false, false, {}},
-       {"Brightness",
-        clock.title(),
-        "-mag (AB), above the air",
-        std::move(lines.mags).all(),
-        false,
-        false,
-        {}},
-       {"Fits: what noise does not explain",
-        clock.title(),
-        "chi2/dof",
-        std::move(lines.tests).all(),
-        false,
-        false,
-        {}}},
-      notes);
+  return make_plot_page(title, figures, notes);
 }
 
 } // namespace umov::jobs

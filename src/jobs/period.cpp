@@ -53,13 +53,30 @@ bool is_slow(const Periodogram &found, const std::vector<PeriodPeak> &peaks) {
   return !found.power.empty() && (peaks.empty() || found.power.front() > peaks.front().power);
 }
 
+/// What a peak is, in words.
+std::string meaning_of(const PeakRelation &relation) {
+  using Kind = PeakRelation::Kind;
+  const std::string of = fmt::format("rank {}", relation.to + 1);
+  if (relation.kind == Kind::Own)
+    return "period";
+  if (relation.kind == Kind::Sampling)
+    return "alias of " + of;
+  if (relation.ratio == 2 || relation.ratio == 0.5)
+    return (relation.ratio == 2 ? "twice " : "half of ") + of;
+  return relation.ratio > 1.6   ? fmt::format("{:g} times {}", relation.ratio, of)
+         : relation.ratio > 1.4 ? "3/2 of " + of
+         : relation.ratio > 0.6 ? "2/3 of " + of
+                                : fmt::format("1/{:g} of {}", 1 / relation.ratio, of);
+}
+
 /// Rows of the answer, column by column.
 struct PeriodRows {
-  std::vector<std::string> time, band;
+  std::vector<std::string> time, band, meaning;
   std::vector<std::int64_t> epochs, rank;
   std::vector<double> span, period, error, power, false_alarm;
 
   void add(const Stretch &of, std::span<const PeriodPeak> peaks) {
+    const std::vector<PeakRelation> relations = relate_peaks(peaks, of.seconds);
     for (std::size_t k = 0; k < peaks.size(); ++k) {
       time.push_back(to_iso(of.begin));
       band.push_back(of.band);
@@ -70,13 +87,31 @@ struct PeriodRows {
       error.push_back(peaks[k].period_err_s);
       power.push_back(peaks[k].power);
       false_alarm.push_back(peaks[k].false_alarm);
+      meaning.push_back(meaning_of(relations[k]));
     }
+  }
+
+  /// Which spins the surest highest peak may mean.
+  [[nodiscard]] std::string spins() const {
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < rank.size(); ++k)
+      if (rank[k] == 1 && (false_alarm[k] < false_alarm[best] ||
+                           (false_alarm[k] == false_alarm[best] && power[k] > power[best])))
+        best = k;
+    const std::string row =
+        band[best].empty() ? "" : fmt::format(" ({}, {})", printable(band[best]), time[best]);
+    return fmt::format(
+        "light repeats every {:.4g} s{}: the spin is {:.4g} s, or twice that, {:.4g} s, if two "
+        "sides are alike, or, of a tumbling body, half of it, {:.4g} s; each synodic. Brightness "
+        "alone does not tell which: fold at each, or umov invert spin",
+        period[best], row, period[best], 2 * period[best], period[best] / 2);
   }
 };
 
 Table table_of(PeriodRows &&rows, const std::string &path) {
   Table out;
   out.note("what", "periods that the light of " + path + " shows, by Lomb-Scargle");
+  out.note("spin", rows.spins());
   out.note("synodic", "they are of the light as the observer saw it: a spin is off by the turn of "
                       "the bisector of Sun and observer, and two like sides show half of it");
   out.add("time_utc", "", "begin of the stretch", std::move(rows.time));
@@ -91,6 +126,9 @@ Table table_of(PeriodRows &&rows, const std::string &path) {
           std::move(rows.power));
   out.add("false_alarm", "", "chance that white noise has a peak as high",
           std::move(rows.false_alarm));
+  out.add("meaning", "",
+          "period; part or multiple of a higher peak; alias: made of one by the times",
+          std::move(rows.meaning));
   out.set_precision("span", {"", 3, 0});
   out.set_precision("period", {"period_err", 0, 0});
   out.set_precision("period_err", {"", 0, 2});
@@ -116,7 +154,8 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
   if (!(request.shortest_s < request.longest_s))
     return fail(ErrorCode::Usage, fmt::format("periods from {:g} to {:g} s: none lies between",
                                               request.shortest_s, request.longest_s));
-  std::size_t too_few = 0, too_slow = 0;
+  std::size_t too_few = 0, too_slow = 0, noisy = 0;
+  double surest = 1;
   double cut_s = 0; // periods below were not looked at
   for (const std::string &band : bands)
     for (const Stretch &one : stretches_of(observations, band, request.gap_s)) {
@@ -131,6 +170,12 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
       });
       peaks.resize(std::min(peaks.size(), request.peaks));
       too_few += peaks.empty() ? 1u : 0u;
+      const bool had_peaks = !peaks.empty();
+      if (had_peaks)
+        surest = std::min(surest, peaks.front().false_alarm);
+      std::erase_if(peaks,
+                    [&](const PeriodPeak &peak) { return peak.false_alarm > request.false_alarm; });
+      noisy += had_peaks && peaks.empty() ? 1u : 0u;
       rows.add(one, peaks);
     }
   if (too_slow > 0)
@@ -145,12 +190,23 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
                                  "at; a shorter --gap-s makes more and shorter stretches of it",
                                  cut_s),
                      {observations.path});
+  if (rows.period.empty() && noisy > 0)
+    return fail(
+        ErrorCode::Nothing,
+        fmt::format("{} shows no period that stands out of noise: white noise has a peak as "
+                    "high as the highest with a chance of {:.2g}, and {:g} was asked for. "
+                    "Longer or denser series tell more; --false-alarm 1 lists all peaks",
+                    observations.path, surest, request.false_alarm));
   if (rows.period.empty())
     return fail(
         ErrorCode::Nothing,
         fmt::format("{} shows no period: twelve brightnesses without a gap of {:g} s that "
                     "change otherwise than evenly are needed, with a peak in the range asked for",
                     observations.path, request.gap_s));
+  if (noisy > 0)
+    diagnostics.warn(fmt::format("{} whose peaks do not stand out of noise, left out",
+                                 counted(noisy, "stretch", "stretches")),
+                     {observations.path});
   if (too_few > 0)
     diagnostics.warn(fmt::format("{} with fewer than twelve brightnesses, or with no peak in the "
                                  "range asked for, left out",

@@ -27,13 +27,13 @@ Result<Error> nothing_found(const LightCurveRequest &request) {
                     span.step_s),
         {}};
   std::string text = fmt::format(
-      "no {}pass of {} above {:g} deg{} from \"{}\" in that span.",
+      "no {}pass of {} above {:g} deg{} from {} in that span.",
       request.only.sunlit ? "sunlit " : "", request.track.orbit.id(),
       request.only.altitude_min.degrees(),
       request.only.sun_altitude_max
           ? fmt::format(" with the Sun below {:g} deg", request.only.sun_altitude_max->degrees())
           : "",
-      request.track.site.name);
+      request.track.site.name.empty() ? "the site" : "\"" + request.track.site.name + "\"");
   constexpr double days = 14; // beyond it the elements say little
   if (const auto next = find_next_pass(track, request.only, span.stop, days))
     text += fmt::format(" The next one: {}Z, max alt {:.0f}.",

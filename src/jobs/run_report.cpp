@@ -171,6 +171,8 @@ std::string summarize(const LightCurveOutcome &outcome) {
       out += fmt::format("  mag {:.1f} to {}{:.1f} {}  p up to {:.0f} %", n.brightest,
                          n.has_limit ? "> " : "", n.faintest, name_of(curve.magnitudes),
                          100 * n.p_max);
+    else if (n.has_limit)
+      out += "  too faint for a magnitude throughout: see mag_limit";
     out += "\n";
   }
   out += describe_spread(curve);

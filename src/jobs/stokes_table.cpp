@@ -37,9 +37,9 @@ public:
     out.add("name", "", "object", std::move(name_));
     out.add("band", "", "band", std::move(band_));
     const char *const names[][3] = {
-        {"I_obs", "W / (m2 nm)", "irradiance above the air, from the counts"},
-        {"I_err", "W / (m2 nm)", "standard deviation"},
-        {"mag", "mag(AB)", "of I_obs"},
+        {"I", "W / (m2 nm)", "irradiance above the air, from the counts"},
+        {"I_err", "W / (m2 nm)", "standard deviation of I"},
+        {"mag", "mag(AB)", "of I"},
         {"q", "", "Q/I in the sky frame"},
         {"u", "", "U/I in the sky frame"},
         {"v", "", "V/I"},
@@ -65,7 +65,8 @@ public:
         {"null_u", "", "the same of u"},
         {"ra", "deg", "of the object, ICRS axes, middle of the set"},
         {"dec", "deg", "the same"},
-        {"range", "km", "of the object"}};
+        {"range", "km", "of the object"},
+        {"I_obs", "W / (m2 nm)", "I behind the air of the site: less k_mag airmass of the counts"}};
     for (std::size_t k = 0; k < std::size(names); ++k) {
       out.add(names[k][0], names[k][1], names[k][2], std::move(columns_[k]));
       if (k == 2)
@@ -82,14 +83,15 @@ private:
     return value.value_or(nan);
   }
 
-  [[nodiscard]] std::array<double, 28> numbers(const Reduced &r) const {
-    std::array<double, 28> out;
+  [[nodiscard]] std::array<double, 29> numbers(const Reduced &r) const {
+    std::array<double, 29> out;
     out.fill(nan);
     const bool was_fitted = r.fit.covariance[0][0] > 0;
     if (was_fitted) {
       out[0] = r.fit.stokes[0];
       out[1] = std::sqrt(r.fit.covariance[0][0]);
       out[2] = out[0] > 0 ? -2.5 * std::log10(out[0] / zero_flux(r.middle.band)) : nan;
+      out[28] = out[0] * std::pow(10, -0.4 * r.middle.k_mag * r.middle.airmass);
       out[18] = r.fit.chi2;
       out[19] = r.fit.dof;
     }
@@ -134,7 +136,7 @@ private:
   std::size_t parameters_;
   std::vector<std::string> time_, name_, band_, system_, flags_;
   std::vector<std::int64_t> set_;
-  std::array<std::vector<double>, 28> columns_;
+  std::array<std::vector<double>, 29> columns_;
 };
 
 } // namespace

@@ -177,6 +177,44 @@ std::vector<PeriodPeak> highest_peaks(const Periodogram &of, std::span<const dou
   return out;
 }
 
+namespace {
+
+/// Power of the spectral window, 1 at frequency 0.
+double window_of(std::span<const double> seconds, double frequency) {
+  double c = 0, s = 0;
+  for (const double t : seconds) {
+    c += std::cos(2 * pi * frequency * (t - seconds.front()));
+    s += std::sin(2 * pi * frequency * (t - seconds.front()));
+  }
+  const auto n = static_cast<double>(seconds.size());
+  return (c * c + s * s) / (n * n);
+}
+
+PeakRelation relation_of(const PeriodPeak &peak, const PeriodPeak &higher, std::size_t to,
+                         std::span<const double> seconds) {
+  using Kind = PeakRelation::Kind;
+  const double f = 1 / peak.period_s, g = 1 / higher.period_s;
+  const double seen = std::max(window_of(seconds, f - g), window_of(seconds, f + g));
+  if (higher.power * seen >= 0.5 * peak.power)
+    return {Kind::Sampling, to, 1};
+  const double span = seconds.back() - seconds.front();
+  for (const double ratio : {0.5, 2., 1. / 3, 3., 0.25, 4., 2. / 3, 1.5})
+    if (std::abs(f - g / ratio) < 0.5 / span)
+      return {Kind::Multiple, to, ratio};
+  return {};
+}
+
+} // namespace
+
+std::vector<PeakRelation> relate_peaks(std::span<const PeriodPeak> peaks,
+                                       std::span<const double> seconds) {
+  std::vector<PeakRelation> out(peaks.size());
+  for (std::size_t k = 1; k < peaks.size(); ++k)
+    for (std::size_t higher = 0; higher < k && out[k].kind == PeakRelation::Kind::Own; ++higher)
+      out[k] = relation_of(peaks[k], peaks[higher], higher, seconds);
+  return out;
+}
+
 Periodogram with_fewer_values(const Periodogram &full, std::size_t count) {
   const std::size_t size = full.power.size();
   if (size <= count)

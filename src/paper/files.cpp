@@ -77,6 +77,11 @@ StorySection speed_section(const std::vector<PaperFigure> &figures) {
     table.rows.push_back({figure.id, std::to_string(figure.realizations),
                           fmt::format("{:.3g}", figure.seconds), fmt::format("{:.3g}", rate)});
   }
+  if (table.rows.empty()) {
+    out.verdict = "shown";
+    out.summary = "no figure of this run was timed";
+    return out;
+  }
   out.verdict = "agrees";
   out.summary = fmt::format("up to {:.2g} realizations per second on this processor", fastest);
   out.found = {

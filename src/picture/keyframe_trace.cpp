@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <map>
 #include <umov/core/parallel.h>
 
 namespace umov {
@@ -33,6 +34,9 @@ Sphere bounding_sphere(const Mesh &mesh) {
   return out;
 }
 
+/// Of each surface of the scene, by wavelength.
+using FresnelOfSurfaces = std::map<const Surface *, std::vector<FresnelFactors>>;
+
 /// One picture in the making: everything a row of rays needs.
 struct Camera {
   const Scene &scene;
@@ -42,6 +46,7 @@ struct Camera {
   Vec3<Body> right, up; ///< unit; right x up points at the observer
   double half_width = 0;
   std::vector<std::uint32_t> front_material, back_material; ///< per mesh group
+  FresnelOfSurfaces fresnel;
 };
 
 /// A point that is seen: where, its two normals turned to the observer, and its surface.
@@ -124,18 +129,29 @@ std::vector<Seen> reached_by_sun(const Camera &camera, const std::vector<Seen> &
 }
 
 /// Light that a point sends to the observer, times the cosine at which it is seen, in a band.
-Stokes<ScatteringPlane> reflected(const Surface &surface, const std::vector<BandTerm> &terms,
-                                  const SurfaceDirections &at) {
+Stokes<ScatteringPlane> reflected(const Surface &surface, std::span<const FresnelFactors> fresnel,
+                                  const std::vector<BandTerm> &terms, const SurfaceDirections &at) {
   const bool is_grey = surface.is_specular_grey();
   const double grey = is_grey ? surface.specular(terms.front().node, at) : 0;
   const auto at_node = [&](std::size_t node) {
-    const FresnelFactors f = surface.fresnel(node, at.l_v);
+    const FresnelFactors f = fresnel[node];
     const double specular = is_grey ? grey : surface.specular(node, at);
     const auto diffuse = surface.diffuse(node, at, {1, 0, 0, 0});
     return Stokes<ScatteringPlane>{f.a * specular + diffuse.i, f.b * specular + diffuse.q,
                                    diffuse.u, diffuse.v};
   };
   return sum_band<Stokes<ScatteringPlane>>(terms, at_node).value;
+}
+
+/// Reflection of the microfacets of every surface at all wavelengths: one incidence serves a whole
+/// picture, and a stack of films takes as long as a hundred points.
+FresnelOfSurfaces fresnel_of(const Scene &scene, double l_v) {
+  FresnelOfSurfaces out;
+  for (const auto *side : {&scene.front, &scene.back})
+    for (const Surface &surface : *side)
+      for (std::size_t node = 0; node < scene.grid.nodes().size(); ++node)
+        out[&surface].push_back(surface.fresnel(node, l_v));
+  return out;
 }
 
 /// Reflected light of the lit points of a row in a band.
@@ -149,7 +165,8 @@ void light(const Camera &camera, std::size_t band, const std::vector<Seen> &lit,
     const SurfaceDirections at =
         directions_on(s.normal, direction_field(camera.scene.mesh, *s.surface, s.at.triangle), l, v,
                       l_v, camera.view.pose.sun_radius_rad);
-    const auto sent = reflected(*s.surface, camera.scene.grid.terms()[band], at);
+    const auto sent =
+        reflected(*s.surface, camera.fresnel.at(s.surface), camera.scene.grid.terms()[band], at);
     out.radiance = static_cast<float>(sent.i / dot(s.normal, v));
     if (sent.i > 0) {
       out.q = static_cast<float>(sent.q / sent.i);
@@ -215,7 +232,8 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
   if (!(norm(across) > 1e-9 * norm(view.up)))
     return fail(ErrorCode::BadInput,
                 "key frame: `up` lies along the line of sight; give another direction");
-  Camera camera{scene, occluder, view, bounding_sphere(scene.mesh), {}, {}, 0, {}, {}};
+  Camera camera{scene, occluder, view, bounding_sphere(scene.mesh), {}, {}, 0, {}, {}, {}};
+  camera.fresnel = fresnel_of(scene, dot(view.pose.sun, v));
   camera.up = normalized(across);
   camera.right = cross(camera.up, v);
   camera.half_width = options.half_width_m > 0 ? options.half_width_m : 1.04 * camera.sphere.radius;

@@ -67,9 +67,12 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
       throw std::runtime_error("its key does not fit what it says: it was changed by hand");
   } catch (const std::exception &problem) {
     return fail(ErrorCode::BadInput,
-                fmt::format("is no job of umov scale: {}. Name the folder of one, or begin a job "
-                            "in a new folder.",
-                            problem.what()),
+                text.empty()
+                    ? std::string("is empty: it was cut off when the job was begun. Remove "
+                                  "the folder and begin the job again.")
+                    : fmt::format("is no job of umov scale: {}. Name the folder of one, "
+                                  "or begin a job in a new folder.",
+                                  problem.what()),
                 {file});
   }
   return out;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <umov/core/files.h>
+#include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/scale/rows_file.h>
 
@@ -104,8 +105,8 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
   const JobLock &lock = folder.lock();
   const auto wanted = std::ranges::find(lock.tables, table);
   if (wanted == lock.tables.end())
-    return fail(ErrorCode::Usage,
-                fmt::format("--table {}: the job has {}", table, fmt::join(lock.tables, ", ")));
+    return fail(ErrorCode::Usage, fmt::format("--table {}: no table of this job; {} was expected",
+                                              printable(table), fmt::join(lock.tables, " or ")));
   const auto number = static_cast<std::size_t>(wanted - lock.tables.begin());
   const bool is_sorted = number == 0 && !lock.order.empty();
   UMOV_ASSIGN(shards, all_shards(folder));

@@ -404,3 +404,110 @@ def test_the_period_of_a_table_of_anybodys_is_that_of_astropy(umov, tmp_path):
     # Noise alone: 200 values of it are hardly ever as high.
     assert found["false_alarm"] < 1e-10
     assert umov("period", "mine.csv", "--band", "V").code == 3
+
+
+def noisy_sine(path, period_s, seed, amplitude=0.3):
+    import numpy as np
+    noise = np.random.default_rng(seed)
+    seconds = np.arange(0, 300, 1.5)
+    mag = 7 + amplitude * np.sin(2 * np.pi * seconds / period_s) + noise.normal(0, 0.1, len(seconds))
+    path.write_text("mjd_utc,mag\n" + "\n".join(f"{60000 + t / 86400:.12f},{m:.6f}" for t, m in zip(seconds, mag)) + "\n")
+
+
+def test_a_period_says_which_spins_it_may_mean_and_noise_is_none(umov, tmp_path):
+    noisy_sine(tmp_path / "sine.csv", 13.7, 5)
+    done = umov("period", "sine.csv", "--json")
+    rows = json.loads(done.out)
+    # White noise has a peak above the chance of .01 in one series of a hundred: of this seed none.
+    assert [row["meaning"] for row in rows] == ["period"] and rows[0]["false_alarm"] < 1e-10, rows
+    twice = float(re.search(r"twice that, ([0-9.]+) s", done.err).group(1))
+    assert abs(twice - 2 * rows[0]["period"]) < 0.01 and "half of it" in done.err
+    everything = json.loads(umov("period", "sine.csv", "--json", "--false-alarm", 1).out)
+    assert len(everything) == 5 and all(row["false_alarm"] > 0.01 for row in everything[1:])
+    noisy_sine(tmp_path / "noise.csv", 13.7, 6, amplitude=0)
+    done = umov("period", "noise.csv")
+    assert done.code == 5 and "stands out of noise" in done.err and "--false-alarm 1" in done.err, done.err
+
+
+def test_parts_and_multiples_of_a_period_are_named(umov, tmp_path):
+    """A spin of 40 s with two sides that differ a little: half of it is the highest, the spin itself lower."""
+    import numpy as np
+    seconds = np.arange(0, 600, 1.0)
+    turn = 2 * np.pi * seconds / 40
+    mag = 7 + 0.4 * np.sin(2 * turn) + 0.2 * np.sin(turn) + 0.1 * np.sin(4 * turn)
+    (tmp_path / "two.csv").write_text("mjd_utc,mag\n" + "\n".join(
+        f"{60000 + t / 86400:.12f},{m:.6f}" for t, m in zip(seconds, mag)) + "\n")
+    rows = json.loads(umov("period", "two.csv", "--json", "--peaks", 3).out)
+    assert [row["meaning"] for row in rows] == ["period", "twice rank 1", "half of rank 1"], rows
+    assert rows[0]["period"] == pytest.approx(20, abs=0.1) and rows[1]["period"] == pytest.approx(40, abs=0.4)
+
+
+def test_an_attitude_without_epoch_says_from_when_it_turns(umov, scenario, tmp_path):
+    """The lock keeps it: a trimmed span has the same attitude, and umov passes sees what umov run computes."""
+    spin = 'attitude = { mode = "spin", axis = [1, 2, 0.5], period_s = 97 }'
+    done = umov("run", scenario(('attitude = { mode = "nadir" }', spin)))
+    assert done.code == 0 and "no epoch" in done.err and "epoch = 2018-01-21T05:08:00.000Z" in done.err, done.err
+    whole = {row["time_utc"]: row["mag"] for row in read_csv(tmp_path / "out/lightcurve.csv") if row["band"] == "nm:550"}
+    trimmed = umov("run", "out/scenario.lock.toml", "--set", "time.start=2018-01-21T05:10:00Z", "--set", "output.dir=late")
+    assert trimmed.code == 0 and "no epoch" not in trimmed.err, trimmed.err
+    late = {row["time_utc"]: row["mag"] for row in read_csv(tmp_path / "late/lightcurve.csv") if row["band"] == "nm:550"}
+    assert late and all(late[time] == whole[time] for time in late)
+    done = umov("passes", "--orbit", HST, "-s", "maui", "--start", "2018-01-21T05:00:00Z", "--stop", "2018-01-21T05:20:00Z",
+                "--scene", "scenario.toml", "--band", "nm:550", "-o", "p.csv")
+    assert done.code == 0 and "no epoch" in done.err, done.err
+    other = umov("passes", "--orbit", HST, "-s", "maui", "--start", "2018-01-21T05:04:00Z", "--stop", "2018-01-21T05:20:00Z",
+                 "--scene", "out/scenario.lock.toml", "--band", "nm:550", "-o", "other.csv")
+    assert other.code == 0 and "no epoch" not in other.err, other.err
+    one, same = (float(read_csv(tmp_path / name)[0]["mag_min"]) for name in ("p.csv", "other.csv"))
+    assert one == pytest.approx(same, abs=1e-4)  # searches of two spans end at times that differ a little
+
+
+def test_an_exposure_ends_with_what_it_means(umov):
+    exposure = ("exposure", "--instrument", "c11_imx250")
+    fine = umov(*exposure, "--mag", 8)
+    assert "S/N" in fine.err and "does not saturate" in fine.err and "the error of p asked for, 0.01" in fine.err, fine.err
+    # Photons make nearly all of the noise: a twelfth of the time has a twelfth of them, and twelve or thirteen frames do.
+    seconds = float(re.search(r"One exposure of ([0-9.]+) s", fine.err).group(1))
+    short = umov(*exposure, "--mag", 8, "--exposure-s", seconds / 12)
+    assert re.search(r"1[2-4] of them tell p to 0.01", short.err), short.err
+    error = float(re.search(r"error of p ([0-9.]+);", short.err).group(1))
+    assert error == pytest.approx(0.01 * math.sqrt(12), rel=0.12)  # two digits, and each frame is read
+    full = umov(*exposure, "--mag", 0, "--exposure-s", 1)
+    assert "it saturates" in full.err and "Expose at most" in full.err, full.err
+    longest = float(re.search(r"full after ([0-9.e-]+) s", full.err).group(1))
+    allowed = float(re.search(r"at most ([0-9.e-]+) s", full.err).group(1))
+    assert allowed == pytest.approx(longest / 2, rel=0.01)
+    assert "does not saturate" in umov(*exposure, "--mag", 0, "--exposure-s", allowed).err
+
+
+def test_the_shipped_instruments_do_not_warn_of_themselves(umov, tmp_path):
+    text = (ROOT / "examples/observe_hst.toml").read_text().replace("../data", f"{ROOT}/data")
+    for name in ("c11_imx250", "moptop_2m"):
+        (tmp_path / "o.toml").write_text(text.replace("c11_imx250", name))
+        done = umov("observe", "o.toml", "--set", "time.start=2018-01-21T05:10:00Z", "--set", "time.stop=2018-01-21T05:10:02Z",
+                    "--set", "output.dir=o", "--force")
+        assert done.code == 0 and "a well of" not in done.err, done.err
+
+
+@pytest.mark.parametrize("arguments", [
+    ("run", "x.toml", "--accuracy"), ("signature", "x.toml", "--poses", 3, "--phase", 60, "--accuracy"), ("exposure", "--instrument", "x", "--mag"),
+    ("invert", "pose", "x.csv", "--scenario", "x.toml", "--floor"), ("period", "x.csv", "--gap-s")])
+@pytest.mark.parametrize("value", ["nan", "-nan", "inf"])
+def test_what_is_no_number_is_no_value_of_an_option(umov, arguments, value):
+    done = umov(*arguments[:-1], f"{arguments[-1]}={value}")
+    assert done.code == 2 and arguments[-1] in done.err, done.err
+
+
+def test_hints_name_what_the_reader_can_type(umov, scenario, tmp_path):
+    assert umov("mesh", "make", "cubesat", "-o", "c.obj").code == 0
+    done = umov("mesh", "info", "c.obj")
+    assert done.code == 3 and "Give --unit m" in done.err and "--up +Z" in done.err, done.err
+    done = umov("run", scenario(("05:08:00Z", "01:08:00Z"), ("05:12:00Z", "01:12:00Z")))
+    assert done.code == 5 and '""' not in done.err and "from the site" in done.err, done.err
+    assert umov("library", "build", scenario(), "-o", "lib", "--range", "1:0").code == 2
+    done = umov("library", "build", scenario(), "-o", "lib", "--range", "0:2")
+    assert done.code == 2 and "the job has 1 scenarios" in done.err, done.err
+    (tmp_path / "job").mkdir()
+    (tmp_path / "job/job.json").write_text("")
+    done = umov("scale", "status", "job")
+    assert done.code == 3 and "job.json: is empty" in done.err and "begin the job again" in done.err, done.err

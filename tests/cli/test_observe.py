@@ -41,7 +41,7 @@ def pulls(stokes, truth):
             continue
         own = sets[int(row["set_id"])]
         light = sum(values[0] for values in own) / len(own)
-        out["I"].append((row["I_obs"] - light) / row["I_err"])
+        out["I"].append((row["I"] - light) / row["I_err"])
         for k, name in enumerate("quv", 1):
             if not math.isnan(row[f"cov_{name}{name}"]):
                 mean = sum(values[k] * values[0] for values in own) / len(own) / light
@@ -337,3 +337,12 @@ def test_how_long_to_expose(umov, tmp_path):
     assert abs(rows["time"] * rows["rate"] / rows["electrons"] - 1) < 1e-6
     assert abs(rows["share_star"] + rows["share_sky"] + rows["share_dark"] + rows["share_read"] - 1) < 1e-6
     assert umov("exposure", "--instrument", "c11_imx250", "--alt", 1).code == 2
+
+
+def test_names_of_light_above_and_behind_the_air_mean_it(scene, umov, tmp_path):
+    """I above, I_obs behind: apart by the extinction that the counts state."""
+    stokes, _, _ = observed(umov, tmp_path, scene("c11_imx250", "exposure_s = 0.05"))
+    counts = Table.read(tmp_path / "out/counts.ecsv")
+    row, first = stokes[0], counts[0]
+    lost = -2.5 * math.log10(row["I_obs"] / row["I"])
+    assert lost > 0.05 and lost == pytest.approx(first["k_mag"] * first["airmass"], rel=1e-3)

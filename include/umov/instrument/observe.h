@@ -35,6 +35,10 @@ struct BandResponse {
   double photons_per_flux = 0; ///< [s-1 m-2] of a photon-weighted mean of 1 W m-2 nm-1
   double zero_flux = 0;        ///< photon-weighted mean of AB magnitude 0 [W m-2 nm-1]
 };
+/// Widths where nobody says one [nm]: of a band that is one wavelength, behind an interference
+/// filter, and of a filter such as V.
+inline constexpr double line_width_nm = 10, filter_width_nm = 80;
+
 /// A band of constant response over a width, as narrow filters are.
 Result<BandResponse> narrow_band(std::string name, double nm, double width_nm);
 

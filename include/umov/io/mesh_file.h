@@ -16,6 +16,7 @@ struct MeshFileOptions {
   std::string unit;                      ///< m, cm, mm, km, in, ft: what one unit of the file is
   std::string up;                        ///< "+X" to "-Z": the file's axis that becomes body +Z
   std::size_t max_triangles = 5'000'000; ///< refused before the mesh is built
+  bool is_of_command = false; ///< hints name options of a command, not keys of a scenario
 };
 
 /// A node of the file's tree that has faces.

@@ -34,8 +34,8 @@ struct ScenarioObservation {
   bool has_slewing_factor = false;
   SkyOptions sky;
   double cloud_sd_mag = 0, cloud_time_s = 60;
-  std::vector<std::string> bands; ///< empty: those of [bands]
-  double width_nm = 10;           ///< of bands that are one wavelength
+  std::vector<std::string> bands;  ///< empty: those of [bands]
+  double width_nm = line_width_nm; ///< of bands that are one wavelength
   double exposure_s = 1, cadence_s = 1;
   std::vector<SequenceStep> sequence; ///< empty: that of the polarimeter's type
   double aperture_fwhm = 2;

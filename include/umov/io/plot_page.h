@@ -1,6 +1,7 @@
 #pragma once
 // A page of line plots: one HTML file that needs no network.
 
+#include <array>
 #include <string>
 #include <umov/core/result.h>
 #include <vector>
@@ -16,6 +17,7 @@ struct PlotLine {
   std::vector<std::string> labels = {}; ///< of points of a sky figure, "" for none; may be empty
   bool has_markers = false;             ///< points without a line
   std::vector<double> z = {};           ///< of a figure in space
+  bool is_faint = false;                ///< thin and pale: bars of errors behind their points
 };
 /// A way of drawing lines for each of the first four, and then again.
 const char *plot_dash(std::size_t number);
@@ -27,6 +29,8 @@ struct PlotFigure {
   bool is_sky = false; ///< x: azimuth from north through east, y: altitude [deg]; drawn as the sky
                        ///< overhead, north up and east left
   std::string z_title = {}; ///< not empty: in space, turnable; every line has z
+  /// What the axes of the page show, from the first to the second; alike: all there is.
+  std::array<double, 2> x_span{}, y_span{};
 };
 
 /// The page: title, one card per figure (each can be saved as SVG), notes at the end. Same input,

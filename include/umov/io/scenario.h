@@ -50,6 +50,8 @@ struct ScenarioObject {
   std::optional<ScenarioOrbit> orbit;
   ScenarioMesh mesh;
   AttitudeLaw attitude = TwoAxisLaw{};
+  bool has_assumed_epoch =
+      false; ///< a spin or tumble that begins at time.start for want of `epoch`
   std::map<std::string, MaterialNames> materials; ///< mesh material, or "default"
   std::vector<MovingJoint> parts;
 };

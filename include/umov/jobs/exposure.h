@@ -13,14 +13,16 @@ struct ExposureRequest {
   double altitude_deg = 45; ///< apparent
   double height_m = 0;      ///< of the site
   double sd_p = 0.01;       ///< wanted standard deviation of the degree of polarization
-  double nm = 550, width_nm = 80;
-  double sky_mag = 21;      ///< AB in the band [mag / arcsec2]
-  double seeing_arcsec = 2; ///< at the zenith
-  double change_per_s = 0;  ///< relative change of the object's brightness
+  double nm = 550, width_nm = filter_width_nm;
+  double sky_mag = 21;                    ///< AB in the band [mag / arcsec2]
+  double seeing_arcsec = Seeing{}.arcsec; ///< at the zenith, as umov observe takes it
+  double change_per_s = 0;                ///< relative change of the object's brightness
+  double exposure_s = 0; ///< of a frame; 0: until p is known, or half of what fills a pixel
 };
 
 /// Rows of a quantity, its value and its unit: electrons, time for `sd_p`, time that fills a pixel,
-/// shares of each noise at that time, false polarization of analysers that follow each other.
+/// shares of each noise at that time, false polarization of analysers that follow each other. The
+/// note "verdict" says what a frame reaches, whether it saturates and how many of them tell p.
 Result<Table> exposure(const ExposureRequest &request);
 
 /// Every compiled-in instrument: name, aperture, type of polarimeter, what it is.

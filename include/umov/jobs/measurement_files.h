@@ -2,6 +2,7 @@
 // Reduced light in the forms in which others take it.
 
 #include <map>
+#include <string>
 #include <umov/io/counts_file.h>
 #include <umov/io/table.h>
 
@@ -20,5 +21,7 @@ Result<std::string> as_tdm(const Table &stokes, const MeasurementNotes &notes);
 /// Magnitudes as the observation table of SCORE, the repository of the IAU's Centre for the
 /// Protection of the Dark and Quiet Sky (columns of its template, 2024). BadInput without the site.
 Result<Table> as_score(const Table &stokes, const MeasurementNotes &notes);
+/// The same as the repository takes it: CSV without a header.
+Result<std::string> score_text(const Table &stokes, const MeasurementNotes &notes);
 
 } // namespace umov::jobs

@@ -36,6 +36,26 @@ struct PeriodPeak {
 std::vector<PeriodPeak> highest_peaks(const Periodogram &of, std::span<const double> seconds,
                                       std::size_t most);
 
+/// What a peak says beside the higher ones.
+struct PeakRelation {
+  enum class Kind {
+    Own,      ///< a period by itself
+    Multiple, ///< `ratio` times the period of peak `to`: a harmonic, or the turn of which it is a
+              ///< part
+    Sampling  ///< half of its height or more follows from peak `to` and the times of the values
+  };
+  Kind kind = Kind::Own;
+  std::size_t to = 0; ///< index of a higher peak
+  double ratio = 1;   ///< period over that of `to`: 1/4, 1/3, 1/2, 2/3, 3/2, 2, 3 or 4
+};
+
+/// Of peaks in order of their heights. A sine of one period has power at others too, by the
+/// spectral window of its times (Roberts, Lehar & Dreher 1987, AJ 93, 968; VanderPlas 2018, ApJS
+/// 236, 16, section 7): that is no second period. Multiples agree within half the width of a peak,
+/// 1 / span.
+std::vector<PeakRelation> relate_peaks(std::span<const PeriodPeak> peaks,
+                                       std::span<const double> seconds);
+
 /// The same with at most `count` values: of neighbours the highest stays.
 Periodogram with_fewer_values(const Periodogram &full, std::size_t count);
 

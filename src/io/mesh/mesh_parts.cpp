@@ -36,7 +36,7 @@ Vec3<Body> turned(Vec3<Body> v, const std::string &up) {
 }
 
 /// What is missing, with the size of the box to guess it from.
-std::string box_text(const Mesh &mesh, const char *key) {
+std::string box_text(const Mesh &mesh, const char *key, bool is_of_command) {
   Vec3<Body> low{INFINITY, INFINITY, INFINITY}, high = -1 * low;
   for (const Vec3<Body> p : mesh.positions) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -49,24 +49,25 @@ std::string box_text(const Mesh &mesh, const char *key) {
            : m < 0.01 ? fmt::format("{:.4g} mm", m * 1000)
                       : fmt::format("{:.4g} m", m);
   };
+  const std::string unit = longest > 200 ? "mm" : "m";
   return fmt::format(
       "no {}. The bounding box is {:.6g} x {:.6g} x {:.6g}: in mm that is {}, in m it "
-      "is {}. Set unit = \"{}\" (or cm, km, in, ft) and up = \"+Z\" (the axis of the "
-      "file that is up).",
+      "is {}. {} (or cm, km, in, ft) and {} (the axis of the file that is up).",
       key, size.x, size.y, size.z, length(longest / 1000), length(longest),
-      longest > 200 ? "mm" : "m");
+      is_of_command ? "Give --unit " + unit : "Set unit = \"" + unit + "\"",
+      is_of_command ? "--up +Z" : "up = \"+Z\"");
 }
 
 Result<double> metres_of(const Mesh &mesh, const MeshFileOptions &options, const Where &file) {
   if (options.unit.empty())
-    return fail(ErrorCode::BadInput, box_text(mesh, "unit"), file);
+    return fail(ErrorCode::BadInput, box_text(mesh, "unit", options.is_of_command), file);
   const auto *unit = std::find_if(std::begin(units), std::end(units),
                                   [&](const Unit &u) { return options.unit == u.name; });
   if (unit == std::end(units))
     return fail(ErrorCode::BadInput,
                 "unit = \"" + options.unit + "\"; m, cm, mm, km, in or ft was expected", file);
   if (options.up.empty())
-    return fail(ErrorCode::BadInput, box_text(mesh, "up axis"), file);
+    return fail(ErrorCode::BadInput, box_text(mesh, "up axis", options.is_of_command), file);
   if (options.up.size() != 2 || (options.up[0] != '+' && options.up[0] != '-') ||
       options.up[1] < 'X' || options.up[1] > 'Z')
     return fail(ErrorCode::BadInput, "up = \"" + options.up + "\"; \"+X\" to \"-Z\" was expected",

@@ -22,6 +22,10 @@ Json numbers(const std::vector<double> &values) {
   return out;
 }
 
+Json span_json(const std::array<double, 2> &span) {
+  return span[0] == span[1] ? Json(nullptr) : Json(span);
+}
+
 } // namespace
 
 const char *plot_dash(std::size_t number) {
@@ -38,12 +42,19 @@ Json figure_json(const PlotFigure &figure) {
                      {"colour", plot_colour(line.colour)},
                      {"dash", line.dash},
                      {"markers", line.has_markers},
-                     {"labels", line.labels}});
+                     {"labels", line.labels},
+                     {"faint", line.is_faint}});
     if (!line.z.empty())
       lines.back()["z"] = numbers(line.z);
   }
-  return {{"title", figure.title}, {"x", figure.x_title},     {"y", figure.y_title},
-          {"z", figure.z_title},   {"log", figure.has_log_y}, {"sky", figure.is_sky},
+  return {{"title", figure.title},
+          {"x", figure.x_title},
+          {"y", figure.y_title},
+          {"z", figure.z_title},
+          {"log", figure.has_log_y},
+          {"sky", figure.is_sky},
+          {"xspan", span_json(figure.x_span)},
+          {"yspan", span_json(figure.y_span)},
           {"lines", lines}};
 }
 

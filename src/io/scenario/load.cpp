@@ -100,6 +100,13 @@ Result<void> load_attitude(const Named &of, const Mesh &mesh, Diagnostics &diagn
                 law.error().where.file.empty() ? of.place("attitude") : law.error().where);
   if (auto checked = check_attitude(*law); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("attitude"));
+  if (of.object.has_assumed_epoch)
+    diagnostics.warn(
+        fmt::format("attitude has no epoch: it turns from its start at time.start, {}, "
+                    "and another start is another attitude. Set epoch = {} to keep "
+                    "this one whatever the span",
+                    to_iso(of.scenario.time->start), to_iso(of.scenario.time->start)),
+        of.place("attitude"));
   out.attitude = *law;
   return {};
 }
@@ -212,6 +219,11 @@ std::string materials_that_cover(const Band &band) {
   return fmt::format(" Materials that cover it: {}.", fmt::join(out, ", "));
 }
 
+/// Two digits below ten, else none: 99.7 is 100 and not 1e+02.
+std::string percent(double share) {
+  return 100 * share < 10 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);
+}
+
 /// A band that an index does not cover: whose it is, and what would. What a table that holds its
 /// ends is asked beyond them is told.
 Result<void> check_bands(const Material &material, const Named &of, const std::string &key,
@@ -234,10 +246,10 @@ Result<void> check_bands(const Material &material, const Named &of, const std::s
                     of.place(key));
       if (band.curve && (first < known.first_nm || last > known.last_nm))
         diagnostics.warn(fmt::format("material \"{}\" is known at {:g}-{:g} nm; band \"{}\" "
-                                     "({:g}-{:g} nm) takes the values at the ends beyond, {:.2g} % "
+                                     "({:g}-{:g} nm) takes the values at the ends beyond, {} % "
                                      "of its response",
                                      material.name, known.first_nm, known.last_nm, band.name, first,
-                                     last, 100 * tail_of(*band.curve, known)),
+                                     last, percent(tail_of(*band.curve, known))),
                          {of.scenario.file});
     }
   return {};

@@ -264,6 +264,8 @@ Result<void> read_object(const Node &object, const fs::path &folder, Scenario &o
     const auto begin = out.time ? std::optional(out.time->start) : std::nullopt;
     UMOV_ASSIGN(law, scenario::read_attitude(node, folder, {out.seed, begin}));
     one.attitude = law;
+    const std::string mode = node.text("mode", "");
+    one.has_assumed_epoch = begin && (mode == "spin" || mode == "tumble") && !node.has("epoch");
   }
   UMOV_TRY(read_parts(object, out));
   return read_materials(object, out);

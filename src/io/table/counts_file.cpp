@@ -85,6 +85,7 @@ Result<void> read_numbers(const CountCells &cells, std::size_t row, CountRow &ou
                           {"phase_angle", &out.phase_angle_deg},
                           {"pa_scat", &out.pa_scat_deg},
                           {"airmass", &out.airmass},
+                          {"k_mag", &out.k_mag},
                           {"plate_deg", &out.plate_deg},
                           {"ra", &out.ra_deg},
                           {"dec", &out.dec_deg},

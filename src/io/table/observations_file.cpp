@@ -98,7 +98,7 @@ Result<ObservationColumns> ObservationReader::columns() const {
   c.name = find({"name", "object"});
   c.flags = find({"flags"});
   c.limit = find({"mag_limit"});
-  c.flux = find({"I_obs", "I", "flux"});
+  c.flux = find({"I", "I_obs", "flux"}); // above the air, where a table has both
   c.flux_err = find({"I_err", "flux_err"});
   c.mag = find({"mag"});
   c.mag_err = find({"mag_err"});

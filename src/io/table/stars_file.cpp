@@ -36,10 +36,12 @@ Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std:
       const std::string &cell = table.rows[row][column];
       const auto value = parse_number(cell);
       if (!value || !(*value >= one.low && *value <= one.high))
-        return fail(ErrorCode::BadInput,
-                    fmt::format("{} = \"{}\"; a number from {} to {} was expected", one.name,
-                                printable(cell), one.low, one.high),
-                    {file, table.lines[row]});
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("{} = \"{}\"; a number from {} to {} was expected. Mend the line or take "
+                        "it out",
+                        one.name, printable(cell), one.low, one.high),
+            {file, table.lines[row]});
       out[row].*one.value = *value;
     }
   }

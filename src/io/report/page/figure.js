@@ -1,10 +1,16 @@
 // Draws one figure of lines and points: umovFigure(element, figure). Shared by the pages of plots.
 const umovFigure = (() => {
   "use strict";
-  const font = { family: "system-ui, sans-serif", size: 13 };
-  const grid = { gridcolor: "#e6e9ee", zerolinecolor: "#b8bfc9" };
+  // Pages follow the reader's choice of light or dark; paper is white.
+  const isDark = window.matchMedia("(prefers-color-scheme: dark)");
+  let isPrinting = false;
+  const theme = () => isDark.matches && !isPrinting
+    ? { card: "#1a1f28", text: "#e5e9f0", grid: "#303846", line: "#566072" } : { card: "#ffffff", text: "#1b1f24", grid: "#e6e9ee", line: "#b8bfc9" };
+  const font = () => ({ family: "system-ui, sans-serif", size: 13, color: theme().text });
+  const ground = () => ({ paper_bgcolor: theme().card, plot_bgcolor: theme().card, font: font() });
+  const grid = () => ({ gridcolor: theme().grid, zerolinecolor: theme().line });
   const options = (figure) => ({
-    responsive: true, displaylogo: false, toImageButtonOptions: { format: "svg", filename: figure.title },
+    responsive: true, displaylogo: false, displayModeBar: window.matchMedia("(hover: hover)").matches ? "hover" : false, toImageButtonOptions: { format: "svg", filename: figure.title },
   });
   const legend = () => ({ orientation: "h", yref: "container", y: 0, yanchor: "bottom", font: { size: 11 } });
   const symbols = ["circle", "square", "diamond", "cross", "triangle-up", "x"];
@@ -23,10 +29,11 @@ const umovFigure = (() => {
     Plotly.newPlot(plot, tracks, {
       autosize: true, margin: { l: 50, r: 50, t: 30, b: 40 + 17 * Math.ceil(tracks.length / 3) },
       polar: {
-        radialaxis: { range: [0, 90], tickvals: [0, 30, 60, 90], ticktext: ["90°", "60°", "30°", ""], angle: 45, tickangle: 0, gridcolor: "#e6e9ee" },
-        angularaxis: { rotation: 90, direction: "counterclockwise", tickvals: [0, 45, 90, 135, 180, 225, 270, 315], ticktext: ["N", "NE", "E", "SE", "S", "SW", "W", "NW"], gridcolor: "#e6e9ee" },
+        bgcolor: theme().card,
+        radialaxis: { range: [0, 90], tickvals: [0, 30, 60, 90], ticktext: ["90°", "60°", "30°", ""], angle: 45, tickangle: 0, ...grid() },
+        angularaxis: { rotation: 90, direction: "counterclockwise", tickvals: [0, 45, 90, 135, 180, 225, 270, 315], ticktext: ["N", "NE", "E", "SE", "S", "SW", "W", "NW"], ...grid() },
       },
-      legend: legend(), font,
+      legend: legend(), ...ground(),
     }, options(figure));
   };
   // In space: turned with the mouse.
@@ -37,29 +44,31 @@ const umovFigure = (() => {
       marker: { size: line.markers ? 2.6 : 0, color: line.colour, symbol: symbols[index % 4] },
       line: { color: line.colour, width: 4, dash: line.dash },
     }));
-    const axis = (title) => Object.assign({ title: { text: title } }, grid);
+    const axis = (title) => Object.assign({ title: { text: title } }, grid());
     Plotly.newPlot(plot, clouds, {
       autosize: true, margin: { l: 0, r: 0, t: 0, b: 20 + 17 * Math.ceil(clouds.length / 3) },
       scene: { xaxis: axis(figure.x), yaxis: axis(figure.y), zaxis: axis(figure.z), aspectmode: "cube",
                camera: { eye: { x: 1.6, y: -1.6, z: 0.9 } } },
-      legend: legend(), font,
+      legend: legend(), ...ground(),
     }, options(figure));
   };
   const drawPlane = (plot, figure) => {
     const lines = figure.lines.map((line, index) => ({
       type: line.x.length > 2000 ? "scattergl" : "scatter", mode: line.markers ? "markers" : "lines",
-      name: safe(line.name), x: line.x, y: line.y,
-      line: { color: line.colour, dash: line.dash, width: 2 },
+      name: safe(line.name), x: line.x, y: line.y, opacity: line.faint ? 0.35 : 1,
+      line: { color: line.colour, dash: line.dash, width: line.faint ? 1 : 2 },
       marker: { color: line.colour, size: 4, symbol: symbols[index % symbols.length] },
     }));
-    const axis = (title, more) => Object.assign({ title: { text: title }, automargin: true }, grid, more);
+    const axis = (title, more) => Object.assign({ title: { text: title, font: { size: plot.clientWidth < 460 ? 11 : 13 } }, automargin: true }, grid(), more);
     Plotly.newPlot(plot, lines, {
       autosize: true,
       margin: { l: 60, r: 12, t: 10, b: 60 + 17 * Math.ceil(lines.length / 3) },
-      xaxis: axis(figure.x, {}),
-      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power" }),
-      legend: legend(), font,
+      xaxis: axis(figure.x, figure.xspan ? { range: figure.xspan } : {}),
+      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power", ...(figure.yspan ? { range: figure.yspan } : {}) }),
+      legend: legend(), ...ground(),
     }, options(figure));
+    if (plot.isWatched) return;
+    plot.isWatched = true;
     // The width of a card changes with scroll bars and columns, not with the window alone.
     let width = 0;
     new ResizeObserver(() => {
@@ -68,5 +77,18 @@ const umovFigure = (() => {
       Plotly.Plots.resize(plot);
     }).observe(plot);
   };
-  return (plot, figure) => (figure.sky ? drawSky : figure.z ? drawSpace : drawPlane)(plot, figure);
+  const draw = (plot, figure) => (figure.sky ? drawSky : figure.z ? drawSpace : drawPlane)(plot, figure);
+  const drawn = [];
+  const drawAll = () => drawn.forEach(([plot, figure]) => draw(plot, figure));
+  isDark.addEventListener("change", drawAll);
+  for (const [event, value] of [["beforeprint", true], ["afterprint", false]])
+    window.addEventListener(event, () => {
+      if (!isDark.matches) return;
+      isPrinting = value;
+      drawAll();
+    });
+  return (plot, figure) => {
+    drawn.push([plot, figure]);
+    draw(plot, figure);
+  };
 })();

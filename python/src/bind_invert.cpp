@@ -1,0 +1,133 @@
+// From light curves back to what made them, and the libraries that such questions look through.
+
+#include "attend.h"
+#include "bindings.h"
+#include "errors.h"
+#include "options.h"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+#include <umov/jobs/invert.h>
+#include <umov/jobs/library.h>
+
+namespace umov::python {
+namespace {
+
+using nb::literals::operator""_a;
+using Request = jobs::InvertRequest;
+
+/// Runs `question(monitor, diagnostics)` with Python looked after.
+template <class Question> auto answer(nb::handle watch, Question question) {
+  Attention attention(watch);
+  auto made = attend(attention, question);
+  attention.settle(was_interrupted(made));
+  return take(std::move(made));
+}
+
+jobs::Inversion pose(const Scenario &scenario, const Request &request,
+                     const jobs::JobOptions &options, nb::handle watch) {
+  return answer(watch, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return jobs::invert_pose(scenario, request, options, monitor, diagnostics);
+  });
+}
+
+/// `axis`: "x", "y", "z", or "" for any.
+jobs::Inversion spin(const Scenario &scenario, const Request &request, double period_s,
+                     bool has_aliases, const std::string &axis, const jobs::JobOptions &options,
+                     nb::handle watch) {
+  const jobs::SpinOptions known{period_s, has_aliases, axis.empty() ? '\0' : axis.front()};
+  return answer(watch, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return jobs::invert_spin(scenario, request, known, options, monitor, diagnostics);
+  });
+}
+
+jobs::Inversion material(const Scenario &scenario, const Request &request, const std::string &group,
+                         const std::vector<std::string> &candidates,
+                         const jobs::JobOptions &options, nb::handle watch) {
+  return answer(watch, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return jobs::invert_material(scenario, request, {group, candidates}, options, monitor,
+                                 diagnostics);
+  });
+}
+
+jobs::Inversion health(const Scenario &scenario, const Request &request,
+                       const std::vector<std::string> &drifts,
+                       const std::vector<std::string> &baseline, double attitude_sd_deg,
+                       const jobs::JobOptions &options, nb::handle watch) {
+  return answer(watch, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return jobs::invert_health(scenario, request, {drifts, baseline, attitude_sd_deg}, options,
+                               monitor, diagnostics);
+  });
+}
+
+Table build_library(const std::vector<std::string> &scenarios, const std::string &folder,
+                    std::size_t cells, std::size_t first, std::size_t count,
+                    const jobs::JobOptions &options, nb::handle watch) {
+  const jobs::LibraryRequest request{scenarios, folder, cells, first, count};
+  return answer(watch,
+                [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+                  return jobs::build_library(request, options, monitor, diagnostics);
+                })
+      .table;
+}
+
+void bind_request(nb::module_ &m) {
+  nb::class_<Request>(m, "InvertRequest",
+                      "Observations, and how well they and the model are known.")
+      .def(
+          "__init__",
+          [](Request *self, std::vector<std::string> observations, std::size_t grid,
+             const std::string &method, bool allow_old_elements) {
+            new (self) Request();
+            self->observations = std::move(observations);
+            self->grid = grid;
+            self->method = method_from(method);
+            self->allow_old_elements = allow_old_elements;
+          },
+          "observations"_a, "grid"_a, "method"_a, "allow_old_elements"_a)
+      .def(
+          "set_errors",
+          [](Request &r, double floor, double zero_point_sd, double scale_sd, bool has_clouds,
+             double outlier_share, bool has_polarization) {
+            r.errors.floor = floor;
+            r.errors.zero_point_sd = zero_point_sd;
+            r.errors.scale_sd = scale_sd;
+            r.errors.has_clouds = has_clouds;
+            r.errors.outlier_share = outlier_share;
+            r.errors.has_polarization = has_polarization;
+          },
+          "floor"_a, "zero_point_sd"_a, "scale_sd"_a, "has_clouds"_a, "outlier_share"_a,
+          "has_polarization"_a);
+}
+
+} // namespace
+
+void bind_invert(nb::module_ &m) {
+  bind_request(m);
+  nb::class_<jobs::Inversion>(m, "Inversion", "A verdict and its tables.")
+      .def_prop_ro("verdict", [](const jobs::Inversion &i) { return jobs::name_of(i.verdict); })
+      .def_prop_ro("names",
+                   [](const jobs::Inversion &i) {
+                     std::vector<std::string> out;
+                     for (const jobs::NamedTable &one : i.tables)
+                       out.push_back(one.name);
+                     return out;
+                   })
+      .def(
+          "table", [](const jobs::Inversion &i, std::size_t k) { return &i.tables.at(k).table; },
+          "k"_a, nb::rv_policy::reference_internal)
+      .def_ro("summary", &jobs::Inversion::summary)
+      .def_ro("json", &jobs::Inversion::json)
+      .def_ro("page", &jobs::Inversion::page);
+  m.def("invert_pose", &pose, "scenario"_a, "request"_a, "options"_a, "watch"_a.none());
+  m.def("invert_spin", &spin, "scenario"_a, "request"_a, "period_s"_a, "has_aliases"_a, "axis"_a,
+        "options"_a, "watch"_a.none());
+  m.def("invert_material", &material, "scenario"_a, "request"_a, "group"_a, "candidates"_a,
+        "options"_a, "watch"_a.none());
+  m.def("invert_health", &health, "scenario"_a, "request"_a, "drifts"_a, "baseline"_a,
+        "attitude_sd_deg"_a, "options"_a, "watch"_a.none());
+  m.def("build_library", &build_library, "scenarios"_a, "folder"_a, "cells"_a, "first"_a, "count"_a,
+        "options"_a, "watch"_a.none());
+}
+
+} // namespace umov::python

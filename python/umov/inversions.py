@@ -1,0 +1,293 @@
+"""From a light curve back to what made it."""
+from __future__ import annotations
+
+import os
+import pathlib
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple, Union
+
+from . import _umov
+from ._jobs import Progress, Watch, job_options
+from ._numbers import between, whole_between
+from .errors import UsageError
+from .light_curves import LightCurve
+from .observing import _text_of
+from .periods import AnyLight
+from .scenarios import AnyScenario, Scenario
+from .tables import Table
+
+__all__ = ["Fit", "Inversion", "invert_health", "invert_material", "invert_pose", "invert_spin"]
+
+AnyCurves = Union[AnyLight, Sequence[AnyLight]]
+
+
+class Fit(NamedTuple):
+    """How a light curve is compared with the model: the options that all of `umov invert` take.
+
+    >>> umov.Fit(clouds=True).floor
+    0.02
+    """
+
+    grid: int = 60_000  #: attitudes that are looked at first, 1000 to 5,000,000
+    floor: float = 0.02  #: error of the model, in parts of I; half of it in q and u
+    zero_point_sd: float = 0.02  #: how well the zero point of each band is known, relative
+    scale_sd: float = 0.0  #: how well the absolute brightness is known, relative; 0: not at all
+    clouds: bool = False  #: transparency is free at every epoch
+    outliers: float = 0.0  #: share of measurements that are wrong, up to 0.5
+    intensity_only: bool = False  #: q and u are left aside
+    method: str = "masks"  #: how hiding is decided: masks, auto or rays
+    allow_old_elements: bool = False  #: elements over 30 days from the observations are taken all the same
+
+
+class Inversion(NamedTuple):
+    """What a light curve tells: a verdict, and the tables of `umov invert`.
+
+    >>> found = umov.Inversion("determined", {}, {"chi2": 1.0}, "one attitude", "")
+    >>> found.verdict, str(found)
+    ('determined', 'one attitude')
+    """
+
+    verdict: str  #: determined, ambiguous, undetermined or no_fit (none explains the data)
+    tables: dict[str, Table]  #: by name, the answer first: modes, periods, set95, samples, twins, fit; materials; health
+    values: dict[str, Any]  #: numbers of the answer: verdict.json of the command
+    summary: str  #: for a person
+    page: str  #: report.html; "" where the question has none
+
+    def __str__(self) -> str:
+        return self.summary.rstrip("\n")
+
+    def __repr__(self) -> str:
+        return f"<umov.Inversion: {self.verdict}; {', '.join(self.tables) or 'no tables'}>"
+
+
+@contextmanager
+def _files_of(*curves: AnyCurves) -> Iterator[list[list[str]]]:
+    """Each as names of files: those of memory are written for as long as the job runs."""
+    with tempfile.TemporaryDirectory(prefix="umov_") as folder:
+        out: list[list[str]] = []
+        for group in curves:
+            several = list(group) if isinstance(group, (list, tuple)) else [group]
+            out.append([_file_of(one, pathlib.Path(folder) / f"light_{len(out)}_{k}.ecsv") for k, one in enumerate(several)])
+        yield out
+
+
+def _file_of(light: Any, made: pathlib.Path) -> str:
+    if isinstance(light, (str, os.PathLike)):
+        return os.fspath(light)
+    made.write_text(_text_of(light.table if isinstance(light, LightCurve) else light, "light")[0], encoding="utf-8")
+    return str(made)
+
+
+def _request(files: list[str], fit: Fit) -> _umov.InvertRequest:
+    if not isinstance(fit, Fit):
+        raise UsageError(f"fit is a {type(fit).__name__}; a umov.Fit was expected, such as umov.Fit(clouds=True)")
+    if fit.method not in ("masks", "auto", "rays"):
+        raise UsageError(f"method is {fit.method!r}; auto, rays or masks was expected")
+    if not files:
+        raise UsageError("there is no light curve; a LightCurve, a file or a table was expected, or several of them")
+    out = _umov.InvertRequest(files, whole_between(fit.grid, "grid", 1000, 5_000_000), fit.method, bool(fit.allow_old_elements))
+    out.set_errors(between(fit.floor, "floor", 0, 1), between(fit.zero_point_sd, "zero_point_sd", 1e-6, 100),
+                   between(fit.scale_sd, "scale_sd", 0, 100), bool(fit.clouds), between(fit.outliers, "outliers", 0, 0.5),
+                   not fit.intensity_only)
+    return out
+
+
+def _inversion(found: _umov.Inversion) -> Inversion:
+    import json
+    tables = {name: Table(found.table(k)) for k, name in enumerate(found.names)}
+    return Inversion(found.verdict, tables, json.loads(found.json), found.summary, found.page)
+
+
+def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, fit: Fit = Fit(),
+                threads: int = 0, cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
+    """Which fixed attitudes explain a light curve, and how surely: `umov invert pose`.
+
+    Parameters
+    ----------
+    light
+        A LightCurve, file, Table or astropy table with time_utc, band, brightness and its error, and q and u if there
+        are any; or a list of them, which is one fit of all.
+    scenario
+        Object, materials, orbit, site and bands; its attitude is not used.
+    set
+        Changes of its keys.
+    fit
+        How both are compared.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total).
+
+    Notes
+    -----
+    A verdict of "no_fit" is an answer, not an exception. `InputError` for a curve or scenario that does not do.
+    Source: docs/theory/inverse.md.
+
+    Examples
+    --------
+    >>> fixed = {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 20}
+    >>> green = {"bands.set": ["nm:550"]}
+    >>> curve = umov.run(EXAMPLES / "agena_maui.toml", set={**fixed, **green})
+    >>> umov.invert_pose(curve, EXAMPLES / "agena_maui.toml", set=green, fit=umov.Fit(grid=1000))
+    <umov.Inversion: determined; modes, set95, samples, twins, fit>
+    """
+    asked = Scenario(scenario, set)
+    with _files_of(light) as (files,):
+        return _inversion(_umov.invert_pose(asked._scenario, _request(files, fit), job_options(threads, cache), Watch(progress)))
+
+
+def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | None = None, aliases: bool = True,
+                axis: str = "any", set: Mapping[str, Any] | None = None, fit: Fit = Fit(), threads: int = 0,
+                cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
+    """Which constant spins explain a light curve: period with aliases, axis, attitude: `umov invert spin`.
+
+    Parameters
+    ----------
+    light
+        As for `invert_pose`.
+    scenario
+        Object, materials, orbit, site and bands; its attitude is not used.
+    period_s
+        Of a whole turn [s], good to a few per cent; None: from the periodogram.
+    aliases
+        Half, twice and four times the period are tried too.
+    axis
+        Of the body: x, y, z (either sense), or any.
+    set
+        Changes of the scenario's keys.
+    fit
+        How both are compared.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total).
+
+    Notes
+    -----
+    `InputError` where no period is given and the curve tells none. Source: docs/theory/inverse.md.
+
+    Examples
+    --------
+    >>> spinning = {"object.attitude": {"mode": "spin", "axis": "+X", "period_s": 23.7}, "time.step_s": 3,
+    ...             "time.start": "2018-01-21T05:18:00Z", "time.stop": "2018-01-21T05:20:00Z"}
+    >>> green = {"bands.set": ["nm:550"]}
+    >>> curve = umov.run(EXAMPLES / "agena_maui.toml", set={**spinning, **green})
+    >>> found = umov.invert_spin(curve, EXAMPLES / "agena_maui.toml", period_s=23.7, aliases=False, axis="x", set=green,
+    ...                          fit=umov.Fit(grid=1000))
+    >>> found.verdict, list(found.tables)
+    ('determined', ['modes', 'periods', 'set95', 'samples', 'fit'])
+    """
+    if axis not in ("x", "y", "z", "any"):
+        raise UsageError(f"axis is {axis!r}; x, y, z or any was expected")
+    period = 0.0 if period_s is None else between(period_s, "period_s", 1e-3, 1e7)
+    asked = Scenario(scenario, set)
+    with _files_of(light) as (files,):
+        return _inversion(_umov.invert_spin(asked._scenario, _request(files, fit), period, bool(aliases),
+                                            "" if axis == "any" else axis, job_options(threads, cache), Watch(progress)))
+
+
+def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, candidates: Sequence[str],
+                    set: Mapping[str, Any] | None = None, fit: Fit = Fit(), threads: int = 0,
+                    cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
+    """What a part is made of, in the scenario's attitude: which, or how much of each: `umov invert material`.
+
+    Parameters
+    ----------
+    light
+        As for `invert_pose`.
+    scenario
+        Object, materials, orbit, site and bands; its attitude is taken as known.
+    group
+        Of the mesh; `InputError` for what is none.
+    candidates
+        Materials by name, of the scenario or the library.
+    set
+        Changes of the scenario's keys.
+    fit
+        How both are compared.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total).
+
+    Notes
+    -----
+    Candidates that these data cannot tell apart are joined by "|". Source: docs/theory/inverse.md.
+
+    Examples
+    --------
+    >>> curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 30})
+    >>> found = umov.invert_material(curve, EXAMPLES / "hst_maui.toml", group="array_front",
+    ...                              candidates=["cell_silicon", "paint_white"])
+    >>> found.tables["materials"]["material"].tolist()  # a dozen epochs tell neither from the other
+    ['cell_silicon|paint_white']
+    """
+    words = _names(candidates, "candidates", "names of materials")
+    asked = Scenario(scenario, set)
+    with _files_of(light) as (files,):
+        return _inversion(_umov.invert_material(asked._scenario, _request(files, fit), str(group), words,
+                                                job_options(threads, cache), Watch(progress)))
+
+
+def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str, str], baseline: AnyCurves = (),
+                  attitude_sd_deg: float = 0.1, set: Mapping[str, Any] | None = None, fit: Fit = Fit(), threads: int = 0,
+                  cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
+    """What has changed on the body, in the scenario's attitude, and the least that shows: `umov invert health`.
+
+    Parameters
+    ----------
+    light
+        As for `invert_pose`.
+    scenario
+        Object, materials, orbit, site and bands; its attitude is taken as known.
+    drift
+        By group of the mesh, the material that it may be turning into; several groups are asked at once.
+    baseline
+        Light of before, one or several: changes are counted from it. Without it from the scenario's materials.
+    attitude_sd_deg
+        How well the attitude is known, about each axis [deg], 0 to 30.
+    set
+        Changes of the scenario's keys.
+    fit
+        How both are compared.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total).
+
+    Notes
+    -----
+    `change` of the table is 1 where all of a group has turned, `detectable` the smallest part that would have shown.
+    `InputError` for a group, `UsageError` for a material that there is not. Source: docs/theory/inverse.md.
+
+    Examples
+    --------
+    >>> curve = umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 30})
+    >>> found = umov.invert_health(curve, EXAMPLES / "hst_maui.toml", drift={"array_front": "paint_white"})
+    >>> str(found.tables["health"]["parameter"][0]), bool(abs(found.tables["health"]["sigma"][0]) < 3)
+    ('array_front=paint_white', True)
+    """
+    if not isinstance(drift, Mapping) or not drift:
+        raise UsageError(f"drift is {drift!r}; {{group: material}} was expected, such as {{\"array_front\": \"paint_white\"}}")
+    drifts = [f"{group}={material}" for group, material in drift.items()]
+    asked = Scenario(scenario, set)
+    sd = between(attitude_sd_deg, "attitude_sd_deg", 0, 30)
+    with _files_of(light, baseline) as (files, before):
+        return _inversion(_umov.invert_health(asked._scenario, _request(files, fit), drifts, before, sd,
+                                              job_options(threads, cache), Watch(progress)))
+
+
+def _names(given: Any, name: str, what: str) -> list[str]:
+    if isinstance(given, str) or not isinstance(given, Sequence) or not given or not all(isinstance(x, str) for x in given):
+        raise UsageError(f"{name} is {given!r}; a list of {what} was expected")
+    return list(given)

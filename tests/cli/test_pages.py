@@ -1,0 +1,94 @@
+"""Pages as their readers see them: opened from disk in a browser without network, each figure drawn, none too wide for a phone."""
+import subprocess
+
+import pytest
+
+from browser import Browser
+from conftest import ROOT, UMOV
+
+DAY = ("--start", "2018-01-21T04:00:00Z", "--stop", "2018-01-22T08:00:00Z")
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """One page of each kind, from small jobs."""
+    folder = tmp_path_factory.mktemp("pages")
+
+    def umov(*arguments):
+        done = subprocess.run([UMOV, *map(str, arguments)], cwd=folder, text=True, capture_output=True, timeout=300)
+        assert done.returncode == 0, (arguments, done.stderr)
+
+    example = ROOT / "examples/hst_maui.toml"
+    umov("run", example, "--set", "time.step_s=20", "--set", "output.dir=run", "-q")
+    umov("passes", "--orbit", ROOT / "data/tle/hst.tle", "-s", "maui", *DAY, "--chart", "chart.html", "-o", "p.csv")
+    umov("material", "plot", "gold", "paint_white", "-o", "material.html")
+    umov("observe", ROOT / "examples/observe_hst.toml", "--set", "output.dir=observe", "--set", "time.start=2018-01-21T05:09:16Z", "--set", "time.stop=2018-01-21T05:09:30Z",
+         "--set", 'output.formats=["ecsv","html"]', "-q")
+    umov("reduce", "observe/counts.ecsv", "-o", "s.ecsv", "--page", "reduce.html", "-q")
+    umov("mesh", "make", "chamfered-cube", "-o", "cube.obj")
+    cube = f'object.0.mesh={{file="{folder}/cube.obj",unit="m",up="+Z"}}'
+    umov("run", example, "--set", cube, "--set", 'object.0.materials={default="cell_gaas"}', "--set", "time.step_s=20",
+         "--set", "output.dir=cube", "-q")
+    umov("invert", "pose", "cube/lightcurve.ecsv", "--scenario", "cube/scenario.lock.toml", "-o", "invert", "--grid", 2000, "-q")
+    umov("paper", "--only", "fig2", "-o", "paper", "-q")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    one = Browser(tmp_path_factory.mktemp("profile"))
+    yield one
+    one.close()
+
+
+def empty_traces(figure):
+    """Traces that have something inside their axes and draw nothing, by name."""
+    return [trace["name"] for trace in figure["traces"]
+            if trace["visible"] and trace["type"] in ("scatter", "scatterpolar") and trace["paths"] == 0
+            and (trace["inside"] if trace["inside"] is not None else trace["values"])]
+
+
+def is_drawn(figure):
+    """Something of it is seen: paths, or the canvas of a figure in space."""
+    shown = [trace for trace in figure["traces"] if trace["visible"]]
+    return figure["height"] > 100 and not figure["note"] and (
+        sum(trace["paths"] for trace in shown) > 0 or figure["canvases"] > 0 and any(trace["values"] for trace in shown))
+
+
+KINDS = {  # page: figures that it must have, marks of its sky chart
+    "run/report.html": ({"Brightness against time", "q and u against time", "Degree and angle of linear polarization", "q-u plane",
+                         "Q against phase angle", "Track in the sky"}, 0),
+    "chart.html": (set(), 10),
+    "material.html": (set(), 0),
+    "observe/report.html": ({"Counts in the aperture"}, 0),
+    "reduce.html": ({"Polarization", "Brightness"}, 0),
+    "invert/report.html": (set(), 0),
+    "paper/index.html": (set(), 0),
+}
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_figures_are_drawn_and_nothing_scrolls_sideways(pages, browser, name):
+    """On a phone, and once the window is wide."""
+    titles, marks = KINDS[name]
+    assert (pages / name).exists()
+    with browser.opened(pages / name, width=390) as tab:
+        for width in (390, 1400):
+            seen = tab.seen(width)
+            assert seen["complaints"] == [] and seen["failure"] == ""
+            assert [url for url in seen["requests"] if not url.startswith(("data:", "blob:"))] == [(pages / name).as_uri()]
+            assert titles <= {figure["title"] for figure in seen["figures"]} and (seen["figures"] or marks)
+            for figure in seen["figures"]:
+                assert is_drawn(figure) and empty_traces(figure) == [], figure["title"]
+            assert seen["svg"] >= marks and (not marks or seen["rows"] > 0)
+            assert seen["sideways"] == 0, seen["wide"]
+
+
+def test_a_figure_that_fails_is_found(pages, browser):
+    """The slip of November 2026, put back: rows without limits were asked for them, and q, u and p came out empty."""
+    text = (pages / "run/report.html").read_text()
+    guard = "row.isLimit ? row.isLimit(band, i) : false"
+    assert guard in text
+    (pages / "slip.html").write_text(text.replace(guard, "row.isLimit(band, i)").replace("at: (i) => row.isLimit &&", "at: (i) => row.span &&"))
+    with browser.opened(pages / "slip.html") as tab:
+        assert "q and u against time" in {figure["title"] for figure in tab.seen()["figures"] if not is_drawn(figure)}
