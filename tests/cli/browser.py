@@ -9,6 +9,8 @@ import time
 
 SCRIPT = (pathlib.Path(__file__).parent / "figures.js").read_text()
 
+PATIENCE_S = 120
+
 
 class Browser:
     """One Chromium without network. `opened(path)` is a page in a fresh tab."""
@@ -52,13 +54,18 @@ class Browser:
         if session:
             message["sessionId"] = session
         os.write(self.write_end, json.dumps(message).encode() + b"\0")
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + PATIENCE_S
         while True:
             answer = self._receive(deadline)
             if answer.get("id") == self.count:
                 assert "error" not in answer, f"{method}: {answer['error']}"
                 return answer["result"]
             self.events.append(answer)
+
+    def wait_for(self, method, session):
+        deadline = time.monotonic() + PATIENCE_S
+        while not any(event.get("method") == method and event.get("sessionId") == session for event in self.events):
+            self.events.append(self._receive(deadline))
 
     @contextlib.contextmanager
     def opened(self, path, width=1400, height=1000, dark=False):
@@ -71,6 +78,7 @@ class Browser:
         tab.resize(width, height)
         tab.ask("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
         tab.ask("Page.navigate", url=pathlib.Path(path).resolve().as_uri())
+        self.wait_for("Page.loadEventFired", tab.session)
         yield tab
         self.ask("Target.closeTarget", targetId=target)
 

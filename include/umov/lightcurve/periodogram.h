@@ -38,6 +38,7 @@ std::vector<PeriodPeak> highest_peaks(const Periodogram &of, std::span<const dou
 
 /// What a peak says beside the higher ones.
 struct PeakRelation {
+  /// How it belongs to a higher one.
   enum class Kind {
     Own,      ///< a period by itself
     Multiple, ///< `ratio` times the period of peak `to`: a harmonic, or the turn of which it is a
