@@ -80,7 +80,8 @@ def _file_of(light: Any, made: pathlib.Path) -> str:
     return str(made)
 
 
-def _request(files: list[str], fit: Fit) -> _umov.InvertRequest:
+def _request(files: list[str], fit: Fit | None) -> _umov.InvertRequest:
+    fit = Fit() if fit is None else fit
     if not isinstance(fit, Fit):
         raise UsageError(f"fit is a {type(fit).__name__}; a umov.Fit was expected, such as umov.Fit(clouds=True)")
     if fit.method not in ("masks", "auto", "rays"):
@@ -100,7 +101,7 @@ def _inversion(found: _umov.Inversion) -> Inversion:
     return Inversion(found.verdict, tables, json.loads(found.json), found.summary, found.page)
 
 
-def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, fit: Fit = Fit(),
+def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, fit: Fit | None = None,
                 threads: int = 0, cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
     """Which fixed attitudes explain a light curve, and how surely: `umov invert pose`.
 
@@ -114,7 +115,7 @@ def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, An
     set
         Changes of its keys.
     fit
-        How both are compared.
+        How both are compared; None: `Fit()`.
     threads
         0 for all cores; the bytes do not depend on it.
     cache
@@ -141,7 +142,7 @@ def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, An
 
 
 def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | None = None, aliases: bool = True,
-                axis: str = "any", set: Mapping[str, Any] | None = None, fit: Fit = Fit(), threads: int = 0,
+                axis: str = "any", set: Mapping[str, Any] | None = None, fit: Fit | None = None, threads: int = 0,
                 cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
     """Which constant spins explain a light curve: period with aliases, axis, attitude: `umov invert spin`.
 
@@ -160,7 +161,7 @@ def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | No
     set
         Changes of the scenario's keys.
     fit
-        How both are compared.
+        How both are compared; None: `Fit()`.
     threads
         0 for all cores; the bytes do not depend on it.
     cache
@@ -193,7 +194,7 @@ def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | No
 
 
 def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, candidates: Sequence[str],
-                    set: Mapping[str, Any] | None = None, fit: Fit = Fit(), threads: int = 0,
+                    set: Mapping[str, Any] | None = None, fit: Fit | None = None, threads: int = 0,
                     cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
     """What a part is made of, in the scenario's attitude: which, or how much of each: `umov invert material`.
 
@@ -210,7 +211,7 @@ def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, cand
     set
         Changes of the scenario's keys.
     fit
-        How both are compared.
+        How both are compared; None: `Fit()`.
     threads
         0 for all cores; the bytes do not depend on it.
     cache
@@ -238,7 +239,7 @@ def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, cand
 
 
 def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str, str], baseline: AnyCurves = (),
-                  attitude_sd_deg: float = 0.1, set: Mapping[str, Any] | None = None, fit: Fit = Fit(), threads: int = 0,
+                  attitude_sd_deg: float = 0.1, set: Mapping[str, Any] | None = None, fit: Fit | None = None, threads: int = 0,
                   cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
     """What has changed on the body, in the scenario's attitude, and the least that shows: `umov invert health`.
 
@@ -257,7 +258,7 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
     set
         Changes of the scenario's keys.
     fit
-        How both are compared.
+        How both are compared; None: `Fit()`.
     threads
         0 for all cores; the bytes do not depend on it.
     cache
