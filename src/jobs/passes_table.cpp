@@ -115,6 +115,8 @@ void PassColumns::add_light() {
       result_.magnitudes == MagnitudeSystem::Vega ? "mag" : "mag(" + system + ")";
   number("mag_min", unit.c_str(), "brightest while sunlit; empty where no model is given",
          [](L l) { return l.magnitude_min; });
+  text("brightest_utc", "when it is brightest, above the air; empty where no model is given",
+       [](L l) { return l.brightest ? to_iso(*l.brightest) : std::string(); });
   number("mag_max", unit.c_str(),
          fmt::format("faintest while sunlit; {:g} stands for fainter", faintest_magnitude).c_str(),
          [](L l) { return l.magnitude_max; });

@@ -50,6 +50,7 @@ std::vector<std::pair<std::string, std::string>> manifest_lines(const Scenario &
 
 struct PassNumbers {
   double brightest = std::numeric_limits<double>::infinity(), faintest = -brightest;
+  std::size_t brightest_at = 0; ///< epoch
   double p_max = 0, phase_min = 180, phase_max = 0;
   bool has_limit = false; ///< samples fainter than can be told
 };
@@ -72,7 +73,10 @@ PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
         out.faintest = std::max(out.faintest, s.magnitude);
         continue;
       }
-      out.brightest = std::min(out.brightest, s.magnitude);
+      if (s.magnitude < out.brightest) {
+        out.brightest = s.magnitude;
+        out.brightest_at = i;
+      }
       out.faintest = std::max(out.faintest, s.magnitude);
       if (!std::isnan(s.p) && is_p_known(s.intensity, s.half_width))
         out.p_max = std::max(out.p_max, s.p);
@@ -167,11 +171,13 @@ std::string summarize(const LightCurveOutcome &outcome) {
     out += fmt::format("  {}  max alt {:.0f} deg{}  phase {:.0f}-{:.0f} deg", pass.id,
                        pass.culmination_altitude.degrees(),
                        is_outside ? " (not among the epochs)" : "", n.phase_min, n.phase_max);
-    if (std::isfinite(n.brightest))
-      out += fmt::format("  mag {:.1f} to {}{:.1f} {}  p up to {:.0f} %", n.brightest,
-                         n.has_limit ? "> " : "", n.faintest, name_of(curve.magnitudes),
-                         100 * n.p_max);
-    else if (n.has_limit)
+    if (std::isfinite(n.brightest)) {
+      const ObservingGeometry &best = curve.epochs[n.brightest_at].geometry;
+      out +=
+          fmt::format("  mag {:.1f} to {}{:.1f} {}, brightest {} at phase {:.0f}  p up to {:.0f} %",
+                      n.brightest, n.has_limit ? "> " : "", n.faintest, name_of(curve.magnitudes),
+                      to_iso(best.time).substr(11, 8), best.phase_angle.degrees(), 100 * n.p_max);
+    } else if (n.has_limit)
       out += "  too faint for a magnitude throughout: see mag_limit";
     out += "\n";
   }

@@ -41,6 +41,7 @@ SkyTrack track_of(const Trajectory &orbit, const ObjectPass &found, const Passes
   out.rise = pass.is_rise_cut ? "" : to_iso(pass.rise.time);
   out.culmination = to_iso(pass.culmination.time);
   out.set = pass.is_set_cut ? "" : to_iso(pass.set.time);
+  out.brightest = found.light.brightest ? to_iso(*found.light.brightest) : "";
   out.altitude_max = pass.culmination.altitude.degrees();
   out.magnitude_min = found.light.magnitude_min;
   out.magnitude_max = found.light.magnitude_max;
@@ -49,6 +50,15 @@ SkyTrack track_of(const Trajectory &orbit, const ObjectPass &found, const Passes
   out.visible_s = pass.visible_s;
   add_points(orbit, pass, request, out);
   return out;
+}
+
+/// Its name, or where it is.
+std::string place_of(const Site &site) {
+  if (!site.name.empty())
+    return site.name;
+  const double latitude = site.latitude.degrees(), longitude = site.longitude.degrees();
+  return fmt::format("{:.3f} {}, {:.3f} {}, {:.0f} m", std::abs(latitude), latitude < 0 ? "S" : "N",
+                     std::abs(longitude), longitude < 0 ? "W" : "E", site.altitude_m);
 }
 
 /// Numbers of the passes that are drawn: the brightest, then the highest, where there are too many.
@@ -72,9 +82,8 @@ std::vector<std::size_t> chosen(const PassesResult &result) {
 } // namespace
 
 std::string sky_chart(const PassesRequest &request, const PassesResult &result) {
-  const std::string &name = request.site.name;
   SkyPage page;
-  page.title = "Passes over " + (name.empty() ? "the site" : name);
+  page.title = "Passes over " + place_of(request.site);
   const auto drawn = chosen(result);
   bool has_magnitudes = false;
   for (const std::size_t k : drawn) {
@@ -89,7 +98,8 @@ std::string sky_chart(const PassesRequest &request, const PassesResult &result) 
       "Dotted: more than half of the Sun's disk is behind the Earth."};
   if (has_magnitudes)
     page.notes.push_back(
-        fmt::format("Colour and mag: the brightest magnitude ({}) of the pass while sunlit.",
+        fmt::format("Colour and mag: the brightest magnitude ({}) of the pass while sunlit, at "
+                    "the time beside it.",
                     name_of(result.magnitudes)));
   else
     page.notes.emplace_back(

@@ -101,6 +101,8 @@ void take(const BandResult &light, const ObservingGeometry &g, const Photometric
   if (!(observed.irradiance > 0) || !is_known(s.i, half_width))
     return;
   const double magnitude = std::min(observed.magnitude, faintest_magnitude);
+  if (!pass.brightest || magnitude < pass.magnitude_min)
+    pass.brightest = g.time;
   // fmin and fmax take the number where one of the two is none.
   pass.magnitude_min = std::fmin(pass.magnitude_min, magnitude);
   pass.magnitude_max = std::fmax(pass.magnitude_max, magnitude);

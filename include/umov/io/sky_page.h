@@ -11,6 +11,7 @@ namespace umov {
 struct SkyTrack {
   std::string id, name;
   std::string rise, culmination, set; ///< UTC, "" where the span cuts the pass
+  std::string brightest;              ///< UTC; "" where no magnitude is known
   double altitude_max = 0;            ///< [deg]
   double magnitude_min = 0, magnitude_max = 0;
   double phase_min = 0, phase_max = 0;   ///< while sunlit [deg]

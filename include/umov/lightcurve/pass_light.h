@@ -42,7 +42,8 @@ struct PassBrightness {
       magnitude_obs_min = std::numeric_limits<double>::quiet_NaN(),
          magnitude_obs_max = std::numeric_limits<double>::quiet_NaN(),
          p_max = std::numeric_limits<double>::quiet_NaN(); ///< largest degree of polarization
-  std::vector<PassGlint> glints;                           ///< in order
+  std::optional<Epoch<Utc>> brightest = {}; ///< when the magnitude is the least, above the air
+  std::vector<PassGlint> glints;            ///< in order
 };
 
 /// What an object is made of and how it moves; ready for many passes.

@@ -31,6 +31,7 @@ Json track_json(const SkyTrack &track) {
           {"rise", track.rise},
           {"culmination", track.culmination},
           {"set", track.set},
+          {"brightest", track.brightest},
           {"alt", number(track.altitude_max, 0.01)},
           {"mag", number(track.magnitude_min, 0.001)},
           {"mag_faint", number(track.magnitude_max, 0.001)},

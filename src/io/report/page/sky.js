@@ -106,19 +106,30 @@
     return group;
   };
 
-  const textOf = (track, isFull) => [track.name, track.mag !== null ? track.mag.toFixed(1) + " mag" : "", isFull ? clock(track.culmination) : ""].filter(Boolean).join(", ");
+  // With a magnitude, the time at which it has it.
+  const textOf = (track, isFull) => [track.name, track.mag !== null ? track.mag.toFixed(1) + " mag" : "", isFull ? clock(track.brightest || track.culmination) : ""].filter(Boolean).join(", ");
+  /// Points of a track that a label may stand at: the lit ones, where there are any.
+  const labelled = tracks.map((track) => {
+    const all = track.az100.map((_, k) => k), lit = all.filter((k) => track.sunlit[k] === 1);
+    return lit.length ? lit : all;
+  });
+  /// Whether a track other than `i` runs under a box.
+  const isCrossed = (box, i) => order.slice(0, drawnFull).some((j) => j !== i && tracks[j].az100.some((_, k) => {
+    const [x, y] = place(tracks[j], k);
+    return x > box[0] - 4 && x < box[2] + 4 && y > box[1] - 4 && y < box[3] + 4;
+  }));
   /// A label beside a track where nothing else is, or null.
   const labelFor = (i, taken, isForced) => {
     const track = tracks[i], text = textOf(track, isForced || !isSmall()), font = fontSize();
     const width = 0.56 * font * text.length + 8, height = 1.3 * font;
     for (const share of [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92])
       for (const side of [1, -1]) {
-        const [x, y] = place(track, Math.round(share * (track.az100.length - 1)));
+        const [x, y] = place(track, labelled[i][Math.round(share * (labelled[i].length - 1))]);
         const left = side > 0 ? x + 8 : x - 8 - width, top = y - height / 2;
         const box = [left, top, left + width, top + height];
         const isInside = box[0] > 2 && box[1] > 2 && box[2] < size - 2 && box[3] < size - 2;
         const isFree = taken.every((other) => box[2] < other[0] || box[0] > other[2] || box[3] < other[1] || box[1] > other[3]);
-        if (!isInside || !(isFree || isForced)) continue;
+        if (!isInside || !(isForced || (isFree && !isCrossed(box, i)))) continue;
         taken.push(box);
         const group = svg("g", { "pointer-events": "none" });
         group.append(svg("rect", { x: left, y: top, width, height, rx: 4, fill: "var(--card)", opacity: 0.86 }),
@@ -182,6 +193,7 @@
   const columns = [
     { name: "object", text: (t) => t.name, key: (t) => t.name },
     { name: "highest [UTC]", text: (t) => isOneDay ? clock(t.culmination) : t.culmination.slice(5, 19).replace("T", " "), key: (t) => t.culmination },
+    ...(hasMagnitudes ? [{ name: "brightest", wide: true, text: (t) => clock(t.brightest), key: (t) => t.brightest || "9" }] : []),
     { name: "alt [°]", number: true, text: (t) => t.alt.toFixed(0), key: (t) => -t.alt },
     ...(hasMagnitudes ? [{ name: "mag", number: true, text: (t) => t.mag === null ? "" : t.mag.toFixed(1), key: (t) => t.mag ?? 99 }] : []),
     { name: "phase [°]", number: true, middle: true, text: (t) => t.phase[0] === null ? "" : t.phase[0].toFixed(0) + "–" + t.phase[1].toFixed(0), key: (t) => t.phase[0] ?? 999 },
