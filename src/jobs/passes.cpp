@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/files.h>
 #include <umov/core/locks.h>
 #include <umov/core/parallel.h>
@@ -45,18 +46,29 @@ Result<std::vector<ElementSet>> best_sets(const PassesRequest &request,
   return out;
 }
 
+/// The first few of them, and how many more there are.
+std::string some_of(const std::vector<std::string> &names) {
+  constexpr std::size_t told = 5;
+  std::string out = fmt::format(
+      "{}",
+      fmt::join(names.begin(),
+                names.begin() + static_cast<std::ptrdiff_t>(std::min(told, names.size())), ", "));
+  return names.size() > told ? fmt::format("{} and {} more", out, names.size() - told) : out;
+}
+
 /// Orbits of the objects wanted whose elements are not too old for the span.
 Result<std::vector<Trajectory>> choose(const PassesRequest &request, std::vector<ElementSet> sets,
                                        bool allow_old, Diagnostics &diagnostics) {
   UMOV_ASSIGN(chosen, best_sets(request, std::move(sets)));
   std::vector<Trajectory> out;
-  std::size_t doubtful = 0, old = 0;
+  std::size_t doubtful = 0;
+  std::vector<std::string> old;
   for (const ElementSet &set : chosen) {
     const double age = std::max(std::abs(clock_days_between(request.start, set.epoch)),
                                 std::abs(clock_days_between(request.stop, set.epoch)));
     doubtful += age > doubtful_days ? 1u : 0u;
     if (age > old_days && !allow_old)
-      ++old;
+      old.push_back(set.name.empty() ? fmt::format("{}", set.norad_cat_id) : printable(set.name));
     else
       out.emplace_back(set);
   }
@@ -66,15 +78,15 @@ Result<std::vector<Trajectory>> choose(const PassesRequest &request, std::vector
                             "pass --allow-old-elements.",
                             old_days),
                 {request.orbit});
-  if (old > 0)
-    diagnostics.warn(fmt::format("{} with elements more than {:g} d from the span are left out; "
+  if (!old.empty())
+    diagnostics.warn(fmt::format("{} left out, with elements more than {:g} d from the span: {}; "
                                  "--allow-old-elements takes them",
-                                 counted(old, "object"), old_days),
+                                 counted(old.size(), "object"), old_days, some_of(old)),
                      {request.orbit});
-  if (doubtful > old)
+  if (doubtful > old.size())
     diagnostics.warn(fmt::format("elements of {} are more than {:g} d from the span; passes may be "
                                  "seconds off",
-                                 counted(doubtful - old, "object"), doubtful_days),
+                                 counted(doubtful - old.size(), "object"), doubtful_days),
                      {request.orbit});
   return out;
 }

@@ -16,6 +16,12 @@ SITE = "20.7083,-156.2578,3058"
 DAY = ("--start", "2018-01-21T00:00:00Z", "--stop", "2018-01-22T00:00:00Z")
 
 
+def test_objects_left_out_are_named(umov, tmp_path):
+    (tmp_path / "all.tle").write_text(HST.read_text() + (ROOT / "data/tle/explorer27.tle").read_text())
+    done = umov("passes", "--orbit", "all.tle", "-s", SITE, *DAY, "-o", "p.csv")
+    assert done.code == 0 and "1 object left out, with elements more than 30 d from the span: EXPLORER 27" in done.err, done.err
+
+
 def test_passes_agree_with_the_ephemeris(umov, tmp_path):
     done = umov("passes", "--orbit", HST, "-s", SITE, *DAY, "-o", "p.csv")
     assert done.code == 0, done.err
@@ -136,6 +142,9 @@ def test_glints_of_a_spinning_plate_stand_in_the_run(umov, scenario, tmp_path):
     assert track["alt100"][0] == pytest.approx(1000, abs=2) and track["id"] == found["pass_id"]
     assert max(track["alt100"]) / 100 == pytest.approx(float(found["culmination_alt"]), abs=0.3)
     assert track["mag"] == pytest.approx(float(found["mag_min"]), abs=1e-3)
+    # A spinning plate is brightest in one of its glints.
+    assert track["brightest"] == found["brightest_utc"]
+    assert any(abs((Time(found["brightest_utc"]) - t).sec) <= w for t, w in zip(times, widths))
     assert "://" not in re.sub(r"http://www.w3.org/2000/svg", "", page), "nothing is loaded from anywhere"
 
 

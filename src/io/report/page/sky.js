@@ -74,8 +74,10 @@
       ground.append(svg("path", { d: "M" + middle + " " + middle + "L" + (middle - radius * Math.sin(a)).toFixed(1) + " " + (middle - radius * Math.cos(a)).toFixed(1) }));
     }
     const texts = svg("g", { fill: "var(--soft)", "font-size": fontSize(), "text-anchor": "middle" });
+    layers.compass = [];
     ["N", "NE", "E", "SE", "S", "SW", "W", "NW"].forEach((name, k) => {
-      const a = k * Math.PI / 4, r = radius + 12 + fontSize() * 0.6;
+      const a = k * Math.PI / 4, r = radius + 12 + fontSize() * 0.6, x = middle - r * Math.sin(a), y = middle - r * Math.cos(a);
+      layers.compass.push([x - fontSize(), y - 0.7 * fontSize(), x + fontSize(), y + 0.7 * fontSize()]);
       texts.append(svg("text", { x: (middle - r * Math.sin(a)).toFixed(1), y: (middle - r * Math.cos(a) + fontSize() * 0.35).toFixed(1), ...(name.length === 1 ? { "font-weight": 600 } : {}) }, name));
     });
     for (const altitude of [30, 60]) texts.append(svg("text", { x: middle + 4, y: middle - (90 - altitude) / 90 * radius - 4, "text-anchor": "start", "font-size": 0.8 * fontSize() }, altitude + "°"));
@@ -152,7 +154,7 @@
   let picked = null, near = null;
   const drawLabels = () => {
     layers.labels.replaceChildren();
-    const taken = [], wanted = [...new Set([near, picked].filter((i) => i !== null))];
+    const taken = [...layers.compass], wanted = [...new Set([near, picked].filter((i) => i !== null))];
     for (const i of wanted) layers.labels.append(labelFor(i, taken, true) || "");
     if (near === null)
       for (const i of order.slice(0, isSmall() ? 3 : 8)) if (i !== picked) layers.labels.append(labelFor(i, taken, false) || "");
