@@ -20,6 +20,16 @@ function magnitudeText(rows) {
   return known[0].toFixed(2) + " to " + (limits ? "> " + Math.max(known[1], limits[1]).toFixed(2) : known[1].toFixed(2));
 }
 
+/// When it is brightest, in any band, and at which phase; "" where no magnitude is known.
+function brightestText() {
+  let best = null;
+  for (const band of bands)
+    band.mag.forEach((mag, i) => {
+      if (mag !== null && !band.mag_limit[i] && (best === null || mag < best.mag)) best = { mag, row: i };
+    });
+  return best ? " (brightest " + epochs.time[best.row].slice(11, 19) + ", phase " + epochs.phase[best.row].toFixed(1) + "°)" : "";
+}
+
 function greatestP(rows) {
   let best = null;
   for (const band of bands)
@@ -56,7 +66,7 @@ function fillSummary() {
     fact("Bands", bands.map((band) => band.label).join(", ") || "none"),
     fact("Maximum altitude", altitude ? altitude[1].toFixed(1) + "°" : "none"),
     fact("Phase angle", phase ? phase[0].toFixed(1) + "° to " + phase[1].toFixed(1) + "°" : "none"),
-    fact(report.mag_system + " magnitude", magnitudeText(all)),
+    fact(report.mag_system + " magnitude", magnitudeText(all) + brightestText()),
     fact("Maximum p", p ? (100 * p.p).toFixed(1) + " % (" + p.band + ", phase " + epochs.phase[p.row].toFixed(1) + "°)" : "undefined"));
   byId("summary").append(facts, report.passes.length ? passTable() : "");
   const span = epochCount ? epochs.time[0].slice(0, 19) + "Z to " + epochs.time[epochCount - 1].slice(0, 19) + "Z" : "no epochs";
