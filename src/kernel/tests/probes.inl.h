@@ -9,6 +9,7 @@
 
 #include "kernel/angles.inl.h"
 #include "kernel/body.inl.h"
+#include "kernel/chain_end.inl.h"
 #include "kernel/facet.inl.h"
 #include "kernel/films.inl.h"
 #include "kernel/fresnel.inl.h"
@@ -157,17 +158,69 @@ template <class R, class T, class Put> UMOV_KERNEL void probe_facet(R x, const P
     }
 }
 
+/// A surface at an end of a chain: a lobe and two products, one polarized as a reflection is.
+struct ProbeChainSurface {
+  struct Product {
+    float bend = 0.5f, factor = 0.25f;
+    bool is_as_reflected = false, is_polarized = false;
+    float profile[polynomial_degree + 1] = {0.75f, 0.125f, -0.0625f};
+    float polarizing[polynomial_degree + 1] = {0.125f, 0.25f};
+  };
+  float bend = 0.25f;
+  float a[polynomial_degree + 1] = {0.75f, -0.125f}, b[polynomial_degree + 1] = {0.125f, 0.25f},
+                              z_real[polynomial_degree + 1] = {-0.5f},
+                              z_imaginary[polynomial_degree + 1] = {0.25f, 0.125f};
+  bool has_lobe = true;
+  std::uint32_t products = 2;
+  Product product[2];
+};
+template <class R, class Put> UMOV_KERNEL void probe_beam(const Beam<R> &beam, const Put &put) {
+  put(beam.i);
+  put(beam.q);
+  put(beam.u);
+  put(beam.v);
+}
+/// Sun and observer on both sides of the normal, a chain that leans by x from it.
+template <class R, class T, class Put> UMOV_KERNEL void probe_chain_end(R x, const Put &put) {
+  const Triple<R> normal{R(0), R(0), R(1)}, sun{R(0.6), R(0), R(0.8)},
+      seen{R(-0.48), R(0.36), R(0.8)};
+  const R lean = R(0.5) * x, side = R(0.25) * x;
+  const Triple<R> along{lean, side, sqrt(R(1) - lean * lean - side * side)};
+  const Triple<R> axis = outer(along, Triple<R>{R(0), R(1), R(0)}), plane = outer(seen, sun);
+  ProbeChainSurface surface;
+  surface.product[0].is_as_reflected = true;
+  surface.product[1].is_polarized = true;
+  LobeConstants<T> lobe;
+  lobe.masking[0] = T(1.5);
+  lobe.masking[1] = T(-0.25);
+  for (const LobeKind kind : {LobeKind::BlinnPhong, LobeKind::Beckmann, LobeKind::Ggx}) {
+    lobe.kind = kind;
+    lobe.shape = kind == LobeKind::BlinnPhong ? T(40) : T(0.25);
+    lobe.peak = T(6.5);
+    const auto in = chain_end_at(normal, along, sun), out = chain_end_at(normal, along, seen);
+    const auto entered =
+        chain_entered(surface, chain_lobe(lobe, in), in, turn_at_sun(along, axis, sun));
+    probe_beam(entered.whole, put);
+    probe_beam(entered.lobe, put);
+    probe_beam(chain_left(surface, chain_lobe(lobe, out), out,
+                          turns_at_observer(normal, along, axis, seen, plane), entered.whole,
+                          entered.lobe),
+               put);
+  }
+}
+
 /// Families of kernels, and how far a type of single precision may be from double, of the value
 /// plus one.
-inline constexpr std::size_t probe_families = 8;
+inline constexpr std::size_t probe_families = 9;
 struct ProbeFamily {
   const char *name;
   double single;
 };
 inline ProbeFamily probe_family(std::size_t family) {
   constexpr ProbeFamily all[probe_families] = {
-      {"math", 2e-6}, {"angles", 2e-6},     {"fresnel", 3e-6},     {"films", 3e-5},
-      {"body", 1e-5}, {"microfacet", 2e-4}, {"solar_nodes", 1e-6}, {"facet", 1e-4}};
+      {"math", 2e-6},        {"angles", 2e-6}, {"fresnel", 3e-6},
+      {"films", 3e-5},       {"body", 1e-5},   {"microfacet", 2e-4},
+      {"solar_nodes", 1e-6}, {"facet", 1e-4},  {"chain_end", 1e-4}};
   return all[family];
 }
 template <class R, class T, class Put>
@@ -187,8 +240,10 @@ UMOV_KERNEL void probe(std::size_t family, R x, const Put &put) {
     return probe_microfacet(x, put);
   case 6:
     return probe_solar_nodes(x, put);
-  default:
+  case 7:
     return probe_facet<R, T>(x, put);
+  default:
+    return probe_chain_end<R, T>(x, put);
   }
 }
 
