@@ -1,5 +1,6 @@
 #include <umov/jobs/material_check.h>
 
+#include <fmt/format.h>
 #include <limits>
 #include <optional>
 #include <umov/core/parallel.h>
@@ -58,7 +59,7 @@ Result<MaterialCheck> check_materials(const MaterialCheckRequest &request, unsig
   for (const std::string &name : request.names) {
     UMOV_ASSIGN(material, read_material(name));
     for (const std::string &remark : material.remarks)
-      out.remarks.push_back(name + ": " + remark);
+      out.remarks.push_back(fmt::format("{}: {}", name, remark));
     materials.push_back(std::move(material));
   }
   UMOV_ASSIGN(audits, audits_of(materials, request, threads));

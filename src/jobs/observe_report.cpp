@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <map>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
@@ -101,7 +102,7 @@ public:
       errors.push_back(v.error);
     const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
     std::nth_element(errors.begin(), middle, errors.end());
-    double low = INFINITY, high = -INFINITY;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Value &v : values_)
       if (v.error <= *middle)
         low = std::min(low, v.value - v.error), high = std::max(high, v.value + v.error);
@@ -342,14 +343,38 @@ std::vector<PlotLine> with_bars(Lines points, Lines bars) {
   return out;
 }
 
-void add_figure(std::vector<PlotFigure> &out, PlotFigure figure) {
-  if (!figure.lines.empty()) // nothing was seen: an empty frame says less than none
-    out.push_back(std::move(figure));
+using Span = std::array<double, 2>;
+
+/// A figure with the reach of its axes; none where nothing was seen: an empty frame says less.
+void add_figure(std::vector<PlotFigure> &out, const char *title, const std::string &x,
+                const char *y, std::vector<PlotLine> lines, Span x_span, Span y_span) {
+  if (!lines.empty())
+    out.push_back({title, x, y, std::move(lines), false, false, {}, x_span, y_span});
 }
 
 /// No degree lies below 0.
 std::array<double, 2> from_zero(std::array<double, 2> span) {
   return span[0] == span[1] ? span : std::array{-0.02 * span[1], std::min(span[1], 1.05)};
+}
+
+std::vector<PlotFigure> stokes_figures(StokesLines &lines, const std::string &time) {
+  const Span q = lines.q.span(), u = lines.u.span(), mag = lines.mag.span();
+  std::vector<PlotLine> p = with_bars(std::move(lines.degree), std::move(lines.intervals));
+  for (PlotLine &one : std::move(lines.limits).all())
+    p.push_back(std::move(one));
+  std::vector<PlotFigure> out;
+  add_figure(out, "q and u against time", time, "q, u in the sky frame",
+             with_bars(std::move(lines.points), std::move(lines.bars)), {},
+             {std::min(q[0], u[0]), std::max(q[1], u[1])});
+  add_figure(out, "Degree of linear polarization", time, "p", std::move(p), {},
+             from_zero(lines.p.span()));
+  add_figure(out, "Brightness", time, "mag (AB), above the air", std::move(lines.mags).all(), {},
+             {mag[1], mag[0]});
+  add_figure(out, "Polarization", "q", "u",
+             with_bars(std::move(lines.plane), std::move(lines.ellipses)), q, u);
+  add_figure(out, "Fits: what noise does not explain", time, "chi2/dof",
+             std::move(lines.tests).all(), {}, {});
+  return out;
 }
 
 } // namespace
@@ -363,58 +388,7 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
   lines.widest = 4 * median_error(stokes);
   for (std::size_t row = 0; row < stokes.rows(); ++row)
     lines.add(stokes, row, clock(row));
-  const std::string time = clock.title();
-  const auto q = lines.q.span(), u = lines.u.span(), mag = lines.mag.span();
-  const std::array both{std::min(q[0], u[0]), std::max(q[1], u[1])};
-  std::vector<PlotLine> p = with_bars(std::move(lines.degree), std::move(lines.intervals));
-  for (PlotLine &one : std::move(lines.limits).all())
-    p.push_back(std::move(one));
-  std::vector<PlotFigure> figures;
-  add_figure(figures, {"q and u against time",
-                       time,
-                       "q, u in the sky frame",
-                       with_bars(std::move(lines.points), std::move(lines.bars)),
-                       false,
-                       false,
-                       {},
-                       {},
-                       both});
-  add_figure(figures, {"Degree of linear polarization",
-                       time,
-                       "p",
-                       std::move(p),
-                       false,
-                       false,
-                       {},
-                       {},
-                       from_zero(lines.p.span())});
-  add_figure(figures, {"Brightness",
-                       time,
-                       "mag (AB), above the air",
-                       std::move(lines.mags).all(),
-                       false,
-                       false,
-                       {},
-                       {},
-                       {mag[1], mag[0]}});
-  add_figure(figures, {"Polarization",
-                       "q",
-                       "u",
-                       with_bars(std::move(lines.plane), std::move(lines.ellipses)),
-                       false,
-                       false,
-                       {},
-                       q,
-                       u});
-  add_figure(figures, {"Fits: what noise does not explain",
-                       time,
-                       "chi2/dof",
-                       std::move(lines.tests).all(),
-                       false,
-                       false,
-                       {},
-                       {},
-                       {}});
+  const std::vector<PlotFigure> figures = stokes_figures(lines, clock.title());
   std::vector<std::string> notes{
       "Ellipses and bars of q and u: one standard deviation. Bars of p: 95 % intervals; points "
       "where "

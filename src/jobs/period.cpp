@@ -137,82 +137,105 @@ Table table_of(PeriodRows &&rows, const std::string &path) {
   return out;
 }
 
-} // namespace
-
-Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
-                     Diagnostics &diagnostics) {
-  std::vector<std::string> bands = bands_of(observations);
-  if (!request.band.empty()) {
-    if (std::ranges::find(bands, request.band) == bands.end())
-      return fail(ErrorCode::BadInput,
-                  fmt::format("holds no band \"{}\"; it has {}", printable(request.band),
-                              printable(fmt::format("{}", fmt::join(bands, ", ")))),
-                  {observations.path});
-    bands = {request.band};
-  }
+/// What a search through all stretches found, and what stood in its way.
+struct Findings {
   PeriodRows rows;
-  if (!(request.shortest_s < request.longest_s))
-    return fail(ErrorCode::Usage, fmt::format("periods from {:g} to {:g} s: none lies between",
-                                              request.shortest_s, request.longest_s));
-  std::size_t too_few = 0, too_slow = 0, noisy = 0;
-  double surest = 1;
-  double cut_s = 0; // periods below were not looked at
-  for (const std::string &band : bands)
-    for (const Stretch &one : stretches_of(observations, band, request.gap_s)) {
-      constexpr std::size_t all = 1000;
-      const Periodogram found = periodogram(one.seconds, one.magnitudes);
-      if (found.is_cut)
-        cut_s = std::max(cut_s, found.period_s.back());
-      auto peaks = highest_peaks(found, one.seconds, all);
-      too_slow += is_slow(found, peaks) ? 1u : 0u;
-      std::erase_if(peaks, [&](const PeriodPeak &peak) {
-        return peak.period_s < request.shortest_s || peak.period_s > request.longest_s;
-      });
-      peaks.resize(std::min(peaks.size(), request.peaks));
-      too_few += peaks.empty() ? 1u : 0u;
-      const bool had_peaks = !peaks.empty();
-      if (had_peaks)
-        surest = std::min(surest, peaks.front().false_alarm);
-      std::erase_if(peaks,
-                    [&](const PeriodPeak &peak) { return peak.false_alarm > request.false_alarm; });
-      noisy += had_peaks && peaks.empty() ? 1u : 0u;
-      rows.add(one, peaks);
-    }
-  if (too_slow > 0)
+  std::size_t too_few = 0, too_slow = 0, noisy = 0; ///< stretches
+  double surest = 1;                                ///< chance that noise has a peak as high
+  double cut_s = 0;                                 ///< periods below were not looked at
+
+  void look_at(const Stretch &one, const PeriodRequest &request) {
+    constexpr std::size_t all = 1000;
+    const Periodogram found = periodogram(one.seconds, one.magnitudes);
+    if (found.is_cut)
+      cut_s = std::max(cut_s, found.period_s.back());
+    auto peaks = highest_peaks(found, one.seconds, all);
+    too_slow += is_slow(found, peaks) ? 1u : 0u;
+    std::erase_if(peaks, [&](const PeriodPeak &peak) {
+      return peak.period_s < request.shortest_s || peak.period_s > request.longest_s;
+    });
+    peaks.resize(std::min(peaks.size(), request.peaks));
+    too_few += peaks.empty() ? 1u : 0u;
+    const bool had_peaks = !peaks.empty();
+    if (had_peaks)
+      surest = std::min(surest, peaks.front().false_alarm);
+    std::erase_if(peaks,
+                  [&](const PeriodPeak &peak) { return peak.false_alarm > request.false_alarm; });
+    noisy += had_peaks && peaks.empty() ? 1u : 0u;
+    rows.add(one, peaks);
+  }
+};
+
+Result<std::vector<std::string>> wanted_bands(const ObservationsFile &observations,
+                                              const std::string &band) {
+  std::vector<std::string> bands = bands_of(observations);
+  if (band.empty())
+    return bands;
+  if (std::ranges::find(bands, band) == bands.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("holds no band \"{}\"; it has {}", printable(band),
+                            printable(fmt::format("{}", fmt::join(bands, ", ")))),
+                {observations.path});
+  return std::vector<std::string>{band};
+}
+
+void warn_of_search(const Findings &found, const PeriodRequest &request, const std::string &path,
+                    Diagnostics &diagnostics) {
+  if (found.too_slow > 0)
     diagnostics.warn(
         fmt::format("in {} most of the change is slower than half the stretch: a trend, "
                     "or a period too long to be told; the peaks listed are what is "
                     "left",
-                    counted(too_slow, "stretch", "stretches")),
-        {observations.path});
-  if (cut_s > request.shortest_s)
+                    counted(found.too_slow, "stretch", "stretches")),
+        {path});
+  if (found.cut_s > request.shortest_s)
     diagnostics.warn(fmt::format("a stretch is so long that periods below {:.4g} s were not looked "
                                  "at; a shorter --gap-s makes more and shorter stretches of it",
-                                 cut_s),
-                     {observations.path});
-  if (rows.period.empty() && noisy > 0)
+                                 found.cut_s),
+                     {path});
+}
+
+void warn_of_left_out(const Findings &found, const std::string &path, Diagnostics &diagnostics) {
+  if (found.noisy > 0)
+    diagnostics.warn(fmt::format("{} whose peaks do not stand out of noise, left out",
+                                 counted(found.noisy, "stretch", "stretches")),
+                     {path});
+  if (found.too_few > 0)
+    diagnostics.warn(fmt::format("{} with fewer than twelve brightnesses, or with no peak in the "
+                                 "range asked for, left out",
+                                 counted(found.too_few, "stretch", "stretches")),
+                     {path});
+}
+
+} // namespace
+
+Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
+                     Diagnostics &diagnostics) {
+  const std::string &path = observations.path;
+  UMOV_ASSIGN(bands, wanted_bands(observations, request.band));
+  if (!(request.shortest_s < request.longest_s))
+    return fail(ErrorCode::Usage, fmt::format("periods from {:g} to {:g} s: none lies between",
+                                              request.shortest_s, request.longest_s));
+  Findings found;
+  for (const std::string &band : bands)
+    for (const Stretch &one : stretches_of(observations, band, request.gap_s))
+      found.look_at(one, request);
+  warn_of_search(found, request, path, diagnostics);
+  if (found.rows.period.empty() && found.noisy > 0)
     return fail(
         ErrorCode::Nothing,
         fmt::format("{} shows no period that stands out of noise: white noise has a peak as "
                     "high as the highest with a chance of {:.2g}, and {:g} was asked for. "
                     "Longer or denser series tell more; --false-alarm 1 lists all peaks",
-                    observations.path, surest, request.false_alarm));
-  if (rows.period.empty())
+                    path, found.surest, request.false_alarm));
+  if (found.rows.period.empty())
     return fail(
         ErrorCode::Nothing,
         fmt::format("{} shows no period: twelve brightnesses without a gap of {:g} s that "
                     "change otherwise than evenly are needed, with a peak in the range asked for",
-                    observations.path, request.gap_s));
-  if (noisy > 0)
-    diagnostics.warn(fmt::format("{} whose peaks do not stand out of noise, left out",
-                                 counted(noisy, "stretch", "stretches")),
-                     {observations.path});
-  if (too_few > 0)
-    diagnostics.warn(fmt::format("{} with fewer than twelve brightnesses, or with no peak in the "
-                                 "range asked for, left out",
-                                 counted(too_few, "stretch", "stretches")),
-                     {observations.path});
-  return table_of(std::move(rows), observations.path);
+                    path, request.gap_s));
+  warn_of_left_out(found, path, diagnostics);
+  return table_of(std::move(found.rows), path);
 }
 
 } // namespace umov::jobs
