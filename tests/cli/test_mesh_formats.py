@@ -274,7 +274,7 @@ def test_unit_and_axis_are_asked_for(umov, tmp_path, kind):
     for frame, missing in (((), "no unit."), (("--unit", "m"), "no up axis.")):
         done = umov("mesh", "info", f"a.{kind}", *frame)
         assert done.code == 3, done.err
-        for words in (f"error: a.{kind}: {missing} The bounding box is 1 x 1 x 1", 'Set unit = "m"', 'up = "+Z"'):
+        for words in (f"error: a.{kind}: {missing} The bounding box is 1 x 1 x 1", "Give --unit m", "--up +Z"):
             assert words in done.err, done.err
 
 
