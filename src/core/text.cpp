@@ -143,6 +143,24 @@ std::string counted(std::size_t count, std::string_view singular, std::string_vi
   return out.append(plural);
 }
 
+std::string listed(std::span<const std::string> names, std::size_t most) {
+  std::string out;
+  for (const std::string &name : names.first(std::min(most, names.size())))
+    out += (out.empty() ? "" : ", ") + name;
+  if (names.size() > most)
+    out += " and " + std::to_string(names.size() - most) + " more";
+  return out;
+}
+
+std::string percent(double share) {
+  std::array<char, 320> text{}; // of any double
+  const double value = 100 * share;
+  const auto end =
+      value < 10 ? std::to_chars(text.begin(), text.end(), value, std::chars_format::general, 2)
+                 : std::to_chars(text.begin(), text.end(), value, std::chars_format::fixed, 0);
+  return {text.begin(), end.ptr};
+}
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos)

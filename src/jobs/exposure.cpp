@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/core/text.h>
 #include <umov/photometry/radiometry.h>
 
 namespace umov::jobs {
@@ -123,8 +124,8 @@ std::string verdict_of(const Frame &frame, double sd_p, double fills_s, bool is_
     return out + fmt::format("it saturates (the brightest pixel is full after {:.3g} s). Expose at "
                              "most {:.3g} s and take more frames, defocus, or take a narrower band",
                              fills_s, fills_s / 2);
-  out += fmt::format("the brightest pixel is {:.2g} % full, so it does not saturate. ",
-                     100 * frame.full);
+  out += fmt::format("the brightest pixel is {} % full, so it does not saturate. ",
+                     percent(frame.full));
   if (frames <= 1)
     return out + fmt::format("That is the error of p asked for, {:g}", sd_p);
   out += fmt::format("{:.0f} of them{} tell p to {:g}", frames, of, sd_p);

@@ -194,9 +194,9 @@ std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
   const Families &families = judgement.families;
   std::string out = fmt::format(
       "{}: {}, twins of the body counted as one; the heaviest holds {:.3g} % of the probability, "
-      "within {:.2g} deg (root mean square). 95 % set: {:.2g} % of all attitudes\n",
+      "within {:.2g} deg (root mean square). 95 % set: {} % of all attitudes\n",
       name_of(judgement.verdict), counted(families.count, "attitude"), 100 * families.heaviest,
-      families.spread_deg, 100 * answer.share_of_so3);
+      families.spread_deg, percent(answer.share_of_so3));
   out += fmt::format("chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g}); body axes:",
                      answer.chi2, dof, chi2_probability(answer.chi2, dof));
   constexpr double unknown_deg = 45;

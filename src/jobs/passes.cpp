@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <umov/core/files.h>
 #include <umov/core/locks.h>
 #include <umov/core/parallel.h>
@@ -46,16 +45,6 @@ Result<std::vector<ElementSet>> best_sets(const PassesRequest &request,
   return out;
 }
 
-/// The first few of them, and how many more there are.
-std::string some_of(const std::vector<std::string> &names) {
-  constexpr std::size_t told = 5;
-  std::string out = fmt::format(
-      "{}",
-      fmt::join(names.begin(),
-                names.begin() + static_cast<std::ptrdiff_t>(std::min(told, names.size())), ", "));
-  return names.size() > told ? fmt::format("{} and {} more", out, names.size() - told) : out;
-}
-
 /// Orbits of the objects wanted whose elements are not too old for the span.
 Result<std::vector<Trajectory>> choose(const PassesRequest &request, std::vector<ElementSet> sets,
                                        bool allow_old, Diagnostics &diagnostics) {
@@ -81,7 +70,7 @@ Result<std::vector<Trajectory>> choose(const PassesRequest &request, std::vector
   if (!old.empty())
     diagnostics.warn(fmt::format("{} left out, with elements more than {:g} d from the span: {}; "
                                  "--allow-old-elements takes them",
-                                 counted(old.size(), "object"), old_days, some_of(old)),
+                                 counted(old.size(), "object"), old_days, listed(old, 5)),
                      {request.orbit});
   if (doubtful > old.size())
     diagnostics.warn(fmt::format("elements of {} are more than {:g} d from the span; passes may be "

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <umov/core/text.h>
+#include <vector>
 
 namespace umov {
 namespace {
@@ -14,14 +16,11 @@ std::string list_objects(const std::vector<ElementSet> &sets) {
   std::map<int, std::string> objects;
   for (const ElementSet &set : sets)
     objects.emplace(set.norad_cat_id, set.name);
-  std::string out;
-  std::size_t shown = 0;
-  for (const auto &[norad, name] : objects) {
-    if (++shown > 8)
-      return out + fmt::format(" and {} more", objects.size() - 8);
-    out += fmt::format("{}{}{}", shown > 1 ? ", " : "", norad, name.empty() ? "" : " " + name);
-  }
-  return out;
+  std::vector<std::string> names;
+  names.reserve(objects.size());
+  for (const auto &[norad, name] : objects)
+    names.push_back(name.empty() ? fmt::format("{}", norad) : fmt::format("{} {}", norad, name));
+  return listed(names, 8);
 }
 
 } // namespace

@@ -27,6 +27,12 @@ std::string shortest(double value);
 /// "1 epoch", "2 epochs"; `plural` where it is not just an s more.
 std::string counted(std::size_t count, std::string_view singular, std::string_view plural = {});
 
+/// "a, b and 3 more": the first `most` of `names`.
+std::string listed(std::span<const std::string> names, std::size_t most);
+
+/// Percent of a share: two digits below ten, else none, so that 99.7 is 100 and not 1e+02.
+std::string percent(double share);
+
 /// Shortest number of degrees that gives back the same angle, although the angle is kept in
 /// radians.
 std::string degrees_text(Angle angle);

@@ -85,5 +85,18 @@ TEST(CsvCells, QuotesBlanksAndColumns) { // RFC 4180, section 2
   EXPECT_EQ(csv_cells("")->size(), 1u);
 }
 
+TEST(Text, AListNamesTheFirstAndCountsTheRest) {
+  const std::vector<std::string> names{"a", "b", "c", "d"};
+  EXPECT_EQ(listed(names, 4), "a, b, c, d");
+  EXPECT_EQ(listed(names, 2), "a, b and 2 more");
+  EXPECT_EQ(listed({}, 2), "");
+}
+
+TEST(Text, PercentHasNoExponentAtAHundred) {
+  EXPECT_EQ(percent(0.0123), "1.2");
+  EXPECT_EQ(percent(0.453), "45");
+  EXPECT_EQ(percent(0.997), "100");
+}
+
 } // namespace
 } // namespace umov

@@ -219,11 +219,6 @@ std::string materials_that_cover(const Band &band) {
   return fmt::format(" Materials that cover it: {}.", fmt::join(out, ", "));
 }
 
-/// Two digits below ten, else none: 99.7 is 100 and not 1e+02.
-std::string percent(double share) {
-  return 100 * share < 10 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);
-}
-
 /// A band that an index does not cover: whose it is, and what would. What a table that holds its
 /// ends is asked beyond them is told.
 Result<void> check_bands(const Material &material, const Named &of, const std::string &key,

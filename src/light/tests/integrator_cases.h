@@ -183,6 +183,12 @@ inline Mesh box_wing() {
   return joined(mesh, shifted(renamed(make_cylinder(0.7, 1.5, 24), "tank"), {0, 0, 2}));
 }
 
+/// The built-in bus with wings: metal, white and gold.
+inline Scene box_wing_scene() {
+  return scene_of(make_box_wing({1000, 0}), NormalMode::Flat,
+                  {interface_of("paper_al", 30), white_lambert(), interface_of("paper_au", 50)});
+}
+
 inline double relative(double value, double expected) { return std::abs(value / expected - 1); }
 
 } // namespace umov::cases

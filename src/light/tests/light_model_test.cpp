@@ -13,11 +13,6 @@ namespace {
 
 using namespace cases;
 
-Scene box_wing() {
-  return scene_of(make_box_wing({1000, 0}), NormalMode::Flat,
-                  {interface_of("paper_al", 30), white_lambert(), interface_of("paper_au", 50)});
-}
-
 std::vector<Pose> poses_of(std::size_t count) {
   std::vector<Pose> out;
   for (std::size_t k = 0; k < count; ++k) {
@@ -35,13 +30,13 @@ StokesTable lit(const LightModel &light, const std::vector<Pose> &poses, unsigne
 }
 
 std::unique_ptr<LightModel> model(LightOptions options) {
-  auto made = make_light(box_wing(), {}, options);
+  auto made = make_light(box_wing_scene(), {}, options);
   EXPECT_TRUE(made) << made.error().text();
   return std::move(*made);
 }
 
 TEST(LightModel, RaysAreTheReferenceToTheBit) {
-  const Scene scene = box_wing();
+  const Scene scene = box_wing_scene();
   const auto poses = poses_of(6);
   const auto table = lit(*model({.method = LightMethod::Rays}), poses);
   const auto reference = Integrator(scene).evaluate(poses, {}, 1);
@@ -197,7 +192,7 @@ Joint wings() {
 
 TEST(LightModel, OptionsOutsideTheirRangeAreRefused) {
   const auto refused = [](LightOptions options, std::vector<Joint> joints = {}) {
-    const auto made = make_light(box_wing(), std::move(joints), options);
+    const auto made = make_light(box_wing_scene(), std::move(joints), options);
     EXPECT_FALSE(made);
     return made ? "" : made.error().message;
   };
@@ -211,7 +206,7 @@ TEST(LightModel, OptionsOutsideTheirRangeAreRefused) {
 
 // A part that turns emits as it stands then, not as the mesh has it.
 TEST(LightModel, HeatFollowsThePartsThatTurn) {
-  const Scene scene = box_wing();
+  const Scene scene = box_wing_scene();
   const std::vector<Joint> joints{wings()};
   const std::vector<double> kelvin(scene.mesh.groups.size(), 3000);
   LightOptions options;

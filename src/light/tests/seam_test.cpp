@@ -14,11 +14,6 @@ namespace {
 
 using namespace cases;
 
-Scene box_wing() {
-  return scene_of(make_box_wing({1000, 0}), NormalMode::Flat,
-                  {interface_of("paper_al", 30), white_lambert(), interface_of("paper_au", 50)});
-}
-
 std::vector<Pose> poses_of(std::size_t count) {
   std::vector<Pose> out;
   for (std::size_t k = 0; k < count; ++k)
@@ -29,7 +24,7 @@ std::vector<Pose> poses_of(std::size_t count) {
 // The engine itself is what its light is held against: the same sums by the same coefficients, only
 // the order of a few products differs.
 TEST(LightSums, OfItsOwnMaterialsAreItsLight) {
-  const Scene scene = box_wing();
+  const Scene scene = box_wing_scene();
   const auto poses = poses_of(8);
   const auto sums = make_sums(scene, {.accuracy = 0.02, .threads = 1});
   AbundanceTable table;
@@ -77,7 +72,7 @@ TEST(BetweenLight, OfALitWallOnADarkFloorIsItsShareOfTheSky) {
 
 // Chains serve whole lists; a series that shares paths stays short, so that a stop costs little.
 TEST(Blocks, AreAsLongAsTheLightAllows) {
-  const auto light = make_light(box_wing(), {}, {.method = LightMethod::Rays});
+  const auto light = make_light(box_wing_scene(), {}, {.method = LightMethod::Rays});
   ASSERT_TRUE(light);
   LightOptions direct, paths, chains;
   paths.bounces = chains.bounces = 3;

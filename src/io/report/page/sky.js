@@ -46,15 +46,16 @@
   const best = new Set(order.slice(0, drawnFull));
   const isOneDay = new Set(tracks.map((track) => track.culmination.slice(0, 10))).size < 2;
 
-  const place = (track, k) => {
-    const r = (90 - track.alt100[k] / 100) / 90 * radius, a = track.az100[k] / 100 * Math.PI / 180;
+  const places = tracks.map((track) => track.alt100.map((altitude, k) => {
+    const r = (90 - altitude / 100) / 90 * radius, a = track.az100[k] / 100 * Math.PI / 180;
     return [middle - r * Math.sin(a), middle - r * Math.cos(a)];
-  };
+  }));
   /// The sunlit or the dark parts of a track.
-  const pathOf = (track, isLit) => {
+  const pathOf = (i, isLit) => {
+    const track = tracks[i];
     let out = "", open = false;
     for (let k = 0; k < track.az100.length; ++k) {
-      const [x, y] = place(track, k), is = track.sunlit[k] === isLit;
+      const [x, y] = places[i][k], is = track.sunlit[k] === isLit;
       const touches = is || (k > 0 && track.sunlit[k - 1] === isLit); // a part ends where the other begins
       if (touches) out += (open ? "L" : "M") + x.toFixed(1) + " " + y.toFixed(1);
       open = is;
@@ -90,13 +91,13 @@
   const drawTrack = (i) => {
     const track = tracks[i], isHint = !best.has(i);
     const group = svg("g", { "data-track": i, "data-hint": Number(isHint), fill: "none", stroke: colourOf(track), "stroke-linecap": "round" });
-    const lit = pathOf(track, 1), dark = pathOf(track, 0);
+    const lit = pathOf(i, 1), dark = pathOf(i, 0);
     if (dark) group.append(svg("path", { d: dark, "stroke-width": isHint ? 1.5 : 2, "stroke-dasharray": "2 6", opacity: 0.7 }));
     if (lit) group.append(svg("path", { d: lit, "stroke-width": isHint ? 2 : 3.5 }));
     // An arrow head at the end tells the way.
     const last = track.az100.length - 1;
     if (last > 0 && !isHint) {
-      const [x, y] = place(track, last), [px, py] = place(track, last - 1), length = Math.hypot(x - px, y - py) || 1;
+      const [x, y] = places[i][last], [px, py] = places[i][last - 1], length = Math.hypot(x - px, y - py) || 1;
       const ux = (x - px) / length, uy = (y - py) / length;
       const at = (along, side) => (x + along * ux - side * uy).toFixed(1) + " " + (y + along * uy + side * ux).toFixed(1);
       group.append(svg("path", { d: "M" + at(-11, 6) + "L" + at(0, 0) + "L" + at(-11, -6), "stroke-width": 2.5 }));
@@ -116,17 +117,14 @@
     return lit.length ? lit : all;
   });
   /// Whether a track other than `i` runs under a box.
-  const isCrossed = (box, i) => order.slice(0, drawnFull).some((j) => j !== i && tracks[j].az100.some((_, k) => {
-    const [x, y] = place(tracks[j], k);
-    return x > box[0] - 4 && x < box[2] + 4 && y > box[1] - 4 && y < box[3] + 4;
-  }));
+  const isCrossed = (box, i) => order.slice(0, drawnFull).some((j) => j !== i && places[j].some(([x, y]) => x > box[0] - 4 && x < box[2] + 4 && y > box[1] - 4 && y < box[3] + 4));
   /// A label beside a track where nothing else is, or null.
   const labelFor = (i, taken, isForced) => {
     const track = tracks[i], text = textOf(track, isForced || !isSmall()), font = fontSize();
     const width = 0.56 * font * text.length + 8, height = 1.3 * font;
     for (const share of [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92])
       for (const side of [1, -1]) {
-        const [x, y] = place(track, labelled[i][Math.round(share * (labelled[i].length - 1))]);
+        const [x, y] = places[i][labelled[i][Math.round(share * (labelled[i].length - 1))]];
         const left = side > 0 ? x + 8 : x - 8 - width, top = y - height / 2;
         const box = [left, top, left + width, top + height];
         const isInside = box[0] > 2 && box[1] > 2 && box[2] < size - 2 && box[3] < size - 2;
