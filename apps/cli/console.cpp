@@ -124,11 +124,6 @@ std::vector<std::string> &command_line() {
   return words;
 }
 
-const std::vector<std::string> &device_names() {
-  static const std::vector<std::string> names{"cpu"};
-  return names;
-}
-
 bool may_colour(std::FILE *stream) {
   const char *no_colour = std::getenv("NO_COLOR");
   return (no_colour == nullptr || *no_colour == '\0') && ::isatty(fileno(stream)) != 0;

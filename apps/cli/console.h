@@ -20,7 +20,8 @@ struct Common {
   bool json = false;
   int threads = 0; ///< 0: all cores
   bool force = false;
-  bool no_cache = false; ///< masks are neither read from nor kept in the cache folder
+  bool no_cache = false;      ///< masks are neither read from nor kept in the cache folder
+  std::string device = "cpu"; ///< who adds up the light of the facets
 };
 
 /// Adds -q and, where the verb prints a table, --json.
@@ -50,9 +51,6 @@ inline std::string sentence_end(const std::string &text) { return text.ends_with
 
 /// The command line as it was given, for manifests.
 std::vector<std::string> &command_line();
-
-/// What --device takes beside "auto": what this build computes on.
-const std::vector<std::string> &device_names();
 
 /// True if stdout or stderr may be coloured (a terminal, NO_COLOR unset).
 bool may_colour(std::FILE *stream);

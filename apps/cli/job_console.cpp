@@ -1,6 +1,7 @@
 #include "job_console.h"
 
 #include "cache_folder.h"
+#include "device_options.h"
 
 #include <ctime>
 #include <fmt/chrono.h>
@@ -29,6 +30,7 @@ jobs::JobOptions job_options(const Common &common) {
   out.threads = static_cast<unsigned>(common.threads);
   if (!common.no_cache)
     out.mask_cache = cache_folder();
+  out.device = device_options(common);
   return out;
 }
 

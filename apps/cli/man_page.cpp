@@ -95,7 +95,9 @@ std::string man_page(const VerbFacts &root) {
   out += ".SH EXIT STATUS\n" + exit_codes();
   out += ".SH ENVIRONMENT\n.TP\nNO_COLOR\nIf set, messages have no colour.\n"
          ".TP\nXDG_CACHE_HOME\nMasks of earlier runs are kept in its folder umov, else in "
-         "~/.cache/umov.\n";
+         "~/.cache/umov.\n"
+         ".TP\nUMOV_CUDA_PATH\nFolders, with colons between them, that are looked into first for "
+         "libcuda.so.1 and libnvrtc.so.\n";
   return out;
 }
 

@@ -1,11 +1,10 @@
 #include "run_options.h"
 
+#include "device_options.h"
 #include "folder_options.h"
 #include "site_options.h"
 
-#include <algorithm>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace umov::cli {
 
@@ -17,8 +16,7 @@ void add_run_options(CLI::App &verb, RunOptions &o, Common &common) {
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
   verb.add_option("--accuracy", o.accuracy, "Relative 95 % half-width asked of I")
       ->check(CLI::Range(1e-6, 1.0));
-  verb.add_option("--device", o.device, fmt::format("{} or auto", fmt::join(device_names(), ", ")))
-      ->capture_default_str();
+  add_device(verb, common);
   add_earth_orientation(verb, o.earth_orientation);
   add_part(verb, o.part, "passes of all objects");
   verb.add_flag("--dry-run", o.dry_run, "Read and check everything, compute nothing");
@@ -42,14 +40,6 @@ Result<Scenario> scenario_of(const RunOptions &o) {
   UMOV_TRY(take_folder(scenario, o.output, o.overrides));
   UMOV_TRY(check_complete_for_run(scenario));
   return scenario;
-}
-
-Result<void> check_device(const std::string &device) {
-  if (device == "auto" || std::ranges::find(device_names(), device) != device_names().end())
-    return {};
-  return fail(ErrorCode::Device,
-              "--device " + device +
-                  ": this build has no such device. Use --device cpu; see umov doctor.");
 }
 
 } // namespace umov::cli

@@ -10,7 +10,7 @@ namespace umov::cli {
 
 /// Options of `umov run`.
 struct RunOptions {
-  std::string scenario, output, earth_orientation, device = "auto";
+  std::string scenario, output, earth_orientation;
   std::vector<std::string> overrides;
   std::int64_t seed = -1;
   double accuracy = 0;
@@ -22,7 +22,5 @@ struct RunOptions {
 void add_run_options(CLI::App &verb, RunOptions &o, Common &common);
 /// The scenario file with the options over it, complete for a run.
 Result<Scenario> scenario_of(const RunOptions &o);
-/// Device for one that this build does not compute on.
-Result<void> check_device(const std::string &device);
 
 } // namespace umov::cli

@@ -1,5 +1,6 @@
 #include "signature_options.h"
 
+#include "device_options.h"
 #include "tables.h"
 
 namespace umov::cli {
@@ -46,6 +47,7 @@ void add_signature_options(CLI::App &verb, SignatureOptions &o, Common &common) 
                   "material groups and one accuracy");
   add_part(verb, o.part, "poses");
   add_table_output(verb, o.output);
+  add_device(verb, common);
   add_threads(verb, common);
   add_cache(verb, common);
   add_common(verb, common, true);

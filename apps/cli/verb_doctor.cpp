@@ -2,6 +2,7 @@
 
 #include "cache_folder.h"
 #include "console.h"
+#include "device_options.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -45,7 +46,8 @@ void add_machine(std::vector<Finding> &out) {
   out.push_back({true, "processor", machine.processor});
   out.push_back({true, "threads", fmt::format("{}", resolve_threads(0))});
   out.push_back({true, "instruction set", machine.instruction_set});
-  out.push_back({true, "devices", fmt::format("{}", fmt::join(device_names(), ", "))});
+  const auto cards = describe_cards(cuda_folders());
+  out.push_back({true, "cuda", cards ? *cards : "not used: " + cards.error().message});
   out.push_back({true, "cache folder", cache_text()});
 }
 

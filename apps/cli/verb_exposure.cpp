@@ -4,6 +4,28 @@
 #include <umov/jobs/exposure.h>
 
 namespace umov::cli {
+namespace {
+
+Result<void> run_exposure(const jobs::ExposureRequest &o, bool has_width, const std::string &output,
+                          const std::string &page, const Common &common) {
+  if (has_width && !o.band.empty() && !o.band.starts_with("nm:"))
+    return fail(ErrorCode::Usage, "--width-nm beside --band " + o.band +
+                                      ": its curve says how wide it is. Leave one out");
+  if (!page.empty() && !page.ends_with(".html"))
+    return fail(ErrorCode::Usage, "--page " + page + ": a name that ends in .html was expected");
+  UMOV_ASSIGN(table, jobs::exposure(o));
+  UMOV_TRY(put_table(output, table, common));
+  if (!page.empty()) {
+    UMOV_ASSIGN(text, jobs::exposure_page(o));
+    UMOV_TRY(put(page, text));
+  }
+  for (const auto &[key, text] : table.notes())
+    if (key == "verdict")
+      note(common, text);
+  return {};
+}
+
+} // namespace
 
 void add_exposure(CLI::App &app, const Exit &exit_with) {
   auto *verb =
@@ -11,35 +33,32 @@ void add_exposure(CLI::App &app, const Exit &exit_with) {
   auto o = std::make_shared<jobs::ExposureRequest>();
   auto common = std::make_shared<Common>();
   auto output = std::make_shared<std::string>();
+  auto page = std::make_shared<std::string>();
   verb->add_option("--instrument", o->instrument, "Name or file; see umov instrument list")
       ->required();
   const auto number = [&](const char *name, double &value, const char *text) {
-    verb->add_option(name, value, text)->capture_default_str();
+    return verb->add_option(name, value, text)->capture_default_str();
   };
   number("--mag", o->mag, "AB magnitude above the air");
   number("--alt", o->altitude_deg, "Apparent altitude [deg]");
   number("--height-m", o->height_m, "Height of the site [m]");
   number("--sd-p", o->sd_p, "Wanted standard deviation of the degree of polarization");
-  number("--nm", o->nm, "Wavelength [nm]");
-  number("--width-nm", o->width_nm,
-         "Width of the band [nm]; of V about 80, of nm:550 in observe 10");
+  auto *band = verb->add_option("--band", o->band,
+                                "Name or file, as in [bands] set: \"Bessell.V\", \"file:x.vot\"");
+  number("--nm", o->nm, "Wavelength [nm], without --band")->excludes(band);
+  auto *width = number("--width-nm", o->width_nm,
+                       "Width of the band [nm]; of V about 80, of nm:550 in observe 10");
   number("--sky-mag", o->sky_mag, "Sky, AB [mag / arcsec2]");
   number("--seeing", o->seeing_arcsec, "Width of a star at the zenith [arcsec]");
   number("--change-per-s", o->change_per_s, "Relative change of brightness in a second");
   number("--exposure-s", o->exposure_s,
          "Of a frame [s]; 0: until p is known, or half of what fills a pixel");
+  verb->add_option("--page", *page, "Also a page of figures: x.html");
   add_table_output(*verb, *output);
   add_common(*verb, *common, true);
   verb->callback([=] {
-    const auto table = jobs::exposure(*o);
-    if (!table) {
-      exit_with(report(table.error()));
-      return;
-    }
-    const auto done = put_table(*output, *table, *common);
-    for (const auto &[key, text] : table->notes())
-      if (done && key == "verdict")
-        note(*common, text);
+    const bool has_width = width->count() > 0;
+    const auto done = run_exposure(*o, has_width, *output, *page, *common);
     exit_with(done ? 0 : report(done.error()));
   });
 }

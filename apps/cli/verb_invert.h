@@ -11,7 +11,7 @@ namespace umov::cli {
 /// Options of a verb below `umov invert`.
 struct InvertVerb {
   jobs::InvertRequest request;
-  std::string scenario, output, visibility = "masks";
+  std::string scenario, output, visibility = "auto";
   std::vector<std::string> overrides;
   bool is_intensity_only = false;
   Common common;

@@ -1,3 +1,4 @@
+#include "device_options.h"
 #include "doubtful_elements.h"
 #include "folder_options.h"
 #include "job_console.h"
@@ -58,6 +59,7 @@ void add_observe(CLI::App &app, const Exit &exit_with) {
   verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
   add_elements(*verb, o->elements);
   verb->add_flag("-v,--verbose", common->verbose, "Also say what was read");
+  add_device(*verb, *common);
   add_threads(*verb, *common);
   add_cache(*verb, *common);
   add_common(*verb, *common, false);

@@ -1,3 +1,4 @@
+#include "device_options.h"
 #include "job_console.h"
 #include "run_console.h"
 #include "run_options.h"
@@ -61,7 +62,8 @@ Result<RangedVerb> run_in_parts(const std::vector<std::string> &arguments,
   UMOV_TRY(refuse_output(o.output, o.part));
   o.output = "."; // nothing is written there: the rows go to the shards
   UMOV_ASSIGN(scenario, scenario_of(o));
-  const jobs::JobOptions options = with_elements(setting.options, o.elements);
+  jobs::JobOptions options = with_elements(setting.options, o.elements);
+  options.device = device_options(common);
   UMOV_ASSIGN(job, jobs::ranged_run(scenario, options, setting.layout, {}, diagnostics));
   return RangedVerb{std::move(job), scenario.earth_orientation.string()};
 }
@@ -74,8 +76,6 @@ void add_run(CLI::App &app, const Exit &exit_with) {
                "rows are kept beside the folder, in NAME.rows.partial, until the run is complete.");
   add_run_options(*verb, *o, *common);
   verb->callback([o, common, exit_with] {
-    if (const auto there = check_device(o->device); !there)
-      return exit_with(report(there.error()));
     watch_interrupts();
     Diagnostics diagnostics;
     const auto done = run(*o, *common, diagnostics);

@@ -1,3 +1,4 @@
+#include "device_options.h"
 #include "job_console.h"
 #include "scale_job.h"
 #include "signature_files.h"
@@ -42,8 +43,9 @@ Result<RangedVerb> signature_in_parts(const std::vector<std::string> &arguments,
   UMOV_TRY(refuse_output(o.output, o.part));
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
   UMOV_ASSIGN(poses, poses_of(o, scenario));
-  UMOV_ASSIGN(job,
-              jobs::ranged_signature(scenario, poses, request_of(o), setting.options, diagnostics));
+  jobs::JobOptions options = setting.options;
+  options.device = device_options(common);
+  UMOV_ASSIGN(job, jobs::ranged_signature(scenario, poses, request_of(o), options, diagnostics));
   return RangedVerb{std::move(job), ""};
 }
 

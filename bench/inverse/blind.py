@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Blind recovery of attitudes and spins: truth by rays on a finer tessellation, noise of photons, `umov invert pose` or `spin` on
-the coarser mesh by masks. Prints one line per curve and the summary.
+the coarser mesh. Prints one line per curve and the summary.
 
 usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--only TRIAL] [--umov PATH] [options of umov invert]
 OBJECT: agena, hst, box-wing or cubesat. --spin: the body turns about a random axis; the search is told its period to 1 %."""

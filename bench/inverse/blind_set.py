@@ -4,12 +4,15 @@
 `umov reduce`, and asked of `umov invert pose` and `invert spin`. The truth stays in this program.
 Prints a line a curve; writes the table, with what made it in its header.
 
-usage: blind_set.py [--each 20] [--seed 60] [--kinds pose,spin] [-o bench/inverse/blind_set.csv] [--umov PATH] [--work DIR]"""
+usage: blind_set.py [--each 20] [--seed 60] [--kinds pose,spin] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
+--snr: of I, in the median of the lit sets: the telescope is made as large as that takes, its focal ratio kept. Without it: 28 cm.
+--work: what was observed is kept there and taken again by the next run."""
 import argparse
 import json
 import math
 import pathlib
 import random
+import statistics
 import subprocess
 import tempfile
 import time
@@ -22,34 +25,55 @@ bands = ["nm:425", "nm:550", "nm:650"]
 exposure_s = {exposure}
 cadence_s = {cadence}
 """
-def objects():
-    """Name -> (shape, materials)."""
-    return {name: (name, blind.MATERIALS[name]) for name in ("cubesat", "agena")}
+TELESCOPE = blind.ROOT / "data/instruments/c11_imx250.toml"
 
 
 class Chain:
     def __init__(self, o, work):
         self.o, self.work = o, work
-        for shape in ("cubesat", "agena"):
+        for shape in o.objects.split(","):
             for words, kind in zip(blind.MESH[shape], ("fit", "true")):
                 path = work / f"{shape}_{kind}.obj"
                 if not path.exists():
                     blind.run(o.umov, "mesh", "make", *words, "-o", path, "-q")
 
     def scenario(self, name, kind, law, cadence, method, seed):
-        shape, materials = objects()[name]
-        text = blind.SCENARIO.format(seed=seed, name=name, root=blind.ROOT, mesh=self.work / f"{shape}_{kind}.obj", law=law, step=12,
-                                     materials="\n".join(f'{g} = "{m}"' for g, m in materials.items()), method=method,
+        text = blind.SCENARIO.format(seed=seed, name=name, root=blind.ROOT, mesh=self.work / f"{name}_{kind}.obj", law=law, step=12,
+                                     materials="\n".join(f'{g} = "{m}"' for g, m in blind.MATERIALS[name].items()), method=method,
                                      out=self.work / "out")
-        text = text.replace("title =", 'instrument = "c11_imx250"\ntitle =')
+        text = text.replace("title =", f'instrument = "{self.work}/telescope.toml"\ntitle =')
         return text + CHAIN.format(exposure=min(1, cadence / 4), cadence=cadence)
 
-    def observe(self, name, law, cadence, seed):
+    def telescope(self, larger):
+        lines = TELESCOPE.read_text().splitlines()
+        for k, line in enumerate(lines):
+            key = line.split(" =")[0]
+            if key in ("aperture_m", "focal_length_m"):
+                lines[k] = f"{key} = {float(line.split('=')[1]) * larger:.4f}"
+        (self.work / "telescope.toml").write_text("\n".join(lines) + "\n")
+
+    def snr(self):
+        """Of I, in the median of the sets that are lit."""
+        true = {(r["set_id"], r["band"]): float(r["I"]) for r in blind.rows_of(self.work / "counts/truth.csv")}
+        ratios = [true[r["set_id"], r["band"]] / float(r["I_err"]) for r in blind.rows_of(self.work / "stokes.csv") if r["I_err"]]
+        return statistics.median([r for r in ratios if r > 0.01] or [0.01])
+
+    def observe(self, name, law, cadence, seed, keep):
         """stokes.csv of an object in an attitude."""
-        (self.work / "true.toml").write_text(self.scenario(name, "true", law, cadence, "auto", seed))
         (self.work / "fit.toml").write_text(self.scenario(name, "fit", blind.inertial([1, 0, 0, 0]), cadence, "masks", seed))
-        blind.run(self.o.umov, "observe", self.work / "true.toml", "-o", self.work / "counts", "--force", "-q")
-        blind.run(self.o.umov, "reduce", self.work / "counts/counts.csv", "-o", self.work / "stokes.csv", "-q")
+        if keep.exists():
+            (self.work / "stokes.csv").write_bytes(keep.read_bytes())
+            return
+        (self.work / "true.toml").write_text(self.scenario(name, "true", law, cadence, "auto", seed))
+        larger = 1.0
+        for _ in range(6):
+            self.telescope(larger)
+            blind.run(self.o.umov, "observe", self.work / "true.toml", "-o", self.work / "counts", "--force", "-q")
+            blind.run(self.o.umov, "reduce", self.work / "counts/counts.csv", "-o", self.work / "stokes.csv", "-q")
+            if not self.o.snr or abs(math.log(self.snr() / self.o.snr)) < 0.1:
+                break
+            larger = min(larger * self.o.snr / self.snr(), 200)
+        keep.write_bytes((self.work / "stokes.csv").read_bytes())
 
     def ask(self, *words):
         began = time.time()
@@ -60,28 +84,28 @@ class Chain:
         return json.loads(done.stdout), time.time() - began
 
 
-def pose(chain, name, rng, seed):
+def pose(chain, name, rng, seed, keep):
     truth = blind.random_attitude(rng)
-    chain.observe(name, blind.inertial(truth), 4, seed)
+    chain.observe(name, blind.inertial(truth), 4, seed, keep)
     answer, seconds = chain.ask("invert", "pose", chain.work / "stokes.csv", "--scenario", chain.work / "fit.toml")
     if answer["verdict"] == "refused":
-        return "refused", float("nan"), False, False, seconds
+        return "refused", float("nan"), False, False, 1.0, seconds
     same = blind.twins(truth, answer["symmetries"])
     error = min(blind.apart(t, answer["modes"][0]["q"]) for t in same) if answer["modes"] else float("nan")
     balls = [[float(row[k]) for k in ("qw", "qx", "qy", "qz", "radius_deg")] for row in blind.table_rows(chain.work / "answer/set95.ecsv")]
     inside = any(blind.apart(t, b[:4]) <= b[4] for t in same for b in balls)
-    return answer["verdict"], error, error < 5, inside, seconds
+    return answer["verdict"], error, error < 5, inside, answer["share_of_so3"], seconds
 
 
-def spin(chain, name, rng, seed, period=40.0):
+def spin(chain, name, rng, seed, keep, period=40.0):
     truth, axis = blind.random_attitude(rng), blind.random_attitude(rng)[:3]
     rate = [360 / period * c / math.sqrt(sum(x * x for x in axis)) for c in axis]
     law = f'mode = "tumble", inertia = [1, 1, 1], rate_deg_s = {rate}, start = {{ {blind.inertial(truth)} }}'
-    chain.observe(name, law, 2, seed)
+    chain.observe(name, law, 2, seed, keep)
     answer, seconds = chain.ask("invert", "spin", chain.work / "stokes.csv", "--scenario", chain.work / "fit.toml", "--period",
                                 period * (1 + rng.uniform(-0.01, 0.01)))
     if answer["verdict"] == "refused" or not answer["modes"]:
-        return answer["verdict"], float("nan"), False, False, seconds
+        return answer["verdict"], float("nan"), False, False, 1.0, seconds
     true = blind.spin_axis(truth, rate)
     off = []
     for row in blind.table_rows(chain.work / "answer/modes.ecsv"):
@@ -91,7 +115,7 @@ def spin(chain, name, rng, seed, period=40.0):
         angle = math.degrees(math.acos(max(-1.0, min(1.0, sum(a * b for a, b in zip(found, true))))))
         off.append(angle if abs(turns - 1) < 0.01 else 180.0)
     # No set of spins is written: a mode that matters (1 %) is what the answer allows.
-    return answer["verdict"], off[0], off[0] < 2, min(off) < 2, seconds
+    return answer["verdict"], off[0], off[0] < 2, min(off) < 2, answer["share_of_so3"], seconds
 
 
 def main():
@@ -99,30 +123,37 @@ def main():
     parser.add_argument("--each", type=int, default=20)
     parser.add_argument("--seed", type=int, default=60)
     parser.add_argument("--kinds", default="pose,spin")
+    parser.add_argument("--objects", default="cubesat,agena")
+    parser.add_argument("--snr", type=float, default=0)
+    parser.add_argument("--only", type=int, help="this trial alone")
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path)
     o = parser.parse_args()
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
-    chain, names, lines = Chain(o, work), list(objects()), []
+    chain, names, lines = Chain(o, work), o.objects.split(","), []
     for kind in o.kinds.split(","):
-        right = inside = 0
+        done = right = covered = inside = 0
         for trial in range(o.each):
+            if o.only not in (None, trial):
+                continue
             rng = random.Random(f"{o.seed} {kind} {trial}")
             name = names[trial % len(names)]
-            verdict, value, is_right, is_inside, seconds = {"pose": pose, "spin": spin}[kind](
-                chain, name, rng, o.seed + trial)
+            keep = work / f"{kind}_{name}_{o.seed}_{trial}_{o.snr:g}.csv"
+            verdict, value, is_right, is_covered, share, seconds = {"pose": pose, "spin": spin}[kind](chain, name, rng, o.seed + trial, keep)
+            done += 1
             right += is_right
-            inside += is_right or is_inside
-            lines.append(f"{kind},{trial},{name},{verdict},{value:.4g},{int(is_right)},{int(is_inside)},{seconds:.1f}")
+            covered += is_covered
+            inside += is_right or is_covered
+            lines.append(f"{kind},{trial},{name},{verdict},{value:.4g},{int(is_right)},{int(is_covered)},{share:.2g},{seconds:.1f}")
             print(lines[-1], flush=True)
-        print(f"{kind}: {right} of {o.each} right, {inside} right or in the set", flush=True)
+        print(f"{kind}, SNR {o.snr:g}: of {done} {right} right, {covered} in the set, {inside} right or in the set", flush=True)
     if o.output:
         version = subprocess.run([str(o.umov), "--version"], capture_output=True, text=True).stdout.strip()
-        head = [f"# made by: blind_set.py --each {o.each} --seed {o.seed} --kinds {o.kinds}; {version}",
+        head = [f"# made by: blind_set.py --each {o.each} --seed {o.seed} --kinds {o.kinds} --objects {o.objects} --snr {o.snr:g}; {version}",
                 "# value: error of the best attitude [deg], of the best axis [deg]",
-                "kind,trial,object,verdict,value,right,in_set,seconds"]
+                "kind,trial,object,verdict,value,right,in_set,share,seconds"]
         o.output.write_text("\n".join(head + lines) + "\n")
 
 

@@ -122,6 +122,7 @@
 #include <umov/light/articulated_engine.h>
 #include <umov/light/between_light.h>
 #include <umov/light/blocks.h>
+#include <umov/light/device.h>
 #include <umov/light/engine.h>
 #include <umov/light/engine_audit.h>
 #include <umov/light/glints.h>

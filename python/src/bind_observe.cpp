@@ -127,6 +127,7 @@ void bind_options(nb::module_ &m) {
       .def_rw("altitude_deg", &jobs::ExposureRequest::altitude_deg)
       .def_rw("height_m", &jobs::ExposureRequest::height_m)
       .def_rw("sd_p", &jobs::ExposureRequest::sd_p)
+      .def_rw("band", &jobs::ExposureRequest::band)
       .def_rw("nm", &jobs::ExposureRequest::nm)
       .def_rw("width_nm", &jobs::ExposureRequest::width_nm)
       .def_rw("sky_mag", &jobs::ExposureRequest::sky_mag)

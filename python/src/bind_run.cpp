@@ -83,8 +83,11 @@ void bind_run(nb::module_ &m) {
           "__init__",
           [](jobs::JobOptions *self, unsigned threads, const std::string &mask_cache,
              bool allow_bad_checksum, bool allow_old_elements) {
-            new (self) jobs::JobOptions{threads, mask_cache,         {},
-                                        {},      allow_bad_checksum, allow_old_elements};
+            auto *options = new (self) jobs::JobOptions{};
+            options->threads = threads;
+            options->mask_cache = mask_cache;
+            options->allow_bad_checksum = allow_bad_checksum;
+            options->allow_old_elements = allow_old_elements;
           },
           "threads"_a, "mask_cache"_a, "allow_bad_checksum"_a, "allow_old_elements"_a);
   nb::class_<Run>(m, "Run", "What a run computed.")

@@ -37,7 +37,7 @@ class Fit(NamedTuple):
     clouds: bool = False  #: transparency is free at every epoch
     outliers: float = 0.0  #: share of measurements that are wrong, up to 0.5
     intensity_only: bool = False  #: q and u are left aside
-    method: str = "masks"  #: how hiding is decided: masks, auto or rays
+    method: str = "auto"  #: how hiding is decided: masks, auto or rays
     allow_old_elements: bool = False  #: elements over 30 days from the observations are taken all the same
 
 

@@ -266,7 +266,7 @@ def calibrate(counts: AnyCounts, standards: str | os.PathLike[str] | Table | QTa
 
 def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: float = 45.0, height_m: float = 0.0,
              sd_p: float = 0.01, wavelength_nm: float = 550.0, width_nm: float = 80.0, sky_mag: float = 21.0,
-             seeing_arcsec: float = 1.0, change_per_s: float = 0.0, exposure_s: float = 0.0) -> Table:
+             seeing_arcsec: float = 1.0, change_per_s: float = 0.0, exposure_s: float = 0.0, band: str = "") -> Table:
     """How long an instrument must expose for an error of p: the rows of `umov exposure`.
 
     Parameters
@@ -293,6 +293,8 @@ def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: f
         Relative change of brightness in a second: what one analyser after the other takes for polarization.
     exposure_s
         Of a frame [s], of which the note `verdict` speaks; 0: until p is known, or half of what fills a pixel.
+    band
+        Instead of `wavelength_nm`: a name such as ``"Bessell.V"``, or ``"file:x.vot"``.
 
     Notes
     -----
@@ -311,7 +313,7 @@ def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: f
     request.nm, request.width_nm = number(wavelength_nm, "wavelength_nm"), number(width_nm, "width_nm")
     request.sky_mag, request.seeing_arcsec = number(sky_mag, "sky_mag"), number(seeing_arcsec, "seeing_arcsec")
     request.change_per_s = number(change_per_s, "change_per_s")
-    request.exposure_s = number(exposure_s, "exposure_s")
+    request.exposure_s, request.band = number(exposure_s, "exposure_s"), band
     return Table(_umov.exposure(request))
 
 

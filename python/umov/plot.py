@@ -80,6 +80,15 @@ def _every(count: int) -> int:
     return max(1, count // 24)
 
 
+def _time_axis(axes: Axes) -> None:
+    """Short ticks, and the date once beside them."""
+    from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
+    locator = AutoDateLocator(minticks=3, maxticks=8)  # type: ignore[no-untyped-call]
+    axes.xaxis.set_major_locator(locator)
+    axes.xaxis.set_major_formatter(ConciseDateFormatter(locator))  # type: ignore[no-untyped-call]
+    axes.set_xlabel("UTC")
+
+
 def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], label: str, *,
                cyclic: bool = False, bands: list[str] | None = None,
                styles: list[dict[str, Any]] | None = None) -> Axes:
@@ -92,7 +101,7 @@ def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], 
                 values[1:][np.abs(np.diff(values)) > 90] = np.nan
             axes.plot(times[part], values, label=name if k == 0 else None, markevery=_every(len(part)), **style)
     axes.set_ylabel(label)
-    axes.tick_params("x", rotation=30)
+    _time_axis(axes)
     axes.grid(alpha=0.3)
     if len(bands or curve.bands) > 1:
         axes.legend(fontsize="small")
@@ -307,7 +316,7 @@ def contributions(curve: LightCurve, axes: Axes | None = None, *, band: str | in
         axes.stackplot(times[part], share[:, part], labels=list(curve.contributions) if part[0] == 0 else [],
                        colors=[MANY[k % len(MANY)] for k in range(len(rows))])
     axes.set(ylabel="share of the direct light", ylim=(0, 1))
-    axes.tick_params("x", rotation=30)
+    _time_axis(axes)
     axes.legend(fontsize="small", loc="upper left")
     return axes
 
@@ -586,6 +595,8 @@ def overview(curve: LightCurve, figure: Figure | None = None) -> Figure:
             legend.remove()
     for one in (axes[0, 0], axes[1, 0], axes[1, 1]):
         one.tick_params("x", labelbottom=False)
+        one.set_xlabel("")
+        one.xaxis.offsetText.set_visible(False)
     if curve.scenario is not None and curve.scenario.title:
         figure.suptitle(curve.scenario.title)
     return figure

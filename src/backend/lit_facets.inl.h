@@ -23,15 +23,16 @@ template <class T> struct GatherTask {
   bool has_doubts = false;
 };
 
-/// `Machine` names the lane type R, the scalar T, the mask of lanes, how to load, pack and count.
+/// `Machine` names the lane type R, the scalar T, the mask of lanes, how to load, pack and count,
+/// and how many groups its chunks have at most.
 template <class Machine> class LitFacets {
   using R = typename Machine::R;
   using T = typename Machine::T;
   using Packer = typename Machine::Packer;
   static constexpr std::size_t lanes = backend::lanes, width = Machine::width;
   static constexpr std::size_t listed =
-      backend::groups_per_chunk + lanes; ///< a register is written whole
-  static constexpr std::size_t room = (backend::groups_per_chunk + 1) * lanes;
+      Machine::groups_per_chunk + lanes; ///< a register is written whole
+  static constexpr std::size_t room = (Machine::groups_per_chunk + 1) * lanes;
 
 public:
   UMOV_KERNEL LitFacets(const backend::SceneData<T> &scene, const backend::Masks *masks,

@@ -1,6 +1,6 @@
 #include <umov/instrument/polarimeter.h>
 
-#include <Eigen/Dense>
+#include "algebra/dense.h"
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
@@ -145,20 +145,20 @@ ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::si
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (std::size_t c = 0; c < parameters; ++c)
       w(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(w.transpose() * w, Eigen::ComputeFullU);
-  const auto &squares = svd.singularValues();
+  // Of W^T W, rising.
+  const algebra::SymmetricEigen squares = algebra::symmetric_eigen(algebra::gram(w));
   ModulationQuality out;
   constexpr double rounding = 1e-14;
-  const double smallest = squares(columns - 1), largest = squares(0);
+  const double smallest = squares.values(0), largest = squares.values(columns - 1);
   if (!(smallest > rounding * largest)) {
     out.condition = out.weighted_variance = std::numeric_limits<double>::infinity();
     Eigen::Index worst = 0;
-    svd.matrixU().col(columns - 1).cwiseAbs().maxCoeff(&worst);
+    squares.vectors.col(0).cwiseAbs().maxCoeff(&worst);
     out.missing = std::string(1, "IQUV"[worst]);
     return out;
   }
   out.condition = std::sqrt(largest / smallest);
-  out.weighted_variance = squares.cwiseInverse().sum();
+  out.weighted_variance = squares.values.cwiseInverse().sum();
   return out;
 }
 

@@ -1,6 +1,6 @@
 // A star's image fitted to a frame: place, and for each place of a mosaic brightness and sky.
 
-#include <Eigen/Dense>
+#include "algebra/dense.h"
 #include <algorithm>
 #include <cmath>
 #include <umov/instrument/frame_photometry.h>
@@ -8,8 +8,8 @@
 namespace umov {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
+using Matrix = algebra::MatrixXd;
+using Vector = algebra::VectorXd;
 
 /// The pixels about a star with what a model says of them.
 class Box {
@@ -108,14 +108,14 @@ Solution solve(const Box &box, const FramePoint &start, double radius, bool move
     const Eigen::Index now = k == 0 ? linear : unknowns;
     const Matrix m = all.leftCols(now);
     const Vector w = box.weights(model);
-    const Eigen::LDLT<Matrix> normal(m.transpose() * w.asDiagonal() * m);
-    const Vector residual = box.data() - all.leftCols(linear) * out.values;
-    const Vector step = normal.solve(m.transpose() * w.cwiseProduct(residual));
-    if (normal.info() != Eigen::Success || !step.allFinite())
+    const algebra::SymmetricFactor normal(algebra::transposed_product(m, w.asDiagonal() * m));
+    const Vector residual = box.data() - algebra::times(all.leftCols(linear), out.values);
+    const Vector step = normal.solve(algebra::transposed_times(m, w.cwiseProduct(residual)));
+    if (!normal.is_solvable() || !step.allFinite())
       return out;
     out.values += step.head(linear);
-    model = all.leftCols(linear) * out.values;
-    out.covariance = normal.solve(Matrix::Identity(now, now));
+    model = algebra::times(all.leftCols(linear), out.values);
+    out.covariance = normal.inverse();
     if (now == linear)
       continue;
     constexpr double longest = .5; // px in one round

@@ -1,6 +1,6 @@
 #include <umov/inverse/health.h>
 
-#include "inverse/dense.h"
+#include "algebra/dense.h"
 #include "inverse/whitened.h"
 
 #include <algorithm>
@@ -33,10 +33,10 @@ struct Fit {
 
 Fit fit_of(const MatrixXd &columns, const VectorXd &right, const VectorXd &prior_weight) {
   Fit out;
-  MatrixXd normal = inverse::gram(columns);
+  MatrixXd normal = algebra::gram(columns);
   normal.diagonal() += prior_weight;
-  out.covariance = inverse::pseudo_inverse(normal);
-  out.x = out.covariance * inverse::transposed_times(columns, right);
+  out.covariance = algebra::pseudo_inverse(normal);
+  out.x = out.covariance * algebra::transposed_times(columns, right);
   out.chi2 = (right - columns * out.x).squaredNorm() +
              (prior_weight.array() * out.x.array().square()).sum();
   return out;

@@ -118,7 +118,9 @@ CurveLikelihood::Gains CurveLikelihood::gains_of(const ModelLight &model,
     bottom += 1 / (errors_.scale_sd * errors_.scale_sd);
   }
   out.scale = std::max(top / bottom, least);
-  out.log_det += std::log(bottom * out.scale * out.scale);
+  // The integral over ln s; of light that is lost in noise it is that of a prior one e-fold wide,
+  // and no model gains by being dark.
+  out.log_det += std::log1p(bottom * out.scale * out.scale);
   for (std::size_t g = 0; g < groups_; ++g) {
     out.gain[g] = (cross[g] + stiffness * out.scale) / (square[g] + stiffness);
     const double off = (out.gain[g] - out.scale) * std::sqrt(stiffness);

@@ -1,6 +1,6 @@
 #include <umov/inverse/pose_search.h>
 
-#include "inverse/dense.h"
+#include "algebra/dense.h"
 #include "inverse/posterior.h"
 
 #include <algorithm>
@@ -39,14 +39,32 @@ std::vector<std::size_t> spread(std::size_t epochs, std::size_t count) {
 
 Error stopped() { return {ErrorCode::Interrupted, "stopped by the user; nothing was written", {}}; }
 
-/// Attitudes in order of chi2, after `count` of them are left.
+/// How many of the sorted chi2 hold all but a ten-thousandth of the probability: of faint light a
+/// few epochs say little, and what a round throws away never comes back.
+std::size_t plausible(const std::vector<double> &sorted) {
+  constexpr double lost = 1e-4;
+  double all = 0;
+  for (const double chi2 : sorted)
+    all += std::exp(-(chi2 - sorted.front()) / 2);
+  double sum = 0;
+  std::size_t count = 0;
+  while (count < sorted.size() && sum < (1 - lost) * all)
+    sum += std::exp(-(sorted[count++] - sorted.front()) / 2);
+  return count;
+}
+
+/// Attitudes in order of chi2, after those that are plausible are left, `least` of them or more.
 void keep_best(std::vector<Turning> &turnings, const std::vector<Comparison> &compared,
-               std::size_t count) {
+               std::size_t least) {
   std::vector<std::size_t> order(turnings.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t k) { return compared[k].chi2; });
+  std::vector<double> sorted;
+  for (const std::size_t k : order)
+    sorted.push_back(compared[k].chi2);
+  const std::size_t kept = std::min(std::max(least, plausible(sorted)), order.size());
   std::vector<Turning> out;
-  for (std::size_t k = 0; k < std::min(count, order.size()); ++k)
+  for (std::size_t k = 0; k < kept; ++k)
     out.push_back(turnings[order[k]]);
   turnings = std::move(out);
 }
@@ -94,9 +112,9 @@ std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t 
 std::vector<double> covariance_of(const Eigen::MatrixXd &information, double span_s) {
   // No unknown is less certain than "anything", 0.8 rad either way.
   constexpr double widest = 0.8;
-  const inverse::SymmetricEigen eigen = inverse::symmetric_eigen(information);
+  const algebra::SymmetricEigen eigen = algebra::symmetric_eigen(information);
   const Eigen::VectorXd values = eigen.values.cwiseMax(1 / (widest * widest));
-  Eigen::MatrixXd out = inverse::product(eigen.vectors * values.cwiseInverse().asDiagonal(),
+  Eigen::MatrixXd out = algebra::product(eigen.vectors * values.cwiseInverse().asDiagonal(),
                                          eigen.vectors.transpose());
   for (Eigen::Index k = 3; k < out.rows(); ++k) {
     out.row(k) /= span_s;
@@ -107,7 +125,7 @@ std::vector<double> covariance_of(const Eigen::MatrixXd &information, double spa
 
 double log_det(const PoseMode &mode) {
   const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(mode.covariance.size())));
-  return inverse::cholesky_root(Eigen::Map<const Eigen::MatrixXd>(mode.covariance.data(), n, n))
+  return algebra::cholesky_root(Eigen::Map<const Eigen::MatrixXd>(mode.covariance.data(), n, n))
       .diagonal()
       .array()
       .log()
@@ -160,14 +178,10 @@ bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
              modes, [](const PoseMode &m) { return m.weight > 0.01 && m.sd_rad() > widest; });
 }
 
-double span_of(const ObservedCurve &curve) {
-  return curve.epochs.empty() ? 1.0 : std::max(1.0, curve.epochs.back().seconds);
-}
-
 /// How the last fits are run. Glints hold two directions a hundred times better than the third:
 /// along such a valley, which bends, a dozen steps reach nothing.
 inverse::FitPlan last_steps(Freedom freedom, const SearchOptions &options) {
-  return {freedom, 200, 12, 12, 1e-3, options.threads};
+  return {freedom, 200, 12, 24, 1e-3, options.threads};
 }
 
 /// Peaks, and samples drawn from them.
@@ -203,7 +217,7 @@ Result<Peaks> peaks_of(const CurveModel &model, const CurveLikelihood &likelihoo
   constexpr int rounds = 4;
   for (int round = 0;; ++round) {
     std::ranges::stable_sort(fits, {}, [](const TurningFit &f) { return f.at.minus_2_log; });
-    out.modes = modes_of(fits, span_of(model.curve()));
+    out.modes = modes_of(fits, inverse::span_of(model.curve()));
     out.samples = inverse::sample_modes(model, likelihood, out.modes, options);
     if (out.samples.draws.empty())
       return tl::unexpected(stopped());
@@ -239,28 +253,38 @@ double evidence_beside(const CurveModel &model, const CurveLikelihood &likelihoo
       beside.push_back(t);
   if (beside.empty())
     return 0;
-  const auto compared = inverse::compare_all(model, likelihood, beside, {}, threads);
+  // They come in order of likelihood: the first one by one, of what faint light leaves behind them
+  // every nth.
+  constexpr std::size_t each = 1500;
+  const std::size_t stride =
+      beside.size() > 2 * each ? (beside.size() - each + each - 1) / each : 1;
+  std::vector<Turning> asked;
+  for (std::size_t k = 0; k < beside.size(); k += k < each ? 1 : stride)
+    asked.push_back(beside[k]);
+  const auto compared = inverse::compare_all(model, likelihood, asked, {}, threads);
   if (compared.empty())
     return -1;
   double out = 0;
-  for (const Comparison &c : compared)
-    out += std::exp(std::min(-c.minus_2_log / 2 - peaks.samples.log_evidence, 50.0));
+  for (std::size_t k = 0; k < compared.size(); ++k)
+    out += static_cast<double>(k < each ? 1 : stride) *
+           std::exp(std::min(-compared[k].minus_2_log / 2 - peaks.samples.log_evidence, 50.0));
   return out / static_cast<double>(judged.of);
 }
 
-/// `judged`: none where the fits came from elsewhere than all attitudes.
-Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &likelihood,
-                             const std::vector<TurningFit> &fits, Freedom freedom,
-                             const Judged &judged, const SearchOptions &options) {
+/// `quick`: for what is looked at far from the peaks. `judged`: none where the fits came from
+/// elsewhere than all attitudes.
+Result<PoseAnswer> answer_of(const CurveModel &model, const CurveModel &quick,
+                             const CurveLikelihood &likelihood, const std::vector<TurningFit> &fits,
+                             Freedom freedom, const Judged &judged, const SearchOptions &options) {
   PoseAnswer out;
   UMOV_ASSIGN(peaks, peaks_of(model, likelihood, fits, freedom, options));
-  const double beside = evidence_beside(model, likelihood, peaks, judged, options.threads);
+  const double beside = evidence_beside(quick, likelihood, peaks, judged, options.threads);
   if (beside < 0)
     return tl::unexpected(stopped());
   auto &[modes, samples, is_settled] = peaks;
   constexpr double much = 0.01; // a fifth of what a set of 95 % may leave out
   if (judged.of > 0 && (beside > much || !is_described(modes, samples))) {
-    Samples all = inverse::sample_all(model, likelihood, options);
+    Samples all = inverse::sample_all(quick, likelihood, options);
     if (all.draws.empty())
       return tl::unexpected(stopped());
     // Either can miss probability, hardly find too much: peaks that particles from afar did not
@@ -286,7 +310,7 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &lik
                                                          : std::span<const PoseMode>(out.modes));
   out.share_of_so3 = inverse::share_of(out.set95);
   out.measurements = likelihood.measurements();
-  out.poses_lit = model.poses_lit();
+  out.poses_lit = model.poses_lit() + (&quick == &model ? 0 : quick.poses_lit());
   return out;
 }
 
@@ -295,34 +319,47 @@ Result<PoseAnswer> answer_of(const CurveModel &model, const CurveLikelihood &lik
 double PoseMode::sd_rad() const {
   const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(covariance.size())));
   const Eigen::MatrixXd all = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
-  return std::sqrt(inverse::symmetric_eigen(all.topLeftCorner(3, 3)).values[2]);
+  return std::sqrt(algebra::symmetric_eigen(all.topLeftCorner(3, 3)).values[2]);
 }
 
 Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options) {
+  return search_pose(model, model, options);
+}
+
+Result<PoseAnswer> search_pose(const CurveModel &model, const CurveModel &quick,
+                               const SearchOptions &options) {
   const CurveLikelihood exact(model.curve(), options.errors);
   if (exact.measurements() == 0)
     return fail(ErrorCode::BadInput,
                 "nothing was measured: no row has light with an error or above 0, nor q and u");
-  UMOV_ASSIGN(left, search_grid(model, options));
+  UMOV_ASSIGN(left, search_grid(quick, options));
   const auto starts = spread_out(left, options.starts, 5 * degree);
   const CurveLikelihood rough(model.curve(), tempered(options.errors));
   const auto some = spread(model.curve().epochs.size(), 60);
-  if (options.progress)
-    options.progress("refine", 0, 2);
-  inverse::FitPlan first{Freedom::Attitude, 4, 0, 0, 2e-3, options.threads};
-  auto fits = inverse::fit_turnings(model, rough, starts, some, first);
-  if (fits.empty())
-    return tl::unexpected(stopped());
-  std::vector<Turning> second;
-  constexpr std::size_t kept = 30;
-  for (std::size_t k = 0; k < std::min(fits.size(), kept); ++k)
-    second.push_back(fits[k].turning);
-  if (options.progress)
-    options.progress("refine", 1, 2);
-  fits = inverse::fit_turnings(model, exact, second, {}, last_steps(Freedom::Attitude, options));
-  if (fits.empty())
-    return tl::unexpected(stopped());
-  UMOV_ASSIGN(out, answer_of(model, exact, fits, Freedom::Attitude, {left, options.grid}, options));
+  // Many at first, and few of those that stay apart: a basin of one glint is a long valley, and
+  // there is one for each flat that could have mirrored the Sun.
+  const inverse::FitPlan tempered_steps{Freedom::Attitude, 4, 0, 0, 2e-3, options.threads};
+  const inverse::FitPlan first_steps{Freedom::Attitude, 12, 0, 0, 1e-3, options.threads};
+  const inverse::FitPlan plans[] = {tempered_steps, first_steps,
+                                    last_steps(Freedom::Attitude, options)};
+  constexpr std::size_t kept[] = {80, 24, 0};
+  std::vector<Turning> from = starts;
+  std::vector<TurningFit> fits;
+  for (std::size_t k = 0; k < std::size(plans); ++k) {
+    if (options.progress)
+      options.progress("refine", k, std::size(plans));
+    const bool is_first = k == 0, is_last = k + 1 == std::size(plans);
+    fits = inverse::fit_turnings(is_last ? model : quick, is_first ? rough : exact, from,
+                                 is_first ? std::span(some) : std::span<const std::size_t>(),
+                                 plans[k]);
+    if (fits.empty())
+      return tl::unexpected(stopped());
+    from.clear();
+    for (std::size_t j = 0; j < std::min(fits.size(), kept[k]); ++j)
+      from.push_back(fits[j].turning);
+  }
+  UMOV_ASSIGN(
+      out, answer_of(model, quick, exact, fits, Freedom::Attitude, {left, options.grid}, options));
   out.unknowns = 4; // attitude and scale
   return out;
 }
@@ -334,7 +371,7 @@ Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning>
                                     last_steps(Freedom::AttitudeAndRate, options));
   if (fits.empty())
     return tl::unexpected(stopped());
-  UMOV_ASSIGN(out, answer_of(model, exact, fits, Freedom::AttitudeAndRate, {}, options));
+  UMOV_ASSIGN(out, answer_of(model, model, exact, fits, Freedom::AttitudeAndRate, {}, options));
   out.unknowns = 7; // attitude, rate and scale
   return out;
 }

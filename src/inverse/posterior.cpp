@@ -1,6 +1,6 @@
 #include "inverse/posterior.h"
 
-#include "inverse/dense.h"
+#include "algebra/dense.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,6 @@ namespace umov::inverse {
 namespace {
 
 constexpr double tail = 5; // degrees of freedom of the proposals
-
-double span_of(const CurveModel &model) {
-  const auto &epochs = model.curve().epochs;
-  return epochs.empty() ? 1.0 : std::max(1.0, epochs.back().seconds);
-}
 
 /// A mode as a density to draw from, in the units of Step.
 struct Proposal {
@@ -42,8 +37,8 @@ Proposal proposal_of(const PoseMode &mode, double span_s) {
   out.centre = mode.turning;
   constexpr double wider = 1.3; // tails that are too short cost more than ones too long
   const Eigen::MatrixXd covariance = in_steps(mode.covariance, span_s) * wider;
-  out.root = inverse::cholesky_root(covariance);
-  out.inverse_root = inverse::inverse_of(out.root);
+  out.root = algebra::cholesky_root(covariance);
+  out.inverse_root = algebra::inverse_of(out.root);
   const auto n = static_cast<double>(covariance.rows());
   out.log_norm = std::lgamma((tail + n) / 2) - std::lgamma(tail / 2) - n / 2 * std::log(tail * pi) -
                  out.root.diagonal().array().log().sum();
@@ -171,7 +166,7 @@ Eigen::VectorXd normal_vector(std::uint64_t seed, std::uint32_t stream, std::uin
 Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
                      std::vector<PoseMode> &modes, const SearchOptions &options) {
   Samples out;
-  const double span = span_of(model);
+  const double span = span_of(model.curve());
   // Each round from the covariances of the one before (Cappe et al. 2004).
   constexpr int least = 2, most = 6;
   constexpr double enough = 100; // effective samples

@@ -1,6 +1,6 @@
 #include <umov/inverse/spin_search.h>
 
-#include "inverse/dense.h"
+#include "algebra/dense.h"
 #include "inverse/posterior.h"
 
 #include <algorithm>
@@ -119,8 +119,8 @@ bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
   const double whole = std::max(-curve.epochs.front().seconds, curve.epochs.back().seconds);
   std::size_t kept = 300;
   constexpr std::size_t epochs_max = 120, last = 10;
-  for (double half = 1.25 * period_s_;; half *= 2) {
-    const auto epochs = within(curve, half, epochs_max);
+  for (double reach_s = 1.25 * period_s_;; reach_s *= 2) {
+    const auto epochs = within(curve, reach_s, epochs_max);
     const CurveLikelihood rough(curve, tempered(options_.errors, 0.15), epochs);
     std::vector<Turning> starts;
     for (const Candidate &c : found)
@@ -136,7 +136,7 @@ bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
     found.clear();
     for (const TurningFit &fit : fits)
       found.push_back({fit.turning, fit.at.chi2});
-    if (half >= whole)
+    if (reach_s >= whole)
       return true;
     kept = std::max(last, kept / 3);
   }
@@ -175,7 +175,7 @@ void move(PoseMode &mode, double seconds) {
   }
   const Eigen::Map<Eigen::MatrixXd> covariance(mode.covariance.data(), 6, 6);
   const Eigen::MatrixXd at_end =
-      inverse::product(inverse::product(jacobian, covariance), jacobian.transpose());
+      algebra::product(algebra::product(jacobian, covariance), jacobian.transpose());
   std::copy_n(at_end.data(), at_end.size(), mode.covariance.begin());
   mode.turning = end;
 }

@@ -1,6 +1,6 @@
 #include "inverse/turning_fit.h"
 
-#include "inverse/dense.h"
+#include "algebra/dense.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,18 +30,13 @@ std::vector<Running *> moving(std::vector<Running> &fits) {
   return out;
 }
 
-double span_of(const CurveModel &model) {
-  const auto &epochs = model.curve().epochs;
-  return epochs.empty() ? 1.0 : std::max(1.0, epochs.back().seconds);
-}
-
 /// J^T J and J^T r of all fits by differences of neighbours, lit together.
 bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
                    std::vector<Running *> fits, std::span<const std::size_t> epochs,
                    const FitPlan &plan) {
   std::erase_if(fits, [](const Running *one) { return !one->has_moved; });
   const auto free = static_cast<Eigen::Index>(plan.freedom);
-  const double span = span_of(model), h = plan.difference_rad;
+  const double span = span_of(model.curve()), h = plan.difference_rad;
   std::vector<Turning> near;
   for (const Running *one : fits)
     for (Eigen::Index p = 0; p < free; ++p)
@@ -59,8 +54,8 @@ bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
           compared[k * static_cast<std::size_t>(free) + static_cast<std::size_t>(p)];
       jacobian.col(p) = (Residuals(other.residuals.data(), rows) - r) / h;
     }
-    one.fit.information = gram(jacobian);
-    one.gradient = transposed_times(jacobian, r);
+    one.fit.information = algebra::gram(jacobian);
+    one.gradient = algebra::transposed_times(jacobian, r);
   }
   return true;
 }
@@ -70,7 +65,7 @@ Step step_of(const Running &one) {
   const double largest = std::max(a.diagonal().maxCoeff(), 1e-12);
   Eigen::MatrixXd damped = a;
   damped.diagonal() += one.damping * (a.diagonal().array() + 1e-6 * largest).matrix();
-  Step step = -solve_symmetric(damped, one.gradient);
+  Step step = -algebra::solve_symmetric(damped, one.gradient);
   constexpr double longest = 0.15; // [rad]: beyond it the light is another one
   const double length = step.norm();
   return length > longest ? Step(step * (longest / length)) : step;
@@ -96,12 +91,33 @@ void take(Running &one, const Turning &tried, const Comparison &compared) {
   one.fit.is_converged = one.idle >= patience || !(one.damping < stuck);
 }
 
-void keep_best(std::vector<Running> &fits, std::size_t count) {
+/// The same turning, as far as a fit on its way tells.
+bool is_same(const Turning &a, const Turning &b, double span_s) {
+  constexpr double near = 5e-3; // [rad]
+  return angle_between(a.attitude, b.attitude) < near &&
+         norm(a.rate_rad_s - b.rate_rad_s) * span_s < near;
+}
+
+/// The best, sorted, of those that came together one each: a wide basin would crowd out the rest.
+void keep_best(std::vector<Running> &fits, std::size_t count, double span_s) {
   std::ranges::stable_sort(fits, {}, [](const Running &r) { return r.fit.at.chi2; });
-  fits.resize(std::min(fits.size(), count));
+  std::vector<Running> out;
+  for (Running &one : fits) {
+    if (out.size() == count)
+      break;
+    if (std::ranges::none_of(out, [&](const Running &better) {
+          return is_same(better.fit.turning, one.fit.turning, span_s);
+        }))
+      out.push_back(std::move(one));
+  }
+  fits = std::move(out);
 }
 
 } // namespace
+
+double span_of(const ObservedCurve &curve) {
+  return curve.epochs.empty() ? 1.0 : std::max(1.0, curve.epochs.back().seconds);
+}
 
 Turning stepped(const Turning &from, const Step &step, double span_s) {
   Turning out = from;
@@ -128,7 +144,7 @@ std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikeliho
 std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelihood &likelihood,
                                      std::vector<Turning> starts,
                                      std::span<const std::size_t> epochs, const FitPlan &plan) {
-  const double span = span_of(model);
+  const double span = span_of(model.curve());
   const auto first = compare_all(model, likelihood, starts, epochs, plan.threads, true);
   std::vector<Running> fits(first.size());
   for (std::size_t k = 0; k < first.size(); ++k) {
@@ -137,8 +153,8 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
     fits[k].residuals = first[k].residuals;
   }
   for (int iteration = 0; iteration < plan.iterations; ++iteration) {
-    if (plan.cut_after > 0 && iteration == plan.cut_after)
-      keep_best(fits, plan.kept);
+    if (plan.cut_after > 0 && iteration > 0 && iteration % plan.cut_after == 0)
+      keep_best(fits, plan.kept, span);
     const auto active = moving(fits);
     if (active.empty())
       break;
@@ -158,7 +174,7 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
     all.push_back(&one);
   if (!differentiate(model, likelihood, all, epochs, plan)) // the covariance's
     return {};
-  keep_best(fits, fits.size());
+  keep_best(fits, fits.size(), span);
   std::vector<TurningFit> out;
   for (Running &one : fits) {
     one.fit.at.residuals = {};

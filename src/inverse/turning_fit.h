@@ -14,6 +14,9 @@ enum class Freedom { Attitude = 3, AttitudeAndRate = 6 };
 /// that turn the body by one radian over the span of the curve.
 using Step = Eigen::Matrix<double, Eigen::Dynamic, 1>;
 
+/// From the first epoch to the last, at least 1 [s].
+double span_of(const ObservedCurve &curve);
+
 /// A turning after a step.
 Turning stepped(const Turning &from, const Step &step, double span_s);
 
@@ -29,15 +32,15 @@ struct TurningFit {
 struct FitPlan {
   Freedom freedom = Freedom::Attitude;
   int iterations = 12;
-  int cut_after = 0; ///< iteration after which only the best `kept` go on; 0: all
+  int cut_after = 0; ///< iterations after which only the best `kept` go on; 0: all
   std::size_t kept = 0;
   double difference_rad = 2e-3; ///< of the derivatives: masks are steps on a finer scale
   unsigned threads = 0;
 };
 
 /// Levenberg-Marquardt (Marquardt 1963) of all starts side by side, scale and zero points
-/// eliminated in each residual (variable projection: Golub & Pereyra 1973); sorted by chi2. Empty
-/// if it was stopped.
+/// eliminated in each residual (variable projection: Golub & Pereyra 1973); sorted by chi2, of
+/// those that came together the best. Empty if it was stopped.
 std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelihood &likelihood,
                                      std::vector<Turning> starts,
                                      std::span<const std::size_t> epochs, const FitPlan &plan);

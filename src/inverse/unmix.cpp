@@ -1,6 +1,6 @@
 #include <umov/inverse/unmix.h>
 
-#include "inverse/dense.h"
+#include "algebra/dense.h"
 #include "inverse/whitened.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ VectorXd solve_active(const MatrixXd &a, const VectorXd &b, const std::vector<bo
   MatrixXd part(a.rows(), static_cast<Index>(at.size()));
   for (std::size_t k = 0; k < at.size(); ++k)
     part.col(static_cast<Index>(k)) = a.col(at[k]);
-  const VectorXd x = inverse::least_squares(part, b);
+  const VectorXd x = algebra::least_squares(part, b);
   for (std::size_t k = 0; k < at.size(); ++k)
     out[at[k]] = x[static_cast<Index>(k)];
   return out;
@@ -39,9 +39,9 @@ VectorXd nnls(const MatrixXd &a, const VectorXd &b) {
   const auto n = static_cast<std::size_t>(a.cols());
   std::vector<bool> is_active(n, false);
   VectorXd x = VectorXd::Zero(a.cols());
-  const double tolerance = 1e-10 * inverse::transposed_times(a, b).cwiseAbs().maxCoeff();
+  const double tolerance = 1e-10 * algebra::transposed_times(a, b).cwiseAbs().maxCoeff();
   for (std::size_t round = 0; round < 3 * n + 10; ++round) {
-    const VectorXd gradient = inverse::transposed_times(a, b - a * x);
+    const VectorXd gradient = algebra::transposed_times(a, b - a * x);
     Index best = -1;
     for (Index k = 0; k < a.cols(); ++k)
       if (!is_active[static_cast<std::size_t>(k)] && gradient[k] > tolerance &&
@@ -92,7 +92,7 @@ std::vector<std::size_t> groups_of(const Whitened &w, double scale) {
 double condition_of(const MatrixXd &columns) {
   MatrixXd unit = columns;
   unit.colwise().normalize();
-  const VectorXd values = inverse::singular_values(unit);
+  const VectorXd values = algebra::singular_values(unit);
   return values[0] / std::max(values[values.size() - 1], 1e-300);
 }
 
@@ -140,7 +140,7 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
   }
   const VectorXd x = nnls(joined, w.right);
   const double sum = std::max(x.sum(), 1e-300);
-  const MatrixXd covariance = inverse::pseudo_inverse(inverse::gram(joined));
+  const MatrixXd covariance = algebra::pseudo_inverse(algebra::gram(joined));
   for (Index g = 0; g < x.size(); ++g) {
     // f = x_g / sum x, to first order.
     VectorXd slope = VectorXd::Constant(x.size(), -x[g] / (sum * sum));

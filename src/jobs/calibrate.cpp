@@ -1,6 +1,7 @@
 #include <umov/jobs/calibrate.h>
 
 #include <algorithm>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <fmt/format.h>
 #include <tuple>
@@ -14,6 +15,25 @@ namespace {
 std::string note_of(const CountsFile &counts, const char *name) {
   const auto found = counts.notes.find(name);
   return found == counts.notes.end() ? "" : found->second;
+}
+
+/// A fit that rests on little, or that its own errors do not explain.
+void warn_of_standards(const std::vector<StandardMeasurement> &data,
+                       const PolarimeterCalibration &found, Diagnostics &diagnostics) {
+  const double first = data.front().axis_rad;
+  constexpr double apart = pi / 180;
+  if (std::ranges::none_of(data, [&](const StandardMeasurement &one) {
+        return std::abs(std::remainder(one.axis_rad - first, pi)) > apart;
+      }))
+    diagnostics.warn("all standards stand at one angle of the instrument: phi0 and q0, u0 are told "
+                     "apart by what the tables say of the stars alone. Turn the instrument, or "
+                     "take a plate");
+  constexpr double chance = 1e-3;
+  if (found.dof > 0 && boost::math::gamma_q(found.dof / 2., found.chi2 / 2) < chance)
+    diagnostics.warn(fmt::format("chi2 = {:.3g} of {} degrees of freedom: the standards disagree "
+                                 "by more than their errors. Is a name, an angle or x_axis_pa "
+                                 "wrong?",
+                                 found.chi2, found.dof));
 }
 
 } // namespace
@@ -52,6 +72,7 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
                                      "\"name\" of both must agree");
   UMOV_ASSIGN(calibration, calibrate_polarimeter(data));
   out.calibration = calibration;
+  warn_of_standards(data, calibration, diagnostics);
   return out;
 }
 
@@ -70,6 +91,13 @@ Result<void> check_calibration(const CalibrationFile &file, const CountsFile &co
                               "calibrate that one",
                               what, own, other),
                   {path});
+  if (!file.pol_frame.empty() && file.pol_frame != "equatorial")
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("this calibration has its angles in the frame \"{}\"; those of standards "
+                    "are from north: \"equatorial\" was expected. Calibrate again",
+                    file.pol_frame),
+        {path});
   constexpr double old_days = 30;
   if (const auto made = utc_from_iso(file.made_utc))
     if (const double days = seconds_between(first.time, *made) / 86400; days > old_days)

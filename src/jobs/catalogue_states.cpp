@@ -109,11 +109,12 @@ Result<void> check_ages(const StatesRequest &request, bool allow_old,
   const std::string worst =
       fmt::format("the farthest are those of {}, {:.1f} d", oldest->norad_cat_id, age_max);
   if (old == sets.size() && !allow_old)
-    return fail(ErrorCode::BadInput,
-                fmt::format("all elements are more than 30 d from the epochs asked for ({}). Give "
-                            "newer ones or pass --allow-old-elements.",
-                            worst),
-                {request.orbit, oldest->line});
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("all elements are more than 30 d from the epochs asked for ({}). Give "
+                    "newer ones or pass --allow-old-elements (in Python allow_old_elements=True).",
+                    worst),
+        {request.orbit, oldest->line});
   diagnostics.warn(
       fmt::format("{} of {} element sets lie more than 7 d from the epochs asked for ({}); expect "
                   "kilometres of error along the track",

@@ -1,59 +1,32 @@
 #include <umov/jobs/exposure.h>
 
+#include "jobs/exposure_rates.h"
 #include "jobs/observe_plan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/text.h>
+#include <umov/io/passband_file.h>
 #include <umov/photometry/radiometry.h>
 
 namespace umov::jobs {
 namespace {
 
-/// Rates of one instrument on one star [1/s], all channels together.
-struct Rates {
-  double star = 0;                     ///< detected electrons in the apertures
-  double whole = 0;                    ///< before polarizers, all of the image
-  double sky = 0, dark = 0, fixed = 0; ///< fixed: variance of each exposure
-  double lost = 1;                     ///< part that polarizers let through
-  double peak = 0;                     ///< on the brightest pixel of the brightest channel
-  double scintillation = 0;            ///< relative sd of 1 s
-};
-
-Result<Rates> rates_of(const ExposureRequest &r, const Instrument &instrument,
-                       const BandObserver &observer, const Air &air) {
-  const BandResponse &band = observer.band();
-  const double x = airmass(Angle::degrees(r.altitude_deg));
-  Rates out;
-  const double flux = band.zero_flux * std::pow(10, -0.4 * r.mag);
-  out.whole = observer.rate_per_flux() * flux * transmission(r.nm, air, x);
-  UMOV_ASSIGN(channels, polarimeter_channels(instrument.polarimeter, {}, r.nm));
-  double largest = 0;
-  out.lost = 0;
-  for (const PolarimeterChannel &channel : channels) {
-    out.lost += channel.row[0];
-    largest = std::max(largest, channel.row[0]);
-  }
-  const double share = share_inside(ImageProfile::Moffat, 1);
-  const double width = observer.fwhm_arcsec(x);
-  out.star = out.whole * share * out.lost;
-  const double sky = band.zero_flux * std::pow(10, -0.4 * r.sky_mag) * observer.rate_per_flux();
-  out.sky = sky * pi * width * width * out.lost;
-  const double pixels = observer.aperture_pixels(x) * static_cast<double>(channels.size());
-  out.dark = instrument.detector.dark_e_s * pixels;
-  out.fixed = pixels * fixed_variance(instrument.detector);
-  const double lattice = instrument.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
-  out.peak = out.whole * largest * lattice * observer.peak_share(x);
-  out.scintillation = observer.scintillation_sd(1, x, 0);
-  return out;
-}
-
-/// Exposure in which sqrt(2 variance)/electrons comes down to `sd`; of a linear polarimeter.
-double time_for(const Rates &r, double excess2, double sd, double factor) {
-  // sd^2 (s t)^2 = factor (F^2 (s + b) t + v): a quadratic in t.
-  const double a = sd * sd * r.star * r.star;
-  const double b = factor * excess2 * (r.star + r.sky + r.dark), c = factor * r.fixed;
-  return (b + std::sqrt(b * b + 4 * a * c)) / (2 * a);
+/// The band that is asked for.
+Result<BandResponse> band_of(const ExposureRequest &r) {
+  if (r.band.empty())
+    return narrow_band(fmt::format("nm:{:g}", r.nm), r.nm, r.width_nm);
+  UMOV_ASSIGN(bands, bands_named({r.band}));
+  if (bands.size() != 1)
+    return fail(ErrorCode::Usage, fmt::format("--band {} is a group of {} bands; name one, as {}",
+                                              r.band, bands.size(), bands.front().name));
+  const Band &band = bands.front();
+  if (!band.curve)
+    return narrow_band(band.name, band.wavelength.nm(), r.width_nm);
+  UMOV_ASSIGN(response, curve_band(*band.curve));
+  UMOV_ASSIGN(grid, BandGrid::make(bands));
+  return at_nodes(std::move(response), grid, 0);
 }
 
 /// A quantity and what it means, row by row.
@@ -100,22 +73,8 @@ Result<void> check(const ExposureRequest &r) {
   return {};
 }
 
-/// One frame: how long, what it reaches, and how full it makes the brightest pixel.
-struct Frame {
-  double seconds = 0, snr = 0, sd_p = 0, full = 0;
-  bool is_given = false;
-};
-
-Frame frame_of(const Rates &r, double excess2, double factor, double seconds, double fills_s) {
-  const double star = r.star * seconds;
-  const double variance = excess2 * (r.star + r.sky + r.dark) * seconds + r.fixed;
-  const double flicker2 = r.scintillation * r.scintillation / seconds;
-  return {seconds, 1 / std::sqrt(variance / (star * star) + flicker2),
-          std::sqrt(factor * variance) / star, seconds / fills_s, false};
-}
-
 /// What a frame reaches, what it fails at, and what helps, in a sentence.
-std::string verdict_of(const Frame &frame, double sd_p, double fills_s, bool is_sequence) {
+std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, bool is_sequence) {
   const double frames = std::ceil(std::pow(frame.sd_p / sd_p, 2) - 1e-9);
   const char *of = is_sequence ? " of each analyser" : "";
   std::string out = fmt::format("One exposure of {:.3g} s{}: S/N {:.3g}, error of p {:.2g}; ",
@@ -140,49 +99,103 @@ std::string verdict_of(const Frame &frame, double sd_p, double fills_s, bool is_
 
 } // namespace
 
-Result<Table> exposure(const ExposureRequest &r) {
+Result<ExposureSetup> exposure_setup(const ExposureRequest &r) {
   UMOV_TRY(check(r));
   UMOV_ASSIGN(instrument, read_instrument(r.instrument));
-  UMOV_ASSIGN(band, narrow_band(fmt::format("nm:{:g}", r.nm), r.nm, r.width_nm));
+  UMOV_ASSIGN(band, band_of(r));
   ObservingConditions conditions;
   conditions.air.pressure_hpa = standard_pressure_hpa(r.height_m);
   conditions.seeing = {r.seeing_arcsec, 500, 25};
   conditions.aperture_fwhm = 1;
   conditions.scintillation = ScintillationSite{r.height_m, 1.5};
   UMOV_ASSIGN(observer, BandObserver::make(instrument, band, conditions, {}));
-  UMOV_ASSIGN(rates, rates_of(r, instrument, observer, conditions.air));
   const PolarimeterType type = instrument.polarimeter.type;
-  const bool is_full = parameters_of(type) == 4;
-  const double f2 = excess_variance(instrument.detector), factor = is_full ? 3 : 2;
-  const double t = time_for(rates, f2, r.sd_p, factor);
+  return ExposureSetup{r,
+                       instrument,
+                       std::move(observer),
+                       excess_variance(instrument.detector),
+                       parameters_of(type) == 4 ? 3. : 2.,
+                       static_cast<double>(usual_states(type).size()),
+                       airmass(Angle::degrees(r.altitude_deg))};
+}
+
+Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
+  const BandResponse &band = s.observer.band();
+  const double x = s.airmass, zero = band.zero_flux * s.observer.rate_per_flux();
+  StarRates out;
+  out.whole = zero * std::pow(10, -0.4 * mag) * s.observer.mean_transmission(x);
+  UMOV_ASSIGN(channels, polarimeter_channels(s.instrument.polarimeter, {}, band.pivot_nm));
+  double largest = 0, through = 0; // of unpolarized light
+  for (const PolarimeterChannel &channel : channels) {
+    through += channel.row[0];
+    largest = std::max(largest, channel.row[0]);
+  }
+  const double width = s.observer.fwhm_arcsec(x);
+  out.star = out.whole * share_inside(ImageProfile::Moffat, 1) * through;
+  out.sky = zero * std::pow(10, -0.4 * s.request.sky_mag) * pi * width * width * through;
+  const double pixels = s.observer.aperture_pixels(x) * static_cast<double>(channels.size());
+  out.dark = s.instrument.detector.dark_e_s * pixels;
+  out.fixed = pixels * fixed_variance(s.instrument.detector);
+  const double lattice = s.instrument.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
+  out.peak = out.whole * largest * lattice * s.observer.peak_share(x);
+  out.scintillation = s.observer.scintillation_sd(1, x, 0);
+  out.fills_s = saturation_e(s.instrument.detector) / out.peak;
+  return out;
+}
+
+StarFrame star_frame(const ExposureSetup &s, const StarRates &r, double seconds) {
+  const double star = r.star * seconds;
+  const double variance = s.excess2 * (r.star + r.sky + r.dark) * seconds + r.fixed;
+  const double flicker2 = r.scintillation * r.scintillation / seconds;
+  return {seconds, 1 / std::sqrt(variance / (star * star) + flicker2),
+          std::sqrt(s.factor / s.states * variance) / star, seconds / r.fills_s};
+}
+
+double time_for(const ExposureSetup &s, const StarRates &r) {
+  // sd^2 (s t)^2 = factor (F^2 (s + b) t + v): a quadratic in t.
+  const double a = std::pow(s.request.sd_p * r.star, 2);
+  const double b = s.factor * s.excess2 * (r.star + r.sky + r.dark), c = s.factor * r.fixed;
+  return (b + std::sqrt(b * b + 4 * a * c)) / (2 * a);
+}
+
+std::string exposure_verdict(const ExposureSetup &s, const StarRates &rates) {
+  const double own = s.request.exposure_s;
+  const double taken = own > 0 ? own : std::min(time_for(s, rates) / s.states, rates.fills_s / 2);
+  return verdict_of(star_frame(s, rates, taken), s.request.sd_p, rates.fills_s, s.states > 1);
+}
+
+Result<Table> exposure(const ExposureRequest &r) {
+  UMOV_ASSIGN(setup, exposure_setup(r));
+  UMOV_ASSIGN(rates, star_rates(setup, r.mag));
+  const Polarimeter &polarimeter = setup.instrument.polarimeter;
+  const BandResponse &band = setup.observer.band();
+  const double t = time_for(setup, rates), f2 = setup.excess2;
   const double all = f2 * (rates.star + rates.sky + rates.dark) * t + rates.fixed;
-  const double fills_s = saturation_e(instrument.detector) / rates.peak;
-  const auto states = static_cast<double>(usual_states(type).size());
-  const double taken = r.exposure_s > 0 ? r.exposure_s : std::min(t / states, fills_s / 2);
-  const Frame frame = frame_of(rates, f2, factor / states, taken, fills_s);
   Sheet out;
-  out.add("zero_point", 2.5 * std::log10(observer.rate_per_flux() * band.zero_flux), "mag(AB)",
-          "of 1 electron a second, no air, no polarizer");
+  out.add("zero_point", 2.5 * std::log10(setup.observer.rate_per_flux() * band.zero_flux),
+          "mag(AB)", "of 1 electron a second, no air, no polarizer");
   out.add("rate_whole", rates.whole, "electron / s", "through the air, before polarizers");
   out.add("rate", rates.star, "electron / s", "detected in all channels, aperture of one width");
   out.add("time", t, "s",
-          is_full ? "of a whole sequence, until q, u and v are known to sd_p"
-                  : "of all states together, until p is known to sd_p");
+          parameters_of(polarimeter.type) == 4
+              ? "of a whole sequence, until q, u and v are known to sd_p"
+              : "of all states together, until p is known to sd_p");
   out.add("electrons", rates.star * t, "electron", "detected in that time");
-  out.add("saturation", fills_s, "s", "exposure that fills the brightest pixel");
+  out.add("saturation", rates.fills_s, "s", "exposure that fills the brightest pixel");
   out.add("share_star", f2 * rates.star * t / all, "", "of the variance: the object's own photons");
   out.add("share_sky", f2 * rates.sky * t / all, "", "the sky's");
   out.add("share_dark", f2 * rates.dark * t / all, "", "dark current");
   out.add("share_read", rates.fixed / all, "", "reading and rounding, once");
   out.add("scintillation", rates.scintillation / std::sqrt(t), "",
-          is_simultaneous(type) && !instrument.polarimeter.has_separate_pupils
+          is_simultaneous(polarimeter.type) && !polarimeter.has_separate_pupils
               ? "relative, of I alone: channels share it"
               : "relative, of each exposure of that length");
-  if (!is_simultaneous(type) && r.change_per_s > 0)
+  if (!is_simultaneous(polarimeter.type) && r.change_per_s > 0)
     out.add("false_p", std::sqrt(2.0) * r.change_per_s * t / 4, "",
             "of four states in a row while brightness changes as told");
   Table table = std::move(out).table();
-  table.note("verdict", verdict_of(frame, r.sd_p, fills_s, states > 1));
+  table.note("band", band.name);
+  table.note("verdict", exposure_verdict(setup, rates));
   return table;
 }
 

@@ -12,10 +12,13 @@ Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &req
                               Diagnostics &diagnostics) {
   UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics));
   const auto light = lighting_of(ready.light, options.threads, monitor);
+  const auto quick_light = quick_lighting(ready, options.threads, monitor);
   const CurveModel model(ready.observed.curve, light, ready.observed.column);
-  UMOV_ASSIGN(answer, search_pose(model, search_options(scenario, request, options, monitor)));
+  const CurveModel quick(ready.observed.curve, quick_light, ready.observed.column);
+  UMOV_ASSIGN(answer,
+              search_pose(model, quick, search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
-  (void)ready.light.model().keep_masks(); // a cache that cannot be written costs time alone
+  keep_masks(ready);
   const Judgement judgement = judge(answer, ready.observed.curve, request.errors, symmetries);
   Inversion out;
   out.verdict = judgement.verdict;

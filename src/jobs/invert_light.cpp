@@ -1,5 +1,7 @@
 #include "jobs/invert_light.h"
 
+#include <algorithm>
+
 namespace umov::jobs {
 
 Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
@@ -10,11 +12,33 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
               observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
   SignatureRequest lit;
   lit.method = request.method;
+  // Light need not be known better than the model is.
+  constexpr double coarsest = 0.02;
+  lit.accuracy = std::max(scenario.light.accuracy, std::min(request.errors.floor, coarsest));
   Diagnostics twice; // the object was read for its orbit: its warnings are known
   UMOV_ASSIGN(light, PoseLight::make(scenario, lit, options, twice));
   for (InputFile &input : inputs)
     observed.inputs.push_back(std::move(input));
-  return Prepared{std::move(observed), std::move(light)};
+  Prepared out{std::move(observed), std::move(light), {}};
+  if (out.light.model().facts().method == LightMethod::Auto) {
+    SignatureRequest rough;
+    rough.method = LightMethod::Masks;
+    rough.accuracy = lit.accuracy;
+    UMOV_ASSIGN(masks, PoseLight::make(scenario, rough, options, twice));
+    out.masks.emplace(std::move(masks));
+  }
+  return out;
+}
+
+PoseLighting quick_lighting(const Prepared &ready, unsigned threads, const Monitor &monitor) {
+  if (!ready.masks)
+    return lighting_of(ready.light, threads, monitor);
+  return [masks = lighting_of(*ready.masks, threads, monitor)](std::span<const Pose> poses,
+                                                               StokesTable &out) {
+    const bool is_whole = masks(poses, out);
+    out.i_err.clear();
+    return is_whole;
+  };
 }
 
 PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor &monitor) {
@@ -24,6 +48,12 @@ PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor
     task.cancel = monitor.cancel;
     return !monitor.is_cancelled() && light.evaluate(poses, out, task);
   };
+}
+
+void keep_masks(const Prepared &ready) {
+  (void)ready.light.model().keep_masks();
+  if (ready.masks)
+    (void)ready.masks->model().keep_masks();
 }
 
 SearchOptions search_options(const Scenario &scenario, const InvertRequest &request,

@@ -1,6 +1,7 @@
 #pragma once
 // Private: what every question to observations begins with.
 
+#include <optional>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/pose_light.h>
 
@@ -10,6 +11,7 @@ namespace umov::jobs {
 struct Prepared {
   ObservedLightCurve observed;
   PoseLight light;
+  std::optional<PoseLight> masks; ///< for the search, where `light` mends them; else none
 };
 
 /// Reads and compiles what a request names.
@@ -17,6 +19,13 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
                          const JobOptions &options, Diagnostics &diagnostics);
 /// `light` and `monitor` must outlive it.
 PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor &monitor);
+/// Light for a search: masks as they are, without half-widths, where the last steps mend them. What
+/// masks say of themselves is the most that they may miss, thirty times what they do miss where a
+/// sliver is in doubt: as an error of its own (`CurveLikelihood`) it would drive a search away from
+/// the truth. `ready` and `monitor` must outlive it.
+PoseLighting quick_lighting(const Prepared &ready, unsigned threads, const Monitor &monitor);
+/// For later jobs; a cache that cannot be written costs time alone.
+void keep_masks(const Prepared &ready);
 /// How the search is run; `monitor` must outlive it.
 SearchOptions search_options(const Scenario &scenario, const InvertRequest &request,
                              const JobOptions &options, const Monitor &monitor);

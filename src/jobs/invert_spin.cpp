@@ -107,13 +107,14 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   SpinRequest asked;
   asked.periods_s = periods;
   asked.axis = axis_of(spin.axis);
-  asked.coarse = coarse_light(light, curve, options.threads);
+  asked.coarse =
+      coarse_light(quick_lighting(ready, options.threads, monitor), curve, options.threads);
   if (!asked.coarse)
     return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
   UMOV_ASSIGN(answer, search_spin(curve, light, ready.observed.column, asked,
                                   search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
-  (void)ready.light.model().keep_masks(); // a cache that cannot be written costs time alone
+  keep_masks(ready);
   const Judgement judgement = judge(answer.pose, curve, request.errors, symmetries);
   const CurveModel model(curve, light, ready.observed.column);
   Inversion out;

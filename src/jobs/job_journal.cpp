@@ -41,8 +41,24 @@ Result<Journal> open_journal(const JobOptions &options, const std::string &job,
   return std::move(out);
 }
 
+Result<std::string> device_text(const DeviceOptions &device) {
+  if (device.choice == DeviceChoice::Cpu)
+    return "";
+  const auto cards = open_cards(device);
+  if (!cards && device.choice == DeviceChoice::Cuda)
+    return tl::unexpected(cards.error());
+  return "; device " + (cards ? name_of(**cards) : std::string("cpu"));
+}
+
+void tell_of_device(const LightFacts &facts, Diagnostics &diagnostics) {
+  if (facts.device.starts_with("cpu"))
+    diagnostics.warn("--device auto took the " + facts.device);
+}
+
 Error with_way_on(Error stopped, const Journal &journal) {
-  if (stopped.code == ErrorCode::Interrupted && journal.count() > 0 && !journal.problem())
+  const bool is_ended_from_outside =
+      stopped.code == ErrorCode::Interrupted || stopped.code == ErrorCode::Device;
+  if (is_ended_from_outside && journal.count() > 0 && !journal.problem())
     stopped.message += (stopped.message.ends_with('.') ? "" : ".") +
                        std::string(" The same command goes on from there.");
   return stopped;

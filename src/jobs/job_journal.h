@@ -20,6 +20,13 @@ std::string job_text(const Scenario &scenario, const std::vector<InputFile> &inp
 Result<Journal> open_journal(const JobOptions &options, const std::string &job,
                              const Monitor &monitor, Diagnostics &diagnostics);
 
+/// What rows depend on besides, as the identity of a job has it: who lights them. Cards and the
+/// processor do not agree to the last digit. Empty unless cards are asked for; Device where they
+/// must be there and are not.
+Result<std::string> device_text(const DeviceOptions &device);
+/// Warns where cards were asked for if there are any, and there are none.
+void tell_of_device(const LightFacts &facts, Diagnostics &diagnostics);
+
 /// The end of a job that was ended early: where it goes on.
 Error with_way_on(Error stopped, const Journal &journal);
 

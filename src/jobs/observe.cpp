@@ -1,5 +1,6 @@
 #include <umov/jobs/observe.h>
 
+#include "jobs/job_journal.h"
 #include "jobs/observe_frames.h"
 #include "jobs/observe_tables.h"
 
@@ -11,6 +12,7 @@
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/instrument/mosaic.h>
+#include <umov/instrument/pixel_image.h>
 #include <umov/io/index_file.h>
 #include <umov/time/earth_orientation.h>
 
@@ -73,19 +75,28 @@ Result<std::vector<BandObserver>> observers_of(const ScenarioObservation &o,
   return out;
 }
 
-/// The sampling of a mosaic's image, in figures.
+/// The sampling of a mosaic's image and the edge of its aperture, in figures.
 void warn_of_mosaic(const Setup &s, Diagnostics &diagnostics) {
   const ScenarioObservation &o = s.observation;
   if (o.instrument.polarimeter.type != PolarimeterType::Mosaic)
     return;
   for (const BandObserver &observer : s.observers) {
     const double width = observer.fwhm_arcsec(1) / observer.pixel_arcsec();
-    if (width < 3 || o.aperture_fwhm < 2)
+    if (width < 3)
       diagnostics.warn(fmt::format(
-          "{}: a star is {:.2g} px wide at the zenith and {:g} widths are summed; under 3 px, or "
-          "under 2 widths, summed light of the four orientations is polarized by where the star "
-          "stands on its pixels, up to {:.2g} in q. Defocus, or fit the image of each orientation.",
-          observer.band().name, width, o.aperture_fwhm, 2 * mosaic_alias_strength(width)));
+          "{}: a star is {:.2g} px wide at the zenith; under 3 px, summed light of the four "
+          "orientations is polarized by where the star stands on its pixels, up to {:.2g} in q. "
+          "Defocus, or fit the image of each orientation.",
+          observer.band().name, width, 2 * mosaic_alias_strength(width)));
+    // Wider images have smoother edges: theirs is less than that of the widest that is summed here.
+    constexpr double widest = 16;
+    const double taken = std::clamp(width, narrowest_image_px, widest);
+    if (o.aperture_fwhm < 2)
+      diagnostics.warn(fmt::format(
+          "{}: {:g} widths of a star are summed; the edge of an aperture below 2 widths cuts the "
+          "four orientations unevenly, up to {:.2g} in q or u. Give observation.aperture_fwhm = 2.",
+          observer.band().name, o.aperture_fwhm,
+          mosaic_aperture_alias(o.seeing.profile, taken, o.aperture_fwhm * taken)));
   }
 }
 
@@ -302,6 +313,7 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
     return {};
   const auto began = std::chrono::steady_clock::now();
   UMOV_ASSIGN(models, make_light_models(request, loaded.scene));
+  tell_of_device(models.light->facts(), diagnostics);
   const ObservingConditions conditions = conditions_of(scenario, object);
   UMOV_ASSIGN(observers, observers_of(*scenario.observation, bands, loaded.scene.grid, conditions));
   for (const Exposure &e : exposures)

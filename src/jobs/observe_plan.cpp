@@ -66,7 +66,8 @@ Result<ObservedBands> observed_bands(const Scenario &scenario) {
       entries.push_back({name, {}});
     auto own = read_bands(entries, std::filesystem::path(scenario.file).parent_path());
     if (!own)
-      return fail(own.error().code, "observation.bands: " + own.error().message, {scenario.file});
+      return fail(own.error().code, own.error().message + " (named in observation.bands)",
+                  own.error().where.file.empty() ? Where{scenario.file} : own.error().where);
     bands = std::move(*own);
   }
   ObservedBands out;

@@ -64,7 +64,7 @@ Result<std::vector<Trajectory>> choose(const PassesRequest &request, std::vector
   if (out.empty())
     return fail(ErrorCode::BadInput,
                 fmt::format("all elements are more than {:g} d from the span. Give newer ones or "
-                            "pass --allow-old-elements.",
+                            "pass --allow-old-elements (in Python allow_old_elements=True).",
                             old_days),
                 {request.orbit});
   if (!old.empty())

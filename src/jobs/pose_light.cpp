@@ -59,6 +59,8 @@ Result<std::unique_ptr<LightModel>> light_of(const Scene &scene, const std::vect
                                              const LightOptions &options) {
   if (request.source != Source::Thermal)
     return make_light(scene, joints, options);
+  if (options.device.choice == DeviceChoice::Cuda)
+    return fail(ErrorCode::Usage, "own heat is lit by the processor: take --device cpu");
   UMOV_ASSIGN(kelvin, temperatures_of(request.temperatures, scene.mesh));
   return make_thermal_light(scene, joints, kelvin, options);
 }

@@ -9,6 +9,7 @@ LightOptions light_options(const Scenario &scenario, const JobOptions &job) {
   out.seed = scenario.seed;
   out.threads = job.threads;
   out.mask_cache = job.mask_cache;
+  out.device = job.device;
   return out;
 }
 

@@ -130,16 +130,19 @@ void warn_of_step(const ObjectRun &one, double step_s, Diagnostics &diagnostics)
 }
 
 Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks blocks,
-                                  const Monitor &monitor) {
+                                  const Monitor &monitor, Diagnostics &diagnostics) try {
   const std::string what = is_alone ? "light curve" : one.request.object;
   monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
   UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene));
   one.light = models.light->facts();
+  tell_of_device(one.light, diagnostics);
   auto out = compute_wanted(
       one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
       monitor.cancel_flag(), blocks);
   UMOV_TRY(models.keep_masks());
   return out;
+} catch (const Failure &lost) { // a card: what was finished is in the journal
+  return tl::unexpected(lost.error());
 }
 
 Result<Journal> journal_of(const std::vector<ObjectRun> &objects, const Scenario &scenario,
@@ -148,8 +151,9 @@ Result<Journal> journal_of(const std::vector<ObjectRun> &objects, const Scenario
   std::vector<InputFile> inputs;
   for (const ObjectRun &one : objects)
     inputs.insert(inputs.end(), one.object.inputs.begin(), one.object.inputs.end());
-  return open_journal(options, job_text(scenario, inputs, "run" + options.part.text()), monitor,
-                      diagnostics);
+  UMOV_ASSIGN(device, device_text(options.device));
+  return open_journal(options, job_text(scenario, inputs, "run" + options.part.text() + device),
+                      monitor, diagnostics);
 }
 
 } // namespace
@@ -187,9 +191,9 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
   UMOV_ASSIGN(journal, journal_of(objects, scenario, options, monitor, diagnostics));
   std::size_t with_rows = 0;
   for (std::size_t k = 0; k < objects.size(); ++k) {
-    auto outcome = compute(objects[k], objects.size() == 1, {&journal, k}, monitor);
+    auto outcome = compute(objects[k], objects.size() == 1, {&journal, k}, monitor, diagnostics);
     if (!outcome && objects.size() == 1)
-      return tl::unexpected(outcome.error());
+      return tl::unexpected(with_way_on(outcome.error(), journal));
     if (outcome) {
       objects[k].outcome = std::move(*outcome);
       out.stopped = objects[k].outcome.stopped;

@@ -92,7 +92,7 @@ Result<void> write_run(RunResult &result, const Scenario &scenario, const JobOpt
   for (const ObjectRun &one : result.objects) {
     inputs.insert(inputs.end(), one.object.inputs.begin(), one.object.inputs.end());
     manifest.light.push_back({one.request.object, name_of(one.light.method), one.light.visibility,
-                              one.light.instruction_set});
+                              one.light.instruction_set, one.light.device});
   }
   if (result.stopped)
     manifest.stopped = result.stopped->text();

@@ -124,13 +124,19 @@ private:
 Result<std::unique_ptr<RangedJob>> ranged_run(const Scenario &scenario, const JobOptions &options,
                                               const std::vector<std::size_t> &layout,
                                               const Monitor &monitor, Diagnostics &diagnostics) {
+  if (options.device.choice == DeviceChoice::Auto)
+    return fail(
+        ErrorCode::Usage,
+        "--device auto would light some shards by a card and others by the processor, which do not "
+        "agree to the last digit. Give --device cuda or --device cpu.");
   UMOV_ASSIGN(objects, load_run(scenario, options, monitor, diagnostics));
   std::vector<InputFile> inputs;
   for (const ObjectRun &one : objects)
     inputs.insert(inputs.end(), one.object.inputs.begin(), one.object.inputs.end());
-  std::string identity = job_text(
-      scenario, inputs,
-      fmt::format("run; bad {} old {}", options.allow_bad_checksum, options.allow_old_elements));
+  UMOV_ASSIGN(device, device_text(options.device));
+  std::string identity = job_text(scenario, inputs,
+                                  fmt::format("run; bad {} old {}{}", options.allow_bad_checksum,
+                                              options.allow_old_elements, device));
   std::vector<std::size_t> passes = layout;
   if (passes.size() != objects.size()) {
     UMOV_ASSIGN(counted, count_passes(objects, options.threads, monitor));

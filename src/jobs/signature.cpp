@@ -32,6 +32,8 @@ void describe(const SignatureRequest &request, const PoseLight &light, Table &ta
     table.note("method", visibility);
     return;
   }
+  if (const std::string &device = light.model().facts().device; !device.empty())
+    table.note("device", device);
   const Stokes<ScatteringPlane> &source = light.options().source;
   table.note("source", request.source == Source::Sun
                            ? (light.sun_radius_rad() > 0 ? "Sun, uniform disk of 0.2665 deg radius"
@@ -78,10 +80,11 @@ std::string job_of(const Scenario &scenario, const PoseList &poses, const Signat
   const Stokes<ScatteringPlane> &s = light.source;
   return job_text(scenario, pose_light.inputs(),
                   fmt::format("signature of {}; source {} {} {} {} {} {}; method {}, accuracy {}, "
-                              "seed {}, between {}",
+                              "seed {}, between {}{}",
                               poses.origin, static_cast<int>(request.source), s.i, s.q, s.u, s.v,
                               fmt::join(request.temperatures, ","), name_of(light.method),
-                              light.accuracy, light.seed, name_of(light.between)));
+                              light.accuracy, light.seed, name_of(light.between),
+                              pose_light.model().facts().device));
 }
 
 /// A block of poses from their numbers to rows.
@@ -105,12 +108,14 @@ public:
     if (const auto kept = journal_ != nullptr ? journal_->find(block) : std::nullopt;
         kept && from_bytes(*kept, results_) && results_.poses() == lit_.count)
       return true;
-    if (!light_.evaluate(part_, results_, task_))
+    if (!evaluate())
       return false;
     if (journal_ != nullptr)
       journal_->keep(block, to_bytes(results_));
     return true;
   }
+  /// Why the last block could not be lit: a card was lost.
+  [[nodiscard]] const std::optional<Error> &lost() const { return lost_; }
   /// How many poses of the range were lit.
   [[nodiscard]] std::size_t count() const { return wanted_.count; }
   /// Their rows.
@@ -125,6 +130,14 @@ public:
   }
 
 private:
+  bool evaluate() {
+    try {
+      return light_.evaluate(part_, results_, task_);
+    } catch (const Failure &failure) {
+      lost_ = failure.error();
+      return false;
+    }
+  }
   void take(std::size_t begin, std::size_t count) {
     part_.resize(count);
     numbers_.resize(count);
@@ -140,6 +153,7 @@ private:
   const PoseLight &light_;
   Journal *journal_;
   LightTask task_;
+  std::optional<Error> lost_;
   IndexRange wanted_, lit_;
   StokesTable results_;
   std::vector<Pose> part_;
@@ -193,7 +207,7 @@ public:
     PoseBlocks blocks(poses_, light_, nullptr, task_of(options_, monitor));
     for (std::size_t at = range.first; at < range.end(); at += blocks.count()) {
       if (monitor.is_cancelled() || !blocks.light(at, range))
-        return tl::unexpected(stopped_after(at - range.first, range.count));
+        return tl::unexpected(blocks.lost().value_or(stopped_after(at - range.first, range.count)));
       UMOV_TRY(sink.add(0, blocks.rows(request_)));
       monitor.advance("poses", at + blocks.count() - range.first, range.count);
     }
@@ -217,6 +231,7 @@ Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, co
   UMOV_TRY(PoseLight::check(scenario, request));
   UMOV_ASSIGN(light,
               PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
+  tell_of_device(light.model().facts(), diagnostics);
   std::string identity = job_of(scenario, poses, request, light);
   return std::make_unique<RangedSignature>(poses, request, options, std::move(light),
                                            std::move(identity));
@@ -232,6 +247,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_ASSIGN(light,
               PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
   const LightModel &model = light.model();
+  tell_of_device(model.facts(), diagnostics);
   UMOV_ASSIGN(journal,
               open_journal(options, job_of(scenario, poses, request, light) + options.part.text(),
                            monitor, diagnostics));
@@ -248,7 +264,8 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   if (journal.problem())
     diagnostics.warn(journal.problem()->text());
   if (done < range.count)
-    return tl::unexpected(with_way_on(sink.stop(stopped_after(done, range.count)), journal));
+    return tl::unexpected(
+        with_way_on(sink.stop(blocks.lost().value_or(stopped_after(done, range.count))), journal));
   UMOV_TRY(sink.finish());
   journal.finish();
   UMOV_TRY(model.keep_masks()); // last: the rows are complete without it

@@ -6,8 +6,6 @@
 #include "kernel/microfacet.inl.h"
 #include "kernel/solar_nodes.inl.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace umov::kernel {
@@ -25,20 +23,20 @@ struct DiskImage {
   double along = 0, across = 0; ///< variances in the scattering plane and across it
   double tangent = 0;           ///< of half the phase angle
   /// The disk is even in directions of light: its image's mean lies off that of the disk's centre.
-  [[nodiscard]] double shift() const { return -tangent * along; }
+  [[nodiscard]] UMOV_KERNEL double shift() const { return -tangent * along; }
 };
 
-inline DiskImage disk_image(double radius, double l_v) {
+UMOV_KERNEL DiskImage disk_image(double radius, double l_v) {
   const DiskVariances<double> kappa = disk_variances(radius, l_v);
-  const double cosine2 = std::max((1 + l_v) / 2, 1e-6);
-  return {kappa.along, kappa.across, std::sqrt(std::max(0.0, (1 - l_v) / 2) / cosine2)};
+  const double cosine2 = max((1 + l_v) / 2, 1e-6);
+  return {kappa.along, kappa.across, sqrt(max(0.0, (1 - l_v) / 2) / cosine2)};
 }
 
 /// Cumulants of an even ellipse: its characteristic function is 2 J1(k)/k, whose logarithm is
 /// -k^2/8 - k^4/384 - k^6/9216 (Rayleigh's sums), k^2 = a^2 k_x^2 + b^2 k_y^2; each k^2 is an
 /// operator -(a^2 d2/dx2 + b^2 d2/dy2), which makes Hermite polynomials of a Gaussian.
 /// p, q: squares of the half axes over the variances of the mean.
-inline void put_correction(double p, double q, DiskCorrection<double> &out) {
+UMOV_KERNEL void put_correction(double p, double q, DiskCorrection<double> &out) {
   const double f = -1.0 / 384, s = 1.0 / 9216;
   const double p2 = p * p, q2 = q * q, pq = p * q, p3 = p * p2, q3 = q * q2;
   out.one = 1 + f * (3 * p2 + 2 * pq + 3 * q2) - s * (15 * p3 + 9 * p * pq + 9 * q * pq + 15 * q3);
@@ -55,8 +53,9 @@ inline void put_correction(double p, double q, DiskCorrection<double> &out) {
 
 /// `width`: standard deviation of the slope of a Gaussian lobe, alpha of GGX; `scale`: what the
 /// integral over chords in units of the width is multiplied by.
-inline void put_chords(const DiskImage &disk, double width, double scale, DiskChords<double> &out) {
-  const double a = 2 * std::sqrt(disk.along), b = 2 * std::sqrt(disk.across);
+UMOV_KERNEL void put_chords(const DiskImage &disk, double width, double scale,
+                            DiskChords<double> &out) {
+  const double a = 2 * sqrt(disk.along), b = 2 * sqrt(disk.across);
   out.per_width = 1 / width;
   out.scale = scale / (std::numbers::pi * a * b);
   out.half_along = a / width;
@@ -67,11 +66,11 @@ inline void put_chords(const DiskImage &disk, double width, double scale, DiskCh
 
 /// 1 - n.h or more where the squared sine of the angle is `sine2`; 4, which nothing reaches, from
 /// 90 deg on.
-inline double apart_of(double sine2) { return sine2 < 1 ? 0.5 * sine2 * (1 + sine2) : 4; }
+UMOV_KERNEL double apart_of(double sine2) { return sine2 < 1 ? 0.5 * sine2 * (1 + sine2) : 4; }
 
 /// Everything that a pose makes of a lobe. What `out` does not use stays as it was.
-inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage &disk,
-                             LobeAtPose<double> &out) {
+UMOV_KERNEL void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage &disk,
+                                  LobeAtPose<double> &out) {
   constexpr double pi = std::numbers::pi, log2e = std::numbers::log2e;
   if (lobe.kind == LobeKind::Ggx) {
     const double alpha2 = lobe.shape * lobe.shape, size = 4 * disk.across / alpha2;
@@ -92,9 +91,9 @@ inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage 
   out.uses_chords = q > corrected_max;
   out.is_corrected = q > plain_max;
   if (out.uses_chords) {
-    const double width = 1 / std::sqrt(per_variance), a = 2 * std::sqrt(disk.along) + 8 * width,
-                 b = 2 * std::sqrt(disk.across) + 8 * width; // kernel/disk_lobe.inl.h takes 7
-    put_chords(disk, width, peak / per_variance * std::sqrt(pi / 2), out.chords);
+    const double width = 1 / sqrt(per_variance), a = 2 * sqrt(disk.along) + 8 * width,
+                 b = 2 * sqrt(disk.across) + 8 * width; // kernel/disk_lobe.inl.h takes 7
+    put_chords(disk, width, peak / per_variance * sqrt(pi / 2), out.chords);
     out.reach = apart_of(a * a + b * b);
     return;
   }
@@ -113,51 +112,53 @@ inline void put_lobe_at_pose(const LobeConstants<double> &lobe, const DiskImage 
   }
 }
 
+UMOV_KERNEL float rounded(double x) { return static_cast<float>(x); }
+
 /// The constants of a lobe in single precision.
-inline LobeConstants<float> round_lobe(const LobeConstants<double> &from) {
-  const auto f = [](double x) { return static_cast<float>(x); };
+UMOV_KERNEL LobeConstants<float> round_lobe(const LobeConstants<double> &from) {
   LobeConstants<float> out;
   out.kind = from.kind;
   out.joint = from.joint;
-  out.shape = f(from.shape);
-  out.peak = f(from.peak);
-  out.per_width2 = f(from.per_width2);
+  out.shape = rounded(from.shape);
+  out.peak = rounded(from.peak);
+  out.per_width2 = rounded(from.per_width2);
   for (std::size_t k = 0; k <= polynomial_degree; ++k)
-    out.masking[k] = f(from.masking[k]);
-  out.masking_limit = f(from.masking_limit);
-  out.masking_scale = f(from.masking_scale);
+    out.masking[k] = rounded(from.masking[k]);
+  out.masking_limit = rounded(from.masking_limit);
+  out.masking_scale = rounded(from.masking_scale);
   return out;
 }
 
 /// What the pose makes of it, likewise.
-inline void round_lobe_at_pose(const LobeAtPose<double> &from, LobeAtPose<float> &to) {
-  const auto f = [](double x) { return static_cast<float>(x); };
-  to.peak = f(from.peak);
-  to.along = f(from.along);
-  to.across = f(from.across);
-  to.reach = f(from.reach);
+UMOV_KERNEL void round_lobe_at_pose(const LobeAtPose<double> &from, LobeAtPose<float> &to) {
+  to.peak = rounded(from.peak);
+  to.along = rounded(from.along);
+  to.across = rounded(from.across);
+  to.reach = rounded(from.reach);
   to.is_corrected = from.is_corrected;
   to.uses_chords = from.uses_chords;
   if (from.is_corrected) {
     const auto &c = from.correction;
-    to.correction = {f(c.per_along), f(c.per_across), f(c.one), f(c.u),   f(c.w),   f(c.uu),
-                     f(c.uw),        f(c.ww),         f(c.uuu), f(c.uuw), f(c.uww), f(c.www)};
+    to.correction = {rounded(c.per_along), rounded(c.per_across), rounded(c.one), rounded(c.u),
+                     rounded(c.w),         rounded(c.uu),         rounded(c.uw),  rounded(c.ww),
+                     rounded(c.uuu),       rounded(c.uuw),        rounded(c.uww), rounded(c.www)};
   }
   if (from.uses_chords) {
     const auto &c = from.chords;
-    to.chords = {f(c.per_width),   f(c.scale), f(c.half_along),
-                 f(c.half_across), f(c.bend),  f(c.skew)};
+    to.chords = {rounded(c.per_width),   rounded(c.scale), rounded(c.half_along),
+                 rounded(c.half_across), rounded(c.bend),  rounded(c.skew)};
   }
 }
 
 /// Half vector of two directions; `other` where there is none (phase 180).
-template <class V> V half_vector(V l, V v, V other) {
+template <class V> UMOV_KERNEL V half_vector(V l, V v, V other) {
   const V sum = l + v;
   const double length = norm(sum);
   return length > 1e-12 ? (1 / length) * sum : other;
 }
 /// Mean half vector of the disk. `apart` is |l - v|.
-template <class V> V mean_half_vector(V l, V v, V other, double apart, const DiskImage &disk) {
+template <class V>
+UMOV_KERNEL V mean_half_vector(V l, V v, V other, double apart, const DiskImage &disk) {
   if (!(apart > 1e-7))
     return half_vector(l, v, other);
   // The shift is the tangent of half the phase angle, |l - v|/|l + v|, times `along`.

@@ -1,6 +1,6 @@
 #include <umov/optics/realisable.h>
 
-#include <Eigen/Eigenvalues>
+#include "algebra/dense.h"
 #include <complex>
 
 namespace umov {
@@ -9,20 +9,25 @@ std::array<double, 4> cloude_eigenvalues(const std::array<std::array<double, 4>,
   using Complex = std::complex<double>;
   const Complex i(0, 1);
   // Pauli matrices in the order of Stokes I, Q, U, V.
-  const std::array<Eigen::Matrix2cd, 4> sigma{Eigen::Matrix2cd::Identity(),
-                                              (Eigen::Matrix2cd() << 1, 0, 0, -1).finished(),
-                                              (Eigen::Matrix2cd() << 0, 1, 1, 0).finished(),
-                                              (Eigen::Matrix2cd() << 0, -i, i, 0).finished()};
-  Eigen::Matrix4cd coherency = Eigen::Matrix4cd::Zero();
+  const Complex sigma[4][2][2]{
+      {{1, 0}, {0, 1}}, {{1, 0}, {0, -1}}, {{0, 1}, {1, 0}}, {{0, -i}, {i, 0}}};
+  Complex coherency[4][4]{};
   for (std::size_t r = 0; r < 4; ++r)
     for (std::size_t c = 0; c < 4; ++c)
-      for (int a = 0; a < 2; ++a)
-        for (int b = 0; b < 2; ++b)
-          coherency.block<2, 2>(2 * a, 2 * b) +=
-              0.25 * mueller[r][c] * sigma[r](a, b) * sigma[c].conjugate();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4cd> solver(coherency, Eigen::EigenvaluesOnly);
-  const Eigen::Vector4d values = solver.eigenvalues();
-  return {values(0), values(1), values(2), values(3)};
+      for (std::size_t row = 0; row < 4; ++row)
+        for (std::size_t column = 0; column < 4; ++column)
+          coherency[row][column] += 0.25 * mueller[r][c] * sigma[r][row / 2][column / 2] *
+                                    std::conj(sigma[c][row % 2][column % 2]);
+  // The real and symmetric [[Re, -Im], [Im, Re]] has the eigenvalues of the Hermitian one, each
+  // twice.
+  algebra::MatrixXd real(8, 8);
+  for (Eigen::Index row = 0; row < 8; ++row)
+    for (Eigen::Index column = 0; column < 8; ++column) {
+      const Complex &z = coherency[row % 4][column % 4];
+      real(row, column) = row / 4 == column / 4 ? z.real() : row < 4 ? -z.imag() : z.imag();
+    }
+  const algebra::VectorXd values = algebra::symmetric_eigenvalues(real);
+  return {values(0), values(2), values(4), values(6)};
 }
 
 } // namespace umov

@@ -58,7 +58,8 @@ Result<void> check_element_age(const ElementSet &set, Epoch<Utc> start, Epoch<Ut
   if (age > 30 && !allow_old)
     return fail(ErrorCode::BadInput,
                 fmt::format("{}: the elements are of {}, {:.1f} d from the span asked for; 30 d is "
-                            "the limit. Give newer elements or pass --allow-old-elements.",
+                            "the limit. Give newer elements or pass --allow-old-elements (in "
+                            "Python allow_old_elements=True).",
                             set.norad_cat_id, to_iso(set.epoch), age),
                 where);
   if (age > 7)

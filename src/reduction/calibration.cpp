@@ -1,27 +1,26 @@
 #include <umov/reduction/calibration.h>
 
-#include <Eigen/Dense>
+#include "algebra/dense.h"
 #include <cmath>
 #include <fmt/format.h>
 
 namespace umov {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
+using algebra::MatrixXd;
+using algebra::VectorXd;
 using Complex = std::complex<double>;
 
 /// A square matrix that can be inverted to some digits.
-bool is_regular(const Matrix &m) {
-  const Eigen::JacobiSVD<Matrix> svd(m);
-  const auto &s = svd.singularValues();
+bool is_regular(const MatrixXd &m) {
+  const VectorXd s = algebra::singular_values(m);
   return s(s.size() - 1) > 1e-10 * s(0);
 }
 
 } // namespace
 
 Result<PolarimeterCalibration> calibrate_polarimeter(std::span<const StandardMeasurement> data) {
-  const auto n = static_cast<Eigen::Index>(data.size());
+  const std::size_t n = data.size();
   bool has_polarized = false;
   for (const StandardMeasurement &one : data)
     has_polarized = has_polarized || std::abs(one.truth) > 0;
@@ -30,29 +29,36 @@ Result<PolarimeterCalibration> calibrate_polarimeter(std::span<const StandardMea
                 fmt::format("{} measurements of standards, {} polarized one among them; at least "
                             "two with a polarized standard were expected",
                             n, has_polarized ? "a" : "no"));
-  Eigen::MatrixXcd g(n, 2);
-  Eigen::VectorXcd z(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const StandardMeasurement &one = data[static_cast<std::size_t>(k)];
-    const double weight = one.sd > 0 ? 1 / one.sd : 1;
-    g(k, 0) = one.truth * std::polar(1.0, -2 * one.axis_rad) * weight;
-    g(k, 1) = weight;
-    z(k) = one.measured * weight;
+  // Normal equations of z = factor g + offset w, weighted: [[gg, gw], [conj(gw), ww]].
+  double gg = 0, ww = 0;
+  Complex gw, gz, wz;
+  const auto weighted = [](const StandardMeasurement &one) {
+    const double w = one.sd > 0 ? 1 / one.sd : 1;
+    return std::tuple(one.truth * std::polar(1.0, -2 * one.axis_rad) * w, w, one.measured * w);
+  };
+  for (const StandardMeasurement &one : data) {
+    const auto [g, w, z] = weighted(one);
+    gg += std::norm(g);
+    ww += w * w;
+    gw += std::conj(g) * w;
+    gz += std::conj(g) * z;
+    wz += w * z;
   }
-  const Eigen::Matrix2cd normal = g.adjoint() * g;
-  if (std::abs(normal.determinant()) < 1e-12 * std::abs(normal(0, 0) * normal(1, 1)))
+  const double determinant = gg * ww - std::norm(gw);
+  if (std::abs(determinant) < 1e-12 * gg * ww)
     return fail(ErrorCode::BadInput,
                 "all standards stand at one instrument angle: the angle of the instrument and its "
                 "own polarization cannot be told apart. Turn it, or take an unpolarized star too");
-  const Eigen::Matrix2cd inverse = normal.inverse();
-  const Eigen::Vector2cd found = inverse * (g.adjoint() * z);
   PolarimeterCalibration out;
-  out.factor = found(0);
-  out.offset = found(1);
-  out.factor_sd = std::sqrt(inverse(0, 0).real());
-  out.offset_sd = std::sqrt(inverse(1, 1).real());
-  out.chi2 = (z - g * found).squaredNorm();
-  out.dof = static_cast<int>(2 * n - 4);
+  out.factor = (ww * gz - gw * wz) / determinant;
+  out.offset = (gg * wz - std::conj(gw) * gz) / determinant;
+  out.factor_sd = std::sqrt(ww / determinant);
+  out.offset_sd = std::sqrt(gg / determinant);
+  for (const StandardMeasurement &one : data) {
+    const auto [g, w, z] = weighted(one);
+    out.chi2 += std::norm(z - g * out.factor - w * out.offset);
+  }
+  out.dof = 2 * static_cast<int>(n) - 4;
   return out;
 }
 
@@ -84,21 +90,21 @@ CalibratedTarget apply(const PolarimeterCalibration &c, Complex measured, double
 Result<ChannelCalibration> calibrate_channel(std::span<const double> angles_rad,
                                              std::span<const double> counts, double variance) {
   const auto n = static_cast<Eigen::Index>(angles_rad.size());
-  Matrix s(n, 3);
-  Vector c(n);
+  MatrixXd s(n, 3);
+  VectorXd c(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const double angle = angles_rad[static_cast<std::size_t>(k)];
     s.row(k) << 1, std::cos(2 * angle), std::sin(2 * angle);
     c(k) = counts[static_cast<std::size_t>(k)];
   }
-  const Matrix normal = s.transpose() * s;
+  const MatrixXd normal = algebra::gram(s);
   if (n < 3 || !is_regular(normal))
     return fail(ErrorCode::BadInput,
                 fmt::format("{} angles of the polarizer do not tell I, Q and U; three different "
                             "ones within 180 deg were expected",
                             n));
-  const Matrix inverse = normal.inverse();
-  const Vector row = inverse * (s.transpose() * c);
+  const MatrixXd inverse = algebra::inverse_of(normal);
+  const VectorXd row = algebra::times(inverse, algebra::transposed_times(s, c));
   ChannelCalibration out;
   for (Eigen::Index k = 0; k < 3; ++k) {
     out.row[static_cast<std::size_t>(k)] = row(k);
@@ -109,23 +115,24 @@ Result<ChannelCalibration> calibrate_channel(std::span<const double> angles_rad,
 
 Result<PhotometricCalibration> calibrate_photometry(std::span<const PhotometricStandard> stars) {
   const auto n = static_cast<Eigen::Index>(stars.size());
-  Matrix m(n, 3);
-  Vector y(n);
+  MatrixXd m(n, 3);
+  VectorXd y(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const PhotometricStandard &one = stars[static_cast<std::size_t>(k)];
     m.row(k) << 1, -one.airmass, -one.colour;
     y(k) = one.catalogue_mag - one.instrumental_mag;
   }
-  const Matrix normal = m.transpose() * m;
+  const MatrixXd normal = algebra::gram(m);
   if (n < 4 || !is_regular(normal))
     return fail(ErrorCode::BadInput,
                 fmt::format("{} standards do not tell zero point, extinction and colour term; at "
                             "least four with different air masses and colours were expected",
                             n));
-  const Matrix inverse = normal.inverse();
-  const Vector found = inverse * (m.transpose() * y);
+  const MatrixXd inverse = algebra::inverse_of(normal);
+  const VectorXd found = algebra::times(inverse, algebra::transposed_times(m, y));
   PhotometricCalibration out{found(0), found(1), found(2), {}, 0};
-  out.residual_sd = std::sqrt((y - m * found).squaredNorm() / static_cast<double>(n - 3));
+  out.residual_sd =
+      std::sqrt((y - algebra::times(m, found)).squaredNorm() / static_cast<double>(n - 3));
   for (Eigen::Index a = 0; a < 3; ++a)
     for (Eigen::Index b = 0; b < 3; ++b)
       out.covariance[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =

@@ -1,6 +1,6 @@
 #include <umov/reduction/likelihood.h>
 
-#include <Eigen/Dense>
+#include "algebra/dense.h"
 #include <algorithm>
 #include <boost/math/special_functions/bessel.hpp>
 #include <boost/math/special_functions/erf.hpp>
@@ -94,12 +94,11 @@ double log_likelihood(std::span<const PredictedCounts> counts,
       j.col(c) = Eigen::Map<const Eigen::VectorXd>(one.effect.data(), n) * one.sd;
     }
     const Eigen::MatrixXd weighted = weight.asDiagonal() * j;
-    const Eigen::MatrixXd small = Eigen::MatrixXd::Identity(m, m) + j.transpose() * weighted;
-    const Eigen::LLT<Eigen::MatrixXd> factor(small);
-    const Eigen::VectorXd projected = weighted.transpose() * residual;
+    const algebra::SymmetricFactor factor(Eigen::MatrixXd::Identity(m, m) +
+                                          algebra::transposed_product(j, weighted));
+    const Eigen::VectorXd projected = algebra::transposed_times(weighted, residual);
     chi2 -= projected.dot(factor.solve(projected));
-    for (Eigen::Index c = 0; c < m; ++c)
-      log_determinant += 2 * std::log(factor.matrixL()(c, c));
+    log_determinant += factor.log_determinant();
   }
   return -(chi2 + log_determinant) / 2;
 }

@@ -1,6 +1,6 @@
 #include <umov/reduction/sequence.h>
 
-#include <Eigen/Dense>
+#include "algebra/dense.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -8,8 +8,8 @@
 namespace umov {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
+using Matrix = algebra::MatrixXd;
+using Vector = algebra::VectorXd;
 
 /// 1, cos, sin, cos 2, sin 2 ... of the phase.
 Vector fourier_at(double phase, Eigen::Index harmonics) {
@@ -95,8 +95,7 @@ bool tells_apart(const Matrix &normal) {
   const Vector inverse = root.cwiseInverse();
   const Matrix unit = inverse.asDiagonal() * normal * inverse.asDiagonal();
   constexpr double least = 1e-9; // of rounding there is 1e-14
-  return Eigen::SelfAdjointEigenSolver<Matrix>(unit, Eigen::EigenvaluesOnly).eigenvalues()(0) >
-         least;
+  return algebra::symmetric_eigenvalues(unit)(0) > least;
 }
 
 tl::unexpected<Error> indistinct() {
@@ -152,16 +151,16 @@ public:
       const Linearised now = linearise(data_, basis_, state, scale_);
       const Vector residual = counts_ - now.mean;
       const Matrix weighted = inverse_times(now.mean, effects, now.jacobian).transpose();
-      const Matrix normal = weighted * now.jacobian;
+      const Matrix normal = algebra::product(weighted, now.jacobian);
       if (!tells_apart(normal))
         return indistinct();
-      const Eigen::LDLT<Matrix> factor(normal);
-      const Vector step = factor.solve(weighted * residual);
-      if (factor.info() != Eigen::Success || !step.allFinite())
+      const algebra::SymmetricFactor factor(normal);
+      const Vector step = factor.solve(algebra::times(weighted, residual));
+      if (!factor.is_solvable() || !step.allFinite())
         return indistinct();
       state.series += step.head(state.series.size());
       state.fractions += step.tail(state.fractions.size());
-      covariance = factor.solve(Matrix::Identity(step.size(), step.size()));
+      covariance = factor.inverse();
       out.chi2 = residual.dot(inverse_times(now.mean, effects, residual).col(0));
     }
     put(state, covariance, out);
@@ -193,8 +192,8 @@ private:
       const Eigen::Index count = end - begin;
       const Vector effect = (mean - sky_).segment(begin, count) * first.flicker;
       const Vector weighted = weight.segment(begin, count).cwiseProduct(effect);
-      const Eigen::RowVectorXd along = effect.transpose() * out.middleRows(begin, count);
-      out.middleRows(begin, count) -= weighted * along / (1 + effect.dot(weighted));
+      const Vector along = algebra::transposed_times(out.middleRows(begin, count), effect);
+      out.middleRows(begin, count) -= weighted * along.transpose() / (1 + effect.dot(weighted));
     }
     return out;
   }
@@ -202,13 +201,15 @@ private:
   /// C^-1 times a matrix (Woodbury).
   [[nodiscard]] Matrix inverse_times(const Vector &mean, const Matrix &effects,
                                      const Matrix &m) const {
-    const Matrix plain = own_inverse_times(mean, m);
+    Matrix plain = own_inverse_times(mean, m);
     if (effects.cols() == 0)
       return plain;
     const Matrix weighted = own_inverse_times(mean, effects);
-    const Matrix small =
-        Matrix::Identity(effects.cols(), effects.cols()) + effects.transpose() * weighted;
-    return plain - weighted * Eigen::LLT<Matrix>(small).solve(effects.transpose() * plain);
+    const Matrix small = Matrix::Identity(effects.cols(), effects.cols()) +
+                         algebra::transposed_product(effects, weighted);
+    const algebra::SymmetricFactor factor(small);
+    return plain - algebra::product(
+                       weighted, factor.solve_columns(algebra::transposed_product(effects, plain)));
   }
 
   void put(const State &state, const Matrix &covariance, SequenceFit &out) const {
@@ -218,7 +219,8 @@ private:
     out.dof = static_cast<int>(counts_.size() - terms - fractions);
     const Vector mean = mean_of(made_of_, basis_);
     out.mean = mean.dot(state.series) / scale_;
-    out.mean_variance = mean.dot(covariance.topLeftCorner(terms, terms) * mean) / (scale_ * scale_);
+    out.mean_variance =
+        mean.dot(algebra::times(covariance.topLeftCorner(terms, terms), mean)) / (scale_ * scale_);
     for (Eigen::Index k = 0; k < terms; ++k)
       out.series.push_back(state.series(k) / scale_);
     for (Eigen::Index a = 0; a < fractions; ++a) {

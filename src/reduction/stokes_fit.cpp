@@ -1,6 +1,6 @@
 #include <umov/reduction/stokes_fit.h>
 
-#include <Eigen/Dense>
+#include "algebra/dense.h"
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
@@ -9,8 +9,8 @@
 namespace umov {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
+using Matrix = algebra::MatrixXd;
+using Vector = algebra::VectorXd;
 
 struct System {
   Matrix w;
@@ -43,7 +43,7 @@ double scale_of(std::span<const ChannelDatum> data) {
 
 /// Counts of a model; of noise alone no less than a thousandth of an electron.
 Vector variance_of(const System &s, const Vector &stokes) {
-  const Vector mean = (s.w * stokes + s.sky).cwiseMax(1e-3);
+  const Vector mean = (algebra::times(s.w, stokes) + s.sky).cwiseMax(1e-3);
   return mean.cwiseProduct(s.excess) + s.fixed;
 }
 
@@ -53,10 +53,10 @@ struct Solution {
 };
 
 Solution solve(const System &s, const Matrix &inverse_c) {
-  const Matrix weighted = s.w.transpose() * inverse_c;
+  const Matrix weighted = algebra::transposed_product(s.w, inverse_c);
   Solution out;
-  out.covariance = (weighted * s.w).inverse();
-  out.stokes = out.covariance * (weighted * (s.n - s.sky));
+  out.covariance = algebra::inverse_of(algebra::product(weighted, s.w));
+  out.stokes = algebra::times(out.covariance, algebra::times(weighted, s.n - s.sky));
   return out;
 }
 
@@ -69,11 +69,11 @@ StokesFit put(const System &s, const Solution &solution, const Matrix &c, double
       out.covariance[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] =
           solution.covariance(i, j) / scale / scale;
   }
-  const Vector residual = s.n - s.sky - s.w * solution.stokes;
-  const Eigen::LDLT<Matrix> factor(c);
+  const Vector residual = s.n - s.sky - algebra::times(s.w, solution.stokes);
+  const algebra::SymmetricFactor factor(c);
   out.chi2 = residual.dot(factor.solve(residual));
   out.dof = static_cast<int>(s.n.size() - k);
-  out.minus_2_log_likelihood = out.chi2 + factor.vectorD().array().log().sum();
+  out.minus_2_log_likelihood = out.chi2 + factor.log_determinant();
   return out;
 }
 
@@ -116,7 +116,7 @@ Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t par
       const Eigen::Map<const Vector> effect(one.effect.data(), s.n.size());
       c += one.sd * one.sd * effect * effect.transpose();
     }
-    solution = solve(s, c.inverse());
+    solution = solve(s, algebra::inverse_of(c));
   }
   return put(s, solution, c, scale);
 }

@@ -14,18 +14,18 @@
 namespace umov {
 namespace {
 
-struct Box {
+struct Bounds {
   Vec3<Body> low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
 
   void add(Vec3<Body> p) {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  void add(const Box &b) {
+  void add(const Bounds &b) {
     add(b.low);
     add(b.high);
   }
-  [[nodiscard]] bool touches(const Box &b) const {
+  [[nodiscard]] bool touches(const Bounds &b) const {
     return low.x <= b.high.x && b.low.x <= high.x && low.y <= b.high.y && b.low.y <= high.y &&
            low.z <= b.high.z && b.low.z <= high.z;
   }
@@ -44,8 +44,8 @@ std::uint64_t spread(std::uint64_t v) {
 /// level holds the nodes 2k and 2k + 1 of the one below.
 class BoxTree {
 public:
-  BoxTree(const std::vector<Box> &boxes, const std::vector<std::uint32_t> &items) {
-    Box all;
+  BoxTree(const std::vector<Bounds> &boxes, const std::vector<std::uint32_t> &items) {
+    Bounds all;
     for (const std::uint32_t i : items)
       all.add(boxes[i]);
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
@@ -54,7 +54,7 @@ public:
         const double part = to > from ? ((low + high) / 2 - from) / (to - from) : 0;
         return spread(static_cast<std::uint64_t>(std::clamp(part, 0.0, 1.0) * 0x1fffff));
       };
-      const Box &b = boxes[i];
+      const Bounds &b = boxes[i];
       order.emplace_back(cell(b.low.x, b.high.x, all.low.x, all.high.x) |
                              cell(b.low.y, b.high.y, all.low.y, all.high.y) << 1 |
                              cell(b.low.z, b.high.z, all.low.z, all.high.z) << 2,
@@ -67,7 +67,7 @@ public:
       levels_[0].push_back(boxes[i]);
     }
     while (levels_.back().size() > 1) {
-      std::vector<Box> next((levels_.back().size() + 1) / 2);
+      std::vector<Bounds> next((levels_.back().size() + 1) / 2);
       for (std::size_t k = 0; k < levels_.back().size(); ++k)
         next[k / 2].add(levels_.back()[k]);
       levels_.push_back(std::move(next));
@@ -80,7 +80,7 @@ public:
   /// Calls take(item) for every item behind the one at `place` whose box touches that one's, until
   /// it says false.
   template <class Take> void visit_behind(std::size_t place, Take take) const {
-    const Box box = levels_[0][place];
+    const Bounds box = levels_[0][place];
     std::array<std::pair<std::size_t, std::size_t>, 80> stack;
     std::size_t depth = 0;
     stack[depth++] = {levels_.size() - 1, 0};
@@ -101,7 +101,7 @@ public:
 
 private:
   std::vector<std::uint32_t> items_;
-  std::vector<std::vector<Box>> levels_;
+  std::vector<std::vector<Bounds>> levels_;
 };
 
 struct Flat {
@@ -277,7 +277,7 @@ private:
   const std::vector<std::uint32_t> &welded_;
   double near_;
   std::vector<std::uint32_t> items_;
-  std::vector<Box> boxes_;
+  std::vector<Bounds> boxes_;
 };
 
 } // namespace

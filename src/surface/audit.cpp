@@ -10,7 +10,7 @@
 namespace umov {
 namespace {
 
-constexpr std::uint32_t stream = 0x61756474; // "audt"
+constexpr std::uint32_t stream_of_audit = 0x61756474; // "audt"
 
 Vec3<Facet> direction(double u, double w) {
   const double s = std::sqrt((1 - u) * (1 + u));
@@ -67,7 +67,7 @@ SurfaceAudit audit_surface(const Surface &surface, std::uint64_t geometries, std
   out.promises_energy = !material.measured && surface.has_diffuse();
   for (std::size_t b = 0; b < surface.band_count(); ++b) {
     for (std::uint64_t i = 0; i < geometries; ++i) {
-      const auto u = uniform4(seed, stream, i);
+      const auto u = uniform4(seed, stream_of_audit, i);
       look_at_pair(surface, b, direction(u[0], u[1]), direction(u[2], u[3]), out);
     }
     for (const double deg : {0., 20., 40., 60., 75., 85., 89.}) {

@@ -13,7 +13,7 @@
 namespace umov {
 namespace {
 
-constexpr std::uint32_t stream = 0x72617973; // "rays"
+constexpr std::uint32_t stream_of_rays = 0x72617973; // "rays"
 constexpr std::uint64_t rays_per_unit = 4096;
 
 /// Bin of a direction; the light comes from +x, so the mirror direction lies at azimuth 180 deg.
@@ -104,7 +104,7 @@ SingleScatter trace_height_field(const HeightField &field, double theta_rad, std
   parallel_for(units, threads, [&](std::size_t unit) {
     const std::uint64_t first = unit * rays_per_unit;
     for (std::uint64_t i = first; i < std::min(rays, first + rays_per_unit); ++i) {
-      const auto u = uniform4(seed, stream, i);
+      const auto u = uniform4(seed, stream_of_rays, i);
       Vec3<Body> out{};
       if (tracer.once(u[0], u[1], down, out) && out.z > 0)
         ++counts[unit][bin_of(out)];

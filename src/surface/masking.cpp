@@ -10,7 +10,7 @@
 namespace umov {
 namespace {
 
-constexpr std::size_t cells = 2048;
+constexpr std::size_t cells_of_slope = 2048;
 
 /// Integral over azimuth of max(a + b cos phi, 0); closed (of g in microfacet.md, Eq. 4).
 double azimuth_integral(double a, double b) {
@@ -41,9 +41,11 @@ double Masking::integral(double n_k, const std::function<double(double)> &densit
 }
 
 Masking::Masking(const std::function<double(double)> &density, double reach_rad)
-    : limit_(std::min(1.0, std::sin(std::min(reach_rad, pi / 2)))), per_cell_(cells / limit_) {
-  for (std::size_t i = 0; i <= cells; ++i)
-    values_.push_back(integral(limit_ * static_cast<double>(i) / cells, density, reach_rad));
+    : limit_(std::min(1.0, std::sin(std::min(reach_rad, pi / 2)))),
+      per_cell_(cells_of_slope / limit_) {
+  for (std::size_t i = 0; i <= cells_of_slope; ++i)
+    values_.push_back(
+        integral(limit_ * static_cast<double>(i) / cells_of_slope, density, reach_rad));
 }
 
 double Masking::operator()(double n_k) const {
@@ -52,7 +54,7 @@ double Masking::operator()(double n_k) const {
   if (n_k >= limit_)
     return limit_ < 1 ? 1 : std::min(1.0, n_k / values_.back());
   const double x = n_k * per_cell_;
-  const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(x), 1, cells - 2);
+  const auto i = std::clamp<std::size_t>(static_cast<std::size_t>(x), 1, cells_of_slope - 2);
   const double t = x - static_cast<double>(i);
   // Lagrange's cubic through i-1, i, i+1, i+2.
   const double *v = &values_[i - 1];

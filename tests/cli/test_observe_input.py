@@ -19,7 +19,8 @@ def scene(umov, tmp_path):
     def write(observation, air="", **more):
         if "bands" not in observation:
             observation = 'bands = ["nm:550"]\n' + observation
-        return write_scene(tmp_path, observation, atmosphere="seeing = { arcsec = 3 }\n" + air, **more)
+        seeing = "" if "seeing" in air else "seeing = { arcsec = 3 }\n"
+        return write_scene(tmp_path, observation, atmosphere=seeing + air, **more)
 
     return write
 
@@ -62,6 +63,8 @@ def test_day_is_refused(scene, umov):
 
 WARNED = [
     ("exposure_s = 1\n[detector]\nwell_e = 1e5", {}, "numbers fill first"),
+    ("exposure_s = 0.1", {"air": "seeing = { arcsec = 0.5 }"}, "under 3 px"),
+    ("exposure_s = 0.1\naperture_fwhm = 1", {}, "cuts the four orientations unevenly"),
     ("exposure_s = 1", {"alt_m": 10033}, "is in metres"),
     ("exposure_s = 1", {"air": "sky = { mag = 9 }"}, "more than ten times"),
     ("exposure_s = 1\nsequence = [{ analyser_deg = 45 }]", {}, "says nothing to a polarimeter"),
@@ -76,6 +79,34 @@ def test_what_is_warned_of(scene, umov, observation, change, told):
     done = umov("observe", scene(observation, **change))
     assert done.code == 0 and told in done.err, done.err
     assert "nan" not in (done.out + done.err)
+
+
+CURVES = [("500 0.5\n550 -1\n600 0.5\n", "band.csv:4: response -1"), ("500 0.5\n600 1\n550 0.5\n", "band.csv:5: wavelength 550"),
+          ("500 0.5\n", "one point"), (".5 0.5\n.55 1\n.6 .5\n", "micrometres"), ("105 0.5\n118 1\n125 0.5\n", "solar spectrum")]
+
+
+@pytest.mark.parametrize("points, told", CURVES)
+def test_curves_that_are_refused(scene, umov, tmp_path, points, told):
+    (tmp_path / "band.csv").write_text("# unit: nm\n# detector: photon\n" + points)
+    done = umov("observe", scene('exposure_s = 1\nbands = ["file:band.csv"]'))
+    assert done.code == 3 and told in done.err and "observation.bands" in done.err, done.err
+
+
+def test_no_memory_is_asked_for_a_billion_rows(scene, umov):
+    done = umov("observe", scene("exposure_s = 1e-6", start="2018-01-21T05:09:00Z", stop="2018-01-21T05:14:05Z"))
+    assert done.code == 3 and "the limit is" in done.err, done.err
+
+
+def test_air_near_the_horizon_is_told(scene, umov):
+    done = umov("observe", scene("exposure_s = 10", start="2018-01-21T05:04:00Z", stop="2018-01-21T05:07:00Z"))
+    assert done.code == 0 and "air mass is extrapolated" in done.err, done.err
+
+
+def test_air_is_described_once(scene, umov):
+    path = scene("exposure_s = 1")
+    path.write_text(path.read_text().replace("alt_m = 3058", 'alt_m = 3058\natmosphere = "clear"'))
+    done = umov("observe", path)
+    assert done.code == 3 and "observe.toml:" in done.err and "beside [atmosphere]" in done.err
 
 
 def test_a_table_is_no_folder(scene, umov, tmp_path):

@@ -25,6 +25,7 @@ def pages(tmp_path_factory):
     umov("observe", ROOT / "examples/observe_hst.toml", "--set", "output.dir=observe", "--set", "time.start=2018-01-21T05:09:16Z", "--set", "time.stop=2018-01-21T05:09:30Z",
          "--set", 'output.formats=["ecsv","html"]', "-q")
     umov("reduce", "observe/counts.ecsv", "-o", "s.ecsv", "--page", "reduce.html", "-q")
+    umov("exposure", "--instrument", "c11_imx250", "--band", "Bessell.V", "--page", "exposure.html", "-o", "e.csv", "-q")
     umov("mesh", "make", "chamfered-cube", "-o", "cube.obj")
     cube = f'object.0.mesh={{file="{folder}/cube.obj",unit="m",up="+Z"}}'
     umov("run", example, "--set", cube, "--set", 'object.0.materials={default="cell_gaas"}', "--set", "time.step_s=20",
@@ -62,6 +63,7 @@ KINDS = {  # page: figures that it must have, marks of its sky chart
     "material.html": (set(), 0),
     "observe/report.html": ({"Counts in the aperture"}, 0),
     "reduce.html": ({"Polarization", "Brightness"}, 0),
+    "exposure.html": ({"Error of p", "Signal to noise", "How long until p is known", "What makes the error of p"}, 0),
     "invert/report.html": (set(), 0),
     "paper/index.html": (set(), 0),
 }

@@ -37,6 +37,9 @@ std::string percent(double share);
 /// radians.
 std::string degrees_text(Angle angle);
 
+/// `text` with the letters A to Z small.
+std::string lowered(std::string_view text);
+
 /// `text` without blanks and tabs at both ends.
 std::string_view trimmed(std::string_view text);
 

@@ -14,7 +14,7 @@ namespace umov {
 struct SearchOptions {
   CurveErrors errors;
   std::size_t grid = 60'000;  ///< attitudes that are looked at first
-  std::size_t starts = 100;   ///< of them, spread out, that are refined
+  std::size_t starts = 300;   ///< of them, spread out, that are refined
   std::size_t samples = 1000; ///< of the posterior
   std::uint64_t seed = 0;     ///< of the samples
   unsigned threads = 0;       ///< the answer does not depend on it
@@ -69,6 +69,10 @@ struct PoseAnswer {
 /// All fixed attitudes that explain a curve. Interrupted if the light stopped; BadInput for a curve
 /// without measurements.
 Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options);
+/// The same with a `quick` model for the search over all attitudes and the first fits; last fits
+/// and samples of peaks are the model's own.
+Result<PoseAnswer> search_pose(const CurveModel &model, const CurveModel &quick,
+                               const SearchOptions &options);
 
 /// The same around given turnings with their rate free too: the last step of a search for a spin.
 Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,

@@ -31,6 +31,7 @@ struct PlotFigure {
   std::string z_title = {}; ///< not empty: in space, turnable; every line has z
   /// What the axes of the page show, from the first to the second; alike: all there is.
   std::array<double, 2> x_span{}, y_span{};
+  bool has_log_x = false;
 };
 
 /// The page: title, one card per figure (each can be saved as SVG), notes at the end. Same input,

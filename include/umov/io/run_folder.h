@@ -71,7 +71,7 @@ struct ManifestInput {
   std::string stopped; ///< why the run ended early; "" = complete
   /// How an object was lit: what was really used, not what was asked.
   struct Light {
-    std::string object, method, visibility, instruction_set;
+    std::string object, method, visibility, instruction_set, device;
   };
   std::vector<Light> light;
   /// Names of files besides those that every run writes: with them the folder is still ours.

@@ -13,10 +13,11 @@ struct ExposureRequest {
   double altitude_deg = 45; ///< apparent
   double height_m = 0;      ///< of the site
   double sd_p = 0.01;       ///< wanted standard deviation of the degree of polarization
-  double nm = 550, width_nm = filter_width_nm;
-  double sky_mag = 21;                    ///< AB in the band [mag / arcsec2]
-  double seeing_arcsec = Seeing{}.arcsec; ///< at the zenith, as umov observe takes it
-  double change_per_s = 0;                ///< relative change of the object's brightness
+  std::string band;         ///< "Bessell.V", "nm:650", "file:x.vot"; empty: `nm` and `width_nm`
+  double nm = 550, width_nm = filter_width_nm; ///< the width also of a band that is one wavelength
+  double sky_mag = 21;                         ///< AB in the band [mag / arcsec2]
+  double seeing_arcsec = Seeing{}.arcsec;      ///< at the zenith, as umov observe takes it
+  double change_per_s = 0;                     ///< relative change of the object's brightness
   double exposure_s = 0; ///< of a frame; 0: until p is known, or half of what fills a pixel
 };
 
@@ -24,6 +25,10 @@ struct ExposureRequest {
 /// shares of each noise at that time, false polarization of analysers that follow each other. The
 /// note "verdict" says what a frame reaches, whether it saturates and how many of them tell p.
 Result<Table> exposure(const ExposureRequest &request);
+
+/// A page of figures: error of p and signal to noise against the length of a frame for stars about
+/// the one asked for, time against magnitude, and what makes the noise.
+Result<std::string> exposure_page(const ExposureRequest &request);
 
 /// Every compiled-in instrument: name, aperture, type of polarimeter, what it is.
 Result<Table> instrument_list();

@@ -20,7 +20,7 @@ struct InvertRequest {
   std::vector<std::string> observations; ///< files; all of them are one fit
   CurveErrors errors;
   std::size_t grid = 60'000;
-  LightMethod method = LightMethod::Masks;
+  LightMethod method = LightMethod::Auto;
   bool allow_old_elements = false; ///< over 30 days from the observations
 };
 

@@ -13,6 +13,7 @@ namespace umov::jobs {
 struct JobOptions {
   unsigned threads = 0;             ///< 0: all cores; the bytes do not depend on it
   std::filesystem::path mask_cache; ///< folder of masks of earlier jobs; empty: none are kept
+  DeviceOptions device;             ///< who adds up the light of the facets
   /// File for the finished blocks of a job: the same job goes on from it after a kill, and removes
   /// it when it is done. Empty: none are kept.
   std::filesystem::path journal;

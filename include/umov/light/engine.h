@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <umov/light/abundances.h>
+#include <umov/light/device.h>
 #include <umov/light/light_task.h>
 #include <umov/light/stokes_table.h>
 #include <umov/scene/pose.h>
@@ -94,6 +95,11 @@ public:
   ~Engine();
   Engine(Engine &&) noexcept;
   Engine &operator=(Engine &&) noexcept;
+
+  /// From here on cards add up the facets of every pose (throwing Failure if one is lost); what
+  /// comes after, rays and surfaces without a kernel stay with the processor. Device if the scene
+  /// does not fit on them, Usage for the reference in double.
+  Result<void> use_cards(const std::shared_ptr<const Cards> &cards);
 
   /// Stokes of every pose. `out` is resized.
   void evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads = 1) const;

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <umov/core/result.h>
+#include <umov/light/device.h>
 #include <umov/light/integrator.h>
 #include <umov/light/light_task.h>
 #include <umov/light/stokes_table.h>
@@ -51,6 +52,9 @@ struct LightOptions {
   /// Folder of masks of earlier jobs; empty: none are kept. What is damaged is made anew.
   std::filesystem::path mask_cache = {};
   unsigned threads = 0; ///< of the preparation; 0: all cores
+  /// Who adds up what masks say is seen. Cuda is refused (Usage) where no masks are used or parts
+  /// turn; Auto takes the processor there, and says why in LightFacts::device.
+  DeviceOptions device = {};
 };
 
 /// What was made ready.
@@ -62,6 +66,7 @@ struct LightFacts {
   std::vector<double> floor_i; ///< per band [m2/sr]: the accuracy refers to it at least; empty: 0
   std::string visibility;      ///< how hiding is decided, in words for a file's header
   std::string instruction_set; ///< "scalar double" for rays
+  std::string device;          ///< names of cards; of Auto without them "cpu" and why; else empty
 };
 
 /// A scene, its parts free to turn, ready to be lit from any direction. Thread safe. A pose's light

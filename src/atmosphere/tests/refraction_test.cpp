@@ -1,5 +1,6 @@
 #include "core/tests/anchors.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 #include <umov/atmosphere/refraction.h>
 #include <umov/photometry/radiometry.h>
@@ -25,6 +26,20 @@ TEST(Refraction, SpreadsColours) { // differences of the above
   EXPECT_NEAR(spread(425, 550), of("dispersion_425_550"), 1e-8);
   EXPECT_NEAR(spread(550, 650), of("dispersion_550_650"), 1e-8);
   EXPECT_NEAR(spread(400, 700), of("dispersion_400_700"), 1e-8);
+}
+
+TEST(Refraction, SpreadsColoursAsGalsimHasIt) { // tools/oracles/refraction_galsim.py
+  const Anchors table("../air/refraction_galsim");
+  ASSERT_EQ(table.size(), 20U);
+  for (const AnchorRow &row : table) {
+    const SurfaceAir there{row["pressure_hpa"], row["temperature_k"], row["water_hpa"]};
+    const auto of = [&](double nm) {
+      return refraction(nm, Angle::degrees(90 - row["zenith_deg"]), there).degrees() * arc_seconds;
+    };
+    const double expected = row["refraction_arcsec"] - row["at_550_arcsec"];
+    EXPECT_NEAR(of(row["nm"]), row["refraction_arcsec"], 1e-6 * row["refraction_arcsec"]);
+    EXPECT_NEAR(of(row["nm"]) - of(550), expected, 1e-6 * std::abs(expected) + 1e-9); // ten digits
+  }
 }
 
 TEST(Refraction, StaysFiniteAtTheHorizon) {

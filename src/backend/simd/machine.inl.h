@@ -20,6 +20,7 @@ struct SimdMachine {
   using Mask = LaneMask;
   using Packer = kernel::HWY_NAMESPACE::Packer;
   static constexpr std::size_t width = hn::MaxLanes(FloatTag());
+  static constexpr std::size_t groups_per_chunk = backend::groups_per_chunk;
   static HWY_INLINE Lanes load(const float *p) { return hn::Load(FloatTag(), p); }
   static HWY_INLINE Lanes load_any(const float *p) { return hn::LoadU(FloatTag(), p); }
   static HWY_INLINE void store_any(Lanes x, float *p) { hn::StoreU(x.v, FloatTag(), p); }

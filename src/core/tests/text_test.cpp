@@ -92,6 +92,11 @@ TEST(Text, AListNamesTheFirstAndCountsTheRest) {
   EXPECT_EQ(listed({}, 2), "");
 }
 
+TEST(Text, LoweredChangesLettersOfAsciiAlone) {
+  EXPECT_EQ(lowered("Bessell.V [NM]"), "bessell.v [nm]");
+  EXPECT_EQ(lowered("\xc3\x84@[`{"), "\xc3\x84@[`{");
+}
+
 TEST(Text, PercentHasNoExponentAtAHundred) {
   EXPECT_EQ(percent(0.0123), "1.2");
   EXPECT_EQ(percent(0.453), "45");

@@ -151,12 +151,41 @@ Scatter scatter(const BandObserver &observer, int trials) {
   return {std::sqrt(ss / trials - m * m), std::sqrt(rr / trials - q * q)};
 }
 
+ObservingConditions flickering_air() {
+  ObservingConditions out = no_air();
+  out.scintillation = ScintillationSite{3058, 1.5};
+  return out;
+}
+
+/// Photons alone.
+Instrument camera_without_noise() {
+  Instrument out = camera();
+  out.detector = {};
+  out.detector.pixel_um = 3.45;
+  return out;
+}
+
+TEST(BandObserver, ScintillationHasOsbornsVariance) {
+  const ObservingConditions windy = flickering_air();
+  Instrument instrument = camera_without_noise();
+  constexpr int trials = 100'000;
+  const BandObserver one = observer(instrument, windy);
+  double s = 0, ss = 0, mean = 0;
+  for (std::uint32_t k = 0; k < trials; ++k) {
+    const auto n = one.observe({k, .1, {}}, star(1e-9, 0, 0));
+    const double x = (n->at(0).counts - n->at(0).sky) / n->at(0).mean_star - 1;
+    s += x / trials, ss += x * x / trials, mean = n->at(0).mean_star;
+  }
+  const double sd = scintillation_sd(*windy.scintillation, .2794, .1, 1);
+  const double log_normal = std::expm1(sd * sd); // of mean 1; beside it the photons' own 1/N
+  // The variance of 1e5 numbers is known to .45 %; and the mean to sd/316.
+  EXPECT_NEAR((ss - s * s - 1 / mean) / log_normal, 1, .02);
+  EXPECT_NEAR(s, 0, 4 * sd / std::sqrt(double(trials)));
+}
+
 TEST(BandObserver, ScintillationIsOneForOnePupil) {
-  ObservingConditions windy = no_air();
-  windy.scintillation = ScintillationSite{3058, 1.5};
-  Instrument instrument = camera();
-  instrument.detector = {};
-  instrument.detector.pixel_um = 3.45;
+  const ObservingConditions windy = flickering_air();
+  Instrument instrument = camera_without_noise();
   constexpr int trials = 20'000;
   const Scatter mosaic = scatter(observer(instrument, windy), trials);
   const double sd = scintillation_sd(*windy.scintillation, .2794, .1, 1);

@@ -5,13 +5,18 @@
 namespace umov {
 namespace {
 
+/// One of many attitudes, none of them in the grid of a search.
+Quaternion any_attitude(std::uint64_t seed, std::uint64_t trial) {
+  const auto u = uniform4(seed, 3, trial);
+  return attitude_grid(100'003)[static_cast<std::size_t>(u[0] * 100'003)];
+}
+
 TEST(PoseSearch, TheTruthIsInTheSetAsOftenAsItSays) {
   const Box box;
   int inside = 0, found = 0;
   constexpr int trials = 20;
   for (std::uint64_t t = 0; t < trials; ++t) {
-    const auto u = uniform4(99, 3, t);
-    const Quaternion truth = attitude_grid(100'003)[static_cast<std::size_t>(u[0] * 100'003)];
+    const Quaternion truth = any_attitude(99, t);
     ObservedCurve curve = pass(24);
     observe(curve, box, {truth, {}}, 30, t);
     const CurveModel model(curve, box, {0, 1});
@@ -36,8 +41,7 @@ TEST(PoseSearch, WhereLittleLightWasSeenTheSetIsWideAndHoldsTheTruth) {
   int inside = 0;
   constexpr int trials = 12;
   for (std::uint64_t t = 0; t < trials; ++t) {
-    const auto u = uniform4(98, 3, t);
-    const Quaternion truth = attitude_grid(100'003)[static_cast<std::size_t>(u[0] * 100'003)];
+    const Quaternion truth = any_attitude(98, t);
     ObservedCurve curve = pass(16);
     observe(curve, box, {truth, {}}, 2.5, t);
     const CurveModel model(curve, box, {0, 1});
@@ -47,6 +51,46 @@ TEST(PoseSearch, WhereLittleLightWasSeenTheSetIsWideAndHoldsTheTruth) {
   }
   // 11.4 of 12 are expected; 8 or fewer come in 0.2 % of such tests.
   EXPECT_GE(inside, 9);
+}
+
+TEST(PoseSearch, FaintLightOfFiltersInTurnRulesNothingOutEarly) {
+  // One band an epoch, less light than noise in each: eight epochs of the first round say next to
+  // nothing, and five attitudes of six used to be thrown away by them.
+  const Box box;
+  int inside = 0;
+  constexpr int trials = 8;
+  for (std::uint64_t t = 0; t < trials; ++t) {
+    const Quaternion truth = any_attitude(101, t);
+    ObservedCurve curve = pass(48);
+    observe(curve, box, {truth, {}}, 0.8, t);
+    std::erase_if(curve.samples, [](const ObservedSample &s) { return s.band != s.epoch % 2; });
+    for (ObservedSample &s : curve.samples) // as `umov reduce` does where nothing was seen
+      s.q = s.u = std::numeric_limits<double>::quiet_NaN();
+    const CurveModel model(curve, box, {0, 1});
+    const auto answer = search_pose(model, small());
+    ASSERT_TRUE(answer) << answer.error().text();
+    inside += is_in(answer->set95, truth) ? 1 : 0;
+  }
+  // 7.6 of 8 are expected; 5 or fewer come in 0.6 % of such tests.
+  EXPECT_GE(inside, 6);
+}
+
+TEST(PoseSearch, AQuickModelSearchesAndTheModelItselfAnswers) {
+  const Box box;
+  const PoseLighting slightly_off = [&](std::span<const Pose> poses, StokesTable &out) {
+    (void)box(poses, out);
+    for (std::size_t k = 0; k < out.i.size(); ++k)
+      out.i[k] *= 1 + 0.01 * std::sin(40 * poses[k / out.bands].sun.x);
+    return true;
+  };
+  const Quaternion truth = attitude_grid(100'003)[31'415];
+  ObservedCurve curve = pass(24);
+  observe(curve, box, {truth, {}}, 50, 1);
+  const CurveModel model(curve, box, {0, 1}), quick(curve, slightly_off, {0, 1});
+  const auto answer = search_pose(model, quick, small()), alone = search_pose(model, small());
+  ASSERT_TRUE(answer && alone);
+  EXPECT_NEAR(answer->chi2, alone->chi2, 0.1); // what steps that gain less than 0.01 leave
+  EXPECT_GT(quick.poses_lit(), 8'000u * 8);    // the grid's first round
 }
 
 TEST(PoseSearch, AlongTheValleyOfAGlintTheSearchGoesToTheEnd) {

@@ -10,13 +10,6 @@
 namespace umov::passband {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char &c : out)
-    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
-}
-
 /// Pieces of a line between blanks, commas and semicolons.
 std::vector<std::string> cells_of(std::string_view line) {
   std::vector<std::string> out(1);
@@ -44,7 +37,7 @@ std::vector<std::string> words_of(std::string_view line) {
 /// The word after the first `key` of a line, if any.
 std::string word_after(const std::vector<std::string> &words, std::string_view key) {
   for (std::size_t i = 0; i + 1 < words.size(); ++i)
-    if (lower(words[i]) == key)
+    if (lowered(words[i]) == key)
       return words[i + 1];
   return {};
 }
@@ -56,7 +49,7 @@ bool speaks_of_units(std::string_view line, const std::vector<std::string> &word
     return true;
   for (const std::string &word : words)
     for (const char *known : {"unit", "units", "wavelength", "wavelengths", "lambda", "wave"})
-      if (lower(word) == known)
+      if (lowered(word) == known)
         return true;
   for (std::size_t k = 0; k < line.size(); ++k)
     if (line[k] == '(' || line[k] == '[')
@@ -70,7 +63,7 @@ bool speaks_of_units(std::string_view line, const std::vector<std::string> &word
 /// (ECSV: "name: wavelength, unit: Angstrom"), else the first that a line about units names.
 void take_header(std::string_view line, PassbandForm &form, bool &is_sure) {
   const auto words = words_of(line);
-  const std::string kind = lower(word_after(words, "detector"));
+  const std::string kind = lowered(word_after(words, "detector"));
   if (kind.starts_with("photon"))
     form.detector = DetectorKind::Photon;
   else if (kind == "energy")
@@ -78,7 +71,7 @@ void take_header(std::string_view line, PassbandForm &form, bool &is_sure) {
   if (is_sure || !speaks_of_units(line, words))
     return;
   const bool is_named = std::ranges::any_of(
-      words, [](const std::string &word) { return lower(word) == "wavelength"; });
+      words, [](const std::string &word) { return lowered(word) == "wavelength"; });
   const std::string after_unit = word_after(words, "unit");
   for (const std::string &word : words)
     if (unit_nm(word) > 0 && (after_unit.empty() || word == after_unit)) {
@@ -92,7 +85,7 @@ void take_header(std::string_view line, PassbandForm &form, bool &is_sure) {
 } // namespace
 
 double unit_nm(std::string_view name) {
-  const std::string unit = lower(name);
+  const std::string unit = lowered(name);
   for (const char *known : {"nm", "nanometer", "nanometers", "nanometre", "nanometres"})
     if (unit == known)
       return 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/embedded.h>
 #include <umov/core/text.h>
 #include <umov/io/passband_file.h>
@@ -61,6 +62,27 @@ Result<Passband> curve_of(const Known &one) {
   return fail(ErrorCode::Internal, one.stem + ": not compiled in");
 }
 
+/// What was meant by an unknown name: other capitals, a letter alone or of another system, a
+/// wavelength, a slip.
+std::string suggestion(const std::string &name) {
+  if (const std::string digits = name.substr(0, name.find_first_not_of("0123456789."));
+      !digits.empty() &&
+      (digits.size() == name.size() || lowered(name.substr(digits.size())) == "nm"))
+    return fmt::format(" Did you mean \"nm:{}\"?", digits);
+  std::vector<std::string> names = passband_names(), alike;
+  const std::string letter = name.substr(name.rfind('.') + 1);
+  for (const std::string &one : names) {
+    if (lowered(one) == lowered(name))
+      return fmt::format(" Did you mean \"{}\"?", one);
+    if (one.substr(one.find('.') + 1) == letter)
+      alike.push_back(fmt::format("\"{}\"", one));
+  }
+  const auto near = nearest_name(name, names);
+  if (!alike.empty() && (name.find('.') == std::string::npos || !near))
+    return fmt::format(" Did you mean {}?", fmt::join(alike, " or "));
+  return near ? fmt::format(" Did you mean \"{}\"?", *near) : "";
+}
+
 } // namespace
 
 std::vector<std::string> passband_names() {
@@ -90,15 +112,10 @@ Result<Passband> find_passband(const std::string &name) {
       out.source = "a Gaussian of 80 nm full width about a wavelength of the paper: an assumption";
       return out;
     }
-  std::vector<std::string> names = passband_names();
-  for (const Known &one : known())
-    names.push_back(one.stem);
-  const auto near = nearest_name(name, names);
   return fail(ErrorCode::BadInput,
               fmt::format("unknown band \"{}\".{} A wavelength is written \"nm:550\", a file of "
                           "one's own \"file:x.vot\". Known: umov bands list.",
-                          printable(name),
-                          near ? fmt::format(" Did you mean \"{}\"?", *near) : ""));
+                          printable(name), suggestion(name)));
 }
 
 } // namespace umov

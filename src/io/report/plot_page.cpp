@@ -47,15 +47,18 @@ Json figure_json(const PlotFigure &figure) {
     if (!line.z.empty())
       lines.back()["z"] = numbers(line.z);
   }
-  return {{"title", figure.title},
-          {"x", figure.x_title},
-          {"y", figure.y_title},
-          {"z", figure.z_title},
-          {"log", figure.has_log_y},
-          {"sky", figure.is_sky},
-          {"xspan", span_json(figure.x_span)},
-          {"yspan", span_json(figure.y_span)},
-          {"lines", lines}};
+  Json out{{"title", figure.title},
+           {"x", figure.x_title},
+           {"y", figure.y_title},
+           {"z", figure.z_title},
+           {"log", figure.has_log_y},
+           {"sky", figure.is_sky},
+           {"xspan", span_json(figure.x_span)},
+           {"yspan", span_json(figure.y_span)},
+           {"lines", lines}};
+  if (figure.has_log_x)
+    out["xlog"] = true;
+  return out;
 }
 
 Result<std::string> make_plot_page(const std::string &title, const std::vector<PlotFigure> &figures,

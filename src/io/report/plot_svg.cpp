@@ -159,6 +159,7 @@ std::string legend(const PlotFigure &figure) {
 
 std::string plane(const PlotFigure &figure) {
   Range x, y;
+  x.is_log = figure.has_log_x;
   y.is_log = figure.has_log_y;
   for (const PlotLine &line : figure.lines) {
     for (const double v : line.x)
@@ -185,10 +186,11 @@ std::string plane(const PlotFigure &figure) {
     const PlotLine &line = figure.lines[i];
     std::vector<Point> points;
     for (std::size_t k = 0; k < std::min(line.x.size(), line.y.size()); ++k) {
-      const bool is_shown = !y.is_log || line.y[k] > 0;
-      points.push_back(
-          {x.place(line.x[k], left, right),
-           is_shown ? y.place(line.y[k], bottom, top) : std::numeric_limits<double>::quiet_NaN()});
+      const bool is_shown = (!y.is_log || line.y[k] > 0) && (!x.is_log || line.x[k] > 0);
+      constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+      points.push_back(is_shown
+                           ? Point{x.place(line.x[k], left, right), y.place(line.y[k], bottom, top)}
+                           : Point{nowhere, nowhere});
     }
     out += draw(line, i, points);
   }

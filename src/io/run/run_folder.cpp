@@ -399,14 +399,14 @@ std::string make_manifest(const ManifestInput &input) {
   out["started_utc"] = input.started_utc;
   out["elapsed_s"] = input.elapsed_s;
   out["seed"] = input.seed;
-  out["device"] = "cpu";
   out["threads"] = input.threads;
   out["light"] = nlohmann::ordered_json::array();
   for (const ManifestInput::Light &one : input.light)
     out["light"].push_back({{"object", one.object},
                             {"method", one.method},
                             {"visibility", one.visibility},
-                            {"instruction_set", one.instruction_set}});
+                            {"instruction_set", one.instruction_set},
+                            {"device", one.device.empty() ? "cpu" : one.device}});
   out["inputs"] = nlohmann::ordered_json::array();
   for (const auto &[path, hash] : input.inputs)
     out["inputs"].push_back({{"path", path}, {"sha256", hash}});

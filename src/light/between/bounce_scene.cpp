@@ -1,14 +1,11 @@
 #include "light/between/bounce_scene.h"
 
+#include "light/reference/elements.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace umov {
-namespace {
-
-constexpr double offset_of_size = 1e-5;
-
-} // namespace
 
 BounceScene::BounceScene(const Scene &scene, const std::vector<VisibleSides> &sides)
     : scene_(scene), sides_(sides) {
@@ -78,7 +75,7 @@ Vertex BounceScene::vertex_on(std::uint32_t t, double b1, double b2, Vec3<Body> 
   }
   if (is_smooth && norm(bent) > 0)
     out.normal = normalized(dot(bent, out.face) < 0 ? -bent : bent);
-  out.point += out.face * (offset_of_size * size_m_);
+  out.point += out.face * (ray_offset * size_m_);
   out.surface = &surface_of_side(scene_, triangle, side > 0);
   out.triangle = t;
   out.is_front = side > 0;

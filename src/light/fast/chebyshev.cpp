@@ -2,7 +2,7 @@
 
 #include "kernel/math.inl.h"
 
-#include <Eigen/Dense>
+#include "algebra/dense.h"
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -44,7 +44,7 @@ Coefficients fit_polynomial(const NodeValues &value, std::size_t degree) {
       a(row, k) = kernel::polynomial(powers[static_cast<std::size_t>(k)].data(),
                                      static_cast<std::size_t>(k), chebyshev_node(i));
   }
-  const Eigen::VectorXd c = a.householderQr().solve(b);
+  const Eigen::VectorXd c = algebra::least_squares_of_full_rank(a, b);
   Coefficients out{};
   for (std::size_t k = 0; k <= degree; ++k)
     for (std::size_t j = 0; j <= k; ++j)

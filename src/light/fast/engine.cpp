@@ -64,6 +64,8 @@ void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task,
   } else
     std::iota(order.begin(), order.end(), 0u);
   const ReadLock held = hold_masks(poses, task);
+  if (on_cards)
+    return for_each_on_cards(poses, order, task, body);
   const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(task.threads)) + 1,
                                       poses_per_task_min, poses_per_task_max);
   parallel_for((poses.size() + size - 1) / size, task.threads, [&](std::size_t part) {
@@ -78,6 +80,49 @@ void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task,
       body(order[k], poses[order[k]], work.prepared[(k - begin) % 2], work);
     }
   });
+}
+
+/// Rays and facets without a kernel need the pose on the processor too.
+bool Engine::State::needs_pose_beside_cards(const LightTask &task) const {
+  return may_mend() || task.has_glints || !on_cards->general.empty();
+}
+
+template <class Body>
+void Engine::State::for_each_on_cards(std::span<const Pose> poses,
+                                      std::span<const std::uint32_t> order, const LightTask &task,
+                                      const Body &body) const {
+  if (is_stopped(task.cancel)) // masks may be lacking
+    return;
+  const WriteLock alone(on_cards->one_at_a_time);
+  const auto put = on_cards->loops->put_masks(hiding(), masks ? masks->version() : 0);
+  if (!put)
+    give_up(put.error());
+  std::vector<backend::PoseDirections> directions;
+  for (const std::uint32_t row : order)
+    directions.push_back(
+        {poses[row].sun, poses[row].observer, poses[row].sun_radius_rad, cos_phase(poses[row])});
+  const bool is_beside = needs_pose_beside_cards(task);
+  const auto finish = [&](std::size_t first, std::size_t count, const backend::CardSums &sums) {
+    parallel_for((count + poses_per_task_min - 1) / poses_per_task_min, task.threads,
+                 [&](std::size_t part) {
+                   Workspace work(*this);
+                   Prepared &at = work.prepared[0];
+                   at.card_sums = &sums;
+                   const std::size_t begin = part * poses_per_task_min,
+                                     end = std::min(count, begin + poses_per_task_min);
+                   for (std::size_t k = begin; k < end && !is_stopped(task.cancel); ++k) {
+                     const std::uint32_t row = order[first + k];
+                     if (is_beside)
+                       prepare(poses[row], at);
+                     at.cos_phase = directions[first + k].cos_phase;
+                     at.row_of_card = k;
+                     body(row, poses[row], at, work);
+                   }
+                 });
+  };
+  const auto done = on_cards->loops->sum(directions, task.cancel, finish);
+  if (!done)
+    give_up(done.error());
 }
 
 bool Engine::State::has_masks() const {

@@ -64,6 +64,7 @@ void LazyMasks::trace(std::span<const std::uint32_t> directions, bool is_large, 
     tracer_.trace(directions.first(count), is_large, threads, store_);
     directions = directions.subspan(count);
     has_grown_ = true;
+    ++version_;
   }
   view_ = store_.view();
   is_complete_ = missing(false).empty() && missing(true).empty();

@@ -30,6 +30,8 @@ public:
     return tracer_.points(view_.groups[group], lane);
   }
   [[nodiscard]] std::size_t bytes() const;
+  /// Another number whenever there are more rows.
+  [[nodiscard]] std::size_t version() const { return version_; }
   /// Rows were traced since the masks were made or read.
   [[nodiscard]] bool has_grown() const { return has_grown_; }
   /// Runs `body(const MaskStore &)` while nobody changes it.
@@ -50,6 +52,7 @@ private:
   backend::Masks view_;
   mutable Mutex mutex_;
   std::atomic<bool> is_complete_{false}, has_grown_{false};
+  std::atomic<std::size_t> version_{1};
 };
 
 } // namespace umov

@@ -72,13 +72,13 @@ void put_lagrange(const std::vector<double> &nodes, double x, double *out) {
 double family_error(const backend::LobeFamily<double> &family, std::size_t lobe,
                     const kernel::LobeConstants<double> &exact) {
   double worst = 0;
-  constexpr int steps = 24;
+  constexpr int cosines = 24;
   kernel::FacetPose<double> pose;
-  for (int i = 1; i <= steps; ++i)
+  for (int i = 1; i <= cosines; ++i)
     for (int j = 1; j <= i; ++j)
       for (const double cos_azimuth : {-1.0, 0.0, 0.9}) {
         // Denser towards grazing.
-        const double n_l = std::pow(i / double(steps), 2), n_v = std::pow(j / double(steps), 2);
+        const double n_l = std::pow(i / double(cosines), 2), n_v = std::pow(j / double(cosines), 2);
         pose.cos_phase = n_l * n_v + cos_azimuth * std::sqrt((1 - n_l * n_l) * (1 - n_v * n_v));
         double sum = 0;
         for (std::size_t n = 0; n < family.node_count; ++n)

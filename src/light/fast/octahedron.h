@@ -2,16 +2,13 @@
 // Private: directions on the unfolded octahedron (Meyer et al. 2010, "On floating-point normal
 // vectors"), and the grid over it.
 
-#include "backend/scene_data.h"
+#include "backend/octahedron.h"
 
 #include <umov/core/vec3.h>
 
 namespace umov {
 
-/// Point of the unit square for a unit vector; continuous but for its folded border.
-struct SquarePoint {
-  double u, v;
-};
+using backend::SquarePoint;
 SquarePoint octahedron_point(Vec3<Body> direction);
 Vec3<Body> octahedron_direction(SquarePoint p);
 

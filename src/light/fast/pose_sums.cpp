@@ -9,14 +9,28 @@
 
 namespace umov {
 
+const backend::MaskErrorModel &Engine::State::error_model() const {
+  return may_mend() && options.doubts_all ? doubtful_error : mask_error;
+}
+
+/// What has no kernel is listed here, and lit as always.
+void Engine::State::take_from_card(const Prepared &at, SumsStore &out) const {
+  at.card_sums->read(at.row_of_card, out);
+  if (on_cards->general.empty())
+    return;
+  backend::SceneData<float> rest = views.single;
+  rest.chunks = on_cards->general;
+  backend::sum_facets(rest, hiding(), error_model(), at.single, out);
+}
+
 void Engine::State::sum_facets(const Prepared &at, SumsStore &out) const {
   out.reset(views.whole);
-  const backend::MaskErrorModel &error =
-      may_mend() && options.doubts_all ? doubtful_error : mask_error;
-  if (options.is_double)
-    backend::sum_facets(views.whole, hiding(), error, at.pose, out);
+  if (at.card_sums != nullptr)
+    take_from_card(at, out);
+  else if (options.is_double)
+    backend::sum_facets(views.whole, hiding(), error_model(), at.pose, out);
   else
-    backend::sum_facets(views.single, hiding(), error, at.single, out);
+    backend::sum_facets(views.single, hiding(), error_model(), at.single, out);
   if (masks)
     add_alike(out);
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Private: what an engine holds, and how a pose goes through it.
 
+#include "light/fast/cards.h"
 #include "light/fast/compile.h"
 #include "light/fast/lazy_masks.h"
 #include "light/fast/mask_errors.h"
@@ -52,7 +53,8 @@ struct Engine::State {
     double cosine;
     std::uint32_t group, lane, slot;
   };
-  std::vector<Flat> flats; ///< by group and lane
+  std::vector<Flat> flats;              ///< by group and lane
+  std::unique_ptr<CardEngine> on_cards; ///< null: the processor adds up
   [[nodiscard]] const Flat *flat_of(const backend::SeenFacet &facet) const;
   [[nodiscard]] std::vector<Flat> find_flats() const;
 
@@ -61,6 +63,9 @@ struct Engine::State {
     double cos_phase = 1;
     PoseStore<double> pose;
     PoseStore<float> single;
+    /// Sums that cards have added up, of this pose in a batch of theirs; null: none.
+    const backend::CardSums *card_sums = nullptr;
+    std::size_t row_of_card = 0;
   };
 
   /// What one thread needs besides.
@@ -104,6 +109,7 @@ struct Engine::State {
   [[nodiscard]] std::size_t terms_max() const; ///< lobes and products of a slot, at most
 
   void prepare(const Pose &pose, Prepared &out) const;
+  [[nodiscard]] const backend::MaskErrorModel &error_model() const;
   [[nodiscard]] bool may_mend() const { return masks && options.masks.refine_above > 0; }
   /// Where the masks see nothing there may be something all the same.
   [[nodiscard]] bool doubts_darkness() const { return may_mend() && options.doubts_all; }
@@ -125,7 +131,15 @@ struct Engine::State {
   template <class Body>
   void for_each(std::span<const Pose> poses, const LightTask &task, const Body &body) const;
 
+  /// The same with the sums of cards, batch by batch. Throws Failure if a card is lost.
+  template <class Body>
+  void for_each_on_cards(std::span<const Pose> poses, std::span<const std::uint32_t> order,
+                         const LightTask &task, const Body &body) const;
+
+  [[nodiscard]] bool needs_pose_beside_cards(const LightTask &task) const;
+
   // pose_sums.cpp
+  void take_from_card(const Prepared &at, SumsStore &out) const;
   void sum_facets(const Prepared &at, SumsStore &out) const; ///< by kernels
   void add_general(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// `may_vary`: something has added variances besides masks and listed facets.

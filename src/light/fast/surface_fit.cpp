@@ -4,7 +4,7 @@
 #include "light/fast/chebyshev.h"
 #include "light/fast/lobe_fit.h"
 
-#include <Eigen/Dense>
+#include "algebra/dense.h"
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -247,7 +247,7 @@ Projection project(const Function &exact, const Function &unit, const SurfaceFit
     for (Eigen::Index k = 0; k < columns; ++k)
       a(row, k) = value(k, chebyshev_node(i));
   }
-  const Eigen::VectorXd share = a.colPivHouseholderQr().solve(wanted);
+  const Eigen::VectorXd share = algebra::least_squares(a, wanted);
   Projection out{{share.data(), share.data() + share.size()}, std::vector<double>(count, 0), 0};
   constexpr int steps = 200;
   for (int i = 1; i < steps; ++i) {

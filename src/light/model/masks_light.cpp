@@ -66,6 +66,7 @@ Result<void> MasksLight::prepare() {
   }
   facts_.method = options_.method;
   facts_.instruction_set = engine_instruction_set();
+  UMOV_TRY(take_cards());
   facts_.is_convex = engine_ && engine_->facts().is_convex;
   facts_.classes = engine_ ? engine_->facts().classes : 0;
   facts_.visibility = in_words(facts_, with.masks);
@@ -80,6 +81,28 @@ Result<void> MasksLight::prepare() {
   if (is_auto)
     direct_.emplace(scene(), joints(), rays, materials());
   facts_.setup_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {};
+}
+
+Result<void> MasksLight::take_cards() {
+  const DeviceOptions &device = options_.device;
+  if (device.choice == DeviceChoice::Cpu)
+    return {};
+  if (!engine_) {
+    if (device.choice == DeviceChoice::Cuda)
+      return fail(ErrorCode::Usage,
+                  "parts that turn are lit by the processor: take --device cpu or auto");
+    facts_.device = "cpu: parts that turn are lit by the processor";
+    return {};
+  }
+  const auto cards = open_cards(device);
+  Result<void> used = cards ? engine_->use_cards(*cards) : tl::unexpected(cards.error());
+  if (used)
+    facts_.device = facts_.instruction_set = name_of(**cards);
+  else if (device.choice == DeviceChoice::Cuda)
+    return used;
+  else
+    facts_.device = "cpu: " + used.error().message;
   return {};
 }
 

@@ -49,6 +49,7 @@ private:
   Result<void> prepare();
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override;
+  Result<void> take_cards();
   void add_allowance(StokesTable &table) const;
   [[nodiscard]] std::vector<std::size_t> inaccurate(const StokesTable &table) const;
 

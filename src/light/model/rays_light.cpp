@@ -12,6 +12,8 @@ RaysLight::RaysLight(const Scene &of, std::vector<Joint> turning, const LightOpt
   facts_.method = LightMethod::Rays;
   facts_.is_convex = rays_.is_convex();
   facts_.instruction_set = "scalar double";
+  if (options.device.choice == DeviceChoice::Auto)
+    facts_.device = "cpu: rays are traced by the processor";
   facts_.visibility = facts_.is_convex ? "none: the mesh is convex" : "rays";
 }
 

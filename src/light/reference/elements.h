@@ -8,6 +8,9 @@
 
 namespace umov {
 
+/// How far above a face its rays start, in parts of the size of the body.
+inline constexpr double ray_offset = 1e-5;
+
 /// A triangle of the mesh, or a piece of one. A point is a pair (u, v): a + u (b-a) + v (c-a) in
 /// the mesh triangle a, b, c.
 struct Element {

@@ -6,8 +6,6 @@
 namespace umov {
 namespace {
 
-constexpr double offset_of_size = 1e-5;
-
 /// Height of the tangent plane at a corner over the point, along the corner's normal, if above it.
 double height_of_plane(Vec3<Body> point, Vec3<Body> corner, Vec3<Body> normal) {
   return std::max(0.0, dot(corner - point, normal));
@@ -48,7 +46,7 @@ Vec3<Body> ray_origin(const Scene &scene, const Elements &elements, const LitEle
   for (std::size_t k = 0; k < 3; ++k)
     on_face += weight[k] * mesh.positions[t.vertex[k]];
   const Vec3<Body> face = side * elements.normal[e.triangle];
-  Vec3<Body> origin = on_face + (offset_of_size * elements.size_m) * face;
+  Vec3<Body> origin = on_face + (ray_offset * elements.size_m) * face;
   if (e.is_flat)
     return origin;
   for (std::size_t k = 0; k < 3; ++k) {

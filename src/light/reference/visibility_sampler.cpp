@@ -35,11 +35,11 @@ struct Variance {
   }
 };
 
-class Sampler {
+class PointSampler {
 public:
-  Sampler(const Scene &scene, const Elements &elements, const Occluder &occluder,
-          const PoseGeometry &pose, const LitElements &lit, std::uint64_t seed,
-          std::uint32_t stream)
+  PointSampler(const Scene &scene, const Elements &elements, const Occluder &occluder,
+               const PoseGeometry &pose, const LitElements &lit, std::uint64_t seed,
+               std::uint32_t stream)
       : scene_(scene), elements_(elements), occluder_(occluder), pose_(pose), lit_(lit),
         seed_(seed), stream_(stream), bands_(scene.grid.nodes().size()), lobes_(lit.lobes),
         kinds_(lit.lobes + 1), variance_(bands_), block_specular_(lobes_), block_diffuse_(bands_),
@@ -332,7 +332,7 @@ std::vector<Block> make_blocks(const LitElements &lit, const std::vector<double>
 Measurement measure(const Scene &scene, const Elements &elements, const Occluder &occluder,
                     const PoseGeometry &pose, const LitElements &lit, std::vector<Block> blocks,
                     std::uint64_t seed, std::uint32_t stream) {
-  return Sampler(scene, elements, occluder, pose, lit, seed, stream).run(std::move(blocks));
+  return PointSampler(scene, elements, occluder, pose, lit, seed, stream).run(std::move(blocks));
 }
 
 } // namespace umov

@@ -210,6 +210,15 @@ TEST(Bands, OfAScenarioByTheirNames) {
   const auto slip = bands_named({"Besell.V"});
   ASSERT_FALSE(slip);
   EXPECT_NE(slip.error().message.find("Did you mean \"Bessell.V\""), std::string::npos);
+  for (const auto &[written, meant] : {std::pair{"bessell.v", "Bessell.V\"?"},
+                                       {"V", "\"Bessell.V\"?"},
+                                       {"Johnson.V", "\"Bessell.V\"?"},
+                                       {"550nm", "\"nm:550\"?"},
+                                       {"550", "\"nm:550\"?"}}) {
+    const auto refused = find_passband(written);
+    ASSERT_FALSE(refused) << written;
+    EXPECT_NE(refused.error().message.find(meant), std::string::npos) << refused.error().message;
+  }
   EXPECT_FALSE(bands_named({"Bessell.V", "bessell-V"})); // twice
   EXPECT_FALSE(bands_named({"file:/nonexistent.vot"}));
   EXPECT_FALSE(bands_named(std::vector<std::string>{}));

@@ -63,7 +63,7 @@ const umovFigure = (() => {
     Plotly.newPlot(plot, lines, {
       autosize: true,
       margin: { l: 60, r: 12, t: 10, b: 60 + 17 * Math.ceil(lines.length / 3) },
-      xaxis: axis(figure.x, figure.xspan ? { range: figure.xspan } : {}),
+      xaxis: axis(figure.x, { ...(figure.xlog ? { type: "log", exponentformat: "power" } : {}), ...(figure.xspan ? { range: figure.xspan } : {}) }),
       yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power", ...(figure.yspan ? { range: figure.yspan } : {}) }),
       legend: legend(), ...ground(),
     }, options(figure));

@@ -1,0 +1,24 @@
+// What is compiled for the card at hand when it is first used: the entries, and behind them the
+// very kernels that the processor runs.
+
+#include "backend/cuda/card_poses.h"
+
+// The host has laid out what it hands over with its own compiler.
+static_assert(sizeof(umov::backend::CardScene) == UMOV_CARD_SCENE_BYTES);
+static_assert(sizeof(umov::backend::CardBatch) == UMOV_CARD_BATCH_BYTES);
+static_assert(sizeof(umov::backend::PoseData<float>) == UMOV_CARD_POSE_BYTES);
+static_assert(sizeof(umov::kernel::LobeAtPose<float>) == UMOV_CARD_LOBE_BYTES);
+
+extern "C" __global__ void umov_prepare_poses(umov::backend::CardScene scene,
+                                              umov::backend::CardBatch batch) {
+  const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < batch.poses.size())
+    umov::backend::prepare_on_card(scene, batch, i);
+}
+
+extern "C" __global__ void umov_sum_poses(umov::backend::CardScene scene,
+                                          umov::backend::CardBatch batch) {
+  const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < batch.poses.size())
+    umov::backend::sum_on_card(scene, batch, i);
+}

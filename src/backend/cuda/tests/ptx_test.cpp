@@ -1,0 +1,85 @@
+// What becomes of the program of cards, read without one: NVIDIA's run-time compiler makes machine
+// code and assembly (PTX) of the texts that the library carries, for three generations of cards.
+// tools/check_cuda fetches that compiler.
+
+#include "backend/cuda/card.h"
+
+#include <gtest/gtest.h>
+#include <regex>
+
+namespace umov::backend {
+namespace {
+
+class Program : public testing::TestWithParam<int> {
+protected:
+  static const CardCompiler &compiler() {
+    static const auto loaded = [] {
+      const std::filesystem::path folders[] = {UMOV_NVRTC_FOLDER};
+      return CardCompiler::load(folders);
+    }();
+    if (!loaded)
+      throw Failure(loaded.error()); // not skipped: tools/check_cuda has fetched it
+    return *loaded;
+  }
+};
+
+/// The text of one entry of an assembly.
+std::string entry_of(const std::string &assembly, const std::string &name) {
+  const std::size_t begin = assembly.find(".entry " + name);
+  if (begin == std::string::npos)
+    return "";
+  return assembly.substr(begin, assembly.find("\n}", begin) - begin);
+}
+
+struct Use {
+  int stack = -1, stores = -1, loads = -1, registers = -1;
+};
+/// What ptxas -v says of an entry.
+Use use_of(const std::string &log, const std::string &name) {
+  Use out;
+  const std::size_t begin = log.find("Compiling entry function '" + name);
+  if (begin == std::string::npos)
+    return out;
+  const std::string rest = log.substr(begin);
+  std::smatch found;
+  if (std::regex_search(rest, found,
+                        std::regex("(\\d+) bytes stack frame, (\\d+) bytes spill stores, "
+                                   "(\\d+) bytes spill loads"))) {
+    out.stack = std::stoi(found[1]);
+    out.stores = std::stoi(found[2]);
+    out.loads = std::stoi(found[3]);
+  }
+  if (std::regex_search(rest, found, std::regex("Used (\\d+) registers")))
+    out.registers = std::stoi(found[1]);
+  return out;
+}
+
+TEST_P(Program, SumsInSinglePrecisionInRegisters) {
+  const auto image = compiler().compile(GetParam(), false);
+  ASSERT_TRUE(image) << image.error().text();
+  EXPECT_EQ(image->bytes.substr(1, 3), "ELF");
+  const Use sum = use_of(image->log, "umov_sum_poses");
+  // Lists of a chunk's facets and sums of a family of lobes stand in a thread's own memory; what
+  // registers cannot hold should not: a few words are none of a loop's.
+  EXPECT_GT(sum.stack, 0) << image->log;
+  EXPECT_LE(sum.stack, 6 * 1024);
+  EXPECT_LE(sum.stores, 64) << image->log;
+  EXPECT_LE(sum.loads, 64);
+  EXPECT_LE(sum.registers, 128); // 512 threads of a multiprocessor
+  const Use prepare = use_of(image->log, "umov_prepare_poses");
+  EXPECT_EQ(prepare.stores, 0) << image->log;
+  // Double is where directions are subtracted, and nowhere else.
+  const std::string sums = entry_of(image->assembly, "umov_sum_poses");
+  ASSERT_GT(sums.size(), 100'000u);
+  EXPECT_EQ(sums.find(".f64"), std::string::npos);
+  EXPECT_EQ(sums.find("call"), std::string::npos); // all in one
+  EXPECT_NE(entry_of(image->assembly, "umov_prepare_poses").find(".f64"), std::string::npos);
+}
+
+// The oldest that today's compiler knows is Turing's (7.5): CUDA 13 has dropped Volta (7.0), for
+// which nvidia-cuda-nvrtc-cu12 is taken.
+INSTANTIATE_TEST_SUITE_P(ptx, Program, testing::Values(75, 80, 90),
+                         [](const auto &of) { return "sm_" + std::to_string(of.param); });
+
+} // namespace
+} // namespace umov::backend

@@ -1,0 +1,49 @@
+#pragma once
+// Private: what an instrument gets of a star, and what a frame of it reaches.
+
+#include <umov/instrument/observe.h>
+#include <umov/jobs/exposure.h>
+
+namespace umov::jobs {
+
+/// What a request stands for: an instrument in a band under an air.
+struct ExposureSetup {
+  ExposureRequest request;
+  Instrument instrument;
+  BandObserver observer;
+  double excess2 = 1; ///< of the detector
+  double factor = 2;  ///< sd of p is sqrt(factor/N): 3 where all four parameters are told
+  double states = 1;  ///< exposures one after the other, until p is known at all
+  double airmass = 1;
+};
+/// Usage or BadInput for what cannot be meant.
+Result<ExposureSetup> exposure_setup(const ExposureRequest &request);
+
+/// Rates of one instrument on one star [1/s], all channels together.
+struct StarRates {
+  double star = 0;                     ///< detected electrons in the apertures
+  double whole = 0;                    ///< before polarizers, all of the image
+  double sky = 0, dark = 0, fixed = 0; ///< fixed: variance of each exposure
+  double peak = 0;                     ///< on the brightest pixel of the brightest channel
+  double scintillation = 0;            ///< relative sd of 1 s
+  double fills_s = 0;                  ///< exposure that fills the brightest pixel
+};
+/// Of a star of magnitude `mag`.
+Result<StarRates> star_rates(const ExposureSetup &setup, double mag);
+
+/// One frame, or one of each analyser where they follow each other: how long, what it reaches, and
+/// how full it makes the brightest pixel.
+struct StarFrame {
+  double seconds = 0, snr = 0, sd_p = 0, full = 0;
+};
+/// A frame of so many seconds.
+StarFrame star_frame(const ExposureSetup &setup, const StarRates &rates, double seconds);
+
+/// What the frame reaches that is asked for, or that a star would get, at what it fails, and what
+/// helps.
+std::string exposure_verdict(const ExposureSetup &setup, const StarRates &rates);
+
+/// Time in which p of a star is known to the wanted error [s], all states together, read once.
+double time_for(const ExposureSetup &setup, const StarRates &rates);
+
+} // namespace umov::jobs

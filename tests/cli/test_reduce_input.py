@@ -1,0 +1,88 @@
+"""What umov reduce and calibrate refuse or warn of: every line tried."""
+import re
+
+import pytest
+
+from test_observe import COUNTS, standards
+
+KNOWN = "name,p_percent,pa_deg\nnone,0,0\nHD 204827,4.893,59.10\n"
+
+
+def sky_of(level):
+    """The worked set under a sky of so many electrons."""
+    head, *rows = COUNTS.splitlines()
+    out = [head]
+    for row in rows:
+        cells = row.split(",")
+        cells[3], cells[4] = f"{float(cells[3]) - 120 + level}", f"{level}"
+        out.append(",".join(cells))
+    return "\n".join(out) + "\n"
+
+
+@pytest.fixture
+def calibrated(umov, tmp_path):
+    """stars.csv and own.toml, its calibration."""
+    standards(tmp_path / "stars.csv")
+    (tmp_path / "known.csv").write_text(KNOWN)
+    assert umov("calibrate", "stars.csv", "--standards", "known.csv", "-o", "own.toml").code == 0
+    return tmp_path
+
+
+def test_more_polarized_than_light_can_be(umov, tmp_path):
+    # q = (3000 - 400)/(.3 times 4080) with its sd of .015: far beyond 1.
+    (tmp_path / "c.csv").write_text(COUNTS.replace(".4867,0", ".3,0").replace("-.5066,0", "-.3,0").replace("2210", "520"))
+    done = umov("reduce", "c.csv")
+    assert done.code == 0 and "|q| above 1 by more than five standard deviations" in done.err, done.err
+
+
+def test_a_sky_brighter_than_ten_objects(umov, tmp_path):
+    (tmp_path / "c.csv").write_text(sky_of(1e5))
+    done = umov("reduce", "c.csv")
+    assert done.code == 0 and "more than ten times as bright" in done.err, done.err
+    (tmp_path / "c.csv").write_text(sky_of(120))
+    assert "ten times" not in umov("reduce", "c.csv").err
+
+
+def test_old_calibrations_are_told(umov, calibrated):
+    for day, is_old in (("2017-11-01", True), ("2018-01-01", False)):
+        text = re.sub("made_utc = .*", f'made_utc = "{day}T00:00:00Z"', (calibrated / "own.toml").read_text())
+        (calibrated / "then.toml").write_text(text)
+        done = umov("reduce", "stars.csv", "--calibration", "then.toml")
+        assert done.code == 0 and ("81 days older" in done.err) == is_old, done.err
+
+
+def test_a_calibration_in_another_frame(umov, calibrated):
+    (calibrated / "own.toml").write_text((calibrated / "own.toml").read_text().replace('"equatorial"', '"altaz"'))
+    done = umov("reduce", "stars.csv", "--calibration", "own.toml")
+    assert done.code == 3 and "own.toml:" in done.err and '"equatorial" was expected' in done.err
+
+
+def test_standards_at_one_angle(umov, tmp_path):
+    """Told where the unpolarized star saves it, refused where nothing does."""
+    (tmp_path / "known.csv").write_text(KNOWN)
+    standards(tmp_path / "stars.csv")
+    notes = [line for line in (tmp_path / "stars.csv").read_text().splitlines()]
+    kept = notes[:3] + [line for line in notes[3:] if line.split(",")[4] == "10" or line.split(",")[4] == "0"]
+    # One star each, both read as at 10 deg: an unpolarized one has no angle.
+    (tmp_path / "one.csv").write_text("\n".join(line.replace(",V,0,", ",V,10,") for line in kept) + "\n")
+    done = umov("calibrate", "one.csv", "--standards", "known.csv")
+    assert done.code == 0 and "stand at one angle" in done.err, done.err
+    alone = [line for line in kept if ",none," not in line]
+    (tmp_path / "alone.csv").write_text("\n".join(alone + [line.replace(":04:00Z,4", ":09:00Z,9") for line in alone[3:]]) + "\n")
+    done = umov("calibrate", "alone.csv", "--standards", "known.csv")
+    assert done.code == 3 and "cannot be told apart" in done.err, done.err
+
+
+def test_standards_that_disagree(umov, calibrated):
+    known = umov("calibrate", "stars.csv", "--standards", "known.csv").err
+    assert "disagree" not in known, known
+    swapped = (calibrated / "stars.csv").read_text().replace(",V,40,", ",V,140,")
+    (calibrated / "swapped.csv").write_text(swapped)
+    done = umov("calibrate", "swapped.csv", "--standards", "known.csv")
+    assert done.code == 0 and "disagree by more than their errors" in done.err, done.err
+
+
+def test_standards_without_polarization(umov, calibrated):
+    (calibrated / "flat.csv").write_text("name,p_percent,pa_deg\nnone,0,0\nHD 204827,0,0\n")
+    done = umov("calibrate", "stars.csv", "--standards", "flat.csv")
+    assert done.code == 3 and "no polarized one among them" in done.err
