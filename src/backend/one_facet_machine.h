@@ -1,6 +1,6 @@
 #pragma once
-// The machine of the facet loops that takes one facet after the other: the scalar reference, and one thread of a
-// graphics processor.
+// The machine of the facet loops that takes one facet after the other: the scalar reference, and
+// one thread of a graphics processor.
 
 #include "backend/facet_loops.inl.h"
 
@@ -20,7 +20,8 @@ UMOV_KERNEL int count_ones(std::uint32_t bits) {
 #endif
 }
 
-/// `Scalar`: what facets are computed in; `Sum`: what they are added up in; `groups`: of a chunk, at most.
+/// `Scalar`: what facets are computed in; `Sum`: what they are added up in; `groups`: of a chunk,
+/// at most.
 template <class Scalar, class Sum, std::size_t groups> struct OneFacetMachine {
   using R = Scalar;
   using T = Scalar;
