@@ -3,6 +3,7 @@ import datetime
 import functools
 import pathlib
 import pickle
+import tomllib
 
 import numpy as np
 import pytest
@@ -30,6 +31,17 @@ def test_light_curve_of_a_satellite_is_that_of_its_scenario(hst):
                                               time={"start": START, "stop": STOP, "step_s": 20})).to_toml()
     np.testing.assert_array_equal(ours.I, umov.run(umov.Scenario.from_toml(text)).I)
     assert ours.I.shape == (4, 2)
+
+
+def test_units_of_astropy_are_those_of_the_names(hst):
+    assert umov.Bands([425, 550.5] * u.nm) == umov.Bands([.425 * u.um, "nm:550.5"]) == umov.Bands(["nm:425", "nm:550.5"])
+    assert umov.Bands(.55 * u.um).set == "nm:550"
+    triangle = ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    assert (umov.Satellite(mesh=triangle, unit=u.mm, materials="paper_al").to_dict()["mesh"]["unit"] == "mm")
+    scenario = umov.Scenario(EXAMPLES / "hst_maui.toml", {"time.step_s": .5 * u.min, "object.attitude": {"mode": "spin", "axis": "+X", "rate_deg_s": 2 * u.rad / u.min}})
+    changed = tomllib.loads(scenario.to_toml())
+    assert changed["time"]["step_s"] == 30
+    assert changed["object"][0]["attitude"]["rate_deg_s"] == pytest.approx(6 / np.pi, rel=1e-12)
 
 
 def test_light_curve_of_a_pass(hst):
@@ -264,6 +276,10 @@ def test_own_materials_go_with_the_satellite():
     lambda hst: hst.light_curve("maui", START, STOP, step=1 * u.s, step_s=1),
     lambda hst: hst.light_curve("maui", START),
     lambda hst: hst.light_curve("maui", START, STOP, bands=["V"]),
+    lambda hst: hst.light_curve("maui", START, STOP, bands=3 * u.s),
+    lambda hst: umov.Satellite(mesh=([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), unit=u.s, materials="paper_al", orbit=DATA / "tle/hst.tle")
+    .light_curve("maui", START, STOP, step_s=1),
+    lambda hst: umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 3 * u.m}),
     lambda hst: umov.Engine(hst, method="guess"),
     lambda hst: umov.Engine(hst, laser=[1, 0]),
     lambda hst: umov.Engine(hst, laser=[1, 2, 0, 0]),

@@ -9,11 +9,17 @@ from numpy.typing import ArrayLike, NDArray
 from .errors import UsageError
 
 
-def _plain(value: Any, name: str) -> Any:
-    """A Quantity in the unit that the name says; all else as it is."""
+#: Ends of names that are not units as astropy spells them.
+_UNITS = {"_deg_s": "deg/s", "_km_s": "km/s", "_e_s": "electron/s", "_hpa": "hPa"}
+
+
+def plain(value: Any, name: str) -> Any:
+    """A Quantity in the unit that the name ends with; all else as it is."""
     if not hasattr(value, "to_value"):
         return value
-    unit = name.rsplit("_", 1)[-1]
+    if "_" not in name:
+        raise UsageError(f"{name} has a unit; plain numbers were expected")
+    unit = next((unit for end, unit in _UNITS.items() if name.endswith(end)), name.rsplit("_", 1)[-1])
     try:
         return value.to_value(unit)
     except Exception as error:
@@ -23,10 +29,10 @@ def _plain(value: Any, name: str) -> Any:
 def number_array(value: ArrayLike, name: str) -> NDArray[np.float64]:
     """Finite numbers as float64."""
     try:
-        plain = np.asarray(_plain(value, name))
-        if plain.dtype.kind == "c":
+        given = np.asarray(plain(value, name))
+        if given.dtype.kind == "c":
             raise TypeError("complex")
-        out = plain.astype(np.float64, copy=False)
+        out = given.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError) as error:
         raise UsageError(f"{name} is {value!r}; numbers were expected") from error
     if not np.isfinite(out).all():

@@ -9,6 +9,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ._numbers import plain
 from .errors import UsageError
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
@@ -40,6 +41,8 @@ def value_text(value: Any, name: str = "value") -> str:
     if isinstance(value, Mapping):
         inside = (f"{_key(str(k))} = {value_text(v, str(k))}" for k, v in value.items() if v is not None)
         return "{ " + ", ".join(inside) + " }"
+    if hasattr(value, "to_value") and not hasattr(value, "scale") and "_" in name:  # into the unit that the key ends with
+        return value_text(plain(value, name), name)
     if hasattr(value, "to_value") or hasattr(value, "scale"):  # a unit or a time, of which a scenario has its own forms
         raise UsageError(f"{name} is {value!r}; a plain number or a text was expected, in the unit that the key says")
     if hasattr(value, "tolist"):  # numpy arrays and numbers

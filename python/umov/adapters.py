@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ._numbers import number_array
 from .errors import UsageError
 
 Texts = dict[str, str]
@@ -67,12 +68,12 @@ def mesh_text(mesh: Any) -> str | None:
         raise UsageError(f"mesh is a {type(mesh).__name__}; a file, a table of the scenario, a trimesh mesh or "
                          "(vertices, faces) was expected")
     try:
-        points = np.asarray(vertices, dtype=np.float64)
+        points = number_array(vertices, "vertices")
         corners = np.asarray(faces)
     except (TypeError, ValueError, OverflowError) as error:
         raise UsageError(f"vertices or faces are no arrays of numbers ({error}); (N, 3) each was expected") from error
-    if points.ndim != 2 or points.shape[1] != 3 or not np.isfinite(points).all():
-        raise UsageError(f"vertices have shape {points.shape}; (N, 3) finite numbers were expected")
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise UsageError(f"vertices have shape {points.shape}; (N, 3) was expected")
     if corners.ndim != 2 or corners.shape[1] != 3 or not np.issubdtype(corners.dtype, np.integer):
         raise UsageError(f"faces have shape {corners.shape} of {corners.dtype}; (N, 3) whole numbers were "
                          "expected")

@@ -2,13 +2,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _toml, _umov
+from ._numbers import number
 from .errors import UsageError
 from .tables import Table
 
+if TYPE_CHECKING:
+    from astropy.units import Quantity
+
 __all__ = ["Bands", "band", "bands"]
+
+
+def _wave(value: Any) -> Any:
+    """A wavelength with an astropy unit as a scenario names it; all else as it is."""
+    return f"nm:{number(value, 'wavelength_nm'):.10g}" if hasattr(value, "to_value") else value
+
+
+def names_of(given: Any) -> Any:
+    """Names as a scenario has them: one, or a list of them."""
+    if hasattr(given, "to_value"):  # one Quantity, or an array of them
+        given = _wave(given) if given.isscalar else list(given)
+    return given if isinstance(given, str) else [_wave(one) for one in given]
 
 
 class Bands:
@@ -18,7 +34,8 @@ class Bands:
     ----------
     set
         Wavelengths ("nm:550"), filters ("Bessell.V", "gaia" for all three of Gaia), files ("file:my.vot") or a set
-        ("paper_rgb"): one name or a list of them. `umov.bands()` lists the curves.
+        ("paper_rgb"): one name or a list of them. `umov.bands()` lists the curves. Wavelengths with an astropy unit too
+        (`[425, 550] * u.nm`).
     mag_system
         Of the magnitudes: "AB" (default), "ST" or "Vega".
 
@@ -34,12 +51,12 @@ class Bands:
     True
     """
 
-    def __init__(self, set: str | Sequence[Any], *, mag_system: str = "AB") -> None:
+    def __init__(self, set: str | Sequence[Any] | Quantity, *, mag_system: str = "AB") -> None:
         if mag_system not in ("AB", "ST", "Vega"):
             raise UsageError(f"mag_system is {mag_system!r}; AB, ST or Vega was expected")
-        if not isinstance(set, str) and (not isinstance(set, Sequence) or isinstance(set, bytes)):
+        if not hasattr(set, "to_value") and (not isinstance(set, (str, Sequence)) or isinstance(set, bytes)):
             raise UsageError(f"set is a {type(set).__name__}; a name or a list of names was expected")
-        self.set = set if isinstance(set, str) else list(set)  #: names as they were given
+        self.set = names_of(set)  #: names as a scenario has them
         self.mag_system = mag_system  #: AB, ST or Vega
         for name in [self.set] if isinstance(self.set, str) else self.set:
             if isinstance(name, str) and not name.startswith("file:"):

@@ -10,26 +10,26 @@ from . import _toml, adapters
 from ._jobs import Progress
 from ._numbers import number
 from .errors import UsageError
-from .passbands import Bands
+from .passbands import Bands, names_of
 from .sites import AnySite, Site
 from .times import AnyTime, seconds, utc
 
 if TYPE_CHECKING:
-    from astropy.units import Quantity
+    from astropy.units import Quantity, UnitBase
 
     from .light_curves import LightCurve
     from .materials import Material
 
 __all__ = ["Satellite"]
 
-AnyBands = Union[str, Sequence[str], Bands]
+AnyBands = Union[str, Sequence[Any], Bands, "Quantity"]
 
 
 def band_table(bands: AnyBands) -> dict[str, Any]:
     """The [bands] table of a scenario."""
     if isinstance(bands, Bands):
         return bands.to_dict()
-    return {"set": bands if isinstance(bands, str) else list(bands)}
+    return {"set": names_of(bands)}
 
 
 def band_changes(bands: AnyBands | None) -> dict[str, Any]:
@@ -62,7 +62,7 @@ class Satellite:
     mesh
         A file (OBJ, glTF, PLY, STL), a trimesh mesh or (vertices (N, 3), faces (M, 3) counted from 0).
     unit
-        Of the mesh: m, mm, cm, in or ft; asked for where the format has none.
+        Of the mesh: m, mm, cm, in or ft, as text or of astropy; asked for where the format has none.
     up
         Axis of the file that becomes +Z of the body, such as "+Y"; asked for where the format has none.
     orbit
@@ -96,7 +96,7 @@ class Satellite:
     True
     """
 
-    def __init__(self, mesh: Any, *, unit: str | None = None, up: str | None = None, orbit: Any = None,
+    def __init__(self, mesh: Any, *, unit: str | UnitBase | None = None, up: str | None = None, orbit: Any = None,
                  norad: int | None = None, attitude: Mapping[str, Any] | None = None,
                  materials: str | Material | Mapping[str, Any], name: str = "", normals: str | None = None,
                  parts: Sequence[Mapping[str, Any]] = ()) -> None:
@@ -121,8 +121,9 @@ class Satellite:
         table = dict(orbit) if isinstance(orbit, Mapping) else {"file": orbit, "norad": norad}
         return {**table, "file": _absolute(table["file"])} if "file" in table else table
 
-    def _mesh(self, mesh: Any, unit: str | None, up: str | None, normals: str | None) -> dict[str, Any]:
+    def _mesh(self, mesh: Any, unit: str | UnitBase | None, up: str | None, normals: str | None) -> dict[str, Any]:
         text = adapters.mesh_text(mesh)
+        unit = unit if unit is None or isinstance(unit, str) else str(unit)  # of astropy
         more = {"unit": unit, "up": up, "normals": normals}
         if text is not None:
             self._texts["mesh.obj"] = text
