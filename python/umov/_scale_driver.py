@@ -11,6 +11,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+from ._scale_store import do_shard_of_store, is_url
 from ._scale_worker import do_shard
 from .errors import DeviceError, Error, Interrupted, UsageError, error_from
 
@@ -94,6 +95,7 @@ class Driver:
         lock = result.lock
         predicted = lock["predicted"]["setup_cpu_s"] + lock["predicted"]["cpu_s"] * lock["per_shard"]
         self.result, self.cluster, self.quiet = result, cluster, quiet
+        self.do = do_shard_of_store if is_url(result.folder) else do_shard
         self.arguments = (result._umov, str(result.folder), threads, timeout_s or max(60.0, 10 * predicted))
         self.todo = iter(result.missing)
         self.futures: dict[str, Any] = {}
@@ -104,7 +106,8 @@ class Driver:
         self.told = self.looked = time.monotonic()
         self.stopped: Error | Interrupted | None = None
         self.stopped_at = 0.0
-        self.resume = f"umov scale run {result.folder} goes on."
+        self.resume = (f"umov.scale.run(None, \"{result.folder}\", cluster=...) goes on." if is_url(result.folder) else
+                       f"umov scale run {result.folder} goes on.")
 
     def run(self) -> None:
         self._submit(max(200, 4 * len(self.cluster.workers())))
@@ -132,7 +135,7 @@ class Driver:
     def _submit(self, count: int) -> None:
         for _, index in zip(range(count), self.todo):
             # No two clients' tasks of one name: what a second one asks for is its own.
-            future = self.cluster.client.submit(do_shard, index, *self.arguments, pure=False,
+            future = self.cluster.client.submit(self.do, index, *self.arguments, pure=False,
                                                 key=f"umov-{self.result.lock['key']}-{index}-{os.getpid()}")
             self.futures[future.key] = future
             future.add_done_callback(self.ended.put)
@@ -159,7 +162,7 @@ class Driver:
         first = index * lock["per_shard"]
         text = {"index": index, "first": first, "count": min(lock["per_shard"], lock["total"] - first),
                 "code": record["code"], "attempts": record.get("attempts", 1), "message": record["message"], "host": ""}
-        (self.result.folder / "failed" / f"{index:08d}.json").write_text(json.dumps(text, indent=1))
+        self.result._tell_failed(f"failed/{index:08d}.json", json.dumps(text, indent=1))
 
     def _stop(self, why: Error | Interrupted) -> None:
         """Nothing new is begun; what no worker has begun is taken back."""

@@ -12,14 +12,15 @@ import importlib
 import json
 import os
 import pathlib
-import shutil
-import subprocess
 import sys
-import sysconfig
+import tempfile
 from typing import Any
 
+from . import _scale_store
+from ._scale_command import call, find_program
 from ._scale_driver import Cluster, Driver, Hold
-from .errors import DeviceError, Error, InputError, Interrupted, error_from
+from ._scale_store import Store, StoreLease, is_url
+from .errors import Error, InputError, Interrupted, UsageError
 from .rows import Rows
 
 __all__ = ["Job", "Plan", "Result", "plan", "run"]
@@ -79,27 +80,6 @@ class Plan:
     setup_cpu_s: float  #: of a process before its first row
 
 
-def _program(program: str | None) -> str:
-    """The command beside this package, or the one of the path."""
-    here = pathlib.Path(__file__).parent
-    places = [program, pathlib.Path(sysconfig.get_path("scripts")) / "umov", here.parents[1] / "apps/cli/umov",
-              shutil.which("umov")]
-    for place in places:
-        if place and os.access(place, os.X_OK):
-            return str(place)
-    raise DeviceError("the command umov was not found. Install it with pip install umov, or say program=\"...\".")
-
-
-def _call(program: str, *words: Any) -> str:
-    done = subprocess.run([program, "scale", *map(str, words)], text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, check=False)
-    if done.returncode == 0:
-        return done.stdout
-    lines = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
-    text = lines[-1].removeprefix("error: ") if lines else done.stderr.strip()
-    raise error_from((done.returncode, text, "", 0, 0))
-
-
 def plan(job: Job, *, cores: int | None = None, program: str | None = None) -> Plan:
     """What a job will cost; nothing is written.
 
@@ -118,7 +98,7 @@ def plan(job: Job, *, cores: int | None = None, program: str | None = None) -> P
     1
     """
     more = ["--cores", cores] if cores else []
-    return Plan(**json.loads(_call(_program(program), "plan", "--json", "-q", *more, "not-made", *job.words)))
+    return Plan(**json.loads(call(find_program(program), "plan", "--json", "-q", *more, "not-made", *job.words)))
 
 
 class Result:
@@ -127,7 +107,8 @@ class Result:
     Parameters
     ----------
     folder
-        That `run` or the command made.
+        That `run` or the command made, or the URL of an object store ("s3://bucket/name"). What reads rows of a store brings
+        them into a temporary folder first, once; `fetch` brings them where you like.
     program
         The command umov; by default the one beside this package.
 
@@ -142,31 +123,66 @@ class Result:
     """
 
     def __init__(self, folder: str | os.PathLike[str], program: str | None = None) -> None:
-        self.folder = pathlib.Path(folder).absolute()
-        self._umov = _program(program)
-        self.lock: dict[str, Any] = json.loads((self.folder / "job.json").read_text())
+        self._store = Store(str(folder)) if is_url(folder) else None
+        #: its absolute path, or the URL of a store
+        self.folder = self._store.url if self._store else pathlib.Path(folder).absolute()
+        self._umov = find_program(program)
+        self._fetched: tempfile.TemporaryDirectory[str] | None = None
+        text = self._store.read("job.json") if self._store else (pathlib.Path(folder) / "job.json").read_text()
+        if text is None:
+            raise InputError(f"{folder} holds no job; umov.scale.run(job, \"{folder}\", cluster=...) begins one")
+        self.lock: dict[str, Any] = json.loads(text)
+
+    def fetch(self, folder: str | os.PathLike[str] | None = None) -> Result:
+        """All that is there and not yet here, from an object store into a folder of this machine; a folder is itself.
+
+        Parameters
+        ----------
+        folder
+            Where it goes; None: a temporary one, which goes with this object.
+        """
+        if self._store is None:
+            return self
+        if folder is None:
+            self._fetched = self._fetched or tempfile.TemporaryDirectory(prefix="umov-")
+            folder = self._fetched.name
+        _scale_store.fetch(self._store, self.lock, pathlib.Path(folder))
+        return Result(folder, self._umov)
 
     @property
     def status(self) -> dict[str, Any]:
         """Shards, done, failed, bytes, is_complete, is_held."""
-        out: dict[str, Any] = json.loads(_call(self._umov, "status", self.folder, "--json"))
+        if self._store:
+            return _scale_store.status(self._store, self.lock)
+        out: dict[str, Any] = json.loads(call(self._umov, "status", self.folder, "--json"))
         return out
 
     @property
     def files(self) -> list[pathlib.Path]:
         """Files of the shards that are there, in order."""
-        return sorted((self.folder / "shards").rglob(f"????????-{self.lock['key']}-*.rows"), key=lambda p: p.name)
+        folder = pathlib.Path(self.fetch().folder)
+        return sorted((folder / "shards").rglob(f"????????-{self.lock['key']}-*.rows"), key=lambda p: p.name)
 
     @property
     def missing(self) -> list[int]:
         """Numbers of the shards that are not."""
-        there = {int(path.name[:8]) for path in self.files}
+        there = (set(_scale_store.shards(self._store, self.lock)) if self._store else
+                 {int(path.name[:8]) for path in self.files})
         return [k for k in range(self.lock["shards"]) if k not in there]
 
     @property
     def failed(self) -> list[dict[str, Any]]:
         """What is known of those that could not be done."""
-        return [json.loads(path.read_text()) for path in sorted((self.folder / "failed").glob("*.json"))]
+        if self._store:
+            texts = [self._store.read(f"failed/{name}") for name in self._store.names("failed")]
+            return [json.loads(text) for text in texts if text is not None]
+        return [json.loads(path.read_text()) for path in sorted((pathlib.Path(self.folder) / "failed").glob("*.json"))]
+
+    def _tell_failed(self, name: str, text: str) -> None:
+        if self._store:
+            self._store.write(name, text.encode())
+        else:
+            (pathlib.Path(self.folder) / name).write_text(text)
 
     def merge(self, output: str | os.PathLike[str], table: str | None = None) -> None:
         """Writes the table that the plain command would have written.
@@ -178,15 +194,18 @@ class Result:
         table
             Of a run: "lightcurve" (default) or "passes".
         """
-        _call(self._umov, "merge", self.folder, "-q", "-o", output, *(["--table", table] if table else []))
+        call(self._umov, "merge", self.fetch().folder, "-q", "-o", output, *(["--table", table] if table else []))
 
     def verify(self) -> None:
         """Reads all shards and compares them with their hashes; InputError naming what is damaged."""
-        _call(self._umov, "verify", self.folder, "-q")
+        call(self._umov, "verify", self.fetch().folder, "-q")
 
     def repair(self) -> None:
         """Does damaged shards again."""
-        _call(self._umov, "repair", self.folder, "-q")
+        if self._store:
+            raise UsageError(f"{self.folder} is an object store: fetch it into a folder and repair that, or remove the damaged "
+                             "object and run the job again")
+        call(self._umov, "repair", self.folder, "-q")
 
     def rows(self, table: str | None = None) -> Rows:
         """Rows of a table over all shards, mapped: nothing is read until it is asked for. Those of passes stand
@@ -255,7 +274,8 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     job
         What is to be done; None goes on with the job of the folder.
     output
-        The folder.
+        The folder, or a URL of an object store ("s3://bucket/name"; what it asks for is in fsspec's own configuration): then every
+        worker needs the files of the job under the same names, but no shared folder.
     cluster
         None: this machine, by the command alone. "local:N": N workers on this machine, behind the loopback. Any Dask
         cluster or client, or the address of a scheduler ("tls://host:8786"). The folder must be seen by all workers.
@@ -291,19 +311,23 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     >>> result = umov.scale.run(job, "agena_run")  # with cluster="local:8" on eight workers
     >>> result.merge("agena.csv")
     """
-    umov = _program(program)
+    umov = find_program(program)
     words = job.words if job else []
+    if is_url(output) and cluster is None:
+        raise UsageError(f"output is {output}; an object store takes a cluster: cluster=\"local:{os.cpu_count()}\" is this machine")
     more = (["--per-shard", per_shard] if per_shard else []) + (["--yes"] if yes else [])
     if cluster is None:
-        _call(umov, "run", "-q", *more, *(["--timeout-s", timeout_s] if timeout_s else []),
+        call(umov, "run", "-q", *more, *(["--timeout-s", timeout_s] if timeout_s else []),
               *(["--join"] if join else []), output, *words)
         return Result(output, umov)
-    if words:
-        _call(umov, "lock", "-q", *more, output, *words)
+    if words and is_url(output):
+        _scale_store.begin(Store(str(output)), umov, more, words)
+    elif words:
+        call(umov, "lock", "-q", *more, output, *words)
     result = Result(output, umov)
     if not result.missing:
         return result
-    hold = None if join else Hold(umov, result.folder)
+    hold = None if join else StoreLease(result._store) if result._store else Hold(umov, pathlib.Path(result.folder))
     try:
         dask = Cluster(cluster, tls)
         try:
