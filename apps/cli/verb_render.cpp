@@ -1,9 +1,10 @@
 // umov render: the object as the observer sees it.
 
-#include "doubtful_elements.h"
 #include "job_console.h"
+#include "render_options.h"
 #include "verbs.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/text.h>
 #include <umov/jobs/render.h>
@@ -11,14 +12,14 @@
 namespace umov::cli {
 namespace {
 
-struct RenderOptions {
-  jobs::RenderRequest request;
-  std::string scene, output, shade = "I", time;
-  std::vector<std::string> overrides;
-  std::vector<double> sun, observer, up{0, 0, 1};
-  std::size_t object = 1;
-  DoubtfulElements elements;
-};
+/// The name of a frame's file: its number where the # stand.
+std::string numbered(const std::string &name, std::size_t frame) {
+  const std::size_t first = name.find('#');
+  if (first == std::string::npos)
+    return name;
+  const std::size_t end = std::min(name.find_first_not_of('#', first), name.size());
+  return fmt::format("{}{:0{}d}{}", name.substr(0, first), frame, end - first, name.substr(end));
+}
 
 Result<Vec3<Body>> direction(const std::vector<double> &xyz, const std::string &option) {
   const Vec3<Body> v{xyz[0], xyz[1], xyz[2]};
@@ -60,6 +61,9 @@ Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
     out.time = time;
   }
   out.object = o.object - 1;
+  out.has_file_each = o.output.find('#') != std::string::npos;
+  UMOV_ASSIGN(part, part_of(o.part));
+  out.part = part;
   return out;
 }
 
@@ -68,59 +72,17 @@ Result<void> run_render(const RenderOptions &o, const Common &common, Diagnostic
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
   const jobs::JobOptions options = with_elements(job_options(common), o.elements);
   JobConsole console(common, tracing_masks);
-  UMOV_ASSIGN(done, jobs::render(scenario, request, options, console.monitor(true), diagnostics));
-  UMOV_TRY(put(o.output, done.bytes));
+  const auto keep = [&](std::size_t frame, const std::string &bytes) {
+    return put(numbered(o.output, frame), bytes);
+  };
+  UMOV_ASSIGN(done,
+              jobs::render(scenario, request, keep, options, console.monitor(true), diagnostics));
   std::string when = done.first_utc.empty() ? "" : ", " + done.first_utc;
   if (!when.empty() && done.pictures > 1)
     when += " to " + done.last_utc;
   note(common, fmt::format("{}: {}, {:.4g} m wide{}", o.output, counted(done.pictures, "picture"),
                            done.width_m, when));
   return {};
-}
-
-void add_what(CLI::App &verb, RenderOptions &o) {
-  verb.add_option("scene", o.scene, "Scenario file (TOML)")->required();
-  verb.add_option("-o,--output", o.output, "File: .png, or .exr with I, Q, U, V of every band")
-      ->required();
-  verb.add_option("--shade", o.shade,
-                  "I, p, pa, material, or colour (three bands as blue, green, red)")
-      ->check(CLI::IsMember({"I", "p", "pa", "material", "colour"}))
-      ->capture_default_str();
-  verb.add_option("--band", o.request.band,
-                  "Of the picture, as the scene spells it; default: the middle one");
-  verb.add_option("--time", o.time,
-                  "UTC; default: the brightest moment of the first pass in [time]");
-  verb.add_option("--frames", o.request.frames, "Pictures of the first pass, as an animated PNG")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  verb.add_option("--fps", o.request.frames_per_s, "Frames per second of the animation")
-      ->check(CLI::Range(0.1, 60.0))
-      ->capture_default_str();
-  verb.add_option("--sun", o.sun, "Direction in the body frame, instead of an orbit: X Y Z")
-      ->expected(3);
-  verb.add_option("--observer", o.observer, "The same for the observer")->expected(3);
-  verb.add_option("--up", o.up, "What is up in the picture, with --observer")
-      ->expected(3)
-      ->capture_default_str();
-  verb.add_option("--object", o.object, "Which [[object]], from 1")->capture_default_str();
-  verb.add_option("--set", o.overrides, "KEY=VALUE over a key of the scenario");
-  add_elements(verb, o.elements);
-}
-
-void add_picture(CLI::App &verb, RenderOptions &o) {
-  verb.add_option("--size", o.request.side, "Pixels per side")
-      ->check(CLI::Range(16, 4096))
-      ->capture_default_str();
-  verb.add_option("--samples", o.request.samples, "Rays per pixel and axis")
-      ->check(CLI::Range(1, 8))
-      ->capture_default_str();
-  verb.add_option("--paths", o.request.paths,
-                  "Per ray, of light that touched several surfaces (render.bounces > 1)")
-      ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
-  verb.add_option("--half-width", o.request.half_width_m,
-                  "Half the picture's side [m]; default: the whole object")
-      ->check(CLI::PositiveNumber);
 }
 
 } // namespace
@@ -130,8 +92,7 @@ void add_render(CLI::App &app, const Exit &exit_with) {
                                             "of a pass, OpenEXR with Stokes channels");
   auto o = std::make_shared<RenderOptions>();
   auto common = std::make_shared<Common>();
-  add_what(*verb, *o);
-  add_picture(*verb, *o);
+  add_render_options(*verb, *o);
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
   verb->callback([o, common, exit_with] {

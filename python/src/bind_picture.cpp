@@ -54,12 +54,17 @@ nb::bytes render(const Scenario &scenario, const std::string &shade, const std::
   if (time)
     request.time = take(utc_from_iso(*time));
   Attention attention(watch);
+  std::string picture;
+  const jobs::PictureSink keep = [&](std::size_t, std::string &&bytes) -> Result<void> {
+    picture = std::move(bytes);
+    return {};
+  };
   auto made = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
-    return jobs::render(scenario, request, options, monitor, diagnostics);
+    return jobs::render(scenario, request, keep, options, monitor, diagnostics);
   });
   attention.settle(was_interrupted(made));
-  const jobs::Rendered rendered = take(std::move(made));
-  return nb::bytes(rendered.bytes.data(), rendered.bytes.size());
+  take(std::move(made));
+  return nb::bytes(picture.data(), picture.size());
 }
 
 /// Corners (V, 3) [m, body frame], triangles (F, 3), the group of each, and the groups' names.

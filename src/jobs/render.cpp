@@ -27,6 +27,7 @@ struct Subject {
   LoadedObject object;
   std::vector<std::size_t> bands; ///< in the order of the channels
   std::vector<Shot> shots;
+  std::size_t first = 0; ///< number of the first shot among the frames asked for
 };
 
 /// Which epochs of a light curve are shown: of the first pass with light, or the one time.
@@ -92,8 +93,15 @@ Result<std::vector<std::size_t>> bands_of(const RenderRequest &request, std::siz
 }
 
 Result<void> check(const RenderRequest &request, const Scenario &scenario) {
-  if (request.is_exr && request.frames > 1)
-    return fail(ErrorCode::Usage, "--frames makes an animated .png; an .exr holds one picture");
+  if (request.is_exr && request.frames > 1 && !request.has_file_each)
+    return fail(ErrorCode::Usage,
+                "--frames makes an animated .png; an .exr holds one picture. Write # where the "
+                "number of each frame shall stand: -o pass_###.exr");
+  if (!request.part.is_whole() && !(request.is_exr && request.has_file_each))
+    return fail(
+        ErrorCode::Usage,
+        "--shard and --range take frames in files of their own, -o pass_###.exr; pictures of .png "
+        "share the exposure of the whole pass");
   if (request.object >= scenario.objects.size())
     return fail(ErrorCode::Usage,
                 fmt::format("--object {}: the scenario has {}", request.object + 1,
@@ -124,7 +132,8 @@ KeyFrameShading shading_of(Shade shade) {
 using Rasters = std::vector<KeyFrameRaster>; ///< of one shot, a band each
 
 /// 8-bit pictures, one exposure for all.
-Result<std::string> png_of(const RenderRequest &request, const std::vector<Rasters> &all) {
+Result<void> put_png(const RenderRequest &request, const std::vector<Rasters> &all,
+                     const PictureSink &sink) {
   Rasters flat;
   for (const Rasters &rasters : all)
     flat.insert(flat.end(), rasters.begin(), rasters.end());
@@ -139,9 +148,15 @@ Result<std::string> png_of(const RenderRequest &request, const std::vector<Raste
       draw_colour_bar(frames.back(), request.side, shading_of(request.shade));
     }
   }
-  return frames.size() == 1
-             ? encode_png(request.side, request.side, frames.front())
-             : encode_animation(request.side, request.side, frames, request.frames_per_s);
+  if (frames.size() > 1 && !request.has_file_each) {
+    UMOV_ASSIGN(movie, encode_animation(request.side, request.side, frames, request.frames_per_s));
+    return sink(0, std::move(movie));
+  }
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    UMOV_ASSIGN(picture, encode_png(request.side, request.side, frames[k]));
+    UMOV_TRY(sink(k, std::move(picture)));
+  }
+  return {};
 }
 
 Result<std::string> exr_of(const RenderRequest &request, const std::vector<Band> &bands,
@@ -165,27 +180,55 @@ Result<std::string> exr_of(const RenderRequest &request, const std::vector<Band>
   return encode_exr(request.side, request.side, channels, notes);
 }
 
-/// Of each shot the rasters of its bands.
-Result<std::vector<Rasters>> trace(const RenderRequest &request, const Scenario &scenario,
-                                   const Subject &subject, const KeyFrameOptions &how,
-                                   const Monitor &monitor) {
+/// What is left of tracing.
+struct Traced {
+  std::vector<Rasters> kept; ///< of PNG files: they wait for their exposure
+  double width_m = 0;
+};
+
+/// Traces each shot; those of OpenEXR are written at once.
+Result<Traced> trace(const RenderRequest &request, const Scenario &scenario, const Subject &subject,
+                     const KeyFrameOptions &how, const PictureSink &sink, const Monitor &monitor) {
   const KeyFrameStage stage(subject.object.scene, joints_of(scenario.objects[request.object].parts),
                             how.bounces);
-  std::vector<Rasters> out;
-  for (const Shot &shot : subject.shots) {
+  Traced out;
+  for (std::size_t k = 0; k < subject.shots.size(); ++k) {
+    const Shot &shot = subject.shots[k];
     if (monitor.is_cancelled())
-      return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+      return fail(ErrorCode::Interrupted,
+                  request.is_exr && k > 0
+                      ? fmt::format("stopped by the user; {} written", counted(k, "picture"))
+                      : "stopped by the user; nothing was written");
     UMOV_ASSIGN(rasters, stage.trace(shot.view, shot.joint_angles_rad, how, subject.bands));
-    out.push_back(std::move(rasters));
-    monitor.advance("pictures", out.size(), subject.shots.size());
+    out.width_m = 2 * rasters.front().half_width_m;
+    if (request.is_exr) {
+      UMOV_ASSIGN(file, exr_of(request, subject.object.scene.bands, shot, rasters, how.bounces));
+      UMOV_TRY(sink(subject.first + k, std::move(file)));
+    } else {
+      out.kept.push_back(std::move(rasters));
+    }
+    monitor.advance("pictures", k + 1, subject.shots.size());
   }
   return out;
+}
+
+/// Keeps the shots of the part that was asked for.
+Result<void> take_part(const JobPart &part, Subject &subject) {
+  UMOV_ASSIGN(range, part.of(subject.shots.size(), "frames"));
+  subject.first = range.first;
+  subject.shots.erase(subject.shots.begin() + static_cast<std::ptrdiff_t>(range.end()),
+                      subject.shots.end());
+  subject.shots.erase(subject.shots.begin(),
+                      subject.shots.begin() + static_cast<std::ptrdiff_t>(range.first));
+  if (subject.shots.empty())
+    return fail(ErrorCode::Nothing, "no frame is in the part that was asked for");
+  return {};
 }
 
 } // namespace
 
 Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
-                        const JobOptions &options, const Monitor &monitor,
+                        const PictureSink &sink, const JobOptions &options, const Monitor &monitor,
                         Diagnostics &diagnostics) {
   UMOV_TRY(check(request, scenario));
   UMOV_ASSIGN(object,
@@ -194,7 +237,7 @@ Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
   const std::vector<Band> &bands = object.scene.bands;
   UMOV_ASSIGN(band, band_index(request.band, bands));
   UMOV_ASSIGN(traced, bands_of(request, band, bands.size()));
-  Subject subject{std::move(object), std::move(traced), {}};
+  Subject subject{std::move(object), std::move(traced), {}, 0};
   if (request.view) {
     const PartAngles parts(scenario.objects[request.object].parts, true, scenario.file,
                            diagnostics);
@@ -206,12 +249,12 @@ Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
   const KeyFrameOptions how{request.side,         request.samples, band,
                             request.half_width_m, options.threads, scenario.light.bounces,
                             request.paths,        scenario.seed};
-  UMOV_ASSIGN(all, trace(request, scenario, subject, how, monitor));
-  UMOV_ASSIGN(bytes, request.is_exr ? exr_of(request, subject.object.scene.bands,
-                                             subject.shots.front(), all.front(), how.bounces)
-                                    : png_of(request, all));
-  return Rendered{std::move(bytes), all.size(), 2 * all.front().front().half_width_m,
-                  subject.shots.front().when, subject.shots.back().when};
+  UMOV_TRY(take_part(request.part, subject));
+  UMOV_ASSIGN(traced_all, trace(request, scenario, subject, how, sink, monitor));
+  if (!request.is_exr)
+    UMOV_TRY(put_png(request, traced_all.kept, sink));
+  return Rendered{subject.shots.size(), traced_all.width_m, subject.shots.front().when,
+                  subject.shots.back().when};
 }
 
 } // namespace umov::jobs

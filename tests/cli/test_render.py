@@ -79,6 +79,30 @@ def test_animation_of_a_pass(umov, tmp_path):
     assert sequence == list(range(len(sequence)))
 
 
+
+def test_frames_in_files_of_their_own(umov, tmp_path):
+    """A part of them has the bytes of the whole; pictures share the exposure of the movie."""
+    pass_of = ["render", ROOT / "examples/hst_maui.toml", "--frames", 4, "--size", 32, "--set", "time.step_s=20"]
+    for folder, part in (("whole", []), ("part", ["--range", "1:2"]), ("share", ["--shard", "1/2"])):
+        (tmp_path / folder).mkdir()
+        done = umov(*pass_of, *part, "-o", f"{folder}/f_###.exr")
+        assert done.code == 0, done.err
+    names = {folder: sorted(path.name for path in (tmp_path / folder).iterdir()) for folder in ("whole", "part", "share")}
+    assert names == {"whole": [f"f_{k:03d}.exr" for k in range(4)], "part": ["f_001.exr", "f_002.exr"],
+                     "share": ["f_002.exr", "f_003.exr"]}
+    for folder in ("part", "share"):
+        for name in names[folder]:
+            assert (tmp_path / folder / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    assert umov(*pass_of, "-o", "f#.png").code == 0
+    assert umov(*pass_of, "-o", "movie.png").code == 0
+    movie = b"".join(data for kind, data in chunks((tmp_path / "movie.png").read_bytes()) if kind == "IDAT")
+    assert movie == b"".join(data for kind, data in chunks((tmp_path / "f0.png").read_bytes()) if kind == "IDAT")
+    for part, name, why in ((["--range", "3:2"], "f_#.exr", "frames"), (["--range", "0:1"], "f_#.png", "exposure"),
+                            ([], "f.exr", "-o pass_###.exr")):
+        done = umov(*pass_of, *part, "-o", name)
+        assert done.code == 2 and why in done.err, done.err
+
+
 def test_exr_sums_to_the_signature(umov, tmp_path):
     """Radiance summed over the picture is the intensity of `umov signature`, in the picture's axes."""
     import OpenEXR  # the format's own reader, of PyPI
