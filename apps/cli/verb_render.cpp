@@ -2,6 +2,7 @@
 
 #include "doubtful_elements.h"
 #include "job_console.h"
+#include "site_options.h"
 #include "verbs.h"
 
 #include <fmt/format.h>
@@ -56,7 +57,7 @@ Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
     out.view = view;
   }
   if (!o.time.empty()) {
-    UMOV_ASSIGN(time, utc_from_iso(o.time));
+    UMOV_ASSIGN(time, time_of("--time", o.time));
     out.time = time;
   }
   out.object = o.object - 1;
@@ -120,7 +121,7 @@ void add_picture(CLI::App &verb, RenderOptions &o) {
       ->capture_default_str();
   verb.add_option("--half-width", o.request.half_width_m,
                   "Half the picture's side [m]; default: the whole object")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 1e6));
 }
 
 } // namespace

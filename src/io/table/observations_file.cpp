@@ -330,6 +330,7 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
     return fail(ErrorCode::BadInput, "no row of observations", {file});
   UMOV_ASSIGN(columns, reader.columns());
   UMOV_TRY(check_name(reader, columns, table.rows.size()));
+  UMOV_TRY(check_polcconv(table, file));
   ObservationsFile out;
   out.path = file;
   out.notes = table.notes;
