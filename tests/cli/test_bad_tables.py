@@ -67,6 +67,16 @@ def test_frames_of_another_kind(umov, scenario, tmp_path, note, words):
             assert word in done.err, done.err
 
 
+def test_rows_out_of_order_are_put_in_order_and_told_of(umov, tmp_path):
+    rows = [f"2018-01-21T05:08:{k:02d}Z,{5 + k % 3}\n" for k in range(50)]
+    (tmp_path / "a.csv").write_text("time_utc,mag\n" + "".join(rows))
+    (tmp_path / "b.csv").write_text("time_utc,mag\n" + "".join(rows[:30] + [rows[31], rows[30]] + rows[32:]))
+    right, wrong = umov("period", "a.csv", "--json"), umov("period", "b.csv", "--json")
+    assert right.code == wrong.code == 0 and "in order" not in right.err, right.err
+    assert "b.csv:33: 1 row lies before the row above in time" in wrong.err, wrong.err
+    assert right.out == wrong.out
+
+
 def test_a_page_and_a_set_of_counts_are_named(umov, tmp_path):
     (tmp_path / "c.csv").write_text(COUNTS)
     done = umov("reduce", "c.csv", "--page", "x.pdf")

@@ -38,8 +38,7 @@ std::string with_hashes(std::string_view input) {
 std::filesystem::path scratch() {
   std::error_code unknown;
   const bool has_memory = std::filesystem::is_directory("/dev/shm", unknown);
-  return (has_memory ? std::filesystem::path("/dev/shm")
-                     : std::filesystem::temp_directory_path()) /
+  return (has_memory ? std::filesystem::path("/dev/shm") : std::filesystem::temp_directory_path()) /
          ("umov-fuzz-journal-" + std::to_string(::getpid()));
 }
 

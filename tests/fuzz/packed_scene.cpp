@@ -1,4 +1,5 @@
-// A scene as the child that runs Assimp hands it over: a hostile file may have led that child astray.
+// A scene as the child that runs Assimp hands it over: a hostile file may have led that child
+// astray.
 
 #include "fuzz/mesh.h"
 

@@ -50,7 +50,8 @@ private:
 std::optional<std::size_t> whole(std::string_view word) {
   const auto value = parse_number(word);
   constexpr double most = 4294967295.0;
-  if (!value || !(*value >= 0 && *value <= most) || *value != static_cast<double>(static_cast<std::uint64_t>(*value)))
+  if (!value || !(*value >= 0 && *value <= most) ||
+      *value != static_cast<double>(static_cast<std::uint64_t>(*value)))
     return std::nullopt;
   return static_cast<std::size_t>(*value);
 }
