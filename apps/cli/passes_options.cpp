@@ -71,10 +71,11 @@ void add_passes_options(CLI::App &verb, PassesOptions &o, Common &common) {
 
 Result<jobs::PassesRequest> request_of(const PassesOptions &o, const Common &common) {
   jobs::PassesRequest out;
+  UMOV_TRY(check_page("--chart", o.chart));
   UMOV_ASSIGN(site, site_of(o.site, common));
   UMOV_TRY(take_earth_orientation(o.site));
-  UMOV_ASSIGN(start, time_of(o.start));
-  UMOV_ASSIGN(stop, time_of(o.stop));
+  UMOV_ASSIGN(start, time_of("--start", o.start));
+  UMOV_ASSIGN(stop, time_of("--stop", o.stop));
   UMOV_ASSIGN(model, model_of(o));
   out.orbit = o.orbit;
   out.norad = o.norad;

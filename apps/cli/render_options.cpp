@@ -49,7 +49,7 @@ void add_picture(CLI::App &verb, RenderOptions &o) {
       ->capture_default_str();
   verb.add_option("--half-width", o.request.half_width_m,
                   "Half the picture's side [m]; default: the whole object")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-6, 1e6));
 }
 
 } // namespace

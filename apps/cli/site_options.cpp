@@ -47,9 +47,12 @@ Result<Site> site_of(const SiteOptions &o, const Common &common) {
   return make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m);
 }
 
-Result<Epoch<Utc>> time_of(const std::string &text) {
+Result<Epoch<Utc>> time_of(const char *option, const std::string &text) {
   static const std::regex date("[0-9]{4}-[0-9]{2}-[0-9]{2}");
-  return utc_from_iso(std::regex_match(text, date) ? text + "T00:00:00Z" : text);
+  auto time = utc_from_iso(std::regex_match(text, date) ? text + "T00:00:00Z" : text);
+  if (!time)
+    return fail(ErrorCode::BadInput, fmt::format("{} {}", option, time.error().message));
+  return time;
 }
 
 } // namespace umov::cli

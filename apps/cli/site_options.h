@@ -24,7 +24,8 @@ Result<void> take_earth_orientation(const SiteOptions &options);
 /// Usage where nothing, or not all of it, is said. A height that is not said is 0, with a remark.
 Result<Site> site_of(const SiteOptions &options, const Common &common);
 
-/// A time as options take it: ISO 8601, or a date alone for 0 h UTC of that day.
-Result<Epoch<Utc>> time_of(const std::string &text);
+/// A time as options take it: ISO 8601, or a date alone for 0 h UTC of that day. A message begins
+/// with the name of the option.
+Result<Epoch<Utc>> time_of(const char *option, const std::string &text);
 
 } // namespace umov::cli

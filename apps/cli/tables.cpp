@@ -57,6 +57,13 @@ Result<void> put_table(const std::string &path, const Table &table, const Common
   return write_table(path, table);
 }
 
+Result<void> check_page(const char *option, const std::string &path) {
+  if (path.empty() || path.ends_with(".html"))
+    return {};
+  return fail(ErrorCode::Usage,
+              fmt::format("{} {}: a name that ends in .html was expected", option, path));
+}
+
 Result<void> check_output(const std::string &path) {
   if (path.empty() || path == "-")
     return {};

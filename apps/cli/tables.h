@@ -25,6 +25,14 @@ Result<void> put_table(const std::string &path, const Table &table, const Common
 
 /// Refuses (Usage, Device) before any work what `put_table` would refuse after it.
 Result<void> check_output(const std::string &path);
+/// Usage for a page (x.html) whose name says another form; `option` names it.
+Result<void> check_page(const char *option, const std::string &path);
+/// An error that names no file, with the one that the user gave.
+template <class T> Result<T> of_file(Result<T> done, const std::string &file) {
+  if (!done && done.error().where.file.empty())
+    done.error().where.file = file;
+  return done;
+}
 /// The name of an output folder: Usage for that of a table.
 Result<void> check_folder_name(const std::string &path);
 

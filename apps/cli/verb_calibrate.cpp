@@ -1,4 +1,5 @@
 #include "console.h"
+#include "tables.h"
 #include "verbs.h"
 
 #include <umov/core/files.h>
@@ -17,7 +18,7 @@ Result<void> run_calibrate(const CalibrateOptions &o, Diagnostics &diagnostics) 
   UMOV_ASSIGN(counts, read_counts_text(text, o.counts, diagnostics));
   UMOV_ASSIGN(stars, read_file(o.standards));
   UMOV_ASSIGN(standards, read_standards_text(stars, o.standards));
-  UMOV_ASSIGN(found, jobs::calibrate(counts, standards, diagnostics));
+  UMOV_ASSIGN(found, of_file(jobs::calibrate(counts, standards, diagnostics), o.counts));
   return put(o.output, calibration_as_toml(found));
 }
 

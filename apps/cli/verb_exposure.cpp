@@ -11,8 +11,7 @@ Result<void> run_exposure(const jobs::ExposureRequest &o, bool has_width, const 
   if (has_width && !o.band.empty() && !o.band.starts_with("nm:"))
     return fail(ErrorCode::Usage, "--width-nm beside --band " + o.band +
                                       ": its curve says how wide it is. Leave one out");
-  if (!page.empty() && !page.ends_with(".html"))
-    return fail(ErrorCode::Usage, "--page " + page + ": a name that ends in .html was expected");
+  UMOV_TRY(check_page("--page", page));
   UMOV_ASSIGN(table, jobs::exposure(o));
   UMOV_TRY(put_table(output, table, common));
   if (!page.empty()) {

@@ -42,8 +42,8 @@ Result<void> run_ephemeris(const OrbitOptions &o, const Common &common, Diagnost
   UMOV_TRY(check_output(o.output));
   UMOV_ASSIGN(site, site_of(o.site, common));
   UMOV_TRY(take_earth_orientation(o.site));
-  UMOV_ASSIGN(start, time_of(o.start));
-  UMOV_ASSIGN(stop, time_of(o.stop));
+  UMOV_ASSIGN(start, time_of("--start", o.start));
+  UMOV_ASSIGN(stop, time_of("--stop", o.stop));
   const ShadowModel shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
   JobConsole console(common);
   UMOV_ASSIGN(out,
@@ -57,7 +57,7 @@ Result<void> run_propagate(const OrbitOptions &o, const Common &common, Diagnost
   UMOV_TRY(check_output(o.output));
   jobs::StatesRequest request{o.orbit, {}, o.keep_going};
   for (const std::string &text : o.at) {
-    UMOV_ASSIGN(time, time_of(text));
+    UMOV_ASSIGN(time, time_of("--at", text));
     request.times.push_back(time);
   }
   JobConsole console(common);

@@ -49,8 +49,8 @@ Result<jobs::ConversionRequest> request_of(const ElementsOptions &o) {
   jobs::ConversionRequest out{o.file, form_name(o), o.output, {}, {}, o.step_s, now()};
   if (out.form != "oem" || o.start.empty() || o.stop.empty())
     return out;
-  UMOV_ASSIGN(start, time_of(o.start));
-  UMOV_ASSIGN(stop, time_of(o.stop));
+  UMOV_ASSIGN(start, time_of("--start", o.start));
+  UMOV_ASSIGN(stop, time_of("--stop", o.stop));
   out.start = start;
   out.stop = stop;
   return out;

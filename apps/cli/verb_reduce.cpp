@@ -72,6 +72,7 @@ Result<void> put_measurements(const ReduceVerb &o, const CountsFile &counts, con
 
 Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
+  UMOV_TRY(check_page("--page", o.page));
   jobs::ReduceOptions options;
   UMOV_TRY(read_model(o.model, options));
   options.priors = {o.q0_sd, o.gain_sd, 0, o.angle_sd_deg * pi / 180, o.efficiency_sd, o.sky_sd};
@@ -86,7 +87,8 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
     options.calibration = file.calibration;
   }
   JobConsole console(common);
-  UMOV_ASSIGN(table, jobs::reduce(counts, options, console.monitor(false), diagnostics));
+  UMOV_ASSIGN(
+      table, of_file(jobs::reduce(counts, options, console.monitor(false), diagnostics), o.counts));
   if (!o.page.empty()) {
     UMOV_ASSIGN(page, jobs::stokes_page(table, "Stokes parameters of " + o.counts, diagnostics));
     UMOV_TRY(put(o.page, page));

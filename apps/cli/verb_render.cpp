@@ -2,6 +2,7 @@
 
 #include "job_console.h"
 #include "render_options.h"
+#include "site_options.h"
 #include "verbs.h"
 
 #include <algorithm>
@@ -57,7 +58,7 @@ Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
     out.view = view;
   }
   if (!o.time.empty()) {
-    UMOV_ASSIGN(time, utc_from_iso(o.time));
+    UMOV_ASSIGN(time, time_of("--time", o.time));
     out.time = time;
   }
   out.object = o.object - 1;

@@ -14,6 +14,7 @@ namespace {
 /// Reads and checks everything; the output folder last, as nothing is written.
 Result<void> check_alone(const RunOptions &o, const Scenario &scenario, const Common &common,
                          Diagnostics &diagnostics) {
+  UMOV_TRY(part_of(o.part));
   const jobs::JobOptions options = with_elements(job_options(common), o.elements);
   JobConsole console(common, tracing_masks);
   UMOV_ASSIGN(objects,

@@ -19,10 +19,21 @@ struct ScaleRunOptions {
   std::string part, cluster;
 };
 
+/// What Python says where the package is missing is of no use to whoever asked for a cluster.
+constexpr const char *begin_dask = R"(import runpy, sys
+try:
+    import umov.scale
+except ImportError as problem:
+    sys.exit(print(f"error: --cluster takes Python with the package umov[scale] ({problem}). Install "
+                   "it for python3; without it umov scale run works on this machine, and umov scale "
+                   "script for a batch system.", file=sys.stderr) or 6)
+runpy.run_module("umov.scale", run_name="__main__", alter_sys=True)
+)";
+
 /// Dask is Python's: the same folder, done by umov.scale.
 Result<void> run_on_cluster(const ScaleRunOptions &o, const scale::JobFolder &folder) {
   const std::string path = folder.path().string(), program = own_program();
-  const char *const words[] = {"python3",       "-m",        "umov.scale",      "run",
+  const char *const words[] = {"python3",       "-c",        begin_dask,        "run",
                                path.c_str(),    "--cluster", o.cluster.c_str(), "--program",
                                program.c_str(), nullptr};
   ::execvp(words[0], const_cast<char *const *>(words));
@@ -43,8 +54,11 @@ void tell(const scale::RunTally &tally, const scale::JobFolder &folder, const Co
 
 Result<void> run_scale(ScaleRunOptions &o, const Common &common, Diagnostics &diagnostics) {
   if (!o.part.empty()) {
-    UMOV_ASSIGN(part, jobs::JobPart::shard(o.part));
-    o.settings.part = part;
+    auto part = jobs::JobPart::shard(o.part);
+    if (!part)
+      return fail(ErrorCode::Usage,
+                  "--part " + o.part + ": K/N with K from 0 to N - 1 was expected, such as 0/8");
+    o.settings.part = *part;
   }
   o.settings.threads = static_cast<std::size_t>(common.threads);
   o.settings.program = own_program();

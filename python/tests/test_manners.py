@@ -314,7 +314,7 @@ def test_import_needs_no_other_package():
 
 
 def test_an_import_costs_a_fraction_more_than_that_of_numpy():
-    """0.3 s are allowed on the machine of the issue, where numpy takes 0.10 s of the processor and this
+    """0.3 s are allowed on a machine where numpy takes 0.10 s of the processor and this
     0.17: the least of several, as neighbours cost processor time too."""
     import resource
 

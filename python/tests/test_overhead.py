@@ -103,7 +103,7 @@ def test_a_catalogue_costs_what_the_library_does(catalogue):
 
 
 def test_one_pose_is_a_short_call(scene):
-    """On the machine of the issue a pose is to take 25 us at most and numpy's product of two vectors takes 12: a call of
+    """On a quiet machine of today a pose is to take 25 us at most and numpy's product of two vectors takes 12: a call of
     the same kind, arrays of three numbers looked at and one made."""
     engine = umov.Engine(scene, threads=1)
     sun, observer = np.array([0, 0, 1.0]), np.array([0, 0.6, 0.8])

@@ -247,6 +247,21 @@ std::string printable(std::string_view text, bool *is_changed) {
   return out;
 }
 
+std::optional<std::string> why_no_text(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  if (bytes.starts_with("\x1F\x8B"))
+    return "is compressed (gzip); unpack it first: gunzip";
+  if (bytes.starts_with("PK\x03\x04"))
+    return "is a ZIP archive (or a spreadsheet, which is one); unpack it, or save it as text";
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
+    return "is text in UTF-16; save it as UTF-8";
+  constexpr std::size_t looked_at = 1u << 16;
+  if (const std::size_t zero = bytes.substr(0, looked_at).find("\0"sv);
+      zero != std::string_view::npos)
+    return "is no text: byte " + std::to_string(zero + 1) + " is 0. Is it another file?";
+  return std::nullopt;
+}
+
 std::string sha256_hex(std::string_view bytes) {
   std::array<unsigned char, 32> digest{};
   unsigned length = 0;

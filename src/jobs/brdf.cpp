@@ -11,16 +11,15 @@
 namespace umov::jobs {
 namespace {
 
-Result<void> check_angles(const BrdfGeometry &row, std::size_t index, const std::string &file) {
+Result<void> check_angles(const BrdfGeometry &row, const std::string &which, const Where &where) {
   if (row.theta_i_deg >= 0 && row.theta_i_deg <= 90 && row.theta_o_deg >= 0 &&
       row.theta_o_deg <= 90)
     return {};
-  return fail(
-      file.empty() ? ErrorCode::Usage : ErrorCode::BadInput,
-      fmt::format("row {}: theta_i {} deg, theta_o {} deg; angles from the normal between 0 "
-                  "and 90 were expected",
-                  index + 1, row.theta_i_deg, row.theta_o_deg),
-      {file});
+  return fail(where.file.empty() ? ErrorCode::Usage : ErrorCode::BadInput,
+              fmt::format("{}theta_i {} deg, theta_o {} deg; angles from the normal between 0 "
+                          "and 90 were expected",
+                          which, row.theta_i_deg, row.theta_o_deg),
+              where);
 }
 
 /// One compiled surface per wavelength of the table.
@@ -78,9 +77,11 @@ Result<std::vector<BrdfGeometry>> read_brdf_geometries(const std::string &path,
   UMOV_ASSIGN(table,
               read_csv(text, path, {"wavelength_nm", "theta_i_deg", "theta_o_deg", "phi_deg"}));
   std::vector<BrdfGeometry> rows(table.rows());
-  for (std::size_t i = 0; i < rows.size(); ++i)
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i] = {table.number("wavelength_nm", i), table.number("theta_i_deg", i),
                table.number("theta_o_deg", i), table.number("phi_deg", i), azimuth_deg};
+    UMOV_TRY(check_angles(rows[i], "", {path, static_cast<std::size_t>(table.number("line", i))}));
+  }
   return rows;
 }
 
@@ -88,7 +89,9 @@ Result<Table> brdf_table(const BrdfRequest &request) {
   Surfaces surfaces(request.material);
   BrdfColumns columns;
   for (std::size_t i = 0; i < request.rows.size(); ++i) {
-    UMOV_TRY(check_angles(request.rows[i], i, request.file));
+    UMOV_TRY(check_angles(request.rows[i],
+                          request.rows.size() > 1 ? fmt::format("row {}: ", i + 1) : "",
+                          {request.file}));
     UMOV_TRY(evaluate(request.rows[i], request.with_terms, surfaces, columns));
   }
   Table table;

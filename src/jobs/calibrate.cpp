@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <tuple>
+#include <umov/core/text.h>
 #include <umov/io/table.h>
 #include <umov/jobs/reduce.h>
 #include <umov/time/epoch.h>
@@ -15,6 +16,24 @@ namespace {
 std::string note_of(const CountsFile &counts, const char *name) {
   const auto found = counts.notes.find(name);
   return found == counts.notes.end() ? "" : found->second;
+}
+
+/// No set of a standard: for want of its name, or of q and u.
+std::string no_standard(const Table &table, const std::vector<PolarizedStandard> &standards) {
+  std::vector<std::string> seen, known;
+  for (const PolarizedStandard &one : standards)
+    known.push_back(printable(one.name));
+  for (std::size_t k = 0; k < table.rows(); ++k)
+    if (const std::string name = printable(table.text("name", k));
+        std::ranges::find(seen, name) == seen.end())
+      seen.push_back(name);
+  for (const std::string &name : seen)
+    if (std::ranges::find(known, name) != known.end())
+      return fmt::format("no set of \"{}\" has q and u; see the flags of umov reduce", name);
+  constexpr std::size_t most = 5;
+  return fmt::format("no name of the counts ({}) is that of a standard ({}); the column \"name\" "
+                     "of both must agree",
+                     listed(seen, most), listed(known, most));
 }
 
 /// A fit that rests on little, or that its own errors do not explain.
@@ -68,8 +87,7 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
                     std::sqrt(variance)});
   }
   if (data.empty())
-    return fail(ErrorCode::BadInput, "no name of the counts is that of a standard; the column "
-                                     "\"name\" of both must agree");
+    return fail(ErrorCode::BadInput, no_standard(table, standards));
   UMOV_ASSIGN(calibration, calibrate_polarimeter(data));
   out.calibration = calibration;
   warn_of_standards(data, calibration, diagnostics);

@@ -55,10 +55,14 @@ void tell_of_device(const LightFacts &facts, Diagnostics &diagnostics) {
     diagnostics.warn("--device auto took the " + facts.device);
 }
 
-Error with_way_on(Error stopped, const Journal &journal) {
+Error with_way_on(Error stopped, Journal &journal) {
   const bool is_ended_from_outside =
       stopped.code == ErrorCode::Interrupted || stopped.code == ErrorCode::Device;
-  if (is_ended_from_outside && journal.count() > 0 && !journal.problem())
+  if (!is_ended_from_outside) { // it would end there again, and what mends it is another job
+    journal.finish();
+    return stopped;
+  }
+  if (journal.count() > 0 && !journal.problem())
     stopped.message += (stopped.message.ends_with('.') ? "" : ".") +
                        std::string(" The same command goes on from there.");
   return stopped;

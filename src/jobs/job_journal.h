@@ -28,6 +28,6 @@ Result<std::string> device_text(const DeviceOptions &device);
 void tell_of_device(const LightFacts &facts, Diagnostics &diagnostics);
 
 /// The end of a job that was ended early: where it goes on.
-Error with_way_on(Error stopped, const Journal &journal);
+Error with_way_on(Error stopped, Journal &journal);
 
 } // namespace umov::jobs

@@ -320,16 +320,22 @@ Result<LibraryBuilt> build_library(const LibraryRequest &request, const JobOptio
                       printable(names.back())));
   }
   std::error_code problem;
-  fs::create_directories(request.folder, problem);
+  const bool is_new = fs::create_directories(request.folder, problem);
   if (problem)
-    return fail(ErrorCode::Device, "cannot make the folder: " + problem.message(),
+    return fail(ErrorCode::Device,
+                "cannot make the folder: " + problem.message() + ". Choose another folder.",
                 {request.folder});
   SignatureMaker maker(request, options, monitor, diagnostics);
   const std::size_t first = std::min(request.first, names.size());
   const std::size_t end = first + std::min(request.count, names.size() - first);
   for (std::size_t k = first; k < end; ++k) {
     monitor.advance("objects", k - first, end - first);
-    UMOV_TRY(maker.make(request.scenarios[k], names[k]));
+    auto made = maker.make(request.scenarios[k], names[k]);
+    if (made)
+      continue;
+    if (is_new) // a folder that holds nothing goes with the refusal; another stays
+      fs::remove(request.folder, problem);
+    return tl::unexpected(made.error());
   }
   return LibraryBuilt{maker.table()};
 }

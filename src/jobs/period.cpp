@@ -174,7 +174,9 @@ Result<std::vector<std::string>> wanted_bands(const ObservationsFile &observatio
   if (std::ranges::find(bands, band) == bands.end())
     return fail(ErrorCode::BadInput,
                 fmt::format("holds no band \"{}\"; it has {}", printable(band),
-                            printable(fmt::format("{}", fmt::join(bands, ", ")))),
+                            bands == std::vector<std::string>{""}
+                                ? "no column \"band\": leave --band out"
+                                : printable(fmt::format("{}", fmt::join(bands, ", ")))),
                 {observations.path});
   return std::vector<std::string>{band};
 }

@@ -1,5 +1,7 @@
 #include <umov/scale/job_folder.h>
 
+#include "scale/whole_number.h"
+
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -7,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <umov/core/files.h>
 #include <umov/core/temporary.h>
+#include <umov/core/text.h>
 #include <unistd.h>
 
 namespace umov::scale {
@@ -28,6 +31,12 @@ tl::unexpected<Error> device(const std::string &what, const fs::path &path) {
 }
 
 Result<JobLock> read_lock(const fs::path &folder) {
+  if (!file_exists(folder / job_file))
+    return fail(ErrorCode::BadInput,
+                fmt::format("holds no job ({} is not there). Check the name, or begin one: umov "
+                            "scale run FOLDER VERB ...",
+                            job_file),
+                {folder.string()});
   UMOV_ASSIGN(text, read_file(folder / job_file));
   return lock_from_json(text, (folder / job_file).string());
 }
@@ -149,14 +158,9 @@ void JobFolder::sweep() const {
 }
 
 void JobFolder::tell_failed(const FailedShard &failed) const {
-  const jobs::IndexRange range = lock_.range(failed.index);
-  const json out{{"index", failed.index},       {"first", range.first},
-                 {"count", range.count},        {"code", failed.code},
-                 {"attempts", failed.attempts}, {"message", failed.message},
-                 {"host", failed.host}};
   // What cannot be told here stands among the missing all the same.
   (void)write_file_atomically(path_ / "failed" / (number_of(failed.index) + ".json"),
-                              out.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+                              to_json(failed, lock_.range(failed.index)));
 }
 
 void JobFolder::forget_failed(std::size_t index) const {
@@ -169,20 +173,30 @@ std::vector<FailedShard> JobFolder::failed() const {
   std::error_code unknown;
   for (const auto &entry : fs::directory_iterator(path_ / "failed", unknown)) {
     const auto text = read_file(entry.path());
-    const json all = text ? json::parse(*text, nullptr, false) : json();
-    if (!all.is_object())
-      continue;
-    try {
-      FailedShard one{all.value("index", std::size_t{0}), all.value("code", 0),
-                      all.value("attempts", std::size_t{1}), all.value("message", std::string()),
-                      all.value("host", std::string())};
-      if (one.index < lock_.shards())
-        out.push_back(std::move(one));
-    } catch (const json::exception &) {
-      continue; // damaged: the shard is tried again as if nothing were known
-    }
+    auto one = text ? failed_from_json(*text) : std::nullopt;
+    if (one && one->index < lock_.shards())
+      out.push_back(std::move(*one));
   }
   return out;
+}
+
+std::string to_json(const FailedShard &failed, const jobs::IndexRange &range) {
+  const json out{{"index", failed.index},       {"first", range.first},
+                 {"count", range.count},        {"code", failed.code},
+                 {"attempts", failed.attempts}, {"message", failed.message},
+                 {"host", failed.host}};
+  return out.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+std::optional<FailedShard> failed_from_json(const std::string &text) {
+  try {
+    const json all = json::parse(text);
+    return FailedShard{whole_at(all, "index"), code_at(all), whole_at(all, "attempts"),
+                       printable(all.at("message").get<std::string>()),
+                       printable(all.at("host").get<std::string>())};
+  } catch (const std::exception &) {
+    return std::nullopt; // damaged: the shard is tried again as if nothing were known
+  }
 }
 
 } // namespace umov::scale

@@ -1,5 +1,7 @@
 #include <umov/scale/job_folder.h>
 
+#include "scale/whole_number.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -45,15 +47,15 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
   JobLock out;
   try {
     const json all = json::parse(text);
-    if (all.at("umov_scale").get<int>() != 1)
+    if (whole_at(all, "umov_scale") != 1)
       throw std::runtime_error("of another version of the form");
     all.at("verb").get_to(out.verb);
     all.at("arguments").get_to(out.arguments);
     all.at("directory").get_to(out.directory);
     all.at("instruction_set").get_to(out.instruction_set);
     all.at("unit").get_to(out.unit);
-    all.at("total").get_to(out.total);
-    all.at("per_shard").get_to(out.per_shard);
+    out.total = whole_at(all, "total");
+    out.per_shard = whole_at(all, "per_shard");
     all.at("layout").get_to(out.layout);
     all.at("tables").get_to(out.tables);
     all.at("order").get_to(out.order);

@@ -1,6 +1,7 @@
 #include <umov/scale/shard_work.h>
 
 #include "scale/this_process.h"
+#include "scale/whole_number.h"
 
 #include <chrono>
 #include <fmt/format.h>
@@ -52,18 +53,19 @@ Result<ShardRecord> record_from_json(const std::string &line) {
     for (std::size_t k = 0; k < status_names.size(); ++k)
       if (status == status_names[k])
         out.status = static_cast<ShardRecord::Status>(k);
-    out.index = all.at("index").get<std::size_t>();
-    all.at("code").get_to(out.code);
-    all.at("message").get_to(out.message);
+    out.index = whole_at(all, "index");
+    out.code = code_at(all);
+    out.message = printable(all.at("message").get<std::string>());
     all.at("file").get_to(out.file);
     all.at("sha256").get_to(out.sha256);
-    out.rows = all.at("rows").get<std::size_t>();
-    out.bytes = all.at("bytes").get<std::size_t>();
+    out.rows = whole_at(all, "rows");
+    out.bytes = whole_at(all, "bytes");
     all.at("seconds").get_to(out.seconds);
     all.at("cpu_s").get_to(out.cpu_s);
     return out;
-  } catch (const json::exception &problem) {
-    return fail(ErrorCode::Internal, fmt::format("a worker said \"{}\": {}", line, problem.what()));
+  } catch (const std::exception &problem) {
+    return fail(ErrorCode::Internal,
+                fmt::format("a worker said \"{}\": {}", printable(line), problem.what()));
   }
 }
 

@@ -57,6 +57,9 @@ std::optional<std::vector<CsvCell>> csv_cells(std::string_view line);
 /// of a file and in JSON. `is_changed` tells of replaced bytes.
 std::string printable(std::string_view text, bool *is_changed = nullptr);
 
+/// Why `bytes` can be no text: compressed, UTF-16 or binary, with the remedy. Empty if they may be.
+std::optional<std::string> why_no_text(std::string_view bytes);
+
 /// SHA-256 of `bytes`, 64 lower-case hexadecimal digits.
 std::string sha256_hex(std::string_view bytes);
 

@@ -62,6 +62,11 @@ struct FailedShard {
   std::string message, host;
 };
 
+/// The text of that file for the rows of a range, and back; nothing for another text. What is read
+/// is printable.
+std::string to_json(const FailedShard &failed, const jobs::IndexRange &range);
+std::optional<FailedShard> failed_from_json(const std::string &text);
+
 /// One folder.
 class JobFolder {
 public:

@@ -34,6 +34,22 @@ TEST(Sha256, MatchesThePublishedVector) {
   EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
+TEST(WhyNoText, NamesWhatTheFirstBytesAre) {
+  using namespace std::string_view_literals;
+  // RFC 1952 2.3.1 (gzip), PKWARE APPNOTE 4.3.7 (ZIP), Unicode 16.0 table 23-7 (byte order marks).
+  for (const auto &[bytes, word] : {std::pair{"\x1F\x8B\x08 and more"sv, "gunzip"},
+                                    {"PK\x03\x04"sv, "ZIP"},
+                                    {"\xFF\xFEv\0"sv, "UTF-8"},
+                                    {"\xFE\xFF\0v"sv, "UTF-8"},
+                                    {"v 1 2\0"sv, "byte 6 is 0"}}) {
+    const auto why = why_no_text(bytes);
+    ASSERT_TRUE(why) << word;
+    EXPECT_NE(why->find(word), std::string::npos) << *why;
+  }
+  for (const auto text : {""sv, "P"sv, "PK 3"sv, "\xEF\xBB\xBFname"sv, "caf\xE9"sv})
+    EXPECT_FALSE(why_no_text(text)) << text;
+}
+
 TEST(Printable, KeepsUtf8AndReplacesTheRestByteByByte) {
   bool is_changed = true;
   // Two, three and four bytes: Latin, euro sign, emoji.

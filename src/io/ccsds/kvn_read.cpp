@@ -223,7 +223,11 @@ private:
       const Field *type = find(segment.metadata, "ATTITUDE_TYPE");
       const AttitudeForm *form = type == nullptr ? nullptr : attitude_form(type->text);
       if (form == nullptr)
-        return refuse("a data line, but no ATTITUDE_TYPE in the metadata that is known");
+        return refuse(type == nullptr
+                          ? std::string("a data line, but no ATTITUDE_TYPE in the metadata")
+                          : fmt::format("a data line, but ATTITUDE_TYPE is \"{}\", which is not "
+                                        "known; QUATERNION or SPIN was expected",
+                                        printable(type->text)));
       columns = attitude_columns(*form, segment);
     } else if (parts.size() == 7) {
       columns.resize(6);

@@ -155,9 +155,11 @@ Result<void> check_segment(const Message &message, const Segment &segment) {
                        [&](const Record &record) { return record.name == name; });
   };
   if ((message.kind == Kind::Opm || message.kind == Kind::Oem) && !has("stateVector"))
-    return fail(ErrorCode::BadInput, "a segment has no state vector", {message.file});
+    return fail(ErrorCode::BadInput,
+                "a segment has no state vector; one or more were expected in it", {message.file});
   if (message.kind == Kind::Aem && !has("attitudeState"))
-    return fail(ErrorCode::BadInput, "a segment has no attitude", {message.file});
+    return fail(ErrorCode::BadInput, "a segment has no attitude; lines of data were expected in it",
+                {message.file});
   return {};
 }
 

@@ -20,6 +20,22 @@ std::string_view first_line(std::string_view text) {
   return {};
 }
 
+/// A line that begins as those of a TLE do: another text is better called what it is not.
+bool has_element_line(std::string_view text) {
+  constexpr std::string_view breaks = "\r\n";
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t begin = text.find_first_not_of(" \t\xEF\xBB\xBF", at);
+    const std::string_view line =
+        begin == std::string_view::npos ? std::string_view() : text.substr(begin, 2);
+    if (line.size() == 2 && (line[0] == '1' || line[0] == '2') &&
+        (line[1] == ' ' || line[1] == '\t' || (line[1] & 0x80) != 0))
+      return true;
+    const std::size_t end = text.find_first_of(breaks, at);
+    at = end == std::string_view::npos ? text.size() : end + 1;
+  }
+  return false;
+}
+
 using Reader = Result<void> (*)(std::string_view, const std::string &, const omm::Sink &);
 
 Result<std::vector<ElementSet>> read_messages(Reader reader, omm::Metadata metadata,
@@ -49,7 +65,8 @@ Result<std::vector<ElementSet>> read_messages(Reader reader, omm::Metadata metad
   if (bad > warnings_max)
     diagnostics.warn(fmt::format("{} more sets are skipped.", bad - warnings_max), {file});
   if (out.empty())
-    return fail(ErrorCode::BadInput, "holds no complete element set", {file});
+    return fail(ErrorCode::BadInput,
+                "holds no complete element set; one OMM message or more was expected", {file});
   return out;
 }
 
@@ -77,7 +94,14 @@ Result<std::vector<ElementSet>> read_elements(std::string_view text, const std::
     return fail(ErrorCode::BadInput,
                 fmt::format("has {} bytes; at most {} are read", text.size(), options.limit_bytes),
                 {file});
+  if (const auto why = why_no_text(text); why && !has_element_line(text))
+    return fail(ErrorCode::BadInput, *why, {file});
   const ElementsForm form = form_of_elements(text);
+  if (form == ElementsForm::Tle && !has_element_line(text))
+    return fail(ErrorCode::BadInput,
+                "holds no orbit that is known: TLE (lines of 69 columns that begin with \"1 \" and "
+                "\"2 \") or OMM (KVN, XML, JSON, CSV) was expected",
+                {file});
   if (form == ElementsForm::Tle)
     return read_tle(text, file, options, diagnostics);
   if (text.starts_with("\xEF\xBB\xBF"))

@@ -39,11 +39,13 @@ public:
                                              const std::string &hint = "") const {
     const Field *field = find(key);
     const Where where{file_, field != nullptr && field->line > 0 ? field->line : message_.line};
+    const std::string remedy = field == nullptr ? "Add it, or fetch the set again."
+                                                : "Correct it, or fetch the set again.";
     const std::string found =
         field == nullptr ? "is missing" : fmt::format("is \"{}\"", field->text.substr(0, 60));
     return fail(ErrorCode::BadInput,
-                fmt::format("message {}{}: {} {}, expected {}.{}{}", message_.number, name(), key,
-                            found, expected, hint.empty() ? "" : " ", hint),
+                fmt::format("message {}{}: {} {}, expected {}. {}", message_.number, name(), key,
+                            found, expected, hint.empty() ? remedy : hint),
                 where);
   }
   [[nodiscard]] Result<double> number(const std::string &key, const std::string &unit,

@@ -53,14 +53,17 @@ Result<void> read_json(std::string_view text, const std::string &file, const Sin
   // The parser keeps the last of two equal keys: they are caught as they pass.
   std::set<std::string> keys; // a list would take a hostile object's keys squared
   std::string twice;
+  std::size_t number = 0;
   const auto watch = [&](int depth, nlohmann::json::parse_event_t event, nlohmann::json &parsed) {
     using Event = nlohmann::json::parse_event_t;
-    if (event == Event::object_start && depth <= 1)
+    if (event == Event::object_start && depth <= 1) {
       keys.clear();
+      ++number;
+    }
     if (event == Event::key && depth <= 2) {
       const auto key = parsed.get<std::string>();
       if (!keys.insert(key).second && twice.empty())
-        twice = key;
+        twice = "message " + std::to_string(number) + ": " + key;
     }
     return true;
   };
@@ -73,8 +76,7 @@ Result<void> read_json(std::string_view text, const std::string &file, const Sin
     return fail(ErrorCode::BadInput, "is no JSON of element sets: " + why, {file});
   }
   if (!twice.empty())
-    return fail(ErrorCode::BadInput, twice + " stands twice in one object. Keep one of them.",
-                {file});
+    return fail(ErrorCode::BadInput, twice + " stands twice. Keep one of them.", {file});
   if (document.is_object())
     document = nlohmann::json::array({document});
   std::size_t messages = 0;

@@ -87,45 +87,100 @@ double unit_in(const std::string &header) {
 bool is_index_columns(std::string_view text) {
   std::string header;
   const auto rows = rows_of(text.substr(0, 65536), header, 3);
-  return !rows.empty() && is_numeric(rows.front().words);
+  if (!rows.empty() && is_numeric(rows.front().words))
+    return true;
+  const std::string first = lowered(header.substr(0, header.find(' ')));
+  return first.starts_with("wavelength") || first.starts_with("lambda");
 }
+
+namespace {
+
+/// A row of as many numbers as the first, in the order of wavelengths.
+Result<void> check_row(const Row &row, std::size_t columns, double before,
+                       const std::string &file) {
+  const Where where{file, row.line};
+  if (row.words.size() != columns)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} numbers in this row, {} in the first; wavelength, n and perhaps k "
+                            "were expected in each",
+                            row.words.size(), columns),
+                where);
+  for (const std::string &word : row.words)
+    if (!parse_number(word))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("\"{}\" is no finite number; wavelength, n{} were expected",
+                              printable(word.substr(0, 40)), columns == 3 ? " and k" : ""),
+                  where);
+  const double wavelength = *parse_number(row.words[0]), n = *parse_number(row.words[1]);
+  const double k = columns == 3 ? *parse_number(row.words[2]) : 0;
+  if (!(wavelength > before))
+    return fail(ErrorCode::BadInput,
+                before > 0 ? fmt::format("wavelength {:g} follows {:g}; increasing ones were "
+                                         "expected. Sort them and leave repeated ones out.",
+                                         wavelength, before)
+                           : fmt::format("wavelength {:g}; one above 0 was expected", wavelength),
+                where);
+  if (!(n > 0) || !(k >= 0))
+    return fail(ErrorCode::BadInput,
+                n > 0 ? fmt::format("k = {:g}; 0 or more was expected (n + ik, k > 0 absorbs)", k)
+                      : fmt::format("n = {:g}; a positive number was expected", n),
+                where);
+  return {};
+}
+
+/// A table in nm whose header says um is 1000 times off, and is read without a word.
+Result<double> unit_of(const std::string &header, double first, double last,
+                       const std::string &file) {
+  double unit = unit_in(header);
+  if (unit == 1000 && first >= 100)
+    return fail(ErrorCode::BadInput,
+                fmt::format("the first wavelength is {:g}, and the header says um; is the table in "
+                            "nm? Write nm there, or divide by 1000.",
+                            first),
+                {file});
+  // Optical tables begin above 10 nm and end below 100 um: one unit cannot be taken for the other.
+  if (unit == 0 && first >= 100)
+    unit = 1;
+  if (unit == 0 && last <= 100)
+    unit = 1000;
+  if (unit != 0)
+    return unit;
+  return fail(ErrorCode::BadInput,
+              fmt::format("wavelengths {:g} to {:g}: nm or um? Say it in the header line, such as "
+                          "wavelength_nm,n,k",
+                          first, last),
+              {file});
+}
+
+} // namespace
 
 Result<IndexTable> read_index_columns(std::string_view text, const std::string &file) {
   std::string header;
   const auto rows = rows_of(text, header, 1'000'000);
-  std::vector<double> nm, n, k;
-  for (const Row &row : rows) {
-    if (!is_numeric(row.words) || row.words.size() != rows.front().words.size())
-      return fail(ErrorCode::BadInput,
-                  fmt::format("\"{}\"; {} numbers were expected: wavelength, n{}",
-                              printable(row.words[0].substr(0, 40)), rows.front().words.size(),
-                              rows.front().words.size() == 3 ? " and k" : ""),
-                  {file, row.line});
-    nm.push_back(*parse_number(row.words[0]));
-    if (nm.size() > 1 && !(nm.back() > nm[nm.size() - 2]))
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("wavelength {:g} follows {:g}; increasing ones were expected. Sort them "
-                      "and leave repeated ones out.",
-                      nm.back(), nm[nm.size() - 2]),
-          {file, row.line});
-    n.push_back(*parse_number(row.words[1]));
-    if (row.words.size() == 3)
-      k.push_back(*parse_number(row.words[2]));
-  }
-  // Optical tables begin above 10 nm and end below 100 um: one unit cannot be taken for the other.
-  double unit = unit_in(header);
-  if (unit == 0 && nm.front() >= 100)
-    unit = 1;
-  if (unit == 0 && nm.back() <= 100)
-    unit = 1000;
-  if (unit == 0)
+  if (rows.size() < 2)
     return fail(
         ErrorCode::BadInput,
-        fmt::format("wavelengths {:g} to {:g}: nm or um? Say it in the header line, such as "
-                    "wavelength_nm,n,k",
-                    nm.front(), nm.back()),
+        fmt::format("{} of wavelength, n and k; two or more were expected. A value that "
+                    "holds everywhere is written index = {{ n = 1.5, k = 0 }} in a material",
+                    counted(rows.size(), "row")),
         {file});
+  std::vector<double> nm, n, k;
+  nm.reserve(rows.size());
+  n.reserve(rows.size());
+  const std::size_t columns = rows.front().words.size();
+  if (columns != 2 && columns != 3)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("{} words in this row; wavelength, n and perhaps k were expected", columns),
+        {file, rows.front().line});
+  for (const Row &row : rows) {
+    UMOV_TRY(check_row(row, columns, nm.empty() ? 0 : nm.back(), file));
+    nm.push_back(*parse_number(row.words[0]));
+    n.push_back(*parse_number(row.words[1]));
+    if (columns == 3)
+      k.push_back(*parse_number(row.words[2]));
+  }
+  UMOV_ASSIGN(unit, unit_of(header, nm.front(), nm.back(), file));
   for (double &one : nm)
     one *= unit;
   IndexTable out;

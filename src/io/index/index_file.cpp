@@ -94,6 +94,11 @@ Result<std::vector<std::vector<double>>> rows_of(const Reader &reader, const YAM
   }
   if (out[0].empty())
     return reader.problem(entry, "an entry of DATA has no row");
+  if (out[0].size() == 1)
+    return reader.problem(entry["data"],
+                          "one row of n and k; two or more were expected. A value that holds "
+                          "everywhere is written index = { n = 1.5, k = 0 } in a material",
+                          1);
   if (out[0].front() >= 100) // no table of optical constants begins at 0.1 mm
     return reader.problem(entry["data"],
                           fmt::format("the first wavelength is {:g}; micrometres were expected. Is "
@@ -116,7 +121,12 @@ Result<DispersionFormula> formula_of(const Reader &reader, const YAML::Node &ent
   out.coefficients = coefficients;
   UMOV_ASSIGN(range, numbers_of(reader, entry, "wavelength_range"));
   if (range.size() != 2)
-    return reader.problem(entry, "wavelength_range needs two numbers [um]");
+    return reader.problem(entry["wavelength_range"], "wavelength_range needs two numbers [um]");
+  if (!(range[0] > 0 && range[0] < range[1]))
+    return reader.problem(entry["wavelength_range"],
+                          fmt::format("wavelength_range is {:g} to {:g} um; an increasing range "
+                                      "above 0 was expected",
+                                      range[0], range[1]));
   out.first_nm = range[0] * 1000;
   out.last_nm = range[1] * 1000;
   return out;
@@ -166,6 +176,8 @@ std::string plain(const std::string &html) {
 } // namespace
 
 Result<IndexTable> read_index_text(const std::string &text, const std::string &file) {
+  if (const auto why = why_no_text(text))
+    return fail(ErrorCode::BadInput, *why, {file});
   if (is_index_columns(text))
     return read_index_columns(text, file);
   const Reader reader{file};

@@ -1,6 +1,7 @@
 #include <umov/io/mesh_file.h>
 
 #include "io/mesh/mesh_parts.h"
+#include "io/mesh/off_check.h"
 #include "io/mesh/readers.h"
 
 #include <algorithm>
@@ -61,6 +62,8 @@ Kind kind_of(std::string_view bytes, const std::string &suffix) {
 /// Assimp opens the file itself, also those beside it: it must be the one whose bytes are known.
 Result<MeshFile> read_other(std::string_view bytes, const fs::path &path, MeshFileOptions &options,
                             Diagnostics &diagnostics) {
+  if (suffix_of(path) == ".off")
+    UMOV_TRY(mesh_io::check_off(bytes, path.string()));
   UMOV_ASSIGN(out, mesh_io::read_with_assimp(path, options, diagnostics));
   UMOV_ASSIGN(now, read_file(path));
   if (now != bytes)

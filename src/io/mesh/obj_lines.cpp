@@ -60,7 +60,9 @@ Result<double> number(const Lines &lines, const Word &word) {
   const bool has_comma = word.text.find(',') != std::string_view::npos;
   return fail(ErrorCode::BadInput,
               fmt::format("\"{}\" is not a finite decimal number{}", shown,
-                          has_comma ? "; write a point instead of the comma" : ""),
+                          has_comma ? "; write a point instead of the comma"
+                                    : "; one such as -1.25 or 3e-2 was expected. Correct it, or "
+                                      "export the mesh again"),
               lines.where(word));
 }
 

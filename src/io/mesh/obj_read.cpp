@@ -204,8 +204,9 @@ Result<void> Reader::read_mtl(const std::string &name, const Word &statement) {
   if (is_there)
     return {};
   out_.lacks_mtl = true;
-  diagnostics_.warn(fmt::format("mtllib \"{}\" cannot be read", printable(name)),
-                    lines_.where(statement));
+  diagnostics_.warn(
+      fmt::format("mtllib \"{}\" cannot be read; its materials are names alone", printable(name)),
+      lines_.where(statement));
   return {};
 }
 

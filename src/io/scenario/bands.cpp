@@ -88,9 +88,10 @@ Result<void> read_bands(const Node &top, const fs::path &folder, Scenario &out) 
   }
   std::vector<BandFile> files;
   auto bands = umov::read_bands(out.band_set, {}, &files);
+  if (!bands && !bands.error().where.file.empty())
+    return tl::unexpected(named(bands.error(), set_at));
   if (!bands)
-    return fail(bands.error().code, bands.error().message,
-                bands.error().where.file.empty() ? set_at : bands.error().where);
+    return fail(bands.error().code, bands.error().message, set_at);
   out.bands = std::move(*bands);
   for (const BandFile &file : files)
     out.band_files.push_back({file.path, sha256_hex(file.bytes)});

@@ -39,8 +39,7 @@ Result<CalibrationFile> read_calibration_text(const std::string &text, const std
     c.dof = static_cast<int>(top.integer("dof", 0));
     return out;
   } catch (const toml::parse_error &problem) {
-    return fail(ErrorCode::BadInput, std::string(problem.description()),
-                scenario::place_of(problem.source(), file));
+    return tl::unexpected(scenario::no_toml(problem, file));
   }
 }
 

@@ -414,8 +414,7 @@ Result<Instrument> read_instrument_text(const std::string &text, const std::stri
     out.name = file.stem().string();
     return out;
   } catch (const toml::parse_error &problem) {
-    return fail(ErrorCode::BadInput, std::string(problem.description()),
-                scenario::place_of(problem.source(), path));
+    return tl::unexpected(scenario::no_toml(problem, path));
   }
 }
 

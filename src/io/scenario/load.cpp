@@ -16,12 +16,11 @@ namespace {
 
 Result<std::string> read_input(const std::filesystem::path &path, const Where &named_at,
                                LoadedObject &out) {
+  if (path.empty())
+    return fail(ErrorCode::BadInput, "the name of a file is empty; give one", named_at);
   auto text = read_file(path);
   if (!text)
-    return fail(text.error().code,
-                fmt::format("{} (named in {})", text.error().message,
-                            to_text(named_at).substr(0, to_text(named_at).size() - 2)),
-                text.error().where);
+    return tl::unexpected(scenario::named(text.error(), named_at));
   out.inputs.push_back({path.string(), sha256_hex(*text)});
   return text;
 }
@@ -50,7 +49,13 @@ struct Named {
 Result<void> load_earth(const Scenario &scenario, LoadedObject &out) {
   if (scenario.earth_orientation.empty())
     return {};
-  UMOV_ASSIGN(text, read_input(scenario.earth_orientation, place(scenario, "earth.eop"), out));
+  const auto named = scenario.places.find("earth.eop");
+  if (named == scenario.places.end()) { // the caller's own
+    UMOV_ASSIGN(own, read_file(scenario.earth_orientation));
+    out.inputs.push_back({scenario.earth_orientation.string(), sha256_hex(own)});
+    return use_earth_orientation(own, scenario.earth_orientation.string());
+  }
+  UMOV_ASSIGN(text, read_input(scenario.earth_orientation, named->second, out));
   return use_earth_orientation(text, scenario.earth_orientation.string());
 }
 
@@ -115,11 +120,14 @@ Result<void> load_attitude(const Named &of, const Mesh &mesh, Diagnostics &diagn
 Result<MeshFile> load_mesh(const Named &of, Diagnostics &diagnostics, LoadedObject &out) {
   const ScenarioMesh &mesh = of.object.mesh;
   UMOV_ASSIGN(bytes, read_input(mesh.file, of.place("mesh"), out));
-  UMOV_ASSIGN(read,
-              read_mesh_bytes(bytes, mesh.file, {.unit = mesh.unit, .up = mesh.up}, diagnostics));
-  for (const MeshPart &file : read.files)
+  auto read = read_mesh_bytes(bytes, mesh.file, {.unit = mesh.unit, .up = mesh.up}, diagnostics);
+  if (!read && read.error().where.line == 0) // such as no unit, which the scenario has to give
+    return tl::unexpected(scenario::named(read.error(), of.place("mesh")));
+  if (!read)
+    return read;
+  for (const MeshPart &file : read->files)
     out.inputs.push_back({file.path.string(), file.sha256});
-  return std::move(read);
+  return read;
 }
 
 /// Every key of [object.materials] must mean some material of the mesh.
@@ -303,6 +311,11 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
     return fail(ErrorCode::BadInput, checked.error().message, of.place("part"));
   read.mesh = with_joined_groups(read.mesh, joint_of_groups(read.mesh, joints));
   const MeshReport report = inspect(read.mesh, false);
+  if (report.inward_parts > 0)
+    diagnostics.warn(fmt::format("the faces of {} look inward: what is seen of them is their back. "
+                                 "Turn them round where that is not meant",
+                                 counted(report.inward_parts, "closed part")),
+                     {of.object.mesh.file.string()});
   std::vector<Material> front, back;
   for (std::size_t i = 0; i < read.mesh.groups.size(); ++i) {
     UMOV_ASSIGN(names, names_of(of, read.mesh, report, i));

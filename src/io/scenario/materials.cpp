@@ -250,8 +250,7 @@ Result<Material> read_material_text(const std::string &text, const std::string &
           {file});
     return all.begin()->second;
   } catch (const toml::parse_error &problem) {
-    return fail(ErrorCode::BadInput, std::string(problem.description()),
-                place_of(problem.source(), file));
+    return tl::unexpected(no_toml(problem, file));
   }
 }
 

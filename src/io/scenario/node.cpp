@@ -50,6 +50,17 @@ const char *name_of(const toml::node &node) {
   }
 }
 
+/// What a value is, where it is one word.
+std::string shown(const toml::node &node) {
+  if (const auto text = node.value_exact<std::string>())
+    return fmt::format(", \"{}\"", printable(text->substr(0, 40)));
+  if (const auto number = node.value_exact<double>())
+    return fmt::format(", {}", *number);
+  if (const auto number = node.value_exact<std::int64_t>())
+    return fmt::format(", {}", *number);
+  return {};
+}
+
 /// A TOML date-time as ISO text; without an offset if it has none.
 std::string iso_of(const toml::date_time &t) {
   std::string out = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", t.date.year, t.date.month,
@@ -65,6 +76,35 @@ std::string iso_of(const toml::date_time &t) {
 }
 
 } // namespace
+
+Error named(Error error, const Where &at) {
+  const std::string place = to_text(at); // ends with ": "
+  error.message += fmt::format(" (named in {})", place.substr(0, place.size() - 2));
+  return error;
+}
+
+Error no_toml(const toml::parse_error &problem, const std::string &file) {
+  const std::string_view said = problem.description();
+  const auto speaks_of = [&](const char *words) {
+    return said.find(words) != std::string_view::npos;
+  };
+  const char *remedy = "A TOML file was expected: KEY = VALUE, texts in quotes, times such as "
+                       "2018-01-21T04:00:00Z.";
+  if (speaks_of("redefine"))
+    remedy = "It stands twice: keep one of them.";
+  else if (speaks_of("invalid utf-8"))
+    remedy = "Save the file as UTF-8.";
+  else if (speaks_of("saw 60"))
+    remedy = "Write a leap second in quotes: \"2016-12-31T23:59:60Z\".";
+  else if (speaks_of("expected day") || speaks_of("expected month") || speaks_of("expected hour"))
+    remedy = "Correct the date.";
+  else if (speaks_of("not representable"))
+    remedy = "Take a smaller number.";
+  else if (speaks_of("nested"))
+    remedy = "Simplify the file.";
+  return {ErrorCode::BadInput, fmt::format("{}. {}", printable(said), remedy),
+          place_of(problem.source(), file)};
+}
 
 Where place_of(const toml::source_region &source, const std::string &file) {
   const bool is_other = source.path && *source.path != file;
@@ -94,8 +134,8 @@ std::optional<Error> Node::problem_of(const toml::key &key, const toml::node &va
                    place_of(key.source(), file_));
   }
   if (!is_of(value, spec->kind))
-    return problem(fmt::format("{} is {}; {} was expected ({})", name, name_of(value),
-                               to_text(spec->kind), spec->text),
+    return problem(fmt::format("{} is {}{}; {} was expected ({})", name, name_of(value),
+                               shown(value), to_text(spec->kind), spec->text),
                    place_of(key, value, file_));
   if (const auto number = value.value<double>();
       number && spec->kind == Kind::Number && !std::isfinite(*number))

@@ -40,7 +40,7 @@ Result<void> override_key(toml::table &document, const std::string &text) {
   while (const auto name = next_name()) {
     begin += name->size() + 1;
     if (!at->contains(*name))
-      at->insert(*name, toml::table{});
+      at->insert(toml::key(*name, toml::source_region(parsed.source())), toml::table{});
     toml::node *next = at->get(*name);
     if (toml::array *list = next->as_array(); list != nullptr && !list->empty()) {
       std::size_t index = 0;
@@ -91,9 +91,10 @@ Result<void> read_earth(const Node &top, const fs::path &folder, Scenario &out) 
   if (!top.has("earth"))
     return {};
   UMOV_ASSIGN(node, top.child("earth"));
-  if (node.has("eop"))
+  if (node.has("eop")) {
     out.earth_orientation = folder / node.text("eop", "");
-  out.places["earth.eop"] = node.where("eop");
+    out.places["earth.eop"] = node.where("eop");
+  }
   return {};
 }
 
@@ -446,8 +447,7 @@ Result<Scenario> read_scenario_text(const std::string &text, const fs::path &pat
       UMOV_TRY(override_key(document, one));
     return read_document(document, path);
   } catch (const toml::parse_error &problem) {
-    return fail(ErrorCode::BadInput, std::string(problem.description()),
-                scenario::place_of(problem.source(), path.string()));
+    return tl::unexpected(scenario::no_toml(problem, path.string()));
   }
 }
 

@@ -3,6 +3,7 @@
 #include "io/table/text_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
@@ -58,6 +59,18 @@ Result<void> check_columns(const CountCells &cells, const TextTable &table,
                               name),
                   {file, table.lines.empty() ? 0 : table.lines.front()});
   return {};
+}
+
+/// What the header says of the frame, which the fit takes for granted.
+Result<void> check_notes(const TextTable &table, const std::string &file) {
+  constexpr std::array frames{"equatorial", "altaz", "scattering"};
+  const auto told = table.notes.find("pol_frame");
+  if (told != table.notes.end() && std::ranges::find(frames, told->second) == frames.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("pol_frame of the header is \"{}\": {} was expected",
+                            printable(told->second), fmt::join(frames, ", ")),
+                {file});
+  return check_polcconv(table, file);
 }
 
 Result<bool> truth_in(const CountCells &cells, const std::string &name, std::size_t row) {
@@ -148,6 +161,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   UMOV_ASSIGN(table, read_text_table(text, file));
   const CountCells cells(table, file);
   UMOV_TRY(check_columns(cells, table, file));
+  UMOV_TRY(check_notes(table, file));
   CountsFile out;
   out.notes = table.notes;
   std::size_t dropped = 0;
@@ -176,7 +190,8 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   if (dropped > 0)
     diagnostics.warn(fmt::format("{} without counts left out", counted(dropped, "row")), {file});
   if (out.rows.empty())
-    return fail(ErrorCode::BadInput, "no row of counts", {file});
+    return fail(ErrorCode::BadInput, "no row of counts; some were expected below the names",
+                {file});
   return out;
 }
 

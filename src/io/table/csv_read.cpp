@@ -15,6 +15,8 @@ public:
       : text_(text), file_(file), required_(required), optional_(optional) {}
 
   Result<Table> read() {
+    if (const auto why = why_no_text(text_))
+      return fail(ErrorCode::BadInput, *why, {file_});
     if (text_.substr(0, 3) == "\xEF\xBB\xBF")
       text_.remove_prefix(3);
     while (!text_.empty()) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <umov/core/text.h>
@@ -285,6 +286,23 @@ Result<PolarizationFrame> frame_of(const TextTable &table, const ObservationColu
               {file});
 }
 
+/// Rows that go back in time within a band and site: sorting mends it, and whoever mistyped a date
+/// wants to know.
+void warn_of_order(const ObservationsFile &file, Diagnostics &diagnostics) {
+  std::map<std::pair<std::string, std::string>, const ObservedRow *> before;
+  std::size_t back = 0, first = 0;
+  for (const ObservedRow &row : file.rows) {
+    const ObservedRow *&last = before[{row.band, row.site}];
+    if (last != nullptr && seconds_between(row.time, last->time) < -1e-6 && ++back == 1)
+      first = row.line;
+    last = &row;
+  }
+  if (back > 0)
+    diagnostics.warn(fmt::format("{} before the row above in time; all were put in order",
+                                 back == 1 ? "1 row lies" : fmt::format("{} rows lie", back)),
+                     {file.path, first});
+}
+
 /// One measurement per time, band and site: two would contradict each other or be one, twice.
 Result<void> check_twice(const ObservationsFile &out, const std::string &file) {
   for (std::size_t k = 1; k < out.rows.size(); ++k) {
@@ -330,6 +348,7 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
     return fail(ErrorCode::BadInput, "no row of observations", {file});
   UMOV_ASSIGN(columns, reader.columns());
   UMOV_TRY(check_name(reader, columns, table.rows.size()));
+  UMOV_TRY(check_polcconv(table, file));
   ObservationsFile out;
   out.path = file;
   out.notes = table.notes;
@@ -352,6 +371,7 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
   if (out.rows.empty())
     return fail(ErrorCode::BadInput,
                 "no row holds a measurement: all are empty, nan or flagged as saturated", {file});
+  warn_of_order(out, diagnostics);
   std::ranges::stable_sort(out.rows, [](const ObservedRow &a, const ObservedRow &b) {
     const double apart = seconds_between(a.time, b.time);
     return std::abs(apart) < 1e-6 ? std::tie(a.band, a.site) < std::tie(b.band, b.site) : apart < 0;

@@ -33,10 +33,19 @@ Result<std::vector<PolarizedStandard>> read_standards_text(std::string_view text
                               "expected",
                               printable(row[p]), printable(row[pa])),
                   {file, table.lines[k]});
+    if (row[name].empty() ||
+        std::ranges::find(out, row[name], &PolarizedStandard::name) != out.end())
+      return fail(ErrorCode::BadInput,
+                  row[name].empty()
+                      ? std::string("a standard without a name; give it as the counts do")
+                      : fmt::format("\"{}\" stands twice; keep one", printable(row[name])),
+                  {file, table.lines[k]});
     out.push_back({row[name], *degree / 100, *angle * pi / 180});
   }
   if (out.empty())
-    return fail(ErrorCode::BadInput, "no standard in this table", {file});
+    return fail(ErrorCode::BadInput,
+                "no standard in this table; a row of name, p_percent and pa_deg was expected",
+                {file});
   return out;
 }
 

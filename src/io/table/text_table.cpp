@@ -141,9 +141,22 @@ std::optional<bool> truth_of(std::string cell) {
   return std::nullopt;
 }
 
+Result<void> check_polcconv(const TextTable &table, const std::string &file) {
+  const auto told = table.notes.find("POLCCONV");
+  if (told == table.notes.end() || told->second == "IAU")
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("POLCCONV of the header is \"{}\": IAU was expected (angles from north "
+                          "through east). Turn the sign of u, and write IAU",
+                          printable(told->second)),
+              {file});
+}
+
 Result<TextTable> read_text_table(std::string_view text, const std::string &file) {
   constexpr std::size_t rows_max = 20'000'000, line_max = 100'000;
   constexpr std::size_t cells_max = 50'000'000; // some 50 bytes each: 2.5 GB
+  if (const auto why = why_no_text(text))
+    return fail(ErrorCode::BadInput, *why, {file});
   TextTable out;
   bool has_blanks = false;
   std::size_t number = 0;
@@ -179,10 +192,10 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
       continue;
     }
     if (cells->size() != out.columns.size())
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("{} cells in a table of {} columns", cells->size(), out.columns.size()),
-          where);
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} cells in a table of {} columns; one for each name was expected",
+                              cells->size(), out.columns.size()),
+                  where);
     out.rows.push_back(std::move(*cells));
     out.lines.push_back(number);
   }

@@ -22,6 +22,9 @@ struct TextTable {
 /// row or a column that stands twice.
 Result<TextTable> read_text_table(std::string_view text, const std::string &file);
 
+/// Angles of polarization that the header says to be other than from north through east: BadInput.
+Result<void> check_polcconv(const TextTable &table, const std::string &file);
+
 /// Where cell `cell` of line `line` (from 1) begins, for messages: columns count from 1.
 std::size_t column_of_cell(std::string_view text, std::size_t line, std::size_t cell);
 

@@ -157,5 +157,21 @@ TEST_F(JobFolders, OfAMillionShardsArePlannedAtOnce) {
   EXPECT_NEAR(plan.gigabytes, 36'000, 1e-6);
 }
 
+TEST(JobFolder, NumbersOfJsonThatAreNoWholeOnesAreNone) {
+  const FailedShard failed{3, 139, 2, "ended", "a"};
+  const std::string text = to_json(failed, {30, 10});
+  const auto back = failed_from_json(text);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->index, 3u);
+  EXPECT_EQ(back->code, 139);
+  EXPECT_EQ(back->attempts, 2u);
+  for (const char *number : {"1e300", "-3", "3.5", "\"3\"", "null"}) {
+    std::string bad = text;
+    bad.replace(bad.find("3,"), 1, number); // the index
+    EXPECT_FALSE(failed_from_json(bad)) << bad;
+  }
+  EXPECT_FALSE(failed_from_json("[]"));
+}
+
 } // namespace
 } // namespace umov::scale

@@ -29,7 +29,11 @@ TEST(IndexColumns, RefusesWithTheLine) {
                                    {"nm,n,k\n500,1.4,0\n600,x,0\n", "mine.csv:3: "},
                                    {"nm,n,k\n600,1.4,0\n500,1.4,0\n", "increasing"},
                                    {"x,n,k\n50,1.4,0\n500,1.4,0\n", "nm or um"},
-                                   {"nm,n,k\n500,-1.4,0\n600,1.4,0\n", "n = -1.4"},
+                                   {"nm,n,k\n500,-1.4,0\n600,1.4,0\n", "mine.csv:2: n = -1.4"},
+                                   {"nm,n,k\n500,1.4,0\n600,1.4,-2\n", "mine.csv:3: k = -2"},
+                                   {"um,n,k\n500,1.4,0\n600,1.4,0\n", "is the table in nm?"},
+                                   {"wavelength_nm,n,k\n500,x,0\n600,1,0\n", "mine.csv:2: \"x\""},
+                                   {"nm,n,k\n500,1.4,0\n", "1 row of wavelength"},
                                    {"hello\nworld\n", "wavelength, n, k"}}) {
     const auto table = read_index_text(text, "mine.csv");
     ASSERT_FALSE(table) << text;

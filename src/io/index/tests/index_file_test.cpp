@@ -58,7 +58,11 @@ TEST(IndexFile, RefusesWhatIsNoPage) {
   EXPECT_TRUE(says("DATA: 3\n", "no list DATA"));
   EXPECT_TRUE(says("DATA: [\n", "not YAML"));
   EXPECT_TRUE(says("", "no list DATA"));
-  EXPECT_TRUE(says("DATA:\n  - type: tabulated k\n    data: |\n        0.4 1\n", "no n"));
+  EXPECT_TRUE(
+      says("DATA:\n  - type: tabulated k\n    data: |\n        0.4 1\n        0.5 1\n", "no n"));
+  EXPECT_TRUE(says(head + "        0.4 1.5 0\n", "x.yml:4: one row of n and k"));
+  EXPECT_TRUE(says("DATA:\n  - type: formula 1\n    wavelength_range: 1 0.2\n    coefficients: 0\n",
+                   "x.yml:3: wavelength_range is 1 to 0.2 um"));
 }
 
 TEST(IndexFile, ManyEntriesAreRefusedAtOnce) {

@@ -110,11 +110,16 @@ Result<void> GltfReader::push(const std::vector<std::size_t> &nodes, const Place
       names.insert(name);
     }
     found.push_back({node, depth, parent, joined_path(path, name)});
-    if (found.back().path.size() > longest_path || depth > deepest_node)
+    if (depth > deepest_node)
       return document_.bad(fmt::format("nodes[{}]", node),
                            fmt::format("{} deep in the tree", depth),
-                           fmt::format("at most {}, and names that are not longer than {} together",
-                                       deepest_node, longest_path));
+                           fmt::format("at most {}", deepest_node));
+    if (found.back().path.size() > longest_path)
+      return document_.bad(
+          fmt::format("nodes[{}]", node),
+          fmt::format("{} deep in the tree, under names of {} letters", depth,
+                      found.back().path.size()),
+          fmt::format("at most {} letters of all names on the way together", longest_path));
   }
   pending_.insert(pending_.end(), found.rbegin(), found.rend());
   return {};

@@ -1,0 +1,28 @@
+#pragma once
+// Private: whole numbers of JSON that anybody may have written.
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace umov::scale {
+
+/// The whole number of `key`: get<std::size_t> alone would cast 1e300, -1 and 0.5 too. Throws
+/// (std::exception) for these and for what is not there.
+inline std::size_t whole_at(const nlohmann::json &all, const char *key) {
+  const nlohmann::json &value = all.at(key);
+  if (!value.is_number_unsigned())
+    throw std::runtime_error(std::string(key) + " is no whole number from 0 on");
+  return value.get<std::size_t>();
+}
+
+/// An exit code, or 128 and the number of a signal.
+inline int code_at(const nlohmann::json &all) {
+  constexpr std::size_t most = 1000;
+  const std::size_t code = whole_at(all, "code");
+  if (code > most)
+    throw std::runtime_error("code is none of a process");
+  return static_cast<int>(code);
+}
+
+} // namespace umov::scale
