@@ -1,6 +1,7 @@
 """--device: cards by a driver without one (src/backend/cuda/tests), and what is said where there is none."""
 import json
 import os
+import subprocess
 
 import pytest
 
@@ -127,8 +128,11 @@ def test_a_lost_card_ends_a_job_in_shards_with_its_name(umov, scenario, settings
     name = scenario()
     assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
     command = [str(word).format(name) for word in SHARDED[verb]] + ["--device", "cuda"]
-    settings(UMOV_FAKE_LAUNCHES=2)
-    lost = umov("scale", "run", "job", *command)
+    settings()
+    begun = umov("scale", "run", "job", "--per-shard", 1000, "--part", "1/2", *command)
+    assert begun.code in (0, 5), begun.err  # 5: one pass alone, which is the other part's
+    monkeypatch.setenv("UMOV_FAKE_LAUNCHES", "1")
+    lost = umov("scale", "run", "job")
     assert lost.code == 6 and "CUDA_ERROR_LAUNCH_FAILED" in lost.err, lost.err
     monkeypatch.delenv("UMOV_FAKE_LAUNCHES")
     done = umov("scale", "run", "job")
@@ -190,7 +194,8 @@ def test_an_attitude_by_the_light_of_a_card(umov, curve, settings, tmp_path):
 
 
 def test_a_library_by_the_light_of_a_card(umov, scenario, settings, tmp_path, monkeypatch):
-    names = [scenario(), scenario(name="second.toml")]
+    white = ('default = "paper_al"', 'default = "paint_white"')  # light that 325 poses can tell
+    names = [scenario(white), scenario(white, name="second.toml")]
     assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
     command = ("library", "build", *names, "-o", "lib", "--cells", 4, "--json", "--device")
 
@@ -199,7 +204,7 @@ def test_a_library_by_the_light_of_a_card(umov, scenario, settings, tmp_path, mo
         assert done.code == 0, done.err
         return [row["state"] for row in json.loads(done.out)]
 
-    settings(UMOV_FAKE_LAUNCHES=7)  # sums and light of the first object take five
+    settings(UMOV_FAKE_LAUNCHES=7)  # sums and light of the first object take three each
     lost = umov(*command, "cuda")
     assert lost.code == 6 and "Finished objects stay, and the same command goes on" in lost.err, lost.err
     monkeypatch.delenv("UMOV_FAKE_LAUNCHES")
@@ -228,3 +233,9 @@ def test_bench_puts_cards_beside_cores(umov, settings, tmp_path):
     assert umov(*command, "--device", "cuda").code == 6
     told = umov("bench", "--only", "flat panel, 2 ", "--seconds", 0.01, "--geometries", 0, "--device", "auto", "-o", "c.csv")
     assert told.code == 0 and "--device auto took the cpu: " in told.err
+
+
+def test_gpu_check_without_a_card(settings):
+    settings(UMOV_FAKE_INIT=100)
+    done = subprocess.run([ROOT / "tools/gpu_check"], text=True, capture_output=True, timeout=60)
+    assert done.returncode == 6 and "there is no card to check" in done.stderr, done.stderr
