@@ -1,3 +1,4 @@
+#include "device_options.h"
 #include "job_console.h"
 #include "tables.h"
 #include "verbs.h"
@@ -24,7 +25,9 @@ Result<void> run_bench(const BenchOptions &o, const Common &common, Diagnostics 
        "about half a minute of one core per case, less on a quick one; the table comes at the "
        "end (--only NAME measures less)");
   JobConsole console(common);
-  UMOV_ASSIGN(report, bench::light(o.light, console.monitor(true), diagnostics));
+  bench::LightRequest request = o.light;
+  request.device = device_options(common);
+  UMOV_ASSIGN(report, bench::light(request, console.monitor(true), diagnostics));
   if (report.stopped)
     return tl::unexpected(stop_table(o.output, std::move(report.table), common, *report.stopped));
   UMOV_ASSIGN(shown, chosen_columns(report.table, o.columns, {}, o.output, common));
@@ -47,6 +50,12 @@ void add_bench(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--seconds", o->light.seconds, "Time spent on each rate")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
+  add_device(*verb, *common);
+  verb->get_option("--orbit")->excludes("--device");
+  verb->add_option("--batches", o->light.batches,
+                   "Poses that cards are asked for at a time, separated by commas")
+      ->delimiter(',')
+      ->check(CLI::Range(std::size_t{1}, std::size_t{10'000'000}));
   add_table_output(*verb, o->output);
   add_columns(*verb, o->columns);
   add_common(*verb, *common, true);

@@ -1,5 +1,7 @@
 #include "verb_invert.h"
 
+#include "device_options.h"
+
 #include <fmt/format.h>
 #include <umov/core/text.h>
 
@@ -77,6 +79,7 @@ void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   verb.add_flag("-v,--verbose", o->common.verbose, "Also say what was done");
   add_threads(verb, o->common);
   add_cache(verb, o->common);
+  add_device(verb, o->common);
   add_common(verb, o->common, true);
 }
 

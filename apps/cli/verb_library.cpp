@@ -1,5 +1,6 @@
 // umov library build.
 
+#include "device_options.h"
 #include "job_console.h"
 #include "verbs.h"
 
@@ -51,6 +52,7 @@ void add_build(CLI::App &library, const Exit &exit_with) {
                    "FIRST:COUNT of the scenarios, counted from 0, for one of several machines");
   add_threads(*verb, o->common);
   add_cache(*verb, o->common);
+  add_device(*verb, o->common);
   verb->add_flag("-v,--verbose", o->common.verbose, "Also say what was done");
   add_common(*verb, o->common, true);
   verb->callback([o, exit_with] {

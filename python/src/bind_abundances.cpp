@@ -47,11 +47,14 @@ private:
     SumsOptions how;
     how.mask_cache = options.mask_cache;
     how.threads = options.threads;
+    how.device = options.device;
     for (const Scenario &other : others) {
       UMOV_ASSIGN(loaded, load_object(other, 0, {}, diagnostics));
       how.hypotheses.push_back(std::move(loaded.scene));
     }
-    return make_sums(object.scene, how);
+    UMOV_ASSIGN(sums, make_sums(object.scene, how));
+    jobs::tell_of_device(sums->device(), diagnostics);
+    return std::move(sums);
   }
   std::unique_ptr<LightSums> light_;
   double sun_radius_rad_ = 0;

@@ -205,7 +205,10 @@ void make_light_for(Light *self, const Scenario &scenario, const std::optional<s
   }
   Attention attention(watch);
   auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) {
-    return jobs::PoseLight::make(scenario, request, options, diagnostics);
+    auto light = jobs::PoseLight::make(scenario, request, options, diagnostics);
+    if (light)
+      jobs::tell_of_device(light->model().device(), diagnostics);
+    return light;
   });
   attention.settle(false);
   new (self) Light(take(std::move(made)));
@@ -220,6 +223,7 @@ nb::dict facts_of(const Light &light) {
   out["classes"] = facts.classes;
   out["visibility"] = facts.visibility;
   out["instruction_set"] = facts.instruction_set;
+  out["device"] = light.light().model().device();
   out["mask_bytes"] = light.light().model().mask_bytes();
   out["setup_s"] = facts.setup_s;
   return out;

@@ -89,7 +89,17 @@ void bind_run(nb::module_ &m) {
             options->allow_bad_checksum = allow_bad_checksum;
             options->allow_old_elements = allow_old_elements;
           },
-          "threads"_a, "mask_cache"_a, "allow_bad_checksum"_a, "allow_old_elements"_a);
+          "threads"_a, "mask_cache"_a, "allow_bad_checksum"_a, "allow_old_elements"_a)
+      .def(
+          "set_device",
+          [](jobs::JobOptions &self, const std::string &device,
+             const std::vector<std::string> &folders) {
+            self.device.choice =
+                device == name_of(DeviceChoice::Cuda) ? DeviceChoice::Cuda : DeviceChoice::Auto;
+            self.device.folders.assign(folders.begin(), folders.end());
+            self.device.cache = self.mask_cache;
+          },
+          "device"_a, "folders"_a, "cuda or auto; where drivers are looked for first.");
   nb::class_<Run>(m, "Run", "What a run computed.")
       .def_prop_ro(
           "light_curve", [](const Run &r) { return &r.tables.light_curve; },

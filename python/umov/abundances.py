@@ -99,6 +99,9 @@ class Sums:
         0 for all cores; the bytes do not depend on it.
     cache
         Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
     progress
         True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
         what it raises comes through.
@@ -113,15 +116,15 @@ class Sums:
     """
 
     def __init__(self, scene: AnyScenario, *, others: Sequence[AnyScenario] = (), threads: int = 0,
-                 cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> None:
+                 cache: bool | str | os.PathLike[str] = True, device: str = "cpu", progress: Progress = None) -> None:
         self.scenario = Scenario(scene)  #: what is lit
         self._source = scene
         self._others = [Scenario(one) for one in others]
-        self._threads, self._cache = threads, cache
+        self._threads, self._cache, self._device = threads, cache, device
         told = "\n".join(one.to_toml() for one in (self.scenario, *self._others))
         self._key = hashlib.sha256(told.encode()).hexdigest()
         self._sums = _umov.Sums(self.scenario._scenario, [one._scenario for one in self._others],
-                                job_options(threads, cache), Watch(progress))
+                                job_options(threads, cache, device=device), Watch(progress))
 
     def abundances(self, sun: ArrayLike, observer: ArrayLike, *, progress: Progress = None) -> Abundances:
         """Sums for directions (..., 3) in the body frame, of any length, which broadcast against each other.
@@ -178,7 +181,7 @@ class Sums:
 
     def __getstate__(self) -> dict[str, Any]:
         return {"scene": self._source, "others": self._others, "threads": self._threads, "cache": self._cache,
-                "key": self._key}
+                "device": self._device, "key": self._key}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         key = state.pop("key")

@@ -64,6 +64,9 @@ class Engine:
         0 for all cores; the bytes do not depend on it.
     cache
         Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
     progress
         True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
         what it raises comes through.
@@ -86,7 +89,7 @@ class Engine:
                  method: str | None = None, accuracy: float | None = None,
                  laser: Sequence[float] | None = None, temperatures: Sequence[str] = (),
                  mask_file: str | os.PathLike[str] | None = None, threads: int = 0,
-                 cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> None:
+                 cache: bool | str | os.PathLike[str] = True, device: str = "cpu", progress: Progress = None) -> None:
         if method not in (None, "auto", "rays", "masks"):
             raise UsageError(f"method is {method!r}; auto, rays or masks was expected")
         if accuracy is not None and not 1e-6 <= accuracy <= 1:
@@ -97,10 +100,11 @@ class Engine:
         self.scenario = Scenario(scene, changes or None)  #: what is lit
         self._threads = threads
         self._options = {"method": method, "accuracy": accuracy, "laser": laser, "temperatures": list(temperatures),
-                         "mask_file": mask_file, "threads": threads, "cache": cache}
+                         "mask_file": mask_file, "threads": threads, "cache": cache,
+                         "device": device}
         self._light = _umov.Light(self.scenario._scenario, method, accuracy,
                                   [float(x) for x in laser or ()], list(temperatures),
-                                  "" if mask_file is None else os.fspath(mask_file), job_options(threads, cache),
+                                  "" if mask_file is None else os.fspath(mask_file), job_options(threads, cache, device=device),
                                   Watch(progress))
 
     @property
@@ -110,7 +114,8 @@ class Engine:
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What was made ready: method, triangles, classes, instruction set, bytes of masks.
+        """What was made ready: method, triangles, classes, instruction set, cards ("" for none), bytes of
+        masks.
 
         >>> engine.facts["is_convex"]
         False

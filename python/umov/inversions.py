@@ -102,7 +102,8 @@ def _inversion(found: _umov.Inversion) -> Inversion:
 
 
 def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, fit: Fit | None = None,
-                threads: int = 0, cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
+                threads: int = 0, cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
+                progress: Progress = None) -> Inversion:
     """Which fixed attitudes explain a light curve, and how surely: `umov invert pose`.
 
     Parameters
@@ -120,6 +121,9 @@ def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, An
         0 for all cores; the bytes do not depend on it.
     cache
         Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
     progress
         True for a bar, or a callable (what, done, total).
 
@@ -138,12 +142,13 @@ def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, An
     """
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
-        return _inversion(_umov.invert_pose(asked._scenario, _request(files, fit), job_options(threads, cache), Watch(progress)))
+        return _inversion(_umov.invert_pose(asked._scenario, _request(files, fit), job_options(threads, cache, device=device), Watch(progress)))
 
 
 def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | None = None, aliases: bool = True,
                 axis: str = "any", set: Mapping[str, Any] | None = None, fit: Fit | None = None, threads: int = 0,
-                cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
+                cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
+                progress: Progress = None) -> Inversion:
     """Which constant spins explain a light curve: period with aliases, axis, attitude: `umov invert spin`.
 
     Parameters
@@ -166,6 +171,9 @@ def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | No
         0 for all cores; the bytes do not depend on it.
     cache
         Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
     progress
         True for a bar, or a callable (what, done, total).
 
@@ -190,12 +198,13 @@ def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | No
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
         return _inversion(_umov.invert_spin(asked._scenario, _request(files, fit), period, bool(aliases),
-                                            "" if axis == "any" else axis, job_options(threads, cache), Watch(progress)))
+                                            "" if axis == "any" else axis, job_options(threads, cache, device=device), Watch(progress)))
 
 
 def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, candidates: Sequence[str],
                     set: Mapping[str, Any] | None = None, fit: Fit | None = None, threads: int = 0,
-                    cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
+                    cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
+                    progress: Progress = None) -> Inversion:
     """What a part is made of, in the scenario's attitude: which, or how much of each: `umov invert material`.
 
     Parameters
@@ -216,6 +225,9 @@ def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, cand
         0 for all cores; the bytes do not depend on it.
     cache
         Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
     progress
         True for a bar, or a callable (what, done, total).
 
@@ -235,12 +247,13 @@ def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, cand
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
         return _inversion(_umov.invert_material(asked._scenario, _request(files, fit), str(group), words,
-                                                job_options(threads, cache), Watch(progress)))
+                                                job_options(threads, cache, device=device), Watch(progress)))
 
 
 def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str, str], baseline: AnyCurves = (),
                   attitude_sd_deg: float = 0.1, set: Mapping[str, Any] | None = None, fit: Fit | None = None, threads: int = 0,
-                  cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Inversion:
+                  cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
+                  progress: Progress = None) -> Inversion:
     """What has changed on the body, in the scenario's attitude, and the least that shows: `umov invert health`.
 
     Parameters
@@ -263,6 +276,9 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
         0 for all cores; the bytes do not depend on it.
     cache
         Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
     progress
         True for a bar, or a callable (what, done, total).
 
@@ -285,7 +301,7 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
     sd = between(attitude_sd_deg, "attitude_sd_deg", 0, 30)
     with _files_of(light, baseline) as (files, before):
         return _inversion(_umov.invert_health(asked._scenario, _request(files, fit), drifts, before, sd,
-                                              job_options(threads, cache), Watch(progress)))
+                                              job_options(threads, cache, device=device), Watch(progress)))
 
 
 def _names(given: Any, name: str, what: str) -> list[str]:

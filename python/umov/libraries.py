@@ -15,7 +15,8 @@ __all__ = ["build_library"]
 
 def build_library(scenarios: Sequence[str | os.PathLike[str]], folder: str | os.PathLike[str], *, cells: int = 20,
                   first: int = 0, count: int | None = None, threads: int = 0,
-                  cache: bool | str | os.PathLike[str] = True, progress: Progress = None) -> Table:
+                  cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
+                  progress: Progress = None) -> Table:
     """Light and abundances of objects over all directions, a file each: `umov library build`.
 
     Parameters
@@ -34,6 +35,9 @@ def build_library(scenarios: Sequence[str | os.PathLike[str]], folder: str | os.
         0 for all cores; the bytes do not depend on it.
     cache
         Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
     progress
         True for a bar, or a callable (what, done, total).
 
@@ -56,4 +60,4 @@ def build_library(scenarios: Sequence[str | os.PathLike[str]], folder: str | os.
     most = len(paths) if count is None else whole(count, "count")
     return Table(_umov.build_library([os.fspath(one) for one in paths], os.fspath(folder),
                                      whole_between(cells, "cells", 4, 60), whole(first, "first"), most,
-                                     job_options(threads, cache), Watch(progress)))
+                                     job_options(threads, cache, device=device), Watch(progress)))

@@ -39,7 +39,7 @@ AnyCounts = Union[str, "os.PathLike[str]", Observation, Table, "QTable"]
 
 def observe(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None,
             frames: str | os.PathLike[str] | None = None, threads: int = 0, cache: bool | str | os.PathLike[str] = True, progress: Progress = None,
-            allow_bad_checksum: bool = False, allow_old_elements: bool = False) -> Observation:
+            allow_bad_checksum: bool = False, allow_old_elements: bool = False, device: str = "cpu") -> Observation:
     """Counts that an instrument would record of a scenario: the tables of `umov observe`, in memory.
 
     Parameters
@@ -61,6 +61,9 @@ def observe(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None,
         Elements with a wrong checksum are read all the same.
     allow_old_elements
         Elements more than 30 days old are taken all the same.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
 
     Notes
     -----
@@ -73,7 +76,7 @@ def observe(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None,
     'electron'
     """
     asked = Scenario(scenario, set)
-    done = _umov.observe(asked._scenario, job_options(threads, cache, allow_bad_checksum, allow_old_elements),
+    done = _umov.observe(asked._scenario, job_options(threads, cache, allow_bad_checksum, allow_old_elements, device),
                          "" if frames is None else _folder(frames), Watch(progress))
     return Observation(Table(done.counts), Table(done.truth), done.exposures, done.saturated, done.frames)
 

@@ -17,7 +17,7 @@ __all__ = ["run"]
 def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: int | None = None,
         accuracy: float | None = None, threads: int = 0, cache: bool | str | os.PathLike[str] = True,
         progress: Progress = None, allow_bad_checksum: bool = False,
-        allow_old_elements: bool = False) -> LightCurve:
+        allow_old_elements: bool = False, device: str = "cpu") -> LightCurve:
     """The light curve of a scenario, as the command `umov run` computes it, in memory.
 
     Ctrl-C raises `Interrupted`, an orbit that ends `NumericsError`, with the finished rows in `partial`.
@@ -43,6 +43,9 @@ def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: in
         Elements with a wrong checksum are read all the same.
     allow_old_elements
         Elements more than 30 days old are taken all the same.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
 
     Examples
     --------
@@ -57,7 +60,7 @@ def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: in
         changes["render.accuracy"] = float(accuracy)
     asked = Scenario(scenario, changes or None)
     asked._scenario.check_for_run()
-    done = _umov.run(asked._scenario, job_options(threads, cache, allow_bad_checksum, allow_old_elements),
+    done = _umov.run(asked._scenario, job_options(threads, cache, allow_bad_checksum, allow_old_elements, device),
                      Watch(progress))
     curve = LightCurve._from_run(done, asked)
     if done.stopped is not None:

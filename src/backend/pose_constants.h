@@ -13,7 +13,8 @@ namespace umov::backend {
 struct PoseDirections {
   Vec3<Body> sun, observer;
   double sun_radius_rad = 0;
-  double cos_phase = 1; ///< within [-1, 1]
+  double cos_phase = 1;   ///< within [-1, 1]
+  bool has_plane = false; ///< of scattering (has_scattering_plane); only where light is asked for
 };
 
 UMOV_KERNEL void put_vector(const Vec3<Body> &v, double *out) {

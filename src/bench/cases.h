@@ -29,12 +29,19 @@ struct BenchCase {
   std::size_t bounces = 1;        ///< more than 1: through the light model, without errors
   BetweenMethod between = BetweenMethod::Auto;
   bool has_library_materials = false; ///< of the telescope, as in examples/hst_maui.toml
+  bool is_on_card = false;            ///< cards add up
+  std::size_t batch = 0; ///< poses asked for at a time; 0: as many as the time on a rate allows
 };
 
 /// All cases, in the order of the report.
 std::vector<BenchCase> standard_cases();
 /// Masks without and with rays, fast and fine, on a mesh file.
 std::vector<BenchCase> cases_for_mesh(const std::string &file);
+
+/// Cards, one core and all cores beside each other: mesh files, or the three standard objects; 1, 3
+/// and 16 bands; the cards with so many poses at a time.
+std::vector<BenchCase> card_cases(const std::vector<std::string> &meshes,
+                                  const std::vector<std::size_t> &batches);
 
 /// The scene of a case: four materials (foil m = 200, cells 1000, white 20, metal 50) over its
 /// groups, or those of the library.

@@ -37,6 +37,7 @@ struct BenchResult {
   double rate = 0, latency_us = std::numeric_limits<double>::quiet_NaN();
   EngineErrors errors;
   bool has_errors = false;
+  std::size_t batch = 0; ///< poses at a time
 };
 
 /// Seconds a pose; `evaluate` lights poses.
@@ -75,7 +76,8 @@ double latency(const Engine &engine, const std::vector<Pose> &poses) {
 /// Preparations of cases that differ in load or instruction set alone are shared.
 class Bench {
 public:
-  explicit Bench(const LightRequest &request) : request_(request) {}
+  Bench(const LightRequest &request, std::shared_ptr<const Cards> cards)
+      : request_(request), cards_(std::move(cards)) {}
 
   Result<BenchResult> run(const BenchCase &one, Diagnostics &diagnostics) {
     BenchResult out;
@@ -84,7 +86,7 @@ public:
     out.facts = facts_;
     if (!restrict_engine(one.instruction_set))
       return fail(ErrorCode::Device, "this machine has no " + one.instruction_set);
-    out.instruction_set = engine_instruction_set();
+    out.instruction_set = one.is_on_card ? name_of(*cards_) : engine_instruction_set();
     const auto evaluate = [&](std::span<const Pose> poses, StokesTable &table) {
       LightTask task;
       task.threads = one.threads;
@@ -97,9 +99,13 @@ public:
     const bool is_slow = one.bounces > 1 && one.between == BetweenMethod::Paths;
     const auto probe = bench_poses(1, is_slow ? 4 : 64);
     const double guess = best_time(evaluate, probe, 0.01);
-    const auto count = static_cast<std::size_t>(
-        std::clamp(request_.seconds / repetitions / guess, is_slow ? 8.0 : 256.0, 300'000.0));
+    constexpr double longest_s = 60;
+    const auto count =
+        one.batch > 0 ? std::min(one.batch, static_cast<std::size_t>(64 + longest_s / guess))
+                      : static_cast<std::size_t>(std::clamp(request_.seconds / repetitions / guess,
+                                                            is_slow ? 8.0 : 256.0, 300'000.0));
     const auto poses = bench_poses(2, count);
+    out.batch = count;
     if (one.is_single_pose)
       out.latency_us = 1e6 * latency(*engine_, poses);
     else
@@ -125,8 +131,9 @@ private:
                     one.masks.narrow_cells, one.masks.refine_above, one.cluster_rad,
                     one.is_intensity_only, one.has_library_materials, one.is_default_path) +
         fmt::format(" {} {} {}", one.has_rough_metals, one.bounces, name_of(one.between));
-    if (key == key_)
-      return {};
+    if (key == key_ && (one.is_on_card || !is_on_card_))
+      return take_cards(one);
+    is_on_card_ = false;
     engine_.reset();
     model_.reset();
     UMOV_ASSIGN(scene, case_scene(one, diagnostics));
@@ -156,6 +163,14 @@ private:
       facts_ = engine_->facts();
     }
     key_ = key;
+    return take_cards(one);
+  }
+  /// The engine of a case that cards light; it cannot give them back.
+  Result<void> take_cards(const BenchCase &one) {
+    if (!one.is_on_card || is_on_card_)
+      return {};
+    UMOV_TRY(engine_->use_cards(cards_));
+    is_on_card_ = true;
     return {};
   }
 
@@ -172,6 +187,8 @@ private:
   }
 
   const LightRequest &request_;
+  std::shared_ptr<const Cards> cards_; ///< null: the processor alone
+  bool is_on_card_ = false;            ///< of the engine
   std::string key_, reference_of_;
   std::optional<Scene> scene_;
   std::optional<Engine> engine_;
@@ -182,7 +199,7 @@ private:
 
 struct BenchTable {
   std::vector<std::string> name, mesh, set;
-  std::vector<std::int64_t> triangles, classes, bands, threads;
+  std::vector<std::int64_t> triangles, classes, bands, threads, batch;
   std::map<std::string, std::vector<double>> numbers;
 
   void add(const BenchCase &one, const BenchResult &r) {
@@ -194,6 +211,7 @@ struct BenchTable {
     classes.push_back(static_cast<std::int64_t>(r.facts.classes));
     bands.push_back(static_cast<std::int64_t>(r.bands));
     threads.push_back(one.threads);
+    batch.push_back(static_cast<std::int64_t>(r.batch));
     const auto or_nan = [&](double x) { return r.has_errors ? x : nan; };
     numbers["setup_s"].push_back(r.facts.setup_s);
     numbers["memory_mb"].push_back(static_cast<double>(r.facts.mask_bytes + r.facts.scene_bytes) /
@@ -215,8 +233,9 @@ struct BenchTable {
     out.add("triangles", "", "of the mesh", std::move(triangles));
     out.add("classes", "", "of equal normal and material: what a pose costs", std::move(classes));
     out.add("bands", "", "bands", std::move(bands));
-    out.add("threads", "", "of the timed evaluation", std::move(threads));
-    out.add("instruction_set", "", "as Highway names it", std::move(set));
+    out.add("threads", "", "of the timed evaluation; 0: all cores", std::move(threads));
+    out.add("batch", "", "poses asked for at a time", std::move(batch));
+    out.add("instruction_set", "", "as Highway names it, or the cards", std::move(set));
     const auto move = [&](const char *key, const char *unit, const char *text) {
       out.add(key, unit, text, std::move(numbers[key]));
     };
@@ -242,14 +261,36 @@ std::string outliers_text(const BenchCase &one, const BenchResult &r) {
   return fmt::format("{} {}, worst poses:{}", one.mesh, one.name, text);
 }
 
-/// Those asked for that this machine can run.
-Result<std::vector<BenchCase>> cases_of(const LightRequest &request) {
+std::vector<BenchCase> cases_of_processor(const LightRequest &request) {
   std::vector<BenchCase> out;
   for (const std::string &mesh : request.meshes)
     for (BenchCase &one : cases_for_mesh(mesh))
       out.push_back(std::move(one));
-  if (out.empty())
-    out = standard_cases();
+  return out.empty() ? standard_cases() : out;
+}
+
+/// Cards if they are asked for and there; null: the processor alone, which Auto says.
+Result<std::shared_ptr<const Cards>> cards_of(const LightRequest &request,
+                                              Diagnostics &diagnostics) {
+  if (request.device.choice == DeviceChoice::Cpu) {
+    if (!request.batches.empty())
+      return fail(ErrorCode::Usage, "--batches goes with --device cuda or auto");
+    return nullptr;
+  }
+  auto cards = open_cards(request.device);
+  if (cards || request.device.choice == DeviceChoice::Cuda)
+    return cards;
+  diagnostics.warn("--device auto took the cpu: " + cards.error().message);
+  return nullptr;
+}
+
+/// Those asked for that this machine can run.
+Result<std::vector<BenchCase>> cases_of(const LightRequest &request, bool has_cards) {
+  const std::vector<std::size_t> batches = request.batches.empty()
+                                               ? std::vector<std::size_t>{1, 100, 10'000, 1'000'000}
+                                               : request.batches;
+  std::vector<BenchCase> out =
+      has_cards ? card_cases(request.meshes, batches) : cases_of_processor(request);
   std::erase_if(out, [&](const BenchCase &one) {
     return one.name.find(request.only) == std::string::npos ||
            !restrict_engine(one.instruction_set);
@@ -265,8 +306,9 @@ Result<std::vector<BenchCase>> cases_of(const LightRequest &request) {
 Result<LightReport> light(const LightRequest &request, const jobs::Monitor &monitor,
                           Diagnostics &diagnostics) {
   const std::string load_before = load_average();
-  UMOV_ASSIGN(cases, cases_of(request));
-  Bench bench(request);
+  UMOV_ASSIGN(cards, cards_of(request, diagnostics));
+  UMOV_ASSIGN(cases, cases_of(request, cards != nullptr));
+  Bench bench(request, std::move(cards));
   BenchTable rows;
   std::size_t done = 0;
   for (const BenchCase &one : cases) {

@@ -33,6 +33,7 @@ Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &req
                      out.summary);
   out.inputs = ready.observed.inputs;
   out.seed = scenario.seed;
+  out.light = light_used(ready, scenario, diagnostics);
   monitor.tell(fmt::format("{} poses lit", answer.poses_lit));
   return out;
 }
@@ -59,6 +60,7 @@ Result<void> write_inversion(const Inversion &inversion, const Scenario &scenari
   for (const InputFile &input : inversion.inputs)
     manifest.inputs.emplace_back(input.path, input.sha256);
   manifest.seed = inversion.seed;
+  manifest.light.push_back(inversion.light);
   folder.add("manifest.json", make_manifest(manifest));
   return folder.commit();
 }

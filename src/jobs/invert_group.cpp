@@ -27,7 +27,7 @@ Result<Scenario> GroupLight::with(const std::string &group, const std::string &m
 }
 
 Result<EndMember> GroupLight::of(const std::string &group, const std::string &material,
-                                 const Monitor &monitor, Vec3<Body> turn) const {
+                                 const Monitor &monitor, Vec3<Body> turn) {
   Scenario scenario = scenario_;
   if (!group.empty()) {
     UMOV_ASSIGN(changed, with(group, material));
@@ -58,6 +58,9 @@ Result<EndMember> GroupLight::of(const std::string &group, const std::string &ma
   if (!light->evaluate(poses, angles, table, task))
     return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
   (void)light->keep_masks(); // a cache that cannot be written costs time alone
+  if (const LightFacts &facts = light->facts(); !used_.device.starts_with("cpu"))
+    used_ = {scenario.objects.front().name, name_of(facts.method), facts.visibility,
+             facts.instruction_set, light->device()};
   EndMember out{material, {}, {}, {}};
   for (std::size_t k = 0; k < poses.size(); ++k)
     for (const std::size_t column : observed_.column) {

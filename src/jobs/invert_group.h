@@ -15,7 +15,9 @@ public:
 
   /// `group` empty: as the scenario has it. `turn`: of the body out of its attitude [rad].
   Result<EndMember> of(const std::string &group, const std::string &material,
-                       const Monitor &monitor, Vec3<Body> turn = {}) const;
+                       const Monitor &monitor, Vec3<Body> turn = {});
+  /// How the object was lit, of the last call; of the call that left its cards if one did.
+  [[nodiscard]] const ManifestInput::Light &used() const { return used_; }
 
 private:
   Result<Scenario> with(const std::string &group, const std::string &material) const;
@@ -24,6 +26,7 @@ private:
   const InvertRequest &request_;
   const ObservedLightCurve &observed_;
   const JobOptions &options_;
+  ManifestInput::Light used_;
 };
 
 } // namespace umov::jobs

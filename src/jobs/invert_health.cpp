@@ -39,7 +39,8 @@ Result<std::vector<Drift>> drifts_of(const std::vector<std::string> &words) {
 Result<Health> health_of(const Scenario &scenario, const InvertRequest &request,
                          const HealthOptions &asked, const std::vector<Drift> &drifts,
                          const JobOptions &options, const Monitor &monitor,
-                         Diagnostics &diagnostics, ObservedLightCurve &observed) {
+                         Diagnostics &diagnostics, ObservedLightCurve &observed,
+                         ManifestInput::Light &used) {
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, inputs, diagnostics));
   UMOV_ASSIGN(own, observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
@@ -49,7 +50,7 @@ Result<Health> health_of(const Scenario &scenario, const InvertRequest &request,
     return fail(ErrorCode::BadInput,
                 "no row has light above 0: changes show in I, and in q and u in parts of it",
                 {request.observations.front()});
-  const GroupLight light(scenario, request, observed, options);
+  GroupLight light(scenario, request, observed, options);
   const std::size_t steps = drifts.size() + 4;
   monitor.advance("light of the object", 0, steps);
   UMOV_ASSIGN(before, light.of("", "", monitor));
@@ -67,6 +68,7 @@ Result<Health> health_of(const Scenario &scenario, const InvertRequest &request,
       UMOV_ASSIGN(aside, light.of("", "", monitor, turn));
       unknowns.push_back({"attitude", std::move(aside), difference, sd});
     }
+  used = light.used();
   return check_health(observed.curve, request.errors, before, changes, unknowns);
 }
 
@@ -180,18 +182,20 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
                                 const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(drifts, drifts_of(asked.drifts));
   ObservedLightCurve observed;
-  UMOV_ASSIGN(health,
-              health_of(scenario, request, asked, drifts, options, monitor, diagnostics, observed));
+  Inversion out;
+  UMOV_ASSIGN(health, health_of(scenario, request, asked, drifts, options, monitor, diagnostics,
+                                observed, out.light));
+  tell_of_device(out.light.device, diagnostics);
   if (!asked.baseline.empty()) {
     InvertRequest before = request;
     before.observations = asked.baseline;
     ObservedLightCurve old;
-    UMOV_ASSIGN(baseline,
-                health_of(scenario, before, asked, drifts, options, monitor, diagnostics, old));
+    ManifestInput::Light as_before;
+    UMOV_ASSIGN(baseline, health_of(scenario, before, asked, drifts, options, monitor, diagnostics,
+                                    old, as_before));
     count_from(baseline, health);
     observed.inputs.insert(observed.inputs.end(), old.inputs.begin(), old.inputs.end());
   }
-  Inversion out;
   out.verdict = verdict_of(health);
   const auto notes = notes_of(health, out.verdict, observed.curve, request.errors);
   out.summary =

@@ -50,6 +50,19 @@ PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor
   };
 }
 
+ManifestInput::Light light_used(const Prepared &ready, const Scenario &scenario,
+                                Diagnostics &diagnostics) {
+  const LightModel &model = ready.light.model();
+  std::string device = model.device();
+  if (ready.masks && !device.starts_with("cpu"))
+    if (std::string rough = ready.masks->model().device(); rough.starts_with("cpu"))
+      device = std::move(rough);
+  tell_of_device(device, diagnostics);
+  const LightFacts &facts = model.facts();
+  return {scenario.objects.front().name, name_of(facts.method), facts.visibility,
+          facts.instruction_set, device};
+}
+
 void keep_masks(const Prepared &ready) {
   (void)ready.light.model().keep_masks();
   if (ready.masks)

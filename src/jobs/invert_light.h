@@ -24,6 +24,9 @@ PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor
 /// sliver is in doubt: as an error of its own (`CurveLikelihood`) it would drive a search away from
 /// the truth. `ready` and `monitor` must outlive it.
 PoseLighting quick_lighting(const Prepared &ready, unsigned threads, const Monitor &monitor);
+/// Who adds up, as of the light that the answer rests on; warns where that is not what was asked.
+ManifestInput::Light light_used(const Prepared &ready, const Scenario &scenario,
+                                Diagnostics &diagnostics);
 /// For later jobs; a cache that cannot be written costs time alone.
 void keep_masks(const Prepared &ready);
 /// How the search is run; `monitor` must outlive it.

@@ -140,13 +140,14 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
                 "no row has light: materials are told apart by I, flux or mag, and by q and u in "
                 "parts of it; add such a column",
                 {request.observations.front()});
-  const GroupLight light(scenario, request, observed, options);
+  GroupLight light(scenario, request, observed, options);
   std::vector<EndMember> members;
   for (const std::string &name : material.candidates) {
     monitor.advance("candidates", members.size(), material.candidates.size());
     UMOV_ASSIGN(member, light.of(material.group, name, monitor));
     members.push_back(std::move(member));
   }
+  tell_of_device(light.used().device, diagnostics);
   double chi2 = 0;
   const auto probability = probabilities(observed.curve, request.errors, members, chi2);
   const Unmixing unmixed = unmix(observed.curve, request.errors, members);
@@ -176,6 +177,7 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   out.inputs = observed.inputs;
   out.inputs.insert(out.inputs.end(), inputs.begin(), inputs.end());
   out.seed = scenario.seed;
+  out.light = light.used();
   return out;
 }
 

@@ -130,6 +130,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                      out.summary);
   out.inputs = ready.observed.inputs;
   out.seed = scenario.seed;
+  out.light = light_used(ready, scenario, diagnostics);
   return out;
 }
 

@@ -50,9 +50,13 @@ Result<std::string> device_text(const DeviceOptions &device) {
   return "; device " + (cards ? name_of(**cards) : std::string("cpu"));
 }
 
-void tell_of_device(const LightFacts &facts, Diagnostics &diagnostics) {
-  if (facts.device.starts_with("cpu"))
-    diagnostics.warn("--device auto took the " + facts.device);
+Result<void> check_device_of_shards(const DeviceOptions &device) {
+  if (device.choice != DeviceChoice::Auto)
+    return {};
+  return fail(
+      ErrorCode::Usage,
+      "--device auto would light some shards by a card and others by the processor, which do not "
+      "agree to the last digit. Give --device cuda or --device cpu.");
 }
 
 Error with_way_on(Error stopped, Journal &journal) {

@@ -24,8 +24,9 @@ Result<Journal> open_journal(const JobOptions &options, const std::string &job,
 /// processor do not agree to the last digit. Empty unless cards are asked for; Device where they
 /// must be there and are not.
 Result<std::string> device_text(const DeviceOptions &device);
-/// Warns where cards were asked for if there are any, and there are none.
-void tell_of_device(const LightFacts &facts, Diagnostics &diagnostics);
+
+/// Usage for Auto: shards would be lit by cards and by the processor.
+Result<void> check_device_of_shards(const DeviceOptions &device);
 
 /// The end of a job that was ended early: where it goes on.
 Error with_way_on(Error stopped, Journal &journal);

@@ -25,26 +25,32 @@ struct Making {
   double error = 0;
   std::vector<float> sums;
   const char *state = "made";
+  std::string device; ///< as LightModel::device
 };
 
 /// Light by sums before any colour: for objects without parts that turn, in single wavelengths.
 class SummedLight {
 public:
-  SummedLight(const Scene &scene, const JobOptions &options, double accuracy)
-      : sums_(make_sums(scene, sums_options(options, accuracy))), scene_(scene), options_(options) {
+  static Result<SummedLight> of(const Scene &scene, const JobOptions &options, double accuracy) {
+    UMOV_ASSIGN(sums, make_sums(scene, sums_options(options, accuracy)));
+    return SummedLight(std::move(sums), scene, options);
   }
 
   /// False where this scene has no sums, or it was stopped.
   bool make(std::size_t cells, const Monitor &monitor, Making &out, StokesTable &light) const;
   /// Light of sums that a file holds; false where they do not serve these materials.
   bool colour(const SignatureView &kept, StokesTable &light) const;
+  [[nodiscard]] std::string device() const { return sums_->device(); }
 
 private:
+  SummedLight(std::unique_ptr<LightSums> sums, const Scene &scene, const JobOptions &options)
+      : sums_(std::move(sums)), scene_(scene), options_(options) {}
   static SumsOptions sums_options(const JobOptions &options, double accuracy) {
     SumsOptions out;
     out.accuracy = accuracy;
     out.mask_cache = options.mask_cache;
     out.threads = options.threads;
+    out.device = options.device;
     return out;
   }
   [[nodiscard]] static std::vector<std::string> words_of(const AbundanceTable &sums);
@@ -163,12 +169,13 @@ std::string lobe_of(const Material &material, const std::string &job) {
 }
 
 /// What abundances depend on apart from the optical constants: places, facets, normals, lobes, how
-/// hiding is decided, and the program that made them.
-std::string shape_of(const PoseLight &light, const std::string &job) {
+/// hiding is decided, who added up, and the program that made them.
+std::string shape_of(const PoseLight &light, const std::string &job, const std::string &device) {
   const Scene &scene = light.model().scene();
   const Mesh &mesh = scene.mesh;
   std::string bytes = fmt::format("umov {} {} {} {}\n", version, source_revision,
-                                  static_cast<int>(scene.normals), light.options().accuracy);
+                                  static_cast<int>(scene.normals), light.options().accuracy) +
+                      device;
   for (const auto *side : {&scene.front, &scene.back})
     for (const Surface &surface : *side)
       bytes += lobe_of(surface.material(), job);
@@ -206,6 +213,7 @@ private:
   const JobOptions &options_;
   const Monitor &monitor_;
   Diagnostics &diagnostics_;
+  std::string told_; ///< device of the object before
   std::vector<std::string> name_, state_;
   std::vector<std::int64_t> poses_, columns_;
   std::vector<double> error_;
@@ -216,8 +224,9 @@ Result<void> SignatureMaker::make(const std::string &path, const std::string &na
   SignatureRequest asked;
   asked.method = LightMethod::Masks;
   UMOV_ASSIGN(own, PoseLight::make(scenario, asked, options_, diagnostics_));
+  UMOV_ASSIGN(by, device_text(options_.device));
   const std::string job = sha256_hex(
-      job_text(scenario, own.inputs(), fmt::format("signature of {} cells", request_.cells)));
+      job_text(scenario, own.inputs(), fmt::format("signature of {} cells{}", request_.cells, by)));
   const fs::path file = fs::path(request_.folder) / (name + ".umovsig");
   if (file_exists(file))
     if (const auto kept = SignatureFile::open(file, true); kept && kept->view().text.job == job) {
@@ -232,6 +241,11 @@ Result<void> SignatureMaker::make(const std::string &path, const std::string &na
   UMOV_TRY(write_file_atomically(
       file, signature_bytes(made.text, request_.cells, made.light, made.error, made.sums)));
   (void)own.model().keep_masks(); // a cache that cannot be written costs time alone
+  const std::string own_device = own.model().device();
+  const std::string &device = made.device.starts_with("cpu") ? made.device : own_device;
+  if (device != told_) // once for many objects
+    tell_of_device(device, diagnostics_);
+  told_ = device;
   tell(made);
   return {};
 }
@@ -240,7 +254,9 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
                                      const std::string &name, const std::string &job,
                                      const fs::path &file) const {
   Making out;
-  out.text = {name, job, shape_of(own, job), {}, {}, own.sun_radius_rad()};
+  UMOV_ASSIGN(by, device_text(options_.device));
+  out.text = {name, job, shape_of(own, job, by), {}, {}, own.sun_radius_rad()};
+  out.device = own.model().facts().device;
   for (const Band &band : scenario.bands)
     out.text.bands.push_back(band.name);
   StokesTable light;
@@ -248,7 +264,7 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
   const bool has_sums = own.model().joints().empty() && own.model().scene().grid.is_plain() &&
                         own.options().bounces <= 1;
   if (has_sums) {
-    const SummedLight sums(own.model().scene(), options_, own.options().accuracy);
+    UMOV_ASSIGN(sums, SummedLight::of(own.model().scene(), options_, own.options().accuracy));
     const auto kept = file_exists(file) ? SignatureFile::open(file, true)
                                         : Result<SignatureFile>(fail(ErrorCode::BadInput, "none"));
     if (kept && kept->view().signature.cells == request_.cells &&
@@ -262,6 +278,8 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
       light = {};
       is_lit = sums.make(request_.cells, monitor_, out, light);
     }
+    if (is_lit)
+      out.device = sums.device();
   }
   if (!is_lit) {
     light = {};
@@ -330,7 +348,14 @@ Result<LibraryBuilt> build_library(const LibraryRequest &request, const JobOptio
   const std::size_t end = first + std::min(request.count, names.size() - first);
   for (std::size_t k = first; k < end; ++k) {
     monitor.advance("objects", k - first, end - first);
-    auto made = maker.make(request.scenarios[k], names[k]);
+    Result<void> made;
+    try {
+      made = maker.make(request.scenarios[k], names[k]);
+    } catch (const Failure &failure) { // a card
+      Error lost = failure.error();
+      lost.message += ". Finished objects stay, and the same command goes on";
+      made = tl::unexpected(std::move(lost));
+    }
     if (made)
       continue;
     if (is_new) // a folder that holds nothing goes with the refusal; another stays

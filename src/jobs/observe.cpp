@@ -313,7 +313,6 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
     return {};
   const auto began = std::chrono::steady_clock::now();
   UMOV_ASSIGN(models, make_light_models(request, loaded.scene));
-  tell_of_device(models.light->facts(), diagnostics);
   const ObservingConditions conditions = conditions_of(scenario, object);
   UMOV_ASSIGN(observers, observers_of(*scenario.observation, bands, loaded.scene.grid, conditions));
   for (const Exposure &e : exposures)
@@ -346,6 +345,7 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
   UMOV_TRY(run_blocks(setup, exposures, monitor, tables, out, diagnostics));
   out.counts.append(std::move(tables.counts).table());
   out.truth.append(std::move(tables.truth).table());
+  tell_of_device(models.device(), diagnostics);
   return models.keep_masks();
 }
 

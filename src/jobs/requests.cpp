@@ -33,6 +33,11 @@ LightCurveRequest light_curve_request(const Scenario &scenario, const ScenarioOb
   return out;
 }
 
+void tell_of_device(const std::string &device, Diagnostics &diagnostics) {
+  if (device.starts_with("cpu"))
+    diagnostics.warn("--device auto took the " + device);
+}
+
 Result<std::size_t> band_index(const std::string &name, const std::vector<Band> &bands) {
   if (name.empty())
     return bands.size() / 2;

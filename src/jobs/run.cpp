@@ -135,14 +135,23 @@ Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks bloc
   monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
   UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene));
   one.light = models.light->facts();
-  tell_of_device(one.light, diagnostics);
   auto out = compute_wanted(
       one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
       monitor.cancel_flag(), blocks);
+  one.light.device = models.device();
+  tell_of_device(one.light.device, diagnostics);
   UMOV_TRY(models.keep_masks());
   return out;
 } catch (const Failure &lost) { // a card: what was finished is in the journal
   return tl::unexpected(lost.error());
+}
+
+Result<void> spread(ObjectRun &one, KeptBlocks blocks, const Monitor &monitor,
+                    Diagnostics &diagnostics) try {
+  return add_haze_spread(one, blocks, monitor, diagnostics);
+} catch (const Failure &lost) { // as above
+  one.outcome.stopped = lost.error();
+  return {};
 }
 
 Result<Journal> journal_of(const std::vector<ObjectRun> &objects, const Scenario &scenario,
@@ -202,7 +211,7 @@ Result<RunResult> compute_run(std::vector<ObjectRun> objects, const Scenario &sc
     }
     const bool is_empty = objects[k].outcome.curve.epochs.empty();
     if (scenario.varies_haze && !is_empty && !out.stopped) {
-      UMOV_TRY(add_haze_spread(objects[k], {&journal, k}, monitor, diagnostics));
+      UMOV_TRY(spread(objects[k], {&journal, k}, monitor, diagnostics));
       out.stopped = objects[k].outcome.stopped;
     }
     with_rows += is_empty ? 0u : 1u;

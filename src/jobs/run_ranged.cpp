@@ -124,11 +124,7 @@ private:
 Result<std::unique_ptr<RangedJob>> ranged_run(const Scenario &scenario, const JobOptions &options,
                                               const std::vector<std::size_t> &layout,
                                               const Monitor &monitor, Diagnostics &diagnostics) {
-  if (options.device.choice == DeviceChoice::Auto)
-    return fail(
-        ErrorCode::Usage,
-        "--device auto would light some shards by a card and others by the processor, which do not "
-        "agree to the last digit. Give --device cuda or --device cpu.");
+  UMOV_TRY(check_device_of_shards(options.device));
   UMOV_ASSIGN(objects, load_run(scenario, options, monitor, diagnostics));
   std::vector<InputFile> inputs;
   for (const ObjectRun &one : objects)

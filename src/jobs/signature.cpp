@@ -32,7 +32,7 @@ void describe(const SignatureRequest &request, const PoseLight &light, Table &ta
     table.note("method", visibility);
     return;
   }
-  if (const std::string &device = light.model().facts().device; !device.empty())
+  if (const std::string &device = light.model().device(); !device.empty())
     table.note("device", device);
   const Stokes<ScatteringPlane> &source = light.options().source;
   table.note("source", request.source == Source::Sun
@@ -229,9 +229,9 @@ Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, co
                                                     const JobOptions &options,
                                                     Diagnostics &diagnostics) {
   UMOV_TRY(PoseLight::check(scenario, request));
+  UMOV_TRY(check_device_of_shards(options.device));
   UMOV_ASSIGN(light,
               PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
-  tell_of_device(light.model().facts(), diagnostics);
   std::string identity = job_of(scenario, poses, request, light);
   return std::make_unique<RangedSignature>(poses, request, options, std::move(light),
                                            std::move(identity));
@@ -247,7 +247,6 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_ASSIGN(light,
               PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
   const LightModel &model = light.model();
-  tell_of_device(model.facts(), diagnostics);
   UMOV_ASSIGN(journal,
               open_journal(options, job_of(scenario, poses, request, light) + options.part.text(),
                            monitor, diagnostics));
@@ -261,6 +260,7 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
     done += blocks.count();
     monitor.advance("poses", done, range.count);
   }
+  tell_of_device(model.device(), diagnostics);
   if (journal.problem())
     diagnostics.warn(journal.problem()->text());
   if (done < range.count)

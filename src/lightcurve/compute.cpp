@@ -277,6 +277,14 @@ Result<void> LightModels::keep_masks() const {
   return many_directions ? many_directions->keep_masks() : Result<void>();
 }
 
+std::string LightModels::device() const {
+  std::string out = light->device();
+  if (many_directions && !out.starts_with("cpu"))
+    if (std::string many = many_directions->device(); many.starts_with("cpu"))
+      return many;
+  return out;
+}
+
 Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene) {
   LightOptions options = request.light;
   options.threads = request.threads;

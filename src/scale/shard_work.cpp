@@ -97,6 +97,8 @@ ShardRecord do_shard(const JobFolder &folder, jobs::RangedJob &job, std::size_t 
     done = fill(folder, job, monitor, out);
   } catch (const std::bad_alloc &) {
     done = fail(ErrorCode::Device, "out of memory; ask for smaller shards with --per-shard");
+  } catch (const Failure &lost) { // a card: the worker lives on and says so
+    done = tl::unexpected(lost.error());
   }
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   out.cpu_s = cpu_seconds() - cpu;

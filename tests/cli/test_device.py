@@ -1,5 +1,7 @@
 """--device: cards by a driver without one (src/backend/cuda/tests), and what is said where there is none."""
+import json
 import os
+import subprocess
 
 import pytest
 
@@ -65,8 +67,8 @@ def test_what_cards_do_not_light_is_refused_by_name(signature, settings):
 
 
 def test_a_lost_card_keeps_what_is_finished(signature, settings, tmp_path, monkeypatch):
-    """The first block of 131,072 poses takes two batches, two launches each; then the same command goes on."""
-    settings(UMOV_FAKE_LAUNCHES=4)
+    """The first block of 131,072 poses takes two batches, three launches each; then the same command goes on."""
+    settings(UMOV_FAKE_LAUNCHES=6)
     lost = signature("a.csv", "--device", "cuda", poses=140_000)
     assert lost.code == 6 and "CUDA_ERROR_LAUNCH_FAILED" in lost.err
     assert "The same command goes on from there." in lost.err
@@ -101,3 +103,139 @@ def test_a_run_on_cards_mends_by_rays(umov, scenario, settings, tmp_path):
     done = umov("run", name, "-o", "card", "--device", "cuda")
     assert done.code == 0, done.err
     assert "Card of paper" in (tmp_path / "card/manifest.json").read_text()
+
+
+def test_auto_takes_the_processor_where_masks_do_not_fit(signature, settings, tmp_path):
+    """Facets fit, masks do not: one line, and the rows of the processor."""
+    settings(UMOV_FAKE_MEMORY=400_000)
+    refused = signature("a.csv", "--device", "cuda")
+    assert refused.code == 6 and "the masks take" in refused.err
+    told = signature("b.csv", "--device", "auto")
+    assert told.code == 0, told.err
+    assert sum(line.startswith("warning") for line in told.err.splitlines()) == 1
+    assert "--device auto took the cpu in the end: the masks take" in told.err
+    assert signature("c.csv").code == 0
+    assert read_csv(tmp_path / "b.csv") == read_csv(tmp_path / "c.csv")
+
+
+SHARDED = {"signature": ("signature", "{}", "--poses", 2000, "--phase", "60", "--visibility", "masks"),
+           "run": ("run", "{}", "--set", "render.method=\"masks\"")}
+
+
+@pytest.mark.parametrize("verb", SHARDED)
+def test_a_lost_card_ends_a_job_in_shards_with_its_name(umov, scenario, settings, tmp_path, monkeypatch, verb):
+    """The worker tells which shard it was and why; finished shards stay, and the same command goes on."""
+    name = scenario()
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+    command = [str(word).format(name) for word in SHARDED[verb]] + ["--device", "cuda"]
+    settings()
+    begun = umov("scale", "run", "job", "--per-shard", 1000, "--part", "1/2", *command)
+    assert begun.code in (0, 5), begun.err  # 5: one pass alone, which is the other part's
+    monkeypatch.setenv("UMOV_FAKE_LAUNCHES", "1")
+    lost = umov("scale", "run", "job")
+    assert lost.code == 6 and "CUDA_ERROR_LAUNCH_FAILED" in lost.err, lost.err
+    monkeypatch.delenv("UMOV_FAKE_LAUNCHES")
+    done = umov("scale", "run", "job")
+    assert done.code == 0, done.err
+    refused = umov("scale", "run", "other", *command[:-1], "auto")
+    assert refused.code == 2 and "--device auto would light some shards" in refused.err
+
+
+@pytest.fixture
+def curve(umov, scenario):
+    """A light curve of a cubesat in its own attitude, by the processor: (file, scenario)."""
+    name = scenario()
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+    assert umov("run", name, "-o", "seen", "-q").code == 0
+    return "seen/lightcurve.ecsv", name
+
+
+QUESTIONS = {"pose": ("--grid", 1000), "spin": ("--period", 100),
+             "material": ("--group", "body_px", "--candidates", "paint_white,cell_gaas"),
+             "health": ("--drift", "body_px=paint_white")}
+
+
+@pytest.mark.parametrize("question", QUESTIONS)
+def test_an_inversion_without_its_card_ends_with_6(umov, curve, settings, question):
+    settings(UMOV_FAKE_INIT=100)
+    refused = umov("invert", question, curve[0], "--scenario", curve[1], *QUESTIONS[question], "--visibility", "masks",
+                   "--device", "cuda")
+    assert refused.code == 6 and "CUDA_ERROR_NO_DEVICE" in refused.err, refused.err
+
+
+@pytest.mark.parametrize("question", ["material", "health"])
+def test_an_inversion_on_a_card_answers_as_the_processor_does(umov, curve, settings, tmp_path, question):
+    settings()
+    answers = {}
+    for device in ("cpu", "cuda"):
+        done = umov("invert", question, curve[0], "--scenario", curve[1], *QUESTIONS[question], "--visibility", "masks",
+                    "--device", device, "-o", device)
+        assert done.code == 0, done.err
+        answers[device] = json.loads((tmp_path / device / "verdict.json").read_text())
+        light = json.loads((tmp_path / device / "manifest.json").read_text())["light"]
+        assert [one["device"] for one in light] == ["cpu" if device == "cpu" else "Card of paper"]
+    assert answers["cpu"]["verdict"] == answers["cuda"]["verdict"]
+    for ours, theirs in zip(answers["cpu"][question + "s" if question == "material" else question],
+                            answers["cuda"][question + "s" if question == "material" else question]):
+        key = "fraction" if question == "material" else "change"
+        error = ours[key + "_err"]  # parity of light is a hundredth of the errors of a fit
+        assert abs(ours[key] - theirs[key]) <= 0.05 * error + 1e-9
+
+
+def test_an_attitude_by_the_light_of_a_card(umov, curve, settings, tmp_path):
+    settings()
+    command = ("invert", "pose", curve[0], "--scenario", curve[1], "--grid", 1000, "--visibility", "masks")
+    answers = {}
+    for device in ("cpu", "cuda"):
+        done = umov(*command, "--device", device, "-o", device)
+        assert done.code == 0, done.err
+        answers[device] = json.loads((tmp_path / device / "verdict.json").read_text())["verdict"]
+    assert answers["cpu"] == answers["cuda"]
+
+
+def test_a_library_by_the_light_of_a_card(umov, scenario, settings, tmp_path, monkeypatch):
+    white = ('default = "paper_al"', 'default = "paint_white"')  # light that 325 poses can tell
+    names = [scenario(white), scenario(white, name="second.toml")]
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+    command = ("library", "build", *names, "-o", "lib", "--cells", 4, "--json", "--device")
+
+    def states(device):
+        done = umov(*command, device)
+        assert done.code == 0, done.err
+        return [row["state"] for row in json.loads(done.out)]
+
+    settings(UMOV_FAKE_LAUNCHES=7)  # sums and light of the first object take three each
+    lost = umov(*command, "cuda")
+    assert lost.code == 6 and "Finished objects stay, and the same command goes on" in lost.err, lost.err
+    monkeypatch.delenv("UMOV_FAKE_LAUNCHES")
+    assert states("cuda") == ["was there", "made"]
+    assert states("cuda") == ["was there"] * 2
+    assert states("cpu") == ["made"] * 2  # other digits: made anew
+    settings(UMOV_FAKE_INIT=100)
+    assert umov(*command, "cuda").code == 6
+    told = umov(*command, "auto")
+    assert told.code == 0 and told.err.count("--device auto took the cpu: ") == 1
+
+
+def test_bench_puts_cards_beside_cores(umov, settings, tmp_path):
+    settings()
+    assert umov("mesh", "make", "box-wing", "--facets", 200, "-o", "box.obj").code == 0
+    command = ("bench", "--mesh", "box.obj", "--seconds", 0.01, "--geometries", 0, "-q")
+    done = umov(*command, "--device", "cuda", "--batches", "1,300", "-c", "all", "-o", "b.csv")
+    assert done.code == 0, done.err
+    table = read_csv(tmp_path / "b.csv")
+    assert [row["bands"] for row in table] == ["1"] * 4 + ["3"] * 4 + ["16"] * 4
+    assert [row["batch"] for row in table[2:4]] == ["1", "300"]
+    assert [row["instruction_set"] == "Card of paper" for row in table[:4]] == [False, False, True, True]
+    assert all(float(row["poses_per_s"]) > 0 for row in table)
+    assert umov(*command, "--batches", "5").code == 2
+    settings(UMOV_FAKE_INIT=100)
+    assert umov(*command, "--device", "cuda").code == 6
+    told = umov("bench", "--only", "flat panel, 2 ", "--seconds", 0.01, "--geometries", 0, "--device", "auto", "-o", "c.csv")
+    assert told.code == 0 and "--device auto took the cpu: " in told.err
+
+
+def test_gpu_check_without_a_card(settings):
+    settings(UMOV_FAKE_INIT=100)
+    done = subprocess.run([ROOT / "tools/gpu_check"], text=True, capture_output=True, timeout=60)
+    assert done.returncode == 6 and "there is no card to check" in done.stderr, done.stderr

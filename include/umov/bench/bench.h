@@ -6,6 +6,7 @@
 #include <umov/core/diagnostics.h>
 #include <umov/io/table.h>
 #include <umov/jobs/monitor.h>
+#include <umov/light/device.h>
 #include <vector>
 
 namespace umov::bench {
@@ -24,6 +25,12 @@ struct LightRequest {
   std::string only;                ///< cases with this in their name
   std::size_t geometries = 200;    ///< poses compared with rays; 0: none
   double seconds = 2;              ///< spent on each rate
+  /// Cuda, and Auto where there are cards: these beside one core and all cores, in cases of their
+  /// own.
+  DeviceOptions device = {};
+  /// Poses that cards are asked for at a time; empty: 1, 100, 10,000 and 1,000,000. Usage without
+  /// cards. What would take longer than a minute is cut (column `batch`).
+  std::vector<std::size_t> batches = {};
 };
 
 /// Rows of the cases that were measured.
@@ -33,7 +40,8 @@ struct LightReport {
 };
 
 /// Rates of the fast path and its errors against rays, case by case. Usage if no case has that
-/// name. Changes the instruction set in use while it runs: nothing else may be lit meanwhile.
+/// name, Device where cards are asked for and lack something. Changes the instruction set in use
+/// while it runs: nothing else may be lit meanwhile.
 Result<LightReport> light(const LightRequest &request, const jobs::Monitor &monitor,
                           Diagnostics &diagnostics);
 

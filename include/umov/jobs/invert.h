@@ -49,6 +49,7 @@ struct Inversion {
   std::string page;               ///< report.html; empty where this build makes none
   std::vector<InputFile> inputs;
   std::uint64_t seed = 0;
+  ManifestInput::Light light; ///< how the object was lit, for the manifest
 };
 
 /// Which fixed attitudes explain the observations: modes, samples, the 95 % set, twins, fit. The

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <umov/core/diagnostics.h>
 #include <umov/io/scenario.h>
 #include <umov/jobs/index_range.h>
 #include <vector>
@@ -29,6 +30,10 @@ LightOptions light_options(const Scenario &scenario, const JobOptions &job);
 /// The light curve that a scenario asks for of one of its objects.
 LightCurveRequest light_curve_request(const Scenario &scenario, const ScenarioObject &named,
                                       const LoadedObject &object, const JobOptions &job);
+
+/// Warns where cards were asked for if there are any and the processor was taken, at first or in
+/// the end: `device` as LightModel::device says it.
+void tell_of_device(const std::string &device, Diagnostics &diagnostics);
 
 /// Index of a band by its name, the middle one for "". Usage with the names that there are.
 Result<std::size_t> band_index(const std::string &name, const std::vector<Band> &bands);

@@ -98,8 +98,11 @@ public:
 
   /// From here on cards add up the facets of every pose (throwing Failure if one is lost); what
   /// comes after, rays and surfaces without a kernel stay with the processor. Device if the scene
-  /// does not fit on them, Usage for the reference in double.
-  Result<void> use_cards(const std::shared_ptr<const Cards> &cards);
+  /// does not fit on them, Usage for the reference in double. `may_leave`: where masks, which grow
+  /// as they are asked for, or batches no longer fit, the processor takes over for good.
+  Result<void> use_cards(const std::shared_ptr<const Cards> &cards, bool may_leave = false);
+  /// Why the processor has taken over from the cards; empty: it has not.
+  [[nodiscard]] std::string why_cards_were_left() const;
 
   /// Stokes of every pose. `out` is resized.
   void evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads = 1) const;

@@ -99,6 +99,9 @@ public:
   [[nodiscard]] const std::vector<Joint> &joints() const { return joints_; }
   /// What was made ready.
   [[nodiscard]] const LightFacts &facts() const { return facts_; }
+  /// LightFacts::device as it is now: Auto leaves cards for good once masks no longer fit on them
+  /// ("cpu in the end" and why).
+  [[nodiscard]] virtual std::string device() const { return facts_.device; }
   /// Names that material_i counts: fronts in the order of the mesh groups, then backs.
   [[nodiscard]] const std::vector<std::string> &materials() const { return materials_; }
   /// Keeps what was learnt of the masks for later jobs (LightOptions::mask_cache or mask_file).

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <umov/light/abundances.h>
+#include <umov/light/device.h>
 #include <umov/scene/pose.h>
 #include <umov/scene/scene.h>
 #include <vector>
@@ -21,6 +22,7 @@ struct SumsOptions {
   std::vector<Scene> hypotheses = {};
   std::filesystem::path mask_cache = {}; ///< folder of masks of earlier jobs; empty: none are kept
   unsigned threads = 0;                  ///< of the preparation; 0: all cores
+  DeviceOptions device = {};             ///< who adds up; Auto: cards if they take the scene
 };
 
 /// An object ready to be summed from any direction of sunlight, its parts as the mesh has them.
@@ -42,12 +44,16 @@ public:
   [[nodiscard]] virtual Result<MaterialTables> tables_for(const Scene &materials) const = 0;
   /// Keeps what was learnt of the masks for later jobs (SumsOptions::mask_cache), in silence.
   virtual void keep_masks() const = 0;
+  /// Names of cards; "cpu" and why where Auto took the processor, at first or in the end; empty:
+  /// the processor.
+  [[nodiscard]] virtual std::string device() const = 0;
 
 protected:
   LightSums() = default;
 };
 
-/// The sums of a scene.
-std::unique_ptr<LightSums> make_sums(const Scene &scene, const SumsOptions &options);
+/// The sums of a scene. Device where DeviceChoice::Cuda lacks something; a card that is lost later
+/// throws Failure.
+Result<std::unique_ptr<LightSums>> make_sums(const Scene &scene, const SumsOptions &options);
 
 } // namespace umov

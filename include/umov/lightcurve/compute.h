@@ -57,6 +57,8 @@ struct LightModels {
 
   /// LightModel::keep_masks of both.
   [[nodiscard]] Result<void> keep_masks() const;
+  /// LightModel::device of the one that has left its cards, else of `light`.
+  [[nodiscard]] std::string device() const;
 };
 
 /// Models for what is asked of a scene.

@@ -75,10 +75,12 @@ Result<std::unique_ptr<Card>> Card::open(const CudaDriver &driver, const CardFac
                                        cuda_version_text(driver.version) +
                                        "; a compiler (nvidia-cuda-nvrtc) no newer than that makes "
                                        "code that it loads");
-  UMOV_TRY(driver.check(driver.function_of(&out->prepare_, out->module_, "umov_prepare_poses"),
-                        "looking for umov_prepare_poses"));
-  UMOV_TRY(driver.check(driver.function_of(&out->sum_, out->module_, "umov_sum_poses"),
-                        "looking for umov_sum_poses"));
+  for (const auto &[function, name] : {std::pair{&out->prepare_, "umov_prepare_poses"},
+                                       {&out->sum_, "umov_sum_poses"},
+                                       {&out->colour_, "umov_colour_poses"},
+                                       {&out->weigh_, "umov_weigh_poses"}})
+    UMOV_TRY(driver.check(driver.function_of(function, out->module_, name),
+                          std::string("looking for ") + name));
   return out;
 }
 
@@ -120,11 +122,17 @@ CudaCode Card::launch(const CardScene &scene, const CardBatch &batch, CudaHandle
   void *parameters[] = {&scene_copy, &batch_copy};
   const auto blocks =
       static_cast<unsigned>((batch.poses.size() + threads_per_block - 1) / threads_per_block);
-  for (const CudaHandle function : {prepare_, sum_})
+  const CudaHandle last = batch.light != nullptr  ? colour_
+                          : batch.work != nullptr ? weigh_
+                                                  : nullptr;
+  for (const CudaHandle function : {prepare_, sum_, last}) {
+    if (function == nullptr)
+      continue;
     if (const CudaCode code = driver_.launch(function, blocks, 1, 1, threads_per_block, 1, 1, 0,
                                              stream, parameters, nullptr);
         code != cuda_success)
       return code;
+  }
   return cuda_success;
 }
 

@@ -70,7 +70,8 @@ public:
   [[nodiscard]] Result<CardMemory> allocate(std::size_t bytes, bool &is_full) const;
   /// Bytes that are free.
   [[nodiscard]] Result<std::size_t> free_bytes() const;
-  /// Asks for the sums of a batch; what fails on the card may be said by a later call.
+  /// Asks for the sums of a batch, and for light or abundances where it has room for them; what
+  /// fails on the card may be said by a later call.
   [[nodiscard]] CudaCode launch(const CardScene &scene, const CardBatch &batch,
                                 CudaHandle stream) const;
 
@@ -78,7 +79,8 @@ private:
   Card(const CudaDriver &driver, CardFacts facts) : driver_(driver), facts_(std::move(facts)) {}
   const CudaDriver &driver_;
   CardFacts facts_;
-  CudaHandle context_ = nullptr, module_ = nullptr, prepare_ = nullptr, sum_ = nullptr;
+  CudaHandle context_ = nullptr, module_ = nullptr, prepare_ = nullptr, sum_ = nullptr,
+             colour_ = nullptr, weigh_ = nullptr;
 };
 
 /// All cards of one sort, that of the first: they share the poses of a batch.

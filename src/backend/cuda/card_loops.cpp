@@ -38,8 +38,9 @@ private:
 
 } // namespace
 
-void CardSums::read(std::size_t pose, PoseSums &out) const {
-  const auto from = columns_.sums_at(sums_ + pose * columns_.size());
+void CardRows::read(std::size_t pose, PoseSums &out) const {
+  const auto from =
+      columns_.sums_at(static_cast<const RunningSum *>(rows_) + pose * columns_.size());
   const auto copy = [](View<const RunningSum> of, View<double> to) {
     for (std::size_t k = 0; k < of.size(); ++k)
       to[k] = of[k].value();
@@ -54,6 +55,32 @@ void CardSums::read(std::size_t pose, PoseSums &out) const {
   out.is_any_seen = is_any_seen_[pose] != 0;
 }
 
+/// Bytes of one pose.
+struct CardLoops::Sizes {
+  std::size_t lobes = 0, sums = 0;
+  std::size_t reflection = 0, work = 0, light = 0; ///< 0: not asked for
+  /// What comes out.
+  [[nodiscard]] std::size_t rows() const { return light > 0 ? light : work > 0 ? work : sums; }
+  [[nodiscard]] std::size_t all() const {
+    return sizeof(PoseDirections) + sizeof(PoseData<float>) + lobes + sums + reflection + work +
+           light + 1;
+  }
+};
+
+CardLoops::Sizes CardLoops::sizes() const {
+  Sizes out;
+  out.lobes = columns_.lobes * sizeof(kernel::LobeAtPose<float>);
+  out.sums = columns_.size() * sizeof(RunningSum);
+  if (wants_ == CardWants::Abundances)
+    out.work = columns_.weighed_size() * sizeof(float);
+  if (wants_ != CardWants::Light)
+    return out;
+  out.reflection = sizeof(PoseReflection);
+  out.work = columns_.work_size(reflections_, bands_) * sizeof(float);
+  out.light = light_columns * bands_ * sizeof(float);
+  return out;
+}
+
 /// Room for a batch on a card and on the host, and the queue that it goes through.
 struct CardLoops::Slot {
   explicit Slot(const OnCard &where) : on(where) {}
@@ -66,8 +93,8 @@ struct CardLoops::Slot {
     on.card().driver().wait_for(stream);
     on.card().driver().release_stream(stream);
   }
-  Result<void> make_room(std::size_t batch, const CardColumns &columns, bool &is_full);
-  CudaCode begin(std::span<const PoseDirections> of, std::size_t at, const CardColumns &columns);
+  Result<void> make_room(std::size_t batch, const Sizes &sizes, bool &is_full);
+  CudaCode begin(std::span<const PoseDirections> of, std::size_t at, const Sizes &sizes);
   CudaCode finish() const {
     on.card().driver().use_context(on.card().context());
     return on.card().driver().wait_for(stream);
@@ -75,13 +102,12 @@ struct CardLoops::Slot {
 
   const OnCard &on;
   CudaHandle stream = nullptr;
-  CardMemory poses, ready, lobes, sums, seen;
-  HostMemory poses_in, sums_out, seen_out;
+  CardMemory poses, ready, lobes, sums, seen, reflection, work, light;
+  HostMemory poses_in, rows_out, seen_out;
   std::size_t first = 0, count = 0;
 };
 
-Result<void> CardLoops::Slot::make_room(std::size_t batch, const CardColumns &columns,
-                                        bool &is_full) {
+Result<void> CardLoops::Slot::make_room(std::size_t batch, const Sizes &sizes, bool &is_full) {
   const Card &card = on.card();
   UMOV_TRY(card.use());
   constexpr unsigned apart_from_others = 1; // CU_STREAM_NON_BLOCKING
@@ -93,21 +119,24 @@ Result<void> CardLoops::Slot::make_room(std::size_t batch, const CardColumns &co
   };
   const Wanted all[] = {{poses, sizeof(PoseDirections)},
                         {ready, sizeof(PoseData<float>)},
-                        {lobes, columns.lobes * sizeof(kernel::LobeAtPose<float>)},
-                        {sums, columns.size() * sizeof(RunningSum)},
+                        {lobes, sizes.lobes},
+                        {sums, sizes.sums},
+                        {reflection, sizes.reflection},
+                        {work, sizes.work},
+                        {light, sizes.light},
                         {seen, 1}};
   for (const Wanted &wanted : all) {
     UMOV_ASSIGN(memory, card.allocate(batch * wanted.bytes, is_full));
     wanted.memory = std::move(memory);
   }
   UMOV_TRY(poses_in.take(card, batch * sizeof(PoseDirections), is_full));
-  UMOV_TRY(sums_out.take(card, batch * columns.size() * sizeof(RunningSum), is_full));
+  UMOV_TRY(rows_out.take(card, batch * sizes.rows(), is_full));
   return seen_out.take(card, batch, is_full);
 }
 
 /// Everything in the queue's order: nothing is waited for here.
 CudaCode CardLoops::Slot::begin(std::span<const PoseDirections> of, std::size_t at,
-                                const CardColumns &columns) {
+                                const Sizes &sizes) {
   const Card &card = on.card();
   const CudaDriver &driver = card.driver();
   first = at;
@@ -125,11 +154,16 @@ CudaCode CardLoops::Slot::begin(std::span<const PoseDirections> of, std::size_t 
   batch.lobes = lobes.as<kernel::LobeAtPose<float>>();
   batch.sums = sums.as<RunningSum>();
   batch.is_any_seen = seen.as<std::uint8_t>();
+  batch.reflection = reflection.as<PoseReflection>();
+  batch.work = work.as<float>();
+  batch.light = light.as<float>();
   if (const CudaCode code = card.launch(on.scene(), batch, stream); code != cuda_success)
     return code;
+  const CudaPointer rows = sizes.light > 0  ? light.pointer()
+                           : sizes.work > 0 ? work.pointer()
+                                            : sums.pointer();
   if (const CudaCode code =
-          driver.copy_out_later(sums_out.as<RunningSum>(), sums.pointer(),
-                                count * columns.size() * sizeof(RunningSum), stream);
+          driver.copy_out_later(rows_out.as<char>(), rows, count * sizes.rows(), stream);
       code != cuda_success)
     return code;
   return driver.copy_out_later(seen_out.as<std::uint8_t>(), seen.pointer(), count, stream);
@@ -142,6 +176,8 @@ Result<std::unique_ptr<CardLoops>> CardLoops::make(std::shared_ptr<const CardSet
                                                    const CardSource &source) {
   std::unique_ptr<CardLoops> out(new CardLoops(std::move(cards)));
   out->columns_ = {source.scene.lobes.size(), source.scene.products.size()};
+  out->bands_ = source.colours.bands;
+  out->reflections_ = source.colours.reflection.columns;
   for (const auto &card : out->cards_->cards()) {
     UMOV_ASSIGN(there, OnCard::make(*card, source));
     out->on_cards_.push_back(std::move(there));
@@ -161,15 +197,14 @@ Result<void> CardLoops::put_masks(const Masks *masks, std::size_t version) {
   return {};
 }
 
+bool CardLoops::lacks_memory() const {
+  return is_full_ || std::any_of(on_cards_.begin(), on_cards_.end(),
+                                 [](const auto &there) { return there->is_full(); });
+}
+
 void CardLoops::limit_batch(std::size_t poses) {
   slots_.clear();
   batch_ = std::clamp(poses, std::size_t{1}, batch_most);
-}
-
-std::size_t CardLoops::bytes_per_pose() const {
-  return sizeof(PoseDirections) + sizeof(PoseData<float>) +
-         columns_.lobes * sizeof(kernel::LobeAtPose<float>) + columns_.size() * sizeof(RunningSum) +
-         1;
 }
 
 /// So many poses for each slot that all have work.
@@ -188,25 +223,29 @@ Result<void> CardLoops::make_slots(std::size_t poses) {
     Result<void> made;
     for (std::size_t k = 0; k < slots_per_card * on_cards_.size() && made; ++k) {
       slots_.push_back(std::make_unique<Slot>(*on_cards_[k % on_cards_.size()]));
-      made = slots_.back()->make_room(room_, columns_, is_full);
+      made = slots_.back()->make_room(room_, sizes(), is_full);
     }
-    if (made)
+    if (made) {
+      is_full_ = false;
       return {};
+    }
     slots_.clear();
+    is_full_ = is_full;
     if (!is_full)
       return made;
     if (room_ <= batch_least)
       return fail(ErrorCode::Device,
                   made.error().message + ": beside the scene and its masks there is no room for " +
-                      std::to_string(room_) + " poses of " + std::to_string(bytes_per_pose()) +
+                      std::to_string(room_) + " poses of " + std::to_string(sizes().all()) +
                       " bytes. Take --device cpu or a card with more memory");
     batch_ = room_ / 2;
   }
 }
 
 /// Until everything is done, or a card says that it is full: `finished` poses are done then.
-Result<void> CardLoops::run(std::span<const PoseDirections> poses, const std::atomic<bool> *cancel,
-                            const Done &done, std::size_t &finished, bool &is_full) {
+Result<void> CardLoops::run_on(std::span<const PoseDirections> poses,
+                               const std::atomic<bool> *cancel, const Done &done,
+                               std::size_t &finished, bool &is_full) {
   const CudaDriver &driver = cards_->cards().front()->driver();
   const std::string what = "computing on " + cards_->name();
   std::deque<Slot *> waiting, free;
@@ -224,7 +263,7 @@ Result<void> CardLoops::run(std::span<const PoseDirections> poses, const std::at
   while (finished < poses.size() && !is_stopped()) {
     while (!free.empty() && next < poses.size()) {
       const std::size_t count = std::min(share, poses.size() - next);
-      if (const CudaCode code = free.front()->begin(poses.subspan(next, count), next, columns_);
+      if (const CudaCode code = free.front()->begin(poses.subspan(next, count), next, sizes());
           code != cuda_success)
         return failed(code);
       waiting.push_back(free.front());
@@ -236,7 +275,8 @@ Result<void> CardLoops::run(std::span<const PoseDirections> poses, const std::at
     if (const CudaCode code = slot.finish(); code != cuda_success)
       return failed(code);
     done(slot.first, slot.count,
-         CardSums(columns_, slot.sums_out.as<RunningSum>(), slot.seen_out.as<std::uint8_t>()));
+         CardRows(wants_, columns_, bands_, slot.rows_out.as<const void>(),
+                  slot.seen_out.as<std::uint8_t>()));
     finished = slot.first + slot.count;
     free.push_back(&slot);
   }
@@ -245,13 +285,17 @@ Result<void> CardLoops::run(std::span<const PoseDirections> poses, const std::at
   return {};
 }
 
-Result<void> CardLoops::sum(std::span<const PoseDirections> poses, const std::atomic<bool> *cancel,
-                            const Done &done) {
+Result<void> CardLoops::run(std::span<const PoseDirections> poses, CardWants wants,
+                            const std::atomic<bool> *cancel, const Done &done) {
+  if (wants != wants_)
+    slots_.clear();
+  wants_ = wants;
   std::size_t finished = 0;
   for (;;) {
     UMOV_TRY(make_slots(share_of(poses.size())));
     bool is_full = false;
-    auto ran = run(poses, cancel, done, finished, is_full);
+    auto ran = run_on(poses, cancel, done, finished, is_full);
+    is_full_ = is_full;
     if (ran || !is_full || room_ <= batch_least)
       return ran;
     slots_.clear();

@@ -111,7 +111,8 @@ std::vector<std::string> CardCompiler::options_for(int capability, bool is_assem
           size("SCENE", sizeof(CardScene)),
           size("BATCH", sizeof(CardBatch)),
           size("POSE", sizeof(PoseData<float>)),
-          size("LOBE", sizeof(kernel::LobeAtPose<float>))};
+          size("LOBE", sizeof(kernel::LobeAtPose<float>)),
+          size("COLOUR", sizeof(SlotColour<float>))};
 }
 
 Result<CardImage> CardCompiler::compile(int capability, bool is_assembly) const {

@@ -32,12 +32,11 @@ std::vector<Chunk> short_chunks(View<const Chunk> chunks) {
 
 } // namespace
 
-template <class T> Result<View<T>> CardLoops::OnCard::put(View<T> from, Pieces &pieces) const {
+template <class T> Result<View<T>> CardLoops::OnCard::put(View<T> from, Pieces &pieces) {
   static_assert(std::is_trivially_copyable_v<T>);
   if (from.empty())
     return View<T>();
-  bool is_full = false;
-  UMOV_ASSIGN(memory, card_.allocate(bytes_of(from), is_full));
+  UMOV_ASSIGN(memory, card_.allocate(bytes_of(from), is_full_));
   UMOV_TRY(
       card_.driver().check(card_.driver().copy_in(memory.pointer(), from.data(), bytes_of(from)),
                            "copying to " + card_.facts().name));
@@ -46,9 +45,10 @@ template <class T> Result<View<T>> CardLoops::OnCard::put(View<T> from, Pieces &
   return out;
 }
 
-Result<void> CardLoops::OnCard::check_room(const char *what, std::size_t bytes) const {
+Result<void> CardLoops::OnCard::check_room(const char *what, std::size_t bytes) {
   UMOV_ASSIGN(free, card_.free_bytes());
-  if (bytes <= free)
+  is_full_ = bytes > free;
+  if (!is_full_)
     return {};
   return fail(ErrorCode::Device, std::string(what) + " take " + std::to_string(bytes) +
                                      " bytes and " + card_.facts().name + " has " +
@@ -90,9 +90,36 @@ Result<std::unique_ptr<CardLoops::OnCard>> CardLoops::OnCard::make(const Card &c
   put(from.cluster_error, to.cluster_error);
   put(source.lobes, out->scene_.lobes);
   UMOV_TRY(failed);
+  UMOV_TRY(out->put_colours(source.colours));
   out->scene_.has_polarized_body = source.has_polarized_body;
   out->scene_.error = source.error;
   return out;
+}
+
+Result<void> CardLoops::OnCard::put_colours(const CardColourSource &from) {
+  std::vector<SlotColour<float>> slots;
+  slots.reserve(from.slots.size());
+  for (const SlotColour<float> &slot : from.slots) {
+    slots.push_back(slot);
+    UMOV_ASSIGN(lobe, put(slot.lobe, scene_pieces_));
+    slots.back().lobe = lobe;
+    for (View<const float> SlotColour<float>::*column :
+         {&SlotColour<float>::single_bounce, &SlotColour<float>::whole, &SlotColour<float>::q,
+          &SlotColour<float>::u}) {
+      UMOV_ASSIGN(copied, put(slot.*column, scene_pieces_));
+      slots.back().*column = copied;
+    }
+  }
+  CardColours to;
+  UMOV_ASSIGN(put_slots, put(View<const SlotColour<float>>(slots), scene_pieces_));
+  UMOV_ASSIGN(rounding, put(from.rounding, scene_pieces_));
+  UMOV_ASSIGN(values, put(from.reflection.values, scene_pieces_));
+  to.slots = put_slots;
+  to.rounding = rounding;
+  to.reflection = {values, from.reflection.columns, from.reflection.steps};
+  to.bands = from.bands;
+  scene_.colours = to;
+  return {};
 }
 
 Result<void> CardLoops::OnCard::put_table(const MaskTable &from, MaskTable &to) {

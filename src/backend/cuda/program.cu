@@ -8,6 +8,7 @@ static_assert(sizeof(umov::backend::CardScene) == UMOV_CARD_SCENE_BYTES);
 static_assert(sizeof(umov::backend::CardBatch) == UMOV_CARD_BATCH_BYTES);
 static_assert(sizeof(umov::backend::PoseData<float>) == UMOV_CARD_POSE_BYTES);
 static_assert(sizeof(umov::kernel::LobeAtPose<float>) == UMOV_CARD_LOBE_BYTES);
+static_assert(sizeof(umov::backend::SlotColour<float>) == UMOV_CARD_COLOUR_BYTES);
 
 extern "C" __global__ void umov_prepare_poses(umov::backend::CardScene scene,
                                               umov::backend::CardBatch batch) {
@@ -21,4 +22,18 @@ extern "C" __global__ void umov_sum_poses(umov::backend::CardScene scene,
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i < batch.poses.size())
     umov::backend::sum_on_card(scene, batch, i);
+}
+
+extern "C" __global__ void umov_colour_poses(umov::backend::CardScene scene,
+                                             umov::backend::CardBatch batch) {
+  const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < batch.poses.size())
+    umov::backend::colour_on_card(scene, batch, i);
+}
+
+extern "C" __global__ void umov_weigh_poses(umov::backend::CardScene scene,
+                                            umov::backend::CardBatch batch) {
+  const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < batch.poses.size())
+    umov::backend::weigh_on_card(scene, batch, i);
 }

@@ -20,6 +20,8 @@ public:
     return *this;
   }
   UMOV_KERNEL friend RunningSum operator*(RunningSum a, RunningSum b) { return a.sum_ * b.sum_; }
+  /// Both words as one.
+  [[nodiscard]] UMOV_KERNEL float rounded() const { return sum_ + rest_; }
   /// On the host: both words.
   [[nodiscard]] double value() const {
     return static_cast<double>(sum_) + static_cast<double>(rest_);

@@ -2,6 +2,7 @@
 #include "light/fast/state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <umov/core/parallel.h>
 
@@ -36,21 +37,53 @@ void begin_abundances(const CompiledScene &scene, const Mesh &mesh, std::span<co
   }
 }
 
-void put_abundances(const CompiledScene &scene, const backend::PoseSums &sums, std::size_t row,
-                    AbundanceTable &out) {
+namespace {
+
+/// `lobe` and `product` give a sum, its standard deviation and its bias by number.
+template <class Lobe, class Product>
+void put_terms(const CompiledScene &scene, std::size_t row, AbundanceTable &out, const Lobe &lobe,
+               const Product &product) {
   std::size_t k = row * out.columns.size();
-  const auto put = [&](double sum, double variance, double bias) {
-    out.sum[k] = sum * scene.area_m2;
-    out.half_width[k] = normal_95 * std::sqrt(variance) * scene.area_m2;
-    out.bias[k] = bias * scene.area_m2;
+  const auto put = [&](const std::array<double, 3> &term) {
+    out.sum[k] = term[0] * scene.area_m2;
+    out.half_width[k] = normal_95 * term[1] * scene.area_m2;
+    out.bias[k] = term[2] * scene.area_m2;
     ++k;
   };
   for (const backend::SlotTerms &terms : scene.data.slots) {
     for (std::size_t l = terms.lobe_first; l < terms.lobe_first + terms.lobe_count; ++l)
-      put(sums.specular[l], sums.specular_variance[l], sums.specular_bias[l]);
+      put(lobe(l));
     for (std::size_t p = terms.product_first; p < terms.product_first + terms.product_count; ++p)
-      put(sums.product[p], sums.product_variance[p], 0);
+      put(product(p));
   }
+}
+
+} // namespace
+
+void put_abundances(const CompiledScene &scene, const backend::PoseSums &sums, std::size_t row,
+                    AbundanceTable &out) {
+  using Term = std::array<double, 3>;
+  put_terms(
+      scene, row, out,
+      [&](std::size_t l) {
+        return Term{sums.specular[l], std::sqrt(sums.specular_variance[l]), sums.specular_bias[l]};
+      },
+      [&](std::size_t p) {
+        return Term{sums.product[p], std::sqrt(sums.product_variance[p]), 0};
+      });
+}
+
+void put_abundances(const CompiledScene &scene, const backend::Weighed<const float> &sums,
+                    std::size_t row, AbundanceTable &out) {
+  using Term = std::array<double, 3>;
+  put_terms(
+      scene, row, out,
+      [&](std::size_t l) {
+        return Term{sums.specular[l], sums.specular_deviation[l], sums.specular_bias[l]};
+      },
+      [&](std::size_t p) {
+        return Term{sums.product[p], sums.product_deviation[p], 0};
+      });
 }
 
 struct MaterialTables::State {

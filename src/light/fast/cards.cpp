@@ -55,7 +55,62 @@ Result<std::string> describe_cards(const std::vector<std::filesystem::path> &fol
                      backend::cuda_version_text(found.driver.version), found.compiler.version());
 }
 
-Result<void> Engine::use_cards(const std::shared_ptr<const Cards> &cards) {
+void Engine::State::take_light(const backend::CardRows &rows, std::size_t row_of_card,
+                               std::size_t row, StokesTable &out) const {
+  out.method[row] = masks ? PoseMethod::Masks : PoseMethod::Exact;
+  if (!rows.is_any_seen(row_of_card))
+    return put_darkness(row, out);
+  out.is_dark[row] = 0;
+  const std::size_t n = bands(), first = row * n;
+  const float *const light = rows.light(row_of_card);
+  const auto put = [&](backend::LightRow from, std::vector<double> &to) {
+    for (std::size_t b = 0; b < n; ++b)
+      to[first + b] = compiled.area_m2 * static_cast<double>(light[from * n + b]);
+  };
+  put(backend::RowI, out.i);
+  put(backend::RowQ, out.q);
+  put(backend::RowIErr, out.i_err);
+  put(backend::RowQErr, out.q_err);
+  if (!compiled.has_u)
+    return;
+  put(backend::RowU, out.u);
+  put(backend::RowUErr, out.u_err);
+  put(backend::RowVErr, out.v_err);
+}
+
+namespace {
+
+/// A scene's colours in single precision, with the views that cards copy.
+struct CardColourStore {
+  explicit CardColourStore(const CompiledScene &scene) : rounded(scene.colours.rounded()) {
+    for (const RoundedColours::Slot &slot : rounded.slots) {
+      slots.push_back(slot.colour);
+      backend::SlotColour<float> &to = slots.back();
+      to.lobe = slot.lobe;
+      to.single_bounce = slot.single_bounce;
+      to.whole = slot.whole;
+      to.q = slot.q;
+      to.u = slot.u;
+    }
+    for (const backend::LobeRounding<double> &of : scene.rounding)
+      rounding.push_back({static_cast<float>(of.per_peak), static_cast<float>(of.per_root)});
+  }
+  [[nodiscard]] backend::CardColourSource view(std::size_t bands) const {
+    return {slots,
+            rounding,
+            {rounded.reflection, rounded.columns, rounded.steps},
+            static_cast<std::uint32_t>(bands)};
+  }
+
+private:
+  RoundedColours rounded;
+  std::vector<backend::SlotColour<float>> slots;
+  std::vector<backend::LobeRounding<float>> rounding;
+};
+
+} // namespace
+
+Result<void> Engine::use_cards(const std::shared_ptr<const Cards> &cards, bool may_leave) {
   State &s = *state_;
   if (s.options.is_double)
     return fail(ErrorCode::Usage, "cards compute in single precision, not the reference in double");
@@ -69,10 +124,37 @@ Result<void> Engine::use_cards(const std::shared_ptr<const Cards> &cards) {
   source.lobes = s.compiled.data.lobes;
   source.has_polarized_body = s.compiled.has_u;
   source.error = s.error_model();
+  const CardColourStore colours(s.compiled);
+  // Abundances need no more than the rounding of lobes.
+  source.colours = colours.view(s.compiled.colours.is_tabulated() ? s.bands() : 0);
   UMOV_ASSIGN(loops, backend::CardLoops::make(cards->set, source));
   made->loops = std::move(loops);
+  made->may_be_left = may_leave;
   s.on_cards = std::move(made);
   return {};
+}
+
+std::string Engine::why_cards_were_left() const {
+  return state_->on_cards && state_->on_cards->is_left ? state_->on_cards->why_left : "";
+}
+
+Result<std::string> take_cards(Engine &engine, const DeviceOptions &device) {
+  if (device.choice == DeviceChoice::Cpu)
+    return "";
+  const bool is_auto = device.choice == DeviceChoice::Auto;
+  const auto cards = open_cards(device);
+  const Result<void> used =
+      cards ? engine.use_cards(*cards, is_auto) : tl::unexpected(cards.error());
+  if (used)
+    return name_of(**cards);
+  if (!is_auto)
+    return tl::unexpected(used.error());
+  return "cpu: " + used.error().message;
+}
+
+std::string device_now(const Engine &engine, const std::string &at_first) {
+  const std::string why = engine.why_cards_were_left();
+  return why.empty() ? at_first : "cpu in the end: " + why;
 }
 
 } // namespace umov

@@ -3,8 +3,10 @@
 
 #include "backend/cuda/card_loops.h"
 
+#include <atomic>
+#include <string>
 #include <umov/core/locks.h>
-#include <umov/light/device.h>
+#include <umov/light/engine.h>
 #include <vector>
 
 namespace umov {
@@ -18,9 +20,20 @@ public:
 struct CardEngine {
   std::unique_ptr<backend::CardLoops> loops;
   Mutex one_at_a_time;
+  /// The processor takes over where masks or batches no longer fit: why, once it has. Written under
+  /// the lock, before `is_left`.
+  bool may_be_left = false;
+  std::atomic<bool> is_left{false};
+  std::string why_left;
   /// Chunks of surfaces without a kernel: the processor lists their facets.
   std::vector<backend::Chunk> general;
 };
+
+/// What an engine's device is from here on: names of cards, "" for the processor, "cpu: why" where
+/// Auto took it. Device where Cuda is asked for and lacks something.
+Result<std::string> take_cards(Engine &engine, const DeviceOptions &device);
+/// The same now: cards may have been left since.
+std::string device_now(const Engine &engine, const std::string &at_first);
 
 /// Throws Failure: an evaluation has no other way to say that a card is lost.
 [[noreturn]] void give_up(const Error &lost);

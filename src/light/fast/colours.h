@@ -1,7 +1,7 @@
 #pragma once
 // Private: colour and polarization, applied to the sums of a pose.
 
-#include "backend/scene_data.h"
+#include "backend/colours.h"
 #include "light/fast/fresnel_table.h"
 #include "light/fast/surface_fit.h"
 
@@ -18,20 +18,31 @@ struct BandLight {
   /// The same with the other's unit of area changed into this one's.
   void add_scaled(const BandLight &other, double scale);
   [[nodiscard]] std::size_t size() const { return i.size(); }
+  [[nodiscard]] backend::LightColumns<double> columns() {
+    return {i.data(),     q.data(),     u.data(),     v.data(),   var_i.data(),
+            var_q.data(), var_u.data(), var_v.data(), bias.data()};
+  }
 };
 
-/// Sums of a slot over the facets, with their standard deviations.
-struct SlotSums {
-  const double *specular, *specular_deviation, *specular_bias;
-  const double *product, *product_deviation;
-  bool varies = true; ///< some deviation is not 0
-};
+using SlotSums = backend::SlotSums<double>;
 
 /// Reflection of all microfacets at one phase angle, and room to work in.
 struct PhaseFactors {
   std::vector<double> a, b; ///< by column: M00, M10; b = 0 without a plane
   /// Of one slot: M10/M00, and deviations of I, Q, U.
   std::vector<double> ratio, dev_i, dev_q, dev_u;
+};
+
+/// What a set of materials makes of sums, in single precision and in one piece of memory each.
+struct RoundedColours {
+  struct Slot {
+    std::vector<std::uint32_t> lobe;
+    std::vector<float> single_bounce, whole, q, u;
+    backend::SlotColour<float> colour; ///< without views
+  };
+  std::vector<Slot> slots;
+  std::vector<float> reflection;
+  std::uint32_t columns = 0, steps = 1;
 };
 
 /// What one set of materials makes of sums.
@@ -50,28 +61,24 @@ public:
   /// Some slot gives U: BandLight needs room for it.
   [[nodiscard]] bool has_u() const;
   [[nodiscard]] const Surface &surface(std::size_t slot) const { return *slots_[slot].surface; }
+  /// Reflection is interpolated for all of them: nothing is computed anew for each pose.
+  [[nodiscard]] bool is_tabulated() const { return !fresnel_.has_exact(); }
+  [[nodiscard]] RoundedColours rounded() const;
   /// First column of a slot in PhaseFactors.
   [[nodiscard]] std::size_t column(std::size_t slot) const { return slots_[slot].column; }
 
 private:
   struct Slot {
     const Surface *surface = nullptr;
-    std::size_t column = 0, product_count = 0;
-    bool has_lobe = false;
+    std::size_t column = 0;
     std::vector<std::uint32_t> lobe;                ///< per band
     std::vector<double> single_bounce, whole, q, u; ///< [product * bands + band]
-    bool has_single_bounce = false, has_emission = false;
-    bool is_plain = false; ///< one lobe for all bands and at most one product
-    double diffuse_error = 0;
+    backend::SlotColour<double> colour;             ///< without views: slots move
+    [[nodiscard]] backend::SlotColour<double> view() const;
   };
-  void add_plain(const Slot &slot, const SlotSums &sums, const double *a, const double *b,
-                 BandLight &out) const;
-  void add_variances(const Slot &slot, const SlotSums &sums, PhaseFactors &at,
-                     BandLight &out) const;
   std::vector<Slot> slots_;
   FresnelTable fresnel_;
   std::size_t bands_ = 0;
-  bool is_intensity_only_ = false;
 };
 
 } // namespace umov

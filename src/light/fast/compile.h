@@ -14,14 +14,9 @@ struct CompiledScene {
   double area_m2 = 1;      ///< of all classes
   /// Slots of the scene (elements.h) that share their material, as data.slots.
   std::vector<std::vector<std::uint32_t>> slots;
-  std::vector<std::optional<SurfaceFit>> fits; ///< as data.slots; empty: no kernel
-  std::vector<double> widths;                  ///< per lobe
-  /// Per lobe: what single precision costs on its flanks.
-  struct Rounding {
-    double per_peak; ///< 1 over the largest value of D G2/4, that of a Gaussian
-    double per_root; ///< relative error per sqrt(2 x) where the lobe has fallen to exp(-x)
-  };
-  std::vector<Rounding> rounding;
+  std::vector<std::optional<SurfaceFit>> fits;         ///< as data.slots; empty: no kernel
+  std::vector<double> widths;                          ///< per lobe
+  std::vector<backend::LobeRounding<double>> rounding; ///< per lobe
   Colours colours;
   std::size_t general_classes = 0;
   bool has_u = false; ///< something gives U, or V

@@ -55,8 +55,8 @@ void Engine::State::prepare(const Pose &pose, Prepared &out) const {
 }
 
 template <class Body>
-void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task,
-                             const Body &body) const {
+void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task, const Body &body,
+                             const FromCards &from_cards) const {
   std::vector<std::uint32_t> order(poses.size());
   if (masks && poses.size() >= ordered_from) {
     const std::size_t cells = mask_size().small_cells, directions = (cells + 1) * (cells + 1);
@@ -64,15 +64,16 @@ void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task,
   } else
     std::iota(order.begin(), order.end(), 0u);
   const ReadLock held = hold_masks(poses, task);
-  if (on_cards)
-    return for_each_on_cards(poses, order, task, body);
-  const std::size_t size = std::clamp(poses.size() / (4 * resolve_threads(task.threads)) + 1,
+  const std::size_t on_card =
+      on_cards && !on_cards->is_left ? for_each_on_cards(poses, order, task, body, from_cards) : 0;
+  const std::size_t left = poses.size() - on_card;
+  const std::size_t size = std::clamp(left / (4 * resolve_threads(task.threads)) + 1,
                                       poses_per_task_min, poses_per_task_max);
-  parallel_for((poses.size() + size - 1) / size, task.threads, [&](std::size_t part) {
+  parallel_for((left + size - 1) / size, task.threads, [&](std::size_t part) {
     if (is_stopped(task.cancel)) // masks may be lacking
       return;
     Workspace work(*this);
-    const std::size_t begin = part * size, end = std::min(poses.size(), begin + size);
+    const std::size_t begin = on_card + part * size, end = std::min(poses.size(), begin + size);
     prepare(poses[order[begin]], work.prepared[0]);
     for (std::size_t k = begin; k < end && !is_stopped(task.cancel); ++k) {
       if (k + 1 < end)
@@ -88,28 +89,33 @@ bool Engine::State::needs_pose_beside_cards(const LightTask &task) const {
 }
 
 template <class Body>
-void Engine::State::for_each_on_cards(std::span<const Pose> poses,
-                                      std::span<const std::uint32_t> order, const LightTask &task,
-                                      const Body &body) const {
+std::size_t Engine::State::for_each_on_cards(std::span<const Pose> poses,
+                                             std::span<const std::uint32_t> order,
+                                             const LightTask &task, const Body &body,
+                                             const FromCards &from_cards) const {
   if (is_stopped(task.cancel)) // masks may be lacking
-    return;
+    return poses.size();
   const WriteLock alone(on_cards->one_at_a_time);
-  const auto put = on_cards->loops->put_masks(hiding(), masks ? masks->version() : 0);
-  if (!put)
-    give_up(put.error());
   std::vector<backend::PoseDirections> directions;
+  directions.reserve(order.size());
   for (const std::uint32_t row : order)
-    directions.push_back(
-        {poses[row].sun, poses[row].observer, poses[row].sun_radius_rad, cos_phase(poses[row])});
+    directions.push_back({poses[row].sun, poses[row].observer, poses[row].sun_radius_rad,
+                          cos_phase(poses[row]), has_scattering_plane(poses[row])});
   const bool is_beside = needs_pose_beside_cards(task);
-  const auto finish = [&](std::size_t first, std::size_t count, const backend::CardSums &sums) {
+  std::size_t finished = 0;
+  const auto finish = [&](std::size_t first, std::size_t count, const backend::CardRows &rows) {
     parallel_for((count + poses_per_task_min - 1) / poses_per_task_min, task.threads,
                  [&](std::size_t part) {
-                   Workspace work(*this);
-                   Prepared &at = work.prepared[0];
-                   at.card_sums = &sums;
                    const std::size_t begin = part * poses_per_task_min,
                                      end = std::min(count, begin + poses_per_task_min);
+                   if (from_cards.take) {
+                     for (std::size_t k = begin; k < end; ++k)
+                       from_cards.take(order[first + k], rows, k);
+                     return;
+                   }
+                   Workspace work(*this);
+                   Prepared &at = work.prepared[0];
+                   at.card_sums = &rows;
                    for (std::size_t k = begin; k < end && !is_stopped(task.cancel); ++k) {
                      const std::uint32_t row = order[first + k];
                      if (is_beside)
@@ -119,10 +125,18 @@ void Engine::State::for_each_on_cards(std::span<const Pose> poses,
                      body(row, poses[row], at, work);
                    }
                  });
+    finished = first + count;
   };
-  const auto done = on_cards->loops->sum(directions, task.cancel, finish);
-  if (!done)
+  auto done = on_cards->loops->put_masks(hiding(), masks ? masks->version() : 0);
+  if (done)
+    done = on_cards->loops->run(directions, from_cards.wants, task.cancel, finish);
+  if (done)
+    return poses.size();
+  if (!on_cards->may_be_left || !on_cards->loops->lacks_memory())
     give_up(done.error());
+  on_cards->why_left = done.error().message;
+  on_cards->is_left = true;
+  return finished;
 }
 
 bool Engine::State::has_masks() const {
@@ -249,6 +263,13 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
       material.empty() ? 0 : *std::max_element(material_of.begin(), material_of.end()) + 1;
   out.material_i.assign(poses.size() * materials * band_count(), 0);
   const bool has_u_or_v = s.compiled.has_u;
+  State::FromCards from_cards;
+  if (s.on_cards && s.on_cards->loops->has_colours() && materials == 0 &&
+      !s.needs_pose_beside_cards(task))
+    from_cards = {backend::CardWants::Light,
+                  [&](std::size_t row, const backend::CardRows &rows, std::size_t row_of_card) {
+                    s.take_light(rows, row_of_card, row, out);
+                  }};
   s.for_each(
       poses, task,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
@@ -267,7 +288,8 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
         out.is_dark[row] = work.sums.is_any_seen || has_any_light(work.light) ? 0 : 1;
         if (task.has_glints)
           out.glint_share[row] = s.glint_share(pose, at, work);
-      });
+      },
+      from_cards);
   return !is_stopped(task.cancel);
 }
 
@@ -282,6 +304,14 @@ Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out
   begin_abundances(s.compiled, s.scene.mesh, poses, out);
   LightTask task;
   task.threads = threads;
+  State::FromCards from_cards;
+  if (s.on_cards && !s.needs_pose_beside_cards(task))
+    from_cards = {backend::CardWants::Abundances,
+                  [&](std::size_t row, const backend::CardRows &rows, std::size_t row_of_card) {
+                    out.is_dark[row] = rows.is_any_seen(row_of_card) ? 0 : 1;
+                    if (out.is_dark[row] == 0)
+                      put_abundances(s.compiled, rows.weighed(row_of_card), row, out);
+                  }};
   s.for_each(
       poses, task,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
@@ -290,7 +320,8 @@ Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out
           s.sum_variances(work);
         if (out.is_dark[row] == 0)
           put_abundances(s.compiled, work.sums, row, out);
-      });
+      },
+      from_cards);
   return {};
 }
 

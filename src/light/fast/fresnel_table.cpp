@@ -8,7 +8,7 @@
 namespace umov {
 namespace {
 
-constexpr std::size_t steps = 1024; ///< in the cosine of incidence, from 0 to 1
+constexpr std::uint32_t steps = 1024; ///< in the cosine of incidence, from 0 to 1
 constexpr double tolerance = 1e-7;
 
 /// Reflection at an incidence, from the phase angle that has it.
@@ -49,21 +49,13 @@ FresnelTable::FresnelTable(std::vector<const Surface *> surfaces) : surfaces_(st
     }
 }
 
+backend::ReflectionTable<double> FresnelTable::view() const {
+  return {values_, static_cast<std::uint32_t>(columns_), steps};
+}
+
 void FresnelTable::at(double cos_phase, double *a, double *b) const {
-  const double cosine = std::sqrt(std::clamp(0.5 * (1 + cos_phase), 0.0, 1.0));
-  const double x = cosine * steps;
-  const std::size_t first = std::clamp<std::size_t>(static_cast<std::size_t>(x), 1, steps - 2) - 1;
-  const auto c = kernel::cubic_weights(x - static_cast<double>(first + 1));
-  const double *row[4];
-  for (std::size_t k = 0; k < 4; ++k)
-    row[k] = values_.data() + (first + k) * 2 * columns_;
-  const auto mix = [&](std::size_t i) {
-    return c.w[0] * row[0][i] + c.w[1] * row[1][i] + c.w[2] * row[2][i] + c.w[3] * row[3][i];
-  };
-  for (std::size_t i = 0; i < columns_; ++i) {
-    a[i] = mix(i);
-    b[i] = mix(columns_ + i);
-  }
+  const double cosine = backend::incidence_cosine(cos_phase);
+  backend::reflect(view(), cosine, a, b);
   for (const Exact &e : exact_) {
     const auto m = reflection(*surfaces_[e.surface], e.band, cosine);
     a[e.column] = m.a;

@@ -2,6 +2,8 @@
 // Private: reflection of the microfacets of all materials and bands against the phase angle, as one
 // microfacet incidence serves a whole pose.
 
+#include "backend/colours.h"
+
 #include <cstddef>
 #include <umov/surface/surface.h>
 #include <vector>
@@ -19,6 +21,9 @@ public:
   /// a and b (M00 and M10 of one reflection) of all columns; no plane at phase 0 and 180 is the
   /// caller's to know.
   void at(double cos_phase, double *a, double *b) const;
+  /// Some columns are computed anew for each pose.
+  [[nodiscard]] bool has_exact() const { return !exact_.empty(); }
+  [[nodiscard]] backend::ReflectionTable<double> view() const;
 
 private:
   std::vector<const Surface *> surfaces_;

@@ -2,14 +2,12 @@
 // Private: errors of looked-up visibility (docs/theory/engine.md), calibrated against dense runs
 // (tests/engine_errors_test.cpp).
 
-#include "backend/scene_data.h"
+#include "backend/colours.h"
 
 namespace umov {
 
 inline constexpr backend::MaskErrorModel mask_error{1.5F, 0.25F};
-/// Part of the square of all standard deviations together that stands for what neighbouring classes
-/// have in common: the same shadow's edge crosses many.
-inline constexpr double mask_alike = 4e-3F;
+using backend::mask_alike;
 
 /// Poses of a series look up the same few directions and err together, so that what is off stays
 /// off for many of them: variances of single looked-up facets are taken so much larger, for

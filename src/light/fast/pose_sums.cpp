@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 namespace umov {
@@ -67,36 +66,25 @@ bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) c
 
 namespace {
 
-/// sqrt(2 x) of what has fallen to 2^-n = exp(-x) of its peak.
-const std::array<double, 128> &flank_roots() {
-  static const std::array<double, 128> roots = [] {
-    std::array<double, 128> out{};
+/// By how often it has halved; a root for each lobe of each pose would cost.
+const std::array<double, backend::halvings_most + 1> &flank_roots() {
+  static const auto roots = [] {
+    std::array<double, backend::halvings_most + 1> out{};
     for (std::size_t n = 0; n < out.size(); ++n)
-      out[n] = std::sqrt(2 * 0.7 * static_cast<double>(n)); // ln 2, rounded up
+      out[n] = backend::flank_root<double>(static_cast<int>(n));
     return out;
   }();
   return roots;
 }
 
-/// The n with 2^-n below x, for x between 0 and 1; 0 above.
-std::size_t halvings(double x) {
-  constexpr int bias = 1023, mantissa_bits = 52;
-  const auto exponent = static_cast<int>(std::bit_cast<std::uint64_t>(x) >> mantissa_bits) - bias;
-  return static_cast<std::size_t>(std::clamp(-exponent, 0, 127));
-}
-
 } // namespace
 
-/// On the flank of a lobe, exp(-m |n - h|^2/2), the rounding of n and h to single precision is
-/// multiplied by m |n - h|, which is sqrt(2 m x) where the lobe has fallen to exp(-x): by that of
-/// the whole sum at most. Below 2^-126 of the peak nothing is left.
 void Engine::State::add_rounding(Workspace &work) const {
-  constexpr double least = 1.2e-38;
   for (std::size_t lobe = 0; lobe < compiled.data.lobes.size(); ++lobe) {
-    const CompiledScene::Rounding &of = compiled.rounding[lobe];
+    const backend::LobeRounding<double> &of = compiled.rounding[lobe];
     const double sum = work.sums.specular[lobe];
-    work.sums.specular_bias[lobe] +=
-        sum * of.per_root * flank_roots()[halvings(sum * of.per_peak)] + least / of.per_peak;
+    const auto halved = static_cast<std::size_t>(backend::halvings(sum * of.per_peak));
+    work.sums.specular_bias[lobe] += backend::rounding_of(sum, of, flank_roots()[halved]);
   }
 }
 

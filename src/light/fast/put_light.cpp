@@ -1,37 +1,26 @@
 #include "light/fast/state.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace umov {
-namespace {
-
-/// Rounding of the sums, in parts of I: docs/theory/engine.md has the measured agreement.
-constexpr double rounding = 2e-6;
-
-} // namespace
-
 void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_or_v,
                std::size_t row, StokesTable &out) {
   const std::size_t n = light.size(), first = row * n;
   out.is_dark[row] = 0;
-  const auto floor = [&](std::size_t b) {
-    return (rounding * std::abs(light.i[b]) + light.bias[b]) * scale;
-  };
-  const auto half_width = [&](double variance) {
-    return variance > 0 ? normal_95 * std::sqrt(variance) * scale : 0;
+  const auto half_width = [&](double variance, std::size_t b) {
+    return backend::half_width(variance, light.i[b], light.bias[b], scale);
   };
   for (std::size_t b = 0; b < n; ++b) {
     out.i[first + b] = light.i[b] * scale;
     out.q[first + b] = has_plane ? light.q[b] * scale : 0;
-    out.i_err[first + b] = half_width(light.var_i[b]) + floor(b);
-    out.q_err[first + b] = half_width(light.var_q[b]) + floor(b);
+    out.i_err[first + b] = half_width(light.var_i[b], b);
+    out.q_err[first + b] = half_width(light.var_q[b], b);
   }
   for (std::size_t b = 0; has_u_or_v && b < n; ++b) {
     out.u[first + b] = has_plane ? light.u[b] * scale : 0;
     out.v[first + b] = light.v[b] * scale;
-    out.u_err[first + b] = half_width(light.var_u[b]) + floor(b);
-    out.v_err[first + b] = half_width(light.var_v[b]) + floor(b);
+    out.u_err[first + b] = half_width(light.var_u[b], b);
+    out.v_err[first + b] = half_width(light.var_v[b], b);
   }
 }
 

@@ -8,12 +8,13 @@
 #include "light/fast/refine_points.h"
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <umov/light/engine.h>
 
 namespace umov {
 
-inline constexpr double normal_95 = 1.959963984540054; ///< two-sided quantile of the normal law
+using backend::normal_95;
 
 /// Writes a pose's light to its row, times `scale`. Q and U are 0 without a scattering plane.
 void put_light(const BandLight &light, double scale, bool has_plane, bool has_u_or_v,
@@ -64,7 +65,7 @@ struct Engine::State {
     PoseStore<double> pose;
     PoseStore<float> single;
     /// Sums that cards have added up, of this pose in a batch of theirs; null: none.
-    const backend::CardSums *card_sums = nullptr;
+    const backend::CardRows *card_sums = nullptr;
     std::size_t row_of_card = 0;
   };
 
@@ -128,15 +129,28 @@ struct Engine::State {
   double glint_share(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// Runs `body(row, pose, prepared, workspace)` for all poses, in an order that suits the masks;
   /// for none any more once the task is cancelled.
+  /// What cards finish alone: called in the stead of `body` for poses that came back from them.
+  /// Empty: they give sums, and `body` goes on from there.
+  struct FromCards {
+    backend::CardWants wants = backend::CardWants::Sums;
+    std::function<void(std::size_t row, const backend::CardRows &rows, std::size_t row_of_card)>
+        take;
+  };
   template <class Body>
-  void for_each(std::span<const Pose> poses, const LightTask &task, const Body &body) const;
+  void for_each(std::span<const Pose> poses, const LightTask &task, const Body &body,
+                const FromCards &from_cards = {}) const;
 
-  /// The same with the sums of cards, batch by batch. Throws Failure if a card is lost.
+  /// The same with the sums of cards, batch by batch; how many of `order` are done. Fewer than all
+  /// where memory no longer suffices and the processor may take over. Throws Failure if a card is
+  /// lost.
   template <class Body>
-  void for_each_on_cards(std::span<const Pose> poses, std::span<const std::uint32_t> order,
-                         const LightTask &task, const Body &body) const;
+  std::size_t for_each_on_cards(std::span<const Pose> poses, std::span<const std::uint32_t> order,
+                                const LightTask &task, const Body &body,
+                                const FromCards &from_cards) const;
 
   [[nodiscard]] bool needs_pose_beside_cards(const LightTask &task) const;
+  void take_light(const backend::CardRows &rows, std::size_t row_of_card, std::size_t row,
+                  StokesTable &out) const;
 
   // pose_sums.cpp
   void take_from_card(const Prepared &at, SumsStore &out) const;

@@ -178,8 +178,9 @@ Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<J
   const bool has_rays = takes_rays(scene, joints, options);
   if (has_rays && options.device.choice == DeviceChoice::Cuda)
     return fail(ErrorCode::Usage, "rays are traced by the processor, and cards add up what masks "
-                                  "tell: take render.method = \"masks\" (--visibility masks of a "
-                                  "signature; a convex body needs it too), or --device cpu");
+                                  "tell: take render.method = \"masks\" (--visibility masks of "
+                                  "signature and invert; a convex body needs it too), or --device "
+                                  "cpu");
   std::vector<double> typical_i;
   std::optional<Engine> unhidden;
   if (!has_rays || options.accuracy_floor.value_or(0) > 0)

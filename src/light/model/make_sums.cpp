@@ -1,4 +1,5 @@
-#include <umov/light/engine.h>
+#include "light/fast/cards.h"
+
 #include <umov/light/light_sums.h>
 
 namespace umov {
@@ -19,6 +20,11 @@ class EngineSums final : public LightSums {
 public:
   EngineSums(const Scene &scene, const SumsOptions &options)
       : engine_(scene, engine_options(options)) {}
+  Result<void> take_device(const DeviceOptions &device) {
+    UMOV_ASSIGN(taken, take_cards(engine_, device));
+    device_ = std::move(taken);
+    return {};
+  }
 
   Result<void> evaluate(std::span<const Pose> poses, AbundanceTable &out,
                         unsigned threads) const override {
@@ -28,15 +34,19 @@ public:
     return engine_.tables_for(materials);
   }
   void keep_masks() const override { engine_.keep_masks(); }
+  [[nodiscard]] std::string device() const override { return device_now(engine_, device_); }
 
 private:
   Engine engine_;
+  std::string device_;
 };
 
 } // namespace
 
-std::unique_ptr<LightSums> make_sums(const Scene &scene, const SumsOptions &options) {
-  return std::make_unique<EngineSums>(scene, options);
+Result<std::unique_ptr<LightSums>> make_sums(const Scene &scene, const SumsOptions &options) {
+  auto out = std::make_unique<EngineSums>(scene, options);
+  UMOV_TRY(out->take_device(options.device));
+  return out;
 }
 
 } // namespace umov

@@ -1,3 +1,4 @@
+#include "light/fast/cards.h"
 #include "light/model/models.h"
 
 #include <algorithm>
@@ -66,7 +67,7 @@ Result<void> MasksLight::prepare() {
   }
   facts_.method = options_.method;
   facts_.instruction_set = engine_instruction_set();
-  UMOV_TRY(take_cards());
+  UMOV_TRY(take_device());
   facts_.is_convex = engine_ && engine_->facts().is_convex;
   facts_.classes = engine_ ? engine_->facts().classes : 0;
   facts_.visibility = in_words(facts_, with.masks);
@@ -84,26 +85,25 @@ Result<void> MasksLight::prepare() {
   return {};
 }
 
-Result<void> MasksLight::take_cards() {
+Result<void> MasksLight::take_device() {
   const DeviceOptions &device = options_.device;
-  if (device.choice == DeviceChoice::Cpu)
-    return {};
   if (!engine_) {
     if (device.choice == DeviceChoice::Cuda)
       return fail(ErrorCode::Usage,
                   "parts that turn are lit by the processor: take --device cpu or auto");
-    facts_.device = "cpu: parts that turn are lit by the processor";
+    if (device.choice == DeviceChoice::Auto)
+      facts_.device = "cpu: parts that turn are lit by the processor";
     return {};
   }
-  const auto cards = open_cards(device);
-  Result<void> used = cards ? engine_->use_cards(*cards) : tl::unexpected(cards.error());
-  if (used)
-    facts_.device = facts_.instruction_set = name_of(**cards);
-  else if (device.choice == DeviceChoice::Cuda)
-    return used;
-  else
-    facts_.device = "cpu: " + used.error().message;
+  UMOV_ASSIGN(taken, take_cards(*engine_, device));
+  if (!taken.empty() && !taken.starts_with("cpu"))
+    facts_.instruction_set = taken;
+  facts_.device = std::move(taken);
   return {};
+}
+
+std::string MasksLight::device() const {
+  return engine_ ? device_now(*engine_, facts_.device) : facts_.device;
 }
 
 Result<void> MasksLight::keep_masks() const {

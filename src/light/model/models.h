@@ -42,6 +42,7 @@ public:
                                                   double curved_error);
   [[nodiscard]] Result<void> keep_masks() const override;
   [[nodiscard]] std::size_t mask_bytes() const override;
+  [[nodiscard]] std::string device() const override;
 
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
@@ -49,7 +50,7 @@ private:
   Result<void> prepare();
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override;
-  Result<void> take_cards();
+  Result<void> take_device();
   void add_allowance(StokesTable &table) const;
   [[nodiscard]] std::vector<std::size_t> inaccurate(const StokesTable &table) const;
 

@@ -34,7 +34,11 @@ std::filesystem::path new_cache() {
          ("umov_cards_" + std::to_string(::getpid()) + "_" + std::to_string(++number));
 }
 
+/// The card on paper, whatever else there is. For tools/gpu_check, UMOV_TEST_CUDA names the folder
+/// of a real one's driver and compiler ("system": where the system has them).
 DeviceOptions with_fakes(const std::filesystem::path &cache = new_cache()) {
+  if (const char *real = std::getenv("UMOV_TEST_CUDA"))
+    return {DeviceChoice::Cuda, {real}, std::filesystem::path(testing::TempDir()) / "umov_kernels"};
   return {DeviceChoice::Cuda, {UMOV_FAKE_CUDA}, cache};
 }
 
@@ -141,6 +145,32 @@ TEST(Cards, HalfWidthsAreThoseOfTheProcessor) {
   EXPECT_GT(uncertain, 100u); // masks do err
 }
 
+TEST(Cards, ColoursOfACardAreThoseOfItsSums) {
+  // With the share of glints asked for, sums come out and the processor colours them.
+  for (const Case &one : all_cases()) {
+    const auto poses = random_poses(40, solar_radius);
+    const Engine engine = on_card(one.scene, one.visibility);
+    LightTask task;
+    task.has_glints = true;
+    StokesTable sums;
+    ASSERT_TRUE(engine.evaluate(poses, sums, task));
+    const StokesTable light = evaluated(engine, poses);
+    EXPECT_EQ(light.is_dark, sums.is_dark);
+    EXPECT_EQ(light.method, sums.method);
+    for (std::size_t k = 0; k < light.i.size(); ++k) {
+      // A dozen roundings to 2^-24, and those of the reflection's cosine.
+      const double near = 3e-6 * sums.i[k];
+      EXPECT_NEAR(light.i[k], sums.i[k], near) << one.name;
+      EXPECT_NEAR(light.q[k], sums.q[k], near) << one.name;
+      EXPECT_NEAR(light.u[k], sums.u[k], near) << one.name;
+      EXPECT_NEAR(light.i_err[k], sums.i_err[k], 1e-4 * sums.i_err[k]) << one.name;
+      EXPECT_NEAR(light.q_err[k], sums.q_err[k], 1e-4 * sums.q_err[k]) << one.name;
+      EXPECT_NEAR(light.u_err[k], sums.u_err[k], 1e-4 * sums.u_err[k]) << one.name;
+      EXPECT_NEAR(light.v_err[k], sums.v_err[k], 1e-4 * sums.v_err[k]) << one.name;
+    }
+  }
+}
+
 TEST(Cards, TheBytesDoNotDependOnTheSplit) {
   const Scene scene = scene_of(make_box_wing({800, 0}), NormalMode::Flat, four_materials());
   const auto poses = random_poses(9000, solar_radius);
@@ -173,8 +203,16 @@ TEST(Cards, AbundancesAreThoseOfTheProcessor) {
   ASSERT_TRUE(engine_of(scene, Visibility::Masks, true).abundances(poses, wanted));
   ASSERT_EQ(found.sum.size(), wanted.sum.size());
   const double scale = *std::max_element(wanted.sum.begin(), wanted.sum.end());
-  for (std::size_t k = 0; k < wanted.sum.size(); ++k)
+  std::size_t uncertain = 0;
+  for (std::size_t k = 0; k < wanted.sum.size(); ++k) {
     EXPECT_NEAR(found.sum[k], wanted.sum[k], 2e-4 * wanted.sum[k] + 1e-6 * scale) << k;
+    // As of the half-widths of light above.
+    EXPECT_NEAR(found.half_width[k], wanted.half_width[k],
+                2e-3 * wanted.half_width[k] + 1e-4 * wanted.sum[k] + 1e-6 * scale)
+        << k;
+    uncertain += wanted.half_width[k] > 1e-3 * wanted.sum[k] ? 1U : 0U;
+  }
+  EXPECT_GT(uncertain, 100U);
   EXPECT_EQ(found.is_dark, wanted.is_dark);
 }
 
@@ -248,6 +286,45 @@ TEST(Cards, WhatDoesNotFitIsRefusedWithItsBytes) {
     EXPECT_NE(failure.error().message.find("the masks take"), std::string::npos)
         << failure.error().message;
   }
+}
+
+TEST(Cards, TheProcessorTakesOverWhereMasksNoLongerFit) {
+  const Scene scene = scene_of(make_box_wing({800, 0}), NormalMode::Flat, four_materials());
+  EngineOptions options;
+  options.masks = {20'000, 24, 24, 0};
+  options.is_lazy = true;
+  Engine engine(scene, options), alone(scene, options);
+  ASSERT_TRUE(engine.use_cards(open_cards(with_fakes()).value(), true));
+  const auto few = random_poses(4), more = random_poses(200);
+  (void)evaluated(engine, few);
+  EXPECT_EQ(engine.why_cards_were_left(), "");
+  {
+    const Setting full("UMOV_FAKE_MEMORY", "100000");
+    EXPECT_EQ(evaluated(engine, more).i, evaluated(alone, more).i); // the processor's bytes
+  }
+  EXPECT_NE(engine.why_cards_were_left().find("the masks take"), std::string::npos)
+      << engine.why_cards_were_left();
+  EXPECT_EQ(evaluated(engine, few).i, evaluated(alone, few).i); // and for good
+}
+
+TEST(Cards, TheProcessorTakesOverWhereNoBatchFits) {
+  const Scene scene = scene_of(make_box_wing({800, 0}), NormalMode::Flat, four_materials());
+  const auto poses = random_poses(600);
+  Engine engine = engine_of(scene, Visibility::Masks);
+  const Engine alone = engine_of(scene, Visibility::Masks);
+  ASSERT_TRUE(engine.use_cards(open_cards(with_fakes()).value(), true));
+  const Setting few("UMOV_FAKE_POSES", "100");
+  EXPECT_EQ(evaluated(engine, poses).i, evaluated(alone, poses).i);
+  EXPECT_NE(engine.why_cards_were_left(), "");
+}
+
+TEST(Cards, ACardThatIsLostIsNotLeft) {
+  const Scene scene = scene_of(make_box_wing({800, 0}), NormalMode::Flat, four_materials());
+  Engine engine = engine_of(scene, Visibility::Masks);
+  ASSERT_TRUE(engine.use_cards(open_cards(with_fakes()).value(), true));
+  const Setting soon("UMOV_FAKE_LAUNCHES", "1");
+  EXPECT_THROW((void)evaluated(engine, random_poses(300)), Failure);
+  EXPECT_EQ(engine.why_cards_were_left(), "");
 }
 
 TEST(Cards, ALostCardIsAFailureOfTheDevice) {

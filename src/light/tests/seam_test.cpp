@@ -26,7 +26,9 @@ std::vector<Pose> poses_of(std::size_t count) {
 TEST(LightSums, OfItsOwnMaterialsAreItsLight) {
   const Scene scene = box_wing_scene();
   const auto poses = poses_of(8);
-  const auto sums = make_sums(scene, {.accuracy = 0.02, .threads = 1});
+  const auto made = make_sums(scene, {.accuracy = 0.02, .threads = 1});
+  ASSERT_TRUE(made) << made.error().text();
+  const LightSums *const sums = made->get();
   AbundanceTable table;
   ASSERT_TRUE(sums->evaluate(poses, table));
   const auto materials = sums->tables_for(scene);

@@ -38,7 +38,8 @@ bool is_lost() { return launches > asked("UMOV_FAKE_LAUNCHES", ~std::size_t{0});
 
 std::size_t memory() { return asked("UMOV_FAKE_MEMORY", 1'000'000'000); }
 
-void *const prepare = &used, *const sum = &launches;
+void *const prepare = &used, *const sum = &launches, *const colour = &allocated,
+            *const weighing = &lock;
 
 } // namespace
 
@@ -95,8 +96,12 @@ Code cuModuleLoadData(void **module, const void *image) {
 }
 Code cuModuleUnload(void *) { return fine; }
 Code cuModuleGetFunction(void **function, void *, const char *name) {
-  const std::string wanted = name;
-  *function = wanted == "umov_prepare_poses" ? prepare : wanted == "umov_sum_poses" ? sum : nullptr;
+  const std::map<std::string, void *> all{{"umov_prepare_poses", prepare},
+                                          {"umov_sum_poses", sum},
+                                          {"umov_colour_poses", colour},
+                                          {"umov_weigh_poses", weighing}};
+  const auto found = all.find(name);
+  *function = found == all.end() ? nullptr : found->second;
   return *function == nullptr ? invalid : fine;
 }
 Code cuMemGetInfo_v2(std::size_t *free, std::size_t *total) {
@@ -172,8 +177,12 @@ Code cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigne
         continue;
       if (function == prepare)
         prepare_on_card(scene, batch, i);
-      else
+      else if (function == sum)
         sum_on_card(scene, batch, i);
+      else if (function == colour)
+        colour_on_card(scene, batch, i);
+      else
+        weigh_on_card(scene, batch, i);
     }
   return fine;
 }

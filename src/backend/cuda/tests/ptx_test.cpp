@@ -68,6 +68,16 @@ TEST_P(Program, SumsInSinglePrecisionInRegisters) {
   EXPECT_LE(sum.registers, 128); // 512 threads of a multiprocessor
   const Use prepare = use_of(image->log, "umov_prepare_poses");
   EXPECT_EQ(prepare.stores, 0) << image->log;
+  for (const char *name : {"umov_colour_poses", "umov_weigh_poses"}) {
+    const Use use = use_of(image->log, name);
+    EXPECT_EQ(use.stack, 0) << image->log;
+    EXPECT_EQ(use.stores, 0);
+    EXPECT_LE(use.registers, 128);
+    const std::string text = entry_of(image->assembly, name);
+    ASSERT_GT(text.size(), 5000u) << name;
+    EXPECT_EQ(text.find(".f64"), std::string::npos) << name;
+    EXPECT_EQ(text.find("call"), std::string::npos) << name;
+  }
   // Double is where directions are subtracted, and nowhere else.
   const std::string sums = entry_of(image->assembly, "umov_sum_poses");
   ASSERT_GT(sums.size(), 100'000u);
