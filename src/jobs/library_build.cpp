@@ -216,8 +216,7 @@ Result<void> SignatureMaker::make(const std::string &path, const std::string &na
   SignatureRequest asked;
   asked.method = LightMethod::Masks;
   UMOV_ASSIGN(own, PoseLight::make(scenario, asked, options_, diagnostics_));
-  const std::string job = sha256_hex(
-      job_text(scenario, own.inputs(), fmt::format("signature of {} cells", request_.cells)));
+  const std::string job = signature_job(scenario, own.inputs(), request_.cells);
   const fs::path file = fs::path(request_.folder) / (name + ".umovsig");
   if (file_exists(file))
     if (const auto kept = SignatureFile::open(file, true); kept && kept->view().text.job == job) {
