@@ -87,6 +87,7 @@ int run(int argc, char **argv) {
   cli::add_instrument(app, exit_with);
   cli::add_invert(app, exit_with);
   cli::add_library(app, exit_with);
+  cli::add_identify(app, exit_with);
   cli::add_orbit(app, exit_with);
   cli::add_passes(app, exit_with);
   cli::add_period(app, exit_with);

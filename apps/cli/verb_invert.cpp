@@ -2,6 +2,7 @@
 
 #include "device_options.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/text.h>
 
@@ -33,7 +34,9 @@ Result<void> print(const jobs::Inversion &found, const InvertVerb &o) {
     return put("", found.json);
   if (o.common.quiet)
     return {};
-  UMOV_TRY(put("", found.summary + to_text(found.tables.front().table)));
+  constexpr std::size_t most_rows = 20; // of a library of thousands
+  const Table &first = found.tables.front().table;
+  UMOV_TRY(put("", found.summary + to_text(first.part(0, std::min(first.rows(), most_rows)))));
   if (!o.output.empty())
     fmt::print("written to {}\n", printable(o.output));
   return {};

@@ -17,6 +17,7 @@ void add_brdf(CLI::App &app, const Exit &exit_with);
 void add_material(CLI::App &app, const Exit &exit_with);
 void add_mesh(CLI::App &app, const Exit &exit_with);
 void add_mesh_make(CLI::App &mesh, const Exit &exit_with);
+void add_identify(CLI::App &app, const Exit &exit_with);
 void add_instrument(CLI::App &app, const Exit &exit_with);
 void add_invert(CLI::App &app, const Exit &exit_with);
 void add_library(CLI::App &app, const Exit &exit_with);

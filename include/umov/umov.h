@@ -49,6 +49,7 @@
 #include <umov/inverse/curve_model.h>
 #include <umov/inverse/direction_table.h>
 #include <umov/inverse/health.h>
+#include <umov/inverse/identify.h>
 #include <umov/inverse/likelihood.h>
 #include <umov/inverse/null_test.h>
 #include <umov/inverse/observed_curve.h>
@@ -96,6 +97,7 @@
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/ephemeris.h>
 #include <umov/jobs/exposure.h>
+#include <umov/jobs/identify.h>
 #include <umov/jobs/index_range.h>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/library.h>

@@ -7,6 +7,7 @@
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+#include <umov/jobs/identify.h>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/library.h>
 
@@ -57,6 +58,15 @@ jobs::Inversion health(const Scenario &scenario, const Request &request,
   return answer(watch, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
     return jobs::invert_health(scenario, request, {drifts, baseline, attitude_sd_deg}, options,
                                monitor, diagnostics);
+  });
+}
+
+jobs::Inversion identify(const Scenario &scenario, const Request &request,
+                         const std::string &library, const std::vector<std::string> &objects,
+                         double none_prior, const jobs::JobOptions &options, nb::handle watch) {
+  const jobs::IdentifyRequest asked{request, library, objects, none_prior};
+  return answer(watch, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return jobs::identify_object(scenario, asked, options, monitor, diagnostics);
   });
 }
 
@@ -126,6 +136,8 @@ void bind_invert(nb::module_ &m) {
         "options"_a, "watch"_a.none());
   m.def("invert_health", &health, "scenario"_a, "request"_a, "drifts"_a, "baseline"_a,
         "attitude_sd_deg"_a, "options"_a, "watch"_a.none());
+  m.def("identify", &identify, "scenario"_a, "request"_a, "library"_a, "objects"_a, "none_prior"_a,
+        "options"_a, "watch"_a.none());
   m.def("build_library", &build_library, "scenarios"_a, "folder"_a, "cells"_a, "first"_a, "count"_a,
         "options"_a, "watch"_a.none());
 }

@@ -18,7 +18,7 @@ from .periods import AnyLight
 from .scenarios import AnyScenario, Scenario
 from .tables import Table
 
-__all__ = ["Fit", "Inversion", "invert_health", "invert_material", "invert_pose", "invert_spin"]
+__all__ = ["Fit", "Inversion", "identify", "invert_health", "invert_material", "invert_pose", "invert_spin"]
 
 AnyCurves = Union[AnyLight, Sequence[AnyLight]]
 
@@ -50,7 +50,7 @@ class Inversion(NamedTuple):
     """
 
     verdict: str  #: determined, ambiguous, undetermined or no_fit (none explains the data)
-    tables: dict[str, Table]  #: by name, the answer first: modes, periods, set95, samples, twins, fit; materials; health
+    tables: dict[str, Table]  #: by name, the answer first: modes, periods, set95, samples, twins, fit; materials; health; identity
     values: dict[str, Any]  #: numbers of the answer: verdict.json of the command
     summary: str  #: for a person
     page: str  #: report.html; "" where the question has none
@@ -302,6 +302,65 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
     with _files_of(light, baseline) as (files, before):
         return _inversion(_umov.invert_health(asked._scenario, _request(files, fit), drifts, before, sd,
                                               job_options(threads, cache, device=device), Watch(progress)))
+
+
+def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike[str], *,
+             objects: Sequence[str | os.PathLike[str]] = (), none_prior: float = 0.05, set: Mapping[str, Any] | None = None,
+             fit: Fit | None = None, threads: int = 0, cache: bool | str | os.PathLike[str] = True,
+             progress: Progress = None) -> Inversion:
+    """Which object of a library made a light curve, in whatever attitude and at whatever range, or none: `umov identify`.
+
+    Parameters
+    ----------
+    light
+        As for `invert_pose`.
+    scenario
+        Orbit, site and bands; it needs no mesh, and if it has one that is not read.
+    library
+        Folder of `build_library`.
+    objects
+        Scenarios of objects of the library, by their file names: the best of them are judged by their own light.
+    none_prior
+        Chance, before any data, that it is none of the library: 1e-6 to 0.999.
+    set
+        Changes of the scenario's keys.
+    fit
+        How light and data are compared; None: `Fit()`.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    progress
+        True for a bar, or a callable (what, done, total).
+
+    Notes
+    -----
+    The table "identity" has the columns name, probability, by ("look": left behind at a glance, "table": its signature,
+    "model": its own light, "kin": the row "none of these"), log_evidence, chi2 and log_look. `InputError` for a folder
+    without signatures and for a band that they lack; `UsageError` for objects that the library does not have.
+    Source: docs/theory/inverse.md, section 12.
+
+    Examples
+    --------
+    >>> still = {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 20}
+    >>> curve = umov.run(EXAMPLES / "agena_maui.toml", set=still)
+    >>> made = umov.build_library([EXAMPLES / "agena_maui.toml", EXAMPLES / "hst_maui.toml"], "two", cells=8)
+    >>> found = umov.identify(curve, EXAMPLES / "agena_maui.toml", "two")
+    >>> str(found.tables["identity"]["name"][0])
+    'agena_maui'
+    """
+    if not isinstance(library, (str, os.PathLike)):
+        raise UsageError(f"library is {library!r}; the name of a folder was expected")
+    if isinstance(objects, (str, os.PathLike)):
+        objects = [objects]
+    if not isinstance(objects, Sequence) or not all(isinstance(one, (str, os.PathLike)) for one in objects):
+        raise UsageError(f"objects is {objects!r}; a list of scenario files was expected")
+    prior = between(none_prior, "none_prior", 1e-6, 0.999)
+    asked = Scenario(scenario, set)
+    with _files_of(light) as (files,):
+        return _inversion(_umov.identify(asked._scenario, _request(files, fit), os.fspath(library),
+                                         [os.fspath(one) for one in objects], prior, job_options(threads, cache),
+                                         Watch(progress)))
 
 
 def _names(given: Any, name: str, what: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 #include "algebra/dense.h"
 #include "inverse/posterior.h"
+#include "inverse/some_epochs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,34 +11,23 @@
 
 namespace umov {
 
+using inverse::degree;
 using inverse::Freedom;
 using inverse::Samples;
+using inverse::stopped;
 using inverse::TurningFit;
 
 namespace {
 
-constexpr double degree = pi / 180;
-
 /// A likelihood in which the model may be a quarter off: a glint narrower than a cell of the grid
 /// cannot veto it then.
 CurveErrors tempered(CurveErrors errors) {
+  errors.floor_q = std::hypot(errors.of_q(), 0.125);
   errors.floor = std::hypot(errors.floor, 0.25);
   errors.floor_median = std::hypot(errors.floor_median, 0.1);
   errors.outlier_share = 0; // the floor forgives them
   return errors;
 }
-
-/// Every n-th epoch, `count` of them at most, the ends among them.
-std::vector<std::size_t> spread(std::size_t epochs, std::size_t count) {
-  std::vector<std::size_t> out;
-  count = std::min(count, epochs);
-  for (std::size_t k = 0; k < count; ++k)
-    out.push_back(count < 2 ? 0 : k * (epochs - 1) / (count - 1));
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-Error stopped() { return {ErrorCode::Interrupted, "stopped by the user; nothing was written", {}}; }
 
 /// How many of the sorted chi2 hold all but a ten-thousandth of the probability: of faint light a
 /// few epochs say little, and what a round throws away never comes back.
@@ -82,7 +72,7 @@ Result<std::vector<Turning>> search_grid(const CurveModel &model, const SearchOp
   for (std::size_t r = 0; r < std::size(rounds); ++r) {
     if (options.progress)
       options.progress("search", r, std::size(rounds));
-    const auto epochs = spread(model.curve().epochs.size(), rounds[r].epochs);
+    const auto epochs = inverse::some_epochs(model.curve().epochs.size(), rounds[r].epochs);
     const CurveLikelihood likelihood(model.curve(), errors, epochs);
     const auto compared = inverse::compare_all(model, likelihood, left, epochs, options.threads);
     if (compared.empty())
@@ -335,7 +325,7 @@ Result<PoseAnswer> search_pose(const CurveModel &model, const CurveModel &quick,
   UMOV_ASSIGN(left, search_grid(quick, options));
   const auto starts = spread_out(left, options.starts, 5 * degree);
   const CurveLikelihood rough(model.curve(), tempered(options.errors));
-  const auto some = spread(model.curve().epochs.size(), 60);
+  const auto some = inverse::some_epochs(model.curve().epochs.size(), 60);
   // Many at first, and few of those that stay apart: a basin of one glint is a long valley, and
   // there is one for each flat that could have mirrored the Sun.
   const inverse::FitPlan tempered_steps{Freedom::Attitude, 4, 0, 0, 2e-3, options.threads};

@@ -19,7 +19,7 @@ SampleErrors errors_of(const ObservedSample &sample, const CurveErrors &errors, 
     out.log_variance += std::log(variance);
   }
   if (errors.has_polarization && !std::isnan(sample.q)) {
-    const double more = errors.floor * errors.floor / 4, least = best_relative * best_relative;
+    const double more = errors.of_q() * errors.of_q(), least = best_relative * best_relative;
     // Cholesky of the covariance, inverted.
     const double a = std::sqrt(std::max(sample.cov_qq + more, least)), b = sample.cov_qu / a;
     const double c = std::sqrt(std::max(sample.cov_uu + more - b * b, least));

@@ -1,5 +1,6 @@
 #include <umov/inverse/signature.h>
 
+#include "inverse/light_codes.h"
 #include "inverse/octahedron.h"
 
 #include <algorithm>
@@ -10,11 +11,11 @@
 namespace umov {
 
 using inverse::DirectionGrid;
+using inverse::LightCodes;
 
 namespace {
 
-constexpr double middle = 32768, half = 32767; // of the codes of Q/I
-constexpr double decades = 9;                  // below the brightest that have codes
+constexpr double decades = 9; // below the brightest that have codes
 
 } // namespace
 
@@ -56,20 +57,14 @@ PackedLight pack_light(const StokesTable &light) {
     const double at = is_lit ? 1 + (std::log(i) - out.ln_least) / out.ln_step : 0;
     out.code[2 * k] = static_cast<std::uint16_t>(std::lround(std::min(at, codes + 1)));
     const double part = is_lit ? std::clamp(q / i, -1.0, 1.0) : 0;
-    out.code[2 * k + 1] = static_cast<std::uint16_t>(std::lround(middle + half * part));
+    out.code[2 * k + 1] = LightCodes::of_q(part);
   }
   return out;
 }
 
 PoseLighting lighting_of(const Signature &signature, unsigned threads) {
-  // exp of a code as a product of two: of its high and its low byte.
-  std::vector<float> high(256), low(256);
-  for (std::size_t k = 0; k < 256; ++k) {
-    const auto at = static_cast<double>(k);
-    high[k] = static_cast<float>(std::exp(signature.ln_least + signature.ln_step * (256 * at - 1)));
-    low[k] = static_cast<float>(std::exp(signature.ln_step * at));
-  }
-  return [&signature, threads, high, low](std::span<const Pose> poses, StokesTable &out) {
+  const LightCodes codes(signature);
+  return [&signature, threads, codes](std::span<const Pose> poses, StokesTable &out) {
     const DirectionGrid grid{signature.cells};
     const std::size_t bands = signature.bands, nodes = grid.nodes();
     out.bands = bands; // only what a search reads is made ready
@@ -88,9 +83,9 @@ PoseLighting lighting_of(const Signature &signature, unsigned threads) {
             for (std::size_t b = 0; b < bands; ++b, at += 2) {
               if (at[0] == 0)
                 continue;
-              const float i = weight * high[at[0] >> 8] * low[at[0] & 255];
+              const float i = weight * codes.i(at[0]);
               out.i[k * bands + b] += static_cast<double>(i);
-              out.q[k * bands + b] += static_cast<double>(i) * (at[1] - middle) / half;
+              out.q[k * bands + b] += static_cast<double>(i) * LightCodes::q(at[1]);
             }
           }
       }

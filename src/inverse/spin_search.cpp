@@ -9,14 +9,12 @@
 
 namespace umov {
 
+using inverse::degree;
 using inverse::Freedom;
+using inverse::stopped;
 using inverse::TurningFit;
 
 namespace {
-
-constexpr double degree = pi / 180;
-
-Error stopped() { return {ErrorCode::Interrupted, "stopped by the user; nothing was written", {}}; }
 
 /// Directions spread evenly over the sphere (Fibonacci's lattice: Swinbank & Purser 2006).
 std::vector<Vec3<Body>> axes_of(const SpinRequest &request) {
@@ -47,6 +45,7 @@ std::vector<std::size_t> within(const ObservedCurve &curve, double half_s, std::
 }
 
 CurveErrors tempered(CurveErrors errors, double floor) {
+  errors.floor_q = std::hypot(errors.of_q(), floor / 2);
   errors.floor = std::hypot(errors.floor, floor);
   errors.floor_median = std::hypot(errors.floor_median, floor / 2.5);
   errors.outlier_share = 0;

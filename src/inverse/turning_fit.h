@@ -2,10 +2,20 @@
 // Private: many least-squares fits of turnings at once.
 
 #include <Eigen/Core>
+#include <umov/core/quantity.h>
+#include <umov/core/result.h>
 #include <umov/inverse/curve_model.h>
 #include <vector>
 
 namespace umov::inverse {
+
+/// [rad]
+inline constexpr double degree = pi / 180;
+
+/// What a search that was ended says.
+inline Error stopped() {
+  return {ErrorCode::Interrupted, "stopped by the user; nothing was written", {}};
+}
 
 /// What is free: the attitude alone, or the rate too.
 enum class Freedom { Attitude = 3, AttitudeAndRate = 6 };

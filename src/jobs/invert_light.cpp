@@ -10,27 +10,34 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
   UMOV_ASSIGN(files, read_observations(request.observations, inputs, diagnostics));
   UMOV_ASSIGN(observed,
               observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
+  Diagnostics twice; // the object was read for its orbit: its warnings are known
+  UMOV_ASSIGN(light, prepare_light(scenario, request, options, twice));
+  for (InputFile &input : inputs)
+    observed.inputs.push_back(std::move(input));
+  return Prepared{std::move(light), std::move(observed)};
+}
+
+Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
+                                    const JobOptions &options, Diagnostics &diagnostics) {
   SignatureRequest lit;
   lit.method = request.method;
   // Light need not be known better than the model is.
   constexpr double coarsest = 0.02;
   lit.accuracy = std::max(scenario.light.accuracy, std::min(request.errors.floor, coarsest));
-  Diagnostics twice; // the object was read for its orbit: its warnings are known
-  UMOV_ASSIGN(light, PoseLight::make(scenario, lit, options, twice));
-  for (InputFile &input : inputs)
-    observed.inputs.push_back(std::move(input));
-  Prepared out{std::move(observed), std::move(light), {}};
+  UMOV_ASSIGN(light, PoseLight::make(scenario, lit, options, diagnostics));
+  SearchedLight out{std::move(light), {}};
   if (out.light.model().facts().method == LightMethod::Auto) {
     SignatureRequest rough;
     rough.method = LightMethod::Masks;
     rough.accuracy = lit.accuracy;
+    Diagnostics twice;
     UMOV_ASSIGN(masks, PoseLight::make(scenario, rough, options, twice));
     out.masks.emplace(std::move(masks));
   }
   return out;
 }
 
-PoseLighting quick_lighting(const Prepared &ready, unsigned threads, const Monitor &monitor) {
+PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
   if (!ready.masks)
     return lighting_of(ready.light, threads, monitor);
   return [masks = lighting_of(*ready.masks, threads, monitor)](std::span<const Pose> poses,
@@ -50,7 +57,7 @@ PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor
   };
 }
 
-ManifestInput::Light light_used(const Prepared &ready, const Scenario &scenario,
+ManifestInput::Light light_used(const SearchedLight &ready, const Scenario &scenario,
                                 Diagnostics &diagnostics) {
   const LightModel &model = ready.light.model();
   std::string device = model.device();
@@ -63,7 +70,7 @@ ManifestInput::Light light_used(const Prepared &ready, const Scenario &scenario,
           facts.instruction_set, device};
 }
 
-void keep_masks(const Prepared &ready) {
+void keep_masks(const SearchedLight &ready) {
   (void)ready.light.model().keep_masks();
   if (ready.masks)
     (void)ready.masks->model().keep_masks();

@@ -7,28 +7,34 @@
 
 namespace umov::jobs {
 
-/// Observations, the object that they are of, and its light.
-struct Prepared {
-  ObservedLightCurve observed;
+/// Light of an object as a search wants it.
+struct SearchedLight {
   PoseLight light;
   std::optional<PoseLight> masks; ///< for the search, where `light` mends them; else none
+};
+/// Observations, the object that they are of, and its light.
+struct Prepared : SearchedLight {
+  ObservedLightCurve observed;
 };
 
 /// Reads and compiles what a request names.
 Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
                          const JobOptions &options, Diagnostics &diagnostics);
+/// The light alone, as exact as the request's errors ask for.
+Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
+                                    const JobOptions &options, Diagnostics &diagnostics);
 /// `light` and `monitor` must outlive it.
 PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor &monitor);
 /// Light for a search: masks as they are, without half-widths, where the last steps mend them. What
 /// masks say of themselves is the most that they may miss, thirty times what they do miss where a
 /// sliver is in doubt: as an error of its own (`CurveLikelihood`) it would drive a search away from
 /// the truth. `ready` and `monitor` must outlive it.
-PoseLighting quick_lighting(const Prepared &ready, unsigned threads, const Monitor &monitor);
+PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor);
 /// Who adds up, as of the light that the answer rests on; warns where that is not what was asked.
-ManifestInput::Light light_used(const Prepared &ready, const Scenario &scenario,
+ManifestInput::Light light_used(const SearchedLight &ready, const Scenario &scenario,
                                 Diagnostics &diagnostics);
 /// For later jobs; a cache that cannot be written costs time alone.
-void keep_masks(const Prepared &ready);
+void keep_masks(const SearchedLight &ready);
 /// How the search is run; `monitor` must outlive it.
 SearchOptions search_options(const Scenario &scenario, const InvertRequest &request,
                              const JobOptions &options, const Monitor &monitor);

@@ -16,6 +16,12 @@ std::string job_text(const Scenario &scenario, const std::vector<InputFile> &inp
   return out + more + "\n" + locked_scenario(scenario);
 }
 
+std::string signature_job(const Scenario &scenario, const std::vector<InputFile> &inputs,
+                          std::size_t cells, const std::string &device) {
+  return sha256_hex(
+      job_text(scenario, inputs, fmt::format("signature of {} cells{}", cells, device)));
+}
+
 Result<Journal> open_journal(const JobOptions &options, const std::string &job,
                              const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(out, Journal::open(options.journal, job));

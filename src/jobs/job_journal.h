@@ -15,6 +15,10 @@ namespace umov::jobs {
 std::string job_text(const Scenario &scenario, const std::vector<InputFile> &inputs,
                      const std::string &more);
 
+/// What a signature of a library is made from: SHA-256 of its job_text; `device` as of device_text.
+std::string signature_job(const Scenario &scenario, const std::vector<InputFile> &inputs,
+                          std::size_t cells, const std::string &device = {});
+
 /// The journal that the options name; says how much of the job is done already, or why it begins
 /// anew.
 Result<Journal> open_journal(const JobOptions &options, const std::string &job,

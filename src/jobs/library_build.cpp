@@ -225,8 +225,7 @@ Result<void> SignatureMaker::make(const std::string &path, const std::string &na
   asked.method = LightMethod::Masks;
   UMOV_ASSIGN(own, PoseLight::make(scenario, asked, options_, diagnostics_));
   UMOV_ASSIGN(by, device_text(options_.device));
-  const std::string job = sha256_hex(
-      job_text(scenario, own.inputs(), fmt::format("signature of {} cells{}", request_.cells, by)));
+  const std::string job = signature_job(scenario, own.inputs(), request_.cells, by);
   const fs::path file = fs::path(request_.folder) / (name + ".umovsig");
   if (file_exists(file))
     if (const auto kept = SignatureFile::open(file, true); kept && kept->view().text.job == job) {

@@ -12,6 +12,7 @@ namespace umov {
 /// What is not known beside the light itself.
 struct CurveErrors {
   double floor = 0.02;         ///< error of the model, in parts of I; half of it for q and u
+  double floor_q = -1;         ///< of q and u, if it is not that half; below 0: it is
   double floor_median = 0.01;  ///< more of it, in parts of the median I
   double zero_point_sd = 0.02; ///< of each band's zero point, relative
   double scale_sd = 0;         ///< of the common scale, relative; 0: any scale
@@ -19,6 +20,8 @@ struct CurveErrors {
   double outlier_share = 0;    ///< of measurements whose error is `outlier_factor` times as large
   double outlier_factor = 10;
   bool has_polarization = true; ///< q and u are used where they are measured
+  /// Error of the model in q and u.
+  [[nodiscard]] double of_q() const { return floor_q < 0 ? floor / 2 : floor_q; }
 };
 
 /// No measurement is taken for better than this part of I, whatever its errors say: what is left of

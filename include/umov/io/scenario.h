@@ -33,7 +33,7 @@ struct ScenarioOrbit {
 
 /// The mesh of an object, as its file has it.
 struct ScenarioMesh {
-  std::filesystem::path file;
+  std::filesystem::path file; ///< empty: the scenario says only where the object was
   std::string unit, up;
   NormalMode normals = NormalMode::Flat;
   double crease_deg = 35; ///< for meshes without vertex normals
@@ -133,6 +133,7 @@ struct LoadedObject {
 struct LoadOptions {
   bool allow_bad_checksum = false, allow_old_elements = false;
   bool source_is_sun = true; ///< false: a laser, for which a mirror is no matter of the disk
+  bool reads_shape = true;   ///< false: the orbit alone; attitude and scene stay empty
 };
 
 /// Reads the files that an object of a scenario names and compiles its scene.

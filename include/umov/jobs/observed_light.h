@@ -26,9 +26,11 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
 /// [m2/sr] up to a scale, q and u in the scattering plane. Epochs in the Earth's shadow
 /// and below the horizon are left out with a warning. BadInput for a scenario without orbit or
 /// observer, elements over 30 days away unless allowed, a band that it has not, and curves without
-/// an epoch in sunlight; Physics where the orbit cannot be had.
+/// an epoch in sunlight; Physics where the orbit cannot be had. Without `reads_shape` the object's
+/// mesh and materials are left alone: only where it was is asked.
 Result<ObservedLightCurve> observed_light_curve(const Scenario &scenario,
                                                 const std::vector<ObservationsFile> &files,
-                                                bool allow_old_elements, Diagnostics &diagnostics);
+                                                bool allow_old_elements, Diagnostics &diagnostics,
+                                                bool reads_shape = true);
 
 } // namespace umov::jobs

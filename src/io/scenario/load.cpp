@@ -302,6 +302,10 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
     out.inputs.insert(out.inputs.end(), scenario.band_files.begin(), scenario.band_files.end());
   }
   UMOV_TRY(load_orbit(of, options, diagnostics, out));
+  if (!options.reads_shape)
+    return out;
+  if (of.object.mesh.file.empty())
+    return fail(ErrorCode::BadInput, "[object] has no \"mesh\" (shape). Add it.", of.place("mesh"));
   UMOV_ASSIGN(read, load_mesh(of, diagnostics, out));
   UMOV_TRY(check_mtl(of, read));
   UMOV_TRY(check_material_keys(of, read.mesh));

@@ -94,9 +94,11 @@ std::string object(const ScenarioObject &o, const Scenario &s) {
   for (const auto &[key, value] : {std::pair{"unit", o.mesh.unit}, {"up", o.mesh.up}})
     if (!value.empty())
       frame += fmt::format("{} = {}, ", key, quoted(value));
-  out += fmt::format(
-      "mesh = {{ file = {}, {}normals = \"{}\", crease_deg = {} }}\n", absolute_path(o.mesh.file),
-      frame, o.mesh.normals == NormalMode::Smooth ? "smooth" : "flat", shortest(o.mesh.crease_deg));
+  if (!o.mesh.file.empty())
+    out += fmt::format("mesh = {{ file = {}, {}normals = \"{}\", crease_deg = {} }}\n",
+                       absolute_path(o.mesh.file), frame,
+                       o.mesh.normals == NormalMode::Smooth ? "smooth" : "flat",
+                       shortest(o.mesh.crease_deg));
   out += "attitude = " + scenario::attitude_toml(o.attitude) + "\n\n[object.materials]\n";
   for (const auto &[name, sides] : o.materials)
     out += fmt::format("{} = {{ front = {}, back = {} }}\n", quoted(name),

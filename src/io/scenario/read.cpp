@@ -258,7 +258,10 @@ Result<void> read_object(const Node &object, const fs::path &folder, Scenario &o
   ScenarioObject &one = out.objects.emplace_back();
   one.name = object.text("name", "");
   UMOV_TRY(read_orbit(object, folder, out));
-  UMOV_TRY(read_mesh(object, folder, out));
+  if (object.has("mesh"))
+    UMOV_TRY(read_mesh(object, folder, out));
+  else // where it was is enough for some questions; whoever asks for its shape is told
+    out.places[key_of(out, "mesh")] = object.where();
   if (object.has("attitude")) {
     UMOV_ASSIGN(node, object.child("attitude"));
     out.places[key_of(out, "attitude")] = object.where("attitude");

@@ -1,0 +1,362 @@
+#include <umov/inverse/identify.h>
+
+#include "inverse/quick_look.h"
+#include "inverse/sample_errors.h"
+#include "inverse/some_epochs.h"
+#include "inverse/turning_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <umov/core/parallel.h>
+
+namespace umov {
+
+using inverse::QuickLook;
+
+namespace {
+
+constexpr double least_log = -1e300;
+
+double log_sum(double a, double b) {
+  const double high = std::max(a, b), low = std::min(a, b);
+  return high > least_log ? high + std::log1p(std::exp(low - high)) : least_log;
+}
+
+double log_of(double x) { return x > 0 ? std::log(x) : least_log; }
+
+/// How far the light of a signature may be off for one curve: what its file tells is for all
+/// directions together, and a curve sees few of them. The same steps for all candidates, so that
+/// none wins by the size of its errors.
+constexpr double table_levels[] = {0.0125, 0.025, 0.05, 0.1, 0.2, 0.4};
+
+/// The least level that is no less than what a file tells.
+std::size_t level_of(double error) {
+  std::size_t k = 0;
+  while (k + 1 < std::size(table_levels) && table_levels[k] < error)
+    ++k;
+  return k;
+}
+
+/// Errors of light that is looked up between the nodes of a signature: of a few rows, glints
+/// between nodes, much more than of the others. Q/I is smoother than I.
+CurveErrors of_table(CurveErrors errors, double table) {
+  constexpr double q_error = 0.01, dim = 3, glints = 0.05;
+  errors.floor_q = std::hypot(errors.of_q(), q_error);
+  errors.floor = std::hypot(errors.floor, table);
+  errors.floor_median = std::hypot(errors.floor_median, table / dim);
+  errors.outlier_share = std::max(errors.outlier_share, glints);
+  return errors;
+}
+
+/// Errors of an object that is another's like in other colours.
+CurveErrors of_recoloured(CurveErrors errors) {
+  constexpr double colour = 0.3;
+  errors.zero_point_sd = std::hypot(errors.zero_point_sd, colour);
+  return errors;
+}
+
+/// Errors of an object that is like another, but not that one.
+CurveErrors of_kin(CurveErrors errors) {
+  constexpr double off = 0.25, off_median = 0.1, q_off = 0.03;
+  errors.floor_q = std::hypot(errors.of_q(), q_off);
+  errors.floor = std::hypot(errors.floor, off);
+  errors.floor_median = std::hypot(errors.floor_median, off_median);
+  return errors;
+}
+
+double log_evidence_of(const CurveLikelihood &likelihood, const ModelLight &light) {
+  return -(likelihood.compare(light).minus_2_log + likelihood.log_variance()) / 2;
+}
+
+/// ln evidence of an object that shows nothing of its attitude: constant, or a diffuse sphere
+/// (Lambert's phase function), of any colour and unpolarized.
+double featureless(const ObservedCurve &curve, CurveErrors errors) {
+  errors.zero_point_sd = 1;
+  const CurveLikelihood likelihood(curve, errors);
+  const std::size_t bands = curve.bands.size();
+  std::vector<double> even(curve.epochs.size() * bands, 1), sphere = even, none(even.size(), 0);
+  for (std::size_t e = 0; e < curve.epochs.size(); ++e) {
+    const double c = std::clamp(dot(curve.epochs[e].to_sun, curve.epochs[e].to_observer), -1., 1.);
+    const double a = std::acos(c);
+    for (std::size_t b = 0; b < bands; ++b)
+      sphere[e * bands + b] = (std::sin(a) + (pi - a) * c) / pi;
+  }
+  return log_sum(log_evidence_of(likelihood, {even, none, none}),
+                 log_evidence_of(likelihood, {sphere, none, none})) -
+         std::log(2.0);
+}
+
+/// ln of the mean over `of` attitudes of the likelihoods of those that matter.
+Result<double> mean_evidence(const CurveModel &model, const CurveLikelihood &likelihood,
+                             const std::vector<Turning> &best, std::span<const std::size_t> epochs,
+                             std::size_t of, unsigned threads) {
+  const auto compared = inverse::compare_all(model, likelihood, best, epochs, threads);
+  if (compared.empty())
+    return tl::unexpected(inverse::stopped());
+  double least = 1e300, sum = 0;
+  for (const Comparison &one : compared)
+    least = std::min(least, one.minus_2_log);
+  for (const Comparison &one : compared)
+    sum += std::exp(-(one.minus_2_log - least) / 2);
+  return -(least + likelihood.log_variance()) / 2 + std::log(sum / static_cast<double>(of));
+}
+
+/// Searches through a signature are smaller: it has no finer detail.
+SearchOptions search_of_table(SearchOptions options) {
+  constexpr std::size_t grid = 12'000, starts = 50, samples = 400;
+  options.grid = std::min(options.grid, grid);
+  options.starts = std::min(options.starts, starts);
+  options.samples = std::min(options.samples, samples);
+  options.progress = {};
+  return options;
+}
+
+/// One question on its way to its answer.
+class Identification {
+public:
+  Identification(const ObservedCurve &curve, const Candidates &candidates,
+                 const IdentifyOptions &options)
+      : curve_(curve), from_(candidates), options_(options),
+        look_(curve, options.search.errors, options.look_grid, options.look_epochs) {
+    out_.candidates.resize(candidates.count);
+  }
+
+  Result<IdentityAnswer> answer();
+
+private:
+  Result<void> look_at_all();
+  Result<void> rank_again();
+  Result<void> search(std::size_t k);
+  Result<void> ask_own_light();
+  void weigh();
+  Result<double> over_levels(const CurveModel &model, const CurveErrors &errors,
+                             std::size_t largest, PoseAnswer &answer) const;
+  void cut(std::vector<std::size_t> &ranked, std::size_t most, const std::vector<double> &by);
+  [[nodiscard]] std::vector<Turning> best_of(const Signature &signature,
+                                             std::span<const std::size_t> column) const;
+  void tell(const char *what, std::size_t done, std::size_t total) const {
+    if (options_.search.progress)
+      options_.search.progress(what, done, total);
+  }
+
+  const ObservedCurve &curve_;
+  const Candidates &from_;
+  const IdentifyOptions &options_;
+  QuickLook look_;
+  std::vector<std::size_t> left_;
+  std::vector<double> kin_; ///< ln evidence of something like a candidate, of those searched
+  IdentityAnswer out_;
+};
+
+/// Leaves the `most` best, and remembers whether the first that goes was hardly worse.
+void Identification::cut(std::vector<std::size_t> &ranked, std::size_t most,
+                         const std::vector<double> &by) {
+  std::ranges::stable_sort(ranked, [&](std::size_t a, std::size_t b) { return by[a] > by[b]; });
+  constexpr double hardly = 3; // e-folds
+  if (ranked.size() <= most)
+    return;
+  out_.is_cut = out_.is_cut || by[ranked[most]] > by[ranked.front()] - hardly;
+  ranked.resize(most);
+}
+
+Result<void> Identification::look_at_all() {
+  tell("look", 0, from_.count);
+  std::vector<Result<void>> done(from_.count);
+  constexpr std::size_t at_once = 64; // between two words of progress
+  for (std::size_t begin = 0; begin < from_.count; begin += at_once) {
+    const std::size_t count = std::min(at_once, from_.count - begin);
+    parallel_for(count, options_.search.threads, [&](std::size_t j) {
+      const std::size_t k = begin + j;
+      done[k] = from_.lend(k, [&](const Signature &s, std::span<const std::size_t> column) {
+        out_.candidates[k].look = QuickLook::log_evidence(look_.look(s, column));
+      });
+    });
+    for (std::size_t k = begin; k < begin + count; ++k)
+      UMOV_TRY(done[k]);
+    tell("look", begin + count, from_.count);
+  }
+  std::vector<double> by;
+  by.reserve(from_.count);
+  for (const CandidateFit &one : out_.candidates)
+    by.push_back(one.look);
+  left_.resize(from_.count);
+  std::iota(left_.begin(), left_.end(), std::size_t{0});
+  cut(left_, options_.shortlist, by);
+  return {};
+}
+
+std::vector<Turning> Identification::best_of(const Signature &signature,
+                                             std::span<const std::size_t> column) const {
+  constexpr std::size_t part = 10; // of the grid that is looked at again
+  std::vector<Turning> out;
+  const auto chi2 = look_.look(signature, column);
+  const auto best = QuickLook::best(chi2, std::max<std::size_t>(1, chi2.size() / part));
+  out.reserve(best.size());
+  for (const std::size_t k : best)
+    out.push_back({look_.attitude(k), {}});
+  return out;
+}
+
+/// The best of the look once more, with light between the nodes and more epochs.
+Result<void> Identification::rank_again() {
+  constexpr std::size_t most_epochs = 60;
+  const auto epochs = inverse::some_epochs(curve_.epochs.size(), most_epochs);
+  const CurveLikelihood likelihood(curve_, of_kin(options_.search.errors), epochs);
+  std::vector<double> by(from_.count, least_log);
+  for (std::size_t j = 0; j < left_.size(); ++j) {
+    tell("look again", j, left_.size());
+    Result<double> found = 0.0;
+    UMOV_TRY(from_.lend(left_[j], [&](const Signature &s, std::span<const std::size_t> column) {
+      const CurveModel model(curve_, lighting_of(s, options_.search.threads),
+                             {column.begin(), column.end()});
+      found = mean_evidence(model, likelihood, best_of(s, column), epochs, options_.look_grid,
+                            options_.search.threads);
+    }));
+    UMOV_TRY(found);
+    by[left_[j]] = *found;
+  }
+  cut(left_, options_.finalists, by);
+  return {};
+}
+
+/// ln evidence of one candidate's table, all sizes of its error alike before: found with the
+/// largest of them, and carried to the smaller ones by its samples.
+Result<double> Identification::over_levels(const CurveModel &model, const CurveErrors &errors,
+                                           std::size_t largest, PoseAnswer &answer) const {
+  SearchOptions options = search_of_table(options_.search);
+  options.errors = of_table(errors, table_levels[largest]);
+  UMOV_ASSIGN(found, search_pose(model, options));
+  answer = std::move(found);
+  std::vector<Turning> at;
+  at.reserve(answer.samples.size());
+  for (const PoseSample &sample : answer.samples)
+    at.push_back(sample.turning);
+  double all = least_log;
+  for (std::size_t level = 0; level <= largest; ++level) {
+    const CurveLikelihood likelihood(curve_, of_table(errors, table_levels[level]));
+    const auto compared = inverse::compare_all(model, likelihood, at, {}, options.threads);
+    if (compared.empty())
+      return tl::unexpected(inverse::stopped());
+    double moved = least_log;
+    for (std::size_t k = 0; k < at.size(); ++k)
+      moved = log_sum(moved, log_of(answer.samples[k].weight) +
+                                 (answer.samples[k].minus_2_log - compared[k].minus_2_log) / 2);
+    all = log_sum(all, answer.log_evidence + moved - likelihood.log_variance() / 2);
+  }
+  return all - std::log(static_cast<double>(std::size(table_levels)));
+}
+
+/// Attitudes of one candidate through its signature, and the evidence of something like it.
+Result<void> Identification::search(std::size_t k) {
+  CandidateFit &fit = out_.candidates[k];
+  const CurveErrors &errors = options_.search.errors;
+  const unsigned threads = options_.search.threads;
+  Result<double> own = 0.0, recoloured = 0.0, like = 0.0;
+  UMOV_TRY(from_.lend(k, [&](const Signature &s, std::span<const std::size_t> column) {
+    const CurveModel model(curve_, lighting_of(s, threads), {column.begin(), column.end()});
+    like = mean_evidence(model, CurveLikelihood(curve_, of_kin(errors)), best_of(s, column), {},
+                         options_.look_grid, threads);
+    PoseAnswer unused;
+    own = over_levels(model, errors, level_of(s.error), fit.answer);
+    recoloured = over_levels(model, of_recoloured(errors), level_of(s.error), unused);
+  }));
+  UMOV_TRY(like);
+  UMOV_TRY(own);
+  UMOV_TRY(recoloured);
+  fit.by = JudgedBy::Table;
+  fit.log_evidence = *own;
+  kin_.push_back(log_sum(*like, *recoloured) - std::log(2.0));
+  return {};
+}
+
+/// Those that the tables hardly tell apart are asked, and whoever leads then.
+Result<void> Identification::ask_own_light() {
+  constexpr double hardly = 30; // e-folds
+  const auto rank = [&](std::size_t k) { return out_.candidates[k].log_evidence; };
+  std::ranges::stable_sort(left_, std::ranges::greater{}, rank);
+  const double line = left_.empty() ? 0 : rank(left_.front()) - hardly;
+  std::vector<std::size_t> waiting = left_;
+  for (std::size_t asked = 0; options_.own_light && asked < options_.own && !waiting.empty();) {
+    const std::size_t next = waiting.front();
+    const std::size_t best = *std::ranges::max_element(left_, {}, rank);
+    if (rank(next) < line && next != best)
+      return {};
+    waiting.erase(waiting.begin());
+    tell("own light", asked, options_.own);
+    UMOV_ASSIGN(own, options_.own_light(next));
+    if (!own)
+      continue;
+    ++asked;
+    CandidateFit &fit = out_.candidates[next];
+    fit.by = JudgedBy::Model;
+    fit.answer = std::move(own->answer);
+    fit.log_evidence = fit.answer.log_evidence - own->log_variance / 2;
+  }
+  return {};
+}
+
+void Identification::weigh() {
+  const double each = (1 - options_.none_prior) / static_cast<double>(from_.count);
+  double kin = least_log;
+  for (const double one : kin_)
+    kin = log_sum(kin, one - std::log(static_cast<double>(from_.count)));
+  out_.none_log_evidence =
+      log_sum(kin, featureless(curve_, options_.search.errors)) - std::log(2.0);
+  double all = log_of(options_.none_prior) + out_.none_log_evidence;
+  for (CandidateFit &fit : out_.candidates)
+    if (fit.by == JudgedBy::Look)
+      fit.log_evidence = std::nan("");
+    else
+      all = log_sum(all, log_of(each) + fit.log_evidence);
+  for (const std::size_t k : left_)
+    out_.candidates[k].probability = std::exp(log_of(each) + out_.candidates[k].log_evidence - all);
+  out_.none = std::exp(log_of(options_.none_prior) + out_.none_log_evidence - all);
+  out_.order.resize(from_.count);
+  std::iota(out_.order.begin(), out_.order.end(), std::size_t{0});
+  std::ranges::stable_sort(out_.order, [&](std::size_t a, std::size_t b) {
+    const CandidateFit &x = out_.candidates[a], &y = out_.candidates[b];
+    const bool is_x = x.by != JudgedBy::Look, is_y = y.by != JudgedBy::Look;
+    if (is_x != is_y)
+      return is_x;
+    return is_x ? x.log_evidence > y.log_evidence : x.look > y.look;
+  });
+}
+
+Result<IdentityAnswer> Identification::answer() {
+  UMOV_TRY(look_at_all());
+  UMOV_TRY(rank_again());
+  for (std::size_t j = 0; j < left_.size(); ++j) {
+    tell("search", j, left_.size());
+    UMOV_TRY(search(left_[j]));
+  }
+  UMOV_TRY(ask_own_light());
+  weigh();
+  return std::move(out_);
+}
+
+} // namespace
+
+const char *name_of(JudgedBy by) {
+  switch (by) {
+  case JudgedBy::Table:
+    return "table";
+  case JudgedBy::Model:
+    return "model";
+  case JudgedBy::Look:
+    break;
+  }
+  return "look";
+}
+
+Result<IdentityAnswer> identify(const ObservedCurve &curve, const Candidates &candidates,
+                                const IdentifyOptions &options) {
+  if (CurveLikelihood(curve, options.search.errors).measurements() == 0)
+    return fail(ErrorCode::BadInput,
+                "nothing was measured: no row has light with an error or above 0, nor q and u");
+  if (candidates.count == 0)
+    return fail(ErrorCode::BadInput, "there is no object to choose from");
+  return Identification(curve, candidates, options).answer();
+}
+
+} // namespace umov

@@ -1,0 +1,232 @@
+#include <umov/jobs/identify.h>
+
+#include "jobs/identify_tables.h"
+#include "jobs/invert_light.h"
+#include "jobs/invert_tables.h"
+#include "jobs/job_journal.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <map>
+#include <umov/core/text.h>
+#include <umov/io/signature_file.h>
+
+namespace umov::jobs {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where in `known` the bands of a curve stand; BadInput for one that is not there.
+Result<std::vector<std::size_t>> columns_in(const std::vector<std::string> &known,
+                                            const ObservedCurve &curve, const std::string &file) {
+  std::vector<std::size_t> out;
+  out.reserve(curve.bands.size());
+  for (const std::string &band : curve.bands) {
+    const auto at = std::ranges::find(known, band);
+    if (at == known.end())
+      return fail(ErrorCode::BadInput,
+                  fmt::format("has no light in band \"{}\", in which the object was observed; it "
+                              "has {}. Build the library with that band in its scenarios",
+                              printable(band), fmt::join(known, ", ")),
+                  {file});
+    out.push_back(static_cast<std::size_t>(at - known.begin()));
+  }
+  return out;
+}
+
+/// Files of a folder, as candidates.
+class Library {
+public:
+  static Result<Library> open(const std::string &folder);
+
+  [[nodiscard]] std::size_t size() const { return files_.size(); }
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] const fs::path &file(std::size_t k) const { return files_[k]; }
+  /// Lends the signature of a file that is mapped for as long as it is looked at. No two threads
+  /// may have the same one.
+  Result<void> lend(std::size_t k, const ObservedCurve &curve, const LookAtCandidate &look);
+  /// Errors of the tables that were lent.
+  [[nodiscard]] const std::vector<double> &errors() const { return errors_; }
+  /// SHA-256 of what the objects that were lent were made from.
+  [[nodiscard]] std::string identity() const;
+
+private:
+  std::vector<fs::path> files_;
+  std::vector<double> errors_;
+  std::vector<std::string> jobs_;
+};
+
+Result<Library> Library::open(const std::string &folder) {
+  Library out;
+  std::error_code problem;
+  for (auto at = fs::directory_iterator(folder, problem);
+       !problem && at != fs::directory_iterator(); at.increment(problem))
+    if (at->path().extension() == ".umovsig")
+      out.files_.push_back(at->path());
+  if (problem)
+    return fail(ErrorCode::BadInput, "cannot read the folder: " + problem.message(), {folder});
+  if (out.files_.empty())
+    return fail(ErrorCode::BadInput,
+                "holds no signature (NAME.umovsig): make some with umov library build", {folder});
+  std::ranges::sort(out.files_);
+  out.errors_.resize(out.files_.size());
+  out.jobs_.resize(out.files_.size());
+  return out;
+}
+
+std::vector<std::string> Library::names() const {
+  std::vector<std::string> out;
+  out.reserve(files_.size());
+  for (const fs::path &file : files_)
+    out.push_back(file.stem().string());
+  return out;
+}
+
+std::string Library::identity() const {
+  std::string all;
+  for (std::size_t k = 0; k < files_.size(); ++k)
+    all += files_[k].stem().string() + " " + jobs_[k] + "\n";
+  return sha256_hex(all);
+}
+
+Result<void> Library::lend(std::size_t k, const ObservedCurve &curve, const LookAtCandidate &look) {
+  UMOV_ASSIGN(file, SignatureFile::open(files_[k]));
+  errors_[k] = file.view().signature.error;
+  jobs_[k] = file.view().text.job;
+  UMOV_ASSIGN(columns, columns_in(file.view().text.bands, curve, files_[k].string()));
+  look(file.view().signature, columns);
+  return {};
+}
+
+/// Own light of candidates whose scenarios are named.
+class OwnLights {
+public:
+  OwnLights(const IdentifyRequest &request, const JobOptions &options, const Monitor &monitor,
+            Diagnostics &diagnostics)
+      : request_(request), options_(options), monitor_(monitor), diagnostics_(diagnostics) {}
+
+  /// Which scenario belongs to which object; Usage for one that has none.
+  Result<void> assign(const Library &library);
+  Result<std::optional<OwnAnswer>> answer(const Library &library, std::size_t k,
+                                          const ObservedCurve &curve, const SearchOptions &search);
+  /// Light of a candidate that has answered.
+  [[nodiscard]] const SearchedLight *light(std::size_t k) const {
+    const auto at = lights_.find(k);
+    return at == lights_.end() ? nullptr : &at->second;
+  }
+  [[nodiscard]] const std::vector<std::size_t> &columns(std::size_t k) const {
+    return columns_.at(k);
+  }
+
+private:
+  const IdentifyRequest &request_;
+  const JobOptions &options_;
+  const Monitor &monitor_;
+  Diagnostics &diagnostics_;
+  std::map<std::size_t, std::string> scenarios_;
+  std::map<std::size_t, SearchedLight> lights_;
+  std::map<std::size_t, std::vector<std::size_t>> columns_;
+};
+
+Result<void> OwnLights::assign(const Library &library) {
+  const auto names = library.names();
+  for (const std::string &path : request_.objects) {
+    const std::string name = fs::path(path).stem().string();
+    const auto at = std::ranges::find(names, name);
+    if (at == names.end()) {
+      const auto near = nearest_name(name, names);
+      return fail(ErrorCode::Usage,
+                  fmt::format("--objects {}: the library has no object of that name{}",
+                              printable(path),
+                              near ? fmt::format("; did you mean \"{}\"?", printable(*near)) : ""));
+    }
+    scenarios_[static_cast<std::size_t>(at - names.begin())] = path;
+  }
+  return {};
+}
+
+Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::size_t k,
+                                                   const ObservedCurve &curve,
+                                                   const SearchOptions &search) {
+  const auto named = scenarios_.find(k);
+  if (named == scenarios_.end())
+    return std::optional<OwnAnswer>();
+  UMOV_ASSIGN(scenario, read_scenario(named->second, {}));
+  std::vector<std::string> bands;
+  for (const Band &band : scenario.bands)
+    bands.push_back(band.name);
+  UMOV_ASSIGN(columns, columns_in(bands, curve, named->second));
+  UMOV_ASSIGN(made, prepare_light(scenario, request_.observed, options_, diagnostics_));
+  UMOV_ASSIGN(file, SignatureFile::open(library.file(k)));
+  if (file.view().text.job !=
+      signature_job(scenario, made.light.inputs(), file.view().signature.cells))
+    diagnostics_.warn("is not what its signature was made from, or another umov made that; its own "
+                      "light is taken as it is now",
+                      {named->second});
+  const SearchedLight &light = lights_.emplace(k, std::move(made)).first->second;
+  columns_[k] = columns;
+  const CurveModel model(curve, lighting_of(light.light, options_.threads, monitor_), columns);
+  const CurveModel quick(curve, quick_lighting(light, options_.threads, monitor_), columns);
+  UMOV_ASSIGN(found, search_pose(model, quick, search));
+  keep_masks(light);
+  return std::optional(
+      OwnAnswer{std::move(found), CurveLikelihood(curve, search.errors).log_variance()});
+}
+
+} // namespace
+
+Result<Inversion> identify_object(const Scenario &scenario, const IdentifyRequest &request,
+                                  const JobOptions &options, const Monitor &monitor,
+                                  Diagnostics &diagnostics) {
+  UMOV_ASSIGN(library, Library::open(request.library));
+  OwnLights own(request, options, monitor, diagnostics);
+  UMOV_TRY(own.assign(library));
+  Inversion out;
+  UMOV_ASSIGN(files, read_observations(request.observed.observations, out.inputs, diagnostics));
+  UMOV_ASSIGN(observed, observed_light_curve(scenario, files, request.observed.allow_old_elements,
+                                             diagnostics, false));
+  const ObservedCurve &curve = observed.curve;
+  IdentifyOptions how;
+  how.search = search_options(scenario, request.observed, options, monitor);
+  how.none_prior = request.none_prior;
+  SearchOptions own_search = how.search;
+  own_search.progress = {};
+  how.own_light = [&](std::size_t k) { return own.answer(library, k, curve, own_search); };
+  const Candidates candidates{
+      library.size(), [&](std::size_t k, const LookAtCandidate &look) -> Result<void> {
+        if (monitor.is_cancelled())
+          return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+        return library.lend(k, curve, look);
+      }};
+  UMOV_ASSIGN(answer, identify(curve, candidates, how));
+  IdentityWords words{library.names(), library.errors(), &answer, verdict_of(answer, curve), {}};
+  words.notes = notes_of(words, curve);
+  const std::size_t best = answer.order.front();
+  const PoseAnswer &pose = answer.candidates[best].answer;
+  Table fit;
+  if (const SearchedLight *light = own.light(best)) {
+    const CurveModel model(curve, lighting_of(light->light, options.threads, monitor),
+                           own.columns(best));
+    fit = fit_table(observed, model, pose, request.observed.errors);
+  } else {
+    UMOV_TRY(library.lend(best, curve, [&](const Signature &s, std::span<const std::size_t> c) {
+      const CurveModel model(curve, lighting_of(s, options.threads), {c.begin(), c.end()});
+      fit = fit_table(observed, model, pose, request.observed.errors);
+    }));
+  }
+  out.verdict = words.verdict;
+  out.summary = summary_of(words);
+  out.json = json_of(words, library.identity());
+  out.tables = {{"identity", identity_table(words)},
+                {"modes", modes_table(pose, false)},
+                {"fit", std::move(fit)}};
+  out.page = page_of(fmt::format("Which object: {} at its best", printable(words.names[best])),
+                     out.tables[2].table, out.tables[1].table, out.summary);
+  out.inputs.insert(out.inputs.end(), observed.inputs.begin(), observed.inputs.end());
+  out.seed = scenario.seed;
+  return out;
+}
+
+} // namespace umov::jobs

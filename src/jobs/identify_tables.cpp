@@ -1,0 +1,159 @@
+#include "jobs/identify_tables.h"
+
+#include "jobs/invert_tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <umov/core/text.h>
+#include <umov/core/version.h>
+
+namespace umov::jobs {
+namespace {
+
+double dof_of(const PoseAnswer &answer) {
+  return static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
+}
+
+/// The candidate that leads; nothing if none was searched.
+const CandidateFit &best_of(const IdentityWords &words) {
+  return words.answer->candidates[words.answer->order.front()];
+}
+
+const std::string &best_name(const IdentityWords &words) {
+  return words.names[words.answer->order.front()];
+}
+
+} // namespace
+
+Table identity_table(const IdentityWords &words) {
+  const IdentityAnswer &answer = *words.answer;
+  std::vector<std::string> name, by;
+  std::vector<double> probability, log_evidence, chi2, look;
+  bool has_none = false;
+  const auto add_none = [&] {
+    has_none = true;
+    name.emplace_back(none_of_these);
+    by.emplace_back("kin");
+    probability.push_back(answer.none);
+    log_evidence.push_back(answer.none_log_evidence);
+    chi2.push_back(std::nan(""));
+    look.push_back(std::nan(""));
+  };
+  for (const std::size_t k : answer.order) {
+    const CandidateFit &fit = answer.candidates[k];
+    if (!has_none && answer.none > fit.probability)
+      add_none();
+    name.push_back(words.names[k]);
+    by.emplace_back(name_of(fit.by));
+    probability.push_back(fit.probability);
+    log_evidence.push_back(fit.log_evidence);
+    chi2.push_back(fit.by == JudgedBy::Look ? std::nan("") : fit.answer.chi2);
+    look.push_back(fit.look);
+  }
+  if (!has_none)
+    add_none();
+  Table out;
+  out.add("name", "", "of the object in the library", std::move(name));
+  out.add("probability", "", "they add up to 1; 0 for what the look left out",
+          std::move(probability));
+  out.add("by", "",
+          "look: left behind by it; table: its signature; model: its own light; kin: see "
+          "docs/theory/inverse.md",
+          std::move(by));
+  out.add("log_evidence", "", "ln of the evidence, up to one constant", std::move(log_evidence));
+  out.add("chi2", "", "of its best attitude", std::move(chi2));
+  out.add("log_look", "", "ln evidence of the quick look", std::move(look));
+  return out;
+}
+
+Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve) {
+  constexpr double sure = 0.95;
+  const double best = answer.candidates[answer.order.front()].probability;
+  if (answer.none > sure && curve.epochs.size() > 1)
+    return Verdict::NoFit;
+  if (is_steady(curve) || answer.is_cut || answer.none > best)
+    return Verdict::Undetermined;
+  return best > sure && curve.epochs.size() > 1 ? Verdict::Determined : Verdict::Ambiguous;
+}
+
+std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve) {
+  std::vector<std::string> out = limits_of(curve);
+  const CandidateFit &best = best_of(words);
+  if (best.by == JudgedBy::Table)
+    out.push_back(fmt::format(
+        "{} was judged through the library's table, whose light is off by {} % between its "
+        "directions: an object that differs from it by less cannot be told from it. Name its "
+        "scenario (--objects) and its own light decides",
+        printable(best_name(words)), percent(words.table_errors[words.answer->order.front()])));
+  if (words.answer->is_cut)
+    out.emplace_back("objects that were left out of the search seem hardly worse than those that "
+                     "were searched: the data do not tell that many apart");
+  const double dof = dof_of(best.answer);
+  constexpr double unlikely = 1e-6;
+  if (best.answer.chi2 > 2 * dof && chi2_probability(best.answer.chi2, dof) < unlikely)
+    out.push_back(fmt::format("{} explains the data badly: chi-square {:.4g} of {:.0f} degrees of "
+                              "freedom",
+                              printable(best_name(words)), best.answer.chi2, dof));
+  if (words.verdict == Verdict::NoFit)
+    out.emplace_back("no object of the library in any attitude explains the data as well as one "
+                     "that is like them but not among them");
+  return out;
+}
+
+std::string summary_of(const IdentityWords &words) {
+  const IdentityAnswer &answer = *words.answer;
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(
+      answer.candidates, [](const CandidateFit &fit) { return fit.by != JudgedBy::Look; }));
+  std::string out = fmt::format("{}: ", name_of(words.verdict));
+  constexpr double told = 0.01;
+  for (const std::size_t k : answer.order)
+    if (answer.candidates[k].probability > told)
+      out += fmt::format("{} {} %, ", printable(words.names[k]),
+                         percent(answer.candidates[k].probability));
+  out += fmt::format("{} {} %. {} looked at, {} searched\n", none_of_these, percent(answer.none),
+                     counted(words.names.size(), "object"), count);
+  const PoseAnswer &fit = best_of(words).answer;
+  out += fmt::format("{}: chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g})\n",
+                     printable(best_name(words)), fit.chi2, dof_of(fit),
+                     chi2_probability(fit.chi2, dof_of(fit)));
+  for (const std::string &note : words.notes)
+    out += "- " + note + "\n";
+  return out;
+}
+
+std::string json_of(const IdentityWords &words, const std::string &library) {
+  using nlohmann::ordered_json;
+  const IdentityAnswer &answer = *words.answer;
+  const PoseAnswer &fit = best_of(words).answer;
+  ordered_json out;
+  out["program"] = "umov";
+  out["version"] = version;
+  out["question"] = "identity";
+  out["verdict"] = name_of(words.verdict);
+  out["best"] = best_name(words);
+  out["probability"] = best_of(words).probability;
+  out["none_of_these"] = answer.none;
+  out["chi2"] = fit.chi2;
+  out["dof"] = dof_of(fit);
+  out["p_value"] = chi2_probability(fit.chi2, dof_of(fit));
+  out["log_evidence"] = best_of(words).log_evidence;
+  out["none_log_evidence"] = answer.none_log_evidence;
+  out["objects"] = words.names.size();
+  out["library_sha256"] = library;
+  out["is_cut"] = answer.is_cut;
+  out["by"] = name_of(best_of(words).by);
+  ordered_json rows = ordered_json::array();
+  for (const std::size_t k : answer.order)
+    if (answer.candidates[k].by != JudgedBy::Look)
+      rows.push_back({{"name", words.names[k]},
+                      {"probability", answer.candidates[k].probability},
+                      {"log_evidence", answer.candidates[k].log_evidence},
+                      {"by", name_of(answer.candidates[k].by)}});
+  out["searched"] = rows;
+  out["notes"] = words.notes;
+  return out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+} // namespace umov::jobs

@@ -1,0 +1,32 @@
+#pragma once
+// Private: which object it was, as a table and in words.
+
+#include <umov/inverse/identify.h>
+#include <umov/jobs/invert.h>
+
+namespace umov::jobs {
+
+/// Everything that identity.ecsv, the summary and verdict.json say.
+struct IdentityWords {
+  std::vector<std::string> names;   ///< of the candidates, as they were given
+  std::vector<double> table_errors; ///< of their signatures
+  const IdentityAnswer *answer = nullptr;
+  Verdict verdict = Verdict::Undetermined;
+  std::vector<std::string> notes;
+};
+
+/// The name of the row that stands for none of the library.
+inline constexpr const char *none_of_these = "none of these";
+
+/// identity.ecsv: most probable first, none of these among them.
+Table identity_table(const IdentityWords &words);
+/// Determined: one object holds over 95 %; NoFit: none of these does. What a steady curve or one
+/// epoch says of a name is never more than Ambiguous.
+Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve);
+/// What the answer rests on, and what it cannot tell.
+std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve);
+std::string summary_of(const IdentityWords &words);
+/// `library`: SHA-256 of what its objects were made from.
+std::string json_of(const IdentityWords &words, const std::string &library);
+
+} // namespace umov::jobs
