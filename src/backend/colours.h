@@ -18,9 +18,7 @@ inline constexpr double mask_alike = 4e-3F;
 
 /// Columns of a pose's light over the bands, per unit of area; var_* are squared standard
 /// deviations, `bias` a bound of what is known to be left out of I.
-template <class T> struct LightColumns {
-  T *i, *q, *u, *v, *var_i, *var_q, *var_u, *var_v, *bias;
-};
+template <class T> struct LightColumns { T *i, *q, *u, *v, *var_i, *var_q, *var_u, *var_v, *bias; };
 
 /// Sums of a slot over the facets, with their standard deviations.
 template <class T> struct SlotSums {
@@ -33,12 +31,12 @@ template <class T> struct SlotSums {
 template <class T> struct SlotColour {
   std::uint32_t bands = 0, column = 0, product_count = 0; ///< column: first of its reflections
   bool has_lobe = false, has_single_bounce = false, has_emission = false;
-  bool is_plain = false;             ///< one lobe for all bands and at most one product
-  bool is_intensity_only = false;    ///< Q is left 0
-  View<const std::uint32_t> lobe;    ///< per band
-  View<const T> single_bounce;       ///< [product * bands + band], as those below
-  View<const T> whole;               ///< with what is unpolarized
-  View<const T> q, u;                ///< of emission
+  bool is_plain = false;          ///< one lobe for all bands and at most one product
+  bool is_intensity_only = false; ///< Q is left 0
+  View<const std::uint32_t> lobe; ///< per band
+  View<const T> single_bounce;    ///< [product * bands + band], as those below
+  View<const T> whole;            ///< with what is unpolarized
+  View<const T> q, u;             ///< of emission
   T diffuse_error = 0;
 };
 
@@ -62,8 +60,7 @@ UMOV_KERNEL double incidence_cosine(double cos_phase) {
 }
 
 /// M00 and M10 of all columns.
-template <class T>
-UMOV_KERNEL void reflect(const ReflectionTable<T> &table, T cosine, T *a, T *b) {
+template <class T> UMOV_KERNEL void reflect(const ReflectionTable<T> &table, T cosine, T *a, T *b) {
   const T x = cosine * static_cast<T>(table.steps);
   std::size_t first = static_cast<std::size_t>(x);
   first = (first < 1 ? 1 : first > table.steps - 2 ? table.steps - 2 : first) - 1;
