@@ -11,7 +11,7 @@
 namespace umov::mesh_io {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr int number_float = 5126, number_uint = 5125, for_vertices = 34962, for_indices = 34963;
 
@@ -26,13 +26,13 @@ public:
   explicit Writer(const Mesh &mesh) : mesh_(mesh) {}
   void write();
 
-  Json json;
+  OrderedJson json;
   std::string buffer;
 
 private:
   std::size_t node(const std::string &path);
   std::size_t material(const std::string &name);
-  Json primitive(const std::vector<Side> &sides);
+  OrderedJson primitive(const std::vector<Side> &sides);
   std::size_t accessor(const std::string &bytes, std::size_t count, const char *type, int target);
 
   const Mesh &mesh_;
@@ -82,7 +82,7 @@ std::size_t Writer::accessor(const std::string &bytes, std::size_t count, const 
   return json["accessors"].size() - 1;
 }
 
-Json Writer::primitive(const std::vector<Side> &sides) {
+OrderedJson Writer::primitive(const std::vector<Side> &sides) {
   std::map<std::array<std::uint32_t, 2>, std::uint32_t> place;
   std::string positions, normals, indices;
   std::array<float, 3> low{}, high{};
@@ -107,7 +107,7 @@ Json Writer::primitive(const std::vector<Side> &sides) {
         for (const float value : turned(mesh_.normals[key[1]]))
           append(normals, value);
     }
-  Json out;
+  OrderedJson out;
   out["attributes"]["POSITION"] = accessor(positions, place.size(), "VEC3", for_vertices);
   json["accessors"].back()["min"] = low; // required for positions
   json["accessors"].back()["max"] = high;
@@ -130,7 +130,7 @@ void Writer::write() {
     if (sides[g].empty())
       continue;
     const std::size_t at = node(mesh_.nodes.empty() ? "object" : mesh_.nodes[g]);
-    Json one = primitive(sides[g]);
+    OrderedJson one = primitive(sides[g]);
     one["material"] = material(mesh_.groups[g]);
     if (!json["nodes"][at].contains("mesh")) {
       json["nodes"][at]["mesh"] = json["meshes"].size();
@@ -159,7 +159,7 @@ std::string in_base64(const std::string &bytes) {
 std::string write_glb(const Mesh &mesh) {
   Writer writer(mesh);
   writer.write();
-  std::string json = writer.json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string json = writer.json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
   json.resize((json.size() + 3) / 4 * 4, ' ');
   writer.buffer.resize((writer.buffer.size() + 3) / 4 * 4, '\0');
   std::string out = "glTF";
@@ -177,7 +177,7 @@ std::string write_gltf(const Mesh &mesh) {
   writer.write();
   writer.json["buffers"][0]["uri"] =
       "data:application/octet-stream;base64," + in_base64(writer.buffer);
-  return writer.json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return writer.json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 } // namespace umov::mesh_io
