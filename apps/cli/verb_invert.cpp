@@ -46,9 +46,9 @@ Result<void> print(const jobs::Inversion &found, const InvertVerb &o) {
 
 void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   CurveErrors &errors = o->request.errors;
-  verb.add_option(
-          "observations", o->request.observations,
-          "Light curves (ECSV or CSV), of umov reduce, umov run or your own: one fit of all")
+  verb.add_option("observations", o->request.observations,
+                  "Light curves (ECSV, CSV, FITS or TDM), of umov reduce, umov run or your own: "
+                  "one fit of all")
       ->required();
   verb.add_option("--scenario", o->scenario, "Object, materials, orbit, site and bands")
       ->required();

@@ -1,7 +1,7 @@
 #include <umov/inverse/identify.h>
 
+#include "inverse/identity_evidence.h"
 #include "inverse/quick_look.h"
-#include "inverse/sample_errors.h"
 #include "inverse/some_epochs.h"
 #include "inverse/turning_fit.h"
 
@@ -12,103 +12,18 @@
 
 namespace umov {
 
+using inverse::least_log;
+using inverse::log_of;
+using inverse::log_sum;
+using inverse::mean_evidence;
+using inverse::of_kin;
 using inverse::QuickLook;
 
 namespace {
 
-constexpr double least_log = -1e300;
-
-double log_sum(double a, double b) {
-  const double high = std::max(a, b), low = std::min(a, b);
-  return high > least_log ? high + std::log1p(std::exp(low - high)) : least_log;
-}
-
-double log_of(double x) { return x > 0 ? std::log(x) : least_log; }
-
-/// How far the light of a signature may be off for one curve: what its file tells is for all
-/// directions together, and a curve sees few of them. The same steps for all candidates, so that
-/// none wins by the size of its errors.
-constexpr double table_levels[] = {0.0125, 0.025, 0.05, 0.1, 0.2, 0.4};
-
-/// The least level that is no less than what a file tells.
-std::size_t level_of(double error) {
-  std::size_t k = 0;
-  while (k + 1 < std::size(table_levels) && table_levels[k] < error)
-    ++k;
-  return k;
-}
-
-/// Errors of light that is looked up between the nodes of a signature: of a few rows, glints
-/// between nodes, much more than of the others. Q/I is smoother than I.
-CurveErrors of_table(CurveErrors errors, double table) {
-  constexpr double q_error = 0.01, dim = 3, glints = 0.05;
-  errors.floor_q = std::hypot(errors.of_q(), q_error);
-  errors.floor = std::hypot(errors.floor, table);
-  errors.floor_median = std::hypot(errors.floor_median, table / dim);
-  errors.outlier_share = std::max(errors.outlier_share, glints);
-  return errors;
-}
-
-/// Errors of an object that is another's like in other colours.
-CurveErrors of_recoloured(CurveErrors errors) {
-  constexpr double colour = 0.3;
-  errors.zero_point_sd = std::hypot(errors.zero_point_sd, colour);
-  return errors;
-}
-
-/// Errors of an object that is like another, but not that one.
-CurveErrors of_kin(CurveErrors errors) {
-  constexpr double off = 0.25, off_median = 0.1, q_off = 0.03;
-  errors.floor_q = std::hypot(errors.of_q(), q_off);
-  errors.floor = std::hypot(errors.floor, off);
-  errors.floor_median = std::hypot(errors.floor_median, off_median);
-  return errors;
-}
-
-double log_evidence_of(const CurveLikelihood &likelihood, const ModelLight &light) {
-  return -(likelihood.compare(light).minus_2_log + likelihood.log_variance()) / 2;
-}
-
-/// ln evidence of an object that shows nothing of its attitude: constant, or a diffuse sphere
-/// (Lambert's phase function), of any colour and unpolarized.
-double featureless(const ObservedCurve &curve, CurveErrors errors) {
-  errors.zero_point_sd = 1;
-  const CurveLikelihood likelihood(curve, errors);
-  const std::size_t bands = curve.bands.size();
-  std::vector<double> even(curve.epochs.size() * bands, 1), sphere = even, none(even.size(), 0);
-  for (std::size_t e = 0; e < curve.epochs.size(); ++e) {
-    const double c = std::clamp(dot(curve.epochs[e].to_sun, curve.epochs[e].to_observer), -1., 1.);
-    const double a = std::acos(c);
-    for (std::size_t b = 0; b < bands; ++b)
-      sphere[e * bands + b] = (std::sin(a) + (pi - a) * c) / pi;
-  }
-  return log_sum(log_evidence_of(likelihood, {even, none, none}),
-                 log_evidence_of(likelihood, {sphere, none, none})) -
-         std::log(2.0);
-}
-
-/// ln of the mean over `of` attitudes of the likelihoods of those that matter.
-Result<double> mean_evidence(const CurveModel &model, const CurveLikelihood &likelihood,
-                             const std::vector<Turning> &best, std::span<const std::size_t> epochs,
-                             std::size_t of, unsigned threads) {
-  const auto compared = inverse::compare_all(model, likelihood, best, epochs, threads);
-  if (compared.empty())
-    return tl::unexpected(inverse::stopped());
-  double least = 1e300, sum = 0;
-  for (const Comparison &one : compared)
-    least = std::min(least, one.minus_2_log);
-  for (const Comparison &one : compared)
-    sum += std::exp(-(one.minus_2_log - least) / 2);
-  return -(least + likelihood.log_variance()) / 2 + std::log(sum / static_cast<double>(of));
-}
-
-/// Searches through a signature are smaller: it has no finer detail.
-SearchOptions search_of_table(SearchOptions options) {
-  constexpr std::size_t grid = 12'000, starts = 50, samples = 400;
-  options.grid = std::min(options.grid, grid);
-  options.starts = std::min(options.starts, starts);
-  options.samples = std::min(options.samples, samples);
-  options.progress = {};
+/// The same search where colours may be others.
+SearchOptions recoloured_search(SearchOptions options) {
+  options.errors = inverse::of_recoloured(options.errors);
   return options;
 }
 
@@ -130,8 +45,6 @@ private:
   Result<void> search(std::size_t k);
   Result<void> ask_own_light();
   void weigh();
-  Result<double> over_levels(const CurveModel &model, const CurveErrors &errors,
-                             std::size_t largest, PoseAnswer &answer) const;
   void cut(std::vector<std::size_t> &ranked, std::size_t most, const std::vector<double> &by);
   [[nodiscard]] std::vector<Turning> best_of(const Signature &signature,
                                              std::span<const std::size_t> column) const;
@@ -220,33 +133,6 @@ Result<void> Identification::rank_again() {
   return {};
 }
 
-/// ln evidence of one candidate's table, all sizes of its error alike before: found with the
-/// largest of them, and carried to the smaller ones by its samples.
-Result<double> Identification::over_levels(const CurveModel &model, const CurveErrors &errors,
-                                           std::size_t largest, PoseAnswer &answer) const {
-  SearchOptions options = search_of_table(options_.search);
-  options.errors = of_table(errors, table_levels[largest]);
-  UMOV_ASSIGN(found, search_pose(model, options));
-  answer = std::move(found);
-  std::vector<Turning> at;
-  at.reserve(answer.samples.size());
-  for (const PoseSample &sample : answer.samples)
-    at.push_back(sample.turning);
-  double all = least_log;
-  for (std::size_t level = 0; level <= largest; ++level) {
-    const CurveLikelihood likelihood(curve_, of_table(errors, table_levels[level]));
-    const auto compared = inverse::compare_all(model, likelihood, at, {}, options.threads);
-    if (compared.empty())
-      return tl::unexpected(inverse::stopped());
-    double moved = least_log;
-    for (std::size_t k = 0; k < at.size(); ++k)
-      moved = log_sum(moved, log_of(answer.samples[k].weight) +
-                                 (answer.samples[k].minus_2_log - compared[k].minus_2_log) / 2);
-    all = log_sum(all, answer.log_evidence + moved - likelihood.log_variance() / 2);
-  }
-  return all - std::log(static_cast<double>(std::size(table_levels)));
-}
-
 /// Attitudes of one candidate through its signature, and the evidence of something like it.
 Result<void> Identification::search(std::size_t k) {
   CandidateFit &fit = out_.candidates[k];
@@ -258,8 +144,9 @@ Result<void> Identification::search(std::size_t k) {
     like = mean_evidence(model, CurveLikelihood(curve_, of_kin(errors)), best_of(s, column), {},
                          options_.look_grid, threads);
     PoseAnswer unused;
-    own = over_levels(model, errors, level_of(s.error), fit.answer);
-    recoloured = over_levels(model, of_recoloured(errors), level_of(s.error), unused);
+    own = inverse::table_evidence(model, options_.search, s.error, fit.answer);
+    recoloured =
+        inverse::table_evidence(model, recoloured_search(options_.search), s.error, unused);
   }));
   UMOV_TRY(like);
   UMOV_TRY(own);
@@ -291,7 +178,8 @@ Result<void> Identification::ask_own_light() {
     CandidateFit &fit = out_.candidates[next];
     fit.by = JudgedBy::Model;
     fit.answer = std::move(own->answer);
-    fit.log_evidence = fit.answer.log_evidence - own->log_variance / 2;
+    fit.log_evidence =
+        fit.answer.log_evidence - own->log_variance / 2 + inverse::log_misfit(fit.answer);
   }
   return {};
 }
@@ -302,7 +190,7 @@ void Identification::weigh() {
   for (const double one : kin_)
     kin = log_sum(kin, one - std::log(static_cast<double>(from_.count)));
   out_.none_log_evidence =
-      log_sum(kin, featureless(curve_, options_.search.errors)) - std::log(2.0);
+      log_sum(kin, inverse::featureless(curve_, options_.search.errors)) - std::log(2.0);
   double all = log_of(options_.none_prior) + out_.none_log_evidence;
   for (CandidateFit &fit : out_.candidates)
     if (fit.by == JudgedBy::Look)

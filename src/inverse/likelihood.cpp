@@ -6,6 +6,15 @@
 #include <cmath>
 
 namespace umov {
+
+double chi2_probability(double chi2, double dof) {
+  if (!(dof > 0))
+    return 1;
+  const double k = 2 / (9 * dof);
+  const double z = (std::cbrt(chi2 / dof) - (1 - k)) / std::sqrt(k);
+  return std::erfc(z / std::sqrt(2.0)) / 2;
+}
+
 /// Factors between model and data, and the common scale behind them.
 struct CurveLikelihood::Gains {
   std::vector<double> gain; ///< per group

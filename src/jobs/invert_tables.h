@@ -17,9 +17,6 @@ Table twins_table(const PoseAnswer &answer, const std::vector<BodySymmetry> &sym
 Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
                 const PoseAnswer &answer, const CurveErrors &errors);
 
-/// Chance that a chi-square of so many degrees of freedom is at least so large (Wilson & Hilferty
-/// 1931).
-double chi2_probability(double chi2, double dof);
 /// How far the samples spread about the mean direction of each body axis [deg], root mean square.
 std::array<double, 3> axis_spread_deg(const PoseAnswer &answer);
 /// Modes that are one and the same up to the body's own turns.

@@ -28,14 +28,6 @@ const char *name_of(Verdict verdict) {
   return "undetermined";
 }
 
-double chi2_probability(double chi2, double dof) {
-  if (!(dof > 0))
-    return 1;
-  const double k = 2 / (9 * dof);
-  const double z = (std::cbrt(chi2 / dof) - (1 - k)) / std::sqrt(k);
-  return std::erfc(z / std::sqrt(2.0)) / 2;
-}
-
 Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
   const double dof =
       static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);

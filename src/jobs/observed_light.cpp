@@ -1,5 +1,7 @@
 #include <umov/jobs/observed_light.h>
 
+#include "jobs/observations_tdm.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -7,6 +9,7 @@
 #include <map>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
+#include <umov/io/ccsds.h>
 #include <umov/io/sites.h>
 #include <umov/lightcurve/derived_errors.h>
 #include <umov/observation/track.h>
@@ -240,7 +243,8 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
   constexpr std::size_t largest = 1u << 30;
   for (const std::string &path : paths) {
     UMOV_ASSIGN(text, read_file(path, largest));
-    UMOV_ASSIGN(file, read_observations_text(text, path, diagnostics));
+    UMOV_ASSIGN(file, ccsds::is_message(text) ? observations_of_tdm(text, path, diagnostics)
+                                              : read_observations_text(text, path, diagnostics));
     out.push_back(std::move(file));
     inputs.push_back({path, sha256_hex(text)});
   }

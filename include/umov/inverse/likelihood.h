@@ -28,6 +28,10 @@ struct CurveErrors {
 /// an error of 0 would not be finite.
 inline constexpr double best_relative = 1e-4;
 
+/// Chance that a chi-square of so many degrees of freedom is at least so large (Wilson & Hilferty
+/// 1931).
+double chi2_probability(double chi2, double dof);
+
 /// Light of a model at all epochs and bands: [epoch * bands + band], scattering plane.
 struct ModelLight {
   std::span<const double> i, q, u;

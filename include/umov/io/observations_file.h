@@ -38,11 +38,16 @@ struct ObservationsFile {
   std::map<std::string, std::string> notes; ///< of its header
 };
 
-/// Reads ECSV (blank-separated) or CSV. Columns by name: time_utc or mjd_utc; band; I, I_obs or
-/// flux (the first that is there) with I_err or flux_err, else mag with mag_err; q, u with cov_qq,
-/// cov_uu, cov_qu or q_err, u_err (q_scat and u_scat where there are no q, u); site; flags. Others
-/// are ignored. Empty cells and "nan" are gaps. q and u stand in `pol_frame` of the header. Rows
-/// whose flags say "saturated" and those without any measurement are left out with a warning.
+/// One measurement per time, band and site: two would contradict each other or be one, twice.
+/// BadInput with both lines; rows in order of time, band and site.
+Result<void> check_no_row_twice(const ObservationsFile &out);
+
+/// Reads ECSV (blank-separated), CSV or the first table of a FITS file, whose notes are COMMENT
+/// cards and whose rows stand for lines in messages. Columns by name: time_utc or mjd_utc; band; I,
+/// I_obs or flux (the first that is there) with I_err or flux_err, else mag with mag_err; q, u with
+/// cov_qq, cov_uu, cov_qu or q_err, u_err (q_scat and u_scat where there are no q, u); site; flags.
+/// Others are ignored. Empty cells and "nan" are gaps. q and u stand in `pol_frame` of the header.
+/// Rows whose flags say "saturated" and those without any measurement are left out with a warning.
 /// BadInput with line and column for what cannot be read, a negative error, more than one object,
 /// and two rows of one time, band and site.
 Result<ObservationsFile> read_observations_text(std::string_view text, const std::string &file,

@@ -17,7 +17,7 @@ struct ObservedLightCurve {
   std::vector<InputFile> inputs;
 };
 
-/// Reads files of observations.
+/// Reads files of observations: ECSV, CSV, FITS tables, and TDM with magnitudes.
 Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::string> &paths,
                                                         std::vector<InputFile> &inputs,
                                                         Diagnostics &diagnostics);

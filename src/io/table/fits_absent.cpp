@@ -1,4 +1,6 @@
-// In the place of fits_table.cpp and fits_image.cpp where umov is built without CFITSIO.
+// In the place of fits_table.cpp, fits_read.cpp and fits_image.cpp where umov is built without
+// CFITSIO.
+#include "io/table/fits_read.h"
 #include "io/table/fits_table.h"
 
 #include <umov/io/fits_image.h>
@@ -34,6 +36,12 @@ Result<void> FitsTable::note(const std::string & /*text*/) { return absent(); }
 Result<void> FitsTable::close() { return absent(); }
 Result<std::string> FitsTable::take() { return absent(); }
 
+bool is_fits(std::string_view bytes) { return bytes.starts_with("SIMPLE  ="); }
+Result<TextTable> read_fits_table(std::string_view /*bytes*/, const std::string &file) {
+  return fail(ErrorCode::BadInput,
+              "this build reads no FITS: give .csv or .ecsv, or build with -DUMOV_WITH_FITS=ON",
+              {file});
+}
 Result<std::string> to_fits(const Table & /*table*/) { return absent(); }
 Result<void> write_fits_image(const std::filesystem::path &path, const FitsImage & /*image*/) {
   return absent(path);

@@ -1,5 +1,6 @@
 #include <umov/io/observations_file.h>
 
+#include "io/table/fits_read.h"
 #include "io/table/text_table.h"
 
 #include <algorithm>
@@ -113,7 +114,7 @@ Result<ObservationColumns> ObservationReader::columns() const {
   c.cov_qu = find({"cov_qu"});
   c.q_unit = scale_of(c.q);
   c.u_unit = scale_of(c.u);
-  const Where header{file_, table_.lines.empty() ? 0 : table_.lines.front() - 1};
+  const Where header{file_, table_.lines.empty() || text_.empty() ? 0 : table_.lines.front() - 1};
   const std::string found = fmt::format("{}", fmt::join(table_.columns, ", "));
   if (c.time < 0 && c.mjd < 0)
     return fail(ErrorCode::BadInput,
@@ -281,7 +282,8 @@ Result<PolarizationFrame> frame_of(const TextTable &table, const ObservationColu
   return fail(ErrorCode::BadInput,
               fmt::format("pol_frame of the header is \"{}\": equatorial, altaz or scattering was "
                           "expected. In a CSV write the line \"# pol_frame: equatorial\" above the "
-                          "names of the columns",
+                          "names of the columns, in a FITS file a card COMMENT pol_frame: "
+                          "equatorial",
                           printable(told)),
               {file});
 }
@@ -303,20 +305,6 @@ void warn_of_order(const ObservationsFile &file, Diagnostics &diagnostics) {
                      {file.path, first});
 }
 
-/// One measurement per time, band and site: two would contradict each other or be one, twice.
-Result<void> check_twice(const ObservationsFile &out, const std::string &file) {
-  for (std::size_t k = 1; k < out.rows.size(); ++k) {
-    const ObservedRow &a = out.rows[k - 1], &b = out.rows[k];
-    if (a.band == b.band && a.site == b.site && std::abs(seconds_between(a.time, b.time)) < 1e-6)
-      return fail(ErrorCode::BadInput,
-                  fmt::format("a second row for {} in band \"{}\"; the first is line {}. One "
-                              "measurement per time, band and site was expected",
-                              to_iso(b.time), printable(b.band), a.line),
-                  {file, b.line});
-  }
-  return {};
-}
-
 /// Rows of one object: which one is not ours to choose.
 Result<void> check_name(const ObservationReader &reader, const ObservationColumns &c,
                         std::size_t rows) {
@@ -335,14 +323,31 @@ bool is_irradiance(const TextTable &table, const ObservationColumns &c) {
   if (c.flux < 0)
     return false;
   const auto unit = table.units.find(table.columns[static_cast<std::size_t>(c.flux)]);
-  return unit != table.units.end() && unit->second == "W / (m2 nm)";
+  // FITS has no blanks around the solidus.
+  return unit != table.units.end() &&
+         (unit->second == "W / (m2 nm)" || unit->second == "W/(m2 nm)");
 }
 
 } // namespace
 
+Result<void> check_no_row_twice(const ObservationsFile &out) {
+  for (std::size_t k = 1; k < out.rows.size(); ++k) {
+    const ObservedRow &a = out.rows[k - 1], &b = out.rows[k];
+    if (a.band == b.band && a.site == b.site && std::abs(seconds_between(a.time, b.time)) < 1e-6)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("a second row for {} in band \"{}\"; the first is line {}. One "
+                              "measurement per time, band and site was expected",
+                              to_iso(b.time), printable(b.band), a.line),
+                  {out.path, b.line});
+  }
+  return {};
+}
+
 Result<ObservationsFile> read_observations_text(std::string_view text, const std::string &file,
                                                 Diagnostics &diagnostics) {
-  UMOV_ASSIGN(table, read_text_table(text, file));
+  UMOV_ASSIGN(table, is_fits(text) ? read_fits_table(text, file) : read_text_table(text, file));
+  if (is_fits(text)) // no lines to look for cells in
+    text = {};
   ObservationReader reader(text, file, table);
   if (table.columns.empty() || table.rows.empty())
     return fail(ErrorCode::BadInput, "no row of observations", {file});
@@ -376,7 +381,7 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
     const double apart = seconds_between(a.time, b.time);
     return std::abs(apart) < 1e-6 ? std::tie(a.band, a.site) < std::tie(b.band, b.site) : apart < 0;
   });
-  UMOV_TRY(check_twice(out, file));
+  UMOV_TRY(check_no_row_twice(out));
   return out;
 }
 

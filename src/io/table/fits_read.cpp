@@ -1,0 +1,177 @@
+#include "io/table/fits_read.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fitsio.h>
+#include <fmt/format.h>
+#include <memory>
+#include <umov/core/text.h>
+
+namespace umov {
+namespace {
+
+struct Closer {
+  void operator()(fitsfile *file) const {
+    int status = 0;
+    fits_close_file(file, &status);
+    fits_clear_errmsg();
+  }
+};
+
+/// Reads one file; CFITSIO's status goes from call to call.
+class FitsReader {
+public:
+  FitsReader(std::string_view bytes, const std::string &file)
+      : start_(const_cast<char *>(bytes.data())), size_(bytes.size()), name_(file) {}
+
+  Result<TextTable> read();
+
+private:
+  Result<void> to_table();
+  Result<void> read_columns(TextTable &out);
+  Result<void> read_cells(int column, std::size_t rows, TextTable &out);
+  void read_notes(TextTable &out);
+  [[nodiscard]] std::string key(const std::string &name);
+  [[nodiscard]] tl::unexpected<Error> refuse(const std::string &what) const {
+    char text[FLEN_STATUS] = {};
+    if (status_ != 0)
+      fits_get_errstatus(status_, text);
+    fits_clear_errmsg();
+    return fail(ErrorCode::BadInput,
+                what + (status_ != 0 ? fmt::format(" (CFITSIO {}: {})", status_, text) : ""),
+                {name_});
+  }
+
+  void *start_; ///< CFITSIO only reads it, though its interface is not const
+  std::size_t size_;
+  const std::string &name_;
+  std::unique_ptr<fitsfile, Closer> file_;
+  int status_ = 0;
+};
+
+std::string FitsReader::key(const std::string &name) {
+  char value[FLEN_VALUE] = {};
+  int status = 0;
+  fits_read_key_str(file_.get(), name.c_str(), value, nullptr, &status);
+  if (status != 0)
+    fits_clear_errmsg();
+  return status == 0 ? value : "";
+}
+
+/// "COMMENT pol_frame: altaz" of the part of the file that is current.
+void FitsReader::read_notes(TextTable &out) {
+  int cards = 0, status = 0;
+  fits_get_hdrspace(file_.get(), &cards, nullptr, &status);
+  for (int k = 1; k <= cards && status == 0; ++k) {
+    char card[FLEN_CARD] = {};
+    fits_read_record(file_.get(), k, card, &status);
+    const std::string_view text(card);
+    if (!text.starts_with("COMMENT ") && !text.starts_with("HISTORY "))
+      continue;
+    const std::string_view words = trimmed(text.substr(8));
+    if (const std::size_t colon = words.find(": "); colon != std::string_view::npos)
+      out.notes[std::string(words.substr(0, colon))] = trimmed(words.substr(colon + 2));
+  }
+  fits_clear_errmsg();
+}
+
+Result<void> FitsReader::to_table() {
+  int parts = 0;
+  if (fits_get_num_hdus(file_.get(), &parts, &status_) != 0)
+    return refuse("is damaged");
+  for (int k = 1; k <= parts; ++k) {
+    int kind = 0;
+    if (fits_movabs_hdu(file_.get(), k, &kind, &status_) != 0)
+      return refuse("is damaged");
+    if (kind == BINARY_TBL || kind == ASCII_TBL)
+      return {};
+  }
+  return refuse("holds no table: a binary table with one row a measurement was expected");
+}
+
+Result<void> FitsReader::read_cells(int column, std::size_t rows, TextTable &out) {
+  int type = 0;
+  long repeat = 0, width = 0;
+  if (fits_get_coltype(file_.get(), column, &type, &repeat, &width, &status_) != 0)
+    return refuse("is damaged");
+  const std::string &name = out.columns.back();
+  const bool is_text = type == TSTRING;
+  if (type < 0 || type == TCOMPLEX || type == TDBLCOMPLEX || (!is_text && repeat != 1))
+    return refuse(fmt::format("column \"{}\" has more than one number in a row; columns of single "
+                              "numbers and texts were expected",
+                              printable(name)));
+  const auto room = static_cast<std::size_t>(std::max(width, repeat)) + 1;
+  std::string cell(std::max<std::size_t>(room, 64), '\0');
+  for (std::size_t k = 0; k < rows; ++k) {
+    const auto row = static_cast<LONGLONG>(k + 1);
+    int is_missing = 0;
+    std::string value;
+    if (is_text) {
+      char *at = cell.data();
+      char nothing[] = "";
+      fits_read_col_str(file_.get(), column, row, 1, 1, nothing, &at, &is_missing, &status_);
+      value = trimmed(std::string_view(cell.c_str()));
+    } else if (type == TLOGICAL) {
+      char is_true = 0;
+      fits_read_col_log(file_.get(), column, row, 1, 1, 0, &is_true, &is_missing, &status_);
+      value = is_true != 0 ? "True" : "False";
+    } else {
+      double number = 0;
+      fits_read_col_dbl(file_.get(), column, row, 1, 1, std::nan(""), &number, &is_missing,
+                        &status_);
+      value = std::isfinite(number) ? fmt::format("{}", number) : "";
+    }
+    if (status_ != 0)
+      return refuse(fmt::format("column \"{}\", row {}: cannot be read", printable(name), k + 1));
+    out.rows[k].push_back(std::move(value));
+  }
+  return {};
+}
+
+Result<void> FitsReader::read_columns(TextTable &out) {
+  LONGLONG rows = 0;
+  int columns = 0;
+  fits_get_num_rowsll(file_.get(), &rows, &status_);
+  fits_get_num_cols(file_.get(), &columns, &status_);
+  // A row takes a byte at least: a header that promises more is not believed.
+  if (status_ != 0 || rows < 0 || columns < 1 || static_cast<std::size_t>(rows) > size_ ||
+      static_cast<std::size_t>(columns) > size_)
+    return refuse("is damaged or has no columns");
+  const auto count = static_cast<std::size_t>(rows);
+  out.rows.assign(count, {});
+  for (std::size_t k = 0; k < count; ++k)
+    out.lines.push_back(k + 1);
+  for (int c = 1; c <= columns; ++c) {
+    std::string name = key(fmt::format("TTYPE{}", c));
+    if (std::ranges::find(out.columns, name) != out.columns.end())
+      return refuse(fmt::format("column \"{}\" stands twice; leave one out", printable(name)));
+    if (std::string unit = key(fmt::format("TUNIT{}", c)); !unit.empty())
+      out.units[name] = std::move(unit);
+    out.columns.push_back(std::move(name));
+    UMOV_TRY(read_cells(c, count, out));
+  }
+  return {};
+}
+
+Result<TextTable> FitsReader::read() {
+  fitsfile *opened = nullptr;
+  if (fits_open_memfile(&opened, "umov", READONLY, &start_, &size_, 0, nullptr, &status_) != 0)
+    return refuse("is damaged or no FITS file");
+  file_.reset(opened);
+  TextTable out;
+  read_notes(out);
+  UMOV_TRY(to_table());
+  read_notes(out);
+  UMOV_TRY(read_columns(out));
+  return out;
+}
+
+} // namespace
+
+bool is_fits(std::string_view bytes) { return bytes.starts_with("SIMPLE  ="); }
+
+Result<TextTable> read_fits_table(std::string_view bytes, const std::string &file) {
+  return FitsReader(bytes, file).read();
+}
+
+} // namespace umov
