@@ -26,11 +26,6 @@ Result<std::string> read_input(const std::filesystem::path &path, const Where &n
   return text;
 }
 
-Where place(const Scenario &scenario, const std::string &key) {
-  const auto found = scenario.places.find(key);
-  return found == scenario.places.end() ? Where{scenario.file} : found->second;
-}
-
 /// An object of a scenario, and how its keys are called.
 struct Named {
   const Scenario &scenario;
@@ -38,7 +33,7 @@ struct Named {
   std::size_t number;
 
   [[nodiscard]] Where place(const std::string &key) const {
-    return umov::place(scenario, fmt::format("object.{}.{}", number, key));
+    return scenario.place(fmt::format("object.{}.{}", number, key));
   }
   /// The key that says what a group of the mesh is made of.
   [[nodiscard]] std::string material_key(const std::string &group) const {
@@ -50,7 +45,7 @@ struct Named {
 Result<void> load_earth(const Scenario &scenario, LoadedObject &out) {
   if (scenario.earth_orientation.empty())
     return {};
-  UMOV_ASSIGN(text, read_input(scenario.earth_orientation, place(scenario, "earth.eop"), out));
+  UMOV_ASSIGN(text, read_input(scenario.earth_orientation, scenario.place("earth.eop"), out));
   return use_earth_orientation(text, scenario.earth_orientation.string());
 }
 
