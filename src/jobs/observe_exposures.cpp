@@ -121,8 +121,7 @@ std::string tell_left_out(const LeftOut &left_out, std::size_t all, const Scenar
     return "";
   const bool is_unasked = left_out.gaps + left_out.unknown > 0 ||
                           (left_out.low > 0 && !(only.altitude_min.radians() > 0));
-  const std::string told =
-      object + ": " + words + (left_out.end ? ". " + left_out.end->message : "");
+  std::string told = object + ": " + words + (left_out.end ? ". " + left_out.end->message : "");
   if (!is_unasked)
     return told;
   diagnostics.warn(told, scenario.place("time.start"));

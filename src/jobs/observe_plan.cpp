@@ -119,6 +119,7 @@ Result<Programme> Programme::make(const Scenario &scenario, const std::vector<Ba
     steps.resize(whole, steps.front());
   }
   std::vector<std::string> names;
+  names.reserve(bands.size());
   for (const BandResponse &band : bands)
     names.push_back(band.name);
   const auto find = [&names](const std::string &name) {
