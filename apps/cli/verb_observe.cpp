@@ -38,6 +38,8 @@ Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnost
   note(common, fmt::format("{}, {} rows of counts; light {:.1f} s, counts {:.1f} s",
                            counted(result.exposures, "exposure"), result.counts.rows(),
                            result.light_s, result.counts_s));
+  for (const std::string &words : result.left_out)
+    note(common, words);
   if (result.frames > 0)
     note(common, fmt::format("{} in frames/", counted(result.frames, "frame")));
   if (!common.quiet)

@@ -139,6 +139,24 @@ const char *name_of(PolarimeterType type) {
   return polarimeter_names()[static_cast<std::size_t>(type)].c_str();
 }
 
+namespace {
+
+/// Stokes parameters that change unseen: those in the directions of no weight.
+std::string blind_to(const algebra::SymmetricEigen &squares, double smallest) {
+  std::string out;
+  for (Eigen::Index c = 0; c < squares.values.size(); ++c) {
+    double share = 0;
+    for (Eigen::Index k = 0; k < squares.values.size(); ++k)
+      if (!(squares.values(k) > smallest))
+        share += squares.vectors(c, k) * squares.vectors(c, k);
+    if (constexpr double notable = 0.05; share > notable)
+      out += (out.empty() ? "" : ", ") + std::string(1, "IQUV"[c]);
+  }
+  return out;
+}
+
+} // namespace
+
 ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::size_t parameters) {
   const auto columns = static_cast<Eigen::Index>(parameters);
   Eigen::MatrixXd w(static_cast<Eigen::Index>(rows.size()), columns);
@@ -152,9 +170,7 @@ ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::si
   const double smallest = squares.values(0), largest = squares.values(columns - 1);
   if (!(smallest > rounding * largest)) {
     out.condition = out.weighted_variance = std::numeric_limits<double>::infinity();
-    Eigen::Index worst = 0;
-    squares.vectors.col(0).cwiseAbs().maxCoeff(&worst);
-    out.missing = std::string(1, "IQUV"[worst]);
+    out.missing = blind_to(squares, rounding * largest);
     return out;
   }
   out.condition = std::sqrt(largest / smallest);

@@ -1,13 +1,16 @@
 #include <umov/jobs/observe.h>
 
 #include "jobs/job_journal.h"
+#include "jobs/observe_exposures.h"
 #include "jobs/observe_frames.h"
 #include "jobs/observe_tables.h"
+#include "jobs/result_folder.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/constants.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
@@ -18,24 +21,6 @@
 
 namespace umov::jobs {
 namespace {
-
-/// Transparency that wanders: an Ornstein-Uhlenbeck process in magnitudes.
-class Cloud {
-public:
-  Cloud(const ScenarioObservation &o, std::uint64_t seed, std::uint32_t object)
-      : sd_(o.cloud_sd_mag), time_(o.cloud_time_s), draws_({seed, object, 0, 0, 0xc10d}) {}
-  double next(double elapsed_s) {
-    if (!(sd_ > 0))
-      return 1;
-    const double kept = std::exp(-elapsed_s / time_);
-    mag_ = mag_ * kept + sd_ * std::sqrt(1 - kept * kept) * draws_.normal();
-    return std::pow(10, -0.4 * mag_);
-  }
-
-private:
-  double sd_, time_, mag_ = 0;
-  Draws draws_;
-};
 
 ObservingConditions conditions_of(const Scenario &scenario, std::uint32_t object) {
   const ScenarioObservation &o = *scenario.observation;
@@ -98,35 +83,6 @@ void warn_of_mosaic(const Setup &s, Diagnostics &diagnostics) {
           observer.band().name, o.aperture_fwhm,
           mosaic_aperture_alias(o.seeing.profile, taken, o.aperture_fwhm * taken)));
   }
-}
-
-/// The exposures of a span in which the object is seen, in order of time.
-Result<std::vector<Exposure>> exposures_of(const Scenario &scenario, const Track &track,
-                                           const LightCurveRequest &request,
-                                           const Programme &programme, std::uint32_t object,
-                                           const Monitor &monitor) {
-  const ScenarioObservation &o = *scenario.observation;
-  const double half = o.exposure_s / 2;
-  EpochSpan span{plus_seconds(request.span.start, half), plus_seconds(request.span.stop, -half),
-                 o.cadence_s};
-  if (seconds_between(span.stop, span.start) < 0)
-    return fail(
-        ErrorCode::BadInput,
-        fmt::format("observation.exposure_s = {} is longer than the span of [time]", o.exposure_s));
-  UMOV_ASSIGN(kept, keep_epochs(track, span, request.only, request.threads, monitor.cancel_flag()));
-  Draws clock({scenario.seed, object, 0, 0, 0xc10c});
-  const double clock_error = o.clock_error_s * clock.normal();
-  Cloud cloud(o, scenario.seed, object);
-  std::vector<Exposure> out;
-  for (const ObservingGeometry &g : kept.geometry) {
-    if (!(g.altitude.radians() > 0)) // there is no air mass below the horizon
-      continue;
-    const auto k =
-        static_cast<std::size_t>(std::llround(seconds_between(g.time, span.start) / o.cadence_s));
-    const double elapsed = out.empty() ? 0 : seconds_between(g.time, out.back().middle.time);
-    out.push_back({programme.at(k), g, plus_seconds(g.time, clock_error), cloud.next(elapsed)});
-  }
-  return out;
 }
 
 /// Times in which the light may change most: a flat mirror's flash lasts as long as the Sun's disk,
@@ -246,40 +202,6 @@ Result<void> run_blocks(const Setup &s, const std::vector<Exposure> &exposures,
   return {};
 }
 
-/// Circumstances that the models reach badly, or not at all.
-Result<void> check_air(const std::vector<Exposure> &exposures, const Setup &s,
-                       Diagnostics &diagnostics) {
-  const SkyOptions &sky = s.observation.sky;
-  std::size_t low = 0, day = 0, aside = 0;
-  for (const Exposure &e : exposures) {
-    const ObservingGeometry &g = e.middle;
-    low += apparent_altitude(550, g.altitude, s.surface).degrees() < 3 ? 1u : 0u;
-    day += is_day(sky, g.sun_altitude) ? 1u : 0u;
-    constexpr double last_twilight = -15, farthest = 50; // 40 deg from the zenith
-    aside += sky.has_twilight && !sky.mag && g.sun_altitude.degrees() > last_twilight &&
-                     g.altitude.degrees() < farthest
-                 ? 1u
-                 : 0u;
-  }
-  if (day > 0)
-    return fail(ErrorCode::BadInput,
-                fmt::format("{} of {} with the Sun above -5 deg, where the model of twilight knows "
-                            "no brightness: leave them out with time.only.sun_alt_max_deg = -5, or "
-                            "give atmosphere.sky.mag",
-                            counted(day, "exposure"), exposures.size()));
-  if (low > 0)
-    diagnostics.warn(fmt::format("{} below an apparent altitude of 3 deg: air mass is "
-                                 "extrapolated there",
-                                 counted(low, "exposure")));
-  if (aside > 0)
-    diagnostics.warn(
-        fmt::format("{} in twilight more than 40 deg from the zenith: the sky's "
-                    "brightness is that of the zenith, which is known; towards the Sun "
-                    "it is brighter",
-                    counted(aside, "exposure")));
-  return {};
-}
-
 /// What the instrument and the site say that can hardly be meant.
 void warn_of_setup(const Setup &s, double site_height_m, Diagnostics &diagnostics) {
   const Detector &d = s.observation.instrument.detector;
@@ -308,7 +230,12 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
       light_curve_request(scenario, scenario.objects[object], loaded, options);
   out.inputs.insert(out.inputs.end(), loaded.inputs.begin(), loaded.inputs.end());
   UMOV_ASSIGN(track, Track::make(request.track));
-  UMOV_ASSIGN(exposures, exposures_of(scenario, track, request, programme, object, monitor));
+  UMOV_ASSIGN(taken, exposures_of(scenario, track, request, programme, object, monitor));
+  const std::vector<Exposure> &exposures = taken.exposures;
+  const std::size_t all = exposures.size() + taken.left_out.sum();
+  if (const auto told = tell_left_out(taken.left_out, all, scenario, request.object, diagnostics);
+      !told.empty())
+    out.left_out.push_back(told);
   if (exposures.empty())
     return {};
   const auto began = std::chrono::steady_clock::now();
@@ -361,7 +288,7 @@ Result<Observation> observe(const Scenario &given, const JobOptions &options,
                 "\"c11_imx250\" (umov instrument list has others) and [observation] exposure_s",
                 {given.file});
   UMOV_ASSIGN(bands, observed_bands(given));
-  UMOV_ASSIGN(programme, Programme::make(*given.observation, bands.responses, diagnostics));
+  UMOV_ASSIGN(programme, Programme::make(given, bands.responses, diagnostics));
   Scenario scenario = given;
   scenario.bands = bands.bands;
   warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);
@@ -371,17 +298,21 @@ Result<Observation> observe(const Scenario &given, const JobOptions &options,
     UMOV_TRY(observe_object(scenario, bands, programme, static_cast<std::uint32_t>(k), options,
                             monitor, take_frame, out, diagnostics));
   if (out.exposures == 0)
-    return fail(ErrorCode::Nothing, "no exposure falls in a pass; umov passes tells when there is "
-                                    "one");
+    return fail(ErrorCode::Nothing,
+                fmt::format("no exposure falls in a pass; umov passes tells when there is one{}{}",
+                            out.left_out.empty() ? "" : ". ", fmt::join(out.left_out, "; ")),
+                scenario.place("time.start"));
   if (out.saturated == out.exposures)
     return fail(ErrorCode::Physics,
                 fmt::format("every exposure of {} is saturated. Shorten observation.exposure_s = "
                             "{}, or defocus (atmosphere.seeing.arcsec)",
-                            out.exposures, scenario.observation->exposure_s));
+                            out.exposures, scenario.observation->exposure_s),
+                scenario.place("observation.exposure_s"));
   if (out.saturated > 0)
     diagnostics.warn(fmt::format("{} of {} exposures are saturated", out.saturated, out.exposures));
   note_observation(out.counts, scenario, bands);
   note_observation(out.truth, scenario, bands);
+  note_warnings(out.counts, diagnostics);
   return out;
 }
 

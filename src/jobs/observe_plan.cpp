@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/text.h>
 #include <umov/io/passband_file.h>
 
@@ -93,9 +94,9 @@ BandResponse at_nodes(BandResponse response, const BandGrid &grid, std::size_t b
   return response;
 }
 
-Result<Programme> Programme::make(const ScenarioObservation &o,
-                                  const std::vector<BandResponse> &bands,
+Result<Programme> Programme::make(const Scenario &scenario, const std::vector<BandResponse> &bands,
                                   Diagnostics &diagnostics) {
+  const ScenarioObservation &o = *scenario.observation;
   const Polarimeter &p = o.instrument.polarimeter;
   Programme out;
   out.exposure_s_ = o.exposure_s;
@@ -112,34 +113,43 @@ Result<Programme> Programme::make(const ScenarioObservation &o,
       return fail(ErrorCode::BadInput,
                   fmt::format("polarimeter.period_s = {} makes {:.3g} exposures of each quarter "
                               "turn at observation.cadence_s = {}; {} is the limit",
-                              p.period_s, frames, o.cadence_s, most));
+                              p.period_s, frames, o.cadence_s, most),
+                  scenario.place("polarimeter.period_s"));
     const auto whole = static_cast<std::size_t>(std::max(2.0, std::round(frames)));
     steps.resize(whole, steps.front());
   }
-  const auto find = [&](const std::string &name) {
-    return static_cast<std::size_t>(
-        std::find_if(bands.begin(), bands.end(), [&](const auto &b) { return b.name == name; }) -
-        bands.begin());
+  std::vector<std::string> names;
+  names.reserve(bands.size());
+  for (const BandResponse &band : bands)
+    names.push_back(band.name);
+  const auto find = [&names](const std::string &name) {
+    return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   };
   for (std::size_t b = 0; b < bands.size(); ++b)
     for (const SequenceStep &step : steps) {
       if (!step.band.empty() && find(step.band) == bands.size())
         return fail(ErrorCode::BadInput,
-                    fmt::format("observation.sequence: band \"{}\" is none of observation.bands",
-                                step.band));
+                    fmt::format("observation.sequence: band \"{}\" is none of those observed; "
+                                "add it to observation.bands or name one of them: {}",
+                                step.band, fmt::join(names, ", ")),
+                    scenario.place("observation.sequence"));
       if (step.band.empty() || find(step.band) == b)
         out.steps_.push_back({step.state, b});
     }
   out.set_size_ = is_simultaneous(p.type) ? 1 : std::max<std::size_t>(1, out.steps_.size());
   warn_of_idle_angles(p.type, o.sequence, diagnostics);
-  UMOV_TRY(out.check(p, bands, diagnostics));
+  UMOV_TRY(out.check(scenario, bands, diagnostics));
   return out;
 }
 
 /// The states of a set must tell, in each band by itself, what the type is made for.
-Result<void> Programme::check(const Polarimeter &p, const std::vector<BandResponse> &bands,
+Result<void> Programme::check(const Scenario &scenario, const std::vector<BandResponse> &bands,
                               Diagnostics &diagnostics) const {
+  const Polarimeter &p = scenario.observation->instrument.polarimeter;
   const std::size_t parameters = parameters_of(p.type);
+  // Angles of what has all channels at once are those of its analysers.
+  const std::string key =
+      p.type == PolarimeterType::FourCamera ? "polarimeter.angles_deg" : "observation.sequence";
   for (std::size_t b = 0; b < bands.size(); ++b) {
     std::vector<StokesRow> rows;
     for (std::size_t k = 0; k < steps_.size(); ++k) {
@@ -153,20 +163,26 @@ Result<void> Programme::check(const Polarimeter &p, const std::vector<BandRespon
       return fail(ErrorCode::BadInput,
                   fmt::format("observation.sequence has no step in band \"{}\"; add some, or leave "
                               "it out of observation.bands",
-                              bands[b].name));
+                              bands[b].name),
+                  scenario.place("observation.sequence"));
     if (parameters < 3)
       continue;
     const ModulationQuality quality = modulation_quality(rows, parameters);
-    if (!std::isfinite(quality.condition) || rows.size() < parameters)
+    if (!std::isfinite(quality.condition))
       return fail(ErrorCode::BadInput,
-                  fmt::format("the {} of observation.sequence in band \"{}\" cannot tell {} "
-                              "(condition number {:.3g}); give other angles",
-                              counted(rows.size(), "row"), bands[b].name,
-                              quality.missing.empty() ? "U" : quality.missing, quality.condition));
+                  fmt::format("{} with {} in band \"{}\" cannot tell {}{} (condition number "
+                              "{:.3g}); {}",
+                              key, counted(rows.size(), "row"), bands[b].name, quality.missing,
+                              quality.missing.size() > 1 ? " apart" : "", quality.condition,
+                              rows.size() < parameters
+                                  ? fmt::format("{} or more are needed", parameters)
+                                  : "give other angles"),
+                  scenario.place(key));
     if (constexpr double poor = 10; quality.condition > poor)
       diagnostics.warn(fmt::format("{}: the states tell the Stokes parameters badly (condition "
                                    "number {:.3g}, 1.4 to 1.7 is good): their errors will be large",
-                                   bands[b].name, quality.condition));
+                                   bands[b].name, quality.condition),
+                       scenario.place(key));
   }
   return {};
 }

@@ -33,14 +33,13 @@ public:
   /// BadInput where a band of the sequence is unknown or not in it, or the states of one band
   /// cannot tell all parameters; a warning where they do so badly, or say what the type does not
   /// know.
-  static Result<Programme> make(const ScenarioObservation &observation,
-                                const std::vector<BandResponse> &bands, Diagnostics &diagnostics);
+  static Result<Programme> make(const Scenario &scenario, const std::vector<BandResponse> &bands,
+                                Diagnostics &diagnostics);
   /// Exposure k.
   [[nodiscard]] PlannedExposure at(std::size_t k) const;
 
 private:
-  [[nodiscard]] Result<void> check(const Polarimeter &polarimeter,
-                                   const std::vector<BandResponse> &bands,
+  [[nodiscard]] Result<void> check(const Scenario &scenario, const std::vector<BandResponse> &bands,
                                    Diagnostics &diagnostics) const;
   struct Step {
     PolarimeterState state;

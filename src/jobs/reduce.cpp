@@ -1,4 +1,5 @@
 #include "jobs/reduced.h"
+#include "jobs/result_folder.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/gamma.hpp>
@@ -382,6 +383,7 @@ Result<Table> reduce(const CountsFile &file, const ReduceOptions &options, const
   warn_of_rows(reduced, diagnostics);
   Table out = stokes_table(file, parameters, reduced);
   note(out, file);
+  note_warnings(out, diagnostics);
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include "jobs/kept_inputs.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace umov::jobs {
 
@@ -33,6 +34,12 @@ std::string warning_lines(const Diagnostics &diagnostics) {
   for (const Warning &warning : diagnostics.warnings())
     out += "warning: " + warning.text() + "\n";
   return out;
+}
+
+void note_warnings(Table &table, const Diagnostics &diagnostics) {
+  constexpr std::size_t most = 20;
+  for (std::size_t k = 0; k < std::min(most, diagnostics.warnings().size()); ++k)
+    table.note(fmt::format("warning_{}", k + 1), diagnostics.warnings()[k].message);
 }
 
 Result<void> add_records(const Scenario &scenario, const std::string &options_needed,

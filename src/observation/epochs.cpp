@@ -26,14 +26,16 @@ bool is_above(const EpochGeometry &epoch, const EpochFilter &only) {
   return epoch.is_there && epoch.geometry.altitude.radians() >= only.altitude_min.radians();
 }
 
+/// The Sun higher at the site than the filter lets it.
+bool is_light(const EpochGeometry &epoch, const EpochFilter &only) {
+  return only.sun_altitude_max &&
+         epoch.geometry.sun_altitude.radians() > only.sun_altitude_max->radians();
+}
+
 /// Above the altitude limit, and dark and sunlit as the filter asks.
 bool is_kept(const EpochGeometry &epoch, const EpochFilter &only) {
-  if (!is_above(epoch, only))
-    return false;
-  if (only.sun_altitude_max &&
-      epoch.geometry.sun_altitude.radians() > only.sun_altitude_max->radians())
-    return false;
-  return !only.sunlit || epoch.geometry.sunlit > 0;
+  return is_above(epoch, only) && !is_light(epoch, only) &&
+         (!only.sunlit || epoch.geometry.sunlit > 0);
 }
 
 /// A scenario calls the span [time].
@@ -132,6 +134,8 @@ void add_pass(KeptEpochs &out, const Track &track, const GridPass &pass,
     if (is_kept(epoch, only)) {
       out.geometry.push_back(epoch.geometry);
       out.pass.push_back(out.passes.size());
+    } else if (above(epoch)) {
+      ++(is_light(epoch, only) ? out.in_light_sky : out.in_shadow);
     }
   if (out.geometry.size() == before)
     return;
@@ -187,6 +191,7 @@ Result<KeptEpochs> keep_epochs(const Track &track, const EpochSpan &span, const 
     return fail(ErrorCode::Interrupted, "stopped before the first row");
   KeptEpochs out;
   out.stopped = std::move(found.stopped);
+  out.before_end = found.behind;
   // Gaps shorter than the search's step are met here, if an epoch falls into them.
   const auto missed = std::count_if(grid.begin(), grid.end(),
                                     [](const EpochGeometry &epoch) { return !epoch.is_there; });

@@ -1,5 +1,6 @@
 """What umov observe, reduce and exposure refuse or warn of: every line tried."""
 import math
+import re
 import signal
 import subprocess
 import time
@@ -56,7 +57,7 @@ def test_what_is_refused(scene, umov, observation, told):
 def test_day_is_refused(scene, umov):
     day = dict(start="2018-01-21T01:40:00Z", stop="2018-01-21T03:40:00Z")  # some pass before sunset at 04:15
     done = umov("observe", scene("exposure_s = 10", **day), "--set", "time.only={ sunlit = false }")
-    assert done.code == 3 and "sun_alt_max_deg" in done.err, done.err
+    assert done.code == 3 and "sun_alt_max_deg" in done.err and "observe.toml:" in done.err, done.err
     done = umov("observe", scene("exposure_s = 10", air="sky = { mag = 8 }", **day))
     assert done.code == 0, done.err
 
@@ -75,10 +76,12 @@ WARNED = [
 
 
 @pytest.mark.parametrize("observation, change, told", WARNED)
-def test_what_is_warned_of(scene, umov, observation, change, told):
+def test_what_is_warned_of(scene, umov, tmp_path, observation, change, told):
     done = umov("observe", scene(observation, **change))
     assert done.code == 0 and told in done.err, done.err
     assert "nan" not in (done.out + done.err)
+    notes = Table.read(tmp_path / "out/counts.ecsv").meta
+    assert any(told in str(value) for key, value in notes.items() if key.startswith("warning_")), notes
 
 
 CURVES = [("500 0.5\n550 -1\n600 0.5\n", "band.csv:4: response -1"), ("500 0.5\n600 1\n550 0.5\n", "band.csv:5: wavelength 550"),
@@ -94,7 +97,57 @@ def test_curves_that_are_refused(scene, umov, tmp_path, points, told):
 
 def test_no_memory_is_asked_for_a_billion_rows(scene, umov):
     done = umov("observe", scene("exposure_s = 1e-6", start="2018-01-21T05:09:00Z", stop="2018-01-21T05:14:05Z"))
-    assert done.code == 3 and "the limit is" in done.err, done.err
+    assert done.code == 3 and "the limit is" in done.err and re.search(r"observe.toml:\d+", done.err), done.err
+
+
+def test_what_lies_below_the_horizon_is_counted(scene, umov):
+    """Hubble rises over Maui within this span."""
+    done = umov("observe", scene("exposure_s = 10", start="2018-01-21T05:01:00Z", stop="2018-01-21T05:06:00Z"))
+    told = re.search(r"observe.toml:\d+:\d+: ball: (\d+) of 30 exposures left out: (\d+) below the horizon", done.err)
+    assert done.code == 0 and told and told[1] == told[2], done.err
+    taken = int(re.search(r"(\d+) exposures, ", done.err + done.out)[1])
+    assert taken + int(told[1]) == 30
+
+
+def test_why_there_is_nothing_to_observe(scene, umov):
+    done = umov("observe", scene("exposure_s = 10", start="2018-01-21T04:50:00Z", stop="2018-01-21T04:52:00Z"))
+    assert done.code == 5 and "12 of 12 exposures left out: 12 below the horizon" in done.err, done.err
+    asked = umov("observe", scene("exposure_s = 10"), "--set", "time.only={ alt_min_deg = 80 }", "--set",
+                 "time.stop=2018-01-21T05:11:30Z")
+    assert asked.code == 5 and "3 of 3 exposures left out: 3 below 80 deg (time.only.alt_min_deg)" in asked.err, asked.err
+
+
+def test_what_filters_leave_out_is_said_once(scene, umov):
+    """The shadow of the Earth at the end of the pass: asked for, so no warning."""
+    done = umov("observe", scene("exposure_s = 10", start="2018-01-21T05:09:00Z", stop="2018-01-21T05:18:00Z"))
+    said = done.out + done.err
+    assert done.code == 0 and said.count("left out") == 1 and "in the Earth's shadow (time.only.sunlit)" in said, said
+    assert "warning: ball" not in said
+
+
+SEQUENCES = [
+    ('sequence = [{ analyser_deg = 0 }, { analyser_deg = 45 }]\n[polarimeter]\ntype = "polarizer_wheel"',
+     "2 rows", "I, Q, U apart", "3 or more are needed"),
+    ('sequence = [{ analyser_deg = 0 }, { analyser_deg = 90 }, { analyser_deg = 180 }]\n[polarimeter]\n'
+     'type = "polarizer_wheel"', "3 rows", "cannot tell U (", "give other angles"),
+    ('sequence = [{ analyser_deg = 0, band = "nm:551" }]\n[polarimeter]\ntype = "polarizer_wheel"',
+     'band "nm:551"', "none of those observed", "nm:550"),
+]
+
+
+@pytest.mark.parametrize("case", SEQUENCES)
+def test_sequences_are_refused_where_they_stand(scene, umov, case):
+    sequence, *told = case
+    path = scene("exposure_s = 0.5\n" + sequence)
+    line = 1 + path.read_text()[:path.read_text().index("sequence =")].count("\n")
+    done = umov("observe", path)
+    assert done.code == 3 and f"observe.toml:{line}:" in done.err, done.err
+    assert all(word in done.err for word in told), done.err
+
+
+def test_an_exposure_longer_than_the_span(scene, umov):
+    done = umov("observe", scene("exposure_s = 20"))
+    assert done.code == 3 and re.search(r"observe.toml:\d+:\d+: exposure_s = 20 is longer", done.err), done.err
 
 
 def test_air_near_the_horizon_is_told(scene, umov):

@@ -4,6 +4,8 @@ import pathlib
 
 import numpy as np
 
+import passbands
+
 DEGREE = np.pi / 180
 MAGNITUDE = 2.5 / np.log(10)
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -90,6 +92,14 @@ def scintillation(diameter, seconds, mass, height, c_y):
     return np.sqrt(1e-5 * c_y ** 2 * diameter ** (-4 / 3) / seconds * mass ** 3 * np.exp(-height / 4000))
 
 
+def band_extinction(name, hpa, water_cm, mass):
+    """Magnitudes of sunlight in a band, summed over all points of curve and sunlight."""
+    nm, response, sun = passbands.points(name)
+    light = response * sun * nm
+    through = 10 ** (-.4 * extinction(nm, hpa) * mass) * water(nm, water_cm, mass) * mixed(nm, hpa, mass)
+    return -2.5 * np.log10(passbands.trapezoid(light * through, nm) / passbands.trapezoid(light, nm))
+
+
 TWILIGHT = {"B": (11.84, 1.411, -.041), "V": (11.84, 1.518, -.057), "R": (11.40, 1.567, -.064)}
 
 
@@ -103,6 +113,9 @@ def rows():
         yield f"extinction_{nm}", "observing.md 2", (extinction(nm, pressure(3058)), "9g")
     yield "water_720", "observing.md 2", (water(720, .3, 2), "9g")
     yield "mixed_760", "observing.md 2", (mixed(760, 700, 2), "9g")
+    for band in ("Bessell.B", "Bessell.V", "Bessell.I", "gaia.G"):
+        for altitude, mass in ((90, 1), (30, airmass(30)), (10, airmass(10))):
+            yield f"band_{band}_{altitude}", "observing.md 2", (band_extinction(band, pressure(3058), .3, mass), "8g")
     for altitude in (60, 30, 10, 5):
         yield f"airmass_{altitude}", "observing.md 2", (airmass(altitude), "9g")
     air = (693.28, 293.15, 10.67)

@@ -20,7 +20,7 @@ def thinned(text):
     # Of zeros in a row the first and the last are enough.
     kept = [cut[k] for k in range(len(cut)) if any(r for _, r in cut[max(k - 1, 0) : k + 2])]
     body = [f"{nm:.1f} {response:.7g}" for nm, response in kept]
-    return "\n".join(head[:-1] + ["# thinned to 1 nm by umov (tools/oracles/lsst_curves.py)", head[-1]] + body) + "\n"
+    return "\n".join(head[:-1] + ['# - {thinned: "to 1 nm by umov (tools/oracles/lsst_curves.py)"}', head[-1]] + body) + "\n"
 
 
 def main():

@@ -89,6 +89,9 @@ struct Scenario {
   PolarizationFrame frame = PolarizationFrame::Equatorial;
   std::optional<ScenarioObservation> observation; ///< [observation] and its instrument
   std::map<std::string, Where> places;            ///< where keys stand ("object.0.materials.front")
+
+  /// Where a key stands, else the table that it would stand in, else the file.
+  [[nodiscard]] Where place(const std::string &key) const;
 };
 
 /// Reads a scenario; each of `overrides` is "dotted.key=value" with a TOML value (a bare word

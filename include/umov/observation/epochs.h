@@ -37,7 +37,10 @@ struct KeptEpochs {
   std::vector<Pass> passes;       ///< those with at least one kept epoch
   std::size_t passes_seen = 0;    ///< above the altitude limit, kept or not
   std::size_t epochs_in_gaps = 0; ///< that an ephemeris with gaps does not cover: no rows
+  std::size_t in_light_sky = 0;   ///< above the altitude limit, but with the Sun too high
+  std::size_t in_shadow = 0;      ///< the same in a dark sky, but without sunlight
   std::optional<Error> stopped;   ///< Physics: where the orbit ends; the epochs before it are there
+  std::size_t before_end = 0;     ///< epochs of the grid that the orbit reaches, where it ends
 };
 
 /// How many epochs a span has; BadInput if step <= 0, stop < start or more than 10 million.

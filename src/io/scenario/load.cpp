@@ -25,11 +25,6 @@ Result<std::string> read_input(const std::filesystem::path &path, const Where &n
   return text;
 }
 
-Where place(const Scenario &scenario, const std::string &key) {
-  const auto found = scenario.places.find(key);
-  return found == scenario.places.end() ? Where{scenario.file} : found->second;
-}
-
 /// An object of a scenario, and how its keys are called.
 struct Named {
   const Scenario &scenario;
@@ -37,7 +32,7 @@ struct Named {
   std::size_t number;
 
   [[nodiscard]] Where place(const std::string &key) const {
-    return umov::place(scenario, fmt::format("object.{}.{}", number, key));
+    return scenario.place(fmt::format("object.{}.{}", number, key));
   }
   /// The key that says what a group of the mesh is made of.
   [[nodiscard]] std::string material_key(const std::string &group) const {

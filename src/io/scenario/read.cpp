@@ -130,6 +130,18 @@ Result<void> read_time(const Node &top, Scenario &out) {
   return {};
 }
 
+/// Places of the tables of an observation and of their keys: some of what is wrong with it is found
+/// where it is carried out.
+void note_places(const Node &top, Scenario &out) {
+  for (const char *name : {"atmosphere", "detector", "observation", "polarimeter", "time"})
+    if (const auto *table = top.table().get_as<toml::table>(name)) {
+      out.places[name] = top.where(name);
+      for (const auto &[key, value] : *table)
+        out.places[fmt::format("{}.{}", name, key.str())] =
+            scenario::place_of(key, value, out.file);
+    }
+}
+
 /// How the places of an object's keys are called.
 std::string key_of(const Scenario &out, const std::string &key) {
   return fmt::format("object.{}.{}", out.objects.size() - 1, key);
@@ -431,6 +443,7 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(read_output(top, out));
   UMOV_ASSIGN(observation, scenario::read_observation(top, path.parent_path().string()));
   out.observation = observation;
+  note_places(top, out);
   UMOV_ASSIGN(air, scenario::read_site_air(top));
   out.air = air;
   UMOV_ASSIGN(own, scenario::read_material_tables(top));
@@ -457,6 +470,13 @@ Result<Scenario> read_scenario_text(const std::string &text, const fs::path &pat
 Result<Scenario> read_scenario(const fs::path &path, const std::vector<std::string> &overrides) {
   UMOV_ASSIGN(text, read_file(path, 16u << 20));
   return read_scenario_text(text, path, overrides);
+}
+
+Where Scenario::place(const std::string &key) const {
+  if (const auto found = places.find(key); found != places.end())
+    return found->second;
+  const auto table = places.find(key.substr(0, key.rfind('.')));
+  return table == places.end() ? Where{file} : table->second;
 }
 
 Result<void> check_complete_for_run(const Scenario &s) {

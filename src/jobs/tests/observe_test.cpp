@@ -26,19 +26,25 @@ ScenarioObservation wheel(const std::vector<std::pair<double, const char *>> &st
   return out;
 }
 
+Result<Programme> make(const ScenarioObservation &observation,
+                       const std::vector<BandResponse> &bands, Diagnostics &diagnostics) {
+  Scenario scenario;
+  scenario.observation = observation;
+  return Programme::make(scenario, bands, diagnostics);
+}
+
 TEST(Programme, EveryBandMustBeSolvedByItself) {
   Diagnostics diagnostics;
   const char *const v = "nm:550", *const r = "nm:650";
   // Four analysers, but the fourth in another band.
-  const auto bad =
-      Programme::make(wheel({{0, v}, {45, v}, {90, v}, {135, r}}), two_bands(), diagnostics);
+  const auto bad = make(wheel({{0, v}, {45, v}, {90, v}, {135, r}}), two_bands(), diagnostics);
   ASSERT_FALSE(bad);
   EXPECT_NE(bad.error().message.find("nm:650"), std::string::npos) << bad.error().message;
-  const auto none = Programme::make(wheel({{0, v}, {45, v}, {90, v}}), two_bands(), diagnostics);
+  const auto none = make(wheel({{0, v}, {45, v}, {90, v}}), two_bands(), diagnostics);
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("no step in band"), std::string::npos);
-  const auto good = Programme::make(wheel({{0, v}, {0, r}, {60, v}, {60, r}, {120, ""}}),
-                                    two_bands(), diagnostics);
+  const auto good =
+      make(wheel({{0, v}, {0, r}, {60, v}, {60, r}, {120, ""}}), two_bands(), diagnostics);
   ASSERT_TRUE(good) << good.error().message;
   EXPECT_TRUE(diagnostics.empty());
   // A set is a round of all: three exposures of each band.
@@ -49,13 +55,13 @@ TEST(Programme, EveryBandMustBeSolvedByItself) {
 TEST(Programme, WarnsOfWhatHelpsLittle) {
   Diagnostics diagnostics;
   const auto bands = std::vector{two_bands()[0]};
-  ASSERT_TRUE(Programme::make(wheel({{0, ""}, {3, ""}, {6, ""}}), bands, diagnostics));
+  ASSERT_TRUE(make(wheel({{0, ""}, {3, ""}, {6, ""}}), bands, diagnostics));
   ASSERT_EQ(diagnostics.warnings().size(), 1u);
   EXPECT_NE(diagnostics.warnings()[0].text().find("condition"), std::string::npos);
   ScenarioObservation mosaic = wheel({{45, ""}});
   mosaic.instrument.polarimeter.type = PolarimeterType::Mosaic;
   mosaic.instrument.polarimeter.angles_deg = {90, 45, 135, 0};
-  ASSERT_TRUE(Programme::make(mosaic, bands, diagnostics));
+  ASSERT_TRUE(make(mosaic, bands, diagnostics));
   ASSERT_EQ(diagnostics.warnings().size(), 2u);
   EXPECT_NE(diagnostics.warnings()[1].text().find("analyser_deg"), std::string::npos);
 }
