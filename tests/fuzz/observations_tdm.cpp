@@ -1,7 +1,7 @@
 // Magnitudes of tracking data messages: what is accepted can be compared with a model.
 
-#include "fuzz/target.h"
 #include "jobs/observations_tdm.h"
+#include "fuzz/target.h"
 
 #include <cmath>
 
