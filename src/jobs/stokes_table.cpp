@@ -10,7 +10,7 @@
 namespace umov::jobs {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 /// Columns of the result.
 class StokesTableWriter {
@@ -80,17 +80,17 @@ private:
   [[nodiscard]] double zero_flux(const std::string &band) const {
     const auto found = file_.notes.find("zero_flux " + band);
     const auto value = found == file_.notes.end() ? std::nullopt : parse_number(found->second);
-    return value.value_or(nan);
+    return value.value_or(no_number);
   }
 
   [[nodiscard]] std::array<double, 29> numbers(const Reduced &r) const {
     std::array<double, 29> out;
-    out.fill(nan);
+    out.fill(no_number);
     const bool was_fitted = r.fit.covariance[0][0] > 0;
     if (was_fitted) {
       out[0] = r.fit.stokes[0];
       out[1] = std::sqrt(r.fit.covariance[0][0]);
-      out[2] = out[0] > 0 ? -2.5 * std::log10(out[0] / zero_flux(r.middle.band)) : nan;
+      out[2] = out[0] > 0 ? -2.5 * std::log10(out[0] / zero_flux(r.middle.band)) : no_number;
       out[28] = out[0] * std::pow(10, -0.4 * r.middle.k_mag * r.middle.airmass);
       out[18] = r.fit.chi2;
       out[19] = r.fit.dof;
