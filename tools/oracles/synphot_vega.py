@@ -57,6 +57,8 @@ def main():
         out.write(f"# synphot {version('synphot')}: Vega's AB magnitude and mean irradiance; the Sun (E490) where Vega is 0\n")
         out.write("name,vega_ab,vega_w_m2_nm,sun_over_vega\n")
         for row in csv.DictReader(line for line in file if not line.startswith("#")):
+            if row["stem"].startswith("lsst"):  # thinned here, and y ends in a step: half a per cent; speclite has them
+                continue
             band = curve(row["stem"])
             seen = Observation(star, band, force="taper")
             own = Observation(sun, band, force="taper")

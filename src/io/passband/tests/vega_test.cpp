@@ -42,16 +42,16 @@ double magnitude_of(const char *name, MagnitudeSystem system) {
 TEST(Vega, IsAsSynphotHasIt) {
   const Spectrum spectrum = vega();
   const auto rows = rows_of("synphot_vega.csv");
-  EXPECT_EQ(rows.size(), passband_names().size() - 3); // three bands more are cameras'
+  EXPECT_EQ(rows.size(), 24U); // all files but LSST's
   for (const auto &cells : rows) {
     const auto band = *find_passband(cells[0]);
     const double mean = mean_in(band, spectrum, "Vega")->value;
     const double ab = -2.5 * std::log10(mean / *zero_irradiance(band, MagnitudeSystem::AB));
-    // Both sum by trapezoids over the union of all points, but for what each leaves at the ends.
-    EXPECT_NEAR(ab, *parse_number(cells[1]), 1e-3) << cells[0];
-    EXPECT_NEAR(mean / *parse_number(cells[2]), 1, 1e-3) << cells[0];
+    // Both sum by trapezoids over all points; curves that end in a step (Bessell R) feel where.
+    EXPECT_NEAR(ab, *parse_number(cells[1]), 1.5e-3) << cells[0];
+    EXPECT_NEAR(mean / *parse_number(cells[2]), 1, 2e-3) << cells[0];
     const double sun = -2.5 * std::log10(sunlight_in(band)->value / mean);
-    EXPECT_NEAR(sun, *parse_number(cells[3]), 5e-3) << cells[0]; // a system in which Vega is 0
+    EXPECT_NEAR(sun, *parse_number(cells[3]), 1e-3) << cells[0]; // a system in which Vega is 0
   }
 }
 
