@@ -58,6 +58,7 @@ private:
   const IdentifyOptions &options_;
   QuickLook look_;
   std::vector<std::size_t> left_;
+  std::size_t cells_ = 20;  ///< a side, of the last signature that was searched
   std::vector<double> kin_; ///< ln evidence of something like a candidate, of those searched
   IdentityAnswer out_;
 };
@@ -144,6 +145,7 @@ Result<void> Identification::search(std::size_t k) {
     like = mean_evidence(model, CurveLikelihood(curve_, of_kin(errors)), best_of(s, column), {},
                          options_.look_grid, threads);
     PoseAnswer unused;
+    cells_ = s.cells;
     own = inverse::table_evidence(model, options_.search, s.error, fit.answer);
     recoloured =
         inverse::table_evidence(model, recoloured_search(options_.search), s.error, unused);
@@ -191,6 +193,13 @@ void Identification::weigh() {
     kin = log_sum(kin, one - std::log(static_cast<double>(from_.count)));
   out_.none_log_evidence =
       log_sum(kin, inverse::featureless(curve_, options_.search.errors)) - std::log(2.0);
+  // Tables alone: their errors are common to neighbouring epochs, so that the rows weigh less.
+  const bool has_models = std::ranges::any_of(
+      out_.candidates, [](const CandidateFit &fit) { return fit.by == JudgedBy::Model; });
+  const double share = has_models ? 1 : inverse::independent_share(curve_, cells_);
+  out_.none_log_evidence *= share;
+  for (CandidateFit &fit : out_.candidates)
+    fit.log_evidence *= share;
   double all = log_of(options_.none_prior) + out_.none_log_evidence;
   for (CandidateFit &fit : out_.candidates)
     if (fit.by == JudgedBy::Look)

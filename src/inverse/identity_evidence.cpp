@@ -99,6 +99,16 @@ Result<double> mean_evidence(const CurveModel &model, const CurveLikelihood &lik
   return -(least + likelihood.log_variance()) / 2 + std::log(sum / static_cast<double>(of));
 }
 
+double independent_share(const ObservedCurve &curve, std::size_t cells) {
+  double path = 0;
+  for (std::size_t e = 1; e < curve.epochs.size(); ++e)
+    for (const auto direction : {&ObservedEpoch::to_sun, &ObservedEpoch::to_observer})
+      path += norm(curve.epochs[e].*direction - curve.epochs[e - 1].*direction);
+  const double cell = pi / static_cast<double>(cells); // of an octahedron: 180 deg a side
+  const auto epochs = static_cast<double>(std::max<std::size_t>(curve.epochs.size(), 1));
+  return std::min(1.0, (1 + path / cell) / epochs);
+}
+
 double log_misfit(const PoseAnswer &answer) {
   const double dof =
       static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);

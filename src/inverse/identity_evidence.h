@@ -30,6 +30,9 @@ Result<double> mean_evidence(const CurveModel &model, const CurveLikelihood &lik
 /// largest of them, and carried to the smaller ones by its samples.
 Result<double> table_evidence(const CurveModel &model, const SearchOptions &search,
                               double table_error, PoseAnswer &answer);
+/// Share of the epochs whose errors of a table of so many cells a side are their own: those within
+/// one cell have the same. How far Sun and observer move as seen from the object, in cells.
+double independent_share(const ObservedCurve &curve, std::size_t cells);
 /// ln of the most that a fit of this p-value may weigh against a better model that nobody has
 /// stated, -e p ln p (Sellke, Bayarri & Berger 2001); 0 for p above 1/e.
 double log_misfit(const PoseAnswer &answer);

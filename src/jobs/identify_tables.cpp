@@ -75,7 +75,10 @@ Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve) {
     return Verdict::NoFit;
   if (is_steady(curve) || answer.is_cut || answer.none > best)
     return Verdict::Undetermined;
-  return best > sure && curve.epochs.size() > 1 ? Verdict::Determined : Verdict::Ambiguous;
+  // A table knows an object to some per cent: what is like it as closely takes its name.
+  const bool has_own = answer.candidates[answer.order.front()].by == JudgedBy::Model;
+  return best > sure && has_own && curve.epochs.size() > 1 ? Verdict::Determined
+                                                           : Verdict::Ambiguous;
 }
 
 std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve) {

@@ -20,8 +20,8 @@ inline constexpr const char *none_of_these = "none of these";
 
 /// identity.ecsv: most probable first, none of these among them.
 Table identity_table(const IdentityWords &words);
-/// Determined: one object holds over 95 %; NoFit: none of these does. What a steady curve or one
-/// epoch says of a name is never more than Ambiguous.
+/// Determined: one object holds over 95 % in its own light; NoFit: none of these does. What a
+/// table, a steady curve or one epoch says of a name is never more than Ambiguous.
 Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve);
 /// What the answer rests on, and what it cannot tell.
 std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve);

@@ -38,9 +38,9 @@ struct OwnAnswer {
 struct IdentifyOptions {
   SearchOptions search;           ///< errors, grid and samples of the searches; threads, seed
   double none_prior = 0.05;       ///< chance, before any data, that the object is none of them
-  std::size_t look_grid = 20'000; ///< attitudes of the quick look
+  std::size_t look_grid = 14'000; ///< attitudes of the quick look
   std::size_t look_epochs = 16;   ///< and epochs
-  std::size_t shortlist = 40;     ///< objects that are looked at again, with all of their light
+  std::size_t shortlist = 30;     ///< objects that are looked at again, with all of their light
   std::size_t finalists = 6;      ///< objects whose attitudes are searched for
   std::size_t own = 6;            ///< objects that are asked for their own light, at most
   /// The answer of the own light of candidate k; none where nobody has it. May be empty.

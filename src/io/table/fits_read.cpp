@@ -103,7 +103,7 @@ Result<void> FitsReader::read_cells(int column, std::size_t rows, TextTable &out
   const auto room = static_cast<std::size_t>(std::max(width, repeat)) + 1;
   std::string cell(std::max<std::size_t>(room, 64), '\0');
   for (std::size_t k = 0; k < rows; ++k) {
-    const auto row = static_cast<LONGLONG>(k + 1);
+    const LONGLONG row = static_cast<LONGLONG>(k) + 1;
     int is_missing = 0;
     std::string value;
     if (is_text) {
