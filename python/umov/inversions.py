@@ -307,7 +307,7 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
 def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike[str], *,
              objects: Sequence[str | os.PathLike[str]] = (), none_prior: float = 0.05, set: Mapping[str, Any] | None = None,
              fit: Fit | None = None, threads: int = 0, cache: bool | str | os.PathLike[str] = True,
-             progress: Progress = None) -> Inversion:
+             device: str = "cpu", progress: Progress = None) -> Inversion:
     """Which object of a library made a light curve, in whatever attitude and at whatever range, or none: `umov identify`.
 
     Parameters
@@ -330,6 +330,9 @@ def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike
         0 for all cores; the bytes do not depend on it.
     cache
         Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
     progress
         True for a bar, or a callable (what, done, total).
 
@@ -359,7 +362,7 @@ def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
         return _inversion(_umov.identify(asked._scenario, _request(files, fit), os.fspath(library),
-                                         [os.fspath(one) for one in objects], prior, job_options(threads, cache),
+                                         [os.fspath(one) for one in objects], prior, job_options(threads, cache, device=device),
                                          Watch(progress)))
 
 

@@ -119,6 +119,8 @@ public:
   [[nodiscard]] const std::vector<std::size_t> &columns(std::size_t k) const {
     return columns_.at(k);
   }
+  /// How it was lit.
+  [[nodiscard]] const ManifestInput::Light &used(std::size_t k) const { return used_.at(k); }
 
 private:
   const IdentifyRequest &request_;
@@ -128,6 +130,7 @@ private:
   std::map<std::size_t, std::string> scenarios_;
   std::map<std::size_t, SearchedLight> lights_;
   std::map<std::size_t, std::vector<std::size_t>> columns_;
+  std::map<std::size_t, ManifestInput::Light> used_;
 };
 
 Result<void> OwnLights::assign(const Library &library) {
@@ -160,8 +163,11 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
   UMOV_ASSIGN(columns, columns_in(bands, curve, named->second));
   UMOV_ASSIGN(made, prepare_light(scenario, request_.observed, options_, diagnostics_));
   UMOV_ASSIGN(file, SignatureFile::open(library.file(k)));
-  if (file.view().text.job !=
-      signature_job(scenario, made.light.inputs(), file.view().signature.cells))
+  UMOV_ASSIGN(device, device_text(options_.device));
+  const auto job_by = [&](const std::string &by) {
+    return signature_job(scenario, made.light.inputs(), file.view().signature.cells, by);
+  };
+  if (file.view().text.job != job_by("") && file.view().text.job != job_by(device))
     diagnostics_.warn("is not what its signature was made from, or another umov made that; its own "
                       "light is taken as it is now",
                       {named->second});
@@ -170,6 +176,7 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
   const CurveModel model(curve, lighting_of(light.light, options_.threads, monitor_), columns);
   const CurveModel quick(curve, quick_lighting(light, options_.threads, monitor_), columns);
   UMOV_ASSIGN(found, search_pose(model, quick, search));
+  used_[k] = light_used(light, scenario, diagnostics_);
   keep_masks(light);
   return std::optional(
       OwnAnswer{std::move(found), CurveLikelihood(curve, search.errors).log_variance()});
@@ -210,6 +217,7 @@ Result<Inversion> identify_object(const Scenario &scenario, const IdentifyReques
     const CurveModel model(curve, lighting_of(light->light, options.threads, monitor),
                            own.columns(best));
     fit = fit_table(observed, model, pose, request.observed.errors);
+    out.light = own.used(best);
   } else {
     UMOV_TRY(library.lend(best, curve, [&](const Signature &s, std::span<const std::size_t> c) {
       const CurveModel model(curve, lighting_of(s, options.threads), {c.begin(), c.end()});

@@ -60,7 +60,8 @@ Result<void> write_inversion(const Inversion &inversion, const Scenario &scenari
   for (const InputFile &input : inversion.inputs)
     manifest.inputs.emplace_back(input.path, input.sha256);
   manifest.seed = inversion.seed;
-  manifest.light.push_back(inversion.light);
+  if (!inversion.light.object.empty()) // a library's light was made before
+    manifest.light.push_back(inversion.light);
   folder.add("manifest.json", make_manifest(manifest));
   return folder.commit();
 }
