@@ -18,11 +18,11 @@ CONFIGURATION = [
     (('default = "paper_al"', 'front = "paper_al"'), ["front", "cube"]),
     (('set = "paper_rgb"', 'set = ["nm:800"]'), ["800", "425"]),
     (('set = "paper_rgb"', 'set = ["Bessel.Q"]'), ["Bessel.Q", "nm:"]),
-    (('unit = "m", ', ""), ["no unit", "unit =", "(named in scenario.toml:15:8)"]),
-    (('unit = "m"', 'unit = "furlong"'), ['"furlong"', "m, cm, mm", "(named in scenario.toml:15:8)"]),
-    (('up = "+Z", ', ""), ["up", "scenario.toml:15:8"]),
-    (('up = "+Z"', 'up = "Z"'), ['"Z"', '"+X"', "scenario.toml:15:8"]),
-    (('file = "cube.obj"', 'file = ""'), ["scenario.toml:15", "is empty"]),
+    (('unit = "m", ', ""), ["no unit", "unit =", "(named in scenario.toml:15:10)"]),
+    (('unit = "m"', 'unit = "furlong"'), ['"furlong"', "m, cm, mm", "(named in scenario.toml:15:10)"]),
+    (('up = "+Z", ', ""), ["up", "scenario.toml:15:10"]),
+    (('up = "+Z"', 'up = "Z"'), ['"Z"', '"+X"', "scenario.toml:15:10"]),
+    (('file = "cube.obj"', 'file = ""'), ["scenario.toml:15:10", '"mesh"', "Add it"]),
     (("alt_m = 3058", 'alt_m = "3 km"'), ["scenario.toml:6:9", '"3 km"', "a number was expected"]),
     (("seed = 1", "seed = 1.5"), ["scenario.toml:2", "1.5", "whole number"]),
     (("[bands]", "[bands"), ["scenario.toml:19:7", "TOML"]),
@@ -180,7 +180,7 @@ def test_errors_of_overrides_name_the_option(umov, scenario, override):
 def test_a_mesh_without_unit_names_the_scenario(umov, scenario, tmp_path, verb):
     scenario(('unit = "m", ', ""))
     done = umov(*verb)
-    assert done.code == 3 and "(named in scenario.toml:15:8)" in done.err, done.err
+    assert done.code == 3 and "(named in scenario.toml:15:10)" in done.err, done.err
     assert not (tmp_path / "lib").exists() and not (tmp_path / "x.png").exists()
 
 
