@@ -22,7 +22,7 @@ CONFIGURATION = [
     (('unit = "m"', 'unit = "furlong"'), ['"furlong"', "m, cm, mm", "(named in scenario.toml:15:10)"]),
     (('up = "+Z", ', ""), ["up", "scenario.toml:15:10"]),
     (('up = "+Z"', 'up = "Z"'), ['"Z"', '"+X"', "scenario.toml:15:10"]),
-    (('file = "cube.obj"', 'file = ""'), ["scenario.toml:15:10", '"mesh"', "Add it"]),
+    (('file = "cube.obj"', 'file = ""'), ["scenario.toml:15:10", 'file = ""', "the name of a mesh was expected"]),
     (("alt_m = 3058", 'alt_m = "3 km"'), ["scenario.toml:6:9", '"3 km"', "a number was expected"]),
     (("seed = 1", "seed = 1.5"), ["scenario.toml:2", "1.5", "whole number"]),
     (("[bands]", "[bands"), ["scenario.toml:19:7", "TOML"]),

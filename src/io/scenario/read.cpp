@@ -181,6 +181,9 @@ Result<void> read_mesh(const Node &object, const fs::path &folder, Scenario &out
   UMOV_ASSIGN(node, object.child("mesh"));
   UMOV_TRY(node.require("file"));
   UMOV_ASSIGN(normals, node.choice("normals", "flat", {"flat", "smooth"}));
+  if (node.text("file", "").empty())
+    return fail(ErrorCode::BadInput, "file = \"\"; the name of a mesh was expected",
+                node.where("file"));
   ScenarioMesh &mesh = out.objects.back().mesh;
   mesh.file = tidy_path(folder / node.text("file", ""));
   mesh.unit = node.text("unit", "");
