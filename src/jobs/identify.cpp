@@ -2,6 +2,7 @@
 
 #include "jobs/identify_tables.h"
 #include "jobs/invert_light.h"
+#include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
 #include "jobs/job_journal.h"
 
@@ -230,8 +231,9 @@ Result<Inversion> identify_object(const Scenario &scenario, const IdentifyReques
   out.tables = {{"identity", identity_table(words)},
                 {"modes", modes_table(pose, false)},
                 {"fit", std::move(fit)}};
-  out.page = page_of(fmt::format("Which object: {} at its best", printable(words.names[best])),
-                     out.tables[2].table, out.tables[1].table, out.summary);
+  out.page =
+      inversion_page(fmt::format("Which object: {} at its best", printable(words.names[best])),
+                     out.tables[2].table, pose, out.summary);
   out.inputs.insert(out.inputs.end(), observed.inputs.begin(), observed.inputs.end());
   out.seed = scenario.seed;
   return out;

@@ -1,6 +1,7 @@
 #include <umov/jobs/invert.h>
 
 #include "jobs/invert_light.h"
+#include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
 
 #include <fmt/format.h>
@@ -29,8 +30,8 @@ Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &req
                 {"samples", samples_table(answer, false)},
                 {"twins", twins_table(answer, symmetries)},
                 {"fit", fit_table(ready.observed, model, answer, request.errors)}};
-  out.page = page_of("Which attitude: " + scenario.title, out.tables[4].table, out.tables[0].table,
-                     out.summary);
+  out.page =
+      inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer, out.summary);
   out.inputs = ready.observed.inputs;
   out.seed = scenario.seed;
   out.light = light_used(ready, scenario, diagnostics);

@@ -1,4 +1,5 @@
 #include "jobs/invert_light.h"
+#include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
@@ -126,8 +127,8 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                 {"set95", set_table(answer.pose)},
                 {"samples", samples_table(answer.pose, true)},
                 {"fit", fit_table(ready.observed, model, answer.pose, request.errors)}};
-  out.page = page_of("Which spin: " + scenario.title, out.tables[4].table, out.tables[0].table,
-                     out.summary);
+  out.page = inversion_page("Which spin: " + scenario.title, out.tables[4].table, answer.pose,
+                            out.summary);
   out.inputs = ready.observed.inputs;
   out.seed = scenario.seed;
   out.light = light_used(ready, scenario, diagnostics);

@@ -49,8 +49,5 @@ Judgement judge(const PoseAnswer &answer, const ObservedCurve &curve, const Curv
 std::string json_of(const char *question, const PoseAnswer &answer, const Judgement &judgement,
                     const std::vector<BodySymmetry> &symmetries);
 std::string summary_of(const PoseAnswer &answer, const Judgement &judgement);
-/// The data and the fit as a page; empty where this build makes none.
-std::string page_of(const std::string &title, const Table &fit, const Table &modes,
-                    const std::string &summary);
 
 } // namespace umov::jobs

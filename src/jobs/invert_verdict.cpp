@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
-#include <umov/io/plot_page.h>
 
 namespace umov::jobs {
 
@@ -201,48 +200,6 @@ std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
   for (const std::string &text : judgement.notes)
     out += "- " + text + "\n";
   return out;
-}
-
-std::string page_of(const std::string &title, const Table &fit, const Table &modes,
-                    const std::string &summary) {
-  const auto &bands = std::get<std::vector<std::string>>(fit.find("band")->cells);
-  std::vector<std::string> names = bands;
-  std::ranges::sort(names);
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  PlotFigure light{"Brightness: measured and fitted", "row", "I [m2/sr]", {}};
-  PlotFigure polarization{"Polarization: measured and fitted", "row", "q (scattering plane)", {}};
-  for (std::size_t n = 0; n < names.size(); ++n) {
-    PlotLine seen{names[n], {}, {}, n}, fitted{names[n] + ", fit", {}, {}, n};
-    seen.has_markers = true;
-    PlotLine q_seen = seen, q_fitted = fitted;
-    for (std::size_t k = 0; k < bands.size(); ++k) {
-      if (bands[k] != names[n])
-        continue;
-      const auto x = static_cast<double>(k);
-      for (const auto &[line, column] : {std::pair{&seen, "intensity"},
-                                         {&fitted, "intensity_model"},
-                                         {&q_seen, "q_scat"},
-                                         {&q_fitted, "q_scat_model"}}) {
-        line->x.push_back(x);
-        line->y.push_back(fit.number(column, k));
-      }
-    }
-    light.lines.insert(light.lines.end(), {seen, fitted});
-    polarization.lines.insert(polarization.lines.end(), {q_seen, q_fitted});
-  }
-  std::vector<std::string> notes;
-  for (std::string_view rest = summary; !rest.empty();) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    notes.emplace_back(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-  }
-  for (std::size_t k = 0; k < std::min<std::size_t>(modes.rows(), 10); ++k)
-    notes.push_back(fmt::format("mode {}: weight {:.3f}, q = ({:.5f}, {:.5f}, {:.5f}, {:.5f})",
-                                k + 1, modes.number("weight", k), modes.number("qw", k),
-                                modes.number("qx", k), modes.number("qy", k),
-                                modes.number("qz", k)));
-  const auto page = make_plot_page(title, {light, polarization}, notes);
-  return page ? *page : std::string();
 }
 
 } // namespace umov::jobs

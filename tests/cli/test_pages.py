@@ -64,7 +64,7 @@ KINDS = {  # page: figures that it must have, marks of its sky chart
     "observe/report.html": ({"Counts in the aperture"}, 0),
     "reduce.html": ({"Polarization", "Brightness"}, 0),
     "exposure.html": ({"Error of p", "Signal to noise", "How long until p is known", "What makes the error of p"}, 0),
-    "invert/report.html": (set(), 0),
+    "invert/report.html": ({"Brightness: measured and fitted", "Brightness left over", "Errors of the heaviest attitude: about +X and +Y"}, 0),
     "paper/index.html": (set(), 0),
 }
 

@@ -10,7 +10,7 @@ namespace umov {
 
 /// One line, or set of points, of a figure.
 struct PlotLine {
-  std::string name;
+  std::string name;           ///< "": not in the legend
   std::vector<double> x, y;   ///< NaN breaks the line
   std::size_t colour = 0;     ///< into the colour-blind safe list
   std::string dash = "solid"; ///< solid, dash, dot, dashdot: lines differ by more than colour

@@ -46,16 +46,8 @@ struct CardBatch {
 };
 
 /// Columns of a pose's light per unit of area; V is 0 of everything that has a kernel.
-enum LightRow : std::uint8_t {
-  RowI,
-  RowQ,
-  RowU,
-  RowIErr,
-  RowQErr,
-  RowUErr,
-  RowVErr,
-  light_columns
-};
+enum LightRow : std::uint8_t { RowI, RowQ, RowU, RowIErr, RowQErr, RowUErr, RowVErr };
+inline constexpr std::size_t light_columns = RowVErr + 1; ///< how many
 
 /// Sums of a pose with what is not known of them: abundances.
 template <class T> struct Weighed {

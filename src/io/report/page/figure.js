@@ -55,7 +55,7 @@ const umovFigure = (() => {
   const drawPlane = (plot, figure) => {
     const lines = figure.lines.map((line, index) => ({
       type: line.x.length > 2000 ? "scattergl" : "scatter", mode: line.markers ? "markers" : "lines",
-      name: safe(line.name), x: line.x, y: line.y, opacity: line.faint ? 0.35 : 1,
+      name: safe(line.name), x: line.x, y: line.y, opacity: line.faint ? 0.35 : 1, showlegend: line.name !== "",
       line: { color: line.colour, dash: line.dash, width: line.faint ? 1 : 2 },
       marker: { color: line.colour, size: 4, symbol: symbols[index % symbols.length] },
     }));

@@ -1,0 +1,15 @@
+#pragma once
+// Private: the page of an answer about attitudes.
+
+#include <string>
+#include <umov/inverse/pose_search.h>
+#include <umov/io/table.h>
+
+namespace umov::jobs {
+
+/// Data and fit against time with what is left over, where the body's axes point, how the attitude's errors hang
+/// together, and the summary's lines. `fit`: as of fit_table. Empty where this build makes none.
+std::string inversion_page(const std::string &title, const Table &fit, const PoseAnswer &answer,
+                           const std::string &summary);
+
+} // namespace umov::jobs
