@@ -6,8 +6,8 @@
 #include <initializer_list>
 #include <optional>
 #include <umov/core/quantity.h>
-#include <umov/core/text.h>
 #include <umov/core/rotation.h>
+#include <umov/core/text.h>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/io/plot_page.h>
 #include <umov/time/epoch.h>
@@ -67,8 +67,9 @@ TimeAxis time_axis(const std::vector<std::string> &utc) {
   for (double &x : out.x)
     x /= unit;
   if (!utc.empty())
-    out.title = fmt::format("{} since {}{}", name, utc.front(),
-                            stretch > 0 ? fmt::format(", {} left out", counted(stretch, "gap")) : "");
+    out.title =
+        fmt::format("{} since {}{}", name, utc.front(),
+                    stretch > 0 ? fmt::format(", {} left out", counted(stretch, "gap")) : "");
   return out;
 }
 
@@ -135,8 +136,7 @@ void add_lines(PlotFigure &figure, std::initializer_list<PlotLine> lines) {
 
 /// Data and fit, and what is left over.
 void add_data(std::vector<PlotFigure> &figures, const Table &fit) {
-  const TimeAxis time =
-      time_axis(std::get<std::vector<std::string>>(fit.find("time_utc")->cells));
+  const TimeAxis time = time_axis(std::get<std::vector<std::string>>(fit.find("time_utc")->cells));
   if (time.x.empty())
     return;
   PlotFigure light{"Brightness: measured and fitted", time.title, "I [m2/sr]", {}};
@@ -168,7 +168,8 @@ std::vector<Quaternion> equal_samples(const PoseAnswer &answer) {
   double sum = 0;
   for (const PoseSample &sample : answer.samples) {
     sum += sample.weight;
-    while (static_cast<double>(out.size()) + 0.5 < sum * drawn_samples && out.size() < drawn_samples)
+    while (static_cast<double>(out.size()) + 0.5 < sum * drawn_samples &&
+           out.size() < drawn_samples)
       out.push_back(sample.turning.attitude);
   }
   return out;
@@ -198,8 +199,8 @@ PlotFigure axes_figure(const std::vector<Quaternion> &samples) {
 
 /// Turn from one attitude to another [deg], as a vector in body axes.
 std::array<double, 3> turn_deg(Quaternion from, Quaternion to) {
-  const Quaternion d = quaternion_from(rotation_from<Body, Gcrs>(to) *
-                                       rotation_from<Body, Gcrs>(from).inverse());
+  const Quaternion d =
+      quaternion_from(rotation_from<Body, Gcrs>(to) * rotation_from<Body, Gcrs>(from).inverse());
   const double sine = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
   const double scale = sine > 0 ? 2 * std::atan2(sine, d.w) / sine * deg_per_rad : 0;
   return {scale * d.x, scale * d.y, scale * d.z};
@@ -226,10 +227,11 @@ void add_corner(std::vector<PlotFigure> &figures, const PoseAnswer &answer,
   for (const auto &[a, b] : {std::pair{0, 1}, {0, 2}, {1, 2}}) {
     PlotLine line{{}, turn[static_cast<std::size_t>(a)], turn[static_cast<std::size_t>(b)]};
     line.has_markers = true;
-    figures.push_back({fmt::format("Errors of the heaviest attitude: about +{} and +{}", "XYZ"[a], "XYZ"[b]),
-                       fmt::format("turn about +{} [deg]", "XYZ"[a]),
-                       fmt::format("turn about +{} [deg]", "XYZ"[b]),
-                       {line}});
+    figures.push_back(
+        {fmt::format("Errors of the heaviest attitude: about +{} and +{}", "XYZ"[a], "XYZ"[b]),
+         fmt::format("turn about +{} [deg]", "XYZ"[a]),
+         fmt::format("turn about +{} [deg]", "XYZ"[b]),
+         {line}});
   }
 }
 

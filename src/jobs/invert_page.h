@@ -7,8 +7,9 @@
 
 namespace umov::jobs {
 
-/// Data and fit against time with what is left over, where the body's axes point, how the attitude's errors hang
-/// together, and the summary's lines. `fit`: as of fit_table. Empty where this build makes none.
+/// Data and fit against time with what is left over, where the body's axes point, how the
+/// attitude's errors hang together, and the summary's lines. `fit`: as of fit_table. Empty where
+/// this build makes none.
 std::string inversion_page(const std::string &title, const Table &fit, const PoseAnswer &answer,
                            const std::string &summary);
 

@@ -82,10 +82,10 @@ namespace {
 
 /// A scene's colours in single precision, with the views that cards copy.
 struct CardColourStore {
-  explicit CardColourStore(const CompiledScene &scene) : rounded(scene.colours.rounded()) {
-    for (const RoundedColours::Slot &slot : rounded.slots) {
-      slots.push_back(slot.colour);
-      backend::SlotColour<float> &to = slots.back();
+  explicit CardColourStore(const CompiledScene &scene) : rounded_(scene.colours.rounded()) {
+    for (const RoundedColours::Slot &slot : rounded_.slots) {
+      slots_.push_back(slot.colour);
+      backend::SlotColour<float> &to = slots_.back();
       to.lobe = slot.lobe;
       to.single_bounce = slot.single_bounce;
       to.whole = slot.whole;
@@ -93,19 +93,19 @@ struct CardColourStore {
       to.u = slot.u;
     }
     for (const backend::LobeRounding<double> &of : scene.rounding)
-      rounding.push_back({static_cast<float>(of.per_peak), static_cast<float>(of.per_root)});
+      rounding_.push_back({static_cast<float>(of.per_peak), static_cast<float>(of.per_root)});
   }
   [[nodiscard]] backend::CardColourSource view(std::size_t bands) const {
-    return {slots,
-            rounding,
-            {rounded.reflection, rounded.columns, rounded.steps},
+    return {slots_,
+            rounding_,
+            {rounded_.reflection, rounded_.columns, rounded_.steps},
             static_cast<std::uint32_t>(bands)};
   }
 
 private:
-  RoundedColours rounded;
-  std::vector<backend::SlotColour<float>> slots;
-  std::vector<backend::LobeRounding<float>> rounding;
+  RoundedColours rounded_;
+  std::vector<backend::SlotColour<float>> slots_;
+  std::vector<backend::LobeRounding<float>> rounding_;
 };
 
 } // namespace

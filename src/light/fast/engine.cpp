@@ -263,7 +263,7 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
       material.empty() ? 0 : *std::max_element(material_of.begin(), material_of.end()) + 1;
   out.material_i.assign(poses.size() * materials * band_count(), 0);
   const bool has_u_or_v = s.compiled.has_u;
-  State::FromCards from_cards;
+  FromCards from_cards;
   if (s.on_cards && s.on_cards->loops->has_colours() && materials == 0 &&
       !s.needs_pose_beside_cards(task))
     from_cards = {backend::CardWants::Light,
@@ -304,7 +304,7 @@ Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out
   begin_abundances(s.compiled, s.scene.mesh, poses, out);
   LightTask task;
   task.threads = threads;
-  State::FromCards from_cards;
+  FromCards from_cards;
   if (s.on_cards && !s.needs_pose_beside_cards(task))
     from_cards = {backend::CardWants::Abundances,
                   [&](std::size_t row, const backend::CardRows &rows, std::size_t row_of_card) {

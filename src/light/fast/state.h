@@ -23,6 +23,13 @@ void put_darkness(std::size_t row, StokesTable &out);
 /// Some band has light.
 bool has_any_light(const BandLight &light);
 
+/// What cards finish alone: called in the stead of `body` for poses that came back from them.
+/// Empty: they give sums, and `body` goes on from there.
+struct FromCards {
+  backend::CardWants wants = backend::CardWants::Sums;
+  std::function<void(std::size_t row, const backend::CardRows &rows, std::size_t row_of_card)> take;
+};
+
 struct Engine::State {
   State(const Scene &of, const EngineOptions &with);
   State(const State &) = delete; // `views` point into it
@@ -129,13 +136,6 @@ struct Engine::State {
   double glint_share(const Pose &pose, const Prepared &at, Workspace &work) const;
   /// Runs `body(row, pose, prepared, workspace)` for all poses, in an order that suits the masks;
   /// for none any more once the task is cancelled.
-  /// What cards finish alone: called in the stead of `body` for poses that came back from them.
-  /// Empty: they give sums, and `body` goes on from there.
-  struct FromCards {
-    backend::CardWants wants = backend::CardWants::Sums;
-    std::function<void(std::size_t row, const backend::CardRows &rows, std::size_t row_of_card)>
-        take;
-  };
   template <class Body>
   void for_each(std::span<const Pose> poses, const LightTask &task, const Body &body,
                 const FromCards &from_cards = {}) const;
