@@ -96,6 +96,8 @@ std::size_t Engine::State::for_each_on_cards(std::span<const Pose> poses,
   if (is_stopped(task.cancel)) // masks may be lacking
     return poses.size();
   const WriteLock alone(on_cards->one_at_a_time);
+  if (on_cards->is_left) // by the thread that was waited for
+    return 0;
   std::vector<backend::PoseDirections> directions;
   directions.reserve(order.size());
   for (const std::uint32_t row : order)
