@@ -93,6 +93,18 @@ def test_what_cards_do_not_light_is_refused_by_name(signature, settings):
     refused = signature("a.csv", "--device", "cuda", visibility="rays")
     assert refused.code == 2 and "rays are traced by the processor" in refused.err
     assert signature("a.csv", "--device", "gpu").code == 2
+    told = signature("b.csv", "--device", "auto", visibility="rays")
+    assert told.code == 0 and "--device auto took the cpu: rays are traced by the processor" in told.err
+
+
+def test_own_heat_is_the_processors(umov, scenario, settings):
+    settings()
+    name = scenario(('default = "paper_al"', 'default = "paint_white"'), ('"paper_rgb"', '"nm:10000"'))
+    command = ("signature", name, "--poses", 20, "--phase", "60", "--source", "thermal", "--temperature", 300, "-o", "a.csv")
+    refused = umov(*command, "--device", "cuda")
+    assert refused.code == 2 and "own heat is lit by the processor" in refused.err, refused.err
+    told = umov(*command, "--device", "auto")
+    assert told.code == 0 and "--device auto took the cpu: own heat is lit by the processor" in told.err, told.err
 
 
 def test_a_lost_card_keeps_what_is_finished(signature, settings, tmp_path, monkeypatch):
