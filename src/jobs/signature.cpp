@@ -78,13 +78,14 @@ std::string job_of(const Scenario &scenario, const PoseList &poses, const Signat
                    const PoseLight &pose_light) {
   const LightOptions &light = pose_light.options();
   const Stokes<ScatteringPlane> &s = light.source;
+  const std::string &device = pose_light.model().facts().device;
   return job_text(scenario, pose_light.inputs(),
                   fmt::format("signature of {}; source {} {} {} {} {} {}; method {}, accuracy {}, "
                               "seed {}, between {}{}",
                               poses.origin, static_cast<int>(request.source), s.i, s.q, s.u, s.v,
                               fmt::join(request.temperatures, ","), name_of(light.method),
                               light.accuracy, light.seed, name_of(light.between),
-                              pose_light.model().facts().device));
+                              device.empty() ? "" : "; device " + device));
 }
 
 /// A block of poses from their numbers to rows.

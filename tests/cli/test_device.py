@@ -1,6 +1,7 @@
 """--device: cards by a driver without one (src/backend/cuda/tests), and what is said where there is none."""
 import json
 import os
+import shutil
 import subprocess
 
 import pytest
@@ -49,6 +50,34 @@ def test_doctor_names_the_cards(umov, settings):
     assert "Card of paper (1 GB, compute 8.0)" in umov("doctor").out
 
 
+def test_half_of_what_is_needed_is_told(umov, signature, tmp_path, monkeypatch):
+    """A driver without a compiler, files that are something else, or are no library."""
+    driver, compiler = FAKE / "libcuda.so.1", FAKE / "libnvrtc.so.13"
+    cases = {"driver of another": ({"libcuda.so.1": compiler}, "is too old: it lacks cuInit"),
+             "compiler of another": ({"libcuda.so.1": driver, "libnvrtc.so.13": driver}, "is too old: it lacks nvrtcVersion")}
+    if shutil.which("ldconfig", path="/sbin:/usr/sbin") and "libnvrtc" not in subprocess.run(
+            ["ldconfig", "-p"], text=True, capture_output=True, env={"PATH": "/sbin:/usr/sbin"}).stdout:
+        cases["no compiler"] = {"libcuda.so.1": driver}, "pip install nvidia-cuda-nvrtc"
+    for variable in ("VIRTUAL_ENV", "LD_LIBRARY_PATH"):
+        monkeypatch.delenv(variable, raising=False)
+    for name, (files, told) in cases.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        for link, target in files.items():
+            (folder / link).symlink_to(target)
+        monkeypatch.setenv("UMOV_CUDA_PATH", str(folder))
+        assert told in umov("doctor").out, name
+        refused = signature("a.csv", "--device", "cuda")
+        assert refused.code == 6 and told in refused.err, name
+    broken = tmp_path / "broken"
+    broken.mkdir()
+    (broken / "libcuda.so.1").write_text("no library")
+    monkeypatch.setenv("UMOV_CUDA_PATH", str(broken))
+    if not os.path.exists("/proc/driver/nvidia"):  # else the system's is taken
+        refused = signature("a.csv", "--device", "cuda")
+        assert refused.code == 6 and "broken/libcuda.so.1: file too short" in refused.err, refused.err
+
+
 def test_what_lacks_ends_with_6_or_a_line(signature, settings, tmp_path):
     settings(UMOV_FAKE_INIT=100)
     refused = signature("a.csv", "--device", "cuda")
@@ -64,6 +93,18 @@ def test_what_cards_do_not_light_is_refused_by_name(signature, settings):
     refused = signature("a.csv", "--device", "cuda", visibility="rays")
     assert refused.code == 2 and "rays are traced by the processor" in refused.err
     assert signature("a.csv", "--device", "gpu").code == 2
+    told = signature("b.csv", "--device", "auto", visibility="rays")
+    assert told.code == 0 and "--device auto took the cpu: rays are traced by the processor" in told.err
+
+
+def test_own_heat_is_the_processors(umov, scenario, settings):
+    settings()
+    name = scenario(('default = "paper_al"', 'default = "paint_white"'), ('"paper_rgb"', '"nm:10000"'))
+    command = ("signature", name, "--poses", 20, "--phase", "60", "--source", "thermal", "--temperature", 300, "-o", "a.csv")
+    refused = umov(*command, "--device", "cuda")
+    assert refused.code == 2 and "own heat is lit by the processor" in refused.err, refused.err
+    told = umov(*command, "--device", "auto")
+    assert told.code == 0 and "--device auto took the cpu: own heat is lit by the processor" in told.err, told.err
 
 
 def test_a_lost_card_keeps_what_is_finished(signature, settings, tmp_path, monkeypatch):

@@ -37,9 +37,13 @@ template <class T> Result<View<T>> CardLoops::OnCard::put(View<T> from, Pieces &
   if (from.empty())
     return View<T>();
   UMOV_ASSIGN(memory, card_.allocate(bytes_of(from), is_full_));
-  UMOV_TRY(
-      card_.driver().check(card_.driver().copy_in(memory.pointer(), from.data(), bytes_of(from)),
-                           "copying to " + card_.facts().name));
+  const CudaDriver &driver = card_.driver();
+  CudaCode code = driver.copy_in(memory.pointer(), from.data(), bytes_of(from));
+  // From memory that is not pinned the copy may still be under way (CUDA's "API synchronization
+  // behavior"), and the streams of batches do not wait for the default one.
+  if (code == cuda_success)
+    code = driver.wait_for(nullptr);
+  UMOV_TRY(driver.check(code, "copying to " + card_.facts().name));
   View<T> out(memory.template as<T>(), from.size());
   pieces.push_back(std::move(memory));
   return out;

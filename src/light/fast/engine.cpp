@@ -60,7 +60,7 @@ void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task,
   std::vector<std::uint32_t> order(poses.size());
   if (masks && poses.size() >= ordered_from) {
     const std::size_t cells = mask_size().small_cells, directions = (cells + 1) * (cells + 1);
-    order = order_for_masks(poses, directions, masks->bytes() / directions);
+    order = order_for_masks(poses, directions, masks->bytes() / directions, task.threads);
   } else
     std::iota(order.begin(), order.end(), 0u);
   const ReadLock held = hold_masks(poses, task);
@@ -96,11 +96,18 @@ std::size_t Engine::State::for_each_on_cards(std::span<const Pose> poses,
   if (is_stopped(task.cancel)) // masks may be lacking
     return poses.size();
   const WriteLock alone(on_cards->one_at_a_time);
-  std::vector<backend::PoseDirections> directions;
-  directions.reserve(order.size());
-  for (const std::uint32_t row : order)
-    directions.push_back({poses[row].sun, poses[row].observer, poses[row].sun_radius_rad,
-                          cos_phase(poses[row]), has_scattering_plane(poses[row])});
+  if (on_cards->is_left) // by the thread that was waited for
+    return 0;
+  // By all threads: cards take a pose in less time than one thread copies it.
+  std::vector<backend::PoseDirections> directions(order.size());
+  constexpr std::size_t block = 4096;
+  parallel_for((order.size() + block - 1) / block, task.threads, [&](std::size_t part) {
+    for (std::size_t k = part * block; k < std::min(order.size(), (part + 1) * block); ++k) {
+      const Pose &pose = poses[order[k]];
+      directions[k] = {pose.sun, pose.observer, pose.sun_radius_rad, cos_phase(pose),
+                       has_scattering_plane(pose)};
+    }
+  });
   const bool is_beside = needs_pose_beside_cards(task);
   std::size_t finished = 0;
   const auto finish = [&](std::size_t first, std::size_t count, const backend::CardRows &rows) {

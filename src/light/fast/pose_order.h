@@ -12,6 +12,6 @@ namespace umov {
 /// in their own order random poses fetch six rows of the masks each from far memory, and wait for
 /// them. `row_bytes` is the size of one direction's row. Results do not depend on it.
 std::vector<std::uint32_t> order_for_masks(std::span<const Pose> poses, std::size_t directions,
-                                           std::size_t row_bytes);
+                                           std::size_t row_bytes, unsigned threads);
 
 } // namespace umov

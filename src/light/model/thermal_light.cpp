@@ -16,6 +16,8 @@ public:
     facts_.method = LightMethod::Rays;
     facts_.is_convex = joints().empty() && integrator_.is_convex();
     facts_.instruction_set = "scalar double";
+    if (options.device.choice == DeviceChoice::Auto)
+      facts_.device = "cpu: own heat is lit by the processor";
     facts_.visibility = "paths";
   }
 

@@ -113,6 +113,9 @@ std::vector<Case> all_cases() {
   brushed.distribution = {"ashikhmin_shirley", {{"nu", 10}, {"nv", 300}}, {}, {}, {}};
   brushed.direction = Vec3<Body>{1, 0, 0};
   out.push_back({"no kernel", scene_of(ball, NormalMode::Flat, {brushed}), Visibility::None});
+  Material film = interface_of("paper_al", 200); // interferes too fast to be interpolated: its sums
+  film.layers = {{constant_index({1.5, 0}), 50'000, true}}; // come out to be coloured
+  out.push_back({"thick film", scene_of(cube, NormalMode::Flat, {film}), Visibility::None});
   out.push_back({"smooth", scene_of(make_cylinder(1, 2, 24), NormalMode::Smooth, four_materials()),
                  Visibility::None});
   out.push_back({"box with wings",
@@ -143,6 +146,28 @@ TEST(Cards, HalfWidthsAreThoseOfTheProcessor) {
     EXPECT_NEAR(found.i_err[k], exact.i_err[k], 2e-3 * exact.i_err[k] + 1e-4 * exact.i[k]) << k;
   }
   EXPECT_GT(uncertain, 100u); // masks do err
+}
+
+TEST(Cards, WholeSatellitesAgreeWithJoinedFacetsToo) {
+  for (const Mesh &mesh : {make_hst(), make_agena()})
+    for (const double cluster_rad : {0.0, 3 * pi / 180}) {
+      const Scene scene = scene_of(mesh, NormalMode::Smooth, four_materials());
+      EngineOptions options;
+      options.masks = {10'000, 16, 16, 0};
+      options.cluster_rad = cluster_rad;
+      Engine card(scene, options);
+      ASSERT_TRUE(card.use_cards(open_cards(with_fakes()).value()));
+      options.is_double = true;
+      const auto poses = random_poses(100, solar_radius);
+      const StokesTable found = evaluated(card, poses),
+                        exact = evaluated(Engine(scene, options), poses);
+      const Parity p = parity(found, exact);
+      EXPECT_LT(p.i_median, 2e-4) << cluster_rad;
+      EXPECT_LT(p.i_worst, 1e-3) << cluster_rad;
+      EXPECT_LT(p.q_median, 2e-5) << cluster_rad;
+      for (std::size_t k = 0; k < exact.i_err.size(); ++k)
+        EXPECT_NEAR(found.i_err[k], exact.i_err[k], 2e-3 * exact.i_err[k] + 1e-4 * exact.i[k]) << k;
+    }
 }
 
 TEST(Cards, ColoursOfACardAreThoseOfItsSums) {

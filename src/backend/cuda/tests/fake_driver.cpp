@@ -22,7 +22,8 @@ using namespace umov::backend;
 namespace {
 
 using Code = int;
-constexpr Code fine = 0, invalid = 1, out_of_memory = 2, not_there = 101, lost = 719;
+constexpr Code fine = 0, invalid = 1, out_of_memory = 2, not_there = 101, not_ready = 600,
+               lost = 719;
 
 std::size_t asked(const char *name, std::size_t otherwise) {
   const char *value = std::getenv(name);
@@ -33,6 +34,8 @@ std::mutex lock;
 std::map<void *, std::size_t> allocated;
 std::size_t used = 0;
 std::atomic<std::size_t> launches{0};
+/// From memory that is not pinned, until the default stream is waited for: others do not wait.
+std::atomic<bool> is_copy_under_way{false};
 
 bool is_lost() { return launches > asked("UMOV_FAKE_LAUNCHES", ~std::size_t{0}); }
 
@@ -142,12 +145,13 @@ Code cuMemFreeHost(void *pointer) {
   std::free(pointer);
   return fine;
 }
-Code cuMemcpyHtoD_v2(unsigned long long to, const void *from, std::size_t bytes) {
+Code cuMemcpyHtoDAsync_v2(unsigned long long to, const void *from, std::size_t bytes, void *) {
   std::memcpy(reinterpret_cast<void *>(to), from, bytes);
   return is_lost() ? lost : fine;
 }
-Code cuMemcpyHtoDAsync_v2(unsigned long long to, const void *from, std::size_t bytes, void *) {
-  return cuMemcpyHtoD_v2(to, from, bytes);
+Code cuMemcpyHtoD_v2(unsigned long long to, const void *from, std::size_t bytes) {
+  is_copy_under_way = true;
+  return cuMemcpyHtoDAsync_v2(to, from, bytes, nullptr);
 }
 Code cuMemcpyDtoHAsync_v2(void *to, unsigned long long from, std::size_t bytes, void *) {
   std::memcpy(to, reinterpret_cast<const void *>(from), bytes);
@@ -159,7 +163,11 @@ Code cuStreamCreate(void **stream, unsigned) {
   return is_lost() ? lost : fine;
 }
 Code cuStreamDestroy_v2(void *) { return fine; }
-Code cuStreamSynchronize(void *) { return is_lost() ? lost : fine; }
+Code cuStreamSynchronize(void *stream) {
+  if (stream == nullptr)
+    is_copy_under_way = false;
+  return is_lost() ? lost : fine;
+}
 
 Code cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned,
                     unsigned, unsigned, void *, void **parameters, void **) {
@@ -167,6 +175,8 @@ Code cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigne
   const CardBatch batch = *static_cast<const CardBatch *>(parameters[1]);
   if (batch.poses.size() > asked("UMOV_FAKE_POSES", ~std::size_t{0}))
     return out_of_memory;
+  if (is_copy_under_way)
+    return not_ready; // the kernel would read what has not come
   ++launches;
   if (is_lost())
     return lost;
