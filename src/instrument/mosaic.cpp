@@ -14,10 +14,22 @@ double mosaic_alias_strength(double fwhm_px) {
   return 4 / pi * std::exp(-pi * pi * sigma * sigma / 2);
 }
 
+namespace {
+
+/// Light in even rows or columns less that in odd ones. The fifth harmonic of the lattice is below
+/// 1e-10 of the light from a width of 1 px on.
+double even_less_odd(double fwhm_px, double offset_px) {
+  const double sigma = fwhm_px / std::sqrt(8 * std::log(2.));
+  const double third = 4 / (3 * pi) * std::exp(-9 * pi * pi * sigma * sigma / 2);
+  return mosaic_alias_strength(fwhm_px) * std::cos(pi * offset_px) -
+         third * std::cos(3 * pi * offset_px);
+}
+
+} // namespace
+
 MosaicAlias mosaic_alias(double fwhm_px, double x_px, double y_px) {
-  const double e = mosaic_alias_strength(fwhm_px);
-  const double cx = std::cos(pi * x_px), cy = std::cos(pi * y_px);
-  return {-e * (cx + cy) / (1 + e * e * cx * cy), e * (cy - cx) / (1 - e * e * cx * cy)};
+  const double x = even_less_odd(fwhm_px, x_px), y = even_less_odd(fwhm_px, y_px);
+  return {-(x + y) / (1 + x * y), (y - x) / (1 - x * y)};
 }
 
 double drift_factor(double length_px) {

@@ -27,6 +27,14 @@ TEST(ScatteredSky, IsLargestAcrossTheLight) {
   EXPECT_NEAR(scattered_sky(at(0, 0), at(0, 0), 1).degree, 0, 1e-15);
 }
 
+TEST(ScatteredSky, MoonlightIsDilutedByTheDarkSky) {
+  // 60 deg from the Moon; 660.9944 nL of moonlight on 79.00572 nL without polarization.
+  const double moon = scattered_sky(at(0, 30), at(0, 90), .6).degree;
+  EXPECT_NEAR(moon, .3441942, 5e-8);
+  const double light = of("moonlight_nl"), dark = of("dark_nl");
+  EXPECT_NEAR(moon * light / (light + dark), .3074465, 5e-8);
+}
+
 TEST(SkyBrightness, TwilightIsTheFit) {
   const std::pair<const char *, SkyBand> bands[] = {
       {"B", SkyBand::B}, {"V", SkyBand::V}, {"R", SkyBand::R}};

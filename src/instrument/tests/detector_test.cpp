@@ -80,20 +80,25 @@ TEST(Detector, MeanAndVarianceOfEveryModel) {
 }
 
 TEST(Detector, CountersLoseWhatComesWhileTheyAreDead) {
-  Detector d;
-  d.model = DetectorModel::Counter;
-  d.dead_time_s = 50e-9;
-  constexpr int trials = 100'000;
-  double sum = 0, squares = 0;
-  for (int k = 0; k < trials; ++k) {
-    Draws draws({3, 0, static_cast<std::uint32_t>(k), 0, 0});
-    const double n = draw_aperture(d, 1000, 1, 1e-3, draws);
-    sum += n;
-    squares += n * n;
+  for (const double photons : {1., 10., 1e3, 1e5}) {
+    Detector d;
+    d.model = DetectorModel::Counter;
+    d.dead_time_s = 50e-9;
+    const double exposure_s = photons * 1e-6; // a million a second: n tau = .05
+    constexpr int trials = 100'000;
+    double sum = 0, squares = 0;
+    for (int k = 0; k < trials; ++k) {
+      Draws draws({3, 0, static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(photons), 0});
+      const double n = draw_aperture(d, photons, 1, exposure_s, draws) - photons / 1.05;
+      sum += n;
+      squares += n * n;
+    }
+    // Nine digits: dead_time, the Fano factor beside it.
+    const double expected = photons / 1.05 / (1.05 * 1.05);
+    const double mean = sum / trials, variance = squares / trials - mean * mean;
+    EXPECT_NEAR(mean, 0, 4 * std::sqrt(expected / trials)) << photons;
+    EXPECT_NEAR(variance / expected, 1, 4 * std::sqrt((2 + 1 / expected) / trials)) << photons;
   }
-  const double mean = sum / trials, variance = squares / trials - mean * mean;
-  EXPECT_NEAR(mean, 1000 / 1.05, 4 * std::sqrt(1000. / trials)); // nine digits: dead_time
-  EXPECT_NEAR(variance / mean, 1 / (1.05 * 1.05), 4 * std::sqrt(2. / trials));
 }
 
 TEST(Detector, RoundingHasNoBias) { // of a camera without noise of its own

@@ -35,6 +35,25 @@ TEST(Mirror, PolarizesAndTurnsLinearIntoCircular) { // nine digits
   }
 }
 
+/// HST at 05:12:00Z behind a flat aluminium mirror at 550 nm, over its reflectance: numbers of an
+/// independent program in numpy, seven digits.
+TEST(Mirror, NasmythPortsOnAPass) {
+  const auto m3 = mirror_element(aluminium(550), at_45);
+  const Stokes<InstrumentAxes> light{1, .46297522, .18882253, 0};
+  struct Case {
+    NasmythSide side;
+    double expected[4];
+  };
+  for (const Case &one : {Case{NasmythSide::Right, {1.014392, -.01095226, .5273477, -.03874554}},
+                          {NasmythSide::Left, {1.014392, -.3542219, -.3908227, -.03874554}}}) {
+    const auto port = nasmyth_port(m3, one.side, Angle::degrees(55.844337));
+    const auto s = port * light;
+    const double found[] = {s.i, s.q, s.u, s.v};
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(found[k] / m3.m[0][0], one.expected[k], 1e-6) << k;
+  }
+}
+
 TEST(Mirror, WholeInstrumentAsFieldsGiveIt) { // nine digits
   const auto train = mirror_element(aluminium(550), at_45) * axes_turned(Angle::degrees(25));
   for (const auto &[name, angle] : {std::pair{"chain_o_", 0.}, {"chain_x_", 90.}}) {

@@ -10,12 +10,11 @@ namespace umov {
 namespace {
 
 TEST(Mosaic, AliasIsThatOfPixelSums) {
-  for (const char *fwhm : {"1.5", "2", "2.5", "3"}) // sums over 61 pixels
+  for (const char *fwhm : {"1.5", "2", "2.5", "3"}) // sums over 61 pixels, nine digits
     EXPECT_NEAR(mosaic_alias(AnchorRow::number(fwhm), 0, 0).q, of(std::string("mosaic_q_") + fwhm),
-                2e-8); // its third harmonic, of a width of 1.5 px
-  EXPECT_NEAR(mosaic_alias(2, .3, .1).q, of("mosaic_off_q"),
-              2e-8); // its third harmonic, of a width of 1.5 px
-  EXPECT_NEAR(mosaic_alias(2, .3, .1).u, of("mosaic_off_u"), 1e-8);
+                1e-9);
+  EXPECT_NEAR(mosaic_alias(2, .3, .1).q, of("mosaic_off_q"), 1e-9);
+  EXPECT_NEAR(mosaic_alias(2, .3, .1).u, of("mosaic_off_u"), 1e-9);
 }
 
 /// A Gaussian's light on pixel k of a row, its centre at x.
@@ -25,7 +24,7 @@ double on_pixel(int k, double x, double sigma) {
 }
 
 TEST(Mosaic, AliasIsThatOfPixelSumsAtAnyPhase) {
-  for (const double fwhm : {1.5, 2., 2.5, 3., 4.})
+  for (const double fwhm : {1., 1.5, 2., 2.5, 3., 4.})
     for (const double x : {0., .1, .37, .5})
       for (const double y : {0., .24, .45}) {
         const double sigma = fwhm / std::sqrt(8 * std::log(2.));
@@ -36,8 +35,8 @@ TEST(Mosaic, AliasIsThatOfPixelSumsAtAnyPhase) {
         const double n90 = even_x * even_y, n45 = (1 - even_x) * even_y;
         const double n135 = even_x * (1 - even_y), n0 = (1 - even_x) * (1 - even_y);
         const MosaicAlias alias = mosaic_alias(fwhm, x, y);
-        EXPECT_NEAR(alias.q, (n0 - n90) / (n0 + n90), 1e-6) << fwhm << " " << x << " " << y;
-        EXPECT_NEAR(alias.u, (n45 - n135) / (n45 + n135), 1e-6) << fwhm << " " << x << " " << y;
+        EXPECT_NEAR(alias.q, (n0 - n90) / (n0 + n90), 1e-9) << fwhm << " " << x << " " << y;
+        EXPECT_NEAR(alias.u, (n45 - n135) / (n45 + n135), 1e-9) << fwhm << " " << x << " " << y;
       }
 }
 

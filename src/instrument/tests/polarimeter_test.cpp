@@ -90,6 +90,8 @@ TEST(Elements, PolarizerWithExtinction) { // nine digits
   const auto row = first_row(polarizer(300, Angle::degrees(30)));
   EXPECT_NEAR(respond(row, light), of("polarizer_300_30"), 1e-9);
   EXPECT_NEAR(std::hypot(row[1], row[2]) / row[0], of("diattenuation_300"), 1e-9);
+  const auto worse = first_row(polarizer(100, Angle::degrees(30)));
+  EXPECT_NEAR(std::hypot(worse[1], worse[2]) / worse[0], of("diattenuation_100"), 1e-9);
 }
 
 /// Difference of two plate positions' beams, halved (docs/theory/observing.md 4).
@@ -104,6 +106,32 @@ TEST(HalfWavePlate, ImperfectionsAsFieldsGiveThem) { // nine digits
                 1e-9);
     EXPECT_NEAR(difference(beams(p, 22.5), beams(p, 67.5)), of(name + std::string("_difference_u")),
                 1e-9);
+  }
+}
+
+TEST(HalfWavePlate, ItsZeroTurnsTheAngleTwice) { // nine digits
+  Polarimeter p = plate(180);
+  p.plate_zero_deg = .5;
+  EXPECT_NEAR(difference(beams(p, 0), beams(p, 45)), of("plate_zero_ratio_q"), 1e-9);
+  EXPECT_NEAR(difference(beams(p, 22.5), beams(p, 67.5)), of("plate_zero_ratio_u"), 1e-9);
+}
+
+TEST(HalfWavePlate, ASimplePlateIsOneForOneWavelength) {
+  // Half a wave at 550 nm is 180 + e deg elsewhere: (1 + cos e)/2 of q is left, sin(e)/2 of v
+  // added.
+  Polarimeter p = plate(180);
+  p.retardance_deg = {{425, 550, 650}, {180 * 550 / 425., 180, 180 * 550 / 650.}};
+  struct Case {
+    double nm, efficiency, leak;
+  };
+  for (const Case &one : {Case{425, .8013173, .399}, {550, 1, 0}, {650, .9427280, -.232}}) {
+    StokesRow row{};
+    for (const double angle : {0., 45.}) {
+      const auto c = polarimeter_channels(p, {0, angle, 0}, one.nm);
+      row = row + (c->at(0).row + c->at(1).row * -1) * (angle > 0 ? -.5 : .5);
+    }
+    EXPECT_NEAR(row[1], one.efficiency, 5e-8) << one.nm; // seven digits, three of the leak
+    EXPECT_NEAR(row[3], one.leak, 5e-4) << one.nm;
   }
 }
 
@@ -135,8 +163,12 @@ TEST(Modulation, RetarderSchemes) {
   const auto balanced = at(131.8, {-51.69, -15.12, 15.12, 51.69});
   EXPECT_NEAR(balanced.condition, of("balanced_condition"), 1e-8);
   EXPECT_NEAR(balanced.weighted_variance, of("balanced_variance"), 1e-7);
+  const auto rounded = at(132, {-51.7, -15.1, 15.1, 51.7});
+  EXPECT_NEAR(rounded.condition, of("rounded_condition"), 1e-8);
+  EXPECT_NEAR(rounded.weighted_variance, of("rounded_variance"), 1e-7);
   const auto quarter = at(90, {0, 22.5, 45, 67.5, 90, 112.5, 135, 157.5});
   EXPECT_NEAR(quarter.condition, of("quarter_condition"), 1e-8);
+  EXPECT_NEAR(quarter.weighted_variance, of("quarter_variance"), 1e-7);
   EXPECT_EQ(at(90, {0, 45, 90, 135}).missing, "U"); // cos^2, sin 2a cos 2a = 0, sin 2a
   EXPECT_TRUE(std::isinf(at(90, {0, 45, 90, 135}).condition));
 }

@@ -94,9 +94,12 @@ TEST(Chain, CountsAndBack) {
 }
 
 TEST(Chain, AMisjudgedTwilightIsTakenForMaterial) {
-  // Sky of V = 15, polarized by .5 as the object would be, a tenth of it left in: .0122 of the
-  // star.
-  const double psi = 11.093944, star = 41236.31 * exposure_s * .84, share = .244;
+  // Sky of V = 15 on 50 arcsec2, polarized by .5 as the object would be, a tenth of it left in:
+  // .0122 of the star.
+  const double psi = 11.093944, star = 41236.31 * exposure_s * .84;
+  const Instrument camera = *read_instrument("c11_imx250");
+  const double share = 8.916819e9 * std::pow(10, -.4 * 15) * collecting_area_m2(camera.telescope) *
+                       .35 * exposure_s * 50 / star; // .244
   const auto rows = camera_rows();
   std::vector<ChannelDatum> data;
   for (const StokesRow &row : rows) {

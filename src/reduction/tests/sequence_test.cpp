@@ -76,7 +76,7 @@ std::vector<TimedDatum> tumbling(std::uint32_t trial) {
 }
 
 TEST(Sequence, RawCountsTellATumblingBodysPolarization) {
-  double s = 0, ss = 0, differenced = 0;
+  double s = 0, ss = 0, differenced = 0, scattered = 0;
   constexpr std::uint32_t trials = 400; // mean .05, sd .035
   for (std::uint32_t t = 0; t < trials; ++t) {
     const auto data = tumbling(t);
@@ -84,18 +84,22 @@ TEST(Sequence, RawCountsTellATumblingBodysPolarization) {
     ASSERT_TRUE(fit);
     const double pull = (fit->fractions.value[0] - .1) / std::sqrt(fit->fractions.covariance[0][0]);
     s += pull, ss += pull * pull;
-    double worst = 0; // of one cycle, in its photon error
+    double sum = 0, weights = 0, squares = 0; // of cycles' q, weighted by their photons
     for (std::size_t k = 0; k + 3 < data.size(); k += 4) {
       const double a = data[k].datum.counts - 50, b = data[k + 2].datum.counts - 50;
       const double c = data[k + 1].datum.counts + data[k + 3].datum.counts - 100;
-      worst = std::max(worst, std::abs((a - b) / (a + b) - .1) / std::sqrt(2 / (a + b + c)));
+      const double off = (a - b) / (a + b) - .1, weight = (a + b + c) / 2; // 1/variance
+      sum += weight * off, weights += weight, squares += weight * off * off;
     }
-    differenced += worst / trials;
+    differenced += sum * sum / weights / trials;
+    scattered += squares / 60 / trials;
   }
   const double mean = s / trials;
   EXPECT_NEAR(mean, 0, .15);
   EXPECT_NEAR(std::sqrt(ss / trials - mean * mean), 1, .1);
-  EXPECT_GT(differenced, 3);
+  // The mean of 60 differenced cycles over its photon error, and a cycle over its own.
+  EXPECT_GT(std::sqrt(differenced), 3);
+  EXPECT_GT(std::sqrt(scattered), 3);
 }
 
 TEST(Sequence, SplinesNeedNoPeriod) {

@@ -61,6 +61,9 @@ TEST(Vega, HasItsPublishedMagnitudes) {
   for (const char *name : {"Bessell.V", "Bessell.R", "Bessell.I"})
     EXPECT_NEAR(magnitude_of(name, MagnitudeSystem::Vega), .03, .01) << name;
   EXPECT_NEAR(magnitude_of("gaia.G", MagnitudeSystem::Vega), .03, .01);
+  // In AB: Blanton & Roweis 2007 (AJ 133, 734), Table 1.
+  EXPECT_NEAR(magnitude_of("sdss.g", MagnitudeSystem::AB), -.08, .01);
+  EXPECT_NEAR(magnitude_of("sdss.r", MagnitudeSystem::AB), .16, .01);
 }
 
 } // namespace
