@@ -72,7 +72,7 @@ void warn_of_mosaic(const Setup &s, Diagnostics &diagnostics) {
           "{}: a star is {:.2g} px wide at the zenith; under 3 px, summed light of the four "
           "orientations is polarized by where the star stands on its pixels, up to {:.2g} in q. "
           "Defocus, or fit the image of each orientation.",
-          observer.band().name, width, 2 * mosaic_alias_strength(width)));
+          observer.band().name, width, -mosaic_alias(width, 0, 0).q)); // on the middle of a pixel
     // Wider images have smoother edges: theirs is less than that of the widest that is summed here.
     constexpr double widest = 16;
     const double taken = std::clamp(width, narrowest_image_px, widest);

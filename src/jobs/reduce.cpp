@@ -37,7 +37,6 @@ std::vector<Set> sets_of(const CountsFile &file) {
     else
       set.rows.push_back(row);
   }
-  std::erase_if(out, [](const Set &set) { return set.rows.empty(); });
   return out;
 }
 
@@ -313,9 +312,13 @@ Result<std::vector<Reduced>> over_time(const CountsFile &file, std::size_t param
 Result<std::vector<Reduced>> set_by_set(const CountsFile &file, std::size_t parameters,
                                         bool has_separate_pupils, const ReduceOptions &options,
                                         Diagnostics &diagnostics) {
-  const std::vector<Set> sets = sets_of(file);
+  std::vector<Set> sets = sets_of(file);
+  const std::size_t full = std::erase_if(sets, [](const Set &set) { return set.rows.empty(); });
   if (sets.empty())
     return fail(ErrorCode::Physics, "every channel is saturated: there is nothing to reduce");
+  if (full > 0)
+    diagnostics.warn(fmt::format("{} of {} left out: all their channels are saturated",
+                                 counted(full, "set"), full + sets.size()));
   std::vector<Reduced> out(sets.size());
   parallel_for(sets.size(), options.threads, [&](std::size_t k) {
     out[k] = solve(sets[k], parameters, has_separate_pupils, options);

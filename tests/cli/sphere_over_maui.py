@@ -40,6 +40,6 @@ def write_scene(folder, observation, *, instrument="c11_imx250", atmosphere="see
     return path
 
 
-def make_sphere(umov, radius_m):
-    """sphere.obj of a thousand facets."""
-    assert umov("mesh", "make", "sphere", "--radius", radius_m, "--facets", "1000", "-o", "sphere.obj").code == 0
+def make_sphere(umov, radius_m, facets=1000):
+    """sphere.obj of so many facets."""
+    assert umov("mesh", "make", "sphere", "--radius", radius_m, "--facets", facets, "-o", "sphere.obj").code == 0

@@ -13,7 +13,7 @@ instrument = "moptop_2m"
 [observer]
 name = "Kitt Peak"
 [time]
-start = 2018-02-10T03:20:00Z
+start = 2018-02-10T03:23:20Z
 stop = 2018-02-10T12:00:00Z
 only = {{ alt_min_deg = 15, sun_alt_max_deg = -12 }}
 [[object]]
@@ -48,12 +48,15 @@ def test_a_night_comes_back(umov, tmp_path):
     sets = numpy.array(stokes["set_id"], int)
     for name in "qu":
         pulls = (numpy.array(stokes[name]) - truth[name][sets]) / numpy.sqrt(numpy.array(stokes[f"cov_{name}{name}"]))
-        # 1,500 sets: a mean to .026, an sd to .018; light that drifts within the 20 s of a set widens it.
-        assert len(pulls) > 1400 and abs(pulls.mean()) < 0.1 and 0.95 < pulls.std() < 1.1, (name, pulls.mean(), pulls.std())
+        # 1,500 sets: a mean to .026, an sd to .018.
+        assert len(pulls) > 1400 and abs(pulls.mean()) < 0.1 and 0.95 < pulls.std() < 1.05, (name, pulls.mean(), pulls.std())
     p, phase = numpy.hypot(truth["q"], truth["u"])[sets], numpy.array(stokes["phase_angle"])
     found = numpy.array(stokes["p_debiased"])
     strong = p > 0.1
-    assert strong.mean() > 0.4  # nine tenths of these lie between 10 and 26 per cent
+    assert strong.mean() > 0.4
+    # Until the phase is 38 deg, early in the night, the range that others measured: 10 to 40 per cent.
+    early = p[:numpy.argmax(phase < 38)]
+    assert len(early) > 600 and 0.1 < early.min() < 0.11 and 0.38 < early.max() < 0.41, (early.min(), early.max())
     error = numpy.array(stokes["p_hi"] - stokes["p_lo"]) / 2 / 1.96
     assert numpy.median(abs(found - p)[strong] / error[strong]) < 1
     assert abs(phase[numpy.argmin(numpy.convolve(found, numpy.ones(25) / 25, "same")[25:-25]) + 25] - phase.min()) < 5

@@ -172,5 +172,21 @@ TEST(Reduce, FlagsTellWhatNoiseDoesNot) {
   EXPECT_NE(diagnostics.warnings()[0].text().find("misfit"), std::string::npos);
 }
 
+TEST(Reduce, SetsThatAreSaturatedAreCounted) {
+  CountsFile file = wheel({}, 0, 0);
+  for (CountRow row : wheel({}, 0, 0).rows) {
+    row.time = plus_seconds(row.time, 40);
+    row.set = 1;
+    row.is_saturated = true;
+    file.rows.push_back(row);
+  }
+  Diagnostics diagnostics;
+  const auto table = reduce(file, {}, {}, diagnostics);
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rows(), 1u);
+  ASSERT_FALSE(diagnostics.empty());
+  EXPECT_NE(diagnostics.warnings()[0].text().find("1 set of 2 left out"), std::string::npos);
+}
+
 } // namespace
 } // namespace umov::jobs
