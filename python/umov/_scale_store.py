@@ -112,11 +112,16 @@ class Store:
             pass
 
 
-def _local_folder(store: Store, folder: pathlib.Path) -> None:
-    """What the command needs to work at the job: its lock, and places to put things."""
+def read_lock(store: Store) -> bytes:
+    """job.json; InputError where there is none."""
     lock = store.read("job.json")
     if lock is None:
         raise InputError(f"{store.url} holds no job; umov.scale.run(job, \"{store.url}\", cluster=...) begins one")
+    return lock
+
+
+def _local_folder(folder: pathlib.Path, lock: bytes) -> None:
+    """What the command needs to work at the job: its lock, and places to put things."""
     for name in ("shards", "failed", "tmp", "masks"):
         (folder / name).mkdir(parents=True, exist_ok=True)
     (folder / "job.json").write_bytes(lock)
@@ -127,36 +132,35 @@ def begin(store: Store, program: str, more: list[Any], words: list[str]) -> None
     with tempfile.TemporaryDirectory(prefix="umov-") as name:
         folder = pathlib.Path(name) / "job"
         for _ in range(2):
-            if store.read("job.json") is not None:
-                _local_folder(store, folder)
+            if (there := store.read("job.json")) is not None:
+                _local_folder(folder, there)
             call(program, "lock", "-q", *more, folder, *words)
-            if store.create("job.json", (folder / "job.json").read_bytes()) or store.read(
-                    "job.json") == (folder / "job.json").read_bytes():
+            locked = (folder / "job.json").read_bytes()
+            if locked == there or store.create("job.json", locked):
                 return
         raise DeviceError(f"{store.url}/job.json changed twice while the job began: another umov is at work there")
 
 
-def shards(store: Store, lock: dict[str, Any]) -> dict[int, list[str]]:
-    """Names of what is there of the job, by number."""
-    out: dict[int, list[str]] = {}
-    for name in store.names("shards"):
+def shards(store: Store, lock: dict[str, Any]) -> dict[int, dict[str, int]]:
+    """Names of what is there of the job with their bytes, by number."""
+    out: dict[int, dict[str, int]] = {}
+    for name, size in store.names("shards").items():
         if re.fullmatch(r"[0-9]{8}-%s-[0-9a-f]{32}\.rows" % re.escape(lock["key"]), name):
-            out.setdefault(int(name[:8]), []).append(name)
+            out.setdefault(int(name[:8]), {})[name] = size
     return out
 
 
 def status(store: Store, lock: dict[str, Any]) -> dict[str, Any]:
     """As that of a folder."""
-    sizes = store.names("shards")
     done = shards(store, lock)
     return {"shards": lock["shards"], "done": len(done), "failed": len(store.names("failed")),
-            "bytes": sum(sizes[name] for names in done.values() for name in names),
-            "total": lock["total"], "unit": lock["unit"], "is_complete": len(done) == lock["shards"], "is_held": _holder(store) is not None}
+            "bytes": sum(size for names in done.values() for size in names.values()), "total": lock["total"],
+            "unit": lock["unit"], "is_complete": len(done) == lock["shards"], "is_held": _holder(store) is not None}
 
 
 def fetch(store: Store, lock: dict[str, Any], folder: pathlib.Path) -> None:
     """All that is there and not yet here, as a folder of the job."""
-    _local_folder(store, folder)
+    _local_folder(folder, read_lock(store))
     there = {path.name for path in (folder / "shards").rglob("*.rows")}
     for index, names in shards(store, lock).items():
         # As the command places them: above 10,000 shards in folders of a thousand.
@@ -221,7 +225,7 @@ def _folder_of_this_worker(store: Store) -> pathlib.Path:
             except (ImportError, ValueError):
                 base = None
             folder = pathlib.Path(tempfile.mkdtemp(prefix="umov-", dir=base))
-            _local_folder(store, folder)
+            _local_folder(folder, read_lock(store))
             _folders[store.url] = folder
         return _folders[store.url]
 

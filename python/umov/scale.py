@@ -128,9 +128,8 @@ class Result:
         self.folder = self._store.url if self._store else pathlib.Path(folder).absolute()
         self._umov = find_program(program)
         self._fetched: tempfile.TemporaryDirectory[str] | None = None
-        text = self._store.read("job.json") if self._store else (pathlib.Path(folder) / "job.json").read_text()
-        if text is None:
-            raise InputError(f"{folder} holds no job; umov.scale.run(job, \"{folder}\", cluster=...) begins one")
+        text = (_scale_store.read_lock(self._store) if self._store else
+                (pathlib.Path(folder) / "job.json").read_bytes())
         self.lock: dict[str, Any] = json.loads(text)
 
     def fetch(self, folder: str | os.PathLike[str] | None = None) -> Result:
