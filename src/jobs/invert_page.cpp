@@ -8,6 +8,7 @@
 #include <umov/core/quantity.h>
 #include <umov/core/rotation.h>
 #include <umov/core/text.h>
+#include <umov/frames/sky.h>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/io/plot_page.h>
 #include <umov/time/epoch.h>
@@ -15,7 +16,6 @@
 namespace umov::jobs {
 namespace {
 
-constexpr double deg_per_rad = 180 / pi;
 constexpr std::size_t drawn_samples = 1000; ///< as many as a page draws without delay
 using Numbers = std::vector<double>;
 
@@ -187,10 +187,9 @@ PlotFigure axes_figure(const std::vector<Quaternion> &samples) {
     PlotLine line{fmt::format("+{}", "XYZ"[axis]), {}, {}, static_cast<std::size_t>(axis)};
     line.has_markers = true;
     for (const Quaternion &q : samples) {
-      const Vec3<Gcrs> to = rotation_from<Body, Gcrs>(q).row(axis);
-      const double ra = std::atan2(to.y, to.x) * deg_per_rad;
-      line.x.push_back(ra < 0 ? ra + 360 : ra);
-      line.y.push_back(std::asin(std::clamp(to.z, -1.0, 1.0)) * deg_per_rad);
+      const SkyDirection to = sky_direction(rotation_from<Body, Gcrs>(q).row(axis));
+      line.x.push_back(to.right_ascension.degrees());
+      line.y.push_back(to.declination.degrees());
     }
     out.lines.push_back(std::move(line));
   }
@@ -202,7 +201,7 @@ std::array<double, 3> turn_deg(Quaternion from, Quaternion to) {
   const Quaternion d =
       quaternion_from(rotation_from<Body, Gcrs>(to) * rotation_from<Body, Gcrs>(from).inverse());
   const double sine = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-  const double scale = sine > 0 ? 2 * std::atan2(sine, d.w) / sine * deg_per_rad : 0;
+  const double scale = sine > 0 ? Angle::radians(2 * std::atan2(sine, d.w)).degrees() / sine : 0;
   return {scale * d.x, scale * d.y, scale * d.z};
 }
 
