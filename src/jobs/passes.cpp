@@ -18,6 +18,7 @@ namespace umov::jobs {
 namespace {
 
 constexpr double doubtful_days = 7, old_days = 30; ///< ages of elements
+constexpr double span_days_max = 36525;            ///< a year mistyped, not a search
 
 /// Of each object wanted, its best set for the span's begin.
 Result<std::vector<ElementSet>> best_sets(const PassesRequest &request,
@@ -107,7 +108,7 @@ using Found = std::optional<ObjectPasses>;
 ObjectPasses search_one(const PassesRequest &request, const Trajectory &orbit,
                         const PassModels &models, const std::atomic<bool> *cancel) {
   std::vector<PassBrightness> lights;
-  PassSearch search{request.altitude_min, request.sun_altitude_max, request.shadow, {}};
+  PassSearch search{request.altitude_min, request.sun_altitude_max, request.shadow, {}, cancel};
   if (const PassLight *model = models.of(orbit.norad_cat_id()))
     search.on_pass = [&](const SitePass &,
                          std::span<const ObservingGeometry> samples) -> Result<void> {
@@ -207,6 +208,11 @@ Result<PassSearcher> PassSearcher::make(const PassesRequest &request, const JobO
                                         Diagnostics &diagnostics) {
   if (seconds_between(request.stop, request.start) < 0)
     return fail(ErrorCode::Usage, "--stop lies before --start");
+  if (const double days = clock_days_between(request.stop, request.start); days > span_days_max)
+    return fail(ErrorCode::Usage,
+                fmt::format("{} to {} are {:.0f} years; passes are searched over 100 at most. Is "
+                            "the year of --stop mistyped?",
+                            to_iso(request.start), to_iso(request.stop), days / 365.25));
   PassSearcher out;
   UMOV_ASSIGN(orbits, read_orbits(request, options, diagnostics));
   warn_if_beyond_leap_seconds(request.stop, diagnostics);

@@ -1,6 +1,7 @@
 #pragma once
 // The search behind all functions on passes, in seconds after its start.
 
+#include <atomic>
 #include <functional>
 #include <umov/orbit/passes.h>
 
@@ -19,9 +20,9 @@ struct Found {
   std::optional<OrbitEnd> end;
 };
 
-/// The whole search.
+/// The whole search; what was found until then where `cancel` comes true.
 Found search(const Trajectory &orbit, const Site &site, Epoch<Utc> start, Epoch<Utc> stop,
-             Angle altitude_min);
+             Angle altitude_min, const std::atomic<bool> *cancel = nullptr);
 
 /// Where f changes sign between a and b, by bisection to 1 ms.
 double crossing(const std::function<double(double)> &f, double a, double b);

@@ -16,6 +16,10 @@ using passes::Stretch;
 constexpr double crossing_tolerance_s = 1e-3;
 constexpr double top_tolerance_s = 0.05; // the altitude is flat there
 
+bool is_set(const std::atomic<bool> *cancel) {
+  return cancel != nullptr && cancel->load(std::memory_order_relaxed);
+}
+
 /// Altitude over a site, at seconds after a start.
 class Altitude {
 public:
@@ -30,15 +34,25 @@ public:
     const auto state = orbit_.at(time(seconds));
     return state ? topocentric_altitude(*state, time(seconds), site_).radians() : -pi;
   }
-  /// The same at many times; shorter where the orbit ends.
-  [[nodiscard]] std::vector<double> operator()(const std::vector<double> &seconds) const {
-    std::vector<Epoch<Utc>> times(seconds.size());
-    std::transform(seconds.begin(), seconds.end(), times.begin(),
-                   [this](double s) { return time(s); });
-    std::vector<OrbitState> states(times.size());
-    std::vector<double> out(orbit_.at(times, states));
-    for (std::size_t k = 0; k < out.size(); ++k)
-      out[k] = topocentric_altitude(states[k], times[k], site_).radians();
+  /// The same at many times; shorter where the orbit ends or the search is cancelled.
+  [[nodiscard]] std::vector<double> operator()(const std::vector<double> &seconds,
+                                               const std::atomic<bool> *cancel) const {
+    constexpr std::size_t block_max = 4096; // states of a century's times need not be held at once
+    std::vector<double> out;
+    out.reserve(seconds.size());
+    std::vector<Epoch<Utc>> times;
+    std::vector<OrbitState> states(std::min(block_max, seconds.size()));
+    while (out.size() < seconds.size() && !is_set(cancel)) {
+      const std::size_t block = std::min(block_max, seconds.size() - out.size());
+      times.clear();
+      for (std::size_t k = 0; k < block; ++k)
+        times.push_back(time(seconds[out.size() + k]));
+      const std::size_t known = orbit_.at(times, std::span(states).first(block));
+      for (std::size_t k = 0; k < known; ++k)
+        out.push_back(topocentric_altitude(states[k], times[k], site_).radians());
+      if (known < block)
+        break;
+    }
     return out;
   }
 
@@ -81,11 +95,14 @@ double edge(const Altitude &altitude, double good, double bad) {
 }
 
 /// The grid from its index `first`, where the orbit is there, to where it no longer is.
-Samples sample(const Altitude &altitude, const std::vector<double> &grid, std::size_t first) {
+Samples sample(const Altitude &altitude, const std::vector<double> &grid, std::size_t first,
+               const std::atomic<bool> *cancel) {
   Samples out;
   out.time.assign(grid.begin() + static_cast<std::ptrdiff_t>(first), grid.end());
-  out.above = altitude(out.time);
+  out.above = altitude(out.time, cancel);
   const std::size_t count = out.above.size();
+  if (count == 0) // cancelled before its first block
+    return {};
   const auto put = [&](double time, bool is_front) {
     out.time.insert(is_front ? out.time.begin() : out.time.end(), time);
     out.above.insert(is_front ? out.above.begin() : out.above.end(), altitude(time));
@@ -102,9 +119,9 @@ Samples sample(const Altitude &altitude, const std::vector<double> &grid, std::s
 }
 
 /// Moves samples to tops that stand between them, where such a top may be above.
-void put_tops(Samples &samples, const Function &above) {
+void put_tops(Samples &samples, const Function &above, const std::atomic<bool> *cancel) {
   auto &[time, value] = samples;
-  for (std::size_t k = 1; k + 1 < time.size(); ++k) {
+  for (std::size_t k = 1; k + 1 < time.size() && !is_set(cancel); ++k) {
     const double here = value[k];
     // The top reaches further than the samples by less than their spread.
     const double reach = std::max(here - value[k - 1], here - value[k + 1]);
@@ -118,11 +135,12 @@ void put_tops(Samples &samples, const Function &above) {
   }
 }
 
-std::vector<Stretch> stretches(const Samples &samples, const Function &above) {
+std::vector<Stretch> stretches(const Samples &samples, const Function &above,
+                               const std::atomic<bool> *cancel) {
   const auto &[time, value] = samples;
   std::vector<Stretch> out;
   const std::size_t n = time.size();
-  for (std::size_t k = 0; k < n; ++k) {
+  for (std::size_t k = 0; k < n && !is_set(cancel); ++k) {
     if (!(value[k] > 0))
       continue;
     Stretch one{time[k], time[k], time[k], k == 0, false};
@@ -173,7 +191,7 @@ double crossing(const Function &f, double a, double b) {
 }
 
 Found search(const Trajectory &orbit, const Site &site, Epoch<Utc> start, Epoch<Utc> stop,
-             Angle altitude_min) {
+             Angle altitude_min, const std::atomic<bool> *cancel) {
   const Altitude altitude(orbit, site, start);
   const double wanted = altitude_min.radians();
   const Function above = [&](double seconds) { return altitude(seconds) - wanted; };
@@ -181,7 +199,7 @@ Found search(const Trajectory &orbit, const Site &site, Epoch<Utc> start, Epoch<
   const auto grid = coarse_times(orbit, std::max(0.0, seconds_between(stop, start)));
   const bool may_resume = orbit.elements() == nullptr; // what has decayed has decayed
   std::optional<double> last;
-  for (std::size_t k = 0; k < grid.size();) {
+  for (std::size_t k = 0; k < grid.size() && !is_set(cancel);) {
     if (!altitude.is_there(grid[k])) {
       if (!out.end)
         out.end = OrbitEnd{altitude.time(last.value_or(grid[0])), altitude.error(grid[k])};
@@ -190,7 +208,9 @@ Found search(const Trajectory &orbit, const Site &site, Epoch<Utc> start, Epoch<
       ++k;
       continue;
     }
-    Samples samples = sample(altitude, grid, k);
+    Samples samples = sample(altitude, grid, k, cancel);
+    if (samples.above.empty())
+      break;
     if (last)
       out.gaps.push_back({altitude.time(*last), altitude.time(samples.time.front())});
     out.end.reset();
@@ -199,8 +219,8 @@ Found search(const Trajectory &orbit, const Site &site, Epoch<Utc> start, Epoch<
       ++k;
     for (double &value : samples.above)
       value -= wanted;
-    put_tops(samples, above);
-    const auto found = stretches(samples, above);
+    put_tops(samples, above, cancel);
+    const auto found = stretches(samples, above, cancel);
     out.stretches.insert(out.stretches.end(), found.begin(), found.end());
   }
   return out;

@@ -78,10 +78,14 @@ std::vector<ObservingGeometry> describe(const View &view, const Stretch &stretch
 
 Result<SitePasses> find_passes(const Trajectory &orbit, const Site &site, Epoch<Utc> start,
                                Epoch<Utc> stop, const PassSearch &search) {
-  passes::Found found = passes::search(orbit, site, start, stop, search.altitude_min);
+  passes::Found found =
+      passes::search(orbit, site, start, stop, search.altitude_min, search.cancel);
+  const auto is_cancelled = [&search] { return search.cancel != nullptr && *search.cancel; };
   const View view(orbit, site, start, search.shadow);
   SitePasses out{{}, std::move(found.gaps), std::move(found.end)};
   for (const Stretch &stretch : found.stretches) {
+    if (is_cancelled())
+      break;
     SitePass pass;
     pass.rise = view(stretch.rise_s);
     pass.culmination = view(stretch.top_s);
@@ -94,6 +98,8 @@ Result<SitePasses> find_passes(const Trajectory &orbit, const Site &site, Epoch<
       UMOV_TRY(search.on_pass(pass, along));
     out.passes.push_back(std::move(pass));
   }
+  if (is_cancelled())
+    return fail(ErrorCode::Interrupted, "stopped by the user in a search for passes");
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // When an object passes over a site.
 
+#include <atomic>
 #include <functional>
 #include <optional>
 #include <span>
@@ -76,6 +77,7 @@ struct PassSearch {
   ShadowModel shadow = ShadowModel::Ellipsoid;
   /// Called with every pass and its samples, some seconds apart from rise to set.
   std::function<Result<void>(const SitePass &, std::span<const ObservingGeometry>)> on_pass;
+  const std::atomic<bool> *cancel = nullptr; ///< ends the search where it comes true
 };
 
 /// Passes described, in order, and how far the orbit goes.
@@ -86,7 +88,8 @@ struct SitePasses {
 };
 
 /// All passes of an object between two times, described; times, gaps and end as find_pass_spans has
-/// them. The error of PassSearch::on_pass.
+/// them. The error of PassSearch::on_pass; ErrorCode::Interrupted where PassSearch::cancel comes
+/// true.
 Result<SitePasses> find_passes(const Trajectory &orbit, const Site &site, Epoch<Utc> start,
                                Epoch<Utc> stop, const PassSearch &search);
 

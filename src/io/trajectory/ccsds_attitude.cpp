@@ -145,6 +145,12 @@ Result<AttitudeSegment> segment_of(const Message &message, const Segment &segmen
     if (record.name != "attitudeState")
       continue;
     UMOV_ASSIGN(state, state_of(message, context, record, worst));
+    if (!out.states.empty() && !(seconds_between(state.time, out.states.back().time) > 0))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("EPOCH: {} follows {}; a later time was expected. Put the states in "
+                              "order of time, each time once",
+                              to_iso(state.time, 6), to_iso(out.states.back().time, 6)),
+                  {message.file, record.line});
     out.states.push_back(state);
   }
   const auto bound = [&](const char *usable, const char *plain) {

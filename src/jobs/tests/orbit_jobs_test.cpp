@@ -125,6 +125,21 @@ TEST(PassesJob, AnObjectThatIsNotInTheFileIsNamed) {
   EXPECT_NE(result.error().text().find("99999"), std::string::npos) << result.error().text();
 }
 
+TEST(PassesJob, AYearMistypedIsAQuestion) {
+  Diagnostics diagnostics;
+  PassesRequest request;
+  request.orbit = agena;
+  request.site = maui();
+  request.start = utc("2018-01-21T04:00:00Z");
+  request.stop = utc("2999-01-21T05:00:00Z");
+  JobOptions options;
+  options.allow_old_elements = true;
+  const auto result = passes(request, options, {}, diagnostics);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ErrorCode::Usage);
+  EXPECT_NE(result.error().text().find("981 years"), std::string::npos) << result.error().text();
+}
+
 TEST(BrdfJob, ALambertSurfaceIsItsReflectanceOverPi) {
   BrdfRequest request;
   request.material.name = "white";

@@ -224,6 +224,27 @@ TEST(Passes, AnEmptySpanAndADecayedObject) {
   EXPECT_EQ(decayed->end->error.code, ErrorCode::Physics);
 }
 
+TEST(Passes, ACancelledSearchSaysSo) {
+  const ElementSet set = elements_of(folder + "elements.tle", 1328);
+  std::atomic<bool> cancel{true};
+  PassSearch search;
+  search.cancel = &cancel;
+  const auto from = utc("2022-02-22T00:00:00Z"), to = utc("2022-02-25T00:00:00Z");
+  auto found = find_passes(Trajectory(set), maui, from, to, search);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().code, ErrorCode::Interrupted);
+  // In the middle too: what is described costs the most.
+  cancel = false;
+  int described = 0;
+  search.on_pass = [&](const SitePass &, std::span<const ObservingGeometry>) -> Result<void> {
+    cancel = ++described == 2;
+    return {};
+  };
+  found = find_passes(Trajectory(set), maui, from, to, search);
+  EXPECT_FALSE(found);
+  EXPECT_EQ(described, 2);
+}
+
 // passes_skyfield.csv: Skyfield at 0.1 s steps, see tests/data/ephemeris/README.md.
 TEST(Passes, ADenseReference) {
   std::map<std::string, std::vector<SitePass>> found;
