@@ -51,7 +51,10 @@ public:
     varies_ = is_any_seen_ = false;
     if (masks_ == nullptr) {
       const std::size_t groups = list_facing(chunk.first, chunk.count);
-      add_all<Known::Free>(facing_, groups, task);
+      if (has_more(task))
+        add_all<Known::Free, true>(facing_, groups, task);
+      else
+        add_whole(facing_, groups, task);
     } else {
       std::uint32_t small = chunk.count;
       while (small > 0 && masks_->groups[chunk.first + small - 1].is_large)
@@ -210,8 +213,8 @@ private:
       add_all<known, false>(groups, count, task);
   }
   template <Known known, bool has_all>
-  UMOV_KERNEL void add_all(const std::uint32_t *groups, std::size_t count,
-                           const GatherTask<T> &task) {
+  UMOV_KERNEL_LOOP UMOV_KERNEL void add_all(const std::uint32_t *groups, std::size_t count,
+                                            const GatherTask<T> &task) {
     const Directions to = to_; // nothing that is written may stand in it
     std::size_t at = count_;
     for (std::size_t k = 0; k < count; ++k)
@@ -219,8 +222,34 @@ private:
         add_free<has_all>(groups[k], task, to, at);
       else
         add_small<known, has_all>(groups[k], task, to, at);
+    if constexpr (known == Known::Free) {
+      is_any_seen_ = is_any_seen_ || at > count_;
+      for (std::size_t k = count_; !task.has_doubts && k < at; k += width)
+        Machine::store_any(R(T(0)), deviation_ + k);
+    }
     count_ = at;
     varies_ = varies_ || (count > 0 && (known != Known::Free || task.has_doubts));
+  }
+
+  /// Groups of which nothing is hidden, in whole registers whose other lanes have no area: most
+  /// lanes of a group that faces both directions do so, and packing costs more than shading them.
+  UMOV_KERNEL_LOOP UMOV_KERNEL void add_whole(const std::uint32_t *groups, std::size_t count,
+                                              const GatherTask<T> &task) {
+    const Directions to = to_; // nothing that is written may stand in it
+    const R one = R(T(1)), none = R(T(0));
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t s = 0; s < lanes; s += width) {
+        typename Machine::Mask keep;
+        const Facets facets = face<false>(groups[k], s, task, to, keep);
+        Machine::store_any(select(keep, facets.n_l, one), n_l_ + at);
+        Machine::store_any(select(keep, facets.n_v, one), n_v_ + at);
+        Machine::store_any(select(keep, facets.apart, one), apart_ + at);
+        Machine::store_any(select(keep, facets.area, none), area_ + at);
+        at += Machine::any(keep) ? width : 0;
+      }
+    count_ = at;
+    is_any_seen_ = at > 0;
   }
 
   /// Facets s, s + 1... of a group; `keep`: those that face both directions within reach.
@@ -243,15 +272,14 @@ private:
     return out;
   }
 
-  /// Writes those of `pack` from `at` on, which moves behind them.
+  /// Writes those of `pack` from `at` on, which moves behind them; their deviations stand already.
   template <bool has_all>
   UMOV_KERNEL void push(std::uint32_t group, std::size_t s, const GatherTask<T> &task,
-                        const Facets &facets, R deviation, const Packer &pack, std::size_t &at) {
+                        const Facets &facets, const Packer &pack, std::size_t &at) {
     pack.put(facets.n_l, n_l_ + at);
     pack.put(facets.n_v, n_v_ + at);
     pack.put(facets.apart, apart_ + at);
     pack.put(facets.area, area_ + at);
-    pack.put(deviation, deviation_ + at);
     if constexpr (has_all) {
       if (task.has_aside)
         pack.put(facets.aside, aside_ + at);
@@ -267,14 +295,14 @@ private:
   template <bool has_all>
   UMOV_KERNEL void add_free(std::uint32_t group, const GatherTask<T> &task, const Directions &to,
                             std::size_t &at) {
-    const R doubt = R(task.has_doubts ? sqrt(doubt_of(masks_->groups[group])) : T(0));
-    const std::size_t before = at;
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
       const Facets facets = face<has_all>(group, s, task, to, keep);
-      push<has_all>(group, s, task, facets, facets.area * doubt, Packer(keep), at);
+      const Packer pack(keep);
+      if (task.has_doubts)
+        pack.put(facets.area * R(sqrt(doubt_of(masks_->groups[group]))), deviation_ + at);
+      push<has_all>(group, s, task, facets, pack, at);
     }
-    is_any_seen_ = is_any_seen_ || at > before;
   }
 
   /// Variance of the share of a class, of which all points but one agree.
@@ -314,7 +342,9 @@ private:
       keep = take_seen(task, share, keep);
       const R deviation = facets.area * sqrt(variance);
       facets.area = facets.area * share;
-      push<has_all>(group, s, task, facets, deviation, Packer(keep), at);
+      const Packer pack(keep);
+      pack.put(deviation, deviation_ + at);
+      push<has_all>(group, s, task, facets, pack, at);
     }
   }
 
@@ -354,7 +384,9 @@ private:
       keep = take_seen(task, shares, keep);
       const R deviations = facets.area * sqrt(Machine::load(variance) + doubt);
       facets.area = facets.area * shares;
-      push<true>(group, s, task, facets, deviations, Packer(keep), count_);
+      const Packer pack(keep);
+      pack.put(deviations, deviation_ + count_);
+      push<true>(group, s, task, facets, pack, count_);
     }
   }
 

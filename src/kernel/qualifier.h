@@ -6,3 +6,11 @@
 #else
 #define UMOV_KERNEL inline
 #endif
+
+// Before UMOV_KERNEL: a loop whose constants would find no registers within its caller. A graphics
+// processor has them.
+#if !defined(__CUDACC__) && (defined(__GNUC__) || defined(__clang__))
+#define UMOV_KERNEL_LOOP [[gnu::noinline]]
+#else
+#define UMOV_KERNEL_LOOP
+#endif

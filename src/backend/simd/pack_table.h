@@ -20,4 +20,8 @@ struct PackTable {
 };
 inline constexpr PackTable pack_table;
 
+/// 0, 1, 2... for as many lanes as any register has.
+alignas(64) inline constexpr std::uint32_t lane_number[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                              8, 9, 10, 11, 12, 13, 14, 15};
+
 } // namespace umov::backend

@@ -37,7 +37,8 @@ public:
   }
   /// `first` and so many more as the lane has before it.
   HWY_INLINE void put_indices(std::uint32_t first, std::uint32_t *to) const {
-    hn::StoreU(packed(hn::Iota(WordTag(), first)), WordTag(), to);
+    const WordTag d; // Iota of Highway 1.0.3 writes its lanes one by one and waits for them
+    hn::StoreU(packed(hn::Add(hn::Set(d, first), hn::Load(d, backend::lane_number))), d, to);
   }
 
 private:

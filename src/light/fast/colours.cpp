@@ -72,6 +72,7 @@ Colours::Colours(std::vector<const Surface *> surfaces,
         std::all_of(slot.lobe.begin(), slot.lobe.end(), [](auto lobe) { return lobe == 0; });
     colour.is_plain =
         is_grey && colour.product_count <= 1 && !colour.has_single_bounce && !colour.has_emission;
+    slot.look_at_own();
     slots_.push_back(std::move(slot));
   }
   fresnel_ = FresnelTable(std::move(distinct));
@@ -82,14 +83,12 @@ bool Colours::has_u() const {
                      [](const Slot &s) { return s.colour.has_emission; });
 }
 
-backend::SlotColour<double> Colours::Slot::view() const {
-  backend::SlotColour<double> out = colour;
-  out.lobe = lobe;
-  out.single_bounce = single_bounce;
-  out.whole = whole;
-  out.q = q;
-  out.u = u;
-  return out;
+void Colours::Slot::look_at_own() {
+  colour.lobe = lobe;
+  colour.single_bounce = single_bounce;
+  colour.whole = whole;
+  colour.q = q;
+  colour.u = u;
 }
 
 void Colours::prepare(double cos_phase, bool has_plane, PhaseFactors &out) const {
@@ -105,7 +104,7 @@ void Colours::prepare(double cos_phase, bool has_plane, PhaseFactors &out) const
 
 void Colours::add_slot(std::size_t index, const SlotSums &sums, PhaseFactors &at,
                        BandLight &out) const {
-  backend::add_slot<double>(slots_[index].view(), sums,
+  backend::add_slot<double>(slots_[index].colour, sums,
                             {at.a.data(), at.b.data(), at.ratio.data(), at.dev_i.data(),
                              at.dev_q.data(), at.dev_u.data()},
                             out.columns());

@@ -52,6 +52,12 @@ public:
   /// `light` per slot, empty where a slot has no kernel. With `is_intensity_only` all Q are left 0.
   Colours(std::vector<const Surface *> surfaces, std::vector<std::optional<SurfaceLight>> light,
           const std::vector<backend::SlotTerms> &terms, bool is_intensity_only = false);
+  // Views of slots stay where these are moved, not where they are copied.
+  Colours(Colours &&) = default;
+  Colours &operator=(Colours &&) = default;
+  Colours(const Colours &) = delete;
+  Colours &operator=(const Colours &) = delete;
+  ~Colours() = default;
 
   void prepare(double cos_phase, bool has_plane, PhaseFactors &out) const;
   /// Adds the light of one slot with kernels.
@@ -73,8 +79,8 @@ private:
     std::size_t column = 0;
     std::vector<std::uint32_t> lobe;                ///< per band
     std::vector<double> single_bounce, whole, q, u; ///< [product * bands + band]
-    backend::SlotColour<double> colour;             ///< without views: slots move
-    [[nodiscard]] backend::SlotColour<double> view() const;
+    backend::SlotColour<double> colour;             ///< views of these
+    void look_at_own();
   };
   std::vector<Slot> slots_;
   FresnelTable fresnel_;
