@@ -88,6 +88,21 @@ def test_what_lacks_ends_with_6_or_a_line(signature, settings, tmp_path):
     assert sum(line.startswith("warning") for line in told.err.splitlines()) == 1
 
 
+@pytest.mark.parametrize("verb", ["run", "observe"])
+def test_a_run_and_an_observation_without_cards_end_with_6_or_a_line(umov, settings, tmp_path, verb):
+    scene = ROOT / ("examples/observe_hst.toml" if verb == "observe" else "examples/agena_maui.toml")
+    settings(UMOV_FAKE_INIT=100)
+    more = "observation.cadence_s=3" if verb == "observe" else "time.step_s=30"
+    command = (verb, scene, "--set", more)
+    refused = umov(*command, "-o", "cuda", "--device", "cuda")
+    assert refused.code == 6 and "CUDA_ERROR_NO_DEVICE" in refused.err, refused.err
+    assert not (tmp_path / "cuda").exists()
+    told = umov(*command, "-o", "auto", "--device", "auto")
+    assert told.code == 0 and told.err.count("--device auto took the cpu: ") == 1, told.err
+    light, = json.loads((tmp_path / "auto/manifest.json").read_text())["light"]
+    assert light["device"].startswith("cpu: starting the driver") and light["method"] in ("auto", "masks"), light
+
+
 def test_what_cards_do_not_light_is_refused_by_name(signature, settings):
     settings()
     refused = signature("a.csv", "--device", "cuda", visibility="rays")
