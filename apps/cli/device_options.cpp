@@ -11,20 +11,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// nvidia/*/lib of the packages of an environment, as NVIDIA's wheels have it.
-void add_packages_of(const fs::path &environment, std::vector<fs::path> &out) {
-  std::error_code code;
-  for (const auto &python : fs::directory_iterator(environment / "lib", code)) {
-    if (!python.path().filename().string().starts_with("python"))
-      continue;
-    std::error_code none;
-    for (const auto &part :
-         fs::directory_iterator(python.path() / "site-packages" / "nvidia", none))
-      if (fs::is_directory(part.path() / "lib", none))
-        out.push_back(part.path() / "lib");
-  }
-}
-
 const std::vector<std::string> &device_names() {
   static const std::vector<std::string> names{
       name_of(DeviceChoice::Cpu), name_of(DeviceChoice::Cuda), name_of(DeviceChoice::Auto)};
@@ -55,23 +41,14 @@ DeviceOptions device_options(const Common &common) {
 }
 
 std::vector<fs::path> cuda_folders() {
-  std::vector<fs::path> out;
-  if (const char *named = std::getenv("UMOV_CUDA_PATH"); named != nullptr) {
-    const std::string list = named;
-    for (std::size_t begin = 0; begin <= list.size();) {
-      const std::size_t end = std::min(list.find(':', begin), list.size());
-      if (end > begin)
-        out.emplace_back(list.substr(begin, end - begin));
-      begin = end + 1;
-    }
-  }
-  if (const char *active = std::getenv("VIRTUAL_ENV"); active != nullptr && *active != '\0')
-    add_packages_of(active, out);
+  const auto set = [](const char *name) {
+    const char *value = std::getenv(name);
+    return std::string(value == nullptr ? "" : value);
+  };
   std::error_code code;
-  const fs::path program = fs::read_symlink("/proc/self/exe", code);
-  if (!code)
-    add_packages_of(program.parent_path().parent_path(), out);
-  return out;
+  const fs::path program = fs::read_symlink("/proc/self/exe", code); // empty where there is none
+  const fs::path environments[] = {set("VIRTUAL_ENV"), program.parent_path().parent_path()};
+  return device_folders(set("UMOV_CUDA_PATH"), environments);
 }
 
 } // namespace umov::cli

@@ -44,6 +44,10 @@ public:
     table_.append(std::move(rows));
     return {};
   }
+  Result<void> note(const std::string &key, const std::string &value) override {
+    table_.note(key, value);
+    return {};
+  }
   Result<void> finish() override {
     return put("", common_.json ? to_json(table_) : to_text(table_));
   }

@@ -222,7 +222,7 @@ nb::dict facts_of(const Light &light) {
   out["triangles"] = facts.triangles;
   out["classes"] = facts.classes;
   out["visibility"] = facts.visibility;
-  out["instruction_set"] = facts.instruction_set;
+  out["instruction_set"] = light.light().model().instruction_set();
   out["device"] = light.light().model().device();
   out["mask_bytes"] = light.light().model().mask_bytes();
   out["setup_s"] = facts.setup_s;

@@ -92,14 +92,19 @@ void bind_run(nb::module_ &m) {
           "threads"_a, "mask_cache"_a, "allow_bad_checksum"_a, "allow_old_elements"_a)
       .def(
           "set_device",
-          [](jobs::JobOptions &self, const std::string &device,
-             const std::vector<std::string> &folders) {
+          [](jobs::JobOptions &self, const std::string &device, const std::string &named,
+             const std::vector<std::string> &environments) {
             self.device.choice =
                 device == name_of(DeviceChoice::Cuda) ? DeviceChoice::Cuda : DeviceChoice::Auto;
-            self.device.folders.assign(folders.begin(), folders.end());
+            const std::vector<std::filesystem::path> where(environments.begin(),
+                                                           environments.end());
+            self.device.folders = device_folders(named, where);
             self.device.cache = self.mask_cache;
           },
-          "device"_a, "folders"_a, "cuda or auto; where drivers are looked for first.");
+          "device"_a, "named"_a, "environments"_a,
+          "cuda or auto; folders with colons between them, and environments of Python, where "
+          "drivers "
+          "are looked for first.");
   nb::class_<Run>(m, "Run", "What a run computed.")
       .def_prop_ro(
           "light_curve", [](const Run &r) { return &r.tables.light_curve; },

@@ -86,15 +86,6 @@ def cache_folder(cache: bool | str | os.PathLike[str]) -> str:
     return str(pathlib.Path(home) / ".cache" / "umov") if home.startswith("/") else ""
 
 
-def cuda_folders() -> list[str]:
-    """Where a card's driver and compiler are looked for besides the system's places, as the command does."""
-    named = [folder for folder in os.environ.get("UMOV_CUDA_PATH", "").split(":") if folder]
-    environments = [os.environ.get("VIRTUAL_ENV", ""), sys.prefix]
-    packages = [str(found) for base in environments if base
-                for found in pathlib.Path(base).glob("lib/python*/site-packages/nvidia/*/lib") if found.is_dir()]
-    return list(dict.fromkeys(named + packages))
-
-
 def job_options(threads: int = 0, cache: bool | str | os.PathLike[str] = True,
                 allow_bad_checksum: bool = False,
                 allow_old_elements: bool = False, device: str = "cpu") -> _umov.JobOptions:
@@ -102,5 +93,5 @@ def job_options(threads: int = 0, cache: bool | str | os.PathLike[str] = True,
         raise UsageError(f"device is {device!r}; cpu, cuda or auto was expected")
     out = _umov.JobOptions(threads, cache_folder(cache), allow_bad_checksum, allow_old_elements)
     if device != "cpu":
-        out.set_device(device, cuda_folders())
+        out.set_device(device, os.environ.get("UMOV_CUDA_PATH", ""), [os.environ.get("VIRTUAL_ENV", ""), sys.prefix])
     return out

@@ -46,6 +46,9 @@ PackedLight pack_light(const StokesTable &light) {
   double most = 0;
   for (const double i : light.i)
     most = std::isfinite(i) ? std::max(most, i) : most;
+  // Far off the glints of mirrors a float's least numbers are the brightest there is.
+  if (most < 2 * std::exp(-signature_ln_widest + decades * std::log(10.0)))
+    most = 0;
   const double least = most * std::pow(10, -decades);
   constexpr double codes = 65'534;
   out.ln_least = most > 0 ? std::log(least) : 0;
@@ -53,7 +56,7 @@ PackedLight pack_light(const StokesTable &light) {
   out.code.assign(2 * light.i.size(), 0);
   for (std::size_t k = 0; k < light.i.size(); ++k) {
     const double i = light.i[k], q = light.q[k];
-    const bool is_lit = std::isfinite(i) && std::isfinite(q) && i > 0 && i >= least;
+    const bool is_lit = std::isfinite(i) && std::isfinite(q) && most > 0 && i > 0 && i >= least;
     const double at = is_lit ? 1 + (std::log(i) - out.ln_least) / out.ln_step : 0;
     out.code[2 * k] = static_cast<std::uint16_t>(std::lround(std::min(at, codes + 1)));
     const double part = is_lit ? std::clamp(q / i, -1.0, 1.0) : 0;
@@ -117,7 +120,7 @@ double interpolation_error(const Signature &signature, const PoseLighting &light
     return 0;
   const auto third = off.begin() + static_cast<std::ptrdiff_t>(off.size() * 2 / 3);
   std::nth_element(off.begin(), third, off.end());
-  return *third;
+  return std::min(*third, signature_error_most);
 }
 
 } // namespace umov

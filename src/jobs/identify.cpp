@@ -164,11 +164,9 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
   UMOV_ASSIGN(columns, columns_in(bands, curve, named->second));
   UMOV_ASSIGN(made, prepare_light(scenario, request_.observed, options_, diagnostics_));
   UMOV_ASSIGN(file, SignatureFile::open(library.file(k)));
-  UMOV_ASSIGN(device, device_text(options_.device));
-  const auto job_by = [&](const std::string &by) {
-    return signature_job(scenario, made.light.inputs(), file.view().signature.cells, by);
-  };
-  if (file.view().text.job != job_by("") && file.view().text.job != job_by(device))
+  const SignatureText &text = file.view().text;
+  if (text.job !=
+      signature_job(scenario, made.light.inputs(), file.view().signature.cells, text.device))
     diagnostics_.warn("is not what its signature was made from, or another umov made that; its own "
                       "light is taken as it is now",
                       {named->second});

@@ -60,7 +60,7 @@ Result<EndMember> GroupLight::of(const std::string &group, const std::string &ma
   (void)light->keep_masks(); // a cache that cannot be written costs time alone
   if (const LightFacts &facts = light->facts(); !used_.device.starts_with("cpu"))
     used_ = {scenario.objects.front().name, name_of(facts.method), facts.visibility,
-             facts.instruction_set, light->device()};
+             light->instruction_set(), light->device()};
   EndMember out{material, {}, {}, {}};
   for (std::size_t k = 0; k < poses.size(); ++k)
     for (const std::size_t column : observed_.column) {

@@ -67,7 +67,7 @@ ManifestInput::Light light_used(const SearchedLight &ready, const Scenario &scen
   tell_of_device(device, diagnostics);
   const LightFacts &facts = model.facts();
   return {scenario.objects.front().name, name_of(facts.method), facts.visibility,
-          facts.instruction_set, device};
+          model.instruction_set(), device};
 }
 
 void keep_masks(const SearchedLight &ready) {

@@ -18,8 +18,9 @@ std::string job_text(const Scenario &scenario, const std::vector<InputFile> &inp
 
 std::string signature_job(const Scenario &scenario, const std::vector<InputFile> &inputs,
                           std::size_t cells, const std::string &device) {
-  return sha256_hex(
-      job_text(scenario, inputs, fmt::format("signature of {} cells{}", cells, device)));
+  return sha256_hex(job_text(
+      scenario, inputs,
+      fmt::format("signature of {} cells{}", cells, device.empty() ? "" : "; device " + device)));
 }
 
 Result<Journal> open_journal(const JobOptions &options, const std::string &job,
@@ -47,13 +48,20 @@ Result<Journal> open_journal(const JobOptions &options, const std::string &job,
   return std::move(out);
 }
 
-Result<std::string> device_text(const DeviceOptions &device) {
+Result<std::string> cards_for(const DeviceOptions &device) {
   if (device.choice == DeviceChoice::Cpu)
     return "";
   const auto cards = open_cards(device);
   if (!cards && device.choice == DeviceChoice::Cuda)
     return tl::unexpected(cards.error());
-  return "; device " + (cards ? name_of(**cards) : std::string("cpu"));
+  return cards ? identity_of(**cards) : std::string();
+}
+
+Result<std::string> device_text(const DeviceOptions &device) {
+  UMOV_ASSIGN(cards, cards_for(device));
+  if (cards.empty())
+    return "";
+  return (device.choice == DeviceChoice::Auto ? "; processor or device " : "; device ") + cards;
 }
 
 Result<void> check_device_of_shards(const DeviceOptions &device) {

@@ -15,18 +15,23 @@ namespace umov::jobs {
 std::string job_text(const Scenario &scenario, const std::vector<InputFile> &inputs,
                      const std::string &more);
 
-/// What a signature of a library is made from: SHA-256 of its job_text; `device` as of device_text.
+/// What a signature of a library is made from: SHA-256 of its job_text; `device` as of
+/// SignatureText.
 std::string signature_job(const Scenario &scenario, const std::vector<InputFile> &inputs,
-                          std::size_t cells, const std::string &device = {});
+                          std::size_t cells, const std::string &device);
 
 /// The journal that the options name; says how much of the job is done already, or why it begins
 /// anew.
 Result<Journal> open_journal(const JobOptions &options, const std::string &job,
                              const Monitor &monitor, Diagnostics &diagnostics);
 
-/// What rows depend on besides, as the identity of a job has it: who lights them. Cards and the
-/// processor do not agree to the last digit. Empty unless cards are asked for; Device where they
+/// `identity_of` the cards that are asked for and there; empty: the processor. Device where they
 /// must be there and are not.
+Result<std::string> cards_for(const DeviceOptions &device);
+
+/// What rows depend on besides, as the identity of a job has it: who may light them. Cards and the
+/// processor do not agree to the last digit; with Auto either may, so that neither goes on with its
+/// rows. Device as cards_for.
 Result<std::string> device_text(const DeviceOptions &device);
 
 /// Usage for Auto: shards would be lit by cards and by the processor.

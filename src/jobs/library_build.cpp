@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <functional>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
@@ -25,7 +26,7 @@ struct Making {
   double error = 0;
   std::vector<float> sums;
   const char *state = "made";
-  std::string device; ///< as LightModel::device
+  std::string device; ///< as LightModel::device; who lit it in the end is in `text`
 };
 
 /// Light by sums before any colour: for objects without parts that turn, in single wavelengths.
@@ -41,6 +42,7 @@ public:
   /// Light of sums that a file holds; false where they do not serve these materials.
   bool colour(const SignatureView &kept, StokesTable &light) const;
   [[nodiscard]] std::string device() const { return sums_->device(); }
+  [[nodiscard]] std::string lit_by() const { return sums_->lit_by(); }
 
 private:
   SummedLight(std::unique_ptr<LightSums> sums, const Scene &scene, const JobOptions &options)
@@ -194,6 +196,15 @@ std::string shape_of(const PoseLight &light, const std::string &job, const std::
   return sha256_hex(bytes);
 }
 
+/// Who lit what two models lit.
+std::string lit_by_both(const std::string &one, const std::string &other) {
+  if (one == other)
+    return one;
+  constexpr std::string_view too = " and the processor";
+  const std::string &cards = one.empty() ? other : one;
+  return cards.ends_with(too) ? cards : cards + std::string(too);
+}
+
 /// One object of a library.
 class SignatureMaker {
 public:
@@ -205,8 +216,14 @@ public:
   [[nodiscard]] Table table() const;
 
 private:
+  /// What a file is made from if `device` lit it.
+  using JobBy = std::function<std::string(const std::string &device)>;
   Result<Making> light(const Scenario &scenario, const PoseLight &own, const std::string &name,
-                       const std::string &job, const fs::path &file) const;
+                       const JobBy &job_by, const fs::path &file) const;
+  Result<bool> colour(const SummedLight &sums, const PoseLight &own, const JobBy &job_by,
+                      const fs::path &file, Making &out, StokesTable &light) const;
+  [[nodiscard]] Result<bool> may_stay(const std::string &device) const;
+  void tell_of_error(const Making &made) const;
   void tell(const Making &made);
 
   const LibraryRequest &request_;
@@ -224,21 +241,27 @@ Result<void> SignatureMaker::make(const std::string &path, const std::string &na
   SignatureRequest asked;
   asked.method = LightMethod::Masks;
   UMOV_ASSIGN(own, PoseLight::make(scenario, asked, options_, diagnostics_));
-  UMOV_ASSIGN(by, device_text(options_.device));
-  const std::string job = signature_job(scenario, own.inputs(), request_.cells, by);
+  const JobBy job_by = [&](const std::string &device) {
+    return signature_job(scenario, own.inputs(), request_.cells, device);
+  };
   const fs::path file = fs::path(request_.folder) / (name + ".umovsig");
   if (file_exists(file))
-    if (const auto kept = SignatureFile::open(file, true); kept && kept->view().text.job == job) {
-      Making there;
-      there.text = kept->view().text;
-      there.error = kept->view().signature.error;
-      there.state = "was there";
-      tell(there);
-      return {};
+    if (const auto kept = SignatureFile::open(file, true)) {
+      const SignatureText &text = kept->view().text;
+      UMOV_ASSIGN(stays, may_stay(text.device));
+      if (stays && text.job == job_by(text.device)) {
+        Making there;
+        there.text = text;
+        there.error = kept->view().signature.error;
+        there.state = "was there";
+        tell(there);
+        return {};
+      }
     }
-  UMOV_ASSIGN(made, light(scenario, own, name, job, file));
-  UMOV_TRY(write_file_atomically(
-      file, signature_bytes(made.text, request_.cells, made.light, made.error, made.sums)));
+  UMOV_ASSIGN(made, light(scenario, own, name, job_by, file));
+  UMOV_ASSIGN(bytes, signature_bytes(made.text, request_.cells, made.light, made.error, made.sums));
+  UMOV_TRY(write_file_atomically(file, bytes));
+  tell_of_error(made);
   (void)own.model().keep_masks(); // a cache that cannot be written costs time alone
   const std::string own_device = own.model().device();
   const std::string &device = made.device.starts_with("cpu") ? made.device : own_device;
@@ -249,13 +272,43 @@ Result<void> SignatureMaker::make(const std::string &path, const std::string &na
   return {};
 }
 
+/// What was lit by `device` is what is asked for: with Auto whoever lit.
+Result<bool> SignatureMaker::may_stay(const std::string &device) const {
+  if (options_.device.choice == DeviceChoice::Auto)
+    return true;
+  UMOV_ASSIGN(cards, cards_for(options_.device));
+  return device == cards;
+}
+
+/// Light of the sums that a file holds; false where they are not those of this object, or not of
+/// who is asked for.
+Result<bool> SignatureMaker::colour(const SummedLight &sums, const PoseLight &own,
+                                    const JobBy &job_by, const fs::path &file, Making &out,
+                                    StokesTable &light) const {
+  if (!file_exists(file))
+    return false;
+  const auto kept = SignatureFile::open(file, true);
+  if (!kept || kept->view().signature.cells != request_.cells)
+    return false;
+  const SignatureText &text = kept->view().text;
+  UMOV_ASSIGN(stays, may_stay(text.device));
+  if (!stays || text.sun_radius_rad != out.text.sun_radius_rad ||
+      text.shape != shape_of(own, job_by(text.device), text.device) ||
+      !sums.colour(kept->view(), light))
+    return false;
+  out.state = "recoloured";
+  out.text.device = text.device;
+  out.text.columns = text.columns;
+  out.sums.assign(kept->view().abundances.begin(), kept->view().abundances.end());
+  return true;
+}
+
 Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &own,
-                                     const std::string &name, const std::string &job,
+                                     const std::string &name, const JobBy &job_by,
                                      const fs::path &file) const {
   Making out;
-  UMOV_ASSIGN(by, device_text(options_.device));
-  out.text = {name, job, shape_of(own, job, by), {}, {}, own.sun_radius_rad()};
-  out.device = own.model().facts().device;
+  out.text.name = name;
+  out.text.sun_radius_rad = own.sun_radius_rad();
   for (const Band &band : scenario.bands)
     out.text.bands.push_back(band.name);
   StokesTable light;
@@ -264,18 +317,12 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
                         own.options().bounces <= 1;
   if (has_sums) {
     UMOV_ASSIGN(sums, SummedLight::of(own.model().scene(), options_, own.options().accuracy));
-    const auto kept = file_exists(file) ? SignatureFile::open(file, true)
-                                        : Result<SignatureFile>(fail(ErrorCode::BadInput, "none"));
-    if (kept && kept->view().signature.cells == request_.cells &&
-        kept->view().text.sun_radius_rad == out.text.sun_radius_rad &&
-        kept->view().text.shape == out.text.shape && sums.colour(kept->view(), light)) {
-      is_lit = true;
-      out.state = "recoloured";
-      out.text.columns = kept->view().text.columns;
-      out.sums.assign(kept->view().abundances.begin(), kept->view().abundances.end());
-    } else {
+    UMOV_ASSIGN(recoloured, colour(sums, own, job_by, file, out, light));
+    is_lit = recoloured;
+    if (!recoloured) {
       light = {};
       is_lit = sums.make(request_.cells, monitor_, out, light);
+      out.text.device = sums.lit_by();
     }
     if (is_lit)
       out.device = sums.device();
@@ -287,6 +334,7 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
     if (!light_pairs(own, request_.cells, options_, monitor_, light))
       return fail(ErrorCode::Interrupted,
                   "stopped by the user; finished objects stay, and the same command goes on");
+    out.text.device = own.model().lit_by();
   }
   out.light = pack_light(light);
   const Signature signature{
@@ -299,7 +347,23 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
         return own.evaluate(poses, to, task);
       },
       scenario.seed);
+  // Now that all is lit it is known by whom.
+  out.text.device = lit_by_both(out.text.device, own.model().lit_by());
+  out.text.job = job_by(out.text.device);
+  out.text.shape = shape_of(own, out.text.job, out.text.device);
   return out;
+}
+
+/// Beyond this part of I a signature says nothing of the light between its nodes.
+constexpr double useless_error = 1;
+
+void SignatureMaker::tell_of_error(const Making &made) const {
+  if (made.error <= useless_error)
+    return;
+  diagnostics_.warn(fmt::format(
+      "{}: between its nodes the light is off by {:.2g} of itself: glints are narrower than the "
+      "grid of {} cells, and a search by it finds nothing. Take more --cells or rougher materials",
+      printable(made.text.name), made.error, request_.cells));
 }
 
 void SignatureMaker::tell(const Making &made) {

@@ -272,6 +272,9 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
   UMOV_TRY(run_blocks(setup, exposures, monitor, tables, out, diagnostics));
   out.counts.append(std::move(tables.counts).table());
   out.truth.append(std::move(tables.truth).table());
+  const LightFacts &facts = models.light->facts();
+  out.light.push_back({request.object, name_of(facts.method), facts.visibility,
+                       models.light->instruction_set(), models.device()});
   tell_of_device(models.device(), diagnostics);
   return models.keep_masks();
 }

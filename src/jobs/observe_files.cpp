@@ -18,6 +18,7 @@ Result<void> write_observation(const Observation &observation, const Scenario &s
     UMOV_ASSIGN(files, add_table(*table, name, scenario, folder));
     manifest.files.insert(manifest.files.end(), files.begin(), files.end());
   }
+  manifest.light = observation.light;
   if (wants(scenario, "html")) {
     const std::string title = scenario.title.empty() ? "Counts" : scenario.title;
     UMOV_ASSIGN(page, observation_page(observation, title, diagnostics));

@@ -139,6 +139,7 @@ Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks bloc
       one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
       monitor.cancel_flag(), blocks);
   one.light.device = models.device();
+  one.light.instruction_set = models.light->instruction_set();
   tell_of_device(one.light.device, diagnostics);
   UMOV_TRY(models.keep_masks());
   return out;

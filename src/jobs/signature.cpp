@@ -75,17 +75,15 @@ SignatureRequest decided(const Scenario &scenario, const PoseList &poses,
 
 /// What the rows depend on.
 std::string job_of(const Scenario &scenario, const PoseList &poses, const SignatureRequest &request,
-                   const PoseLight &pose_light) {
+                   const PoseLight &pose_light, const std::string &device) {
   const LightOptions &light = pose_light.options();
   const Stokes<ScatteringPlane> &s = light.source;
-  const std::string &device = pose_light.model().facts().device;
   return job_text(scenario, pose_light.inputs(),
                   fmt::format("signature of {}; source {} {} {} {} {} {}; method {}, accuracy {}, "
                               "seed {}, between {}{}",
                               poses.origin, static_cast<int>(request.source), s.i, s.q, s.u, s.v,
                               fmt::join(request.temperatures, ","), name_of(light.method),
-                              light.accuracy, light.seed, name_of(light.between),
-                              device.empty() ? "" : "; device " + device));
+                              light.accuracy, light.seed, name_of(light.between), device));
 }
 
 /// A block of poses from their numbers to rows.
@@ -233,7 +231,8 @@ Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, co
   UMOV_TRY(check_device_of_shards(options.device));
   UMOV_ASSIGN(light,
               PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
-  std::string identity = job_of(scenario, poses, request, light);
+  UMOV_ASSIGN(device, device_text(options.device));
+  std::string identity = job_of(scenario, poses, request, light, device);
   return std::make_unique<RangedSignature>(poses, request, options, std::move(light),
                                            std::move(identity));
 }
@@ -248,20 +247,27 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_ASSIGN(light,
               PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
   const LightModel &model = light.model();
+  UMOV_ASSIGN(device, device_text(options.device));
   UMOV_ASSIGN(journal,
-              open_journal(options, job_of(scenario, poses, request, light) + options.part.text(),
+              open_journal(options,
+                           job_of(scenario, poses, request, light, device) + options.part.text(),
                            monitor, diagnostics));
   PoseBlocks blocks(poses, light, &journal, task_of(options, monitor));
   std::size_t done = 0;
+  std::string told; // in the header
   monitor.advance("poses", 0, range.count);
   while (done < range.count && !monitor.is_cancelled()) {
     if (!blocks.light(range.first + done, range))
       break;
+    if (done == 0)
+      told = model.device();
     UMOV_TRY(sink.add(blocks.rows(request)));
     done += blocks.count();
     monitor.advance("poses", done, range.count);
   }
   tell_of_device(model.device(), diagnostics);
+  if (done > 0 && model.device() != told)
+    UMOV_TRY(sink.note("device later", model.device()));
   if (journal.problem())
     diagnostics.warn(journal.problem()->text());
   if (done < range.count)

@@ -88,6 +88,21 @@ def test_what_lacks_ends_with_6_or_a_line(signature, settings, tmp_path):
     assert sum(line.startswith("warning") for line in told.err.splitlines()) == 1
 
 
+@pytest.mark.parametrize("verb", ["run", "observe"])
+def test_a_run_and_an_observation_without_cards_end_with_6_or_a_line(umov, settings, tmp_path, verb):
+    scene = ROOT / ("examples/observe_hst.toml" if verb == "observe" else "examples/agena_maui.toml")
+    settings(UMOV_FAKE_INIT=100)
+    more = "observation.cadence_s=3" if verb == "observe" else "time.step_s=30"
+    command = (verb, scene, "--set", more)
+    refused = umov(*command, "-o", "cuda", "--device", "cuda")
+    assert refused.code == 6 and "CUDA_ERROR_NO_DEVICE" in refused.err, refused.err
+    assert not (tmp_path / "cuda").exists()
+    told = umov(*command, "-o", "auto", "--device", "auto")
+    assert told.code == 0 and told.err.count("--device auto took the cpu: ") == 1, told.err
+    light, = json.loads((tmp_path / "auto/manifest.json").read_text())["light"]
+    assert light["device"].startswith("cpu: starting the driver") and light["method"] in ("auto", "masks"), light
+
+
 def test_what_cards_do_not_light_is_refused_by_name(signature, settings):
     settings()
     refused = signature("a.csv", "--device", "cuda", visibility="rays")
@@ -131,9 +146,31 @@ def test_rows_of_a_card_are_not_gone_on_with_by_the_processor(umov, scenario, se
     assert lost.code == 6 and "The same command goes on from there." in lost.err, lost.err
     monkeypatch.delenv("UMOV_FAKE_LAUNCHES")
     done = umov("run", name, "-o", "out", *blocks)
-    assert done.code == 0 and "going on from" not in done.err, done.err
+    assert done.code == 0 and "this one begins anew" in done.err, done.err
     assert umov("run", name, "-o", "cpu", *blocks).code == 0
     assert (tmp_path / "out/lightcurve.ecsv").read_text() == (tmp_path / "cpu/lightcurve.ecsv").read_text()
+
+
+def test_a_job_is_the_same_by_any_number_of_cards_and_another_by_another_compiler(umov, scenario, settings, monkeypatch):
+    name = scenario()
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+    settings(UMOV_FAKE_CARDS=2)
+    command = ("run", name, "-o", "out", "--device", "cuda", "--set", "time.step_s=0.1", "--accuracy", "0.5")
+
+    def lost():
+        monkeypatch.setenv("UMOV_FAKE_LAUNCHES", "4")
+        done = umov(*command)
+        monkeypatch.delenv("UMOV_FAKE_LAUNCHES")
+        assert done.code == 6 and "The same command goes on from there." in done.err, done.err
+
+    lost()
+    settings(UMOV_FAKE_CARDS=1)
+    done = umov(*command)
+    assert done.code == 0 and "begins anew" not in done.err, done.err
+    lost()
+    settings(UMOV_FAKE_VERSION=12080)
+    done = umov(*command)
+    assert done.code == 0 and "this one begins anew" in done.err, done.err
 
 
 def test_a_run_on_cards_mends_by_rays(umov, scenario, settings, tmp_path):
@@ -154,10 +191,35 @@ def test_auto_takes_the_processor_where_masks_do_not_fit(signature, settings, tm
     told = signature("b.csv", "--device", "auto")
     assert told.code == 0, told.err
     assert sum(line.startswith("warning") for line in told.err.splitlines()) == 1
-    assert "--device auto took the cpu in the end: the masks take" in told.err
+    assert "--device auto took the cpu: the masks take" in told.err
+    assert "# device: cpu: the masks take" in (tmp_path / "b.csv").read_text()
     assert signature("c.csv").code == 0
     assert read_csv(tmp_path / "b.csv") == read_csv(tmp_path / "c.csv")
 
+
+def test_files_name_who_lit_and_not_who_might_have(umov, scenario, settings, tmp_path):
+    """Cards are there and light nothing: a manifest names the processor alone."""
+    name = scenario()
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+    settings(UMOV_FAKE_FULL=0)
+    done = umov("run", name, "-o", "out", "--device", "auto")
+    assert done.code == 0 and "--device auto took the cpu: computing on Card of paper" in done.err, done.err
+    light, = json.loads((tmp_path / "out/manifest.json").read_text())["light"]
+    assert light["device"].startswith("cpu: computing on Card of paper") and "Card" not in light["instruction_set"]
+
+
+@pytest.mark.parametrize("suffix", ["csv", "fits", "ecsv"])
+def test_a_table_says_that_its_later_rows_are_anothers(signature, settings, tmp_path, suffix):
+    """The first block of 4,096 poses takes a batch of two launches; before the next the cards are full for good."""
+    settings(UMOV_FAKE_FULL=2)
+    done = signature(f"a.{suffix}", "--device", "auto", "--accuracy", "0.5", visibility="auto", poses=4200)
+    assert done.code == 0 and "--device auto took the cpu in the end, at first Card of paper: " in done.err, done.err
+    if suffix == "fits":
+        from astropy.io import fits
+        text = "".join(str(fits.getheader(tmp_path / "a.fits", 1)).replace("\n", "").split("COMMENT "))
+    else:
+        text = (tmp_path / f"a.{suffix}").read_text()
+    assert "device" in text and "cpu in the end, at first Card of paper" in text
 
 SHARDED = {"signature": ("signature", "{}", "--poses", 2000, "--phase", "60", "--visibility", "masks"),
            "run": ("run", "{}", "--set", "render.method=\"masks\"")}
@@ -254,8 +316,56 @@ def test_a_library_by_the_light_of_a_card(umov, scenario, settings, tmp_path, mo
     assert states("cpu") == ["made"] * 2  # other digits: made anew
     settings(UMOV_FAKE_INIT=100)
     assert umov(*command, "cuda").code == 6
-    told = umov(*command, "auto")
+    told = umov(*(word if word != "lib" else "new" for word in command), "auto")
     assert told.code == 0 and told.err.count("--device auto took the cpu: ") == 1
+
+
+def test_a_library_of_the_processor_is_none_of_a_card(umov, scenario, settings, tmp_path, monkeypatch):
+    """Cards that auto finds and cannot use light nothing; auto takes what is there from whoever made it."""
+    name = scenario(('default = "paper_al"', 'default = "paint_white"'))
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+
+    def state(device):
+        done = umov("library", "build", name, "-o", "lib", "--cells", 4, "--json", "--device", device)
+        assert done.code == 0, done.err
+        return json.loads(done.out)[0]["state"]
+
+    settings(UMOV_FAKE_FULL=0)
+    assert state("auto") == "made"
+    assert b"Card of paper" not in (tmp_path / "lib/scenario.umovsig").read_bytes()
+    monkeypatch.delenv("UMOV_FAKE_FULL")
+    assert state("cpu") == "was there"
+    assert state("auto") == "was there"
+    assert state("cuda") == "made"
+    assert b"Card of paper" in (tmp_path / "lib/scenario.umovsig").read_bytes()
+    assert state("auto") == "was there"
+    settings(UMOV_FAKE_CARDS=2)
+    assert state("cuda") == "was there"
+    settings(UMOV_FAKE_CARDS=0)
+    assert state("auto") == "was there"
+    assert state("cpu") == "made"
+
+
+def test_a_library_of_cards_is_searched_by_the_processor_without_a_warning(umov, curve, settings, monkeypatch):
+    settings()
+    observed, name = curve
+    assert umov("library", "build", name, "-o", "lib", "--cells", 4, "--device", "cuda", "-q").code == 0
+    monkeypatch.delenv("UMOV_CUDA_PATH")
+    done = umov("identify", observed, "--library", "lib", "--scenario", name, "--objects", name)
+    assert done.code in (0, 4), done.err
+    assert "is not what its signature was made from" not in done.err, done.err
+
+
+def test_a_library_that_tells_nothing_is_read_and_told(umov, scenario, tmp_path):
+    """A mirror of the paper's aluminium in 4 cells: its glints lie between the nodes."""
+    name = scenario()
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+    for state in ("made", "was there"):
+        done = umov("library", "build", name, "-o", "lib", "--cells", 4, "--json")
+        assert done.code == 0, done.err
+        row, = json.loads(done.out)
+        assert row["state"] == state and row["error"] > 1e6, row
+        assert ("scenario: between its nodes the light is off by" in done.err) == (state == "made"), done.err
 
 
 def test_bench_puts_cards_beside_cores(umov, settings, tmp_path):
@@ -274,6 +384,13 @@ def test_bench_puts_cards_beside_cores(umov, settings, tmp_path):
     assert umov(*command, "--device", "cuda").code == 6
     told = umov("bench", "--only", "flat panel, 2 ", "--seconds", 0.01, "--geometries", 0, "--device", "auto", "-o", "c.csv")
     assert told.code == 0 and "--device auto took the cpu: " in told.err
+
+
+def test_parity_looks_into_all_folders_that_are_named(tmp_path):
+    """tools/gpu_check hands UMOV_CUDA_PATH to the tests of cards as it is."""
+    done = subprocess.run([ROOT / "build/release/src/light/umov_cards_tests", "--gtest_filter=Cards.AbundancesAreThoseOfTheProcessor"],
+                          env={**os.environ, "UMOV_TEST_CUDA": f"/nowhere:{FAKE}", "TEST_TMPDIR": str(tmp_path)}, text=True, capture_output=True, timeout=120)
+    assert done.returncode == 0, done.stdout
 
 
 def test_gpu_check_without_a_card(settings):

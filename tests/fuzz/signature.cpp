@@ -74,7 +74,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     fuzz::require(i >= 0, "light is not negative");
   // There and back.
   PackedLight packed{s.ln_least, s.ln_step, {s.code.begin(), s.code.end()}};
-  const std::string bytes = signature_bytes(read->text, s.cells, packed, s.error, read->abundances);
+  const std::string bytes =
+      signature_bytes(read->text, s.cells, packed, s.error, read->abundances).value();
   std::vector<std::uint64_t> again(bytes.size() / 8);
   std::memcpy(again.data(), bytes.data(), bytes.size());
   const auto second = fuzz::must(

@@ -21,6 +21,7 @@ struct SignatureText {
   std::vector<std::string> bands;   ///< names, in the order of the codes
   std::vector<std::string> columns; ///< of the abundances, in words; empty: none are kept
   double sun_radius_rad = 0;
+  std::string device = {}; ///< who lit it, as LightModel::lit_by; empty: the processor
 };
 
 /// A signature with its text and its abundances: spans into the bytes of a file.
@@ -37,8 +38,10 @@ Result<SignatureView> parse_signature(std::string_view bytes, const std::string 
                                       bool checks_all);
 
 /// The bytes of a file. `abundances` has text.columns for every pair of `cells`, or is empty.
-std::string signature_bytes(const SignatureText &text, std::size_t cells, const PackedLight &light,
-                            double error, std::span<const float> abundances);
+/// Physics for what parse_signature would not take.
+Result<std::string> signature_bytes(const SignatureText &text, std::size_t cells,
+                                    const PackedLight &light, double error,
+                                    std::span<const float> abundances);
 
 /// A file, mapped: nothing is read before it is looked at.
 class SignatureFile {

@@ -13,6 +13,9 @@ public:
   virtual ~TableSink() = default;
   /// Rows with the same columns in the same order; the first block's notes are those of the whole.
   virtual Result<void> add(Table &&rows) = 0;
+  /// What is known of the rows only after the first block: in the header of FITS, behind the rows
+  /// of CSV, among the notes elsewhere. After all `add`.
+  virtual Result<void> note(const std::string &key, const std::string &value) = 0;
   /// All rows were given.
   virtual Result<void> finish() = 0;
   /// The job ended early: what was given is kept, so marked that it is never taken for all. The

@@ -21,6 +21,8 @@ public:
 
   /// Rows with the same columns in the same order.
   Result<void> append(const Table &rows);
+  /// A line in the header of FITS, or behind the rows that there are of CSV.
+  Result<void> note(const std::string &key, const std::string &value);
   /// Puts the complete file in place. Device if that fails.
   Result<void> commit();
   /// Under the name "stem.partial.suffix", for what was stopped early; a note says so: in the

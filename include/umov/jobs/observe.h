@@ -16,8 +16,9 @@ struct Observation {
   Table truth;                              ///< one row per exposure: what a reduction should find
   std::size_t exposures = 0, saturated = 0; ///< of them, with a channel that is full
   std::vector<InputFile> inputs;
-  double light_s = 0, counts_s = 0;  ///< time that light and counts took
-  std::size_t frames = 0;            ///< that were made
+  double light_s = 0, counts_s = 0;        ///< time that light and counts took
+  std::size_t frames = 0;                  ///< that were made
+  std::vector<ManifestInput::Light> light; ///< how each object was lit
   std::vector<std::string> left_out; ///< by the scenario's filters: how many exposures, and why
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <umov/core/result.h>
 #include <vector>
@@ -28,6 +29,12 @@ struct DeviceOptions {
   std::filesystem::path cache = {};
 };
 
+/// Folders with a driver or its compiler that the system does not look into: those of `named`, with
+/// colons between them (UMOV_CUDA_PATH), then what pip has installed in `environments`
+/// (lib/python*/site-packages/nvidia/*/lib of each), each folder once. Empty: none.
+std::vector<std::filesystem::path>
+device_folders(const std::string &named, std::span<const std::filesystem::path> environments);
+
 /// Cards with the kernels in them. Engines share them.
 class Cards;
 
@@ -40,6 +47,9 @@ Result<std::string> describe_cards(const std::vector<std::filesystem::path> &fol
 
 /// "NVIDIA ..." or "2 x NVIDIA ...".
 std::string name_of(const Cards &cards);
+/// What bytes depend on of cards, and not on how many share the poses: "NVIDIA ..., compute 9.0,
+/// compiler 13.0", and the driver where it is that which translates the kernels.
+std::string identity_of(const Cards &cards);
 /// "cpu", "cuda" or "auto".
 const char *name_of(DeviceChoice choice);
 

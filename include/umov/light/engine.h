@@ -103,6 +103,9 @@ public:
   Result<void> use_cards(const std::shared_ptr<const Cards> &cards, bool may_leave = false);
   /// Why the processor has taken over from the cards; empty: it has not.
   [[nodiscard]] std::string why_cards_were_left() const;
+  /// Who has lit so far, as bytes depend on it: the `identity_of` cards, with " and the processor"
+  /// where that has lit poses instead of them; empty: the processor alone.
+  [[nodiscard]] std::string lit_by() const;
 
   /// Stokes of every pose. `out` is resized.
   void evaluate(std::span<const Pose> poses, StokesTable &out, unsigned threads = 1) const;

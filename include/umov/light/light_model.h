@@ -100,8 +100,13 @@ public:
   /// What was made ready.
   [[nodiscard]] const LightFacts &facts() const { return facts_; }
   /// LightFacts::device as it is now: Auto leaves cards for good once masks no longer fit on them
-  /// ("cpu in the end" and why).
+  /// ("cpu in the end, at first NAME: why", and "cpu: why" where they lit nothing).
   [[nodiscard]] virtual std::string device() const { return facts_.device; }
+  /// LightFacts::instruction_set as it is now.
+  [[nodiscard]] virtual std::string instruction_set() const { return facts_.instruction_set; }
+  /// Who has lit so far, as bytes depend on it: the `identity_of` cards, with " and the processor"
+  /// where that has lit poses instead of them; empty: the processor alone.
+  [[nodiscard]] virtual std::string lit_by() const { return ""; }
   /// Names that material_i counts: fronts in the order of the mesh groups, then backs.
   [[nodiscard]] const std::vector<std::string> &materials() const { return materials_; }
   /// Keeps what was learnt of the masks for later jobs (LightOptions::mask_cache or mask_file).

@@ -47,6 +47,8 @@ public:
   /// Names of cards; "cpu" and why where Auto took the processor, at first or in the end; empty:
   /// the processor.
   [[nodiscard]] virtual std::string device() const = 0;
+  /// As LightModel::lit_by.
+  [[nodiscard]] virtual std::string lit_by() const = 0;
 
 protected:
   LightSums() = default;

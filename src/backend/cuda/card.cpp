@@ -43,8 +43,8 @@ Result<CardFindings> find_cards(std::span<const std::filesystem::path> folders) 
     UMOV_ASSIGN(facts, facts_of(driver, k));
     cards.push_back(std::move(facts));
   }
-  UMOV_ASSIGN(compiler, CardCompiler::load(folders));
-  return CardFindings{std::move(driver), std::move(compiler), std::move(cards)};
+  UMOV_ASSIGN(compilers, CardCompiler::load(folders, driver.version));
+  return CardFindings{std::move(driver), std::move(compilers), std::move(cards)};
 }
 
 CardMemory &CardMemory::operator=(CardMemory &&other) noexcept {
@@ -136,19 +136,37 @@ CudaCode Card::launch(const CardScene &scene, const CardBatch &batch, CudaHandle
   return cuda_success;
 }
 
+Result<void> CardSet::fill(const std::vector<CardFacts> &cards, const CardCompiler &compiler,
+                           const std::filesystem::path &cache) {
+  cards_.clear();
+  const CardFacts &first = cards.front();
+  UMOV_ASSIGN(image, compiler.image_for(first.capability, cache));
+  for (const CardFacts &facts : cards) {
+    if (facts.name != first.name || facts.capability != first.capability)
+      continue; // other code, other bytes
+    UMOV_ASSIGN(card, Card::open(driver_, facts, image));
+    cards_.push_back(std::move(card));
+  }
+  identity_ = first.name + ", compute " + std::to_string(first.capability / 10) + "." +
+              std::to_string(first.capability % 10) + ", compiler " + compiler.version();
+  if (compiler.makes_assembly_for(first.capability))
+    identity_ += ", driver of CUDA " + cuda_version_text(driver_.version);
+  return {};
+}
+
 Result<std::shared_ptr<const CardSet>> CardSet::open(std::span<const std::filesystem::path> folders,
                                                      const std::filesystem::path &cache) {
   UMOV_ASSIGN(found, find_cards(folders));
-  const CardFacts first = found.cards.front();
-  UMOV_ASSIGN(image, found.compiler.image_for(first.capability, cache));
   std::shared_ptr<CardSet> out(new CardSet(std::move(found.driver)));
-  for (const CardFacts &facts : found.cards) {
-    if (facts.name != first.name || facts.capability != first.capability)
-      continue; // other code, other bytes
-    UMOV_ASSIGN(card, Card::open(out->driver_, facts, image));
-    out->cards_.push_back(std::move(card));
+  Error first;
+  for (std::size_t k = 0; k < found.compilers.size(); ++k) {
+    const auto filled = out->fill(found.cards, found.compilers[k], cache);
+    if (filled)
+      return out;
+    if (k == 0) // what the best of them says
+      first = filled.error();
   }
-  return out;
+  return tl::unexpected(first);
 }
 
 std::string CardSet::name() const {

@@ -21,8 +21,8 @@ struct CardFacts {
 /// What there is, without compiling anything.
 struct CardFindings {
   CudaDriver driver;
-  CardCompiler compiler;
-  std::vector<CardFacts> cards; ///< one at least
+  std::vector<CardCompiler> compilers; ///< one at least, in the order of CardCompiler::load
+  std::vector<CardFacts> cards;        ///< one at least
 };
 /// Device with the first thing that lacks, and how to get it. `folders`: looked into before the
 /// places where the system has its libraries.
@@ -86,16 +86,22 @@ private:
 /// All cards of one sort, that of the first: they share the poses of a batch.
 class CardSet {
 public:
-  /// Finds, compiles (or takes what `cache` keeps) and loads.
+  /// Finds, compiles (or takes what `cache` keeps) and loads, with the first compiler that knows
+  /// the card and whose code the driver takes.
   static Result<std::shared_ptr<const CardSet>> open(std::span<const std::filesystem::path> folders,
                                                      const std::filesystem::path &cache);
   [[nodiscard]] const std::vector<std::unique_ptr<Card>> &cards() const { return cards_; }
   /// "2 x NVIDIA ...", for headers of files.
   [[nodiscard]] std::string name() const;
+  /// What bytes depend on: name, capability and compiler, not the number of cards.
+  [[nodiscard]] const std::string &identity() const { return identity_; }
 
 private:
   explicit CardSet(CudaDriver driver) : driver_(std::move(driver)) {}
+  Result<void> fill(const std::vector<CardFacts> &cards, const CardCompiler &compiler,
+                    const std::filesystem::path &cache);
   CudaDriver driver_;
+  std::string identity_;
   std::vector<std::unique_ptr<Card>> cards_;
 };
 

@@ -202,11 +202,6 @@ bool CardLoops::lacks_memory() const {
                                  [](const auto &there) { return there->is_full(); });
 }
 
-void CardLoops::limit_batch(std::size_t poses) {
-  slots_.clear();
-  batch_ = std::clamp(poses, std::size_t{1}, batch_most);
-}
-
 /// So many poses for each slot that all have work.
 std::size_t CardLoops::share_of(std::size_t poses) const {
   const std::size_t slots = slots_per_card * on_cards_.size();

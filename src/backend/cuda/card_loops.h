@@ -77,10 +77,6 @@ public:
   /// What failed last did so for want of memory: no card is lost, and whoever has another way can
   /// take it.
   [[nodiscard]] bool lacks_memory() const;
-  /// Poses that a card takes at once.
-  [[nodiscard]] std::size_t batch() const { return batch_; }
-  /// For tests: no more than so many.
-  void limit_batch(std::size_t poses);
 
 private:
   class OnCard;

@@ -1,6 +1,7 @@
 #include "backend/cuda/compiler.h"
 
 #include "backend/cuda/card_poses.h"
+#include "backend/cuda/driver.h"
 
 #include <algorithm>
 #include <array>
@@ -72,31 +73,56 @@ constexpr const char *install =
 
 } // namespace
 
-Result<CardCompiler> CardCompiler::load(std::span<const std::filesystem::path> folders) {
+Result<std::vector<CardCompiler>> CardCompiler::load(std::span<const std::filesystem::path> folders,
+                                                     int driver_version) {
   static const std::array<std::string, 3> names{"libnvrtc.so.13", "libnvrtc.so.12",
                                                 "libnvrtc.so.11.2"};
-  auto library = SharedLibrary::open("libnvrtc.so", names, folders);
-  if (!library)
-    return fail(ErrorCode::Device,
-                "no compiler for the card: " + library.error().message + ". " + install);
+  std::string said;
+  std::vector<CardCompiler> out;
+  std::optional<Error> unfit; // the first that is there and of no use
+  for (const SharedLibrary &library : SharedLibrary::all("libnvrtc.so", names, folders, said)) {
+    auto one = CardCompiler::of(library);
+    if (one)
+      out.push_back(std::move(*one));
+    else if (!unfit)
+      unfit = one.error();
+  }
+  if (out.empty())
+    return unfit ? tl::unexpected(*unfit)
+                 : Result<std::vector<CardCompiler>>(fail(
+                       ErrorCode::Device, "no compiler for the card: libnvrtc.so was not found (" +
+                                              said + "). " + install));
+  std::stable_sort(out.begin(), out.end(), [&](const CardCompiler &a, const CardCompiler &b) {
+    const bool is_a_newer = a.is_newer_than(driver_version),
+               is_b_newer = b.is_newer_than(driver_version);
+    if (is_a_newer != is_b_newer)
+      return is_b_newer;
+    return is_a_newer ? a.version_ < b.version_ : a.version_ > b.version_;
+  });
+  return out;
+}
+
+Result<CardCompiler> CardCompiler::of(const SharedLibrary &library) {
   auto functions = std::make_shared<Functions>();
-  const std::string lacking = functions->bind_all(*library);
+  const std::string lacking = functions->bind_all(library);
   if (!lacking.empty())
     return fail(ErrorCode::Device,
-                library->name() + " is too old: it lacks " + lacking + ". " + install);
+                library.name() + " is too old: it lacks " + lacking + ". " + install);
   CardCompiler out;
   int major = 0, minor = 0, count = 0;
   functions->version(&major, &minor);
-  out.version_ = std::to_string(major) + "." + std::to_string(minor);
-  out.file_ = library->name();
+  out.version_ = 1000 * major + 10 * minor;
+  out.file_ = library.name();
   functions->capability_count(&count);
   out.capabilities_.resize(static_cast<std::size_t>(std::max(count, 0)));
   if (out.capabilities_.empty() || functions->capabilities(out.capabilities_.data()) != 0)
-    return fail(ErrorCode::Device, library->name() + " knows no card. " + install);
+    return fail(ErrorCode::Device, library.name() + " knows no card. " + install);
   std::sort(out.capabilities_.begin(), out.capabilities_.end());
   out.functions_ = std::move(functions);
   return out;
 }
+
+std::string CardCompiler::version() const { return cuda_version_text(version_); }
 
 /// The sizes of what is handed over let the program check that both compilers lay it out alike.
 std::vector<std::string> CardCompiler::options_for(int capability, bool is_assembly) const {
@@ -143,8 +169,9 @@ Result<CardImage> CardCompiler::compile(int capability, bool is_assembly) const 
   }
   functions_->destroy(&program);
   if (out.bytes.empty())
-    return fail(ErrorCode::Device, file_ + " (" + version_ + ") does not compile the kernels for " +
-                                       asked[2] + ": " + out.log);
+    return fail(ErrorCode::Device, file_ + " (" + version() +
+                                       ") does not compile the kernels for " + asked[2] + ": " +
+                                       out.log);
   return out;
 }
 
@@ -166,18 +193,18 @@ std::optional<std::string> read_kept(const std::filesystem::path &file) {
 
 Result<CardImage> CardCompiler::image_for(int capability,
                                           const std::filesystem::path &cache) const {
-  if (capability < capabilities_.front())
+  if (!knows(capability))
     return fail(ErrorCode::Device, "a card of compute capability " +
                                        std::to_string(capability / 10) + "." +
                                        std::to_string(capability % 10) + " is too old for " +
-                                       file_ + " (" + version_ + "). " + install);
+                                       file_ + " (" + version() + "). " + install);
   // A card that it does not know: assembly of the newest one before it, which the driver compiles.
   const int target =
       *std::prev(std::upper_bound(capabilities_.begin(), capabilities_.end(), capability));
-  const bool is_known = target == capability;
+  const bool is_known = !makes_assembly_for(capability);
   if (cache.empty())
     return compile(target, !is_known);
-  std::string all = version_;
+  std::string all = version();
   for (const std::string &option : options_for(target, !is_known))
     all += '\n' + option;
   for (const CardText &text : card_texts())

@@ -4,6 +4,7 @@
 
 #include "backend/cuda/shared_library.h"
 
+#include <algorithm>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -29,13 +30,26 @@ struct CardImage {
 /// libnvrtc.so
 class CardCompiler {
 public:
-  /// Device if there is none: with what to install.
-  static Result<CardCompiler> load(std::span<const std::filesystem::path> folders);
+  /// All that there are, in the order in which a driver of that CUDA (1000 major + 10 minor) is to
+  /// be tried with them: the newest that is no newer than the driver first, then newer ones, the
+  /// least new first, of which a driver takes machine code at best. Device if there is none: with
+  /// what to install.
+  static Result<std::vector<CardCompiler>> load(std::span<const std::filesystem::path> folders,
+                                                int driver_version);
   /// "13.2", and the file it came from.
-  [[nodiscard]] const std::string &version() const { return version_; }
+  [[nodiscard]] std::string version() const;
   [[nodiscard]] const std::string &file() const { return file_; }
   /// Compute capabilities that it compiles for (75: 7.5).
   [[nodiscard]] const std::vector<int> &capabilities() const { return capabilities_; }
+
+  /// Newer than a driver of that CUDA.
+  [[nodiscard]] bool is_newer_than(int driver_version) const { return version_ > driver_version; }
+  /// Makes something for a card of that capability; else it is too old for the compiler.
+  [[nodiscard]] bool knows(int capability) const { return capability >= capabilities_.front(); }
+  /// What it makes for a card is assembly, which the driver translates.
+  [[nodiscard]] bool makes_assembly_for(int capability) const {
+    return std::find(capabilities_.begin(), capabilities_.end(), capability) == capabilities_.end();
+  }
 
   /// For a card of that capability: machine code if the compiler knows it, else the assembly of
   /// the newest one before it, which the driver translates. Device for cards too old.
@@ -47,9 +61,11 @@ public:
 
 private:
   struct Functions;
+  static Result<CardCompiler> of(const SharedLibrary &library);
   [[nodiscard]] std::vector<std::string> options_for(int capability, bool is_assembly) const;
   std::shared_ptr<const Functions> functions_;
-  std::string version_, file_;
+  std::string file_;
+  int version_ = 0; ///< 1000 major + 10 minor
   std::vector<int> capabilities_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <dlfcn.h>
-#include <vector>
 
 namespace umov::backend {
 namespace {
@@ -24,26 +23,54 @@ std::vector<fs::path> files_of(const fs::path &folder, const std::string &stem) 
   return out;
 }
 
+/// Where it may be: files of the folders, then what the system finds by itself.
+std::vector<std::string> places_of(const std::string &stem, std::span<const std::string> names,
+                                   std::span<const fs::path> folders) {
+  std::vector<std::string> out;
+  for (const fs::path &folder : folders)
+    for (const fs::path &file : files_of(folder, stem))
+      out.push_back(file.string());
+  out.insert(out.end(), names.begin(), names.end());
+  return out;
+}
+
+/// Null if it does not load: then `said` has why.
+void *load(const std::string &place, std::string &said) {
+  if (void *handle = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL))
+    return handle;
+  // What is there and does not load says more than what is not there.
+  const char *why = ::dlerror();
+  if (said.empty() || place.find('/') != std::string::npos)
+    said = why == nullptr ? place : why;
+  return nullptr;
+}
+
 } // namespace
 
 Result<SharedLibrary> SharedLibrary::open(const std::string &stem,
                                           std::span<const std::string> names,
                                           std::span<const fs::path> folders) {
-  std::vector<std::string> places;
-  for (const fs::path &folder : folders)
-    for (const fs::path &file : files_of(folder, stem))
-      places.push_back(file.string());
-  places.insert(places.end(), names.begin(), names.end());
   std::string said;
-  for (const std::string &place : places) {
-    if (void *handle = ::dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL))
+  for (const std::string &place : places_of(stem, names, folders))
+    if (void *handle = load(place, said))
       return SharedLibrary(handle, place);
-    // What is there and does not load says more than what is not there.
-    const char *why = ::dlerror();
-    if (said.empty() || place.find('/') != std::string::npos)
-      said = why == nullptr ? place : why;
-  }
   return fail(ErrorCode::Device, stem + " was not found (" + said + ")");
+}
+
+std::vector<SharedLibrary> SharedLibrary::all(const std::string &stem,
+                                              std::span<const std::string> names,
+                                              std::span<const fs::path> folders,
+                                              std::string &said) {
+  std::vector<SharedLibrary> out;
+  for (const std::string &place : places_of(stem, names, folders)) {
+    void *handle = load(place, said);
+    // Other names of one file are the same to the loader.
+    if (handle != nullptr && std::none_of(out.begin(), out.end(), [&](const SharedLibrary &one) {
+          return one.handle_ == handle;
+        }))
+      out.push_back(SharedLibrary(handle, place));
+  }
+  return out;
 }
 
 void *SharedLibrary::symbol(const char *name) const { return ::dlsym(handle_, name); }

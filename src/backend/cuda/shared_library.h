@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <umov/core/result.h>
+#include <vector>
 
 namespace umov::backend {
 
@@ -15,6 +16,10 @@ public:
   /// first; else the first of `names` that the system finds. Device if there is none.
   static Result<SharedLibrary> open(const std::string &stem, std::span<const std::string> names,
                                     std::span<const std::filesystem::path> folders);
+  /// All of them that load, each once, in that order; `said`: what is told of the rest.
+  static std::vector<SharedLibrary> all(const std::string &stem, std::span<const std::string> names,
+                                        std::span<const std::filesystem::path> folders,
+                                        std::string &said);
   /// Null if it has none of that name.
   [[nodiscard]] void *symbol(const char *name) const;
   /// Sets `function` to what `name` is, or says in `lacking` that it is not there.

@@ -57,11 +57,11 @@ std::uint64_t checksum_of(Header header, std::string_view text_and_light) {
 }
 
 bool is_plausible(const Header &h) {
-  constexpr double widest = 80; // |ln| of what a float holds, with room
   return h.cells >= 2 && h.cells <= most_cells && h.bands >= 1 && h.bands <= most_bands &&
          h.columns <= most_columns && h.text_bytes % 8 == 0 && h.text_bytes < (1u << 24) &&
-         h.reserved == 0 && h.ln_least > -widest && h.ln_step > 0 &&
-         h.ln_least + 65'535 * h.ln_step < widest && h.error >= 0 && h.error < 1e6;
+         h.reserved == 0 && h.ln_least > -signature_ln_widest && h.ln_step > 0 &&
+         h.ln_least + 65'535 * h.ln_step < signature_ln_widest && h.error >= 0 &&
+         h.error <= signature_error_most;
 }
 
 /// The text; nothing if it is not what it should be.
@@ -91,6 +91,8 @@ bool read_text(std::string_view json, const Header &header, SignatureText &out) 
   if (radius == root.end() || !radius->is_number())
     return false;
   out.sun_radius_rad = radius->get<double>();
+  if (root.contains("device") && !word("device", out.device))
+    return false;
   return out.sun_radius_rad >= 0 && out.sun_radius_rad < 1 && word("name", out.name) &&
          word("job", out.job) && word("shape", out.shape) &&
          list("bands", header.bands, out.bands) && list("columns", header.columns, out.columns);
@@ -101,6 +103,8 @@ std::string json_of(const SignatureText &text) {
   out["name"] = text.name;
   out["job"] = text.job;
   out["shape"] = text.shape;
+  if (!text.device.empty())
+    out["device"] = text.device;
   out["bands"] = text.bands;
   out["columns"] = text.columns;
   out["sun_radius_rad"] = text.sun_radius_rad;
@@ -150,8 +154,9 @@ Result<SignatureView> parse_signature(std::string_view bytes, const std::string 
   return out;
 }
 
-std::string signature_bytes(const SignatureText &text, std::size_t cells, const PackedLight &light,
-                            double error, std::span<const float> abundances) {
+Result<std::string> signature_bytes(const SignatureText &text, std::size_t cells,
+                                    const PackedLight &light, double error,
+                                    std::span<const float> abundances) {
   const std::string json = json_of(text);
   Header header{};
   std::memcpy(header.magic, magic, sizeof magic);
@@ -163,6 +168,15 @@ std::string signature_bytes(const SignatureText &text, std::size_t cells, const 
   header.ln_least = light.ln_least;
   header.ln_step = light.ln_step;
   header.error = error;
+  if (!is_plausible(header)) // what reads it would say that it is damaged
+    return fail(ErrorCode::Physics,
+                fmt::format("a signature of {} cells, {} bands and {} abundances with ln I from "
+                            "{:.3g} in steps of {:.3g} and an error of {:.3g} cannot be kept in a "
+                            "file: {} cells, {} bands, {} abundances, |ln I| < {} and an error of "
+                            "{:g} are the most",
+                            header.cells, header.bands, header.columns, header.ln_least,
+                            header.ln_step, header.error, most_cells, most_bands, most_columns,
+                            signature_ln_widest, signature_error_most));
   const Places at = places_of(header);
   std::string out(at.end, '\0');
   std::memcpy(out.data() + sizeof header, json.data(), json.size());

@@ -27,6 +27,10 @@ public:
     table_.append(std::move(rows));
     return {};
   }
+  Result<void> note(const std::string &key, const std::string &value) override {
+    table_.note(key, value);
+    return {};
+  }
   Result<void> finish() override { return write_table(path_, table_); }
   Error stop(const Error &stopped) override {
     Error out = stopped;
@@ -66,6 +70,10 @@ public:
       return append();
     }
     return {};
+  }
+  Result<void> note(const std::string &key, const std::string &value) override {
+    UMOV_TRY(settle());
+    return stream_ ? stream_->note(key, value) : Result<void>();
   }
   Result<void> finish() override {
     UMOV_TRY(settle());

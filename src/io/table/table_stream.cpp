@@ -70,6 +70,11 @@ TableStream::~TableStream() = default;
 
 Result<void> TableStream::append(const Table &rows) { return writer_->append(rows); }
 
+Result<void> TableStream::note(const std::string &key, const std::string &value) {
+  const std::string text = key + ": " + value;
+  return writer_->fits ? writer_->fits->note(text) : writer_->file.write(csv_note(text));
+}
+
 Result<void> TableStream::commit() {
   if (writer_->fits)
     UMOV_TRY(writer_->fits->close());
@@ -79,13 +84,9 @@ Result<void> TableStream::commit() {
 Result<std::filesystem::path> TableStream::commit_partial(const std::string &why) {
   std::filesystem::path path = writer_->file.path(); // in the folder of the temporary file
   path.replace_extension(".partial" + path.extension().string());
-  const std::string note = "status: stopped early: " + why;
-  if (writer_->fits) {
-    UMOV_TRY(writer_->fits->note(note));
+  UMOV_TRY(note("status", "stopped early: " + why));
+  if (writer_->fits)
     UMOV_TRY(writer_->fits->close());
-  } else {
-    UMOV_TRY(writer_->file.write(csv_note(note)));
-  }
   UMOV_TRY(writer_->file.commit_as(path));
   return path;
 }

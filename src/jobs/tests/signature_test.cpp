@@ -18,6 +18,10 @@ public:
     table.append(std::move(rows));
     return {};
   }
+  Result<void> note(const std::string &key, const std::string &value) override {
+    table.note(key, value);
+    return {};
+  }
   Result<void> finish() override {
     is_finished = true;
     return {};

@@ -2,8 +2,10 @@
 
 #include "light/fast/state.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <umov/light/instruction_set.h>
 
 namespace umov {
 
@@ -22,6 +24,7 @@ const char *name_of(DeviceChoice choice) {
 void give_up(const Error &lost) { throw Failure(lost); }
 
 std::string name_of(const Cards &cards) { return cards.set->name(); }
+std::string identity_of(const Cards &cards) { return cards.set->identity(); }
 
 Result<std::shared_ptr<const Cards>> open_cards(const DeviceOptions &options) {
   // Kept until the program ends, and not closed then: the driver may be gone by that time.
@@ -44,6 +47,28 @@ Result<std::shared_ptr<const Cards>> open_cards(const DeviceOptions &options) {
   return opened->cards;
 }
 
+namespace {
+
+/// The compiler that is tried first, and those that are not because of the driver.
+std::string words_of_compilers(const backend::CardFindings &found) {
+  const auto knows = [&](const backend::CardCompiler &one) {
+    return one.knows(found.cards.front().capability);
+  };
+  const auto first = std::ranges::find_if(found.compilers, knows);
+  if (first == found.compilers.end())
+    return "no compiler that knows the card: it is too old for " + found.compilers.front().file();
+  std::string out = "compiler " + first->version();
+  if (first->is_newer_than(found.driver.version))
+    out += " (newer than the driver, which may refuse its code)";
+  for (const backend::CardCompiler &one : found.compilers)
+    if (&one != &*first && one.is_newer_than(found.driver.version))
+      out += fmt::format(" ({} of {} is newer than the driver and passed over)", one.version(),
+                         one.file());
+  return out;
+}
+
+} // namespace
+
 Result<std::string> describe_cards(const std::vector<std::filesystem::path> &folders) {
   UMOV_ASSIGN(found, backend::find_cards(folders));
   std::vector<std::string> cards;
@@ -51,8 +76,8 @@ Result<std::string> describe_cards(const std::vector<std::filesystem::path> &fol
     cards.push_back(fmt::format("{} ({:.0f} GB, compute {}.{})", card.name,
                                 static_cast<double>(card.memory_bytes) / 1e9, card.capability / 10,
                                 card.capability % 10));
-  return fmt::format("{}; driver of CUDA {}, compiler {}", fmt::join(cards, ", "),
-                     backend::cuda_version_text(found.driver.version), found.compiler.version());
+  return fmt::format("{}; driver of CUDA {}, {}", fmt::join(cards, ", "),
+                     backend::cuda_version_text(found.driver.version), words_of_compilers(found));
 }
 
 void Engine::State::take_light(const backend::CardRows &rows, std::size_t row_of_card,
@@ -130,12 +155,21 @@ Result<void> Engine::use_cards(const std::shared_ptr<const Cards> &cards, bool m
   UMOV_ASSIGN(loops, backend::CardLoops::make(cards->set, source));
   made->loops = std::move(loops);
   made->may_be_left = may_leave;
+  made->name = name_of(*cards);
+  made->identity = identity_of(*cards);
   s.on_cards = std::move(made);
   return {};
 }
 
 std::string Engine::why_cards_were_left() const {
   return state_->on_cards && state_->on_cards->is_left ? state_->on_cards->why_left : "";
+}
+
+std::string Engine::lit_by() const {
+  const CardEngine *const cards = state_->on_cards.get();
+  if (cards == nullptr || (cards->is_left && cards->lit == 0))
+    return "";
+  return cards->identity + (cards->left_to_processor > 0 ? " and the processor" : "");
 }
 
 Result<std::string> take_cards(Engine &engine, const DeviceOptions &device) {
@@ -154,7 +188,15 @@ Result<std::string> take_cards(Engine &engine, const DeviceOptions &device) {
 
 std::string device_now(const Engine &engine, const std::string &at_first) {
   const std::string why = engine.why_cards_were_left();
-  return why.empty() ? at_first : "cpu in the end: " + why;
+  if (why.empty())
+    return at_first;
+  return (engine.lit_by().empty() ? "cpu: " : "cpu in the end, at first " + at_first + ": ") + why;
+}
+
+std::string instructions_now(const Engine &engine, const std::string &at_first) {
+  if (engine.why_cards_were_left().empty())
+    return at_first;
+  return (engine.lit_by().empty() ? "" : at_first + " and ") + engine_instruction_set();
 }
 
 } // namespace umov

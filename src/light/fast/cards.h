@@ -25,6 +25,8 @@ struct CardEngine {
   bool may_be_left = false;
   std::atomic<bool> is_left{false};
   std::string why_left;
+  std::string name, identity;                            ///< as name_of and identity_of
+  std::atomic<std::size_t> lit{0}, left_to_processor{0}; ///< poses so far
   /// Chunks of surfaces without a kernel: the processor lists their facets.
   std::vector<backend::Chunk> general;
 };
@@ -34,6 +36,8 @@ struct CardEngine {
 Result<std::string> take_cards(Engine &engine, const DeviceOptions &device);
 /// The same now: cards may have been left since.
 std::string device_now(const Engine &engine, const std::string &at_first);
+/// LightFacts::instruction_set as it is now.
+std::string instructions_now(const Engine &engine, const std::string &at_first);
 
 /// Throws Failure: an evaluation has no other way to say that a card is lost.
 [[noreturn]] void give_up(const Error &lost);

@@ -67,7 +67,11 @@ void Engine::State::for_each(std::span<const Pose> poses, const LightTask &task,
   const std::size_t on_card =
       on_cards && !on_cards->is_left ? for_each_on_cards(poses, order, task, body, from_cards) : 0;
   const std::size_t left = poses.size() - on_card;
-  const std::size_t size = std::clamp(left / (4 * resolve_threads(task.threads)) + 1,
+  if (on_cards) {
+    on_cards->lit += on_card;
+    on_cards->left_to_processor += left;
+  }
+  const std::size_t size = std::clamp(left / (std::size_t{4} * resolve_threads(task.threads)) + 1,
                                       poses_per_task_min, poses_per_task_max);
   parallel_for((left + size - 1) / size, task.threads, [&](std::size_t part) {
     if (is_stopped(task.cancel)) // masks may be lacking

@@ -1,5 +1,8 @@
 #include "light/model/band_sums.h"
 
+#include <algorithm>
+#include <umov/core/parallel.h>
+
 namespace umov {
 namespace {
 
@@ -34,23 +37,35 @@ void size_as(const StokesTable &nodes, const BandGrid &grid, std::size_t poses,
   out.material_i.resize(nodes.material_i.empty() ? 0 : out.i.size() * materials);
 }
 
-void sum_bands(const StokesTable &nodes, const BandGrid &grid, std::size_t materials,
-               std::size_t begin, StokesTable &out) {
-  for (std::size_t k = 0; k < nodes.poses(); ++k) {
-    const std::size_t row = begin + k;
-    out.is_dark[row] = nodes.is_dark[k];
-    out.method[row] = nodes.method[k];
-    if (!out.glint_share.empty())
-      out.glint_share[row] = nodes.glint_share[k];
-    for (std::size_t b = 0; b < out.bands; ++b) {
-      sum_pose(nodes, k, grid.terms()[b], row, b, out);
-      for (std::size_t m = 0; m < materials && !out.material_i.empty(); ++m)
-        out.material_i[(row * materials + m) * out.bands + b] =
-            sum_band<double>(grid.terms()[b], [&](std::size_t node) {
-              return nodes.material_i[(k * materials + m) * nodes.bands + node];
-            }).value;
-    }
+namespace {
+
+/// All bands of one pose.
+void sum_all(const StokesTable &nodes, std::size_t k, const BandGrid &grid, std::size_t materials,
+             std::size_t row, StokesTable &out) {
+  out.is_dark[row] = nodes.is_dark[k];
+  out.method[row] = nodes.method[k];
+  if (!out.glint_share.empty())
+    out.glint_share[row] = nodes.glint_share[k];
+  for (std::size_t b = 0; b < out.bands; ++b) {
+    sum_pose(nodes, k, grid.terms()[b], row, b, out);
+    for (std::size_t m = 0; m < materials && !out.material_i.empty(); ++m)
+      out.material_i[(row * materials + m) * out.bands + b] =
+          sum_band<double>(grid.terms()[b], [&](std::size_t node) {
+            return nodes.material_i[(k * materials + m) * nodes.bands + node];
+          }).value;
   }
+}
+
+} // namespace
+
+void sum_bands(const StokesTable &nodes, const BandGrid &grid, std::size_t materials,
+               std::size_t begin, unsigned threads, StokesTable &out) {
+  constexpr std::size_t part = 256;
+  const std::size_t count = nodes.poses();
+  parallel_for((count + part - 1) / part, threads, [&](std::size_t task) {
+    for (std::size_t k = task * part; k < std::min(count, (task + 1) * part); ++k)
+      sum_all(nodes, k, grid, materials, begin + k, out);
+  });
 }
 
 } // namespace umov

@@ -13,6 +13,6 @@ void size_as(const StokesTable &nodes, const BandGrid &grid, std::size_t poses,
 /// Sums the wavelengths of each band, rows of `nodes` into rows of `out` from `begin` on. Light at
 /// neighbouring wavelengths comes from the same points and paths, so that its half-widths add up.
 void sum_bands(const StokesTable &nodes, const BandGrid &grid, std::size_t materials,
-               std::size_t begin, StokesTable &out);
+               std::size_t begin, unsigned threads, StokesTable &out);
 
 } // namespace umov

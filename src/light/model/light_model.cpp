@@ -21,13 +21,27 @@ LightModel::LightModel(const Scene &scene, std::vector<Joint> joints)
   facts_.triangles = scene.mesh.triangles.size();
 }
 
+namespace {
+
+/// As many as a block of poses has at most (131,072), in as much memory as this for the light at
+/// all wavelengths; no fewer than the longest block that shares paths, and a multiple of it.
+std::size_t poses_at_a_time(std::size_t nodes, std::size_t materials) {
+  constexpr std::size_t room = std::size_t{256} << 20, least = 4096, most = 131'072;
+  constexpr std::size_t columns = 12; // I Q U V, their half-widths, and what is indirect of them
+  const std::size_t row = nodes * (columns + materials) * sizeof(double);
+  return std::clamp(room / row / least * least, least, most);
+}
+
+} // namespace
+
 bool LightModel::evaluate(std::span<const Pose> poses, std::span<const double> angles_rad,
                           StokesTable &out, const LightTask &task) const {
   UMOV_EXPECTS(angles_rad.size() == poses.size() * joints_.size());
   if (scene_.grid.is_plain())
     return light(poses, angles_rad, out, task);
-  // In parts: there are tens of wavelengths for each band. Those that share paths stay together.
-  constexpr std::size_t part = 2048;
+  // In parts: there are tens of wavelengths for each band. Those that share paths stay together,
+  // and cards want tens of thousands at a time (docs/theory/device.md).
+  const std::size_t part = poses_at_a_time(scene_.grid.nodes().size(), materials_.size());
   StokesTable nodes;
   for (std::size_t begin = 0; begin == 0 || begin < poses.size(); begin += part) {
     const std::size_t count = std::min(part, poses.size() - begin);
@@ -36,7 +50,7 @@ bool LightModel::evaluate(std::span<const Pose> poses, std::span<const double> a
       return false;
     if (begin == 0)
       size_as(nodes, scene_.grid, poses.size(), materials_.size(), out);
-    sum_bands(nodes, scene_.grid, materials_.size(), begin, out);
+    sum_bands(nodes, scene_.grid, materials_.size(), begin, task.threads, out);
   }
   return true;
 }

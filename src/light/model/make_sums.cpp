@@ -35,6 +35,7 @@ public:
   }
   void keep_masks() const override { engine_.keep_masks(); }
   [[nodiscard]] std::string device() const override { return device_now(engine_, device_); }
+  [[nodiscard]] std::string lit_by() const override { return engine_.lit_by(); }
 
 private:
   Engine engine_;

@@ -106,6 +106,12 @@ std::string MasksLight::device() const {
   return engine_ ? device_now(*engine_, facts_.device) : facts_.device;
 }
 
+std::string MasksLight::instruction_set() const {
+  return engine_ ? instructions_now(*engine_, facts_.instruction_set) : facts_.instruction_set;
+}
+
+std::string MasksLight::lit_by() const { return engine_ ? engine_->lit_by() : ""; }
+
 Result<void> MasksLight::keep_masks() const {
   if (turning_)
     turning_->keep_masks();

@@ -43,6 +43,8 @@ public:
   [[nodiscard]] Result<void> keep_masks() const override;
   [[nodiscard]] std::size_t mask_bytes() const override;
   [[nodiscard]] std::string device() const override;
+  [[nodiscard]] std::string instruction_set() const override;
+  [[nodiscard]] std::string lit_by() const override;
 
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,

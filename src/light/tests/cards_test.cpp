@@ -5,8 +5,10 @@
 #include "light/tests/engine_cases.h"
 
 #include <cstdlib>
+#include <dlfcn.h>
 #include <filesystem>
 #include <fstream>
+#include <umov/light/instruction_set.h>
 #include <umov/light/light_model.h>
 #include <unistd.h>
 
@@ -34,11 +36,15 @@ std::filesystem::path new_cache() {
          ("umov_cards_" + std::to_string(::getpid()) + "_" + std::to_string(++number));
 }
 
-/// The card on paper, whatever else there is. For tools/gpu_check, UMOV_TEST_CUDA names the folder
+/// The card on paper, whatever else there is. For tools/gpu_check, UMOV_TEST_CUDA names the folders
 /// of a real one's driver and compiler ("system": where the system has them).
 DeviceOptions with_fakes(const std::filesystem::path &cache = new_cache()) {
-  if (const char *real = std::getenv("UMOV_TEST_CUDA"))
-    return {DeviceChoice::Cuda, {real}, std::filesystem::path(testing::TempDir()) / "umov_kernels"};
+  if (const char *real = std::getenv("UMOV_TEST_CUDA")) {
+    const char *const active = std::getenv("VIRTUAL_ENV");
+    const std::filesystem::path environments[] = {active == nullptr ? "" : active};
+    return {DeviceChoice::Cuda, device_folders(real, environments),
+            std::filesystem::path(testing::TempDir()) / "umov_kernels"};
+  }
   return {DeviceChoice::Cuda, {UMOV_FAKE_CUDA}, cache};
 }
 
@@ -328,6 +334,8 @@ TEST(Cards, TheProcessorTakesOverWhereMasksNoLongerFit) {
   const auto few = random_poses(4), more = random_poses(200);
   (void)evaluated(engine, few);
   EXPECT_EQ(engine.why_cards_were_left(), "");
+  const std::string card = "Card of paper, compute 8.0, compiler 13.0, driver of CUDA 13.2";
+  EXPECT_EQ(engine.lit_by(), card);
   {
     const Setting full("UMOV_FAKE_MEMORY", "100000");
     EXPECT_EQ(evaluated(engine, more).i, evaluated(alone, more).i); // the processor's bytes
@@ -335,6 +343,63 @@ TEST(Cards, TheProcessorTakesOverWhereMasksNoLongerFit) {
   EXPECT_NE(engine.why_cards_were_left().find("the masks take"), std::string::npos)
       << engine.why_cards_were_left();
   EXPECT_EQ(evaluated(engine, few).i, evaluated(alone, few).i); // and for good
+  EXPECT_EQ(engine.lit_by(), card + " and the processor");
+  EXPECT_EQ(alone.lit_by(), "");
+}
+
+TEST(Cards, WhatTheyDidNotLightIsNotTheirs) {
+  const Scene scene = scene_of(make_box_wing({800, 0}), NormalMode::Flat, four_materials());
+  const auto poses = random_poses(600);
+  const Setting none("UMOV_FAKE_FULL", "0");
+  auto how = with_fakes();
+  how.choice = DeviceChoice::Auto;
+  LightOptions options;
+  options.method = LightMethod::Masks;
+  options.device = how;
+  const auto model = make_light(scene, {}, options);
+  ASSERT_TRUE(model) << model.error().text();
+  EXPECT_EQ((*model)->device(), "Card of paper");
+  StokesTable out;
+  ASSERT_TRUE((*model)->evaluate(poses, out));
+  EXPECT_TRUE((*model)->device().starts_with("cpu: computing on")) << (*model)->device();
+  EXPECT_EQ((*model)->lit_by(), "");
+  EXPECT_EQ((*model)->instruction_set(), engine_instruction_set());
+}
+
+/// Calls of the driver for kernels since it was started.
+std::size_t launches() {
+  void *const driver =
+      ::dlopen((std::string(UMOV_FAKE_CUDA) + "/libcuda.so.1").c_str(), RTLD_NOW | RTLD_LOCAL);
+  EXPECT_NE(driver, nullptr);
+  return reinterpret_cast<std::size_t (*)()>(::dlsym(driver, "umov_fake_launches"))();
+}
+
+TEST(Cards, BandsWithACurveAreLitInBatchesAsLongAsOthers) {
+  // Nobody else's number: 9,000 poses in two shares, three kernels each, with a curve or without.
+  const auto poses = random_poses(9000);
+  std::size_t count[2];
+  for (const bool has_curve : {false, true}) {
+    std::vector<Band> bands{{"nm:600", Wavelength::nm(600)}};
+    if (has_curve)
+      bands.push_back(*band_of(gaussian_passband("green", 540, 60)));
+    const auto materials = four_materials();
+    const Mesh mesh = make_chamfered_cube(1, 0.1);
+    Diagnostics diagnostics;
+    const std::vector<Material> of(mesh.groups.size(), materials.front());
+    const auto scene = make_scene(mesh, NormalMode::Flat, bands, of, of, diagnostics);
+    ASSERT_TRUE(scene) << scene.error().text();
+    LightOptions options;
+    options.method = LightMethod::Masks;
+    options.device = with_fakes();
+    const auto model = make_light(*scene, {}, options);
+    ASSERT_TRUE(model) << model.error().text();
+    const std::size_t before = launches();
+    StokesTable out;
+    ASSERT_TRUE((*model)->evaluate(poses, out));
+    count[has_curve ? 1 : 0] = launches() - before;
+  }
+  EXPECT_EQ(count[0], 6u);
+  EXPECT_EQ(count[1], count[0]);
 }
 
 TEST(Cards, TheProcessorTakesOverWhereNoBatchFits) {
@@ -403,6 +468,60 @@ TEST(Cards, WhatLacksIsSaid) {
   }
   const Setting broken("UMOV_FAKE_COMPILE", "6");
   EXPECT_TRUE(has(refusal(with_fakes()), "made to fail by UMOV_FAKE_COMPILE"));
+}
+
+TEST(Cards, TheNewestCompilerThatTheDriverTakesIsTaken) {
+  const std::filesystem::path both[] = {std::string(UMOV_FAKE_CUDA) + "_newer", UMOV_FAKE_CUDA};
+  const auto taken = [&] {
+    const auto cards = open_cards({DeviceChoice::Cuda, {both, both + 2}, new_cache()});
+    return cards ? identity_of(**cards) : cards.error().message;
+  };
+  const auto has = [](const std::string &text, const char *part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(has(taken(), "compiler 13.0")) << taken(); // of 13.0 and 13.5, for a driver of 13.2
+  const std::string doctor = describe_cards({both, both + 2}).value();
+  EXPECT_TRUE(has(doctor, "compiler 13.0 (13.5 of ")) << doctor;
+  EXPECT_TRUE(has(doctor, "is newer than the driver and passed over)")) << doctor;
+  {
+    const Setting newer("UMOV_FAKE_DRIVER", "13050");
+    EXPECT_TRUE(has(taken(), "compiler 13.5")) << taken();
+    const Setting picky("UMOV_FAKE_REFUSES", "13050"); // the next one
+    EXPECT_TRUE(has(taken(), "compiler 13.0")) << taken();
+  }
+  const Setting older("UMOV_FAKE_DRIVER", "12080"); // the least new first, and both are refused
+  EXPECT_TRUE(has(taken(), "CUDA_ERROR_UNSUPPORTED_PTX_VERSION")) << taken();
+  EXPECT_TRUE(has(taken(), "the driver is of CUDA 12.8")) << taken();
+  EXPECT_TRUE(has(describe_cards({both, both + 2}).value(), "13.0 (newer than the driver"));
+}
+
+TEST(Cards, FoldersAreThoseNamedAndThoseOfPackages) {
+  const std::filesystem::path base = new_cache(), one = base / "one", two = base / "two";
+  const auto packages = [](const std::filesystem::path &environment) {
+    return environment / "lib/python3.11/site-packages/nvidia";
+  };
+  std::filesystem::create_directories(packages(one) / "cuda_nvrtc/lib");
+  std::filesystem::create_directories(packages(one) / "cu13/lib");
+  std::filesystem::create_directories(packages(one) / "cublas");
+  std::filesystem::create_directories(packages(two) / "cu13/lib");
+  const std::filesystem::path environments[] = {one, "", base / "absent", two, one};
+  const std::vector<std::filesystem::path> wanted{"/a", "b c", packages(one) / "cu13/lib",
+                                                  packages(one) / "cuda_nvrtc/lib",
+                                                  packages(two) / "cu13/lib"};
+  EXPECT_EQ(device_folders(":/a:b c::/a", environments), wanted);
+  EXPECT_TRUE(device_folders("", {}).empty());
+}
+
+TEST(Cards, TheirNumberIsNoPartOfWhatBytesDependOn) {
+  const auto of = [](const char *cards) {
+    const Setting many("UMOV_FAKE_CARDS", cards);
+    return open_cards(with_fakes()).value();
+  };
+  EXPECT_EQ(name_of(*of("2")), "2 x Card of paper");
+  EXPECT_EQ(identity_of(*of("2")), identity_of(*of("1")));
+  const std::string before = identity_of(*of("1"));
+  const Setting other("UMOV_FAKE_VERSION", "12080");
+  EXPECT_NE(identity_of(*of("1")), before);
 }
 
 TEST(Cards, CompiledKernelsAreKept) {

@@ -1,5 +1,6 @@
 // A run-time compiler for the driver without a card: it sees that the texts are there and makes an
-// image that says so. UMOV_FAKE_COMPILE: its code; UMOV_FAKE_OLDEST: the least capability (75).
+// image that says so, and which version made it. UMOV_FAKE_COMPILE: its code; UMOV_FAKE_OLDEST: the
+// least capability (75); UMOV_FAKE_VERSION: 1000 major + 10 minor (UMOV_BUILT_VERSION).
 
 #include <cstdlib>
 #include <cstring>
@@ -11,7 +12,10 @@ int asked(const char *name, int otherwise) {
   const char *value = std::getenv(name);
   return value == nullptr || *value == '\0' ? otherwise : std::atoi(value);
 }
-const std::string image = "kernels on paper", complaint = "made to fail by UMOV_FAKE_COMPILE";
+const std::string complaint = "made to fail by UMOV_FAKE_COMPILE";
+
+int version() { return asked("UMOV_FAKE_VERSION", UMOV_BUILT_VERSION); }
+std::string image() { return "kernels on paper " + std::to_string(version()); }
 
 int put_size(const std::string &text, std::size_t *size) {
   *size = text.size();
@@ -27,8 +31,8 @@ int put(const std::string &text, char *to) {
 extern "C" {
 
 int nvrtcVersion(int *major, int *minor) {
-  *major = 13;
-  *minor = 0;
+  *major = version() / 1000;
+  *minor = version() % 1000 / 10;
   return 0;
 }
 int nvrtcGetNumSupportedArchs(int *count) {
@@ -53,9 +57,9 @@ int nvrtcDestroyProgram(void **) { return 0; }
 int nvrtcCompileProgram(void *, int, const char *const *) { return asked("UMOV_FAKE_COMPILE", 0); }
 int nvrtcGetProgramLogSize(void *, std::size_t *size) { return put_size(complaint, size); }
 int nvrtcGetProgramLog(void *, char *text) { return put(complaint, text); }
-int nvrtcGetCUBINSize(void *, std::size_t *size) { return put_size(image, size); }
-int nvrtcGetCUBIN(void *, char *bytes) { return put(image, bytes); }
-int nvrtcGetPTXSize(void *, std::size_t *size) { return put_size(image, size); }
-int nvrtcGetPTX(void *, char *bytes) { return put(image, bytes); }
+int nvrtcGetCUBINSize(void *, std::size_t *size) { return put_size(image(), size); }
+int nvrtcGetCUBIN(void *, char *bytes) { return put(image(), bytes); }
+int nvrtcGetPTXSize(void *, std::size_t *size) { return put_size(image(), size); }
+int nvrtcGetPTX(void *, char *bytes) { return put(image(), bytes); }
 
 } // extern "C"

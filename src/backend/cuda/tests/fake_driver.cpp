@@ -5,8 +5,12 @@
 //   UMOV_FAKE_MEMORY    bytes of each (1e9)
 //   UMOV_FAKE_INIT      code of cuInit
 //   UMOV_FAKE_LOAD      code of cuModuleLoadData
+//   UMOV_FAKE_DRIVER    CUDA of the driver, 1000 major + 10 minor (13020): newer images are refused
+//   UMOV_FAKE_REFUSES   version of images that it does not load
+//   UMOV_FAKE_FULL      launches after which there is no memory for any
 //   UMOV_FAKE_POSES     most poses of a launch, beyond which there is no memory
 //   UMOV_FAKE_LAUNCHES  launches after which the card is lost
+// umov_fake_launches tells how many there were since cuInit.
 
 #include "backend/cuda/card_poses.h"
 
@@ -22,8 +26,8 @@ using namespace umov::backend;
 namespace {
 
 using Code = int;
-constexpr Code fine = 0, invalid = 1, out_of_memory = 2, not_there = 101, not_ready = 600,
-               lost = 719;
+constexpr Code fine = 0, invalid = 1, out_of_memory = 2, not_there = 101,
+               newer_than_the_driver = 222, not_ready = 600, lost = 719;
 
 std::size_t asked(const char *name, std::size_t otherwise) {
   const char *value = std::getenv(name);
@@ -48,20 +52,22 @@ void *const prepare = &used, *const sum = &launches, *const colour = &allocated,
 
 extern "C" {
 
+std::size_t umov_fake_launches() { return launches; }
+
 Code cuInit(unsigned) {
   launches = 0;
   return static_cast<Code>(asked("UMOV_FAKE_INIT", 0));
 }
 Code cuDriverGetVersion(int *version) {
-  *version = 13020;
+  *version = static_cast<int>(asked("UMOV_FAKE_DRIVER", 13020));
   return fine;
 }
 Code cuGetErrorName(Code code, const char **name) {
-  *name = code == out_of_memory ? "CUDA_ERROR_OUT_OF_MEMORY"
-          : code == lost        ? "CUDA_ERROR_LAUNCH_FAILED"
-          : code == 100         ? "CUDA_ERROR_NO_DEVICE"
-          : code == 222         ? "CUDA_ERROR_UNSUPPORTED_PTX_VERSION"
-                                : "CUDA_ERROR_UNKNOWN";
+  *name = code == out_of_memory           ? "CUDA_ERROR_OUT_OF_MEMORY"
+          : code == lost                  ? "CUDA_ERROR_LAUNCH_FAILED"
+          : code == 100                   ? "CUDA_ERROR_NO_DEVICE"
+          : code == newer_than_the_driver ? "CUDA_ERROR_UNSUPPORTED_PTX_VERSION"
+                                          : "CUDA_ERROR_UNKNOWN";
   return fine;
 }
 Code cuDeviceGetCount(int *count) {
@@ -92,9 +98,14 @@ Code cuDevicePrimaryCtxRetain(void **context, int device) {
 Code cuDevicePrimaryCtxRelease_v2(int) { return fine; }
 Code cuCtxSetCurrent(void *) { return is_lost() ? lost : fine; }
 Code cuModuleLoadData(void **module, const void *image) {
+  constexpr const char *words = "kernels on paper ";
   *module = &used;
-  if (std::strncmp(static_cast<const char *>(image), "kernels on paper", 16) != 0)
+  const char *const text = static_cast<const char *>(image);
+  if (std::strncmp(text, words, std::strlen(words)) != 0)
     return invalid;
+  const std::size_t version = std::strtoull(text + std::strlen(words), nullptr, 10);
+  if (version > asked("UMOV_FAKE_DRIVER", 13020) || version == asked("UMOV_FAKE_REFUSES", 0))
+    return newer_than_the_driver;
   return static_cast<Code>(asked("UMOV_FAKE_LOAD", 0));
 }
 Code cuModuleUnload(void *) { return fine; }
@@ -173,7 +184,8 @@ Code cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigne
                     unsigned, unsigned, void *, void **parameters, void **) {
   const CardScene scene = *static_cast<const CardScene *>(parameters[0]);
   const CardBatch batch = *static_cast<const CardBatch *>(parameters[1]);
-  if (batch.poses.size() > asked("UMOV_FAKE_POSES", ~std::size_t{0}))
+  if (batch.poses.size() > asked("UMOV_FAKE_POSES", ~std::size_t{0}) ||
+      launches >= asked("UMOV_FAKE_FULL", ~std::size_t{0}))
     return out_of_memory;
   if (is_copy_under_way)
     return not_ready; // the kernel would read what has not come

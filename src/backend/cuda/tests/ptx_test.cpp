@@ -1,6 +1,6 @@
 // What becomes of the program of cards, read without one: NVIDIA's run-time compiler makes machine
-// code and assembly (PTX) of the texts that the library carries, for three generations of cards.
-// tools/check_cuda fetches that compiler.
+// code and assembly (PTX) of the texts that the library carries, for four generations of cards.
+// tools/check_cuda fetches the two compilers for them.
 
 #include "backend/cuda/card.h"
 
@@ -10,16 +10,24 @@
 namespace umov::backend {
 namespace {
 
-class Program : public testing::TestWithParam<int> {
+/// A capability, and the compiler that still knows it: CUDA 13 has dropped Volta (7.0).
+struct Target {
+  int capability;
+  const char *folder;
+};
+
+class Program : public testing::TestWithParam<Target> {
 protected:
-  static const CardCompiler &compiler() {
-    static const auto loaded = [] {
-      const std::filesystem::path folders[] = {UMOV_NVRTC_FOLDER};
-      return CardCompiler::load(folders);
-    }();
+  static Result<CardImage> compiled() {
+    const std::filesystem::path folders[] = {GetParam().folder};
+    constexpr int any_driver = 1'000'000;
+    const auto loaded = CardCompiler::load(folders, any_driver);
     if (!loaded)
-      throw Failure(loaded.error()); // not skipped: tools/check_cuda has fetched it
-    return *loaded;
+      throw Failure(loaded.error());        // not skipped: tools/check_cuda has fetched it
+    for (const CardCompiler &one : *loaded) // the system may have others
+      if (one.file().starts_with(GetParam().folder))
+        return one.compile(GetParam().capability, false);
+    return fail(ErrorCode::Device, std::string("no compiler in ") + GetParam().folder);
   }
 };
 
@@ -55,7 +63,7 @@ Use use_of(const std::string &log, const std::string &name) {
 }
 
 TEST_P(Program, SumsInSinglePrecisionInRegisters) {
-  const auto image = compiler().compile(GetParam(), false);
+  const auto image = compiled();
   ASSERT_TRUE(image) << image.error().text();
   EXPECT_EQ(image->bytes.substr(1, 3), "ELF");
   const Use sum = use_of(image->log, "umov_sum_poses");
@@ -86,10 +94,11 @@ TEST_P(Program, SumsInSinglePrecisionInRegisters) {
   EXPECT_NE(entry_of(image->assembly, "umov_prepare_poses").find(".f64"), std::string::npos);
 }
 
-// The oldest that today's compiler knows is Turing's (7.5): CUDA 13 has dropped Volta (7.0), for
-// which nvidia-cuda-nvrtc-cu12 is taken.
-INSTANTIATE_TEST_SUITE_P(ptx, Program, testing::Values(75, 80, 90),
-                         [](const auto &of) { return "sm_" + std::to_string(of.param); });
+INSTANTIATE_TEST_SUITE_P(
+    ptx, Program,
+    testing::Values(Target{70, UMOV_NVRTC12_FOLDER}, Target{75, UMOV_NVRTC_FOLDER},
+                    Target{80, UMOV_NVRTC_FOLDER}, Target{90, UMOV_NVRTC_FOLDER}),
+    [](const auto &of) { return "sm_" + std::to_string(of.param.capability); });
 
 } // namespace
 } // namespace umov::backend

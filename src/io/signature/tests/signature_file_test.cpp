@@ -34,7 +34,8 @@ StokesTable all_light() {
 std::string bytes() {
   const std::vector<float> sums(signature_pairs(cells) * 3, 0.25f);
   return signature_bytes({"box", "abc", "def", {"a", "b"}, {"x", "y", "z"}, 0.0046}, cells,
-                         pack_light(all_light()), 0.125, sums);
+                         pack_light(all_light()), 0.125, sums)
+      .value();
 }
 
 TEST(Signature, PairsAreOnceEachAndInParts) {
@@ -88,6 +89,33 @@ TEST(SignatureFile, ThereAndBack) {
   EXPECT_TRUE(std::equal(packed.code.begin(), packed.code.end(), view.signature.code.begin(),
                          view.signature.code.end()));
   std::remove(file.c_str());
+}
+
+TEST(SignatureFile, WhatIsWrittenIsRead) {
+  // The same bound for who writes and who reads: light of an error beyond all others, light too
+  // faint for codes, who lit it, and what no file holds.
+  const SignatureText text{"box", "abc", "def", {"a", "b"}, {}, 0.0046, "Card of paper"};
+  StokesTable faint = all_light();
+  for (std::vector<double> *column : {&faint.i, &faint.q})
+    for (double &value : *column)
+      value *= 1e-32; // the least of nine decades is below exp(-80) = 2e-35
+  for (const PackedLight &light : {pack_light(all_light()), pack_light(faint)}) {
+    const auto made = signature_bytes(text, cells, light, signature_error_most, {});
+    ASSERT_TRUE(made) << made.error().text();
+    const auto read = parse_signature(*made, "file", true);
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_EQ(read->text.device, "Card of paper");
+    EXPECT_EQ(read->signature.error, signature_error_most);
+  }
+  for (const double error : {2 * signature_error_most, -1.0}) {
+    const auto refused = signature_bytes(text, cells, pack_light(all_light()), error, {});
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("cannot be kept in a file"), std::string::npos);
+  }
+  // A look-up that is off by 1e30 of the light is told as off by the most that is told.
+  const PackedLight packed = pack_light(all_light());
+  const Signature bright{"box", cells, 2, packed.ln_least + 60, packed.ln_step, 0, packed.code};
+  EXPECT_EQ(interpolation_error(bright, shine, 1), signature_error_most);
 }
 
 TEST(SignatureFile, DamageIsSaid) {
