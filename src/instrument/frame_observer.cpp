@@ -27,7 +27,7 @@ private:
                                       double factor) const;
   [[nodiscard]] PixelFrame stars(std::size_t plane) const;
   [[nodiscard]] PixelFrame object(std::size_t plane) const;
-  [[nodiscard]] double share(const FrameAperture &aperture) const;
+  [[nodiscard]] double share(const FrameAperture &aperture, const PixelFrame &others) const;
   void measure(std::size_t plane, const RawFrame &raw, const PixelFrame &others,
                const FrameAperture &aperture, FramedExposure &out) const;
   void fit(std::size_t plane, const RawFrame &raw, FramedExposure &out) const;
@@ -127,8 +127,8 @@ PixelFrame Exposing::stars(std::size_t plane) const {
   return out;
 }
 
-/// Of the object's light, within the aperture, if all pixels answered alike.
-double Exposing::share(const FrameAperture &aperture) const {
+/// Of the object's light, in counts less sky, if all pixels answered alike.
+double Exposing::share(const FrameAperture &aperture, const PixelFrame &others) const {
   PixelFrame out = PixelFrame::blank(scene_.columns, scene_.rows);
   double whole = 0;
   for (std::size_t k = 0; k < scene_.object.size(); ++k) {
@@ -139,9 +139,9 @@ double Exposing::share(const FrameAperture &aperture) const {
     image_.add(out, scene_.object[k].at.x, scene_.object[k].at.y, {light, light, light, light});
   }
   if (whole > 0)
-    return share_of(out, whole, aperture);
+    return share_of(out, whole, aperture, others);
   image_.add(out, scene_.object.front().at.x, scene_.object.front().at.y, {1, 1, 1, 1});
-  return share_of(out, 1, aperture); // a dark object: as if it stood still
+  return share_of(out, 1, aperture, others); // a dark object: as if it stood still
 }
 
 /// What counts of a part of the star's light mean.
@@ -154,7 +154,7 @@ void Exposing::measure(std::size_t plane, const RawFrame &raw, const PixelFrame 
                        const FrameAperture &aperture, FramedExposure &out) const {
   const Detector &d = o_.instrument().detector;
   const auto sums = sum_frame(d, raw, aperture, is_mosaic_, others);
-  const double part = share(aperture);
+  const double part = share(aperture, others);
   for (std::size_t p = 0; p < (is_mosaic_ ? 4u : 1u); ++p) {
     ChannelCounts c = whole_[is_mosaic_ ? p : plane];
     put(c, part);

@@ -93,8 +93,22 @@ double light_in(const PixelFrame &light, const FrameAperture &aperture) {
   return out;
 }
 
-double share_of(const PixelFrame &light, double whole, const FrameAperture &aperture) {
-  return whole > 0 ? light_in(light, aperture) / whole : 0;
+double share_of(const PixelFrame &light, double whole, const FrameAperture &aperture,
+                const PixelFrame &masked) {
+  if (!(whole > 0))
+    return 0;
+  double inside = 0, ring = 0, pixels = 0, ring_pixels = 0;
+  const double r2 = aperture.radius * aperture.radius;
+  const double inner2 = aperture.ring_inner * aperture.ring_inner;
+  for_pixels(light.columns, light.rows, aperture.path,
+             std::max(aperture.ring_outer, aperture.radius),
+             [&](std::size_t at, std::size_t, double d2) {
+               if (d2 <= r2)
+                 inside += light.value[at], ++pixels;
+               else if (d2 >= inner2 && (masked.value.empty() || masked.value[at] == 0))
+                 ring += light.value[at], ++ring_pixels;
+             });
+  return (inside - (ring_pixels > 1 ? ring / ring_pixels * pixels : 0)) / whole;
 }
 
 } // namespace umov

@@ -31,7 +31,8 @@ ccsds::Segment segment_of(const std::string &name, const std::string &band,
   const auto put = [&](const char *key, std::string text) {
     out.metadata.push_back({key, std::move(text), "", 0});
   };
-  put("COMMENT", "MAG: AB magnitude above the air in " + band);
+  put("COMMENT",
+      "MAG: " + note_of(notes, "mag_system", "AB") + " magnitude above the air in " + band);
   if (!notes.ecsv.empty())
     put("COMMENT", "Stokes parameters with covariance: " + notes.ecsv);
   put("TIME_SYSTEM", "UTC");
@@ -143,7 +144,7 @@ Result<Table> as_score(const Table &stokes, const MeasurementNotes &from) {
     cells["satellite_right_ascension_deg"].push_back(number("ra", row, "{:.6f}"));
     cells["satellite_declination_deg"].push_back(number("dec", row, "{:.6f}"));
     cells["range_to_satellite_km"].push_back(number("range", row, "{:.3f}"));
-    cells["comments"].push_back("AB magnitude above the air");
+    cells["comments"].push_back(note_of(from, "mag_system", "AB") + " magnitude above the air");
   }
   Table out;
   for (const std::string &name : score_columns()) {

@@ -255,6 +255,7 @@ Result<void> observe_object(const Scenario &scenario, const ObservedBands &bands
       *models.light,
       track,
       std::move(observers),
+      bands.zero_flux,
       exposure_nodes(scenario.observation->exposure_s,
                      shorter(shortest_feature_s(track, exposures),
                              trail_feature_s(*scenario.observation, track, exposures, width))),

@@ -31,6 +31,7 @@ struct Setup {
   const LightModel &light;
   const Track &track;
   std::vector<BandObserver> observers; ///< per band
+  std::vector<double> zero_flux;       ///< per band, of magnitude 0 in the scenario's system
   std::vector<ExposureNode> nodes;
   std::string object;
   SurfaceAir surface;

@@ -75,6 +75,16 @@ Result<ObservedBands> observed_bands(const Scenario &scenario) {
   for (const Band &band : bands) {
     UMOV_ASSIGN(response, band.curve ? curve_band(*band.curve)
                                      : narrow_band(band.name, band.wavelength.nm(), o.width_nm));
+    const auto zero = zero_irradiance(band, scenario.magnitudes);
+    if (!zero)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} (named in observation.bands; the system is that of "
+                              "bands.mag_system)",
+                              zero.error().message),
+                  scenario.place("bands.mag_system"));
+    // In AB as the instrument has it: a wavelength of its own is no narrow curve there.
+    out.zero_flux.push_back(scenario.magnitudes == MagnitudeSystem::AB ? response.zero_flux
+                                                                       : *zero);
     out.responses.push_back(std::move(response));
   }
   UMOV_ASSIGN(v_curve, find_passband("Bessell.V"));

@@ -14,9 +14,11 @@ std::vector<PolarimeterState> usual_states(PolarimeterType type);
 struct ObservedBands {
   std::vector<Band> bands;
   std::vector<BandResponse> responses; ///< at one wavelength still: `at_nodes`
-  BandResponse v;                      ///< Bessell's V, in which moonlight is known
+  std::vector<double> zero_flux; ///< mean of magnitude 0 in the scenario's system [W m-2 nm-1]
+  BandResponse v;                ///< Bessell's V, in which moonlight is known
 };
-/// Those of the observation, else of the scenario.
+/// Those of the observation, else of the scenario. BadInput for one without a zero in the
+/// scenario's system of magnitudes.
 Result<ObservedBands> observed_bands(const Scenario &scenario);
 
 /// A band at the wavelengths of a grid, of which it is number `b`.

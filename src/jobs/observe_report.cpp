@@ -201,6 +201,15 @@ std::vector<PlotFigure> figures_of_counts(const Table &counts, const Table &trut
            {}}};
 }
 
+/// Of the system that the table's header or its rows tell.
+std::string magnitude_title(const Table &table) {
+  std::string system = table.text("mag_system", 0);
+  for (const auto &[key, value] : table.notes())
+    if (key == "mag_system")
+      system = value;
+  return fmt::format("mag ({}), above the air", system);
+}
+
 std::vector<PlotFigure> figures_of_truth(const Table &truth) {
   const Clock clock(truth);
   const std::size_t stride = stride_of(truth);
@@ -219,7 +228,7 @@ std::vector<PlotFigure> figures_of_truth(const Table &truth) {
   mag[1] = std::min(mag[1], mag[0] + deepest);
   return {{"What was there: brightness",
            clock.title(),
-           "mag (AB), above the air",
+           magnitude_title(truth),
            std::move(mags).all(),
            false,
            false,
@@ -259,6 +268,7 @@ struct StokesLines {
   Lines plane{true}, ellipses{false}, points{true}, bars{false}, degree{true}, intervals{false},
       limits{true}, mags{true}, tests{true};
   Known q, u, p, mag;
+  std::string mag_title;
   std::size_t stride = 1;   ///< every n-th set has an ellipse, if its errors are not far wider
   double widest = INFINITY; ///< than those of most
 
@@ -368,7 +378,7 @@ std::vector<PlotFigure> stokes_figures(StokesLines &lines, const std::string &ti
              {std::min(q[0], u[0]), std::max(q[1], u[1])});
   add_figure(out, "Degree of linear polarization", time, "p", std::move(p), {},
              from_zero(lines.p.span()));
-  add_figure(out, "Brightness", time, "mag (AB), above the air", std::move(lines.mags).all(), {},
+  add_figure(out, "Brightness", time, lines.mag_title.c_str(), std::move(lines.mags).all(), {},
              {mag[1], mag[0]});
   add_figure(out, "Polarization", "q", "u",
              with_bars(std::move(lines.plane), std::move(lines.ellipses)), q, u);
@@ -386,6 +396,7 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
   constexpr std::size_t most_ellipses = 300; // more hide each other
   lines.stride = (stokes.rows() + most_ellipses - 1) / most_ellipses;
   lines.widest = 4 * median_error(stokes);
+  lines.mag_title = magnitude_title(stokes);
   for (std::size_t row = 0; row < stokes.rows(); ++row)
     lines.add(stokes, row, clock(row));
   const std::vector<PlotFigure> figures = stokes_figures(lines, clock.title());

@@ -1,5 +1,7 @@
 #include "jobs/observe_tables.h"
 
+#include "jobs/columns.h"
+
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -94,7 +96,7 @@ Table CountsTable::table() && {
 }
 
 void TruthTable::add(const Exposure &e, const Recorded &r) {
-  const BandResponse &band = s_.observers[e.planned.band].band();
+  const double zero = s_.zero_flux[e.planned.band];
   exposures_.add(s_, e, e.middle.time);
   double electrons = 0, sky = 0;
   for (const ChannelCounts &c : r.channels)
@@ -105,7 +107,7 @@ void TruthTable::add(const Exposure &e, const Recorded &r) {
                            i > 0 ? r.truth.q / i : none,
                            i > 0 ? r.truth.u / i : none,
                            i > 0 ? r.truth.v / i : none,
-                           i > 0 ? -2.5 * std::log10(i / band.zero_flux) : none,
+                           i > 0 ? -2.5 * std::log10(i / zero) : none,
                            electrons,
                            sky,
                            e.middle.azimuth.degrees(),
@@ -118,12 +120,14 @@ void TruthTable::add(const Exposure &e, const Recorded &r) {
 Table TruthTable::table() && {
   Table out;
   std::move(exposures_).put(out);
+  const std::string system = name_of(s_.scenario.magnitudes);
+  const std::string unit = magnitude_unit(system), told = system + " magnitude above the air";
   const char *const columns[][3] = {
       {"I", "W / (m2 nm)", "mean over the exposure above the air, photon-weighted"},
       {"q", "", "Q/I in the sky frame"},
       {"u", "", "U/I in the sky frame"},
       {"v", "", "V/I"},
-      {"mag", "mag(AB)", "AB magnitude above the air"},
+      {"mag", unit.c_str(), told.c_str()},
       {"star_e", "electron", "expected of the object in all channels"},
       {"sky_e", "electron", "expected of sky and dark in all channels"},
       {"az", "deg", "azimuth, geometric"},
@@ -142,9 +146,9 @@ void note_observation(Table &table, const Scenario &scenario, const ObservedBand
   table.note("polarimeter", name_of(o.instrument.polarimeter.type));
   table.note("pupils", o.instrument.polarimeter.has_separate_pupils ? "separate" : "common");
   table.note("parameters", fmt::format("{}", parameters_of(o.instrument.polarimeter.type)));
-  table.note("mag_system", "AB");
-  for (const BandResponse &band : bands.responses)
-    table.note("zero_flux " + band.name, shortest(band.zero_flux));
+  table.note("mag_system", name_of(scenario.magnitudes));
+  for (std::size_t b = 0; b < bands.responses.size(); ++b)
+    table.note("zero_flux " + bands.responses[b].name, shortest(bands.zero_flux[b]));
   table.note("seed", fmt::format("{}", scenario.seed));
   table.note("site", scenario.observer->name);
   table.note("site_lat_deg", shortest(scenario.observer->latitude.degrees()));

@@ -1,5 +1,6 @@
 // The rows of a search for passes.
 
+#include "jobs/columns.h"
 #include <umov/jobs/passes.h>
 
 #include <cmath>
@@ -110,9 +111,7 @@ void PassColumns::add_light() {
   number("phase_max", "deg", "largest phase angle while sunlit",
          [](E, P p) { return p.sunlit_share > 0 ? p.phase_max.degrees() : none; });
   const std::string system = name_of(result_.magnitudes);
-  // Vega's is no unit that readers of ECSV know.
-  const std::string unit =
-      result_.magnitudes == MagnitudeSystem::Vega ? "mag" : "mag(" + system + ")";
+  const std::string unit = magnitude_unit(system);
   number("mag_min", unit.c_str(), "brightest while sunlit; empty where no model is given",
          [](L l) { return l.magnitude_min; });
   text("brightest_utc", "when it is brightest, above the air; empty where no model is given",

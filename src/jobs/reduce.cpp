@@ -285,12 +285,32 @@ Result<SequenceFit> fit_series(Rows rows, std::size_t parameters, bool has_separ
   return fit_sequence(data, fit, common);
 }
 
-Result<std::vector<Reduced>> over_time(const CountsFile &file, std::size_t parameters,
-                                       bool has_separate_pupils, const ReduceOptions &options) {
-  std::map<std::pair<std::string, std::string>, std::vector<CountRow>> groups;
+tl::unexpected<Error> all_saturated() {
+  return fail(ErrorCode::Physics, "every channel is saturated: there is nothing to reduce");
+}
+
+/// A saturated count is a lower limit: no series is drawn through it.
+std::map<std::pair<std::string, std::string>, std::vector<CountRow>>
+series_of(const CountsFile &file, Diagnostics &diagnostics) {
+  std::map<std::pair<std::string, std::string>, std::vector<CountRow>> out;
+  std::size_t full = 0;
   for (const CountRow &row : file.rows)
-    if (!row.is_saturated)
-      groups[{row.name, row.band}].push_back(row);
+    if (row.is_saturated)
+      ++full;
+    else
+      out[{row.name, row.band}].push_back(row);
+  if (full > 0 && !out.empty())
+    diagnostics.warn(fmt::format("{} of {} left out of the series: they are saturated",
+                                 counted(full, "count"), file.rows.size()));
+  return out;
+}
+
+Result<std::vector<Reduced>> over_time(const CountsFile &file, std::size_t parameters,
+                                       bool has_separate_pupils, const ReduceOptions &options,
+                                       Diagnostics &diagnostics) {
+  const auto groups = series_of(file, diagnostics);
+  if (groups.empty())
+    return all_saturated();
   std::vector<Reduced> out;
   for (const auto &[key, rows] : groups) {
     UMOV_ASSIGN(fit, fit_series(rows, parameters, has_separate_pupils, options));
@@ -315,7 +335,7 @@ Result<std::vector<Reduced>> set_by_set(const CountsFile &file, std::size_t para
   std::vector<Set> sets = sets_of(file);
   const std::size_t full = std::erase_if(sets, [](const Set &set) { return set.rows.empty(); });
   if (sets.empty())
-    return fail(ErrorCode::Physics, "every channel is saturated: there is nothing to reduce");
+    return all_saturated();
   if (full > 0)
     diagnostics.warn(fmt::format("{} of {} left out: all their channels are saturated",
                                  counted(full, "set"), full + sets.size()));
@@ -379,7 +399,7 @@ Result<Table> reduce(const CountsFile &file, const ReduceOptions &options, const
   const bool has_separate_pupils = pupils != file.notes.end() && pupils->second == "separate";
   UMOV_ASSIGN(reduced,
               options.period_s > 0 || options.knot_s > 0
-                  ? over_time(file, parameters, has_separate_pupils, options)
+                  ? over_time(file, parameters, has_separate_pupils, options, diagnostics)
                   : set_by_set(file, parameters, has_separate_pupils, options, diagnostics));
   monitor.advance("sets", reduced.size(), reduced.size());
   warn_of_gaps(file.rows, options.period_s > 0 || options.knot_s > 0, diagnostics);

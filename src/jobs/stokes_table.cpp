@@ -1,5 +1,6 @@
 // Stokes parameters of sets of counts as a table.
 
+#include "jobs/columns.h"
 #include "jobs/reduced.h"
 
 #include <cmath>
@@ -16,13 +17,16 @@ constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 class StokesTableWriter {
 public:
   StokesTableWriter(const CountsFile &file, std::size_t parameters)
-      : file_(file), parameters_(parameters) {}
+      : file_(file), parameters_(parameters) {
+    if (const auto told = file.notes.find("mag_system"); told != file.notes.end())
+      magnitudes_ = told->second;
+  }
 
   void add(const Reduced &r) {
     time_.push_back(to_iso(r.middle.time));
     name_.push_back(r.middle.name);
     band_.push_back(r.middle.band);
-    system_.push_back("AB");
+    system_.push_back(magnitudes_);
     flags_.push_back(r.flags);
     set_.push_back(r.middle.set);
     const auto v = numbers(r);
@@ -36,10 +40,11 @@ public:
     out.add("set_id", "", "as in the counts", std::move(set_));
     out.add("name", "", "object", std::move(name_));
     out.add("band", "", "band", std::move(band_));
+    const std::string unit = magnitude_unit(magnitudes_);
     const char *const names[][3] = {
         {"I", "W / (m2 nm)", "irradiance above the air, from the counts"},
         {"I_err", "W / (m2 nm)", "standard deviation of I"},
-        {"mag", "mag(AB)", "of I"},
+        {"mag", unit.c_str(), "of I"},
         {"q", "", "Q/I in the sky frame"},
         {"u", "", "U/I in the sky frame"},
         {"v", "", "V/I"},
@@ -53,6 +58,8 @@ public:
         {"p_hi", "", "its upper end, a limit where p_lo is 0"},
         {"pa", "deg", "position angle of polarization, [0, 180)"},
         {"pa_err", "deg", "68.27 % half width"},
+        {"pa_reach", "deg",
+         "half width that holds the true angle in 66 to 70 % whatever p is; 90: unknown"},
         {"q_scat", "", "Q/I, + perpendicular to the scattering plane"},
         {"u_scat", "", "U/I in the scattering frame"},
         {"chi2", "", "of the fit"},
@@ -83,28 +90,28 @@ private:
     return value.value_or(no_number);
   }
 
-  [[nodiscard]] std::array<double, 29> numbers(const Reduced &r) const {
-    std::array<double, 29> out;
+  [[nodiscard]] std::array<double, 30> numbers(const Reduced &r) const {
+    std::array<double, 30> out;
     out.fill(no_number);
     const bool was_fitted = r.fit.covariance[0][0] > 0;
     if (was_fitted) {
       out[0] = r.fit.stokes[0];
       out[1] = std::sqrt(r.fit.covariance[0][0]);
       out[2] = out[0] > 0 ? -2.5 * std::log10(out[0] / zero_flux(r.middle.band)) : no_number;
-      out[28] = out[0] * std::pow(10, -0.4 * r.middle.k_mag * r.middle.airmass);
-      out[18] = r.fit.chi2;
-      out[19] = r.fit.dof;
+      out[29] = out[0] * std::pow(10, -0.4 * r.middle.k_mag * r.middle.airmass);
+      out[19] = r.fit.chi2;
+      out[20] = r.fit.dof;
     }
-    out[20] = r.sky_share;
-    out[21] = r.middle.phase_angle_deg;
-    out[22] = r.middle.x_axis_pa_deg;
-    out[25] = r.middle.ra_deg - 360 * std::floor(r.middle.ra_deg / 360);
-    out[26] = r.middle.dec_deg;
-    out[27] = r.middle.range_km;
+    out[21] = r.sky_share;
+    out[22] = r.middle.phase_angle_deg;
+    out[23] = r.middle.x_axis_pa_deg;
+    out[26] = r.middle.ra_deg - 360 * std::floor(r.middle.ra_deg / 360);
+    out[27] = r.middle.dec_deg;
+    out[28] = r.middle.range_km;
     if (!r.is_solved)
       return out;
-    out[23] = r.null[0];
-    out[24] = r.null[1];
+    out[24] = r.null[0];
+    out[25] = r.null[1];
     const auto &f = r.fractions;
     const auto &c = f.covariance;
     const double q = f.value[0], u = f.value[1];
@@ -126,17 +133,19 @@ private:
     out[13] = interval.high * sd;
     out[14] = p.angle_rad * 180 / pi;
     out[15] = p.angle_sd_rad * 180 / pi;
+    out[16] = angle_reach(p.p / p.across) * 180 / pi;
     const double twice = 2 * r.middle.pa_scat_deg * pi / 180;
-    out[16] = q * std::cos(twice) + u * std::sin(twice);
-    out[17] = u * std::cos(twice) - q * std::sin(twice);
+    out[17] = q * std::cos(twice) + u * std::sin(twice);
+    out[18] = u * std::cos(twice) - q * std::sin(twice);
     return out;
   }
 
   const CountsFile &file_;
   std::size_t parameters_;
+  std::string magnitudes_ = "AB";
   std::vector<std::string> time_, name_, band_, system_, flags_;
   std::vector<std::int64_t> set_;
-  std::array<std::vector<double>, 29> columns_;
+  std::array<std::vector<double>, 30> columns_;
 };
 
 } // namespace

@@ -58,6 +58,21 @@ def test_frames_tell_what_apertures_tell(scene, umov, tmp_path, instrument, obse
         assert abs(statistics.stdev(values) - 1) < 0.05, name
 
 
+@pytest.mark.parametrize("tracking", ["sidereal", "satellite"])
+def test_bright_frames_have_the_light_of_the_aperture(scene, umov, tmp_path, tracking):
+    """The same to 1e-4, for trails and for what is followed: a camera without limits, 3e9 electrons in all."""
+    path = scene('exposure_s = 0.01\nframe_px = [160, 160]\nlevel = "image"\n[detector]\nbits = 24\nwell_e = 0', f'tracking = "{tracking}"',
+                 stop="02")
+    make_sphere(umov, 60, 24)
+    done = umov("observe", path)
+    assert done.code == 0, done.err
+    counts, truth = Table.read(tmp_path / "out/counts.ecsv"), Table.read(tmp_path / "out/truth.ecsv")
+    light = {row["exposure"]: (row["I"], row["I"] * row["q"], row["I"] * row["u"]) for row in truth}
+    expected = sum(row[f"w{k}"] * light[row["exposure"]][k] for row in counts for k in range(3))
+    found = sum(counts["counts"] - counts["sky"])
+    assert 4 / math.sqrt(found) < 1e-4 and abs(found / expected - 1) < 1e-4
+
+
 @pytest.mark.parametrize("mount", ["altaz", "equatorial"])
 def test_world_coordinates_are_those_of_the_field(scene, umov, tmp_path, mount):
     """Stars at known places, while the telescope follows the stars or the object; astropy reads the header."""

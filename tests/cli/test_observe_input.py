@@ -8,7 +8,7 @@ import time
 import pytest
 from astropy.table import Table
 
-from conftest import UMOV
+from conftest import UMOV, read_csv
 from sphere_over_maui import make_sphere, write_scene
 
 
@@ -243,3 +243,30 @@ def test_pages_of_plots(scene, umov, tmp_path):
     page = (tmp_path / "s.html").read_text()
     for title in ("Polarization", "Degree of linear polarization", "Brightness", "chi2/dof"):
         assert title in page
+
+
+def test_magnitudes_of_the_vega_system(umov, tmp_path):
+    """[bands] mag_system beside [observation]: of its bands, whatever the default of [bands] would be."""
+    make_sphere(umov, 1)
+    light = {}
+    for system in ("AB", "Vega"):
+        path = write_scene(tmp_path, 'bands = ["Bessell.V"]\nexposure_s = 0.05\ncadence_s = 1\n[bands]\nmag_system = "' + system + '"',
+                           instrument="c11_imx250", seed=11, atmosphere="", telescope="", stop="2018-01-21T05:11:05Z")
+        done = umov("observe", path, "--force")
+        assert done.code == 0, done.err
+        assert umov("reduce", "out/counts.ecsv", "-o", "s.csv", "--tdm", "s.tdm").code == 0
+        truth, stokes = Table.read(tmp_path / "out/truth.ecsv"), read_csv(tmp_path / "s.csv")
+        assert {row["mag_system"] for row in stokes} == {system} == {truth.meta["mag_system"]}
+        assert f"MAG: {system} magnitude" in (tmp_path / "s.tdm").read_text()
+        light[system] = truth["mag"][0], float(stokes[0]["mag"])
+    # The Sun in V, AB and by Willmer's zero flux (2018, ApJS 236, 47): -26.76973 and -26.7610.
+    for ab, vega in zip(light["AB"], light["Vega"]):
+        assert vega - ab == pytest.approx(-26.7610 + 26.76973, abs=1e-4)
+    locked = umov("observe", "out/scenario.lock.toml", "-o", "again")
+    assert locked.code == 0, locked.err
+    path.write_text(path.read_text().replace("Bessell.V", "nm:550"))
+    done = umov("observe", path, "--force")
+    assert done.code == 3 and '"nm:550" has no zero point in the Vega system' in done.err and "observation.bands" in done.err
+    assert "observe.toml:" in done.err
+    done = umov("run", path, "-o", "run")
+    assert done.code == 3 and "has no zero point in the Vega system" in done.err

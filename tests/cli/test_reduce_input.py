@@ -3,6 +3,7 @@ import re
 
 import pytest
 
+from conftest import read_csv
 from test_observe import COUNTS, standards
 
 KNOWN = "name,p_percent,pa_deg\nnone,0,0\nHD 204827,4.893,59.10\n"
@@ -86,3 +87,22 @@ def test_standards_without_polarization(umov, calibrated):
     (calibrated / "flat.csv").write_text("name,p_percent,pa_deg\nnone,0,0\nHD 204827,0,0\n")
     done = umov("calibrate", "stars.csv", "--standards", "flat.csv")
     assert done.code == 3 and "no polarized one among them" in done.err
+
+
+def test_full_channels_are_left_out_of_a_series_aloud(umov, tmp_path):
+    """Analysers in turn on a steady source, .25 s each; three counts are full, and far too low."""
+    lines = ["time_utc,set_id,band,counts,sky,sky_err,var_read,saturated,w0,w1,w2,w3"]
+    for k in range(240):
+        w1, w2 = ((.5, 0), (0, .5), (-.5, 0), (0, -.5))[k % 4]
+        is_full = k in (30, 31, 32)
+        counts = 40 if is_full else 8000 * (.5 + .1 * w1 - .05 * w2)
+        lines.append(f"2018-01-21T05:0{k // 240}:{k / 4 % 60:06.3f}Z,{k // 4},nm:550,{counts},0,0,0,{is_full},.5,{w1},{w2},0")
+    (tmp_path / "c.csv").write_text("\n".join(lines) + "\n")
+    for model in ("spline:10", "fourier:20:2"):
+        done = umov("reduce", "c.csv", "--model", model, "-o", "s.csv")
+        assert done.code == 0 and "3 counts of 240 left out of the series: they are saturated" in done.err, done.err
+        row = read_csv(tmp_path / "s.csv")[0]
+        assert float(row["q"]) == pytest.approx(.1, abs=1e-6) and float(row["u"]) == pytest.approx(-.05, abs=1e-6)
+    (tmp_path / "c.csv").write_text("\n".join(lines).replace("False", "True") + "\n")
+    done = umov("reduce", "c.csv", "--model", "spline:10")
+    assert done.code == 4 and "every channel is saturated" in done.err

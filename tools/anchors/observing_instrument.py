@@ -68,6 +68,22 @@ def scheme(retardance, angles):
     return s[0] / s[-1], np.trace(np.linalg.inv(rows.T @ rows))
 
 
+def bessel(order, x):
+    """J of whole order, by its integral (DLMF 10.9.2): trapezoids of a period converge faster than any power."""
+    t = np.pi * (np.arange(200) + .5) / 200
+    return np.mean(np.cos(order * t - x * np.sin(t)))
+
+
+def modulator(amplitude, bins=8):
+    """Rows of each part of the period, by the series of Jacobi and Anger, every harmonic averaged over the part:
+    cos(d sin t) = J0 + 2 J2 cos 2t + ..., sin(d sin t) = 2 J1 sin t + 2 J3 sin 3t + ..."""
+    for b in range(bins):
+        middle, half = 2 * np.pi * (b + .5) / bins, np.pi / bins
+        term = lambda m, f: 2 * bessel(m, amplitude) * f(m * middle) * np.sin(m * half) / (m * half)  # noqa: E731
+        q = bessel(0, amplitude) + sum(term(m, np.cos) for m in range(2, 40, 2))
+        yield b, q / 2 / bins, sum(term(m, np.sin) for m in range(1, 40, 2)) / 2 / bins
+
+
 def rakic():
     """Aluminium of data/nk at the wavelengths of the tests, linear between its points."""
     import pathlib
@@ -159,6 +175,18 @@ def rows():
         condition, weighted = scheme(retardance, angles)
         yield f"{name}_condition", four, (condition, "9g")
         yield f"{name}_variance", four, (weighted, "9g")
+    dark = 137.786355 * DEGREE  # the first zero of J0, as umov has it
+    for order in (1, 2):
+        yield f"modulator_j{order}", four, (bessel(order, dark), "9g")
+    for name, amplitude in (("dark", dark), ("quarter", np.pi / 2)):
+        for b, q, v in modulator(amplitude):
+            yield f"modulator_{name}_{b}_q", four, (q, "9g")
+            yield f"modulator_{name}_{b}_v", four, (v, "9g")
+    for state, angle in (("a", 7), ("b", 52)):  # half of the time each
+        for k, name in enumerate("ox"):
+            row = (polarizer(300, 90 * k) @ plate(170, angle))[0] / 2
+            for j in range(4):
+                yield f"flip_{name}{state}_{j}", four, (row[j], "9g")
     al = rakic()
     for nm in (425, 550, 650):
         m = mirror(al(nm), 45 * DEGREE)

@@ -92,10 +92,11 @@ def limits_of(seen, level=.95):
     return (0 if above(0) < 0 else crossing(likeliest, 0)), crossing(likeliest, likeliest + 4)
 
 
-def angle_coverage(truth):
-    """Share of observations whose own 68.27 % half width reaches the true angle."""
+def angle_coverage(truth, unknown_below=0):
+    """Share of observations whose own 68.27 % half width reaches the true angle; all angles are in it where less than
+    `unknown_below` was found."""
     p = np.linspace(1e-3, truth + 8, 900)
-    half = np.array([angle_half(v) if v < 4 else 1 / (2 * v * DEGREE) for v in p]) * DEGREE
+    half = np.array([90 if v < unknown_below else angle_half(v) if v < 4 else 1 / (2 * v * DEGREE) for v in p]) * DEGREE
     t = np.linspace(-1, 1, 401)[None, :] * half[:, None]
     # Density of q, u about (truth, 0) in polar coordinates: p dp 2 dt.
     density = np.exp(-(p[:, None] ** 2 + truth ** 2 - 2 * p[:, None] * truth * np.cos(2 * t)) / 2) / 2 / np.pi
@@ -183,6 +184,8 @@ def rows():
             yield f"{end}_{x:g}", six, (limit, 4)
     for truth in (1, 2, 3, 4, 8):
         yield f"angle_coverage_{truth}", six, (angle_coverage(truth), 4)
+    for truth in (.25, .5, 1, 1.5, 2, 4, 8):
+        yield f"reach_coverage_{truth:g}", six, (angle_coverage(truth, 1.28), 4)
     for name, order, exposure in (("plain", (0, 45, 90, 135), 1), ("crossed", (0, 90, 45, 135), 1),
                                   ("mirrored", (0, 45, 90, 135, 135, 90, 45, 0), 1),
                                   ("quick", (0, 45, 90, 135), .05)):

@@ -32,8 +32,11 @@ struct FrameSum {
 std::array<FrameSum, 4> sum_frame(const Detector &detector, const RawFrame &frame,
                                   const FrameAperture &aperture, bool is_mosaic,
                                   const PixelFrame &masked);
-/// Part of the light of a frame that the aperture holds.
-double share_of(const PixelFrame &light, double whole, const FrameAperture &aperture);
+/// Part of the light of a frame that counts less sky hold: that in the aperture, less what the
+/// wings put into the ring and is taken for sky (4e-5 of a trail's light). `masked` as in
+/// sum_frame.
+double share_of(const PixelFrame &light, double whole, const FrameAperture &aperture,
+                const PixelFrame &masked = {});
 /// Light within an aperture.
 double light_in(const PixelFrame &light, const FrameAperture &aperture);
 

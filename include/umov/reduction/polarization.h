@@ -24,6 +24,16 @@ PolarizationEstimate polarization_of(double q, double u, const LinearCovariance 
 /// 1993, A&A 274, 968).
 double angle_half_width(double p_over_sd);
 
+/// p over its error below which the angle is not known at all.
+constexpr double angle_unknown_below = 1.28;
+/// Half width of an interval of the angle [rad] that holds the true one in 66 to 70 % of
+/// observations whatever the true p, if that is not 0: angle_half_width from `angle_unknown_below`
+/// on, a quarter turn, all angles, below. The density alone takes the p that was found for the true
+/// one and covers 65 % at a true p of 2 sd, 54 % at 1 sd, 43 % at .5 sd; the limit makes up for it
+/// (Neyman's construction, 1937, Phil. Trans. A 236, 333: coverage is integrated over q and u in
+/// tools/anchors/observing_reduction.py).
+double angle_reach(double p_over_sd);
+
 /// A confidence interval.
 struct PolarizationInterval {
   double low = 0, high = 0;

@@ -1,3 +1,4 @@
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
@@ -148,6 +149,40 @@ TEST(SumFrame, NoiseIsThatOfTheCcdEquation) {
   EXPECT_NEAR(sum, inside, 4 * std::sqrt(variance / trials));
   // One per cent is a standard error: variances scatter by sqrt(2/N) of themselves.
   EXPECT_NEAR((squares - sum * sum) / variance, 1, 4 * std::sqrt(2. / trials));
+}
+
+/// Light of a Moffat image along a line through it, within y of its middle: across, the profile is
+/// Student's distribution of 2 b - 2 degrees of freedom.
+double line_within(double y, double fwhm) {
+  constexpr double b = 4.765;
+  const double scale = 4 * (std::exp2(1 / b) - 1) / (fwhm * fwhm), freedom = 2 * b - 2;
+  return 2 * boost::math::cdf(boost::math::students_t(freedom), y * std::sqrt(scale * freedom)) - 1;
+}
+
+/// A trail right across the frame. Its wings reach into the ring and are taken for sky there:
+/// counts less sky are what the share says, and the share is that of the closed form.
+TEST(SumFrame, WingsInTheRingAreAccountedFor) {
+  constexpr double fwhm = 3;
+  constexpr int columns = 60, rows = 81, middle = 40;
+  const PixelImage image(ImageProfile::Moffat, fwhm);
+  PixelFrame light = PixelFrame::blank(columns, rows);
+  constexpr double per_px = 1e8, step = .25;
+  for (double x = -60; x < 120; x += step) {
+    const double part = per_px * step;
+    image.add(light, x, middle, {part, part, part, part});
+  }
+  const FrameAperture aperture{{{-60, middle}, {120, middle}}, 2 * fwhm, 4 * fwhm, 6 * fwhm};
+  // 13 rows of pixels, out to 6.5 px, and 7 of the ring on either side, from 11.5 to 18.5.
+  const double in_ring = line_within(18.5, fwhm) - line_within(11.5, fwhm);
+  const double expected = line_within(6.5, fwhm) - in_ring * 13 / 14;
+  EXPECT_GT(in_ring, 4e-5); // what was missing
+  const double share = share_of(light, per_px * columns, aperture);
+  EXPECT_NEAR(share, expected, 2e-5); // beyond six widths the image has 7e-6, on a line a bit more
+  RawFrame raw{columns, rows, {}, {}};
+  for (const double electrons : light.value)
+    raw.adu.push_back(static_cast<std::int32_t>(std::lround(electrons)));
+  const FrameSum sum = sum_frame(Detector{}, raw, aperture, false, {})[0];
+  EXPECT_NEAR((sum.electrons - sum.sky) / (per_px * columns), share, 1e-7); // whole electrons
 }
 
 /// O13: fitted by its image, a star two pixels wide has no false polarization at any phase.

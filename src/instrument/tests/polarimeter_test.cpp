@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <complex>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <umov/instrument/polarimeter.h>
 
@@ -194,6 +195,56 @@ TEST(Pem, PhasesTellAllFourParametersWithTwoAngles) {
     sum = sum + row;
   EXPECT_NEAR(sum[0], .5, 1e-12);
   EXPECT_NEAR(sum[1], 0, 1e-8); // amplitude given to 1e-6 deg
+}
+
+/// Counts of each part of the period are the harmonics of Jacobi and Anger's series, averaged over
+/// it (docs/theory/observing.md 4). Nine digits.
+TEST(Pem, PhasesHaveTheHarmonicsOfBessel) {
+  Polarimeter p;
+  p.type = PolarimeterType::Pem;
+  for (const auto &[name, amplitude] : {std::pair{"dark", p.amplitude_deg}, {"quarter", 90.}}) {
+    p.amplitude_deg = amplitude;
+    const auto rows = rows_of(p, {{}});
+    ASSERT_EQ(rows.size(), 8U);
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      const std::string part = fmt::format("modulator_{}_{}_", name, b);
+      EXPECT_NEAR(rows[b][0], 1. / 16, 1e-12);
+      EXPECT_NEAR(rows[b][1], of(part + "q"), 1e-9) << part;
+      EXPECT_NEAR(rows[b][2], 0, 1e-12);
+      EXPECT_NEAR(rows[b][3], of(part + "v"), 1e-9) << part;
+    }
+  }
+}
+
+/// 2 J1 of v at the modulator's frequency and 2 J2 of q at twice that, relative to the mean. Eight
+/// parts take the harmonic 8 - m for m, a part in 7 or 3 of it: J7 is 6e-4, J6 is 3.4e-3.
+TEST(Pem, DemodulatedAmplitudes) {
+  Polarimeter p;
+  p.type = PolarimeterType::Pem;
+  const auto rows = rows_of(p, {{}});
+  double v = 0, q = 0;
+  for (std::size_t b = 0; b < 8; ++b) {
+    const double phase = 2 * pi * (static_cast<double>(b) + .5) / 8;
+    v += 16 * rows[b][3] * std::sin(phase) / 4;
+    q += 16 * rows[b][1] * std::cos(2 * phase) / 4;
+  }
+  const auto averaged = [](double m) { return std::sin(m * pi / 8) / (m * pi / 8); };
+  EXPECT_NEAR(v / averaged(1), 2 * of("modulator_j1"), 2 * 6e-4 / 7 * 1.1);
+  EXPECT_NEAR(q / averaged(2), 2 * of("modulator_j2"), 2 * 3.4e-3 / 3 * 1.1);
+}
+
+/// A plate of 170 deg at 7 deg and, flipped, at 52, before beams of E = 300: as fields give it.
+TEST(Flc, RowsOfBothStates) { // nine digits
+  Polarimeter p;
+  p.type = PolarimeterType::Flc;
+  p.retardance_deg = {{}, {170}};
+  p.extinction = {{}, {300}};
+  const auto channels = polarimeter_channels(p, {0, 7, 0}, 550);
+  ASSERT_EQ(channels->size(), 4U);
+  for (const PolarimeterChannel &channel : *channels)
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_NEAR(channel.row[k], of(fmt::format("flip_{}_{}", channel.name, k)), 1e-9)
+          << channel.name << k;
 }
 
 TEST(Polarimeter, SharesAddUpToOne) {

@@ -95,6 +95,10 @@ Result<void> read_bands(const Node &top, const fs::path &folder, Scenario &out) 
   out.bands = std::move(*bands);
   for (const BandFile &file : files)
     out.band_files.push_back({file.path, sha256_hex(file.bytes)});
+  // Bands of an [observation] stand for these: umov observe asks those, umov run these.
+  const toml::table *observation = top.table().get_as<toml::table>("observation");
+  if (observation != nullptr && observation->contains("bands"))
+    return {};
   for (const Band &band : out.bands)
     if (const auto zero = zero_irradiance(band, out.magnitudes); !zero)
       return fail(ErrorCode::BadInput, zero.error().message, system_at);

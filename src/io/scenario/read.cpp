@@ -133,7 +133,7 @@ Result<void> read_time(const Node &top, Scenario &out) {
 /// Places of the tables of an observation and of their keys: some of what is wrong with it is found
 /// where it is carried out.
 void note_places(const Node &top, Scenario &out) {
-  for (const char *name : {"atmosphere", "detector", "observation", "polarimeter", "time"})
+  for (const char *name : {"atmosphere", "bands", "detector", "observation", "polarimeter", "time"})
     if (const auto *table = top.table().get_as<toml::table>(name)) {
       out.places[name] = top.where(name);
       for (const auto &[key, value] : *table)

@@ -7,7 +7,8 @@
 #include <cctype>
 #include <cmath>
 #include <fmt/format.h>
-#include <optional>
+#include <map>
+#include <string_view>
 #include <umov/core/text.h>
 
 namespace umov {
@@ -16,23 +17,22 @@ namespace {
 /// Reads cells by the name of their column.
 class CountCells {
 public:
-  CountCells(const TextTable &table, const std::string &file) : table_(table), file_(file) {}
+  CountCells(const TextTable &table, const std::string &file) : table_(table), file_(file) {
+    for (std::size_t c = 0; c < table.columns.size(); ++c)
+      places_.emplace(table.columns[c], c);
+  }
 
   [[nodiscard]] Where where(std::size_t row) const { return {file_, table_.lines[row]}; }
-  [[nodiscard]] std::optional<std::size_t> column(const std::string &name) const {
-    const auto &c = table_.columns;
-    const auto found = std::find(c.begin(), c.end(), name);
-    return found == c.end() ? std::nullopt
-                            : std::optional(static_cast<std::size_t>(found - c.begin()));
-  }
-  [[nodiscard]] std::string text(const std::string &name, std::size_t row) const {
-    const auto at = column(name);
-    return at ? table_.rows[row][*at] : std::string();
+  [[nodiscard]] bool has(std::string_view name) const { return places_.contains(name); }
+  [[nodiscard]] const std::string &text(std::string_view name, std::size_t row) const {
+    static const std::string none;
+    const auto at = places_.find(name);
+    return at == places_.end() ? none : table_.rows[row][at->second];
   }
   /// `fallback` where there is no such column or the cell is empty.
-  [[nodiscard]] Result<double> number(const std::string &name, std::size_t row,
+  [[nodiscard]] Result<double> number(std::string_view name, std::size_t row,
                                       double fallback) const {
-    const std::string cell = text(name, row);
+    const std::string &cell = text(name, row);
     if (cell.empty())
       return fallback;
     if (cell == "nan" || cell == "NaN")
@@ -46,13 +46,14 @@ public:
 private:
   const TextTable &table_;
   const std::string &file_;
+  std::map<std::string_view, std::size_t> places_;
 };
 
 Result<void> check_columns(const CountCells &cells, const TextTable &table,
                            const std::string &file) {
   for (const char *name : {"time_utc", "set_id", "band", "counts", "sky", "sky_err", "var_read",
                            "w0", "w1", "w2", "w3"})
-    if (!cells.column(name))
+    if (!cells.has(name))
       return fail(ErrorCode::BadInput,
                   fmt::format("counts without the column \"{}\"; umov observe writes all, and "
                               "docs/theory/observing.md says what they are",
@@ -165,12 +166,18 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   CountsFile out;
   out.notes = table.notes;
   std::size_t dropped = 0;
+  out.rows.reserve(table.rows.size());
+  Epoch<Utc> time{};
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
     CountRow row;
-    const auto time = utc_from_iso(cells.text("time_utc", k));
-    if (!time)
-      return fail(ErrorCode::BadInput, time.error().message, cells.where(k));
-    row.time = *time;
+    const std::string &stamp = cells.text("time_utc", k);
+    if (k == 0 || stamp != cells.text("time_utc", k - 1)) { // channels share a time
+      const auto read = utc_from_iso(stamp);
+      if (!read)
+        return fail(ErrorCode::BadInput, read.error().message, cells.where(k));
+      time = *read;
+    }
+    row.time = time;
     row.name = cells.text("name", k);
     row.band = cells.text("band", k);
     row.channel = cells.text("channel", k);

@@ -16,8 +16,9 @@ std::string quoted_yaml(const std::string &text) {
 }
 
 std::string quoted_csv(const std::string &text, char delimiter) {
-  const bool plain = !text.empty() && text.front() != '#' &&
-                     text.find_first_of(std::string("\"\r\n\t ") + delimiter) == std::string::npos;
+  const char special[] = {'"', '\r', '\n', '\t', ' ', delimiter, '\0'};
+  const bool plain =
+      !text.empty() && text.front() != '#' && text.find_first_of(special) == std::string::npos;
   if (plain || (text.empty() && delimiter == ','))
     return text;
   std::string out = "\"";
@@ -114,10 +115,11 @@ std::string to_ecsv(const Table &table) {
   for (std::size_t row = 0; row < table.rows(); ++row) {
     for (std::size_t c = 0; c < table.columns().size(); ++c) {
       const Column &column = table.columns()[c];
-      const auto *numbers = std::get_if<std::vector<double>>(&column.cells);
       out += c ? " " : "";
-      if (numbers)
+      if (const auto *numbers = std::get_if<std::vector<double>>(&column.cells))
         out += shortest((*numbers)[row]);
+      else if (const auto *texts = std::get_if<std::vector<std::string>>(&column.cells))
+        out += quoted_csv((*texts)[row], ' ');
       else
         out += quoted_csv(table.text(column.name, row), ' ');
     }

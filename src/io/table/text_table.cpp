@@ -40,12 +40,13 @@ std::optional<std::vector<CsvCell>> blank_cells(std::string_view line) {
 }
 
 std::optional<std::vector<std::string>> cells_of(std::string_view line, bool has_blanks) {
-  const auto cells = has_blanks ? blank_cells(line) : csv_cells(line);
+  auto cells = has_blanks ? blank_cells(line) : csv_cells(line);
   if (!cells)
     return std::nullopt;
   std::vector<std::string> out;
-  for (const CsvCell &cell : *cells)
-    out.push_back(cell.text);
+  out.reserve(cells->size());
+  for (CsvCell &cell : *cells)
+    out.push_back(std::move(cell.text));
   return out;
 }
 

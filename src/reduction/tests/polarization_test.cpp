@@ -79,5 +79,24 @@ TEST(Angle, IsCoveredAsOftenAsItsOwnDensityLeaves) {
   }
 }
 
+/// O17: whatever the true degree.
+TEST(Angle, ReachCoversAsItSays) {
+  EXPECT_EQ(angle_reach(angle_unknown_below - 1e-9), pi / 2);
+  EXPECT_EQ(angle_reach(3), angle_half_width(3));
+  constexpr std::uint32_t trials = 40'000; // .0025
+  for (const char *truth : {"0.25", "0.5", "1", "1.5", "2", "4", "8"}) {
+    double hits = 0;
+    for (std::uint32_t t = 0; t < trials; ++t) {
+      Draws draws({33, 0, t, static_cast<std::uint32_t>(4 * AnchorRow::number(truth)), 0});
+      const double q = AnchorRow::number(truth) + draws.normal();
+      const auto found = polarization_of(q, draws.normal(), {{{1, 0}, {0, 1}}});
+      const double off = std::abs(std::remainder(found.angle_rad, pi));
+      hits += off <= angle_reach(found.p / found.across) ? 1 : 0;
+    }
+    EXPECT_NEAR(hits / trials, of(std::string("reach_coverage_") + truth), .01) << truth;
+    EXPECT_NEAR(hits / trials, .68, .02) << truth;
+  }
+}
+
 } // namespace
 } // namespace umov

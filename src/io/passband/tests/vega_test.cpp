@@ -61,9 +61,16 @@ TEST(Vega, HasItsPublishedMagnitudes) {
   for (const char *name : {"Bessell.V", "Bessell.R", "Bessell.I"})
     EXPECT_NEAR(magnitude_of(name, MagnitudeSystem::Vega), .03, .01) << name;
   EXPECT_NEAR(magnitude_of("gaia.G", MagnitudeSystem::Vega), .03, .01);
-  // In AB: Blanton & Roweis 2007 (AJ 133, 734), Table 1.
-  EXPECT_NEAR(magnitude_of("sdss.g", MagnitudeSystem::AB), -.08, .01);
-  EXPECT_NEAR(magnitude_of("sdss.r", MagnitudeSystem::AB), .16, .01);
+}
+
+/// A second program, which sums at all points of curve and spectrum, as umov does
+/// (tools/oracles/speclite_ab.py --vega): six decimals are stored.
+TEST(Vega, IsAsSpecliteHasIt) {
+  const auto rows = rows_of("speclite_vega.csv");
+  EXPECT_EQ(rows.size(), 4U);
+  for (const auto &cells : rows)
+    EXPECT_NEAR(magnitude_of(cells[0].c_str(), MagnitudeSystem::AB), *parse_number(cells[1]), 2e-6)
+        << cells[0];
 }
 
 } // namespace
