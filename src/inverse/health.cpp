@@ -127,8 +127,7 @@ Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const
   VectorXd all = VectorXd::Zero(w.columns.cols());
   all.head(fixed) = prior.head(fixed);
   put_joint(w.columns, w.right, all, fixed, out);
-  out.scale = std::max(best[0], 1e-300);
-  best[0] = out.scale;
+  best[0] = std::max(best[0], 1e-300);
   out.fitted = mixed(members, best);
   return out;
 }

@@ -193,19 +193,25 @@ void add_error_figures(std::vector<PlotFigure> &figures, const FittedNumbers &nu
 
 PlotFigure parts_figure(const std::string &title, const std::string &x_title,
                         const std::vector<PartAnswer> &parts) {
-  PlotFigure out{title, x_title, "in the order of the legend", {}};
+  PlotFigure out{title, x_title, "part of the data", {}};
+  double low = 0, high = 0; // no change is always seen
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const PartAnswer &part = parts[k];
     if (!std::isfinite(part.value) || !std::isfinite(part.error))
       continue;
-    const double y = -static_cast<double>(k);
-    PlotLine point{part.part, {part.value}, {y}, k};
+    const double y = static_cast<double>(k) + 1;
+    PlotLine point{fmt::format("{}: {}", k + 1, part.part), {part.value}, {y}, k};
     point.has_markers = true;
     PlotLine bar{{}, {part.value - part.error, part.value + part.error}, {y, y}, k};
     bar.is_faint = true;
+    low = std::min(low, bar.x[0]);
+    high = std::max(high, bar.x[1]);
     out.lines.push_back(std::move(bar));
     out.lines.push_back(std::move(point));
   }
+  const double margin = 0.05 * (high - low);
+  out.x_span = {low - margin, high + margin};
+  out.y_span = {static_cast<double>(parts.size()) + 0.5, 0.5}; // the first on top
   return out;
 }
 

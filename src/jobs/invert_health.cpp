@@ -304,7 +304,7 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
   const auto parts = healths_of(light, old ? &*old : nullptr, request.errors);
   out.tables = {{"health", health_table(health)},
                 {"parts", parts_table(parts)},
-                {"fit", fit_table(observed, health.fitted, health.scale)}};
+                {"fit", fit_table(observed, health.fitted, request.errors)}};
   out.page = health_page("What has changed on " + scenario.objects.front().name,
                          out.tables[2].table, health, parts, out.summary);
   out.inputs = observed.inputs;

@@ -230,7 +230,7 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   const auto parts = parts_of(observed.curve, request.errors.has_polarization);
   out.tables = {{"materials", materials_table(material.group, rows)},
                 {"parts", parts_table(parts, request.errors, members, of_first)},
-                {"fit", fit_table(observed, unmixed.fitted, unmixed.scale)}};
+                {"fit", fit_table(observed, unmixed.fitted, request.errors)}};
   out.page = material_page_of(
       fmt::format("What {} of {} is made of", material.group, scenario.objects.front().name),
       out.tables[2].table, unmixed, members.front().name, of_first, out.summary);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <span>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/inverse/likelihood.h>
 
@@ -145,10 +146,15 @@ Table twins_table(const PoseAnswer &answer, const std::vector<BodySymmetry> &sym
   return out;
 }
 
-Table fit_table(const ObservedLightCurve &observed, const EndMember &model, double scale) {
+namespace {
+
+Table table_of(const ObservedLightCurve &observed, const EndMember &model,
+               std::span<const double> half_width, const CurveErrors &errors) {
   const ObservedCurve &curve = observed.curve;
   const std::size_t bands = curve.bands.size();
   std::vector<double> i = model.i, q = model.q, u = model.u;
+  const double scale =
+      i.empty() ? 1 : CurveLikelihood(curve, errors).compare({i, q, u, half_width}).scale;
   i.resize(curve.epochs.size() * bands, std::nan(""));
   q.resize(i.size(), std::nan(""));
   u.resize(i.size(), std::nan(""));
@@ -188,20 +194,26 @@ Table fit_table(const ObservedLightCurve &observed, const EndMember &model, doub
   return out;
 }
 
+} // namespace
+
+Table fit_table(const ObservedLightCurve &observed, const EndMember &model,
+                const CurveErrors &errors) {
+  return table_of(observed, model, {}, errors);
+}
+
 Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
                 const PoseAnswer &answer, const CurveErrors &errors) {
   EndMember light;
-  double scale = 1;
-  const CurveLikelihood likelihood(observed.curve, errors);
+  std::vector<double> half_width;
   if (!answer.modes.empty())
     (void)model.for_each(std::vector<Turning>{answer.modes.front().turning}, {}, 1,
                          [&](std::size_t, const ModelLight &lit) {
                            light.i.assign(lit.i.begin(), lit.i.end());
                            light.q.assign(lit.q.begin(), lit.q.end());
                            light.u.assign(lit.u.begin(), lit.u.end());
-                           scale = likelihood.compare(lit).scale;
+                           half_width.assign(lit.i_half_width.begin(), lit.i_half_width.end());
                          });
-  return fit_table(observed, light, scale);
+  return table_of(observed, light, half_width, errors);
 }
 
 std::array<double, 3> axis_spread_deg(const PoseAnswer &answer) {

@@ -1,6 +1,7 @@
 #include "jobs/fit_figures.h"
 #include "jobs/plan_tables.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/text.h>
@@ -9,24 +10,38 @@
 namespace umov::jobs {
 namespace {
 
-/// What each pass would tell, against the time of its first row.
-PlotFigure information(const Plan &plan) {
+/// A number of each pass, with q and u and without, against the time of its first row.
+PlotFigure by_pass(const Plan &plan, const std::string &title, const std::string &y_title,
+                   double Discrimination::*number) {
   const Epoch<Utc> start = plan.kept.geometry.front().time;
-  PlotFigure out{"What each pass tells",
-                 "days since " + to_iso(start),
-                 fmt::format("information [bit], of {:.3g} at most",
-                             std::log2(static_cast<double>(plan.names.size()))),
-                 {}};
+  PlotFigure out{title, "days since " + to_iso(start), y_title, {}};
   for (const bool has_polarization : {true, false}) {
     PlotLine line{has_polarization ? "I, q, u" : "I alone", {}, {}, has_polarization ? 0u : 1u};
     line.has_markers = true;
     for (const PlannedPass &pass : plan.passes) {
       line.x.push_back(seconds_between(plan.kept.geometry[pass.epochs.front()].time, start) /
                        86400);
-      line.y.push_back(pass.choices[has_polarization ? 0 : 1].told.information_bits);
+      line.y.push_back(pass.choices[has_polarization ? 0 : 1].told.*number);
     }
     out.lines.push_back(std::move(line));
   }
+  return out;
+}
+
+/// What each pass would tell, and how sure of the two that are most alike.
+std::vector<PlotFigure> pass_figures(const Plan &plan) {
+  std::vector<PlotFigure> out{
+      by_pass(plan, "What each pass tells",
+              fmt::format("information [bit], of {:.3g} at most",
+                          std::log2(static_cast<double>(plan.names.size()))),
+              &Discrimination::information_bits),
+      by_pass(plan, "The two that are most alike", "expected ln Bayes factor",
+              &Discrimination::hardest_log_bayes)};
+  out[1].has_log_y = true;
+  constexpr double least = 1e-3; // less is nothing
+  for (PlotLine &line : out[1].lines)
+    for (double &y : line.y)
+      y = std::max(y, least);
   return out;
 }
 
@@ -70,17 +85,19 @@ void add_light(std::vector<PlotFigure> &figures, const Plan &plan, std::size_t b
 std::vector<std::string> band_lines(const Plan &plan) {
   std::vector<std::string> out;
   for (const PlanChoice &choice : plan.passes.front().choices)
-    out.push_back(fmt::format("best pass, {}, {}: {:.3g} bit, decided with a chance of {} %",
-                              choice.bands == "all" ? "all bands" : choice.bands,
-                              choice.has_polarization ? "I, q, u" : "I alone",
-                              choice.told.information_bits, percent(choice.told.decided)));
+    out.push_back(
+        fmt::format("best pass, {}, {}: {:.3g} bit, decided with a chance of {} %, ln Bayes factor "
+                    "of the hardest pair {:.3g}",
+                    choice.bands == "all" ? "all bands" : choice.bands,
+                    choice.has_polarization ? "I, q, u" : "I alone", choice.told.information_bits,
+                    percent(choice.told.decided), choice.told.hardest_log_bayes));
   return out;
 }
 
 } // namespace
 
 std::string plan_page(const std::string &title, const Plan &plan) {
-  std::vector<PlotFigure> figures{information(plan)};
+  std::vector<PlotFigure> figures = pass_figures(plan);
   for (std::size_t b = 0; b < plan.bands.size(); ++b)
     add_light(figures, plan, b);
   std::vector<std::string> notes = page_lines(plan_summary(plan));

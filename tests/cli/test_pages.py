@@ -73,7 +73,7 @@ KINDS = {  # page: figures that it must have, marks of its sky chart
     "invert/report.html": ({"Brightness: measured and fitted", "Brightness left over", "Errors of the heaviest attitude: about +X and +Y"}, 0),
     "mixture/report.html": ({"Brightness: measured and fitted", "What each band and Stokes component says by itself"}, 0),
     "health/report.html": ({"Brightness left over", "Polarization: measured and fitted"}, 0),
-    "plan/report.html": ({"What each pass tells", "Best pass: brightness in nm:550", "Best pass: polarization in nm:550"}, 0),
+    "plan/report.html": ({"What each pass tells", "The two that are most alike", "Best pass: brightness in nm:550", "Best pass: polarization in nm:550"}, 0),
     "paper/index.html": (set(), 0),
 }
 

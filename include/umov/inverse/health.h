@@ -32,10 +32,8 @@ struct Health {
   /// All changes fitted together, in the order of the rows, and their covariance [row * n +
   /// column].
   std::vector<double> joint, joint_covariance;
-  /// Light of the best fit with one change, the one that explains most, in the model's units; what
-  /// was observed is `scale` times it.
+  /// Light of the best fit with one change, the one that explains most, in the model's units.
   EndMember fitted;
-  double scale = 1;
 };
 
 /// Least squares of the data on the object as it was, one change at a time, and all unknowns under
