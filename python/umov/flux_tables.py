@@ -48,7 +48,7 @@ def flux_table(light: Any, band: str, *, flux: str = "flux", is_barycentric: boo
     --------
     >>> from astropy.timeseries import TimeSeries
     >>> series = TimeSeries({"flux": [1.0, 1.2], "flux_err": [0.1, 0.1]}, time=["2018-01-21T05:09:00", "2018-01-21T05:09:20"])
-    >>> umov.flux_table(series, "nm:550")["time_utc"][0]
+    >>> str(umov.flux_table(series, "nm:550")["time_utc"][0])
     '2018-01-21T05:09:00.000000Z'
     """
     from astropy.table import Table

@@ -356,7 +356,7 @@ def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario], 
     --------
     >>> found = umov.invert_plan(EXAMPLES / "hst_maui.toml", {"new": {}, "painted": {"object.materials.array_back": "paint_white"}},
     ...                          set={"time.step_s": 30})
-    >>> found.verdict, found.tables["plan"].colnames[:3]
+    >>> found.verdict, list(found.tables["plan"].names)[:3]
     ('determined', ['pass_id', 'first_utc', 'last_utc'])
     """
     if not isinstance(alternatives, Mapping) or len(alternatives) < 2:
