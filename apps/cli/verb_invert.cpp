@@ -11,7 +11,7 @@ namespace {
 
 Result<jobs::Inversion> answer(InvertVerb &o, const InvertJob &job, Diagnostics &diagnostics) {
   const auto started = std::chrono::system_clock::now();
-  UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.overrides));
+  UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.keys()));
   std::optional<RunFolder> folder;
   if (!o.output.empty()) {
     UMOV_ASSIGN(opened, RunFolder::open(o.output, o.common.force));
@@ -50,13 +50,22 @@ void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
                   "Light curves (ECSV, CSV, FITS or TDM), of umov reduce, umov run or your own: "
                   "one fit of all")
       ->required();
+  verb.add_option("--grid", o->request.grid, "Attitudes that are looked at first")
+      ->check(CLI::Range(1000, 5'000'000))
+      ->capture_default_str();
+  verb.add_option("--outliers", errors.outlier_share, "Share of measurements that are wrong")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
+  verb.add_flag("--intensity-only", o->is_intensity_only, "Leave q and u aside");
+  add_model_options(verb, o);
+}
+
+void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
+  CurveErrors &errors = o->request.errors;
   verb.add_option("--scenario", o->scenario, "Object, materials, orbit, site and bands")
       ->required();
   verb.add_option("-o,--output", o->output, "Output folder");
   verb.add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
-  verb.add_option("--grid", o->request.grid, "Attitudes that are looked at first")
-      ->check(CLI::Range(1000, 5'000'000))
-      ->capture_default_str();
   verb.add_option("--floor", errors.floor, "Error of the model, in parts of I; half of it in q, u")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
@@ -69,10 +78,6 @@ void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
   verb.add_flag("--clouds", errors.has_clouds, "Transparency is free at every epoch");
-  verb.add_option("--outliers", errors.outlier_share, "Share of measurements that are wrong")
-      ->check(CLI::Range(0.0, 0.5))
-      ->capture_default_str();
-  verb.add_flag("--intensity-only", o->is_intensity_only, "Leave q and u aside");
   verb.add_option("--visibility", o->visibility, "How hiding is decided: masks, auto or rays")
       ->check(CLI::IsMember({"masks", "auto", "rays"}))
       ->capture_default_str();

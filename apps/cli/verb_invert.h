@@ -13,16 +13,27 @@ struct InvertVerb {
   jobs::InvertRequest request;
   std::string scenario, output, visibility = "auto";
   std::vector<std::string> overrides;
+  std::vector<std::string>
+      own_keys; ///< the same of options that stand for keys: they go over those
+  [[nodiscard]] std::vector<std::string> keys() const {
+    std::vector<std::string> out = overrides;
+    out.insert(out.end(), own_keys.begin(), own_keys.end());
+    return out;
+  }
   bool is_intensity_only = false;
   Common common;
 };
 /// What a verb does with its options.
 using InvertJob = std::function<Result<jobs::Inversion>(const Scenario &, const InvertVerb &,
                                                         const jobs::Monitor &, Diagnostics &)>;
-/// Adds the options that all of them take.
+/// Adds the options of all that observations are given to.
 void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
+/// Adds those of them that say how well the model is known and where the answer goes.
+void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
 /// Runs the job, writes its folder, prints its answer and ends with its exit code.
 void run_invert(CLI::App &verb, const std::shared_ptr<InvertVerb> &o, const Exit &exit_with,
                 const InvertJob &job);
+/// umov invert plan.
+void add_invert_plan(CLI::App &invert, const Exit &exit_with);
 
 } // namespace umov::cli

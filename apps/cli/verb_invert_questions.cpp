@@ -92,6 +92,7 @@ void add_invert(CLI::App &app, const Exit &exit_with) {
   add_spin(*invert, exit_with);
   add_unmixing(*invert, exit_with);
   add_health(*invert, exit_with);
+  add_invert_plan(*invert, exit_with);
 }
 
 } // namespace umov::cli

@@ -47,6 +47,7 @@
 #include <umov/instrument/telescope.h>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/inverse/curve_model.h>
+#include <umov/inverse/design.h>
 #include <umov/inverse/direction_table.h>
 #include <umov/inverse/health.h>
 #include <umov/inverse/identify.h>
@@ -112,6 +113,7 @@
 #include <umov/jobs/orbit_files.h>
 #include <umov/jobs/passes.h>
 #include <umov/jobs/period.h>
+#include <umov/jobs/plan.h>
 #include <umov/jobs/pose_light.h>
 #include <umov/jobs/ranged_job.h>
 #include <umov/jobs/reduce.h>

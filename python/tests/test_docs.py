@@ -18,7 +18,7 @@ import gallery as pages  # noqa: E402
 PUBLIC = sorted(name for name in umov.__all__ if callable(getattr(umov, name)))
 MODULES = ["engines", "errors", "light_curves", "materials", "orbits", "plot", "runs", "satellites", "scenarios",
            "sites", "tables", "times", "abundances", "pictures", "turnable", "observing", "passbands", "samples", "periods", "inversions", "libraries",
-           "measurements", "scale", "rows"]
+           "measurements", "scale", "rows", "flux_tables"]
 
 
 SCALE = importlib.import_module("umov.scale")

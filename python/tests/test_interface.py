@@ -325,6 +325,11 @@ def test_own_materials_go_with_the_satellite():
     lambda hst: umov.invert_material(AGENA_PASS, EXAMPLES / "agena_maui.toml", group="body", candidates="gold"),
     lambda hst: umov.invert_health(AGENA_PASS, EXAMPLES / "agena_maui.toml", drift={"wing": "gold"}),
     lambda hst: umov.invert_health(AGENA_PASS, EXAMPLES / "agena_maui.toml", drift={}),
+    lambda hst: umov.invert_plan(EXAMPLES / "agena_maui.toml", {"one": {}}),
+    lambda hst: umov.invert_plan(EXAMPLES / "agena_maui.toml", ["one", "two"]),
+    lambda hst: umov.invert_plan(EXAMPLES / "agena_maui.toml", {"one": {}, "two": {}}, priors={"three": 1}),
+    lambda hst: umov.invert_plan(EXAMPLES / "agena_maui.toml", {"one": {}, "two": {}}, snr=-1),
+    lambda hst: umov.invert_plan(EXAMPLES / "agena_maui.toml", {"one": {}, "two": {"object.materials.wing": "gold"}}),
     lambda hst: umov.build_library([], "lib"),
     lambda hst: umov.build_library([EXAMPLES / "agena_maui.toml"], "lib", cells=3),
 ])

@@ -219,6 +219,23 @@ def test_inversions(words, scenario, changes, ours, command, tmp_path):
         assert not found.page or found.page == (theirs / "report.html").read_text()
 
 
+def test_a_plan(command, tmp_path):
+    """Alternatives by a key and by another file, a span, a stated noise: every table and the page."""
+    (tmp_path / "other.toml").write_text(umov.Scenario(HST, set={"object.materials.array_back": "gold"}).to_toml())
+    command("invert", "plan", "--scenario", HST, "--set", "time.step_s=40", "--start", "2018-01-21T04:30:00Z", "--snr", 30,
+            "--floor", 0.1, "--alternative", "new", "--alternative", "painted:object.materials.array_back=paint_white",
+            "--alternative", "gold:other.toml", "-o", "theirs", "-q")
+    found = umov.invert_plan(HST, {"new": {}, "painted": {"object.materials.array_back": "paint_white"}, "gold": tmp_path / "other.toml"},
+                             start="2018-01-21T04:30:00Z", snr=30, set={"time.step_s": 40}, fit=umov.Fit(floor=0.1))
+    theirs = tmp_path / "theirs"
+    assert sorted(one.stem for one in theirs.glob("*.ecsv")) == sorted(found.tables)
+    for name, table in found.tables.items():
+        table.write(tmp_path / "ours.ecsv")
+        assert (tmp_path / "ours.ecsv").read_bytes() == (theirs / f"{name}.ecsv").read_bytes(), name
+    assert found.values == json.loads((theirs / "verdict.json").read_text())
+    assert found.page == (theirs / "report.html").read_text()
+
+
 def test_changes_are_counted_from_a_baseline():
     curve = umov.run(HST, set={"time.step_s": 30})
     twice = [curve, curve]

@@ -17,7 +17,8 @@ from .abundances import Abundances, Coloured, Column, Sums
 from .engines import Engine, Light, random_poses
 from .errors import (DeviceError, Error, InputError, InternalError, Interrupted, NoResult, NumericsError,
                      UmovWarning, UsageError, Where)
-from .inversions import Fit, Inversion, identify, invert_health, invert_material, invert_pose, invert_spin
+from .flux_tables import flux_table
+from .inversions import Fit, Inversion, identify, invert_health, invert_material, invert_plan, invert_pose, invert_spin
 from .libraries import build_library
 from .light_curves import LightCurve
 from .materials import Material, brdf, materials
@@ -43,8 +44,8 @@ __all__ = ["Abundances", "Bands", "Calibration", "Coloured", "Column", "DeviceEr
            "InputError", "InternalError", "Interrupted", "Inversion", "Light", "LightCurve", "Material", "Mesh",
            "NoResult", "NumericsError", "Observation", "Picture", "Satellite", "Scenario", "Site", "States", "Sums",
            "Table", "UmovWarning", "UsageError", "Where", "__version__", "band", "bands", "brdf", "build_library",
-           "calibrate", "conventions_version", "ephemeris", "example", "exposure", "identify", "instrument", "instruments",
-           "invert_health", "invert_material", "invert_pose", "invert_spin", "materials", "mesh", "observe", "passes",
+           "calibrate", "conventions_version", "ephemeris", "example", "exposure", "flux_table", "identify", "instrument", "instruments",
+           "invert_health", "invert_material", "invert_plan", "invert_pose", "invert_spin", "materials", "mesh", "observe", "passes",
            "period", "plot", "propagate", "random_poses", "reduce", "render", "run", "scale", "schema", "score",
            "site_names", "source_revision", "tdm", "turnable", "utc"]
 

@@ -17,8 +17,9 @@ from .observing import _text_of
 from .periods import AnyLight
 from .scenarios import AnyScenario, Scenario
 from .tables import Table
+from .times import AnyTime, utc
 
-__all__ = ["Fit", "Inversion", "identify", "invert_health", "invert_material", "invert_pose", "invert_spin"]
+__all__ = ["Fit", "Inversion", "identify", "invert_health", "invert_material", "invert_plan", "invert_pose", "invert_spin"]
 
 AnyCurves = Union[AnyLight, Sequence[AnyLight]]
 
@@ -50,7 +51,7 @@ class Inversion(NamedTuple):
     """
 
     verdict: str  #: determined, ambiguous, undetermined or no_fit (none explains the data)
-    tables: dict[str, Table]  #: by name, the answer first: modes, periods, set95, samples, twins, fit; materials; health; identity
+    tables: dict[str, Table]  #: by name, the answer first: modes, periods, set95, samples, twins, fit; materials; health, parts; identity; plan
     values: dict[str, Any]  #: numbers of the answer: verdict.json of the command
     summary: str  #: for a person
     page: str  #: report.html; "" where the question has none
@@ -80,15 +81,16 @@ def _file_of(light: Any, made: pathlib.Path) -> str:
     return str(made)
 
 
-def _request(files: list[str], fit: Fit | None) -> _umov.InvertRequest:
+def _request(files: list[str] | None, fit: Fit | None) -> _umov.InvertRequest:
+    """`files` None: there is no light yet."""
     fit = Fit() if fit is None else fit
     if not isinstance(fit, Fit):
         raise UsageError(f"fit is a {type(fit).__name__}; a umov.Fit was expected, such as umov.Fit(clouds=True)")
     if fit.method not in ("masks", "auto", "rays"):
         raise UsageError(f"method is {fit.method!r}; auto, rays or masks was expected")
-    if not files:
+    if files is not None and not files:
         raise UsageError("there is no light curve; a LightCurve, a file or a table was expected, or several of them")
-    out = _umov.InvertRequest(files, whole_between(fit.grid, "grid", 1000, 5_000_000), fit.method, bool(fit.allow_old_elements))
+    out = _umov.InvertRequest(files or [], whole_between(fit.grid, "grid", 1000, 5_000_000), fit.method, bool(fit.allow_old_elements))
     out.set_errors(between(fit.floor, "floor", 0, 1), between(fit.zero_point_sd, "zero_point_sd", 1e-6, 100),
                    between(fit.scale_sd, "scale_sd", 0, 100), bool(fit.clouds), between(fit.outliers, "outliers", 0, 0.5),
                    not fit.intensity_only)
@@ -302,6 +304,77 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
     with _files_of(light, baseline) as (files, before):
         return _inversion(_umov.invert_health(asked._scenario, _request(files, fit), drifts, before, sd,
                                               job_options(threads, cache, device=device), Watch(progress)))
+
+
+def invert_plan(scenario: AnyScenario, alternatives: Mapping[str, AnyScenario], *, start: AnyTime | None = None,
+                stop: AnyTime | None = None, snr: float | None = None, sky_mag: float = 21.0,
+                priors: Mapping[str, float] | None = None, set: Mapping[str, Any] | None = None, fit: Fit | None = None,
+                threads: int = 0, cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
+                progress: Progress = None) -> Inversion:
+    """Before the night: which passes, bands and Stokes components would tell alternatives apart: `umov invert plan`.
+
+    Parameters
+    ----------
+    scenario
+        Orbit, site, time, bands, and the object that the alternatives change. Every step of its time is a row.
+    alternatives
+        By name, what may be the case: changes of the scenario's keys as a dictionary ({}: the scenario as it is), or
+        another scenario (a file, a Scenario, a Satellite), of which object and attitude are taken. Two to 32.
+    start
+        Begin of the span, in place of time.start.
+    stop
+        End of it, in place of time.stop.
+    snr
+        Signal to noise of I in a row of median brightness; None: what the scenario's [observation] and its instrument
+        reach, or 100 without one.
+    sky_mag
+        Sky of that instrument, AB in the band [mag / arcsec2], -5 to 40.
+    priors
+        By name, chances before, relative to each other; 1 for those that are not named.
+    set
+        Changes of the scenario's keys, of all alternatives.
+    fit
+        How well model and sky will be known; None: `Fit()`. Its grid, outliers and intensity_only are not looked at.
+    threads
+        0 for all cores; the bytes do not depend on it.
+    cache
+        Masks of earlier jobs: True as the command keeps them, a folder, or False.
+    device
+        Who adds up the light of the facets: "cpu"; "cuda", NVIDIA cards (`DeviceError` says what lacks); "auto", cards
+        if they are there, with a warning if not. docs/theory/device.md.
+    progress
+        True for a bar, or a callable (what, done, total).
+
+    Notes
+    -----
+    The table "plan" has a row for each pass, best first; "choices" each band and I alone; "pairs" every pair; "sequence"
+    passes together; "light" what every alternative would give, with an observer's errors. The verdict is "determined"
+    where one pass decides with a chance of 95 %, "ambiguous" where only several do. `NoResult` where nothing can be
+    observed. Source: docs/theory/inverse.md, section 13.
+
+    Examples
+    --------
+    >>> found = umov.invert_plan(EXAMPLES / "hst_maui.toml", {"new": {}, "painted": {"object.materials.array_back": "paint_white"}},
+    ...                          set={"time.step_s": 30})
+    >>> found.verdict, list(found.tables["plan"].names)[:3]
+    ('determined', ['pass_id', 'first_utc', 'last_utc'])
+    """
+    if not isinstance(alternatives, Mapping) or len(alternatives) < 2:
+        raise UsageError(f"alternatives is {alternatives!r}; two or more by name were expected, such as "
+                         '{"new": {}, "painted": {"object.materials.array_back": "paint_white"}}')
+    chances = dict(priors or {})
+    for name in chances:
+        if name not in alternatives:
+            raise UsageError(f"priors names {name!r}, which is no alternative; there are {', '.join(map(str, alternatives))}")
+    span = {f"time.{key}": utc(when) for key, when in (("start", start), ("stop", stop)) if when is not None}
+    changes = {**(set or {}), **span}
+    asked = Scenario(scenario, changes)
+    others = [Scenario(scenario, {**changes, **one}) if isinstance(one, Mapping) else Scenario(one) for one in alternatives.values()]
+    ratio = 0.0 if snr is None else between(snr, "snr", 0.1, 1e6)
+    weights = [between(chances.get(name, 1.0), "priors", 1e-9, 1e9) for name in alternatives]
+    return _inversion(_umov.invert_plan(asked._scenario, [str(name) for name in alternatives], [one._scenario for one in others],
+                                        weights, _request(None, fit), ratio, between(sky_mag, "sky_mag", -5, 40),
+                                        job_options(threads, cache, device=device), Watch(progress)))
 
 
 def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike[str], *,

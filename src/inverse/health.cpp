@@ -24,6 +24,20 @@ EndMember slope_of(const LightChange &change, const EndMember &before) {
   return out;
 }
 
+/// Columns added up with their parts of the first one.
+EndMember mixed(const std::vector<EndMember> &members, const VectorXd &x) {
+  EndMember out = members.front();
+  for (std::size_t c = 1; c < members.size(); ++c) {
+    const double part = x[static_cast<Index>(c)] / x[0];
+    for (std::size_t k = 0; k < out.i.size() && part != 0; ++k) {
+      out.i[k] += part * members[c].i[k];
+      out.q[k] += part * members[c].q[k];
+      out.u[k] += part * members[c].u[k];
+    }
+  }
+  return out;
+}
+
 /// Least squares with priors as further rows: x, its covariance, and chi-square.
 struct Fit {
   VectorXd x;
@@ -40,6 +54,24 @@ Fit fit_of(const MatrixXd &columns, const VectorXd &right, const VectorXd &prior
   out.chi2 = (right - columns * out.x).squaredNorm() +
              (prior_weight.array() * out.x.array().square()).sum();
   return out;
+}
+
+/// All changes at once: p = x_k / x_0, to first order in both.
+void put_joint(const MatrixXd &columns, const VectorXd &right, const VectorXd &prior, Index fixed,
+               Health &out) {
+  const Fit fit = fit_of(columns, right, prior);
+  const double x0 = std::max(fit.x[0], 1e-300);
+  MatrixXd slope = MatrixXd::Zero(columns.cols() - fixed, columns.cols());
+  for (Index k = 0; k < slope.rows(); ++k) {
+    out.joint.push_back(fit.x[fixed + k] / x0);
+    slope(k, 0) = -out.joint.back() / x0;
+    slope(k, fixed + k) = 1 / x0;
+  }
+  const MatrixXd covariance =
+      algebra::product(algebra::product(slope, fit.covariance), slope.transpose());
+  for (Index r = 0; r < covariance.rows(); ++r)
+    for (Index c = 0; c < covariance.cols(); ++c)
+      out.joint_covariance.push_back(covariance(r, c));
 }
 
 } // namespace
@@ -64,7 +96,11 @@ Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const
   columns.leftCols(fixed) = w.columns.leftCols(fixed);
   Health out;
   out.measurements = w.measurements;
-  out.chi2 = fit_of(columns.leftCols(fixed), w.right, prior.head(fixed)).chi2;
+  const Fit unchanged = fit_of(columns.leftCols(fixed), w.right, prior.head(fixed));
+  out.chi2 = unchanged.chi2;
+  VectorXd best = VectorXd::Zero(static_cast<Index>(members.size()));
+  best.head(fixed) = unchanged.x;
+  double gain = 0;
   for (std::size_t k = 0; k < changes.size(); ++k) {
     columns.col(fixed) = w.columns.col(fixed + static_cast<Index>(k));
     const Fit fit = fit_of(columns, w.right, prior);
@@ -80,8 +116,19 @@ Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const
     row.sigma = row.change_err > 0 ? row.change / row.change_err : 0;
     row.detectable = 3 * row.change_err;
     row.chi2_gain = out.chi2 - fit.chi2;
+    if (row.chi2_gain > gain) {
+      gain = row.chi2_gain;
+      best.setZero();
+      best.head(fixed) = fit.x.head(fixed);
+      best[fixed + static_cast<Index>(k)] = fit.x[fixed];
+    }
     out.rows.push_back(std::move(row));
   }
+  VectorXd all = VectorXd::Zero(w.columns.cols());
+  all.head(fixed) = prior.head(fixed);
+  put_joint(w.columns, w.right, all, fixed, out);
+  best[0] = std::max(best[0], 1e-300);
+  out.fitted = mixed(members, best);
   return out;
 }
 

@@ -89,6 +89,22 @@ std::vector<std::size_t> groups_of(const Whitened &w, double scale) {
   return group;
 }
 
+/// The members in their parts, which are made to add up to 1.
+EndMember mixed(const std::vector<EndMember> &members, const VectorXd &x) {
+  const std::size_t size = members.front().i.size();
+  EndMember out{"", std::vector<double>(size), std::vector<double>(size),
+                std::vector<double>(size)};
+  const double sum = std::max(x.sum(), 1e-300);
+  for (std::size_t n = 0; n < members.size(); ++n)
+    for (std::size_t k = 0; k < size; ++k) {
+      const double part = x[static_cast<Index>(n)] / sum;
+      out.i[k] += part * members[n].i[k];
+      out.q[k] += part * members[n].q[k];
+      out.u[k] += part * members[n].u[k];
+    }
+  return out;
+}
+
 double condition_of(const MatrixXd &columns) {
   MatrixXd unit = columns;
   unit.colwise().normalize();
@@ -141,15 +157,22 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
   const VectorXd x = nnls(joined, w.right);
   const double sum = std::max(x.sum(), 1e-300);
   const MatrixXd covariance = algebra::pseudo_inverse(algebra::gram(joined));
+  MatrixXd slope = MatrixXd::Zero(x.size(), x.size()); // f = x_g / sum x, to first order
   for (Index g = 0; g < x.size(); ++g) {
-    // f = x_g / sum x, to first order.
-    VectorXd slope = VectorXd::Constant(x.size(), -x[g] / (sum * sum));
-    slope[g] += 1 / sum;
+    slope.row(g).setConstant(-x[g] / (sum * sum));
+    slope(g, g) += 1 / sum;
+  }
+  const MatrixXd of_fractions =
+      algebra::product(algebra::product(slope, covariance), slope.transpose());
+  for (Index g = 0; g < x.size(); ++g) {
     UnmixedGroup &one = out.groups[static_cast<std::size_t>(g)];
     one.fraction = x[g] / sum;
-    one.fraction_err = std::sqrt(std::max(0.0, slope.dot(covariance * slope)));
+    one.fraction_err = std::sqrt(std::max(0.0, of_fractions(g, g)));
     one.detectable = 3 * one.fraction_err;
+    for (Index h = 0; h < x.size(); ++h)
+      out.covariance.push_back(of_fractions(g, h));
   }
+  out.fitted = mixed(members, all);
   return out;
 }
 

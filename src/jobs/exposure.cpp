@@ -103,6 +103,11 @@ Result<ExposureSetup> exposure_setup(const ExposureRequest &r) {
   UMOV_TRY(check(r));
   UMOV_ASSIGN(instrument, read_instrument(r.instrument));
   UMOV_ASSIGN(band, band_of(r));
+  return exposure_setup(r, instrument, band);
+}
+
+Result<ExposureSetup> exposure_setup(const ExposureRequest &r, const Instrument &instrument,
+                                     const BandResponse &band) {
   ObservingConditions conditions;
   conditions.air.pressure_hpa = standard_pressure_hpa(r.height_m);
   conditions.seeing = {r.seeing_arcsec, 500, 25};

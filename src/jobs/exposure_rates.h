@@ -18,6 +18,9 @@ struct ExposureSetup {
 };
 /// Usage or BadInput for what cannot be meant.
 Result<ExposureSetup> exposure_setup(const ExposureRequest &request);
+/// Of an instrument and a band that were read already; the request's own are not looked at.
+Result<ExposureSetup> exposure_setup(const ExposureRequest &request, const Instrument &instrument,
+                                     const BandResponse &band);
 
 /// Rates of one instrument on one star [1/s], all channels together.
 struct StarRates {

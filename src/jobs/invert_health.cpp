@@ -1,12 +1,15 @@
 // What has changed on an object, and what would have shown.
 
+#include "jobs/fit_figures.h"
 #include "jobs/invert_group.h"
+#include "jobs/invert_parts.h"
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/inverse/health.h>
@@ -35,16 +38,25 @@ Result<std::vector<Drift>> drifts_of(const std::vector<std::string> &words) {
   return out;
 }
 
-/// Observations held against the object as the scenario has it.
-Result<Health> health_of(const Scenario &scenario, const InvertRequest &request,
-                         const HealthOptions &asked, const std::vector<Drift> &drifts,
-                         const JobOptions &options, const Monitor &monitor,
-                         Diagnostics &diagnostics, ObservedLightCurve &observed,
-                         ManifestInput::Light &used) {
+/// Observations, and the light of the object as the scenario has it, drifted and turned.
+struct DriftedLight {
+  ObservedLightCurve observed;
+  EndMember before;
+  std::vector<LightChange> changes, unknowns;
+  [[nodiscard]] Health check(const ObservedCurve &curve, const CurveErrors &errors) const {
+    return check_health(curve, errors, before, changes, unknowns);
+  }
+};
+
+Result<DriftedLight> light_of(const Scenario &scenario, const InvertRequest &request,
+                              const HealthOptions &asked, const std::vector<Drift> &drifts,
+                              const JobOptions &options, const Monitor &monitor,
+                              Diagnostics &diagnostics, ManifestInput::Light &used) {
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, inputs, diagnostics));
   UMOV_ASSIGN(own, observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
-  observed = std::move(own);
+  DriftedLight out{std::move(own), {}, {}, {}};
+  ObservedLightCurve &observed = out.observed;
   observed.inputs.insert(observed.inputs.end(), inputs.begin(), inputs.end());
   if (std::ranges::none_of(observed.curve.samples, [](const ObservedSample &s) { return s.i > 0; }))
     return fail(ErrorCode::BadInput,
@@ -54,11 +66,11 @@ Result<Health> health_of(const Scenario &scenario, const InvertRequest &request,
   const std::size_t steps = drifts.size() + 4;
   monitor.advance("light of the object", 0, steps);
   UMOV_ASSIGN(before, light.of("", "", monitor));
-  std::vector<LightChange> changes, unknowns;
+  out.before = std::move(before);
   for (const Drift &drift : drifts) {
-    monitor.advance("light of the object", 1 + changes.size(), steps);
+    monitor.advance("light of the object", 1 + out.changes.size(), steps);
     UMOV_ASSIGN(after, light.of(drift.group, drift.material, monitor));
-    changes.push_back({drift.name, std::move(after), 1, 0});
+    out.changes.push_back({drift.name, std::move(after), 1, 0});
   }
   const double sd = asked.attitude_sd_deg * pi / 180;
   constexpr double difference = 2e-3; // [rad], as in the fits of attitudes
@@ -66,10 +78,10 @@ Result<Health> health_of(const Scenario &scenario, const InvertRequest &request,
   for (const Vec3<Body> &turn : axes)
     if (sd > 0) {
       UMOV_ASSIGN(aside, light.of("", "", monitor, turn));
-      unknowns.push_back({"attitude", std::move(aside), difference, sd});
+      out.unknowns.push_back({"attitude", std::move(aside), difference, sd});
     }
   used = light.used();
-  return check_health(observed.curve, request.errors, before, changes, unknowns);
+  return out;
 }
 
 /// Changes from what the baseline showed.
@@ -81,6 +93,10 @@ void count_from(const Health &baseline, Health &health) {
     row.sigma = row.change_err > 0 ? row.change / row.change_err : 0;
     row.detectable = 3 * row.change_err;
   }
+  for (std::size_t k = 0; k < health.joint.size(); ++k)
+    health.joint[k] -= baseline.joint[k];
+  for (std::size_t k = 0; k < health.joint_covariance.size(); ++k)
+    health.joint_covariance[k] += baseline.joint_covariance[k];
 }
 
 constexpr double whole = 1; // a change by all of a group
@@ -112,6 +128,84 @@ Table health_table(const Health &health) {
   out.add("seen", "", "changed, no change, or not visible in these observations", std::move(seen));
   note_conventions(out);
   return out;
+}
+
+/// What a part of the data says by itself, of the observations and of the baseline if there is one.
+struct PartHealth {
+  DataPart part;
+  Health health;
+};
+
+std::vector<PartHealth> healths_of(const DriftedLight &light, const DriftedLight *baseline,
+                                   const CurveErrors &errors) {
+  std::vector<PartHealth> out;
+  std::vector<DataPart> before;
+  if (baseline != nullptr)
+    before = parts_of(baseline->observed.curve, errors.has_polarization);
+  for (const DataPart &part : parts_of(light.observed.curve, errors.has_polarization)) {
+    PartHealth one{part, light.check(part.curve, errors)};
+    if (baseline != nullptr) {
+      const auto same = std::ranges::find(before, part.name(), &DataPart::name);
+      if (same == before.end())
+        continue; // nothing to count from
+      count_from(baseline->check(same->curve, errors), one.health);
+    }
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+Table parts_table(const std::vector<PartHealth> &parts) {
+  std::vector<std::string> name, bands, measured;
+  std::vector<double> change, error, sigma, detectable;
+  for (const PartHealth &one : parts)
+    for (const HealthRow &row : one.health.rows) {
+      const bool has_light = row.change_err > 0;
+      name.push_back(row.name);
+      bands.push_back(one.part.bands);
+      measured.push_back(one.part.measured);
+      change.push_back(has_light ? row.change : std::nan(""));
+      error.push_back(has_light ? row.change_err : std::nan(""));
+      sigma.push_back(row.sigma);
+      detectable.push_back(has_light ? row.detectable : std::nan(""));
+    }
+  Table out;
+  out.add("parameter", "", "group and what it may be turning into", std::move(name));
+  out.add("bands", "", "all, or one", std::move(bands));
+  out.add("measured", "", "I, or I, q and u", std::move(measured));
+  out.add("change", "", "by this part of the data alone", std::move(change));
+  out.add("change_err", "", "standard deviation", std::move(error));
+  out.add("sigma", "", "change over its error", std::move(sigma));
+  out.add("detectable", "", "smallest change that shows at 3 sigma", std::move(detectable));
+  note_conventions(out);
+  return out;
+}
+
+std::string health_page(const std::string &title, const Table &fit, const Health &health,
+                        const std::vector<PartHealth> &parts, const std::string &summary) {
+  std::vector<PlotFigure> figures;
+  add_data_figures(figures, fit);
+  FittedNumbers numbers{{}, health.joint, health.joint_covariance};
+  std::vector<std::string> lines = page_lines(summary);
+  for (std::size_t k = 0; k < health.rows.size(); ++k) {
+    const HealthRow &row = health.rows[k];
+    numbers.name.push_back("change " + row.name);
+    lines.push_back(is_visible(row)
+                        ? fmt::format("{}: {:.3g} +- {:.2g} of the group; the smallest change that "
+                                      "shows at 3 sigma is {:.2g}",
+                                      row.name, row.change, row.change_err, row.detectable)
+                        : row.name + ": not visible");
+    std::vector<PartAnswer> answers;
+    for (const PartHealth &one : parts)
+      if (const HealthRow &said = one.health.rows[k]; said.change_err > 0)
+        answers.push_back({one.part.name(), said.change, said.change_err});
+    if (!answers.empty())
+      figures.push_back(parts_figure("What each band and Stokes component says of " + row.name,
+                                     "change " + row.name, answers));
+  }
+  add_error_figures(figures, numbers);
+  const auto page = make_plot_page(title, figures, lines);
+  return page ? *page : std::string();
 }
 
 std::string json_of(const Health &health, Verdict verdict, const std::vector<std::string> &notes) {
@@ -181,20 +275,23 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
                                 const HealthOptions &asked, const JobOptions &options,
                                 const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(drifts, drifts_of(asked.drifts));
-  ObservedLightCurve observed;
   Inversion out;
-  UMOV_ASSIGN(health, health_of(scenario, request, asked, drifts, options, monitor, diagnostics,
-                                observed, out.light));
+  UMOV_ASSIGN(light,
+              light_of(scenario, request, asked, drifts, options, monitor, diagnostics, out.light));
+  ObservedLightCurve &observed = light.observed;
+  Health health = light.check(observed.curve, request.errors);
+  std::optional<DriftedLight> old;
   tell_of_device(out.light.device, diagnostics);
   if (!asked.baseline.empty()) {
     InvertRequest before = request;
     before.observations = asked.baseline;
-    ObservedLightCurve old;
     ManifestInput::Light as_before;
-    UMOV_ASSIGN(baseline, health_of(scenario, before, asked, drifts, options, monitor, diagnostics,
-                                    old, as_before));
-    count_from(baseline, health);
-    observed.inputs.insert(observed.inputs.end(), old.inputs.begin(), old.inputs.end());
+    UMOV_ASSIGN(baseline, light_of(scenario, before, asked, drifts, options, monitor, diagnostics,
+                                   as_before));
+    old = std::move(baseline);
+    count_from(old->check(old->observed.curve, request.errors), health);
+    observed.inputs.insert(observed.inputs.end(), old->observed.inputs.begin(),
+                           old->observed.inputs.end());
   }
   out.verdict = verdict_of(health);
   const auto notes = notes_of(health, out.verdict, observed.curve, request.errors);
@@ -204,7 +301,12 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
   for (const std::string &text : notes)
     out.summary += "- " + text + "\n";
   out.json = json_of(health, out.verdict, notes);
-  out.tables = {{"health", health_table(health)}};
+  const auto parts = healths_of(light, old ? &*old : nullptr, request.errors);
+  out.tables = {{"health", health_table(health)},
+                {"parts", parts_table(parts)},
+                {"fit", fit_table(observed, health.fitted, request.errors)}};
+  out.page = health_page("What has changed on " + scenario.objects.front().name,
+                         out.tables[2].table, health, parts, out.summary);
   out.inputs = observed.inputs;
   out.seed = scenario.seed;
   return out;

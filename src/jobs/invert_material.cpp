@@ -1,4 +1,6 @@
+#include "jobs/fit_figures.h"
 #include "jobs/invert_group.h"
+#include "jobs/invert_parts.h"
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
@@ -114,6 +116,57 @@ Verdict verdict_of(const std::vector<Row> &rows, const Unmixing &unmixed) {
   return is_one ? Verdict::Determined : Verdict::Ambiguous;
 }
 
+/// What each band and Stokes component says by itself of the candidates, two of them at least.
+Table parts_table(const std::vector<DataPart> &parts, const CurveErrors &errors,
+                  const std::vector<EndMember> &members, std::vector<PartAnswer> &of_first) {
+  std::vector<std::string> material, bands, measured;
+  std::vector<double> fraction, error, detectable;
+  for (const DataPart &part : parts) {
+    const Unmixing unmixed = unmix(part.curve, errors, members);
+    for (const UnmixedGroup &group : unmixed.groups) {
+      material.push_back(fmt::format("{}", fmt::join(group.names, "|")));
+      bands.push_back(part.bands);
+      measured.push_back(part.measured);
+      fraction.push_back(group.fraction);
+      error.push_back(group.fraction_err);
+      detectable.push_back(group.detectable);
+      const bool has_first =
+          std::ranges::find(group.names, members.front().name) != group.names.end();
+      if (has_first && group.names.size() < members.size())
+        of_first.push_back({part.name(), group.fraction, group.fraction_err});
+    }
+  }
+  Table out;
+  out.add("material", "", "those that cannot be told apart joined by |", std::move(material));
+  out.add("bands", "", "all, or one", std::move(bands));
+  out.add("measured", "", "I, or I, q and u", std::move(measured));
+  out.add("fraction", "", "of the group's area, by this part of the data", std::move(fraction));
+  out.add("fraction_err", "", "standard deviation", std::move(error));
+  out.add("detectable", "", "smallest change of the fraction that shows at 3 sigma",
+          std::move(detectable));
+  note_conventions(out);
+  return out;
+}
+
+std::string material_page_of(const std::string &title, const Table &fit, const Unmixing &unmixed,
+                             const std::string &first, const std::vector<PartAnswer> &parts,
+                             const std::string &summary) {
+  std::vector<PlotFigure> figures;
+  add_data_figures(figures, fit);
+  FittedNumbers numbers;
+  for (const UnmixedGroup &group : unmixed.groups) {
+    numbers.name.push_back(fmt::format("part of {}", fmt::join(group.names, "|")));
+    numbers.value.push_back(group.fraction);
+  }
+  numbers.covariance = unmixed.covariance;
+  add_error_figures(figures, numbers);
+  if (!parts.empty())
+    figures.push_back(parts_figure("What each band and Stokes component says by itself",
+                                   "part of " + first, parts));
+  const auto page = make_plot_page(title, figures, page_lines(summary));
+  return page ? *page : std::string();
+}
+
 /// Each once.
 Result<void> check_candidates(const std::vector<std::string> &names) {
   for (std::size_t k = 1; k < names.size(); ++k)
@@ -173,7 +226,14 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   for (const std::string &text : notes)
     out.summary += "- " + text + "\n";
   out.json = json_of(material.group, rows, unmixed, out.verdict, chi2, notes);
-  out.tables = {{"materials", materials_table(material.group, rows)}};
+  std::vector<PartAnswer> of_first;
+  const auto parts = parts_of(observed.curve, request.errors.has_polarization);
+  out.tables = {{"materials", materials_table(material.group, rows)},
+                {"parts", parts_table(parts, request.errors, members, of_first)},
+                {"fit", fit_table(observed, unmixed.fitted, request.errors)}};
+  out.page = material_page_of(
+      fmt::format("What {} of {} is made of", material.group, scenario.objects.front().name),
+      out.tables[2].table, unmixed, members.front().name, of_first, out.summary);
   out.inputs = observed.inputs;
   out.inputs.insert(out.inputs.end(), inputs.begin(), inputs.end());
   out.seed = scenario.seed;

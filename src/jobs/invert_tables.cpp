@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <span>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/inverse/likelihood.h>
 
@@ -145,21 +146,15 @@ Table twins_table(const PoseAnswer &answer, const std::vector<BodySymmetry> &sym
   return out;
 }
 
-Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
-                const PoseAnswer &answer, const CurveErrors &errors) {
+namespace {
+
+Table table_of(const ObservedLightCurve &observed, const EndMember &model,
+               std::span<const double> half_width, const CurveErrors &errors) {
   const ObservedCurve &curve = observed.curve;
   const std::size_t bands = curve.bands.size();
-  std::vector<double> i, q, u;
-  double scale = 1;
-  const CurveLikelihood likelihood(curve, errors);
-  if (!answer.modes.empty())
-    (void)model.for_each(std::vector<Turning>{answer.modes.front().turning}, {}, 1,
-                         [&](std::size_t, const ModelLight &light) {
-                           i.assign(light.i.begin(), light.i.end());
-                           q.assign(light.q.begin(), light.q.end());
-                           u.assign(light.u.begin(), light.u.end());
-                           scale = likelihood.compare(light).scale;
-                         });
+  std::vector<double> i = model.i, q = model.q, u = model.u;
+  const double scale =
+      i.empty() ? 1 : CurveLikelihood(curve, errors).compare({i, q, u, half_width}).scale;
   i.resize(curve.epochs.size() * bands, std::nan(""));
   q.resize(i.size(), std::nan(""));
   u.resize(i.size(), std::nan(""));
@@ -187,16 +182,38 @@ Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
   const char *const names[][3] = {{"phase_angle", "deg", "Sun-object-observer"},
                                   {"intensity", "m2 / sr", "measured, over the scale"},
                                   {"intensity_err", "m2 / sr", "its standard deviation"},
-                                  {"intensity_model", "m2 / sr", "of the heaviest mode"},
+                                  {"intensity_model", "m2 / sr", "of the best fit"},
                                   {"q_scat", "", "measured"},
-                                  {"q_scat_model", "", "of the heaviest mode"},
+                                  {"q_scat_model", "", "of the best fit"},
                                   {"u_scat", "", "measured"},
-                                  {"u_scat_model", "", "of the heaviest mode"},
+                                  {"u_scat_model", "", "of the best fit"},
                                   {"q_err", "", "standard deviation of q_scat"}};
   for (std::size_t k = 0; k < c.size(); ++k)
     out.add(names[k][0], names[k][1], names[k][2], std::move(c[k]));
   note(out);
   return out;
+}
+
+} // namespace
+
+Table fit_table(const ObservedLightCurve &observed, const EndMember &model,
+                const CurveErrors &errors) {
+  return table_of(observed, model, {}, errors);
+}
+
+Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
+                const PoseAnswer &answer, const CurveErrors &errors) {
+  EndMember light;
+  std::vector<double> half_width;
+  if (!answer.modes.empty())
+    (void)model.for_each(std::vector<Turning>{answer.modes.front().turning}, {}, 1,
+                         [&](std::size_t, const ModelLight &lit) {
+                           light.i.assign(lit.i.begin(), lit.i.end());
+                           light.q.assign(lit.q.begin(), lit.q.end());
+                           light.u.assign(lit.u.begin(), lit.u.end());
+                           half_width.assign(lit.i_half_width.begin(), lit.i_half_width.end());
+                         });
+  return table_of(observed, light, half_width, errors);
 }
 
 std::array<double, 3> axis_spread_deg(const PoseAnswer &answer) {

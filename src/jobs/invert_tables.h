@@ -1,6 +1,7 @@
 #pragma once
 // Private: answers of an inversion as tables and words.
 
+#include <umov/inverse/unmix.h>
 #include <umov/jobs/invert.h>
 
 namespace umov::jobs {
@@ -13,7 +14,10 @@ Table set_table(const PoseAnswer &answer);
 Table samples_table(const PoseAnswer &answer, bool has_rates);
 /// twins.ecsv: for every mode those of the body's own turns and of the other modes.
 Table twins_table(const PoseAnswer &answer, const std::vector<BodySymmetry> &symmetries);
-/// fit.ecsv: what was measured beside what the best turning gives.
+/// fit.ecsv: what was measured, over its best scale, beside a model's light.
+Table fit_table(const ObservedLightCurve &observed, const EndMember &model,
+                const CurveErrors &errors);
+/// The same of the best turning.
 Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
                 const PoseAnswer &answer, const CurveErrors &errors);
 

@@ -242,8 +242,11 @@ def test_the_material_of_a_group_is_told_from_others(umov, scene, tmp_path):
     answers = {}
     for group in ("body_my", "body_py", "panel_px_front"):
         done = umov("invert", "material", "obs.csv", "--scenario", scene(q, "rays", "fit"), "--group", group,
-                    "--candidates", "paint_white,mli_kapton,cell_gaas", "--json")
+                    "--candidates", "paint_white,mli_kapton,cell_gaas", "--json", "-o", group)
         assert done.code in (0, 4), done.err
+        fit_is_of_the_data(Table.read(tmp_path / group / "fit.ecsv"), tmp_path / "obs.csv")
+        parts = Table.read(tmp_path / group / "parts.ecsv")
+        assert sum(parts["fraction"][(parts["bands"] == "all") & (parts["measured"] == "I,q,u")]) == pytest.approx(1)
         answers[group] = json.loads(done.out)
     for group, truth in (("body_my", "paint_white"), ("body_py", "mli_kapton"), ("panel_px_front", "cell_gaas")):
         rows = answers[group]["materials"]
@@ -375,6 +378,29 @@ def test_other_colours_come_from_the_abundances(umov, scene, tmp_path):
     assert max(abs(x - y) for x, y in zip(a, b)) <= 2
 
 
+def parts_add_up(parts, health):
+    """All data say what health.ecsv says; no part of them says it better (Fisher's information adds up)."""
+    whole = {row["parameter"]: row for row in health}
+    for row in parts:
+        error = whole[row["parameter"]]["change_err"]
+        if (row["bands"], row["measured"]) == ("all", "I,q,u"):
+            assert row["change_err"] == error or math.isnan(error)
+        elif not math.isnan(row["change_err"]):
+            # Errors are to first order about each part's own best fit: not to the last digit.
+            assert row["change_err"] > 0.9 * error
+    assert {row["bands"] for row in parts} == {"all", "nm:425", "nm:550", "nm:650"}
+    assert {row["measured"] for row in parts} == {"I", "I,q,u"}
+
+
+def fit_is_of_the_data(fit, observations):
+    """Rows of the table are those of the file, and what is left over is noise: S/N 50, a floor of 2 %."""
+    rows = sum(1 for line in observations.read_text().splitlines() if line[:2] == "20")
+    assert rows - 6 <= len(fit) <= rows  # an epoch or two in the penumbra are left out
+    error = [math.hypot(r["intensity_err"], 0.02 * r["intensity"]) for r in fit]
+    left = [abs(r["intensity"] - r["intensity_model"]) / e for r, e in zip(fit, error)]
+    assert statistics.median(left) < 1.5  # 0.67 of normal errors; zero points of 2 % are not taken off
+
+
 def test_health_tells_a_drift_from_none_and_what_would_show(umov, scene, tmp_path):
     q = TRUTHS[0]
     fit = scene(q, "rays", "fit")
@@ -394,6 +420,8 @@ def test_health_tells_a_drift_from_none_and_what_would_show(umov, scene, tmp_pat
     if panel["visible"]:
         assert panel["sigma"] > 3
         assert abs(panel["change"] - 1) < 5 * panel["detectable"]
+    parts_add_up(Table.read(tmp_path / "new/parts.ecsv"), Table.read(tmp_path / "new/health.ecsv"))
+    fit_is_of_the_data(Table.read(tmp_path / "old/fit.ecsv"), tmp_path / "old.csv")
     same = umov("invert", "health", "new.csv", *words, "--baseline", "new.csv")
     assert all(abs(row["sigma"]) < 1e-6 for row in json.loads(same.out)["health"])
     assert umov("invert", "health", "new.csv", "--scenario", fit, "--drift", "body_my").code == 2

@@ -31,6 +31,12 @@ def pages(tmp_path_factory):
     umov("run", example, "--set", cube, "--set", 'object.0.materials={default="cell_gaas"}', "--set", "time.step_s=20",
          "--set", "output.dir=cube", "-q")
     umov("invert", "pose", "cube/lightcurve.ecsv", "--scenario", "cube/scenario.lock.toml", "-o", "invert", "--grid", 2000, "-q")
+    drift = ("cube/lightcurve.ecsv", "--scenario", "cube/scenario.lock.toml", "-q")
+    group = next(line.split()[1] for line in (folder / "cube.obj").read_text().splitlines() if line.startswith("usemtl"))
+    umov("invert", "material", *drift, "-o", "mixture", "--group", group, "--candidates", "cell_gaas,paint_white,mli_kapton")
+    umov("invert", "health", *drift, "-o", "health", "--drift", f"{group}=paint_white", "--drift", f"{group}=mli_kapton")
+    umov("invert", "plan", "--scenario", "cube/scenario.lock.toml", "-q", "-o", "plan", "--alternative", "cells", "--alternative",
+         f"painted:object.0.materials.{group}=paint_white")
     umov("paper", "--only", "fig2", "-o", "paper", "-q")
     return folder
 
@@ -65,6 +71,9 @@ KINDS = {  # page: figures that it must have, marks of its sky chart
     "reduce.html": ({"Polarization", "Brightness"}, 0),
     "exposure.html": ({"Error of p", "Signal to noise", "How long until p is known", "What makes the error of p"}, 0),
     "invert/report.html": ({"Brightness: measured and fitted", "Brightness left over", "Errors of the heaviest attitude: about +X and +Y"}, 0),
+    "mixture/report.html": ({"Brightness: measured and fitted", "What each band and Stokes component says by itself"}, 0),
+    "health/report.html": ({"Brightness left over", "Polarization: measured and fitted"}, 0),
+    "plan/report.html": ({"What each pass tells", "The two that are most alike", "Best pass: brightness in nm:550", "Best pass: polarization in nm:550"}, 0),
     "paper/index.html": (set(), 0),
 }
 

@@ -29,6 +29,11 @@ struct Health {
   std::vector<HealthRow> rows;
   double chi2 = 0; ///< without any change
   std::size_t measurements = 0;
+  /// All changes fitted together, in the order of the rows, and their covariance [row * n +
+  /// column].
+  std::vector<double> joint, joint_covariance;
+  /// Light of the best fit with one change, the one that explains most, in the model's units.
+  EndMember fitted;
 };
 
 /// Least squares of the data on the object as it was, one change at a time, and all unknowns under

@@ -28,6 +28,8 @@ struct Unmixing {
   double chi2 = 0, scale = 1;
   std::size_t measurements = 0;
   std::size_t left_out = 0; ///< samples whose q and u stand without an I above 0: they say nothing
+  EndMember fitted;         ///< light of the mixture, in the model's units
+  std::vector<double> covariance; ///< of the fractions of the groups [row * n + column]
   double condition = 1; ///< of the end members, whitened and of unit length, before any was joined
 };
 

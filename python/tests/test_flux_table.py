@@ -1,0 +1,79 @@
+"""Light curves as lightkurve and archives have them. The times expected are astropy's, made here the other way round."""
+import numpy as np
+import pytest
+from astropy import units as u
+from astropy.io import fits
+from astropy.table import Table
+from astropy.time import Time, TimeDelta
+from astropy.timeseries import TimeSeries
+
+import umov
+from conftest import EXAMPLES
+
+UTC = Time("2018-01-21T05:09:00", scale="utc") + TimeDelta(np.arange(4) * 20, format="sec")
+FLUX = np.array([1.0, 2.0, np.nan, 4.0])
+CORRECTION = np.array([0.004, 0.0041, 0.0042, 0.0043])  # days: the barycentre hears of it later
+
+
+def seconds_off(table, expected):
+    found = Time([text.rstrip("Z") for text in table["time_utc"]], scale="utc")
+    return np.abs((found - expected).to_value("s")).max()
+
+
+def tess_file(path, flags=(0, 0, 0, 0), timecorr=True, **cards):
+    """As the archive has them: BTJD of TDB at the barycentre."""
+    bary = UTC.tdb + TimeDelta(CORRECTION, format="jd")
+    bjd = (bary.jd1 - 2457000) + bary.jd2
+    columns = [fits.Column("TIME", "D", array=bjd), fits.Column("SAP_FLUX", "E", array=FLUX),
+               fits.Column("SAP_FLUX_ERR", "E", array=0.1 * FLUX), fits.Column("QUALITY", "J", array=np.array(flags))]
+    if timecorr:
+        columns.append(fits.Column("TIMECORR", "D", array=CORRECTION))
+    table = fits.BinTableHDU.from_columns(columns)
+    table.header.update({"TIMEREF": "SOLARSYSTEM", "TIMESYS": "TDB", "BJDREFI": 2457000, "BJDREFF": 0.0, **cards})
+    fits.HDUList([fits.PrimaryHDU(), table]).writeto(path, overwrite=True)
+    return path
+
+
+def test_a_file_of_tess_is_brought_back_from_the_barycentre(tmp_path):
+    with pytest.warns(umov.UmovWarning, match="TDB since JD 2457000.*brought back by timecorr.*2 of 4 rows"):
+        found = umov.flux_table(tess_file(tmp_path / "t.fits", flags=(0, 16, 0, 0)), "nm:550", flux="sap_flux")
+    # A double of days since JD 2457000 tells 1e-8 s of time, the text a microsecond.
+    assert seconds_off(found, UTC[[0, 3]]) < 1e-5
+    assert list(found["band"]) == ["nm:550"] * 2
+    assert np.allclose(found["flux_err"], 0.1 * FLUX[[0, 3]], rtol=1e-6)  # single precision
+
+
+def test_a_time_series_of_any_scale_is_brought_to_utc():
+    series = TimeSeries({"flux": [1, 2, 3, 4] * u.electron / u.s, "flux_err": [.1] * 4 * u.electron / u.s}, time=UTC.tai)
+    with pytest.warns(umov.UmovWarning, match="TAI"):
+        found = umov.flux_table(series, "nm:550")
+    assert seconds_off(found, UTC) < 1e-5 and list(found["flux"]) == [1, 2, 3, 4]
+
+
+def test_what_cannot_be_known_is_refused(tmp_path):
+    with pytest.raises(umov.InputError, match="8.3 min"):
+        umov.flux_table(tess_file(tmp_path / "t.fits", timecorr=False), "nm:550", flux="sap_flux")
+    with pytest.raises(umov.InputError, match="no column 'flux'; there are TIME, SAP_FLUX"):
+        umov.flux_table(tess_file(tmp_path / "t.fits"), "nm:550")
+    with pytest.raises(umov.InputError, match="without a scale"):
+        umov.flux_table(Table({"time": [1.0, 2.0], "flux": [1.0, 2.0]}), "nm:550")
+    with pytest.raises(umov.InputError, match="no row with a finite flux"):
+        umov.flux_table(TimeSeries({"flux": [np.nan]}, time=UTC[:1]), "nm:550")
+    (tmp_path / "text.fits").write_text("no FITS")
+    with pytest.raises(umov.InputError, match="cannot be read as FITS"):
+        umov.flux_table(tmp_path / "text.fits", "nm:550")
+    with pytest.raises(umov.UsageError, match="lightkurve"):
+        umov.flux_table([1, 2], "nm:550")
+
+
+def test_an_inversion_takes_it():
+    """The same light as umov's own table: the same answer."""
+    scene = EXAMPLES / "agena_maui.toml"
+    curve = umov.run(scene, set={"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 20,
+                                 "bands.set": ["nm:550"]})
+    light = np.asarray(curve["I"]).ravel()
+    series = TimeSeries({"flux": light, "flux_err": 0.01 * light}, time=curve.time)
+    options = {"set": {"bands.set": ["nm:550"]}, "fit": umov.Fit(grid=1000)}
+    found = umov.invert_pose(umov.flux_table(series, "nm:550"), scene, **options)
+    assert found.verdict in ("determined", "ambiguous", "undetermined")
+    assert len(found.tables["fit"]) == len(series)
