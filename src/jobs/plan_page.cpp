@@ -97,7 +97,9 @@ std::vector<std::string> band_lines(const Plan &plan) {
 } // namespace
 
 std::string plan_page(const std::string &title, const Plan &plan) {
-  std::vector<PlotFigure> figures = pass_figures(plan);
+  std::vector<PlotFigure> figures;
+  if (plan.passes.size() > 1) // the lines below say it of one
+    figures = pass_figures(plan);
   for (std::size_t b = 0; b < plan.bands.size(); ++b)
     add_light(figures, plan, b);
   std::vector<std::string> notes = page_lines(plan_summary(plan));

@@ -35,7 +35,7 @@ def pages(tmp_path_factory):
     group = next(line.split()[1] for line in (folder / "cube.obj").read_text().splitlines() if line.startswith("usemtl"))
     umov("invert", "material", *drift, "-o", "mixture", "--group", group, "--candidates", "cell_gaas,paint_white,mli_kapton")
     umov("invert", "health", *drift, "-o", "health", "--drift", f"{group}=paint_white", "--drift", f"{group}=mli_kapton")
-    umov("invert", "plan", "--scenario", "cube/scenario.lock.toml", "-q", "-o", "plan", "--alternative", "cells", "--alternative",
+    umov("invert", "plan", "--scenario", "cube/scenario.lock.toml", *DAY, "-q", "-o", "plan", "--alternative", "cells", "--alternative",
          f"painted:object.0.materials.{group}=paint_white")
     umov("paper", "--only", "fig2", "-o", "paper", "-q")
     return folder

@@ -57,14 +57,14 @@ const umovFigure = (() => {
       type: line.x.length > 2000 ? "scattergl" : "scatter", mode: line.markers ? "markers" : "lines",
       name: safe(line.name), x: line.x, y: line.y, opacity: line.faint ? 0.35 : 1, showlegend: line.name !== "",
       line: { color: line.colour, dash: line.dash, width: line.faint ? 1 : 2 },
-      marker: { color: line.colour, size: 4, symbol: symbols[index % symbols.length] },
+      marker: { color: line.colour, size: line.x.length < 60 ? 8 : 4, symbol: symbols[index % symbols.length] },
     }));
     const axis = (title, more) => Object.assign({ title: { text: title, font: { size: plot.clientWidth < 460 ? 11 : 13 } }, automargin: true }, grid(), more);
     Plotly.newPlot(plot, lines, {
       autosize: true,
       margin: { l: 60, r: 12, t: 10, b: 60 + 17 * Math.ceil(lines.length / 3) },
       xaxis: axis(figure.x, { ...(figure.xlog ? { type: "log", exponentformat: "power" } : {}), ...(figure.xspan ? { range: figure.xspan } : {}) }),
-      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power", ...(figure.yspan ? { range: figure.yspan } : {}) }),
+      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power", ...(figure.log ? { nticks: 6 } : {}), ...(figure.yspan ? { range: figure.yspan } : {}) }),
       legend: legend(), ...ground(),
     }, options(figure));
     if (plot.isWatched) return;
