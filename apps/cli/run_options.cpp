@@ -39,6 +39,7 @@ Result<Scenario> scenario_of(const RunOptions &o) {
     scenario.earth_orientation = o.earth_orientation;
   UMOV_TRY(take_folder(scenario, o.output, o.overrides));
   UMOV_TRY(check_complete_for_run(scenario));
+  UMOV_TRY(check_magnitudes(scenario));
   return scenario;
 }
 

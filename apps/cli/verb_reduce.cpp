@@ -96,7 +96,7 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
   UMOV_TRY(put_measurements(o, counts, table));
   UMOV_ASSIGN(shown, chosen_columns(table, o.columns,
                                     {"time_utc", "band", "mag", "q", "u", "v", "p_debiased", "p_lo",
-                                     "p_hi", "pa", "pa_err", "flags"},
+                                     "p_hi", "pa", "pa_reach", "flags"},
                                     o.output, common));
   return put_table(o.output, shown, common);
 }

@@ -77,8 +77,10 @@ std::array<FrameSum, 4> sum_frame(const Detector &d, const RawFrame &frame,
              });
   for (std::size_t p = 0; p < 4; ++p) {
     const double n = out[p].ring_pixels;
-    if (!(n > 1))
+    if (!(n > 1)) { // an edge or a mask took the ring: the sky is not known to be 0
+      out[p].sky = out[p].sky_sd = out[p].pixels > 0 ? std::nan("") : 0;
       continue;
+    }
     const double mean = ring[p] / n, variance = (squares[p] - n * mean * mean) / (n - 1);
     out[p].sky = mean * out[p].pixels;
     out[p].sky_sd = out[p].pixels * std::sqrt(std::max(0., variance) / n);

@@ -112,17 +112,24 @@ struct Tables {
 
 /// What is told of many frames together.
 struct FrameTroubles {
-  std::size_t cut = 0, crowded = 0, lost = 0;
+  std::size_t cut = 0, crowded = 0, lost = 0, roomless = 0;
   void add(const Recorded &r) {
     cut += r.frames->is_cut ? 1u : 0u;
     crowded += r.frames->has_star_in_aperture ? 1u : 0u;
     lost += std::ranges::any_of(r.channels, [](const auto &c) { return std::isnan(c.counts); });
+    roomless += std::ranges::any_of(
+        r.channels, [](const auto &c) { return std::isnan(c.sky) && !std::isnan(c.counts); });
   }
   void warn(Diagnostics &diagnostics) const {
     if (cut > 0)
       diagnostics.warn(fmt::format("{} with an aperture that reaches over the edge: enlarge "
                                    "observation.frame_px, or shorten the trail",
                                    counted(cut, "frame")));
+    if (roomless > 0)
+      diagnostics.warn(fmt::format("{} without room for the ring that tells the sky: their sky is "
+                                   "no number, and umov reduce leaves them out. Enlarge "
+                                   "observation.frame_px",
+                                   counted(roomless, "frame")));
     if (crowded > 0)
       diagnostics.warn(fmt::format("{} with a star in the aperture that has more than a hundredth "
                                    "of the object's light: it is in the counts",

@@ -47,6 +47,7 @@ Result<PassModels> PassModels::of_scene(const PassModel &wanted, const JobOption
                                         Diagnostics &diagnostics) {
   PassModels out;
   Scenario scene = *wanted.scene;
+  UMOV_TRY(check_magnitudes(scene));
   scene.time.reset(); // orbits come from the file of the passes
   for (std::size_t k = 0; k < scene.objects.size(); ++k) {
     const int norad = scene.objects[k].orbit ? scene.objects[k].orbit->norad : 0;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <map>
+#include <optional>
 #include <span>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
@@ -289,42 +291,82 @@ tl::unexpected<Error> all_saturated() {
   return fail(ErrorCode::Physics, "every channel is saturated: there is nothing to reduce");
 }
 
+/// Counts of one object in one band.
+struct Series {
+  std::vector<CountRow> rows;
+  std::size_t full = 0; ///< saturated counts, which are not among them
+};
+using AllSeries = std::map<std::pair<std::string, std::string>, Series>;
+
 /// A saturated count is a lower limit: no series is drawn through it.
-std::map<std::pair<std::string, std::string>, std::vector<CountRow>>
-series_of(const CountsFile &file, Diagnostics &diagnostics) {
-  std::map<std::pair<std::string, std::string>, std::vector<CountRow>> out;
+AllSeries series_of(const CountsFile &file, Diagnostics &diagnostics) {
+  AllSeries out;
   std::size_t full = 0;
-  for (const CountRow &row : file.rows)
-    if (row.is_saturated)
-      ++full;
-    else
-      out[{row.name, row.band}].push_back(row);
-  if (full > 0 && !out.empty())
+  for (const CountRow &row : file.rows) {
+    Series &one = out[{row.name, row.band}];
+    if (!row.is_saturated) {
+      one.rows.push_back(row);
+      continue;
+    }
+    ++one.full;
+    ++full;
+  }
+  if (full > 0 && full < file.rows.size())
     diagnostics.warn(fmt::format("{} of {} left out of the series: they are saturated",
                                  counted(full, "count"), file.rows.size()));
   return out;
 }
 
+std::string named(const AllSeries::key_type &key) {
+  return key.first.empty() ? key.second : key.first + " " + key.second;
+}
+
+Reduced reduced_series(const Series &series, const SequenceFit &fit, const ReduceOptions &options) {
+  Reduced out;
+  out.middle = middle_of(series.rows);
+  out.fractions = fit.fractions;
+  out.fit.stokes[0] = fit.mean;
+  out.fit.covariance[0][0] = fit.mean_variance;
+  out.fit.chi2 = fit.chi2;
+  out.fit.dof = fit.dof;
+  if (series.full > 0)
+    out.flags = "saturated";
+  if (fit.mean > 3 * std::sqrt(fit.mean_variance))
+    out.is_solved = true;
+  else // nothing was seen, or the series is not the light's: fractions of it say nothing
+    add_flag(out.flags, "faint");
+  judge(out, options);
+  return out;
+}
+
+/// What cannot be fitted is told by its name and takes nothing else with it.
 Result<std::vector<Reduced>> over_time(const CountsFile &file, std::size_t parameters,
                                        bool has_separate_pupils, const ReduceOptions &options,
                                        Diagnostics &diagnostics) {
-  const auto groups = series_of(file, diagnostics);
-  if (groups.empty())
-    return all_saturated();
   std::vector<Reduced> out;
-  for (const auto &[key, rows] : groups) {
-    UMOV_ASSIGN(fit, fit_series(rows, parameters, has_separate_pupils, options));
-    Reduced one;
-    one.middle = middle_of(rows);
-    one.fractions = fit.fractions;
-    one.fit.stokes[0] = fit.mean;
-    one.fit.covariance[0][0] = fit.mean_variance;
-    one.fit.chi2 = fit.chi2;
-    one.fit.dof = fit.dof;
-    one.is_solved = true;
-    judge(one, options);
-    out.push_back(std::move(one));
+  std::optional<Error> first;
+  for (const auto &[key, series] : series_of(file, diagnostics)) {
+    if (series.rows.empty()) {
+      diagnostics.warn(fmt::format("{}: all of its {} are saturated", named(key),
+                                   counted(series.full, "count")));
+      continue;
+    }
+    warn_of_gaps(series.rows, true, diagnostics);
+    auto fit = fit_series(series.rows, parameters, has_separate_pupils, options);
+    if (fit) {
+      out.push_back(reduced_series(series, *fit, options));
+      continue;
+    }
+    fit.error().message = named(key) + ": " + fit.error().message;
+    if (first)
+      diagnostics.warn(fit.error().message);
+    else
+      first = fit.error();
   }
+  if (out.empty())
+    return first ? tl::unexpected(*first) : all_saturated();
+  if (first)
+    diagnostics.warn(first->message);
   return out;
 }
 
@@ -402,7 +444,8 @@ Result<Table> reduce(const CountsFile &file, const ReduceOptions &options, const
                   ? over_time(file, parameters, has_separate_pupils, options, diagnostics)
                   : set_by_set(file, parameters, has_separate_pupils, options, diagnostics));
   monitor.advance("sets", reduced.size(), reduced.size());
-  warn_of_gaps(file.rows, options.period_s > 0 || options.knot_s > 0, diagnostics);
+  if (!(options.period_s > 0 || options.knot_s > 0)) // a series has told its own
+    warn_of_gaps(file.rows, false, diagnostics);
   warn_of_rows(reduced, diagnostics);
   Table out = stokes_table(file, parameters, reduced);
   note(out, file);

@@ -46,6 +46,7 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderRequest &request, const S
                                            const LoadedObject &object, const JobOptions &options,
                                            const Monitor &monitor) {
   UMOV_TRY(check_complete_for_run(scenario));
+  UMOV_TRY(check_magnitudes(scenario));
   LightCurveRequest wanted =
       light_curve_request(scenario, scenario.objects[request.object], object, options);
   wanted.earthshine.reset();

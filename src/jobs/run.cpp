@@ -171,6 +171,7 @@ Result<Journal> journal_of(const std::vector<ObjectRun> &objects, const Scenario
 Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptions &options,
                                         const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_TRY(check_complete_for_run(scenario));
+  UMOV_TRY(check_magnitudes(scenario));
   std::vector<ObjectRun> out;
   for (std::size_t k = 0; k < scenario.objects.size(); ++k) {
     UMOV_ASSIGN(object,

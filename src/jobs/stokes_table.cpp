@@ -59,7 +59,8 @@ public:
         {"pa", "deg", "position angle of polarization, [0, 180)"},
         {"pa_err", "deg", "68.27 % half width"},
         {"pa_reach", "deg",
-         "half width that holds the true angle in 66 to 70 % whatever p is; 90: unknown"},
+         "half width that holds the true angle in 66 to 70 % at any p where q and u are known "
+         "equally well; 90: unknown"},
         {"q_scat", "", "Q/I, + perpendicular to the scattering plane"},
         {"u_scat", "", "U/I in the scattering frame"},
         {"chi2", "", "of the fit"},

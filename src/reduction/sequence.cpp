@@ -35,11 +35,17 @@ Vector basis_at(const BrightnessBasis &basis, double time_s) {
   return out / 6;
 }
 
-/// What of the series is its mean.
-Vector mean_of(const BrightnessBasis &basis, const Matrix &rows) {
-  if (basis.knot_s > 0)
-    return rows.colwise().mean().transpose();
-  return Vector::Unit(rows.cols(), 0);
+/// What of the series is its mean over time: of the counts alone it would be that of the times that
+/// were not saturated.
+Vector mean_of(const BrightnessBasis &basis, Eigen::Index terms) {
+  if (!(basis.knot_s > 0))
+    return Vector::Unit(terms, 0);
+  constexpr int per_piece = 8; // midpoints: a cubic's mean to 1e-3 of its change within a piece
+  const int times = per_piece * basis.pieces;
+  Vector out = Vector::Zero(terms);
+  for (int k = 0; k < times; ++k)
+    out += basis_at(basis, basis.begin_s + (k + 0.5) / per_piece * basis.knot_s) / times;
+  return out;
 }
 
 /// Series and fractions, the series scaled so that its mean is in counts.
@@ -217,7 +223,7 @@ private:
     out.basis = made_of_;
     out.parameters = static_cast<int>(fractions) + 1;
     out.dof = static_cast<int>(counts_.size() - terms - fractions);
-    const Vector mean = mean_of(made_of_, basis_);
+    const Vector mean = mean_of(made_of_, terms);
     out.mean = mean.dot(state.series) / scale_;
     out.mean_variance =
         mean.dot(algebra::times(covariance.topLeftCorner(terms, terms), mean)) / (scale_ * scale_);

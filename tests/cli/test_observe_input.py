@@ -270,3 +270,4 @@ def test_magnitudes_of_the_vega_system(umov, tmp_path):
     assert "observe.toml:" in done.err
     done = umov("run", path, "-o", "run")
     assert done.code == 3 and "has no zero point in the Vega system" in done.err
+    assert "observe.toml:" in done.err and "observation.bands" in done.err

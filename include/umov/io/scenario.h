@@ -105,6 +105,10 @@ Result<Scenario> read_scenario_text(const std::string &text, const std::filesyst
 /// BadInput that lists what a run still needs: observer, time, orbit.
 Result<void> check_complete_for_run(const Scenario &scenario);
 
+/// BadInput where a band of [bands] has no zero point in the system of magnitudes: umov observe,
+/// which takes bands of its own, asks nothing of them.
+Result<void> check_magnitudes(const Scenario &scenario);
+
 /// The scenario as TOML with every default written out and absolute paths; reading it gives the
 /// same scenario.
 std::string locked_scenario(const Scenario &scenario);

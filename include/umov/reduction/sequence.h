@@ -33,7 +33,7 @@ struct BrightnessBasis {
 struct SequenceFit {
   std::vector<double> series; ///< coefficients of the basis
   BrightnessBasis basis;
-  double mean = 0;          ///< brightness: of the Fourier series, or over the data's times
+  double mean = 0;          ///< brightness over the period, or from the first count to the last
   int parameters = 3;       ///< that were fitted: I, Q, U or all four
   double mean_variance = 0; ///< of the mean
   StokesFractions fractions;

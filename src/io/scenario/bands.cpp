@@ -129,3 +129,17 @@ std::string bands_toml(const Scenario &of) {
 }
 
 } // namespace umov::scenario
+
+namespace umov {
+
+Result<void> check_magnitudes(const Scenario &scenario) {
+  for (const Band &band : scenario.bands)
+    if (const auto zero = zero_irradiance(band, scenario.magnitudes); !zero)
+      return fail(ErrorCode::BadInput,
+                  zero.error().message + ", or bands that have one in [bands] set: those of "
+                                         "observation.bands are for umov observe alone",
+                  scenario.place("bands.mag_system"));
+  return {};
+}
+
+} // namespace umov

@@ -71,6 +71,13 @@ Result<void> check_notes(const TextTable &table, const std::string &file) {
                 fmt::format("pol_frame of the header is \"{}\": {} was expected",
                             printable(told->second), fmt::join(frames, ", ")),
                 {file});
+  constexpr std::array systems{"AB", "ST", "Vega"};
+  const auto system = table.notes.find("mag_system");
+  if (system != table.notes.end() && std::ranges::find(systems, system->second) == systems.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("mag_system of the header is \"{}\": {} was expected",
+                            printable(system->second), fmt::join(systems, ", ")),
+                {file});
   return check_polcconv(table, file);
 }
 
@@ -111,6 +118,7 @@ Result<void> read_numbers(const CountCells &cells, std::size_t row, CountRow &ou
                           {"exposure", &exposure},
                           {"set_id", &set}};
   // A count that is not there is none of 0.
+  out.sky_err = out.var_read = std::nan(""); // nor is a variance
   out.counts = out.sky = out.row[0] = out.row[1] = out.row[2] = out.row[3] = std::nan("");
   for (const Field &field : fields) {
     UMOV_ASSIGN(value, cells.number(field.name, row, *field.value));

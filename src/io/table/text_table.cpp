@@ -158,6 +158,8 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
   constexpr std::size_t cells_max = 50'000'000; // some 50 bytes each: 2.5 GB
   if (const auto why = why_no_text(text))
     return fail(ErrorCode::BadInput, *why, {file});
+  if (text.starts_with("\xEF\xBB\xBF")) // a mark that spreadsheets put before UTF-8
+    text.remove_prefix(3);
   TextTable out;
   bool has_blanks = false;
   std::size_t number = 0;

@@ -172,6 +172,70 @@ TEST(Reduce, FlagsTellWhatNoiseDoesNot) {
   EXPECT_NE(diagnostics.warnings()[0].text().find("misfit"), std::string::npos);
 }
 
+/// Four analysers one after the other, twice a second for a minute, of light that goes up and down
+/// by six tenths in 20 s; what exceeds `full` is saturated.
+CountsFile breathing(double full) {
+  CountsFile out;
+  for (int k = 0; k < 120; ++k) {
+    const double light = 1 + .6 * std::sin(2 * pi * .5 * k / 20);
+    CountRow row = behind({}, 45 * (k % 4), 0, .5 * k);
+    row.exposure = k;
+    row.counts *= light;
+    row.is_saturated = light > full;
+    out.rows.push_back(row);
+  }
+  return out;
+}
+
+TEST(Reduce, ASeriesIsTheMeanOverTimeThoughItsBrightestCountsAreLeftOut) {
+  ReduceOptions options;
+  options.knot_s = 3;
+  for (const double full : {2., 1.55}) {
+    const Table table = reduced(breathing(full), options);
+    // Three whole periods: the mean is 1. Without what is above 1.55, 13 % of the time, the mean of
+    // the counts is .91; a cubic over those 2.7 s is the sine to some thousandths.
+    EXPECT_NEAR(table.number("I", 0) / electrons, 1, .01) << full;
+    EXPECT_NEAR(table.number("q", 0), .3, .01);
+    EXPECT_EQ(table.text("flags", 0), full < 1.6 ? "saturated" : "");
+  }
+}
+
+TEST(Reduce, WhatCannotBeFittedIsNamedAndTakesNothingWithIt) {
+  CountsFile file = breathing(2);
+  for (CountRow &row : file.rows)
+    row.name = "good";
+  for (const auto &[name, count] : {std::pair{"full", 40}, {"short", 3}})
+    for (int k = 0; k < count; ++k) {
+      file.rows.push_back(file.rows[static_cast<std::size_t>(k)]);
+      file.rows.back().name = name;
+      file.rows.back().is_saturated = file.rows.back().name == "full";
+    }
+  ReduceOptions options;
+  options.knot_s = 3;
+  Diagnostics diagnostics;
+  const auto table = reduce(file, options, {}, diagnostics);
+  ASSERT_TRUE(table) << table.error().text();
+  EXPECT_EQ(table->rows(), 1u);
+  std::string text;
+  for (const auto &one : diagnostics.warnings())
+    text += one.text() + "\n";
+  EXPECT_NE(text.find("full V: all of its 40 counts are saturated"), std::string::npos) << text;
+  EXPECT_NE(text.find("short V: 3 counts for"), std::string::npos) << text;
+}
+
+TEST(Reduce, ASeriesOfNoLightHasNoPolarization) {
+  CountsFile file = breathing(2);
+  for (CountRow &row : file.rows) {
+    row.sky = row.counts - 50; // of 780 that are noise
+    row.var_read = 1e5;
+  }
+  ReduceOptions options;
+  options.knot_s = 3;
+  const Table table = reduced(file, options);
+  EXPECT_NE(table.text("flags", 0).find("faint"), std::string::npos);
+  EXPECT_TRUE(std::isnan(table.number("q", 0)));
+}
+
 TEST(Reduce, SetsThatAreSaturatedAreCounted) {
   CountsFile file = wheel({}, 0, 0);
   for (CountRow row : wheel({}, 0, 0).rows) {
