@@ -1,8 +1,8 @@
-#include "jobs/reduced.h"
+#include "jobs/count_rows.h"
+#include "jobs/reduce_series.h"
 #include "jobs/result_folder.h"
 
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -18,7 +18,6 @@ namespace umov::jobs {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-using Rows = std::span<const CountRow>;
 
 /// Rows of one object, band and set.
 struct Set {
@@ -39,56 +38,6 @@ std::vector<Set> sets_of(const CountsFile &file) {
     else
       set.rows.push_back(row);
   }
-  return out;
-}
-
-/// A row's datum, its row behind the instrument's own terms if they are known.
-ChannelDatum datum_of(const CountRow &row, const ReduceOptions &options) {
-  const StokesRow answers = options.calibration ? calibrated_row(*options.calibration, row.row,
-                                                                 row.x_axis_pa_deg * pi / 180)
-                                                : row.row;
-  return {row.counts, row.sky, row.var_read + row.sky_err * row.sky_err, row.excess2, answers};
-}
-
-std::vector<ChannelDatum> data_of(Rows rows, const ReduceOptions &options) {
-  std::vector<ChannelDatum> out;
-  for (const CountRow &row : rows)
-    out.push_back(datum_of(row, options));
-  return out;
-}
-
-/// Channels of one name share a gain; without names each has its own.
-std::vector<std::size_t> gains_of(Rows rows) {
-  std::map<std::string, std::size_t> known;
-  std::vector<std::size_t> out;
-  for (const CountRow &row : rows)
-    out.push_back(row.channel.empty() ? out.size()
-                                      : known.try_emplace(row.channel, known.size()).first->second);
-  return out;
-}
-
-/// An axis between two others, `share` of the short way from the first [deg], in [0, 180).
-double between_axes(double from, double to, double share) {
-  const double axis = from + share * std::remainder(to - from, 180);
-  return axis - 180 * std::floor(axis / 180);
-}
-
-/// What a row of the result tells of where the light came from: of the middle of its exposures.
-CountRow middle_of(Rows rows) {
-  CountRow out = rows.front();
-  const double half = seconds_between(rows.back().time, out.time) / 2;
-  const auto after = std::ranges::find_if(
-      rows, [&](const CountRow &row) { return seconds_between(row.time, out.time) >= half; });
-  const CountRow &b = *after, &a = after == rows.begin() ? b : *(after - 1);
-  const double step = seconds_between(b.time, a.time);
-  const double share = step > 0 ? (half - seconds_between(a.time, out.time)) / step : 0;
-  out.time = plus_seconds(out.time, half);
-  out.x_axis_pa_deg = between_axes(a.x_axis_pa_deg, b.x_axis_pa_deg, share);
-  out.ra_deg = a.ra_deg + share * std::remainder(b.ra_deg - a.ra_deg, 360);
-  out.dec_deg = a.dec_deg + share * (b.dec_deg - a.dec_deg);
-  out.range_km = a.range_km + share * (b.range_km - a.range_km);
-  out.pa_scat_deg = between_axes(a.pa_scat_deg, b.pa_scat_deg, share);
-  out.phase_angle_deg = a.phase_angle_deg + share * (b.phase_angle_deg - a.phase_angle_deg);
   return out;
 }
 
@@ -123,24 +72,6 @@ void add_scintillation(std::vector<CommonError> &out, Rows rows,
   }
 }
 
-void add_flag(std::string &flags, const char *flag) {
-  flags += flags.empty() ? flag : std::string(" ") + flag;
-}
-
-/// Flags of a result that was found: fits that noise does not explain, and more polarized light
-/// than light.
-void judge(Reduced &r, const ReduceOptions &options) {
-  if (options.calibration && r.is_solved)
-    for (std::size_t k = 0; k < 2; ++k)
-      r.fractions.covariance[k][k] +=
-          common_variance(*options.calibration, {r.fractions.value[0], r.fractions.value[1]});
-  constexpr double chance = 1e-6; // of a sound set: none in a long night
-  if (r.fit.dof > 0 && boost::math::gamma_q(r.fit.dof / 2., r.fit.chi2 / 2) < chance)
-    add_flag(r.flags, "misfit");
-  if (r.is_solved && std::hypot(r.fractions.value[0], r.fractions.value[1]) > 1)
-    add_flag(r.flags, "above_one");
-}
-
 /// q and u of the plate's first half turn against those of its second, which should be the same.
 void put_null_test(Rows rows, const std::vector<ChannelDatum> &data, std::size_t parameters,
                    Reduced &out) {
@@ -157,34 +88,6 @@ void put_null_test(Rows rows, const std::vector<ChannelDatum> &data, std::size_t
   const auto a = fractions_of(*first), b = fractions_of(*second);
   for (std::size_t k = 0; k < 2; ++k)
     out.null[k] = (a.value[k] - b.value[k]) / 2;
-}
-
-/// Gaps within what is reduced together: brightness may have changed unseen.
-void warn_of_gaps(const std::vector<CountRow> &rows, bool is_series, Diagnostics &diagnostics) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < rows.size(); ++k)
-    if (const double step = seconds_between(rows[k].time, rows[k - 1].time); step > 1e-9)
-      steps.push_back(step);
-  if (steps.size() < 4)
-    return;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double usual = *middle;
-  std::size_t gaps = 0;
-  double longest = 0;
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    const double step = seconds_between(rows[k].time, rows[k - 1].time);
-    const bool is_together = is_series || rows[k].set == rows[k - 1].set;
-    if (!is_together || rows[k].name != rows[k - 1].name || !(step > 10 * usual))
-      continue;
-    ++gaps;
-    longest = std::max(longest, step);
-  }
-  if (gaps > 0)
-    diagnostics.warn(
-        fmt::format("{} of up to {:.3g} s within {}, where exposures follow each other "
-                    "every {:.3g} s: what changed meanwhile is taken for polarization",
-                    counted(gaps, "gap"), longest, is_series ? "a series" : "a set", usual));
 }
 
 Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
@@ -264,112 +167,6 @@ void warn_of_drift(const std::vector<Set> &sets, const std::vector<Reduced> &red
         drift, std::sqrt(2.0) * drift, error));
 }
 
-/// The series of one object and band, with what is common to its counts.
-Result<SequenceFit> fit_series(Rows rows, std::size_t parameters, bool has_separate_pupils,
-                               const ReduceOptions &options) {
-  std::vector<TimedDatum> data;
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    data.push_back({seconds_between(rows[k].time, rows.front().time), datum_of(rows[k], options),
-                    has_separate_pupils ? k : static_cast<std::size_t>(rows[k].exposure),
-                    rows[k].scintillation});
-  const std::size_t unknowns = std::max<std::size_t>(3, parameters);
-  UMOV_ASSIGN(fit, options.knot_s > 0
-                       ? fit_spline(data, options.knot_s, unknowns)
-                       : fit_sequence(data, options.period_s, options.harmonics, unknowns));
-  std::vector<ModelledDatum> modelled;
-  const auto gains = gains_of(rows);
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    modelled.push_back({data[k].datum, stokes_at(fit, data[k].time_s),
-                        rows[k].x_axis_pa_deg * pi / 180, gains[k]});
-  const auto common = common_errors(options.priors, modelled);
-  if (common.empty())
-    return fit;
-  return fit_sequence(data, fit, common);
-}
-
-tl::unexpected<Error> all_saturated() {
-  return fail(ErrorCode::Physics, "every channel is saturated: there is nothing to reduce");
-}
-
-/// Counts of one object in one band.
-struct Series {
-  std::vector<CountRow> rows;
-  std::size_t full = 0; ///< saturated counts, which are not among them
-};
-using AllSeries = std::map<std::pair<std::string, std::string>, Series>;
-
-/// A saturated count is a lower limit: no series is drawn through it.
-AllSeries series_of(const CountsFile &file, Diagnostics &diagnostics) {
-  AllSeries out;
-  std::size_t full = 0;
-  for (const CountRow &row : file.rows) {
-    Series &one = out[{row.name, row.band}];
-    if (!row.is_saturated) {
-      one.rows.push_back(row);
-      continue;
-    }
-    ++one.full;
-    ++full;
-  }
-  if (full > 0 && full < file.rows.size())
-    diagnostics.warn(fmt::format("{} of {} left out of the series: they are saturated",
-                                 counted(full, "count"), file.rows.size()));
-  return out;
-}
-
-std::string named(const AllSeries::key_type &key) {
-  return key.first.empty() ? key.second : key.first + " " + key.second;
-}
-
-Reduced reduced_series(const Series &series, const SequenceFit &fit, const ReduceOptions &options) {
-  Reduced out;
-  out.middle = middle_of(series.rows);
-  out.fractions = fit.fractions;
-  out.fit.stokes[0] = fit.mean;
-  out.fit.covariance[0][0] = fit.mean_variance;
-  out.fit.chi2 = fit.chi2;
-  out.fit.dof = fit.dof;
-  if (series.full > 0)
-    out.flags = "saturated";
-  if (fit.mean > 3 * std::sqrt(fit.mean_variance))
-    out.is_solved = true;
-  else // nothing was seen, or the series is not the light's: fractions of it say nothing
-    add_flag(out.flags, "faint");
-  judge(out, options);
-  return out;
-}
-
-/// What cannot be fitted is told by its name and takes nothing else with it.
-Result<std::vector<Reduced>> over_time(const CountsFile &file, std::size_t parameters,
-                                       bool has_separate_pupils, const ReduceOptions &options,
-                                       Diagnostics &diagnostics) {
-  std::vector<Reduced> out;
-  std::optional<Error> first;
-  for (const auto &[key, series] : series_of(file, diagnostics)) {
-    if (series.rows.empty()) {
-      diagnostics.warn(fmt::format("{}: all of its {} are saturated", named(key),
-                                   counted(series.full, "count")));
-      continue;
-    }
-    warn_of_gaps(series.rows, true, diagnostics);
-    auto fit = fit_series(series.rows, parameters, has_separate_pupils, options);
-    if (fit) {
-      out.push_back(reduced_series(series, *fit, options));
-      continue;
-    }
-    fit.error().message = named(key) + ": " + fit.error().message;
-    if (first)
-      diagnostics.warn(fit.error().message);
-    else
-      first = fit.error();
-  }
-  if (out.empty())
-    return first ? tl::unexpected(*first) : all_saturated();
-  if (first)
-    diagnostics.warn(first->message);
-  return out;
-}
-
 /// Every set by itself.
 Result<std::vector<Reduced>> set_by_set(const CountsFile &file, std::size_t parameters,
                                         bool has_separate_pupils, const ReduceOptions &options,
@@ -441,7 +238,7 @@ Result<Table> reduce(const CountsFile &file, const ReduceOptions &options, const
   const bool has_separate_pupils = pupils != file.notes.end() && pupils->second == "separate";
   UMOV_ASSIGN(reduced,
               options.period_s > 0 || options.knot_s > 0
-                  ? over_time(file, parameters, has_separate_pupils, options, diagnostics)
+                  ? reduce_series(file, parameters, has_separate_pupils, options, diagnostics)
                   : set_by_set(file, parameters, has_separate_pupils, options, diagnostics));
   monitor.advance("sets", reduced.size(), reduced.size());
   if (!(options.period_s > 0 || options.knot_s > 0)) // a series has told its own
