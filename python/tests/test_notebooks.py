@@ -72,7 +72,7 @@ def kernel(tmp_path_factory):
     made.close()
 
 
-LONG = {"render.method": "auto", "time.step_s": 0.02, "time.start": "2018-01-21T05:07:00Z",
+LONG = {"render.method": "rays", "time.step_s": 0.02, "time.start": "2018-01-21T05:07:00Z",
         "time.stop": "2018-01-21T05:14:00Z"}
 
 

@@ -70,9 +70,12 @@ UMOV_KERNEL void round_directions(const kernel::FacetPose<double> &from,
     to.across[k] = rounded(from.across[k]);
   }
   to.cos_phase = rounded(from.cos_phase);
-  to.along_scale = rounded(from.along_scale);
   to.per_sine = rounded(from.per_sine);
-  to.half_shift = rounded(from.half_shift);
+  // (n.l - n.v) times this scale: its rounding would be as large as itself. Below 1e-3 rad the
+  // image of the Sun's disk is a circle to 1e-7, and where a normal lies around it is all one.
+  const bool has_along = from.along_scale < 1e3;
+  to.along_scale = has_along ? rounded(from.along_scale) : 0;
+  to.half_shift = has_along ? rounded(from.half_shift) : 0;
 }
 
 } // namespace umov::backend

@@ -85,8 +85,8 @@ Reduced reduced_series(const Series &series, const SequenceFit &fit, const Reduc
 } // namespace
 
 Result<std::vector<Reduced>> reduce_series(const CountsFile &file, std::size_t parameters,
-                                       bool has_separate_pupils, const ReduceOptions &options,
-                                       Diagnostics &diagnostics) {
+                                           bool has_separate_pupils, const ReduceOptions &options,
+                                           Diagnostics &diagnostics) {
   std::vector<Reduced> out;
   std::optional<Error> first;
   for (const auto &[key, series] : series_of(file, diagnostics)) {

@@ -83,7 +83,7 @@ def test_old_elements_are_left_out(umov, tmp_path):
 def test_a_stop_keeps_what_is_found(umov, tmp_path):
     running = subprocess.Popen(
         [UMOV, "passes", "--orbit", MIXED, "-s", SITE, "--start", "2018-01-21T00:00:00Z", "--stop",
-         "2018-02-20T00:00:00Z", "-o", "p.csv", "--threads", "1"], cwd=tmp_path,
+         "2018-12-20T00:00:00Z", "--allow-old-elements", "-o", "p.csv", "--threads", "1"], cwd=tmp_path,
         stderr=subprocess.PIPE, text=True)
     time.sleep(3)
     running.send_signal(signal.SIGINT)
