@@ -26,6 +26,8 @@ struct BlockHead {
   std::uint64_t part, number, bytes;
   std::array<char, key_bytes> sum; ///< SHA-256 of the bytes
 };
+/// In `part` of a block that is a remark.
+constexpr std::uint64_t is_remark = std::uint64_t{1} << 63;
 constexpr std::array<char, 8> block_mark{'u', 'm', 'b', 'l', 'o', 'c', 'k', '\n'};
 
 bool read_at(int descriptor, void *to, std::size_t bytes, std::uint64_t offset) {
@@ -140,7 +142,10 @@ void Journal::read_blocks() {
     if (!read_at(descriptor_, bytes.data(), bytes.size(), offset) ||
         sha256_hex(bytes) != std::string_view(head.sum.data(), head.sum.size()))
       break;
-    places_[{head.part, head.number}] = {offset, head.bytes};
+    if ((head.part & is_remark) != 0)
+      remarks_[head.part & ~is_remark].push_back(bytes);
+    else
+      places_[{head.part, head.number}] = {offset, head.bytes};
     end_ = offset + head.bytes;
   }
 }
@@ -150,6 +155,7 @@ Journal &Journal::operator=(Journal &&other) noexcept {
   std::swap(path_, other.path_);
   std::swap(key_, other.key_);
   std::swap(places_, other.places_);
+  std::swap(remarks_, other.remarks_);
   std::swap(end_, other.end_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(is_on_, other.is_on_);
@@ -196,9 +202,10 @@ bool Journal::begin() {
   return true;
 }
 
-void Journal::keep(Block block, std::string_view bytes) {
+/// At the end of the file; false where blocks are not kept.
+bool Journal::append(Block block, std::string_view bytes) {
   if (!is_on_)
-    return;
+    return false;
   BlockHead head{block_mark, block.part, block.number, bytes.size(), {}};
   const std::string sum = sha256_hex(bytes);
   std::copy_n(sum.data(), head.sum.size(), head.sum.data());
@@ -206,10 +213,28 @@ void Journal::keep(Block block, std::string_view bytes) {
   if (!begin() || !write_at(descriptor_, head_text, end_) ||
       !write_at(descriptor_, bytes, end_ + sizeof head)) {
     give_up();
-    return;
+    return false;
   }
-  places_[block] = {end_ + sizeof head, bytes.size()};
   end_ += sizeof head + bytes.size();
+  return true;
+}
+
+void Journal::keep(Block block, std::string_view bytes) {
+  if (append(block, bytes))
+    places_[block] = {end_ - bytes.size(), bytes.size()};
+}
+
+void Journal::remark(std::uint64_t part, const std::string &text) {
+  std::vector<std::string> &said = remarks_[part];
+  if (text.empty() || std::ranges::find(said, text) != said.end())
+    return;
+  append({part | is_remark, said.size()}, text);
+  said.push_back(text);
+}
+
+std::vector<std::string> Journal::remarks(std::uint64_t part) const {
+  const auto at = remarks_.find(part);
+  return at == remarks_.end() ? std::vector<std::string>() : at->second;
 }
 
 /// A full disk must not lack the room for the result because of the journal. Blocks found stay

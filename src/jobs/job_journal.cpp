@@ -73,6 +73,11 @@ Result<void> check_device_of_shards(const DeviceOptions &device) {
       "agree to the last digit. Give --device cuda or --device cpu.");
 }
 
+std::string lit_by(const Journal &journal, std::uint64_t part, const std::string &now) {
+  const std::vector<std::string> all = journal.remarks(part);
+  return all.empty() ? now : fmt::format("{}", fmt::join(all, "; then "));
+}
+
 Error with_way_on(Error stopped, Journal &journal) {
   const bool is_ended_from_outside =
       stopped.code == ErrorCode::Interrupted || stopped.code == ErrorCode::Device;

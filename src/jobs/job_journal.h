@@ -37,6 +37,10 @@ Result<std::string> device_text(const DeviceOptions &device);
 /// Usage for Auto: shards would be lit by cards and by the processor.
 Result<void> check_device_of_shards(const DeviceOptions &device);
 
+/// Who lit the rows of a part of the job that were kept, by this process and by those before it; of
+/// a job without a journal `now`.
+std::string lit_by(const Journal &journal, std::uint64_t part, const std::string &now);
+
 /// The end of a job that was ended early: where it goes on.
 Error with_way_on(Error stopped, Journal &journal);
 

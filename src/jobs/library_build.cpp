@@ -196,13 +196,20 @@ std::string shape_of(const PoseLight &light, const std::string &job, const std::
   return sha256_hex(bytes);
 }
 
-/// Who lit what two models lit.
+/// Who lit what two models lit; an empty text is the processor.
 std::string lit_by_both(const std::string &one, const std::string &other) {
   if (one == other)
     return one;
   constexpr std::string_view too = " and the processor";
-  const std::string &cards = one.empty() ? other : one;
-  return cards.ends_with(too) ? cards : cards + std::string(too);
+  const auto cards_of = [&](std::string text) {
+    return text.ends_with(too) ? text.substr(0, text.size() - too.size()) : text;
+  };
+  const bool is_processor_too =
+      one.empty() || other.empty() || one.ends_with(too) || other.ends_with(too);
+  std::string out = cards_of(one);
+  if (const std::string more = cards_of(other); more != out)
+    out += (out.empty() || more.empty() ? "" : " and ") + more;
+  return out + std::string(is_processor_too ? too : "");
 }
 
 /// One object of a library.
@@ -238,6 +245,8 @@ private:
 
 Result<void> SignatureMaker::make(const std::string &path, const std::string &name) {
   UMOV_ASSIGN(scenario, read_scenario(path, {}));
+  if (const auto fits = check_signature_size(request_.cells, scenario.bands.size()); !fits)
+    return fail(ErrorCode::Usage, fits.error().message, {path});
   SignatureRequest asked;
   asked.method = LightMethod::Masks;
   UMOV_ASSIGN(own, PoseLight::make(scenario, asked, options_, diagnostics_));

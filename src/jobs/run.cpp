@@ -138,9 +138,9 @@ Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks bloc
   auto out = compute_wanted(
       one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
       monitor.cancel_flag(), blocks);
-  one.light.device = models.device();
+  one.light.device = lit_by(*blocks.journal, blocks.part, models.device());
   one.light.instruction_set = models.light->instruction_set();
-  tell_of_device(one.light.device, diagnostics);
+  tell_of_device(models.device(), diagnostics);
   UMOV_TRY(models.keep_masks());
   return out;
 } catch (const Failure &lost) { // a card: what was finished is in the journal

@@ -23,8 +23,9 @@ constexpr const char *laser_limits =
     "circular light about twice as fast as linear. For very rough metals near retro-reflection the "
     "double bounce is understated.";
 
-/// What the header says of the source and of how hiding was decided.
-void describe(const SignatureRequest &request, const PoseLight &light, Table &table) {
+/// What the header says of the source, of who lit (`device`) and of how hiding was decided.
+void describe(const SignatureRequest &request, const PoseLight &light, const std::string &device,
+              Table &table) {
   const std::string &visibility = light.model().facts().visibility;
   if (request.source == Source::Thermal) {
     table.note("source", "the body's own heat: " +
@@ -32,7 +33,7 @@ void describe(const SignatureRequest &request, const PoseLight &light, Table &ta
     table.note("method", visibility);
     return;
   }
-  if (const std::string &device = light.model().device(); !device.empty())
+  if (!device.empty())
     table.note("device", device);
   const Stokes<ScatteringPlane> &source = light.options().source;
   table.note("source", request.source == Source::Sun
@@ -109,12 +110,19 @@ public:
       return true;
     if (!evaluate())
       return false;
-    if (journal_ != nullptr)
+    if (journal_ != nullptr) {
+      journal_->remark(block.part, light_.model().device());
       journal_->keep(block, to_bytes(results_));
+    }
     return true;
   }
   /// Why the last block could not be lit: a card was lost.
   [[nodiscard]] const std::optional<Error> &lost() const { return lost_; }
+  /// Who lit the blocks so far, those that were kept before among them.
+  [[nodiscard]] std::string device() const {
+    const std::string now = light_.model().device();
+    return journal_ != nullptr ? lit_by(*journal_, 0, now) : now;
+  }
   /// How many poses of the range were lit.
   [[nodiscard]] std::size_t count() const { return wanted_.count; }
   /// Their rows.
@@ -122,7 +130,7 @@ public:
     const auto &bands = light_.model().scene().bands;
     Table out = SignatureRows::of(numbers_, part_, bands, results_, task_.threads)
                     .table(request.source == Source::Thermal);
-    describe(request, light_, out);
+    describe(request, light_, device(), out);
     if (lit_.count == wanted_.count)
       return out;
     return out.part((wanted_.first - lit_.first) * bands.size(), wanted_.count * bands.size());
@@ -260,14 +268,14 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
     if (!blocks.light(range.first + done, range))
       break;
     if (done == 0)
-      told = model.device();
+      told = blocks.device();
     UMOV_TRY(sink.add(blocks.rows(request)));
     done += blocks.count();
     monitor.advance("poses", done, range.count);
   }
   tell_of_device(model.device(), diagnostics);
-  if (done > 0 && model.device() != told)
-    UMOV_TRY(sink.note("device later", model.device()));
+  if (done > 0 && blocks.device() != told)
+    UMOV_TRY(sink.note("device later", blocks.device()));
   if (journal.problem())
     diagnostics.warn(journal.problem()->text());
   if (done < range.count)

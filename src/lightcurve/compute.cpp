@@ -14,6 +14,15 @@
 namespace umov {
 namespace {
 
+/// Of the one that has left its cards, else of `light`.
+std::string device_of(const LightModel &light, const LightModel *many_directions) {
+  std::string out = light.device();
+  if (many_directions != nullptr && !out.starts_with("cpu"))
+    if (std::string many = many_directions->device(); many.starts_with("cpu"))
+      return many;
+  return out;
+}
+
 /// Fills the rows of a curve, block by block.
 class RowMaker {
 public:
@@ -180,8 +189,10 @@ std::size_t RowMaker::fill_block(Journal::Block block, std::size_t begin, std::s
     stopped = Error{ErrorCode::Interrupted, "", {}};
     return 0;
   }
-  if (!is_found && blocks_.journal != nullptr)
+  if (!is_found && blocks_.journal != nullptr) {
+    blocks_.journal->remark(blocks_.part, device_of(light_, many_directions_));
     blocks_.journal->keep(block, row_bytes(table, begin, placed, curve_));
+  }
   parallel_for(placed, request_.threads, [&](std::size_t k) { put(table, k, begin + k); });
   return placed;
 }
@@ -277,13 +288,7 @@ Result<void> LightModels::keep_masks() const {
   return many_directions ? many_directions->keep_masks() : Result<void>();
 }
 
-std::string LightModels::device() const {
-  std::string out = light->device();
-  if (many_directions && !out.starts_with("cpu"))
-    if (std::string many = many_directions->device(); many.starts_with("cpu"))
-      return many;
-  return out;
-}
+std::string LightModels::device() const { return device_of(*light, many_directions.get()); }
 
 Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene) {
   LightOptions options = request.light;

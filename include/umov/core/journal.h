@@ -9,6 +9,7 @@
 #include <string_view>
 #include <umov/core/result.h>
 #include <utility>
+#include <vector>
 
 namespace umov {
 
@@ -47,12 +48,17 @@ public:
 
   /// What the file was.
   [[nodiscard]] Found found() const { return found_; }
-  /// Number of blocks that can be found.
+  /// Number of blocks that can be found, without remarks.
   [[nodiscard]] std::size_t count() const { return places_.size(); }
   /// The bytes of a block, if it was kept.
   [[nodiscard]] std::optional<std::string> find(Block block) const;
   /// Appends a block.
   void keep(Block block, std::string_view bytes);
+  /// Keeps what holds for blocks of a part of the job, as who made them; once, however often it is
+  /// said. An empty text is nothing. Parts are below 2^63.
+  void remark(std::uint64_t part, const std::string &text);
+  /// What was remarked of a part, by this process and by those before it, oldest first.
+  [[nodiscard]] std::vector<std::string> remarks(std::uint64_t part) const;
   /// The job is done: the file goes.
   void finish();
   /// Where it is.
@@ -67,10 +73,12 @@ private:
   bool read_head();
   void read_blocks();
   bool begin();
+  bool append(Block block, std::string_view bytes);
   void give_up();
   std::filesystem::path path_;
   std::string key_; ///< hash of the job
   std::map<Block, Place> places_;
+  std::map<std::uint64_t, std::vector<std::string>> remarks_;
   std::uint64_t end_ = 0; ///< of the last whole block
   int descriptor_ = -1;
   bool is_on_ = false;

@@ -37,6 +37,9 @@ struct SignatureView {
 Result<SignatureView> parse_signature(std::string_view bytes, const std::string &file,
                                       bool checks_all);
 
+/// What a file has room for, asked before the light is made. Usage for more cells or bands.
+Result<void> check_signature_size(std::size_t cells, std::size_t bands);
+
 /// The bytes of a file. `abundances` has text.columns for every pair of `cells`, or is empty.
 /// Physics for what parse_signature would not take.
 Result<std::string> signature_bytes(const SignatureText &text, std::size_t cells,

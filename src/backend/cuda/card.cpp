@@ -158,15 +158,18 @@ Result<std::shared_ptr<const CardSet>> CardSet::open(std::span<const std::filesy
                                                      const std::filesystem::path &cache) {
   UMOV_ASSIGN(found, find_cards(folders));
   std::shared_ptr<CardSet> out(new CardSet(std::move(found.driver)));
-  Error first;
-  for (std::size_t k = 0; k < found.compilers.size(); ++k) {
-    const auto filled = out->fill(found.cards, found.compilers[k], cache);
+  std::vector<std::string> said; // once, where it is no compiler's fault
+  for (const CardCompiler &compiler : found.compilers) {
+    const auto filled = out->fill(found.cards, compiler, cache);
     if (filled)
       return out;
-    if (k == 0) // what the best of them says
-      first = filled.error();
+    if (std::ranges::find(said, filled.error().message) == said.end())
+      said.push_back(filled.error().message);
   }
-  return tl::unexpected(first);
+  std::string all;
+  for (const std::string &one : said)
+    all += (all.empty() ? "" : "; ") + one;
+  return fail(ErrorCode::Device, all);
 }
 
 std::string CardSet::name() const {

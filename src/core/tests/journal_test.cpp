@@ -65,6 +65,30 @@ TEST_F(JournalFile, GivesItsBlocksToTheSameJobOnly) {
   EXPECT_EQ(opened("other job").find({0, 0}), "new");
 }
 
+// Who lit the blocks is known after a kill, and is not a block.
+TEST_F(JournalFile, RemembersWhatWasRemarkedOfEachPart) {
+  {
+    Journal journal = opened();
+    journal.remark(0, "a card");
+    journal.keep({0, 0}, "first");
+    journal.remark(0, "a card");
+    journal.remark(1, "");
+    journal.remark(3, "another");
+  }
+  Journal journal = opened();
+  EXPECT_EQ(journal.count(), 1u);
+  journal.remark(0, "the processor");
+  journal = Journal();
+  const Journal again = opened();
+  EXPECT_EQ(again.remarks(0), (std::vector<std::string>{"a card", "the processor"}));
+  EXPECT_TRUE(again.remarks(1).empty());
+  EXPECT_EQ(again.remarks(3), std::vector<std::string>{"another"});
+  EXPECT_EQ(again.find({0, 0}), "first");
+  Journal nowhere;
+  nowhere.remark(0, "a card");
+  EXPECT_EQ(nowhere.remarks(0), std::vector<std::string>{"a card"});
+}
+
 // As kill -9 leaves it at any moment.
 TEST_F(JournalFile, WhateverIsTornOrDamagedIsDroppedWithWhatFollows) {
   {

@@ -154,6 +154,15 @@ Result<SignatureView> parse_signature(std::string_view bytes, const std::string 
   return out;
 }
 
+Result<void> check_signature_size(std::size_t cells, std::size_t bands) {
+  if (cells <= most_cells && bands <= most_bands)
+    return {};
+  return fail(ErrorCode::Usage,
+              fmt::format("{} cells and {} bands: a file of a library holds up to {} cells and {} "
+                          "bands. Take fewer, or bands in several libraries",
+                          cells, bands, most_cells, most_bands));
+}
+
 Result<std::string> signature_bytes(const SignatureText &text, std::size_t cells,
                                     const PackedLight &light, double error,
                                     std::span<const float> abundances) {

@@ -49,14 +49,16 @@ Result<std::shared_ptr<const Cards>> open_cards(const DeviceOptions &options) {
 
 namespace {
 
-/// The compiler that is tried first, and those that are not because of the driver.
-std::string words_of_compilers(const backend::CardFindings &found) {
+/// The compiler that is tried first, and those that are not because of the driver; Device where
+/// none knows the card.
+Result<std::string> words_of_compilers(const backend::CardFindings &found) {
   const auto knows = [&](const backend::CardCompiler &one) {
     return one.knows(found.cards.front().capability);
   };
   const auto first = std::ranges::find_if(found.compilers, knows);
   if (first == found.compilers.end())
-    return "no compiler that knows the card: it is too old for " + found.compilers.front().file();
+    return fail(ErrorCode::Device, "no compiler knows " + found.cards.front().name +
+                                       ": it is too old for " + found.compilers.front().file());
   std::string out = "compiler " + first->version();
   if (first->is_newer_than(found.driver.version))
     out += " (newer than the driver, which may refuse its code)";
@@ -71,13 +73,14 @@ std::string words_of_compilers(const backend::CardFindings &found) {
 
 Result<std::string> describe_cards(const std::vector<std::filesystem::path> &folders) {
   UMOV_ASSIGN(found, backend::find_cards(folders));
+  UMOV_ASSIGN(compilers, words_of_compilers(found));
   std::vector<std::string> cards;
   for (const backend::CardFacts &card : found.cards)
     cards.push_back(fmt::format("{} ({:.0f} GB, compute {}.{})", card.name,
                                 static_cast<double>(card.memory_bytes) / 1e9, card.capability / 10,
                                 card.capability % 10));
   return fmt::format("{}; driver of CUDA {}, {}", fmt::join(cards, ", "),
-                     backend::cuda_version_text(found.driver.version), words_of_compilers(found));
+                     backend::cuda_version_text(found.driver.version), compilers);
 }
 
 void Engine::State::take_light(const backend::CardRows &rows, std::size_t row_of_card,

@@ -38,6 +38,12 @@ std::string bytes() {
       .value();
 }
 
+TEST(SignatureFile, SayWhatTheyHaveRoomFor) {
+  EXPECT_TRUE(check_signature_size(200, 64));
+  EXPECT_FALSE(check_signature_size(200, 65));
+  EXPECT_FALSE(check_signature_size(201, 3));
+}
+
 TEST(Signature, PairsAreOnceEachAndInParts) {
   const auto all = signature_poses(cells, 0, signature_pairs(cells), 0.01);
   ASSERT_EQ(all.size(), 25u * 26 / 2);
