@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/core/locks.h>
 #include <umov/core/text.h>
 
 namespace umov {
@@ -53,6 +54,34 @@ Result<void> check_table(const DistributionChoice &choice) {
   return {};
 }
 
+/// The last that were made, which never change: a material is checked when it is read and again
+/// when it is compiled, objects share theirs, and to integrate a masking takes milliseconds.
+class LastMade {
+public:
+  std::shared_ptr<const Distribution> of(const DistributionModel &model,
+                                         const DistributionChoice &choice) {
+    {
+      const ReadLock lock(mutex_);
+      for (const auto &[known, made] : last_)
+        if (known == choice)
+          return made;
+    }
+    auto made = model.make(choice);
+    const WriteLock lock(mutex_);
+    if (last_.size() < room)
+      last_.emplace_back(choice, made);
+    else
+      last_[oldest_++ % room] = {choice, made};
+    return made;
+  }
+
+private:
+  static constexpr std::size_t room = 32;
+  Mutex mutex_;
+  std::size_t oldest_ = 0;
+  std::vector<std::pair<DistributionChoice, std::shared_ptr<const Distribution>>> last_;
+};
+
 } // namespace
 
 DistributionChoice blinn_phong(double m) { return {"blinn_phong", {{"m", m}}, {}, {}, {}}; }
@@ -87,7 +116,8 @@ Result<std::shared_ptr<const Distribution>> make_distribution(const Distribution
     }
   if (model->takes_table)
     UMOV_TRY(check_table(choice));
-  return model->make(choice);
+  static auto *const last_made = new LastMade; // as long as any thread runs
+  return last_made->of(*model, choice);
 }
 
 } // namespace umov
