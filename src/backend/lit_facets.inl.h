@@ -235,13 +235,16 @@ private:
   /// lanes of a group that faces both directions do so, and packing costs more than shading them.
   UMOV_KERNEL_LOOP UMOV_KERNEL void add_whole(const std::uint32_t *groups, std::size_t count,
                                               const GatherTask<T> &task) {
-    const Directions to = to_; // nothing that is written may stand in it
+    const Directions to = to_;                     // nothing that is written may stand in it
+    const kernel::FacetPose<T> pose = pose_.facet; // nor in these
+    const GatherTask<T> asked = task;
+    const backend::FacetGroup<T> *const all = scene_.groups.data();
     const R one = R(T(1)), none = R(T(0));
     std::size_t at = 0;
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t s = 0; s < lanes; s += width) {
         typename Machine::Mask keep;
-        const Facets facets = face<false>(groups[k], s, task, to, keep);
+        const Facets facets = face<false>(all[groups[k]], pose, s, asked, to, keep);
         Machine::store_any(select(keep, facets.n_l, one), n_l_ + at);
         Machine::store_any(select(keep, facets.n_v, one), n_v_ + at);
         Machine::store_any(select(keep, facets.apart, one), apart_ + at);
@@ -254,17 +257,17 @@ private:
 
   /// Facets s, s + 1... of a group; `keep`: those that face both directions within reach.
   template <bool has_all>
-  UMOV_KERNEL Facets face(std::uint32_t group, std::size_t s, const GatherTask<T> &task,
-                          const Directions &to, typename Machine::Mask &keep) const {
-    const backend::FacetGroup<T> &f = scene_.groups[group];
+  UMOV_KERNEL static Facets face(const backend::FacetGroup<T> &f, const kernel::FacetPose<T> &pose,
+                                 std::size_t s, const GatherTask<T> &task, const Directions &to,
+                                 typename Machine::Mask &keep) {
     const R x = Machine::load(f.nx + s), y = Machine::load(f.ny + s), z = Machine::load(f.nz + s);
     Facets out;
     out.n_l = x * to.lx + y * to.ly + z * to.lz;
     out.n_v = x * to.vx + y * to.vy + z * to.vz;
-    out.apart = apart_from_half(pose_.facet, x, y, z);
+    out.apart = apart_from_half(pose, x, y, z);
     out.area = Machine::load(f.area + s);
     if (has_all && task.has_aside) {
-      const T *const across = pose_.facet.across;
+      const T *const across = pose.across;
       out.aside = x * R(across[0]) + y * R(across[1]) + z * R(across[2]);
     }
     // A lane without a class has no area.
@@ -297,7 +300,7 @@ private:
                             std::size_t &at) {
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
-      const Facets facets = face<has_all>(group, s, task, to, keep);
+      const Facets facets = face<has_all>(scene_.groups[group], pose_.facet, s, task, to, keep);
       const Packer pack(keep);
       if (task.has_doubts)
         pack.put(facets.area * R(sqrt(doubt_of(masks_->groups[group]))), deviation_ + at);
@@ -330,7 +333,7 @@ private:
     const R sampling = R(T(model_.points) / (points * sqrt(points))), grid = R(T(model_.grid));
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
-      Facets facets = face<has_all>(group, s, task, to, keep);
+      Facets facets = face<has_all>(scene_.groups[group], pose_.facet, s, task, to, keep);
       if (!Machine::any(keep))
         continue;
       R share, mean_square;
@@ -371,7 +374,7 @@ private:
     varies_ = varies_ || task.has_doubts;
     for (std::size_t s = 0; s < lanes; s += width) {
       typename Machine::Mask keep;
-      Facets facets = face<true>(group, s, task, to_, keep);
+      Facets facets = face<true>(scene_.groups[group], pose_.facet, s, task, to_, keep);
       if (!Machine::any(keep))
         continue;
       for (std::size_t j = 0; j < width; ++j)
