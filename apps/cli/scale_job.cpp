@@ -22,11 +22,13 @@ public:
   [[nodiscard]] std::vector<std::size_t> layout() const override { return job_->layout(); }
   [[nodiscard]] std::vector<std::string> tables() const override { return job_->tables(); }
   [[nodiscard]] std::string order() const override { return job_->order(); }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return job_->warnings(); }
+  [[nodiscard]] std::vector<jobs::Tally> tallies() const override { return job_->tallies(); }
   Result<void> rows(jobs::IndexRange range, jobs::RangeSink &sink, const jobs::Monitor &monitor,
                     Diagnostics &diagnostics) override {
     return job_->rows(range, sink, monitor, diagnostics);
   }
-  [[nodiscard]] Result<void> keep() const override { return job_->keep(); }
+  [[nodiscard]] Result<void> keep() override { return job_->keep(); }
 
 private:
   std::unique_ptr<jobs::RangedJob> job_;
@@ -62,12 +64,14 @@ Result<std::unique_ptr<jobs::RangedJob>> verb_in_parts(const std::string &verb,
                                                        const std::vector<std::string> &arguments,
                                                        const PartsSetting &setting,
                                                        Diagnostics &diagnostics) {
-  auto made = verb == "signature" ? signature_in_parts(arguments, setting, diagnostics)
-              : verb == "passes"  ? passes_in_parts(arguments, setting, diagnostics)
-              : verb == "run"
-                  ? run_in_parts(arguments, setting, diagnostics)
-                  : Result<RangedVerb>(
-                        fail(ErrorCode::Usage, verb + ": signature, passes or run was expected"));
+  auto made =
+      verb == "signature" ? signature_in_parts(arguments, setting, diagnostics)
+      : verb == "passes"  ? passes_in_parts(arguments, setting, diagnostics)
+      : verb == "run"     ? run_in_parts(arguments, setting, diagnostics)
+      : verb == "observe"
+          ? observe_in_parts(arguments, setting, diagnostics)
+          : Result<RangedVerb>(
+                fail(ErrorCode::Usage, verb + ": signature, passes, run or observe was expected"));
   if (!made)
     return tl::unexpected(made.error());
   if (made->job->total() == 0)

@@ -121,6 +121,7 @@
 #include <umov/jobs/requests.h>
 #include <umov/jobs/run.h>
 #include <umov/jobs/signature.h>
+#include <umov/jobs/tallies.h>
 #include <umov/kernel/lobe.h>
 #include <umov/light/abundances.h>
 #include <umov/light/articulated_engine.h>
