@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 
@@ -64,14 +65,19 @@ Result<std::unique_ptr<jobs::RangedJob>> verb_in_parts(const std::string &verb,
                                                        const std::vector<std::string> &arguments,
                                                        const PartsSetting &setting,
                                                        Diagnostics &diagnostics) {
-  auto made =
-      verb == "signature" ? signature_in_parts(arguments, setting, diagnostics)
-      : verb == "passes"  ? passes_in_parts(arguments, setting, diagnostics)
-      : verb == "run"     ? run_in_parts(arguments, setting, diagnostics)
-      : verb == "observe"
-          ? observe_in_parts(arguments, setting, diagnostics)
-          : Result<RangedVerb>(
-                fail(ErrorCode::Usage, verb + ": signature, passes, run or observe was expected"));
+  using InParts =
+      Result<RangedVerb> (*)(const std::vector<std::string> &, const PartsSetting &, Diagnostics &);
+  static const std::map<std::string, InParts> known{{"signature", signature_in_parts},
+                                                    {"passes", passes_in_parts},
+                                                    {"run", run_in_parts},
+                                                    {"observe", observe_in_parts},
+                                                    {"invert", invert_in_parts},
+                                                    {"identify", identify_in_parts}};
+  const auto found = known.find(verb);
+  if (found == known.end())
+    return fail(ErrorCode::Usage,
+                verb + ": signature, passes, run, observe, invert or identify was expected");
+  auto made = found->second(arguments, setting, diagnostics);
   if (!made)
     return tl::unexpected(made.error());
   if (made->job->total() == 0)

@@ -60,13 +60,13 @@ void add_scale_plan(CLI::App &scale, const Exit &exit_with, bool begins) {
 void add_scale_job(CLI::App &scale, ScaleJobOptions &o) {
   scale.prefix_command();
   scale.add_option("folder", o.folder, "Folder of the job")->required();
-  scale.add_option(
-      "verb", o.verb,
-      "To begin a job: signature, passes, run or observe, with its own arguments behind it");
+  scale.add_option("verb", o.verb,
+                   "To begin a job: signature, passes, run, observe, invert pose or "
+                   "identify, with its own arguments behind it");
   scale
-      .add_option(
-          "--per-shard", o.per_shard,
-          "Poses, objects, passes or exposures of a shard; by default what takes 10 to 120 s")
+      .add_option("--per-shard", o.per_shard,
+                  "Poses, objects, passes, exposures or curves of a shard; by default what takes "
+                  "10 to 120 s")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
   scale
       .add_option("--isa", o.instruction_set,

@@ -101,6 +101,7 @@
 #include <umov/jobs/identify.h>
 #include <umov/jobs/index_range.h>
 #include <umov/jobs/invert.h>
+#include <umov/jobs/invert_each.h>
 #include <umov/jobs/library.h>
 #include <umov/jobs/material_check.h>
 #include <umov/jobs/material_page.h>

@@ -9,6 +9,7 @@
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/scale/rows_file.h>
+#include <utility>
 
 namespace umov::scale {
 namespace {
@@ -155,7 +156,7 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
   const bool is_sorted = number == 0 && !lock.order.empty();
   UMOV_ASSIGN(shards, all_shards(folder));
   UMOV_ASSIGN(ahead, look_ahead(folder, shards, number, monitor));
-  Table all; // of a table that is sorted; of an empty one its columns
+  Table all; // of a table that is sorted
   std::size_t rows = 0;
   bool is_first = true;
   for (const Shard &shard : shards) {
@@ -165,20 +166,25 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
     for (std::size_t b = 0; b < file.blocks(number); ++b) {
       UMOV_ASSIGN(block, file.block(number, b));
       rows += block.rows();
-      if (is_first)
-        tell(block, ahead);
-      is_first = false;
-      if (is_sorted || (rows == 0 && all.columns().empty()))
+      if (block.rows() == 0)
+        continue;
+      if (is_sorted) {
         all.append(std::move(block));
-      else if (block.rows() > 0)
-        UMOV_TRY(sink.add(std::move(block)));
+        continue;
+      }
+      if (std::exchange(is_first, false))
+        tell(block, ahead);
+      UMOV_TRY(sink.add(std::move(block)));
     }
     monitor.advance("shards", shard.index + 1, shards.size());
   }
   if (rows == 0)
     return fail(ErrorCode::Nothing, "the job has no row: nothing was found in any shard");
-  if (is_sorted)
-    UMOV_TRY(sink.add(in_order(all, lock.order)));
+  if (is_sorted) {
+    Table sorted = in_order(all, lock.order);
+    tell(sorted, ahead);
+    UMOV_TRY(sink.add(std::move(sorted)));
+  }
   return sink.finish();
 }
 

@@ -246,7 +246,7 @@ def test_another_job_or_changed_inputs_are_refused(umov, scenario, tmp_path):
 
 
 @pytest.mark.parametrize("arguments,code,said", [
-    (["render", "s.toml"], 2, "signature, passes, run or observe"),
+    (["render", "s.toml"], 2, "signature, passes, run, observe, invert or identify"),
     (["signature", "nothing.toml", "--poses", "5", "--phase", "60"], 3, "nothing.toml"),
     (["signature", "scenario.toml"], 2, "--geometry"),
     (["signature", "scenario.toml", "--poses", "5", "--phase", "60", "-o", "x.csv"], 2, "scale merge"),
