@@ -22,7 +22,8 @@ void add_scale_merge(CLI::App &scale, const Exit &exit_with) {
   add_table_output(*verb, *output);
   verb->add_option(
       "--table", *table,
-      "Of a run: lightcurve (default) or passes; of an observation: counts (default) or truth");
+      "Of a run: lightcurve (default) or passes; of an observation: counts (default) or truth; of "
+      "curves: curves (default) or those of an answer");
 }
 
 } // namespace umov::cli
