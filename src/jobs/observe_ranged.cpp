@@ -149,8 +149,9 @@ Result<std::unique_ptr<RangedJob>> ranged_observe(const Scenario &scenario,
   for (const Warning &warning : told.warnings())
     diagnostics.warn(warning.message, warning.where);
   std::string identity = identity_of(scenario, *plan, objects, device);
-  return std::make_unique<RangedObservation>(std::move(plan), std::move(objects),
-                                             found.empty() ? layout : std::move(found),
+  if (found.empty())
+    found = layout;
+  return std::make_unique<RangedObservation>(std::move(plan), std::move(objects), std::move(found),
                                              std::move(identity), messages_of(told));
 }
 
