@@ -84,6 +84,8 @@ Result<scale::JobLock> measured_job(const ScaleJobOptions &o, const scale::PlanS
   out.layout = job->layout();
   out.tables = job->tables();
   out.order = job->order();
+  out.warnings = job->warnings();
+  out.tallies = job->tallies();
   jobs::Monitor monitor;
   monitor.cancel = &interrupted();
   UMOV_ASSIGN(rate, scale::measure(*job, cpu_seconds() - before, monitor));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 
@@ -22,11 +23,13 @@ public:
   [[nodiscard]] std::vector<std::size_t> layout() const override { return job_->layout(); }
   [[nodiscard]] std::vector<std::string> tables() const override { return job_->tables(); }
   [[nodiscard]] std::string order() const override { return job_->order(); }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return job_->warnings(); }
+  [[nodiscard]] std::vector<jobs::Tally> tallies() const override { return job_->tallies(); }
   Result<void> rows(jobs::IndexRange range, jobs::RangeSink &sink, const jobs::Monitor &monitor,
                     Diagnostics &diagnostics) override {
     return job_->rows(range, sink, monitor, diagnostics);
   }
-  [[nodiscard]] Result<void> keep() const override { return job_->keep(); }
+  [[nodiscard]] Result<void> keep() override { return job_->keep(); }
 
 private:
   std::unique_ptr<jobs::RangedJob> job_;
@@ -62,12 +65,19 @@ Result<std::unique_ptr<jobs::RangedJob>> verb_in_parts(const std::string &verb,
                                                        const std::vector<std::string> &arguments,
                                                        const PartsSetting &setting,
                                                        Diagnostics &diagnostics) {
-  auto made = verb == "signature" ? signature_in_parts(arguments, setting, diagnostics)
-              : verb == "passes"  ? passes_in_parts(arguments, setting, diagnostics)
-              : verb == "run"
-                  ? run_in_parts(arguments, setting, diagnostics)
-                  : Result<RangedVerb>(
-                        fail(ErrorCode::Usage, verb + ": signature, passes or run was expected"));
+  using InParts =
+      Result<RangedVerb> (*)(const std::vector<std::string> &, const PartsSetting &, Diagnostics &);
+  static const std::map<std::string, InParts> known{{"signature", signature_in_parts},
+                                                    {"passes", passes_in_parts},
+                                                    {"run", run_in_parts},
+                                                    {"observe", observe_in_parts},
+                                                    {"invert", invert_in_parts},
+                                                    {"identify", identify_in_parts}};
+  const auto found = known.find(verb);
+  if (found == known.end())
+    return fail(ErrorCode::Usage,
+                verb + ": signature, passes, run, observe, invert or identify was expected");
+  auto made = found->second(arguments, setting, diagnostics);
   if (!made)
     return tl::unexpected(made.error());
   if (made->job->total() == 0)

@@ -24,6 +24,12 @@ Result<void> parse_verb(CLI::App &verb, const std::vector<std::string> &argument
 /// Rows go to the shards: Usage for an output or a part of its own.
 Result<void> refuse_output(const std::string &output, const PartOptions &part);
 
+Result<RangedVerb> identify_in_parts(const std::vector<std::string> &arguments,
+                                     const PartsSetting &setting, Diagnostics &diagnostics);
+Result<RangedVerb> invert_in_parts(const std::vector<std::string> &arguments,
+                                   const PartsSetting &setting, Diagnostics &diagnostics);
+Result<RangedVerb> observe_in_parts(const std::vector<std::string> &arguments,
+                                    const PartsSetting &setting, Diagnostics &diagnostics);
 Result<RangedVerb> passes_in_parts(const std::vector<std::string> &arguments,
                                    const PartsSetting &setting, Diagnostics &diagnostics);
 Result<RangedVerb> run_in_parts(const std::vector<std::string> &arguments,

@@ -17,10 +17,7 @@ Result<jobs::Inversion> answer(InvertVerb &o, const InvertJob &job, Diagnostics 
     UMOV_ASSIGN(opened, RunFolder::open(o.output, o.common.force));
     folder = std::move(opened);
   }
-  o.request.errors.has_polarization = !o.is_intensity_only;
-  o.request.method = o.visibility == "rays"   ? LightMethod::Rays
-                     : o.visibility == "auto" ? LightMethod::Auto
-                                              : LightMethod::Masks;
+  settle(o);
   JobConsole console(o.common);
   UMOV_ASSIGN(found, job(scenario, o, console.monitor(o.common.verbose), diagnostics));
   if (folder)
@@ -43,6 +40,13 @@ Result<void> print(const jobs::Inversion &found, const InvertVerb &o) {
 }
 
 } // namespace
+
+void settle(InvertVerb &o) {
+  o.request.errors.has_polarization = !o.is_intensity_only;
+  o.request.method = o.visibility == "rays"   ? LightMethod::Rays
+                     : o.visibility == "auto" ? LightMethod::Auto
+                                              : LightMethod::Masks;
+}
 
 void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   CurveErrors &errors = o->request.errors;
@@ -91,20 +95,22 @@ void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   add_common(verb, o->common, true);
 }
 
+void answer_one(InvertVerb &o, const Exit &exit_with, const InvertJob &job) {
+  watch_interrupts();
+  Diagnostics diagnostics;
+  const auto found = answer(o, job, diagnostics);
+  report(diagnostics, o.common);
+  if (!found)
+    return exit_with(report(found.error()));
+  const auto printed = print(*found, o);
+  if (!printed)
+    return exit_with(report(printed.error()));
+  exit_with(found->verdict == jobs::Verdict::NoFit ? static_cast<int>(ErrorCode::Physics) : 0);
+}
+
 void run_invert(CLI::App &verb, const std::shared_ptr<InvertVerb> &o, const Exit &exit_with,
                 const InvertJob &job) {
-  verb.callback([o, exit_with, job] {
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto found = answer(*o, job, diagnostics);
-    report(diagnostics, o->common);
-    if (!found)
-      return exit_with(report(found.error()));
-    const auto printed = print(*found, *o);
-    if (!printed)
-      return exit_with(report(printed.error()));
-    exit_with(found->verdict == jobs::Verdict::NoFit ? static_cast<int>(ErrorCode::Physics) : 0);
-  });
+  verb.callback([o, exit_with, job] { answer_one(*o, exit_with, job); });
 }
 
 } // namespace umov::cli

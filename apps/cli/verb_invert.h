@@ -30,6 +30,10 @@ using InvertJob = std::function<Result<jobs::Inversion>(const Scenario &, const 
 void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
 /// Adds those of them that say how well the model is known and where the answer goes.
 void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
+/// Puts options that are words into the request.
+void settle(InvertVerb &o);
+/// What run_invert does when the verb is called.
+void answer_one(InvertVerb &o, const Exit &exit_with, const InvertJob &job);
 /// Runs the job, writes its folder, prints its answer and ends with its exit code.
 void run_invert(CLI::App &verb, const std::shared_ptr<InvertVerb> &o, const Exit &exit_with,
                 const InvertJob &job);

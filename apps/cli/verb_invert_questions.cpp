@@ -1,6 +1,6 @@
 // umov invert pose, spin, material and health: their own options and their jobs.
 
-#include "verb_invert.h"
+#include "invert_each.h"
 
 namespace umov::cli {
 namespace {
@@ -9,13 +9,16 @@ void add_pose(CLI::App &invert, const Exit &exit_with) {
   auto *verb =
       invert.add_subcommand("pose", "Which fixed attitudes explain a light curve, and how surely");
   auto o = std::make_shared<InvertVerb>();
-  add_invert_options(*verb, o);
-  run_invert(*verb, o, exit_with,
-             [](const Scenario &scenario, const InvertVerb &asked, const jobs::Monitor &monitor,
-                Diagnostics &diagnostics) {
-               return jobs::invert_pose(scenario, asked.request, job_options(asked.common), monitor,
-                                        diagnostics);
-             });
+  auto each = std::make_shared<EachOptions>();
+  const EachJob many = pose_options(*verb, o, *each);
+  run_invert_or_each(
+      *verb, o, each, exit_with,
+      [](const Scenario &scenario, const InvertVerb &asked, const jobs::Monitor &monitor,
+         Diagnostics &diagnostics) {
+        return jobs::invert_pose(scenario, asked.request, job_options(asked.common), monitor,
+                                 diagnostics);
+      },
+      many);
 }
 
 void add_spin(CLI::App &invert, const Exit &exit_with) {
@@ -84,6 +87,15 @@ void add_health(CLI::App &invert, const Exit &exit_with) {
 }
 
 } // namespace
+
+EachJob pose_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o, EachOptions &each) {
+  add_invert_options(verb, o);
+  add_each(verb, each);
+  return [](const Scenario &scenario, const InvertVerb &asked, const jobs::JobOptions &options,
+            Diagnostics &diagnostics) {
+    return jobs::ranged_poses(scenario, asked.request, options, diagnostics);
+  };
+}
 
 void add_invert(CLI::App &app, const Exit &exit_with) {
   auto *invert = app.add_subcommand("invert", "From a light curve back to what made it");

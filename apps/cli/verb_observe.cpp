@@ -2,6 +2,7 @@
 #include "doubtful_elements.h"
 #include "folder_options.h"
 #include "job_console.h"
+#include "scale_job.h"
 #include "verbs.h"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@ struct ObserveOptions {
   std::string scenario, output;
   std::vector<std::string> overrides;
   DoubtfulElements elements;
+  PartOptions part;
 };
 
 Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnostics &diagnostics) {
@@ -22,7 +24,9 @@ Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnost
   UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.overrides));
   UMOV_TRY(take_folder(scenario, o.output, o.overrides));
   UMOV_ASSIGN(folder, RunFolder::open(scenario.output_dir, common.force));
-  const jobs::JobOptions options = with_elements(job_options(common), o.elements);
+  jobs::JobOptions options = with_elements(job_options(common), o.elements);
+  UMOV_ASSIGN(part, part_of(o.part));
+  options.part = part;
   JobConsole console(common);
   jobs::FrameSink take_frame;
   if (scenario.observation && scenario.observation->makes_frames) {
@@ -47,24 +51,44 @@ Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnost
   return {};
 }
 
+void add_observe_options(CLI::App &verb, ObserveOptions &o, Common &common) {
+  verb.add_option("scenario", o.scenario, "Scenario with [observation] and an instrument")
+      ->required();
+  verb.add_option("-o,--output", o.output, "Output folder, over the scenario's output.dir");
+  verb.add_option("--set", o.overrides, "KEY=VALUE over a key of the scenario");
+  add_part(verb, o.part, "exposures of all objects");
+  verb.add_flag("--force", common.force, "Write into a folder that umov did not make");
+  add_elements(verb, o.elements);
+  verb.add_flag("-v,--verbose", common.verbose, "Also say what was read");
+  add_device(verb, common);
+  add_threads(verb, common);
+  add_cache(verb, common);
+  add_common(verb, common, false);
+}
+
 } // namespace
+
+Result<RangedVerb> observe_in_parts(const std::vector<std::string> &arguments,
+                                    const PartsSetting &setting, Diagnostics &diagnostics) {
+  CLI::App verb("Counts of an instrument", "observe");
+  ObserveOptions o;
+  Common common;
+  add_observe_options(verb, o, common);
+  UMOV_TRY(parse_verb(verb, arguments));
+  UMOV_TRY(refuse_output(o.output, o.part));
+  UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.overrides));
+  jobs::JobOptions options = with_elements(setting.options, o.elements);
+  options.device = device_options(common);
+  UMOV_ASSIGN(job, jobs::ranged_observe(scenario, options, setting.layout, {}, diagnostics));
+  return RangedVerb{std::move(job), ""};
+}
 
 void add_observe(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand(
       "observe", "Counts that an instrument records of a scenario: air, telescope, polarimeter");
   auto o = std::make_shared<ObserveOptions>();
   auto common = std::make_shared<Common>();
-  verb->add_option("scenario", o->scenario, "Scenario with [observation] and an instrument")
-      ->required();
-  verb->add_option("-o,--output", o->output, "Output folder, over the scenario's output.dir");
-  verb->add_option("--set", o->overrides, "KEY=VALUE over a key of the scenario");
-  verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
-  add_elements(*verb, o->elements);
-  verb->add_flag("-v,--verbose", common->verbose, "Also say what was read");
-  add_device(*verb, *common);
-  add_threads(*verb, *common);
-  add_cache(*verb, *common);
-  add_common(*verb, *common, false);
+  add_observe_options(*verb, *o, *common);
   verb->callback([o, common, exit_with] {
     watch_interrupts();
     Diagnostics diagnostics;

@@ -61,10 +61,12 @@ void add_scale_job(CLI::App &scale, ScaleJobOptions &o) {
   scale.prefix_command();
   scale.add_option("folder", o.folder, "Folder of the job")->required();
   scale.add_option("verb", o.verb,
-                   "To begin a job: signature, passes or run, with its own arguments behind it");
+                   "To begin a job: signature, passes, run, observe, invert pose or "
+                   "identify, with its own arguments behind it");
   scale
       .add_option("--per-shard", o.per_shard,
-                  "Poses, objects or passes of a shard; by default what takes 10 to 120 s")
+                  "Poses, objects, passes, exposures or curves of a shard; by default what takes "
+                  "10 to 120 s")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 40));
   scale
       .add_option("--isa", o.instruction_set,

@@ -20,7 +20,10 @@ void add_scale_merge(CLI::App &scale, const Exit &exit_with) {
                             console.monitor(false));
       });
   add_table_output(*verb, *output);
-  verb->add_option("--table", *table, "Of a run: lightcurve (default) or passes");
+  verb->add_option(
+      "--table", *table,
+      "Of a run: lightcurve (default) or passes; of an observation: counts (default) or truth; of "
+      "curves: curves (default) or those of an answer");
 }
 
 } // namespace umov::cli

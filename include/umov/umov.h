@@ -101,6 +101,7 @@
 #include <umov/jobs/identify.h>
 #include <umov/jobs/index_range.h>
 #include <umov/jobs/invert.h>
+#include <umov/jobs/invert_each.h>
 #include <umov/jobs/library.h>
 #include <umov/jobs/material_check.h>
 #include <umov/jobs/material_page.h>
@@ -121,6 +122,7 @@
 #include <umov/jobs/requests.h>
 #include <umov/jobs/run.h>
 #include <umov/jobs/signature.h>
+#include <umov/jobs/tallies.h>
 #include <umov/kernel/lobe.h>
 #include <umov/light/abundances.h>
 #include <umov/light/articulated_engine.h>

@@ -33,7 +33,8 @@ class Job:
     Parameters
     ----------
     verb
-        "signature", "passes" or "run".
+        "signature", "passes", "run", "observe", "invert" (with "pose" as first argument and ``each=True``) or "identify"
+        (with ``each=True``).
     *arguments
         Files, as the verb takes them.
     **options
@@ -70,7 +71,7 @@ class Plan:
     1000
     """
 
-    total: int  #: poses, objects or passes
+    total: int  #: poses, objects, passes, exposures or curves
     shards: int  #: files
     per_shard: int  #: of the total
     core_hours: float
@@ -191,7 +192,8 @@ class Result:
         output
             Its file: .csv, .ecsv, .fits or .json.
         table
-            Of a run: "lightcurve" (default) or "passes".
+            Of a run "lightcurve" (default) or "passes", of an observation "counts" (default) or "truth", of curves "curves"
+            (default) or a table of their answers.
         """
         call(self._umov, "merge", self.fetch().folder, "-q", "-o", output, *(["--table", table] if table else []))
 
@@ -213,7 +215,8 @@ class Result:
         Parameters
         ----------
         table
-            Of a run: "lightcurve" (default) or "passes".
+            Of a run "lightcurve" (default) or "passes", of an observation "counts" (default) or "truth", of curves "curves"
+            (default) or a table of their answers.
         """
         return Rows(self.files, table or self.lock["tables"][0])
 
@@ -279,7 +282,7 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
         None: this machine, by the command alone. "local:N": N workers on this machine, behind the loopback. Any Dask
         cluster or client, or the address of a scheduler ("tls://host:8786"). The folder must be seen by all workers.
     per_shard
-        Poses, objects or passes of a shard; by default what takes 10 to 120 s.
+        Poses, objects, passes, exposures or curves of a shard; by default what takes 10 to 120 s.
     threads
         Of each worker of a cluster.
     timeout_s

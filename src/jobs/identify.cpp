@@ -1,7 +1,7 @@
 #include <umov/jobs/identify.h>
 
+#include "jobs/curve_questions.h"
 #include "jobs/identify_tables.h"
-#include "jobs/invert_light.h"
 #include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
 #include "jobs/job_journal.h"
@@ -182,6 +182,25 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
 }
 
 } // namespace
+
+Result<std::string> library_text(const std::string &folder) {
+  UMOV_ASSIGN(library, Library::open(folder));
+  std::string out;
+  for (std::size_t k = 0; k < library.size(); ++k) {
+    UMOV_ASSIGN(file, SignatureFile::open(library.file(k)));
+    out += library.file(k).stem().string() + " " + file.view().text.job + "\n";
+  }
+  return out;
+}
+
+std::vector<NamedTable> no_identity_tables() {
+  const IdentityAnswer none;
+  IdentityWords words;
+  words.answer = &none;
+  return {{"identity", identity_table(words).part(0, 0)},
+          {"modes", modes_table({}, false)},
+          {"fit", fit_table({}, EndMember(), {})}};
+}
 
 Result<Inversion> identify_object(const Scenario &scenario, const IdentifyRequest &request,
                                   const JobOptions &options, const Monitor &monitor,

@@ -1,6 +1,6 @@
 #include <umov/jobs/invert.h>
 
-#include "jobs/invert_light.h"
+#include "jobs/curve_questions.h"
 #include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
 
@@ -12,15 +12,24 @@ Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &req
                               const JobOptions &options, const Monitor &monitor,
                               Diagnostics &diagnostics) {
   UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics));
+  UMOV_ASSIGN(out,
+              pose_answer(scenario, request, options, ready.observed, ready, monitor, diagnostics));
+  keep_masks(ready);
+  return std::move(out);
+}
+
+Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &request,
+                              const JobOptions &options, const ObservedLightCurve &observed,
+                              const SearchedLight &ready, const Monitor &monitor,
+                              Diagnostics &diagnostics) {
   const auto light = lighting_of(ready.light, options.threads, monitor);
   const auto quick_light = quick_lighting(ready, options.threads, monitor);
-  const CurveModel model(ready.observed.curve, light, ready.observed.column);
-  const CurveModel quick(ready.observed.curve, quick_light, ready.observed.column);
+  const CurveModel model(observed.curve, light, observed.column);
+  const CurveModel quick(observed.curve, quick_light, observed.column);
   UMOV_ASSIGN(answer,
               search_pose(model, quick, search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
-  keep_masks(ready);
-  const Judgement judgement = judge(answer, ready.observed.curve, request.errors, symmetries);
+  const Judgement judgement = judge(answer, observed.curve, request.errors, symmetries);
   Inversion out;
   out.verdict = judgement.verdict;
   out.summary = summary_of(answer, judgement);
@@ -29,14 +38,32 @@ Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &req
                 {"set95", set_table(answer)},
                 {"samples", samples_table(answer, false)},
                 {"twins", twins_table(answer, symmetries)},
-                {"fit", fit_table(ready.observed, model, answer, request.errors)}};
+                {"fit", fit_table(observed, model, answer, request.errors)}};
   out.page =
       inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer, out.summary);
-  out.inputs = ready.observed.inputs;
+  out.inputs = observed.inputs;
   out.seed = scenario.seed;
   out.light = light_used(ready, scenario, diagnostics);
   monitor.tell(fmt::format("{} poses lit", answer.poses_lit));
   return out;
+}
+
+std::vector<NamedTable> no_pose_tables() {
+  const PoseAnswer none;
+  return {{"modes", modes_table(none, false)},
+          {"set95", set_table(none)},
+          {"samples", samples_table(none, false)},
+          {"twins", twins_table(none, {})},
+          {"fit", fit_table({}, EndMember(), {})}};
+}
+
+std::string text_of(const InvertRequest &request) {
+  const CurveErrors &e = request.errors;
+  return fmt::format("grid {} method {} old {}; errors {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} "
+                     "{:.17g} {:.17g} {}",
+                     request.grid, name_of(request.method), request.allow_old_elements, e.floor,
+                     e.floor_q, e.floor_median, e.zero_point_sd, e.scale_sd, e.has_clouds,
+                     e.outlier_share, e.outlier_factor, e.has_polarization);
 }
 
 Result<void> write_inversion(const Inversion &inversion, const Scenario &scenario,

@@ -26,8 +26,8 @@ Angle x_axis_from_zenith(const Instrument &instrument, const ObservingGeometry &
                           zenith_in(PolarizationFrame::Equatorial, g), g.altitude);
 }
 
-Result<LitBlock> light_of(const Setup &s, std::span<const Exposure> exposures,
-                          const Monitor &monitor) {
+Result<LitBlock> light_of(const Setup &s, const LightModel &light,
+                          std::span<const Exposure> exposures, const Monitor &monitor) {
   const std::size_t per = s.nodes.size();
   std::vector<std::optional<Result<TrackPoint>>> placed(exposures.size() * per);
   parallel_for(exposures.size(), s.threads, [&](std::size_t e) {
@@ -48,7 +48,7 @@ Result<LitBlock> light_of(const Setup &s, std::span<const Exposure> exposures,
   LightTask task;
   task.threads = s.threads;
   task.cancel = monitor.cancel;
-  if (!s.light.evaluate_at_nodes(poses, angles, out.table, task))
+  if (!light.evaluate_at_nodes(poses, angles, out.table, task))
     return fail(ErrorCode::Interrupted, "stopped; nothing was written");
   return out;
 }

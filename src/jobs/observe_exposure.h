@@ -28,7 +28,6 @@ struct Setup {
   const Scenario &scenario;
   const ScenarioObservation &observation;
   std::vector<std::vector<BandTerm>> terms; ///< [band]: nodes of the light that it is summed from
-  const LightModel &light;
   const Track &track;
   std::vector<BandObserver> observers; ///< per band
   std::vector<double> zero_flux;       ///< per band, of magnitude 0 in the scenario's system
@@ -62,8 +61,8 @@ Angle zenith_in(PolarizationFrame frame, const ObservingGeometry &g);
 /// Of the instrument's x axis in the focus, from the zenith.
 Angle x_axis_from_zenith(const Instrument &instrument, const ObservingGeometry &g);
 /// Of `exposures`; Interrupted when `monitor` says so.
-Result<LitBlock> light_of(const Setup &setup, std::span<const Exposure> exposures,
-                          const Monitor &monitor);
+Result<LitBlock> light_of(const Setup &setup, const LightModel &light,
+                          std::span<const Exposure> exposures, const Monitor &monitor);
 /// What is recorded of exposure `number` of a block.
 Recorded record(const Setup &setup, const Exposure &exposure, std::size_t number,
                 const LitBlock &lit);

@@ -55,7 +55,7 @@ public:
   [[nodiscard]] std::string identity() const override { return identity_; }
   [[nodiscard]] std::vector<std::string> tables() const override { return {"passes"}; }
   [[nodiscard]] std::string order() const override { return order_column; }
-  [[nodiscard]] Result<void> keep() const override { return searcher_.keep_masks(); }
+  [[nodiscard]] Result<void> keep() override { return searcher_.keep_masks(); }
   Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,
                     Diagnostics &diagnostics) override {
     const FoundPasses found = searcher_.search(range, monitor, diagnostics);

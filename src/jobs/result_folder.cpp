@@ -3,7 +3,7 @@
 #include "jobs/kept_inputs.h"
 
 #include <algorithm>
-#include <fmt/format.h>
+#include <umov/jobs/tallies.h>
 
 namespace umov::jobs {
 
@@ -36,10 +36,16 @@ std::string warning_lines(const Diagnostics &diagnostics) {
   return out;
 }
 
+std::vector<std::string> messages_of(const Diagnostics &diagnostics) {
+  std::vector<std::string> out;
+  out.reserve(diagnostics.warnings().size());
+  for (const Warning &warning : diagnostics.warnings())
+    out.push_back(warning.message);
+  return out;
+}
+
 void note_warnings(Table &table, const Diagnostics &diagnostics) {
-  constexpr std::size_t most = 20;
-  for (std::size_t k = 0; k < std::min(most, diagnostics.warnings().size()); ++k)
-    table.note(fmt::format("warning_{}", k + 1), diagnostics.warnings()[k].message);
+  note_warnings(table, messages_of(diagnostics));
 }
 
 Result<void> add_records(const Scenario &scenario, const std::string &options_needed,

@@ -15,8 +15,9 @@ Result<std::vector<std::string>> add_table(const Table &table, const std::string
                                            const Scenario &scenario, RunFolder &folder);
 /// Warnings as lines of a log.
 std::string warning_lines(const Diagnostics &diagnostics);
-/// Their words in a table's header, the first twenty, without the places of files: who is given the
-/// table alone reads them.
+/// Their words without the places of files.
+std::vector<std::string> messages_of(const Diagnostics &diagnostics);
+/// These words in a table's header, as the note_warnings of tallies.h has them.
 void note_warnings(Table &table, const Diagnostics &diagnostics);
 /// Locked scenario, log and manifest, with the files that were read (and copies of them where the
 /// scenario keeps them), the seed and the warnings.

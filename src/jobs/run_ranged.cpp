@@ -52,7 +52,8 @@ public:
   [[nodiscard]] std::vector<std::string> tables() const override {
     return {"lightcurve", "passes"};
   }
-  [[nodiscard]] Result<void> keep() const override {
+  [[nodiscard]] Result<void> keep() override {
+    may_keep_ = true;
     return models_.light ? models_.keep_masks() : Result<void>();
   }
   Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,
@@ -78,7 +79,8 @@ private:
   Result<void> make_ready(std::size_t k, const Monitor &monitor) {
     if (k == ready_ && models_.light)
       return {};
-    UMOV_TRY(keep());
+    if (may_keep_)
+      UMOV_TRY(keep());
     if (ready_ < objects_.size())
       objects_[ready_].kept.reset();
     UMOV_ASSIGN(kept, kept_epochs(objects_[k].request, monitor.cancel_flag()));
@@ -115,7 +117,8 @@ private:
   std::vector<std::size_t> layout_; ///< passes of each object
   std::string identity_;
   std::size_t total_ = 0;
-  LightModels models_; ///< of the object that was asked for last
+  bool may_keep_ = false; ///< masks of an object before the next one's
+  LightModels models_;    ///< of the object that was asked for last
   std::size_t ready_ = static_cast<std::size_t>(-1);
 };
 

@@ -208,7 +208,7 @@ public:
   }
   [[nodiscard]] std::string identity() const override { return identity_; }
   [[nodiscard]] std::vector<std::string> tables() const override { return {"signature"}; }
-  [[nodiscard]] Result<void> keep() const override { return light_.model().keep_masks(); }
+  [[nodiscard]] Result<void> keep() override { return light_.model().keep_masks(); }
   Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,
                     Diagnostics & /*diagnostics*/) override {
     PoseBlocks blocks(poses_, light_, nullptr, task_of(options_, monitor));

@@ -22,6 +22,9 @@ jobs::IndexRange JobLock::range(std::size_t shard) const {
 }
 
 std::string to_json(const JobLock &lock) {
+  json tallies = json::array();
+  for (const jobs::Tally &tally : lock.tallies)
+    tallies.push_back({{"unit", tally.unit}, {"words", tally.words}, {"all", tally.all}});
   const json out{{"umov_scale", 1},
                  {"key", lock.key()},
                  {"verb", lock.verb},
@@ -35,6 +38,8 @@ std::string to_json(const JobLock &lock) {
                  {"layout", lock.layout},
                  {"tables", lock.tables},
                  {"order", lock.order},
+                 {"warnings", lock.warnings},
+                 {"tallies", std::move(tallies)},
                  {"predicted",
                   {{"cpu_s", lock.rate.cpu_s},
                    {"bytes", lock.rate.bytes},
@@ -59,6 +64,12 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
     all.at("layout").get_to(out.layout);
     all.at("tables").get_to(out.tables);
     all.at("order").get_to(out.order);
+    if (all.contains("warnings")) // jobs begun by 0.1 have none
+      all.at("warnings").get_to(out.warnings);
+    for (const json &tally : all.value("tallies", json::array()))
+      out.tallies.push_back({tally.at("unit").get<std::string>(),
+                             tally.at("words").get<std::string>(),
+                             tally.at("all").get<std::string>()});
     all.at("job").get_to(out.identity);
     out.rate = {all.at("predicted").at("cpu_s").get<double>(),
                 all.at("predicted").at("bytes").get<double>(),

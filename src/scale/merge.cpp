@@ -9,6 +9,7 @@
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/scale/rows_file.h>
+#include <utility>
 
 namespace umov::scale {
 namespace {
@@ -98,6 +99,50 @@ Table in_order(const Table &table, const std::string &by) {
   return out;
 }
 
+/// What is known of a table when all shards have been looked at, and must be before its first row
+/// is written.
+struct Ahead {
+  std::vector<std::string> warnings; ///< of the header
+  std::vector<std::size_t> widths;   ///< RowsFile::widths of all
+};
+
+/// Files are not compared with their hashes yet: their rows are, before anything is kept.
+Result<Ahead> look_ahead(const JobFolder &folder, const std::vector<Shard> &shards,
+                         std::size_t table, const jobs::Monitor &monitor) {
+  const JobLock &lock = folder.lock();
+  Ahead out;
+  std::vector<std::size_t> counts(lock.tallies.size());
+  for (const Shard &shard : shards) {
+    if (monitor.is_cancelled())
+      return fail(ErrorCode::Interrupted, "stopped by the user");
+    UMOV_ASSIGN(file, RowsFile::open(folder.file_of(shard)));
+    if (file.tables() != lock.tables)
+      continue; // what is wrong with it is told when it is checked
+    const std::vector<std::size_t> widths = file.widths(table);
+    out.widths.resize(std::max(out.widths.size(), widths.size()));
+    for (std::size_t c = 0; c < widths.size(); ++c)
+      out.widths[c] = std::max(out.widths[c], widths[c]);
+    for (std::size_t n = 0; n < std::min(counts.size(), file.tallies().size()); ++n)
+      counts[n] += file.tallies()[n];
+  }
+  if (table != 0)
+    return std::move(out);
+  out.warnings = lock.warnings;
+  UMOV_ASSIGN(told, jobs::sentences(lock.tallies, counts, lock.total));
+  out.warnings.insert(out.warnings.end(), told.begin(), told.end());
+  return std::move(out);
+}
+
+/// Tells a block what is ahead of it.
+void tell(Table &block, const Ahead &ahead) {
+  jobs::note_warnings(block, ahead.warnings);
+  std::vector<std::string> names;
+  for (const Column &column : block.columns())
+    names.push_back(column.name);
+  for (std::size_t c = 0; c < std::min(names.size(), ahead.widths.size()); ++c)
+    block.set_width(names[c], ahead.widths[c]);
+}
+
 } // namespace
 
 Result<void> merge(const JobFolder &folder, const std::string &table, TableSink &sink,
@@ -110,8 +155,10 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
   const auto number = static_cast<std::size_t>(wanted - lock.tables.begin());
   const bool is_sorted = number == 0 && !lock.order.empty();
   UMOV_ASSIGN(shards, all_shards(folder));
-  Table all; // of a table that is sorted; of an empty one its columns
+  UMOV_ASSIGN(ahead, look_ahead(folder, shards, number, monitor));
+  Table all; // of a table that is sorted
   std::size_t rows = 0;
+  bool is_first = true;
   for (const Shard &shard : shards) {
     if (monitor.is_cancelled())
       return tl::unexpected(sink.stop({ErrorCode::Interrupted, "stopped by the user", {}}));
@@ -119,17 +166,25 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
     for (std::size_t b = 0; b < file.blocks(number); ++b) {
       UMOV_ASSIGN(block, file.block(number, b));
       rows += block.rows();
-      if (is_sorted || (rows == 0 && all.columns().empty()))
+      if (block.rows() == 0)
+        continue;
+      if (is_sorted) {
         all.append(std::move(block));
-      else if (block.rows() > 0)
-        UMOV_TRY(sink.add(std::move(block)));
+        continue;
+      }
+      if (std::exchange(is_first, false))
+        tell(block, ahead);
+      UMOV_TRY(sink.add(std::move(block)));
     }
     monitor.advance("shards", shard.index + 1, shards.size());
   }
   if (rows == 0)
     return fail(ErrorCode::Nothing, "the job has no row: nothing was found in any shard");
-  if (is_sorted)
-    UMOV_TRY(sink.add(in_order(all, lock.order)));
+  if (is_sorted) {
+    Table sorted = in_order(all, lock.order);
+    tell(sorted, ahead);
+    UMOV_TRY(sink.add(std::move(sorted)));
+  }
   return sink.finish();
 }
 

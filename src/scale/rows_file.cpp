@@ -111,6 +111,7 @@ struct RowsFile::State {
   RowsHead head;
   std::vector<std::string> names;
   std::vector<AboutTable> tables;
+  std::vector<std::size_t> tallies;
 
   void parse() {
     const std::size_t tail = bytes.size() - rows_tail;
@@ -123,6 +124,8 @@ struct RowsFile::State {
     head = {all.at("key").get<std::string>(),
             all.at("index").get<std::size_t>(),
             {all.at("first").get<std::size_t>(), all.at("count").get<std::size_t>()}};
+    for (const json &count : all.value("tallies", json::array()))
+      tallies.push_back(count.get<std::size_t>());
     for (const json &table : all.at("tables")) {
       names.push_back(table.at("name").get<std::string>());
       tables.push_back(about_table(table, end));
@@ -145,6 +148,17 @@ struct RowsFile::State {
     else
       return fill_texts(place, rows, std::get<std::vector<std::string>>(cells));
     return true;
+  }
+  /// Of those that stand within the file.
+  [[nodiscard]] std::size_t longest_text(const Place &place) const {
+    std::uint64_t longest = 0, from = 0;
+    for (std::size_t text = 0; text < place.texts; ++text) {
+      const auto to = read_at<std::uint64_t>(bytes, place.ends + 8 * text);
+      if (from <= to && to <= end - place.words)
+        longest = std::max(longest, to - from);
+      from = to;
+    }
+    return longest;
   }
   bool fill_texts(const Place &place, std::size_t rows, std::vector<std::string> &out) const {
     const auto end_of = [&](std::size_t text) {
@@ -194,12 +208,22 @@ Result<RowsFile> RowsFile::open(const std::filesystem::path &path) {
   return std::move(out);
 }
 
+const std::vector<std::size_t> &RowsFile::tallies() const { return state_->tallies; }
 const RowsHead &RowsFile::head() const { return state_->head; }
 const std::vector<std::string> &RowsFile::tables() const { return state_->names; }
 std::size_t RowsFile::blocks(std::size_t table) const {
   return state_->tables.at(table).blocks.size();
 }
 std::size_t RowsFile::rows(std::size_t table) const { return state_->tables.at(table).rows; }
+
+std::vector<std::size_t> RowsFile::widths(std::size_t table) const {
+  const AboutTable &about = state_->tables.at(table);
+  std::vector<std::size_t> out(about.columns.size());
+  for (const Block &block : about.blocks)
+    for (std::size_t c = 0; c < out.size(); ++c)
+      out[c] = std::max(out[c], state_->longest_text(block.columns[c]));
+  return out;
+}
 
 Result<Table> RowsFile::block(std::size_t table, std::size_t number) const {
   const AboutTable &about = state_->tables.at(table);

@@ -50,6 +50,7 @@ struct RowsWriter::State {
   json tables = json::array();
   RowsHead head;
   std::size_t at = 0;
+  std::vector<std::size_t> tallies = {};
 
   Result<void> write(std::string_view bytes) {
     UMOV_TRY(file.write(bytes));
@@ -121,15 +122,18 @@ Result<void> RowsWriter::add(std::size_t table, Table &&rows) {
   return {};
 }
 
+void RowsWriter::tally(const std::vector<std::size_t> &counts) { state_->tallies = counts; }
+
 Result<std::string> RowsWriter::finish() {
   const RowsHead &head = state_->head;
-  const std::string text = json{
-      {"key", head.key},
-      {"index", head.index},
-      {"first", head.range.first},
-      {"count", head.range.count},
-      {"tables",
-       state_->tables}}.dump();
+  json about{{"key", head.key},
+             {"index", head.index},
+             {"first", head.range.first},
+             {"count", head.range.count},
+             {"tables", state_->tables}};
+  if (!state_->tallies.empty())
+    about["tallies"] = state_->tallies;
+  const std::string text = about.dump();
   UMOV_ASSIGN(begin, state_->place(text));
   UMOV_TRY(state_->write(bytes_of(std::vector<std::uint64_t>{begin, text.size()})));
   UMOV_TRY(state_->write(rows_magic));

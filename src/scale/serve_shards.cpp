@@ -89,6 +89,7 @@ Result<void> serve_shards(const JobFolder &folder, jobs::RangedJob &job) {
   jobs::Monitor monitor;
   monitor.cancel = &asked.is_over();
   bool has_kept = false;
+  UMOV_TRY(job.keep()); // from here on, of each object that a shard is done with
   while (const auto index = asked.next()) {
     UMOV_TRY(say(to_json(do_shard(folder, job, *index, monitor))));
     if (!std::exchange(has_kept, true))

@@ -94,6 +94,24 @@ def test_a_run_in_parts_is_the_plain_one(umov, scenario, tmp_path):
         assert (tmp_path / table).read_bytes() == (tmp_path / "plain" / table).read_bytes()
 
 
+def test_several_objects_in_parts_are_the_plain_ones(umov, scenario, tmp_path):
+    """Masks of one object are not kept while a plan goes on to the next, and texts may be longer than those of the first shard."""
+    assert umov("mesh", "make", "cubesat", "--units", 3, "--panels", 2, "-o", "cube.obj").code == 0
+    name = scenario(("stop = 2018-01-21T05:12:00Z", "stop = 2018-01-22T08:00:00Z"),
+                    ("sun_alt_max_deg = -6, sunlit = true", "sunlit = true"), ('["ecsv", "csv", "html"]', '["ecsv", "csv", "fits"]'))
+    text = (tmp_path / name).read_text()
+    at = text.index("[[object]]")
+    one = text[at:text.index("[bands]")]
+    other = re.sub(r'name = "[^"]*"', 'name = "a name that is longer"', one, count=1)
+    (tmp_path / name).write_text(text[:at] + one + other + text[at + len(one):])
+    assert umov("run", name, "-o", "plain").code == 0
+    assert umov("scale", "plan", "job", "run", name).code == 0 and not (tmp_path / "job").exists()
+    assert umov("scale", "run", "--per-shard", 1, "job", "run", name).code == 0
+    for table in ("lightcurve.csv", "lightcurve.ecsv", "lightcurve.fits"):
+        assert umov("scale", "merge", "job", "-o", table).code == 0
+        assert (tmp_path / table).read_bytes() == (tmp_path / "plain" / table).read_bytes()
+
+
 def test_tasks_of_an_array_share_the_shards(umov, scenario, tmp_path):
     command = signature_of(scenario)
     plain(umov, command, "plain.csv")
@@ -228,7 +246,7 @@ def test_another_job_or_changed_inputs_are_refused(umov, scenario, tmp_path):
 
 
 @pytest.mark.parametrize("arguments,code,said", [
-    (["render", "s.toml"], 2, "signature, passes or run"),
+    (["render", "s.toml"], 2, "signature, passes, run, observe, invert or identify"),
     (["signature", "nothing.toml", "--poses", "5", "--phase", "60"], 3, "nothing.toml"),
     (["signature", "scenario.toml"], 2, "--geometry"),
     (["signature", "scenario.toml", "--poses", "5", "--phase", "60", "-o", "x.csv"], 2, "scale merge"),

@@ -32,6 +32,7 @@ struct Column {
   std::string description; ///< one line
   Cells cells;
   Precision precision = {}; ///< of its CSV; all other forms have all digits
+  std::size_t width = 0;    ///< bytes of the longest text that later blocks of rows bring
 };
 
 /// Columns of one length, in order, and what is said about the whole in a file's header.
@@ -51,6 +52,8 @@ public:
 
   /// How fine a CSV writes a column, if there is one of that name.
   void set_precision(std::string_view name, Precision precision);
+  /// Says how long texts of a column are in blocks that are still to come.
+  void set_width(std::string_view name, std::size_t width);
   /// All columns to all digits.
   void clear_precision();
 

@@ -10,6 +10,7 @@
 #include <umov/jobs/monitor.h>
 #include <umov/jobs/passes.h>
 #include <umov/jobs/signature.h>
+#include <umov/jobs/tallies.h>
 #include <vector>
 
 namespace umov::jobs {
@@ -20,6 +21,8 @@ public:
   virtual ~RangeSink() = default;
   /// Rows of table `table` of RangedJob::tables.
   virtual Result<void> add(std::size_t table, Table &&rows) = 0;
+  /// How many rows of the range are such as each of RangedJob::tallies tells of.
+  virtual void tally(const std::vector<std::size_t> & /*counts*/) {}
 };
 
 /// A job that was read, checked and made ready. `rows` may be called any number of times, from one
@@ -42,12 +45,18 @@ public:
   /// Column of the first table by which rows of all ranges are put in order (stable) and which is
   /// then left out; "": they stand in the order of the indices.
   [[nodiscard]] virtual std::string order() const { return ""; }
+  /// What was warned of before the first row and belongs in the header of the first table, as
+  /// `warning_1` and on. Of a job whose layout was given, empty: who has that has these.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+  /// What the header tells of the rows by their number, after these warnings.
+  [[nodiscard]] virtual std::vector<Tally> tallies() const { return {}; }
   /// The rows of a range, at least one block of each table (without rows if there are none).
   /// Interrupted after a stop.
   virtual Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,
                             Diagnostics &diagnostics) = 0;
-  /// Keeps what was learnt for the next process: masks.
-  [[nodiscard]] virtual Result<void> keep() const { return {}; }
+  /// Keeps what was learnt for the next process: masks. Before it is called the first time nothing
+  /// is written, as where a job is only measured.
+  [[nodiscard]] virtual Result<void> keep() { return {}; }
 };
 
 /// `umov signature` by poses.
@@ -63,5 +72,11 @@ ranged_passes(const PassesRequest &request, const JobOptions &options, Diagnosti
 Result<std::unique_ptr<RangedJob>> ranged_run(const Scenario &scenario, const JobOptions &options,
                                               const std::vector<std::size_t> &layout,
                                               const Monitor &monitor, Diagnostics &diagnostics);
+/// `umov observe` by exposures, object after object. `layout` as for a run. BadInput where it makes
+/// frames.
+Result<std::unique_ptr<RangedJob>> ranged_observe(const Scenario &scenario,
+                                                  const JobOptions &options,
+                                                  const std::vector<std::size_t> &layout,
+                                                  const Monitor &monitor, Diagnostics &diagnostics);
 
 } // namespace umov::jobs

@@ -18,7 +18,9 @@ struct JobOptions {
   /// File for the finished blocks of a job: the same job goes on from it after a kill, and removes
   /// it when it is done. Empty: none are kept.
   std::filesystem::path journal;
-  JobPart part; ///< of the poses of a signature, objects of a search, passes of a run
+  /// Of the poses of a signature, objects of a search, passes of a run, exposures of an
+  /// observation.
+  JobPart part;
   bool allow_bad_checksum = false; ///< of orbital elements
   bool allow_old_elements = false; ///< over 30 days from the span
 };

@@ -10,7 +10,7 @@
 
 namespace umov::scale {
 
-/// What was measured before the job began, for one of its poses, objects or passes.
+/// What was measured before the job began, for one of its poses, objects, passes or exposures.
 struct Rate {
   double cpu_s = 0, bytes = 0;
   double setup_cpu_s = 0; ///< of a process before its first row
@@ -28,6 +28,8 @@ struct JobLock {
   std::vector<std::size_t> layout;
   std::vector<std::string> tables;
   std::string order;
+  std::vector<std::string> warnings; ///< RangedJob::warnings
+  std::vector<jobs::Tally> tallies;  ///< RangedJob::tallies
   Rate rate;
 
   /// What the bytes of a shard depend on, as 16 hexadecimal digits.

@@ -30,6 +30,7 @@ public:
   ~RowsWriter() override;
 
   Result<void> add(std::size_t table, Table &&rows) override;
+  void tally(const std::vector<std::size_t> &counts) override;
   /// Ends the file; its SHA-256.
   Result<std::string> finish();
   /// Gives it its name, on the same file system, with all that it holds on disk.
@@ -64,6 +65,10 @@ public:
   [[nodiscard]] std::size_t blocks(std::size_t table) const;
   /// Number of rows of a table.
   [[nodiscard]] std::size_t rows(std::size_t table) const;
+  /// Bytes of the longest text in each column of a table; 0 for numbers.
+  [[nodiscard]] std::vector<std::size_t> widths(std::size_t table) const;
+  /// RangeSink::tally; empty where the job has none.
+  [[nodiscard]] const std::vector<std::size_t> &tallies() const;
   /// Rows of a block. BadInput for a text that stands nowhere.
   [[nodiscard]] Result<Table> block(std::size_t table, std::size_t number) const;
   /// SHA-256 of all its bytes.

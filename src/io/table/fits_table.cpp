@@ -20,14 +20,15 @@ struct Form {
   std::size_t bytes;
   std::string text;
 };
-Form form_of(const Cells &cells) {
+Form form_of(const Column &column) {
+  const Cells &cells = column.cells;
   if (std::holds_alternative<std::vector<double>>(cells))
     return {8, "1D"};
   if (std::holds_alternative<std::vector<std::int64_t>>(cells))
     return {8, "1K"};
   if (std::holds_alternative<std::vector<bool>>(cells))
     return {1, "1L"};
-  std::size_t longest = 1;
+  std::size_t longest = std::max<std::size_t>(1, column.width);
   for (const std::string &text : std::get<std::vector<std::string>>(cells))
     longest = std::max(longest, text.size());
   return {longest, fmt::format("{}A", longest)};
@@ -109,7 +110,7 @@ Result<void> FitsTable::begin(const Table &columns, int status) {
   UMOV_TRY(check(status, "make the file"));
   std::vector<std::string> names, forms, units;
   for (const Column &c : columns.columns()) {
-    const Form form = form_of(c.cells);
+    const Form form = form_of(c);
     names.push_back(printable(c.name));
     forms.push_back(form.text);
     units.push_back(printable(fits_unit(c.unit)));

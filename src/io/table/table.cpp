@@ -59,6 +59,12 @@ void Table::set_precision(std::string_view name, Precision precision) {
       column.precision = precision;
 }
 
+void Table::set_width(std::string_view name, std::size_t width) {
+  for (Column &column : columns_)
+    if (column.name == name)
+      column.width = width;
+}
+
 void Table::clear_precision() {
   for (Column &column : columns_)
     column.precision = {};

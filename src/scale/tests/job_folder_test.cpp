@@ -25,6 +25,8 @@ JobLock a_job() {
   out.per_shard = 30;
   out.layout = {60, 40};
   out.tables = {"signature"};
+  out.warnings = {"elements are old"};
+  out.tallies = {{"frame", "cut", ""}, {"", "rows are full", "all are full"}};
   return out;
 }
 
@@ -55,6 +57,19 @@ TEST_F(JobFolders, KeepTheirJob) {
   ASSERT_TRUE(again) << again.error().text();
   EXPECT_EQ(to_json(again->lock()), to_json(a_job()));
   EXPECT_TRUE(JobFolder::begin(path, a_job())); // the same job goes on
+}
+
+TEST_F(JobFolders, ReadJobsThatWereBegunBeforeTheyHadWarnings) {
+  std::string text = to_json(a_job());
+  for (const char *key : {"warnings", "tallies"}) {
+    const std::size_t at = text.find(std::string("\"") + key + "\"");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at + 1, 1, "x"); // a key that nobody asks for
+  }
+  const auto read = lock_from_json(text, "job.json");
+  ASSERT_TRUE(read) << read.error().text();
+  EXPECT_TRUE(read->warnings.empty() && read->tallies.empty());
+  EXPECT_EQ(read->key(), a_job().key()); // what the rows are named after is the same
 }
 
 TEST_F(JobFolders, OfAnotherJobAreRefusedWithTheLineThatDiffers) {

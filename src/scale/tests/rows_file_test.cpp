@@ -49,6 +49,7 @@ protected:
     EXPECT_TRUE(writer->add(0, some_rows(0, 5)));
     EXPECT_TRUE(writer->add(1, some_rows(100, 1)));
     EXPECT_TRUE(writer->add(0, some_rows(5, 4)));
+    writer->tally({0, 12});
     const auto sum = writer->finish();
     EXPECT_TRUE(sum);
     EXPECT_TRUE(writer->commit_as(folder / "whole.rows"));
@@ -66,6 +67,11 @@ TEST_F(RowsFiles, ComeBackAsTheyWere) {
   EXPECT_EQ(file->head().index, 7u);
   EXPECT_EQ(file->head().range.first, 70u);
   EXPECT_EQ(file->rows(0), 9u);
+  EXPECT_EQ(file->tallies(), (std::vector<std::size_t>{0, 12}));
+  // The longest text is odd, "7" of nine rows, and "even" of one.
+  EXPECT_EQ(file->widths(0),
+            (std::vector<std::size_t>{0, 0, std::string(R"(odd, "7")").size(), 0}));
+  EXPECT_EQ(file->widths(1), (std::vector<std::size_t>{0, 0, 4, 0}));
   ASSERT_EQ(file->blocks(0), 2u);
   Table all = *file->block(0, 0);
   all.append(*file->block(0, 1));

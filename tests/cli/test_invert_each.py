@@ -1,0 +1,89 @@
+"""Many curves, each a question of its own: answers are those of the curve alone, and those of any part are those of the whole."""
+import pytest
+from astropy.table import Table
+
+from test_identify import NAMES, library  # noqa: F401
+from test_invert import TRUTHS, observe, scene  # noqa: F401
+
+POSE = ("modes", "set95", "samples", "twins", "fit")
+
+
+@pytest.fixture
+def curves(umov, scene, tmp_path):
+    """a.csv, b.csv, c.csv of three attitudes, and bad.csv, which is no curve; returns them in an order with bad.csv second."""
+    for k, (name, truth) in enumerate(zip("abc", TRUTHS)):
+        assert umov("run", scene(truth, "masks", "truth", step=60), "-q").code == 0
+        observe(tmp_path, f"{name}.csv", 50, k)
+    (tmp_path / "bad.csv").write_text("time_utc,band,flux\n2018-01-21T05:09:00Z,nm:425,much\n")
+    scene([1, 0, 0, 0], "masks", "fit")
+    return ["a.csv", "bad.csv", "b.csv", "c.csv"]
+
+
+def asked(curves):
+    return ["invert", "pose", *curves, "--scenario", "fit.toml", "--grid", "2000", "--visibility", "masks"]
+
+
+def data(path):
+    return [line for line in path.read_text().splitlines() if not line.startswith("#")]
+
+
+def test_each_curve_has_the_answer_that_it_has_alone(umov, curves, tmp_path):
+    done = umov(*asked(curves), "--each", "-o", "each")
+    assert done.code == 3, done.err  # one has no answer
+    assert "1 of 4 curves have no answer" in done.err and "bad.csv:2" in done.err
+    table = Table.read(tmp_path / "each/curves.ecsv")
+    assert list(table["curve"]) == curves
+    assert table["verdict"][1] == "failed" and "bad.csv:2" in table["problem"][1]
+    assert "1 of 4 curves have no answer" in (tmp_path / "each/curves.ecsv").read_text()
+    for k in (0, 2, 3):
+        alone = umov(*asked([curves[k]]), "-o", "alone", "--force")
+        assert alone.code in (0, 4), alone.err
+        for name in POSE:
+            rows = [line.split(" ", 1)[1] for line in data(tmp_path / f"each/{name}.ecsv")[1:] if line.startswith(curves[k] + " ")]
+            assert rows == data(tmp_path / f"alone/{name}.ecsv")[1:], name
+
+
+@pytest.mark.parametrize("per_shard", [1, 3])
+def test_curves_in_parts_are_the_plain_ones(umov, curves, tmp_path, per_shard):
+    command = [*asked(curves), "--each"]
+    assert umov(*command, "-o", "plain").code == 3
+    done = umov("scale", "run", "--per-shard", per_shard, "job", *command)
+    assert done.code == 0, done.err  # all shards are done: what a curve lacks stands in its row
+    for name in ("curves", *POSE):
+        merged = umov("scale", "merge", "job", "--table", name, "-o", f"{name}.ecsv")
+        assert merged.code == 0, merged.err
+        assert (tmp_path / f"{name}.ecsv").read_bytes() == (tmp_path / f"plain/{name}.ecsv").read_bytes(), name
+
+
+def test_shards_of_curves_are_its_rows(umov, curves, tmp_path):
+    command = [*asked(curves), "--each"]
+    umov(*command, "-o", "plain")
+    rows = []
+    for k in range(3):
+        done = umov(*command, "--shard", f"{k}/3", "-o", f"part_{k}")
+        assert done.code == (3 if k == 0 else 0), done.err  # the first part has two curves, bad.csv among them
+        rows += data(tmp_path / f"part_{k}/modes.ecsv")[1:]
+    assert rows == data(tmp_path / "plain/modes.ecsv")[1:]
+
+
+def test_identities_in_parts_are_the_plain_ones(umov, curves, library, tmp_path):
+    command = ["identify", *curves, "--each", "--library", "lib", "--scenario", "place.toml"]
+    plain = umov(*command, "-o", "plain")
+    assert plain.code == 3 and "bad.csv" in plain.err, plain.err
+    identity = Table.read(tmp_path / "plain/identity.ecsv")
+    assert set(identity["curve"]) == {"a.csv", "b.csv", "c.csv"}
+    assert len(identity) == 3 * (len(NAMES) + 1)
+    done = umov("scale", "run", "--per-shard", 2, "job", *command)
+    assert done.code == 0, done.err
+    for name in ("curves", "identity", "modes", "fit"):
+        assert umov("scale", "merge", "job", "--table", name, "-o", f"{name}.ecsv").code == 0
+        assert (tmp_path / f"{name}.ecsv").read_bytes() == (tmp_path / f"plain/{name}.ecsv").read_bytes(), name
+
+
+@pytest.mark.parametrize("words, told", [(["invert", "pose", "a.csv", "--scenario", "fit.toml", "--shard", "0/2"], "--each"),
+                                         (["scale", "run", "job", "invert", "pose", "a.csv", "--scenario", "fit.toml"], "--each"),
+                                         (["scale", "run", "job", "invert", "spin", "a.csv", "--scenario", "fit.toml"], "pose")])
+def test_what_has_no_parts_is_refused(umov, tmp_path, words, told):
+    done = umov(*words)
+    assert done.code == 2 and told in done.err, done.err
+    assert not (tmp_path / "job").exists()
