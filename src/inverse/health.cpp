@@ -74,6 +74,18 @@ void put_joint(const MatrixXd &columns, const VectorXd &right, const VectorXd &p
       out.joint_covariance.push_back(covariance(r, c));
 }
 
+/// Neither model nor data hold light: no change is seen, whatever it was.
+Health dark(Health out, double chi2, const EndMember &before,
+            const std::vector<LightChange> &changes) {
+  out.chi2 = chi2;
+  out.fitted = before;
+  for (const LightChange &one : changes)
+    out.rows.push_back({one.name});
+  out.joint.assign(changes.size(), 0);
+  out.joint_covariance.assign(changes.size() * changes.size(), 0);
+  return out;
+}
+
 } // namespace
 
 Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const EndMember &before,
@@ -86,16 +98,18 @@ Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const
     members.push_back(slope_of(one, before));
   const auto w = inverse::whitened(curve, errors, members);
   const auto fixed = static_cast<Index>(1 + unknowns.size());
-  // The unknowns' columns are in units of the scale, which the object as it was tells well enough.
-  const VectorXd alone = w.columns.col(0);
-  const double scale = alone.dot(w.right) / std::max(alone.squaredNorm(), 1e-300);
-  VectorXd prior = VectorXd::Zero(fixed + 1);
-  for (std::size_t k = 0; k < unknowns.size(); ++k)
-    prior[static_cast<Index>(k + 1)] = 1 / std::pow(std::max(scale, 1e-300) * unknowns[k].sd, 2);
-  MatrixXd columns(w.columns.rows(), fixed + 1);
-  columns.leftCols(fixed) = w.columns.leftCols(fixed);
   Health out;
   out.measurements = w.measurements;
+  if (!(w.columns.col(0).dot(w.right) > 0))
+    return dark(std::move(out), w.right.squaredNorm(), before, changes);
+  // The unknowns' columns are in units of the scale, which the object as it was tells well enough.
+  const VectorXd alone = w.columns.col(0);
+  const double scale = alone.dot(w.right) / alone.squaredNorm();
+  VectorXd prior = VectorXd::Zero(fixed + 1);
+  for (std::size_t k = 0; k < unknowns.size(); ++k)
+    prior[static_cast<Index>(k + 1)] = 1 / std::pow(scale * unknowns[k].sd, 2);
+  MatrixXd columns(w.columns.rows(), fixed + 1);
+  columns.leftCols(fixed) = w.columns.leftCols(fixed);
   const Fit unchanged = fit_of(columns.leftCols(fixed), w.right, prior.head(fixed));
   out.chi2 = unchanged.chi2;
   VectorXd best = VectorXd::Zero(static_cast<Index>(members.size()));
@@ -106,8 +120,12 @@ Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const
     const Fit fit = fit_of(columns, w.right, prior);
     HealthRow row;
     row.name = changes[k].name;
+    if (!(fit.x[0] > 0)) { // of no light nothing can be a part
+      out.rows.push_back(std::move(row));
+      continue;
+    }
     // p = x_p / x_0, to first order in both.
-    const double x0 = std::max(fit.x[0], 1e-300);
+    const double x0 = fit.x[0];
     row.change = fit.x[fixed] / x0;
     const double variance = fit.covariance(fixed, fixed) -
                             2 * row.change * fit.covariance(0, fixed) +

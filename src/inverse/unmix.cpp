@@ -105,7 +105,10 @@ EndMember mixed(const std::vector<EndMember> &members, const VectorXd &x) {
   return out;
 }
 
+/// NaN where a column is 0: it has no direction.
 double condition_of(const MatrixXd &columns) {
+  if ((columns.colwise().squaredNorm().array() <= 0).any())
+    return std::numeric_limits<double>::quiet_NaN();
   MatrixXd unit = columns;
   unit.colwise().normalize();
   const VectorXd values = algebra::singular_values(unit);
@@ -164,11 +167,15 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
   }
   const MatrixXd of_fractions =
       algebra::product(algebra::product(slope, covariance), slope.transpose());
+  const bool has_light = x.sum() > 0;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   for (Index g = 0; g < x.size(); ++g) {
     UnmixedGroup &one = out.groups[static_cast<std::size_t>(g)];
-    one.fraction = x[g] / sum;
-    one.fraction_err = std::sqrt(std::max(0.0, of_fractions(g, g)));
-    one.detectable = 3 * one.fraction_err;
+    // Without light nothing is known; of one group all is of it, and no change of that can show.
+    one.fraction = has_light ? x[g] / sum : unknown;
+    one.fraction_err = x.size() < 2 ? 0 : std::sqrt(std::max(0.0, of_fractions(g, g)));
+    one.fraction_err = has_light ? one.fraction_err : unknown;
+    one.detectable = has_light && x.size() > 1 ? 3 * one.fraction_err : unknown;
     for (Index h = 0; h < x.size(); ++h)
       out.covariance.push_back(of_fractions(g, h));
   }

@@ -20,7 +20,7 @@ Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &req
               search_pose(model, quick, search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
   keep_masks(ready);
-  const Judgement judgement = judge(answer, ready.observed.curve, request.errors, symmetries);
+  const Judgement judgement = judge(answer, model, request.errors, symmetries);
   Inversion out;
   out.verdict = judgement.verdict;
   out.summary = summary_of(answer, judgement);

@@ -1,5 +1,6 @@
 // What has changed on an object, and what would have shown.
 
+#include "jobs/curve_limits.h"
 #include "jobs/fit_figures.h"
 #include "jobs/invert_group.h"
 #include "jobs/invert_parts.h"
@@ -88,6 +89,10 @@ Result<DriftedLight> light_of(const Scenario &scenario, const InvertRequest &req
 void count_from(const Health &baseline, Health &health) {
   for (std::size_t k = 0; k < health.rows.size(); ++k) {
     HealthRow &row = health.rows[k];
+    if (!(row.change_err > 0 && baseline.rows[k].change_err > 0)) { // nothing to count from
+      row.change = row.change_err = row.sigma = row.detectable = 0;
+      continue;
+    }
     row.change -= baseline.rows[k].change;
     row.change_err = std::hypot(row.change_err, baseline.rows[k].change_err);
     row.sigma = row.change_err > 0 ? row.change / row.change_err : 0;
@@ -104,7 +109,21 @@ constexpr double alarm = 3; // standard deviations
 
 bool is_visible(const HealthRow &row) { return row.change_err > 0 && row.detectable < whole; }
 
-Table health_table(const Health &health) {
+/// A part of a group lies between none and all of it; counted from a baseline it may also be less.
+bool could_be(const HealthRow &row, bool has_baseline) {
+  const double least = has_baseline ? -whole : 0;
+  return row.change > least - alarm * row.change_err && row.change < whole + alarm * row.change_err;
+}
+
+const char *seen_of(const HealthRow &row, Verdict verdict) {
+  if (verdict == Verdict::NoFit)
+    return "no fit";
+  if (!is_visible(row))
+    return "not visible";
+  return std::abs(row.sigma) > alarm ? "changed" : "no change";
+}
+
+Table health_table(const Health &health, Verdict verdict) {
   std::vector<std::string> name, seen;
   std::vector<double> change, error, sigma, detectable;
   for (const HealthRow &row : health.rows) {
@@ -114,9 +133,7 @@ Table health_table(const Health &health) {
     error.push_back(has_light ? row.change_err : std::nan(""));
     sigma.push_back(row.sigma);
     detectable.push_back(has_light ? row.detectable : std::nan(""));
-    seen.emplace_back(!is_visible(row)              ? "not visible"
-                      : std::abs(row.sigma) > alarm ? "changed"
-                                                    : "no change");
+    seen.emplace_back(seen_of(row, verdict));
   }
   Table out;
   out.add("parameter", "", "group and what it may be turning into", std::move(name));
@@ -125,7 +142,8 @@ Table health_table(const Health &health) {
   out.add("change_err", "", "standard deviation", std::move(error));
   out.add("sigma", "", "change over its error", std::move(sigma));
   out.add("detectable", "", "smallest change that shows at 3 sigma", std::move(detectable));
-  out.add("seen", "", "changed, no change, or not visible in these observations", std::move(seen));
+  out.add("seen", "", "changed, no change, not visible in these observations, or no fit: not known",
+          std::move(seen));
   note_conventions(out);
   return out;
 }
@@ -231,37 +249,56 @@ std::string json_of(const Health &health, Verdict verdict, const std::vector<std
   return out.dump(1) + "\n";
 }
 
-/// One change explains the data; several do; none was needed, or could be seen; nothing does.
-Verdict verdict_of(const Health &health) {
+/// No change, nor any single one, explains the data.
+bool is_misfit(const Health &health) {
   double best = health.chi2;
-  std::size_t changed = 0;
-  for (const HealthRow &row : health.rows) {
+  for (const HealthRow &row : health.rows)
     best = std::min(best, health.chi2 - row.chi2_gain);
-    changed += is_visible(row) && std::abs(row.sigma) > alarm ? 1u : 0u;
-  }
   const double dof = static_cast<double>(health.measurements) - 2;
   constexpr double unlikely = 1e-6;
-  if (dof > 0 && best > 2 * dof && chi2_probability(best, dof) < unlikely)
+  return dof > 0 && best > 2 * dof && chi2_probability(best, dof) < unlikely;
+}
+
+/// One change explains the data; several do, or one that cannot be; none was needed, or could be
+/// seen; nothing does. `baseline`: what it showed by itself, if there is one.
+Verdict verdict_of(const Health &health, const Health *baseline) {
+  if (is_misfit(health) || (baseline != nullptr && is_misfit(*baseline)))
     return Verdict::NoFit;
+  std::size_t changed = 0, impossible = 0;
+  for (const HealthRow &row : health.rows)
+    if (is_visible(row) && std::abs(row.sigma) > alarm) {
+      ++changed;
+      impossible += could_be(row, baseline != nullptr) ? 0u : 1u;
+    }
   if (changed > 0)
-    return changed == 1 ? Verdict::Determined : Verdict::Ambiguous;
+    return changed == 1 && impossible == 0 ? Verdict::Determined : Verdict::Ambiguous;
   return std::ranges::any_of(health.rows, is_visible) ? Verdict::Determined : Verdict::Undetermined;
 }
 
-std::vector<std::string> notes_of(const Health &health, Verdict verdict, const ObservedCurve &curve,
-                                  const CurveErrors &errors) {
-  std::vector<std::string> out = limits_of(curve);
-  for (const HealthRow &row : health.rows)
-    if (!is_visible(row))
+std::vector<std::string> notes_of(const Health &health, const Health *baseline, Verdict verdict,
+                                  const ObservedCurve &curve, const CurveErrors &errors) {
+  std::vector<std::string> out = limits_of(curve, errors, Asked::Part);
+  std::size_t changed = 0;
+  for (const HealthRow &row : health.rows) {
+    if (verdict == Verdict::NoFit)
+      break; // no row says anything
+    if (!is_visible(row)) {
       out.push_back(row.name + ": not visible in these observations, whatever happened to it");
-    else if (std::abs(row.sigma) > alarm && (row.change < 0 || row.change > whole))
+      continue;
+    }
+    changed += std::abs(row.sigma) > alarm ? 1u : 0u;
+    if (std::abs(row.sigma) > alarm && !could_be(row, baseline != nullptr))
       out.push_back(fmt::format("{}: a part of {:.3g} cannot be: something else has changed, or "
                                 "the attitude is not the scenario's",
                                 row.name, row.change));
-  if (verdict == Verdict::Ambiguous)
+  }
+  if (changed > 1)
     out.emplace_back("each of several changes explains the data by itself: which one it is, these "
                      "observations do not tell");
-  if (verdict == Verdict::NoFit)
+  if (verdict == Verdict::NoFit && baseline != nullptr && is_misfit(*baseline))
+    out.emplace_back("none of these changes explains the baseline within its errors and --floor: "
+                     "changes cannot be counted from it");
+  else if (verdict == Verdict::NoFit)
     out.emplace_back("none of these changes explains the data within their errors and --floor: is "
                      "the attitude right, and the object?");
   if (errors.has_clouds)
@@ -281,20 +318,23 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
   ObservedLightCurve &observed = light.observed;
   Health health = light.check(observed.curve, request.errors);
   std::optional<DriftedLight> old;
+  std::optional<Health> before;
   tell_of_device(out.light.device, diagnostics);
   if (!asked.baseline.empty()) {
-    InvertRequest before = request;
-    before.observations = asked.baseline;
+    InvertRequest earlier = request;
+    earlier.observations = asked.baseline;
     ManifestInput::Light as_before;
-    UMOV_ASSIGN(baseline, light_of(scenario, before, asked, drifts, options, monitor, diagnostics,
+    UMOV_ASSIGN(baseline, light_of(scenario, earlier, asked, drifts, options, monitor, diagnostics,
                                    as_before));
     old = std::move(baseline);
-    count_from(old->check(old->observed.curve, request.errors), health);
+    before = old->check(old->observed.curve, request.errors);
+    count_from(*before, health);
     observed.inputs.insert(observed.inputs.end(), old->observed.inputs.begin(),
                            old->observed.inputs.end());
   }
-  out.verdict = verdict_of(health);
-  const auto notes = notes_of(health, out.verdict, observed.curve, request.errors);
+  const Health *const shown = before ? &*before : nullptr;
+  out.verdict = verdict_of(health, shown);
+  const auto notes = notes_of(health, shown, out.verdict, observed.curve, request.errors);
   out.summary =
       fmt::format("{}: chi-square {:.4g} of {} without any change\n", name_of(out.verdict),
                   health.chi2, counted(health.measurements, "measurement"));
@@ -302,7 +342,7 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
     out.summary += "- " + text + "\n";
   out.json = json_of(health, out.verdict, notes);
   const auto parts = healths_of(light, old ? &*old : nullptr, request.errors);
-  out.tables = {{"health", health_table(health)},
+  out.tables = {{"health", health_table(health, out.verdict)},
                 {"parts", parts_table(parts)},
                 {"fit", fit_table(observed, health.fitted, request.errors)}};
   out.page = health_page("What has changed on " + scenario.objects.front().name,

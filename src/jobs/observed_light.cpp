@@ -151,7 +151,9 @@ Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCu
       out.geometry.empty() ? 0 : seconds_between(geometry->time, out.geometry.front().time);
   curve.epochs.push_back({seconds, geometry->to_sun, geometry->to_observer,
                           scenario_.has_solar_disk ? sun_radius_rad(*geometry) : 0,
-                          scattering_axis(*geometry, rows.front().file->frame).radians()});
+                          scattering_axis(*geometry, rows.front().file->frame).radians(),
+                          irradiance_at_observer(1, 1, geometry->sun_distance_km, geometry->sunlit,
+                                                 geometry->range_km)});
   out.geometry.push_back(*geometry);
   for (const Placed &placed : rows) {
     const ObservedRow &row = *placed.row;

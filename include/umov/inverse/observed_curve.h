@@ -15,6 +15,7 @@ struct ObservedEpoch {
   Vec3<Gcrs> to_sun, to_observer; ///< unit vectors at the object
   double sun_radius_rad = 0;      ///< of its disk; 0: a point
   double scattering_axis_rad = 0; ///< position angle of +Q_scat in the frame of the instrument
+  double flux_per_intensity = 1;  ///< what arrives of I here, up to a constant of the curve
 };
 
 /// One band at one epoch. NaN: not measured.
