@@ -65,9 +65,8 @@ Result<ObservationsFile> observations_of_counts(std::string_view text, const std
   const std::size_t all = counts.rows.size();
   std::erase_if(counts.rows, [](const CountRow &row) { return row.is_saturated; });
   if (counts.rows.size() < all)
-    diagnostics.warn(fmt::format("{} left out: saturated",
-                                 counted(all - counts.rows.size(), "count")),
-                     {file});
+    diagnostics.warn(
+        fmt::format("{} left out: saturated", counted(all - counts.rows.size(), "count")), {file});
   const auto pupils = counts.notes.find("pupils");
   out.has_separate_pupils = pupils != counts.notes.end() && pupils->second == "separate";
   out.counts = std::move(counts.rows);
