@@ -51,8 +51,8 @@ void settle(InvertVerb &o) {
 void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   CurveErrors &errors = o->request.errors;
   verb.add_option("observations", o->request.observations,
-                  "Light curves (ECSV, CSV, FITS or TDM), of umov reduce, umov run or your own: "
-                  "one fit of all")
+                  "Light curves (ECSV, CSV, FITS or TDM), of umov reduce, umov run or your own, or "
+                  "counts of umov observe: one fit of all")
       ->required();
   verb.add_option("--grid", o->request.grid, "Attitudes that are looked at first")
       ->check(CLI::Range(1000, 5'000'000))

@@ -27,8 +27,9 @@ EndMember slope_of(const LightChange &change, const EndMember &before) {
 /// Columns added up with their parts of the first one.
 EndMember mixed(const std::vector<EndMember> &members, const VectorXd &x) {
   EndMember out = members.front();
+  const double whole = std::max(x[0], 1e-300);
   for (std::size_t c = 1; c < members.size(); ++c) {
-    const double part = x[static_cast<Index>(c)] / x[0];
+    const double part = x[static_cast<Index>(c)] / whole;
     for (std::size_t k = 0; k < out.i.size() && part != 0; ++k) {
       out.i[k] += part * members[c].i[k];
       out.q[k] += part * members[c].q[k];
@@ -56,12 +57,53 @@ Fit fit_of(const MatrixXd &columns, const VectorXd &right, const VectorXd &prior
   return out;
 }
 
+/// Curve, errors and what its light is added up from: the object as it was, unknowns, changes.
+struct Problem {
+  const ObservedCurve &curve;
+  const CurveErrors &errors;
+  std::vector<double> unknown_sd;
+};
+
+/// The best parts of some members. The unknowns' are in units of the scale, so their priors are
+/// too.
+Fit fit_of(const Problem &problem, const std::vector<EndMember> &members) {
+  Fit out;
+  inverse::Whitened w = inverse::whitened(problem.curve, problem.errors, members);
+  const VectorXd alone = w.columns.col(0);
+  double scale = alone.dot(w.right) / alone.squaredNorm();
+  for (int round = 0; round <= inverse::refinements; ++round) {
+    VectorXd prior = VectorXd::Zero(w.columns.cols());
+    for (std::size_t k = 0; k < problem.unknown_sd.size(); ++k)
+      prior[static_cast<Index>(k + 1)] = 1 / std::pow(scale * problem.unknown_sd[k], 2);
+    out = fit_of(w.columns, w.right, prior);
+    if (round == inverse::refinements || !(out.x[0] > 0))
+      break;
+    scale = out.x[0];
+    const EndMember about = inverse::added_up(members, out.x);
+    w = inverse::whitened(problem.curve, problem.errors, members, &about);
+  }
+  return out;
+}
+
+/// The last of the parts as a change: p = x_p / x_0, to first order in both.
+void put_change(const Fit &fit, double chi2_without, HealthRow &row) {
+  const Index last = fit.x.size() - 1;
+  const double x0 = fit.x[0];
+  row.change = fit.x[last] / x0;
+  const double variance = fit.covariance(last, last) - 2 * row.change * fit.covariance(0, last) +
+                          row.change * row.change * fit.covariance(0, 0);
+  row.change_err = std::sqrt(std::max(variance, 0.0)) / x0;
+  row.sigma = row.change_err > 0 ? row.change / row.change_err : 0;
+  row.detectable = 3 * row.change_err;
+  row.chi2_gain = chi2_without - fit.chi2;
+}
+
 /// All changes at once: p = x_k / x_0, to first order in both.
-void put_joint(const MatrixXd &columns, const VectorXd &right, const VectorXd &prior, Index fixed,
-               Health &out) {
-  const Fit fit = fit_of(columns, right, prior);
+void put_joint(const Problem &problem, const std::vector<EndMember> &members, Health &out) {
+  const Fit fit = fit_of(problem, members);
+  const auto fixed = static_cast<Index>(1 + problem.unknown_sd.size());
   const double x0 = std::max(fit.x[0], 1e-300);
-  MatrixXd slope = MatrixXd::Zero(columns.cols() - fixed, columns.cols());
+  MatrixXd slope = MatrixXd::Zero(fit.x.size() - fixed, fit.x.size());
   for (Index k = 0; k < slope.rows(); ++k) {
     out.joint.push_back(fit.x[fixed + k] / x0);
     slope(k, 0) = -out.joint.back() / x0;
@@ -74,61 +116,57 @@ void put_joint(const MatrixXd &columns, const VectorXd &right, const VectorXd &p
       out.joint_covariance.push_back(covariance(r, c));
 }
 
+/// Neither model nor data hold light: no change is seen, whatever it was.
+Health dark(Health out, double chi2, const EndMember &before,
+            const std::vector<LightChange> &changes) {
+  out.chi2 = chi2;
+  out.fitted = before;
+  for (const LightChange &one : changes)
+    out.rows.push_back({one.name});
+  out.joint.assign(changes.size(), 0);
+  out.joint_covariance.assign(changes.size() * changes.size(), 0);
+  return out;
+}
+
 } // namespace
 
 Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const EndMember &before,
                     const std::vector<LightChange> &changes,
                     const std::vector<LightChange> &unknowns) {
   std::vector<EndMember> members{before};
-  for (const LightChange &one : unknowns)
+  Problem problem{curve, errors, {}};
+  for (const LightChange &one : unknowns) {
     members.push_back(slope_of(one, before));
-  for (const LightChange &one : changes)
-    members.push_back(slope_of(one, before));
-  const auto w = inverse::whitened(curve, errors, members);
-  const auto fixed = static_cast<Index>(1 + unknowns.size());
-  // The unknowns' columns are in units of the scale, which the object as it was tells well enough.
-  const VectorXd alone = w.columns.col(0);
-  const double scale = alone.dot(w.right) / std::max(alone.squaredNorm(), 1e-300);
-  VectorXd prior = VectorXd::Zero(fixed + 1);
-  for (std::size_t k = 0; k < unknowns.size(); ++k)
-    prior[static_cast<Index>(k + 1)] = 1 / std::pow(std::max(scale, 1e-300) * unknowns[k].sd, 2);
-  MatrixXd columns(w.columns.rows(), fixed + 1);
-  columns.leftCols(fixed) = w.columns.leftCols(fixed);
+    problem.unknown_sd.push_back(one.sd);
+  }
+  const std::size_t fixed = members.size();
   Health out;
+  const auto w = inverse::whitened(curve, errors, {before});
   out.measurements = w.measurements;
-  const Fit unchanged = fit_of(columns.leftCols(fixed), w.right, prior.head(fixed));
+  if (!(w.columns.col(0).dot(w.right) > 0))
+    return dark(std::move(out), w.right.squaredNorm(), before, changes);
+  const Fit unchanged = fit_of(problem, members);
   out.chi2 = unchanged.chi2;
-  VectorXd best = VectorXd::Zero(static_cast<Index>(members.size()));
-  best.head(fixed) = unchanged.x;
+  out.fitted = mixed(members, unchanged.x);
   double gain = 0;
-  for (std::size_t k = 0; k < changes.size(); ++k) {
-    columns.col(fixed) = w.columns.col(fixed + static_cast<Index>(k));
-    const Fit fit = fit_of(columns, w.right, prior);
+  for (const LightChange &change : changes) {
+    members.resize(fixed);
+    members.push_back(slope_of(change, before));
+    const Fit fit = fit_of(problem, members);
     HealthRow row;
-    row.name = changes[k].name;
-    // p = x_p / x_0, to first order in both.
-    const double x0 = std::max(fit.x[0], 1e-300);
-    row.change = fit.x[fixed] / x0;
-    const double variance = fit.covariance(fixed, fixed) -
-                            2 * row.change * fit.covariance(0, fixed) +
-                            row.change * row.change * fit.covariance(0, 0);
-    row.change_err = std::sqrt(std::max(variance, 0.0)) / x0;
-    row.sigma = row.change_err > 0 ? row.change / row.change_err : 0;
-    row.detectable = 3 * row.change_err;
-    row.chi2_gain = out.chi2 - fit.chi2;
+    row.name = change.name;
+    if (fit.x[0] > 0) // of no light nothing can be a part
+      put_change(fit, out.chi2, row);
     if (row.chi2_gain > gain) {
       gain = row.chi2_gain;
-      best.setZero();
-      best.head(fixed) = fit.x.head(fixed);
-      best[fixed + static_cast<Index>(k)] = fit.x[fixed];
+      out.fitted = mixed(members, fit.x);
     }
     out.rows.push_back(std::move(row));
   }
-  VectorXd all = VectorXd::Zero(w.columns.cols());
-  all.head(fixed) = prior.head(fixed);
-  put_joint(w.columns, w.right, all, fixed, out);
-  best[0] = std::max(best[0], 1e-300);
-  out.fitted = mixed(members, best);
+  members.resize(fixed);
+  for (const LightChange &change : changes)
+    members.push_back(slope_of(change, before));
+  put_joint(problem, members, out);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include <umov/inverse/likelihood.h>
 
+#include "inverse/count_likelihood.h"
 #include "inverse/sample_errors.h"
 
 #include <algorithm>
@@ -23,11 +24,23 @@ struct CurveLikelihood::Gains {
   double log_det = 0;    ///< what the integrals over scale and gains leave behind
 };
 
+/// Data as a model is held against them.
+struct CurveLikelihood::Weighed {
+  std::vector<double> weights; ///< of the rows
+  inverse::WhitenedCounts counts;
+  double grown = 0; ///< ln of what variances have grown by, and of those that the model makes
+};
+
 CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &errors,
                                  std::span<const std::size_t> epochs)
     : bands_(curve.bands), errors_(errors), is_absolute_(curve.is_absolute) {
   median_i_ = inverse::median_of_i(curve);
   groups_ = errors.has_clouds ? curve.epochs.size() : curve.bands.size();
+  if (!curve.counts.empty()) {
+    counts_ = std::make_shared<const inverse::CountLikelihood>(curve, errors, median_i_, epochs);
+    measurements_ = counts_->size();
+    return;
+  }
   for (const ObservedSample &s : curve.samples) {
     if (!epochs.empty() && std::ranges::find(epochs, s.epoch) == epochs.end())
       continue;
@@ -55,12 +68,39 @@ CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &
 }
 
 std::size_t CurveLikelihood::residual_count() const {
-  return 3 * rows_.size() + (errors_.has_clouds ? 0 : groups_) + 1;
+  return 3 * rows_.size() + (counts_ ? counts_->size() : 0) + (errors_.has_clouds ? 0 : groups_) +
+         1;
 }
 
-/// Weights of the rows: those of the data, less where the model itself is not sure. Returns ln of
-/// what the variances have grown by.
-double CurveLikelihood::weigh(const ModelLight &model, std::vector<double> &weights) const {
+std::vector<CurveLikelihood::Block> CurveLikelihood::blocks() const {
+  std::vector<Block> out;
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    out.push_back({3 * k, 3, (rows_[k].weight > 0 ? 1. : 0.) + (rows_[k].l_qq > 0 ? 2. : 0.)});
+  if (counts_)
+    for (const auto &set : counts_->sets())
+      out.push_back({3 * rows_.size() + set.begin, set.size, static_cast<double>(set.size)});
+  return out;
+}
+
+/// Weights of the rows: those of the data, less where the model itself is not sure.
+CurveLikelihood::Weighed CurveLikelihood::weigh(const ModelLight &model) const {
+  Weighed out;
+  if (counts_) { // variances of the model's counts, at the scale that they ask for themselves
+    double scale = counts_->first_scale(model);
+    constexpr int rounds = 2;
+    for (int round = 0; round < rounds; ++round) {
+      out.counts = counts_->whitened(model, scale);
+      double cross = 0, square = 0;
+      for (std::size_t k = 0; k < counts_->size(); ++k) {
+        cross += out.counts.net[k] * out.counts.light[k];
+        square += out.counts.light[k] * out.counts.light[k];
+      }
+      scale = square > 0 ? std::max(cross / square, 0.0) : 0;
+    }
+    out.grown = out.counts.log_det;
+    return out;
+  }
+  std::vector<double> &weights = out.weights;
   weights.resize(rows_.size());
   double cross = 0, square = 0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -70,35 +110,43 @@ double CurveLikelihood::weigh(const ModelLight &model, std::vector<double> &weig
     square += rows_[k].weight * m * m;
   }
   if (model.i_half_width.empty() || !(square > 0))
-    return 0;
+    return out;
   constexpr double half_width = 1.96; // of a normal error, in standard deviations
   const double scale = std::max(cross / square, 0.0) / half_width;
-  double grown = 0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const double sd = scale * model.i_half_width[rows_[k].at];
     const double factor = 1 + weights[k] * sd * sd;
     weights[k] /= factor;
-    grown += std::log(factor);
+    out.grown += std::log(factor);
   }
-  return grown;
+  return out;
 }
 
 /// The best gains, by least squares: without clouds the gain of a band is normal around the scale,
 /// g_b = s (1 + z_b), which for a given s is linear, and so is s then (section 2 of the page).
 CurveLikelihood::Gains CurveLikelihood::gains_of(const ModelLight &model,
-                                                 std::span<const double> weights) const {
+                                                 const Weighed &data) const {
   std::vector<double> cross(groups_, 0), square(groups_, 0);
   double all_cross = 0, all_square = 0;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const Row &row = rows_[k];
     if (row.weight == 0)
       continue;
-    const double m = model.i[row.at], w = weights[k];
+    const double m = model.i[row.at], w = data.weights[k];
     cross[row.group] += w * row.i * m;
     square[row.group] += w * m * m;
     all_cross += w * row.i * m;
     all_square += w * m * m;
   }
+  if (counts_)
+    for (const auto &set : counts_->sets())
+      for (std::size_t k = set.begin; k < set.begin + set.size; ++k) {
+        const double m = data.counts.light[k], n = data.counts.net[k];
+        cross[set.group] += n * m;
+        square[set.group] += m * m;
+        all_cross += n * m;
+        all_square += m * m;
+      }
   constexpr double least = 1e-9; // light is not negative, however dark the data
   Gains out;
   out.gain.assign(groups_, 1);
@@ -140,8 +188,7 @@ CurveLikelihood::Gains CurveLikelihood::gains_of(const ModelLight &model,
   return out;
 }
 
-double CurveLikelihood::fill(const ModelLight &model, const Gains &gains,
-                             std::span<const double> weights,
+double CurveLikelihood::fill(const ModelLight &model, const Gains &gains, const Weighed &data,
                              std::vector<double> &residuals) const {
   residuals.assign(residual_count(), 0);
   double chi2 = 0;
@@ -149,7 +196,7 @@ double CurveLikelihood::fill(const ModelLight &model, const Gains &gains,
     const Row &row = rows_[k];
     const double m = model.i[row.at];
     double *const r = &residuals[3 * k];
-    r[0] = std::sqrt(weights[k]) * (row.i - gains.gain[row.group] * m);
+    r[0] = std::sqrt(data.weights[k]) * (row.i - gains.gain[row.group] * m);
     if (row.l_qq > 0) {
       const double dq = row.q - (m > 0 ? model.q[row.at] / m : 0);
       const double du = row.u - (m > 0 ? model.u[row.at] / m : 0);
@@ -158,48 +205,63 @@ double CurveLikelihood::fill(const ModelLight &model, const Gains &gains,
     }
     chi2 += r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
   }
+  if (counts_)
+    for (const auto &set : counts_->sets())
+      for (std::size_t k = set.begin; k < set.begin + set.size; ++k) {
+        double &r = residuals[3 * rows_.size() + k];
+        r = data.counts.net[k] - gains.gain[set.group] * data.counts.light[k];
+        chi2 += r * r;
+      }
   residuals.back() = std::sqrt(gains.prior_chi2);
   return chi2 + gains.prior_chi2;
 }
 
 Comparison CurveLikelihood::compare(const ModelLight &model) const {
   Comparison out;
-  std::vector<double> weights;
-  const double grown = weigh(model, weights);
-  Gains gains = gains_of(model, weights);
-  out.chi2 = fill(model, gains, weights, out.residuals);
-  out.minus_2_log = out.chi2 + gains.log_det + grown;
+  const Weighed data = weigh(model);
+  Gains gains = gains_of(model, data);
+  out.chi2 = fill(model, gains, data, out.residuals);
+  out.minus_2_log = out.chi2 + gains.log_det + data.grown;
   out.scale = gains.scale;
   if (!(errors_.outlier_share > 0))
     return out;
   // Each row is good, or with a small probability wrong by a larger error: expectation
   // maximisation of the mixture, three rounds (Dempster, Laird & Rubin 1977).
   const double wide = errors_.outlier_factor, share = errors_.outlier_share;
-  std::vector<double> trust(rows_.size(), 1);
+  const std::vector<Block> all = blocks();
+  std::vector<double> trust(all.size(), 1);
   constexpr int rounds = 3;
   for (int round = 0; round < rounds; ++round) {
-    out.minus_2_log = gains.log_det + gains.prior_chi2 + grown;
-    for (std::size_t k = 0; k < rows_.size(); ++k) {
-      double *const r = &out.residuals[3 * k];
-      const double dof = (rows_[k].weight > 0 ? 1 : 0) + (rows_[k].l_qq > 0 ? 2 : 0);
-      const double x2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+    out.minus_2_log = gains.log_det + gains.prior_chi2 + data.grown;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      double x2 = 0;
+      for (std::size_t j = 0; j < all[k].size; ++j)
+        x2 += std::pow(out.residuals[all[k].begin + j], 2);
       const double good = (1 - share) * std::exp(-x2 / 2);
-      const double bad = share * std::exp(-x2 / (2 * wide * wide)) / std::pow(wide, dof);
+      const double bad =
+          share * std::exp(-x2 / (2 * wide * wide)) / std::pow(wide, all[k].measurements);
       trust[k] = (good + bad / (wide * wide)) / (good + bad);
       out.minus_2_log -= 2 * std::log(good + bad);
     }
     if (round + 1 < rounds) {
-      std::vector<double> trusted(weights);
+      Weighed trusted = data;
       for (std::size_t k = 0; k < rows_.size(); ++k)
-        trusted[k] *= trust[k];
+        trusted.weights[k] *= trust[k];
+      for (std::size_t k = rows_.size(); k < all.size(); ++k)
+        for (std::size_t j = 0; j < all[k].size; ++j) {
+          const std::size_t at = all[k].begin + j - 3 * rows_.size();
+          trusted.counts.net[at] *= std::sqrt(trust[k]);
+          trusted.counts.light[at] *= std::sqrt(trust[k]);
+        }
       gains = gains_of(model, trusted);
-      out.chi2 = fill(model, gains, weights, out.residuals);
+      // As before, residuals are whitened by all of the weight.
+      out.chi2 = fill(model, gains, data, out.residuals);
     }
   }
   out.scale = gains.scale;
-  for (std::size_t k = 0; k < rows_.size(); ++k) // least squares then see what the mixture does
-    for (std::size_t j = 0; j < 3; ++j)
-      out.residuals[3 * k + j] *= std::sqrt(trust[k]);
+  for (std::size_t k = 0; k < all.size(); ++k) // least squares then see what the mixture does
+    for (std::size_t j = 0; j < all[k].size; ++j)
+      out.residuals[all[k].begin + j] *= std::sqrt(trust[k]);
   out.chi2 = 0;
   for (const double r : out.residuals)
     out.chi2 += r * r;

@@ -89,23 +89,43 @@ std::vector<std::size_t> groups_of(const Whitened &w, double scale) {
   return group;
 }
 
-/// The members in their parts, which are made to add up to 1.
-EndMember mixed(const std::vector<EndMember> &members, const VectorXd &x) {
-  const std::size_t size = members.front().i.size();
-  EndMember out{"", std::vector<double>(size), std::vector<double>(size),
-                std::vector<double>(size)};
-  const double sum = std::max(x.sum(), 1e-300);
-  for (std::size_t n = 0; n < members.size(); ++n)
-    for (std::size_t k = 0; k < size; ++k) {
-      const double part = x[static_cast<Index>(n)] / sum;
-      out.i[k] += part * members[n].i[k];
-      out.q[k] += part * members[n].q[k];
-      out.u[k] += part * members[n].u[k];
-    }
+/// The best parts with none below 0, and the rows that they were found from.
+struct Solved {
+  Whitened rows;
+  VectorXd parts;
+};
+
+Solved solve(const ObservedCurve &curve, const CurveErrors &errors,
+             const std::vector<EndMember> &members) {
+  Solved out{whitened(curve, errors, members), {}};
+  out.parts = nnls(out.rows.columns, out.rows.right);
+  for (int round = 0; round < inverse::refinements && out.parts.sum() > 0; ++round) {
+    const EndMember about = inverse::added_up(members, out.parts);
+    out.rows = whitened(curve, errors, members, &about);
+    out.parts = nnls(out.rows.columns, out.rows.right);
+  }
   return out;
 }
 
+/// Members that cannot be told apart as one, the mean of theirs.
+std::vector<EndMember> joined(const std::vector<EndMember> &members,
+                              const std::vector<std::size_t> &group,
+                              const std::vector<std::size_t> &first) {
+  std::vector<EndMember> out;
+  for (const std::size_t leader : first) {
+    const auto count = static_cast<double>(std::ranges::count(group, leader));
+    VectorXd part = VectorXd::Zero(static_cast<Index>(members.size()));
+    for (std::size_t k = 0; k < group.size(); ++k)
+      part[static_cast<Index>(k)] = group[k] == leader ? 1 / count : 0;
+    out.push_back(inverse::added_up(members, part));
+  }
+  return out;
+}
+
+/// NaN where a column is 0: it has no direction.
 double condition_of(const MatrixXd &columns) {
+  if ((columns.colwise().squaredNorm().array() <= 0).any())
+    return std::numeric_limits<double>::quiet_NaN();
   MatrixXd unit = columns;
   unit.colwise().normalize();
   const VectorXd values = algebra::singular_values(unit);
@@ -127,36 +147,27 @@ std::vector<double> non_negative_least_squares(const std::vector<std::vector<dou
 
 Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
                const std::vector<EndMember> &members) {
-  const Whitened w = whitened(curve, errors, members);
+  const auto [w, all] = solve(curve, errors, members);
   Unmixing out;
   out.measurements = w.measurements;
   out.left_out = w.left_out;
   out.condition = condition_of(w.columns);
-  const VectorXd all = nnls(w.columns, w.right);
   out.scale = all.sum();
   out.chi2 = (w.right - w.columns * all).squaredNorm();
   const auto group = groups_of(w, out.scale);
-  // Joined members share one column, the mean of theirs: their parts cannot be told.
   std::vector<std::size_t> first;
   for (std::size_t k = 0; k < group.size(); ++k)
     if (group[k] == k)
       first.push_back(k);
-  MatrixXd joined = MatrixXd::Zero(w.columns.rows(), static_cast<Index>(first.size()));
-  for (std::size_t g = 0; g < first.size(); ++g) {
-    double count = 0;
-    UnmixedGroup one;
+  for (const std::size_t leader : first) {
+    out.groups.emplace_back();
     for (std::size_t k = 0; k < group.size(); ++k)
-      if (group[k] == first[g]) {
-        joined.col(static_cast<Index>(g)) += w.columns.col(static_cast<Index>(k));
-        one.names.push_back(members[k].name);
-        count += 1;
-      }
-    joined.col(static_cast<Index>(g)) /= count;
-    out.groups.push_back(std::move(one));
+      if (group[k] == leader)
+        out.groups.back().names.push_back(members[k].name);
   }
-  const VectorXd x = nnls(joined, w.right);
+  const auto [rows, x] = solve(curve, errors, joined(members, group, first));
   const double sum = std::max(x.sum(), 1e-300);
-  const MatrixXd covariance = algebra::pseudo_inverse(algebra::gram(joined));
+  const MatrixXd covariance = algebra::pseudo_inverse(algebra::gram(rows.columns));
   MatrixXd slope = MatrixXd::Zero(x.size(), x.size()); // f = x_g / sum x, to first order
   for (Index g = 0; g < x.size(); ++g) {
     slope.row(g).setConstant(-x[g] / (sum * sum));
@@ -164,15 +175,19 @@ Unmixing unmix(const ObservedCurve &curve, const CurveErrors &errors,
   }
   const MatrixXd of_fractions =
       algebra::product(algebra::product(slope, covariance), slope.transpose());
+  const bool has_light = x.sum() > 0;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   for (Index g = 0; g < x.size(); ++g) {
     UnmixedGroup &one = out.groups[static_cast<std::size_t>(g)];
-    one.fraction = x[g] / sum;
-    one.fraction_err = std::sqrt(std::max(0.0, of_fractions(g, g)));
-    one.detectable = 3 * one.fraction_err;
+    // Without light nothing is known; of one group all is of it, and no change of that can show.
+    one.fraction = has_light ? x[g] / sum : unknown;
+    one.fraction_err = x.size() < 2 ? 0 : std::sqrt(std::max(0.0, of_fractions(g, g)));
+    one.fraction_err = has_light ? one.fraction_err : unknown;
+    one.detectable = has_light && x.size() > 1 ? 3 * one.fraction_err : unknown;
     for (Index h = 0; h < x.size(); ++h)
       out.covariance.push_back(of_fractions(g, h));
   }
-  out.fitted = mixed(members, all);
+  out.fitted = inverse::added_up(members, all / std::max(all.sum(), 1e-300));
   return out;
 }
 

@@ -35,8 +35,22 @@ void whiten_band(MatrixXd &columns, VectorXd &right, const std::vector<Index> &r
 
 } // namespace
 
+EndMember added_up(const std::vector<EndMember> &members, const VectorXd &parts) {
+  const std::size_t size = members.front().i.size();
+  EndMember out{"", std::vector<double>(size), std::vector<double>(size),
+                std::vector<double>(size)};
+  for (std::size_t n = 0; n < members.size(); ++n)
+    for (std::size_t k = 0; k < size; ++k) {
+      const double part = parts[static_cast<Index>(n)];
+      out.i[k] += part * members[n].i[k];
+      out.q[k] += part * members[n].q[k];
+      out.u[k] += part * members[n].u[k];
+    }
+  return out;
+}
+
 Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
-                  const std::vector<EndMember> &members) {
+                  const std::vector<EndMember> &members, const EndMember *about) {
   errors.has_clouds = false; // a free gain per epoch would leave equations that 0 solves
   const auto n = static_cast<Index>(members.size());
   const double median = median_of_i(curve);
@@ -49,7 +63,7 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
   for (const ObservedSample &s : curve.samples) {
     const std::size_t at = s.epoch * curve.bands.size() + s.band;
     const SampleErrors known = errors_of(s, errors, median);
-    const double light = std::max(s.i, 0.0);
+    const double light = std::max(about != nullptr ? about->i[at] : s.i, 0.0);
     if (!(known.i_variance > 0) || !(s.i > 0 || s.i_sd > 0)) {
       out.left_out += known.l_qq > 0 ? 1u : 0u; // of its q and u I is a factor
       continue;
@@ -64,16 +78,20 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
     ++out.measurements;
     if (!(known.l_qq > 0))
       continue;
-    if (!(light > 0)) {
+    if (!(s.i > 0 && light > 0)) {
       ++out.left_out;
       continue;
     }
+    const double q = about != nullptr ? about->q[at] / light : s.q;
+    const double u = about != nullptr ? about->u[at] / light : s.u;
     for (Index k = 0; k < n; ++k) {
       const EndMember &m = members[static_cast<std::size_t>(k)];
-      const double dq = (m.q[at] - s.q * m.i[at]) / light, du = (m.u[at] - s.u * m.i[at]) / light;
+      const double dq = (m.q[at] - q * m.i[at]) / light, du = (m.u[at] - u * m.i[at]) / light;
       out.columns(row, k) = known.l_qq * dq;
       out.columns(row + 1, k) = known.l_uq * dq + known.l_uu * du;
     }
+    out.right[row] = known.l_qq * (s.q - q);
+    out.right[row + 1] = known.l_uq * (s.q - q) + known.l_uu * (s.u - u);
     row += 2;
     out.measurements += 2;
   }

@@ -13,8 +13,16 @@ struct Whitened {
   std::size_t measurements = 0, left_out = 0;
 };
 
-/// I and, where q and u were measured, Q - q I and U - u I: linear in the members.
+/// I and, where q and u were measured, Q - q I and U - u I: linear in the members. Such rows pull
+/// the scale down, since 0 solves those of q and u and noise of I tilts what a zero point moves.
+/// With the scaled light of a fit (`about`) they are those of a Gauss-Newton step from there: q and
+/// u themselves, which do not depend on the scale, and zero points of the light that was fitted.
 Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
-                  const std::vector<EndMember> &members);
+                  const std::vector<EndMember> &members, const EndMember *about = nullptr);
+/// Members added up, so much of each.
+EndMember added_up(const std::vector<EndMember> &members, const Eigen::VectorXd &parts);
+
+/// Rounds of such steps: each takes off nearly all of what the last one left.
+inline constexpr int refinements = 4;
 
 } // namespace umov::inverse

@@ -226,8 +226,10 @@ Result<Inversion> identify_object(const Scenario &scenario, const IdentifyReques
         return library.lend(k, curve, look);
       }};
   UMOV_ASSIGN(answer, identify(curve, candidates, how));
-  IdentityWords words{library.names(), library.errors(), &answer, verdict_of(answer, curve), {}};
-  words.notes = notes_of(words, curve);
+  const CurveErrors &errors = request.observed.errors;
+  IdentityWords words{
+      library.names(), library.errors(), &answer, verdict_of(answer, curve, errors), {}};
+  words.notes = notes_of(words, curve, errors);
   const std::size_t best = answer.order.front();
   const PoseAnswer &pose = answer.candidates[best].answer;
   Table fit;

@@ -1,5 +1,6 @@
 #include "jobs/identify_tables.h"
 
+#include "jobs/curve_limits.h"
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
@@ -68,12 +69,13 @@ Table identity_table(const IdentityWords &words) {
   return out;
 }
 
-Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve) {
+Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve,
+                   const CurveErrors &errors) {
   constexpr double sure = 0.95;
   const double best = answer.candidates[answer.order.front()].probability;
   if (answer.none > sure && curve.epochs.size() > 1)
     return Verdict::NoFit;
-  if (is_steady(curve) || answer.is_cut || answer.none > best)
+  if (is_steady(curve, errors) || answer.is_cut || answer.none > best)
     return Verdict::Undetermined;
   // A table knows an object to some per cent: what is like it as closely takes its name.
   const bool has_own = answer.candidates[answer.order.front()].by == JudgedBy::Model;
@@ -81,8 +83,9 @@ Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve) {
                                                            : Verdict::Ambiguous;
 }
 
-std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve) {
-  std::vector<std::string> out = limits_of(curve);
+std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve,
+                                  const CurveErrors &errors) {
+  std::vector<std::string> out = limits_of(curve, errors, Asked::Attitude);
   const CandidateFit &best = best_of(words);
   if (best.by == JudgedBy::Table)
     out.push_back(fmt::format(

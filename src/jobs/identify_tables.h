@@ -22,9 +22,11 @@ inline constexpr const char *none_of_these = "none of these";
 Table identity_table(const IdentityWords &words);
 /// Determined: one object holds over 95 % in its own light; NoFit: none of these does. What a
 /// table, a steady curve or one epoch says of a name is never more than Ambiguous.
-Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve);
+Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve,
+                   const CurveErrors &errors);
 /// What the answer rests on, and what it cannot tell.
-std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve);
+std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve,
+                                  const CurveErrors &errors);
 std::string summary_of(const IdentityWords &words);
 /// `library`: SHA-256 of what its objects were made from.
 std::string json_of(const IdentityWords &words, const std::string &library);

@@ -29,7 +29,7 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
   UMOV_ASSIGN(answer,
               search_pose(model, quick, search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
-  const Judgement judgement = judge(answer, observed.curve, request.errors, symmetries);
+  const Judgement judgement = judge(answer, model, request.errors, symmetries);
   Inversion out;
   out.verdict = judgement.verdict;
   out.summary = summary_of(answer, judgement);

@@ -1,18 +1,14 @@
 // What has changed on an object, and what would have shown.
 
-#include "jobs/fit_figures.h"
+#include "jobs/health_words.h"
 #include "jobs/invert_group.h"
-#include "jobs/invert_parts.h"
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <umov/core/text.h>
-#include <umov/core/version.h>
-#include <umov/inverse/health.h>
 
 namespace umov::jobs {
 namespace {
@@ -88,6 +84,10 @@ Result<DriftedLight> light_of(const Scenario &scenario, const InvertRequest &req
 void count_from(const Health &baseline, Health &health) {
   for (std::size_t k = 0; k < health.rows.size(); ++k) {
     HealthRow &row = health.rows[k];
+    if (!(row.change_err > 0 && baseline.rows[k].change_err > 0)) { // nothing to count from
+      row.change = row.change_err = row.sigma = row.detectable = 0;
+      continue;
+    }
     row.change -= baseline.rows[k].change;
     row.change_err = std::hypot(row.change_err, baseline.rows[k].change_err);
     row.sigma = row.change_err > 0 ? row.change / row.change_err : 0;
@@ -98,43 +98,6 @@ void count_from(const Health &baseline, Health &health) {
   for (std::size_t k = 0; k < health.joint_covariance.size(); ++k)
     health.joint_covariance[k] += baseline.joint_covariance[k];
 }
-
-constexpr double whole = 1; // a change by all of a group
-constexpr double alarm = 3; // standard deviations
-
-bool is_visible(const HealthRow &row) { return row.change_err > 0 && row.detectable < whole; }
-
-Table health_table(const Health &health) {
-  std::vector<std::string> name, seen;
-  std::vector<double> change, error, sigma, detectable;
-  for (const HealthRow &row : health.rows) {
-    const bool has_light = row.change_err > 0;
-    name.push_back(row.name);
-    change.push_back(has_light ? row.change : std::nan(""));
-    error.push_back(has_light ? row.change_err : std::nan(""));
-    sigma.push_back(row.sigma);
-    detectable.push_back(has_light ? row.detectable : std::nan(""));
-    seen.emplace_back(!is_visible(row)              ? "not visible"
-                      : std::abs(row.sigma) > alarm ? "changed"
-                                                    : "no change");
-  }
-  Table out;
-  out.add("parameter", "", "group and what it may be turning into", std::move(name));
-  out.add("change", "", "part of the group that looks like it, the rest as in the scenario",
-          std::move(change));
-  out.add("change_err", "", "standard deviation", std::move(error));
-  out.add("sigma", "", "change over its error", std::move(sigma));
-  out.add("detectable", "", "smallest change that shows at 3 sigma", std::move(detectable));
-  out.add("seen", "", "changed, no change, or not visible in these observations", std::move(seen));
-  note_conventions(out);
-  return out;
-}
-
-/// What a part of the data says by itself, of the observations and of the baseline if there is one.
-struct PartHealth {
-  DataPart part;
-  Health health;
-};
 
 std::vector<PartHealth> healths_of(const DriftedLight &light, const DriftedLight *baseline,
                                    const CurveErrors &errors) {
@@ -155,120 +118,6 @@ std::vector<PartHealth> healths_of(const DriftedLight &light, const DriftedLight
   return out;
 }
 
-Table parts_table(const std::vector<PartHealth> &parts) {
-  std::vector<std::string> name, bands, measured;
-  std::vector<double> change, error, sigma, detectable;
-  for (const PartHealth &one : parts)
-    for (const HealthRow &row : one.health.rows) {
-      const bool has_light = row.change_err > 0;
-      name.push_back(row.name);
-      bands.push_back(one.part.bands);
-      measured.push_back(one.part.measured);
-      change.push_back(has_light ? row.change : std::nan(""));
-      error.push_back(has_light ? row.change_err : std::nan(""));
-      sigma.push_back(row.sigma);
-      detectable.push_back(has_light ? row.detectable : std::nan(""));
-    }
-  Table out;
-  out.add("parameter", "", "group and what it may be turning into", std::move(name));
-  out.add("bands", "", "all, or one", std::move(bands));
-  out.add("measured", "", "I, or I, q and u", std::move(measured));
-  out.add("change", "", "by this part of the data alone", std::move(change));
-  out.add("change_err", "", "standard deviation", std::move(error));
-  out.add("sigma", "", "change over its error", std::move(sigma));
-  out.add("detectable", "", "smallest change that shows at 3 sigma", std::move(detectable));
-  note_conventions(out);
-  return out;
-}
-
-std::string health_page(const std::string &title, const Table &fit, const Health &health,
-                        const std::vector<PartHealth> &parts, const std::string &summary) {
-  std::vector<PlotFigure> figures;
-  add_data_figures(figures, fit);
-  FittedNumbers numbers{{}, health.joint, health.joint_covariance};
-  std::vector<std::string> lines = page_lines(summary);
-  for (std::size_t k = 0; k < health.rows.size(); ++k) {
-    const HealthRow &row = health.rows[k];
-    numbers.name.push_back("change " + row.name);
-    lines.push_back(is_visible(row)
-                        ? fmt::format("{}: {:.3g} +- {:.2g} of the group; the smallest change that "
-                                      "shows at 3 sigma is {:.2g}",
-                                      row.name, row.change, row.change_err, row.detectable)
-                        : row.name + ": not visible");
-    std::vector<PartAnswer> answers;
-    for (const PartHealth &one : parts)
-      if (const HealthRow &said = one.health.rows[k]; said.change_err > 0)
-        answers.push_back({one.part.name(), said.change, said.change_err});
-    if (!answers.empty())
-      figures.push_back(parts_figure("What each band and Stokes component says of " + row.name,
-                                     "change " + row.name, answers));
-  }
-  add_error_figures(figures, numbers);
-  const auto page = make_plot_page(title, figures, lines);
-  return page ? *page : std::string();
-}
-
-std::string json_of(const Health &health, Verdict verdict, const std::vector<std::string> &notes) {
-  using nlohmann::ordered_json;
-  ordered_json out;
-  out["program"] = "umov";
-  out["version"] = version;
-  out["question"] = "health";
-  out["verdict"] = name_of(verdict);
-  out["chi2_without_change"] = health.chi2;
-  out["measurements"] = health.measurements;
-  ordered_json list = ordered_json::array();
-  for (const HealthRow &row : health.rows)
-    list.push_back({{"parameter", row.name},
-                    {"change", row.change},
-                    {"change_err", row.change_err},
-                    {"sigma", row.sigma},
-                    {"detectable", row.detectable},
-                    {"chi2_gain", row.chi2_gain},
-                    {"visible", is_visible(row)}});
-  out["health"] = list;
-  out["notes"] = notes;
-  return out.dump(1) + "\n";
-}
-
-/// One change explains the data; several do; none was needed, or could be seen; nothing does.
-Verdict verdict_of(const Health &health) {
-  double best = health.chi2;
-  std::size_t changed = 0;
-  for (const HealthRow &row : health.rows) {
-    best = std::min(best, health.chi2 - row.chi2_gain);
-    changed += is_visible(row) && std::abs(row.sigma) > alarm ? 1u : 0u;
-  }
-  const double dof = static_cast<double>(health.measurements) - 2;
-  constexpr double unlikely = 1e-6;
-  if (dof > 0 && best > 2 * dof && chi2_probability(best, dof) < unlikely)
-    return Verdict::NoFit;
-  if (changed > 0)
-    return changed == 1 ? Verdict::Determined : Verdict::Ambiguous;
-  return std::ranges::any_of(health.rows, is_visible) ? Verdict::Determined : Verdict::Undetermined;
-}
-
-std::vector<std::string> notes_of(const Health &health, Verdict verdict, const ObservedCurve &curve,
-                                  const CurveErrors &errors) {
-  std::vector<std::string> out = limits_of(curve);
-  for (const HealthRow &row : health.rows)
-    if (!is_visible(row))
-      out.push_back(row.name + ": not visible in these observations, whatever happened to it");
-    else if (std::abs(row.sigma) > alarm && (row.change < 0 || row.change > whole))
-      out.push_back(fmt::format("{}: a part of {:.3g} cannot be: something else has changed, or "
-                                "the attitude is not the scenario's",
-                                row.name, row.change));
-  if (verdict == Verdict::Ambiguous)
-    out.emplace_back("each of several changes explains the data by itself: which one it is, these "
-                     "observations do not tell");
-  if (verdict == Verdict::NoFit)
-    out.emplace_back("none of these changes explains the data within their errors and --floor: is "
-                     "the attitude right, and the object?");
-  if (errors.has_clouds)
-    out.emplace_back("--clouds is not looked at here: the sky is taken for clear");
-  return out;
-}
-
 } // namespace
 
 Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &request,
@@ -281,20 +130,23 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
   ObservedLightCurve &observed = light.observed;
   Health health = light.check(observed.curve, request.errors);
   std::optional<DriftedLight> old;
+  std::optional<Health> before;
   tell_of_device(out.light.device, diagnostics);
   if (!asked.baseline.empty()) {
-    InvertRequest before = request;
-    before.observations = asked.baseline;
+    InvertRequest earlier = request;
+    earlier.observations = asked.baseline;
     ManifestInput::Light as_before;
-    UMOV_ASSIGN(baseline, light_of(scenario, before, asked, drifts, options, monitor, diagnostics,
+    UMOV_ASSIGN(baseline, light_of(scenario, earlier, asked, drifts, options, monitor, diagnostics,
                                    as_before));
     old = std::move(baseline);
-    count_from(old->check(old->observed.curve, request.errors), health);
+    before = old->check(old->observed.curve, request.errors);
+    count_from(*before, health);
     observed.inputs.insert(observed.inputs.end(), old->observed.inputs.begin(),
                            old->observed.inputs.end());
   }
-  out.verdict = verdict_of(health);
-  const auto notes = notes_of(health, out.verdict, observed.curve, request.errors);
+  const Health *const shown = before ? &*before : nullptr;
+  out.verdict = verdict_of(health, shown);
+  const auto notes = notes_of(health, shown, out.verdict, observed.curve, request.errors);
   out.summary =
       fmt::format("{}: chi-square {:.4g} of {} without any change\n", name_of(out.verdict),
                   health.chi2, counted(health.measurements, "measurement"));
@@ -302,7 +154,7 @@ Result<Inversion> invert_health(const Scenario &scenario, const InvertRequest &r
     out.summary += "- " + text + "\n";
   out.json = json_of(health, out.verdict, notes);
   const auto parts = healths_of(light, old ? &*old : nullptr, request.errors);
-  out.tables = {{"health", health_table(health)},
+  out.tables = {{"health", health_table(health, out.verdict)},
                 {"parts", parts_table(parts)},
                 {"fit", fit_table(observed, health.fitted, request.errors)}};
   out.page = health_page("What has changed on " + scenario.objects.front().name,

@@ -1,3 +1,4 @@
+#include "jobs/curve_limits.h"
 #include "jobs/fit_figures.h"
 #include "jobs/invert_group.h"
 #include "jobs/invert_parts.h"
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
@@ -104,16 +106,59 @@ std::string json_of(const std::string &group, const std::vector<Row> &rows, cons
   return out.dump(1) + "\n";
 }
 
-/// One candidate (or what cannot be told from it) holds all; several do; or none fits.
-Verdict verdict_of(const std::vector<Row> &rows, const Unmixing &unmixed) {
-  const double dof = static_cast<double>(unmixed.measurements) - static_cast<double>(rows.size());
+/// A chi-square that neither noise nor the errors of a model explain.
+bool is_misfit(double chi2, double dof) {
   constexpr double unlikely = 1e-6;
-  if (dof > 0 && chi2_probability(unmixed.chi2, dof) < unlikely && unmixed.chi2 > 2 * dof)
+  return dof > 0 && chi2_probability(chi2, dof) < unlikely && chi2 > 2 * dof;
+}
+
+/// One candidate (or what cannot be told from it) holds all; several do, or a mixture of them; or
+/// none fits. `chi2`: of the best candidate alone.
+Verdict verdict_of(const std::vector<Row> &rows, const Unmixing &unmixed, double chi2) {
+  const auto count = static_cast<double>(unmixed.measurements);
+  if (is_misfit(unmixed.chi2, count - static_cast<double>(rows.size())))
     return Verdict::NoFit;
-  if (rows.size() < 2)
+  if (rows.size() < 2 || !(unmixed.scale > 0))
     return Verdict::Undetermined;
   const bool is_one = std::ranges::any_of(rows, [](const Row &r) { return r.probability > 0.95; });
-  return is_one ? Verdict::Determined : Verdict::Ambiguous;
+  return is_one && !is_misfit(chi2, count - 1) ? Verdict::Determined : Verdict::Ambiguous;
+}
+
+bool is_dark(const std::vector<EndMember> &members) {
+  return std::ranges::all_of(members, [](const EndMember &m) {
+    return std::ranges::none_of(m.i, [](double light) { return light > 0; });
+  });
+}
+
+/// What the answer rests on, and what it cannot tell.
+std::vector<std::string> notes_of(const std::vector<Row> &rows, const Unmixing &unmixed,
+                                  Verdict verdict, double chi2,
+                                  const std::vector<EndMember> &members, bool has_clouds) {
+  std::vector<std::string> out;
+  if (unmixed.left_out > 0)
+    out.push_back(fmt::format("{} with q and u but without light above 0: left out of the "
+                              "mixture, whose q and u need the I that they are parts of",
+                              counted(unmixed.left_out, "row")));
+  if (has_clouds)
+    out.emplace_back("--clouds: the probabilities allow for them, the fractions take the sky for "
+                     "clear");
+  if (is_dark(members))
+    out.emplace_back(
+        "in the scenario's attitude the object gives no light at these times, whatever "
+        "the group is of: are attitude and times right?");
+  else if (!(unmixed.scale > 0))
+    out.emplace_back("the data hold no light above their errors: nothing is known of the group");
+  else if (verdict == Verdict::NoFit)
+    out.emplace_back("no candidate and no mixture of them explains the data within their errors "
+                     "and --floor: is the attitude right, the object, the rest of its materials?");
+  else if (rows.size() < 2)
+    out.emplace_back("these observations tell none of the candidates from the others: the group "
+                     "gives too little light, or their light is alike");
+  else if (is_misfit(chi2, static_cast<double>(unmixed.measurements) - 1))
+    out.push_back(fmt::format("no candidate alone explains the data (chi-square {:.4g}), a mixture "
+                              "does: the group is of several, or of what is not among them",
+                              chi2));
+  return out;
 }
 
 /// What each band and Stokes component says by itself of the candidates, two of them at least.
@@ -206,23 +251,18 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   const Unmixing unmixed = unmix(observed.curve, request.errors, members);
   const auto rows = rows_of(unmixed, members, probability);
   Inversion out;
-  out.verdict = verdict_of(rows, unmixed);
-  std::vector<std::string> notes = limits_of(observed.curve);
-  if (unmixed.left_out > 0)
-    notes.push_back(fmt::format("{} with q and u but without light above 0: left out of the "
-                                "mixture, whose q and u need the I that they are parts of",
-                                counted(unmixed.left_out, "row")));
-  if (request.errors.has_clouds)
-    notes.emplace_back("--clouds: the probabilities allow for them, the fractions take the sky for "
-                       "clear");
-  if (rows.size() < 2)
-    notes.emplace_back("these observations tell none of the candidates from the others: the group "
-                       "gives too little light, or their light is alike");
+  out.verdict = verdict_of(rows, unmixed, chi2);
+  std::vector<std::string> notes = limits_of(observed.curve, request.errors, Asked::Part);
+  std::ranges::move(notes_of(rows, unmixed, out.verdict, chi2, members, request.errors.has_clouds),
+                    std::back_inserter(notes));
   out.summary =
       fmt::format("{}: {} of {}; one material alone: chi-square {:.4g}, a mixture {:.4g}, "
-                  "of {} measurements; condition {:.3g}\n",
+                  "of {} measurements",
                   name_of(out.verdict), material.group, scenario.objects.front().name, chi2,
-                  unmixed.chi2, unmixed.measurements, unmixed.condition);
+                  unmixed.chi2, unmixed.measurements);
+  out.summary += std::isnan(unmixed.condition)
+                     ? std::string("\n")
+                     : fmt::format("; condition {:.3g}\n", unmixed.condition);
   for (const std::string &text : notes)
     out.summary += "- " + text + "\n";
   out.json = json_of(material.group, rows, unmixed, out.verdict, chi2, notes);

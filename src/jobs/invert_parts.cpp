@@ -9,6 +9,7 @@ namespace {
 /// One band, or all for their number.
 ObservedCurve part(const ObservedCurve &curve, std::size_t band, bool has_polarization) {
   ObservedCurve out = curve;
+  out.counts.clear(); // parts are fitted to what was reduced
   std::erase_if(out.samples, [&](const ObservedSample &s) {
     return band < curve.bands.size() && s.band != band;
   });

@@ -1,3 +1,4 @@
+#include "jobs/curve_limits.h"
 #include "jobs/invert_light.h"
 #include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
@@ -5,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <umov/inverse/direction_table.h>
 #include <umov/inverse/spin_search.h>
 #include <umov/lightcurve/periodogram.h>
@@ -87,12 +89,49 @@ PoseLighting coarse_light(const PoseLighting &light, const ObservedCurve &curve,
   return table ? DirectionTable::lighting(std::move(table), threads) : PoseLighting();
 }
 
-std::string spin_words(const SpinAnswer &answer) {
+std::string spin_words(const SpinAnswer &answer, Verdict verdict) {
+  if (verdict == Verdict::NoFit)
+    return "no period explains the data\n";
   std::string out;
+  if (verdict == Verdict::Undetermined)
+    out = "the period is not known; of the spins that were tried:\n";
   for (const SpinPeriod &p : answer.periods)
     out += fmt::format("period {:.6g} +- {:.2g} s with {:.3g} % of the probability\n", p.period_s,
                        p.period_err_s, 100 * p.weight);
   return out;
+}
+
+/// Chi-square of the best attitude of a body that does not turn.
+Result<double> chi2_at_rest(const CurveModel &model, const CurveModel &coarse,
+                            SearchOptions options) {
+  constexpr std::size_t enough = 20'000; // as in the search for spins, basins are wide
+  options.grid = std::min(options.grid, enough);
+  UMOV_ASSIGN(answer, search_pose(model, coarse, options));
+  return answer.chi2;
+}
+
+/// What makes a period less than an answer, however narrow its peak.
+void doubt_period(const SpinAnswer &answer, double chi2_at_rest, const SpinOptions &asked,
+                  const ObservedCurve &curve, const CurveErrors &errors, Judgement &judgement) {
+  std::vector<std::string> doubts;
+  if (!(asked.period_s > 0) && shows_no_turn(curve, errors))
+    doubts.emplace_back("a parabola of the time explains the brightness: no turn shows in it, and "
+                        "periods that were read from it are some of many; --period gives one");
+  constexpr double told = 25; // chi-square: three unknowns more, and periods to choose from
+  if (chi2_at_rest < answer.pose.chi2 + told)
+    doubts.push_back(fmt::format("a body that does not turn explains the data as well or better "
+                                 "(chi-square {:.4g}): umov invert pose asks for its attitude",
+                                 chi2_at_rest));
+  const double span = curve.epochs.back().seconds;
+  constexpr double near = 1.2; // to a period that was given: then it need not be seen
+  if (!answer.periods.empty() &&
+      answer.periods.front().period_s > std::max(span, near * asked.period_s))
+    doubts.push_back(fmt::format("less than a turn lies within the {:.4g} s observed: longer or "
+                                 "further passes tell the period",
+                                 span));
+  if (!doubts.empty() && judgement.verdict != Verdict::NoFit)
+    judgement.verdict = Verdict::Undetermined;
+  std::ranges::move(doubts, std::back_inserter(judgement.notes));
 }
 
 } // namespace
@@ -116,11 +155,15 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                                   search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
   keep_masks(ready);
-  const Judgement judgement = judge(answer.pose, curve, request.errors, symmetries);
   const CurveModel model(curve, light, ready.observed.column);
+  Judgement judgement = judge(answer.pose, model, request.errors, symmetries);
+  const CurveModel coarse(curve, asked.coarse, ready.observed.column);
+  UMOV_ASSIGN(at_rest,
+              chi2_at_rest(model, coarse, search_options(scenario, request, options, monitor)));
+  doubt_period(answer, at_rest, spin, curve, request.errors, judgement);
   Inversion out;
   out.verdict = judgement.verdict;
-  out.summary = spin_words(answer) + summary_of(answer.pose, judgement);
+  out.summary = spin_words(answer, judgement.verdict) + summary_of(answer.pose, judgement);
   out.json = json_of("spin", answer.pose, judgement, symmetries);
   out.tables = {{"modes", modes_table(answer.pose, true)},
                 {"periods", periods_table(answer, periods)},

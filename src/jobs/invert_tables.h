@@ -33,10 +33,6 @@ Families families_of(const PoseAnswer &answer, const std::vector<BodySymmetry> &
 
 /// What an answer is worth.
 Verdict verdict_of(const PoseAnswer &answer, const Families &families);
-/// The brightness of no band changes by more than its errors.
-bool is_steady(const ObservedCurve &curve);
-/// What the data cannot tell by themselves: one epoch, one band, no polarization, no change.
-std::vector<std::string> limits_of(const ObservedCurve &curve);
 
 /// Everything that the summary and verdict.json say.
 struct Judgement {
@@ -48,7 +44,7 @@ struct Judgement {
   std::vector<Parameter> nuisances;
 };
 /// All of it, of an answer.
-Judgement judge(const PoseAnswer &answer, const ObservedCurve &curve, const CurveErrors &errors,
+Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,
                 const std::vector<BodySymmetry> &symmetries);
 std::string json_of(const char *question, const PoseAnswer &answer, const Judgement &judgement,
                     const std::vector<BodySymmetry> &symmetries);

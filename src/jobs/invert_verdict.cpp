@@ -1,5 +1,6 @@
 // What an answer is worth, in words and numbers.
 
+#include "jobs/curve_limits.h"
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
@@ -45,77 +46,46 @@ Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
   return families.spread_deg < far_deg ? Verdict::Determined : Verdict::Undetermined;
 }
 
-bool is_steady(const ObservedCurve &curve) {
-  double chi2 = 0, dof = 0;
-  for (std::size_t b = 0; b < curve.bands.size(); ++b) {
-    double sum = 0, weight = 0, squares = 0, count = 0;
-    for (const ObservedSample &s : curve.samples)
-      if (s.band == b && !std::isnan(s.i) && s.i_sd > 0) {
-        const double w = 1 / (s.i_sd * s.i_sd);
-        sum += w * s.i;
-        weight += w;
-        squares += w * s.i * s.i;
-        count += 1;
-      }
-    chi2 += weight > 0 ? squares - sum * sum / weight : 0;
-    dof += std::max(0.0, count - 1);
-  }
-  return dof >= 3 && chi2_probability(chi2, dof) > 0.01;
-}
+namespace {
 
-std::vector<std::string> limits_of(const ObservedCurve &curve) {
-  std::vector<std::string> out;
-  if (curve.epochs.size() == 1)
-    out.emplace_back(
-        "one epoch: half a turn about the bisector of Sun and observer leaves I, q and "
-        "u as they are (reciprocity), so two attitudes at least explain it; more "
-        "epochs at other directions decide");
-  const auto measured = [&](std::size_t b, auto take) {
-    return std::ranges::count_if(curve.samples, [&](const ObservedSample &s) {
-      return s.band == b && !std::isnan(take(s));
-    });
-  };
-  std::size_t with_light = 0;
-  bool has_q = false;
-  for (std::size_t b = 0; b < curve.bands.size(); ++b) {
-    const auto lights = measured(b, [](const ObservedSample &s) { return s.i; });
-    const auto fractions = measured(b, [](const ObservedSample &s) { return s.q; });
-    with_light += lights > 0 ? 1u : 0u;
-    has_q = has_q || fractions > 0;
-    if (lights + fractions == 0)
-      out.push_back("band " + curve.bands[b] + " holds no measurement");
-  }
-  if (with_light == 0)
-    out.emplace_back("no brightness was measured: q and u alone decide");
-  if (!has_q)
-    out.emplace_back("no q and u were measured: brightness alone decides");
-  if (curve.bands.size() == 1)
-    out.emplace_back("one band: colours would tell materials, and so sides of the body, apart");
-  if (is_steady(curve))
-    out.emplace_back("the brightness does not change by more than its errors: what it allows is "
-                     "wide, and no single attitude of it is an answer");
+/// U/I of the best fit in every sample: bodies of paint have some without any instrument.
+std::vector<double> fitted_u(const PoseAnswer &answer, const CurveModel &model) {
+  const ObservedCurve &curve = model.curve();
+  std::vector<double> out(curve.samples.size(), 0);
+  if (answer.modes.empty())
+    return out;
+  const Turning best[] = {answer.modes.front().turning};
+  (void)model.for_each(best, {}, 1, [&](std::size_t, const ModelLight &light) {
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const std::size_t at = curve.samples[k].epoch * curve.bands.size() + curve.samples[k].band;
+      out[k] = light.i[at] > 0 ? light.u[at] / light.i[at] : 0;
+    }
+  });
   return out;
 }
 
-Judgement judge(const PoseAnswer &answer, const ObservedCurve &curve, const CurveErrors &errors,
+} // namespace
+
+Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,
                 const std::vector<BodySymmetry> &symmetries) {
+  const ObservedCurve &curve = model.curve();
   Judgement out;
   out.families = families_of(answer, symmetries);
   out.verdict = verdict_of(answer, out.families);
   // What a note says the data cannot tell is not told, however narrow a fit came out.
-  if (out.verdict == Verdict::Determined && is_steady(curve))
+  if (out.verdict == Verdict::Determined && is_steady(curve, errors))
     out.verdict = Verdict::Undetermined;
   if (out.verdict == Verdict::Determined && curve.epochs.size() == 1)
     out.verdict = Verdict::Ambiguous;
   out.axis_spread_deg = axis_spread_deg(answer);
-  out.null_test = null_test(curve);
+  out.null_test = null_test(curve, fitted_u(answer, model));
   out.nuisances = CurveLikelihood(curve, errors).nuisances();
-  out.notes = limits_of(curve);
+  out.notes = limits_of(curve, errors, Asked::Attitude);
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
   if (out.null_test.is_flagged())
     out.notes.push_back(fmt::format(
-        "U of the scattering plane is not 0, as a single reflection has it: polarization of the "
+        "U of the scattering plane is not what the best fit has: polarization of the "
         "instrument of ({:.4f} +- {:.4f}, {:.4f} +- {:.4f}) would explain it; calibrate, or "
         "suspect light between surfaces",
         out.null_test.q0, out.null_test.q0_sd, out.null_test.u0, out.null_test.u0_sd));
@@ -179,24 +149,42 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   return out.dump(1) + "\n";
 }
 
-std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
-  const double dof =
-      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
-  const Families &families = judgement.families;
-  std::string out = fmt::format(
-      "{}: {}, twins of the body counted as one; the heaviest holds {:.3g} % of the probability, "
-      "within {:.2g} deg (root mean square). 95 % set: {} % of all attitudes\n",
-      name_of(judgement.verdict), counted(families.count, "attitude"), 100 * families.heaviest,
-      families.spread_deg, percent(answer.share_of_so3));
-  out += fmt::format("chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g}); body axes:",
-                     answer.chi2, dof, chi2_probability(answer.chi2, dof));
+namespace {
+
+/// How far each axis of the body is known.
+std::string axes_words(const Judgement &judgement) {
+  std::string out = "; body axes:";
   constexpr double unknown_deg = 45;
   for (std::size_t k = 0; k < 3; ++k) {
     const double spread = judgement.axis_spread_deg[k];
     out += spread < unknown_deg ? fmt::format(" +{} to {:.2g} deg", "XYZ"[k], spread)
                                 : fmt::format(" +{} not known", "XYZ"[k]);
-    out += k < 2 ? "," : "\n";
+    out += k < 2 ? "," : "";
   }
+  return out;
+}
+
+} // namespace
+
+std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
+  const double dof =
+      static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
+  const Families &families = judgement.families;
+  // Weights among fits that all miss the data are no probabilities of anything.
+  std::string out =
+      judgement.verdict == Verdict::NoFit
+          ? std::string("no_fit: nothing is known of the attitude; the table has what misses the "
+                        "data least\n")
+          : fmt::format("{}: {}, twins of the body counted as one; the heaviest holds {:.3g} % of "
+                        "the probability, within {:.2g} deg (root mean square). 95 % set: {} % of "
+                        "all attitudes\n",
+                        name_of(judgement.verdict), counted(families.count, "attitude"),
+                        100 * families.heaviest, families.spread_deg, percent(answer.share_of_so3));
+  out += fmt::format("chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g})", answer.chi2,
+                     dof, chi2_probability(answer.chi2, dof));
+  if (judgement.verdict != Verdict::NoFit)
+    out += axes_words(judgement);
+  out += "\n";
   for (const std::string &text : judgement.notes)
     out += "- " + text + "\n";
   return out;

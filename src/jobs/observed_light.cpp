@@ -1,5 +1,6 @@
 #include <umov/jobs/observed_light.h>
 
+#include "jobs/observations_counts.h"
 #include "jobs/observations_tdm.h"
 
 #include <algorithm>
@@ -23,12 +24,15 @@ Result<Track> track_of(const Trajectory &orbit, const Site &site) {
   return Track::make({orbit, site, ShadowModel::Ellipsoid, InertialLaw{}, {}, true});
 }
 
-/// One row with what it needs to be understood.
+/// One row, or one channel of an exposure, with what it needs to be understood.
 struct Placed {
+  Epoch<Utc> time{};
   const ObservedRow *row = nullptr;
+  const CountRow *count = nullptr;
   const ObservationsFile *file = nullptr;
   std::size_t band = 0; ///< among the scenario's
   Site site;
+  std::string_view site_name;
 };
 
 class CurveMaker {
@@ -41,9 +45,12 @@ public:
   Result<ObservedLightCurve> make(Diagnostics &diagnostics);
 
 private:
-  Result<std::size_t> band_of(const ObservationsFile &file, const ObservedRow &row) const;
+  Result<std::size_t> band_of(const ObservationsFile &file, const std::string &name,
+                              std::size_t line) const;
   Result<Site> site_of(const ObservationsFile &file, const ObservedRow &row);
   Result<void> add_epoch(std::span<const Placed> rows, ObservedLightCurve &out);
+  [[nodiscard]] ObservedCount count_of(const Placed &placed, const ObservingGeometry &g) const;
+  void add_count(const Placed &placed, ObservedLightCurve &out) const;
   [[nodiscard]] ObservedSample sample_of(const Placed &placed, const ObservingGeometry &g) const;
 
   const Scenario &scenario_;
@@ -54,23 +61,23 @@ private:
   std::size_t in_shadow_ = 0, below_horizon_ = 0, without_error_ = 0;
 };
 
-Result<std::size_t> CurveMaker::band_of(const ObservationsFile &file,
-                                        const ObservedRow &row) const {
+Result<std::size_t> CurveMaker::band_of(const ObservationsFile &file, const std::string &name,
+                                        std::size_t line) const {
   std::vector<std::string> known;
   for (const Band &band : scenario_.bands)
     known.push_back(band.name);
-  if (row.band.empty() && known.size() == 1)
+  if (name.empty() && known.size() == 1)
     return std::size_t{0};
-  const auto found = std::ranges::find(known, row.band);
+  const auto found = std::ranges::find(known, name);
   if (found != known.end())
     return static_cast<std::size_t>(found - known.begin());
-  const auto near = nearest_name(row.band, known);
+  const auto near = nearest_name(name, known);
   return fail(ErrorCode::BadInput,
-              fmt::format("band \"{}\" is not among those of {} ({}){}", printable(row.band),
+              fmt::format("band \"{}\" is not among those of {} ({}){}", printable(name),
                           scenario_.file, fmt::join(known, ", "),
                           near ? fmt::format(". Did you mean \"{}\"?", *near)
                                : "; put it into its bands.set"),
-              {file.path, row.line});
+              {file.path, line});
 }
 
 Result<Site> CurveMaker::site_of(const ObservationsFile &file, const ObservedRow &row) {
@@ -94,9 +101,14 @@ Result<Site> CurveMaker::site_of(const ObservationsFile &file, const ObservedRow
 
 Result<void> CurveMaker::add_file(const ObservationsFile &file) {
   for (const ObservedRow &row : file.rows) {
-    UMOV_ASSIGN(band, band_of(file, row));
+    UMOV_ASSIGN(band, band_of(file, row.band, row.line));
     UMOV_ASSIGN(site, site_of(file, row));
-    rows_.push_back({&row, &file, band, site});
+    rows_.push_back({row.time, &row, nullptr, &file, band, site, row.site});
+  }
+  for (const CountRow &count : file.counts) { // of the scenario's site, as their rows are
+    UMOV_ASSIGN(band, band_of(file, count.band, 0));
+    UMOV_ASSIGN(site, site_of(file, file.rows.front()));
+    rows_.push_back({count.time, nullptr, &count, &file, band, site, file.rows.front().site});
   }
   return {};
 }
@@ -129,13 +141,40 @@ ObservedSample CurveMaker::sample_of(const Placed &placed, const ObservingGeomet
   return out;
 }
 
+ObservedCount CurveMaker::count_of(const Placed &placed, const ObservingGeometry &g) const {
+  const CountRow &row = *placed.count;
+  const double per_intensity = irradiance_at_observer(1, colours_[placed.band].solar,
+                                                      g.sun_distance_km, g.sunlit, g.range_km);
+  const double twice = 2 * scattering_axis(g, placed.file->frame).radians();
+  const double c = std::cos(twice), s = std::sin(twice);
+  ObservedCount out;
+  out.net = row.counts - row.sky;
+  out.sky = row.sky;
+  out.fixed_variance = row.var_read + row.sky_err * row.sky_err;
+  out.excess2 = row.excess2;
+  out.scintillation = row.scintillation;
+  out.has_own_pupil = placed.file->has_separate_pupils;
+  out.by_i = row.row[0] * per_intensity;
+  out.by_q = (row.row[1] * c + row.row[2] * s) * per_intensity;
+  out.by_u = (row.row[2] * c - row.row[1] * s) * per_intensity;
+  return out;
+}
+
+void CurveMaker::add_count(const Placed &placed, ObservedLightCurve &out) const {
+  ObservedCount count = count_of(placed, out.geometry.back());
+  count.epoch = out.curve.epochs.size() - 1;
+  const auto at = std::ranges::find(out.column, placed.band);
+  count.band = static_cast<std::size_t>(at - out.column.begin());
+  out.curve.counts.push_back(count);
+}
+
 /// Rows of one time and site.
 Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCurve &out) {
   UMOV_ASSIGN(track, track_of(orbit_, rows.front().site));
-  const auto geometry = track.observe(rows.front().row->time);
+  const auto geometry = track.observe(rows.front().time);
   if (!geometry)
     return fail(geometry.error().code, geometry.error().message,
-                {rows.front().file->path, rows.front().row->line});
+                {rows.front().file->path, rows.front().row ? rows.front().row->line : 0});
   constexpr double least_sunlit = 0.5; // in less, the Earth's air decides what arrives
   if (geometry->sunlit < least_sunlit) {
     in_shadow_ += rows.size();
@@ -151,9 +190,15 @@ Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCu
       out.geometry.empty() ? 0 : seconds_between(geometry->time, out.geometry.front().time);
   curve.epochs.push_back({seconds, geometry->to_sun, geometry->to_observer,
                           scenario_.has_solar_disk ? sun_radius_rad(*geometry) : 0,
-                          scattering_axis(*geometry, rows.front().file->frame).radians()});
+                          scattering_axis(*geometry, rows.front().file->frame).radians(),
+                          irradiance_at_observer(1, 1, geometry->sun_distance_km, geometry->sunlit,
+                                                 geometry->range_km)});
   out.geometry.push_back(*geometry);
   for (const Placed &placed : rows) {
+    if (placed.count != nullptr) {
+      add_count(placed, out);
+      continue;
+    }
     const ObservedRow &row = *placed.row;
     without_error_ += (!std::isnan(row.flux) && std::isnan(row.flux_err)) ||
                               (!std::isnan(row.mag) && std::isnan(row.mag_err))
@@ -177,7 +222,13 @@ bool has_light(const ObservedCurve &curve) {
 
 Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
   std::ranges::stable_sort(rows_, [](const Placed &a, const Placed &b) {
-    return seconds_between(a.row->time, b.row->time) < -1e-6;
+    const double apart = seconds_between(a.time, b.time);
+    if (std::abs(apart) > 1e-6)
+      return apart < 0;
+    const auto place = [](const Placed &p) { // channels stand together, by bands
+      return p.count != nullptr ? p.band + 1 : std::size_t{0};
+    };
+    return place(a) < place(b);
   });
   ObservedLightCurve out;
   for (std::size_t b = 0; b < scenario_.bands.size(); ++b)
@@ -185,12 +236,19 @@ Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
       out.column.push_back(b);
       out.curve.bands.push_back(scenario_.bands[b].name);
     }
-  out.curve.is_absolute = std::ranges::all_of(
-      rows_, [](const Placed &p) { return p.file->is_absolute || std::isnan(p.row->flux); });
+  if (std::ranges::any_of(rows_, [](const Placed &p) { return p.count != nullptr; }) &&
+      std::ranges::any_of(rows_, [](const Placed &p) { return p.file->counts.empty(); }))
+    return fail(ErrorCode::BadInput,
+                "counts beside light curves: one fit takes one or the other. Reduce the counts "
+                "(umov reduce), or leave the light curves out",
+                {rows_.front().file->path});
+  out.curve.is_absolute = std::ranges::all_of(rows_, [](const Placed &p) {
+    return p.count != nullptr || p.file->is_absolute || std::isnan(p.row->flux);
+  });
   for (std::size_t begin = 0; begin < rows_.size();) {
     std::size_t end = begin + 1;
-    while (end < rows_.size() && rows_[end].row->site == rows_[begin].row->site &&
-           std::abs(seconds_between(rows_[end].row->time, rows_[begin].row->time)) < 1e-6)
+    while (end < rows_.size() && rows_[end].site_name == rows_[begin].site_name &&
+           std::abs(seconds_between(rows_[end].time, rows_[begin].time)) < 1e-6)
       ++end;
     UMOV_TRY(add_epoch(std::span(rows_).subspan(begin, end - begin), out));
     begin = end;
@@ -244,6 +302,7 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
   for (const std::string &path : paths) {
     UMOV_ASSIGN(text, read_file(path, largest));
     UMOV_ASSIGN(file, ccsds::is_message(text) ? observations_of_tdm(text, path, diagnostics)
+                      : is_counts_table(text) ? observations_of_counts(text, path, diagnostics)
                                               : read_observations_text(text, path, diagnostics));
     out.push_back(std::move(file));
     inputs.push_back({path, sha256_hex(text)});

@@ -245,7 +245,13 @@ Result<void> put_light(Plan &plan, const Scenario &scenario,
 /// What a reader of the answer should know.
 void put_notes(Plan &plan, const PlanRequest &request) {
   const Discrimination &best = plan.passes.front().choices.front().told;
-  if (const double last = plan.sequence.back().told.hardest_log_bayes; last < 1)
+  const bool is_dark = std::ranges::all_of(plan.alternatives, [](const Alternative &a) {
+    return std::ranges::none_of(a.light.i, [](double light) { return light > 0; });
+  });
+  if (is_dark)
+    plan.notes.emplace_back("no alternative gives light at these epochs: nothing is told by them; "
+                            "are attitudes and times right?");
+  else if (const double last = plan.sequence.back().told.hardest_log_bayes; last < 1)
     plan.notes.push_back(fmt::format(
         "{} and {} stay alike (expected ln Bayes factor {:.2g} after {}): other times, bands or a "
         "smaller --floor are needed",

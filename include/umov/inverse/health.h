@@ -18,10 +18,10 @@ struct LightChange {
 /// What a curve says of one change, the others being none.
 struct HealthRow {
   std::string name;
-  double change = 0, change_err = 0;
-  double sigma = 0;      ///< change over its error
-  double detectable = 0; ///< smallest change that shows at three standard deviations
-  double chi2_gain = 0;  ///< of the change against none
+  double change = 0, change_err = 0; ///< error 0: the data hold no light of it
+  double sigma = 0;                  ///< change over its error
+  double detectable = 0;             ///< smallest change that shows at three standard deviations
+  double chi2_gain = 0;              ///< of the change against none
 };
 
 /// A score test of each change.

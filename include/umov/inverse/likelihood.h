@@ -2,12 +2,17 @@
 // How likely measured I, q and u are if the object gives a certain light: docs/theory/inverse.md,
 // section 2.
 
+#include <memory>
 #include <span>
 #include <umov/inverse/observed_curve.h>
 #include <umov/inverse/parameter.h>
 #include <vector>
 
 namespace umov {
+
+namespace inverse {
+class CountLikelihood;
+}
 
 /// What is not known beside the light itself.
 struct CurveErrors {
@@ -49,7 +54,8 @@ struct Comparison {
   std::vector<double> residuals;
 };
 
-/// Measured I, q and u with their errors, ready to be compared with many models. Thread safe.
+/// Measured I, q and u with their errors, or the counts that they were reduced from, ready to be
+/// compared with many models. Thread safe.
 class CurveLikelihood {
 public:
   /// Of the samples of `epochs` alone, if there are any.
@@ -79,12 +85,21 @@ private:
     double l_qq = 0, l_uq = 0, l_uu = 0;
   };
   struct Gains;
-  double weigh(const ModelLight &model, std::vector<double> &weights) const;
-  [[nodiscard]] Gains gains_of(const ModelLight &model, std::span<const double> weights) const;
-  double fill(const ModelLight &model, const Gains &gains, std::span<const double> weights,
+  struct Weighed;
+  [[nodiscard]] Weighed weigh(const ModelLight &model) const;
+  [[nodiscard]] Gains gains_of(const ModelLight &model, const Weighed &data) const;
+  double fill(const ModelLight &model, const Gains &gains, const Weighed &data,
               std::vector<double> &residuals) const;
 
+  /// Numbers of one row that are wrong together, if they are: where among the residuals.
+  struct Block {
+    std::size_t begin = 0, size = 0;
+    double measurements = 0;
+  };
+  [[nodiscard]] std::vector<Block> blocks() const;
+
   std::vector<Row> rows_;
+  std::shared_ptr<const inverse::CountLikelihood> counts_; ///< in place of rows; may be none
   std::vector<std::string> bands_;
   CurveErrors errors_;
   bool is_absolute_ = false;

@@ -15,6 +15,7 @@ struct ObservedEpoch {
   Vec3<Gcrs> to_sun, to_observer; ///< unit vectors at the object
   double sun_radius_rad = 0;      ///< of its disk; 0: a point
   double scattering_axis_rad = 0; ///< position angle of +Q_scat in the frame of the instrument
+  double flux_per_intensity = 1;  ///< what arrives of I here, up to a constant of the curve
 };
 
 /// One band at one epoch. NaN: not measured.
@@ -30,12 +31,28 @@ struct ObservedSample {
   double cov_qq = 0, cov_uu = 0, cov_qu = 0;
 };
 
+/// Electrons of one channel of one exposure: by_i I + by_q Q + by_u U of them are the object's in
+/// the mean, I in the units of `ObservedSample::i`, Q and U in the scattering plane.
+struct ObservedCount {
+  std::size_t epoch = 0, band = 0;
+  double net = 0;             ///< the sky taken off
+  double sky = 0;             ///< what was taken off; its noise is there still
+  double fixed_variance = 0;  ///< of reading, rounding and the error of the sky
+  double excess2 = 1;         ///< of a multiplying register
+  double scintillation = 0;   ///< relative standard deviation of the exposure's transparency
+  bool has_own_pupil = false; ///< which is then not that of the exposure's other channels
+  double by_i = 0, by_q = 0, by_u = 0;
+};
+
 /// All that was measured of one object.
 struct ObservedCurve {
   std::vector<std::string> bands;
   std::vector<ObservedEpoch> epochs;   ///< in order of time
   std::vector<ObservedSample> samples; ///< in order of epochs
-  bool is_absolute = false;            ///< `i` is [m2/sr] itself: the scale is near 1
+  /// In order of epochs and bands. Where there are any, `CurveLikelihood` is of them, and `samples`
+  /// are what was reduced from them.
+  std::vector<ObservedCount> counts;
+  bool is_absolute = false; ///< `i` is [m2/sr] itself: the scale is near 1
 };
 
 } // namespace umov

@@ -17,9 +17,9 @@ struct EndMember {
 /// Materials that the data cannot tell apart, as one.
 struct UnmixedGroup {
   std::vector<std::string> names;
-  double fraction = 0, fraction_err = 0; ///< of the part's area
-  double detectable =
-      0; ///< smallest change of the fraction that shows at three standard deviations
+  double fraction = 0, fraction_err = 0; ///< of the part's area; NaN: the data hold no light
+  /// Smallest change of the fraction that shows at three standard deviations; NaN: none does.
+  double detectable = 0;
 };
 
 /// What a part consists of.
@@ -30,7 +30,8 @@ struct Unmixing {
   std::size_t left_out = 0; ///< samples whose q and u stand without an I above 0: they say nothing
   EndMember fitted;         ///< light of the mixture, in the model's units
   std::vector<double> covariance; ///< of the fractions of the groups [row * n + column]
-  double condition = 1; ///< of the end members, whitened and of unit length, before any was joined
+  double condition = 1; ///< of the end members, whitened and of unit length, before any was joined;
+                        ///< NaN: one gives no light
 };
 
 /// Least squares with fractions of 0 or more (Lawson & Hanson 1974, chapter 23). I and, where q and

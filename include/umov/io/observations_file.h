@@ -7,6 +7,7 @@
 #include <string_view>
 #include <umov/core/diagnostics.h>
 #include <umov/core/result.h>
+#include <umov/io/counts_file.h>
 #include <umov/lightcurve/compute.h>
 #include <umov/time/epoch.h>
 #include <vector>
@@ -36,6 +37,9 @@ struct ObservationsFile {
   PolarizationFrame frame{};                ///< of q and u
   bool is_absolute = false;                 ///< fluxes are irradiances [W m-2 nm-1]
   std::map<std::string, std::string> notes; ///< of its header
+  /// What `rows` were reduced from, without saturated ones; none: a file of light curves.
+  std::vector<CountRow> counts;
+  bool has_separate_pupils = false; ///< of the channels of those
 };
 
 /// One measurement per time, band and site: two would contradict each other or be one, twice.

@@ -75,6 +75,22 @@ TEST(Health, ErrorsAreWhatRepetitionShowsAndAlarmsAreRare) {
   EXPECT_LE(alarms, 5); // 1.1 expected
 }
 
+TEST(Health, ChangesAreNotPulledByErrorsOfScale) {
+  // Pulls of a true change of 0.3 with zero points of 2 % allowed for, none of which is wrong.
+  CurveErrors errors;
+  errors.floor = errors.floor_median = 0;
+  double mean = 0;
+  constexpr int trials = 400;
+  for (std::uint64_t seed = 0; seed < trials; ++seed) {
+    const HealthRow row =
+        check_health(observed(light(0.3, 0), 50, 5000 + seed), errors, light(0, 0),
+                     {{"aged", light(1, 0), 1, 0}}, {{"turn", light(0, 0.001), 0.001, 0.02}})
+            .rows[0];
+    mean += (row.change - 0.3) / row.change_err / trials;
+  }
+  EXPECT_NEAR(mean, 0, 4 / std::sqrt(trials));
+}
+
 TEST(Health, TheSmallestDetectableChangeIsSeenInHalfOfAllCases) {
   double least = 0; // each curve's own has its noise
   for (std::uint64_t seed = 0; seed < 20; ++seed)

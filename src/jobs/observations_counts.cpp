@@ -1,0 +1,77 @@
+#include "jobs/observations_counts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+#include <umov/jobs/reduce.h>
+
+namespace umov::jobs {
+namespace {
+
+/// The first line that is no comment.
+std::string_view header_of(std::string_view text) {
+  while (text.starts_with('#')) {
+    const std::size_t end = text.find('\n');
+    if (end == text.npos)
+      return {};
+    text.remove_prefix(end + 1);
+  }
+  return text.substr(0, text.find('\n'));
+}
+
+bool has_column(std::string_view header, std::string_view name) {
+  const auto is_part = [](char c) { return c != ' ' && c != ',' && c != '"' && c != '\r'; };
+  for (std::size_t at = header.find(name); at != header.npos; at = header.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    if ((at == 0 || !is_part(header[at - 1])) && (end == header.size() || !is_part(header[end])))
+      return true;
+  }
+  return false;
+}
+
+/// Rows stand where exposures do: those of a sequence begin and end at other times.
+void put_on_exposures(ObservationsFile &file) {
+  for (ObservedRow &row : file.rows) {
+    const auto nearest = std::ranges::min_element(file.counts, {}, [&](const CountRow &count) {
+      constexpr double another_band = 1e12;
+      return std::abs(seconds_between(count.time, row.time)) +
+             (count.band == row.band ? 0 : another_band);
+    });
+    row.time = nearest->time;
+  }
+}
+
+} // namespace
+
+bool is_counts_table(std::string_view text) {
+  const std::string_view header = header_of(text);
+  return has_column(header, "counts") && has_column(header, "w0");
+}
+
+Result<ObservationsFile> observations_of_counts(std::string_view text, const std::string &file,
+                                                Diagnostics &diagnostics) {
+  UMOV_ASSIGN(counts, read_counts_text(text, file, diagnostics));
+  for (const CountRow &row : counts.rows)
+    if (row.name != counts.rows.front().name)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("counts of \"{}\" and of \"{}\": an inversion is of one object; keep "
+                              "the rows of one",
+                              printable(counts.rows.front().name), printable(row.name)),
+                  {file});
+  Diagnostics of_sets; // what is strange about the table, which is not what is fitted
+  UMOV_ASSIGN(reduced, reduce(counts, {}, Monitor{}, of_sets));
+  UMOV_ASSIGN(out, read_observations_text(to_ecsv(reduced), file, of_sets));
+  const std::size_t all = counts.rows.size();
+  std::erase_if(counts.rows, [](const CountRow &row) { return row.is_saturated; });
+  if (counts.rows.size() < all)
+    diagnostics.warn(
+        fmt::format("{} left out: saturated", counted(all - counts.rows.size(), "count")), {file});
+  const auto pupils = counts.notes.find("pupils");
+  out.has_separate_pupils = pupils != counts.notes.end() && pupils->second == "separate";
+  out.counts = std::move(counts.rows);
+  put_on_exposures(out);
+  return out;
+}
+
+} // namespace umov::jobs

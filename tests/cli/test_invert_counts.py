@@ -1,0 +1,70 @@
+"""umov invert on counts, as umov observe records them, in place of what umov reduce makes of them. Light is by rays, noise by
+umov observe; the fit looks light up in masks."""
+import json
+
+import pytest
+
+from test_invert import TRUTHS, apart, in_set, scene  # noqa: F401
+
+
+@pytest.fixture
+def record(umov, scene, tmp_path):
+    """record(exposure, ...): obs/counts.ecsv and stokes.ecsv of the cubesat, and fit.toml of one band."""
+
+    def run(exposure_s, cadence_s=20, instrument="c11_imx250", seed=1):
+        for name, method in (("truth", "rays"), ("fit", "masks")):
+            path = tmp_path / scene(TRUTHS[0], method, name)
+            path.write_text(path.read_text().replace('"paper_rgb"', '["bessell-V"]'))
+        words = [f'instrument="{instrument}"', 'observation.bands=["bessell-V"]', f"observation.exposure_s={exposure_s}",
+                 f"observation.cadence_s={cadence_s}", f"seed={seed}"]
+        done = umov("observe", "truth.toml", "-o", "obs", "--force", "-q", *(w for key in words for w in ("--set", key)))
+        assert done.code == 0, done.err
+        assert umov("reduce", "obs/counts.ecsv", "-o", "stokes.ecsv", "-q").code == 0
+
+    return run
+
+
+def test_counts_say_what_their_stokes_parameters_say(umov, record, tmp_path):
+    """S/N of 30 and more: attitudes agree within their errors, and the truth lies in the set of the counts."""
+    record(2.0)
+    best = []
+    for name in ("obs/counts.ecsv", "stokes.ecsv"):
+        done = umov("invert", "pose", name, "--scenario", "fit.toml", "-o", "answer", "--force", "--json", "--grid", "10000",
+                    "--threads", "2")
+        assert done.code == 0, done.err
+        verdict = json.loads(done.out)
+        assert verdict["p_value"] > 1e-3
+        mode = verdict["modes"][0]
+        assert apart(TRUTHS[0], mode["q"]) < max(3, 3 * mode["sd_deg"])
+        best.append((verdict, mode))
+        if name == "obs/counts.ecsv":
+            assert in_set(tmp_path / "answer", TRUTHS[0])
+    (counts, a), (stokes, b) = best
+    assert counts["dof"] > stokes["dof"]  # four channels an exposure in place of I, q and u
+    assert apart(a["q"], b["q"]) < 2 * max(a["sd_deg"], b["sd_deg"])
+    assert a["scale"] == pytest.approx(b["scale"], rel=0.02)
+
+
+def test_a_material_from_counts(umov, record):
+    record(2.0, cadence_s=12)
+    done = umov("invert", "material", "obs/counts.ecsv", "--scenario", "fit.toml", "--group", "body_my", "--candidates",
+                "paint_white,paint_black", "--json")
+    assert done.code == 0, done.err
+    found = json.loads(done.out)
+    white = next(row for row in found["materials"] if "paint_white" in row["materials"])
+    assert white["probability"] > 0.95
+
+
+def test_what_is_wrong_with_counts_is_named(umov, record, tmp_path):
+    record(2.0, cadence_s=60)
+    ask = ("--scenario", "fit.toml", "--group", "body_my", "--candidates", "paint_white,paint_black")
+    done = umov("invert", "material", "obs/counts.ecsv", "stokes.ecsv", *ask)
+    assert done.code == 3 and "counts beside light curves" in done.err
+    text = (tmp_path / "obs/counts.ecsv").read_text()
+    rows = text.splitlines()
+    (tmp_path / "two.ecsv").write_text("\n".join(rows[:-1] + [rows[-1].replace("cubesat", "another")]) + "\n")
+    done = umov("invert", "material", "two.ecsv", *ask)
+    assert done.code == 3 and "an inversion is of one object" in done.err
+    (tmp_path / "bare.ecsv").write_text("\n".join(line for line in rows if "pol_frame" not in line) + "\n")
+    done = umov("invert", "material", "bare.ecsv", *ask)
+    assert done.code == 3 and "pol_frame" in done.err
