@@ -80,6 +80,10 @@ struct ChainLight {
 struct ChainSums {
   View<ChainLight> bands;
   double squares = 0; ///< sum of I^2 of the chains in the first band, one by one
+  /// [block * 16 + lane], or empty: I of the first band times the standard deviation of a guess
+  /// whether its ends are free, where the grid's directions around do not agree.
+  View<float> doubt;
+  View<float> carried; ///< like it: I itself
 };
 inline constexpr std::size_t chain_bands_max = 8; ///< more go in parts
 

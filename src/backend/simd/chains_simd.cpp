@@ -91,21 +91,24 @@ private:
       const EndAxes a(is_reversed ? at.q : at.p, s), b(is_reversed ? at.p : at.q, s);
       const auto end_a = chain_end_at(a.normal, a.along, observer_),
                  end_b = chain_end_at(b.normal, b.along, sun_);
-      Lanes weight = Lanes(hn::Load(d, (is_reversed ? at.from_q : at.from_p) + s)) *
-                     seen.share(pose_.at_observer, s) * lit.share(pose_.at_sun, s);
+      const Lanes whole(hn::Load(d, (is_reversed ? at.from_q : at.from_p) + s));
+      const Lanes share = seen.share(pose_.at_observer, s) * lit.share(pose_.at_sun, s);
+      Lanes weight = whole * share;
       const LaneMask counts =
           (end_a.n_e > Lanes(0.0f)) & (end_b.n_e > Lanes(0.0f)) & (weight > Lanes(0.0f));
       if (!any(counts))
         continue;
       weight = select(counts, weight, Lanes(0.0f));
-      add_bands<is_reversed>(k, s, a, b, end_a, end_b, weight);
+      // Of something that is free with chance `share`; weights of three that agree add up to 1.
+      const Lanes doubt = whole * sqrt(max(share * (Lanes(0.99999f) - share), Lanes(0.0f)));
+      add_bands<is_reversed>(k, s, a, b, end_a, end_b, weight, select(counts, doubt, Lanes(0.0f)));
     }
   }
 
   template <bool is_reversed>
   HWY_INLINE void add_bands(std::size_t k, std::size_t s, const EndAxes &a, const EndAxes &b,
                             const ChainEndAt<Lanes> &end_a, const ChainEndAt<Lanes> &end_b,
-                            Lanes weight) {
+                            Lanes weight, Lanes doubt) {
     const std::uint32_t kind_a = is_reversed ? run_.kind_q : run_.kind_p,
                         kind_b = is_reversed ? run_.kind_p : run_.kind_q;
     const auto turn = turn_at_sun(b.along, b.axis, sun_);
@@ -130,6 +133,11 @@ private:
                              entered.whole.u - entered.lobe.u, entered.whole.v});
       const auto light = chain_left(of_a, lobe_a, end_a, turns, in, to_lobe);
       put(band, s, light, weight);
+      if (band_ + band == 0 && !out_.doubt.empty()) {
+        const std::size_t at = (run_.first + k) * backend::lanes + s;
+        add_to(out_.doubt, at, light.i * doubt);
+        add_to(out_.carried, at, light.i * weight);
+      }
     }
   }
 
@@ -152,6 +160,10 @@ private:
     return {row(0), row(1), is_reversed ? -out_u : out_u, row(3)};
   }
 
+  static HWY_INLINE void add_to(const backend::View<float> &to, std::size_t at, Lanes x) {
+    const FloatTag d;
+    hn::StoreU((Lanes(hn::LoadU(d, &to[at])) + x).v, d, &to[at]);
+  }
   HWY_INLINE void put(std::size_t band, std::size_t s, const Beam<Lanes> &light, Lanes weight) {
     const FloatTag d;
     HWY_ALIGN float part[4][16];

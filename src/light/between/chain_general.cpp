@@ -4,6 +4,7 @@
 #include "light/between/chain_level.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace umov {
 namespace {
@@ -105,50 +106,66 @@ void put(const Light &light, std::size_t lane, backend::ChainLight &to) {
 
 } // namespace
 
-void ChainLevel::add_one(const backend::ChainRun &run, std::size_t block, std::size_t lane,
-                         bool is_reversed, const backend::ChainPose &pose,
+void ChainLevel::add_one(const OneChain &one, double free, const backend::ChainPose &pose,
                          backend::ChainSums &sums) const {
   const Vec3<Body> sun = vector_of(pose.sun), observer = vector_of(pose.observer);
-  const backend::ChainBlock &at = block_[block];
+  const backend::ChainBlock &at = block_[one.block];
   const auto end = [&](bool is_q) {
     const backend::ChainEnds &e = is_q ? at.q : at.p;
-    return GeneralEnd{vector_of(e.normal, lane), vector_of(e.along, lane), vector_of(e.axis, lane),
-                      (is_q ? field_q_ : field_p_)[block * replicates + lane],
-                      surfaces_.surface(is_q ? run.kind_q : run.kind_p)};
+    const auto &field = is_q ? field_q_ : field_p_; // of isotropic surfaces there is none
+    return GeneralEnd{vector_of(e.normal, one.lane), vector_of(e.along, one.lane),
+                      vector_of(e.axis, one.lane), field.empty() ? Vec3<Body>{} : field[one.at()],
+                      surfaces_.surface(is_q ? one.run.kind_q : one.run.kind_p)};
   };
-  const GeneralChain chain{
-      end(is_reversed), end(!is_reversed), is_reversed,
-      run.is_straight ? nullptr : &matrix_[run.matrix + (block - run.first) * bands_], lane};
+  const GeneralChain chain{end(one.is_reversed), end(!one.is_reversed), one.is_reversed,
+                           one.run.is_straight
+                               ? nullptr
+                               : &matrix_[one.run.matrix + (one.block - one.run.first) * bands_],
+                           one.lane};
   if (!(dot(chain.seen.normal, observer) > 0) || !(dot(chain.lit.normal, sun) > 0))
     return;
   const double weight =
-      static_cast<double>(is_reversed ? at.from_q[lane] : at.from_p[lane]) *
-      share_of(is_reversed ? free_q_ : free_p_, pose.at_observer, blocks_, block, lane) *
-      share_of(is_reversed ? free_p_ : free_q_, pose.at_sun, blocks_, block, lane);
-  if (!(weight > 0))
-    return;
+      static_cast<double>(one.is_reversed ? at.from_q[one.lane] : at.from_p[one.lane]) * free;
   for (std::size_t band = 0; band < bands_; ++band) {
     const Light light =
-        chain.carried(band, sun, observer, vector_of(pose.plane), run.is_without_lobes) * weight;
-    put(light, lane, sums.bands[band]);
+        chain.carried(band, sun, observer, vector_of(pose.plane), one.run.is_without_lobes) *
+        weight;
+    put(light, one.lane, sums.bands[band]);
     sums.squares += band == 0 ? light.i * light.i : 0;
   }
+}
+
+double ChainLevel::guessed(const OneChain &one, const backend::ChainPose &pose) const {
+  return share_of(one.is_reversed ? free_q_ : free_p_, pose.at_observer, blocks_, one.block,
+                  one.lane) *
+         share_of(one.is_reversed ? free_p_ : free_q_, pose.at_sun, blocks_, one.block, one.lane);
 }
 
 void ChainLevel::add_general(const backend::ChainRun &run, const backend::ChainPose &pose,
                              backend::ChainSums &sums) const {
   for (std::size_t block = run.first; block < run.first + run.count; ++block) {
-    const std::uint32_t forward = any_of(free_p_, pose.at_observer, blocks_, block) &
-                                  any_of(free_q_, pose.at_sun, blocks_, block);
-    const std::uint32_t back = any_of(free_q_, pose.at_observer, blocks_, block) &
-                               any_of(free_p_, pose.at_sun, blocks_, block);
-    for (std::size_t lane = 0; lane < replicates; ++lane) {
-      if ((forward >> lane & 1U) != 0)
-        add_one(run, block, lane, false, pose, sums);
-      if ((back >> lane & 1U) != 0)
-        add_one(run, block, lane, true, pose, sums);
-    }
+    const std::uint32_t open[2] = {any_of(free_p_, pose.at_observer, blocks_, block) &
+                                       any_of(free_q_, pose.at_sun, blocks_, block),
+                                   any_of(free_q_, pose.at_observer, blocks_, block) &
+                                       any_of(free_p_, pose.at_sun, blocks_, block)};
+    for (std::size_t lane = 0; lane < replicates; ++lane)
+      for (const bool is_reversed : {false, true})
+        if ((open[is_reversed ? 1 : 0] >> lane & 1U) != 0)
+          add_guessed({run, block, lane, is_reversed}, pose, sums);
   }
+}
+
+void ChainLevel::add_guessed(const OneChain &one, const backend::ChainPose &pose,
+                             backend::ChainSums &sums) const {
+  const double share = guessed(one, pose), before = sums.bands[0].i[one.lane];
+  if (!(share > 0))
+    return;
+  add_one(one, share, pose, sums);
+  if (sums.doubt.empty())
+    return;
+  const double carried = sums.bands[0].i[one.lane] - before;
+  sums.doubt[one.at()] += static_cast<float>(carried * std::sqrt(std::max(1 / share - 1, 0.0)));
+  sums.carried[one.at()] += static_cast<float>(carried);
 }
 
 } // namespace umov

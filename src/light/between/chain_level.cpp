@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 #include <umov/core/parallel.h>
+#include <umov/core/random.h>
+#include <umov/light/light_task.h>
 
 namespace umov {
 namespace {
@@ -20,6 +22,7 @@ constexpr std::size_t blocks_at_a_time = 64;
 /// Directions this far below the horizon of an end are asked just above it, since interpolation
 /// between directions needs them [sine].
 constexpr double below_horizon = 0.12, above_horizon = 0.005;
+constexpr std::uint32_t doubt_stream = 0xC4B0;
 
 using LikeChains = std::array<std::vector<const Chain *>, replicates>;
 
@@ -53,15 +56,21 @@ backend::ChainPose chain_pose(const Pose &pose) {
 
 ChainLevel::ChainLevel(const ChainRays &rays, const ChainSurfaces &surfaces,
                        const Occluder &occluder, std::size_t bands, std::size_t first,
-                       std::size_t rays_per_replicate, std::size_t count, unsigned threads)
-    : surfaces_(surfaces), bands_(bands) {
+                       std::size_t rays_per_replicate, std::size_t count, std::uint64_t seed,
+                       unsigned threads, const std::atomic<bool> *cancel)
+    : surfaces_(surfaces), occluder_(occluder), bands_(bands) {
+  for (std::size_t r = 0; r < replicates; ++r)
+    shift_[r] = uniform4(seed, doubt_stream, first + r)[0];
   std::vector<ChainList> lists(replicates);
   parallel_for(replicates, threads, [&](std::size_t r) {
-    lists[r] = rays.thinned(rays.draw(r, first, rays_per_replicate), r, first, count / replicates);
+    lists[r] = rays.thinned(rays.draw(r, first, rays_per_replicate, cancel), r, first,
+                            count / replicates, cancel);
   });
+  if (is_stopped(cancel))
+    return;
   const std::vector<Placed> placed = arrange(lists);
   fill(placed, lists);
-  trace(placed, occluder, threads);
+  trace(placed, threads, cancel);
   view_ = {block_, matrix_, surfaces_.fast(), {blocks_, free_p_, free_q_}, bands_};
 }
 
@@ -146,8 +155,8 @@ void ChainLevel::fill(const std::vector<Placed> &placed, const std::vector<Chain
   }
 }
 
-void ChainLevel::trace(const std::vector<Placed> &placed, const Occluder &occluder,
-                       unsigned threads) {
+void ChainLevel::trace(const std::vector<Placed> &placed, unsigned threads,
+                       const std::atomic<bool> *cancel) {
   constexpr std::size_t directions = (chain_mask_cells + 1) * (chain_mask_cells + 1);
   free_p_.assign(directions * blocks_, 0);
   free_q_.assign(directions * blocks_, 0);
@@ -157,13 +166,17 @@ void ChainLevel::trace(const std::vector<Placed> &placed, const Occluder &occlud
   std::vector<std::vector<const Placed *>> of_block(blocks_);
   for (const Placed &one : placed)
     of_block[one.block].push_back(&one);
+  point_p_.resize(blocks_ * replicates);
+  point_q_.resize(blocks_ * replicates);
   parallel_for(blocks_, threads, [&](std::size_t block) {
     std::vector<Occluder::Point> from, to;
     std::vector<std::size_t> which;
     std::vector<unsigned char> free;
-    const auto look = [&](const ChainEnd &end, std::size_t lane, std::vector<std::uint16_t> &out) {
+    const auto look = [&](const ChainEnd &end, std::size_t lane, std::vector<std::uint16_t> &out,
+                          std::vector<Occluder::Point> &points) {
       from.clear(), to.clear(), which.clear();
-      const Occluder::Point origin = occluder.to_point(end.point);
+      const Occluder::Point origin = occluder_.to_point(end.point);
+      points[block * replicates + lane] = origin;
       for (std::size_t k = 0; k < directions; ++k) {
         const double up = dot(grid[k], end.face);
         if (up < -below_horizon)
@@ -175,14 +188,16 @@ void ChainLevel::trace(const std::vector<Placed> &placed, const Occluder &occlud
         which.push_back(k);
       }
       free.resize(from.size());
-      occluder.is_free(from, to, free);
+      occluder_.is_free(from, to, free);
       for (std::size_t k = 0; k < which.size(); ++k)
         if (free[k] != 0)
           out[which[k] * blocks_ + block] |= static_cast<std::uint16_t>(1U << lane);
     };
+    if (is_stopped(cancel))
+      return;
     for (const Placed *one : of_block[block]) {
-      look(one->chain->p, one->lane, free_p_);
-      look(one->chain->q, one->lane, free_q_);
+      look(one->chain->p, one->lane, free_p_, point_p_);
+      look(one->chain->q, one->lane, free_q_, point_q_);
     }
   });
 }
@@ -208,7 +223,8 @@ void ChainLevel::add(std::span<const backend::ChainPose> poses,
 std::size_t ChainLevel::bytes() const {
   return block_.size() * sizeof(block_[0]) + matrix_.size() * sizeof(backend::ChainMatrix) +
          (free_p_.size() + free_q_.size()) * sizeof(std::uint16_t) +
-         (field_p_.size() + field_q_.size()) * sizeof(Vec3<Body>);
+         (field_p_.size() + field_q_.size()) * sizeof(Vec3<Body>) +
+         (point_p_.size() + point_q_.size()) * sizeof(Occluder::Point);
 }
 
 } // namespace umov

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <umov/core/random.h>
+#include <umov/light/light_task.h>
 
 namespace umov {
 namespace {
@@ -155,12 +156,13 @@ bool ChainRays::step(Walk &walk, Vertex &at, Vec3<Body> &back,
   return strongest > 0;
 }
 
-ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t count) const {
+ChainList ChainRays::draw(std::size_t replicate, std::size_t first, std::size_t count,
+                          const std::atomic<bool> *cancel) const {
   ChainList out;
   const auto shift = uniform4(seed_, shift_stream, replicate);
   const double weight = pi * sum_.back() / static_cast<double>(count);
   Walk walk;
-  for (std::size_t i = first; i < first + count; ++i) {
+  for (std::size_t i = first; i < first + count && !is_stopped(cancel); ++i) {
     const auto x = lattice(shift, i);
     walk.first = start(x[0], x[1]);
     const Vec3<Body> n = walk.first.face, a = any_perpendicular(n), b = cross(n, a);
@@ -223,10 +225,12 @@ std::uint64_t likeness(const Chain &chain) {
 }
 
 ChainList ChainRays::thinned(const ChainList &all, std::size_t replicate, std::size_t first,
-                             std::size_t kept) const {
+                             std::size_t kept, const std::atomic<bool> *cancel) const {
   std::vector<double> matters;
   const std::uint64_t begin = (static_cast<std::uint64_t>(replicate) << 56U) + first * bounces_;
   for (std::size_t k = 0; k < all.chains.size(); ++k) {
+    if (is_stopped(cancel))
+      return {};
     const Chain &c = all.chains[k];
     const std::uint64_t stream = 2 * (begin + k);
     matters.push_back((c.from_p + c.from_q) * c.transmitted *

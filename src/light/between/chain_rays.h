@@ -4,6 +4,7 @@
 #include "light/between/chain.h"
 #include "light/between/chain_surfaces.h"
 
+#include <atomic>
 #include <umov/shape/occluder.h>
 
 namespace umov {
@@ -15,12 +16,14 @@ public:
             std::size_t bounces, std::uint64_t seed);
 
   /// `count` rays of one replicate, from number `first` of its lattice on, and the chains of 2 to
-  /// `bounces` surfaces that they find. An estimate by all of them has the mean it should.
-  [[nodiscard]] ChainList draw(std::size_t replicate, std::size_t first, std::size_t count) const;
+  /// `bounces` surfaces that they find. An estimate by all of them has the mean it should. Of no
+  /// use, here and below, once `cancel` (may be null) became true.
+  [[nodiscard]] ChainList draw(std::size_t replicate, std::size_t first, std::size_t count,
+                               const std::atomic<bool> *cancel) const;
   /// The same thinned to about `kept`, each as likely to stay as it matters over all poses, its
   /// weight growing as it gets rarer, and evenly among like ones.
   [[nodiscard]] ChainList thinned(const ChainList &all, std::size_t replicate, std::size_t first,
-                                  std::size_t kept) const;
+                                  std::size_t kept, const std::atomic<bool> *cancel) const;
 
 private:
   struct Walk;

@@ -18,13 +18,18 @@ constexpr std::size_t poses_together = 16;
 /// off they are.
 constexpr double least_chains = 48;
 
-/// What all replicates miss together, in parts of the light: visibility between the directions of
-/// the ends' grid (measured against a path tracer on HST: docs/theory/bounces.md).
-constexpr double visibility_error = 0.015;
+/// How well chains in doubt are settled: to a part of the standard error that the replicates have
+/// anyway, or of that wanted.
+constexpr double mended_to = 0.5;
 
 constexpr double weight_of(std::size_t level) { return static_cast<double>(chains_of[level]); }
 
-BandResult result_of(const backend::ChainLight &sum, double weight) {
+/// What is left of the error of visibility, in parts of the light: where the directions of a grid
+/// agree about what lies between them, and are wrong. At least this much, since few are asked
+/// (docs/theory/bounces.md).
+constexpr double visibility_error = 0.005;
+
+BandResult result_of(const backend::ChainLight &sum, double weight, double mistaken) {
   BandResult out;
   const auto put = [&](const double(&from)[replicates], double &mean, double &half_width) {
     std::array<double, replicates> value{};
@@ -39,8 +44,9 @@ BandResult result_of(const backend::ChainLight &sum, double weight) {
   put(sum.u, out.stokes.u, out.half_width.u);
   put(sum.v, out.stokes.v, out.half_width.v);
   const Stokes<ScatteringPlane> &s = out.stokes;
-  const double polarized = visibility_error * std::hypot(s.q, s.u, s.v);
-  out.half_width.i = std::hypot(out.half_width.i, visibility_error * s.i);
+  const double left = std::hypot(visibility_error, mistaken),
+               polarized = left * std::hypot(s.q, s.u, s.v);
+  out.half_width.i = std::hypot(out.half_width.i, left * s.i);
   for (double *part : {&out.half_width.q, &out.half_width.u, &out.half_width.v})
     *part = std::hypot(*part, polarized);
   return out;
@@ -60,29 +66,38 @@ struct ChainStore::Climb {
   std::vector<std::size_t> open;        ///< poses
   std::vector<backend::ChainLight> sum; ///< [pose * bands + band], weighted by level
   std::vector<double> squares;          ///< per pose
+  std::vector<double> mistaken;         ///< per pose: I that the grids call free, and is not
 };
 
 ChainStore::ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
                        std::uint64_t seed)
     : surfaces_(scene.scene()), rays_(scene, occluder, surfaces_, bounces, seed),
-      occluder_(occluder), bands_(scene.scene().grid.nodes().size()) {}
+      occluder_(occluder), bands_(scene.scene().grid.nodes().size()), seed_(seed) {}
 
-const ChainLevel &ChainStore::level(std::size_t index, unsigned threads) const {
+const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,
+                                    const std::atomic<bool> *cancel) const {
   const WriteLock lock(mutex_);
   if (!level_[index]) {
     std::size_t first = 0;
     for (std::size_t k = 0; k < index; ++k)
       first += chains_of[k] * rays_per_chain / replicates;
-    level_[index] = std::make_unique<const ChainLevel>(
-        rays_, surfaces_, occluder_, bands_, first, chains_of[index] * rays_per_chain / replicates,
-        chains_of[index], threads);
+    auto made = std::make_unique<const ChainLevel>(rays_, surfaces_, occluder_, bands_, first,
+                                                   chains_of[index] * rays_per_chain / replicates,
+                                                   chains_of[index], seed_, threads, cancel);
+    if (is_stopped(cancel))
+      return nullptr; // whoever asks next begins anew
+    level_[index] = std::move(made);
   }
-  return *level_[index];
+  return level_[index].get();
 }
 
-void ChainStore::add_level(std::size_t index, std::span<const Pose> poses, Climb &climb,
-                           unsigned threads, const std::atomic<bool> *cancel) const {
-  const ChainLevel &from = level(index, threads);
+void ChainStore::add_level(std::size_t index, std::span<const Pose> poses,
+                           std::span<const double> direct_i, const IntegrationOptions &options,
+                           Climb &climb, unsigned threads, const std::atomic<bool> *cancel) const {
+  const ChainLevel *found_level = level(index, threads, cancel);
+  if (found_level == nullptr)
+    return;
+  const ChainLevel &from = *found_level;
   const std::size_t groups = (climb.open.size() + poses_together - 1) / poses_together;
   parallel_for(groups, threads, [&](std::size_t group) {
     if (is_stopped(cancel))
@@ -92,15 +107,25 @@ void ChainStore::add_level(std::size_t index, std::span<const Pose> poses, Climb
     std::vector<backend::ChainPose> at;
     std::vector<backend::ChainLight> light(count * bands_);
     std::vector<backend::ChainSums> sums(count);
+    const std::size_t places = from.places();
+    std::vector<float> notes(2 * count * places);
     for (std::size_t k = 0; k < count; ++k) {
       at.push_back(chain_pose(poses[climb.open[begin + k]]));
       sums[k].bands = {light.data() + k * bands_, bands_};
+      sums[k].doubt = {notes.data() + 2 * k * places, places};
+      sums[k].carried = {notes.data() + (2 * k + 1) * places, places};
     }
     from.add(at, sums);
     const double weight = weight_of(index);
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t pose = climb.open[begin + k];
+      const MeanOfReplicates found = mean_of_replicates(light[k * bands_].i);
+      from.mend(at[k],
+                mended_to * std::max(found.deviation, options.accuracy / student_of_replicates *
+                                                          (direct_i[pose * bands_] + found.mean)),
+                sums[k]);
       climb.squares[pose] += weight * weight * sums[k].squares;
+      climb.mistaken[pose] += weight * from.mistaken(at[k], sums[k]);
       for (std::size_t b = 0; b < bands_; ++b) {
         backend::ChainLight &to = climb.sum[pose * bands_ + b];
         const backend::ChainLight &more = sums[k].bands[b];
@@ -124,13 +149,14 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
   Climb climb;
   climb.sum.resize(poses.size() * bands_);
   climb.squares.resize(poses.size());
+  climb.mistaken.resize(poses.size());
   for (std::size_t k = 0; k < poses.size(); ++k)
     climb.open.push_back(k);
   double weight = 0;
   for (std::size_t index = 0; index < levels && !climb.open.empty(); ++index) {
     if (index > 0 && weight + weight_of(index) > static_cast<double>(options.max_points))
       break;
-    add_level(index, poses, climb, threads, cancel);
+    add_level(index, poses, direct_i, options, climb, threads, cancel);
     if (is_stopped(cancel))
       return {};
     weight += weight_of(index);
@@ -143,7 +169,8 @@ ChainStore::Answer ChainStore::light(std::span<const Pose> poses, std::span<cons
       // Where 16 k chains meet nothing there is nothing, beside any direct light.
       bool is_met = is_enough && (total > 0 || direct_i[k * bands_] > 0);
       for (std::size_t b = 0; b < bands_; ++b) {
-        light.bands[b] = result_of(climb.sum[k * bands_ + b], weight);
+        light.bands[b] =
+            result_of(climb.sum[k * bands_ + b], weight, total > 0 ? climb.mistaken[k] / total : 0);
         is_met =
             is_met && light.bands[b].half_width.i <=
                           options.accuracy * (direct_i[k * bands_ + b] + light.bands[b].stokes.i);

@@ -35,14 +35,18 @@ public:
 
 private:
   struct Climb;
-  [[nodiscard]] const ChainLevel &level(std::size_t index, unsigned threads) const;
-  void add_level(std::size_t index, std::span<const Pose> poses, Climb &climb, unsigned threads,
+  /// Null if `cancel` became true.
+  [[nodiscard]] const ChainLevel *level(std::size_t index, unsigned threads,
+                                        const std::atomic<bool> *cancel) const;
+  void add_level(std::size_t index, std::span<const Pose> poses, std::span<const double> direct_i,
+                 const IntegrationOptions &options, Climb &climb, unsigned threads,
                  const std::atomic<bool> *cancel) const;
 
   ChainSurfaces surfaces_;
   ChainRays rays_;
   const Occluder &occluder_;
   std::size_t bands_;
+  std::uint64_t seed_;
   mutable Mutex mutex_;
   mutable std::array<std::unique_ptr<const ChainLevel>, levels> level_;
 };
