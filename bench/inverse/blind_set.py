@@ -4,8 +4,9 @@
 `umov reduce`, and asked of `umov invert pose` and `invert spin`. The truth stays in this program.
 Prints a line a curve; writes the table, with what made it in its header.
 
-usage: blind_set.py [--each 20] [--seed 60] [--kinds pose,spin] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
+usage: blind_set.py [--counts] [--each 20] [--seed 60] [--kinds pose,spin] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
 --snr: of I, in the median of the lit sets: the telescope is made as large as that takes, its focal ratio kept. Without it: 28 cm.
+--counts: `umov invert` has the counts themselves, not what `umov reduce` made of them.
 --work: what was observed is kept there and taken again by the next run."""
 import argparse
 import json
@@ -59,10 +60,10 @@ class Chain:
         return statistics.median([r for r in ratios if r > 0.01] or [0.01])
 
     def observe(self, name, law, cadence, seed, keep):
-        """stokes.csv of an object in an attitude."""
+        """data.csv of an object in an attitude: counts, or what they are reduced to."""
         (self.work / "fit.toml").write_text(self.scenario(name, "fit", blind.inertial([1, 0, 0, 0]), cadence, "masks", seed))
         if keep.exists():
-            (self.work / "stokes.csv").write_bytes(keep.read_bytes())
+            (self.work / "data.csv").write_bytes(keep.read_bytes())
             return
         (self.work / "true.toml").write_text(self.scenario(name, "true", law, cadence, "auto", seed))
         larger = 1.0
@@ -73,7 +74,14 @@ class Chain:
             if not self.o.snr or abs(math.log(self.snr() / self.o.snr)) < 0.1:
                 break
             larger = min(larger * self.o.snr / self.snr(), 200)
-        keep.write_bytes((self.work / "stokes.csv").read_bytes())
+        made = {False: self.work / "stokes.csv", True: self.work / "counts/counts.csv"}
+        for is_counts, path in made.items():
+            self.kept(keep.name.replace("_counts", ""), is_counts).write_bytes(path.read_bytes())
+        (self.work / "data.csv").write_bytes(made[self.o.counts].read_bytes())
+
+    def kept(self, name, is_counts):
+        """Both are kept, so that both can be asked of one observation."""
+        return self.work / (name.replace(".csv", "_counts.csv") if is_counts else name)
 
     def ask(self, *words):
         began = time.time()
@@ -87,7 +95,7 @@ class Chain:
 def pose(chain, name, rng, seed, keep):
     truth = blind.random_attitude(rng)
     chain.observe(name, blind.inertial(truth), 4, seed, keep)
-    answer, seconds = chain.ask("invert", "pose", chain.work / "stokes.csv", "--scenario", chain.work / "fit.toml")
+    answer, seconds = chain.ask("invert", "pose", chain.work / "data.csv", "--scenario", chain.work / "fit.toml")
     if answer["verdict"] == "refused":
         return "refused", float("nan"), False, False, 1.0, seconds
     same = blind.twins(truth, answer["symmetries"])
@@ -102,7 +110,7 @@ def spin(chain, name, rng, seed, keep, period=40.0):
     rate = [360 / period * c / math.sqrt(sum(x * x for x in axis)) for c in axis]
     law = f'mode = "tumble", inertia = [1, 1, 1], rate_deg_s = {rate}, start = {{ {blind.inertial(truth)} }}'
     chain.observe(name, law, 2, seed, keep)
-    answer, seconds = chain.ask("invert", "spin", chain.work / "stokes.csv", "--scenario", chain.work / "fit.toml", "--period",
+    answer, seconds = chain.ask("invert", "spin", chain.work / "data.csv", "--scenario", chain.work / "fit.toml", "--period",
                                 period * (1 + rng.uniform(-0.01, 0.01)))
     if answer["verdict"] == "refused" or not answer["modes"]:
         return answer["verdict"], float("nan"), False, False, 1.0, seconds
@@ -125,6 +133,7 @@ def main():
     parser.add_argument("--kinds", default="pose,spin")
     parser.add_argument("--objects", default="cubesat,agena")
     parser.add_argument("--snr", type=float, default=0)
+    parser.add_argument("--counts", action="store_true")
     parser.add_argument("--only", type=int, help="this trial alone")
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
@@ -140,7 +149,7 @@ def main():
                 continue
             rng = random.Random(f"{o.seed} {kind} {trial}")
             name = names[trial % len(names)]
-            keep = work / f"{kind}_{name}_{o.seed}_{trial}_{o.snr:g}.csv"
+            keep = chain.kept(f"{kind}_{name}_{o.seed}_{trial}_{o.snr:g}.csv", o.counts)
             verdict, value, is_right, is_covered, share, seconds = {"pose": pose, "spin": spin}[kind](chain, name, rng, o.seed + trial, keep)
             done += 1
             right += is_right
@@ -151,7 +160,7 @@ def main():
         print(f"{kind}, SNR {o.snr:g}: of {done} {right} right, {covered} in the set, {inside} right or in the set", flush=True)
     if o.output:
         version = subprocess.run([str(o.umov), "--version"], capture_output=True, text=True).stdout.strip()
-        head = [f"# made by: blind_set.py --each {o.each} --seed {o.seed} --kinds {o.kinds} --objects {o.objects} --snr {o.snr:g}; {version}",
+        head = [f"# made by: blind_set.py --each {o.each} --seed {o.seed} --kinds {o.kinds} --objects {o.objects} --snr {o.snr:g}{' --counts' if o.counts else ''}; {version}",
                 "# value: error of the best attitude [deg], of the best axis [deg]",
                 "kind,trial,object,verdict,value,right,in_set,share,seconds"]
         o.output.write_text("\n".join(head + lines) + "\n")
