@@ -122,31 +122,36 @@ CurveLikelihood::Weighed CurveLikelihood::weigh(const ModelLight &model) const {
   return out;
 }
 
+/// Sums over data and model that the gains follow from, of each group and of all.
+struct CurveLikelihood::GainSums {
+  std::vector<double> cross, square;
+  double all_cross = 0, all_square = 0;
+  void add(std::size_t group, double weight, double data, double model) {
+    cross[group] += weight * data * model;
+    square[group] += weight * model * model;
+    all_cross += weight * data * model;
+    all_square += weight * model * model;
+  }
+};
+
+CurveLikelihood::GainSums CurveLikelihood::sums_of(const ModelLight &model,
+                                                   const Weighed &data) const {
+  GainSums out{std::vector<double>(groups_, 0), std::vector<double>(groups_, 0)};
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    if (rows_[k].weight != 0)
+      out.add(rows_[k].group, data.weights[k], rows_[k].i, model.i[rows_[k].at]);
+  if (counts_)
+    for (const auto &set : counts_->sets())
+      for (std::size_t k = set.begin; k < set.begin + set.size; ++k)
+        out.add(set.group, 1, data.counts.net[k], data.counts.light[k]);
+  return out;
+}
+
 /// The best gains, by least squares: without clouds the gain of a band is normal around the scale,
 /// g_b = s (1 + z_b), which for a given s is linear, and so is s then (section 2 of the page).
 CurveLikelihood::Gains CurveLikelihood::gains_of(const ModelLight &model,
                                                  const Weighed &data) const {
-  std::vector<double> cross(groups_, 0), square(groups_, 0);
-  double all_cross = 0, all_square = 0;
-  for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const Row &row = rows_[k];
-    if (row.weight == 0)
-      continue;
-    const double m = model.i[row.at], w = data.weights[k];
-    cross[row.group] += w * row.i * m;
-    square[row.group] += w * m * m;
-    all_cross += w * row.i * m;
-    all_square += w * m * m;
-  }
-  if (counts_)
-    for (const auto &set : counts_->sets())
-      for (std::size_t k = set.begin; k < set.begin + set.size; ++k) {
-        const double m = data.counts.light[k], n = data.counts.net[k];
-        cross[set.group] += n * m;
-        square[set.group] += m * m;
-        all_cross += n * m;
-        all_square += m * m;
-      }
+  const auto [cross, square, all_cross, all_square] = sums_of(model, data);
   constexpr double least = 1e-9; // light is not negative, however dark the data
   Gains out;
   out.gain.assign(groups_, 1);

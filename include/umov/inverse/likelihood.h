@@ -86,6 +86,8 @@ private:
   };
   struct Gains;
   struct Weighed;
+  struct GainSums;
+  [[nodiscard]] GainSums sums_of(const ModelLight &model, const Weighed &data) const;
   [[nodiscard]] Weighed weigh(const ModelLight &model) const;
   [[nodiscard]] Gains gains_of(const ModelLight &model, const Weighed &data) const;
   double fill(const ModelLight &model, const Gains &gains, const Weighed &data,
