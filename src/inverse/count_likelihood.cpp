@@ -61,10 +61,10 @@ WhitenedCounts CountLikelihood::whitened(const ModelLight &model, double scale) 
 void CountLikelihood::whiten_set(const Set &set, const ModelLight &model, double scale,
                                  WhitenedCounts &out) const {
   constexpr std::size_t terms = 5;
-  constexpr double half_width = 1.96, any = 10; // q and u that are left aside may be anything
+  constexpr double half_width = 1.96;
   const double clouds = errors_.has_clouds ? errors_.zero_point_sd : 0;
   const double floor = std::max(errors_.floor, best_relative);
-  const double of_q = errors_.has_polarization ? std::max(errors_.of_q(), best_relative) : any;
+  const double of_q = std::max(errors_.of_q(), best_relative);
   const double in_i = scale * model.i[set.at];
   const double width =
       model.i_half_width.empty() ? 0 : scale * model.i_half_width[set.at] / half_width;

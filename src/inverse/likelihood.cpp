@@ -36,7 +36,8 @@ CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &
     : bands_(curve.bands), errors_(errors), is_absolute_(curve.is_absolute) {
   median_i_ = inverse::median_of_i(curve);
   groups_ = errors.has_clouds ? curve.epochs.size() : curve.bands.size();
-  if (!curve.counts.empty()) {
+  // One channel says nothing of I by itself while q and u are left aside: reduced sets do.
+  if (!curve.counts.empty() && errors.has_polarization) {
     counts_ = std::make_shared<const inverse::CountLikelihood>(curve, errors, median_i_, epochs);
     measurements_ = counts_->size();
     return;

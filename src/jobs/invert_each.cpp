@@ -28,6 +28,17 @@ Table of_curve(const std::string &curve, const Table &table) {
   return out;
 }
 
+/// Lines side by side, without the room that aligns them.
+std::string in_one_line(const std::string &text) {
+  std::string out;
+  for (const char c : text)
+    if (c == '\n')
+      out += out.empty() || out.ends_with("; ") ? "" : "; ";
+    else if (c != ' ' || (!out.empty() && !out.ends_with(' ')))
+      out += c;
+  return out.ends_with("; ") ? out.substr(0, out.size() - 2) : out;
+}
+
 /// Rows of the table of all curves.
 class CurveRows {
 public:
@@ -36,6 +47,7 @@ public:
     verdict_.emplace_back(found ? name_of(found->verdict) : "failed");
     problem_.push_back(found ? "" : found.error().text());
     warnings_.push_back(fmt::format("{}", fmt::join(messages_of(told), "; ")));
+    answer_.push_back(found ? in_one_line(found->summary) : "");
     failed_ += found ? 0u : 1u;
   }
   [[nodiscard]] std::size_t failed() const { return failed_; }
@@ -46,11 +58,12 @@ public:
     out.add("verdict", "", "how sure the answer is; failed: there is none", std::move(verdict_));
     out.add("problem", "", "why there is none", std::move(problem_));
     out.add("warnings", "", "of the curve", std::move(warnings_));
+    out.add("answer", "", "in words, with what cannot be known", std::move(answer_));
     return out;
   }
 
 private:
-  std::vector<std::string> curve_, verdict_, problem_, warnings_;
+  std::vector<std::string> curve_, verdict_, problem_, warnings_, answer_;
   std::size_t failed_ = 0;
 };
 
@@ -62,9 +75,12 @@ bool is_of_all(const Error &error) {
 
 class RangedCurves final : public RangedJob {
 public:
-  RangedCurves(CurveQuestion question, std::string identity, std::vector<std::string> warnings)
-      : question_(std::move(question)), identity_(std::move(identity)),
+  RangedCurves(CurveQuestion question, std::vector<InputFile> inputs, std::string identity,
+               std::vector<std::string> warnings)
+      : question_(std::move(question)), inputs_(std::move(inputs)), identity_(std::move(identity)),
         warnings_(std::move(warnings)) {}
+  /// All that is read, the curves among it.
+  [[nodiscard]] const std::vector<InputFile> &inputs() const { return inputs_; }
   [[nodiscard]] std::string unit() const override { return "curves"; }
   [[nodiscard]] std::size_t total() const override { return question_.curves.size(); }
   [[nodiscard]] std::string identity() const override { return identity_; }
@@ -117,6 +133,7 @@ private:
     return {};
   }
   CurveQuestion question_;
+  std::vector<InputFile> inputs_;
   std::string identity_;
   std::vector<std::string> warnings_;
 };
@@ -139,9 +156,9 @@ Result<std::unique_ptr<RangedJob>> job_of(CurveQuestion question, const Scenario
   UMOV_ASSIGN(device, device_text(options.device));
   for (const Warning &warning : told.warnings())
     diagnostics.warn(warning.message, warning.where);
-  std::string identity =
-      job_text(scenario, hashed(question), "each curve: " + question.asked + device);
-  return std::make_unique<RangedCurves>(std::move(question), std::move(identity),
+  std::vector<InputFile> inputs = hashed(question);
+  std::string identity = job_text(scenario, inputs, "each curve: " + question.asked + device);
+  return std::make_unique<RangedCurves>(std::move(question), std::move(inputs), std::move(identity),
                                         messages_of(told));
 }
 
@@ -176,7 +193,8 @@ Result<std::unique_ptr<RangedJob>> ranged_poses(const Scenario &scenario,
   question.ask = [=](const std::string &curve, const Monitor &monitor,
                      Diagnostics &of_curve) -> Result<Inversion> {
     std::vector<InputFile> inputs;
-    UMOV_ASSIGN(files, read_observations({curve}, inputs, of_curve));
+    UMOV_ASSIGN(files,
+                read_observations({curve}, request.errors.has_polarization, inputs, of_curve));
     UMOV_ASSIGN(observed,
                 observed_light_curve(scenario, files, request.allow_old_elements, of_curve, false));
     return pose_answer(scenario, request, options, observed, *ready, monitor, of_curve);
@@ -192,6 +210,10 @@ Result<std::unique_ptr<RangedJob>> ranged_identities(const Scenario &scenario,
   CurveQuestion question;
   question.curves = request.observed.observations;
   question.tables = no_identity_tables();
+  Diagnostics told_with_curves; // where it was and when the bands saw it
+  UMOV_ASSIGN(place, load_object(scenario, 0, {.allow_old_elements = true, .reads_shape = false},
+                                 told_with_curves));
+  question.inputs = place.inputs;
   for (const std::string &object : request.objects) {
     UMOV_ASSIGN(text, read_file(object));
     question.inputs.push_back({object, sha256_hex(text)});
@@ -222,6 +244,8 @@ Result<CurveAnswers> answer_curves(RangedJob &job, const JobPart &part, const Mo
   warnings.insert(warnings.end(), told.begin(), told.end());
   note_warnings(all.tables.front(), warnings);
   CurveAnswers out;
+  if (const auto *const curves = dynamic_cast<const RangedCurves *>(&job))
+    out.inputs = curves->inputs();
   out.curves = range.count;
   const Table &curves = all.tables.front();
   for (std::size_t row = 0; row < curves.rows(); ++row)
@@ -242,7 +266,7 @@ Result<void> write_answers(const CurveAnswers &answers, const Scenario &scenario
   std::string log = counted(answers.curves, "curve") + "\n";
   for (const std::string &problem : answers.failed)
     log += "no answer: " + problem + "\n";
-  UMOV_TRY(add_records(scenario, "", log + warning_lines(diagnostics), {}, diagnostics,
+  UMOV_TRY(add_records(scenario, "", log + warning_lines(diagnostics), answers.inputs, diagnostics,
                        std::move(manifest), folder));
   return folder.commit();
 }

@@ -49,7 +49,8 @@ Result<DriftedLight> light_of(const Scenario &scenario, const InvertRequest &req
                               const JobOptions &options, const Monitor &monitor,
                               Diagnostics &diagnostics, ManifestInput::Light &used) {
   std::vector<InputFile> inputs;
-  UMOV_ASSIGN(files, read_observations(request.observations, inputs, diagnostics));
+  UMOV_ASSIGN(files, read_observations(request.observations, request.errors.has_polarization,
+                                       inputs, diagnostics));
   UMOV_ASSIGN(own, observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
   DriftedLight out{std::move(own), {}, {}, {}};
   ObservedLightCurve &observed = out.observed;

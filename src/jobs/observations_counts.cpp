@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <umov/core/text.h>
 #include <umov/jobs/reduce.h>
 
@@ -32,13 +33,24 @@ bool has_column(std::string_view header, std::string_view name) {
 
 /// Rows stand where exposures do: those of a sequence begin and end at other times.
 void put_on_exposures(ObservationsFile &file) {
+  std::map<std::string, std::vector<Epoch<Utc>>> times; // of each band
+  for (const CountRow &count : file.counts)
+    times[count.band].push_back(count.time);
+  const auto is_before = [](const Epoch<Utc> &a, const Epoch<Utc> &b) {
+    return seconds_between(a, b) < 0;
+  };
+  for (auto &[band, all] : times)
+    std::ranges::sort(all, is_before);
   for (ObservedRow &row : file.rows) {
-    const auto nearest = std::ranges::min_element(file.counts, {}, [&](const CountRow &count) {
-      constexpr double another_band = 1e12;
-      return std::abs(seconds_between(count.time, row.time)) +
-             (count.band == row.band ? 0 : another_band);
-    });
-    row.time = nearest->time;
+    const std::vector<Epoch<Utc>> &all = times[row.band];
+    auto at = std::ranges::lower_bound(all, row.time, is_before);
+    if (all.empty())
+      continue; // every count of the band was saturated
+    const bool is_first = at == all.begin();
+    if (at == all.end() || (!is_first && std::abs(seconds_between(*(at - 1), row.time)) <=
+                                             std::abs(seconds_between(*at, row.time))))
+      --at;
+    row.time = *at;
   }
 }
 
@@ -50,7 +62,7 @@ bool is_counts_table(std::string_view text) {
 }
 
 Result<ObservationsFile> observations_of_counts(std::string_view text, const std::string &file,
-                                                Diagnostics &diagnostics) {
+                                                bool has_polarization, Diagnostics &diagnostics) {
   UMOV_ASSIGN(counts, read_counts_text(text, file, diagnostics));
   for (const CountRow &row : counts.rows)
     if (row.name != counts.rows.front().name)
@@ -62,6 +74,8 @@ Result<ObservationsFile> observations_of_counts(std::string_view text, const std
   Diagnostics of_sets; // what is strange about the table, which is not what is fitted
   UMOV_ASSIGN(reduced, reduce(counts, {}, Monitor{}, of_sets));
   UMOV_ASSIGN(out, read_observations_text(to_ecsv(reduced), file, of_sets));
+  if (!has_polarization)
+    return out;
   const std::size_t all = counts.rows.size();
   std::erase_if(counts.rows, [](const CountRow &row) { return row.is_saturated; });
   if (counts.rows.size() < all)

@@ -295,6 +295,7 @@ Scenario over_the_rows(const Scenario &scenario, const std::vector<ObservationsF
 } // namespace
 
 Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::string> &paths,
+                                                        bool has_polarization,
                                                         std::vector<InputFile> &inputs,
                                                         Diagnostics &diagnostics) {
   std::vector<ObservationsFile> out;
@@ -302,8 +303,9 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
   for (const std::string &path : paths) {
     UMOV_ASSIGN(text, read_file(path, largest));
     UMOV_ASSIGN(file, ccsds::is_message(text) ? observations_of_tdm(text, path, diagnostics)
-                      : is_counts_table(text) ? observations_of_counts(text, path, diagnostics)
-                                              : read_observations_text(text, path, diagnostics));
+                      : is_counts_table(text)
+                          ? observations_of_counts(text, path, has_polarization, diagnostics)
+                          : read_observations_text(text, path, diagnostics));
     out.push_back(std::move(file));
     inputs.push_back({path, sha256_hex(text)});
   }

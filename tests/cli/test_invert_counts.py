@@ -45,6 +45,18 @@ def test_counts_say_what_their_stokes_parameters_say(umov, record, tmp_path):
     assert a["scale"] == pytest.approx(b["scale"], rel=0.02)
 
 
+def test_brightness_alone_is_that_of_the_reduced_sets(umov, record):
+    """One channel an exposure says nothing of I by itself where q and u are left aside."""
+    record(2.0, instrument="usafa16", cadence_s=5)
+    found = []
+    for name in ("obs/counts.ecsv", "stokes.ecsv"):
+        done = umov("invert", "pose", name, "--scenario", "fit.toml", "--grid", "2000", "--intensity-only", "--json")
+        assert done.code in (0, 4), done.err
+        found.append(json.loads(done.out))
+    for key in ("dof", "chi2", "modes"):
+        assert found[0][key] == found[1][key], key
+
+
 def test_a_material_from_counts(umov, record):
     record(2.0, cadence_s=12)
     done = umov("invert", "material", "obs/counts.ecsv", "--scenario", "fit.toml", "--group", "body_my", "--candidates",

@@ -1,7 +1,10 @@
 """Many curves, each a question of its own: answers are those of the curve alone, and those of any part are those of the whole."""
+import json
+
 import pytest
 from astropy.table import Table
 
+from conftest import ROOT
 from test_identify import NAMES, library  # noqa: F401
 from test_invert import TRUTHS, observe, scene  # noqa: F401
 
@@ -35,6 +38,9 @@ def test_each_curve_has_the_answer_that_it_has_alone(umov, curves, tmp_path):
     assert list(table["curve"]) == curves
     assert table["verdict"][1] == "failed" and "bad.csv:2" in table["problem"][1]
     assert "1 of 4 curves have no answer" in (tmp_path / "each/curves.ecsv").read_text()
+    assert not table["answer"][1] and all("chi-square" in table["answer"][k] for k in (0, 2, 3))
+    inputs = {one["path"] for one in json.loads((tmp_path / "each/manifest.json").read_text())["inputs"]}
+    assert {"a.csv", "b.csv", "c.csv"} <= inputs and any(name.endswith(".tle") for name in inputs)
     for k in (0, 2, 3):
         alone = umov(*asked([curves[k]]), "-o", "alone", "--force")
         assert alone.code in (0, 4), alone.err
@@ -78,6 +84,20 @@ def test_identities_in_parts_are_the_plain_ones(umov, curves, library, tmp_path)
     for name in ("curves", "identity", "modes", "fit"):
         assert umov("scale", "merge", "job", "--table", name, "-o", f"{name}.ecsv").code == 0
         assert (tmp_path / f"{name}.ecsv").read_bytes() == (tmp_path / f"plain/{name}.ecsv").read_bytes(), name
+
+
+def test_another_orbit_is_another_job(umov, curves, library, tmp_path):
+    command = ["identify", *curves, "--each", "--library", "lib", "--scenario", "place.toml"]
+    orbit, place = tmp_path / "hst.tle", tmp_path / "place.toml"
+    orbit.write_text((ROOT / "data/tle/hst.tle").read_text())
+    place.write_text(place.read_text().replace(f"{ROOT}/data/tle/hst.tle", "hst.tle"))
+    assert umov("scale", "lock", "--per-shard", 2, "job", *command).code == 0
+    one, two = orbit.read_text().splitlines()[-2:]
+    two = two[:43] + f"{(float(two[43:51]) + 2) % 360:8.4f}" + two[51:68]  # the mean anomaly
+    total = sum(int(c) if c.isdigit() else c == "-" for c in two)
+    orbit.write_text("\n".join([*orbit.read_text().splitlines()[:-2], one, two + str(total % 10)]) + "\n")
+    done = umov("scale", "run", "job")
+    assert done.code != 0 and orbit.name in done.err, done.err
 
 
 @pytest.mark.parametrize("words, told", [(["invert", "pose", "a.csv", "--scenario", "fit.toml", "--shard", "0/2"], "--each"),

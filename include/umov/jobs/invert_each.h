@@ -25,6 +25,7 @@ struct CurveAnswers {
   std::vector<NamedTable> tables;
   std::size_t curves = 0;
   std::vector<std::string> failed; ///< file and problem of those without an answer
+  std::vector<InputFile> inputs;   ///< read for them
 };
 /// Usage for a part beyond the curves; Interrupted after a stop.
 Result<CurveAnswers> answer_curves(RangedJob &job, const JobPart &part, const Monitor &monitor,

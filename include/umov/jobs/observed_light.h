@@ -17,8 +17,11 @@ struct ObservedLightCurve {
   std::vector<InputFile> inputs;
 };
 
-/// Reads files of observations: ECSV, CSV, FITS tables, and TDM with magnitudes.
+/// Reads files of observations: ECSV, CSV, FITS tables, TDM with magnitudes, and counts; those as
+/// their reduced sets where q and u are not asked for (`has_polarization`), since one channel says
+/// nothing of I by itself.
 Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::string> &paths,
+                                                        bool has_polarization,
                                                         std::vector<InputFile> &inputs,
                                                         Diagnostics &diagnostics);
 
