@@ -201,14 +201,14 @@ std::string lit_by_both(const std::string &one, const std::string &other) {
   if (one == other)
     return one;
   constexpr std::string_view too = " and the processor";
-  const auto cards_of = [&](std::string text) {
+  const auto cards_of = [&](std::string_view text) {
     return text.ends_with(too) ? text.substr(0, text.size() - too.size()) : text;
   };
   const bool is_processor_too =
       one.empty() || other.empty() || one.ends_with(too) || other.ends_with(too);
-  std::string out = cards_of(one);
-  if (const std::string more = cards_of(other); more != out)
-    out += (out.empty() || more.empty() ? "" : " and ") + more;
+  std::string out(cards_of(one));
+  if (const std::string_view more = cards_of(other); more != out)
+    (out += out.empty() || more.empty() ? "" : " and ") += more;
   return out + std::string(is_processor_too ? too : "");
 }
 
