@@ -56,6 +56,7 @@
 #include <umov/inverse/observed_curve.h>
 #include <umov/inverse/parameter.h>
 #include <umov/inverse/pose_search.h>
+#include <umov/inverse/sample_errors.h>
 #include <umov/inverse/signature.h>
 #include <umov/inverse/spin_search.h>
 #include <umov/inverse/symmetry.h>

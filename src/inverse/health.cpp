@@ -1,6 +1,7 @@
 #include <umov/inverse/health.h>
 
 #include "algebra/dense.h"
+#include "inverse/change_fit.h"
 #include "inverse/whitened.h"
 
 #include <algorithm>
@@ -12,6 +13,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using inverse::ChangeFit;
+using inverse::ChangeProblem;
+using inverse::fit_changes;
 
 /// What a unit of the parameter adds to the light.
 EndMember slope_of(const LightChange &change, const EndMember &before) {
@@ -39,54 +43,8 @@ EndMember mixed(const std::vector<EndMember> &members, const VectorXd &x) {
   return out;
 }
 
-/// Least squares with priors as further rows: x, its covariance, and chi-square.
-struct Fit {
-  VectorXd x;
-  MatrixXd covariance;
-  double chi2 = 0;
-};
-
-Fit fit_of(const MatrixXd &columns, const VectorXd &right, const VectorXd &prior_weight) {
-  Fit out;
-  MatrixXd normal = algebra::gram(columns);
-  normal.diagonal() += prior_weight;
-  out.covariance = algebra::pseudo_inverse(normal);
-  out.x = out.covariance * algebra::transposed_times(columns, right);
-  out.chi2 = (right - columns * out.x).squaredNorm() +
-             (prior_weight.array() * out.x.array().square()).sum();
-  return out;
-}
-
-/// Curve, errors and what its light is added up from: the object as it was, unknowns, changes.
-struct Problem {
-  const ObservedCurve &curve;
-  const CurveErrors &errors;
-  std::vector<double> unknown_sd;
-};
-
-/// The best parts of some members. The unknowns' are in units of the scale, so their priors are
-/// too.
-Fit fit_of(const Problem &problem, const std::vector<EndMember> &members) {
-  Fit out;
-  inverse::Whitened w = inverse::whitened(problem.curve, problem.errors, members);
-  const VectorXd alone = w.columns.col(0);
-  double scale = alone.dot(w.right) / alone.squaredNorm();
-  for (int round = 0; round <= inverse::refinements; ++round) {
-    VectorXd prior = VectorXd::Zero(w.columns.cols());
-    for (std::size_t k = 0; k < problem.unknown_sd.size(); ++k)
-      prior[static_cast<Index>(k + 1)] = 1 / std::pow(scale * problem.unknown_sd[k], 2);
-    out = fit_of(w.columns, w.right, prior);
-    if (round == inverse::refinements || !(out.x[0] > 0))
-      break;
-    scale = out.x[0];
-    const EndMember about = inverse::added_up(members, out.x);
-    w = inverse::whitened(problem.curve, problem.errors, members, &about);
-  }
-  return out;
-}
-
 /// The last of the parts as a change: p = x_p / x_0, to first order in both.
-void put_change(const Fit &fit, double chi2_without, HealthRow &row) {
+void put_change(const ChangeFit &fit, double chi2_without, HealthRow &row) {
   const Index last = fit.x.size() - 1;
   const double x0 = fit.x[0];
   row.change = fit.x[last] / x0;
@@ -96,11 +54,12 @@ void put_change(const Fit &fit, double chi2_without, HealthRow &row) {
   row.sigma = row.change_err > 0 ? row.change / row.change_err : 0;
   row.detectable = 3 * row.change_err;
   row.chi2_gain = chi2_without - fit.chi2;
+  row.is_settled = fit.is_settled;
 }
 
 /// All changes at once: p = x_k / x_0, to first order in both.
-void put_joint(const Problem &problem, const std::vector<EndMember> &members, Health &out) {
-  const Fit fit = fit_of(problem, members);
+void put_joint(const ChangeProblem &problem, const std::vector<EndMember> &members, Health &out) {
+  const ChangeFit fit = fit_changes(problem, members);
   const auto fixed = static_cast<Index>(1 + problem.unknown_sd.size());
   const double x0 = std::max(fit.x[0], 1e-300);
   MatrixXd slope = MatrixXd::Zero(fit.x.size() - fixed, fit.x.size());
@@ -134,25 +93,26 @@ Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const
                     const std::vector<LightChange> &changes,
                     const std::vector<LightChange> &unknowns) {
   std::vector<EndMember> members{before};
-  Problem problem{curve, errors, {}};
+  const ObservedCurve lit = inverse::where_lit(curve, before);
+  ChangeProblem problem{lit, errors, {}};
   for (const LightChange &one : unknowns) {
     members.push_back(slope_of(one, before));
     problem.unknown_sd.push_back(one.sd);
   }
   const std::size_t fixed = members.size();
   Health out;
-  const auto w = inverse::whitened(curve, errors, {before});
+  const auto w = inverse::whitened(lit, errors, {before});
   out.measurements = w.measurements;
   if (!(w.columns.col(0).dot(w.right) > 0))
     return dark(std::move(out), w.right.squaredNorm(), before, changes);
-  const Fit unchanged = fit_of(problem, members);
+  const ChangeFit unchanged = fit_changes(problem, members);
   out.chi2 = unchanged.chi2;
   out.fitted = mixed(members, unchanged.x);
   double gain = 0;
   for (const LightChange &change : changes) {
     members.resize(fixed);
     members.push_back(slope_of(change, before));
-    const Fit fit = fit_of(problem, members);
+    const ChangeFit fit = fit_changes(problem, members);
     HealthRow row;
     row.name = change.name;
     if (fit.x[0] > 0) // of no light nothing can be a part

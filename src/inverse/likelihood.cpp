@@ -1,7 +1,7 @@
 #include <umov/inverse/likelihood.h>
 
 #include "inverse/count_likelihood.h"
-#include "inverse/sample_errors.h"
+#include <umov/inverse/sample_errors.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include "inverse/light_codes.h"
 #include "inverse/octahedron.h"
-#include "inverse/sample_errors.h"
 #include "inverse/some_epochs.h"
+#include <umov/inverse/sample_errors.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "inverse/sample_errors.h"
+#include <umov/inverse/sample_errors.h>
 
 #include <algorithm>
 #include <cmath>

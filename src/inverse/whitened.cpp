@@ -1,6 +1,6 @@
 #include "inverse/whitened.h"
 
-#include "inverse/sample_errors.h"
+#include <umov/inverse/sample_errors.h>
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,8 @@ EndMember added_up(const std::vector<EndMember> &members, const VectorXd &parts)
 }
 
 Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
-                  const std::vector<EndMember> &members, const EndMember *about) {
+                  const std::vector<EndMember> &members, const EndMember *about,
+                  const EndMember *zeros) {
   errors.has_clouds = false; // a free gain per epoch would leave equations that 0 solves
   const auto n = static_cast<Index>(members.size());
   const double median = median_of_i(curve);
@@ -73,7 +74,8 @@ Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
       out.columns(row, k) = members[static_cast<std::size_t>(k)].i[at] / sd;
     out.right[row] = s.i / sd;
     rows[s.band].push_back(row);
-    common[s.band].push_back(errors.zero_point_sd * light / sd);
+    const double moved = zeros != nullptr ? std::max(zeros->i[at], 0.0) : light;
+    common[s.band].push_back(errors.zero_point_sd * moved / sd);
     ++row;
     ++out.measurements;
     if (!(known.l_qq > 0))

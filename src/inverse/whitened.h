@@ -16,9 +16,11 @@ struct Whitened {
 /// I and, where q and u were measured, Q - q I and U - u I: linear in the members. Such rows pull
 /// the scale down, since 0 solves those of q and u and noise of I tilts what a zero point moves.
 /// With the scaled light of a fit (`about`) they are those of a Gauss-Newton step from there: q and
-/// u themselves, which do not depend on the scale, and zero points of the light that was fitted.
+/// u themselves, which do not depend on the scale, and zero points of the light that was fitted;
+/// or of `zeros`, where chi-squares of different light are compared.
 Whitened whitened(const ObservedCurve &curve, CurveErrors errors,
-                  const std::vector<EndMember> &members, const EndMember *about = nullptr);
+                  const std::vector<EndMember> &members, const EndMember *about = nullptr,
+                  const EndMember *zeros = nullptr);
 /// Members added up, so much of each.
 EndMember added_up(const std::vector<EndMember> &members, const Eigen::VectorXd &parts);
 

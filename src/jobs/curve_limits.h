@@ -14,8 +14,9 @@ enum class Asked {
 };
 
 /// The brightness of no band changes by more than its errors, at the observer or as the light that
-/// the object gives (which differ by the range). Errors are those of the likelihood: what the model
-/// may be wrong by is no change.
+/// the object gives (which differ by the range), nor do q and u where they are measured and used,
+/// as the instrument has them or in the scattering plane. Errors are those of the likelihood: what
+/// the model may be wrong by is no change.
 bool is_steady(const ObservedCurve &curve, const CurveErrors &errors);
 /// A parabola of the time explains the brightness of every band: the curve shows no turn, and a
 /// period that is read from it is one of many.

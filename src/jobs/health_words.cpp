@@ -138,6 +138,7 @@ std::string json_of(const Health &health, Verdict verdict, const std::vector<std
                     {"sigma", row.sigma},
                     {"detectable", row.detectable},
                     {"chi2_gain", row.chi2_gain},
+                    {"settled", row.is_settled},
                     {"visible", is_visible(row)}});
   out["health"] = list;
   out["notes"] = notes;
@@ -169,6 +170,11 @@ std::vector<std::string> notes_of(const Health &health, const Health *baseline, 
       out.push_back(row.name + ": not visible in these observations, whatever happened to it");
       continue;
     }
+    if (!row.is_settled)
+      out.push_back(fmt::format("{}: more of it than {:.3g} would leave rows that were measured "
+                                "without light, and the data ask for more: the attitude may not "
+                                "be the scenario's",
+                                row.name, row.change));
     changed += std::abs(row.sigma) > alarm ? 1u : 0u;
     if (std::abs(row.sigma) > alarm && !could_be(row, baseline != nullptr))
       out.push_back(fmt::format("{}: a part of {:.3g} cannot be: something else has changed, or "

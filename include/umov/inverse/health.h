@@ -22,6 +22,9 @@ struct HealthRow {
   double sigma = 0;                  ///< change over its error
   double detectable = 0;             ///< smallest change that shows at three standard deviations
   double chi2_gain = 0;              ///< of the change against none
+  /// False: the data ask for more of the change than leaves every measured row its light; as much
+  /// as does is told.
+  bool is_settled = true;
 };
 
 /// A score test of each change.
@@ -37,7 +40,8 @@ struct Health {
 };
 
 /// Least squares of the data on the object as it was, one change at a time, and all unknowns under
-/// their priors; the scale is free, zero points and the floor are as in `unmix`.
+/// their priors; the scale is free, zero points and the floor are as in `unmix`. q and u are used
+/// where the object as it was gives light. No step of a fit goes where one of these rows had none.
 Health check_health(const ObservedCurve &curve, const CurveErrors &errors, const EndMember &before,
                     const std::vector<LightChange> &changes,
                     const std::vector<LightChange> &unknowns);

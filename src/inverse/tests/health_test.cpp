@@ -1,5 +1,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <umov/core/quantity.h>
 #include <umov/core/random.h>
 #include <umov/inverse/health.h>
@@ -115,6 +116,103 @@ TEST(Health, WhatGivesNoLightIsNotSeen) {
   const Health found =
       check_health(observed(same, 20, 3), errors, same, {{"hidden", same, 1, 0}}, {});
   EXPECT_EQ(found.rows[0].sigma, 0);
+}
+
+/// Ten epochs of which nine show a part that hardly changes, and one shows a part that has gone
+/// nearly dark. q is known well and I badly, so that q/I of the changed light decides, which has a
+/// pole where the light ends.
+struct NearlyDark {
+  EndMember before{"", {}, {}, {}}, after{"", {}, {}, {}};
+  ObservedCurve curve;
+  std::vector<double> share;
+
+  /// I without the part, and of the part, in an epoch.
+  [[nodiscard]] double rest(std::size_t e) const { return e == 0 ? 0.05 : 1 - share[e]; }
+  NearlyDark() {
+    curve.bands = {"a"};
+    for (std::size_t e = 0; e < 10; ++e) {
+      share.push_back(e == 0 ? 1 : 0.05);
+      before.i.push_back(rest(e) + share[e]);
+      before.q.push_back(0.6 * share[e]);
+      after.i.push_back(rest(e));
+      after.q.push_back(0);
+      ObservedSample s;
+      s.epoch = e;
+      // 97 % of the part have gone dark; one faint exposure of the others pulls to no change.
+      const double left = 0.03 * share[e];
+      s.i = e == 1 ? 0.001 : rest(e) + left;
+      s.i_sd = 0.5;
+      s.q = e == 1 ? before.q[e] / before.i[e] : 0.6 * left / (rest(e) + left);
+      s.u = 0;
+      s.cov_qq = s.cov_uu = 1e-4;
+      curve.epochs.emplace_back();
+      curve.samples.push_back(s);
+    }
+    before.u = after.u = std::vector<double>(10, 0);
+  }
+  /// Chi-square of a change with the best scale, by its definition; infinite where light ends.
+  [[nodiscard]] double chi2(double change) const {
+    double cross = 0, square = 0, out = 0;
+    for (std::size_t e = 0; e < 10; ++e) {
+      const double i = before.i[e] + change * (after.i[e] - before.i[e]);
+      const double q = before.q[e] + change * (after.q[e] - before.q[e]);
+      if (!(i > 0))
+        return std::numeric_limits<double>::infinity();
+      const ObservedSample &s = curve.samples[e];
+      cross += s.i * i / (s.i_sd * s.i_sd);
+      square += i * i / (s.i_sd * s.i_sd);
+      out += std::pow(s.i / s.i_sd, 2) + std::pow(s.q - q / i, 2) / s.cov_qq;
+    }
+    return out - cross * cross / square;
+  }
+};
+
+TEST(Health, StepsDoNotLeaveTheLightBehind) {
+  const NearlyDark scene;
+  // The least of chi-square by looking at all changes.
+  double best = 0;
+  for (double change = -1; change < 1.05; change += 1e-4)
+    best = scene.chi2(change) < scene.chi2(best) ? change : best;
+  ASSERT_NEAR(best, 0.97, 0.01); // as the nine other epochs have it
+  CurveErrors errors;
+  errors.floor = errors.floor_median = errors.floor_q = errors.zero_point_sd = 0;
+  const Health found =
+      check_health(scene.curve, errors, scene.before, {{"dark", scene.after, 1, 0}}, {});
+  const HealthRow &row = found.rows[0];
+  EXPECT_TRUE(row.is_settled);
+  EXPECT_NEAR(row.change, best, 2e-4); // the grid's step, twice
+  // Chi-squares of the same measurements: 10 of I and 20 of q and u.
+  EXPECT_EQ(found.measurements, 30u);
+  EXPECT_NEAR(found.chi2, scene.chi2(0), 1e-6 * scene.chi2(0));
+  EXPECT_NEAR(row.chi2_gain, scene.chi2(0) - scene.chi2(best), 1e-3);
+}
+
+TEST(Health, AChangeThatWouldTakeAllLightEndsAtTheEdge) {
+  // One epoch shows the part alone, which is not polarized: any change below 1 leaves q there as it
+  // is. I says 1.2 by the other epochs.
+  EndMember before{"", {}, {}, {}}, after{"", {}, {}, {}};
+  ObservedCurve curve;
+  curve.bands = {"a"};
+  for (std::size_t e = 0; e < 10; ++e) {
+    const double rest = e == 0 ? 0 : 0.1 * static_cast<double>(e);
+    before.i.push_back(rest + 1);
+    after.i.push_back(rest);
+    ObservedSample s;
+    s.epoch = e;
+    s.i = std::max(rest + 1 - 1.2, 0.01);
+    s.i_sd = 0.02;
+    s.q = s.u = 0;
+    s.cov_qq = s.cov_uu = 1e-4;
+    curve.epochs.emplace_back();
+    curve.samples.push_back(s);
+  }
+  before.q = before.u = after.q = after.u = std::vector<double>(10, 0);
+  CurveErrors errors;
+  errors.floor = errors.floor_median = errors.floor_q = errors.zero_point_sd = 0;
+  const HealthRow row = check_health(curve, errors, before, {{"dark", after, 1, 0}}, {}).rows[0];
+  EXPECT_FALSE(row.is_settled);
+  EXPECT_NEAR(row.change, 1, 1e-3);
+  EXPECT_LT(row.change, 1);
 }
 
 } // namespace

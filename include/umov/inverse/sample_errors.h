@@ -1,5 +1,5 @@
 #pragma once
-// Private: how well a sample is known, its own errors and the model's together:
+// How well a sample is known, its own errors and the model's together:
 // docs/theory/inverse.md, equation 4. The one place that says so.
 
 #include <umov/inverse/likelihood.h>
