@@ -209,9 +209,9 @@ Result<Inversion> identify_object(const Scenario &scenario, const IdentifyReques
   OwnLights own(request, options, monitor, diagnostics);
   UMOV_TRY(own.assign(library));
   Inversion out;
-  UMOV_ASSIGN(files,
-              read_observations(request.observed.observations,
-                                request.observed.errors.has_polarization, out.inputs, diagnostics));
+  UMOV_ASSIGN(files, read_observations(request.observed.observations,
+                                       request.observed.errors.has_polarization, options.threads,
+                                       out.inputs, diagnostics));
   UMOV_ASSIGN(observed, observed_light_curve(scenario, files, request.observed.allow_old_elements,
                                              diagnostics, false));
   const ObservedCurve &curve = observed.curve;

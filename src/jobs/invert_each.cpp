@@ -193,8 +193,8 @@ Result<std::unique_ptr<RangedJob>> ranged_poses(const Scenario &scenario,
   question.ask = [=](const std::string &curve, const Monitor &monitor,
                      Diagnostics &of_curve) -> Result<Inversion> {
     std::vector<InputFile> inputs;
-    UMOV_ASSIGN(files,
-                read_observations({curve}, request.errors.has_polarization, inputs, of_curve));
+    UMOV_ASSIGN(files, read_observations({curve}, request.errors.has_polarization, options.threads,
+                                         inputs, of_curve));
     UMOV_ASSIGN(observed,
                 observed_light_curve(scenario, files, request.allow_old_elements, of_curve, false));
     return pose_answer(scenario, request, options, observed, *ready, monitor, of_curve);

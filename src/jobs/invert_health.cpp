@@ -50,7 +50,7 @@ Result<DriftedLight> light_of(const Scenario &scenario, const InvertRequest &req
                               Diagnostics &diagnostics, ManifestInput::Light &used) {
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, request.errors.has_polarization,
-                                       inputs, diagnostics));
+                                       options.threads, inputs, diagnostics));
   UMOV_ASSIGN(own, observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
   DriftedLight out{std::move(own), {}, {}, {}};
   ObservedLightCurve &observed = out.observed;

@@ -8,7 +8,7 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
                          const JobOptions &options, Diagnostics &diagnostics) {
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, request.errors.has_polarization,
-                                       inputs, diagnostics));
+                                       options.threads, inputs, diagnostics));
   UMOV_ASSIGN(observed,
               observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
   Diagnostics twice; // the object was read for its orbit: its warnings are known

@@ -229,7 +229,7 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
                                   const Monitor &monitor, Diagnostics &diagnostics) {
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, request.errors.has_polarization,
-                                       inputs, diagnostics));
+                                       options.threads, inputs, diagnostics));
   UMOV_ASSIGN(observed,
               observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
   UMOV_TRY(check_candidates(material.candidates));

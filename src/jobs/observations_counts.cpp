@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <set>
 #include <umov/core/text.h>
 #include <umov/jobs/reduce.h>
 
@@ -54,6 +55,27 @@ void put_on_exposures(ObservationsFile &file) {
   }
 }
 
+/// Sets that none of the rows is of.
+void warn_of_sets(const CountsFile &counts, const ObservationsFile &rows, const Where &where,
+                  Diagnostics &diagnostics) {
+  std::set<std::pair<std::string, std::int64_t>> all, cut;
+  for (const CountRow &row : counts.rows) {
+    all.insert({row.band, row.set});
+    if (row.is_saturated)
+      cut.insert({row.band, row.set});
+  }
+  const std::size_t lost = all.size() - std::min(all.size(), rows.rows.size());
+  const std::size_t dark = lost - std::min(lost, cut.size());
+  if (lost > dark)
+    diagnostics.warn(fmt::format("{} of {} left out: some of their counts are saturated",
+                                 lost - dark, counted(all.size(), "set")),
+                     where);
+  if (dark > 0)
+    diagnostics.warn(fmt::format("{} of {} left out: their counts tell no brightness", dark,
+                                 counted(all.size(), "set")),
+                     where);
+}
+
 } // namespace
 
 bool is_counts_table(std::string_view text) {
@@ -62,7 +84,8 @@ bool is_counts_table(std::string_view text) {
 }
 
 Result<ObservationsFile> observations_of_counts(std::string_view text, const std::string &file,
-                                                bool has_polarization, Diagnostics &diagnostics) {
+                                                bool has_polarization, unsigned threads,
+                                                Diagnostics &diagnostics) {
   UMOV_ASSIGN(counts, read_counts_text(text, file, diagnostics));
   for (const CountRow &row : counts.rows)
     if (row.name != counts.rows.front().name)
@@ -71,16 +94,20 @@ Result<ObservationsFile> observations_of_counts(std::string_view text, const std
                               "the rows of one",
                               printable(counts.rows.front().name), printable(row.name)),
                   {file});
+  ReduceOptions how;
+  how.threads = threads;
   Diagnostics of_sets; // what is strange about the table, which is not what is fitted
-  UMOV_ASSIGN(reduced, reduce(counts, {}, Monitor{}, of_sets));
+  UMOV_ASSIGN(reduced, reduce(counts, how, Monitor{}, of_sets));
   UMOV_ASSIGN(out, read_observations_text(to_ecsv(reduced), file, of_sets));
-  if (!has_polarization)
+  if (!has_polarization) {
+    warn_of_sets(counts, out, {file}, diagnostics);
     return out;
+  }
   const std::size_t all = counts.rows.size();
   std::erase_if(counts.rows, [](const CountRow &row) { return row.is_saturated; });
-  if (counts.rows.size() < all)
-    diagnostics.warn(
-        fmt::format("{} left out: saturated", counted(all - counts.rows.size(), "count")), {file});
+  if (const std::size_t full = all - counts.rows.size(); full > 0)
+    diagnostics.warn(fmt::format("{} of {} left out: saturated", full, counted(all, "count")),
+                     {file});
   const auto pupils = counts.notes.find("pupils");
   out.has_separate_pupils = pupils != counts.notes.end() && pupils->second == "separate";
   out.counts = std::move(counts.rows);

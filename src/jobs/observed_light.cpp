@@ -2,6 +2,7 @@
 
 #include "jobs/observations_counts.h"
 #include "jobs/observations_tdm.h"
+#include "jobs/observed_site.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,6 +36,20 @@ struct Placed {
   std::string_view site_name;
 };
 
+/// Rows and counts of one kind.
+struct RowTally {
+  std::size_t rows = 0, counts = 0;
+  void add(std::span<const Placed> all) {
+    for (const Placed &one : all)
+      ++(one.count != nullptr ? counts : rows);
+  }
+  /// "24 of 400 counts": of counts, whose rows are made of them; else of rows.
+  [[nodiscard]] std::string of(const RowTally &all) const {
+    return all.counts > 0 ? fmt::format("{} of {}", counts, counted(all.counts, "count"))
+                          : fmt::format("{} of {}", rows, counted(all.rows, "row"));
+  }
+};
+
 class CurveMaker {
 public:
   CurveMaker(const Scenario &scenario, const Trajectory &orbit,
@@ -52,13 +67,14 @@ private:
   [[nodiscard]] ObservedCount count_of(const Placed &placed, const ObservingGeometry &g) const;
   void add_count(const Placed &placed, ObservedLightCurve &out) const;
   [[nodiscard]] ObservedSample sample_of(const Placed &placed, const ObservingGeometry &g) const;
+  void warn_of_rows(Diagnostics &diagnostics) const;
 
   const Scenario &scenario_;
   const Trajectory &orbit_;
   std::vector<PhotometricBand> colours_;
   std::map<std::string, Site> sites_;
   std::vector<Placed> rows_;
-  std::size_t in_shadow_ = 0, below_horizon_ = 0, without_error_ = 0;
+  RowTally in_shadow_, below_horizon_, without_error_;
 };
 
 Result<std::size_t> CurveMaker::band_of(const ObservationsFile &file, const std::string &name,
@@ -100,6 +116,7 @@ Result<Site> CurveMaker::site_of(const ObservationsFile &file, const ObservedRow
 }
 
 Result<void> CurveMaker::add_file(const ObservationsFile &file) {
+  UMOV_TRY(check_site(file, scenario_));
   for (const ObservedRow &row : file.rows) {
     UMOV_ASSIGN(band, band_of(file, row.band, row.line));
     UMOV_ASSIGN(site, site_of(file, row));
@@ -177,12 +194,12 @@ Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCu
                 {rows.front().file->path, rows.front().row ? rows.front().row->line : 0});
   constexpr double least_sunlit = 0.5; // in less, the Earth's air decides what arrives
   if (geometry->sunlit < least_sunlit) {
-    in_shadow_ += rows.size();
+    in_shadow_.add(rows);
     return {};
   }
   constexpr double least_altitude_deg = -1; // refraction lifts by half a degree
   if (geometry->altitude.degrees() < least_altitude_deg) {
-    below_horizon_ += rows.size();
+    below_horizon_.add(rows);
     return {};
   }
   ObservedCurve &curve = out.curve;
@@ -200,10 +217,9 @@ Result<void> CurveMaker::add_epoch(std::span<const Placed> rows, ObservedLightCu
       continue;
     }
     const ObservedRow &row = *placed.row;
-    without_error_ += (!std::isnan(row.flux) && std::isnan(row.flux_err)) ||
-                              (!std::isnan(row.mag) && std::isnan(row.mag_err))
-                          ? 1u
-                          : 0u;
+    if ((!std::isnan(row.flux) && std::isnan(row.flux_err)) ||
+        (!std::isnan(row.mag) && std::isnan(row.mag_err)))
+      without_error_.add({&placed, 1});
     ObservedSample sample = sample_of(placed, *geometry);
     sample.epoch = curve.epochs.size() - 1;
     const auto at = std::ranges::find(out.column, placed.band);
@@ -218,6 +234,21 @@ bool has_light(const ObservedCurve &curve) {
   return std::ranges::any_of(curve.samples, [](const ObservedSample &s) {
     return (!std::isnan(s.i) && (s.i > 0 || s.i_sd > 0)) || !std::isnan(s.q);
   });
+}
+
+/// How many of how many, and why.
+void CurveMaker::warn_of_rows(Diagnostics &diagnostics) const {
+  RowTally all;
+  all.add(rows_);
+  const auto warn = [&](const RowTally &some, const char *why) {
+    if (some.rows + some.counts > 0)
+      diagnostics.warn(some.of(all) + why);
+  };
+  warn(in_shadow_, " left out: the object was in the Earth's shadow by its orbit");
+  warn(below_horizon_, " left out: the object was below the horizon by its orbit; are times, site "
+                       "and orbit right?");
+  if (all.counts == 0) // those of counts follow from them
+    warn(without_error_, " with no error of I: taken as good as --floor allows");
 }
 
 Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
@@ -253,16 +284,7 @@ Result<ObservedLightCurve> CurveMaker::make(Diagnostics &diagnostics) {
     UMOV_TRY(add_epoch(std::span(rows_).subspan(begin, end - begin), out));
     begin = end;
   }
-  if (in_shadow_ > 0)
-    diagnostics.warn(fmt::format("{} left out: the object was in the Earth's shadow by its orbit",
-                                 counted(in_shadow_, "row")));
-  if (below_horizon_ > 0)
-    diagnostics.warn(fmt::format("{} left out: the object was below the horizon by its orbit; are "
-                                 "times, site and orbit right?",
-                                 counted(below_horizon_, "row")));
-  if (without_error_ > 0)
-    diagnostics.warn(fmt::format("{} with no error of I: taken as good as --floor allows",
-                                 counted(without_error_, "row")));
+  warn_of_rows(diagnostics);
   if (out.curve.epochs.empty())
     return fail(ErrorCode::BadInput,
                 "no row is of a time at which the object stood in sunlight by its orbit, above the "
@@ -295,7 +317,7 @@ Scenario over_the_rows(const Scenario &scenario, const std::vector<ObservationsF
 } // namespace
 
 Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::string> &paths,
-                                                        bool has_polarization,
+                                                        bool has_polarization, unsigned threads,
                                                         std::vector<InputFile> &inputs,
                                                         Diagnostics &diagnostics) {
   std::vector<ObservationsFile> out;
@@ -303,9 +325,9 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
   for (const std::string &path : paths) {
     UMOV_ASSIGN(text, read_file(path, largest));
     UMOV_ASSIGN(file, ccsds::is_message(text) ? observations_of_tdm(text, path, diagnostics)
-                      : is_counts_table(text)
-                          ? observations_of_counts(text, path, has_polarization, diagnostics)
-                          : read_observations_text(text, path, diagnostics));
+                      : is_counts_table(text) ? observations_of_counts(text, path, has_polarization,
+                                                                       threads, diagnostics)
+                                              : read_observations_text(text, path, diagnostics));
     out.push_back(std::move(file));
     inputs.push_back({path, sha256_hex(text)});
   }

@@ -1,9 +1,13 @@
 """umov invert on counts, as umov observe records them, in place of what umov reduce makes of them. Light is by rays, noise by
 umov observe; the fit looks light up in masks."""
 import json
+import os
+import re
+import subprocess
 
 import pytest
 
+from conftest import UMOV
 from test_invert import TRUTHS, apart, in_set, scene  # noqa: F401
 
 
@@ -80,3 +84,70 @@ def test_what_is_wrong_with_counts_is_named(umov, record, tmp_path):
     (tmp_path / "bare.ecsv").write_text("\n".join(line for line in rows if "pol_frame" not in line) + "\n")
     done = umov("invert", "material", "bare.ecsv", *ask)
     assert done.code == 3 and "pol_frame" in done.err
+
+
+MATERIAL = ("--scenario", "fit.toml", "--group", "body_my", "--candidates", "paint_white,paint_black")
+
+
+def test_another_place_than_the_observers_is_refused(umov, record, tmp_path):
+    """Both places are named, of counts and of what they were reduced to; a pillar beside is the same place."""
+    record(2.0, cadence_s=60)
+    text = (tmp_path / "fit.toml").read_text()
+    lon = re.search(r"^lon_deg = (.*)$", text, re.MULTILINE).group(1)
+    for shift, code in ((0.001, 0), (-0.1, 3)):
+        (tmp_path / "fit.toml").write_text(text.replace(f"lon_deg = {lon}", f"lon_deg = {float(lon) + shift:.4f}"))
+        for name in ("obs/counts.ecsv", "stokes.ecsv"):
+            done = umov("invert", "material", name, *MATERIAL)
+            assert done.code in (code, 4 if code == 0 else code), done.err
+            if code:  # a tenth of a degree of longitude: 111.32 km cos(lat) / 10
+                assert name in done.err and "fit.toml" in done.err and "10 km away" in done.err
+                assert lon in done.err and f"{float(lon) + shift:.4f}" in done.err
+    counts = (tmp_path / "obs/counts.ecsv").read_text()
+    (tmp_path / "bad.ecsv").write_text(re.sub(r'(site_lat_deg\W+)[\d.]+', r'\1north', counts))
+    done = umov("invert", "material", "bad.ecsv", *MATERIAL)
+    assert done.code == 3 and 'site_lat_deg of the header is "north"' in done.err
+
+
+def test_what_is_left_out_is_told_with_how_many_of_how_many(umov, record, tmp_path):
+    record(2.0, cadence_s=60)
+    head, *rows = [line for line in (tmp_path / "obs/counts.ecsv").read_text().splitlines(True)
+                   if not line.startswith("#")]
+    comments = [line for line in (tmp_path / "obs/counts.ecsv").read_text().splitlines(True) if line.startswith("#")]
+    column = head.split().index("saturated")
+    first_set = [k for k, row in enumerate(rows) if row.split()[head.split().index("set_id")] == rows[0].split()[head.split().index("set_id")]]
+    assert 1 < len(first_set) < len(rows)
+    cells = rows[0].split(" ")
+    cells[column] = "True"
+    (tmp_path / "full.ecsv").write_text("".join([*comments, head, " ".join(cells), *rows[1:]]))
+    done = umov("invert", "material", "full.ecsv", *MATERIAL)
+    assert f"1 of {len(rows)} counts left out: saturated" in done.err, done.err
+    done = umov("invert", "pose", "full.ecsv", "--scenario", "fit.toml", "--grid", "2000", "--intensity-only")
+    sets = len({row.split()[head.split().index("set_id")] for row in rows})
+    assert f"1 of {sets} sets left out: some of their counts are saturated" in done.err, done.err
+    # An hour later the object is somewhere else: what is below the horizon there is counted channel by channel.
+    time = head.split().index("time_utc")
+    late = [row.replace(row.split(" ")[time], row.split(" ")[time].replace("T05:", "T06:")) for row in rows[-8:]]
+    (tmp_path / "late.ecsv").write_text("".join([*comments, head, *rows[:-8], *late]))
+    done = umov("invert", "material", "late.ecsv", *MATERIAL)
+    assert f"8 of {len(rows)} counts left out: the object was" in done.err, done.err
+
+
+def test_threads_are_heeded_where_counts_are_reduced(umov, record, tmp_path):
+    """Ten thousand sets take long enough that a second thread would be seen."""
+    record(2.0, cadence_s=60)
+    lines = (tmp_path / "obs/counts.ecsv").read_text().splitlines()
+    head = next(line for line in lines if not line.startswith("#"))
+    rows, at = lines[lines.index(head) + 1:], head.split().index("set_id")
+    one = [row.split(" ") for row in rows if row.split(" ")[at] == rows[0].split(" ")[at]]
+    many = [" ".join([*row[:at], str(k), *row[at + 1:]]) for k in range(10000) for row in one]
+    (tmp_path / "many.ecsv").write_text("\n".join([*lines[:lines.index(head) + 1], *many]) + "\n")
+    job = subprocess.Popen([UMOV, "invert", "material", "many.ecsv", *MATERIAL, "--threads", "1", "-q"], cwd=tmp_path,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    most = 0
+    while job.poll() is None:
+        try:
+            most = max(most, len(os.listdir(f"/proc/{job.pid}/task")))
+        except FileNotFoundError:
+            break
+    job.wait()
+    assert most == 1

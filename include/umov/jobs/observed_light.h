@@ -19,9 +19,9 @@ struct ObservedLightCurve {
 
 /// Reads files of observations: ECSV, CSV, FITS tables, TDM with magnitudes, and counts; those as
 /// their reduced sets where q and u are not asked for (`has_polarization`), since one channel says
-/// nothing of I by itself.
+/// nothing of I by itself. Counts are reduced on so many threads (0: all).
 Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::string> &paths,
-                                                        bool has_polarization,
+                                                        bool has_polarization, unsigned threads,
                                                         std::vector<InputFile> &inputs,
                                                         Diagnostics &diagnostics);
 
@@ -29,7 +29,8 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
 /// [m2/sr] up to a scale, q and u in the scattering plane. Epochs in the Earth's shadow
 /// and below the horizon are left out with a warning. BadInput for a scenario without orbit or
 /// observer, elements over 30 days away unless allowed, a band that it has not, and curves without
-/// an epoch in sunlight; Physics where the orbit cannot be had. Without `reads_shape` the object's
+/// an epoch in sunlight, and files whose header tells a place more than 5 km from the observer;
+/// Physics where the orbit cannot be had. Without `reads_shape` the object's
 /// mesh and materials are left alone: only where it was is asked.
 Result<ObservedLightCurve> observed_light_curve(const Scenario &scenario,
                                                 const std::vector<ObservationsFile> &files,

@@ -203,7 +203,9 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
     out.rows.push_back(std::move(row));
   }
   if (dropped > 0)
-    diagnostics.warn(fmt::format("{} without counts left out", counted(dropped, "row")), {file});
+    diagnostics.warn(fmt::format("{} of {} left out: without counts", dropped,
+                                 counted(table.rows.size(), "row")),
+                     {file});
   if (out.rows.empty())
     return fail(ErrorCode::BadInput, "no row of counts; some were expected below the names",
                 {file});
