@@ -34,12 +34,7 @@ Result<void> answer_each(InvertVerb &o, const EachOptions &each, const EachJob &
     UMOV_TRY(put_table("", answers.tables.front().table, o.common));
   if (folder && !o.common.quiet && !o.common.json)
     fmt::print("written to {}\n", printable(o.output));
-  if (answers.failed.empty())
-    return {};
-  return fail(ErrorCode::BadInput,
-              fmt::format("{} of {} have no answer, the others have theirs: {}",
-                          answers.failed.size(), counted(answers.curves, "curve"),
-                          listed(answers.failed, 5)));
+  return jobs::all_answered(answers.failed, answers.curves);
 }
 
 Result<void> check_alone(const EachOptions &each) {

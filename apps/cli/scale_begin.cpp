@@ -84,6 +84,8 @@ Result<scale::JobLock> measured_job(const ScaleJobOptions &o, const scale::PlanS
   out.layout = job->layout();
   out.tables = job->tables();
   out.order = job->order();
+  out.nothing = job->nothing();
+  out.problems = job->problems();
   out.warnings = job->warnings();
   out.tallies = job->tallies();
   jobs::Monitor monitor;

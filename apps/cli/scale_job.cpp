@@ -23,6 +23,8 @@ public:
   [[nodiscard]] std::vector<std::size_t> layout() const override { return job_->layout(); }
   [[nodiscard]] std::vector<std::string> tables() const override { return job_->tables(); }
   [[nodiscard]] std::string order() const override { return job_->order(); }
+  [[nodiscard]] std::string nothing() const override { return job_->nothing(); }
+  [[nodiscard]] std::string problems() const override { return job_->problems(); }
   [[nodiscard]] std::vector<std::string> warnings() const override { return job_->warnings(); }
   [[nodiscard]] std::vector<jobs::Tally> tallies() const override { return job_->tallies(); }
   Result<void> rows(jobs::IndexRange range, jobs::RangeSink &sink, const jobs::Monitor &monitor,

@@ -16,8 +16,10 @@ void add_scale_merge(CLI::App &scale, const Exit &exit_with) {
         UMOV_TRY(check_output(*output));
         JobConsole console(common);
         const auto sink = sink_for(*output, common);
-        return scale::merge(folder, table->empty() ? folder.lock().tables.front() : *table, *sink,
-                            console.monitor(false));
+        const jobs::Monitor monitor = console.monitor(false);
+        UMOV_TRY(scale::merge(folder, table->empty() ? folder.lock().tables.front() : *table, *sink,
+                              monitor));
+        return scale::check_answers(folder, monitor);
       });
   add_table_output(*verb, *output);
   verb->add_option(

@@ -70,7 +70,8 @@ Result<void> run_scale(ScaleRunOptions &o, const Common &common, Diagnostics &di
   if (!o.cluster.empty())
     return run_on_cluster(o, folder);
   JobConsole console(common);
-  UMOV_ASSIGN(tally, scale::run_job(folder, o.settings, console.monitor(true)));
+  const jobs::Monitor monitor = console.monitor(true);
+  UMOV_ASSIGN(tally, scale::run_job(folder, o.settings, monitor));
   tell(tally, folder, common);
   if (tally.failed > 0) {
     const scale::FailedShard &first = tally.failures.front();
@@ -80,9 +81,10 @@ Result<void> run_scale(ScaleRunOptions &o, const Common &common, Diagnostics &di
                             counted(tally.failed, "shard"), first.index, first.message,
                             folder.path().string(), folder.path().string()));
   }
-  if (o.settings.part.is_whole())
-    UMOV_TRY(scale::write_manifest(folder));
-  return {};
+  if (!o.settings.part.is_whole())
+    return {}; // a task of an array has done its shards; whoever has all of them tells of the rows
+  UMOV_TRY(scale::write_manifest(folder));
+  return scale::check_answers(folder, monitor);
 }
 
 } // namespace

@@ -58,6 +58,27 @@ def test_clusters_give_the_plain_bytes(scene, cluster):
     assert (result.folder / "manifest.json").exists()
 
 
+@pytest.mark.parametrize("cluster", [None, "local:1"])
+def test_curves_without_an_answer_are_told(scene, cluster):
+    """The command ends with 3; here all is there, and a warning says what single curves lack."""
+    pathlib.Path("place.toml").write_text(pathlib.Path(scene).read_text().replace(
+        "umov = 1\n", "umov = 1\n[observer]\nlat_deg = 20.7\nlon_deg = -156.3\nalt_m = 3058\n").replace(
+        'name = "sat"\n', f'name = "sat"\norbit = {{ file = "{EXAMPLES.parent}/data/tle/hst.tle", norad = 20580 }}\n'))
+    for name in "ab":
+        pathlib.Path(f"{name}.csv").write_text("time_utc,band,flux\n2018-01-21T05:09:00Z,nm:425,much\n")
+    job = umov.scale.Job("invert", "pose", "a.csv", "b.csv", each=True, scenario="place.toml", grid=2000)
+    told = "2 of 2 curves have no answer, the others have theirs: a.csv:2"
+    with pytest.warns(umov.UmovWarning, match=told):
+        result = umov.scale.run(job, "out", cluster=cluster, per_shard=1)
+    assert not result.missing and not result.failed
+    with pytest.warns(umov.UmovWarning, match=told):
+        result.merge("modes.ecsv", "modes")
+    assert pathlib.Path("modes.ecsv").exists()
+    done = subprocess.run([sys.executable, "-m", "umov.scale", "run", "out", "--cluster", "local:1", "--program", UMOV],
+                          capture_output=True, text=True)
+    assert done.returncode == 3 and told in done.stderr  # as umov scale run --cluster
+
+
 def test_rows_are_opened_lazily(scene):
     result = umov.scale.run(job_of(scene, 100), "out", per_shard=30)
     plain_bytes(job_of(scene, 100))

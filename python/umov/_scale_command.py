@@ -6,9 +6,11 @@ import pathlib
 import shutil
 import subprocess
 import sysconfig
+import warnings
 from typing import Any
 
-from .errors import DeviceError, error_from
+from ._jobs import _stack_level
+from .errors import DeviceError, InputError, UmovWarning, error_from
 
 
 def find_program(program: str | None) -> str:
@@ -31,3 +33,13 @@ def call(program: str, *words: Any) -> str:
     lines = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
     text = lines[-1].removeprefix("error: ") if lines else done.stderr.strip()
     raise error_from((done.returncode, text, "", 0, 0))
+
+
+def call_for_rows(program: str, *words: Any) -> None:
+    """`call` of what ends when all rows are there: that some of them have no answer is a warning then, which says why."""
+    try:
+        call(program, *words)
+    except InputError as problem:
+        if " have no answer, the others have theirs: " not in str(problem):
+            raise
+        warnings.warn(str(problem), UmovWarning, stacklevel=_stack_level())

@@ -17,7 +17,7 @@ import tempfile
 from typing import Any
 
 from . import _scale_store
-from ._scale_command import call, find_program
+from ._scale_command import call, call_for_rows, find_program
 from ._scale_driver import Cluster, Driver, Hold
 from ._scale_store import Store, StoreLease, is_url
 from .errors import Error, InputError, Interrupted, UsageError
@@ -193,9 +193,9 @@ class Result:
             Its file: .csv, .ecsv, .fits or .json.
         table
             Of a run "lightcurve" (default) or "passes", of an observation "counts" (default) or "truth", of curves "curves"
-            (default) or a table of their answers.
+            (default) or a table of their answers. Curves without an answer are told as a warning.
         """
-        call(self._umov, "merge", self.fetch().folder, "-q", "-o", output, *(["--table", table] if table else []))
+        call_for_rows(self._umov, "merge", self.fetch().folder, "-q", "-o", output, *(["--table", table] if table else []))
 
     def verify(self) -> None:
         """Reads all shards and compares them with their hashes; InputError naming what is damaged."""
@@ -269,7 +269,7 @@ class Result:
 def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None, per_shard: int | None = None,
         threads: int = 1, timeout_s: float | None = None, join: bool = False, yes: bool = False, tls: bool = True,
         quiet: bool = True, program: str | None = None) -> Result:
-    """Does what is missing of a job, and gives its folder.
+    """Does what is missing of a job, and gives its folder. Curves without an answer are told as a warning.
 
     Parameters
     ----------
@@ -319,17 +319,24 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
         raise UsageError(f"output is {output}; an object store takes a cluster: cluster=\"local:{os.cpu_count()}\" is this machine")
     more = (["--per-shard", per_shard] if per_shard else []) + (["--yes"] if yes else [])
     if cluster is None:
-        call(umov, "run", "-q", *more, *(["--timeout-s", timeout_s] if timeout_s else []),
-              *(["--join"] if join else []), output, *words)
+        call_for_rows(umov, "run", "-q", *more, *(["--timeout-s", timeout_s] if timeout_s else []),
+                      *(["--join"] if join else []), output, *words)
         return Result(output, umov)
     if words and is_url(output):
         _scale_store.begin(Store(str(output)), umov, more, words)
     elif words:
         call(umov, "lock", "-q", *more, output, *words)
     result = Result(output, umov)
-    if not result.missing:
-        return result
-    hold = None if join else StoreLease(result._store) if result._store else Hold(umov, pathlib.Path(result.folder))
+    if result.missing:
+        _do_missing(result, cluster, threads, timeout_s, join, tls, quiet)
+    if result._store is None and not result.missing:  # of a store, `merge` tells
+        call_for_rows(umov, "run", "-q", *(["--join"] if join else []), result.folder)
+    return result
+
+
+def _do_missing(result: Result, cluster: Any, threads: int, timeout_s: float | None, join: bool, tls: bool, quiet: bool) -> None:
+    """By the workers of a cluster."""
+    hold = None if join else StoreLease(result._store) if result._store else Hold(result._umov, pathlib.Path(result.folder))
     try:
         dask = Cluster(cluster, tls)
         try:
@@ -344,7 +351,6 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
         first = result.failed[0]
         raise InputError(f"{driver.failed} shards could not be done; shard {first['index']}: {first['message']}. "
                          f"All of them stand in {result.folder}/failed; {driver.resume}")
-    return result
 
 
 def _main() -> int:
@@ -357,8 +363,12 @@ def _main() -> int:
     parser.add_argument("--join", action="store_true")
     given = parser.parse_args()
     try:
-        run(None, given.folder, cluster=given.cluster, program=given.program, threads=given.threads, join=given.join,
-            quiet=False)
+        umov = find_program(given.program)
+        result = Result(given.folder, umov)
+        if result.missing:
+            _do_missing(result, given.cluster, given.threads, None, given.join, True, False)
+        if not result.missing:
+            call(umov, "run", "-q", *(["--join"] if given.join else []), given.folder)
     except (Error, Interrupted) as error:
         print(f"error: {error}", file=sys.stderr)
         return error.exit_code

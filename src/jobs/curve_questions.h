@@ -24,6 +24,12 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                               const SearchedLight &ready, const Monitor &monitor,
                               Diagnostics &diagnostics);
 
+/// The answer of identify_object, of whose objects those that were asked for before are ready.
+class ReadyObjects;
+Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyRequest &request,
+                                  const JobOptions &options, ReadyObjects &ready,
+                                  const Monitor &monitor, Diagnostics &diagnostics);
+
 /// The tables of invert_pose and of identify_object, without rows.
 std::vector<NamedTable> no_pose_tables();
 std::vector<NamedTable> no_identity_tables();

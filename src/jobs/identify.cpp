@@ -5,6 +5,7 @@
 #include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
 #include "jobs/job_journal.h"
+#include "jobs/ready_objects.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -104,9 +105,10 @@ Result<void> Library::lend(std::size_t k, const ObservedCurve &curve, const Look
 /// Own light of candidates whose scenarios are named.
 class OwnLights {
 public:
-  OwnLights(const IdentifyRequest &request, const JobOptions &options, const Monitor &monitor,
-            Diagnostics &diagnostics)
-      : request_(request), options_(options), monitor_(monitor), diagnostics_(diagnostics) {}
+  OwnLights(const IdentifyRequest &request, const JobOptions &options, ReadyObjects &ready,
+            const Monitor &monitor, Diagnostics &diagnostics)
+      : request_(request), options_(options), ready_(ready), monitor_(monitor),
+        diagnostics_(diagnostics) {}
 
   /// Which scenario belongs to which object; Usage for one that has none.
   Result<void> assign(const Library &library);
@@ -115,7 +117,7 @@ public:
   /// Light of a candidate that has answered.
   [[nodiscard]] const SearchedLight *light(std::size_t k) const {
     const auto at = lights_.find(k);
-    return at == lights_.end() ? nullptr : &at->second;
+    return at == lights_.end() ? nullptr : at->second;
   }
   [[nodiscard]] const std::vector<std::size_t> &columns(std::size_t k) const {
     return columns_.at(k);
@@ -126,10 +128,11 @@ public:
 private:
   const IdentifyRequest &request_;
   const JobOptions &options_;
+  ReadyObjects &ready_;
   const Monitor &monitor_;
   Diagnostics &diagnostics_;
   std::map<std::size_t, std::string> scenarios_;
-  std::map<std::size_t, SearchedLight> lights_;
+  std::map<std::size_t, const SearchedLight *> lights_;
   std::map<std::size_t, std::vector<std::size_t>> columns_;
   std::map<std::size_t, ManifestInput::Light> used_;
 };
@@ -157,26 +160,27 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
   const auto named = scenarios_.find(k);
   if (named == scenarios_.end())
     return std::optional<OwnAnswer>();
-  UMOV_ASSIGN(scenario, read_scenario(named->second, {}));
+  UMOV_ASSIGN(read, ready_.scenario(named->second));
+  const Scenario &scenario = *read;
   std::vector<std::string> bands;
   for (const Band &band : scenario.bands)
     bands.push_back(band.name);
   UMOV_ASSIGN(columns, columns_in(bands, curve, named->second));
-  UMOV_ASSIGN(made, prepare_light(scenario, request_.observed, options_, diagnostics_));
+  UMOV_ASSIGN(made, ready_.light(named->second, request_.observed, options_, diagnostics_));
+  const SearchedLight &light = *made;
   UMOV_ASSIGN(file, SignatureFile::open(library.file(k)));
   const SignatureText &text = file.view().text;
   if (text.job !=
-      signature_job(scenario, made.light.inputs(), file.view().signature.cells, text.device))
+      signature_job(scenario, light.light.inputs(), file.view().signature.cells, text.device))
     diagnostics_.warn("is not what its signature was made from, or another umov made that; its own "
                       "light is taken as it is now",
                       {named->second});
-  const SearchedLight &light = lights_.emplace(k, std::move(made)).first->second;
+  lights_[k] = made;
   columns_[k] = columns;
   const CurveModel model(curve, lighting_of(light.light, options_.threads, monitor_), columns);
   const CurveModel quick(curve, quick_lighting(light, options_.threads, monitor_), columns);
   UMOV_ASSIGN(found, search_pose(model, quick, search));
   used_[k] = light_used(light, scenario, diagnostics_);
-  keep_masks(light);
   return std::optional(
       OwnAnswer{std::move(found), CurveLikelihood(curve, search.errors).log_variance()});
 }
@@ -205,8 +209,17 @@ std::vector<NamedTable> no_identity_tables() {
 Result<Inversion> identify_object(const Scenario &scenario, const IdentifyRequest &request,
                                   const JobOptions &options, const Monitor &monitor,
                                   Diagnostics &diagnostics) {
+  ReadyObjects ready;
+  auto out = identity_answer(scenario, request, options, ready, monitor, diagnostics);
+  ready.keep();
+  return out;
+}
+
+Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyRequest &request,
+                                  const JobOptions &options, ReadyObjects &ready,
+                                  const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(library, Library::open(request.library));
-  OwnLights own(request, options, monitor, diagnostics);
+  OwnLights own(request, options, ready, monitor, diagnostics);
   UMOV_TRY(own.assign(library));
   Inversion out;
   UMOV_ASSIGN(files, read_observations(request.observed.observations,

@@ -2,6 +2,7 @@
 
 #include "jobs/curve_questions.h"
 #include "jobs/job_journal.h"
+#include "jobs/ready_objects.h"
 #include "jobs/result_folder.h"
 
 #include <algorithm>
@@ -90,6 +91,7 @@ public:
       out.push_back(one.name);
     return out;
   }
+  [[nodiscard]] std::string problems() const override { return "problem"; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
   [[nodiscard]] std::vector<Tally> tallies() const override {
     return {{"", "curves have no answer: see their problem", ""}};
@@ -165,7 +167,7 @@ Result<std::unique_ptr<RangedJob>> job_of(CurveQuestion question, const Scenario
 /// All rows in memory.
 class Collected final : public RangeSink {
 public:
-  explicit Collected(std::size_t tables) : tables(tables) {}
+  explicit Collected(std::size_t count) : tables(count) {}
   Result<void> add(std::size_t table, Table &&rows) override {
     tables[table].append(std::move(rows));
     return {};
@@ -224,11 +226,13 @@ Result<std::unique_ptr<RangedJob>> ranged_identities(const Scenario &scenario,
   }
   question.asked = fmt::format("identity; {}; none {:.17g}; library {}", text_of(request.observed),
                                request.none_prior, sha256_hex(library));
+  const auto ready = std::make_shared<ReadyObjects>();
   question.ask = [=](const std::string &curve, const Monitor &monitor, Diagnostics &of_curve) {
     IdentifyRequest one = request;
     one.observed.observations = {curve};
-    return identify_object(scenario, one, options, monitor, of_curve);
+    return identity_answer(scenario, one, options, *ready, monitor, of_curve);
   };
+  question.keep = [ready] { ready->keep(); };
   return job_of(std::move(question), scenario, options, {}, diagnostics);
 }
 
@@ -254,6 +258,14 @@ Result<CurveAnswers> answer_curves(RangedJob &job, const JobPart &part, const Mo
   for (std::size_t t = 0; t < names.size(); ++t)
     out.tables.push_back({names[t], std::move(all.tables[t])});
   return out;
+}
+
+Result<void> all_answered(const std::vector<std::string> &problems, std::size_t curves) {
+  if (problems.empty())
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("{} of {} have no answer, the others have theirs: {}", problems.size(),
+                          counted(curves, "curve"), listed(problems, 5)));
 }
 
 Result<void> write_answers(const CurveAnswers &answers, const Scenario &scenario,

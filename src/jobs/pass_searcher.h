@@ -21,6 +21,9 @@ struct FoundPasses {
 /// By what passes are put in order: seconds from the begin of the span to the rise.
 double rise_order(const PassesRequest &request, const SitePass &pass);
 
+/// What is said where nothing was found.
+std::string no_pass(const PassesRequest &request);
+
 /// Objects that are to be searched.
 class PassSearcher {
 public:

@@ -204,6 +204,11 @@ double rise_order(const PassesRequest &request, const SitePass &pass) {
   return seconds_between(pass.rise.time, request.start);
 }
 
+std::string no_pass(const PassesRequest &request) {
+  return fmt::format("no {}pass above {:g} deg in this span",
+                     request.is_visible_only ? "visible " : "", request.altitude_min.degrees());
+}
+
 Result<PassSearcher> PassSearcher::make(const PassesRequest &request, const JobOptions &options,
                                         Diagnostics &diagnostics) {
   if (seconds_between(request.stop, request.start) < 0)
@@ -258,9 +263,7 @@ Result<PassesResult> passes(const PassesRequest &request, const JobOptions &opti
     return fail(ErrorCode::Physics, "no pass before the orbit of every object ends",
                 {request.orbit});
   if (out.found.empty())
-    return fail(ErrorCode::Nothing, fmt::format("no {}pass above {:g} deg in this span",
-                                                request.is_visible_only ? "visible " : "",
-                                                request.altitude_min.degrees()));
+    return fail(ErrorCode::Nothing, no_pass(request));
   return std::move(out);
 }
 

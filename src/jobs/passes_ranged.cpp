@@ -55,6 +55,7 @@ public:
   [[nodiscard]] std::string identity() const override { return identity_; }
   [[nodiscard]] std::vector<std::string> tables() const override { return {"passes"}; }
   [[nodiscard]] std::string order() const override { return order_column; }
+  [[nodiscard]] std::string nothing() const override { return no_pass(searcher_.request()); }
   [[nodiscard]] Result<void> keep() override { return searcher_.keep_masks(); }
   Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,
                     Diagnostics &diagnostics) override {

@@ -38,6 +38,8 @@ std::string to_json(const JobLock &lock) {
                  {"layout", lock.layout},
                  {"tables", lock.tables},
                  {"order", lock.order},
+                 {"nothing", lock.nothing},
+                 {"problems", lock.problems},
                  {"warnings", lock.warnings},
                  {"tallies", std::move(tallies)},
                  {"predicted",
@@ -64,7 +66,9 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
     all.at("layout").get_to(out.layout);
     all.at("tables").get_to(out.tables);
     all.at("order").get_to(out.order);
-    if (all.contains("warnings")) // jobs begun by 0.1 have none
+    out.nothing = all.value("nothing", ""); // jobs begun by 0.1 have none
+    out.problems = all.value("problems", "");
+    if (all.contains("warnings"))
       all.at("warnings").get_to(out.warnings);
     for (const json &tally : all.value("tallies", json::array()))
       out.tallies.push_back({tally.at("unit").get<std::string>(),

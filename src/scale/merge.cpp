@@ -5,9 +5,11 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
+#include <umov/jobs/invert_each.h>
 #include <umov/scale/rows_file.h>
 #include <utility>
 
@@ -126,11 +128,11 @@ Result<Ahead> look_ahead(const JobFolder &folder, const std::vector<Shard> &shar
       counts[n] += file.tallies()[n];
   }
   if (table != 0)
-    return std::move(out);
+    return out;
   out.warnings = lock.warnings;
   UMOV_ASSIGN(told, jobs::sentences(lock.tallies, counts, lock.total));
   out.warnings.insert(out.warnings.end(), told.begin(), told.end());
-  return std::move(out);
+  return out;
 }
 
 /// Tells a block what is ahead of it.
@@ -156,7 +158,8 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
   const bool is_sorted = number == 0 && !lock.order.empty();
   UMOV_ASSIGN(shards, all_shards(folder));
   UMOV_ASSIGN(ahead, look_ahead(folder, shards, number, monitor));
-  Table all; // of a table that is sorted
+  Table all;                  // of a table that is sorted
+  std::optional<Table> empty; // what stands in place of all where none has a row
   std::size_t rows = 0;
   bool is_first = true;
   for (const Shard &shard : shards) {
@@ -166,8 +169,11 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
     for (std::size_t b = 0; b < file.blocks(number); ++b) {
       UMOV_ASSIGN(block, file.block(number, b));
       rows += block.rows();
-      if (block.rows() == 0)
+      if (block.rows() == 0) {
+        if (!empty)
+          empty = std::move(block);
         continue;
+      }
       if (is_sorted) {
         all.append(std::move(block));
         continue;
@@ -178,14 +184,39 @@ Result<void> merge(const JobFolder &folder, const std::string &table, TableSink 
     }
     monitor.advance("shards", shard.index + 1, shards.size());
   }
-  if (rows == 0)
+  if (rows == 0 && number == 0 && !lock.nothing.empty())
+    return fail(ErrorCode::Nothing, lock.nothing);
+  if (rows == 0 && !empty)
     return fail(ErrorCode::Nothing, "the job has no row: nothing was found in any shard");
-  if (is_sorted) {
-    Table sorted = in_order(all, lock.order);
-    tell(sorted, ahead);
-    UMOV_TRY(sink.add(std::move(sorted)));
+  if (rows == 0)
+    all = std::move(*empty);
+  if (is_sorted)
+    all = in_order(all, lock.order);
+  if (rows == 0 || is_sorted) {
+    tell(all, ahead);
+    UMOV_TRY(sink.add(std::move(all)));
   }
   return sink.finish();
+}
+
+Result<void> check_answers(const JobFolder &folder, const jobs::Monitor &monitor) {
+  const JobLock &lock = folder.lock();
+  if (lock.problems.empty())
+    return {};
+  UMOV_ASSIGN(shards, all_shards(folder));
+  std::vector<std::string> out;
+  for (const Shard &shard : shards) {
+    if (monitor.is_cancelled())
+      return fail(ErrorCode::Interrupted, "stopped by the user");
+    UMOV_ASSIGN(file, open_checked(folder, shard));
+    for (std::size_t b = 0; b < file.blocks(0); ++b) {
+      UMOV_ASSIGN(block, file.block(0, b));
+      for (std::size_t row = 0; row < block.rows(); ++row)
+        if (std::string text = block.text(lock.problems, row); !text.empty())
+          out.push_back(std::move(text));
+    }
+  }
+  return jobs::all_answered(out, lock.total);
 }
 
 Result<Verdict> verify(const JobFolder &folder, const jobs::Monitor &monitor) {

@@ -81,6 +81,18 @@ def test_passes_in_parts_are_the_plain_ones(umov, tmp_path, workers):
     assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
 
 
+def test_no_pass_in_any_part_is_said_as_the_plain_command_does(umov, tmp_path):
+    orbits = (ROOT / "tests/data/tle/mixed_979_2018-01-20.tle").read_text().splitlines()[:9]
+    (tmp_path / "three.tle").write_text("\n".join(orbits) + "\n")
+    command = ["passes", "--orbit", "three.tle", *SITE, "--alt-min-deg", 89.9]
+    alone = umov(*command, "-o", "plain.csv")
+    assert alone.code == 5 and not (tmp_path / "plain.csv").exists()
+    assert umov("scale", "run", "--per-shard", 1, "job", *command).code == 0
+    merged = umov("scale", "merge", "job", "-o", "merged.csv")
+    assert (merged.code, merged.err.splitlines()[-1]) == (5, alone.err.splitlines()[-1])
+    assert not (tmp_path / "merged.csv").exists()
+
+
 def test_a_run_in_parts_is_the_plain_one(umov, scenario, tmp_path):
     name = scenario(("stop = 2018-01-21T05:12:00Z", "stop = 2018-01-22T08:00:00Z"),
                     ("sun_alt_max_deg = -6, sunlit = true", "sunlit = true"))

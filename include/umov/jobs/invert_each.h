@@ -31,6 +31,9 @@ struct CurveAnswers {
 Result<CurveAnswers> answer_curves(RangedJob &job, const JobPart &part, const Monitor &monitor,
                                    Diagnostics &diagnostics);
 
+/// BadInput where curves have no answer, with the problems of the first few.
+Result<void> all_answered(const std::vector<std::string> &problems, std::size_t curves);
+
 /// Tables, log, locked scenario and manifest.
 Result<void> write_answers(const CurveAnswers &answers, const Scenario &scenario,
                            ManifestInput manifest, const Diagnostics &diagnostics,

@@ -50,6 +50,11 @@ public:
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
   /// What the header tells of the rows by their number, after these warnings.
   [[nodiscard]] virtual std::vector<Tally> tallies() const { return {}; }
+  /// What the plain command ends with (Nothing) where the first table has no row at all; "": it
+  /// writes that table without rows.
+  [[nodiscard]] virtual std::string nothing() const { return ""; }
+  /// Column of the first table with the problem of each row that has no answer; "": all have one.
+  [[nodiscard]] virtual std::string problems() const { return ""; }
   /// The rows of a range, at least one block of each table (without rows if there are none).
   /// Interrupted after a stop.
   virtual Result<void> rows(IndexRange range, RangeSink &sink, const Monitor &monitor,

@@ -28,6 +28,7 @@ struct JobLock {
   std::vector<std::size_t> layout;
   std::vector<std::string> tables;
   std::string order;
+  std::string nothing, problems;     ///< RangedJob::nothing and RangedJob::problems
   std::vector<std::string> warnings; ///< RangedJob::warnings
   std::vector<jobs::Tally> tallies;  ///< RangedJob::tallies
   Rate rate;

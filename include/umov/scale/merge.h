@@ -12,6 +12,10 @@ namespace umov::scale {
 Result<void> merge(const JobFolder &folder, const std::string &table, TableSink &sink,
                    const jobs::Monitor &monitor);
 
+/// What the plain command ends with when its rows are written: BadInput where some have no answer
+/// (JobLock::problems), else nothing.
+Result<void> check_answers(const JobFolder &folder, const jobs::Monitor &monitor);
+
 /// What is wrong with the files of a folder.
 struct Verdict {
   std::size_t shards = 0, done = 0;

@@ -25,6 +25,8 @@ JobLock a_job() {
   out.per_shard = 30;
   out.layout = {60, 40};
   out.tables = {"signature"};
+  out.nothing = "no pose in this span";
+  out.problems = "problem";
   out.warnings = {"elements are old"};
   out.tallies = {{"frame", "cut", ""}, {"", "rows are full", "all are full"}};
   return out;
