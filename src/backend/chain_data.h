@@ -77,14 +77,29 @@ struct ChainPose {
 struct ChainLight {
   double i[lanes]{}, q[lanes]{}, u[lanes]{}, v[lanes]{};
 };
+/// What one block carried to a pose, in the first band.
+struct ChainNote {
+  std::uint32_t block;
+  /// I times the standard deviation of a guess whether its ends are free, where the grid's
+  /// directions around do not agree; both ways along a chain together.
+  float doubt[lanes];
+  float carried[lanes]; ///< I itself
+};
 struct ChainSums {
   View<ChainLight> bands;
   double squares = 0; ///< sum of I^2 of the chains in the first band, one by one
-  /// [block * 16 + lane], or empty: I of the first band times the standard deviation of a guess
-  /// whether its ends are free, where the grid's directions around do not agree.
-  View<float> doubt;
-  View<float> carried; ///< like it: I itself
+  /// Room for a note on every block, or none if nobody will ask; those that carried have one.
+  View<ChainNote> notes;
+  std::size_t noted = 0;
+  double doubt = 0, carried = 0; ///< sums over the notes
 };
+inline void keep_note(const ChainNote &note, ChainSums &sums) {
+  for (std::size_t k = 0; k < lanes; ++k) {
+    sums.doubt += static_cast<double>(note.doubt[k]);
+    sums.carried += static_cast<double>(note.carried[k]);
+  }
+  sums.notes[sums.noted++] = note;
+}
 inline constexpr std::size_t chain_bands_max = 8; ///< more go in parts
 
 /// Adds what the chains of some blocks of a run carry from the Sun to the observer, `blocks` of

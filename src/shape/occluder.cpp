@@ -186,6 +186,10 @@ void Occluder::is_free(std::span<const Vec3<Body>> origins, Vec3<Body> direction
 
 void Occluder::is_free(std::span<const Point> origins, std::span<const Point> directions,
                        std::span<unsigned char> free) const {
+  if (origins.size() == 1) {
+    free[0] = is_one_free(origins[0], directions[0]) ? 1 : 0;
+    return;
+  }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;

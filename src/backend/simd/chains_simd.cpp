@@ -9,6 +9,8 @@
 #include "backend/chain_data.h"
 #include "kernel/chain_end.inl.h"
 
+#include <cstring>
+
 #include "kernel/begin.h"
 
 using Axes = Triple<Lanes>;
@@ -43,7 +45,8 @@ struct EndAxes {
         axis(load_axes(of.axis, s)) {}
 };
 
-/// The blocks of one run for one pose.
+/// The blocks of one run for one pose. Their sums are added up in floats, by lanes, until the loop
+/// is `done`.
 class ChainLoop {
 public:
   HWY_INLINE ChainLoop(const backend::ChainData &data, const backend::ChainRun &run,
@@ -55,17 +58,27 @@ public:
         plane_(everywhere(pose.plane)) {}
 
   HWY_INLINE void add(std::size_t begin, std::size_t count) {
+    std::memset(light_, 0, bands_ * sizeof(light_[0]));
+    std::memset(squares_, 0, sizeof(squares_));
     for (std::size_t k = begin; k < begin + count; ++k) {
       const std::size_t block = run_.first + k;
       const ThreeWords lit_p = words(data_.masks.p, pose_.at_sun, block),
                        lit_q = words(data_.masks.q, pose_.at_sun, block),
                        seen_p = words(data_.masks.p, pose_.at_observer, block),
                        seen_q = words(data_.masks.q, pose_.at_observer, block);
-      if ((lit_q.any() & seen_p.any()) != 0)
+      const bool is_open = (lit_q.any() & seen_p.any()) != 0,
+                 is_open_behind = (lit_p.any() & seen_q.any()) != 0;
+      if (!is_open && !is_open_behind)
+        continue;
+      is_noted_ = false;
+      if (is_open)
         add_block<false>(k, block, seen_p, lit_q);
-      if ((lit_p.any() & seen_q.any()) != 0)
+      if (is_open_behind)
         add_block<true>(k, block, seen_q, lit_p);
+      if (is_noted_)
+        backend::keep_note(note_, out_);
     }
+    done();
   }
 
 private:
@@ -133,11 +146,8 @@ private:
                              entered.whole.u - entered.lobe.u, entered.whole.v});
       const auto light = chain_left(of_a, lobe_a, end_a, turns, in, to_lobe);
       put(band, s, light, weight);
-      if (band_ + band == 0 && !out_.doubt.empty()) {
-        const std::size_t at = (run_.first + k) * backend::lanes + s;
-        add_to(out_.doubt, at, light.i * doubt);
-        add_to(out_.carried, at, light.i * weight);
-      }
+      if (band_ + band == 0 && !out_.notes.empty())
+        note(run_.first + k, s, light.i * doubt, light.i * weight);
     }
   }
 
@@ -160,27 +170,41 @@ private:
     return {row(0), row(1), is_reversed ? -out_u : out_u, row(3)};
   }
 
-  static HWY_INLINE void add_to(const backend::View<float> &to, std::size_t at, Lanes x) {
+  static HWY_INLINE void add_to(float *to, Lanes x) {
     const FloatTag d;
-    hn::StoreU((Lanes(hn::LoadU(d, &to[at])) + x).v, d, &to[at]);
+    hn::StoreU((Lanes(hn::LoadU(d, to)) + x).v, d, to);
+  }
+  HWY_INLINE void note(std::size_t block, std::size_t s, Lanes doubt, Lanes carried) {
+    if (!is_noted_) {
+      note_ = {};
+      note_.block = static_cast<std::uint32_t>(block);
+      is_noted_ = true;
+    }
+    add_to(note_.doubt + s, doubt);
+    add_to(note_.carried + s, carried);
   }
   HWY_INLINE void put(std::size_t band, std::size_t s, const Beam<Lanes> &light, Lanes weight) {
-    const FloatTag d;
-    HWY_ALIGN float part[4][16];
     const Lanes i = light.i * weight;
-    hn::Store(i.v, d, part[0]);
-    hn::Store((light.q * weight).v, d, part[1]);
-    hn::Store((light.u * weight).v, d, part[2]);
-    hn::Store((light.v * weight).v, d, part[3]);
-    backend::ChainLight &to = out_.bands[band_ + band];
-    for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
-      to.i[s + k] += static_cast<double>(part[0][k]);
-      to.q[s + k] += static_cast<double>(part[1][k]);
-      to.u[s + k] += static_cast<double>(part[2][k]);
-      to.v[s + k] += static_cast<double>(part[3][k]);
-    }
+    is_any_ = true;
+    add_to(light_[band][0] + s, i);
+    add_to(light_[band][1] + s, light.q * weight);
+    add_to(light_[band][2] + s, light.u * weight);
+    add_to(light_[band][3] + s, light.v * weight);
     if (band_ + band == 0)
-      out_.squares += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, (i * i).v)));
+      add_to(squares_ + s, i * i);
+  }
+  HWY_INLINE void done() {
+    if (!is_any_)
+      return;
+    for (std::size_t band = 0; band < bands_; ++band) {
+      backend::ChainLight &to = out_.bands[band_ + band];
+      double *const part[4] = {to.i, to.q, to.u, to.v};
+      for (std::size_t p = 0; p < 4; ++p)
+        for (std::size_t k = 0; k < backend::lanes; ++k)
+          part[p][k] += static_cast<double>(light_[band][p][k]);
+    }
+    for (const float one : squares_)
+      out_.squares += static_cast<double>(one);
   }
 
   const backend::ChainData &data_;
@@ -189,6 +213,10 @@ private:
   const backend::ChainPose &pose_;
   backend::ChainSums &out_;
   Axes sun_, observer_, plane_;
+  HWY_ALIGN float light_[backend::chain_bands_max][4][backend::lanes];
+  HWY_ALIGN float squares_[backend::lanes];
+  backend::ChainNote note_;
+  bool is_any_ = false, is_noted_ = false;
 };
 
 void sum_chains_here(const backend::ChainData &data, const backend::ChainRun &run,

@@ -148,24 +148,27 @@ void ChainLevel::add_general(const backend::ChainRun &run, const backend::ChainP
                                        any_of(free_q_, pose.at_sun, blocks_, block),
                                    any_of(free_q_, pose.at_observer, blocks_, block) &
                                        any_of(free_p_, pose.at_sun, blocks_, block)};
+    if ((open[0] | open[1]) == 0)
+      continue;
+    backend::ChainNote note{static_cast<std::uint32_t>(block), {}, {}};
     for (std::size_t lane = 0; lane < replicates; ++lane)
       for (const bool is_reversed : {false, true})
         if ((open[is_reversed ? 1 : 0] >> lane & 1U) != 0)
-          add_guessed({run, block, lane, is_reversed}, pose, sums);
+          add_guessed({run, block, lane, is_reversed}, pose, sums, note);
+    if (!sums.notes.empty())
+      keep_note(note, sums);
   }
 }
 
 void ChainLevel::add_guessed(const OneChain &one, const backend::ChainPose &pose,
-                             backend::ChainSums &sums) const {
+                             backend::ChainSums &sums, backend::ChainNote &note) const {
   const double share = guessed(one, pose), before = sums.bands[0].i[one.lane];
   if (!(share > 0))
     return;
   add_one(one, share, pose, sums);
-  if (sums.doubt.empty())
-    return;
   const double carried = sums.bands[0].i[one.lane] - before;
-  sums.doubt[one.at()] += static_cast<float>(carried * std::sqrt(std::max(1 / share - 1, 0.0)));
-  sums.carried[one.at()] += static_cast<float>(carried);
+  note.doubt[one.lane] += static_cast<float>(carried * std::sqrt(std::max(1 / share - 1, 0.0)));
+  note.carried[one.lane] += static_cast<float>(carried);
 }
 
 } // namespace umov

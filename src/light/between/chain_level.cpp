@@ -129,9 +129,9 @@ void ChainLevel::fill(const std::vector<Placed> &placed, const std::vector<Chain
     field_p_.resize(blocks_ * replicates);
     field_q_.resize(blocks_ * replicates);
   }
-  std::vector<const backend::ChainRun *> run_of(blocks_);
-  for (const backend::ChainRun &run : runs_)
-    std::fill_n(run_of.begin() + run.first, run.count, &run);
+  run_of_.resize(blocks_);
+  for (std::size_t r = 0; r < runs_.size(); ++r)
+    std::fill_n(run_of_.begin() + runs_[r].first, runs_[r].count, static_cast<std::uint32_t>(r));
   for (const Placed &at : placed) {
     const Chain &c = *at.chain;
     backend::ChainBlock &to = block_[at.block];
@@ -146,7 +146,7 @@ void ChainLevel::fill(const std::vector<Placed> &placed, const std::vector<Chain
     }
     if (c.is_straight)
       continue;
-    const backend::ChainRun &run = *run_of[at.block];
+    const backend::ChainRun &run = runs_[run_of_[at.block]];
     for (std::size_t b = 0; b < bands_; ++b) {
       backend::ChainMatrix &m = matrix_[run.matrix + (at.block - run.first) * bands_ + b];
       for (std::size_t k = 0; k < 16; ++k)
@@ -157,12 +157,17 @@ void ChainLevel::fill(const std::vector<Placed> &placed, const std::vector<Chain
 
 void ChainLevel::trace(const std::vector<Placed> &placed, unsigned threads,
                        const std::atomic<bool> *cancel) {
-  constexpr std::size_t directions = (chain_mask_cells + 1) * (chain_mask_cells + 1);
-  free_p_.assign(directions * blocks_, 0);
-  free_q_.assign(directions * blocks_, 0);
-  std::vector<Vec3<Body>> grid;
-  for (std::size_t k = 0; k < directions; ++k)
-    grid.push_back(grid_direction(chain_mask_cells, k));
+  constexpr std::size_t edge = chain_mask_cells + 1;
+  free_p_.assign(edge * edge * blocks_, 0);
+  free_q_.assign(edge * edge * blocks_, 0);
+  // In tiles of 4 x 4, the size of a packet of rays, that takes one way through the mesh.
+  std::vector<std::pair<std::size_t, Vec3<Body>>> grid;
+  for (std::size_t k = 0; k < edge * edge; ++k)
+    grid.emplace_back(k, grid_direction(chain_mask_cells, k));
+  std::sort(grid.begin(), grid.end(), [](const auto &a, const auto &b) {
+    const auto tile = [](std::size_t k) { return std::array{k / edge / 4, k % edge / 4, k}; };
+    return tile(a.first) < tile(b.first);
+  });
   std::vector<std::vector<const Placed *>> of_block(blocks_);
   for (const Placed &one : placed)
     of_block[one.block].push_back(&one);
@@ -177,12 +182,13 @@ void ChainLevel::trace(const std::vector<Placed> &placed, unsigned threads,
       from.clear(), to.clear(), which.clear();
       const Occluder::Point origin = occluder_.to_point(end.point);
       points[block * replicates + lane] = origin;
-      for (std::size_t k = 0; k < directions; ++k) {
-        const double up = dot(grid[k], end.face);
+      for (const auto &[k, direction] : grid) {
+        const double up = dot(direction, end.face);
         if (up < -below_horizon)
           continue;
-        const Vec3<Body> d =
-            up < above_horizon ? normalized(grid[k] + end.face * (above_horizon - up)) : grid[k];
+        const Vec3<Body> d = up < above_horizon
+                                 ? normalized(direction + end.face * (above_horizon - up))
+                                 : direction;
         from.push_back(origin);
         to.push_back({static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)});
         which.push_back(k);
@@ -224,6 +230,7 @@ std::size_t ChainLevel::bytes() const {
   return block_.size() * sizeof(block_[0]) + matrix_.size() * sizeof(backend::ChainMatrix) +
          (free_p_.size() + free_q_.size()) * sizeof(std::uint16_t) +
          (field_p_.size() + field_q_.size()) * sizeof(Vec3<Body>) +
+         run_of_.size() * sizeof(run_of_[0]) +
          (point_p_.size() + point_q_.size()) * sizeof(Occluder::Point);
 }
 

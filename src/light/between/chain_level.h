@@ -37,8 +37,7 @@ public:
   [[nodiscard]] double mistaken(const backend::ChainPose &pose,
                                 const backend::ChainSums &sums) const;
   [[nodiscard]] std::size_t chains() const { return chains_; }
-  /// Length of ChainSums::doubt and carried.
-  [[nodiscard]] std::size_t places() const { return blocks_ * replicates; }
+  [[nodiscard]] std::size_t blocks() const { return blocks_; }
   [[nodiscard]] std::size_t bytes() const;
 
 private:
@@ -62,11 +61,13 @@ private:
   void add_one(const OneChain &chain, double free, const backend::ChainPose &pose,
                backend::ChainSums &sums) const;
   /// As often as its grids say, with the doubt in that.
-  void add_guessed(const OneChain &chain, const backend::ChainPose &pose,
-                   backend::ChainSums &sums) const;
-  /// A sample of the chains, each with a chance of `per` times its number in `of`: calls
-  /// chosen(run, block, lane, chance).
-  template <class F> void sample(std::span<const float> of, double per, F &&chosen) const;
+  void add_guessed(const OneChain &chain, const backend::ChainPose &pose, backend::ChainSums &sums,
+                   backend::ChainNote &note) const;
+  /// A sample of the chains that carried, each with a chance of `per` times its number `of` a note:
+  /// calls chosen(run, block, lane, chance).
+  template <class F>
+  void sample(const backend::ChainSums &sums, float (backend::ChainNote::*of)[backend::lanes],
+              double per, F &&chosen) const;
   /// Whether both ends of a chain are free: by the grids around, and by rays.
   [[nodiscard]] double guessed(const OneChain &chain, const backend::ChainPose &pose) const;
   [[nodiscard]] bool is_free(const OneChain &chain, const backend::ChainPose &pose) const;
@@ -78,6 +79,7 @@ private:
   std::vector<backend::ChainBlock> block_;
   std::vector<backend::ChainMatrix> matrix_;
   std::vector<backend::ChainRun> runs_;
+  std::vector<std::uint32_t> run_of_;              ///< per block
   std::vector<char> is_general_;                   ///< per run: lit one by one
   std::vector<Vec3<Body>> field_p_, field_q_;      ///< of those, [block * 16 + lane]
   std::vector<Occluder::Point> point_p_, point_q_; ///< where the ends lie, [block * 16 + lane]

@@ -13,7 +13,7 @@ namespace {
 constexpr double least_sample = 64, largest_part = 1.0 / 64;
 /// Chains of which it is asked whether the grids' yes is true.
 constexpr double asked = 256;
-/// A guess closer than this to sure is not in doubt (ChainSums::doubt has the same).
+/// A guess closer than this to sure is not in doubt (ChainNote::doubt has the same).
 constexpr double sure = 0.99999;
 /// Steps of Kronecker's sequence: chains that stand together are alike, and their thresholds far
 /// apart.
@@ -38,31 +38,39 @@ bool ChainLevel::is_free(const OneChain &one, const backend::ChainPose &pose) co
 }
 
 template <class F>
-void ChainLevel::sample(std::span<const float> of, double per, F &&chosen) const {
-  for (const backend::ChainRun &run : runs_)
-    for (std::size_t block = run.first; block < run.first + run.count; ++block) {
-      const double step = golden * static_cast<double>(block), along = step - std::floor(step);
-      for (std::size_t lane = 0; lane < replicates; ++lane) {
-        const double chance =
-            std::min(1.0, per * static_cast<double>(of[block * replicates + lane]));
-        const double threshold = along + shift_[lane];
-        if (chance > (threshold < 1 ? threshold : threshold - 1))
-          chosen(run, block, lane, chance);
-      }
+void ChainLevel::sample(const backend::ChainSums &sums,
+                        float (backend::ChainNote::*of)[backend::lanes], double per,
+                        F &&chosen) const {
+  std::array<float, replicates> shift{}, chance{}, threshold{};
+  std::copy(shift_.begin(), shift_.end(), shift.begin());
+  const auto scale = static_cast<float>(per);
+  for (std::size_t n = 0; n < sums.noted; ++n) {
+    const backend::ChainNote &note = sums.notes[n];
+    const double step = golden * note.block;
+    const auto along = static_cast<float>(step - std::floor(step));
+    unsigned chosen_ones = 0; // few: found without a branch
+    for (std::size_t lane = 0; lane < replicates; ++lane) {
+      chance[lane] = std::min(1.0f, scale * (note.*of)[lane]);
+      const float sum = along + shift[lane];
+      threshold[lane] = sum < 1 ? sum : sum - 1;
+      chosen_ones |= static_cast<unsigned>(chance[lane] > threshold[lane]);
     }
+    for (std::size_t lane = 0; chosen_ones != 0 && lane < replicates; ++lane)
+      if (chance[lane] > threshold[lane])
+        chosen(runs_[run_of_[note.block]], note.block, lane, static_cast<double>(chance[lane]));
+  }
 }
 
 void ChainLevel::mend(const backend::ChainPose &pose, double error,
                       backend::ChainSums &sums) const {
   // Doubts that are independent leave the sum of n of them, each taken in proportion to its own,
   // with (sum of all)/sqrt(n).
-  const std::span<const float> of(sums.doubt.data(), places());
-  const double doubt = std::accumulate(of.begin(), of.end(), 0.0);
+  const double doubt = sums.doubt;
   if (!(doubt > 0))
     return;
   const double most = std::max(least_sample, largest_part * static_cast<double>(chains_)),
                wanted = std::pow(doubt / (replicates * error), 2);
-  sample(of, std::clamp(wanted, least_sample, most) / doubt,
+  sample(sums, &backend::ChainNote::doubt, std::clamp(wanted, least_sample, most) / doubt,
          [&](const backend::ChainRun &run, std::size_t block, std::size_t lane, double chance) {
            for (const bool is_reversed : {false, true}) {
              const OneChain one{run, block, lane, is_reversed};
@@ -74,14 +82,12 @@ void ChainLevel::mend(const backend::ChainPose &pose, double error,
 }
 
 double ChainLevel::mistaken(const backend::ChainPose &pose, const backend::ChainSums &sums) const {
-  const std::span<const float> of(sums.carried.data(), places());
-  const double carried = std::accumulate(of.begin(), of.end(), 0.0);
-  if (!(carried > 0))
+  if (!(sums.carried > 0))
     return 0;
   std::vector<backend::ChainLight> light(bands_);
   backend::ChainSums wrong;
   wrong.bands = light;
-  sample(of, asked / carried,
+  sample(sums, &backend::ChainNote::carried, asked / sums.carried,
          [&](const backend::ChainRun &run, std::size_t block, std::size_t lane, double chance) {
            for (const bool is_reversed : {false, true}) {
              const OneChain one{run, block, lane, is_reversed};

@@ -107,13 +107,12 @@ void ChainStore::add_level(std::size_t index, std::span<const Pose> poses,
     std::vector<backend::ChainPose> at;
     std::vector<backend::ChainLight> light(count * bands_);
     std::vector<backend::ChainSums> sums(count);
-    const std::size_t places = from.places();
-    std::vector<float> notes(2 * count * places);
+    // Of which few pages are ever touched: most chains carry nothing to a pose.
+    const auto notes = std::make_unique_for_overwrite<backend::ChainNote[]>(count * from.blocks());
     for (std::size_t k = 0; k < count; ++k) {
       at.push_back(chain_pose(poses[climb.open[begin + k]]));
       sums[k].bands = {light.data() + k * bands_, bands_};
-      sums[k].doubt = {notes.data() + 2 * k * places, places};
-      sums[k].carried = {notes.data() + (2 * k + 1) * places, places};
+      sums[k].notes = {notes.get() + k * from.blocks(), from.blocks()};
     }
     from.add(at, sums);
     const double weight = weight_of(index);
