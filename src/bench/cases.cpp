@@ -150,7 +150,8 @@ std::vector<BenchCase> standard_cases() {
           c.has_errors = false;
         });
   add("fast masks and rays", [](BenchCase &) {});
-  add("default", [](BenchCase &c) { c.is_default_path = true; });
+  add("default of signature", [](BenchCase &c) { c.is_default_path = c.is_for_many = true; });
+  add("default of run", [](BenchCase &c) { c.is_default_path = true; });
   add("fine masks", [](BenchCase &c) { c.masks = without_rays(fine_masks); });
   add("one pose, fast masks", [](BenchCase &c) {
     c.masks = without_rays(fast_masks);
@@ -158,17 +159,19 @@ std::vector<BenchCase> standard_cases() {
     c.has_errors = false;
   });
   add("hst, fast masks and rays", [](BenchCase &c) { c.mesh = "hst"; });
-  const auto add_telescope = [&](const char *name, bool is_default) {
+  const auto add_telescope = [&](const char *name, bool is_default, bool is_for_many) {
     add(name, [&](BenchCase &c) {
       c.mesh = "hst";
       c.normals = NormalMode::Smooth;
       c.has_library_materials = true;
       c.masks = without_rays(fast_masks);
       c.is_default_path = is_default;
+      c.is_for_many = is_for_many;
     });
   };
-  add_telescope("hst of the library, fast masks", false);
-  add_telescope("hst of the library, default", true);
+  add_telescope("hst of the library, fast masks", false, false);
+  add_telescope("hst of the library, default of signature", true, true);
+  add_telescope("hst of the library, default of run", true, false);
   for (const char *mesh : {"box-wing", "hst"})
     for (const BetweenMethod between : {BetweenMethod::Paths, BetweenMethod::Chains})
       for (const std::size_t bands : {1u, 3u})

@@ -24,7 +24,8 @@ struct BenchCase {
   bool has_errors = true;         ///< compared with rays
   bool is_single_pose = false;    ///< latency instead of rate
   bool is_intensity_only = false; ///< what polarization costs
-  bool is_default_path = false;   ///< through the light model, as every command asks it by default
+  bool is_default_path = false;   ///< through the light model, as `umov run` asks it by default
+  bool is_for_many = false;       ///< as `umov signature` asks it by default
   bool has_rough_metals = false;  ///< GGX of alpha 0.15 to 0.3, as tests/cli/test_bounces.py
   std::size_t bounces = 1;        ///< more than 1: through the light model, without errors
   BetweenMethod between = BetweenMethod::Auto;

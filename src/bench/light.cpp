@@ -130,7 +130,8 @@ private:
                     one.has_own_roughness, static_cast<int>(one.visibility), one.masks.points,
                     one.masks.narrow_cells, one.masks.refine_above, one.cluster_rad,
                     one.is_intensity_only, one.has_library_materials, one.is_default_path) +
-        fmt::format(" {} {} {}", one.has_rough_metals, one.bounces, name_of(one.between));
+        fmt::format(" {} {} {} {}", one.has_rough_metals, one.bounces, name_of(one.between),
+                    one.is_for_many);
     if (key == key_ && (one.is_on_card || !is_on_card_))
       return take_cards(one);
     is_on_card_ = false;
@@ -150,6 +151,8 @@ private:
       LightOptions light;
       light.bounces = one.bounces;
       light.between = one.between;
+      if (one.is_for_many)
+        light = for_many_poses(light);
       UMOV_ASSIGN(model, make_light(*scene_, {}, light));
       model_ = std::move(model);
       const LightFacts &facts = model_->facts();

@@ -70,7 +70,10 @@ LightOptions light_asked_for(const Scenario &scenario, const SignatureRequest &r
                              const Stokes<ScatteringPlane> &source, const JobOptions &options) {
   LightOptions out = light_options(scenario, options);
   out.method = request.method.value_or(out.method);
-  out.accuracy = request.accuracy.value_or(out.accuracy);
+  if (request.accuracy)
+    out.accuracy = *request.accuracy;
+  else if (request.source == Source::Sun && !scenario.places.contains("render.accuracy"))
+    out = for_many_poses(out);
   out.between = request.between.value_or(out.between);
   out.seed = request.seed.value_or(scenario.seed);
   out.source = source;

@@ -39,7 +39,7 @@ struct SignatureRequest {
   /// Thermal: "300" K of the whole body, "GROUP=K" of a part.
   std::vector<std::string> temperatures;
   std::optional<LightMethod> method;    ///< over the scenario's
-  std::optional<double> accuracy;       ///< over the scenario's
+  std::optional<double> accuracy;       ///< over the scenario's; neither: `for_many_poses`
   std::optional<std::uint64_t> seed;    ///< over the scenario's: of point sets and paths
   std::optional<BetweenMethod> between; ///< over the scenario's
   std::filesystem::path mask_file;      ///< LightOptions::mask_file

@@ -82,6 +82,23 @@ TEST_F(SignatureJob, RowsAreThoseOfPoseLight) {
     EXPECT_EQ(sink.table.number("intensity", k), stokes.i[k]);
 }
 
+TEST_F(SignatureJob, ManyPosesAreAskedForLessUnlessSomebodySaysHowWell) {
+  const auto accuracy = [&](const std::vector<std::string> &overrides,
+                            const SignatureRequest &request) {
+    const auto light = PoseLight::make(scenario(overrides), request, {}, diagnostics);
+    EXPECT_TRUE(light) << light.error().text();
+    return light ? light->options().accuracy : 0;
+  };
+  SignatureRequest asked, rays;
+  asked.accuracy = 0.002;
+  rays.method = LightMethod::Rays;
+  EXPECT_EQ(accuracy({}, {}), 0.05);
+  EXPECT_EQ(accuracy({"render.accuracy=0.005"}, {}), 0.005);
+  EXPECT_EQ(accuracy({}, asked), 0.002);
+  EXPECT_EQ(accuracy({}, rays), 0.005);
+  EXPECT_EQ(accuracy({"render.bounces=3"}, {}), 0.005);
+}
+
 TEST_F(SignatureJob, AStopKeepsFinishedBlocksAndTheSameJobGoesOn) {
   const Scenario of = scenario({"render.method=masks"});
   const auto poses = random_poses(400'000, {60}, 4);

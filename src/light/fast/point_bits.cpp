@@ -31,7 +31,7 @@ private:
 } // namespace
 
 std::size_t split_points(const backend::Masks &masks, const backend::PoseData<double> &pose,
-                         std::uint32_t group, std::uint32_t lane,
+                         std::uint32_t group, std::uint32_t lane, std::uint32_t of,
                          std::vector<DoubtfulPoint> &doubtful) {
   const backend::GroupMask &mask = masks.groups[group];
   const backend::MaskTable &table = mask.is_large ? masks.large : masks.small;
@@ -39,13 +39,13 @@ std::size_t split_points(const backend::Masks &masks, const backend::PoseData<do
   const Words seen(masks, mask, table, mask.is_large ? pose.large_observer : pose.small_observer,
                    lane);
   std::size_t free = 0;
-  doubtful.clear();
   for (std::uint32_t w = 0; w < mask.words; ++w) {
     const std::uint32_t lit = sun.all(w), visible = seen.all(w), sure = lit & visible;
     free += static_cast<std::size_t>(std::popcount(sure));
     for (std::uint32_t rest = sun.any(w) & seen.any(w) & ~sure; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<std::uint32_t>(std::countr_zero(rest));
-      doubtful.push_back({32 * w + bit, ((lit >> bit) & 1u) == 0, ((visible >> bit) & 1u) == 0});
+      doubtful.push_back(
+          {of, 32 * w + bit, ((lit >> bit) & 1u) == 0, ((visible >> bit) & 1u) == 0});
     }
   }
   return free;

@@ -118,12 +118,12 @@ TracedShare RefineTracer::trace_others(const backend::SeenFacet &facet, std::siz
 }
 
 /// Drops of asked_ those that are hidden in a direction which they ask for.
-void RefineTracer::ask(std::span<const Occluder::Point> points, Vec3<Body> direction,
+void RefineTracer::ask(std::span<const AskedClass> classes, Vec3<Body> direction,
                        bool DoubtfulPoint::*asks) {
   left_.clear();
   for (const DoubtfulPoint &p : asked_)
     if (p.*asks)
-      left_.push_back(points[p.index]);
+      left_.push_back(classes[p.of].points[p.index]);
   test(occluder_, left_, direction);
   std::size_t kept = 0, k = 0;
   for (const DoubtfulPoint &p : asked_)
@@ -132,13 +132,13 @@ void RefineTracer::ask(std::span<const Occluder::Point> points, Vec3<Body> direc
   asked_.resize(kept);
 }
 
-std::size_t RefineTracer::trace_doubtful(std::span<const Occluder::Point> points,
-                                         std::span<const DoubtfulPoint> doubtful,
-                                         const Pose &pose) {
+void RefineTracer::trace_doubtful(std::span<AskedClass> classes,
+                                  std::span<const DoubtfulPoint> doubtful, const Pose &pose) {
   asked_.assign(doubtful.begin(), doubtful.end());
-  ask(points, pose.sun, &DoubtfulPoint::asks_sun);
-  ask(points, pose.observer, &DoubtfulPoint::asks_observer);
-  return asked_.size();
+  ask(classes, pose.sun, &DoubtfulPoint::asks_sun);
+  ask(classes, pose.observer, &DoubtfulPoint::asks_observer);
+  for (const DoubtfulPoint &p : asked_)
+    ++classes[p.of].free;
 }
 
 TracedShare RefineTracer::trace(const backend::SeenFacet &facet, std::size_t wanted,

@@ -61,6 +61,14 @@ struct TracedShare {
   std::size_t points = 0;
 };
 
+/// A class whose own points are asked, of which the masks doubt some.
+struct AskedClass {
+  std::uint32_t which = 0; ///< for who asks
+  std::span<const Occluder::Point> points;
+  std::size_t sure = 0, doubted = 0; ///< so many are lit and seen beyond doubt, and in doubt
+  std::size_t asked = 0, free = 0;   ///< of those in doubt, and of those asked lit and seen
+};
+
 /// Traces rays; one per thread.
 class RefineTracer {
 public:
@@ -73,10 +81,10 @@ public:
   [[nodiscard]] bool has_others_before(const backend::SeenFacet &facet, const Pose &pose) const;
   /// `wanted` points of a class, spread over all of it.
   TracedShare trace(const backend::SeenFacet &facet, std::size_t wanted, const Pose &pose);
-  /// How many of a class's points, which the masks are of, are free towards both: only those are
-  /// traced that they doubt.
-  std::size_t trace_doubtful(std::span<const Occluder::Point> points,
-                             std::span<const DoubtfulPoint> doubtful, const Pose &pose);
+  /// Adds to `free` of each class those of its doubtful points that are free towards both. The rays
+  /// of all of them go together: a class by itself has few, and a packet costs as much half empty.
+  void trace_doubtful(std::span<AskedClass> classes, std::span<const DoubtfulPoint> doubtful,
+                      const Pose &pose);
   [[nodiscard]] bool has_others() const { return !others_.empty(); }
   /// The same, as if nothing but the other parts hid anything.
   TracedShare trace_others(const backend::SeenFacet &facet, std::size_t wanted, const Pose &pose);
@@ -86,8 +94,7 @@ private:
   void test(const Occluder &occluder, std::span<const Occluder::Point> points,
             Vec3<Body> direction);
   void keep_free(Vec3<Body> direction);
-  void ask(std::span<const Occluder::Point> points, Vec3<Body> direction,
-           bool DoubtfulPoint::*asks);
+  void ask(std::span<const AskedClass> classes, Vec3<Body> direction, bool DoubtfulPoint::*asks);
   void keep_free_of_others(const Sphere &bounds, Vec3<Body> direction);
   void keep_free_of(const OtherPart &other, Vec3<Body> direction);
   void drop_hidden();

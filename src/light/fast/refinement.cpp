@@ -22,6 +22,9 @@ double share_variance(double share, double points) {
 namespace {
 
 constexpr double points_most = 16'384; ///< of a class
+/// Several large classes may be asked for some of their points alone, and what that leaves adds up.
+constexpr double beside_others = 3;
+constexpr std::size_t together = 8; ///< classes whose first rays go in the same packets
 
 } // namespace
 
@@ -55,6 +58,8 @@ void Engine::State::list_uncertain(const Pose &pose, const Prepared &at,
     backend::list_weighed(views.whole, hiding(), error, at.pose, work.uncertain);
   else
     backend::list_weighed(views.single, hiding(), error, at.single, work.uncertain);
+  if (!error.has_doubts && may_mend()) // what is certain needs neither light nor rays
+    work.uncertain.keep_if([](const backend::SeenFacet &facet) { return facet.variance > 0; });
   const std::size_t count = work.uncertain.facets.size();
   work.points.assign(count, 0);
   work.facet_light.resize(count * bands());
@@ -121,17 +126,21 @@ void Engine::State::add_up_variances(Workspace &work) const {
   BandLight &out = work.variances;
   out.reset(bands(), true);
   std::vector<double> &alike = out.i; // deviations that are looked up, added up
+  const bool has_u_or_v = compiled.has_u || compiled.general_classes > 0;
   for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k) {
     const double variance = work.uncertain.facets[k].variance;
     const double deviation = work.points[k] != 0 ? 0 : std::sqrt(variance);
+    const Stokes<ScatteringPlane> *light = work.facet_light.data() + k * bands();
     for (std::size_t b = 0; b < bands(); ++b) {
-      const auto &s = work.facet_light[k * bands() + b];
+      const auto &s = light[b];
       out.var_i[b] += s.i * s.i * variance;
       out.var_q[b] += s.q * s.q * variance;
-      out.var_u[b] += s.u * s.u * variance;
-      out.var_v[b] += s.v * s.v * variance;
       alike[b] += s.i * deviation;
       out.q[b] += s.q * deviation;
+    }
+    for (std::size_t b = 0; has_u_or_v && b < bands(); ++b) {
+      out.var_u[b] += light[b].u * light[b].u * variance;
+      out.var_v[b] += light[b].v * light[b].v * variance;
     }
   }
   for (std::size_t b = 0; b < bands(); ++b) {
@@ -144,31 +153,71 @@ void Engine::State::add_up_variances(Workspace &work) const {
 /// Puts the share of a facet's area that rays find in place of the looked-up one.
 void Engine::State::trace_facet(const Pose &pose, std::size_t k, std::size_t points,
                                 Workspace &work) const {
-  backend::SeenFacet &facet = work.uncertain.facets[k];
-  const double whole = compiled.data.groups[facet.group].area[facet.lane];
-  const TracedShare traced = work.tracer->trace(facet, points, pose);
-  change_area(k, whole * traced.share - facet.area, work);
-  facet.variance = whole * whole * share_variance(traced.share, static_cast<double>(traced.points));
-  work.points[k] = traced.points;
+  const TracedShare traced = work.tracer->trace(work.uncertain.facets[k], points, pose);
+  put_share(k, traced.share, traced.points,
+            share_variance(traced.share, static_cast<double>(traced.points)), work);
 }
 
-/// The first look at a class: rays for those of the points that the masks know which they doubt,
-/// as long as nothing else comes before the part.
-void Engine::State::look_closer(const Pose &pose, const Prepared &at, std::size_t k, double wanted,
-                                Workspace &work) const {
+void Engine::State::put_share(std::size_t k, double share, std::size_t points, double variance,
+                              Workspace &work) const {
   backend::SeenFacet &facet = work.uncertain.facets[k];
   const double whole = compiled.data.groups[facet.group].area[facet.lane];
-  if (!masks || work.tracer->has_others())
-    return trace_facet(pose, k, first_points(work.error_per_area[k] * whole / wanted), work);
-  const auto points = masks->points(facet.group, facet.lane);
-  std::size_t free = split_points(*hiding(), at.pose, facet.group, facet.lane, work.doubtful);
-
-  free += work.tracer->trace_doubtful(points, work.doubtful, pose);
-  const auto count = static_cast<double>(points.size());
-  const double share = static_cast<double>(free) / count;
   change_area(k, whole * share - facet.area, work);
-  facet.variance = whole * whole * share_variance(share, count);
-  work.points[k] = points.size();
+  facet.variance = whole * whole * variance;
+  work.points[k] = points;
+}
+
+/// The first look at the classes of work.asked: rays for those of the points that the masks know
+/// which they doubt, as long as nothing else comes before the part.
+void Engine::State::look_closer(const Pose &pose, const Prepared &at, double wanted,
+                                Workspace &work) const {
+  if (!masks || work.tracer->has_others()) {
+    for (const AskedClass &asked : work.asked) {
+      const backend::SeenFacet &facet = work.uncertain.facets[asked.which];
+      const double whole = compiled.data.groups[facet.group].area[facet.lane];
+      const double weight = work.error_per_area[asked.which] * whole / wanted;
+      trace_facet(pose, asked.which, first_points(weight), work);
+    }
+    return;
+  }
+  work.doubtful.clear();
+  for (std::uint32_t n = 0; n < work.asked.size(); ++n)
+    list_doubtful(at, n, wanted, work);
+  work.tracer->trace_doubtful(work.asked, work.doubtful, pose);
+  for (const AskedClass &asked : work.asked) {
+    const auto count = static_cast<double>(asked.points.size());
+    const double doubted = static_cast<double>(asked.doubted) / count;
+    const double found = static_cast<double>(asked.free) /
+                         static_cast<double>(std::max<std::size_t>(asked.asked, 1));
+    const double share = static_cast<double>(asked.sure) / count + doubted * found;
+    double variance = share_variance(share, count);
+    if (asked.asked < asked.doubted)
+      variance += doubted * doubted * share_variance(found, static_cast<double>(asked.asked));
+    put_share(asked.which, share, asked.points.size(), variance, work);
+  }
+}
+
+/// The points of work.asked[n] that the masks doubt, or some of them where fewer tell enough: a
+/// large class has thousands.
+void Engine::State::list_doubtful(const Prepared &at, std::uint32_t n, double wanted,
+                                  Workspace &work) const {
+  AskedClass &asked = work.asked[n];
+  const backend::SeenFacet &facet = work.uncertain.facets[asked.which];
+  const std::size_t first = work.doubtful.size();
+  asked.points = masks->points(facet.group, facet.lane);
+  asked.sure = split_points(*hiding(), at.pose, facet.group, facet.lane, n, work.doubtful);
+  asked.doubted = asked.asked = work.doubtful.size() - first;
+  const double whole = compiled.data.groups[facet.group].area[facet.lane];
+  const double doubted =
+      whole * static_cast<double>(asked.doubted) / static_cast<double>(asked.points.size());
+  const std::size_t enough =
+      first_points(beside_others * work.error_per_area[asked.which] * doubted / wanted);
+  if (enough >= asked.doubted)
+    return;
+  for (std::size_t i = 0; i < enough; ++i)
+    work.doubtful[first + i] = work.doubtful[first + (2 * i + 1) * asked.doubted / (2 * enough)];
+  work.doubtful.resize(first + enough);
+  asked.asked = enough;
 }
 
 void Engine::State::change_area(std::size_t k, double change, Workspace &work) const {
@@ -231,14 +280,19 @@ double Engine::State::trace_worst(const Pose &pose, const Prepared &at, double w
   const auto left = [&] { return variance + mask_alike * linear * linear; };
   std::make_heap(work.worst.begin(), work.worst.end());
   const double most = wanted * wanted;
-  while (!work.worst.empty() && left() > 0.3 * most && left() + traced > most) {
-    const auto [error, from_end] = work.worst.front();
-    std::pop_heap(work.worst.begin(), work.worst.end());
-    work.worst.pop_back();
-    variance = std::max(variance - error, 0.0);
-    linear = std::max(linear - std::sqrt(error), 0.0);
-    look_closer(pose, at, no_index - from_end, wanted, work);
-    traced += relative(no_index - from_end);
+  while (!work.worst.empty() && left() > 0.4 * most && left() + traced > most) {
+    work.asked.clear();
+    do {
+      const auto [error, from_end] = work.worst.front();
+      std::pop_heap(work.worst.begin(), work.worst.end());
+      work.worst.pop_back();
+      variance = std::max(variance - error, 0.0);
+      linear = std::max(linear - std::sqrt(error), 0.0);
+      work.asked.push_back({.which = no_index - from_end, .points = {}});
+    } while (!work.worst.empty() && left() > 0.4 * most && work.asked.size() < together);
+    look_closer(pose, at, wanted, work);
+    for (const AskedClass &asked : work.asked)
+      traced += relative(asked.which);
   }
   return left();
 }
@@ -259,7 +313,7 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
     }
   if (now <= allowed || !(allowed > 0))
     return false;
-  const double scale = std::pow(growth / (0.8 * allowed), 2.0 / 3);
+  const double scale = std::pow(growth / (0.95 * allowed), 2.0 / 3);
   bool is_any = false;
   for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k) {
     if (work.points[k] == 0)
@@ -267,7 +321,7 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
     const double n = static_cast<double>(work.points[k]);
     const double wanted =
         std::min(scale * std::pow(variance(k) * std::pow(n, 1.5), 0.4), points_most);
-    if (wanted < 1.2 * n)
+    if (wanted < 1.5 * n) // a new look begins anew
       continue;
     trace_facet(pose, k, static_cast<std::size_t>(wanted), work);
     is_any = is_any || static_cast<double>(work.points[k]) > n;
@@ -278,7 +332,7 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
 /// Rays, until the variance that is left is `part` of what the accuracy allows.
 void Engine::State::trace(const Pose &pose, const Prepared &at, double part,
                           Workspace &work) const {
-  const double wanted = 0.9 * options.masks.refine_above / normal_95 * std::sqrt(part);
+  const double wanted = 0.97 * options.masks.refine_above / normal_95 * std::sqrt(part);
   constexpr int looks_max = 3;
   weigh_errors(work);
   const double left = trace_worst(pose, at, wanted, work);

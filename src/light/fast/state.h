@@ -98,7 +98,8 @@ struct Engine::State {
     bool has_variances = false;                       ///< they take the place of those of the sums
     std::vector<std::pair<double, std::uint32_t>> worst; ///< error and which, as a heap
     std::vector<double> error_per_area;  ///< per uncertain facet, in parts of the whole light
-    std::vector<DoubtfulPoint> doubtful; ///< points of one class
+    std::vector<AskedClass> asked;       ///< classes that are looked at together
+    std::vector<DoubtfulPoint> doubtful; ///< points of theirs
     std::vector<std::size_t> points;     ///< per uncertain facet: traced; 0: looked up
     std::optional<RefineTracer> tracer;
     bool is_mended = false;        ///< rays were traced for this pose
@@ -180,8 +181,10 @@ struct Engine::State {
   void weigh_errors(Workspace &work) const;
   void trace(const Pose &pose, const Prepared &at, double part, Workspace &work) const;
   double trace_worst(const Pose &pose, const Prepared &at, double wanted, Workspace &work) const;
-  void look_closer(const Pose &pose, const Prepared &at, std::size_t k, double wanted,
-                   Workspace &work) const;
+  void look_closer(const Pose &pose, const Prepared &at, double wanted, Workspace &work) const;
+  void list_doubtful(const Prepared &at, std::uint32_t n, double wanted, Workspace &work) const;
+  void put_share(std::size_t k, double share, std::size_t points, double variance,
+                 Workspace &work) const;
   bool trace_more(const Pose &pose, double allowed, Workspace &work) const;
   void trace_facet(const Pose &pose, std::size_t k, std::size_t points, Workspace &work) const;
   void change_area(std::size_t k, double change, Workspace &work) const;

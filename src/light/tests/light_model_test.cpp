@@ -65,6 +65,37 @@ TEST(LightModel, AutoMeetsTheAccuracyAndItsHalfWidthsCoverRays) {
   EXPECT_GE(accurate, 118U);
 }
 
+// As above: 105 of 120 rows. What masks of 64 cells tell to 5 % needs no rays in nine of ten poses.
+TEST(LightModel, ManyPosesMeetTheirAccuracyWithFewRaysAndHalfWidthsCoverThem) {
+  const auto poses = poses_of(120);
+  const auto many = model(for_many_poses({}));
+  const auto fast = lit(*many, poses);
+  const auto dense = lit(*model({.method = LightMethod::Rays, .accuracy = 5e-4}), poses);
+  const std::vector<double> floor = many->facts().floor_i, usual = model({})->facts().floor_i;
+  ASSERT_EQ(floor.size(), 3U);
+  EXPECT_NEAR(floor[1], 0.2 * usual[1], 1e-12 * usual[1]);
+  std::size_t covered = 0, accurate = 0, looked_up = 0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const std::size_t at = k * 3 + 1;
+    covered += std::abs(fast.i[at] - dense.i[at]) <= fast.i_err[at] + dense.i_err[at] ? 1u : 0u;
+    accurate += fast.i_err[at] <= 0.05 * 1.002 * std::max(fast.i[at], floor[1]) ? 1u : 0u;
+    looked_up += fast.method[k] == PoseMethod::Masks ? 1u : 0u;
+  }
+  EXPECT_GE(covered, 105U);
+  EXPECT_EQ(accurate, poses.size());
+  EXPECT_GE(looked_up, 100U);
+}
+
+TEST(LightModel, OnlyAutoIsAskedOtherwiseForManyPoses) {
+  for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks}) {
+    const LightOptions many = for_many_poses({.method = method});
+    EXPECT_EQ(many.accuracy, LightOptions{}.accuracy);
+    EXPECT_FALSE(many.is_for_many_poses || many.accuracy_floor);
+  }
+  EXPECT_EQ(for_many_poses({.bounces = 2}).accuracy, LightOptions{}.accuracy);
+  EXPECT_EQ(for_many_poses({.accuracy_floor = 0.3}).accuracy_floor, 0.3);
+}
+
 TEST(LightModel, ARowDoesNotKnowItsNeighbours) {
   const auto poses = poses_of(40);
   for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks, LightMethod::Auto}) {
