@@ -293,7 +293,7 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
         if (materials > 0)
           s.colour_by_material(material, out.material_i.data() + row * materials * band_count(),
                                work);
-        else
+        else if (!work.is_coloured)
           s.colour(work);
         put_light(work.light, s.compiled.area_m2, has_scattering_plane(pose), has_u_or_v, row, out);
         out.is_dark[row] = work.sums.is_any_seen || has_any_light(work.light) ? 0 : 1;

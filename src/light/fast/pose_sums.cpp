@@ -36,7 +36,7 @@ void Engine::State::sum_facets(const Prepared &at, SumsStore &out) const {
 
 bool Engine::State::add_up(const Pose &pose, const Prepared &at, Workspace &work) const {
   sum_facets(at, work.sums);
-  work.is_mended = work.has_variances = false;
+  work.is_mended = work.has_variances = work.is_coloured = false;
   if (!work.sums.is_any_seen && !doubts_darkness())
     return false;
   compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
@@ -61,6 +61,7 @@ bool Engine::State::sum(const Pose &pose, const Prepared &at, Workspace &work) c
   refer_to(work.light, compiled.area_m2, work);
   if (is_uncertain(work.light, compiled.area_m2, work))
     mend(pose, at, work);
+  work.is_coloured = true;
   return true;
 }
 

@@ -21,6 +21,13 @@ double share_variance(double share, double points) {
 
 namespace {
 
+/// The same of points that stand as they come: along an edge of a shadow some of many are no longer
+/// spread evenly.
+double random_variance(double share, double points) {
+  const double unsure = std::clamp(share, 1 / points, 1 - 1 / points);
+  return unsure * (1 - unsure) / points;
+}
+
 constexpr double points_most = 16'384; ///< of a class
 /// Several large classes may be asked for some of their points alone, and what that leaves adds up.
 constexpr double beside_others = 3;
@@ -192,7 +199,7 @@ void Engine::State::look_closer(const Pose &pose, const Prepared &at, double wan
     const double share = static_cast<double>(asked.sure) / count + doubted * found;
     double variance = share_variance(share, count);
     if (asked.asked < asked.doubted)
-      variance += doubted * doubted * share_variance(found, static_cast<double>(asked.asked));
+      variance += doubted * doubted * random_variance(found, static_cast<double>(asked.asked));
     put_share(asked.which, share, asked.points.size(), variance, work);
   }
 }
@@ -367,11 +374,11 @@ void Engine::State::sum_variances(Workspace &work) const {
 
 /// Rays for the facets that make the error, if there is too much of it.
 void Engine::State::mend(const Pose &pose, const Prepared &at, Workspace &work) const {
-  list_uncertain(pose, at, doubtful_error, work);
+  list_uncertain(pose, at, error_model(), work);
   add_up_variances(work);
   work.is_mended = is_uncertain(work.variances, compiled.area_m2, work);
   if (!work.is_mended)
-    return;
+    return take_variances(work);
   // What rays find may be less light than the masks said, and the same error more of it.
   for (int round = 0; round < 2 && is_uncertain(work.variances, compiled.area_m2, work); ++round) {
     trace(pose, at, 1, work);

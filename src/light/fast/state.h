@@ -103,6 +103,7 @@ struct Engine::State {
     std::vector<std::size_t> points;     ///< per uncertain facet: traced; 0: looked up
     std::optional<RefineTracer> tracer;
     bool is_mended = false;        ///< rays were traced for this pose
+    bool is_coloured = false;      ///< `light` is that of the sums as they are now
     std::vector<double> general_i; ///< [slot * bands + band], of the facets without a kernel
     // Of `glint_share`:
     SeenStore seen;

@@ -65,7 +65,7 @@ TEST(LightModel, AutoMeetsTheAccuracyAndItsHalfWidthsCoverRays) {
   EXPECT_GE(accurate, 118U);
 }
 
-// As above: 105 of 120 rows. What masks of 64 cells tell to 5 % needs no rays in nine of ten poses.
+// As above: 105 of 120 rows. What masks of 64 cells tell to 4 % needs no rays in nine of ten poses.
 TEST(LightModel, ManyPosesMeetTheirAccuracyWithFewRaysAndHalfWidthsCoverThem) {
   const auto poses = poses_of(120);
   const auto many = model(for_many_poses({}));
@@ -78,7 +78,7 @@ TEST(LightModel, ManyPosesMeetTheirAccuracyWithFewRaysAndHalfWidthsCoverThem) {
   for (std::size_t k = 0; k < poses.size(); ++k) {
     const std::size_t at = k * 3 + 1;
     covered += std::abs(fast.i[at] - dense.i[at]) <= fast.i_err[at] + dense.i_err[at] ? 1u : 0u;
-    accurate += fast.i_err[at] <= 0.05 * 1.002 * std::max(fast.i[at], floor[1]) ? 1u : 0u;
+    accurate += fast.i_err[at] <= 0.04 * 1.002 * std::max(fast.i[at], floor[1]) ? 1u : 0u;
     looked_up += fast.method[k] == PoseMethod::Masks ? 1u : 0u;
   }
   EXPECT_GE(covered, 105U);
