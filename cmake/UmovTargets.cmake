@@ -10,6 +10,7 @@ set(UMOV_SANITIZE "" CACHE STRING "address (with undefined behaviour) or thread;
 set(UMOV_SANITIZE_MODULES "" CACHE STRING
     "Only these modules with the sanitizer, all others as fast as they compile; empty: all of them")
 option(UMOV_QUICK_TO_COMPILE "Release: common headers precompiled, and -O1 where nothing is computed" ON)
+option(UMOV_FOR_THIS_MACHINE "Light's loops for this machine's instruction set and a slow one for all others" OFF)
 option(UMOV_FUZZ "Build tests/fuzz as fuzzers (clang): libFuzzer, coverage of the readers" OFF)
 
 # umov_plain: without sanitizers, for modules that need none.
@@ -71,6 +72,26 @@ function(umov_in_pieces files)
       set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
     endif()
   endforeach()
+endfunction()
+
+# umov_for_this_machine(TARGET): Highway's loops of a target that wants AVX3_DL are compiled six times, once for each instruction
+# set; where only this machine counts, for the one that it takes and for the slowest, so that the program runs anywhere.
+function(umov_for_this_machine target)
+  if(NOT UMOV_FOR_THIS_MACHINE OR CMAKE_CROSSCOMPILING)
+    return()
+  endif()
+  try_run(ran compiled SOURCE_FROM_CONTENT left_out.cpp [[
+#define HWY_WANT_AVX3_DL
+#include <cstdio>
+#include <hwy/targets.h>
+int main() {
+  const long long can = hwy::SupportedTargets() & HWY_TARGETS;
+  std::printf("%lld", static_cast<long long>(HWY_TARGETS & ~(can & -can) & ~HWY_STATIC_TARGET));
+}
+]] NO_CACHE LINK_LIBRARIES PkgConfig::HWY RUN_OUTPUT_VARIABLE left_out)
+  if(compiled AND ran EQUAL 0)
+    target_compile_definitions(${target} PRIVATE HWY_DISABLED_TARGETS=${left_out}LL)
+  endif()
 endfunction()
 
 function(umov_module name)

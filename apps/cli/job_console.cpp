@@ -91,7 +91,7 @@ ManifestInput manifest_of_command(const Common &common,
   out.command_line = command_line();
   out.started_utc =
       fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(system_clock::to_time_t(started)));
-  out.elapsed_s = duration<double>(system_clock::now() - started).count();
+  out.started = started;
   return out;
 }
 

@@ -41,7 +41,7 @@ std::unique_ptr<TableSink> sink_for(const std::string &path, const Common &commo
 /// no file.
 Error stop_table(const std::string &path, Table rows, const Common &common, const Error &stopped);
 
-/// What every manifest says of the command: its line, threads, begin and duration until now.
+/// What every manifest says of the command: its line, threads and begin.
 ManifestInput manifest_of_command(const Common &common,
                                   std::chrono::system_clock::time_point started);
 

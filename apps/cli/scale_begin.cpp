@@ -49,7 +49,8 @@ Result<void> ask_about(const scale::Plan &plan, const ScaleJobOptions &o) {
 Result<void> hold_to(const std::string &instruction_set) {
   if (instruction_set.empty() || restrict_engine(instruction_set))
     return {};
-  return fail(ErrorCode::Device, "this machine has no " + instruction_set +
+  return fail(ErrorCode::Device, "this machine, or what was built for it, has no " +
+                                     instruction_set +
                                      ". Leave it out of the job, or begin one with an --isa that "
                                      "all machines have.");
 }

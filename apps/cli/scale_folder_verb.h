@@ -1,6 +1,7 @@
 #pragma once
 // Verbs of `umov scale` that need the folder of a job and nothing else.
 
+#include "finishing.h"
 #include "verb_scale.h"
 
 namespace umov::cli {
@@ -14,13 +15,10 @@ CLI::App *add_folder_verb(CLI::App &scale, const Exit &exit_with, const char *na
   auto common = std::make_shared<Common>();
   verb->add_option("folder", *path, "Folder of the job")->required();
   add_common(*verb, *common, prints);
-  verb->callback([=] {
-    watch_interrupts();
-    const auto folder = scale::JobFolder::open(*path);
-    const auto done =
-        folder ? what(*folder, *common) : Result<void>(tl::unexpected(folder.error()));
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(stoppable(exit_with, common, [=](Diagnostics &) -> Result<void> {
+    UMOV_ASSIGN(folder, scale::JobFolder::open(*path));
+    return what(folder, *common);
+  }));
   return verb;
 }
 } // namespace umov::cli

@@ -1,4 +1,5 @@
 #include "console.h"
+#include "finishing.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -38,10 +39,7 @@ void add_band_list(CLI::App &bands, const Exit &exit_with) {
   auto output = std::make_shared<std::string>();
   add_table_output(*verb, *output);
   add_common(*verb, *common, true);
-  verb->callback([exit_with, common, output] {
-    const Result<void> done = list_bands(*output, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(exit_with, [common, output] { return list_bands(*output, *common); }));
 }
 
 void add_band_show(CLI::App &bands, const Exit &exit_with) {
@@ -57,10 +55,7 @@ void add_band_show(CLI::App &bands, const Exit &exit_with) {
       ->check(CLI::IsMember({"photon", "energy"}));
   add_table_output(*verb, o->output);
   add_common(*verb, *common, true);
-  verb->callback([exit_with, o, common] {
-    const Result<void> done = show_band(*o, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(exit_with, [o, common] { return show_band(*o, *common); }));
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "device_options.h"
+#include "finishing.h"
 #include "job_console.h"
 #include "tables.h"
 #include "verbs.h"
@@ -59,13 +60,9 @@ void add_bench(CLI::App &app, const Exit &exit_with) {
   add_table_output(*verb, o->output);
   add_columns(*verb, o->columns);
   add_common(*verb, *common, true);
-  verb->callback([o, common, exit_with] {
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = run_bench(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(stoppable(exit_with, common, [o, common](Diagnostics &diagnostics) {
+    return run_bench(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

@@ -1,4 +1,5 @@
 #include "console.h"
+#include "finishing.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -51,10 +52,7 @@ void add_brdf(CLI::App &app, const Exit &exit_with) {
   verb->add_flag("--terms", o->terms, "Add the parts of m00");
   add_table_output(*verb, o->output);
   add_common(*verb, *common, true);
-  verb->callback([o, common, exit_with] {
-    const auto done = run_brdf(*o, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(exit_with, [o, common] { return run_brdf(*o, *common); }));
 }
 
 } // namespace umov::cli

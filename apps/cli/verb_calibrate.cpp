@@ -1,4 +1,5 @@
 #include "console.h"
+#include "finishing.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -34,12 +35,8 @@ void add_calibrate(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--standards", o->standards, "Table of name, p_percent and pa_deg")->required();
   verb->add_option("-o,--output", o->output, "TOML file for umov reduce --calibration");
   add_common(*verb, *common, false);
-  verb->callback([=] {
-    Diagnostics diagnostics;
-    const auto done = run_calibrate(*o, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(
+      exit_with, common, [=](Diagnostics &diagnostics) { return run_calibrate(*o, diagnostics); }));
 }
 
 } // namespace umov::cli

@@ -2,6 +2,7 @@
 
 #include "completion.h"
 #include "console.h"
+#include "finishing.h"
 #include "man_page.h"
 #include "verbs.h"
 
@@ -16,13 +17,12 @@ void add_completion(CLI::App &app, const Exit &exit_with) {
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   verb->add_option("-o,--output", *output, "File instead of stdout");
-  verb->callback([&app, shell, output, exit_with] {
+  verb->callback(finishing(exit_with, [&app, shell, output] {
     const VerbFacts root = facts_of(app);
-    const auto done = put(*output, *shell == "bash"  ? bash_completion(root)
-                                   : *shell == "zsh" ? zsh_completion(root)
-                                                     : fish_completion(root));
-    exit_with(done ? 0 : report(done.error()));
-  });
+    return put(*output, *shell == "bash"  ? bash_completion(root)
+                        : *shell == "zsh" ? zsh_completion(root)
+                                          : fish_completion(root));
+  }));
 }
 
 void add_man(CLI::App &app, const Exit &exit_with) {
@@ -30,10 +30,8 @@ void add_man(CLI::App &app, const Exit &exit_with) {
       app.add_subcommand("man", "The manual page umov.1; read it with umov man | man -l -");
   auto output = std::make_shared<std::string>();
   verb->add_option("-o,--output", *output, "File instead of stdout");
-  verb->callback([&app, output, exit_with] {
-    const auto done = put(*output, man_page(facts_of(app)));
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(
+      finishing(exit_with, [&app, output] { return put(*output, man_page(facts_of(app))); }));
 }
 
 } // namespace umov::cli

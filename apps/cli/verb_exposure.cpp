@@ -1,3 +1,4 @@
+#include "finishing.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -55,11 +56,8 @@ void add_exposure(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--page", *page, "Also a page of figures: x.html");
   add_table_output(*verb, *output);
   add_common(*verb, *common, true);
-  verb->callback([=] {
-    const bool has_width = width->count() > 0;
-    const auto done = run_exposure(*o, has_width, *output, *page, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(
+      exit_with, [=] { return run_exposure(*o, width->count() > 0, *output, *page, *common); }));
 }
 
 } // namespace umov::cli

@@ -1,3 +1,4 @@
+#include "finishing.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -28,17 +29,11 @@ void add_instrument(CLI::App &app, const Exit &exit_with) {
   auto *listed = verb->add_subcommand("list", "Instruments that are compiled in");
   add_table_output(*listed, *output);
   add_common(*listed, *common, true);
-  listed->callback([=] {
-    const auto done = list(*output, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  listed->callback(finishing(exit_with, [=] { return list(*output, *common); }));
   auto *shown = verb->add_subcommand("show", "An instrument as TOML, to be changed and named");
   shown->add_option("name", *name, "Name or file")->required();
   shown->add_option("-o,--output", *output, "TOML file; default: stdout");
-  shown->callback([=] {
-    const auto done = show(*name, *output);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  shown->callback(finishing(exit_with, [=] { return show(*name, *output); }));
 }
 
 } // namespace umov::cli

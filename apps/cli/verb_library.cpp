@@ -1,6 +1,7 @@
 // umov library build.
 
 #include "device_options.h"
+#include "finishing.h"
 #include "job_console.h"
 #include "verbs.h"
 
@@ -55,13 +56,9 @@ void add_build(CLI::App &library, const Exit &exit_with) {
   add_device(*verb, o->common);
   verb->add_flag("-v,--verbose", o->common.verbose, "Also say what was done");
   add_common(*verb, o->common, true);
-  verb->callback([o, exit_with] {
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = build(*o, diagnostics);
-    report(diagnostics, o->common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  const std::shared_ptr<const Common> common(o, &o->common);
+  verb->callback(stoppable(exit_with, common,
+                           [o](Diagnostics &diagnostics) { return build(*o, diagnostics); }));
 }
 
 } // namespace

@@ -1,21 +1,12 @@
 #pragma once
 // Parts of `umov material` that stand in files of their own.
 
-#include "console.h"
-#include "verbs.h"
+#include "finishing.h"
 
 #include <memory>
 #include <umov/jobs/material_check.h>
 
 namespace umov::cli {
-
-/// What a verb does when it is called.
-template <class F> auto finishing(const Exit &exit_with, F run) {
-  return [exit_with, run] {
-    const Result<void> done = run();
-    exit_with(done ? 0 : report(done.error()));
-  };
-}
 
 /// `umov material check`.
 void add_check(CLI::App &material, const Exit &exit_with);

@@ -47,10 +47,7 @@ void add_plot(CLI::App &material, const Exit &exit_with) {
       ->capture_default_str();
   verb->add_option("-o,--output", o->output, "HTML file")->required();
   add_common(*verb, *common, false);
-  verb->callback([o, common, exit_with] {
-    const auto done = plot(*o, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(exit_with, [o, common] { return plot(*o, *common); }));
 }
 
 } // namespace umov::cli

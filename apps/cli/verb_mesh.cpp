@@ -1,4 +1,5 @@
 #include "console.h"
+#include "finishing.h"
 #include "verbs.h"
 
 #include "tables.h"
@@ -89,12 +90,9 @@ void add_convert(CLI::App &mesh, const Exit &exit_with) {
                    ".stl, .ply")
       ->required();
   add_common(*verb, *common, false);
-  verb->callback([options, common, output, exit_with] {
-    Diagnostics diagnostics;
-    const auto done = convert(*options, *output, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(exit_with, common, [options, common, output](Diagnostics &diagnostics) {
+    return convert(*options, *output, diagnostics);
+  }));
 }
 
 void add_look(CLI::App &mesh, const Exit &exit_with, bool check) {
@@ -107,10 +105,8 @@ void add_look(CLI::App &mesh, const Exit &exit_with, bool check) {
   if (check)
     verb->add_flag("--require-closed", options->require_closed, "Fail if the mesh is not closed");
   add_common(*verb, *common, true);
-  verb->callback([options, common, exit_with, check] {
-    const auto done = look(*options, *common, check);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(
+      finishing(exit_with, [options, common, check] { return look(*options, *common, check); }));
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 // umov mesh make: shapes of given sizes.
 
 #include "console.h"
+#include "finishing.h"
 #include "mesh_shapes.h"
 #include "verbs.h"
 
@@ -124,14 +125,11 @@ void add_mesh_make(CLI::App &mesh, const Exit &exit_with) {
   add_rough_surface(*verb, options->rough);
   verb->add_flag("--two-sided", options->two_sided, "Materials \"front\" and \"back\"");
   add_common(*verb, *common, false);
-  verb->callback([options, exit_with] {
-    if (options->shape == "chamfered-cube" && 2 * options->chamfer >= options->edge) {
-      exit_with(report(Error{ErrorCode::Usage, "--chamfer must be below half of --edge", {}}));
-      return;
-    }
-    const auto done = make(*options);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(exit_with, [options]() -> Result<void> {
+    if (options->shape == "chamfered-cube" && 2 * options->chamfer >= options->edge)
+      return fail(ErrorCode::Usage, "--chamfer must be below half of --edge");
+    return make(*options);
+  }));
 }
 
 } // namespace umov::cli

@@ -1,5 +1,6 @@
 #include "device_options.h"
 #include "doubtful_elements.h"
+#include "finishing.h"
 #include "folder_options.h"
 #include "job_console.h"
 #include "scale_job.h"
@@ -89,13 +90,9 @@ void add_observe(CLI::App &app, const Exit &exit_with) {
   auto o = std::make_shared<ObserveOptions>();
   auto common = std::make_shared<Common>();
   add_observe_options(*verb, *o, *common);
-  verb->callback([o, common, exit_with] {
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = run_observe(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(stoppable(exit_with, common, [o, common](Diagnostics &diagnostics) {
+    return run_observe(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

@@ -1,6 +1,7 @@
 // umov orbit ephemeris, umov orbit propagate: where objects stand.
 
 #include "doubtful_elements.h"
+#include "finishing.h"
 #include "job_console.h"
 #include "site_options.h"
 #include "tables.h"
@@ -73,13 +74,9 @@ void finish(CLI::App &verb, std::shared_ptr<OrbitOptions> o, Run run, const Exit
   auto common = std::make_shared<Common>();
   add_threads(verb, *common);
   add_common(verb, *common, true);
-  verb.callback([o, common, run, exit_with] {
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = run(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb.callback(stoppable(exit_with, common, [o, common, run](Diagnostics &diagnostics) {
+    return run(*o, *common, diagnostics);
+  }));
 }
 
 void add_ephemeris(CLI::App &orbit, const Exit &exit_with) {

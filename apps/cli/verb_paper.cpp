@@ -1,5 +1,6 @@
 // umov paper: the paper's figures and claims, remade.
 
+#include "finishing.h"
 #include "job_console.h"
 #include "progress_bar.h"
 #include "verbs.h"
@@ -62,9 +63,11 @@ Result<void> make(const PaperVerb &o, const Common &common) {
     bar.update(figures.size(), ids.size());
   }
   ManifestInput manifest = manifest_of_command(common, started);
-  UMOV_ASSIGN(files,
-              paper_files(figures, {fmt::format("Made by umov {} in {:.0f} s on {} threads.",
-                                                version, manifest.elapsed_s, manifest.threads)}));
+  const auto elapsed_s = [&] {
+    return std::chrono::duration<double>(std::chrono::system_clock::now() - started).count();
+  };
+  UMOV_ASSIGN(files, paper_files(figures, {fmt::format("Made by umov {} in {:.0f} s on {} threads.",
+                                                       version, elapsed_s(), manifest.threads)}));
   for (auto &[name, bytes] : files) {
     manifest.files.push_back(name);
     folder.add(name, std::move(bytes));
@@ -73,7 +76,7 @@ Result<void> make(const PaperVerb &o, const Common &common) {
   UMOV_TRY(folder.commit());
   if (!common.quiet)
     fmt::print("written to {} in {:.0f} s: index.html has it all\n",
-               printable(folder.path().string()), manifest.elapsed_s);
+               printable(folder.path().string()), elapsed_s());
   return judge(figures);
 }
 
@@ -90,11 +93,8 @@ void add_paper(CLI::App &app, const Exit &exit_with) {
   verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
-  verb->callback([o, common, exit_with] {
-    watch_interrupts();
-    const auto done = make(*o, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(
+      stoppable(exit_with, common, [o, common](Diagnostics &) { return make(*o, *common); }));
 }
 
 } // namespace umov::cli

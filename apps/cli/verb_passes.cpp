@@ -1,5 +1,6 @@
 // umov passes: when the objects of a file pass over a site.
 
+#include "finishing.h"
 #include "job_console.h"
 #include "passes_options.h"
 #include "scale_job.h"
@@ -53,13 +54,9 @@ void add_passes(CLI::App &app, const Exit &exit_with) {
   auto o = std::make_shared<PassesOptions>();
   auto common = std::make_shared<Common>();
   add_passes_options(*verb, *o, *common);
-  verb->callback([=] {
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = run_passes(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(stoppable(exit_with, common, [=](Diagnostics &diagnostics) {
+    return run_passes(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

@@ -1,5 +1,6 @@
 // umov period: how the brightness of a light curve repeats.
 
+#include "finishing.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -57,12 +58,9 @@ void add_period(CLI::App &app, const Exit &exit_with) {
   add_table_output(*verb, o->output);
   add_columns(*verb, o->columns);
   add_common(*verb, *common, true);
-  verb->callback([o, common, exit_with] {
-    Diagnostics diagnostics;
-    const auto done = run_period(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(exit_with, common, [o, common](Diagnostics &diagnostics) {
+    return run_period(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

@@ -1,3 +1,4 @@
+#include "finishing.h"
 #include "job_console.h"
 #include "tables.h"
 #include "verbs.h"
@@ -130,12 +131,9 @@ void add_reduce(CLI::App &app, const Exit &exit_with) {
   add_columns(*verb, o->columns);
   add_threads(*verb, *common);
   add_common(*verb, *common, true);
-  verb->callback([o, common, exit_with] {
-    Diagnostics diagnostics;
-    const auto done = run_reduce(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(finishing(exit_with, common, [o, common](Diagnostics &diagnostics) {
+    return run_reduce(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

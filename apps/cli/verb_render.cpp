@@ -1,5 +1,6 @@
 // umov render: the object as the observer sees it.
 
+#include "finishing.h"
 #include "job_console.h"
 #include "render_options.h"
 #include "site_options.h"
@@ -96,13 +97,9 @@ void add_render(CLI::App &app, const Exit &exit_with) {
   add_render_options(*verb, *o);
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
-  verb->callback([o, common, exit_with] {
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = run_render(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(stoppable(exit_with, common, [o, common](Diagnostics &diagnostics) {
+    return run_render(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

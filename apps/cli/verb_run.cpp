@@ -1,4 +1,5 @@
 #include "device_options.h"
+#include "finishing.h"
 #include "job_console.h"
 #include "run_console.h"
 #include "run_options.h"
@@ -76,13 +77,9 @@ void add_run(CLI::App &app, const Exit &exit_with) {
   verb->footer("Ended early, by Ctrl-C or a kill, the same command goes on where it was: finished "
                "rows are kept beside the folder, in NAME.rows.partial, until the run is complete.");
   add_run_options(*verb, *o, *common);
-  verb->callback([o, common, exit_with] {
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = run(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(stoppable(exit_with, common, [o, common](Diagnostics &diagnostics) {
+    return run(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

@@ -1,6 +1,7 @@
 // umov scale: jobs in parts, on one machine or many.
 
 #include "verb_scale.h"
+#include "finishing.h"
 
 #include "job_console.h"
 
@@ -38,21 +39,14 @@ void add_scale_plan(CLI::App &scale, const Exit &exit_with, bool begins) {
       ->check(CLI::Range(1, 10'000'000));
   add_common(*verb, *common, true);
   o->settings.cores = resolve_threads(0);
-  verb->callback([=] {
+  verb->callback(stoppable(exit_with, common, [=](Diagnostics &diagnostics) -> Result<void> {
     take_arguments(*verb, o->job);
-    watch_interrupts();
-    Diagnostics diagnostics;
-    auto done = Result<void>();
-    if (!begins) {
-      done = plan(*o, *common, diagnostics);
-    } else if (auto folder = folder_of(o->job, o->settings, *common, diagnostics); !folder) {
-      done = tl::unexpected(folder.error());
-    } else if (common->json) {
-      done = put("", scale::to_json(scale::plan_of(folder->lock(), o->settings)));
-    }
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+    if (!begins)
+      return plan(*o, *common, diagnostics);
+    UMOV_ASSIGN(folder, folder_of(o->job, o->settings, *common, diagnostics));
+    return common->json ? put("", scale::to_json(scale::plan_of(folder.lock(), o->settings)))
+                        : Result<void>();
+  }));
 }
 
 } // namespace

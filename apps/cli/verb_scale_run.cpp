@@ -1,5 +1,6 @@
 // umov scale run.
 
+#include "finishing.h"
 #include "job_console.h"
 #include "verb_scale.h"
 
@@ -111,14 +112,10 @@ void add_scale_run(CLI::App &scale, const Exit &exit_with) {
                    "umov[scale]");
   add_threads(*verb, *common);
   add_common(*verb, *common, false);
-  verb->callback([=] {
+  verb->callback(stoppable(exit_with, common, [=](Diagnostics &diagnostics) {
     take_arguments(*verb, o->job);
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = run_scale(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+    return run_scale(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

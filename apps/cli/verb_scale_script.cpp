@@ -1,5 +1,6 @@
 // umov scale script: a job in parts handed to a batch system.
 
+#include "finishing.h"
 #include "verb_scale.h"
 
 #include <algorithm>
@@ -52,14 +53,10 @@ void add_scale_script(CLI::App &scale, const Exit &exit_with) {
   verb->add_option("-o,--output", o->output, "File of the script, instead of stdout");
   o->settings.tasks = 10;
   add_common(*verb, *common, false);
-  verb->callback([=] {
+  verb->callback(stoppable(exit_with, common, [=](Diagnostics &diagnostics) {
     take_arguments(*verb, o->job);
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = write_script(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+    return write_script(*o, *common, diagnostics);
+  }));
 }
 
 } // namespace umov::cli

@@ -16,7 +16,8 @@ Result<void> work(const std::string &path, const Common &common) {
   UMOV_ASSIGN(folder, scale::JobFolder::open(path));
   const scale::JobLock &lock = folder.lock();
   if (!lock.instruction_set.empty() && !restrict_engine(lock.instruction_set))
-    return fail(ErrorCode::Device, "this machine has no " + lock.instruction_set +
+    return fail(ErrorCode::Device, "this machine, or what was built for it, has no " +
+                                       lock.instruction_set +
                                        ", which the job is held to. Leave it out.");
   std::error_code code;
   std::filesystem::current_path(lock.directory, code);

@@ -1,4 +1,5 @@
 #include "device_options.h"
+#include "finishing.h"
 #include "job_console.h"
 #include "scale_job.h"
 #include "signature_files.h"
@@ -58,15 +59,11 @@ void add_signature(CLI::App &app, const Exit &exit_with) {
       "With -o FILE and ended early, by Ctrl-C or a kill, the same command goes on where it "
       "was: finished rows are kept in FILE.rows.partial until the table is complete.");
   add_signature_options(*verb, *o, *common);
-  verb->callback([o, common, exit_with] {
-    if (const auto said = check_directions(*o); !said)
-      return exit_with(report(said.error()));
-    watch_interrupts();
-    Diagnostics diagnostics;
-    const auto done = run_signature(*o, *common, diagnostics);
-    report(diagnostics, *common);
-    exit_with(done ? 0 : report(done.error()));
-  });
+  verb->callback(
+      stoppable(exit_with, common, [o, common](Diagnostics &diagnostics) -> Result<void> {
+        UMOV_TRY(check_directions(*o));
+        return run_signature(*o, *common, diagnostics);
+      }));
 }
 
 } // namespace umov::cli

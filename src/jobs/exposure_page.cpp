@@ -72,7 +72,7 @@ Result<std::vector<PlotFigure>> frames(const ExposureSetup &s, const std::vector
 /// How long, against magnitude.
 Result<PlotFigure> times(const ExposureSetup &s) {
   PlotFigure out =
-      figure("How long until p is known", "magnitude (AB), above the air", "[s]", false);
+      figure("How long until p is known", "magnitude (AB), above the air", "time [s]", false);
   PlotLine whole = line(fmt::format("p to {:g}, all states together", s.request.sd_p), 0);
   PlotLine full = line("longest frame: the brightest pixel is full", 1);
   for (double mag = s.request.mag - 6; mag <= s.request.mag + 6; mag += 0.25) {

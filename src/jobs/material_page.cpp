@@ -242,8 +242,12 @@ Result<std::string> material_page(const MaterialPageRequest &request) {
   for (const Subject &s : subjects) {
     const Material &m = s.surface.material();
     title += (title.empty() ? "" : ", ") + s.name;
-    notes.push_back(fmt::format("{}: {}. {}{}", s.name, describe_polarization(m), m.description,
-                                m.assumed.empty() ? "" : " Assumed: " + m.assumed + "."));
+    const auto sentence = [](const std::string &text) {
+      return text.ends_with('.') ? text : text + ".";
+    };
+    notes.push_back(fmt::format("{}: {}. {}{}", s.name, describe_polarization(m),
+                                sentence(m.description),
+                                m.assumed.empty() ? "" : " Assumed: " + sentence(m.assumed)));
   }
   return make_plot_page(title, figures_of(subjects, request), notes);
 }

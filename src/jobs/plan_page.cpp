@@ -2,8 +2,10 @@
 #include "jobs/plan_tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <umov/core/text.h>
 #include <umov/io/plot_page.h>
 
@@ -45,6 +47,21 @@ std::vector<PlotFigure> pass_figures(const Plan &plan) {
   return out;
 }
 
+/// From the brightest to 12.5 magnitudes below it, or the faintest: light that fades out as the lit
+/// side turns away goes on for thirty decades, and nobody sees it.
+std::array<double, 2> span_of_light(const Plan &plan, const PlannedPass &pass, std::size_t band) {
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const Alternative &a : plan.alternatives)
+    for (const std::size_t e : pass.epochs)
+      if (const double i = a.light.i[e * plan.bands.size() + band]; i > 0) {
+        least = std::min(least, i);
+        most = std::max(most, i);
+      }
+  if (!(most > 0))
+    return {};
+  return {std::max(least, 1e-5 * most) / 1.5, most * 1.5};
+}
+
 /// The best pass under each alternative, in the band that stands for it: I and q.
 void add_light(std::vector<PlotFigure> &figures, const Plan &plan, std::size_t band) {
   const PlannedPass &pass = plan.passes.front();
@@ -54,6 +71,7 @@ void add_light(std::vector<PlotFigure> &figures, const Plan &plan, std::size_t b
   PlotFigure polarization{
       "Best pass: polarization in " + plan.bands[band], time, "q (scattering plane)", {}};
   light.has_log_y = true;
+  light.y_span = span_of_light(plan, pass, band);
   for (std::size_t n = 0; n < plan.alternatives.size(); ++n) {
     const Alternative &a = plan.alternatives[n];
     for (PlotFigure *figure : {&light, &polarization}) {

@@ -53,9 +53,20 @@ SkyTrack track_of(const Trajectory &orbit, const ObjectPass &found, const Passes
 }
 
 /// Its name, or where it is.
+/// The list of sites has names as they are typed ("kitt peak"), a title as they are written.
+std::string capitalised(std::string name) {
+  bool begins = true;
+  for (char &c : name) {
+    if (begins && c >= 'a' && c <= 'z')
+      c = static_cast<char>(c - 'a' + 'A');
+    begins = c == ' ';
+  }
+  return name;
+}
+
 std::string place_of(const Site &site) {
   if (!site.name.empty())
-    return site.name;
+    return capitalised(site.name);
   const double latitude = site.latitude.degrees(), longitude = site.longitude.degrees();
   return fmt::format("{:.3f} {}, {:.3f} {}, {:.0f} m", std::abs(latitude), latitude < 0 ? "S" : "N",
                      std::abs(longitude), longitude < 0 ? "W" : "E", site.altitude_m);

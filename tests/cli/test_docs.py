@@ -22,6 +22,26 @@ def test_every_convention_names_a_test_that_exists():
                 assert re.search(rf"TEST(_F|_P)?\(\s*{suite},\s*{case}\)", sources), name
 
 
+def test_the_tour_of_the_readme(tmp_path):
+    """Every line in its order, in a folder that looks like a clone after ./demo. What takes minutes does a part of its work."""
+    tour = re.search(r"^## A tour\n.*?```\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL | re.MULTILINE).group(1)
+    for whole, part in (("--poses 1000000", "--poses 3000"), ("umov bench ", "umov bench --only flat --seconds 0.05 --geometries 2 "),
+                        ("umov paper ", "umov paper --only fig2 "), ("--frames 40", "--frames 2"),
+                        ("observe_hst.toml ", "observe_hst.toml --set time.start=2018-01-21T05:10:00Z --set time.stop=2018-01-21T05:10:20Z ")):
+        assert tour.count(whole) == 1, whole
+        tour = tour.replace(whole, part)
+    for name in ("data", ".deps", "examples"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    (tmp_path / "build/release/apps/cli").mkdir(parents=True)
+    (tmp_path / "build/release/apps/cli/umov").symlink_to(UMOV)
+    done = subprocess.run(["bash", "-c", f"set -e\n{tour}"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert re.fullmatch(r"Length = \d\d+ rows", done.stdout.splitlines()[-1].strip()), done.stdout  # astropy's table
+    for made in ("out/agena_maui/report.html", "poses.fits", "hst.csv", "hst.json", "6u.obj", "hst.glb", "gallery.html", "pass.png",
+                 "stokes.html", "exposure.html", "out/paper/index.html"):
+        assert (tmp_path / made).stat().st_size > 0, made
+
+
 def test_my_satellite_in_five_steps(tmp_path):
     """Every block of the page, in one shell, from a folder that looks like the project's."""
     blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "docs/my_satellite.md").read_text(), re.DOTALL)

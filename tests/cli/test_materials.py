@@ -1,6 +1,7 @@
 """Materials: the library, its laws, its tables and what a scenario may say of a surface."""
 import json
 import math
+import re
 
 import pytest
 
@@ -206,6 +207,7 @@ def test_plots_are_a_page_without_network(umov, tmp_path):
     assert done.code == 0, done.err
     text = (tmp_path / "p.html").read_text()
     assert "Q/I of one reflection" in text and "Colour ratio" in text and "paper_au" in text
+    assert re.search(r"cell_gaas: [^<]*[^.]\. Assumed: ", text)
     page = text.split("<script>")[0] + text.rsplit("<script>", 1)[1]  # without the drawing library
     assert "http" not in page and "@import" not in page and "fetch(" not in page
     assert umov("material", "plot", "paper_au", "-o", "p.png").code == 2

@@ -1,4 +1,5 @@
 """Pages as their readers see them: opened from disk in a browser without network, each figure drawn, none too wide for a phone."""
+import json
 import subprocess
 
 import pytest
@@ -103,3 +104,29 @@ def test_a_figure_that_fails_is_found(pages, browser):
     (pages / "slip.html").write_text(text.replace(guard, "row.isLimit(band, i)").replace("at: (i) => row.isLimit &&", "at: (i) => row.span &&"))
     with browser.opened(pages / "slip.html") as tab:
         assert "q and u against time" in {figure["title"] for figure in tab.seen()["figures"] if not is_drawn(figure)}
+
+
+def value_of(tab, expression):
+    found = tab.ask("Runtime.evaluate", expression=f"JSON.stringify({expression})")
+    assert "exceptionDetails" not in found, found
+    return json.loads(found["result"]["value"])
+
+
+def test_a_figure_as_wide_as_the_window_fits_on_paper(pages, browser):
+    """What a browser says before and after it prints; A4 within margins of 12 mm has 703 px, and a card its padding."""
+    widths = '[...document.querySelectorAll(".plot")].map((plot) => plot._fullLayout.width)'
+    with browser.opened(pages / "paper/index.html") as tab:
+        tab.seen(1400)
+        before = value_of(tab, widths)
+        assert before and min(before) > 1000
+        assert max(value_of(tab, f'(window.dispatchEvent(new Event("beforeprint")), {widths})')) <= 660
+        assert value_of(tab, f'(window.dispatchEvent(new Event("afterprint")), {widths})') == before
+
+
+def test_light_that_fades_out_leaves_the_rest_tall(pages, browser):
+    """As the lit side turns away light falls by dozens of decades, of which five are drawn."""
+    with browser.opened(pages / "plan/report.html") as tab:
+        tab.seen(1400)
+        ranges = value_of(tab, """[...document.querySelectorAll(".plot")].filter((plot) => plot.parentElement.querySelector("h2")
+                                      .textContent.startsWith("Best pass: brightness")).map((plot) => plot._fullLayout.yaxis.range)""")
+        assert len(ranges) == 3 and all(0 < top - bottom < 5.5 for bottom, top in ranges), ranges

@@ -137,6 +137,7 @@ def test_glints_of_a_spinning_plate_stand_in_the_run(umov, scenario, tmp_path):
         assert any(abs((time - t).sec) <= w for t, w in zip(times, widths)), time
     page = (tmp_path / "sky.html").read_text()
     data = json.loads(re.search(r'id="data">(.*?)</script>', page).group(1))
+    assert "Passes over Maui" in page
     track, = data["tracks"]
     # Hundredths of a degree: the track rises at the altitude limit and reaches the table's culmination.
     assert track["alt100"][0] == pytest.approx(1000, abs=2) and track["id"] == found["pass_id"]

@@ -1,6 +1,7 @@
 #pragma once
 // The output folder of a run: complete or not there.
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -66,7 +67,9 @@ struct ManifestInput {
   unsigned threads = 1;
   std::vector<std::string> command_line;
   std::string started_utc; ///< clock time given by the caller
-  double elapsed_s = 0;
+  /// When the command began: elapsed_s counts from then until the manifest is made, which comes
+  /// after tables and pages.
+  std::chrono::system_clock::time_point started = std::chrono::system_clock::now();
   std::vector<std::string> warnings;
   std::string stopped; ///< why the run ended early; "" = complete
   /// How an object was lit: what was really used, not what was asked.

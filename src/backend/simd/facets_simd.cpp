@@ -48,7 +48,7 @@ bool choose_instruction_set(InstructionSet set) {
     return 0;
   };
   hwy::SetSupportedTargetsForTest(0); // all that the machine has
-  const std::int64_t wanted = of(set) & (hwy::SupportedTargets() | HWY_STATIC_TARGET);
+  const std::int64_t wanted = of(set) & HWY_TARGETS & (hwy::SupportedTargets() | HWY_STATIC_TARGET);
   if (set != InstructionSet::Best && wanted == 0)
     return false;
   hwy::SetSupportedTargetsForTest(wanted);

@@ -397,7 +397,8 @@ std::string make_manifest(const ManifestInput &input) {
   if (!input.stopped.empty())
     out["stopped"] = input.stopped;
   out["started_utc"] = input.started_utc;
-  out["elapsed_s"] = input.elapsed_s;
+  out["elapsed_s"] =
+      std::chrono::duration<double>(std::chrono::system_clock::now() - input.started).count();
   out["seed"] = input.seed;
   out["threads"] = input.threads;
   out["light"] = nlohmann::ordered_json::array();

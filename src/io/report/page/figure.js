@@ -64,7 +64,7 @@ const umovFigure = (() => {
       autosize: true,
       margin: { l: 60, r: 12, t: 10, b: 60 + 17 * Math.ceil(lines.length / 3) },
       xaxis: axis(figure.x, { ...(figure.xlog ? { type: "log", exponentformat: "power" } : {}), ...(figure.xspan ? { range: figure.xspan } : {}) }),
-      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power", ...(figure.log ? { nticks: 6 } : {}), ...(figure.yspan ? { range: figure.yspan } : {}) }),
+      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power", ...(figure.log ? { nticks: 6 } : {}), ...(figure.yspan ? { range: figure.log ? figure.yspan.map(Math.log10) : figure.yspan } : {}) }),
       legend: legend(), ...ground(),
     }, options(figure));
     if (plot.isWatched) return;
@@ -81,11 +81,24 @@ const umovFigure = (() => {
   const drawn = [];
   const drawAll = () => drawn.forEach(([plot, figure]) => draw(plot, figure));
   isDark.addEventListener("change", drawAll);
+  // Paper is narrower than a window, and who observes sizes does not hear of it.
+  const paperWidth = 640, narrowed = new Set();
+  const fitPaper = () => drawn.forEach(([plot]) => {
+    if (!plot.layout || plot.clientWidth <= paperWidth) return;
+    narrowed.add(plot);
+    Plotly.relayout(plot, { width: paperWidth });
+  });
+  const fitWindow = () => {
+    for (const plot of narrowed) Plotly.relayout(plot, { width: null, autosize: true });
+    narrowed.clear();
+  };
   for (const [event, value] of [["beforeprint", true], ["afterprint", false]])
     window.addEventListener(event, () => {
-      if (!isDark.matches) return;
-      isPrinting = value;
-      drawAll();
+      if (isDark.matches) {
+        isPrinting = value;
+        drawAll();
+      }
+      (value ? fitPaper : fitWindow)();
     });
   return (plot, figure) => {
     drawn.push([plot, figure]);

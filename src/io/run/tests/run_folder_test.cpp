@@ -72,6 +72,18 @@ TEST(Manifest, TakesNamesThatAreNotUtf8) {
   EXPECT_NE(make_manifest(input).find("caf\xEF\xBF\xBD.toml"), std::string::npos);
 }
 
+// Pages take most of a short run's time, and the manifest is made after them.
+TEST(Manifest, CountsUntilItIsMade) {
+  ManifestInput input;
+  input.started -= std::chrono::seconds(100);
+  const std::string text = make_manifest(input), key = "\"elapsed_s\": ";
+  const std::size_t at = text.find(key);
+  ASSERT_NE(at, std::string::npos);
+  const double elapsed_s = std::stod(text.substr(at + key.size()));
+  EXPECT_GE(elapsed_s, 100);
+  EXPECT_LT(elapsed_s, 160); // as long as a busy machine may take for it
+}
+
 TEST_F(RunFolderTest, NothingIsLeftWithoutCommit) {
   {
     auto folder = RunFolder::open(base_ / "out", false);
