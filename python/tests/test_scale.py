@@ -1,7 +1,9 @@
 """Jobs in parts on a Dask cluster. Skipped, saying so, where Dask is not installed."""
+import contextlib
 import json
 import os
 import pathlib
+import pickle
 import signal
 import stat
 import subprocess
@@ -147,7 +149,7 @@ child.stdin.close()
 
 
 def test_poison_is_told_and_the_others_are_done(scene, tmp_path):
-    """One shard crashes its process, one hangs: three trials each, and 18 of 20 are there."""
+    """One shard crashes its process, one hangs: three trials and two, and 18 of 20 are there."""
     program = wrapper(tmp_path, "if index == 3: os.kill(os.getpid(), signal.SIGSEGV)\n"
                                 "    if index == 7: time.sleep(1000)")
     begin = time.monotonic()
@@ -157,7 +159,7 @@ def test_poison_is_told_and_the_others_are_done(scene, tmp_path):
     result = umov.scale.Result("out")
     assert result.missing == [3, 7]
     assert [(one["index"], one["code"], one["attempts"]) for one in result.failed] == \
-        [(3, 128 + signal.SIGSEGV, 3), (7, 128 + signal.SIGKILL, 3)]
+        [(3, 128 + signal.SIGSEGV, 3), (7, 128 + signal.SIGKILL, 2)]
     again = umov.scale.run(None, "out")
     assert not again.missing and not again.failed
     assert merged_bytes(again) == plain_bytes(job_of(scene))
@@ -177,6 +179,65 @@ def test_ctrl_c_then_the_printed_command(scene):
     assert 0 < len(umov.scale.Result("out").files) < 200
     done = umov.scale.run(None, "out")
     assert merged_bytes(done) == plain_bytes(job)
+
+
+def test_a_scheduler_that_is_killed_ends_the_client_with_the_way_on(scene, tmp_path):
+    """Kill -9 of a scheduler of its own: within ten seconds the resume command is told, and what was finished is there."""
+    job, file = job_of(scene, 4000), tmp_path / "scheduler.json"
+    subprocess.run([UMOV, "scale", "lock", "-q", "--per-shard", "20", "out", *job.words], check=True)
+
+    def dask(what, *words):
+        program = f"from distributed.cli.dask_{what} import main; main()"
+        return subprocess.Popen([sys.executable, "-c", program, "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file", file, *words],
+                                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    scheduler = dask("scheduler", "--port", "0")
+    while not file.exists():
+        time.sleep(0.05)
+    worker = dask("worker", "--nthreads", "1", "--local-directory", tmp_path)
+    ended = []
+
+    def kill():
+        while len(list(pathlib.Path("out/shards").iterdir())) < 3:
+            time.sleep(0.05)
+        scheduler.kill()
+        ended.append(time.monotonic())
+
+    thread = threading.Thread(target=kill, daemon=True)
+    thread.start()
+    try:
+        with pytest.raises(umov.DeviceError, match="umov scale run .*out goes on"):
+            umov.scale.run(None, "out", cluster=json.loads(file.read_text())["address"])
+        assert time.monotonic() - ended[0] < 10
+    finally:
+        for process in (scheduler, worker):
+            process.kill()
+            process.wait()
+    there = {path.name for path in umov.scale.Result("out").files}
+    assert 3 <= len(there) < 200
+    done = umov.scale.run(None, "out")
+    assert there <= {path.name for path in done.files} and merged_bytes(done) == plain_bytes(job)
+
+
+def test_no_file_of_a_folder_is_unpickled(scene, tmp_path):
+    """A pickle that would make a file when it is loaded, in place of each file: told, or left alone."""
+
+    class Trap:
+        def __reduce__(self):
+            return os.mkdir, (str(tmp_path / "sprung"),)
+
+    result = umov.scale.run(job_of(scene, 40), "out", per_shard=20)
+    (result.folder / "failed/00000001.json").write_text("{}")
+    for file in [path for path in result.folder.rglob("*") if path.is_file()]:
+        whole = file.read_bytes()
+        file.write_bytes(pickle.dumps(Trap()))
+        for call in (lambda: umov.scale.Result("out").rows()["intensity"], lambda: umov.scale.Result("out").merge("merged.csv"),
+                     lambda: umov.scale.Result("out").failed, lambda: umov.scale.run(None, "out", cluster="local:1")
+                     if file.name == "job.json" else None):
+            with contextlib.suppress(umov.Error, ValueError):
+                call()
+            assert not (tmp_path / "sprung").exists(), file
+        file.write_bytes(whole)
 
 
 def test_a_second_client_is_refused(scene):

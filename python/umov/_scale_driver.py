@@ -93,38 +93,35 @@ class Driver:
 
     def __init__(self, result: Result, cluster: Cluster, threads: int, timeout_s: float | None, quiet: bool) -> None:
         lock = result.lock
-        predicted = lock["predicted"]["setup_cpu_s"] + lock["predicted"]["cpu_s"] * lock["per_shard"]
+        predicted = lock["predicted"]
+        shard_s = predicted["setup_cpu_s"] + predicted.get("once_cpu_s", 0.0) + predicted["cpu_s"] * lock["per_shard"]
         self.result, self.cluster, self.quiet = result, cluster, quiet
         self.do = do_shard_of_store if is_url(result.folder) else do_shard
-        self.arguments = (result._umov, str(result.folder), threads, timeout_s or max(60.0, 10 * predicted))
+        self.arguments = (result._umov, str(result.folder), threads, timeout_s or max(60.0, 10 * shard_s))
         self.todo = iter(result.missing)
         self.futures: dict[str, Any] = {}
         self.ended: queue.Queue[Any] = queue.Queue()
         self.left = len(result.missing)
         self.done = self.failed = self.lost = 0
         self.known: set[str] = set()
-        self.told = self.looked = time.monotonic()
+        self.began = self.told = self.looked = time.monotonic()
         self.stopped: Error | Interrupted | None = None
         self.stopped_at = 0.0
         self.resume = (f"umov.scale.run(None, \"{result.folder}\", cluster=...) goes on." if is_url(result.folder) else
                        f"umov scale run {result.folder} goes on.")
 
     def run(self) -> None:
-        self._submit(max(200, 4 * len(self.cluster.workers())))
+        window = max(200, 4 * len(self.cluster.workers()))
+        self._submit(window)
         while self.futures:
             try:
                 self._watch()
-                try:
-                    future = self.ended.get(timeout=0.5)
-                except queue.Empty:
-                    if self.stopped and time.monotonic() - self.stopped_at > _PATIENCE_S:
-                        break
-                    continue
-                if self.futures.pop(future.key, None) is None:
-                    continue  # it was taken back
-                self._take(future)
-                if not self.stopped:
-                    self._submit(1)
+                if not self._take_what_ended() and self.stopped and time.monotonic() - self.stopped_at > _PATIENCE_S:
+                    break
+                # Several at once: each message costs the scheduler as much as a task, and nobody is idle meanwhile.
+                free = window - len(self.futures)
+                if not self.stopped and free >= window // 8:
+                    self._submit(free)
             except KeyboardInterrupt:
                 if self.stopped:
                     break
@@ -132,15 +129,33 @@ class Driver:
         if self.stopped:
             raise type(self.stopped)(f"{str(self.stopped).rstrip('.')}. {self.resume}")
 
+    def _take_what_ended(self) -> bool:
+        """All of it; waits half a second for the first."""
+        try:
+            ended = [self.ended.get(timeout=0.5)]
+        except queue.Empty:
+            return False
+        while not self.ended.empty():
+            ended.append(self.ended.get())
+        for future in ended:
+            if self.futures.pop(future.key, None) is not None:  # else it was taken back
+                self._take(future)
+        return True
+
     def _submit(self, count: int) -> None:
-        for _, index in zip(range(count), self.todo):
-            # No two clients' tasks of one name: what a second one asks for is its own.
-            future = self.cluster.client.submit(self.do, index, *self.arguments, pure=False,
-                                                key=f"umov-{self.result.lock['key']}-{index}-{os.getpid()}")
+        indices = [index for _, index in zip(range(count), self.todo)]
+        if not indices:
+            return
+        # No two clients' tasks of one name: what a second one asks for is its own.
+        keys = [f"umov-{self.result.lock['key']}-{index}-{os.getpid()}" for index in indices]
+        same = [[one] * len(indices) for one in self.arguments]
+        for future in self.cluster.client.map(self.do, indices, *same, pure=False, key=keys):
             self.futures[future.key] = future
             future.add_done_callback(self.ended.put)
 
     def _take(self, future: Any) -> None:
+        if self._scheduler_is_gone():
+            return
         if future.status != "finished":
             why = future.exception() if future.status == "error" else future.status
             self._stop(DeviceError(f"Dask lost a shard ({why})"))
@@ -169,6 +184,8 @@ class Driver:
         if self.stopped:
             return
         self.stopped, self.stopped_at = why, time.monotonic()
+        if not self.futures:
+            return
         try:
             running = {key for keys in self.cluster.client.processing().values() for key in keys}
             waiting = [future for key, future in self.futures.items() if key not in running]
@@ -178,15 +195,21 @@ class Driver:
         except Exception:  # noqa: BLE001  a scheduler that is gone has nothing that could be taken back
             self.futures.clear()
 
+    def _scheduler_is_gone(self) -> bool:
+        """Its client looks for it half a minute, and all that it is asked meanwhile waits; the tasks are lost at once."""
+        if self.cluster.client.status == "running":
+            return False
+        self.futures.clear()
+        self._stop(DeviceError("the Dask scheduler is gone; finished shards are kept"))
+        return True
+
     def _watch(self) -> None:
         """Once in two seconds: does the scheduler live, do workers live long enough, is it time for a line."""
         now = time.monotonic()
         if now - self.looked < 2:
             return
         self.looked = now
-        if self.cluster.client.status not in ("running", "connecting"):
-            self.futures.clear()
-            self._stop(DeviceError("the Dask scheduler is gone; finished shards are kept"))
+        if self._scheduler_is_gone():
             return
         workers = self.cluster.workers()
         self.lost += len(self.known - workers)
@@ -198,7 +221,9 @@ class Driver:
                   "are needed.", file=sys.stderr, flush=True)
         if not self.quiet and now - self.told > 5:
             self.told = now
-            print(f"shards {self.done} of {self.left}, {self.failed} failed, {len(workers)} workers", file=sys.stderr,
+            ended = self.done + self.failed
+            left = f", about {(now - self.began) * (self.left - ended) / ended:.0f} s left" if ended else ""
+            print(f"shards {self.done} of {self.left}, {self.failed} failed, {len(workers)} workers{left}", file=sys.stderr,
                   flush=True)
 
 

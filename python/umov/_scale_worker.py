@@ -9,6 +9,10 @@ import threading
 from typing import Any
 
 
+#: Of a shard that ends its process, and of one that hangs: each of those costs ten times what it should have taken.
+_ATTEMPTS, _ATTEMPTS_AT_HANGS = 3, 2
+
+
 class _Server:
     """A process of the command that does shards; ends with this one, as its standard input does."""
 
@@ -63,7 +67,7 @@ def do_shard(index: int, program: str, folder: str, threads: int, timeout_s: flo
     """One shard, in a Dask worker. Never raises: what went wrong is in the record."""
     key = (program, folder, threads)
     why: dict[str, Any] = {}
-    for attempt in range(1, 4):
+    for attempt in range(1, _ATTEMPTS + 1):
         with _idle_lock:
             server = _idle[key].pop() if _idle.get(key) else None
         try:
@@ -82,4 +86,6 @@ def do_shard(index: int, program: str, folder: str, threads: int, timeout_s: flo
                    f"its process was ended by signal {-code}" if code < 0 else f"its process ended with {code}")
         why = {"index": index, "status": "failed", "code": 128 - code if code < 0 else code, "message": message,
                "attempts": attempt}
+        if line is None and attempt >= _ATTEMPTS_AT_HANGS:
+            break
     return why

@@ -53,7 +53,7 @@ class Rows:
     def __init__(self, files: Sequence[pathlib.Path], table: str) -> None:
         self.files, self.table = list(files), table
         self._heads: dict[int, dict[str, Any]] = {}
-        self._starts: list[int] | None = None
+        self._places: tuple[Any, Any, Any] | None = None
         if not self.files:
             raise InputError("no shard is there")
         head = self._head(0)
@@ -70,13 +70,19 @@ class Rows:
         return self._heads[file]
 
     @property
-    def _blocks(self) -> list[tuple[int, int, int]]:
-        return [(f, b, block["rows"]) for f in range(len(self.files)) for b, block in enumerate(self._head(f)["blocks"])]
+    def _blocks(self) -> tuple[Any, Any, Any]:
+        """Of each block its file, its number there and the first of its rows; of the last also their end."""
+        if self._places is None:
+            all_ = [(f, b, block["rows"]) for f in range(len(self.files)) for b, block in enumerate(self._head(f)["blocks"])]
+            files, numbers, rows = np.array(all_, dtype=np.int64).reshape(-1, 3).T
+            self._places = files, numbers, np.concatenate([[0], np.cumsum(rows)])
+        return self._places
 
     @property
     def lengths(self) -> list[int]:
         """Rows of each block."""
-        return [rows for _, _, rows in self._blocks]
+        lengths: list[int] = np.diff(self._blocks[2]).tolist()
+        return lengths
 
     def __len__(self) -> int:
         return sum(self._head(f)["rows"] for f in range(len(self.files)))
@@ -91,8 +97,8 @@ class Rows:
         column
             Its name.
         """
-        file, block, _ = self._blocks[number]
-        return self._read(file, block, column)
+        files, numbers, _ = self._blocks
+        return self._read(int(files[number]), int(numbers[number]), column)
 
     def _read(self, file: int, block: int, column: str) -> Any:
         if column not in self._kinds:
@@ -116,7 +122,7 @@ class Rows:
 
     def __getitem__(self, column: str) -> Any:
         """A whole column in memory."""
-        return np.concatenate([self._read(f, b, column) for f, b, _ in self._blocks])
+        return np.concatenate([self.block(k, column) for k in range(len(self._blocks[0]))])
 
     def row(self, number: int) -> dict[str, Any]:
         """One row: only its cells are fetched.
@@ -126,12 +132,29 @@ class Rows:
         number
             From 0.
         """
-        if self._starts is None:
-            self._starts = np.concatenate([[0], np.cumsum(self.lengths)]).tolist()
-        if not 0 <= number < self._starts[-1]:
-            raise UsageError(f"row {number}: there are {self._starts[-1]}")
-        block = int(np.searchsorted(self._starts, number, side="right")) - 1
-        return {name: self.block(block, name)[number - self._starts[block]] for name in self.columns}
+        starts = self._blocks[2]
+        if not 0 <= number < starts[-1]:
+            raise UsageError(f"row {number}: there are {starts[-1]}")
+        block = int(np.searchsorted(starts, number, side="right")) - 1
+        files, numbers, _ = self._blocks
+        about = self._head(int(files[block]))["blocks"][int(numbers[block])]
+        with self.files[int(files[block])].open("rb", buffering=0) as shard:
+            return {name: self._cell(shard.fileno(), about["columns"][k], self._kinds[name], int(number - starts[block]))
+                    for k, name in enumerate(self.columns)}
+
+    @staticmethod
+    def _cell(file: int, place: dict[str, int], kind: str, row: int) -> Any:
+        """One cell of a column, read by itself; of texts its own alone."""
+        width = np.dtype(_TYPES[kind]).itemsize
+        value = np.frombuffer(os.pread(file, width, place["at"] + width * row), _TYPES[kind])[0]
+        if kind == "bool":
+            return np.bool_(value)
+        if kind != "text":
+            return value
+        before = 1 if value else 0  # the end of the text before, where there is one
+        ends = struct.unpack(f"<{1 + before}Q", os.pread(file, 8 + 8 * before, place["ends"] + 8 * (int(value) - before)))
+        begin = ends[0] if before else 0
+        return os.pread(file, ends[-1] - begin, place["words"] + begin).decode()
 
     def blocks(self, columns: Sequence[str] | None = None) -> Iterator[dict[str, Any]]:
         """Block after block: memory does not grow with their number.
@@ -141,8 +164,9 @@ class Rows:
         columns
             Those wanted; by default all.
         """
-        for file, block, _ in self._blocks:
-            yield {name: self._read(file, block, name) for name in columns or self.columns}
+        for file in range(len(self.files)):
+            for block in range(len(self._head(file)["blocks"])):
+                yield {name: self._read(file, block, name) for name in columns or self.columns}
 
     def to_arrow(self) -> Any:
         """All rows as a pyarrow table; texts as dictionaries, units in the fields."""
