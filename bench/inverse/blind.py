@@ -2,8 +2,10 @@
 """Blind recovery of attitudes and spins: truth by rays on a finer tessellation, noise of photons, `umov invert pose` or `spin` on
 the coarser mesh. Prints one line per curve and the summary.
 
-usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--only TRIAL] [--umov PATH] [options of umov invert]
-OBJECT: agena, hst, box-wing or cubesat. --spin: the body turns about a random axis; the search is told its period to 1 %."""
+usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--wrong 1] [--only TRIAL] [--umov PATH] [options of umov invert]
+OBJECT: agena, hst, box-wing or cubesat. --spin: the body turns about a random axis; the search is told its period to 1 %.
+--wrong 1: the true object is another one than the one that is fitted: slopes of each material's lobe are 20 % off (normal, ln), reflectances of
+paints 10 %, haze 30 %, lengths along each axis of the mesh 2.5 % (areas 3.5 %); other numbers are parts or multiples of that."""
 import argparse
 import json
 import math
@@ -13,6 +15,7 @@ import statistics
 import subprocess
 import tempfile
 import time
+import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MATERIALS = {
@@ -151,6 +154,7 @@ def main():
     parser.add_argument("--snr", type=float, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--spin", type=float)
+    parser.add_argument("--wrong", type=float, default=0)
     parser.add_argument("--only", type=int, help="of the trials, this one alone (the others' curves are made, for the same noise)")
     parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
@@ -170,14 +174,57 @@ def inertial(q):
     return f'mode = "inertial", quaternion = [{q[0]}, {q[1]}, {q[2]}, {q[3]}]'
 
 
+def in_toml(value):
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{k} = {in_toml(v)}" for k, v in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(in_toml, value)) + "]"
+    return json.dumps(value)
+
+
+def other_material(name, much, rng):
+    """A material of the library, a little off, as a table of a scenario."""
+    table = tomllib.loads((ROOT / f"data/materials/{name}.toml").read_text())["material"][name]
+    slope = math.exp(0.2 * much * rng.gauss(0, 1))
+    for key, power in (("alpha", 1), ("m", -2), ("nu", -2), ("nv", -2)):
+        if key in table.get("distribution", {}):
+            table["distribution"][key] *= slope**power
+    if "reflectance" in table.get("body", {}):
+        table["body"]["reflectance"] = min(0.95, table["body"]["reflectance"] * math.exp(0.1 * much * rng.gauss(0, 1)))
+    haze = table.get("haze", {})
+    for key in ("share", "albedo"):
+        if key in haze:
+            haze[key] *= math.exp(0.3 * much * rng.gauss(0, 1))
+    haze.pop("range", None)
+    return f"[material.true_{name}]\n" + "\n".join(f"{k} = {in_toml(v)}" for k, v in table.items()) + "\n"
+
+
+def other_object(o, trial, scenario, mesh, path):
+    """The scenario with materials and a mesh that are a little off."""
+    rng = random.Random(f"{o.seed} wrong {trial}")
+    names = sorted(set(MATERIALS[o.object].values()))
+    for name in names:
+        scenario = scenario.replace(f'"{name}"', f'"true_{name}"')
+    factor = [math.exp(0.025 * o.wrong * rng.gauss(0, 1)) for _ in range(3)]
+    lines = mesh.read_text().splitlines()
+    for k, line in enumerate(lines):
+        if line.startswith("v "):
+            lines[k] = "v " + " ".join(f"{float(x) * f:.9g}" for x, f in zip(line.split()[1:], factor))
+    path.write_text("\n".join(lines) + "\n")
+    return scenario.replace(str(mesh), str(path)) + "".join(other_material(name, o.wrong, rng) for name in names)
+
+
 def make_curve(o, work, meshes, trial, law, step, rng):
     """Scenarios of truth and fit, and what an observer has of the truth; returns its rows."""
     materials = "\n".join(f'{k} = "{v}"' for k, v in MATERIALS[o.object].items())
     for mesh, method, out, attitude, name in ((meshes[1], "rays", "truth", law, "true.toml"),
                                               (meshes[0], "masks", "fit", inertial([1, 0, 0, 0]), "fit.toml")):
-        (work / name).write_text(SCENARIO.format(seed=o.seed + trial, name=o.object, root=ROOT, mesh=mesh, law=attitude, step=step,
-                                                 materials=materials, method=method, out=work / out))
-    run(o.umov, "run", work / "true.toml", "-o", work / "truth", "-q")
+        text = SCENARIO.format(seed=o.seed + trial, name=o.object, root=ROOT, mesh=mesh, law=attitude, step=step, materials=materials,
+                               method=method, out=work / out)
+        if o.wrong and out == "truth":
+            text = other_object(o, trial, text, mesh, work / "wrong.obj")
+        (work / name).write_text(text)
+    run(o.umov, "run", work / "true.toml", "-o", work / "truth", "--force", "-q")
     rows = rows_of(work / "truth/lightcurve.csv")
     observed(rows, o.snr, rng, work / "obs.csv")
     return rows

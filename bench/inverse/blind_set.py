@@ -5,6 +5,7 @@
 Prints a line a curve; writes the table, with what made it in its header.
 
 usage: blind_set.py [--counts] [--each 20] [--seed 60] [--kinds pose,spin] [--objects cubesat,agena] [--snr 20] [-o FILE] [--umov PATH] [--work DIR]
+                    [options of umov invert]
 --snr: of I, in the median of the lit sets: the telescope is made as large as that takes, its focal ratio kept. Without it: 28 cm.
 --counts: `umov invert` has the counts themselves, not what `umov reduce` made of them.
 --work: what was observed is kept there and taken again by the next run."""
@@ -85,7 +86,7 @@ class Chain:
 
     def ask(self, *words):
         began = time.time()
-        done = subprocess.run([str(self.o.umov), *map(str, words), "-o", str(self.work / "answer"), "--force", "--json"],
+        done = subprocess.run([str(self.o.umov), *map(str, words), *self.o.rest, "-o", str(self.work / "answer"), "--force", "--json"],
                               capture_output=True, text=True)
         if done.returncode not in (0, 4):
             return {"verdict": "refused", "note": done.stderr.strip().splitlines()[-1][:100] if done.stderr else ""}, time.time() - began
@@ -138,7 +139,7 @@ def main():
     parser.add_argument("--umov", default=blind.ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path)
-    o = parser.parse_args()
+    o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert
     work = o.work or pathlib.Path(tempfile.mkdtemp())
     work.mkdir(parents=True, exist_ok=True)
     chain, names, lines = Chain(o, work), o.objects.split(","), []

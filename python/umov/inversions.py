@@ -8,6 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple, Union
 
+import numpy as np
+
 from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._numbers import between, whole_between
@@ -55,6 +57,54 @@ class Inversion(NamedTuple):
     values: dict[str, Any]  #: numbers of the answer: verdict.json of the command
     summary: str  #: for a person
     page: str  #: report.html; "" where the question has none
+
+    def posterior(self, draws: int = 1000, mode: int = 1) -> dict[str, np.ndarray]:
+        """Draws of equal weight from the posterior of an attitude or a spin, as arviz and corner read them.
+
+        Parameters
+        ----------
+        draws
+            How many.
+        mode
+            Of which mode of `modes` turns are counted from: `turn_x`, `turn_y`, `turn_z` are the rotation vector in body
+            axes from it [deg], up to 180 deg long; `rate_x` ... are there where the rate was asked for [deg/s].
+
+        Returns
+        -------
+        dict
+            Arrays of shape (1, draws): one chain. `arviz.from_dict(posterior=...)` takes it;
+            `corner.corner(np.column_stack([v[0] for v in d.values()]), labels=list(d))` draws it.
+
+        Examples
+        --------
+        >>> fixed = {"object.attitude": {"mode": "inertial", "quaternion": [0.8, 0.0, 0.6, 0.0]}, "time.step_s": 20}
+        >>> green = {"bands.set": ["nm:550"]}
+        >>> curve = umov.run(EXAMPLES / "agena_maui.toml", set={**fixed, **green})
+        >>> found = umov.invert_pose(curve, EXAMPLES / "agena_maui.toml", set=green, fit=umov.Fit(grid=1000))
+        >>> draws = found.posterior(500)
+        >>> list(draws), draws["turn_x"].shape
+        (['turn_x', 'turn_y', 'turn_z'], (1, 500))
+        """
+        if "samples" not in self.tables:
+            raise UsageError("this answer has no samples; one of invert_pose, invert_spin or identify was expected")
+        samples, modes = self.tables["samples"], self.tables["modes"]
+        count = whole_between(draws, "draws", 1, 10_000_000)
+        of = whole_between(mode, "mode", 1, max(len(modes), 1)) - 1
+        # Even steps of the sum of the weights: no noise is added.
+        total = np.cumsum(np.asarray(samples["weight"], float))
+        rows = np.minimum(np.searchsorted(total / total[-1], (np.arange(count) + 0.5) / count), len(total) - 1)
+        w, x, y, z = (np.asarray(samples[name], float)[rows] for name in ("qw", "qx", "qy", "qz"))
+        a, b, c, d = (float(modes[name][of]) for name in ("qw", "qx", "qy", "qz"))
+        turn = np.array([a * w + b * x + c * y + d * z, a * x - b * w - c * z + d * y, a * y + b * z - c * w - d * x,
+                         a * z - b * y + c * x - d * w])  # conj(mode) q
+        turn = np.where(turn[0] < 0, -turn, turn)
+        sine = np.linalg.norm(turn[1:], axis=0)
+        vector = np.degrees(turn[1:] * np.where(sine > 1e-12, 2 * np.arctan2(sine, turn[0]) / np.maximum(sine, 1e-300), 2.0))
+        out = {f"turn_{axis}": vector[k][None, :] for k, axis in enumerate("xyz")}
+        for name in ("rate_x", "rate_y", "rate_z"):
+            if name in samples.names:
+                out[name] = np.asarray(samples[name], float)[rows][None, :]
+        return out
 
     def __str__(self) -> str:
         return self.summary.rstrip("\n")

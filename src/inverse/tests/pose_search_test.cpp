@@ -1,5 +1,6 @@
 #include "inverse/tests/box_light.h"
 
+#include <array>
 #include <umov/inverse/symmetry.h>
 
 namespace umov {
@@ -34,6 +35,46 @@ TEST(PoseSearch, TheTruthIsInTheSetAsOftenAsItSays) {
   // 19 of 20 are expected; 16 or fewer come in 1.6 % of such tests.
   EXPECT_GE(inside, 17);
   EXPECT_EQ(found, trials);
+}
+
+TEST(PoseSearch, RanksOfTheTruthAmongSamplesAreEven) {
+  // Simulation-based calibration (Talts et al. 2018): what a posterior holds below the truth is
+  // even from 0 to 1, at every level and not at 95 % alone. In density, and in a direction.
+  const Box box;
+  constexpr std::size_t bins = 5;
+  constexpr int trials = 100;
+  std::array<std::array<int, bins>, 2> found{};
+  for (std::uint64_t t = 0; t < trials; ++t) {
+    const Quaternion truth = any_attitude(97, t);
+    ObservedCurve curve = pass(12);
+    observe(curve, box, {truth, {}}, 20, 5000 + t);
+    const CurveModel model(curve, box, {0, 1});
+    const auto answer = search_pose(model, small());
+    ASSERT_TRUE(answer) << answer.error().text();
+    const CurveLikelihood likelihood(curve, small().errors);
+    double of_truth = 0;
+    ASSERT_TRUE(model.for_each(std::vector<Turning>{{truth, {}}}, {}, 1,
+                               [&](std::size_t, const ModelLight &light) {
+                                 of_truth = likelihood.compare(light).minus_2_log;
+                               }));
+    const auto along = [](Quaternion q) { return rotation_from<Body, Gcrs>(q).row(0).z; };
+    double denser = 0, below = 0;
+    for (const PoseSample &s : answer->samples) {
+      denser += s.minus_2_log < of_truth ? s.weight : 0;
+      below += along(s.turning.attitude) < along(truth) ? s.weight : 0;
+    }
+    const auto bin = [](double rank) {
+      return std::min(static_cast<std::size_t>(rank * bins), bins - 1);
+    };
+    ++found[0][bin(denser)];
+    ++found[1][bin(below)];
+  }
+  for (const auto &counts : found) {
+    double chi2 = 0;
+    for (const int n : counts)
+      chi2 += std::pow(n - trials / 5.0, 2) / (trials / 5.0);
+    EXPECT_LT(chi2, 13.28) << ::testing::PrintToString(counts); // 1 in 100 of 4 degrees of freedom
+  }
 }
 
 TEST(PoseSearch, WhereLittleLightWasSeenTheSetIsWideAndHoldsTheTruth) {
