@@ -32,7 +32,9 @@ void add_calibrate(CLI::App &app, const Exit &exit_with) {
   auto common = std::make_shared<Common>();
   verb->add_option("counts", o->counts, "Counts of the standards, their names in the column name")
       ->required();
-  verb->add_option("--standards", o->standards, "Table of name, p_percent and pa_deg")->required();
+  verb->add_option("--standards", o->standards,
+                   "Table of name, p_percent and pa_deg; p_err_percent and pa_err_deg where known")
+      ->required();
   verb->add_option("-o,--output", o->output, "TOML file for umov reduce --calibration");
   add_common(*verb, *common, false);
   verb->callback(finishing(

@@ -84,13 +84,16 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
     const double axis = table.number("x_axis_pa", k) * pi / 180;
     const double variance = (table.number("cov_qq", k) + table.number("cov_uu", k)) / 2;
     data.push_back({z * std::polar(1.0, -2 * axis), std::polar(star->p, 2 * star->angle_rad), axis,
-                    std::sqrt(variance)});
+                    std::sqrt(variance), static_cast<std::size_t>(star - standards.begin()),
+                    star->p_sd, star->angle_sd});
   }
   if (data.empty())
     return fail(ErrorCode::BadInput, no_standard(table, standards));
   UMOV_ASSIGN(calibration, calibrate_polarimeter(data));
   out.calibration = calibration;
   warn_of_standards(data, calibration, diagnostics);
+  for (const Warning &one : diagnostics.warnings())
+    out.warnings.push_back(one.message);
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include "jobs/exposure_rates.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -107,6 +108,32 @@ PlotFigure budget(const ExposureSetup &s, const StarRates &r, const std::vector<
   return out;
 }
 
+/// How much of a star's light a circle holds, and what frames summed in it reach: wide ones have
+/// the noise of more pixels.
+PlotFigure growth(const ExposureSetup &s, const StarRates &r, double seconds) {
+  PlotFigure out =
+      figure("How wide to sum: growth curve", "radius of the aperture [widths of a star]",
+             "share, and S/N over its largest", false);
+  out.has_log_y = false;
+  PlotLine light = line("light inside", 0), signal = line("S/N of photons, sky and reading", 1);
+  const double one_width = share_inside(ImageProfile::Moffat, 1); // of which the rates are
+  double largest = 0;
+  for (int k = 1; k <= 120; ++k) {
+    const double radius = .025 * k, share = share_inside(ImageProfile::Moffat, radius);
+    const double star = r.star * share / one_width * seconds, area = radius * radius;
+    const double others = (s.excess2 * (r.sky + r.dark) * seconds + r.fixed) * area;
+    light.x.push_back(radius);
+    light.y.push_back(share);
+    signal.x.push_back(radius);
+    signal.y.push_back(star / std::sqrt(s.excess2 * star + others));
+    largest = std::max(largest, signal.y.back());
+  }
+  for (double &y : signal.y)
+    y /= largest;
+  out.lines = {std::move(light), std::move(signal)};
+  return out;
+}
+
 } // namespace
 
 Result<std::string> exposure_page(const ExposureRequest &r) {
@@ -120,6 +147,8 @@ Result<std::string> exposure_page(const ExposureRequest &r) {
   UMOV_ASSIGN(how_long, times(setup));
   figures.push_back(std::move(how_long));
   figures.push_back(budget(setup, rates, seconds));
+  const double frame_s = r.exposure_s > 0 ? r.exposure_s : std::min(t, full);
+  figures.push_back(growth(setup, rates, frame_s));
   std::vector<std::string> notes{exposure_verdict(setup, rates) + "."};
   notes.push_back(fmt::format(
       "{} in {}: magnitude {:g} (AB, above the air) at {:g} deg, site {:g} m high, a star {:g} "
@@ -130,6 +159,8 @@ Result<std::string> exposure_page(const ExposureRequest &r) {
       setup.states > 1 ? "; what the object changes from one analyser to the next comes on top "
                          "(--change-per-s)"
                        : ""));
+  notes.push_back(
+      fmt::format("The growth curve is of Moffat's profile, in frames of {:.3g} s.", frame_s));
   return make_plot_page(fmt::format("How long to expose: {}", r.instrument), figures, notes);
 }
 

@@ -266,7 +266,7 @@ namespace {
 /// The lines of a page of reduced sets, and what their axes reach.
 struct StokesLines {
   Lines plane{true}, ellipses{false}, points{true}, bars{false}, degree{true}, intervals{false},
-      limits{true}, mags{true}, tests{true};
+      limits{true}, mags{true}, tests{true}, nulls{true};
   Known q, u, p, mag;
   std::string mag_title;
   std::size_t stride = 1;   ///< every n-th set has an ellipse, if its errors are not far wider
@@ -291,9 +291,11 @@ struct StokesLines {
     plane.add(band, stokes.number("q", row), stokes.number("u", row));
     if (row % stride == 0 && stokes.number("cov_qq", row) < widest * widest)
       add_ellipse(stokes, row, band);
-    for (const auto &[name, variance, known] :
-         {std::tuple{"q", "cov_qq", &q}, std::tuple{"u", "cov_uu", &u}}) {
+    for (const auto &[name, variance, null, known] :
+         {std::tuple{"q", "cov_qq", "null_q", &q}, std::tuple{"u", "cov_uu", "null_u", &u}}) {
       const double value = stokes.number(name, row), sd = std::sqrt(stokes.number(variance, row));
+      if (const double half = stokes.number(null, row); std::isfinite(half))
+        nulls.add(fmt::format("{} {}", name, band), t, half / sd);
       const std::string line_name = fmt::format("{} {}", name, band);
       points.add(line_name, t, value);
       for (const double y : {value - sd, value + sd, std::nan("")})
@@ -384,6 +386,8 @@ std::vector<PlotFigure> stokes_figures(StokesLines &lines, const std::string &ti
              with_bars(std::move(lines.plane), std::move(lines.ellipses)), q, u);
   add_figure(out, "Fits: what noise does not explain", time, "chi2/dof",
              std::move(lines.tests).all(), {}, {});
+  add_figure(out, "Null tests: one half turn of the plate against the other", time,
+             "half their difference, in errors", std::move(lines.nulls).all(), {}, {});
   return out;
 }
 

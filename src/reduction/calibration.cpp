@@ -1,8 +1,10 @@
 #include <umov/reduction/calibration.h>
 
 #include "algebra/dense.h"
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 
 namespace umov {
 namespace {
@@ -16,6 +18,82 @@ bool is_regular(const MatrixXd &m) {
   const VectorXd s = algebra::singular_values(m);
   return s(s.size() - 1) > 1e-10 * s(0);
 }
+
+bool is_uncertain(const StandardMeasurement &one) { return one.degree_sd > 0 || one.angle_sd > 0; }
+
+/// The truth of a star in steps of one standard deviation of its degree and of its angle; an
+/// unpolarized one has no angle, and its q and u are as uncertain as its degree.
+std::array<Complex, 2> truth_steps(const StandardMeasurement &one) {
+  const double p = std::abs(one.truth);
+  const Complex along = p > 0 ? one.truth / p : Complex(1);
+  return {along * one.degree_sd, along * Complex(0, p > 0 ? 2 * p * one.angle_sd : one.degree_sd)};
+}
+
+/// Normal equations of factor, offset and, with a prior of one each, the steps of every star's
+/// truth about a first `factor`.
+class StarsOfTheirOwn {
+public:
+  StarsOfTheirOwn(std::span<const StandardMeasurement> data, Complex factor)
+      : data_(data), factor_(factor) {
+    for (const StandardMeasurement &one : data)
+      if (is_uncertain(one))
+        places_.try_emplace(one.star, 4 + 2 * static_cast<Eigen::Index>(places_.size()));
+    const auto n = 4 + 2 * static_cast<Eigen::Index>(places_.size());
+    normal_ = MatrixXd::Zero(n, n);
+    right_ = VectorXd::Zero(n);
+    normal_.diagonal().tail(n - 4).setOnes();
+    for (const StandardMeasurement &one : data)
+      add(one);
+  }
+  /// Takes a solution over, with its errors.
+  void solve(PolarimeterCalibration &out) const {
+    const MatrixXd covariance = algebra::inverse_of(normal_);
+    const VectorXd x = algebra::times(covariance, right_);
+    out.chi2 = x.tail(x.size() - 4).squaredNorm();
+    for (const StandardMeasurement &one : data_)
+      out.chi2 += std::norm(left(one, x));
+    out.factor = {x(0), x(1)};
+    out.offset = {x(2), x(3)};
+    out.factor_sd = std::sqrt((covariance(0, 0) + covariance(1, 1)) / 2);
+    out.offset_sd = std::sqrt((covariance(2, 2) + covariance(3, 3)) / 2);
+  }
+
+private:
+  /// What each unknown does to a measurement, over its noise.
+  [[nodiscard]] std::vector<std::pair<Eigen::Index, Complex>>
+  effects(const StandardMeasurement &one) const {
+    const double w = one.sd > 0 ? 1 / one.sd : 1;
+    const Complex turned = std::polar(w, -2 * one.axis_rad), g = one.truth * turned;
+    std::vector<std::pair<Eigen::Index, Complex>> out{
+        {0, g}, {1, g * Complex(0, 1)}, {2, w}, {3, Complex(0, w)}};
+    if (is_uncertain(one))
+      for (std::size_t k = 0; k < 2; ++k)
+        out.emplace_back(places_.at(one.star) + static_cast<Eigen::Index>(k),
+                         factor_ * truth_steps(one)[k] * turned);
+    return out;
+  }
+  void add(const StandardMeasurement &one) {
+    const Complex z = one.measured / (one.sd > 0 ? one.sd : 1);
+    const auto all = effects(one);
+    for (const auto &[row, a] : all) {
+      right_(row) += (std::conj(a) * z).real();
+      for (const auto &[column, b] : all)
+        normal_(row, column) += (std::conj(a) * b).real();
+    }
+  }
+  [[nodiscard]] Complex left(const StandardMeasurement &one, const VectorXd &x) const {
+    Complex out = one.measured / (one.sd > 0 ? one.sd : 1);
+    for (const auto &[row, a] : effects(one))
+      out -= a * x(row);
+    return out;
+  }
+
+  std::span<const StandardMeasurement> data_;
+  Complex factor_;
+  std::map<std::size_t, Eigen::Index> places_;
+  MatrixXd normal_;
+  VectorXd right_;
+};
 
 } // namespace
 
@@ -59,6 +137,9 @@ Result<PolarimeterCalibration> calibrate_polarimeter(std::span<const StandardMea
     out.chi2 += std::norm(z - g * out.factor - w * out.offset);
   }
   out.dof = 2 * static_cast<int>(n) - 4;
+  if (std::ranges::any_of(data, is_uncertain))
+    for (int pass = 0; pass < 3; ++pass) // the steps of a truth count by the factor that is sought
+      StarsOfTheirOwn(data, out.factor).solve(out);
   return out;
 }
 

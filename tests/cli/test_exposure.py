@@ -63,7 +63,7 @@ def test_bands_that_are_refused(umov, tmp_path, options, code, told):
 def test_page_of_figures(umov, tmp_path, instrument):
     rows, done = rows_of(umov, tmp_path, "--instrument", instrument, "--band", "Bessell.V", "--page", "e.html")
     page = (tmp_path / "e.html").read_text()
-    for title in ("Error of p", "Signal to noise", "How long until p is known", "What makes the error of p", "magnitude 8",
+    for title in ("Error of p", "Signal to noise", "How long until p is known", "What makes the error of p", "growth curve", "magnitude 8",
                   "Lines end where the brightest pixel is full"):
         assert title in page
     verdict = done.err.strip() or done.out

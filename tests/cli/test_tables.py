@@ -84,8 +84,9 @@ def test_one_material_gives_q_of_the_paper(umov, scenario, tmp_path):
 
 
 def test_shipped_meshes_are_what_the_command_makes(umov, tmp_path):
-    for name in ("hst", "agena"):
-        assert umov("mesh", "make", name, "-o", f"{name}.obj").code == 0
+    for name, shape in (("hst", ["hst"]), ("agena", ["agena"]),
+                        ("box_wing", ["box-wing", "--bus", 2.4, 2.4, 3, "--wing", 8, 2.4])):
+        assert umov("mesh", "make", *shape, "-o", f"{name}.obj").code == 0
         made = (tmp_path / f"{name}.obj").read_text().split()
         kept = (ROOT / f"data/mesh/{name}.obj").read_text().split()
         assert len(made) == len(kept)

@@ -192,12 +192,14 @@ def rows():
         m = mirror(al(nm), 45 * DEGREE)
         yield f"aluminium_q_{nm}", four, (m[1, 0] / m[0, 0], "9g")
         yield f"aluminium_u_to_v_{nm}", four, (m[3, 2] / m[0, 0], "9g")
+        yield f"aluminium_retardance_{nm}", four, (np.arctan2(m[3, 2], m[2, 2]) / DEGREE, "9g")
     chi = mueller(turn(25 * DEGREE))
     light = mirror(al(550), 45 * DEGREE) @ chi
     for name, angle in (("o", 0), ("x", 90)):
         row = (polarizer(300, angle) @ plate(183, 23) @ light)[0]
         for k in range(4):
             yield f"chain_{name}_{k}", four, (row[k], "9g")
+        yield f"chain_{name}_light", four, (row @ STOKES, "9g")
     for fwhm in (1.5, 2, 2.5, 3):
         yield f"mosaic_q_{fwhm:g}", four, (mosaic(0, 0, fwhm)[0], "9g")
     for k, name in ((0, "q"), (1, "u")):
@@ -211,7 +213,10 @@ def rows():
     for gain in (10, 100, 1000):
         yield f"excess_{gain}", three, (excess(gain), "9g")
     yield "ccd", three, (ccd(1e4, 50, 20, .5, 2.3, 2.6, 500), "9g")
-    yield "emccd", three, (ccd(1e4, 50, 20, .5, 60, 10, 500, 2, 300), "9g")
+    yield "emccd", three, (ccd(1e4, 50, 20, .5, 60, 10, 500, excess(300), 300), "9g")
+    for name, read, step, register in (("cmos", 1.4, .45, 1), ("emccd", 60, 10, 300), ("ccd", 7, 1, 1)):
+        noise = np.sqrt(ccd(40, 9, .1, .01, read, step, f2=excess(register), gain=register))
+        yield f"faint_{name}", three, (40 / noise, "9g")
     yield "bent", three, (9000 * (1 - .02 * 9000 / 10500), "9g")
     yield "dead_time", three, (1e6 / 1.05, "9g")
     for exposure in (.5, 1, 2, 5):

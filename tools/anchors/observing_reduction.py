@@ -138,6 +138,20 @@ def standards():
     return abs(factor), 5e-4 * np.sqrt(inverse[0, 0].real), 5e-4 * np.sqrt(inverse[1, 1].real)
 
 
+def uncertain_standards(p_sd=.00029, angle_sd=.17 * DEGREE):
+    """The same where the star's own degree and angle are wrong by as much in all four measurements: the whole covariance."""
+    factor, star = .985 * np.exp(2j * .8 * DEGREE), .04893 * np.exp(2j * 59.10 * DEGREE)
+    axes = np.array([0, 30, 60, 90, 10, 40, 70, 100]) * DEGREE
+    seen = np.array([0, 0, 0, 0, 1, 1, 1, 1])
+    turned = seen * np.exp(-2j * axes)
+    columns = [star * turned, 1j * star * turned, np.ones(8), 1j * np.ones(8)]
+    common = [factor * star / abs(star) * turned * p_sd, factor * 2j * star * turned * angle_sd]
+    real = lambda parts: np.array([np.concatenate([p.real, p.imag]) for p in parts]).T  # noqa: E731
+    j, g = real(common), real(columns)
+    covariance = np.linalg.inv(g.T @ np.linalg.inv(5e-4 ** 2 * np.eye(16) + j @ j.T) @ g)
+    return tuple(np.sqrt(covariance.diagonal().reshape(2, 2).mean(axis=1)))
+
+
 def photometry():
     star = np.array([8.120, 9.455, 8.902, 10.231, 9.017, 9.788])
     x = np.array([1.02, 1.21, 1.55, 1.08, 1.90, 1.37])
@@ -195,6 +209,8 @@ def rows():
     five = "observing.md 5"
     for name, number in zip(("factor", "factor_sd", "offset_sd"), standards()):
         yield f"standards_{name}", five, (number, "9g")
+    for name, number in zip(("factor_sd", "offset_sd"), uncertain_standards()):
+        yield f"uncertain_{name}", five, (number, "9g")
     found, sds, residual, c = photometry()
     for k, name in enumerate(("zero", "extinction", "colour")):
         yield f"photometry_{name}", five, (found[k], "9g")

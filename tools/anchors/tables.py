@@ -11,6 +11,7 @@ import interfaces
 import microfacet
 import observing_air
 import observing_instrument
+import observing_pass
 import observing_reduction
 import passbands
 import surroundings
@@ -121,6 +122,7 @@ TABLES = {
                     two_materials.plane_rows),
     "observing_air": Table("observing.md 2", "name,formula,value", observing_air.rows),
     "observing_instrument": Table("observing.md 3, 4", "name,formula,value", observing_instrument.rows),
+    "observing_pass": Table("observing.md 4: HST over Maui", "utc,psi_altaz,psi_pole,eta,rate,half_rate", observing_pass.rows),
     "observing_reduction": Table("observing.md 5, 6, 7", "name,formula,value", observing_reduction.rows),
     "singles": Table("as each row says", "name,formula,value", single_rows),
 }

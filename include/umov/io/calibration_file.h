@@ -2,6 +2,7 @@
 #include <string>
 #include <umov/core/result.h>
 #include <umov/reduction/calibration.h>
+#include <vector>
 
 namespace umov {
 
@@ -9,6 +10,7 @@ namespace umov {
 struct CalibrationFile {
   std::string instrument, band, pol_frame, made_utc;
   PolarimeterCalibration calibration;
+  std::vector<std::string> warnings; ///< of the fit: comments of the file
 };
 
 /// Reads TOML as `calibration_as_toml` writes it.

@@ -16,19 +16,27 @@ struct StandardMeasurement {
   std::complex<double> truth; ///< in the sky frame
   double axis_rad = 0;        ///< of the instrument's x axis in that frame
   double sd = 0;              ///< of q and of u
+  /// Measurements of one number are of one star, whose truth is wrong by the same in all of them.
+  std::size_t star = 0;
+  double degree_sd = 0; ///< of the star's degree, as its table has it
+  double angle_sd = 0;  ///< of its position angle [rad]
 };
 
 /// measured = factor * truth e^(-2i axis) + offset.
 struct PolarimeterCalibration {
-  std::complex<double> factor{1, 0};   ///< efficiency e^(2i phi0)
-  std::complex<double> offset;         ///< q0 + i u0
-  double factor_sd = 0, offset_sd = 0; ///< of real and imaginary part each
+  std::complex<double> factor{1, 0}; ///< efficiency e^(2i phi0)
+  std::complex<double> offset;       ///< q0 + i u0
+  /// Of real and imaginary part each; their mean square where a star's degree and angle are not
+  /// known equally well.
+  double factor_sd = 0, offset_sd = 0;
   double chi2 = 0;
   int dof = 0;
 };
 
-/// Complex least squares. BadInput with fewer than two measurements, without a polarized standard,
-/// or where one instrument angle alone cannot tell the offset from the star.
+/// Complex least squares; where tables tell how well they know a star, its truth is fitted too,
+/// with that as a prior: more nights on one star do not help beyond it. BadInput with fewer than
+/// two measurements, without a polarized standard, or where one instrument angle alone cannot tell
+/// the offset from the star.
 Result<PolarimeterCalibration> calibrate_polarimeter(std::span<const StandardMeasurement> data);
 
 /// What a channel makes of light in the sky frame once the instrument's own terms are known: its

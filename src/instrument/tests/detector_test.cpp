@@ -28,6 +28,26 @@ TEST(Detector, ExcessOfARegister) { // nine digits
 TEST(Detector, CcdEquation) { // nine digits
   EXPECT_NEAR(aperture_variance(camera(DetectorModel::Ccd), {1e4, 20, .5, 50, 500}), of("ccd"),
               1e-4);
+  Detector d = camera(DetectorModel::Emccd);
+  d.em_gain = 300, d.read_e = 60, d.gain_e_adu = 10;
+  EXPECT_NEAR(aperture_variance(d, {1e4, 20, .5, 50, 500}), of("emccd"), 1e-4);
+}
+
+/// 40 electrons on nine pixels: what is read quietly beats what is multiplied, and both a CCD.
+TEST(Detector, FaintStarsInThreeCameras) { // nine digits
+  struct Case {
+    const char *name;
+    DetectorModel model;
+    double read, step, gain;
+  };
+  for (const Case &one : {Case{"cmos", DetectorModel::Cmos, 1.4, .45, 1},
+                          {"emccd", DetectorModel::Emccd, 60, 10, 300},
+                          {"ccd", DetectorModel::Ccd, 7, 1, 1}}) {
+    Detector d = camera(one.model);
+    d.read_e = one.read, d.gain_e_adu = one.step, d.em_gain = one.gain;
+    const double variance = aperture_variance(d, {40, .1, .01, 9, 0});
+    EXPECT_NEAR(40 / std::sqrt(variance), of(std::string("faint_") + one.name), 1e-8);
+  }
 }
 
 TEST(Detector, BendsAndIsStraightenedAgain) {

@@ -32,6 +32,8 @@ TEST(Mirror, PolarizesAndTurnsLinearIntoCircular) { // nine digits
     const auto m = mirror_element(aluminium(nm), at_45).m;
     EXPECT_NEAR(m[1][0] / m[0][0], of("aluminium_q_" + std::to_string(nm)), 1e-9);
     EXPECT_NEAR(m[3][2] / m[0][0], of("aluminium_u_to_v_" + std::to_string(nm)), 1e-9);
+    EXPECT_NEAR(std::atan2(m[3][2], m[2][2]) * 180 / pi,
+                of("aluminium_retardance_" + std::to_string(nm)), 1e-6);
   }
 }
 
@@ -61,6 +63,8 @@ TEST(Mirror, WholeInstrumentAsFieldsGiveIt) { // nine digits
                                       retarder(Angle::degrees(183), Angle::degrees(23)) * train));
     for (std::size_t k = 0; k < 4; ++k)
       EXPECT_NEAR(row[k], of(name + std::to_string(k)), 1e-9);
+    EXPECT_NEAR(respond(row, Stokes<InstrumentAxes>{1, .2, -.1, .05}),
+                of(name + std::string("light")), 1e-9);
   }
 }
 

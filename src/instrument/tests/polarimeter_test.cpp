@@ -4,6 +4,7 @@
 #include <complex>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <umov/instrument/mirrors.h>
 #include <umov/instrument/polarimeter.h>
 
 namespace umov {
@@ -78,7 +79,9 @@ TEST(Elements, FieldsCanMakeThem) {
     for (const InstrumentMueller &element :
          {polarizer(300, at), polarizer(infinite, at), retarder(Angle::degrees(131.8), at),
           turned(diattenuating_retarder(.9, .3, Angle::degrees(70)), at), axes_turned(at),
-          behind(polarizer(100, at), retarder(Angle::degrees(90), Angle::degrees(22.5)))})
+          behind(polarizer(100, at), retarder(Angle::degrees(90), Angle::degrees(22.5))),
+          mirror_element({.96, 6.7}, std::cos(at.radians() / 2)), // aluminium
+          nasmyth_port(mirror_element({.96, 6.7}, std::sqrt(.5)), NasmythSide::Left, at)})
       EXPECT_GE(smallest_coherency(element), -1e-12);
   }
   // A wrong sign in the lower block is found: no field makes it.

@@ -45,12 +45,16 @@ Result<CalibrationFile> read_calibration_text(const std::string &text, const std
 
 std::string calibration_as_toml(const CalibrationFile &f) {
   const PolarimeterCalibration &c = f.calibration;
+  std::string warnings;
+  for (const std::string &words : f.warnings)
+    warnings += "# warning: " + printable(words) + "\n";
   return fmt::format(
       "# measured = efficiency e^(2i phi0) (truth in the instrument's axes) + q0 + i u0\n"
-      "instrument = {}\nband = {}\npol_frame = {}\nmade_utc = {}\nefficiency = {}\nphi0_deg = {}\n"
+      "{}instrument = {}\nband = {}\npol_frame = {}\nmade_utc = {}\nefficiency = {}\nphi0_deg = "
+      "{}\n"
       "q0 = {}\nu0 = {}\nefficiency_sd = {}\nq0_sd = {}\nchi2 = {}\ndof = {}\n",
-      scenario::quoted(f.instrument), scenario::quoted(f.band), scenario::quoted(f.pol_frame),
-      scenario::quoted(f.made_utc), shortest(std::abs(c.factor)),
+      warnings, scenario::quoted(f.instrument), scenario::quoted(f.band),
+      scenario::quoted(f.pol_frame), scenario::quoted(f.made_utc), shortest(std::abs(c.factor)),
       shortest(std::arg(c.factor) / 2 * 180 / pi), shortest(c.offset.real()),
       shortest(c.offset.imag()), shortest(c.factor_sd), shortest(c.offset_sd), shortest(c.chi2),
       c.dof);

@@ -7,6 +7,26 @@
 #include <umov/core/text.h>
 
 namespace umov {
+namespace {
+
+/// An error of a star, in the column's unit: 0 without the column or in an empty cell.
+Result<double> error_of(const TextTable &table, const std::string &file, std::size_t k,
+                        const char *name) {
+  const auto &c = table.columns;
+  const auto at = static_cast<std::size_t>(std::find(c.begin(), c.end(), name) - c.begin());
+  if (at == c.size() || table.rows[k][at].empty())
+    return 0.0;
+  const auto value = parse_number(table.rows[k][at]);
+  if (!value || !(*value >= 0 && *value <= 100))
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} = \"{}\"; a standard deviation of 0 to 100 was expected, or an "
+                            "empty cell",
+                            name, printable(table.rows[k][at])),
+                {file, table.lines[k]});
+  return *value;
+}
+
+} // namespace
 
 Result<std::vector<PolarizedStandard>> read_standards_text(std::string_view text,
                                                            const std::string &file) {
@@ -40,7 +60,10 @@ Result<std::vector<PolarizedStandard>> read_standards_text(std::string_view text
                       ? std::string("a standard without a name; give it as the counts do")
                       : fmt::format("\"{}\" stands twice; keep one", printable(row[name])),
                   {file, table.lines[k]});
-    out.push_back({row[name], *degree / 100, *angle * pi / 180});
+    UMOV_ASSIGN(degree_sd, error_of(table, file, k, "p_err_percent"));
+    UMOV_ASSIGN(angle_sd, error_of(table, file, k, "pa_err_deg"));
+    out.push_back(
+        {row[name], *degree / 100, *angle * pi / 180, degree_sd / 100, angle_sd * pi / 180});
   }
   if (out.empty())
     return fail(ErrorCode::BadInput,
