@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .light_curves import LightCurve
     from .pictures import Picture
 
-__all__ = ["band_styles", "colour_index", "contributions", "degree", "folded", "intensity", "magnitude", "overview",
+__all__ = ["band_styles", "band_title", "colour_index", "contributions", "degree", "folded", "intensity", "magnitude", "overview",
            "periodogram", "picture", "position_angle", "pure_materials", "q_phase", "q_rgb",
            "qu_plane", "qu_time", "sky_track", "three_bands"]
 
@@ -47,6 +47,22 @@ def _axes(axes: Axes | None, projection: str | None = None) -> Axes:
         raise UsageError("a figure needs the package matplotlib: pip install matplotlib") from error
     made: Axes = plt.figure(figsize=(7, 4.5), layout="constrained").add_subplot(projection=projection)
     return made
+
+
+def band_title(name: str) -> str:
+    """A band's name for people: that of a filter as it is, a wavelength with its unit behind it.
+
+    Parameters
+    ----------
+    name
+        As scenarios spell it.
+
+    Examples
+    --------
+    >>> plot.band_title("nm:550"), plot.band_title("Bessell.V")
+    ('550 nm', 'Bessell.V')
+    """
+    return f"{name[3:]} nm" if name.startswith("nm:") else name
 
 
 def band_styles(curve: LightCurve) -> list[dict[str, Any]]:
@@ -94,7 +110,7 @@ def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], 
                styles: list[dict[str, Any]] | None = None) -> Axes:
     axes = _axes(axes)
     times = curve.time.datetime64
-    for b, (style, name) in enumerate(zip(styles or band_styles(curve), bands or curve.bands)):
+    for b, (style, name) in enumerate(zip(styles or band_styles(curve), bands or map(band_title, curve.bands))):
         for k, part in enumerate(_passes(curve)):
             values = rows[part, b].astype(np.float64)
             if cyclic:  # no line joins 180 to 0
@@ -228,7 +244,7 @@ def q_phase(curve: LightCurve, axes: Axes | None = None) -> Axes:
     'q_scat [%]'
     """
     axes = _axes(axes)
-    for b, (style, name) in enumerate(zip(band_styles(curve), curve.bands)):
+    for b, (style, name) in enumerate(zip(band_styles(curve), map(band_title, curve.bands))):
         for k, part in enumerate(_passes(curve)):
             axes.plot(curve.phase_angle[part], 100 * curve.q_scat[part, b], label=name if k == 0 else None,
                       markevery=_every(len(part)), **style)
@@ -449,7 +465,7 @@ def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
     drawn = None
     for b, style in enumerate(band_styles(curve)):
         drawn = axes.scatter(100 * curve.q[:, b], 100 * curve.u[:, b], c=curve.phase_angle, cmap=PHASE_MAP, s=14,
-                             marker=style["marker"], label=curve.bands[b], vmin=0, vmax=180)
+                             marker=style["marker"], label=band_title(curve.bands[b]), vmin=0, vmax=180)
     axes.axhline(0, color="0.5", linewidth=0.8)
     axes.axvline(0, color="0.5", linewidth=0.8)
     axes.set(xlabel="q [%]", ylabel="u [%]", aspect="equal")
@@ -491,7 +507,7 @@ def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
     Examples
     --------
     >>> plot.q_rgb(curve).get_zlabel()
-    'nm:650 [%]'
+    '650 nm [%]'
     """
     three = three_bands(curve)
     axes = _axes(axes, "3d")
@@ -499,7 +515,7 @@ def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
     drawn = cloud(*(100 * curve.q_scat[:, b] for b in three), c=curve.phase_angle, cmap=PHASE_MAP, s=8, vmin=0,
                   vmax=180)
     for name, b in zip("xyz", three):
-        getattr(axes, f"set_{name}label")(f"{curve.bands[b]} [%]")
+        getattr(axes, f"set_{name}label")(f"{band_title(curve.bands[b])} [%]")
     if axes.figure is not None:
         axes.figure.colorbar(drawn, ax=axes, label="phase angle [°]", shrink=0.7)
     return axes
@@ -518,7 +534,7 @@ def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
     Examples
     --------
     >>> [text.get_text() for text in plot.colour_index(curve).get_legend().get_texts()]
-    ['nm:425 − nm:550', 'nm:550 − nm:650']
+    ['425 nm − 550 nm', '550 nm − 650 nm']
     """
     if len(curve.bands) < 2:
         raise UsageError("the curve has one band; two or more were expected")
@@ -526,7 +542,7 @@ def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
     pairs = list(itertools.pairwise(order))
     rows = np.stack([curve.mag[:, a] - curve.mag[:, b] for a, b in pairs], axis=1)
     styles = [{"color": MANY[(2 * k) % 7], "marker": MARKERS[k % 7], "markersize": 4} for k in range(len(pairs))]
-    names = [f"{curve.bands[a]} − {curve.bands[b]}" for a, b in pairs]
+    names = [f"{band_title(curve.bands[a])} − {band_title(curve.bands[b])}" for a, b in pairs]
     axes = _over_time(curve, axes, rows, "colour [mag]", bands=names, styles=styles)
     axes.legend(fontsize="small")
     return axes

@@ -3,7 +3,7 @@
 >>> from umov import turnable
 >>> figure = turnable.q_rgb(curve)
 >>> figure.layout.scene.zaxis.title.text
-'nm:650 [%]'
+'650 nm [%]'
 """
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from .errors import UsageError
 from .pictures import mesh as triangles_of
-from .plot import MANY, three_bands
+from .plot import MANY, band_title, three_bands
 from .scenarios import AnyScenario
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def q_rgb(curve: LightCurve, figure: Any = None) -> Any:
         x=x, y=y, z=z, mode="markers", name=", ".join(curve.objects), text=curve.time.isot.tolist(),
         marker={"size": 3, "color": curve.phase_angle, "colorscale": "cividis", "cmin": 0, "cmax": 180,
                 "colorbar": {"title": "phase angle [°]"}})
-    names = {f"{axis}axis": {"title": {"text": f"{curve.bands[b]} [%]"}} for axis, b in zip("xyz", three)}
+    names = {f"{axis}axis": {"title": {"text": f"{band_title(curve.bands[b])} [%]"}} for axis, b in zip("xyz", three)}
     figure.update_layout(scene=names, margin={"l": 0, "r": 0, "t": 30, "b": 0})
     return figure
 

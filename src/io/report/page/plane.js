@@ -220,6 +220,13 @@ function trackOf(pass) {
   return rows.length ? { source: track, rows } : { source: epochs, rows: pass.rows };
 }
 
+/// Where the time of an end of a track stands: outward of it, above or below the name of a direction that is there.
+function labelPlace(azimuth, altitude) {
+  const named = 45 * Math.round(azimuth / 45), north = (degrees) => Math.cos(degrees * Math.PI / 180);
+  const isNamed = altitude < 15 && Math.abs(azimuth - named) < 8;
+  return (isNamed ? (north(azimuth) < north(named) ? "bottom " : "top ") : "middle ") + (azimuth % 360 > 180 ? "right" : "left");
+}
+
 /// The shown tracks as azimuths and altitudes, where all of them together are smaller than a dot would be on the
 /// whole sky: a geostationary object, or a minute of a pass.
 function closeUp() {
@@ -293,7 +300,7 @@ const skyFigure = {
       const ends = [track.rows[0], track.rows[track.rows.length - 1]];
       data.push({
         type: "scatterpolar", mode: "markers+text", r: ends.map((i) => 90 - track.source.alt[i]), theta: ends.map((i) => track.source.az[i]), cliponaxis: false,
-        text: ends.map((i) => "\u00a0\u00a0\u00a0" + track.source.time[i].slice(11, 19) + "\u00a0\u00a0\u00a0"), textposition: ends.map((i) => track.source.az[i] % 360 > 180 ? "middle right" : "middle left"), textfont: { size: isNarrow() ? 9 : 11 },
+        text: ends.map((i) => "\u00a0\u00a0\u00a0" + track.source.time[i].slice(11, 19) + "\u00a0\u00a0\u00a0"), textposition: ends.map((i) => labelPlace(track.source.az[i], track.source.alt[i])), textfont: { size: isNarrow() ? 9 : 11 },
         marker: { size: 8, symbol: ["circle-open", "x-thin-open"], color: theme.text, line: { width: 2 } }, hoverinfo: "skip", showlegend: false,
       });
     });
