@@ -135,7 +135,7 @@ private:
 };
 
 /// What tables of many poses are asked for where nobody says how well: Auto to 0.04 of I, down to
-/// 0.02 of the typical light, at more than half the rate of masks alone. Other methods, and light
+/// 0.02 of the typical light, at about half the rate of masks alone. Other methods, and light
 /// of several surfaces, stay as they are.
 LightOptions for_many_poses(LightOptions options);
 

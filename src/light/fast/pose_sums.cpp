@@ -187,10 +187,34 @@ void Engine::State::colour(Workspace &work) const {
   take_variances(work);
 }
 
+namespace {
+
+/// Taking away what rays find hidden leaves the rounding of what was there: light is no less than
+/// none, and no more polarized than whole.
+void make_physical(BandLight &light, bool has_u_or_v) {
+  for (std::size_t b = 0; b < light.size(); ++b) {
+    light.i[b] = std::max(light.i[b], 0.0);
+    const double others = has_u_or_v ? std::hypot(light.u[b], light.v[b]) : 0;
+    const double polarized = std::hypot(light.q[b], others);
+    if (!(polarized > light.i[b]))
+      continue;
+    const double part = light.i[b] / polarized;
+    light.q[b] *= part;
+    if (has_u_or_v) {
+      light.u[b] *= part;
+      light.v[b] *= part;
+    }
+  }
+}
+
+} // namespace
+
 /// Variances facet by facet in place of those of the sums.
 void Engine::State::take_variances(Workspace &work) const {
   if (!work.has_variances)
     return;
+  if (work.is_mended)
+    make_physical(work.light, compiled.has_u || compiled.general_classes > 0);
   work.light.var_i = work.variances.var_i;
   work.light.var_q = work.variances.var_q;
   if (!compiled.has_u && compiled.general_classes == 0)

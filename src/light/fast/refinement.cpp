@@ -29,9 +29,22 @@ double random_variance(double share, double points) {
 }
 
 constexpr double points_most = 16'384; ///< of a class
-/// Several large classes may be asked for some of their points alone, and what that leaves adds up.
-constexpr double beside_others = 3;
-constexpr std::size_t together = 8; ///< classes whose first rays go in the same packets
+
+/// How rays are spent. A series is asked to a fraction of a per cent, and its neighbours err
+/// together: there classes are taken one by one, with all their doubtful points, to well below what
+/// is asked.
+struct Spending {
+  std::size_t together; ///< classes whose first rays go in the same packets
+  /// Large classes may be asked for some of their points alone, and what several leave adds up: so
+  /// many times finer than one by itself; 0: all points.
+  double beside_others;
+  double wanted, left, more; ///< in parts of what is allowed: all, what is not traced, more looks
+  double anew;               ///< a new look begins anew: with so many times the points at least
+};
+constexpr Spending for_series{1, 0, 0.9, 0.3, 0.8, 1.2}, for_far_poses{8, 3, 0.97, 0.4, 0.95, 1.5};
+const Spending &spending_of(const EngineOptions &options) {
+  return options.doubts_all ? for_series : for_far_poses;
+}
 
 } // namespace
 
@@ -194,12 +207,16 @@ void Engine::State::look_closer(const Pose &pose, const Prepared &at, double wan
   for (const AskedClass &asked : work.asked) {
     const auto count = static_cast<double>(asked.points.size());
     const double doubted = static_cast<double>(asked.doubted) / count;
-    const double found = static_cast<double>(asked.free) /
-                         static_cast<double>(std::max<std::size_t>(asked.asked, 1));
+    if (asked.asked == asked.doubted) {
+      const double share = static_cast<double>(asked.sure + asked.free) / count;
+      put_share(asked.which, share, asked.points.size(), share_variance(share, count), work);
+      continue;
+    }
+    const double found = static_cast<double>(asked.free) / static_cast<double>(asked.asked);
     const double share = static_cast<double>(asked.sure) / count + doubted * found;
-    double variance = share_variance(share, count);
-    if (asked.asked < asked.doubted)
-      variance += doubted * doubted * random_variance(found, static_cast<double>(asked.asked));
+    const double variance =
+        share_variance(share, count) +
+        doubted * doubted * random_variance(found, static_cast<double>(asked.asked));
     put_share(asked.which, share, asked.points.size(), variance, work);
   }
 }
@@ -214,6 +231,9 @@ void Engine::State::list_doubtful(const Prepared &at, std::uint32_t n, double wa
   asked.points = masks->points(facet.group, facet.lane);
   asked.sure = split_points(*hiding(), at.pose, facet.group, facet.lane, n, work.doubtful);
   asked.doubted = asked.asked = work.doubtful.size() - first;
+  const double beside_others = spending_of(options).beside_others;
+  if (!(beside_others > 0))
+    return;
   const double whole = compiled.data.groups[facet.group].area[facet.lane];
   const double doubted =
       whole * static_cast<double>(asked.doubted) / static_cast<double>(asked.points.size());
@@ -287,7 +307,8 @@ double Engine::State::trace_worst(const Pose &pose, const Prepared &at, double w
   const auto left = [&] { return variance + mask_alike * linear * linear; };
   std::make_heap(work.worst.begin(), work.worst.end());
   const double most = wanted * wanted;
-  while (!work.worst.empty() && left() > 0.4 * most && left() + traced > most) {
+  const Spending &spending = spending_of(options);
+  while (!work.worst.empty() && left() > spending.left * most && left() + traced > most) {
     work.asked.clear();
     do {
       const auto [error, from_end] = work.worst.front();
@@ -296,7 +317,8 @@ double Engine::State::trace_worst(const Pose &pose, const Prepared &at, double w
       variance = std::max(variance - error, 0.0);
       linear = std::max(linear - std::sqrt(error), 0.0);
       work.asked.push_back({.which = no_index - from_end, .points = {}});
-    } while (!work.worst.empty() && left() > 0.4 * most && work.asked.size() < together);
+    } while (!work.worst.empty() && left() > spending.left * most &&
+             work.asked.size() < spending.together);
     look_closer(pose, at, wanted, work);
     for (const AskedClass &asked : work.asked)
       traced += relative(asked.which);
@@ -320,7 +342,7 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
     }
   if (now <= allowed || !(allowed > 0))
     return false;
-  const double scale = std::pow(growth / (0.95 * allowed), 2.0 / 3);
+  const double scale = std::pow(growth / (spending_of(options).more * allowed), 2.0 / 3);
   bool is_any = false;
   for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k) {
     if (work.points[k] == 0)
@@ -328,7 +350,7 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
     const double n = static_cast<double>(work.points[k]);
     const double wanted =
         std::min(scale * std::pow(variance(k) * std::pow(n, 1.5), 0.4), points_most);
-    if (wanted < 1.5 * n) // a new look begins anew
+    if (wanted < spending_of(options).anew * n)
       continue;
     trace_facet(pose, k, static_cast<std::size_t>(wanted), work);
     is_any = is_any || static_cast<double>(work.points[k]) > n;
@@ -339,7 +361,8 @@ bool Engine::State::trace_more(const Pose &pose, double allowed, Workspace &work
 /// Rays, until the variance that is left is `part` of what the accuracy allows.
 void Engine::State::trace(const Pose &pose, const Prepared &at, double part,
                           Workspace &work) const {
-  const double wanted = 0.97 * options.masks.refine_above / normal_95 * std::sqrt(part);
+  const double wanted =
+      spending_of(options).wanted * options.masks.refine_above / normal_95 * std::sqrt(part);
   constexpr int looks_max = 3;
   weigh_errors(work);
   const double left = trace_worst(pose, at, wanted, work);

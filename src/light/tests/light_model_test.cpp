@@ -86,6 +86,33 @@ TEST(LightModel, ManyPosesMeetTheirAccuracyWithFewRaysAndHalfWidthsCoverThem) {
   EXPECT_GE(looked_up, 100U);
 }
 
+// Pose 10,806 of a sweep over all phases: the masks see a little of Agena of which rays find
+// nothing.
+TEST(LightModel, LightThatRaysTakeAwayLeavesNoLessThanNone) {
+  std::vector<Material> materials;
+  for (const auto &[name, exponent] : {std::pair{"paper_au", 200.0},
+                                       {"paper_asi", 1000.0},
+                                       {"paper_spectralon", 20.0},
+                                       {"paper_al", 50.0}}) {
+    materials.push_back(builtin_material(name).value());
+    materials.back().distribution = blinn_phong(exponent);
+  }
+  const auto made =
+      make_light(scene_of(make_agena(), NormalMode::Flat, materials), {}, for_many_poses({}));
+  ASSERT_TRUE(made) << made.error().text();
+  const std::size_t number = 10'806;
+  const double share = std::fmod(0.5 + 0.6180339887498949 * static_cast<double>(number), 1.0);
+  Pose pose = random_pose(11, number, Angle::degrees(180 * share));
+  pose.sun_radius_rad = sun_radius_at_1au_rad;
+  const auto table = lit(**made, {pose});
+  EXPECT_EQ(table.method[0], PoseMethod::Mended);
+  for (std::size_t b = 0; b < 3; ++b) {
+    EXPECT_GE(table.i[b], 0);
+    EXPECT_LE(std::hypot(table.q[b], table.u[b]), table.i[b]);
+    EXPECT_GT(table.i_err[b], 0);
+  }
+}
+
 TEST(LightModel, OnlyAutoIsAskedOtherwiseForManyPoses) {
   for (const LightMethod method : {LightMethod::Rays, LightMethod::Masks}) {
     const LightOptions many = for_many_poses({.method = method});
