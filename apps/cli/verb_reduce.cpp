@@ -18,7 +18,8 @@ namespace {
 struct ReduceVerb {
   std::string counts, output, page, calibration, tdm, score, model = "static";
   std::vector<std::string> columns;
-  double q0_sd = 0, gain_sd = 0, angle_sd_deg = 0, efficiency_sd = 0, sky_sd = 0;
+  double q0_sd = 0, gain_sd = 0, angle_sd_deg = 0, efficiency_sd = 0, sky_sd = 0,
+         transparency_sd = 0;
 };
 
 /// "static", "fourier:PERIOD", "fourier:PERIOD:HARMONICS" or "spline:KNOTS".
@@ -77,6 +78,7 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
   jobs::ReduceOptions options;
   UMOV_TRY(read_model(o.model, options));
   options.priors = {o.q0_sd, o.gain_sd, 0, o.angle_sd_deg * pi / 180, o.efficiency_sd, o.sky_sd};
+  options.transparency_sd = o.transparency_sd;
   options.threads = static_cast<unsigned>(common.threads);
   constexpr std::size_t largest = 1u << 31;
   UMOV_ASSIGN(text, read_file(o.counts, largest));
@@ -123,6 +125,8 @@ void add_reduce(CLI::App &app, const Exit &exit_with) {
   prior("--angle-sd-deg", o->angle_sd_deg, "How well the instrument's angle is known [deg]");
   prior("--efficiency-sd", o->efficiency_sd, "How well the efficiency is known");
   prior("--sky-sd", o->sky_sd, "How well the whole sky is known, relative");
+  prior("--transparency-sd", o->transparency_sd,
+        "How much the air lets through changes from exposure to exposure, relative: thin cloud");
   verb->add_option("--tdm", o->tdm, "Also magnitudes as a CCSDS Tracking Data Message");
   verb->add_option("--score", o->score,
                    "Also magnitudes as a table for the IAU's repository SCORE");

@@ -110,16 +110,17 @@ void bind_options(nb::module_ &m) {
           "__init__",
           [](jobs::ReduceOptions *self, double period_s, int harmonics, double knot_s, double q0_sd,
              double gain_sd, double angle_sd_deg, double efficiency_sd, double sky_sd,
-             unsigned threads) {
+             double transparency_sd, unsigned threads) {
             new (self) jobs::ReduceOptions();
             self->period_s = period_s;
             self->harmonics = harmonics;
             self->knot_s = knot_s;
             self->priors = {q0_sd, gain_sd, 0, angle_sd_deg * pi / 180, efficiency_sd, sky_sd};
+            self->transparency_sd = transparency_sd;
             self->threads = threads;
           },
           "period_s"_a, "harmonics"_a, "knot_s"_a, "q0_sd"_a, "gain_sd"_a, "angle_sd_deg"_a,
-          "efficiency_sd"_a, "sky_sd"_a, "threads"_a);
+          "efficiency_sd"_a, "sky_sd"_a, "transparency_sd"_a, "threads"_a);
   nb::class_<jobs::ExposureRequest>(m, "ExposureRequest", "How bright, how high, how exact.")
       .def(nb::init<>())
       .def_rw("instrument", &jobs::ExposureRequest::instrument)

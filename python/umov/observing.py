@@ -167,7 +167,7 @@ class Calibration:
 
 def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[str] | None = None,
            period_s: float | None = None, harmonics: int = 3, knot_s: float | None = None, q0_sd: float = 0.0, gain_sd: float = 0.0,
-           angle_sd_deg: float = 0.0, efficiency_sd: float = 0.0, sky_sd: float = 0.0, threads: int = 0,
+           angle_sd_deg: float = 0.0, efficiency_sd: float = 0.0, sky_sd: float = 0.0, transparency_sd: float = 0.0, threads: int = 0,
            progress: Progress = None) -> Table:
     """Stokes parameters with their errors from counts: the rows of `umov reduce`, one per set.
 
@@ -195,6 +195,8 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
         How well the efficiency is known.
     sky_sd
         How well the whole sky is known, relative.
+    transparency_sd
+        How much the air lets through changes from exposure to exposure, relative, beside scintillation: thin cloud.
     threads
         0 for all cores.
     progress
@@ -223,7 +225,7 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
     if knot and period:
         raise UsageError("period_s and knot_s were both given; one of them was expected")
     given = {"q0_sd": q0_sd, "gain_sd": gain_sd, "angle_sd_deg": angle_sd_deg, "efficiency_sd": efficiency_sd,
-             "sky_sd": sky_sd}
+             "sky_sd": sky_sd, "transparency_sd": transparency_sd}
     errors = {name: number(value, name) for name, value in given.items()}
     if wrong := [f"{name} is {value!r}" for name, value in errors.items() if not 0 <= value <= 1e3]:
         raise UsageError(f"{wrong[0]}; a number from 0 to 1000 was expected")
@@ -232,7 +234,8 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
     if known is not None and not isinstance(known, Calibration):
         raise UsageError(f"calibration is a {type(known).__name__}; a Calibration or its file was expected")
     options = _umov.ReduceOptions(period, int(harmonics), knot, errors["q0_sd"], errors["gain_sd"],
-                                  errors["angle_sd_deg"], errors["efficiency_sd"], errors["sky_sd"], whole(threads, "threads"))
+                                  errors["angle_sd_deg"], errors["efficiency_sd"], errors["sky_sd"],
+                                  errors["transparency_sd"], whole(threads, "threads"))
     return Table(_umov.reduce(text, path, None if known is None else known._text, "" if known is None else known._path,
                               options, Watch(progress)))
 
@@ -245,7 +248,8 @@ def calibrate(counts: AnyCounts, standards: str | os.PathLike[str] | Table | QTa
     counts
         Of the standards, as for `reduce`, with their names in the column `name`, in one band, frame equatorial.
     standards
-        File or table with `name`, `p_percent` and `pa_deg` (from north through east); an unpolarized star has 0.
+        File or table with `name`, `p_percent` and `pa_deg` (from north through east); an unpolarized star has 0. With
+        `p_err_percent` and `pa_err_deg` the instrument is not known better than the stars are.
 
     Notes
     -----

@@ -72,6 +72,48 @@ void add_scintillation(std::vector<CommonError> &out, Rows rows,
   }
 }
 
+/// A set about the transparency that each of its exposures seems to have had, with what is left
+/// open of it.
+struct CloudySet {
+  std::vector<CountRow> rows;
+  std::vector<ChannelDatum> data;
+};
+
+/// Errors of gains act on the light that came through: a fifth of cloud times a twentieth of gain
+/// is a hundredth, and half of that in q. So rows are those behind the air t of their exposure, the
+/// most likely one for the model m; its prior is about 1 as before, which m (1 - t) brings to the
+/// counts.
+CloudySet cloudy(Rows rows, const std::vector<ChannelDatum> &data,
+                 const std::array<double, 4> &stokes, bool has_separate_pupils) {
+  CloudySet out{{rows.begin(), rows.end()}, data};
+  std::vector<double> model(data.size(), 0);
+  std::map<std::size_t, std::array<double, 2>> sums; // of m (n - b - m)/v and m^2/v
+  const auto air_of = [&](std::size_t k) {
+    return has_separate_pupils ? k : static_cast<std::size_t>(rows[k].exposure);
+  };
+  for (std::size_t k = 0; k < data.size(); ++k) {
+    const ChannelDatum &one = data[k];
+    for (std::size_t p = 0; p < 4; ++p)
+      model[k] += one.row[p] * stokes[p];
+    const double m = model[k];
+    const double v = one.excess2 * std::max(1e-3, m + one.sky) + one.fixed_variance;
+    auto &[off, weight] = sums[air_of(k)];
+    off += m * (one.counts - one.sky - m) / v;
+    weight += m * m / v;
+  }
+  for (std::size_t k = 0; k < data.size(); ++k) {
+    const auto &[off, weight] = sums[air_of(k)];
+    const double sd = rows[k].scintillation;
+    if (!(sd > 0))
+      continue;
+    const double t = std::max(.05, 1 + off / (weight + 1 / (sd * sd)));
+    out.data[k].counts -= model[k] * (1 - t);
+    out.data[k].row = data[k].row * t;
+    out.rows[k].scintillation = sd / t;
+  }
+  return out;
+}
+
 /// q and u of the plate's first half turn against those of its second, which should be the same.
 void put_null_test(Rows rows, const std::vector<ChannelDatum> &data, std::size_t parameters,
                    Reduced &out) {
@@ -90,6 +132,30 @@ void put_null_test(Rows rows, const std::vector<ChannelDatum> &data, std::size_t
     out.null[k] = (a.value[k] - b.value[k]) / 2;
 }
 
+/// A fit of a set again, with what moves its channels together.
+Result<StokesFit> with_common_errors(const Set &set, const std::vector<ChannelDatum> &data,
+                                     Result<StokesFit> fit, std::size_t parameters,
+                                     bool has_separate_pupils, const ReduceOptions &options) {
+  const auto gains = gains_of(set.rows);
+  CloudySet cloud;
+  // What is common moves counts as the model has them: under cloud, as that of a fit which knows
+  // it.
+  const int passes = options.transparency_sd > 0 ? 5 : 1;
+  for (int pass = 0; pass < passes && fit; ++pass) {
+    if (pass > 0)
+      cloud = cloudy(set.rows, data, fit->stokes, has_separate_pupils);
+    const auto &seen = pass > 0 ? cloud.data : data;
+    std::vector<ModelledDatum> modelled;
+    for (std::size_t k = 0; k < data.size(); ++k)
+      modelled.push_back({seen[k], fit->stokes, set.rows[k].x_axis_pa_deg * pi / 180, gains[k]});
+    std::vector<CommonError> common = common_errors(options.priors, modelled);
+    add_scintillation(common, pass > 0 ? cloud.rows : set.rows, modelled, has_separate_pupils);
+    if (!common.empty())
+      fit = fit_stokes(seen, parameters, common);
+  }
+  return fit;
+}
+
 Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
               const ReduceOptions &options) {
   Reduced out;
@@ -102,14 +168,8 @@ Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
     add_flag(out.flags, "incomplete");
     return out;
   }
-  std::vector<ModelledDatum> modelled;
-  const auto gains = gains_of(set.rows);
-  for (std::size_t k = 0; k < data.size(); ++k)
-    modelled.push_back({data[k], fit->stokes, set.rows[k].x_axis_pa_deg * pi / 180, gains[k]});
-  std::vector<CommonError> common = common_errors(options.priors, modelled);
-  add_scintillation(common, set.rows, modelled, has_separate_pupils);
-  if (!common.empty())
-    fit = fit_stokes(data, parameters, common);
+  const StokesFit plain = *fit;
+  fit = with_common_errors(set, data, *fit, parameters, has_separate_pupils, options);
   if (!fit || !(fit->covariance[0][0] > 0) || !std::isfinite(fit->covariance[0][0])) {
     add_flag(out.flags, "incomplete");
     return out;
@@ -121,8 +181,9 @@ Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
   for (const ChannelDatum &d : data)
     sky += d.sky, counts += d.counts;
   out.sky_share = counts - sky > 0 ? sky / (counts - sky) : nan;
-  const double error = std::sqrt(fit->covariance[0][0]);
-  if (!(fit->stokes[0] > 3 * error)) // nothing was seen: fractions of it say nothing
+  // Nothing was seen: fractions of it say nothing. Cloud hides how bright, not that something is.
+  const StokesFit &noise = options.transparency_sd > 0 ? plain : *fit;
+  if (!(noise.stokes[0] > 3 * std::sqrt(noise.covariance[0][0])))
     add_flag(out.flags, "faint");
   else
     out.is_solved = parameters >= 3;
@@ -210,8 +271,9 @@ void warn_of_rows(const std::vector<Reduced> &reduced, Diagnostics &diagnostics)
                                  "the sky or the gain right?",
                                  counted(outside, "set")));
   if (misfits > 0)
-    diagnostics.warn(fmt::format("{} of {} that noise does not explain (flag misfit): gains, sky "
-                                 "or a source that changes within a set; see chi2 and dof",
+    diagnostics.warn(fmt::format("{} of {} that noise does not explain (flag misfit): gains, sky, "
+                                 "cloud (--transparency-sd) or a source that changes within a set; "
+                                 "see chi2 and dof",
                                  counted(misfits, "row"), reduced.size()));
   if (bright > 0)
     diagnostics.warn(fmt::format("{} with a sky more than ten times as bright as the object: its "
@@ -229,10 +291,21 @@ void note(Table &table, const CountsFile &file) {
   table.note("POLCCONV", "IAU");
 }
 
+/// The same counts where cloud is not known beside scintillation.
+CountsFile clouded(CountsFile file, double transparency_sd) {
+  for (CountRow &row : file.rows)
+    row.scintillation = std::hypot(row.scintillation, transparency_sd);
+  return file;
+}
+
 } // namespace
 
-Result<Table> reduce(const CountsFile &file, const ReduceOptions &options, const Monitor &monitor,
+Result<Table> reduce(const CountsFile &given, const ReduceOptions &options, const Monitor &monitor,
                      Diagnostics &diagnostics) {
+  const bool is_cloudy = options.transparency_sd > 0;
+  const CountsFile through_cloud =
+      is_cloudy ? clouded(given, options.transparency_sd) : CountsFile{};
+  const CountsFile &file = is_cloudy ? through_cloud : given;
   const std::size_t parameters = parameters_of(file);
   const auto pupils = file.notes.find("pupils");
   const bool has_separate_pupils = pupils != file.notes.end() && pupils->second == "separate";

@@ -230,9 +230,27 @@ def test_half_turns_of_a_plate_test_each_other(scene, umov, tmp_path):
                                                   air='scintillation = "none"'))
     # Two independent halves: half their difference is as uncertain as their mean.
     pulls_of = [row["null_q"] / math.sqrt(row["cov_qq"]) for row in stokes]
+    assert umov("reduce", "out/counts.ecsv", "--page", "s.html", "-o", "s.ecsv").code == 0
+    assert "Null tests: one half turn" in (tmp_path / "s.html").read_text()
     n = len(pulls_of)
     assert n > 50 and abs(statistics.mean(pulls_of)) < 4 / math.sqrt(n) + 0.1
     assert abs(statistics.stdev(pulls_of) - 1) < 4 / math.sqrt(2 * n) + 0.1
+
+
+def test_thin_cloud_leaves_two_beams_alone(scene, umov, tmp_path):
+    """A tenth of a magnitude that wanders: told, q and u are within their errors, and no fit is called bad."""
+    path = scene("hwp_wollaston_1m", "exposure_s = 0.02\ncadence_s = 0.1",
+                 air='scintillation = "none"\ncloud = { sd_mag = 0.1, time_s = 0.05 }')
+    stokes, truth, said = observed(umov, tmp_path, path)
+    assert "cloud (--transparency-sd)" in said
+    stokes, truth, said = observed(umov, tmp_path, path, "--transparency-sd", 0.1)
+    assert "misfit" not in said
+    found = pulls(stokes, truth)
+    for name in "qu":
+        n = len(found[name])
+        assert n >= 140 and abs(statistics.stdev(found[name]) - 1) < 4 / math.sqrt(2 * n), name
+        assert abs(statistics.mean(found[name])) < 4 / math.sqrt(n), name
+    assert umov("reduce", "out/counts.ecsv", "--transparency-sd", "-1").code == 2
 
 
 def test_gaps_are_told(umov, tmp_path):

@@ -19,6 +19,8 @@ struct ReduceOptions {
   /// The same with splines, knots this far apart [s], where there is no period. 0: none.
   double knot_s = 0;
   ErrorPriors priors; ///< of the instrument, beside the scintillation that the file tells
+  /// Relative standard deviation of each exposure's transparency beside scintillation: thin cloud.
+  double transparency_sd = 0;
   std::optional<PolarimeterCalibration> calibration; ///< its offset and factor are taken out
   unsigned threads = 0;
 };
