@@ -106,7 +106,8 @@ public:
     take(lit_.first, lit_.count);
     const Journal::Block block{0, number};
     if (const auto kept = journal_ != nullptr ? journal_->find(block) : std::nullopt;
-        kept && from_bytes(*kept, results_) && results_.poses() == lit_.count)
+        kept && from_bytes(*kept, results_) && results_.poses() == lit_.count &&
+        results_.bands == light_.model().scene().bands.size())
       return true;
     if (!evaluate())
       return false;

@@ -1,5 +1,6 @@
 #include <umov/light/stokes_table.h>
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -42,7 +43,15 @@ bool is_consistent(const StokesTable &table) {
        {&table.q, &table.u, &table.v, &table.i_err, &table.q_err, &table.u_err, &table.v_err})
     if (column->size() != rows)
       return false;
-  return rows == poses * table.bands && table.method.size() == poses;
+  for (const auto *column : {&table.indirect, &table.band_err})
+    if (!column->empty() && column->size() != rows)
+      return false;
+  // A product of what a file says may wrap.
+  const bool is_square = poses == 0 ? rows == 0 : rows % poses == 0 && rows / poses == table.bands;
+  return is_square && table.method.size() == poses &&
+         (table.glint_share.empty() || table.glint_share.size() == poses) &&
+         (rows == 0 ? table.material_i.empty() : table.material_i.size() % rows == 0) &&
+         std::ranges::all_of(table.method, [](PoseMethod m) { return m <= PoseMethod::Rays; });
 }
 
 } // namespace

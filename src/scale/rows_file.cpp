@@ -1,6 +1,7 @@
 #include <umov/scale/rows_file.h>
 
 #include "scale/rows_form.h"
+#include "scale/whole_number.h"
 
 #include <algorithm>
 #include <cstring>
@@ -78,18 +79,18 @@ AboutTable about_table(const json &from, std::size_t end) {
   }
   constexpr std::array<std::size_t, 4> sizes{8, 8, 4, 1};
   for (const json &one : from.at("blocks")) {
-    Block block{one.at("rows").get<std::size_t>(), {}};
+    Block block{whole_at(one, "rows"), {}};
     if (one.at("columns").size() != out.columns.size())
       throw std::runtime_error("a block with other columns");
     for (std::size_t c = 0; c < out.columns.size(); ++c) {
       const json &column = one.at("columns").at(c);
       const std::size_t kind = out.columns[c].cells.index();
-      Place place{column.at("at").get<std::size_t>(), 0, 0, 0};
+      Place place{whole_at(column, "at"), 0, 0, 0};
       check_place(place.at, block.rows, sizes.at(kind), end);
       if (kind == 2) {
-        place.ends = column.at("ends").get<std::size_t>();
-        place.texts = column.at("texts").get<std::size_t>();
-        place.words = column.at("words").get<std::size_t>();
+        place.ends = whole_at(column, "ends");
+        place.texts = whole_at(column, "texts");
+        place.words = whole_at(column, "words");
         check_place(place.ends, place.texts, 8, end);
         check_place(place.words, 0, 1, end);
       }
@@ -122,10 +123,10 @@ struct RowsFile::State {
     end = begin;
     const json all = json::parse(bytes.substr(begin, length));
     head = {all.at("key").get<std::string>(),
-            all.at("index").get<std::size_t>(),
-            {all.at("first").get<std::size_t>(), all.at("count").get<std::size_t>()}};
+            whole_at(all, "index"),
+            {whole_at(all, "first"), whole_at(all, "count")}};
     for (const json &count : all.value("tallies", json::array()))
-      tallies.push_back(count.get<std::size_t>());
+      tallies.push_back(whole_of(count, "tallies"));
     for (const json &table : all.at("tables")) {
       names.push_back(table.at("name").get<std::string>());
       tables.push_back(about_table(table, end));

@@ -7,13 +7,16 @@
 
 namespace umov::scale {
 
-/// The whole number of `key`: get<std::size_t> alone would cast 1e300, -1 and 0.5 too. Throws
-/// (std::exception) for these and for what is not there.
-inline std::size_t whole_at(const nlohmann::json &all, const char *key) {
-  const nlohmann::json &value = all.at(key);
+/// A whole number: get<std::size_t> alone would cast 1e300, -1 and 0.5 too. Throws (std::exception)
+/// for these, with the `key` that it stands under.
+inline std::size_t whole_of(const nlohmann::json &value, const char *key) {
   if (!value.is_number_unsigned())
     throw std::runtime_error(std::string(key) + " is no whole number from 0 on");
   return value.get<std::size_t>();
+}
+/// That of `key`; throws for what is not there too.
+inline std::size_t whole_at(const nlohmann::json &all, const char *key) {
+  return whole_of(all.at(key), key);
 }
 
 /// An exit code, or 128 and the number of a signal.

@@ -45,6 +45,9 @@ public:
     rows_ += rows.rows();
     return {};
   }
+  Result<void> note(const std::string & /*key*/, const std::string & /*value*/) override {
+    return {};
+  }
   Result<void> finish() override { return {}; }
   Error stop(const Error &stopped) override { return stopped; }
   [[nodiscard]] std::size_t rows() const { return rows_; }

@@ -1,15 +1,23 @@
 #include "backend/cuda/card.h"
 
 #include <algorithm>
+#include <unistd.h>
 
 namespace umov::backend {
 namespace {
 
 /// Of the driver's CUdevice_attribute.
-constexpr int attribute_major = 75, attribute_minor = 76;
+constexpr int attribute_processors = 16, attribute_major = 75, attribute_minor = 76;
 /// Threads of a block: a pose needs some 128 registers, of which four such blocks fill a
 /// multiprocessor.
 constexpr unsigned threads_per_block = 128;
+/// Poses times facets of a launch, for each multiprocessor: well below the seconds after which a
+/// card that drives a screen too ends what runs (CUDA_ERROR_LAUNCH_TIMEOUT).
+constexpr std::size_t work_of_a_launch = std::size_t{1} << 24;
+/// Of a batch, of which there are two under way when somebody asks for a stop.
+constexpr std::size_t launches_of_a_batch = 16;
+/// Facets of a chunk at most.
+constexpr std::size_t facets_of_a_chunk = groups_per_thread * lanes;
 
 Result<CardFacts> facts_of(const CudaDriver &driver, int index) {
   CardFacts out;
@@ -26,6 +34,10 @@ Result<CardFacts> facts_of(const CudaDriver &driver, int index) {
                         "asking for its compute capability"));
   out.capability = 10 * major + minor;
   UMOV_TRY(driver.check(driver.device_memory(&out.memory_bytes, device), "asking for its memory"));
+  int processors = 0;
+  UMOV_TRY(driver.check(driver.device_attribute(&processors, attribute_processors, device),
+                        "asking for its multiprocessors"));
+  out.processors = static_cast<std::size_t>(std::max(processors, 1));
   return out;
 }
 
@@ -116,24 +128,53 @@ Result<std::size_t> Card::free_bytes() const {
   return free;
 }
 
-CudaCode Card::launch(const CardScene &scene, const CardBatch &batch, CudaHandle stream) const {
+CudaCode Card::launch_one(CudaHandle function, const CardScene &scene, const CardBatch &batch,
+                          CudaHandle stream) const {
   CardScene scene_copy = scene;
   CardBatch batch_copy = batch;
   void *parameters[] = {&scene_copy, &batch_copy};
   const auto blocks =
       static_cast<unsigned>((batch.poses.size() + threads_per_block - 1) / threads_per_block);
-  const CudaHandle last = batch.light != nullptr  ? colour_
-                          : batch.work != nullptr ? weigh_
-                                                  : nullptr;
-  for (const CudaHandle function : {prepare_, sum_, last}) {
-    if (function == nullptr)
-      continue;
-    if (const CudaCode code = driver_.launch(function, blocks, 1, 1, threads_per_block, 1, 1, 0,
-                                             stream, parameters, nullptr);
-        code != cuda_success)
+  return driver_.launch(function, blocks, 1, 1, threads_per_block, 1, 1, 0, stream, parameters,
+                        nullptr);
+}
+
+/// Some chunks after the others: sums go on where they were, so that no byte depends on it.
+CudaCode Card::launch_sums(const CardScene &scene, const CardBatch &batch,
+                           CudaHandle stream) const {
+  const View<const Chunk> all = scene.scene.chunks;
+  const std::size_t most =
+      std::max<std::size_t>(facts_.processors * work_of_a_launch /
+                                (std::max<std::size_t>(batch.poses.size(), 1) * facets_of_a_chunk),
+                            1);
+  CardScene part = scene;
+  CardBatch at = batch;
+  std::size_t first = 0;
+  do {
+    part.scene.chunks = {all.data() + first, std::min(most, all.size() - first)};
+    if (const CudaCode code = launch_one(sum_, part, at, stream); code != cuda_success)
       return code;
-  }
+    at.goes_on = true;
+    first += most;
+  } while (first < all.size());
   return cuda_success;
+}
+
+CudaCode Card::launch(const CardScene &scene, const CardBatch &batch, CudaHandle stream) const {
+  CudaCode code = launch_one(prepare_, scene, batch, stream);
+  if (code == cuda_success)
+    code = launch_sums(scene, batch, stream);
+  if (code == cuda_success && batch.light != nullptr)
+    return launch_one(colour_, scene, batch, stream);
+  if (code == cuda_success && batch.work != nullptr)
+    return launch_one(weigh_, scene, batch, stream);
+  return code;
+}
+
+std::size_t Card::most_poses(const CardScene &scene) const {
+  const std::size_t facets =
+      std::max<std::size_t>(scene.scene.chunks.size(), 1) * facets_of_a_chunk;
+  return facts_.processors * work_of_a_launch / facets * launches_of_a_batch;
 }
 
 Result<void> CardSet::fill(const std::vector<CardFacts> &cards, const CardCompiler &compiler,
@@ -157,7 +198,10 @@ Result<void> CardSet::fill(const std::vector<CardFacts> &cards, const CardCompil
 Result<std::shared_ptr<const CardSet>> CardSet::open(std::span<const std::filesystem::path> folders,
                                                      const std::filesystem::path &cache) {
   UMOV_ASSIGN(found, find_cards(folders));
+  const CudaDriver driver = found.driver;
+  const CallersContext kept(driver);
   std::shared_ptr<CardSet> out(new CardSet(std::move(found.driver)));
+  out->process_ = ::getpid();
   std::vector<std::string> said; // once, where it is no compiler's fault
   for (const CardCompiler &compiler : found.compilers) {
     const auto filled = out->fill(found.cards, compiler, cache);
@@ -170,6 +214,21 @@ Result<std::shared_ptr<const CardSet>> CardSet::open(std::span<const std::filesy
   for (const std::string &one : said)
     all += (all.empty() ? "" : "; ") + one;
   return fail(ErrorCode::Device, all);
+}
+
+CardSet::~CardSet() {
+  const CallersContext kept(driver_);
+  cards_.clear();
+}
+
+Result<void> CardSet::check_process() const {
+  if (process_ == ::getpid())
+    return {};
+  return fail(
+      ErrorCode::Device,
+      "this process was forked from one that had opened the graphics card, and CUDA does not "
+      "work in it: start processes anew (Python: multiprocessing's \"spawn\" or "
+      "\"forkserver\"), or use the card in them alone");
 }
 
 std::string CardSet::name() const {

@@ -16,6 +16,7 @@ struct CardFacts {
   std::string name;
   int capability = 0; ///< 75: 7.5
   std::size_t memory_bytes = 0;
+  std::size_t processors = 1; ///< multiprocessors
 };
 
 /// What there is, without compiling anything.
@@ -27,6 +28,26 @@ struct CardFindings {
 /// Device with the first thing that lacks, and how to get it. `folders`: looked into before the
 /// places where the system has its libraries.
 Result<CardFindings> find_cards(std::span<const std::filesystem::path> folders);
+
+/// Gives this thread back the context that it had: others of its process (PyTorch, CuPy) work with
+/// theirs, on another card perhaps.
+class CallersContext {
+public:
+  /// The driver outlives it.
+  explicit CallersContext(const CudaDriver &driver)
+      : driver_(driver), is_known_(driver.current_context(&context_) == cuda_success) {}
+  CallersContext(const CallersContext &) = delete;
+  CallersContext &operator=(const CallersContext &) = delete;
+  ~CallersContext() {
+    if (is_known_)
+      driver_.use_context(context_);
+  }
+
+private:
+  const CudaDriver &driver_;
+  CudaHandle context_ = nullptr;
+  bool is_known_;
+};
 
 /// Memory of a card; released with the object.
 class CardMemory {
@@ -74,8 +95,14 @@ public:
   /// fails on the card may be said by a later call.
   [[nodiscard]] CudaCode launch(const CardScene &scene, const CardBatch &batch,
                                 CudaHandle stream) const;
+  /// Of a scene, in a batch: so many that who asks for a stop is not kept waiting.
+  [[nodiscard]] std::size_t most_poses(const CardScene &scene) const;
 
 private:
+  [[nodiscard]] CudaCode launch_one(CudaHandle function, const CardScene &scene,
+                                    const CardBatch &batch, CudaHandle stream) const;
+  [[nodiscard]] CudaCode launch_sums(const CardScene &scene, const CardBatch &batch,
+                                     CudaHandle stream) const;
   Card(const CudaDriver &driver, CardFacts facts) : driver_(driver), facts_(std::move(facts)) {}
   const CudaDriver &driver_;
   CardFacts facts_;
@@ -90,17 +117,23 @@ public:
   /// the card and whose code the driver takes.
   static Result<std::shared_ptr<const CardSet>> open(std::span<const std::filesystem::path> folders,
                                                      const std::filesystem::path &cache);
+  CardSet(const CardSet &) = delete;
+  CardSet &operator=(const CardSet &) = delete;
+  ~CardSet();
   [[nodiscard]] const std::vector<std::unique_ptr<Card>> &cards() const { return cards_; }
   /// "2 x NVIDIA ...", for headers of files.
   [[nodiscard]] std::string name() const;
   /// What bytes depend on: name, capability and compiler, not the number of cards.
   [[nodiscard]] const std::string &identity() const { return identity_; }
+  /// Device in a process that was forked from the one that opened them: CUDA is of no use there.
+  [[nodiscard]] Result<void> check_process() const;
 
 private:
   explicit CardSet(CudaDriver driver) : driver_(std::move(driver)) {}
   Result<void> fill(const std::vector<CardFacts> &cards, const CardCompiler &compiler,
                     const std::filesystem::path &cache);
   CudaDriver driver_;
+  int process_ = 0; ///< that opened them
   std::string identity_;
   std::vector<std::unique_ptr<Card>> cards_;
 };

@@ -170,10 +170,17 @@ CudaCode CardLoops::Slot::begin(std::span<const PoseDirections> of, std::size_t 
 }
 
 CardLoops::CardLoops(std::shared_ptr<const CardSet> cards) : cards_(std::move(cards)) {}
-CardLoops::~CardLoops() = default;
+CardLoops::~CardLoops() {
+  const CallersContext kept(cards_->cards().front()->driver());
+  slots_.clear();
+  on_cards_.clear();
+}
 
 Result<std::unique_ptr<CardLoops>> CardLoops::make(std::shared_ptr<const CardSet> cards,
                                                    const CardSource &source) {
+  UMOV_TRY(cards->check_process());
+  const auto held = cards; // what does not come out ends before it
+  const CallersContext kept(held->cards().front()->driver());
   std::unique_ptr<CardLoops> out(new CardLoops(std::move(cards)));
   out->columns_ = {source.scene.lobes.size(), source.scene.products.size()};
   out->bands_ = source.colours.bands;
@@ -182,11 +189,14 @@ Result<std::unique_ptr<CardLoops>> CardLoops::make(std::shared_ptr<const CardSet
     UMOV_ASSIGN(there, OnCard::make(*card, source));
     out->on_cards_.push_back(std::move(there));
   }
-  out->batch_ = batch_most;
+  const OnCard &first = *out->on_cards_.front();
+  out->batch_ = std::clamp(first.card().most_poses(first.scene()), share_least, batch_most);
   return out;
 }
 
 Result<void> CardLoops::put_masks(const Masks *masks, std::size_t version) {
+  UMOV_TRY(cards_->check_process());
+  const CallersContext kept(cards_->cards().front()->driver());
   for (const auto &there : on_cards_) {
     if (there->put_masks(masks, version))
       continue;
@@ -243,13 +253,22 @@ Result<void> CardLoops::run_on(std::span<const PoseDirections> poses,
                                std::size_t &finished, bool &is_full) {
   const CudaDriver &driver = cards_->cards().front()->driver();
   const std::string what = "computing on " + cards_->name();
-  std::deque<Slot *> waiting, free;
+  // What is under way reads the scene and its masks, which the caller may change: it is waited for
+  // however this ends, by `done` throwing too.
+  struct Waiting : std::deque<Slot *> {
+    Waiting() = default;
+    Waiting(const Waiting &) = delete;
+    Waiting &operator=(const Waiting &) = delete;
+    ~Waiting() {
+      for (Slot *slot : *this)
+        (void)slot->finish(); // nothing of theirs is used: they come again
+    }
+  } waiting;
+  std::deque<Slot *> free;
   for (const auto &slot : slots_)
     free.push_back(slot.get());
   const auto failed = [&](CudaCode code) {
     is_full = code == cuda_out_of_memory;
-    for (Slot *slot : waiting)
-      (void)slot->finish(); // nothing of theirs is used: they come again
     return driver.check(code, what);
   };
   const std::size_t share = std::min(share_of(poses.size()), room_);
@@ -258,11 +277,11 @@ Result<void> CardLoops::run_on(std::span<const PoseDirections> poses,
   while (finished < poses.size() && !is_stopped()) {
     while (!free.empty() && next < poses.size()) {
       const std::size_t count = std::min(share, poses.size() - next);
-      if (const CudaCode code = free.front()->begin(poses.subspan(next, count), next, sizes());
+      waiting.push_back(free.front()); // some of it may be under way where the rest fails
+      free.pop_front();
+      if (const CudaCode code = waiting.back()->begin(poses.subspan(next, count), next, sizes());
           code != cuda_success)
         return failed(code);
-      waiting.push_back(free.front());
-      free.pop_front();
       next += count;
     }
     Slot &slot = *waiting.front();
@@ -275,13 +294,13 @@ Result<void> CardLoops::run_on(std::span<const PoseDirections> poses,
     finished = slot.first + slot.count;
     free.push_back(&slot);
   }
-  for (Slot *slot : waiting)
-    (void)slot->finish();
   return {};
 }
 
 Result<void> CardLoops::run(std::span<const PoseDirections> poses, CardWants wants,
                             const std::atomic<bool> *cancel, const Done &done) {
+  UMOV_TRY(cards_->check_process());
+  const CallersContext kept(cards_->cards().front()->driver());
   if (wants != wants_)
     slots_.clear();
   wants_ = wants;

@@ -39,6 +39,7 @@ struct CardBatch {
   kernel::LobeAtPose<float> *lobes = nullptr;
   RunningSum *sums = nullptr; ///< as `CardColumns` says
   std::uint8_t *is_any_seen = nullptr;
+  bool goes_on = false; ///< sums hold those of the chunks before
   // Where light or abundances are asked for, not sums:
   PoseReflection *reflection = nullptr; ///< of light
   float *work = nullptr;                ///< as `CardColumns` says: abundances, and room for light
@@ -114,9 +115,10 @@ UMOV_KERNEL void prepare_on_card(const CardScene &card, const CardBatch &batch, 
 UMOV_KERNEL void sum_on_card(const CardScene &card, const CardBatch &batch, std::size_t pose) {
   const CardColumns columns = columns_of(card);
   RunningSum *const first = batch.sums + pose * columns.size();
-  for (std::size_t k = 0; k < columns.size(); ++k)
+  for (std::size_t k = 0; !batch.goes_on && k < columns.size(); ++k)
     first[k] = RunningSum();
   PoseSumsOf<RunningSum> sums = columns.sums_at(first);
+  sums.is_any_seen = batch.goes_on && batch.is_any_seen[pose] != 0;
   kernel::FacetLoops<ThreadMachine>(card.scene, card.has_masks ? &card.masks : nullptr, card.error,
                                     batch.ready[pose], sums)
       .run();

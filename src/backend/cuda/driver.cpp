@@ -18,6 +18,7 @@ std::string bind_all(const SharedLibrary &library, CudaDriver &to) {
   bind("cuInit", to.init);
   bind("cuDriverGetVersion", to.driver_version);
   bind("cuGetErrorName", to.error_name);
+  bind("cuGetErrorString", to.error_text);
   bind("cuDeviceGetCount", to.device_count);
   bind("cuDeviceGet", to.device_at);
   bind("cuDeviceGetName", to.device_name);
@@ -26,6 +27,7 @@ std::string bind_all(const SharedLibrary &library, CudaDriver &to) {
   bind("cuDevicePrimaryCtxRetain", to.retain_context);
   bind("cuDevicePrimaryCtxRelease_v2", to.release_context);
   bind("cuCtxSetCurrent", to.use_context);
+  bind("cuCtxGetCurrent", to.current_context);
   bind("cuModuleLoadData", to.load_module);
   bind("cuModuleUnload", to.unload_module);
   bind("cuModuleGetFunction", to.function_of);
@@ -51,7 +53,7 @@ Result<CudaDriver> CudaDriver::load(std::span<const std::filesystem::path> folde
   auto library = SharedLibrary::open("libcuda.so", names, folders);
   if (!library)
     return fail(ErrorCode::Device, "no NVIDIA driver: " + library.error().message +
-                                       ". Install the driver of the card");
+                                       ". Install the driver of the card, or take --device cpu");
   CudaDriver out;
   const std::string lacking = bind_all(*library, out);
   if (!lacking.empty())
@@ -66,10 +68,12 @@ Result<CudaDriver> CudaDriver::load(std::span<const std::filesystem::path> folde
 Result<void> CudaDriver::check(CudaCode code, const std::string &what) const {
   if (code == cuda_success)
     return {};
-  const char *name = nullptr;
+  const char *name = nullptr, *text = nullptr;
   error_name(code, &name);
+  error_text(code, &text);
   return fail(ErrorCode::Device, what + ": " + (name == nullptr ? "unknown failure" : name) + " (" +
-                                     std::to_string(code) + ")");
+                                     std::to_string(code) +
+                                     (text == nullptr ? "" : std::string(", ") + text) + ")");
 }
 
 } // namespace umov::backend

@@ -21,6 +21,7 @@ struct CudaDriver {
   CudaCode (*init)(unsigned flags) = nullptr;
   CudaCode (*driver_version)(int *version) = nullptr;
   CudaCode (*error_name)(CudaCode code, const char **name) = nullptr;
+  CudaCode (*error_text)(CudaCode code, const char **text) = nullptr;
   CudaCode (*device_count)(int *count) = nullptr;
   CudaCode (*device_at)(CudaDevice *device, int index) = nullptr;
   CudaCode (*device_name)(char *name, int size, CudaDevice device) = nullptr;
@@ -29,6 +30,7 @@ struct CudaDriver {
   CudaCode (*retain_context)(CudaHandle *context, CudaDevice device) = nullptr;
   CudaCode (*release_context)(CudaDevice device) = nullptr;
   CudaCode (*use_context)(CudaHandle context) = nullptr;
+  CudaCode (*current_context)(CudaHandle *context) = nullptr;
   CudaCode (*load_module)(CudaHandle *module, const void *image) = nullptr;
   CudaCode (*unload_module)(CudaHandle module) = nullptr;
   CudaCode (*function_of)(CudaHandle *function, CudaHandle module, const char *name) = nullptr;

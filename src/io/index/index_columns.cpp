@@ -31,11 +31,8 @@ std::vector<std::string> words_of(std::string_view line) {
   return out;
 }
 
-bool is_numeric(const std::vector<std::string> &words) {
-  return (words.size() == 2 || words.size() == 3) &&
-         std::ranges::all_of(words,
-                             [](const std::string &w) { return parse_number(w).has_value(); });
-}
+/// A row begins with a wavelength; what else stands in it is judged with its line.
+bool is_row(const std::vector<std::string> &words) { return parse_number(words[0]).has_value(); }
 
 /// Lines with something in them; comments and the header are collected for the unit that they name.
 std::vector<Row> rows_of(std::string_view text, std::string &header, std::size_t most) {
@@ -55,7 +52,7 @@ std::vector<Row> rows_of(std::string_view text, std::string &header, std::size_t
     else
       out.push_back({words, line});
   }
-  if (!out.empty() && !is_numeric(out.front().words)) {
+  if (!out.empty() && !is_row(out.front().words)) {
     for (const std::string &word : out.front().words)
       header += word + " ";
     out.erase(out.begin());
@@ -87,8 +84,13 @@ double unit_in(const std::string &header) {
 bool is_index_columns(std::string_view text) {
   std::string header;
   const auto rows = rows_of(text.substr(0, 65536), header, 3);
-  if (!rows.empty() && is_numeric(rows.front().words))
-    return true;
+  if (!rows.empty() && is_row(rows.front().words)) {
+    const auto &words = rows.front().words;
+    const auto numbers = std::ranges::count_if(
+        words, [](const std::string &w) { return parse_number(w).has_value(); });
+    return (words.size() == 2 || words.size() == 3) &&
+           static_cast<std::size_t>(numbers) + 1 >= words.size(); // one may be wrong, and is named
+  }
   const std::string first = lowered(header.substr(0, header.find(' ')));
   return first.starts_with("wavelength") || first.starts_with("lambda");
 }

@@ -7,7 +7,8 @@
 
 namespace umov {
 
-/// The first line that is neither blank, comment nor header holds two or three numbers.
+/// The first line that is neither blank, comment nor header begins with a number and has two or
+/// three words, one of which may be none.
 bool is_index_columns(std::string_view text);
 /// Blanks, commas or semicolons between the columns; nm or um as the header says, else as the
 /// numbers are. BadInput names the line.

@@ -234,14 +234,19 @@ Result<void> PolygonMaker::add(std::span<const Corner> corners, std::uint32_t gr
 }
 
 void PolygonMaker::warn(Diagnostics &diagnostics, const Where &file) const {
-  const auto tell = [&](std::size_t count, const char *what) {
+  const auto tell = [&](std::size_t count, const char *one, const char *more) {
     if (count > 0)
-      diagnostics.warn(fmt::format("{} {}", count, what), file);
+      diagnostics.warn(count == 1 ? fmt::format("1 {}", one) : fmt::format("{} {}", count, more),
+                       file);
   };
-  tell(short_faces_, "faces with fewer than three corners were skipped");
-  tell(concave_, "polygons are concave; they were split by cutting ears");
-  tell(crossed_, "polygons cross themselves; they were split as fans");
-  tell(bent_, "polygons are not flat; they were split as they lie");
+  tell(short_faces_, "face with fewer than three corners was skipped",
+       "faces with fewer than three corners were skipped");
+  tell(concave_, "polygon is concave; it was split by cutting ears",
+       "polygons are concave; they were split by cutting ears");
+  tell(crossed_, "polygon crosses itself; it was split as a fan",
+       "polygons cross themselves; they were split as fans");
+  tell(bent_, "polygon is not flat; it was split as it lies",
+       "polygons are not flat; they were split as they lie");
 }
 
 void PolygonMaker::finish() {

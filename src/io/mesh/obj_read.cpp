@@ -307,8 +307,10 @@ Result<void> Reader::finish() {
   keep_tree();
   UMOV_TRY(mesh_io::to_body_frame(out_, options_, lines_.file(), diagnostics_));
   if (skipped_ > 0)
-    diagnostics_.warn(fmt::format("{} points or lines were skipped: they have no area", skipped_),
-                      file);
+    diagnostics_.warn(
+        skipped_ == 1 ? std::string("1 point or line was skipped: it has no area")
+                      : fmt::format("{} points or lines were skipped: they have no area", skipped_),
+        file);
   if (has_odd_names_)
     diagnostics_.warn("names hold bytes that are no printable UTF-8; each of them became '?'",
                       file);

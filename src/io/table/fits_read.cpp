@@ -133,9 +133,9 @@ Result<void> FitsReader::read_columns(TextTable &out) {
   int columns = 0;
   fits_get_num_rowsll(file_.get(), &rows, &status_);
   fits_get_num_cols(file_.get(), &columns, &status_);
-  // A row takes a byte at least: a header that promises more is not believed.
-  if (status_ != 0 || rows < 0 || columns < 1 || static_cast<std::size_t>(rows) > size_ ||
-      static_cast<std::size_t>(columns) > size_)
+  // A cell takes a byte at least: a header that promises more is not believed.
+  if (status_ != 0 || rows < 0 || columns < 1 ||
+      static_cast<std::size_t>(rows) > size_ / static_cast<std::size_t>(columns))
     return refuse("is damaged or has no columns");
   const auto count = static_cast<std::size_t>(rows);
   out.rows.assign(count, {});

@@ -36,6 +36,8 @@ Result<std::shared_ptr<const Cards>> open_cards(const DeviceOptions &options) {
   };
   static auto *const opened = new Opened;
   const WriteLock lock(opened->mutex);
+  if (opened->cards) // whatever it was opened with, a fork cannot open it again
+    UMOV_TRY(opened->cards->set->check_process());
   if (opened->cards && opened->folders == options.folders && opened->cache == options.cache)
     return opened->cards;
   UMOV_ASSIGN(set, backend::CardSet::open(options.folders, options.cache));

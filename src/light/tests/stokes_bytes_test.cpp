@@ -41,6 +41,24 @@ TEST(StokesBytes, AnythingElseIsRefused) {
   std::string other_bands = bytes;
   other_bands[0] = 4;
   EXPECT_FALSE(from_bytes(other_bands, back));
+  StokesTable no_rows; // 2 poses and 2^63 bands: 0 numbers, if products may wrap
+  no_rows.resize(2, 0);
+  std::string wrapped = to_bytes(no_rows);
+  ASSERT_TRUE(from_bytes(wrapped, back));
+  wrapped[7] = '\x80';
+  EXPECT_FALSE(from_bytes(wrapped, back));
+  StokesTable wrong = example();
+  wrong.indirect.pop_back();
+  EXPECT_FALSE(from_bytes(to_bytes(wrong), back));
+  wrong = example();
+  wrong.glint_share.push_back(0);
+  EXPECT_FALSE(from_bytes(to_bytes(wrong), back));
+  wrong = example();
+  wrong.material_i.resize(7);
+  EXPECT_FALSE(from_bytes(to_bytes(wrong), back));
+  wrong = example();
+  wrong.method[1] = static_cast<PoseMethod>(200);
+  EXPECT_FALSE(from_bytes(to_bytes(wrong), back));
 }
 
 } // namespace

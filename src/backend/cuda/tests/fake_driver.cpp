@@ -10,7 +10,10 @@
 //   UMOV_FAKE_FULL      launches after which there is no memory for any
 //   UMOV_FAKE_POSES     most poses of a launch, beyond which there is no memory
 //   UMOV_FAKE_LAUNCHES  launches after which the card is lost
-// umov_fake_launches tells how many there were since cuInit.
+//   UMOV_FAKE_PROCESSORS how many multiprocessors (132)
+//   UMOV_FAKE_WATCHDOG  most poses times facets of a launch of sums, beyond which it is ended
+// umov_fake_launches tells how many there were since cuInit; umov_fake_under_way how many were not
+// waited for.
 
 #include "backend/cuda/card_poses.h"
 
@@ -27,7 +30,7 @@ namespace {
 
 using Code = int;
 constexpr Code fine = 0, invalid = 1, out_of_memory = 2, not_there = 101,
-               newer_than_the_driver = 222, not_ready = 600, lost = 719;
+               newer_than_the_driver = 222, not_ready = 600, timed_out = 702, lost = 719;
 
 std::size_t asked(const char *name, std::size_t otherwise) {
   const char *value = std::getenv(name);
@@ -38,6 +41,8 @@ std::mutex lock;
 std::map<void *, std::size_t> allocated;
 std::size_t used = 0;
 std::atomic<std::size_t> launches{0};
+std::map<void *, std::size_t> under_way; ///< launches of each stream
+thread_local void *current = nullptr;    ///< context
 /// From memory that is not pinned, until the default stream is waited for: others do not wait.
 std::atomic<bool> is_copy_under_way{false};
 
@@ -53,6 +58,13 @@ void *const prepare = &used, *const sum = &launches, *const colour = &allocated,
 extern "C" {
 
 std::size_t umov_fake_launches() { return launches; }
+std::size_t umov_fake_under_way() {
+  const std::lock_guard guard(lock);
+  std::size_t out = 0;
+  for (const auto &[stream, count] : under_way)
+    out += count;
+  return out;
+}
 
 Code cuInit(unsigned) {
   launches = 0;
@@ -64,11 +76,16 @@ Code cuDriverGetVersion(int *version) {
 }
 Code cuGetErrorName(Code code, const char **name) {
   *name = code == out_of_memory           ? "CUDA_ERROR_OUT_OF_MEMORY"
+          : code == timed_out             ? "CUDA_ERROR_LAUNCH_TIMEOUT"
           : code == lost                  ? "CUDA_ERROR_LAUNCH_FAILED"
           : code == 100                   ? "CUDA_ERROR_NO_DEVICE"
           : code == newer_than_the_driver ? "CUDA_ERROR_UNSUPPORTED_PTX_VERSION"
                                           : "CUDA_ERROR_UNKNOWN";
   return fine;
+}
+Code cuGetErrorString(Code code, const char **text) {
+  *text = code == 100 ? "no CUDA-capable device is detected" : nullptr;
+  return *text == nullptr ? invalid : fine;
 }
 Code cuDeviceGetCount(int *count) {
   *count = static_cast<int>(asked("UMOV_FAKE_CARDS", 1));
@@ -83,7 +100,9 @@ Code cuDeviceGetName(char *name, int size, int) {
   return fine;
 }
 Code cuDeviceGetAttribute(int *value, int attribute, int) {
-  *value = attribute == 75 ? 8 : 0; // compute capability 8.0
+  *value = attribute == 75   ? 8 // compute capability 8.0
+           : attribute == 16 ? static_cast<int>(asked("UMOV_FAKE_PROCESSORS", 132))
+                             : 0;
   return fine;
 }
 Code cuDeviceTotalMem_v2(std::size_t *bytes, int) {
@@ -96,7 +115,14 @@ Code cuDevicePrimaryCtxRetain(void **context, int device) {
   return fine;
 }
 Code cuDevicePrimaryCtxRelease_v2(int) { return fine; }
-Code cuCtxSetCurrent(void *) { return is_lost() ? lost : fine; }
+Code cuCtxSetCurrent(void *context) {
+  current = context;
+  return is_lost() ? lost : fine;
+}
+Code cuCtxGetCurrent(void **context) {
+  *context = current;
+  return is_lost() ? lost : fine;
+}
 Code cuModuleLoadData(void **module, const void *image) {
   constexpr const char *words = "kernels on paper ";
   *module = &used;
@@ -169,19 +195,25 @@ Code cuMemcpyDtoHAsync_v2(void *to, unsigned long long from, std::size_t bytes, 
   return is_lost() ? lost : fine;
 }
 Code cuStreamCreate(void **stream, unsigned) {
-  static int streams;
-  *stream = &streams;
+  *stream = new int;
   return is_lost() ? lost : fine;
 }
-Code cuStreamDestroy_v2(void *) { return fine; }
+Code cuStreamDestroy_v2(void *stream) {
+  const std::lock_guard guard(lock);
+  under_way.erase(stream);
+  delete static_cast<int *>(stream);
+  return fine;
+}
 Code cuStreamSynchronize(void *stream) {
   if (stream == nullptr)
     is_copy_under_way = false;
+  const std::lock_guard guard(lock);
+  under_way.erase(stream);
   return is_lost() ? lost : fine;
 }
 
 Code cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigned threads, unsigned,
-                    unsigned, unsigned, void *, void **parameters, void **) {
+                    unsigned, unsigned, void *stream, void **parameters, void **) {
   const CardScene scene = *static_cast<const CardScene *>(parameters[0]);
   const CardBatch batch = *static_cast<const CardBatch *>(parameters[1]);
   if (batch.poses.size() > asked("UMOV_FAKE_POSES", ~std::size_t{0}) ||
@@ -189,9 +221,16 @@ Code cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigne
     return out_of_memory;
   if (is_copy_under_way)
     return not_ready; // the kernel would read what has not come
+  const std::size_t facets = scene.scene.chunks.size() * groups_per_thread * lanes;
+  if (function == sum && facets * batch.poses.size() > asked("UMOV_FAKE_WATCHDOG", ~std::size_t{0}))
+    return timed_out;
   ++launches;
   if (is_lost())
     return lost;
+  {
+    const std::lock_guard guard(lock);
+    ++under_way[stream];
+  }
   for (unsigned block = 0; block < blocks; ++block)
     for (unsigned thread = 0; thread < threads; ++thread) {
       const std::size_t i = std::size_t{block} * threads + thread;

@@ -34,6 +34,8 @@ TEST(IndexColumns, RefusesWithTheLine) {
                                    {"um,n,k\n500,1.4,0\n600,1.4,0\n", "is the table in nm?"},
                                    {"wavelength_nm,n,k\n500,x,0\n600,1,0\n", "mine.csv:2: \"x\""},
                                    {"nm,n,k\n500,1.4,0\n", "1 row of wavelength"},
+                                   {"nm,n,k\n500,nan,1\n600,1,0\n", "mine.csv:2: \"nan\""},
+                                   {"500 nan\n600 1\n700 1\n", "mine.csv:1: \"nan\""},
                                    {"hello\nworld\n", "wavelength, n, k"}}) {
     const auto table = read_index_text(text, "mine.csv");
     ASSERT_FALSE(table) << text;
