@@ -2,11 +2,18 @@
 """Light between surfaces by chains beside paths, drawn pose by pose to a finer error: do half-widths cover, is any bias left?
 
     .deps/venv/bin/python bench/between/chains.py [--umov PATH] [--poses N] [--seeds N] [BODY ...]
+    .deps/venv/bin/python bench/between/chains.py --rate N [--at A ...] [--bands nm:425,nm:550,nm:650] [--poses N]
+        [--surfaces N] [BODY ...]
 
 For each body, in random attitudes at phase angles from 15 to 150 deg: the part of the poses whose two I, Q, U, V lie
 within the half-widths of both, the mean square of the difference over what they say, and the mean difference in its
 standard errors, of I as it is and in parts of the pose's own. Chains of one seed err together over poses, so
 each seed is a row. Both programs are umov's; tests/data/bounces has the tables of another one. Minutes per body.
+
+With --rate: CPU time of N such poses on one thread, with masks, mended by rays, for the direct light, as `umov signature`
+takes them by itself, and the time a body takes beforehand, for each accuracy asked of the whole I. The first --poses
+of them, lit beforehand, have the error of I and q = Q/I beside it, direct light included, of those above 1 % of the median
+I, judged by the mean of four runs by paths and rays.
 """
 
 import argparse
@@ -20,7 +27,12 @@ import time
 import numpy as np
 
 METALS = {"gold": (0.4, 2.4, 0.30), "silicon": (4.0, 0.5, 0.20), "aluminium": (0.96, 6.69, 0.25),
-          "smooth": (0.4, 2.4, 0.15)}
+          "smooth": (0.4, 2.4, 0.15),
+          # Those of the box-wing of bench/peers at 550 nm, and alike or diffuse ones.
+          "bus": (0.359, 2.69, 0.30), "iron": (2.80, 3.22, 0.10), "tank": (1.015, 6.627, 0.15), "dish": (0.13, 3.4, 0.25),
+          "alpha_3": (0.359, 2.69, 0.30), "alpha_1": (0.359, 2.69, 0.10),
+          "alpha_05": (0.359, 2.69, 0.05), "cells": (4.0, 0.5, 0.15),
+          "white_3": (1.5, 0, 0.30, 0.6), "white_4": (1.5, 0, 0.40, 0.8)}
 
 
 def quad(a, b, c, d):
@@ -67,12 +79,29 @@ def joints():
 HST = {"array_front": "silicon", "array_back": "gold", "forward_shell": "smooth", "aft_shroud": "gold",
        "antenna": "aluminium", "array_frame": "aluminium", "door": "aluminium", "equipment": "aluminium",
        "handrail": "aluminium", "light_shield": "aluminium"}
+# As in examples/hst_maui.toml.
+LIBRARY = {"light_shield": "film_aluminized", "forward_shell": "film_aluminized", "equipment": "film_silvered",
+           "aft_shroud": "film_silvered", "door": "film_aluminized", "array_front": "cell_silicon",
+           "array_back": "mli_kapton", "array_frame": "aluminium_anodized", "antenna": "paint_white",
+           "handrail": "paint_white"}
 BOX_WING = {"bus": "gold", "panels": "silicon", "dish": "aluminium", "tank": "smooth"}
-BODIES = {"box-wing": (["box-wing", "--facets", "1000"], BOX_WING), "hst": (["hst"], HST), "corner": corner, "bowl": bowl,
-          "arrays": arrays, "joints": joints}
+PARTS = ("bus", "panels", "dish", "tank")
 
 
-def write_body(umov, folder, which):
+def peers(*metals):
+    """The box-wing of bench/peers, of 10,000 facets."""
+    return ["box-wing", "--facets", "10000"], dict(zip(PARTS, metals))
+
+
+BODIES = {"box-wing": (["box-wing", "--facets", "1000"], BOX_WING), "hst": (["hst"], HST),
+          "hst-library": (["hst"], LIBRARY), "corner": corner, "bowl": bowl,
+          "arrays": arrays, "joints": joints, "peers": peers("bus", "iron", "dish", "tank"),
+          "peers-.30": peers(*4 * ["alpha_3"]), "peers-.10": peers(*4 * ["alpha_1"]),
+          "peers-.05": peers(*4 * ["alpha_05"]),
+          "peers-paint": peers("bus", "cells", "white_4", "white_3")}
+
+
+def write_body(umov, folder, which, surfaces=5):
     made = BODIES[which]
     path = os.path.join(folder, "body.obj")
     if isinstance(made, tuple):
@@ -89,12 +118,14 @@ def write_body(umov, folder, which):
                     file.write(f"f {count + 1} {count + 2} {count + 3}\n")
                     count += 3
     text = 'umov = 1\n[[object]]\nmesh = { file = "body.obj", unit = "m", up = "+Z" }\n[object.materials]\n'
-    text += "".join(f'{group} = "m_{metal}"\n' for group, metal in groups.items())
-    for metal in sorted(set(groups.values())):
-        n, k, alpha = METALS[metal]
+    text += "".join(f'{group} = "{"m_" if metal in METALS else ""}{metal}"\n' for group, metal in groups.items())
+    for metal in sorted(set(groups.values()) & set(METALS)):
+        n, k, alpha, *white = METALS[metal]
         text += (f'[material.m_{metal}]\nindex = {{ n = {n}, k = {k} }}\nshadowing = "separable"\n'
-                 f'distribution = {{ model = "ggx", alpha = {alpha} }}\n')
-    text += '[bands]\nset = ["nm:550"]\n[render]\nsun = "point"\nbounces = 5\naccuracy_floor = 0\n'
+                 f'distribution = {{ model = "ggx", alpha = {alpha} }}\n'
+                 + (f'body = {{ reflectance = {white[0]} }}\n' if white else ""))
+    text += '[bands]\nset = ["nm:550"]\n[render]\nsun = "point"\naccuracy_floor = 0\n'
+    text += f"bounces = {surfaces}\n"
     with open(os.path.join(folder, "s.toml"), "w") as file:
         file.write(text)
 
@@ -109,10 +140,23 @@ def write_poses(folder, count):
     sun, other, phase = unit(), unit(), np.radians(rng.uniform(15, 150, count))[:, None]
     across = np.cross(sun, other)
     across /= np.linalg.norm(across, axis=1)[:, None]
-    observer = np.cos(phase) * sun + np.sin(phase) * np.cross(across, sun)
-    with open(os.path.join(folder, "g.csv"), "w") as file:
+    write_geometry(folder, "g.csv", np.hstack([sun, np.cos(phase) * sun + np.sin(phase) * np.cross(across, sun)]))
+
+
+def write_geometry(folder, name, directions):
+    with open(os.path.join(folder, name), "w") as file:
         file.write("sun_x,sun_y,sun_z,obs_x,obs_y,obs_z\n")
-        file.writelines(",".join(repr(float(x)) for x in (*a, *b)) + "\n" for a, b in zip(sun, observer))
+        file.writelines(",".join(repr(float(x)) for x in row) + "\n" for row in directions)
+
+
+def stokes(path):
+    """Stokes and half-widths of the middle band, [2, pose, 4]."""
+    with open(path) as file:
+        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    bands = list(dict.fromkeys(row["band"] for row in rows))
+    rows = [row for row in rows if row["band"] == bands[len(bands) // 2]]
+    names = ("intensity", "stokes_q", "stokes_u", "stokes_v")
+    return np.array([[[float(row[name + end]) for name in names] for row in rows] for end in ("", "_err")])
 
 
 def light(umov, folder, between, accuracy, seed):
@@ -121,11 +165,56 @@ def light(umov, folder, between, accuracy, seed):
     subprocess.run([umov, "signature", "s.toml", "--geometry", "g.csv", "--visibility", "rays", "--accuracy",
                     str(accuracy), "--set", f"render.between={between}", "--seed", str(seed), "-o", "o.csv", "-q"],
                    cwd=folder, check=True)
-    with open(os.path.join(folder, "o.csv")) as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    names = ("intensity", "stokes_q", "stokes_u", "stokes_v")
-    values = [[[float(row[name + end]) for name in names] for row in rows] for end in ("", "_err")]
-    return np.array(values), time.perf_counter() - begin
+    return stokes(os.path.join(folder, "o.csv")), time.perf_counter() - begin
+
+
+def random_poses(count):
+    """Uniform attitudes, phase angles between 15 and 150 deg; the first of many are those of few."""
+    rng = np.random.default_rng(6)
+    rows = []
+    for _ in range(count):
+        sun, other = rng.normal(size=(2, 3))
+        sun /= np.linalg.norm(sun)
+        aside = other - (other @ sun) * sun
+        phase = np.radians(rng.uniform(15, 150))
+        rows.append([*sun, *(np.cos(phase) * sun + np.sin(phase) * aside / np.linalg.norm(aside))])
+    return rows
+
+
+def rates(umov, folder, options, which):
+    bands = options.bands.split(",")
+    with open(os.path.join(folder, "s.toml")) as file:
+        text = file.read()
+    with open(os.path.join(folder, "s.toml"), "w") as file:
+        file.write(text.replace('"nm:550"', ", ".join(f'"{band}"' for band in bands)).replace("accuracy_floor = 0\n", ""))
+    poses = random_poses(options.rate)
+    few = min(options.poses, options.rate)
+    write_geometry(folder, "g.csv", poses[:few])
+    judge = np.mean([light(umov, folder, "paths", options.accuracy[1], seed)[0][0] for seed in range(1001, 1005)], axis=0)
+    kept = judge[:, 0] > 0.01 * np.median(judge[:, 0])
+    poses = np.array(poses)
+    for accuracy in options.at:
+        begin = time.process_time()
+        engine = engine_of(umov, folder, accuracy)
+        found = engine.evaluate(poses[:few, :3], poses[:few, 3:])[kept, len(bands) // 2]
+        ready = time.process_time() - begin
+        begin = time.process_time()
+        engine.evaluate(poses[:, :3], poses[:, 3:])
+        spent = time.process_time() - begin
+        i = np.abs(found[:, 0] / judge[kept, 0] - 1)
+        q = np.abs(found[:, 1] / found[:, 0] - judge[kept, 1] / judge[kept, 0])
+        print(f"{which}, {len(bands)} band{'s' if len(bands) > 1 else ''}, accuracy {accuracy}: "
+              f"{ready - few * spent / len(poses):.1f} s beforehand, {len(poses) / spent:.0f} poses/s; error of I median "
+              f"{np.median(i):.1e}, 90 % {np.quantile(i, 0.9):.1e}, 95 % {np.quantile(i, 0.95):.1e}; of q "
+              f"{np.median(q):.1e}, {np.quantile(q, 0.9):.1e}", flush=True)
+
+
+def engine_of(umov, folder, accuracy):
+    """On one thread, of the package that was built beside the command."""
+    sys.path.insert(0, os.path.join(os.path.dirname(umov), "..", "..", "python"))
+    import umov as package
+    return package.Engine(os.path.join(folder, "s.toml"), set={"render.between": "chains"}, accuracy=accuracy, threads=1,
+                          cache=False)
 
 
 def main():
@@ -134,6 +223,10 @@ def main():
     parser.add_argument("--poses", type=int, default=256)
     parser.add_argument("--seeds", type=int, default=1)
     parser.add_argument("--accuracy", type=float, nargs=2, default=[0.002, 0.001], help="of chains, and of the judge")
+    parser.add_argument("--rate", type=int, default=0, metavar="N", help="time of N poses")
+    parser.add_argument("--at", type=float, nargs="+", default=[0.02, 0.005], help="accuracies asked, for --rate")
+    parser.add_argument("--surfaces", type=int, default=5)
+    parser.add_argument("--bands", default="nm:550", help="for --rate, separated by commas")
     parser.add_argument("body", nargs="*", help=", ".join(BODIES))
     options = parser.parse_args()
     umov = os.path.abspath(options.umov)
@@ -141,7 +234,10 @@ def main():
         if which not in BODIES:
             sys.exit(f"error: no body '{which}': take {', '.join(BODIES)}")
         with tempfile.TemporaryDirectory() as folder:
-            write_body(umov, folder, which)
+            write_body(umov, folder, which, options.surfaces)
+            if options.rate:
+                rates(umov, folder, options, which)
+                continue
             write_poses(folder, options.poses)
             judge, spent = light(umov, folder, "paths", options.accuracy[1], 1000)
             lit = judge[0, :, 0] > 0

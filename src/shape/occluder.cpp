@@ -18,6 +18,8 @@ struct Occluder::State {
   RTCScene scene = nullptr;
   Vec3<Body> centre{};
   double scale = 1; ///< model units per metre
+  /// Of packets: rays of one point into a grid's directions part soon (measured: a third faster).
+  RTCIntersectContextFlags order = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 
   ~State() {
     if (scene != nullptr)
@@ -90,9 +92,9 @@ Geometry new_geometry(RTCDevice device, const Mesh &mesh) {
 
 } // namespace
 
-Occluder::Occluder(const Mesh &mesh) : state_(std::make_unique<State>()) {
+Occluder::Occluder(const Mesh &mesh, Rays rays) : state_(std::make_unique<State>()) {
   try {
-    build(mesh);
+    build(mesh, rays);
   } catch (...) {
     // Embree takes memory to release a scene, and ends the program where there is none: what could
     // not be built is left as it is.
@@ -101,7 +103,7 @@ Occluder::Occluder(const Mesh &mesh) : state_(std::make_unique<State>()) {
   }
 }
 
-void Occluder::build(const Mesh &mesh) {
+void Occluder::build(const Mesh &mesh, Rays rays) {
   const Box box = bounds(mesh);
   state_->centre = box.centre;
   state_->scale = 1 / box.half;
@@ -110,7 +112,10 @@ void Occluder::build(const Mesh &mesh) {
   state_->scene = rtcNewScene(state_->device);
   check(state_->device, mesh, state_->scene);
   rtcSetSceneBuildQuality(state_->scene, RTC_BUILD_QUALITY_HIGH);
-  rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
+  if (rays == Rays::Each)
+    rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
+  else
+    state_->order = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   if (!mesh.triangles.empty()) {
     const auto geometry = new_geometry(state_->device, mesh);
     auto *vertices = static_cast<float *>(
@@ -192,7 +197,7 @@ void Occluder::is_free(std::span<const Point> origins, std::span<const Point> di
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.flags = state_->order;
   for (std::size_t begin = 0; begin < origins.size(); begin += ray_packet) {
     const std::size_t count = std::min(ray_packet, origins.size() - begin);
     alignas(64) RTCRay16 ray{};

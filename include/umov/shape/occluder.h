@@ -8,14 +8,19 @@ namespace umov {
 /// Ray tests against a mesh (both sides of every face stop a ray). Thread safe after construction.
 class Occluder {
 public:
+  /// What rays are for.
+  enum class Rays {
+    Each, ///< every one counts: none slips between two triangles
+    Grid, ///< so many that one of a million may, for half the time: directions of a grid, say
+  };
   /// Throws `Failure` (Device) where the tree cannot be built: out of memory, unknown processor.
-  explicit Occluder(const Mesh &mesh);
+  explicit Occluder(const Mesh &mesh, Rays rays = Rays::Each);
   ~Occluder();
   Occluder(Occluder &&) noexcept;
   Occluder &operator=(Occluder &&) noexcept;
 
   /// For each origin [m]: 1 if nothing lies in `direction` (unit), else 0. Origins are lifted by
-  /// the caller; rays are robust (watertight) and start at distance 0.
+  /// the caller; rays start at distance 0, and are robust (watertight) unless they are for grids.
   void is_free(std::span<const Vec3<Body>> origins, Vec3<Body> direction,
                std::span<unsigned char> free) const;
 
@@ -41,7 +46,7 @@ public:
   [[nodiscard]] Hit nearest(Vec3<Body> origin, Vec3<Body> direction) const;
 
 private:
-  void build(const Mesh &mesh);
+  void build(const Mesh &mesh, Rays rays);
   [[nodiscard]] bool is_one_free(Point origin, Point direction) const;
   struct State;
   std::unique_ptr<State> state_;

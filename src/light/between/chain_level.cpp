@@ -37,6 +37,65 @@ void put_end(const ChainEnd &from, backend::ChainEnds &to, std::size_t lane) {
   put_vector(from.axis, to.axis, lane);
 }
 
+/// A direction of the ends' grid.
+struct GridRay {
+  std::size_t at;
+  Vec3<Body> direction;
+  Occluder::Point rounded;
+};
+Occluder::Point rounded(Vec3<Body> d) {
+  return {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+}
+
+/// In tiles of 4 x 4, the size of a packet of rays, that takes one way through the mesh.
+std::vector<GridRay> grid_rays() {
+  constexpr std::size_t edge = chain_mask_cells + 1;
+  std::vector<GridRay> out;
+  for (std::size_t k = 0; k < edge * edge; ++k) {
+    const Vec3<Body> d = grid_direction(chain_mask_cells, k);
+    out.push_back({k, d, rounded(d)});
+  }
+  std::sort(out.begin(), out.end(), [](const GridRay &a, const GridRay &b) {
+    const auto tile = [](std::size_t k) { return std::array{k / edge / 4, k % edge / 4, k}; };
+    return tile(a.at) < tile(b.at);
+  });
+  return out;
+}
+
+/// In which directions 16 ends are free.
+class GridView {
+public:
+  GridView(const Occluder &occluder, const std::vector<GridRay> &rays)
+      : occluder_(occluder), rays_(rays), words_(rays.size()) {}
+
+  void add(Occluder::Point origin, Vec3<Body> face, std::size_t lane) {
+    to_.clear(), which_.clear();
+    for (const GridRay &ray : rays_) {
+      const double up = dot(ray.direction, face);
+      if (up < -below_horizon)
+        continue;
+      to_.push_back(up < above_horizon
+                        ? rounded(normalized(ray.direction + face * (above_horizon - up)))
+                        : ray.rounded);
+      which_.push_back(ray.at);
+    }
+    from_.assign(to_.size(), origin);
+    free_.resize(to_.size());
+    occluder_.is_free(from_, to_, free_);
+    for (std::size_t k = 0; k < which_.size(); ++k)
+      words_[which_[k]] |= static_cast<std::uint16_t>(static_cast<unsigned>(free_[k]) << lane);
+  }
+  [[nodiscard]] std::uint16_t word(std::size_t at) const { return words_[at]; }
+
+private:
+  const Occluder &occluder_;
+  const std::vector<GridRay> &rays_;
+  std::vector<std::uint16_t> words_;
+  std::vector<Occluder::Point> from_, to_;
+  std::vector<std::size_t> which_;
+  std::vector<unsigned char> free_;
+};
+
 } // namespace
 
 backend::ChainPose chain_pose(const Pose &pose) {
@@ -55,9 +114,9 @@ backend::ChainPose chain_pose(const Pose &pose) {
 }
 
 ChainLevel::ChainLevel(const ChainRays &rays, const ChainSurfaces &surfaces,
-                       const Occluder &occluder, std::size_t bands, std::size_t first,
-                       std::size_t rays_per_replicate, std::size_t count, std::uint64_t seed,
-                       unsigned threads, const std::atomic<bool> *cancel)
+                       const Occluder &occluder, const Occluder &grids, std::size_t bands,
+                       std::size_t first, std::size_t rays_per_replicate, std::size_t count,
+                       std::uint64_t seed, unsigned threads, const std::atomic<bool> *cancel)
     : surfaces_(surfaces), occluder_(occluder), bands_(bands) {
   for (std::size_t r = 0; r < replicates; ++r)
     shift_[r] = uniform4(seed, doubt_stream, first + r)[0];
@@ -70,7 +129,7 @@ ChainLevel::ChainLevel(const ChainRays &rays, const ChainSurfaces &surfaces,
     return;
   const std::vector<Placed> placed = arrange(lists);
   fill(placed, lists);
-  trace(placed, threads, cancel);
+  trace(placed, grids, threads, cancel);
   view_ = {block_, matrix_, surfaces_.fast(), {blocks_, free_p_, free_q_}, bands_};
 }
 
@@ -155,56 +214,33 @@ void ChainLevel::fill(const std::vector<Placed> &placed, const std::vector<Chain
   }
 }
 
-void ChainLevel::trace(const std::vector<Placed> &placed, unsigned threads,
+void ChainLevel::trace(const std::vector<Placed> &placed, const Occluder &grids, unsigned threads,
                        const std::atomic<bool> *cancel) {
-  constexpr std::size_t edge = chain_mask_cells + 1;
-  free_p_.assign(edge * edge * blocks_, 0);
-  free_q_.assign(edge * edge * blocks_, 0);
-  // In tiles of 4 x 4, the size of a packet of rays, that takes one way through the mesh.
-  std::vector<std::pair<std::size_t, Vec3<Body>>> grid;
-  for (std::size_t k = 0; k < edge * edge; ++k)
-    grid.emplace_back(k, grid_direction(chain_mask_cells, k));
-  std::sort(grid.begin(), grid.end(), [](const auto &a, const auto &b) {
-    const auto tile = [](std::size_t k) { return std::array{k / edge / 4, k % edge / 4, k}; };
-    return tile(a.first) < tile(b.first);
-  });
+  const std::vector<GridRay> rays = grid_rays();
+  free_p_.assign(rays.size() * blocks_, 0);
+  free_q_.assign(rays.size() * blocks_, 0);
   std::vector<std::vector<const Placed *>> of_block(blocks_);
   for (const Placed &one : placed)
     of_block[one.block].push_back(&one);
   point_p_.resize(blocks_ * replicates);
   point_q_.resize(blocks_ * replicates);
   parallel_for(blocks_, threads, [&](std::size_t block) {
-    std::vector<Occluder::Point> from, to;
-    std::vector<std::size_t> which;
-    std::vector<unsigned char> free;
-    const auto look = [&](const ChainEnd &end, std::size_t lane, std::vector<std::uint16_t> &out,
-                          std::vector<Occluder::Point> &points) {
-      from.clear(), to.clear(), which.clear();
-      const Occluder::Point origin = occluder_.to_point(end.point);
-      points[block * replicates + lane] = origin;
-      for (const auto &[k, direction] : grid) {
-        const double up = dot(direction, end.face);
-        if (up < -below_horizon)
-          continue;
-        const Vec3<Body> d = up < above_horizon
-                                 ? normalized(direction + end.face * (above_horizon - up))
-                                 : direction;
-        from.push_back(origin);
-        to.push_back({static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)});
-        which.push_back(k);
-      }
-      free.resize(from.size());
-      occluder_.is_free(from, to, free);
-      for (std::size_t k = 0; k < which.size(); ++k)
-        if (free[k] != 0)
-          out[which[k] * blocks_ + block] |= static_cast<std::uint16_t>(1U << lane);
-    };
     if (is_stopped(cancel))
       return;
-    for (const Placed *one : of_block[block]) {
-      look(one->chain->p, one->lane, free_p_, point_p_);
-      look(one->chain->q, one->lane, free_q_, point_q_);
-    }
+    const auto look = [&](ChainEnd Chain::*end, std::vector<std::uint16_t> &out,
+                          std::vector<Occluder::Point> &points) {
+      GridView view(grids, rays);
+      for (const Placed *one : of_block[block]) {
+        const ChainEnd &from = one->chain->*end;
+        const Occluder::Point origin = grids.to_point(from.point);
+        points[block * replicates + one->lane] = origin;
+        view.add(origin, from.face, one->lane);
+      }
+      for (const GridRay &ray : rays)
+        out[ray.at * blocks_ + block] = view.word(ray.at);
+    };
+    look(&Chain::p, free_p_, point_p_);
+    look(&Chain::q, free_q_, point_q_);
   });
 }
 

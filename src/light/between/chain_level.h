@@ -17,12 +17,12 @@ inline constexpr std::size_t chain_mask_cells = 32;
 /// Drawn once; asked for sums after that. Thread safe.
 class ChainLevel {
 public:
-  /// `count` chains of rays `first` ... of each replicate's lattice. Of no use once `cancel`, which
-  /// may be null, became true.
+  /// `count` chains of rays `first` ... of each replicate's lattice, `grids` for the rays of their
+  /// ends' visibility. Of no use once `cancel`, which may be null, became true.
   ChainLevel(const ChainRays &rays, const ChainSurfaces &surfaces, const Occluder &occluder,
-             std::size_t bands, std::size_t first, std::size_t rays_per_replicate,
-             std::size_t count, std::uint64_t seed, unsigned threads,
-             const std::atomic<bool> *cancel);
+             const Occluder &grids, std::size_t bands, std::size_t first,
+             std::size_t rays_per_replicate, std::size_t count, std::uint64_t seed,
+             unsigned threads, const std::atomic<bool> *cancel);
   ChainLevel(const ChainLevel &) = delete; // views point into it
   ChainLevel &operator=(const ChainLevel &) = delete;
 
@@ -47,7 +47,8 @@ private:
   };
   [[nodiscard]] std::vector<Placed> arrange(const std::vector<ChainList> &lists);
   void fill(const std::vector<Placed> &placed, const std::vector<ChainList> &lists);
-  void trace(const std::vector<Placed> &placed, unsigned threads, const std::atomic<bool> *cancel);
+  void trace(const std::vector<Placed> &placed, const Occluder &grids, unsigned threads,
+             const std::atomic<bool> *cancel);
   void add_general(const backend::ChainRun &run, const backend::ChainPose &pose,
                    backend::ChainSums &sums) const;
   /// A chain, in which direction it is taken, and what about its ends.

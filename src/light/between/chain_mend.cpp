@@ -50,7 +50,8 @@ void ChainLevel::sample(const backend::ChainSums &sums,
     const auto along = static_cast<float>(step - std::floor(step));
     unsigned chosen_ones = 0; // few: found without a branch
     for (std::size_t lane = 0; lane < replicates; ++lane) {
-      chance[lane] = std::min(1.0f, scale * (note.*of)[lane]);
+      const float part = (note.*of)[lane]; // where all are faint, the scale may be infinite
+      chance[lane] = part > 0 ? std::min(1.0f, scale * part) : 0.0f;
       const float sum = along + shift[lane];
       threshold[lane] = sum < 1 ? sum : sum - 1;
       chosen_ones |= static_cast<unsigned>(chance[lane] > threshold[lane]);

@@ -72,7 +72,8 @@ struct ChainStore::Climb {
 ChainStore::ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
                        std::uint64_t seed)
     : surfaces_(scene.scene()), rays_(scene, occluder, surfaces_, bounces, seed),
-      occluder_(occluder), bands_(scene.scene().grid.nodes().size()), seed_(seed) {}
+      occluder_(occluder), grids_(scene.scene().mesh, Occluder::Rays::Grid),
+      bands_(scene.scene().grid.nodes().size()), seed_(seed) {}
 
 const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,
                                     const std::atomic<bool> *cancel) const {
@@ -81,9 +82,9 @@ const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,
     std::size_t first = 0;
     for (std::size_t k = 0; k < index; ++k)
       first += chains_of[k] * rays_per_chain / replicates;
-    auto made = std::make_unique<const ChainLevel>(rays_, surfaces_, occluder_, bands_, first,
-                                                   chains_of[index] * rays_per_chain / replicates,
-                                                   chains_of[index], seed_, threads, cancel);
+    auto made = std::make_unique<const ChainLevel>(
+        rays_, surfaces_, occluder_, grids_, bands_, first,
+        chains_of[index] * rays_per_chain / replicates, chains_of[index], seed_, threads, cancel);
     if (is_stopped(cancel))
       return nullptr; // whoever asks next begins anew
     level_[index] = std::move(made);

@@ -45,6 +45,7 @@ private:
   ChainSurfaces surfaces_;
   ChainRays rays_;
   const Occluder &occluder_;
+  Occluder grids_; ///< for the many rays of the ends' visibility
   std::size_t bands_;
   std::uint64_t seed_;
   mutable Mutex mutex_;

@@ -34,6 +34,32 @@ TEST(Occluder, NoRayLeavesAClosedBody) {
   }
 }
 
+// What rays for grids may lose: seams, which at most one of a hundred thousand meets here.
+TEST(Occluder, RaysOfGridsFindWhatEachRayFinds) {
+  const Mesh mesh = make_sphere(1, 2000);
+  const Occluder each(mesh), grid(mesh, Occluder::Rays::Grid);
+  std::size_t other = 0, free_ones = 0;
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    std::vector<Occluder::Point> from(50), to(50);
+    for (std::size_t k = 0; k < 50; ++k) {
+      // Inside, where none is free, and outside.
+      from[k] = each.to_point((k % 2 == 0 ? 0.5 : 1.1) * random_direction(4 * i));
+      const Vec3<Body> d = random_direction(50 * i + k);
+      to[k] = {static_cast<float>(d.x), static_cast<float>(d.y), static_cast<float>(d.z)};
+    }
+    std::vector<unsigned char> a(50), b(50);
+    each.is_free(from, to, a);
+    grid.is_free(from, to, b);
+    for (std::size_t k = 0; k < 50; ++k) {
+      other += a[k] != b[k] ? 1 : 0;
+      free_ones += b[k];
+    }
+  }
+  EXPECT_LE(other, 1u);
+  // From 1.1 radii a sphere fills (1 - sqrt(1 - 1/1.21))/2 = .29 of all directions.
+  EXPECT_NEAR(static_cast<double>(free_ones) / 50'000, 0.71, 0.01);
+}
+
 TEST(Occluder, TakesAnyNumberOfOriginsAndBothSidesStop) {
   const Occluder occluder(make_plate(2, 2, false));
   for (const std::size_t count : {0u, 1u, 15u, 16u, 17u, 100u})
