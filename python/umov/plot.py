@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _umov
-from .errors import UsageError
+from ._axes import axes_or_new as _axes, every as _every, passes_of as _passes, time_axis as _time_axis
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,17 +36,6 @@ PHASE_MAP = "cividis"
 CYCLIC_MAP = "twilight"
 _NORTH = {"equatorial": "celestial north", "altaz": "the local zenith",
           "scattering": "the normal of the scattering plane"}
-
-
-def _axes(axes: Axes | None, projection: str | None = None) -> Axes:
-    if axes is not None:
-        return axes
-    try:
-        import matplotlib.pyplot as plt
-    except ImportError as error:
-        raise UsageError("a figure needs the package matplotlib: pip install matplotlib") from error
-    made: Axes = plt.figure(figsize=(7, 4.5), layout="constrained").add_subplot(projection=projection)
-    return made
 
 
 def band_title(name: str) -> str:
@@ -83,26 +72,6 @@ def band_styles(curve: LightCurve) -> list[dict[str, Any]]:
     palette = THREE if len(waves) <= 3 else MANY
     return [{"color": palette[k % len(palette)], "marker": MARKERS[k % len(MARKERS)], "markersize": 4,
              "linewidth": 1.5} for k in rank]
-
-
-def _passes(curve: LightCurve) -> Iterator[NDArray[np.intp]]:
-    """Epochs of each pass: no line joins two of them."""
-    ids = curve.pass_id
-    for one in dict.fromkeys(ids.tolist()):
-        yield np.flatnonzero(ids == one)
-
-
-def _every(count: int) -> int:
-    return max(1, count // 24)
-
-
-def _time_axis(axes: Axes) -> None:
-    """Short ticks, and the date once beside them."""
-    from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
-    locator = AutoDateLocator(minticks=3, maxticks=8)  # type: ignore[no-untyped-call]
-    axes.xaxis.set_major_locator(locator)
-    axes.xaxis.set_major_formatter(ConciseDateFormatter(locator))  # type: ignore[no-untyped-call]
-    axes.set_xlabel("UTC")
 
 
 def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], label: str, *,
