@@ -271,35 +271,80 @@ std::vector<double> neighbour_distances(const std::vector<PoseSample> &draws, st
   return out;
 }
 
-/// Metropolis steps of all particles under a power of the likelihood: isotropic, their lengths
-/// drawn over two decades about the particles' own distances, so that sheets, lines and peaks are
-/// all followed. False if it was stopped.
+/// What one round of steps is drawn with.
+struct Round {
+  std::uint64_t seed = 0;
+  std::uint32_t stream = 0;
+  double scale = 0; ///< of the particles' own distances [rad]
+};
+
+/// A step in any direction, of a length over two decades about the particles' own distances: sheets
+/// and peaks are followed by it, and a line as far as it is thick.
+Turning any_way(const std::vector<PoseSample> &draws, std::size_t k, const Round &round) {
+  const auto z = normal_vector(round.seed, round.stream, k, 3);
+  const double u = uniform4(round.seed, round.stream + 0x10000u, k)[0];
+  return stepped(draws[k].turning, z * (round.scale * std::pow(10, 1.7 * u - 1.2)), 1);
+}
+
+/// A step by a part of what turns one particle into another (differential evolution: ter Braak
+/// 2006). A glint holds two directions to minutes of arc and leaves the turn about the flat's
+/// normal free: all such attitudes are a ring, two of which differ by a turn about that normal, and
+/// the same turn keeps every other on it. The two are of those that stand still meanwhile, every
+/// other particle, so that the steps are exact.
+Turning along_others(const std::vector<PoseSample> &draws, std::size_t k, const Round &round) {
+  const auto u = uniform4(round.seed, round.stream + 0x10000u, k);
+  const std::size_t other = 1 - k % 2, count = (draws.size() + 1 - other) / 2;
+  const auto pick = [&](double at) {
+    return 2 * std::min(static_cast<std::size_t>(at * static_cast<double>(count)), count - 1) +
+           other;
+  };
+  const Vec3<Body> turn =
+      turn_between(draws[pick(u[0])].turning.attitude, draws[pick(u[2])].turning.attitude);
+  const auto z = normal_vector(round.seed, round.stream, k, 3);
+  constexpr double beside = 0.03; // of the distances: to every side a little
+  return stepped(draws[k].turning,
+                 Eigen::Vector3d(turn.x, turn.y, turn.z) * u[3] + z * (beside * round.scale), 1);
+}
+
+/// Tries a step for each of every `stride`-th particle; false if it was stopped.
+template <class Propose>
+bool try_steps(const CurveModel &model, const CurveLikelihood &likelihood,
+               const SearchOptions &options, double power, const Round &round, std::size_t first,
+               std::size_t stride, Propose propose, std::vector<PoseSample> &draws) {
+  std::vector<Turning> tried;
+  for (std::size_t k = first; k < draws.size(); k += stride)
+    tried.push_back(propose(draws, k, round));
+  const auto compared = compare_all(model, likelihood, tried, {}, options.threads);
+  if (compared.empty())
+    return tried.empty();
+  for (std::size_t j = 0; j < tried.size(); ++j) {
+    PoseSample &s = draws[first + j * stride];
+    const double coin = uniform4(round.seed, round.stream + 0x20000u, first + j * stride)[1];
+    if (std::log(coin) < power * (s.minus_2_log - compared[j].minus_2_log) / 2) {
+      s.turning = tried[j];
+      s.minus_2_log = compared[j].minus_2_log;
+    }
+  }
+  return true;
+}
+
+/// Metropolis steps of all particles under a power of the likelihood. False if it was stopped.
 bool move(const CurveModel &model, const CurveLikelihood &likelihood, const SearchOptions &options,
           double power, std::uint32_t level, std::vector<PoseSample> &draws) {
   auto apart = neighbour_distances(draws, 4, options.threads);
   const auto middle = apart.begin() + static_cast<std::ptrdiff_t>(apart.size() / 2);
   std::nth_element(apart.begin(), middle, apart.end());
-  const double scale = *middle;
-  constexpr std::uint32_t steps = 4;
+  constexpr std::uint32_t steps = 6;
   for (std::uint32_t step = 0; step < steps; ++step) {
-    std::vector<Turning> tried;
-    std::vector<double> coin;
-    for (std::size_t k = 0; k < draws.size(); ++k) {
-      const std::uint32_t stream = 0x736d6300u + level * steps + step;
-      const auto z = normal_vector(options.seed, stream, k, 3);
-      const auto u = uniform4(options.seed, stream + 0x10000u, k);
-      const double length = scale * std::pow(10, 1.7 * u[0] - 1.2);
-      tried.push_back(stepped(draws[k].turning, z * length, 1));
-      coin.push_back(u[1]);
+    const Round round{options.seed, 0x736d6300u + level * steps + step, *middle};
+    if (step % 2 == 0) {
+      if (!try_steps(model, likelihood, options, power, round, 0, 1, any_way, draws))
+        return false;
+      continue;
     }
-    const auto compared = compare_all(model, likelihood, tried, {}, options.threads);
-    if (compared.empty())
-      return false;
-    for (std::size_t k = 0; k < draws.size(); ++k)
-      if (std::log(coin[k]) < power * (draws[k].minus_2_log - compared[k].minus_2_log) / 2) {
-        draws[k].turning = tried[k];
-        draws[k].minus_2_log = compared[k].minus_2_log;
-      }
+    for (const std::size_t half : {0u, 1u})
+      if (!try_steps(model, likelihood, options, power, round, half, 2, along_others, draws))
+        return false;
   }
   return true;
 }

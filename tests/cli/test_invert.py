@@ -126,6 +126,8 @@ def test_folder_has_the_tables_and_says_what_it_is(umov, scene, tmp_path):
                  "scenario.lock.toml", "report.html"):
         assert (tmp_path / "answer" / name).exists(), name
     assert abs(sum(Table.read(tmp_path / "answer/samples.ecsv")["weight"]) - 1) < 1e-6
+    is_sure = json.loads((tmp_path / "answer/verdict.json").read_text())["verdict"] == "determined"
+    assert ("this holds for materials and a shape that are right to --floor" in done.out) == is_sure
     again = umov("invert", "pose", "truth/lightcurve.ecsv", "--scenario", "truth.toml", "-o", "answer", "--grid", "20000",
                  "--threads", "1")
     assert again.code == 0, again.err  # our own folder is replaced

@@ -44,12 +44,16 @@ TEST(PoseSearch, RanksOfTheTruthAmongSamplesAreEven) {
   constexpr std::size_t bins = 5;
   constexpr int trials = 100;
   std::array<std::array<int, bins>, 2> found{};
+  SearchOptions options = small();
+  options.grid = 4000;
+  options.starts = 40;
+  options.samples = 400;
   for (std::uint64_t t = 0; t < trials; ++t) {
     const Quaternion truth = any_attitude(97, t);
     ObservedCurve curve = pass(12);
     observe(curve, box, {truth, {}}, 20, 5000 + t);
     const CurveModel model(curve, box, {0, 1});
-    const auto answer = search_pose(model, small());
+    const auto answer = search_pose(model, options);
     ASSERT_TRUE(answer) << answer.error().text();
     const CurveLikelihood likelihood(curve, small().errors);
     double of_truth = 0;
