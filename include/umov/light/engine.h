@@ -47,6 +47,9 @@ struct EngineOptions {
   /// With `refine_above` > 0: half-widths count every facet that could be seen, also where the
   /// masks know of none; each pose costs tens of microseconds more.
   bool doubts_all = false;
+  /// With `refine_above` > 0: rays are spent as poses far apart need them, sparingly, and what all
+  /// points of the masks agree on counts as certain.
+  bool is_for_many_poses = false;
   /// Part of `refine_above` that is asked of Q/I, where classes are traced.
   double q_part = 0.06;
   /// Facets of one material whose normals differ by less are joined [rad]; the error goes into the

@@ -43,7 +43,7 @@ struct Spending {
 };
 constexpr Spending for_series{1, 0, 0.9, 0.3, 0.8, 1.2}, for_far_poses{8, 3, 0.97, 0.4, 0.95, 1.5};
 const Spending &spending_of(const EngineOptions &options) {
-  return options.doubts_all ? for_series : for_far_poses;
+  return options.is_for_many_poses ? for_far_poses : for_series;
 }
 
 } // namespace
@@ -397,7 +397,7 @@ void Engine::State::sum_variances(Workspace &work) const {
 
 /// Rays for the facets that make the error, if there is too much of it.
 void Engine::State::mend(const Pose &pose, const Prepared &at, Workspace &work) const {
-  list_uncertain(pose, at, error_model(), work);
+  list_uncertain(pose, at, options.is_for_many_poses ? error_model() : doubtful_error, work);
   add_up_variances(work);
   work.is_mended = is_uncertain(work.variances, compiled.area_m2, work);
   if (!work.is_mended)

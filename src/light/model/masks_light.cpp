@@ -54,6 +54,7 @@ Result<void> MasksLight::prepare() {
     with.masks.refine_above = left * options_.accuracy;
   }
   with.doubts_all = is_auto && !options_.is_for_many_poses;
+  with.is_for_many_poses = options_.is_for_many_poses;
   with.q_part = 1; // Q in parts of I, to the accuracy of I
   with.is_lazy = true;
   with.mask_cache = options_.mask_file.empty() ? options_.mask_cache : "";
