@@ -3,9 +3,9 @@
 #include "device_options.h"
 #include "finishing.h"
 #include "job_console.h"
+#include "part_options.h"
 #include "verbs.h"
 
-#include <umov/jobs/index_range.h>
 #include <umov/jobs/library.h>
 
 namespace umov::cli {
@@ -13,14 +13,12 @@ namespace {
 
 struct LibraryVerb {
   jobs::LibraryRequest request;
-  std::string range;
+  PartOptions part;
   Common common;
 };
 
-Result<void> take_range(LibraryVerb &o) {
-  if (o.range.empty())
-    return {};
-  UMOV_ASSIGN(part, jobs::JobPart::range(o.range));
+Result<void> take_part(LibraryVerb &o) {
+  UMOV_ASSIGN(part, part_of(o.part));
   UMOV_ASSIGN(range, part.of(o.request.scenarios.size(), "scenarios"));
   o.request.first = range.first;
   o.request.count = range.count;
@@ -28,7 +26,7 @@ Result<void> take_range(LibraryVerb &o) {
 }
 
 Result<void> build(LibraryVerb &o, Diagnostics &diagnostics) {
-  UMOV_TRY(take_range(o));
+  UMOV_TRY(take_part(o));
   JobConsole console(o.common);
   UMOV_ASSIGN(built, jobs::build_library(o.request, job_options(o.common),
                                          console.monitor(o.common.verbose), diagnostics));
@@ -49,8 +47,7 @@ void add_build(CLI::App &library, const Exit &exit_with) {
                    "Directions: (cells + 1)^2 of Sun and observer, 20: 97,461 pairs, 9 deg apart")
       ->check(CLI::Range(4, 60))
       ->capture_default_str();
-  verb->add_option("--range", o->range,
-                   "FIRST:COUNT of the scenarios, counted from 0, for one of several machines");
+  add_part(*verb, o->part, "scenarios");
   add_threads(*verb, o->common);
   add_cache(*verb, o->common);
   add_device(*verb, o->common);

@@ -5,6 +5,7 @@
 #include "verb_scale.h"
 
 #include <fmt/format.h>
+#include <umov/core/files.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
 #include <umov/scale/merge.h>
@@ -47,6 +48,8 @@ void tell(const scale::RunTally &tally, const scale::JobFolder &folder, const Co
   std::string text =
       fmt::format("{} of {} shards done, {} of them before; {:.1f} s of CPU",
                   tally.there_before + tally.done, tally.wanted, tally.there_before, tally.cpu_s);
+  if (tally.by_others > 0)
+    text += fmt::format("; others did {} meanwhile", tally.by_others);
   if (tally.failed == 0 && tally.wanted == folder.lock().shards())
     text +=
         fmt::format(". umov scale merge {} -o TABLE puts them together", folder.path().string());
@@ -84,7 +87,9 @@ Result<void> run_scale(ScaleRunOptions &o, const Common &common, Diagnostics &di
   }
   if (!o.settings.part.is_whole())
     return {}; // a task of an array has done its shards; whoever has all of them tells of the rows
-  UMOV_TRY(scale::write_manifest(folder));
+  // A manifest is there only where all shards are, and of a whole job nothing was done.
+  if (tally.done > 0 || !file_exists(folder.path() / "manifest.json"))
+    UMOV_TRY(scale::write_manifest(folder));
   return scale::check_answers(folder, monitor);
 }
 

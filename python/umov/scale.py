@@ -79,6 +79,7 @@ class Plan:
     wall_s: float  #: with the cores that were told
     shard_s: float  #: of one shard
     setup_cpu_s: float  #: of a process before its first row
+    once_cpu_s: float  #: of the whole job: masks, which all processes read
 
 
 def plan(job: Job, *, cores: int | None = None, program: str | None = None) -> Plan:

@@ -128,12 +128,23 @@ fs::path JobFolder::growing(std::size_t index) const {
 
 Result<Shards> JobFolder::shards() const {
   Shards out;
+  const bool is_flat = lock_.shards() <= flat_shards;
+  // A copy elsewhere is none of ours: each number has one place.
+  const auto take = [&](const fs::directory_entry &entry, std::optional<std::size_t> thousand) {
+    auto shard = shard_of(entry.path().filename().native(), key_);
+    if (shard && shard->index < lock_.shards() &&
+        (is_flat ? !thousand : thousand == shard->index / per_folder) && entry.is_regular_file())
+      out[shard->index].push_back(std::move(*shard));
+  };
   try {
-    for (const auto &entry : fs::recursive_directory_iterator(path_ / "shards"))
-      if (const auto shard = shard_of(entry.path().filename().string(), key_))
-        if (shard->index < lock_.shards() && entry.path() == file_of(*shard) &&
-            entry.is_regular_file()) // a copy elsewhere is none of ours
-          out[shard->index].push_back(*shard);
+    for (const auto &entry : fs::directory_iterator(path_ / "shards"))
+      if (const std::string name = entry.path().filename().string();
+          is_flat || name.size() != 5 || !entry.is_directory())
+        take(entry, std::nullopt);
+      else if (std::size_t number = 0;
+               std::from_chars(name.data(), name.data() + 5, number).ptr == name.data() + 5)
+        for (const auto &below : fs::directory_iterator(entry.path()))
+          take(below, number);
   } catch (const fs::filesystem_error &problem) {
     return fail(ErrorCode::Device, std::string("cannot be listed: ") + problem.what(),
                 {(path_ / "shards").string()});

@@ -45,7 +45,8 @@ std::string to_json(const JobLock &lock) {
                  {"predicted",
                   {{"cpu_s", lock.rate.cpu_s},
                    {"bytes", lock.rate.bytes},
-                   {"setup_cpu_s", lock.rate.setup_cpu_s}}},
+                   {"setup_cpu_s", lock.rate.setup_cpu_s},
+                   {"once_cpu_s", lock.rate.once_cpu_s}}},
                  {"job", lock.identity}};
   return out.dump(1) + "\n";
 }
@@ -77,7 +78,8 @@ Result<JobLock> lock_from_json(const std::string &text, const std::string &file)
     all.at("job").get_to(out.identity);
     out.rate = {all.at("predicted").at("cpu_s").get<double>(),
                 all.at("predicted").at("bytes").get<double>(),
-                all.at("predicted").at("setup_cpu_s").get<double>()};
+                all.at("predicted").at("setup_cpu_s").get<double>(),
+                all.at("predicted").value("once_cpu_s", 0.0)}; // jobs begun by 0.1 have none
     if (out.per_shard == 0 || out.tables.empty())
       throw std::runtime_error("without shards or tables");
     if (all.at("key").get<std::string>() != out.key())

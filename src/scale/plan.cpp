@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <vector>
 
 namespace umov::scale {
 namespace {
@@ -35,9 +36,94 @@ double spread_point(std::size_t k) {
   return out;
 }
 
-/// Costs so far of pieces of a job.
+/// What pieces of a job cost.
 struct Sampled {
   double cpu_s = 0, bytes = 0, units = 0;
+};
+
+/// How much of a job was asked for, and what of its cost was for what is learnt once.
+struct Learnt {
+  double units = 0, cpu_s = 0;
+};
+
+/// What is learnt once grows with what is asked for, as directions that poses look from, towards an
+/// end: C (1 - exp(-n/s)) through two moments of the trial; a line where no end is in sight.
+double learnt_of_all(const std::vector<Learnt> &trial, double total) {
+  const Learnt last = trial.back();
+  if (last.cpu_s <= 0 || total <= last.units)
+    return last.cpu_s;
+  const auto from =
+      std::ranges::find_if(trial, [&](const Learnt &one) { return one.units >= last.units / 2; });
+  if (from->cpu_s >= last.cpu_s) // nothing new in the second half
+    return last.cpu_s;
+  const auto part = [](double units, double s) { return -std::expm1(-units / s); };
+  double low = from->units / 40, high = last.units * 1e6;
+  if (from->cpu_s * last.units <= last.cpu_s * from->units)
+    return last.cpu_s * total / last.units;
+  for (int k = 0; k < 100; ++k) {
+    const double s = std::sqrt(low * high);
+    const bool is_slower = part(last.units, s) * from->cpu_s > last.cpu_s * part(from->units, s);
+    (is_slower ? high : low) = s;
+  }
+  return last.cpu_s * part(total, low) / part(last.units, low);
+}
+
+/// Asks a job for pieces of it.
+class Trial {
+public:
+  Trial(jobs::RangedJob &job, const jobs::Monitor &monitor) : job_(job), monitor_(monitor) {}
+
+  /// Four pieces of that length, and each of them again at once as long as that is cheaper: what
+  /// the first time costs more is learnt, masks for the most part, and is not paid for every row.
+  Result<Sampled> round(std::size_t length) {
+    const auto places = static_cast<double>(job_.total() - length + 1);
+    Sampled first, again;
+    for (std::size_t n = 0; n < 4; ++n) {
+      const jobs::IndexRange piece{static_cast<std::size_t>(spread_point(++pieces_) * places),
+                                   length};
+      UMOV_ASSIGN(once, ask(piece));
+      add(once, first);
+      double more = 0;
+      if (learns_ && once.cpu_s < dear_s) {
+        UMOV_ASSIGN(twice, ask(piece));
+        more = std::max(0.0, once.cpu_s - twice.cpu_s);
+        once.cpu_s = std::min(once.cpu_s, twice.cpu_s);
+      }
+      add(once, again);
+      learnt_.push_back({learnt_.back().units + once.units, learnt_.back().cpu_s + more});
+    }
+    learns_ = learns_ && again.cpu_s < 0.95 * first.cpu_s;
+    return again;
+  }
+  /// CPU seconds so far.
+  [[nodiscard]] double spent() const { return spent_; }
+  [[nodiscard]] double learnt() const {
+    return learnt_of_all(learnt_, static_cast<double>(job_.total()));
+  }
+
+private:
+  static constexpr double dear_s = 20; ///< a piece that is not asked for twice
+
+  static void add(const Sampled &one, Sampled &all) {
+    all.cpu_s += one.cpu_s;
+    all.bytes += one.bytes;
+    all.units += one.units;
+  }
+  Result<Sampled> ask(jobs::IndexRange piece) {
+    Counted counted;
+    const double cpu = cpu_seconds();
+    UMOV_TRY(job_.rows(piece, counted, monitor_, told_at_the_begin_));
+    const double taken = cpu_seconds() - cpu;
+    spent_ += taken;
+    return Sampled{taken, counted.bytes, static_cast<double>(piece.count)};
+  }
+  jobs::RangedJob &job_;
+  const jobs::Monitor &monitor_;
+  Diagnostics told_at_the_begin_;
+  std::vector<Learnt> learnt_{{}};
+  std::size_t pieces_ = 0;
+  double spent_ = 0;
+  bool learns_ = true;
 };
 
 } // namespace
@@ -45,32 +131,20 @@ struct Sampled {
 Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monitor &monitor) {
   constexpr double enough_s = 1.5, at_most_s = 20, settled = 0.15;
   const std::size_t total = job.total();
-  std::size_t length = std::max<std::size_t>(1, std::min(total, job.grain() / 64)), k = 0;
-  Rate out{0, 0, setup_cpu_s};
-  double spent = 0, before = 0;
-  Diagnostics told_at_the_begin;
-  for (std::size_t round = 0;; ++round) {
-    Sampled now; // each round has twice the pieces of the one before, or pieces twice as long
-    for (std::size_t n = 0; n < 4; ++n) {
-      const auto first =
-          static_cast<std::size_t>(spread_point(++k) * static_cast<double>(total - length + 1));
-      Counted counted;
-      const double cpu = cpu_seconds();
-      UMOV_TRY(job.rows({first, length}, counted, monitor, told_at_the_begin));
-      now.cpu_s += cpu_seconds() - cpu;
-      now.bytes += counted.bytes;
-      now.units += static_cast<double>(length);
-    }
-    spent += now.cpu_s;
+  std::size_t length = std::max<std::size_t>(1, std::min(total, job.grain() / 64));
+  Rate out;
+  out.setup_cpu_s = setup_cpu_s;
+  Trial trial(job, monitor);
+  for (double before = 0;; before = out.cpu_s) {
+    UMOV_ASSIGN(now, trial.round(length)); // each with pieces twice as long as the one before
     out.cpu_s = now.cpu_s / now.units;
     out.bytes = now.bytes / now.units;
     const bool is_settled = std::abs(before - out.cpu_s) < settled * out.cpu_s;
-    if ((spent > enough_s && is_settled) || spent > at_most_s || length * 8 > total)
+    if ((trial.spent() > enough_s && is_settled) || trial.spent() > at_most_s || length * 8 > total)
       break;
-    before = out.cpu_s;
     length = std::min(total, length * 2);
   }
-  // What the first rounds cost above the last is preparation: masks that were traced.
+  out.once_cpu_s = trial.learnt();
   return out;
 }
 
@@ -95,7 +169,8 @@ Plan plan_of(const JobLock &lock, const PlanSettings &settings) {
   const auto total = static_cast<double>(lock.total);
   const double workers =
       std::max(1.0, static_cast<double>(settings.cores) / static_cast<double>(settings.threads));
-  const double cpu_s = lock.rate.cpu_s * total + lock.rate.setup_cpu_s * workers;
+  const double cpu_s =
+      lock.rate.cpu_s * total + lock.rate.setup_cpu_s * workers + lock.rate.once_cpu_s;
   Plan out;
   out.total = lock.total;
   out.per_shard = lock.per_shard;
@@ -106,6 +181,7 @@ Plan plan_of(const JobLock &lock, const PlanSettings &settings) {
       lock.rate.cpu_s * static_cast<double>(lock.per_shard) / static_cast<double>(settings.threads);
   out.wall_s = std::max(out.shard_s, cpu_s / static_cast<double>(settings.cores));
   out.setup_cpu_s = lock.rate.setup_cpu_s;
+  out.once_cpu_s = lock.rate.once_cpu_s;
   return out;
 }
 
@@ -117,10 +193,11 @@ std::string describe(const Plan &plan, const std::string &unit) {
 }
 
 std::string to_json(const Plan &plan) {
-  const nlohmann::json out{{"total", plan.total},         {"shards", plan.shards},
-                           {"per_shard", plan.per_shard}, {"core_hours", plan.core_hours},
-                           {"gigabytes", plan.gigabytes}, {"wall_s", plan.wall_s},
-                           {"shard_s", plan.shard_s},     {"setup_cpu_s", plan.setup_cpu_s}};
+  const nlohmann::json out{{"total", plan.total},          {"shards", plan.shards},
+                           {"per_shard", plan.per_shard},  {"core_hours", plan.core_hours},
+                           {"gigabytes", plan.gigabytes},  {"wall_s", plan.wall_s},
+                           {"shard_s", plan.shard_s},      {"setup_cpu_s", plan.setup_cpu_s},
+                           {"once_cpu_s", plan.once_cpu_s}};
   return out.dump(1) + "\n";
 }
 

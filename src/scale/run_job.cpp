@@ -19,6 +19,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::size_t attempts_max = 3;
+/// Of what hangs: each costs ten times what the shard should have taken.
+constexpr std::size_t attempts_at_hangs_max = 2;
 constexpr double patience_after_stop_s = 30;
 
 /// The loop over workers.
@@ -127,6 +129,7 @@ private:
       return stop({code, record->message, {}});
     if (record->status != ShardRecord::Status::Failed) {
       ++tally_.done;
+      tally_.by_others += record->status == ShardRecord::Status::There ? 1U : 0U;
       return folder_.forget_failed(record->index);
     }
     if (code == ErrorCode::Device || code == ErrorCode::Interrupted)
@@ -141,7 +144,8 @@ private:
     tally_.failures.push_back({index, code, attempts, message, this_host()});
     folder_.tell_failed(tally_.failures.back());
   }
-  /// A worker that is no more, or shall not be: its shard is tried again, but not for ever.
+  /// A worker that is no more, or shall not be (`why`: it hangs): its shard is tried again, but not
+  /// for ever.
   void lose(std::size_t k, const std::string &why) {
     const auto index = workers_[k].index();
     const int code = workers_[k].end();
@@ -152,17 +156,17 @@ private:
                              : code > 128 ? fmt::format("its process was ended by signal {} ({})",
                                                         code - 128, ::strsignal(code - 128))
                                           : fmt::format("its process ended with {}", code);
-    if (const std::size_t attempts = ++attempts_[*index]; attempts >= attempts_max)
+    const std::size_t most = why.empty() ? attempts_max : attempts_at_hangs_max;
+    if (const std::size_t attempts = ++attempts_[*index]; attempts >= most)
       give_up(*index, code, attempts, what);
     else
       missing_.push_back(*index); // behind the others, which it shall not hold up
   }
   void end_what_hangs() {
     const JobLock &lock = folder_.lock();
-    const double predicted =
-        lock.rate.setup_cpu_s + lock.rate.cpu_s * static_cast<double>(lock.per_shard);
-    const double timeout =
-        settings_.timeout_s > 0 ? settings_.timeout_s : std::max(60.0, 10 * predicted);
+    const double timeout = settings_.timeout_s > 0
+                               ? settings_.timeout_s
+                               : std::max(60.0, 10 * lock.rate.at_most_s(lock.per_shard));
     const double since_stop =
         stopped_
             ? std::chrono::duration<double>(WorkerProcess::Clock::now() - stopped_since_).count()

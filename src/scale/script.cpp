@@ -18,6 +18,14 @@ std::string quoted(const std::string &text) {
   return out + "'";
 }
 
+/// Within single quotes in the arguments of a submit file, which stand in double ones.
+std::string quoted_for_condor(const std::string &text) {
+  std::string out = "'";
+  for (const char c : text)
+    out += c == '\'' || c == '"' ? std::string(2, c) : std::string(1, c);
+  return out + "'";
+}
+
 } // namespace
 
 std::string slurm_script(const JobFolder &folder, const ScriptSettings &s) {
@@ -52,7 +60,7 @@ std::string condor_script(const JobFolder &folder, const ScriptSettings &s) {
       "that\n"
       "# the same file goes on after whatever ended it. The folder must be seen by all machines.\n"
       "executable = {4}\n"
-      "arguments = \"scale run '{5}' --part $(Process)/{3} --threads {6} -q\"\n"
+      "arguments = \"scale run {9} --part $(Process)/{3} --threads {6} -q\"\n"
       "transfer_executable = false\n"
       "should_transfer_files = no\n"
       "request_cpus = {6}\n"
@@ -63,7 +71,7 @@ std::string condor_script(const JobFolder &folder, const ScriptSettings &s) {
       "log = {5}/log/$(Cluster).log\n"
       "queue {3}\n",
       folder.lock().shards(), folder.lock().per_shard, folder.lock().unit, s.tasks, s.program, path,
-      s.threads, s.memory_mb, s.wall_s);
+      s.threads, s.memory_mb, s.wall_s, quoted_for_condor(path));
 }
 
 } // namespace umov::scale

@@ -339,13 +339,13 @@ def test_a_library_is_built_in_ranges_and_goes_on(umov, library, tmp_path):
     again = umov("library", "build", "plain.toml", "metal.toml", "dark.toml", "white.toml", "-o", "lib", "--json")
     assert [row["state"] for row in json.loads(again.out)] == ["was there"] * 4
     names = ["plain.toml", "metal.toml", "dark.toml", "white.toml"]
-    for part in ("0:1", "3:1"):  # as two machines would
-        assert umov("library", "build", *names, "-o", "parts", "--range", part, "-q", "--threads", "1").code == 0
+    for part in (("--range", "0:1"), ("--shard", "3/4")):  # as two machines would
+        assert umov("library", "build", *names, "-o", "parts", *part, "-q", "--threads", "1").code == 0
     assert sorted(p.name for p in (tmp_path / "parts").iterdir()) == ["plain.umovsig", "white.umovsig"]
     for name, data in first.items():
         assert (tmp_path / "parts" / f"{name}.umovsig").read_bytes() == data
-    for words in (["--range", "3:9"], ["--range", "x"]):
-        assert umov("library", "build", *names, "-o", "parts", *words).code == 2
+    for words, code in ((["--range", "3:9"], 2), (["--range", "x"], 2), (["--shard", "4/4"], 2), (["--shard", "4/5"], 5)):
+        assert umov("library", "build", *names, "-o", "parts", *words).code == code
 
 
 def test_other_colours_come_from_the_abundances(umov, scene, tmp_path):

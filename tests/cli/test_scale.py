@@ -186,18 +186,54 @@ def test_ctrl_c_says_how_to_go_on(umov, scenario, tmp_path):
     assert not list((tmp_path / "job/tmp").iterdir())
 
 
+def test_ten_interrupts_and_the_printed_command_give_the_plain_bytes(umov, scenario, tmp_path):
+    """Ctrl-C at random moments, from before the first shard on; what is printed is what is called next."""
+    command = slow_signature_of(umov, scenario, 6000)
+    assert umov("scale", "lock", "--per-shard", 30, "job", *command).code == 0
+    rng, call, done = random.Random(10), ["scale", "run", "job"], set()
+    for _ in range(10):
+        job = start(tmp_path, *call, "--threads", 1, "-q")
+        wait_for(lambda: children(job.pid) or job.poll() is not None)  # it listens by then
+        time.sleep(rng.uniform(0, 0.6))
+        job.send_signal(signal.SIGINT)
+        _, err = job.communicate(timeout=60)
+        assert job.returncode in (0, 130), err  # 0: the last shard was in hand
+        there = set(shards(tmp_path / "job"))
+        assert done <= there and not list((tmp_path / "job/tmp").iterdir())
+        done = there
+        if job.returncode == 130:
+            told = re.search(rf"stopped by the user after {len(done)} of 200 shards. umov (scale run \S+) goes on", err)
+            assert told, err
+            call = told[1].split()
+    last = umov(*call)
+    assert last.code == 0 and f"{len(done)} of them before" in last.err, last.err
+    plain(umov, command, "plain.csv")
+    assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
+    assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+
+
 def test_a_worker_that_hangs_is_ended(umov, scenario, tmp_path):
-    command = slow_signature_of(umov, scenario, 4000)
+    """Once: another one does its shard. Each time: it is told after two, and the rest is done."""
+    command = slow_signature_of(umov, scenario, 2000)
     assert umov("scale", "lock", "--per-shard", 1000, "job", *command).code == 0
-    job = start(tmp_path, "scale", "run", "job", "-q", "--timeout-s", 60)
-    worker = wait_for(lambda: children(job.pid))[0]
-    os.kill(worker, signal.SIGSTOP)
-    job.kill()
-    job.wait(10)
-    with contextlib.suppress(ProcessLookupError):  # it may have ended with its parent
-        os.kill(worker, signal.SIGKILL)
-    assert umov("scale", "run", "job").code == 0
-    assert umov("scale", "verify", "job").code == 0
+    job = start(tmp_path, "scale", "run", "job", "-q", "--timeout-s", 6)
+    os.kill(wait_for(lambda: children(job.pid))[0], signal.SIGSTOP)
+    _, err = job.communicate(timeout=60)
+    assert job.returncode == 0 and len(shards(tmp_path / "job")) == 2, err
+    (tmp_path / "job/shards" / shards(tmp_path / "job")[1]).unlink()
+    job = start(tmp_path, "scale", "run", "job", "-q", "--timeout-s", 1)
+    stopped = set()
+    while job.poll() is None:
+        for worker in set(children(job.pid)) - stopped:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(worker, signal.SIGSTOP)
+            stopped.add(worker)
+        time.sleep(0.01)
+    assert job.returncode == 3 and "it was not done after 1 s" in job.stderr.read() and len(stopped) == 2
+    failed = json.loads((tmp_path / "job/failed/00000001.json").read_text())
+    assert (failed["attempts"], failed["code"]) == (2, 128 + signal.SIGKILL)
+    assert umov("scale", "run", "job").code == 0 and umov("scale", "verify", "job").code == 0
+    assert not list((tmp_path / "job/failed").iterdir())
 
 
 def test_a_damaged_or_missing_shard_is_found_and_made_anew(umov, scenario, tmp_path):
@@ -231,18 +267,31 @@ def test_unlike_bytes_of_one_shard_are_told(umov, scenario, tmp_path):
     assert merged.code == 3 and "unlike bytes" in merged.err and other in merged.err
 
 
+def made_by(told):
+    """How many shards a run made by itself, by what it says in the end."""
+    done, before = map(int, re.search(r"(\d+) of \d+ shards done, (\d+) of them before", told).groups())
+    others = re.search(r"others did (\d+) meanwhile", told)
+    return done - before - (int(others[1]) if others else 0)
+
+
 def test_a_second_one_is_refused_unless_it_joins(umov, scenario, tmp_path):
     command = slow_signature_of(umov, scenario, 4000)
     assert umov("scale", "lock", "--per-shard", 20, "job", *command).code == 0
-    job = start(tmp_path, "scale", "run", "job", "-q", "--threads", 1)
+    job = start(tmp_path, "scale", "run", "job", "--threads", 1)
     wait_for(lambda: shards(tmp_path / "job"))
     refused = umov("scale", "run", "job", "-q")
     assert refused.code == 6 and f"{job.pid}" in refused.err and "--join" in refused.err, refused.err
     assert "at work" in umov("scale", "status", "job").out
-    joined = umov("scale", "run", "job", "-q", "--join", "--threads", 1)
+    joined = umov("scale", "run", "job", "--join", "--threads", 1)
     assert joined.code == 0, joined.err
-    assert job.wait(120) == 0, job.stderr.read()
+    _, err = job.communicate(timeout=120)
+    assert job.returncode == 0, err
     assert len(shards(tmp_path / "job")) == 200
+    made = sum(made_by(text) for text in (joined.err, err))
+    assert 200 <= made <= 220  # at most a tenth of the work is done twice
+    plain(umov, command, "plain.csv")
+    assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
+    assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
 
 
 def test_another_job_or_changed_inputs_are_refused(umov, scenario, tmp_path):

@@ -5,9 +5,12 @@ import shutil
 import signal
 import socket
 import subprocess
+import sys
 import time
 
 import pytest
+
+from conftest import ROOT
 
 
 def configuration(folder, host):
@@ -99,5 +102,33 @@ def test_an_array_job_gives_the_plain_bytes(slurm, umov, scenario, tmp_path):
                               text=True, timeout=240)
         logs = "".join(path.read_text() for path in (tmp_path / "job/log").iterdir())
         assert done.returncode == 0, done.stderr + logs
+    assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
+    assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+
+
+BY_DASK = """
+import sys
+import dask_jobqueue
+import umov
+cluster = dask_jobqueue.SLURMCluster(cores=1, processes=1, memory="500MB", walltime="00:10:00", interface="lo", python=sys.executable,
+                                     local_directory=".", log_directory="log", scheduler_options={"dashboard_address": "127.0.0.1:0"},
+                                     job_script_prologue=["export PYTHONPATH=" + sys.argv[1]], death_timeout=60)
+cluster.scale(jobs=2)
+umov.scale.run(None, "job", cluster=cluster)
+cluster.close()
+"""
+
+
+def test_a_dask_cluster_of_slurm_jobs_gives_the_plain_bytes(slurm, umov, scenario, tmp_path):
+    """umov.scale takes the cluster as it is; its workers are jobs of SLURM."""
+    pytest.importorskip("dask_jobqueue", reason="dask-jobqueue is not installed: SLURMCluster is not tested")
+    command = ["signature", scenario(), "--poses", 400, "--phase", "60", "--visibility", "rays", "--accuracy", "0.05"]
+    assert umov(*command, "-o", "plain.csv").code == 0
+    assert umov("scale", "lock", "-q", "--per-shard", 40, "job", *command).code == 0
+    package = str(ROOT / "build/release/python")
+    done = subprocess.run([sys.executable, "-c", BY_DASK, package], env={**slurm, "PYTHONPATH": package}, cwd=tmp_path,
+                          capture_output=True, text=True, timeout=240)
+    logs = "".join(path.read_text()[-2000:] for path in (tmp_path / "log").glob("*"))
+    assert done.returncode == 0, done.stderr + logs
     assert umov("scale", "merge", "job", "-o", "merged.csv").code == 0
     assert (tmp_path / "merged.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()

@@ -14,6 +14,12 @@ namespace umov::scale {
 struct Rate {
   double cpu_s = 0, bytes = 0;
   double setup_cpu_s = 0; ///< of a process before its first row
+  double once_cpu_s = 0;  ///< of the whole job: masks, which all processes read
+
+  /// What a shard of so many may take, with all that is done once.
+  [[nodiscard]] double at_most_s(std::size_t per_shard) const {
+    return setup_cpu_s + once_cpu_s + cpu_s * static_cast<double>(per_shard);
+  }
 };
 
 /// Everything that is decided once for the whole job: job.json.

@@ -16,11 +16,13 @@ struct PlanSettings {
 /// What it comes to.
 struct Plan {
   std::size_t shards = 0, per_shard = 0, total = 0;
-  double core_hours = 0, gigabytes = 0, wall_s = 0, shard_s = 0, setup_cpu_s = 0;
+  double core_hours = 0, gigabytes = 0, wall_s = 0, shard_s = 0, setup_cpu_s = 0, once_cpu_s = 0;
 };
 
 /// Asks the job for some of its indices, spread over all of them, until their cost has settled: a
-/// second or two of one core, up to twenty where masks are still being traced.
+/// second or two of one core, up to twenty where indices are dear. What is learnt meanwhile, masks,
+/// is told apart from what every index costs: pieces are asked for twice as long as that is
+/// cheaper.
 Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monitor &monitor);
 
 /// How long a shard is: a twentieth of the wall time, within 10 and 120 s of a worker; at most a

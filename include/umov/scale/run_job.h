@@ -22,13 +22,14 @@ struct RunTally {
   std::size_t wanted = 0;       ///< shards of the part
   std::size_t there_before = 0; ///< of them
   std::size_t done = 0, failed = 0;
+  std::size_t by_others = 0; ///< of those done: others had them when it came to them
   double cpu_s = 0;
   std::vector<FailedShard> failures;
 };
 
-/// Does what is missing. A shard that ends its process or hangs is tried three times; what is wrong
-/// with its input is wrong for good and told; a full disk ends it all (Device). Interrupted after a
-/// stop, when the shards in hand are done or half a minute is over.
+/// Does what is missing. A shard that ends its process is tried three times, one that hangs twice;
+/// what is wrong with its input is wrong for good and told; a full disk ends it all (Device).
+/// Interrupted after a stop, when the shards in hand are done or half a minute is over.
 Result<RunTally> run_job(const JobFolder &folder, const RunSettings &settings,
                          const jobs::Monitor &monitor);
 

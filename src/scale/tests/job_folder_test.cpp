@@ -138,6 +138,26 @@ TEST_F(JobFolders, ListShardsOfTheirKeyAlone) {
   EXPECT_FALSE(folder->find(1));
 }
 
+TEST_F(JobFolders, OfManyShardsListThoseThatStandInTheirPlace) {
+  JobLock job = a_job();
+  job.total = 20'000;
+  job.per_shard = 1;
+  const auto folder = JobFolder::begin(path, job);
+  ASSERT_TRUE(folder);
+  const Shard mine = folder->named(12'345, std::string(64, 'a'));
+  EXPECT_EQ(folder->file_of(mine).parent_path().filename(), "00012");
+  const fs::path shards = path / "shards";
+  fs::create_directories(shards / "00011");
+  fs::create_directories(shards / "copies");
+  for (const fs::path &place : {folder->file_of(mine), shards / mine.name,
+                                shards / "00011" / mine.name, shards / "copies" / mine.name})
+    std::ofstream(place) << "x";
+  const auto there = folder->shards();
+  ASSERT_TRUE(there);
+  ASSERT_EQ(there->size(), 1u);
+  EXPECT_EQ(there->at(12'345).size(), 1u);
+}
+
 TEST_F(JobFolders, TellOfFailuresUntilTheyAreForgotten) {
   const auto folder = JobFolder::begin(path, a_job());
   ASSERT_TRUE(folder);
