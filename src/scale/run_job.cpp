@@ -61,12 +61,17 @@ private:
       if (!there.contains(k))
         missing_.push_back(k);
     tally_.there_before = part.count - missing_.size();
-    if (settings_.joins && !missing_.empty()) { // far from where the others are
-      std::random_device somewhere;
-      const auto at = static_cast<std::ptrdiff_t>(somewhere() % missing_.size());
-      std::rotate(missing_.begin(), missing_.begin() + at, missing_.end());
-    }
+    if (settings_.joins)
+      go_elsewhere();
     return {};
+  }
+  /// Far from where the others are. Who only followed them would catch up and do, from there on,
+  /// each shard at the same time as they.
+  void go_elsewhere() {
+    if (missing_.empty())
+      return;
+    const auto at = static_cast<std::ptrdiff_t>(somewhere_() % missing_.size());
+    std::rotate(missing_.begin(), missing_.begin() + at, missing_.end());
   }
   [[nodiscard]] bool may_start() const { return !stopped_ && !missing_.empty(); }
   void stop(Error why) {
@@ -129,7 +134,10 @@ private:
       return stop({code, record->message, {}});
     if (record->status != ShardRecord::Status::Failed) {
       ++tally_.done;
-      tally_.by_others += record->status == ShardRecord::Status::There ? 1U : 0U;
+      if (record->status == ShardRecord::Status::There) {
+        ++tally_.by_others;
+        go_elsewhere();
+      }
       return folder_.forget_failed(record->index);
     }
     if (code == ErrorCode::Device || code == ErrorCode::Interrupted)
@@ -185,6 +193,7 @@ private:
   const jobs::Monitor &monitor_;
   RunTally tally_;
   std::deque<std::size_t> missing_;
+  std::random_device somewhere_;
   std::map<std::size_t, std::size_t> attempts_;
   std::vector<WorkerProcess> workers_;
   std::optional<Error> stopped_;
