@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from . import _umov
 from ._axes import axes_or_new as _axes, every as _every, passes_of as _passes, time_axis as _time_axis
+from .errors import UsageError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
