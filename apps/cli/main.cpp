@@ -7,6 +7,7 @@
 #include <exception>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <new>
 #include <system_error>
 #include <umov/core/text.h>
@@ -47,6 +48,25 @@ const CLI::App &deepest(const CLI::App &app) {
   return used.empty() ? app : deepest(*used.front());
 }
 
+std::vector<std::string> verbs_of(const CLI::App &app) {
+  std::vector<std::string> out;
+  for (const CLI::App *verb : app.get_subcommands([](const CLI::App *) { return true; }))
+    out.push_back(verb->get_name());
+  return out;
+}
+
+/// The option that a word without one was meant for: elements, or what else a verb cannot do
+/// without.
+const CLI::Option *option_left_out(const CLI::App &verb) {
+  const CLI::Option *const orbit = verb.get_option_no_throw("--orbit");
+  if (orbit != nullptr && orbit->count() == 0)
+    return orbit;
+  for (const CLI::Option *option : verb.get_options())
+    if (option->get_required() && option->count() == 0 && !option->get_positional())
+      return option;
+  return nullptr;
+}
+
 int usage_error(const CLI::App &app, const CLI::ParseError &problem) {
   const CLI::App &verb = deepest(app);
   std::string text = problem.what();
@@ -57,6 +77,10 @@ int usage_error(const CLI::App &app, const CLI::ParseError &problem) {
     text = fmt::format("unknown {} {}", given.starts_with('-') ? "option" : "argument", given);
     if (const auto near = nearest_name(given, names))
       text += fmt::format(". Did you mean {}?", *near);
+    else if (const auto *option = given.starts_with('-') ? nullptr : option_left_out(verb))
+      text += fmt::format(". Did you mean {} {}?", option->get_name(), given);
+  } else if (const auto verbs = verbs_of(verb); !verbs.empty()) {
+    text = fmt::format("no verb was given; there are {}", fmt::join(verbs, ", "));
   } else if (const std::size_t end = text.find('\n'); end != std::string::npos) {
     text.resize(end);
   }

@@ -55,6 +55,15 @@ void add_passes_options(CLI::App &verb, PassesOptions &o, Common &common) {
       ->check(CLI::Range(-90.0, 90.0))
       ->capture_default_str();
   verb.add_flag("--visible", o.is_visible_only, "Only passes sunlit in a dark sky for some time");
+  verb.add_option("--mag-max", o.magnitude_max,
+                  "Only passes that get as bright as this magnitude while sunlit; needs --scene or "
+                  "--model")
+      ->check(CLI::Range(-50.0, 100.0));
+  verb.add_option("--sort", o.order,
+                  "First is the earliest (rise), the brightest (mag), or what stands highest while "
+                  "visible (alt)")
+      ->check(CLI::IsMember({"rise", "mag", "alt"}))
+      ->capture_default_str();
   verb.add_option("--shadow", o.shadow, "The Earth that casts the shadow")
       ->check(CLI::IsMember({"ellipsoid", "sphere"}))
       ->capture_default_str();
@@ -86,6 +95,10 @@ Result<jobs::PassesRequest> request_of(const PassesOptions &o, const Common &com
   out.sun_altitude_max = Angle::degrees(o.sun_altitude_max_deg);
   out.shadow = o.shadow == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
   out.is_visible_only = o.is_visible_only;
+  out.magnitude_max = o.magnitude_max;
+  out.order = o.order == "mag"   ? jobs::PassOrder::Magnitude
+              : o.order == "alt" ? jobs::PassOrder::Altitude
+                                 : jobs::PassOrder::Rise;
   out.keep_going = o.keep_going;
   out.model = std::move(model);
   return out;

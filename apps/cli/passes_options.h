@@ -12,11 +12,12 @@ namespace umov::cli {
 /// Options of `umov passes`.
 struct PassesOptions {
   SiteOptions site;
-  std::string orbit, output, start, stop, shadow = "ellipsoid", chart;
+  std::string orbit, output, start, stop, shadow = "ellipsoid", chart, order = "rise";
   std::string scene, body, material, band;
   std::vector<std::string> overrides, columns;
   std::vector<int> norad;
   double size_m = 1, altitude_min_deg = 10, sun_altitude_max_deg = -6;
+  std::optional<double> magnitude_max;
   bool is_visible_only = false, keep_going = false;
   DoubtfulElements elements;
   PartOptions part;

@@ -4,6 +4,23 @@
 #include "tables.h"
 
 namespace umov::cli {
+namespace {
+
+/// Many a file of poses is handed over here: the message names the option that takes one.
+CLI::Validator number_of_poses() {
+  return {[](std::string &text) {
+            const bool is_number =
+                !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+            if (is_number && text.size() < 9 && std::stol(text) >= 1 &&
+                std::stol(text) <= 10'000'000)
+              return std::string();
+            return text + " is no number of random poses; 1 to 10000000 was expected" +
+                   (is_number ? "" : ". A file of poses is given with --geometry FILE.csv");
+          },
+          "INT in [1 - 10000000]"};
+}
+
+} // namespace
 
 void add_signature_options(CLI::App &verb, SignatureOptions &o, Common &common) {
   verb.add_option("scene", o.scene, "Scenario file; orbit, time and observer are not used")
@@ -13,7 +30,7 @@ void add_signature_options(CLI::App &verb, SignatureOptions &o, Common &common) 
                       "CSV with columns sun_x sun_y sun_z obs_x obs_y obs_z, body frame; with a "
                       "column pose, rows in turn of one number are one pose and keep it");
   o.poses_option = verb.add_option("--poses", o.poses, "Random poses for each phase angle")
-                       ->check(CLI::Range(1, 10'000'000));
+                       ->check(number_of_poses());
   auto *phase = verb.add_option("--phase", o.phases_deg, "Phase angles [deg], separated by commas")
                     ->delimiter(',');
   o.geometry_option->excludes(o.poses_option)->excludes(phase);

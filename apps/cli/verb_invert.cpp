@@ -95,6 +95,23 @@ void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
   add_common(verb, o->common, true);
 }
 
+void add_material_errors(CLI::App &verb, const std::shared_ptr<InvertVerb> &o) {
+  jobs::MaterialErrors &errors = o->request.materials;
+  const auto add = [&](const char *name, double &value, const char *text) {
+    verb.add_option(name, value, text)->check(CLI::Range(0.0, 2.0))->capture_default_str();
+  };
+  add("--slope-sd", errors.slope,
+      "How well the slopes of each material's lobe are known, in ln; 0: exactly");
+  add("--reflectance-sd", errors.reflectance,
+      "How well it is known what each lobe and each body reflects, in ln; 0: exactly");
+  add("--haze-sd", errors.haze,
+      "How well the haze of materials without a body is known, in ln; 0: exactly");
+  verb.add_option("--largest-floor", o->request.largest_floor,
+                  "The floor grows with the misfit of the best attitude, up to this; 0: it stays")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+}
+
 void answer_one(InvertVerb &o, const Exit &exit_with, const InvertJob &job) {
   watch_interrupts();
   Diagnostics diagnostics;

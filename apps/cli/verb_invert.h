@@ -30,6 +30,8 @@ using InvertJob = std::function<Result<jobs::Inversion>(const Scenario &, const 
 void add_invert_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
 /// Adds those of them that say how well the model is known and where the answer goes.
 void add_model_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
+/// Adds those that say how well materials and shape are known where attitudes are searched.
+void add_material_errors(CLI::App &verb, const std::shared_ptr<InvertVerb> &o);
 /// Puts options that are words into the request.
 void settle(InvertVerb &o);
 /// What run_invert does when the verb is called.

@@ -28,6 +28,7 @@ void add_spin(CLI::App &invert, const Exit &exit_with) {
   auto spin = std::make_shared<jobs::SpinOptions>();
   auto axis = std::make_shared<std::string>("any");
   add_invert_options(*verb, o);
+  add_material_errors(*verb, o);
   verb->add_option("--period", spin->period_s,
                    "Of a whole turn [s], good to a few per cent; else from the periodogram")
       ->check(CLI::Range(1e-3, 1e7));
@@ -90,6 +91,7 @@ void add_health(CLI::App &invert, const Exit &exit_with) {
 
 EachJob pose_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o, EachOptions &each) {
   add_invert_options(verb, o);
+  add_material_errors(verb, o);
   add_each(verb, each);
   return [](const Scenario &scenario, const InvertVerb &asked, const jobs::JobOptions &options,
             Diagnostics &diagnostics) {

@@ -27,8 +27,8 @@ Result<void> run_passes(const PassesOptions &o, const Common &common, Diagnostic
     UMOV_TRY(put(o.chart, jobs::sky_chart(request, result)));
   UMOV_ASSIGN(shown, chosen_columns(table, o.columns,
                                     {"name", "rise_utc", "culmination_utc", "set_utc",
-                                     "culmination_alt", "culmination_az", "phase_min", "mag_min",
-                                     "p_max", "sunlit_share", "visible"},
+                                     "culmination_alt", "culmination_az", "visible_alt", "visible",
+                                     "phase_min", "mag_min", "p_max"},
                                     o.output, common));
   return put_table(o.output, shown, common);
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/chrono.h>
+#include <optional>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
 #include <umov/jobs/calibrate.h>
@@ -18,8 +19,8 @@ namespace {
 struct ReduceVerb {
   std::string counts, output, page, calibration, tdm, score, model = "static";
   std::vector<std::string> columns;
-  double q0_sd = 0, gain_sd = 0, angle_sd_deg = 0, efficiency_sd = 0, sky_sd = 0,
-         transparency_sd = 0;
+  std::vector<double> errors = std::vector<double>(jobs::reduce_priors().size(), 0); ///< as given
+  std::optional<double> colour;
 };
 
 /// "static", "fourier:PERIOD", "fourier:PERIOD:HARMONICS" or "spline:KNOTS".
@@ -55,6 +56,13 @@ Result<void> read_model(const std::string &text, jobs::ReduceOptions &out) {
   return {};
 }
 
+void put_errors(const ReduceVerb &o, jobs::ReduceOptions &out) {
+  const auto priors = jobs::reduce_priors();
+  for (std::size_t k = 0; k < priors.size(); ++k)
+    priors[k].of(out) = o.errors[k] * priors[k].unit;
+  out.colour = o.colour;
+}
+
 /// The forms in which others take magnitudes.
 Result<void> put_measurements(const ReduceVerb &o, const CountsFile &counts, const Table &stokes) {
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
@@ -77,8 +85,7 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
   UMOV_TRY(check_page("--page", o.page));
   jobs::ReduceOptions options;
   UMOV_TRY(read_model(o.model, options));
-  options.priors = {o.q0_sd, o.gain_sd, 0, o.angle_sd_deg * pi / 180, o.efficiency_sd, o.sky_sd};
-  options.transparency_sd = o.transparency_sd;
+  put_errors(o, options);
   options.threads = static_cast<unsigned>(common.threads);
   constexpr std::size_t largest = 1u << 31;
   UMOV_ASSIGN(text, read_file(o.counts, largest));
@@ -88,6 +95,7 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
     UMOV_ASSIGN(file, read_calibration_text(read, o.calibration));
     UMOV_TRY(jobs::check_calibration(file, counts, o.calibration, diagnostics));
     options.calibration = file.calibration;
+    options.photometry = file.photometry;
   }
   JobConsole console(common);
   UMOV_ASSIGN(
@@ -104,6 +112,17 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
   return put_table(o.output, shown, common);
 }
 
+void add_errors(CLI::App &verb, ReduceVerb &o) {
+  const auto priors = jobs::reduce_priors();
+  for (std::size_t k = 0; k < priors.size(); ++k) {
+    std::string name = std::string("--") + priors[k].name;
+    std::ranges::replace(name, '_', '-');
+    verb.add_option(name, o.errors[k], priors[k].text)
+        ->check(CLI::Range(0.0, 1e3))
+        ->capture_default_str();
+  }
+}
+
 } // namespace
 
 void add_reduce(CLI::App &app, const Exit &exit_with) {
@@ -112,21 +131,17 @@ void add_reduce(CLI::App &app, const Exit &exit_with) {
   auto common = std::make_shared<Common>();
   verb->add_option("counts", o->counts, "Counts of umov observe (ECSV or CSV), or your own")
       ->required();
-  verb->add_option("--calibration", o->calibration, "Of umov calibrate: taken out of q and u");
+  verb->add_option("--calibration", o->calibration,
+                   "Of umov calibrate: taken out of q and u, or of I");
+  verb->add_option("--colour", o->colour,
+                   "Of the object, in the index of the photometric standards; without it the Sun's "
+                   "B - V")
+      ->check(CLI::Range(-10.0, 20.0));
   verb->add_option("--model", o->model,
                    "static: every set by itself; fourier:PERIOD_S: brightness as a series over "
                    "time, q and u constant; spline:KNOTS_S: the same without a period")
       ->capture_default_str();
-  const auto prior = [&](const char *name, double &value, const char *text) {
-    verb->add_option(name, value, text)->check(CLI::Range(0.0, 1e3))->capture_default_str();
-  };
-  prior("--q0-sd", o->q0_sd, "How well the instrument's own q and u are known");
-  prior("--gain-sd", o->gain_sd, "How well the gain of each channel is known");
-  prior("--angle-sd-deg", o->angle_sd_deg, "How well the instrument's angle is known [deg]");
-  prior("--efficiency-sd", o->efficiency_sd, "How well the efficiency is known");
-  prior("--sky-sd", o->sky_sd, "How well the whole sky is known, relative");
-  prior("--transparency-sd", o->transparency_sd,
-        "How much the air lets through changes from exposure to exposure, relative: thin cloud");
+  add_errors(*verb, *o);
   verb->add_option("--tdm", o->tdm, "Also magnitudes as a CCSDS Tracking Data Message");
   verb->add_option("--score", o->score,
                    "Also magnitudes as a table for the IAU's repository SCORE");

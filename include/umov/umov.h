@@ -45,6 +45,7 @@
 #include <umov/instrument/polarimeter.h>
 #include <umov/instrument/raw_frame.h>
 #include <umov/instrument/telescope.h>
+#include <umov/instrument/trail_slices.h>
 #include <umov/inverse/attitude_grid.h>
 #include <umov/inverse/curve_model.h>
 #include <umov/inverse/design.h>
@@ -78,6 +79,7 @@
 #include <umov/io/passband_file.h>
 #include <umov/io/plot_page.h>
 #include <umov/io/png.h>
+#include <umov/io/polarizer_file.h>
 #include <umov/io/poses_file.h>
 #include <umov/io/report.h>
 #include <umov/io/report_frames.h>
@@ -148,6 +150,7 @@
 #include <umov/lightcurve/light_curve.h>
 #include <umov/lightcurve/pass_light.h>
 #include <umov/lightcurve/periodogram.h>
+#include <umov/lightcurve/repetition.h>
 #include <umov/observation/epochs.h>
 #include <umov/observation/moving_joints.h>
 #include <umov/observation/track.h>

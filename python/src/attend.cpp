@@ -1,6 +1,7 @@
 #include "attend.h"
 
 #include <chrono>
+#include <fmt/format.h>
 
 namespace umov::python {
 
@@ -68,6 +69,12 @@ void Attention::settle(bool was_stopped) {
   if (!watch_.is_none())
     for (const Warning &warning : diagnostics.warnings())
       watch_.attr("warn")(warning.text());
+}
+
+Error stopped_after(std::size_t done, std::size_t count) {
+  return {ErrorCode::Interrupted,
+          fmt::format("stopped by the user after {} of {} poses", done, count),
+          {}};
 }
 
 } // namespace umov::python

@@ -1,6 +1,8 @@
 #pragma once
 // Private: a job on a thread of its own, while the caller's thread looks after Python.
 
+#include "gil.h"
+
 #include <atomic>
 #include <condition_variable>
 #include <deque>
@@ -35,6 +37,8 @@ public:
   /// Hands on what has come, and asks whether Python wants to stop. With the GIL; never throws: the
   /// first exception is kept and the job is told to stop.
   void look();
+  /// Tells the job to stop, without a word to Python.
+  void stop() { cancel_ = true; }
   /// The job is done. From any thread.
   void finish();
   /// True once the job is done; waits for that as long as a look may wait, a twentieth of a second.
@@ -68,7 +72,7 @@ template <class Job> auto attend(Attention &attention, Job job) {
   std::optional<Out> out;
   std::exception_ptr failure;
   {
-    const nb::gil_scoped_release free;
+    WithoutGil gil;
     const auto work = [&] {
       try {
         out.emplace(job(monitor, attention.diagnostics));
@@ -79,8 +83,13 @@ template <class Job> auto attend(Attention &attention, Job job) {
     };
     std::thread worker(work);
     while (!attention.wait()) {
-      const nb::gil_scoped_acquire hold;
+      if (is_ending()) {
+        attention.stop();
+        continue;
+      }
+      gil.take();
       attention.look();
+      gil.leave();
     }
     worker.join();
   }
@@ -89,5 +98,25 @@ template <class Job> auto attend(Attention &attention, Job job) {
     std::rethrow_exception(failure);
   return std::move(*out);
 }
+
+/// Runs `body(i)` for i from 0 to `count`, a single one where it is and more so that Ctrl-C ends
+/// them, which is then thrown.
+template <class Body> void in_parts(std::size_t count, const Body &body) {
+  if (count < 2) {
+    for (std::size_t i = 0; i < count; ++i)
+      body(i);
+    return;
+  }
+  Attention attention{nb::none()};
+  attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &) {
+    for (std::size_t i = 0; i < count && !monitor.is_cancelled(); ++i)
+      body(i);
+    return true;
+  });
+  attention.settle(false);
+}
+
+/// Why a job of `count` poses ended after `done` of them.
+Error stopped_after(std::size_t done, std::size_t count);
 
 } // namespace umov::python

@@ -3,6 +3,7 @@
 #include "arrays.h"
 #include "attend.h"
 #include "bindings.h"
+#include "block_size.h"
 #include "errors.h"
 #include "options.h"
 
@@ -63,67 +64,121 @@ private:
 /// Sums of poses, whose memory the arrays share.
 struct Abundances {
   AbundanceTable table;
+  std::optional<Error> stopped; ///< why there are not more
 };
 
-Result<std::vector<Pose>> poses_from(const Vectors &sun, const Vectors &observer,
-                                     double sun_radius_rad) {
-  std::vector<Pose> poses(sun.shape(0));
+/// Poses [first, first + poses.size()) of arrays.
+Result<void> take_poses(const Vectors &sun, const Vectors &observer, std::size_t first,
+                        double sun_radius_rad, std::vector<Pose> &poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double *const s = sun.data() + 3 * i, *const o = observer.data() + 3 * i;
+    const std::size_t row = first + i;
+    const double *const s = sun.data() + 3 * row, *const o = observer.data() + 3 * row;
     const auto to_sun = direction_along({s[0], s[1], s[2]});
     const auto to_observer = direction_along({o[0], o[1], o[2]});
     if (!to_sun || !to_observer)
       return fail(ErrorCode::BadInput,
-                  std::string(to_sun ? "observer[" : "sun[") + std::to_string(i) +
+                  std::string(to_sun ? "observer[" : "sun[") + std::to_string(row) +
                       "] has no direction; three finite numbers other than 0 were expected");
     poses[i] = {*to_sun, *to_observer, sun_radius_rad};
   }
-  return poses;
+  return {};
+}
+
+/// Adds a block's sums to those of the blocks before; the first makes room for all.
+void append(AbundanceTable &&block, std::size_t count, AbundanceTable &out) {
+  const auto put = [count](auto &&from, auto &to, std::size_t width) {
+    if (to.empty())
+      to.reserve(count * width);
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  out.columns = std::move(block.columns);
+  const std::size_t width = out.columns.size();
+  put(block.sum, out.sum, width);
+  put(block.half_width, out.half_width, width);
+  put(block.bias, out.bias, width);
+  put(block.cos_phase, out.cos_phase, 1);
+  put(block.has_plane, out.has_plane, 1);
+  put(block.is_dark, out.is_dark, 1);
+}
+
+/// All poses, block by block; what is done where the monitor says so.
+Result<Abundances> sum_up(const Sums &sums, const Vectors &sun, const Vectors &observer,
+                          unsigned threads, const jobs::Monitor &monitor) {
+  const std::size_t count = sun.shape(0);
+  BlockSize block;
+  std::vector<Pose> poses;
+  Abundances out;
+  std::size_t done = 0;
+  do { // no poses at all have columns too
+    const auto begin = Clock::now();
+    poses.resize(std::min(block.size(), count - done));
+    UMOV_TRY(take_poses(sun, observer, done, sums.sun_radius_rad(), poses));
+    AbundanceTable table;
+    const auto lit = sums.light().evaluate(poses, table, threads, monitor.cancel);
+    if (!lit && lit.error().code != ErrorCode::Interrupted)
+      return tl::unexpected(lit.error());
+    if (!lit || monitor.is_cancelled()) {
+      out.stopped = stopped_after(done, count);
+      break;
+    }
+    append(std::move(table), count, out.table);
+    done += poses.size();
+    monitor.advance("poses", done, count);
+    block.learn(seconds_since(begin));
+  } while (done < count);
+  return out;
 }
 
 Abundances sums_of(const Sums &sums, const Vectors &sun, const Vectors &observer, unsigned threads,
                    nb::handle watch) {
   Attention attention(watch);
-  auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &) -> Result<Abundances> {
-    UMOV_ASSIGN(poses, poses_from(sun, observer, sums.sun_radius_rad()));
-    Abundances out;
-    UMOV_TRY(sums.light().evaluate(poses, out.table, threads));
-    return out;
+  auto made = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &) {
+    return sum_up(sums, sun, observer, threads, monitor);
   });
-  attention.settle(false);
+  attention.settle(made && made->stopped);
   return take(std::move(made));
+}
+
+/// Where the numbers of a table go: [pose, band, 4].
+struct StokesArrays {
+  double *stokes, *half_width;
+};
+
+/// Interrupted where the monitor says so.
+Result<void> put(const StokesTable &table, const jobs::Monitor &monitor, StokesArrays to) {
+  constexpr std::size_t at_once = 1u << 16;
+  for (std::size_t k = 0; k < table.poses() * table.bands; ++k) {
+    if (k % at_once == 0 && monitor.is_cancelled())
+      return fail(ErrorCode::Interrupted, "stopped by the user");
+    double *const out = to.stokes + 4 * k, *const err = to.half_width + 4 * k;
+    out[0] = table.i[k], out[1] = table.q[k], out[2] = table.u[k], out[3] = table.v[k];
+    err[0] = table.i_err[k], err[1] = table.q_err[k], err[2] = table.u_err[k];
+    err[3] = table.v_err[k];
+  }
+  return {};
 }
 
 /// What the materials and bands of a scenario make of sums: [pose, band, 4], and the half-widths.
 nb::tuple applied(const Sums &sums, const Abundances &abundances, const Scenario &scenario,
                   unsigned threads, nb::handle watch) {
-  struct Done {
-    StokesTable table;
-    double diffuse_error = 0;
-  };
+  const std::size_t count = abundances.table.poses(), bands = scenario.bands.size();
+  const NewArray<double> stokes(count * bands * 4), half_width(count * bands * 4);
   Attention attention(watch);
-  auto made =
-      attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Done> {
+  auto made = attend(
+      attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<double> {
         UMOV_ASSIGN(object, load_object(scenario, 0, {}, diagnostics));
         UMOV_ASSIGN(tables, sums.light().tables_for(object.scene));
-        Done out;
-        tables.apply(abundances.table, out.table, threads);
-        out.diffuse_error = tables.diffuse_error();
-        return out;
+        if (tables.band_count() != bands)
+          return fail(ErrorCode::Internal, "a scene has other bands than its scenario");
+        StokesTable table;
+        tables.apply(abundances.table, table, threads, monitor.cancel);
+        UMOV_TRY(put(table, monitor, {stokes.data, half_width.data}));
+        return tables.diffuse_error();
       });
-  attention.settle(false);
-  const Done done = take(std::move(made));
-  const StokesTable &table = done.table;
-  const std::size_t count = table.poses(), bands = table.bands;
-  const NewArray<double> stokes(count * bands * 4), half_width(count * bands * 4);
-  for (std::size_t k = 0; k < count * bands; ++k) {
-    double *const out = stokes.data + 4 * k, *const err = half_width.data + 4 * k;
-    out[0] = table.i[k], out[1] = table.q[k], out[2] = table.u[k], out[3] = table.v[k];
-    err[0] = table.i_err[k], err[1] = table.q_err[k], err[2] = table.u_err[k];
-    err[3] = table.v_err[k];
-  }
+  attention.settle(was_interrupted(made));
+  const double diffuse_error = take(std::move(made));
   return nb::make_tuple(stokes.shaped({count, bands, 4}), half_width.shaped({count, bands, 4}),
-                        done.diffuse_error);
+                        diffuse_error);
 }
 
 nb::object columns_of(nb::handle self, const std::vector<double> &values) {
@@ -209,6 +264,11 @@ void bind_abundances(nb::module_ &m) {
           nb::sig("def half_width(self) -> numpy.typing.NDArray[numpy.float64]"))
       .def_prop_ro("columns", &names_of,
                    nb::sig("def columns(self) -> list[tuple[str, float, list[str]]]"))
+      .def_prop_ro("poses", [](const Abundances &a) { return a.table.poses(); })
+      .def_prop_ro(
+          "stopped",
+          [](const Abundances &a) { return tuple_of(a.stopped ? &*a.stopped : nullptr); },
+          nb::sig("def stopped(self) -> tuple[int, str, str, int, int] | None"))
       .def_prop_ro("state", &state_of, nb::sig("def state(self) -> tuple[typing.Any, ...]"))
       .def_static("restore", &restored);
   nb::class_<Sums>(m, "Sums", "An object that is asked for sums.")

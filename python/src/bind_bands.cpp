@@ -3,6 +3,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "errors.h"
+#include "gil.h"
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -26,7 +27,7 @@ Band band_of(const std::string &name, const std::string &unit, const std::string
 nb::tuple periodogram_of(const Numbers &seconds, const Numbers &magnitudes) {
   Periodogram found;
   {
-    const nb::gil_scoped_release free;
+    const WithoutGil free;
     found = periodogram(std::span(seconds.data(), seconds.size()),
                         std::span(magnitudes.data(), magnitudes.size()));
   }

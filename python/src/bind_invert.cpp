@@ -123,7 +123,15 @@ void bind_request(nb::module_ &m) {
             r.errors.has_polarization = has_polarization;
           },
           "floor"_a, "zero_point_sd"_a, "scale_sd"_a, "has_clouds"_a, "outlier_share"_a,
-          "has_polarization"_a);
+          "has_polarization"_a)
+      .def(
+          "set_material_errors",
+          [](Request &r, double slope_sd, double reflectance_sd, double haze_sd,
+             double largest_floor) {
+            r.materials = {slope_sd, reflectance_sd, haze_sd};
+            r.largest_floor = largest_floor;
+          },
+          "slope_sd"_a, "reflectance_sd"_a, "haze_sd"_a, "largest_floor"_a);
 }
 
 } // namespace

@@ -3,12 +3,13 @@
 #include "arrays.h"
 #include "attend.h"
 #include "bindings.h"
+#include "block_size.h"
 #include "errors.h"
+#include "gil.h"
 #include "options.h"
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <fmt/format.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -39,34 +40,10 @@ Result<Vec3<Body>> direction_of(const double *xyz, const char *name, std::size_t
                           name, row, xyz[0], xyz[1], xyz[2]));
 }
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
-/// How many poses are lit together: as many as take a twentieth of a second, so that Ctrl-C need
-/// not wait (masks of a new direction cost a thousand times what looking them up does). Where light
-/// between surfaces is shared by the poses of a block those of `umov signature`.
-class BlockSize {
-public:
-  explicit BlockSize(const jobs::PoseLight &light)
-      : is_fixed_(light.options().bounces > 1), size_(is_fixed_ ? light.block() : first) {}
-  [[nodiscard]] std::size_t size() const { return size_; }
-  void learn(double seconds) {
-    constexpr double wanted_s = 0.05;
-    if (is_fixed_)
-      return;
-    if (seconds < wanted_s / 4)
-      size_ = std::min(size_ * 4, most);
-    else if (seconds > wanted_s)
-      size_ = std::max(size_ / 2, least);
-  }
-
-private:
-  static constexpr std::size_t first = 16, least = 4, most = 1u << 16;
-  bool is_fixed_;
-  std::size_t size_;
+/// How many poses were lit, and why not all of them.
+struct Lit {
+  std::size_t done = 0;
+  std::optional<Error> stopped;
 };
 
 /// A scene ready for directions.
@@ -80,10 +57,11 @@ public:
     constexpr double short_s = 0.01;
     return static_cast<double>(poses) * seconds_per_pose_ < short_s;
   }
-  /// All poses, block by block. Interrupted if the monitor says so.
-  Result<void> evaluate(const PoseArrays &arrays, unsigned threads, const jobs::Monitor &monitor) {
+  /// All poses, block by block; stopped where the monitor says so.
+  Result<Lit> evaluate(const PoseArrays &arrays, unsigned threads, const jobs::Monitor &monitor) {
     const auto begin = Clock::now();
-    BlockSize block(light_);
+    // Light between surfaces is shared by the poses of a block: those of `umov signature`.
+    BlockSize block(light_.options().bounces > 1 ? std::optional(light_.block()) : std::nullopt);
     std::vector<Pose> poses;
     StokesTable table;
     LightTask task;
@@ -94,15 +72,14 @@ public:
       poses.resize(std::min(block.size(), arrays.count - done));
       UMOV_TRY(take_poses(arrays, done, poses));
       if (monitor.is_cancelled() || !light_.evaluate(poses, table, task))
-        return fail(ErrorCode::Interrupted,
-                    fmt::format("stopped by the user after {} of {} poses", done, arrays.count));
+        return Lit{done, stopped_after(done, arrays.count)};
       put(table, done, threads, arrays);
       monitor.advance("poses", done + poses.size(), arrays.count);
       block.learn(seconds_since(block_begin));
     }
     if (arrays.count > 0)
       seconds_per_pose_ = seconds_since(begin) / static_cast<double>(arrays.count);
-    return {};
+    return Lit{arrays.count, {}};
   }
 
 private:
@@ -143,48 +120,51 @@ private:
 };
 
 /// Short calls run where they are; others so that Python can stop them.
-void run_poses(Light &light, const PoseArrays &arrays, unsigned threads, nb::handle watch) {
+Lit run_poses(Light &light, const PoseArrays &arrays, unsigned threads, nb::handle watch) {
   if (light.is_short(arrays.count)) {
-    Result<void> done;
+    Result<Lit> done;
     {
-      const nb::gil_scoped_release free;
+      const WithoutGil free;
       done = light.evaluate(arrays, threads, {});
     }
-    take(std::move(done));
-    return;
+    return take(std::move(done));
   }
   Attention attention(watch);
   auto done = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &) {
     return light.evaluate(arrays, threads, monitor);
   });
-  attention.settle(was_interrupted(done));
-  take(std::move(done));
+  attention.settle(done && done->stopped);
+  return take(std::move(done));
 }
 
 std::size_t bands_of(const Light &light) { return light.light().model().scene().bands.size(); }
 
-nb::ndarray<nb::numpy, double, nb::c_contig> stokes_of(Light &light, const Vectors &sun,
-                                                       const Vectors &observer, unsigned threads,
-                                                       nb::handle watch) {
+/// Stokes of the poses that were lit, and why there are not more.
+nb::tuple stokes_of(Light &light, const Vectors &sun, const Vectors &observer, unsigned threads,
+                    nb::handle watch) {
   const std::size_t count = sun.shape(0), bands = bands_of(light);
   const NewArray<double> stokes(count * bands * 4);
-  run_poses(light, {sun.data(), observer.data(), count, stokes.data, nullptr, nullptr, nullptr},
-            threads, watch);
-  return stokes.shaped({count, bands, 4});
+  const Lit lit =
+      run_poses(light, {sun.data(), observer.data(), count, stokes.data, nullptr, nullptr, nullptr},
+                threads, watch);
+  return nb::make_tuple(stokes.shaped({lit.done, bands, 4}),
+                        tuple_of(lit.stopped ? &*lit.stopped : nullptr));
 }
 
+/// The same with half-widths, darkness and method.
 nb::tuple light_of(Light &light, const Vectors &sun, const Vectors &observer, unsigned threads,
                    nb::handle watch) {
   const std::size_t count = sun.shape(0), bands = bands_of(light);
   const NewArray<double> stokes(count * bands * 4), half_width(count * bands * 4);
   const NewArray<bool> is_dark(count);
   const NewArray<std::uint8_t> method(count);
-  run_poses(
+  const Lit lit = run_poses(
       light,
       {sun.data(), observer.data(), count, stokes.data, half_width.data, is_dark.data, method.data},
       threads, watch);
-  return nb::make_tuple(stokes.shaped({count, bands, 4}), half_width.shaped({count, bands, 4}),
-                        is_dark.shaped({count}), method.shaped({count}));
+  return nb::make_tuple(stokes.shaped({lit.done, bands, 4}),
+                        half_width.shaped({lit.done, bands, 4}), is_dark.shaped({lit.done}),
+                        method.shaped({lit.done}), tuple_of(lit.stopped ? &*lit.stopped : nullptr));
 }
 
 void make_light_for(Light *self, const Scenario &scenario, const std::optional<std::string> &method,
@@ -234,14 +214,18 @@ nb::ndarray<nb::numpy, double, nb::c_contig>
 random_directions(std::size_t count, double phase_deg, std::uint64_t seed, std::size_t first) {
   const jobs::PoseList list = take(jobs::random_poses(first + count, {phase_deg}, seed));
   const NewArray<double> out(count * 6);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Pose pose = list.at(first + i);
-    for (const auto &[at, v] : {std::pair{i, pose.sun}, {count + i, pose.observer}}) {
-      out.data[3 * at] = v.x;
-      out.data[3 * at + 1] = v.y;
-      out.data[3 * at + 2] = v.z;
+  constexpr std::size_t at_once = 1u << 14;
+  const auto fill = [&](std::size_t part) {
+    for (std::size_t i = part * at_once; i < std::min(count, (part + 1) * at_once); ++i) {
+      const Pose pose = list.at(first + i);
+      for (const auto &[at, v] : {std::pair{i, pose.sun}, {count + i, pose.observer}}) {
+        out.data[3 * at] = v.x;
+        out.data[3 * at + 1] = v.y;
+        out.data[3 * at + 2] = v.z;
+      }
     }
-  }
+  };
+  in_parts((count + at_once - 1) / at_once, fill);
   return out.shaped({2, count, 3});
 }
 
@@ -251,13 +235,18 @@ void bind_light(nb::module_ &m) {
   nb::class_<Light>(m, "Light", "A scene ready to be lit from any direction.")
       .def("__init__", &make_light_for, "scenario"_a, "method"_a.none(), "accuracy"_a.none(),
            "laser"_a, "temperatures"_a, "mask_file"_a, "options"_a, "watch"_a.none())
-      .def("stokes", &stokes_of, "sun"_a, "observer"_a, "threads"_a, "watch"_a.none())
+      .def("stokes", &stokes_of, "sun"_a, "observer"_a, "threads"_a, "watch"_a.none(),
+           nb::sig("def stokes(self, sun: numpy.typing.NDArray[numpy.float64], observer: "
+                   "numpy.typing.NDArray[numpy.float64], threads: int, watch: object | None) -> "
+                   "tuple[numpy.typing.NDArray[numpy.float64], "
+                   "tuple[int, str, str, int, int] | None]"))
       .def(
           "light", &light_of, "sun"_a, "observer"_a, "threads"_a, "watch"_a.none(),
           nb::sig("def light(self, sun: numpy.typing.NDArray[numpy.float64], observer: "
                   "numpy.typing.NDArray[numpy.float64], threads: int, watch: object | None) -> "
                   "tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], "
-                  "numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.uint8]]"))
+                  "numpy.typing.NDArray[numpy.bool_], numpy.typing.NDArray[numpy.uint8], "
+                  "tuple[int, str, str, int, int] | None]"))
       .def_prop_ro("facts", &facts_of, nb::sig("def facts(self) -> dict[str, typing.Any]"))
       .def_prop_ro("materials",
                    [](const Light &light) { return light.light().model().materials(); })

@@ -5,9 +5,11 @@
 #include "errors.h"
 #include "options.h"
 
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 #include <umov/core/quantity.h>
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/exposure.h>
@@ -50,6 +52,7 @@ Table reduce(const std::string &counts, const std::string &counts_path,
           UMOV_ASSIGN(file, read_calibration_text(*calibration, calibration_path));
           UMOV_TRY(jobs::check_calibration(file, rows, calibration_path, diagnostics));
           options.calibration = file.calibration;
+          options.photometry = file.photometry;
         }
         return jobs::reduce(rows, options, monitor, diagnostics);
       });
@@ -91,15 +94,26 @@ std::string measurements(const Table &stokes, const std::string &counts,
 
 std::string calibrate(const std::string &counts, const std::string &counts_path,
                       const std::string &standards, const std::string &standards_path,
-                      nb::handle watch) {
+                      bool has_second_order, nb::handle watch) {
   Attention attention(watch);
-  auto made = attend(attention,
-                     [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<std::string> {
-                       UMOV_ASSIGN(rows, read_counts_text(counts, counts_path, diagnostics));
-                       UMOV_ASSIGN(stars, read_standards_text(standards, standards_path));
-                       UMOV_ASSIGN(found, jobs::calibrate(rows, stars, diagnostics));
-                       return calibration_as_toml(found);
-                     });
+  auto made = attend(
+      attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<std::string> {
+        UMOV_ASSIGN(rows, read_counts_text(counts, counts_path, diagnostics));
+        UMOV_ASSIGN(stars, read_standards_text(standards, standards_path));
+        UMOV_ASSIGN(found, jobs::calibrate(rows, stars, has_second_order, diagnostics));
+        return calibration_as_toml(found);
+      });
+  attention.settle(false);
+  return take(std::move(made));
+}
+
+Table calibrate_channels(const std::string &counts, const std::string &path, nb::handle watch) {
+  Attention attention(watch);
+  auto made =
+      attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Table> {
+        UMOV_ASSIGN(rows, read_polarizer_text(counts, path));
+        return jobs::calibrate_channels(rows, diagnostics);
+      });
   attention.settle(false);
   return take(std::move(made));
 }
@@ -108,19 +122,19 @@ void bind_options(nb::module_ &m) {
   nb::class_<jobs::ReduceOptions>(m, "ReduceOptions", "How counts are reduced.")
       .def(
           "__init__",
-          [](jobs::ReduceOptions *self, double period_s, int harmonics, double knot_s, double q0_sd,
-             double gain_sd, double angle_sd_deg, double efficiency_sd, double sky_sd,
-             double transparency_sd, unsigned threads) {
+          [](jobs::ReduceOptions *self, double period_s, int harmonics, double knot_s,
+             const std::map<std::string, double> &errors, std::optional<double> colour,
+             unsigned threads) {
             new (self) jobs::ReduceOptions();
             self->period_s = period_s;
             self->harmonics = harmonics;
             self->knot_s = knot_s;
-            self->priors = {q0_sd, gain_sd, 0, angle_sd_deg * pi / 180, efficiency_sd, sky_sd};
-            self->transparency_sd = transparency_sd;
+            for (const jobs::ReducePrior &prior : jobs::reduce_priors())
+              prior.of(*self) = errors.at(prior.name) * prior.unit;
+            self->colour = colour;
             self->threads = threads;
           },
-          "period_s"_a, "harmonics"_a, "knot_s"_a, "q0_sd"_a, "gain_sd"_a, "angle_sd_deg"_a,
-          "efficiency_sd"_a, "sky_sd"_a, "transparency_sd"_a, "threads"_a);
+          "period_s"_a, "harmonics"_a, "knot_s"_a, "errors"_a, "colour"_a.none(), "threads"_a);
   nb::class_<jobs::ExposureRequest>(m, "ExposureRequest", "How bright, how high, how exact.")
       .def(nb::init<>())
       .def_rw("instrument", &jobs::ExposureRequest::instrument)
@@ -128,6 +142,15 @@ void bind_options(nb::module_ &m) {
       .def_rw("altitude_deg", &jobs::ExposureRequest::altitude_deg)
       .def_rw("height_m", &jobs::ExposureRequest::height_m)
       .def_rw("sd_p", &jobs::ExposureRequest::sd_p)
+      .def_prop_rw(
+          "magnitudes",
+          [](const jobs::ExposureRequest &r) { return std::string(name_of(r.magnitudes)); },
+          [](jobs::ExposureRequest &r, const std::string &name) {
+            r.magnitudes = name == "Vega" ? MagnitudeSystem::Vega
+                           : name == "ST" ? MagnitudeSystem::ST
+                                          : MagnitudeSystem::AB;
+          })
+      .def_rw("aperture_fwhm", &jobs::ExposureRequest::aperture_fwhm)
       .def_rw("band", &jobs::ExposureRequest::band)
       .def_rw("nm", &jobs::ExposureRequest::nm)
       .def_rw("width_nm", &jobs::ExposureRequest::width_nm)
@@ -154,8 +177,19 @@ void bind_observe(nb::module_ &m) {
   m.def("observe", &observe, "scenario"_a, "options"_a, "frames"_a, "watch"_a.none());
   m.def("reduce", &reduce, "counts"_a, "counts_path"_a, "calibration"_a.none(),
         "calibration_path"_a, "options"_a, "watch"_a.none());
+  m.def(
+      "check_calibration",
+      [](const std::string &text, const std::string &path) {
+        take(read_calibration_text(text, path));
+      },
+      "text"_a, "path"_a);
   m.def("calibrate", &calibrate, "counts"_a, "counts_path"_a, "standards"_a, "standards_path"_a,
-        "watch"_a.none());
+        "second_order"_a, "watch"_a.none());
+  m.def("calibrate_channels", &calibrate_channels, "counts"_a, "path"_a, "watch"_a.none());
+  m.def("standards_names", &standards_names);
+  m.def(
+      "standards_text", [](const std::string &name) { return take(standards_text(name)); },
+      "name"_a);
   m.def("period", &period, "text"_a, "path"_a, "band"_a, "peaks"_a, "reach_s"_a, "gap_s"_a,
         "watch"_a.none());
   m.def("measurements", &measurements, "stokes"_a, "counts"_a, "counts_path"_a, "form"_a, "ecsv"_a,

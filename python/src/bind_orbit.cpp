@@ -18,6 +18,9 @@ using nb::literals::operator""_a;
 static_assert(sizeof(TemeState) == 6 * sizeof(double), "a state is seen as six numbers");
 static_assert(sizeof(Sgp4Code) == sizeof(int), "a code is seen as a number");
 
+/// Among the codes of SGP4, which are 0 and above: nobody has come to that state.
+constexpr int not_done = -1;
+
 /// States of a catalogue, whose memory the arrays share.
 struct States {
   jobs::CatalogueStates all;
@@ -36,6 +39,10 @@ States propagate(const std::string &orbit, const std::vector<std::string> &times
   const bool is_stopped = result && result->is_partial;
   attention.settle(was_interrupted(result) || is_stopped);
   jobs::CatalogueStates states = take(std::move(result));
+  if (states.is_partial)
+    for (std::size_t row = 0; row < states.codes.size(); ++row)
+      if (states.is_done[row] == 0)
+        states.codes[row] = static_cast<Sgp4Code>(not_done);
   return {std::move(states), times.size()};
 }
 

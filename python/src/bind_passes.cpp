@@ -28,6 +28,12 @@ ShadowModel shadow_from(const std::string &word) {
   return word == "sphere" ? ShadowModel::Sphere : ShadowModel::Ellipsoid;
 }
 
+jobs::PassOrder order_from(const std::string &word) {
+  return word == "mag"   ? jobs::PassOrder::Magnitude
+         : word == "alt" ? jobs::PassOrder::Altitude
+                         : jobs::PassOrder::Rise;
+}
+
 /// Rows of a job, run off the calling thread; a stop leaves those that were done.
 template <class Job> Rows rows_of(nb::handle watch, const Job &job) {
   Attention attention(watch);
@@ -80,8 +86,8 @@ void bind_passes(nb::module_ &m) {
       [](const std::string &orbit, const std::vector<int> &norad, const SiteTuple &site,
          const std::string &start, const std::string &stop, double alt_min_deg,
          double sun_alt_max_deg, const std::string &shadow, bool visible_only,
-         const Scenario *scene, const std::string &band, const jobs::JobOptions &options,
-         nb::handle watch) {
+         std::optional<double> mag_max, const std::string &sort, const Scenario *scene,
+         const std::string &band, const jobs::JobOptions &options, nb::handle watch) {
         jobs::PassesRequest request;
         set_place(request, site, start, stop, shadow);
         request.orbit = orbit;
@@ -89,13 +95,16 @@ void bind_passes(nb::module_ &m) {
         request.altitude_min = Angle::degrees(alt_min_deg);
         request.sun_altitude_max = Angle::degrees(sun_alt_max_deg);
         request.is_visible_only = visible_only;
+        request.magnitude_max = mag_max;
+        request.order = order_from(sort);
         if (scene != nullptr)
           request.model.scene = *scene;
         request.model.band = band;
         return find_passes_of(request, options, watch);
       },
       "orbit"_a, "norad"_a, "site"_a, "start"_a, "stop"_a, "alt_min_deg"_a, "sun_alt_max_deg"_a,
-      "shadow"_a, "visible_only"_a, "scene"_a.none(), "band"_a, "options"_a, "watch"_a.none());
+      "shadow"_a, "visible_only"_a, "mag_max"_a.none(), "sort"_a, "scene"_a.none(), "band"_a,
+      "options"_a, "watch"_a.none());
   m.def(
       "ephemeris",
       [](const std::string &orbit, int norad, const SiteTuple &site, const std::string &start,

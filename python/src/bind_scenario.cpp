@@ -3,6 +3,7 @@
 #include "arrays.h"
 #include "bindings.h"
 #include "errors.h"
+#include "gil.h"
 
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -30,6 +31,17 @@ std::vector<std::string> objects_of(const Scenario &scenario) {
   return out;
 }
 
+/// Keys of [render] that nobody gave: an engine of many poses fills them in otherwise than a light
+/// curve.
+std::vector<std::string> unsaid_of(const Scenario &scenario) {
+  std::vector<std::string> out;
+  if (!scenario.places.contains("render.accuracy"))
+    out.emplace_back("accuracy");
+  if (!scenario.light.accuracy_floor)
+    out.emplace_back("accuracy_floor");
+  return out;
+}
+
 SiteTuple site_tuple(const Site &site) {
   return nb::borrow<SiteTuple>(nb::make_tuple(site.name, site.latitude.degrees(),
                                               site.longitude.degrees(), site.altitude_m));
@@ -42,7 +54,7 @@ void bind_scenario(nb::module_ &m) {
       .def_static(
           "read",
           [](const std::string &path, const std::vector<std::string> &changes) {
-            const nb::gil_scoped_release free;
+            const WithoutGil free;
             return take(read_scenario(path, changes));
           },
           "path"_a, "changes"_a)
@@ -50,7 +62,7 @@ void bind_scenario(nb::module_ &m) {
           "parse",
           [](const std::string &text, const std::string &path,
              const std::vector<std::string> &changes) {
-            const nb::gil_scoped_release free;
+            const WithoutGil free;
             return take(read_scenario_text(text, path, changes));
           },
           "text"_a, "path"_a, "changes"_a)
@@ -58,6 +70,7 @@ void bind_scenario(nb::module_ &m) {
       .def_ro("file", &Scenario::file)
       .def_ro("title", &Scenario::title)
       .def_ro("seed", &Scenario::seed)
+      .def_prop_ro("unsaid", &unsaid_of)
       .def_prop_ro("objects", &objects_of)
       .def_prop_ro("bands", &bands_of)
       .def("check_for_run", [](const Scenario &s) { take(check_complete_for_run(s)); });

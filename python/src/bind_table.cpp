@@ -1,8 +1,10 @@
 // Tables: columns without copies, and their way through pickle and into files.
 
 #include "arrays.h"
+#include "attend.h"
 #include "bindings.h"
 #include "errors.h"
+#include "gil.h"
 
 #include <algorithm>
 #include <nanobind/stl/pair.h>
@@ -37,6 +39,38 @@ nb::object values_of(const Column &column, nb::handle owner) {
   const NewArray<bool> out(bits.size());
   std::copy(bits.begin(), bits.end(), out.data);
   return nb::cast(out.shaped({bits.size()}));
+}
+
+/// Letters of a column of texts [row, width], UCS-4 as numpy has them; None for numbers, and for
+/// texts that are more than ASCII. Ctrl-C is looked for on the way.
+nb::object letters_of(const Column &column) {
+  const auto *texts = std::get_if<std::vector<std::string>>(&column.cells);
+  if (texts == nullptr)
+    return nb::none();
+  std::size_t width = 1;
+  bool is_ascii = true;
+  constexpr std::size_t at_once = 1u << 15;
+  const auto look = [&](std::size_t part) {
+    for (std::size_t i = part * at_once; i < std::min(texts->size(), (part + 1) * at_once); ++i) {
+      width = std::max(width, (*texts)[i].size());
+      for (const char c : (*texts)[i])
+        if (static_cast<unsigned char>(c) > 127)
+          is_ascii = false;
+    }
+  };
+  const std::size_t parts = (texts->size() + at_once - 1) / at_once;
+  in_parts(parts, look);
+  if (!is_ascii)
+    return nb::none();
+  const NewArray<std::uint32_t> out(texts->size() * width);
+  in_parts(parts, [&](std::size_t part) {
+    for (std::size_t i = part * at_once; i < std::min(texts->size(), (part + 1) * at_once); ++i) {
+      std::uint32_t *const to = out.data + i * width;
+      const std::string &text = (*texts)[i];
+      std::fill(std::copy(text.begin(), text.end(), to), to + width, 0);
+    }
+  });
+  return nb::cast(out.shaped({texts->size(), width}));
 }
 
 void add_column(Table &table, const std::string &name, const std::string &unit,
@@ -91,6 +125,13 @@ void bind_table(nb::module_ &m) {
           },
           "name"_a,
           nb::sig("def column(self, name: str) -> numpy.typing.NDArray[typing.Any] | list[str]"))
+      .def(
+          "letters",
+          [](const Table &table, const std::string &name) {
+            return letters_of(column_of(table, name));
+          },
+          "name"_a,
+          nb::sig("def letters(self, name: str) -> numpy.typing.NDArray[numpy.uint32] | None"))
       .def("add", &add_column, "name"_a, "unit"_a, "description"_a, "values"_a)
       .def(
           "set_precision",
@@ -105,7 +146,7 @@ void bind_table(nb::module_ &m) {
       .def(
           "write",
           [](const Table &t, const std::string &path) {
-            const nb::gil_scoped_release free;
+            const WithoutGil free;
             take(write_table(path, t));
           },
           "path"_a);

@@ -2,6 +2,7 @@
 
 #include "bindings.h"
 #include "errors.h"
+#include "gil.h"
 
 #include <umov/core/version.h>
 
@@ -10,6 +11,7 @@ NB_MODULE(_umov, m) {
   m.attr("version") = umov::version;
   m.attr("source_revision") = umov::source_revision;
   m.attr("conventions_version") = umov::conventions_version;
+  umov::python::watch_the_end();
   umov::python::translate_errors();
   umov::python::bind_table(m);
   umov::python::bind_scenario(m);

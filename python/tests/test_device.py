@@ -50,7 +50,7 @@ def test_what_lacks_is_raised_or_warned_of(hst, cards, tmp_path):
     cards(UMOV_FAKE_INIT=100)
     with pytest.raises(umov.DeviceError, match="CUDA_ERROR_NO_DEVICE"):
         umov.Engine(hst, bands=["nm:550"], method="masks", cache=tmp_path / "a", device="cuda")
-    with pytest.warns(umov.UmovWarning, match="--device auto took the cpu: "):
+    with pytest.warns(umov.UmovWarning, match='device="auto" took the cpu: '):
         engine = umov.Engine(hst, bands=["nm:550"], method="masks", cache=tmp_path / "b", device="auto")
     assert engine.facts["device"].startswith("cpu: ")
 
@@ -60,7 +60,7 @@ def test_a_library_and_an_inversion_take_a_card(cards, tmp_path):
     scene = ROOT / "examples/agena_maui.toml"
     with pytest.raises(umov.DeviceError, match="CUDA_ERROR_NO_DEVICE"):
         umov.build_library([scene], tmp_path / "lib", cells=4, cache=tmp_path / "c", device="cuda")
-    with pytest.warns(umov.UmovWarning, match="--device auto took the cpu: "):
+    with pytest.warns(umov.UmovWarning, match='device="auto" took the cpu: '):
         umov.build_library([scene], tmp_path / "lib", cells=4, cache=tmp_path / "c", device="auto")
     curve = umov.run(scene, set={"time.step_s": 30, "bands.set": ["nm:550"]})
     with pytest.raises(umov.DeviceError, match="CUDA_ERROR_NO_DEVICE"):

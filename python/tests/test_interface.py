@@ -296,6 +296,8 @@ def test_own_materials_go_with_the_satellite():
     lambda hst: umov.run(EXAMPLES / "nothing.toml"),
     lambda hst: umov.passes(hst, "maui", STOP, START),
     lambda hst: umov.passes(hst, "maui", START, START, shadow="cone"),
+    lambda hst: umov.passes(hst, "maui", START, STOP, sort="size"),
+    lambda hst: umov.passes(DATA / "tle/hst.tle", "maui", START, STOP, mag_max=3),
     lambda hst: umov.passes(DATA / "tle/hst.tle", "maui", START, STOP, band="nm:550"),
     lambda hst: umov.ephemeris(hst, "maui", START, STOP),
     lambda hst: umov.brdf("paper_al", theta_i_deg=[1, 2], theta_o_deg=[1, 2, 3]),

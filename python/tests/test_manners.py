@@ -194,7 +194,7 @@ def test_every_public_object_goes_through_pickle(name, plate, tmp_path, monkeypa
     poses = umov.random_poses(5, 60)
     made = {
         "Abundances": lambda: umov.Sums(plate).abundances(*poses), "Bands": lambda: umov.Bands("paper_rgb"),
-        "Calibration": lambda: umov.Calibration.from_toml("efficiency = 1.0\n"),
+        "Calibration": lambda: umov.Calibration.from_toml("efficiency = 1.0\nphi0_deg = 0\nq0 = 0\nu0 = 0\nefficiency_sd = 0\nq0_sd = 0\n"),
         "Coloured": lambda: umov.Sums(plate).apply(umov.Sums(plate).abundances(*poses)),
         "Column": lambda: umov.Sums(plate).abundances(*poses).columns[0],
         "Fit": lambda: umov.Fit(clouds=True), "Inversion": lambda: umov.Inversion("no_fit", {"modes": umov.bands()}, {}, "none", ""),

@@ -1,6 +1,7 @@
 """What Python computes has the bytes that the command writes."""
 import csv
 import json
+import math
 import warnings
 
 import numpy as np
@@ -92,6 +93,12 @@ def test_passes(command, tmp_path, hst):
             "--scene", "scene.toml", "-o", tmp_path / "lit.csv")
     assert_same_numbers(np.asarray(lit["mag_min"].value), columns_of(tmp_path / "lit.csv")["mag_min"])
     assert np.isfinite(lit["mag_min"].value).any()
+    # The brightest first, and only what is brighter than the second of them.
+    limit = float(np.sort(lit["mag_min"].value[np.isfinite(lit["mag_min"].value)])[1])
+    best = umov.passes(hst, "maui", *span, sort="mag", mag_max=limit)
+    assert 0 < len(best) <= len(lit) and (np.diff(best["mag_min"].value) >= 0).all() and best["mag_min"].value[-1] <= limit
+    high = umov.passes(tle, "maui", *span, sort="alt")["visible_alt"].value
+    assert (np.diff(high[np.isfinite(high)]) <= 0).all()
 
 
 def test_ephemeris(command, tmp_path):
@@ -267,6 +274,15 @@ def test_lists(words, ours, command, tmp_path):
     command(*words, "-o", tmp_path / "theirs.csv")
     ours().write(tmp_path / "ours.csv")
     assert (tmp_path / "ours.csv").read_bytes() == (tmp_path / "theirs.csv").read_bytes()
+
+
+def test_a_turned_polarizer(command, tmp_path):
+    rows = [f"{a},{c},{1000 + 900 * math.cos(2 * math.radians(a - c))!r}" for a in range(0, 180, 20) for c in (0, 45, 90, 135)]
+    (tmp_path / "lamp.csv").write_text("\n".join(["angle_deg,channel,counts", *rows]) + "\n")
+    command("calibrate", tmp_path / "lamp.csv", "--polarizer", "-o", tmp_path / "theirs.ecsv")
+    umov.calibrate_channels(tmp_path / "lamp.csv").write(tmp_path / "ours.ecsv")
+    assert (tmp_path / "ours.ecsv").read_bytes() == (tmp_path / "theirs.ecsv").read_bytes()
+    assert umov.standards() == ["schmidt1992"]
 
 
 def test_errors_have_the_text_of_the_command(command, tmp_path):

@@ -23,8 +23,8 @@ from .libraries import build_library
 from .light_curves import LightCurve
 from .materials import Material, brdf, materials
 from .measurements import score, tdm
-from .observing import (Calibration, Observation, calibrate, exposure, instrument, instruments, observe,
-                        reduce)
+from .observing import (Calibration, Observation, calibrate, calibrate_channels, exposure, instrument, instruments, observe,
+                        reduce, standards)
 from .orbits import States, ephemeris, passes, propagate
 from .passbands import Bands, band, bands
 from .periods import period
@@ -44,10 +44,10 @@ __all__ = ["Abundances", "Bands", "Calibration", "Coloured", "Column", "DeviceEr
            "InputError", "InternalError", "Interrupted", "Inversion", "Light", "LightCurve", "Material", "Mesh",
            "NoResult", "NumericsError", "Observation", "Picture", "Satellite", "Scenario", "Site", "States", "Sums",
            "Table", "UmovWarning", "UsageError", "Where", "__version__", "band", "bands", "brdf", "build_library",
-           "calibrate", "conventions_version", "ephemeris", "example", "exposure", "flux_table", "identify", "instrument", "instruments",
-           "invert_health", "invert_material", "invert_plan", "invert_pose", "invert_spin", "materials", "mesh", "observe", "passes",
-           "period", "plot", "propagate", "random_poses", "reduce", "render", "run", "scale", "schema", "score",
-           "site_names", "source_revision", "tdm", "turnable", "utc"]
+           "calibrate", "calibrate_channels", "conventions_version", "ephemeris", "example", "exposure", "flux_table", "identify",
+           "instrument", "instruments", "invert_health", "invert_material", "invert_plan", "invert_pose", "invert_spin",
+           "materials", "mesh", "observe", "passes", "period", "plot", "propagate", "random_poses", "reduce", "render", "run",
+           "scale", "schema", "score", "site_names", "source_revision", "standards", "tdm", "turnable", "utc"]
 
 
 def __getattr__(name: str) -> Any:

@@ -1,8 +1,9 @@
 """What figures over time share: axes, the stretches that a line joins, ticks with a date."""
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+import functools
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,21 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .light_curves import LightCurve
+
+_Draw = TypeVar("_Draw", bound=Callable[..., Any])
+
+
+def of_a_curve(draw: _Draw) -> _Draw:
+    """A figure of a light curve: told of anything else before it is drawn in part."""
+
+    @functools.wraps(draw)
+    def checked(curve: Any, *args: Any, **more: Any) -> Any:
+        from .light_curves import LightCurve as Wanted
+        if not isinstance(curve, Wanted):
+            raise UsageError(f"curve is a {type(curve).__name__}; a LightCurve was expected, as umov.run and light_curve give")
+        return draw(curve, *args, **more)
+
+    return cast(_Draw, checked)
 
 
 def axes_or_new(axes: Axes | None, projection: str | None = None) -> Axes:
@@ -46,3 +62,18 @@ def time_axis(axes: Axes) -> None:
     axes.xaxis.set_major_locator(locator)
     axes.xaxis.set_major_formatter(ConciseDateFormatter(locator))  # type: ignore[no-untyped-call]
     axes.set_xlabel("UTC")
+
+
+def interfaces_of(curve: LightCurve) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Materials of a curve's objects, each without the light from below its surface."""
+    from .materials import Material
+    if curve.scenario is None:
+        raise UsageError("the curve has no scenario, so no materials; one that umov.run made was expected")
+    document = curve.scenario.to_dict()
+    own = document.get("material", {})
+    names = dict.fromkeys(name for one in document["object"] for value in one["materials"].values()
+                          for name in (value.values() if isinstance(value, dict) else [value]))
+    for name in names:
+        table = dict(own[name]) if name in own else Material(name).to_dict()
+        if "table" not in table:
+            yield name, {key: value for key, value in table.items() if key not in ("body", "haze", "interreflection")}

@@ -10,10 +10,17 @@ from collections.abc import Callable
 from typing import Union
 
 from . import _umov
+from ._numbers import path_text, truth, whole
+from ._words import in_python
 from .errors import UmovWarning, UsageError
 
 Progress = Union[None, bool, Callable[[str, int, int], object]]
 _LOG = logging.getLogger("umov")
+
+
+def _is_mute() -> bool:
+    """Nobody sees a bar: a program without a console, such as pythonw, or one that closed its streams."""
+    return sys.stderr is None or bool(getattr(sys.stderr, "closed", False))
 
 
 class _Bar:
@@ -29,10 +36,12 @@ class _Bar:
             self._make: Callable[..., object] | None = tqdm
         except ImportError:
             self._make = None
+        if _is_mute():
+            self._make = None
 
     def __call__(self, what: str, done: int, total: int) -> None:
         if self._make is None:
-            if sys.stderr.isatty():
+            if not _is_mute() and sys.stderr.isatty():
                 print(f"\r{what}: {done} of {total} ", end="\n" if done == total else "",
                       file=sys.stderr, flush=True)
             return
@@ -61,6 +70,8 @@ class Watch:
             self._progress = _Bar()
         elif callable(progress):
             self._progress = progress
+        elif progress is not None and progress is not False:
+            raise UsageError(f"progress is {progress!r}; True, False or a callable (what, done, total) was expected")
 
     def progress(self, what: str, done: int, total: int) -> None:
         if self._progress is not None:
@@ -70,13 +81,13 @@ class Watch:
         _LOG.info(text)
 
     def warn(self, text: str) -> None:
-        warnings.warn(text, UmovWarning, stacklevel=_stack_level())
+        warnings.warn(in_python(text), UmovWarning, stacklevel=_stack_level())
 
 
 def cache_folder(cache: bool | str | os.PathLike[str]) -> str:
     """Where masks of earlier jobs are kept: for True that of the command."""
     if not isinstance(cache, bool):
-        return os.fspath(cache)
+        return path_text(cache, "cache")
     if not cache:
         return ""
     base = os.environ.get("XDG_CACHE_HOME", "")
@@ -91,7 +102,8 @@ def job_options(threads: int = 0, cache: bool | str | os.PathLike[str] = True,
                 allow_old_elements: bool = False, device: str = "cpu") -> _umov.JobOptions:
     if device not in ("cpu", "cuda", "auto"):
         raise UsageError(f"device is {device!r}; cpu, cuda or auto was expected")
-    out = _umov.JobOptions(threads, cache_folder(cache), allow_bad_checksum, allow_old_elements)
+    out = _umov.JobOptions(whole(threads, "threads"), cache_folder(cache), truth(allow_bad_checksum, "allow_bad_checksum"),
+                            truth(allow_old_elements, "allow_old_elements"))
     if device != "cpu":
         out.set_device(device, os.environ.get("UMOV_CUDA_PATH", ""), [os.environ.get("VIRTUAL_ENV", ""), sys.prefix])
     return out

@@ -1,6 +1,7 @@
 """Numbers of arguments: what is none, or has another unit, is told of."""
 from __future__ import annotations
 
+import os
 from typing import Any
 
 import numpy as np
@@ -26,17 +27,38 @@ def plain(value: Any, name: str) -> Any:
         raise UsageError(f"{name} is {value!r}; it does not go into that unit ({error})") from error
 
 
+def _is_masked(value: Any) -> bool:
+    """Of numpy or astropy, with something behind the mask: an array would show what nobody is to see."""
+    mask = getattr(value, "mask", None)
+    return isinstance(mask, (bool, np.bool_, np.ndarray)) and bool(np.any(mask))
+
+
+def real_array(value: Any, name: str, expected: str = "numbers") -> NDArray[np.float64]:
+    """Numbers as float64. Texts, dates and truth values are none, although numpy would take them; what is masked has no
+    value."""
+    if _is_masked(value) or (isinstance(value, (list, tuple)) and any(_is_masked(one) for one in value)):
+        raise UsageError(f"{name} has masked values; {expected} were expected. Leave them out first.")
+    try:
+        with np.errstate(over="ignore"):
+            given = np.asarray(value)
+            if given.dtype.kind not in "fiuO":
+                raise TypeError(given.dtype)
+            return given.astype(np.float64, copy=False)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise UsageError(f"{name} is {_short(value)}; {expected} were expected") from error
+
+
+def _short(value: Any) -> str:
+    text = repr(value.item() if isinstance(value, np.generic) else value)
+    return text if len(text) <= 200 else f"{text[:200]} ... ({type(value).__name__})"
+
+
 def number_array(value: ArrayLike, name: str) -> NDArray[np.float64]:
     """Finite numbers as float64."""
-    try:
-        given = np.asarray(plain(value, name))
-        if given.dtype.kind == "c":
-            raise TypeError("complex")
-        out = given.astype(np.float64, copy=False)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise UsageError(f"{name} is {value!r}; numbers were expected") from error
+    out = real_array(plain(value, name), name)
     if not np.isfinite(out).all():
-        raise UsageError(f"{name} has values that are not finite; finite numbers were expected")
+        raise UsageError(f"{name} is {_short(value)}; a finite number was expected" if out.ndim == 0 else
+                         f"{name} has values that are not finite; finite numbers were expected")
     return out
 
 
@@ -57,6 +79,42 @@ def whole(value: Any, name: str, last: int = 2**31 - 1) -> int:
     return int(value)
 
 
+def truth(value: Any, name: str) -> bool:
+    """True or False, and nothing that only counts as one of them."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise UsageError(f"{name} is {value!r}; True or False was expected")
+    return bool(value)
+
+
+def text(value: Any, name: str) -> str:
+    """A text that can be written."""
+    if not isinstance(value, str):
+        raise UsageError(f"{name} is {value!r}; a text was expected")
+    return utf8(value, name)
+
+
+def path_text(value: Any, name: str) -> str:
+    """The path of a file as text. A name that is no UTF-8 cannot stand in a scenario, a table or a message; one with the
+    character 0 would be another file's."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise UsageError(f"{name} is a {type(value).__name__}; the name of a file was expected")
+    text = os.fspath(value)
+    text = text if isinstance(text, str) else os.fsdecode(text)
+    if "\0" in text:  # the system takes a name to end there: another file
+        raise UsageError(f"{name} is {text!r}; the name of a file without the character 0 was expected")
+    return utf8(text, name)
+
+
+def utf8(text: str, name: str) -> str:
+    """The text itself, if it can be written."""
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError as error:
+        raise UsageError(f"{name} is {text!r}, which is no UTF-8; a text was expected that can be written. Rename a file "
+                         "that is named so.") from error
+    return text
+
+
 def between(value: Any, name: str, least: float, most: float) -> float:
     """A number within limits, both allowed."""
     out = number(value, name)
@@ -70,3 +128,61 @@ def whole_between(value: Any, name: str, least: int, most: int) -> int:
     if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not least <= value <= most:
         raise UsageError(f"{name} is {value!r}; a whole number from {least} to {most} was expected")
     return int(value)
+
+
+_COUNTS = ("counts", "sky", "sky_err")
+_LIGHT = ("flux", "flux_err", "I", "I_err", "I_obs")
+
+
+def _wanted(name: str, unit: Any) -> tuple[Any, str]:
+    """The unit that a column of light or counts is to have, None where it may stay; and, where it is another quantity,
+    what was expected instead."""
+    from astropy import units
+    if unit.is_equivalent(units.dimensionless_unscaled):
+        return None, ""
+    if name in ("mjd_utc", "mjd"):
+        return (units.d, "") if unit.is_equivalent(units.d) else (None, "days")
+    if name in ("mag", "mag_err"):
+        if isinstance(unit, units.MagUnit):
+            return None, ""
+        return (units.mag, "") if unit.is_equivalent(units.mag) else (None, "magnitudes")
+    if name in _COUNTS:
+        return None, "" if unit in (units.ct, units.electron, units.adu, units.photon, units.DN) else "electrons or other counts"
+    if name in _LIGHT:
+        others = (units.mag, units.s, units.m, units.rad)
+        wrong = isinstance(unit, units.MagUnit) or any(unit.is_equivalent(one) for one in others)
+        return None, "a flux, linear in light, (magnitudes in a column mag)" if wrong else ""
+    if name in ("q", "u", "q_err", "u_err"):
+        return None, "a part of I without a unit"
+    if name.endswith("_deg"):
+        return (units.deg, "") if unit.is_equivalent(units.deg) else (None, "an angle")
+    return None, ""
+
+
+def in_units(table: Any, what: str) -> Any:
+    """A table of astropy with the columns in the units in which they are read, where they have one at all."""
+    out = table
+    for name in table.colnames:
+        column = table[name]
+        unit = getattr(column, "unit", None)
+        if unit is None:
+            continue
+        into, expected = _wanted(name, unit)
+        if expected:
+            raise UsageError(f"{what} has the column {name} in {unit}; {expected} was expected. Convert it, or take the unit off if it "
+                             "is wrong.")
+        if name.endswith("_err") and name[:-4] in _LIGHT and name[:-4] in table.colnames:
+            into = getattr(table[name[:-4]], "unit", None)
+            if into is not None and not unit.is_equivalent(into):
+                raise UsageError(f"{what} has the column {name} in {unit} and {name[:-4]} in {into}; the same unit was expected")
+        if into is not None and into != unit:
+            out = out.copy() if out is table else out
+            out[name] = column.to(into) if hasattr(column, "to") else _scaled(column, unit.to(into), into)
+    return out
+
+
+def _scaled(column: Any, factor: float, unit: Any) -> Any:
+    """A plain column, with its mask."""
+    out = column * factor
+    out.unit = unit
+    return out

@@ -9,13 +9,14 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._numbers import plain
-from .errors import UsageError
+from ._numbers import plain, text, utf8
+from .errors import InputError, UsageError
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
 
 
 def _key(name: str) -> str:
+    utf8(name, "a key")
     return name if _BARE.match(name) else json.dumps(name)
 
 
@@ -27,11 +28,22 @@ def _number(value: float) -> str:
     return repr(float(value))
 
 
+def copied(value: Any) -> Any:
+    """Tables, lists and arrays that nobody else holds; what cannot change is itself."""
+    if isinstance(value, Mapping):
+        return {key: copied(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [copied(one) for one in value]
+    return value.copy() if hasattr(value, "tolist") and hasattr(value, "copy") else value
+
+
 def value_text(value: Any, name: str = "value") -> str:
     """A value in place, tables too."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
+        if "\0" in utf8(value, name):  # the system takes the name of a file to end there: another file
+            raise UsageError(f"{name} is {value!r}; a text without the character 0 was expected")
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
     if isinstance(value, os.PathLike):
         return value_text(os.fspath(value), name)
@@ -57,6 +69,15 @@ def value_text(value: Any, name: str = "value") -> str:
                      "or table was expected")
 
 
+def tables_of(source: Any, name: str) -> dict[str, Any]:
+    """The tables of a TOML text; `name` stands for it in messages."""
+    import tomllib
+    try:
+        return tomllib.loads(text(source, "text"))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{name} is no TOML: {error}") from error
+
+
 def _is_tables(value: Any) -> bool:
     return (isinstance(value, Sequence) and not isinstance(value, str) and len(value) > 0
             and all(isinstance(one, Mapping) for one in value))
@@ -64,18 +85,25 @@ def _is_tables(value: Any) -> bool:
 
 def text_of(document: Mapping[str, Any]) -> str:
     """A document: plain keys first, then a section for each table of the top."""
+    try:
+        return _text_of(document)
+    except RecursionError as error:
+        raise UsageError("a table holds itself; tables within tables, with an end, were expected") from error
+
+
+def _text_of(document: Mapping[str, Any]) -> str:
     lines: list[str] = []
     sections: list[str] = []
     for name, value in document.items():
         if value is None:
             continue
         if isinstance(value, Mapping):
-            sections += _section(f"[{_key(name)}]", value)
+            sections += _section(f"[{_key(str(name))}]", value)
         elif _is_tables(value):
             for one in value:
-                sections += _section(f"[[{_key(name)}]]", one)
+                sections += _section(f"[[{_key(str(name))}]]", one)
         else:
-            lines.append(f"{_key(name)} = {value_text(value, name)}")
+            lines.append(f"{_key(str(name))} = {value_text(value, str(name))}")
     return "\n".join(lines + sections) + "\n"
 
 

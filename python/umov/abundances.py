@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike
 
 from . import _umov
 from ._jobs import Progress, Watch, job_options
+from ._made import Made
 from .engines import Floats, directions
-from .errors import UsageError
+from .errors import UsageError, raise_stopped
 from .satellites import AnyBands, Satellite, band_changes
 from .scenarios import AnyScenario, Scenario
 
@@ -30,7 +31,7 @@ class Column(NamedTuple):
     sides: list[str]  #: mesh materials that are summed together, "(back)" for their backs
 
 
-class Abundances:
+class Abundances(Made):
     """Sums of poses before any colour. `sum` and `half_width` are read-only views (..., column) of the library's
     memory.
 
@@ -83,7 +84,7 @@ class Coloured(NamedTuple):
     half_width: Floats  #: 95 % half-widths of the same
 
 
-class Sums:
+class Sums(Made):
     """An object whose poses are rendered once, and coloured as often as you like. `others` are scenes of the same
     mesh whose roughness must be served exactly too: `InputError` says where a material that is applied has another.
     Hiding is looked up in masks, as `Engine(method="masks")` does; where that mends mirrors by rays the half-widths
@@ -121,7 +122,7 @@ class Sums:
         self._source = scene
         self._others = [Scenario(one) for one in others]
         self._threads, self._cache, self._device = threads, cache, device
-        told = "\n".join(one.to_toml() for one in (self.scenario, *self._others))
+        told = "\n".join(one._told() for one in (self.scenario, *self._others))
         self._key = hashlib.sha256(told.encode()).hexdigest()
         self._sums = _umov.Sums(self.scenario._scenario, [one._scenario for one in self._others],
                                 job_options(threads, cache, device=device), Watch(progress))
@@ -138,9 +139,16 @@ class Sums:
         progress
             True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that
             called; what it raises comes through.
+
+        Notes
+        -----
+        Ctrl-C raises `Interrupted` with the sums of the first poses, in C order, in `partial`: (poses, column).
         """
         flat, shape = directions(sun, observer)
-        return Abundances(self._sums.abundances(*flat, self._threads, Watch(progress)), shape, self._key)
+        made = self._sums.abundances(*flat, self._threads, Watch(progress))
+        if made.stopped is not None:
+            raise_stopped(made.stopped, Abundances(made, (made.poses,), self._key))
+        return Abundances(made, shape, self._key)
 
     def apply(self, abundances: Abundances, scene: AnyScenario | None = None, *, bands: AnyBands | None = None,
               materials: Mapping[str, Any] | str | None = None, progress: Progress = None) -> Coloured:

@@ -2,6 +2,8 @@
 only where their objects are given."""
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import os
 import pathlib
 import tempfile
@@ -11,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ._numbers import number_array
-from .errors import UsageError
+from ._numbers import number_array, path_text, utf8
+from .errors import DeviceError, UsageError
 
 Texts = dict[str, str]
 
@@ -21,18 +23,44 @@ class Files:
     """Files of one object in a folder of their own, gone with it."""
 
     def __init__(self, texts: Texts) -> None:
-        self.texts = texts
+        self.texts = {name: utf8(text, name) for name, text in texts.items()}
         folder = tempfile.mkdtemp(prefix="umov-")
         self.folder = pathlib.Path(folder)
         for name, text in texts.items():
             (self.folder / name).write_text(text, encoding="utf-8")
-        self._end = weakref.finalize(self, _remove, folder, list(texts))
+        self.key = hashlib.sha256(repr(sorted(self.texts.items())).encode()).hexdigest()
+        self._end = weakref.finalize(self, _remove, folder, list(texts), os.getpid())
 
 
-def _remove(folder: str, names: list[str]) -> None:
+    def without_place(self, text: str) -> str:
+        """A text that names them, by what they hold instead of where they are."""
+        return text.replace(str(self.folder), f"made:{self.key}")
+
+    def moved(self, text: str, folder: Any) -> str:
+        """A text that names them as they stand in another folder, where they are put; `UsageError` without one."""
+        names = " and ".join(self.texts)
+        if folder is None:
+            raise UsageError(f"{names} were made of what was given in memory, and go with this object; a folder for them was expected: "
+                             "to_toml(folder=\"...\"), or save them and give their names")
+        into = pathlib.Path(path_text(folder, "folder")).absolute()
+        try:
+            into.mkdir(parents=True, exist_ok=True)
+            for name, content in self.texts.items():
+                if (into / name).exists() and (into / name).read_text(encoding="utf-8") != content:
+                    raise UsageError(f"{into / name} is there already, and is another file; a folder without it was expected")
+                (into / name).write_text(content, encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise DeviceError(f"{into}: {names} cannot be written ({error}); a folder for them was expected") from error
+        return text.replace(str(self.folder), str(into))
+
+
+def _remove(folder: str, names: list[str], owner: int) -> None:
+    if os.getpid() != owner:  # a forked process ends with copies of what others still need
+        return
     for name in names:
         pathlib.Path(folder, name).unlink(missing_ok=True)
-    pathlib.Path(folder).rmdir()
+    with contextlib.suppress(OSError):  # somebody put a file there, or cleaned up before
+        pathlib.Path(folder).rmdir()
 
 
 def orbit_text(orbit: Any) -> str | None:
@@ -56,8 +84,27 @@ def orbit_text(orbit: Any) -> str | None:
                      "an sgp4 Satrec or a skyfield EarthSatellite was expected")
 
 
-def mesh_text(mesh: Any) -> str | None:
-    """An OBJ file of a trimesh mesh or of (vertices, faces); None for a file or a table."""
+#: Units of a mesh by the names that trimesh has for them.
+_MESH_UNITS = {name: unit for unit, names in {
+    "m": "m meter meters metre metres", "mm": "mm millimeter millimeters millimetre millimetres",
+    "cm": "cm centimeter centimeters centimetre centimetres", "in": 'in inch inches "', "ft": "ft foot feet '"}.items()
+    for name in names.split()}
+
+
+def mesh_unit(mesh: Any) -> str | None:
+    """What a trimesh mesh says of its unit; None where it says nothing, and for a file, a table or bare arrays."""
+    told = getattr(mesh, "units", None) if hasattr(mesh, "vertices") and hasattr(mesh, "faces") else None
+    if told is None:
+        return None
+    unit = _MESH_UNITS.get(str(told).strip().lower())
+    if unit is None:
+        raise UsageError(f"the mesh has units = {told!r}; m, mm, cm, in or ft was expected. Say which of them by unit=, or "
+                         "convert it first: mesh.convert_units(\"meters\").")
+    return unit
+
+
+def mesh_text(mesh: Any, unit: str = "m") -> str | None:
+    """An OBJ file of a trimesh mesh or of (vertices, faces), a Quantity among them in `unit`; None for a file or a table."""
     if isinstance(mesh, (str, os.PathLike, Mapping)):
         return None
     if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
@@ -67,11 +114,13 @@ def mesh_text(mesh: Any) -> str | None:
     else:
         raise UsageError(f"mesh is a {type(mesh).__name__}; a file, a table of the scenario, a trimesh mesh or "
                          "(vertices, faces) was expected")
+    points = number_array(vertices, f"vertices_{unit}" if hasattr(vertices, "to_value") else "vertices")
     try:
-        points = number_array(vertices, "vertices")
+        if np.ma.is_masked(faces):
+            raise ValueError("some of them are masked")
         corners = np.asarray(faces)
     except (TypeError, ValueError, OverflowError) as error:
-        raise UsageError(f"vertices or faces are no arrays of numbers ({error}); (N, 3) each was expected") from error
+        raise UsageError(f"faces are no array of numbers ({error}); (N, 3) was expected") from error
     if points.ndim != 2 or points.shape[1] != 3:
         raise UsageError(f"vertices have shape {points.shape}; (N, 3) was expected")
     if corners.ndim != 2 or corners.shape[1] != 3 or not np.issubdtype(corners.dtype, np.integer):
@@ -82,5 +131,5 @@ def mesh_text(mesh: Any) -> str | None:
                          "counted from 0")
     lines = ["usemtl default"]
     lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in points.tolist()]
-    lines += [f"f {a} {b} {c}" for a, b, c in (corners + 1).tolist()]
+    lines += [f"f {a} {b} {c}" for a, b, c in (corners.astype(np.int64) + 1).tolist()]
     return "\n".join(lines) + "\n"

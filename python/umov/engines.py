@@ -1,6 +1,7 @@
 """The fast layer: Stokes of an object for directions, without an orbit."""
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -10,14 +11,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _umov
 from ._jobs import Progress, Watch, job_options
-from ._numbers import number, whole
-from .errors import UsageError
+from ._made import Made
+from ._numbers import between, number_array, path_text, real_array, whole
+from .errors import UsageError, raise_stopped
 from .satellites import AnyBands, band_changes
 from .scenarios import AnyScenario, Scenario
 
 __all__ = ["Engine", "Light", "random_poses"]
 
 Floats = NDArray[np.float64]
+MOST_POSES = 2**32
 METHODS = ("exact", "masks", "mended", "rays")
 
 
@@ -35,7 +38,7 @@ class Light(NamedTuple):
     method: NDArray[Any]  #: exact, masks, mended or rays
 
 
-class Engine:
+class Engine(Made):
     """An object ready to be lit from any direction: compiled once, then asked for as many poses as you like.
 
     Sunlight, or an active source (`laser`), or the body's own heat (`temperatures`). Thread safe; pickled by its scenario.
@@ -57,8 +60,8 @@ class Engine:
     laser
         Stokes vector (4) of an active source in the Sun's place; None: sunlight.
     temperatures
-        Heat instead of reflected light: kelvin as texts, "300" for all or "GROUP=350"; Stokes parameters are then
-        in W/(sr nm).
+        Heat instead of reflected light: kelvin, [300] for all, and "GROUP=350"; Stokes parameters are then in
+        W/(sr nm).
     mask_file
         A file of masks to read and keep, instead of the cache.
     threads
@@ -88,24 +91,22 @@ class Engine:
 
     def __init__(self, scene: AnyScenario, bands: AnyBands | None = None, *, set: Mapping[str, Any] | None = None,
                  method: str | None = None, accuracy: float | None = None,
-                 laser: Sequence[float] | None = None, temperatures: Sequence[str] = (),
+                 laser: Sequence[float] | None = None, temperatures: Sequence[str | float] = (),
                  mask_file: str | os.PathLike[str] | None = None, threads: int = 0,
                  cache: bool | str | os.PathLike[str] = True, device: str = "cpu", progress: Progress = None) -> None:
         if method not in (None, "auto", "rays", "masks"):
             raise UsageError(f"method is {method!r}; auto, rays or masks was expected")
-        if accuracy is not None and not 1e-6 <= accuracy <= 1:
-            raise UsageError(f"accuracy is {accuracy!r}; a number from 1e-6 to 1 was expected")
-        if laser is not None and len(laser) != 4:
-            raise UsageError(f"laser has {len(laser)} numbers; I, Q, U, V were expected")
-        changes = {**(set or {}), **band_changes(bands)}
-        self.scenario = Scenario(scene, changes or None)  #: what is lit
+        accuracy = None if accuracy is None else between(accuracy, "accuracy", 1e-6, 1)
+        laser = None if laser is None else _stokes(laser)
+        temperatures = kelvins(temperatures)
+        mask_file = None if mask_file is None else path_text(mask_file, "mask_file")
+        self.scenario = Scenario(scene, changed(set, bands))  #: what is lit
         self._threads = threads
-        self._options = {"method": method, "accuracy": accuracy, "laser": laser, "temperatures": list(temperatures),
+        self._options = {"method": method, "accuracy": accuracy, "laser": laser, "temperatures": temperatures,
                          "mask_file": mask_file, "threads": threads, "cache": cache,
                          "device": device}
         self._light = _umov.Light(self.scenario._scenario, method, accuracy,
-                                  [float(x) for x in laser or ()], list(temperatures),
-                                  "" if mask_file is None else os.fspath(mask_file), job_options(threads, cache, device=device),
+                                  laser or [], temperatures, mask_file or "", job_options(threads, cache, device=device),
                                   Watch(progress))
 
     @property
@@ -141,11 +142,14 @@ class Engine:
         Notes
         -----
         At phase 0 and 180 Q = U = 0; where nothing is both lit and seen all four are 0. `UsageError` for wrong shapes,
-        NaN and directions of length 0. Signs: +Q perpendicular to the scattering plane, V > 0 right-handed
-        (docs/conventions.md).
+        `InputError` for NaN and directions of length 0. Signs: +Q perpendicular to the scattering plane, V > 0 right-handed
+        (docs/conventions.md). Ctrl-C raises `Interrupted` with the poses that were lit in `partial`: the first of all in
+        C order, (poses, band, 4).
         """
         flat, shape = directions(sun, observer)
-        out = self._light.stokes(*flat, self._threads, Watch(progress))
+        out, stopped = self._light.stokes(*flat, self._threads, Watch(progress))
+        if stopped is not None:
+            raise_stopped(stopped, out)
         return out.reshape(*shape, len(self.bands), 4)
 
     def light(self, sun: ArrayLike, observer: ArrayLike, *, progress: Progress = None) -> Light:
@@ -160,9 +164,15 @@ class Engine:
         progress
             True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that
             called; what it raises comes through.
+
+        Notes
+        -----
+        Ctrl-C raises `Interrupted`, as in `evaluate`, with a Light of the first poses in `partial`.
         """
         flat, shape = directions(sun, observer)
-        stokes, half_width, is_dark, method = self._light.light(*flat, self._threads, Watch(progress))
+        stokes, half_width, is_dark, method, stopped = self._light.light(*flat, self._threads, Watch(progress))
+        if stopped is not None:
+            raise_stopped(stopped, Light(stokes, half_width, is_dark, np.array(METHODS)[method]))
         full = (*shape, len(self.bands), 4)
         return Light(stokes.reshape(full), half_width.reshape(full), is_dark.reshape(shape),
                      np.array(METHODS)[method].reshape(shape))
@@ -173,7 +183,7 @@ class Engine:
 
     def __repr__(self) -> str:
         facts = self.facts
-        return (f"<umov.Engine {', '.join(self.scenario.objects)}: {facts['triangles']} triangles, "
+        return (f"<umov.Engine {', '.join(name or 'unnamed' for name in self.scenario.objects)}: {facts['triangles']} triangles, "
                 f"{', '.join(self.bands)}; {facts['visibility']}>")
 
     def __getstate__(self) -> dict[str, Any]:
@@ -183,13 +193,42 @@ class Engine:
         Engine.__init__(self, state["scenario"], **state["options"])
 
 
+def changed(set: Mapping[str, Any] | None, bands: AnyBands | None) -> dict[str, Any] | None:
+    """Changes of a scenario's keys, bands among them."""
+    if set is not None and not isinstance(set, Mapping):
+        raise UsageError(f"set is a {type(set).__name__}; a dictionary of keys was expected, such as {{\"render.bounces\": 2}}")
+    return {**(set or {}), **band_changes(bands)} or None
+
+
+def _stokes(laser: Any) -> list[float]:
+    out = number_array(laser, "laser")
+    if out.shape != (4,):
+        raise UsageError(f"laser has shape {out.shape}; I, Q, U, V were expected")
+    if not (out[0] > 0 and np.linalg.norm(out[1:]) <= out[0] * (1 + 1e-12)):
+        raise UsageError(f"laser is {out.tolist()}; I > 0 and sqrt(Q2 + U2 + V2) <= I were expected")
+    return [float(one) for one in out]
+
+
+def kelvins(temperatures: Any) -> list[str]:
+    """Temperatures as the command takes them."""
+    if isinstance(temperatures, (str, bytes)) or np.ndim(temperatures) != 1:
+        raise UsageError(f"temperatures is {temperatures!r}; a list was expected, such as [300, \"wing=350\"]")
+    return [one if isinstance(one, str) else f"{between(one, 'temperatures_K', 0, 1e6):.17g}" for one in temperatures]
+
+
+def _lengths(value: Any, name: str) -> Any:
+    """The numbers of a Quantity of lengths, whose unit does not matter; all else as it is."""
+    if not hasattr(value, "to_value") or not hasattr(value, "unit"):
+        return value
+    if value.unit.physical_type not in ("length", "dimensionless"):
+        raise UsageError(f"{name} is in {value.unit}; a direction was expected, (..., 3) of lengths or plain numbers")
+    return value.to_value(value.unit)
+
+
 def directions(sun: ArrayLike, observer: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:
     given = []
     for value, name in ((sun, "sun"), (observer, "observer")):
-        try:
-            one = np.asarray(value, dtype=np.float64)
-        except (TypeError, ValueError) as error:
-            raise UsageError(f"{name} is no array of numbers; directions (..., 3) were expected") from error
+        one = real_array(_lengths(value, name), name, "numbers, directions (..., 3),")
         if one.ndim == 0 or one.shape[-1] != 3:
             raise UsageError(f"{name} has shape {one.shape}; directions (..., 3) were expected")
         given.append(one)
@@ -201,6 +240,9 @@ def directions(sun: ArrayLike, observer: ArrayLike) -> tuple[tuple[Floats, Float
         except ValueError as error:
             raise UsageError(f"sun {given[0].shape} and observer {given[1].shape} do not fit together; shapes "
                              "that broadcast were expected") from error
+        if math.prod(shape[:-1]) > MOST_POSES:
+            raise UsageError(f"sun {given[0].shape} and observer {given[1].shape} broadcast to {math.prod(shape[:-1])} poses; at most "
+                             f"{MOST_POSES} at once were expected. Light them part by part.")
         given = [np.broadcast_to(one, shape) for one in given]
     flat = [np.ascontiguousarray(one).reshape(-1, 3) for one in given]
     return (flat[0], flat[1]), shape[:-1]
@@ -232,6 +274,6 @@ def random_poses(count: int, phase_deg: float, seed: int = 0, first: int = 0) ->
     True
     """
     most = 2**63 - 1
-    both = _umov.random_directions(whole(count, "count", 10**9), number(phase_deg, "phase_deg"), whole(seed, "seed", most),
+    both = _umov.random_directions(whole(count, "count", 10**9), between(phase_deg, "phase_deg", 0, 180), whole(seed, "seed", most),
                                    whole(first, "first", 10**12))
     return both[0], both[1]

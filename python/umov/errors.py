@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple, NoReturn
 
+from ._words import in_python
+
 __all__ = ["DeviceError", "Error", "InputError", "InternalError", "Interrupted", "NoResult",
            "NumericsError", "UmovWarning", "UsageError", "Where"]
 
@@ -28,8 +30,8 @@ class UmovWarning(UserWarning):
 
 
 class Error(Exception):
-    """Base of all errors. `str(error)` is what the command prints: place, what was found, what was
-    expected, what to do.
+    """Base of all errors. `str(error)` is what the command prints, options by the names of their arguments: place, what
+    was found, what was expected, what to do.
 
     Parameters
     ----------
@@ -146,8 +148,10 @@ class DeviceError(Error):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a job; `partial` holds the rows that were complete, or None. No `Error`, so that
-    `except Exception` lets it pass as it does KeyboardInterrupt.
+    """Ctrl-C during a job; `partial` holds what was complete: rows of `run`, `Satellite.light_curve`, `passes` and
+    `ephemeris`, the first poses, in C order, of `Engine.evaluate`, `Engine.light` and `Sums.abundances`, states of
+    `propagate` (of those that nobody came to `error` is -1). None of all others. No `Error`, so that `except Exception`
+    lets it pass as it does KeyboardInterrupt.
 
     >>> issubclass(umov.Interrupted, KeyboardInterrupt)
     True
@@ -165,6 +169,7 @@ _CLASSES: dict[int, type[Error]] = {one.exit_code: one for one in (
 def error_from(told: Stopped) -> Error | Interrupted:
     """The exception for what the library tells: code, message, file, line, column."""
     code, message, file, line, column = told
+    message, file = in_python(message), in_python(file)
     if code == Interrupted.exit_code:
         return Interrupted(message)
     return _CLASSES.get(code, InternalError)(message, Where(file, line, column))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._jobs import Watch
+from ._numbers import path_text
 from .errors import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def flux_table(light: Any, band: str, *, flux: str = "flux", is_barycentric: boo
     """
     from astropy.table import Table
     if isinstance(light, (str, os.PathLike)):
-        light = _read(os.fspath(light))
+        light = _read(path_text(light, "light"))
     names = {name.lower(): name for name in getattr(light, "colnames", ())}
     if not names:
         raise UsageError(f"light is a {type(light).__name__}; a lightkurve LightCurve, an astropy TimeSeries or Table, or a FITS "

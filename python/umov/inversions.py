@@ -12,7 +12,8 @@ import numpy as np
 
 from . import _umov
 from ._jobs import Progress, Watch, job_options
-from ._numbers import between, whole_between
+from ._numbers import between, path_text, whole_between
+from ._words import in_python
 from .errors import UsageError
 from .light_curves import LightCurve
 from .observing import _text_of
@@ -41,6 +42,10 @@ class Fit(NamedTuple):
     outliers: float = 0.0  #: share of measurements that are wrong, up to 0.5
     intensity_only: bool = False  #: q and u are left aside
     method: str = "auto"  #: how hiding is decided: masks, auto or rays
+    slope_sd: float = 0.2  #: invert_pose and invert_spin: how well the slopes of each material's lobe are known, in ln; 0: exactly
+    reflectance_sd: float = 0.1  #: the same of what each lobe and each body reflects
+    haze_sd: float = 0.3  #: the same of the haze of materials without a body
+    largest_floor: float = 0.1  #: the same: the floor grows with the misfit of the best attitude, up to this; 0: it stays
     allow_old_elements: bool = False  #: elements over 30 days from the observations are taken all the same
 
 
@@ -126,8 +131,8 @@ def _files_of(*curves: AnyCurves) -> Iterator[list[list[str]]]:
 
 def _file_of(light: Any, made: pathlib.Path) -> str:
     if isinstance(light, (str, os.PathLike)):
-        return os.fspath(light)
-    made.write_text(_text_of(light.table if isinstance(light, LightCurve) else light, "light")[0], encoding="utf-8")
+        return path_text(light, "light")
+    made.write_text(_text_of(light, "light")[0], encoding="utf-8")
     return str(made)
 
 
@@ -144,13 +149,15 @@ def _request(files: list[str] | None, fit: Fit | None) -> _umov.InvertRequest:
     out.set_errors(between(fit.floor, "floor", 0, 1), between(fit.zero_point_sd, "zero_point_sd", 1e-6, 100),
                    between(fit.scale_sd, "scale_sd", 0, 100), bool(fit.clouds), between(fit.outliers, "outliers", 0, 0.5),
                    not fit.intensity_only)
+    out.set_material_errors(between(fit.slope_sd, "slope_sd", 0, 2), between(fit.reflectance_sd, "reflectance_sd", 0, 2),
+                            between(fit.haze_sd, "haze_sd", 0, 2), between(fit.largest_floor, "largest_floor", 0, 1))
     return out
 
 
 def _inversion(found: _umov.Inversion) -> Inversion:
     import json
     tables = {name: Table(found.table(k)) for k, name in enumerate(found.names)}
-    return Inversion(found.verdict, tables, json.loads(found.json), found.summary, found.page)
+    return Inversion(found.verdict, tables, json.loads(found.json), in_python(found.summary), found.page)
 
 
 def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, fit: Fit | None = None,
@@ -484,8 +491,8 @@ def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike
     prior = between(none_prior, "none_prior", 1e-6, 0.999)
     asked = Scenario(scenario, set)
     with _files_of(light) as (files,):
-        return _inversion(_umov.identify(asked._scenario, _request(files, fit), os.fspath(library),
-                                         [os.fspath(one) for one in objects], prior, job_options(threads, cache, device=device),
+        return _inversion(_umov.identify(asked._scenario, _request(files, fit), path_text(library, "library"),
+                                         [path_text(one, "objects") for one in objects], prior, job_options(threads, cache, device=device),
                                          Watch(progress)))
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from . import _umov
 from ._jobs import Progress, Watch, job_options
-from ._numbers import whole, whole_between
+from ._numbers import path_text, whole, whole_between
 from .errors import UsageError
 from .tables import Table
 
@@ -58,6 +58,6 @@ def build_library(scenarios: Sequence[str | os.PathLike[str]], folder: str | os.
     if not isinstance(folder, (str, os.PathLike)):
         raise UsageError(f"folder is {folder!r}; the name of a folder was expected")
     most = len(paths) if count is None else whole(count, "count")
-    return Table(_umov.build_library([os.fspath(one) for one in paths], os.fspath(folder),
+    return Table(_umov.build_library([path_text(one, "scenarios") for one in paths], path_text(folder, "folder"),
                                      whole_between(cells, "cells", 4, 60), whole(first, "first"), most,
                                      job_options(threads, cache, device=device), Watch(progress)))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _umov
+from ._made import Made
 from .errors import UsageError
 from .scenarios import Scenario
 from .tables import Table
@@ -49,7 +50,7 @@ class _Column:
         return rows if self._per_band else rows[:, 0]
 
 
-class LightCurve:
+class LightCurve(Made):
     """A light curve: `curve.I`, `curve.q_scat` and so on are read-only arrays (epoch, band) over the
     library's memory; what all bands share (`curve.az`) is (epoch). `curve["name"]` gives any column.
     Objects of a scenario follow each other; `curve.object(name)` is one of them.
@@ -68,12 +69,19 @@ class LightCurve:
     q = _Column("Q/I in the sky frame", True)
     u = _Column("U/I in the sky frame", True)
     v = _Column("V/I", True)
+    q_err = _Column("numerical 95 % half-width of q", True)
+    u_err = _Column("numerical 95 % half-width of u", True)
+    v_err = _Column("numerical 95 % half-width of v", True)
     p = _Column("degree of linear polarization", True)
+    p_err = _Column("numerical 95 % half-width of p", True)
     dop = _Column("degree of polarization", True)
     pa = _Column("position angle of polarization, [0, 180) [deg]", True)
+    pa_err = _Column("numerical 95 % half-width of pa [deg]", True)
     q_scat = _Column("Q/I, + perpendicular to the scattering plane", True)
     u_scat = _Column("U/I in the scattering frame", True)
     mag = _Column("magnitude of `mag_system`", True)
+    mag_err = _Column("numerical 95 % half-width of mag", True)
+    mag_limit = _Column("the object is fainter than mag", True)
     mjd_utc = _Column("UTC as modified Julian date [d]")
     name = _Column("object")
     pass_id = _Column("catalogue number and culmination")
@@ -96,7 +104,7 @@ class LightCurve:
                  contributions: Mapping[str, Floats] | None = None) -> None:
         self.table = table  #: all rows, those of lightcurve.ecsv
         self.passes = passes  #: a row per pass, those of passes.ecsv
-        self.bands = bands  #: names, in the order of the second axis
+        self._bands = list(bands)
         self.scenario = scenario  #: what was asked
         self.is_partial = is_partial  #: it ended early
         #: direct light of each material of the object, name to (epoch, band) [m2/sr]; they add up to `intensity` where
@@ -109,6 +117,11 @@ class LightCurve:
     def _from_run(cls, run: _umov.Run, scenario: Scenario) -> LightCurve:
         return cls(Table(run.light_curve), Table(run.passes), (run.jd1, run.jd2), list(run.epochs),
                    scenario.bands, scenario, run.stopped is not None, _by_material(run.contributions))
+
+    @property
+    def bands(self) -> list[str]:
+        """Names of the bands, in the order of the second axis."""
+        return list(self._bands)
 
     @property
     def objects(self) -> list[str]:
@@ -147,7 +160,7 @@ class LightCurve:
         return Time(self._jd[0], self._jd[1], format="jd", scale="utc")
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        return self.table[name].reshape(-1, len(self.bands))
+        return self.table[name].reshape(-1, len(self._bands))
 
     def __len__(self) -> int:
         return len(self._jd[0])
@@ -175,6 +188,8 @@ class LightCurve:
         unit = self.unit(name)
         if unit.startswith("mag("):
             return units.Magnitude(values, unit=units.Unit(unit), copy=False)
+        if values.dtype.kind not in "fiub":
+            raise UsageError(f"the column \"{name}\" holds no numbers and has no unit; a column of numbers was expected")
         return units.Quantity(values, unit=units.Unit(unit), copy=False)
 
     def band(self, band: str | int) -> int:
@@ -191,8 +206,8 @@ class LightCurve:
         """
         if isinstance(band, str) and band in self.bands:
             return self.bands.index(band)
-        if isinstance(band, int) and -len(self.bands) <= band < len(self.bands):
-            return band
+        if isinstance(band, (int, np.integer)) and not isinstance(band, bool) and -len(self.bands) <= band < len(self.bands):
+            return int(band)
         raise UsageError(f"there is no band {band!r}; there are {', '.join(self.bands)}")
 
     def to_qtable(self) -> QTable:
@@ -300,18 +315,22 @@ class LightCurve:
         from . import plot
         return plot.overview(self, figure)
 
+    def _own_rows(self) -> Table | QTable:
+        return self.table
+
     def _summary(self) -> list[str]:
         lines = [f"{', '.join(self.objects)}: {len(self)} epochs x {len(self.bands)} bands "
                  f"({', '.join(self.bands)}){', PARTIAL: the run stopped early' if self.is_partial else ''}"]
         for number, one in enumerate(self.passes["pass_id"].tolist()):
             here = self.pass_id == one
-            mag, p = self.mag[here], self.p[here]
+            middle = len(self.bands) // 2  # a range over several bands would mix the object's colour into it
+            mag, p = self.mag[here][:, middle], self.p[here][:, middle]
             phase = self.phase_angle[here]
             text = f"{one}  max alt {self.passes['culmination_alt'][number]:.0f} deg"
             if here.any():
                 text += f"  phase {phase.min():.0f}-{phase.max():.0f} deg"
             if np.isfinite(mag).any():
-                text += f"  mag {np.nanmin(mag):.1f} to {np.nanmax(mag):.1f} {self.mag_system}"
+                text += f"  {self.bands[middle].removeprefix('nm:')}{' nm' if self.bands[middle].startswith('nm:') else ''}: mag {np.nanmin(mag):.1f} to {np.nanmax(mag):.1f} {self.mag_system}"
             if np.isfinite(p).any():
                 text += f"  p up to {100 * np.nanmax(p):.0f} %"
             lines.append(text)
@@ -387,6 +406,9 @@ class _Part(LightCurve):
     def _rows(self, table: QTable) -> QTable:
         bands = len(self.bands)
         return table[self._slice.start * bands:self._slice.stop * bands]
+
+    def _own_rows(self) -> Table | QTable:
+        return self.to_qtable()  # `table` is that of the whole
 
     def write(self, path: str | os.PathLike[str]) -> None:
         raise UsageError("a part of a light curve has no file of the command's; write the whole, or "

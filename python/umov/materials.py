@@ -1,6 +1,7 @@
 """Materials and their Mueller BRDFs."""
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, Union
 
@@ -8,11 +9,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _toml, _umov
-from ._numbers import number_array
+from ._made import Made
+from ._numbers import number_array, text as utf8_text
 from .errors import UsageError
 from .tables import Table
 
 __all__ = ["Material", "brdf", "materials"]
+
+MOST_ROWS = 2**28  #: of `brdf`, some 350 bytes each while it works
 
 
 def materials() -> Table:
@@ -24,7 +28,7 @@ def materials() -> Table:
     return Table(_umov.material_list())
 
 
-class Material:
+class Material(Made):
     """A material: a name of the library or a TOML file, or with `from_dict` and `from_toml` one's own.
 
     Parameters
@@ -61,7 +65,7 @@ class Material:
             The file that it stands for: relative paths start there, messages name it.
         """
         out = cls.__new__(cls)
-        out._material, out.is_named = _umov.Material.parse(text, path), False
+        out._material, out.is_named = _umov.Material.parse(utf8_text(text, "text"), utf8_text(path, "path")), False
         return out
 
     @classmethod
@@ -203,9 +207,11 @@ def brdf(material: Union[str, Material], wavelength_nm: ArrayLike = 550.0, theta
     given = [number_array(value, name) for value, name in
              zip((wavelength_nm, theta_i_deg, theta_o_deg, phi_deg, azimuth_deg), names)]
     try:
-        shaped = np.broadcast_arrays(*given)
+        shape = np.broadcast_shapes(*(value.shape for value in given))
     except ValueError as error:
         shapes = ", ".join(f"{name} {value.shape}" for name, value in zip(names, given))
         raise UsageError(f"{shapes} do not fit together; shapes that broadcast were expected") from error
-    flat = [np.ascontiguousarray(one).ravel() for one in shaped]
-    return _umov.brdf(of._material, *flat).reshape(*shaped[0].shape, 4, 4)
+    if math.prod(shape) > MOST_ROWS:
+        raise UsageError(f"the angles broadcast to {math.prod(shape)} geometries; at most {MOST_ROWS} at once were expected")
+    nm, theta_i, theta_o, phi, azimuth = (np.ascontiguousarray(np.broadcast_to(value, shape)).ravel() for value in given)
+    return _umov.brdf(of._material, nm, theta_i, theta_o, phi, azimuth, None).reshape(*shape, 4, 4)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _umov, adapters
 from ._jobs import Progress, Watch, job_options
-from ._numbers import number, whole
+from ._numbers import number, path_text, text, truth, whole
 from .errors import Stopped, UsageError, raise_stopped
 from .satellites import AnyBands, Satellite
 from .scenarios import Scenario
@@ -33,13 +33,13 @@ def _orbit(orbit: AnyOrbit) -> tuple[str, adapters.Files | None]:
         if orbit.orbit_file is None:
             raise UsageError("the satellite has no file of an orbit; give it one")
         return orbit.orbit_file, orbit._files
-    text = adapters.orbit_text(orbit)
-    if text is None:
+    lines = adapters.orbit_text(orbit)
+    if lines is None:
         if not isinstance(orbit, (str, os.PathLike)):
             raise UsageError(f"orbit is a {type(orbit).__name__}; a file, TLE lines, a Satellite, a Satrec or an EarthSatellite "
                              "was expected")
-        return os.fspath(orbit), None
-    files = adapters.Files({"orbit.tle": text})
+        return path_text(orbit, "orbit"), None
+    files = adapters.Files({"orbit.tle": lines})
     return str(files.folder / "orbit.tle"), files
 
 
@@ -52,6 +52,11 @@ def _numbers(norad: Numbers, orbit: AnyOrbit) -> list[int]:
     return [whole(norad, "norad")]
 
 
+def _make_ready() -> None:
+    """What the rows go into is loaded before the work: after Ctrl-C it would take longer than anybody waits."""
+    import astropy.table  # noqa: F401
+
+
 def _table(rows: _umov.Rows) -> QTable:
     table = Table(rows.table).to_qtable()
     if rows.stopped is not None:
@@ -61,7 +66,7 @@ def _table(rows: _umov.Rows) -> QTable:
 
 def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, norad: Numbers = None,
            alt_min_deg: float = 10.0, sun_alt_max_deg: float = -6.0, visible_only: bool = False,
-           shadow: str = "ellipsoid", bands: AnyBands | None = None, band: str = "", threads: int = 0,
+           mag_max: float | None = None, sort: str = "rise", shadow: str = "ellipsoid", bands: AnyBands | None = None, band: str = "", threads: int = 0,
            cache: bool | str | os.PathLike[str] = True, progress: Progress = None,
            allow_bad_checksum: bool = False, allow_old_elements: bool = False) -> QTable:
     """Passes over a site as an astropy QTable with the columns of `umov passes`. `orbit` is a Satellite,
@@ -87,6 +92,10 @@ def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, nor
         Visible is what passes while the Sun is below [deg].
     visible_only
         Only passes that are sunlit in a dark sky at some time.
+    mag_max
+        Only passes that get as bright as this magnitude while sunlit; `orbit` is a Satellite.
+    sort
+        What comes first: "rise", the earliest, "mag", the brightest, or "alt", what stands highest while visible.
     shadow
         The Earth's: "ellipsoid" (default) or "sphere".
     bands
@@ -113,14 +122,18 @@ def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, nor
     """
     if shadow not in ("ellipsoid", "sphere"):
         raise UsageError(f"shadow is {shadow!r}; ellipsoid or sphere was expected")
+    if sort not in ("rise", "mag", "alt"):
+        raise UsageError(f"sort is {sort!r}; rise, mag or alt was expected")
     file, kept = _orbit(orbit)
     scene = None
     if isinstance(orbit, Satellite):
         scene = Scenario(_scene_of(orbit, bands or "paper_rgb"))._scenario
-    elif bands is not None or band:
-        raise UsageError("bands and band are of the magnitudes of a Satellite; none was given")
+    elif bands is not None or band or mag_max is not None or sort == "mag":
+        raise UsageError("bands, band, mag_max and sort='mag' are of the magnitudes of a Satellite; none was given")
+    _make_ready()
     rows = _umov.passes(file, _numbers(norad, orbit), Site(site)._tuple(), utc(start), utc(stop),
-                        number(alt_min_deg, "alt_min_deg"), number(sun_alt_max_deg, "sun_alt_max_deg"), shadow, visible_only, scene, band,
+                        number(alt_min_deg, "alt_min_deg"), number(sun_alt_max_deg, "sun_alt_max_deg"), shadow, truth(visible_only, "visible_only"),
+                        None if mag_max is None else number(mag_max, "mag_max"), sort, scene, text(band, "band"),
                         job_options(threads, cache, allow_bad_checksum, allow_old_elements), Watch(progress))
     del kept
     return _table(rows)
@@ -184,6 +197,7 @@ def ephemeris(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, 
     length = seconds(step) if step_s is None else number(step_s, "step_s")
     file, kept = _orbit(orbit)
     numbers = _numbers(norad, orbit)
+    _make_ready()
     rows = _umov.ephemeris(file, numbers[0] if numbers else 0, Site(site)._tuple(), utc(start), utc(stop),
                            length, shadow, job_options(threads, False, allow_bad_checksum, allow_old_elements),
                            Watch(progress))
@@ -192,7 +206,8 @@ def ephemeris(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, 
 
 
 class States(NamedTuple):
-    """States of a catalogue, [object, time]; read-only views of the library's memory.
+    """States of a catalogue, [object, time]; read-only views of the library's memory. "time" has the shape of the times
+    that were given: none is (object, 0, 3), an astropy Time of shape (2, 2) is (object, 2, 2, 3).
 
     >>> states = umov.propagate(DATA / "tle/hst.tle", ["2018-01-21T05:00Z", "2018-01-21T05:10Z"])
     >>> states.position_km.shape, states.error.tolist()
@@ -200,9 +215,9 @@ class States(NamedTuple):
     """
 
     norad_cat_id: NDArray[np.int32]  #: per object
-    position_km: NDArray[np.float64]  #: (object, time, 3), TEME; NaN where SGP4 fails
+    position_km: NDArray[np.float64]  #: (object, time, 3), TEME; NaN where `error` is not 0
     velocity_km_s: NDArray[np.float64]  #: (object, time, 3), TEME
-    error: NDArray[np.int32]  #: (object, time): 0, or the code of SGP4
+    error: NDArray[np.int32]  #: (object, time): 0, the code of SGP4, or -1 where Ctrl-C came before
 
 
 def propagate(orbit: AnyOrbit, times: AnyTime | Sequence[AnyTime], *, threads: int = 0,
@@ -234,12 +249,14 @@ def propagate(orbit: AnyOrbit, times: AnyTime | Sequence[AnyTime], *, threads: i
     """
     file, kept = _orbit(orbit)
     texts, _ = utc_list(times)
+    shape: tuple[int, ...] = getattr(times, "shape", ()) or (len(texts),)
     done = _umov.propagate(file, texts, job_options(threads, False, allow_bad_checksum, allow_old_elements),
                            Watch(progress))
     del kept
     teme = done.teme
-    out = States(done.norad_cat_id, teme[:, :, :3], teme[:, :, 3:], done.error)
+    teme = teme.reshape(len(teme), *shape, 6) if len(texts) else np.empty((len(teme), *shape, 6))
+    out = States(done.norad_cat_id, teme[..., :3], teme[..., 3:], done.error.reshape(teme.shape[:-1]))
     stopped: Stopped | None = done.stopped
-    if stopped is not None:
+    if stopped is not None and texts:  # at no time at all nothing failed
         raise_stopped(stopped, out)
     return out

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _toml, _umov
+from ._made import Made
 from ._numbers import number
 from .errors import UsageError
 from .tables import Table
@@ -24,10 +25,12 @@ def names_of(given: Any) -> Any:
     """Names as a scenario has them: one, or a list of them."""
     if hasattr(given, "to_value"):  # one Quantity, or an array of them
         given = _wave(given) if given.isscalar else list(given)
+    if not isinstance(given, str) and (isinstance(given, (bytes, Mapping)) or not hasattr(given, "__iter__")):
+        raise UsageError(f"bands is {given!r}; names were expected, such as [\"nm:550\", \"Bessell.V\"]")
     return given if isinstance(given, str) else [_wave(one) for one in given]
 
 
-class Bands:
+class Bands(Made):
     """The [bands] table of a scenario, to be given wherever `bands=` is asked for.
 
     Parameters
@@ -56,11 +59,16 @@ class Bands:
             raise UsageError(f"mag_system is {mag_system!r}; AB, ST or Vega was expected")
         if not hasattr(set, "to_value") and (not isinstance(set, (str, Sequence)) or isinstance(set, bytes)):
             raise UsageError(f"set is a {type(set).__name__}; a name or a list of names was expected")
-        self.set = names_of(set)  #: names as a scenario has them
+        self._set = names_of(set)
         self.mag_system = mag_system  #: AB, ST or Vega
-        for name in [self.set] if isinstance(self.set, str) else self.set:
+        for name in [self._set] if isinstance(self._set, str) else self._set:
             if isinstance(name, str) and not name.startswith("file:"):
                 _umov.check_bands([name])
+
+    @property
+    def set(self) -> Any:
+        """Names as a scenario has them: one, or a list of them."""
+        return _toml.copied(self._set)
 
     @classmethod
     def from_dict(cls, table: Mapping[str, Any]) -> Bands:
@@ -84,8 +92,7 @@ class Bands:
         text
             TOML.
         """
-        import tomllib
-        return cls.from_dict(tomllib.loads(text).get("bands", {}))
+        return cls.from_dict(_toml.tables_of(text, "bands").get("bands", {}))
 
     def to_dict(self) -> dict[str, Any]:
         """The [bands] table of a scenario."""

@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Union
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Union
 
 from . import _umov
 from ._jobs import Watch
-from ._numbers import number, whole
+from ._numbers import between, number, text as checked_text, whole
 from .errors import UsageError
 from .light_curves import LightCurve
 from .observing import _text_of
@@ -14,10 +15,11 @@ from .tables import Table
 
 if TYPE_CHECKING:
     from astropy.table import QTable
+    from astropy.timeseries import TimeSeries
 
 __all__ = ["period"]
 
-AnyLight = Union[str, "os.PathLike[str]", LightCurve, Table, "QTable"]
+AnyLight = Union[str, "os.PathLike[str]", LightCurve, Table, "QTable", "TimeSeries", Mapping[str, Any]]
 
 
 def period(light: AnyLight, *, band: str = "", peaks: int = 5, shortest_s: float = 0.0, longest_s: float = 1e300,
@@ -27,7 +29,9 @@ def period(light: AnyLight, *, band: str = "", peaks: int = 5, shortest_s: float
     Parameters
     ----------
     light
-        A LightCurve, or a file (CSV, ECSV), Table or astropy table with time_utc (or mjd_utc) and mag or flux.
+        A LightCurve; or a file (CSV, ECSV), Table, astropy table, DataFrame or dictionary of columns with time_utc (or
+        mjd_utc, or a column of astropy Times, as a TimeSeries has) and mag or flux. Columns of astropy are taken in
+        their units; `UsageError` for one of another quantity.
     band
         Only this one; "" for each by itself.
     peaks
@@ -66,6 +70,8 @@ def period(light: AnyLight, *, band: str = "", peaks: int = 5, shortest_s: float
     chance = number(false_alarm, "false_alarm")
     if not 0 <= chance <= 1:
         raise UsageError(f"false_alarm is {false_alarm!r}; 0 to 1 was expected")
-    text, path = _text_of(light.table if isinstance(light, LightCurve) else light, "light")
-    reach = (number(shortest_s, "shortest_s"), number(longest_s, "longest_s"))
-    return Table(_umov.period(text, path, str(band), int(peaks), reach, (gap, chance), Watch(None)))
+    reach = (between(shortest_s, "shortest_s", 0, 1e300), between(longest_s, "longest_s", 0, 1e300))
+    if not reach[0] < reach[1]:
+        raise UsageError(f"shortest_s is {shortest_s!r} and longest_s {longest_s!r}; a longest above the shortest was expected")
+    text, path = _text_of(light, "light")
+    return Table(_umov.period(text, path, checked_text(band, "band"), int(peaks), reach, (gap, chance), Watch(None)))

@@ -2,23 +2,26 @@
 from __future__ import annotations
 
 import os
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _umov
 from ._jobs import Progress, Watch, job_options
-from .errors import UsageError
+from ._made import Made
+from ._numbers import number_array, path_text, text, whole_between
+from .errors import DeviceError, UsageError
 from .scenarios import AnyScenario, Scenario
 from .times import AnyTime, utc
 
 __all__ = ["Mesh", "Picture", "mesh", "render"]
 
 SHADES = ("intensity", "polarization", "angle", "material", "colour")
+MOST_RAYS = 12288  #: along an axis: the largest picture at three rays a pixel
 
 
-class Picture:
+class Picture(Made):
     """A PNG file in memory, shown by notebooks.
 
     >>> picture = umov.render(hst, sun=[1, 1, 1], observer=[0, 1, 1], side=64, samples=1)
@@ -38,8 +41,12 @@ class Picture:
         path
             The PNG file.
         """
-        with open(path, "wb") as out:
-            out.write(self.png)
+        try:
+            with open(path_text(path, "path"), "wb") as out:
+                out.write(self.png)
+        except OSError as error:
+            raise DeviceError(f"{os.fspath(path)}: cannot write here: {error.strerror}. Make the folder first or choose another "
+                              "one.") from error
 
     def _repr_png_(self) -> bytes:
         return self.png
@@ -75,7 +82,8 @@ def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: 
     side
         Of the picture [pixel], 1 to 4096.
     samples
-        Rays per pixel and axis, 1 to 8.
+        Rays per pixel and axis, 1 to 8. All are kept in memory, 32 bytes each and for each band: side * samples is at
+        most 12288, which takes 5 GB, in colour 15 GB.
     threads
         0 for all cores; the bytes do not depend on it.
     progress
@@ -91,20 +99,19 @@ def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: 
         raise UsageError(f"shade is {shade!r}; one of {', '.join(SHADES)} was expected")
     if (sun is None) != (observer is None):
         raise UsageError("sun without observer, or the other way round; both or none were expected")
-    if not 1 <= side <= 4096 or not 1 <= samples <= 8:
-        raise UsageError(f"side {side}, samples {samples}; 1 to 4096 and 1 to 8 were expected")
+    side, samples = whole_between(side, "side", 1, 4096), whole_between(samples, "samples", 1, 8)
+    if side * samples > MOST_RAYS:
+        raise UsageError(f"side * samples is {side} * {samples} = {side * samples}; at most {MOST_RAYS} was expected, as all rays are "
+                         "kept in memory (5 GB for those). Take fewer samples or a smaller side.")
     directions = [] if sun is None else [_three(value, name) for value, name in
                                          ((sun, "sun"), (observer, "observer"), (up, "up"))]
-    png = _umov.render(Scenario(scene)._scenario, shade, band, directions, None if time is None else utc(time),
+    png = _umov.render(Scenario(scene)._scenario, shade, text(band, "band"), directions, None if time is None else utc(time),
                        side, samples, job_options(threads, False), Watch(progress))
     return Picture(png, shade)
 
 
-def _three(value: ArrayLike | None, name: str) -> tuple[float, float, float]:
-    try:
-        out = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"{name} is {value!r}; three numbers were expected") from error
+def _three(value: Any, name: str) -> tuple[float, float, float]:
+    out = number_array(value, name)
     if out.shape != (3,):
         raise UsageError(f"{name} has shape {out.shape}; (3,) was expected")
     return float(out[0]), float(out[1]), float(out[2])
@@ -143,6 +150,5 @@ def mesh(scene: AnyScenario, *, object: int = 0, progress: Progress = None) -> M
     True
     """
     scenario = Scenario(scene)
-    if not 0 <= object < len(scenario.objects):
-        raise UsageError(f"object is {object}; 0 to {len(scenario.objects) - 1} was expected")
-    return Mesh(*_umov.mesh(scenario._scenario, object, Watch(progress)))
+    which = whole_between(object, "object", 0, len(scenario.objects) - 1)
+    return Mesh(*_umov.mesh(scenario._scenario, which, Watch(progress)))

@@ -8,14 +8,16 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _umov
-from ._axes import axes_or_new as _axes, every as _every, passes_of as _passes, time_axis as _time_axis
+from ._axes import axes_or_new as _axes, every as _every, interfaces_of as _interfaces, of_a_curve as _of_a_curve, passes_of as _passes, \
+    time_axis as _time_axis
+from ._numbers import number
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -55,6 +57,7 @@ def band_title(name: str) -> str:
     return f"{name[3:]} nm" if name.startswith("nm:") else name
 
 
+@_of_a_curve
 def band_styles(curve: LightCurve) -> list[dict[str, Any]]:
     """Colour and marker of each band, by wavelength.
 
@@ -94,6 +97,7 @@ def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], 
     return axes
 
 
+@_of_a_curve
 def magnitude(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Magnitude over time, bright at the top.
 
@@ -115,6 +119,7 @@ def magnitude(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
+@_of_a_curve
 def intensity(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Intensity without distance and solar flux over time.
 
@@ -135,6 +140,7 @@ def intensity(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
+@_of_a_curve
 def qu_time(curve: LightCurve, axes: tuple[Axes, Axes] | None = None) -> tuple[Axes, Axes]:
     """q and u over time, in percent of I, in the sky frame.
 
@@ -160,6 +166,7 @@ def qu_time(curve: LightCurve, axes: tuple[Axes, Axes] | None = None) -> tuple[A
     return axes[0], _over_time(curve, axes[1], 100 * curve.u, "u [%]")
 
 
+@_of_a_curve
 def degree(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Degree of linear polarization over time, in percent.
 
@@ -178,6 +185,7 @@ def degree(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return _over_time(curve, axes, 100 * curve.p, "p [%]")
 
 
+@_of_a_curve
 def position_angle(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Position angle over time; it is cyclic, and no line joins 180 to 0 deg.
 
@@ -198,6 +206,7 @@ def position_angle(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
+@_of_a_curve
 def q_phase(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Q/I in the scattering frame against phase angle.
 
@@ -226,6 +235,7 @@ def q_phase(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
+@_of_a_curve
 def pure_materials(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Q/I against phase angle of a surface of one material of the object alone, one reflection at its interface:
     thin lines to draw behind `q_phase`. A measured material has no interface and no line.
@@ -257,21 +267,7 @@ def pure_materials(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
-def _interfaces(curve: LightCurve) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Materials of a curve's objects, each without the light from below its surface."""
-    from .materials import Material
-    if curve.scenario is None:
-        raise UsageError("the curve has no scenario, so no materials; one that umov.run made was expected")
-    document = curve.scenario.to_dict()
-    own = document.get("material", {})
-    names = dict.fromkeys(name for one in document["object"] for value in one["materials"].values()
-                          for name in (value.values() if isinstance(value, dict) else [value]))
-    for name in names:
-        table = dict(own[name]) if name in own else Material(name).to_dict()
-        if "table" not in table:
-            yield name, {key: value for key, value in table.items() if key not in ("body", "haze", "interreflection")}
-
-
+@_of_a_curve
 def contributions(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
     """Direct light of each material over time, as parts of all direct light, on top of each other.
 
@@ -319,6 +315,7 @@ def _periodic(curve: LightCurve, band: str | int,
     return (whole[lit] + rest[lit]) * 86400.0, -2.5 * np.log10(intensity[lit])
 
 
+@_of_a_curve
 def periodogram(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
     """Lomb-Scargle power of the magnitude against period, as the report has it: a line for each pass, a parabola taken
     off (range and phase angle change slowly), a floating mean (Zechmeister & Kuerster 2009). A body that looks alike
@@ -358,6 +355,7 @@ def periodogram(curve: LightCurve, axes: Axes | None = None, *, band: str | int 
     return axes
 
 
+@_of_a_curve
 def folded(curve: LightCurve, period_s: float, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
     """Magnitude without range and eclipse against the part of a turn, coloured by time.
 
@@ -377,6 +375,7 @@ def folded(curve: LightCurve, period_s: float, axes: Axes | None = None, *, band
     >>> plot.folded(curve, period_s=41).get_xlabel()
     'turn of 41 s'
     """
+    period_s = number(period_s, "period_s")
     if not period_s > 0:
         raise UsageError(f"period_s is {period_s!r}; a number above 0 was expected")
     axes = _axes(axes)
@@ -409,6 +408,10 @@ def picture(image: Picture, axes: Axes | None = None) -> Axes:
     'material'
     """
     import io
+
+    from .pictures import Picture as Wanted
+    if not isinstance(image, Wanted):
+        raise UsageError(f"image is a {type(image).__name__}; a Picture was expected, as umov.render gives")
     axes = _axes(axes)
     from matplotlib.image import imread
     axes.imshow(imread(io.BytesIO(image.png)))
@@ -416,6 +419,7 @@ def picture(image: Picture, axes: Axes | None = None) -> Axes:
     return axes
 
 
+@_of_a_curve
 def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """u against q, coloured by phase angle; bands differ by marker.
 
@@ -445,6 +449,7 @@ def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
+@_of_a_curve
 def three_bands(curve: LightCurve) -> list[int]:
     """Numbers of the shortest, the middle and the longest band. `UsageError` if there are fewer than three.
 
@@ -464,6 +469,7 @@ def three_bands(curve: LightCurve) -> list[int]:
     return [int(order[0]), int(order[len(order) // 2]), int(order[-1])]
 
 
+@_of_a_curve
 def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
     """Q/I of short, middle and long wavelength as a cloud in three dimensions, coloured by phase angle.
 
@@ -491,6 +497,7 @@ def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
     return axes
 
 
+@_of_a_curve
 def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
     """Shorter minus longer wavelength over time, in magnitudes: larger is redder.
 
@@ -518,6 +525,7 @@ def colour_index(curve: LightCurve, axes: Axes | None = None) -> Axes:
     return axes
 
 
+@_of_a_curve
 def sky_track(curve: LightCurve, axes: Any = None) -> Any:
     """Where the object stood, north up and east to the left as one looks up, coloured by phase angle.
 
@@ -548,6 +556,7 @@ def sky_track(curve: LightCurve, axes: Any = None) -> Any:
     return axes
 
 
+@_of_a_curve
 def overview(curve: LightCurve, figure: Figure | None = None) -> Figure:
     """Magnitude, q, u, p and position angle over time, and Q against phase, in one figure.
 

@@ -7,6 +7,8 @@ from typing import Any
 
 from . import _umov
 from ._jobs import Progress, Watch, job_options
+from ._numbers import between, whole
+from .engines import changed
 from .errors import raise_stopped
 from .light_curves import LightCurve
 from .scenarios import AnyScenario, Scenario
@@ -53,11 +55,11 @@ def run(scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, seed: in
     >>> print(repr(curve).splitlines()[0])
     <umov.LightCurve HST: 6 epochs x 3 bands (nm:425, nm:550, nm:650)
     """
-    changes = dict(set or {})
+    changes = changed(set, None) or {}
     if seed is not None:
-        changes["seed"] = int(seed)
+        changes["seed"] = whole(seed, "seed", 2**63 - 1)
     if accuracy is not None:
-        changes["render.accuracy"] = float(accuracy)
+        changes["render.accuracy"] = between(accuracy, "accuracy", 1e-6, 1)
     asked = Scenario(scenario, changes or None)
     asked._scenario.check_for_run()
     done = _umov.run(asked._scenario, job_options(threads, cache, allow_bad_checksum, allow_old_elements, device),

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _toml, adapters
 from ._jobs import Progress
-from ._numbers import number
+from ._made import Made
+from ._numbers import number, path_text
 from .errors import UsageError
 from .passbands import Bands, names_of
 from .sites import AnySite, Site
@@ -41,20 +42,39 @@ def _without_none(value: Any) -> Any:
     return {k: v for k, v in value.items() if v is not None} if isinstance(value, Mapping) else value
 
 
+#: A parsec in km: what is nearer stands elsewhere for a satellite than for the barycentre, to more than a second of arc.
+_FAR_KM = 3.0856775814913673e13
+
+
 def _direction(value: Any) -> Any:
     """A SkyCoord as the table of a scenario; all else as it is."""
-    if not hasattr(value, "icrs"):
+    if not hasattr(value, "transform_to") or not hasattr(value, "frame"):
         return value
     if not value.isscalar:
         raise UsageError(f"a SkyCoord of shape {value.shape} is no direction; a single one was expected")
-    return {"ra_deg": float(value.icrs.ra.deg), "dec_deg": float(value.icrs.dec.deg)}
+    try:
+        found = value.transform_to("icrs")
+        far = found.distance.to_value("km") if found.distance.unit.is_equivalent("km") else _FAR_KM
+    except Exception as error:
+        raise UsageError(f"{value!r} does not go into ICRS ({error}); a direction among the stars was expected. AltAz needs "
+                         "obstime and location.") from error
+    if far < _FAR_KM:
+        raise UsageError(f"{value!r} is a place {far:.3g} km from the barycentre of the solar system, no direction; one without a "
+                         "distance was expected")
+    return {"ra_deg": number(found.ra.deg, "ra_deg"), "dec_deg": number(found.dec.deg, "dec_deg")}
+
+
+def _table(value: Any, name: str, such_as: str) -> dict[str, Any]:
+    if not isinstance(value, Mapping):
+        raise UsageError(f"{name} is {value!r}; a table was expected, such as {such_as}")
+    return {str(key): one for key, one in value.items()}
 
 
 def _absolute(path: Any) -> Any:
-    return str(pathlib.Path(path).absolute()) if isinstance(path, (str, os.PathLike)) else path
+    return str(pathlib.Path(path_text(path, "a file")).absolute()) if isinstance(path, (str, os.PathLike)) else path
 
 
-class Satellite:
+class Satellite(Made):
     """An [[object]] of a scenario: shape, orbit, attitude and materials.
 
     Parameters
@@ -62,7 +82,8 @@ class Satellite:
     mesh
         A file (OBJ, glTF, PLY, STL), a trimesh mesh or (vertices (N, 3), faces (M, 3) counted from 0).
     unit
-        Of the mesh: m, mm, cm, in or ft, as text or of astropy; asked for where the format has none.
+        Of the mesh: m, mm, cm, in or ft, as text or of astropy; None: that of the format or of a trimesh mesh, asked
+        for where a file has none, m for arrays.
     up
         Axis of the file that becomes +Z of the body, such as "+Y"; asked for where the format has none.
     orbit
@@ -100,14 +121,18 @@ class Satellite:
                  norad: int | None = None, attitude: Mapping[str, Any] | None = None,
                  materials: str | Material | Mapping[str, Any], name: str = "", normals: str | None = None,
                  parts: Sequence[Mapping[str, Any]] = ()) -> None:
+        if not isinstance(name, str):
+            raise UsageError(f"name is {name!r}; a text was expected")
         self.name = name
         self._texts: adapters.Texts = {}
         self._own: dict[str, str] = {}
         self._table: dict[str, Any] = {
             "name": name, "orbit": self._orbit(orbit, norad), "mesh": self._mesh(mesh, unit, up, normals),
-            "attitude": {key: _direction(value) for key, value in attitude.items()} if attitude is not None else None,
-            "materials": self._materials(materials), "part": [dict(part) for part in parts] or None}
-        self._table = {key: _without_none(value) for key, value in self._table.items() if value is not None}
+            "attitude": None if attitude is None else {key: _direction(value) for key, value in _table(
+                attitude, "attitude", '{"mode": "nadir"}').items()},
+            "materials": self._materials(materials),
+            "part": [_table(part, "a part", '{"groups": ["wing"], "axis": "+Y"}') for part in parts] or None}
+        self._table = {key: _toml.copied(_without_none(value)) for key, value in self._table.items() if value is not None}
         self._files = adapters.Files(self._texts) if self._texts else None
         self._set_files()
 
@@ -122,8 +147,9 @@ class Satellite:
         return {**table, "file": _absolute(table["file"])} if "file" in table else table
 
     def _mesh(self, mesh: Any, unit: str | UnitBase | None, up: str | None, normals: str | None) -> dict[str, Any]:
-        text = adapters.mesh_text(mesh)
         unit = unit if unit is None or isinstance(unit, str) else str(unit)  # of astropy
+        unit = adapters.mesh_unit(mesh) if unit is None else unit
+        text = adapters.mesh_text(mesh, unit or "m")
         more = {"unit": unit, "up": up, "normals": normals}
         if text is not None:
             self._texts["mesh.obj"] = text
@@ -167,6 +193,10 @@ class Satellite:
             Keys as in a scenario (docs/keys.md).
         """
         from .materials import Material
+        _table(table, "an object", '{"mesh": {...}, "materials": {...}}')
+        if missing := [key for key in ("mesh", "materials") if key not in table]:
+            raise UsageError(f"an object has no {missing[0]}; mesh and materials were expected")
+        materials = _table(table["materials"], "materials", '{"default": "gold"}')
         own = {name: Material.from_dict(name, one) for name, one in table.get("material", {}).items()}
 
         def find(name: Any) -> Any:
@@ -175,7 +205,7 @@ class Satellite:
             return own.get(name, name)
 
         return cls(table["mesh"], orbit=table.get("orbit"), attitude=table.get("attitude"),
-                   materials={group: find(name) for group, name in table["materials"].items()},
+                   materials={group: find(name) for group, name in materials.items()},
                    name=table.get("name", ""), parts=table.get("part", ()))
 
     @classmethod
@@ -187,22 +217,32 @@ class Satellite:
         text
             TOML.
         """
-        import tomllib
-        document = tomllib.loads(text)
+        document = _toml.tables_of(text, "satellite")
         if len(document.get("object", ())) != 1:
             raise UsageError(f"the text has {len(document.get('object', ()))} objects; one [[object]] was expected")
         return cls.from_dict({**document["object"][0], "material": document.get("material", {})})
 
     def to_dict(self) -> dict[str, Any]:
-        """The [[object]] table of a scenario, with `material` tables of its own besides."""
+        """The [[object]] table of a scenario, with `material` tables of its own besides. Files that were made of arrays or
+        lines are there as long as this object is."""
         import tomllib
         own: dict[str, Any] = {}
         for text in self._own.values():
             own.update(tomllib.loads(text)["material"])
-        return {**self._table, **({"material": own} if own else {})}
+        return {**_toml.copied(self._table), **({"material": own} if own else {})}
 
-    def to_toml(self) -> str:
-        """The same as text."""
+    def to_toml(self, folder: str | os.PathLike[str] | None = None) -> str:
+        """The same as text.
+
+        Parameters
+        ----------
+        folder
+            Where a mesh of arrays and an orbit of lines are put, as mesh.obj and orbit.tle: no file holds them. `UsageError` if
+            there are some and no folder is given.
+        """
+        return self._text() if self._files is None else self._files.moved(self._text(), folder)
+
+    def _text(self) -> str:
         table = self.to_dict()
         own = table.pop("material", {})
         return _toml.text_of({"object": [table], **({"material": own} if own else {})}).lstrip()
@@ -274,6 +314,9 @@ class Satellite:
         """
         from .runs import run
         from .scenarios import Scenario
+        if "orbit" not in self._table:
+            raise UsageError("the satellite has no orbit; light over time needs one: umov.Satellite(..., orbit=...). "
+                             "Without one umov.Engine lights it from any direction.")
         if stop is None:
             start, stop = _span_of_pass(start)
         if step is not None and step_s is not None:
@@ -284,7 +327,7 @@ class Satellite:
         scenario = Scenario(self.to_scenario_dict(
             bands, title=self.name, seed=seed, observer=Site(site).to_dict(),
             time={"start": utc(start), "stop": utc(stop), "step_s": length, "only": only},
-            render=dict(render) if render else None, output={"pol_frame": pol_frame}))
+            render=_table(render, "render", '{"bounces": 2}') if render is not None else None, output={"pol_frame": pol_frame}))
         scenario._keep = self
         return run(scenario, **options)
 
@@ -301,10 +344,14 @@ class Satellite:
         return None if not number else int(number)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Satellite) and self.to_dict() == other.to_dict()
+        return isinstance(other, Satellite) and self._told() == other._told()
 
     def __hash__(self) -> int:
-        return hash(self.to_toml())
+        return hash(self._told())
+
+    def _told(self) -> str:
+        """All of it: what adapters made by what it holds."""
+        return self._text() if self._files is None else self._files.without_place(self._text())
 
     def __repr__(self) -> str:
         mesh = pathlib.Path(str(self._table["mesh"]["file"])).name
@@ -316,7 +363,7 @@ class Satellite:
     def _repr_html_(self) -> str:
         import html
         return (f"<p><b>{html.escape(repr(self))}</b></p>{self._picture()}"
-                f"<details><summary>TOML</summary><pre>{html.escape(self.to_toml())}</pre></details>")
+                f"<details><summary>TOML</summary><pre>{html.escape(self._text())}</pre></details>")
 
     def _picture(self) -> str:
         """The mesh by material as an image in place; what is wrong with a satellite is for others to say."""
@@ -343,6 +390,8 @@ class Satellite:
 
 def _span_of_pass(row: Any) -> tuple[str, str]:
     """Rise and set of a row of `umov.passes`."""
+    if hasattr(row, "colnames") and not hasattr(row, "index"):  # a whole table
+        raise UsageError(f"a table of {len(row)} passes; one row was expected, such as table[0], or a start and a stop")
     try:
         rise, end = str(row["rise_utc"]), str(row["set_utc"])
     except (TypeError, KeyError, IndexError, ValueError) as error:

@@ -20,6 +20,7 @@ from . import _scale_store
 from ._scale_command import call, call_for_rows, find_program
 from ._scale_driver import Cluster, Driver, Hold
 from ._scale_store import Store, StoreLease, is_url
+from ._numbers import path_text
 from .errors import Error, InputError, Interrupted, UsageError
 from .rows import Rows
 
@@ -126,6 +127,8 @@ class Result:
 
     def __init__(self, folder: str | os.PathLike[str], program: str | None = None) -> None:
         self._store = Store(str(folder)) if is_url(folder) else None
+        if not self._store and not (pathlib.Path(path_text(folder, "folder")) / "job.json").is_file():
+            raise InputError(f"{os.fspath(folder)}: there is no job; a folder was expected that umov.scale.run or umov scale run made")
         #: its absolute path, or the URL of a store
         self.folder = self._store.url if self._store else pathlib.Path(folder).absolute()
         self._umov = find_program(program)
@@ -315,6 +318,8 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     >>> result.merge("agena.csv")
     """
     umov = find_program(program)
+    if job is not None and not isinstance(job, Job):
+        raise UsageError(f"job is a {type(job).__name__}; a umov.scale.Job was expected, or None for that of the folder")
     words = job.words if job else []
     if is_url(output) and cluster is None:
         raise UsageError(f"output is {output}; an object store takes a cluster: cluster=\"local:{os.cpu_count()}\" is this machine")

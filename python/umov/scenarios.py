@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _toml, _umov, adapters
+from ._made import Made
+from ._numbers import path_text, text as utf8_text
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -28,10 +30,13 @@ def schema() -> dict[str, Any]:
 
 
 def _change_list(changes: Changes | None) -> list[str]:
+    if changes is not None and not isinstance(changes, Mapping):
+        raise UsageError(f"set is a {type(changes).__name__}; a dictionary of keys was expected, such as "
+                         '{"render.bounces": 2}')
     return [f"{key}={_toml.value_text(value, key)}" for key, value in (changes or {}).items()]
 
 
-class Scenario:
+class Scenario(Made):
     """A scenario, read and checked. Give a path, a dictionary or another scenario, and `set` for
     changes ("render.bounces": 2), as `--set` of the command does.
 
@@ -57,11 +62,11 @@ class Scenario:
 
     def __init__(self, source: AnyScenario, set: Changes | None = None) -> None:
         if isinstance(source, (str, os.PathLike)):
-            self._scenario = _umov.Scenario.read(os.fspath(source), _change_list(set))
+            self._scenario = _umov.Scenario.read(path_text(source, "the path of a scenario"), _change_list(set))
         elif isinstance(source, Mapping):
             self._scenario = _parse(_toml.text_of(source), None, set)
         elif isinstance(source, Scenario):
-            self._scenario = (_parse(source.to_toml(), source.file, set) if set else source._scenario)
+            self._scenario = (_parse(source._said(), source.file, set) if set else source._scenario)
         elif hasattr(source, "to_scenario_dict"):
             self._scenario = _parse(_toml.text_of(source.to_scenario_dict()), None, set)
         else:
@@ -98,14 +103,36 @@ class Scenario:
         """
         return cls(document)
 
-    def to_toml(self) -> str:
-        """With every default written out and absolute paths."""
-        return self._scenario.locked
+    def to_toml(self, folder: str | os.PathLike[str] | None = None) -> str:
+        """With every default written out, the accuracy of `umov.run` among them, and absolute paths.
+
+        Parameters
+        ----------
+        folder
+            Where a mesh of arrays and an orbit of lines are put, as mesh.obj and orbit.tle: no file holds them. `UsageError` if
+            there are some and no folder is given.
+        """
+        files = _files_of(self)
+        return self._scenario.locked if files is None else files.moved(self._scenario.locked, folder)
+
+    def _told(self) -> str:
+        """All of it: what adapters made by what it holds."""
+        files = _files_of(self)
+        return self._scenario.locked if files is None else files.without_place(self._scenario.locked)
+
+    def _said(self) -> str:
+        """The same without what was left to those who use it: `run` and `Engine` ask for another accuracy each."""
+        unsaid, lines, table = self._scenario.unsaid, [], ""
+        for line in self._scenario.locked.splitlines():
+            table = line if line.startswith("[") else table
+            if table != "[render]" or line.partition(" = ")[0] not in unsaid:
+                lines.append(line)
+        return "\n".join(lines) + "\n"
 
     def to_dict(self) -> dict[str, Any]:
-        """The same as tables."""
+        """The same as tables. Files that were made of arrays or lines are there as long as this object is."""
         import tomllib
-        return tomllib.loads(self.to_toml())
+        return tomllib.loads(self._scenario.locked)
 
     @property
     def title(self) -> str:
@@ -128,10 +155,10 @@ class Scenario:
         return [name for name, _ in self._scenario.bands]
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Scenario) and self.to_toml() == other.to_toml()
+        return isinstance(other, Scenario) and self._told() == other._told()
 
     def __hash__(self) -> int:
-        return hash(self.to_toml())
+        return hash(self._told())
 
     def __repr__(self) -> str:
         objects = ", ".join(name or "unnamed" for name in self.objects)
@@ -140,11 +167,11 @@ class Scenario:
     def _repr_html_(self) -> str:
         import html
         return (f"<details><summary>{html.escape(repr(self))}</summary>"
-                f"<pre>{html.escape(self.to_toml())}</pre></details>")
+                f"<pre>{html.escape(self._scenario.locked)}</pre></details>")
 
     def __reduce__(self) -> tuple[Any, ...]:
         files = _files_of(self)
-        return _restore, (self.to_toml(), self.file, None if files is None else (str(files.folder), files.texts))
+        return _restore, (self._said(), self.file, None if files is None else (str(files.folder), files.texts))
 
 
 AnyScenario = Union[str, "os.PathLike[str]", Mapping[str, Any], Scenario, "Satellite"]
@@ -152,8 +179,9 @@ AnyScenario = Union[str, "os.PathLike[str]", Mapping[str, Any], Scenario, "Satel
 
 def _parse(text: str, path: str | os.PathLike[str] | None, changes: Changes | None) -> _umov.Scenario:
     # Relative paths start at the folder of the file that the text stands for.
-    place = os.fspath(path) if path is not None else "scenario"
-    return _umov.Scenario.parse(text, place, _change_list(changes))
+    checked = utf8_text(text, "text")
+    place = path_text(path, "path") if path is not None else "scenario"
+    return _umov.Scenario.parse(checked, place, _change_list(changes))
 
 
 def _files_of(source: Any) -> adapters.Files | None:

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _toml, _umov
-from ._numbers import number
+from ._made import Made
+from ._numbers import number, text, utf8
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ def site_names() -> list[str]:
     return _umov.site_names()
 
 
-class Site:
+class Site(Made):
     """A place on the WGS 84 ellipsoid: by name, by coordinates, or from an EarthLocation, a skyfield
     topos or the [observer] table of a scenario.
 
@@ -43,7 +44,7 @@ class Site:
 
     Notes
     -----
-    `UsageError` where none or two of them are given, `InputError` for an unknown name or numbers out of range.
+    `UsageError` where none or two of them are given and for an unknown name, `InputError` for numbers out of range.
 
     Examples
     --------
@@ -89,8 +90,17 @@ class Site:
         text
             TOML.
         """
-        import tomllib
-        return cls(tomllib.loads(text).get("observer", {}))
+        return cls(_toml.tables_of(text, "site").get("observer", {}))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Checked as when it was made."""
+        if name in ("lat_deg", "lon_deg", "alt_m"):
+            numbers = {"lat_deg": 0.0, "lon_deg": 0.0, "alt_m": 0.0, name: number(value, name)}
+            told = _umov.check_site("", *numbers.values())
+            value = told[1 + list(numbers).index(name)]
+        elif name == "name":
+            value = text(value, name)
+        object.__setattr__(self, name, value)
 
     def to_dict(self) -> dict[str, Any]:
         """The [observer] table of a scenario."""
@@ -128,17 +138,20 @@ def _told(site: AnySite, name: str) -> tuple[str, float, float, float]:
     if isinstance(site, Site):
         return (name or site.name), site.lat_deg, site.lon_deg, site.alt_m
     if isinstance(site, str):
-        told = _umov.site(site)
+        told = _umov.site(utf8(site, "site"))
         return (name or told[0]), told[1], told[2], told[3]
     if isinstance(site, Mapping):
         if "lat_deg" not in site and "name" in site:
             return _told(str(site["name"]), name)
-        try:
-            numbers = [float(site[key]) for key in ("lat_deg", "lon_deg", "alt_m")]
-        except (KeyError, TypeError, ValueError) as error:
-            raise UsageError(f"{dict(site)!r}; lat_deg, lon_deg and alt_m were expected") from error
+        if missing := [key for key in ("lat_deg", "lon_deg", "alt_m") if key not in site]:
+            raise UsageError(f"a site has no {missing[0]}; lat_deg, lon_deg and alt_m were expected, there are "
+                             f"{', '.join(map(str, site)) or 'none'}")
+        numbers = [number(site[key], key) for key in ("lat_deg", "lon_deg", "alt_m")]
         return _umov.check_site(name or str(site.get("name", "")), *numbers)
     if hasattr(site, "geodetic"):  # astropy
+        if not site.isscalar:
+            raise UsageError(f"an EarthLocation of shape {site.shape}; a single place was expected, such as location[0]")
+        number(site.x.to_value("m"), "the EarthLocation's x")  # before ERFA makes a place of nothing
         place = site.geodetic
         return _umov.check_site(name, float(place.lat.deg), float(place.lon.wrap_at("180d").deg),
                                 float(place.height.to_value("m")))

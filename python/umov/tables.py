@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _umov
+from ._made import Made
+from ._numbers import path_text
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -38,7 +40,7 @@ def _unpack(columns: list[_Column], notes: list[tuple[str, str]]) -> _umov.Table
     return out
 
 
-class Table:
+class Table(Made):
     """Rows of a job, column by column. Numbers are read-only numpy views of the library's memory.
 
     >>> table = umov.materials()
@@ -85,13 +87,20 @@ class Table:
     def __getitem__(self, name: str) -> NDArray[Any]:
         self._position(name)
         if name not in self._texts:
-            values = self._table.column(name)
-            if not isinstance(values, list):
+            values = self._values(name)
+            if values.dtype.kind != "U":
                 return values
-            text = np.array(values, dtype=np.str_)
-            text.flags.writeable = False
-            self._texts[name] = text
+            values.flags.writeable = False
+            self._texts[name] = values
         return self._texts[name]
+
+    def _values(self, name: str) -> NDArray[Any]:
+        """Views of numbers; texts as an array of their own."""
+        letters = self._table.letters(name)
+        if letters is not None:
+            return letters.view(f"<U{letters.shape[1]}")[:, 0]
+        values = self._table.column(name)
+        return np.array(values, dtype=np.str_) if isinstance(values, list) else values
 
     def __contains__(self, name: object) -> bool:
         return name in self.names
@@ -108,13 +117,13 @@ class Table:
         from astropy.table import Column, QTable
         out = QTable(meta=self.notes)
         for name, unit in zip(self.names, self._table.units):
-            values = self[name]
+            values = self._values(name)
             if unit.startswith("mag("):
                 out[name] = units.Magnitude(values, unit=units.Unit(unit), copy=False)
             elif unit or values.dtype.kind == "f":
                 out[name] = units.Quantity(values, unit=units.Unit(unit), copy=False)
-            else:
-                out[name] = Column(values, copy=False)
+            else:  # what was made for this table need not be copied
+                out.add_column(Column(values, copy=False), name=name, copy=values.dtype.kind != "U")
             out[name].info.description = self.description(name)
         return out
 
@@ -152,7 +161,7 @@ class Table:
         path
             Its suffix says the format; `UsageError` for another one, `DeviceError` where it cannot be written.
         """
-        self._table.write(os.fspath(path))
+        self._table.write(path_text(path, "path"))
 
     def _position(self, name: str) -> int:
         try:

@@ -5,7 +5,10 @@ import datetime
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeGuard, Union
 
+import numpy as np
+
 from . import _umov
+from ._numbers import number
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -21,13 +24,25 @@ def _is_astropy(time: Any) -> TypeGuard[Time]:
     return hasattr(type(time), "sidereal_time")
 
 
+def _exact(time: Time) -> Time:
+    """In UTC to a nanosecond."""
+    if np.any(time.mask):
+        raise UsageError("a Time is masked; a time that is known was expected. Leave out what is masked.")
+    if time.scale == "local":
+        raise UsageError(f"{time!r} is of scale local, which nobody can bring to UTC; another scale was expected, such as "
+                         'Time(..., scale="utc")')
+    out = time.utc.replicate(format="isot")
+    out.precision = 9
+    return out
+
+
 def utc(time: AnyTime) -> str:
     """A time as the scenario writes it: ISO 8601, UTC, with Z.
 
     Parameters
     ----------
     time
-        ISO 8601 with an offset or Z, an aware datetime or an astropy Time of any scale; `UsageError` for a time
+        ISO 8601 with an offset or Z, an aware datetime, an astropy Time of any scale or one of skyfield; `UsageError` for a time
         without a zone, with the two lines that mend it.
 
     Examples
@@ -50,9 +65,12 @@ def utc(time: AnyTime) -> str:
     if _is_astropy(time):
         if not time.isscalar:
             raise UsageError(f"a Time of shape {time.shape}; a single time was expected")
-        exact = time.utc.replicate(format="isot")
-        exact.precision = 9
-        return _umov.check_time(str(exact.value) + "Z")
+        return _umov.check_time(f"{_exact(time).value}Z")
+    if isinstance(time, np.datetime64):
+        raise UsageError(f"{time!r} has no time zone; an aware time was expected. In UTC that is astropy.time.Time({str(time)!r}, "
+                         'scale="utc")')
+    if hasattr(time, "utc_datetime") and hasattr(time, "tai"):  # of skyfield
+        return utc(time.utc_datetime())
     raise UsageError(f"{time!r} is a {type(time).__name__}; a time was expected: ISO 8601 with an offset "
                      "(\"2018-01-21T04:00:00Z\"), an aware datetime or an astropy Time")
 
@@ -67,20 +85,21 @@ def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
     if not isinstance(listed, Iterable) or not getattr(listed, "shape", (1,)):
         raise UsageError(f"{times!r} is a {type(times).__name__}; a time or a list of times was expected")
     if _is_astropy(listed):  # one conversion for all
-        exact = listed.utc.replicate(format="isot")
-        exact.precision = 9
-        return [_umov.check_time(f"{one}Z") for one in exact.value.ravel().tolist()], False
+        return [_umov.check_time(f"{one}Z") for one in _exact(listed).value.ravel().tolist()], False
     return [utc(one) for one in listed], False
 
 
 def seconds(step: Any, name: str = "step") -> float:
     """A length of time in seconds: a Quantity, a timedelta, or a plain number if it is named so."""
     if isinstance(step, datetime.timedelta):
-        return step.total_seconds()
+        return number(step.total_seconds(), name)
+    if isinstance(step, np.timedelta64):
+        return number(step / np.timedelta64(1, "s"), name)
     if hasattr(step, "to_value"):
         try:
-            return float(step.to_value("s"))
+            length = step.to("s")
         except Exception as error:
             raise UsageError(f"{name} is {step!r}; a length of time was expected ({error})") from error
+        return number(length.to_value("s"), name)
     raise UsageError(f"{name} is {step!r}, a number without a unit; a Quantity was expected. Give "
                      f"{name}={step!r} * astropy.units.s or {name}_s={step!r}.")

@@ -7,8 +7,11 @@
 #define UMOV_BACKEND_FACET_LOOPS_INL_H
 #endif
 
+#include "backend/curved_classes.inl.h"
 #include "backend/lit_facets.inl.h"
 #include "kernel/body.inl.h"
+
+#include <type_traits>
 
 #include "kernel/begin.h"
 
@@ -68,8 +71,9 @@ UMOV_KERNEL ProfileValues<R> profile_values(const SceneData<T> &scene, const Slo
 }
 
 /// Sums of one pose. `Machine` is that of LitFacets, with what sums are held in, S, and how to take
-/// a total.
-template <class Machine> class FacetLoops {
+/// a total. `has_curved`: some slot may have SlotTerms::patch_spread; loops without are those of
+/// most scenes, and a pose of theirs shall not pay for the others.
+template <class Machine, bool has_curved = true> class FacetLoops {
   using R = typename Machine::R;
   using T = typename Machine::T;
   using S = typename Machine::S;
@@ -79,7 +83,7 @@ public:
   UMOV_KERNEL FacetLoops(const SceneData<T> &scene, const Masks *masks, const MaskErrorModel &model,
                          const PoseData<T> &pose, PoseSumsOf<S> &out)
       : scene_(scene), masks_(masks), model_(model), pose_(pose), out_(out),
-        lit_(scene, masks, model, pose) {}
+        lit_(scene, masks, model, pose), curved_(scene, pose) {}
 
   UMOV_KERNEL void run() {
     bool is_any_left_out = false;
@@ -125,19 +129,25 @@ public:
       for (std::size_t k = 0; k < lit_.count(); ++k)
         out.facets.push({lit_.group(k), lit_.lane(k), chunk.slot, static_cast<S>(lit_.area_of(k)),
                          square(static_cast<S>(lit_.deviation_of(k)))});
-      if (lit_.count() > 0 && !slot.is_general)
-        weigh(slot, first, out);
+      if (lit_.count() == 0 || slot.is_general)
+        continue;
+      weigh(slot, first, out);
+      if (is_curved(slot))
+        weigh_curved(slot, first, out);
     }
   }
 
 private:
   UMOV_KERNEL static S square(S x) { return x * x; }
+  [[nodiscard]] UMOV_KERNEL static bool is_curved(const SlotTerms &slot) {
+    return has_curved && slot.patch_spread > 0;
+  }
 
   [[nodiscard]] UMOV_KERNEL GatherTask<T> task_of(const SlotTerms &slot) const {
     GatherTask<T> task;
     task.reach = reach_of(slot);
     task.has_aside = slot.is_polarized;
-    task.has_ids = slot.is_general;
+    task.has_ids = slot.is_general || is_curved(slot);
     task.has_doubts = model_.has_doubts && masks_ != nullptr;
     return task;
   }
@@ -149,6 +159,10 @@ private:
     T reach = 0;
     for (std::uint32_t k = 0; k < slot.lobe_count; ++k)
       reach = max(reach, pose_.lobes[slot.lobe_first + k].reach);
+    if (is_curved(slot)) { // of some of its normals
+      const T chord = sqrt(T(2) * reach) + T(slot.patch_spread);
+      reach = chord * chord / T(2);
+    }
     return reach;
   }
 
@@ -164,13 +178,23 @@ private:
   }
 
   UMOV_KERNEL void shade(const SlotTerms &slot) {
-    if (is_closed_family(slot))
+    if (is_curved(slot))
+      shade_curved(slot);
+    else if (is_closed_family(slot))
       shade_family(slot);
     else
       for (std::uint32_t k = slot.lobe_first; k < slot.lobe_first + slot.lobe_count; ++k)
-        shade_lobe(k);
+        shade_lobe<false>(k);
     if (slot.product_count > 0)
       shade_products(slot);
+  }
+
+  /// Apart: it is rare, and what is often would pay for it with registers.
+  UMOV_KERNEL_LOOP UMOV_KERNEL void shade_curved(const SlotTerms &slot) {
+    for (std::uint32_t k = slot.lobe_first; k < slot.lobe_first + slot.lobe_count; ++k) {
+      curved_.weigh(k, slot, lit_);
+      shade_lobe<true>(k);
+    }
   }
 
   [[nodiscard]] UMOV_KERNEL bool is_closed_family(const SlotTerms &slot) const {
@@ -214,16 +238,19 @@ private:
       add_lobe(slot.lobe_first + b, sum[b], variance[b], linear[b]);
   }
 
-  UMOV_KERNEL void shade_lobe(std::size_t lobe) {
+  /// `is_curved`: some classes have weights of their own.
+  template <bool is_curved> UMOV_KERNEL void shade_lobe(std::size_t lobe) {
     R sum = R(T(0)), variance = R(T(0)), linear = R(T(0)), bias = R(T(0));
     const bool is_clustered = !scene_.cluster_error.empty(), varies = lit_.varies();
     for (std::size_t k = 0; k < lit_.count(); k += width) {
       const R n_l = lit_.n_l(k), n_v = lit_.n_v(k), apart = lit_.apart(k);
       const R density = lobe_density(scene_.lobes[lobe], pose_.lobes[lobe], pose_.facet,
                                      from_half(pose_.facet, apart, n_l, n_v));
-      if (!Machine::any(density > R(T(0))))
+      if (!Machine::any(density > R(T(0))) && !(is_curved && curved_.has_any(k)))
         continue; // far from a narrow lobe
-      const R w = density * lobe_shadowing(scene_.lobes[lobe], pose_.facet, n_l, n_v) * R(T(0.25));
+      R w = density * lobe_shadowing(scene_.lobes[lobe], pose_.facet, n_l, n_v) * R(T(0.25));
+      if constexpr (is_curved)
+        w = curved_.in_place_of(w, k);
       const R light = lit_.area(k) * w;
       sum = sum + light;
       if (varies) {
@@ -263,6 +290,18 @@ private:
       for (std::size_t p = 0; p < slot.product_count; ++p)
         put(k, slot.lobe_count + p,
             values.template product<T>(scene_.products[slot.product_first + p]));
+    }
+  }
+
+  /// The same of classes that have weights of their own.
+  UMOV_KERNEL_LOOP UMOV_KERNEL void weigh_curved(const SlotTerms &slot, std::size_t first,
+                                                 backend::WeighedListOf<S> &out) {
+    S *const to = out.weights.data() + first * out.terms;
+    for (std::size_t l = 0; l < slot.lobe_count; ++l) {
+      curved_.weigh(slot.lobe_first + l, slot, lit_);
+      for (std::size_t k = 0; k < lit_.count(); ++k)
+        if (curved_.has_one(k))
+          to[k * out.terms + l] = static_cast<S>(curved_.one(k));
     }
   }
 
@@ -340,6 +379,7 @@ private:
   const PoseData<T> &pose_;
   PoseSumsOf<S> &out_;
   LitFacets<Machine> lit_;
+  std::conditional_t<has_curved, CurvedClasses<Machine>, NoCurvedClasses<Machine>> curved_;
 };
 
 #include "kernel/end.h"

@@ -94,6 +94,7 @@ public:
     return id_[k] % static_cast<std::uint32_t>(lanes);
   }
   [[nodiscard]] UMOV_KERNEL T area_of(std::size_t k) const { return area_[k]; }
+  [[nodiscard]] UMOV_KERNEL T apart_of(std::size_t k) const { return apart_[k]; }
   [[nodiscard]] UMOV_KERNEL T deviation_of(std::size_t k) const { return deviation_[k]; }
 
 private:

@@ -34,6 +34,21 @@ template <class T> struct GroupCones { View<const T> x, y, z, least; };
 /// One number for each lane of a group.
 template <class T> struct alignas(64) LaneNumbers { T value[lanes]{}; };
 
+/// What the normal of a curved element takes on, evenly over its area: a triangle of unit normals,
+/// by a corner and the ways from it to the others.
+template <class T> struct NormalPatch {
+  T corner[3]{}, first[3]{}, second[3]{};
+  T share = 0;                                  ///< of its class's area
+  std::uint32_t node_first = 0, node_count = 0; ///< into SceneData::patch_nodes
+};
+/// Patches of a class, of SceneData::patches.
+struct PatchRange {
+  std::uint32_t first = 0, count = 0;
+};
+/// Where the light of a patch is asked: parts of the ways to both other corners, and weights, whose
+/// sum is 1. As many as `lanes` or a multiple, the last ones of no weight.
+template <class T> struct PatchNodes { View<const T> first, second, weight; };
+
 /// Groups of one slot that are summed in T before the sum goes to double.
 struct Chunk {
   std::uint32_t first = 0, count = 0; ///< groups
@@ -80,6 +95,9 @@ struct SlotTerms {
   std::uint32_t product_first = 0, product_count = 0;
   bool is_polarized = false; ///< some product is of Q or U
   bool is_general = false;   ///< nothing is summed here: its seen facets are handed back
+  /// How far the normals of a class lie from the class's own, where the lobe of a curved part is
+  /// narrower than the elements (SceneData::patches); 0: one normal stands for the class.
+  float patch_spread = 0;
 };
 
 /// Bits of points that are free in a direction, for a grid of directions on the octahedron.
@@ -125,6 +143,9 @@ template <class T> struct SceneData {
   View<const Product> products;
   /// Per group and lane: relative error of the area's light from joining unlike normals.
   View<const LaneNumbers<T>> cluster_error; ///< empty: none
+  View<const NormalPatch<T>> patches;
+  View<const PatchRange> patches_of; ///< [group * lanes + lane]; empty: no slot has any
+  PatchNodes<T> patch_nodes;
 };
 
 /// Three directions of a grid around one, with their weights.

@@ -1,6 +1,7 @@
 #include <umov/instrument/detector.h>
 
 #include <algorithm>
+#include <boost/math/special_functions/lambert_w.hpp>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,19 @@ namespace umov {
 namespace {
 
 double register_gain(const Detector &d) { return d.model == DetectorModel::Emccd ? d.em_gain : 1; }
+
+/// Photons in a dead time from which on counts of one that is prolonged are 2 % below their largest
+/// or beyond it.
+constexpr double paralysed_from = .8;
+
+/// Photons behind what a counter told whose dead time begins anew with each of them: the smaller of
+/// the two rates that tell as much.
+CorrectedCount prolonged_count(const Detector &d, double told, double exposure_s) {
+  const double largest = paralysed_from * std::exp(-paralysed_from);
+  const double y = std::max(0., told) * d.dead_time_s / exposure_s;
+  const double x = -boost::math::lambert_w0(-std::min(y, largest));
+  return {told * std::exp(x), (std::exp(x) - 2 * x) / ((1 - x) * (1 - x)), y >= largest};
+}
 
 /// Electrons, after a register in units of its input, before they are read.
 double draw_electrons(const Detector &d, double mean, double exposure_s, Draws &draws) {
@@ -73,16 +87,30 @@ double straightened(const Detector &d, double y) {
   return 2 * y / (1 + std::sqrt(std::max(0.0, root)));
 }
 
-double counted_rate(const Detector &d, double rate) { return rate / (1 + rate * d.dead_time_s); }
+double counted_rate(const Detector &d, double rate) {
+  const double x = rate * d.dead_time_s;
+  return d.is_paralyzable ? rate * std::exp(-x) : rate / (1 + x);
+}
 
 double counter_fano(const Detector &d, double rate) {
-  const double x = 1 + rate * d.dead_time_s;
-  return 1 / (x * x);
+  const double x = rate * d.dead_time_s;
+  return d.is_paralyzable ? 1 - 2 * x * std::exp(-x) : 1 / ((1 + x) * (1 + x));
+}
+
+bool is_paralysed(const Detector &d, double rate) {
+  return d.model == DetectorModel::Counter && d.is_paralyzable &&
+         rate * d.dead_time_s > paralysed_from;
+}
+
+double rolling_change(const Detector &d, double rows_per_s) {
+  return d.has_rolling_shutter ? rows_per_s * d.line_time_s : 0;
 }
 
 CorrectedCount corrected_count(const Detector &d, double told, double exposure_s) {
   if (d.model != DetectorModel::Counter)
     return {told, excess_variance(d), false};
+  if (d.is_paralyzable)
+    return prolonged_count(d, told, exposure_s);
   constexpr double blind = .9; // dead for nine tenths of the time: a per cent there is one of ten
   const double dead = told * d.dead_time_s / exposure_s;
   const double kept = 1 - std::min(dead, blind);

@@ -28,10 +28,14 @@ private:
   [[nodiscard]] PixelFrame stars(std::size_t plane) const;
   [[nodiscard]] PixelFrame object(std::size_t plane) const;
   [[nodiscard]] double share(const FrameAperture &aperture, const PixelFrame &others) const;
+  void cut(const FrameAperture &aperture);
+  void measure_slices(std::size_t plane, const RawFrame &raw, const std::array<FrameSum, 4> &sums,
+                      FramedExposure &out) const;
   void measure(std::size_t plane, const RawFrame &raw, const PixelFrame &others,
                const FrameAperture &aperture, FramedExposure &out) const;
   void fit(std::size_t plane, const RawFrame &raw, FramedExposure &out) const;
   void put(ChannelCounts &c, double share) const;
+  void take(const FrameSum &sum, ChannelCounts &c) const;
 
   const BandObserver &o_;
   const PixelImage &image_;
@@ -43,6 +47,10 @@ private:
   std::vector<ChannelLight> moments_; ///< [moment][channel]
   ChannelLight of_unit_;              ///< of an unpolarized flux of 1
   std::vector<double> transparency_;
+  TrailSlices slices_;
+  std::vector<FramedSlice> pieces_; ///< without channels
+  /// Of a star that stood in all moments as long, in each: as if all pixels were of the place.
+  std::vector<LatticeValues> piece_share_;
 };
 
 Result<void> Exposing::expect() {
@@ -150,6 +158,20 @@ void Exposing::put(ChannelCounts &c, double share) const {
   c.mean_star *= share;
 }
 
+/// What pixels hold.
+void Exposing::take(const FrameSum &sum, ChannelCounts &c) const {
+  const Detector &d = o_.instrument().detector;
+  c.counts = sum.electrons;
+  c.recorded = sum.adu * d.gain_e_adu;
+  c.sky = sum.sky;
+  c.sky_err = sum.sky_sd;
+  c.pixels = sum.pixels;
+  c.mean_sky *= sum.pixels;
+  c.var_read = sum.pixels * fixed_variance(d);
+  c.excess2 = excess_variance(d);
+  c.is_saturated = sum.is_saturated;
+}
+
 void Exposing::measure(std::size_t plane, const RawFrame &raw, const PixelFrame &others,
                        const FrameAperture &aperture, FramedExposure &out) const {
   const Detector &d = o_.instrument().detector;
@@ -158,17 +180,62 @@ void Exposing::measure(std::size_t plane, const RawFrame &raw, const PixelFrame 
   for (std::size_t p = 0; p < (is_mosaic_ ? 4u : 1u); ++p) {
     ChannelCounts c = whole_[is_mosaic_ ? p : plane];
     put(c, part);
-    c.counts = sums[p].electrons;
-    c.recorded = sums[p].adu * d.gain_e_adu;
-    c.sky = sums[p].sky;
-    c.sky_err = sums[p].sky_sd;
-    c.pixels = sums[p].pixels;
-    c.mean_sky *= sums[p].pixels;
-    c.var_read = sums[p].pixels * fixed_variance(d);
-    c.excess2 = excess_variance(d);
-    c.is_saturated = sums[p].is_saturated;
+    take(sums[p], c);
     out.channels.push_back(std::move(c));
   }
+  if (scene_.cuts_trail)
+    measure_slices(plane, raw, sums, out);
+}
+
+/// Which light each piece holds. A cut across a mosaic gives its places unequal numbers of pixels,
+/// which rows know. Wings that reach the ring, some 4e-5 of the light, are taken for sky.
+void Exposing::cut(const FrameAperture &aperture) {
+  slices_ = cut_trail(aperture, scene_.columns, scene_.rows, image_.fwhm_px());
+  const std::size_t moments = scene_.object.size();
+  double all = 0;
+  for (const FrameMoment &moment : scene_.object)
+    all += moment.weight;
+  pieces_.assign(slices_.count, {std::vector<double>(moments, 0), 0, {}});
+  piece_share_.assign(slices_.count, {});
+  std::vector<double> whole(slices_.count, 0);
+  for (std::size_t n = 0; n < moments; ++n) {
+    const FrameMoment &moment = scene_.object[n];
+    const std::vector<LatticeValues> shares = shares_in(slices_, image_, moment.at);
+    for (std::size_t k = 0; k < slices_.count; ++k)
+      for (std::size_t p = 0; p < 4; ++p) {
+        const double part = moment.weight / all * shares[k][p];
+        pieces_[k].weight[n] += part;
+        pieces_[k].offset_s += part * moment.offset_s;
+        whole[k] += part;
+        piece_share_[k][is_mosaic_ ? p : 0] += is_mosaic_ ? 4 * part : part;
+      }
+  }
+  for (std::size_t k = 0; k < slices_.count; ++k) {
+    const double share = std::max(whole[k], 1e-300);
+    pieces_[k].offset_s /= share;
+    for (double &weight : pieces_[k].weight)
+      weight /= share;
+  }
+}
+
+/// Channels of one plane into the pieces.
+void Exposing::measure_slices(std::size_t plane, const RawFrame &raw,
+                              const std::array<FrameSum, 4> &sums, FramedExposure &out) const {
+  const Detector &d = o_.instrument().detector;
+  if (out.slices.empty())
+    out.slices = pieces_;
+  const auto found = sum_slices(d, raw, slices_, is_mosaic_, sums);
+  for (std::size_t k = 0; k < slices_.count; ++k)
+    for (std::size_t p = 0; p < (is_mosaic_ ? 4u : 1u); ++p) {
+      const std::size_t channel = is_mosaic_ ? p : plane;
+      ChannelCounts c = whole_[channel];
+      c.row = c.row * piece_share_[k][p];
+      c.mean_star = 0;
+      for (std::size_t n = 0; n < moments_.size(); ++n)
+        c.mean_star += moments_[n][channel] * pieces_[k].weight[n] * piece_share_[k][p];
+      take(found[k][p], c);
+      out.slices[k].channels.push_back(std::move(c));
+    }
 }
 
 void Exposing::fit(std::size_t plane, const RawFrame &raw, FramedExposure &out) const {
@@ -200,6 +267,8 @@ Result<FramedExposure> Exposing::make() {
                                conditions.sky_inner_fwhm * width,
                                conditions.sky_outer_fwhm * width};
   FramedExposure out;
+  if (scene_.cuts_trail)
+    cut(aperture);
   for (const FramePoint &p : aperture.path)
     out.is_cut = out.is_cut || p.x < aperture.radius || p.y < aperture.radius ||
                  p.x > scene_.columns - 1 - aperture.radius ||

@@ -44,29 +44,38 @@ Result<BandObserver> BandObserver::make(const Instrument &instrument, BandRespon
                                      "telescope.throughput"));
     out.rate_.push_back(area * throughput * band.photons_per_flux * band.weight[k]);
   }
-  for (const std::complex<double> &eta : mirror_eta)
-    out.mirror_.push_back(mirror_element(eta, std::sqrt(0.5)));
+  out.mirror_eta_ = mirror_eta;
+  if (instrument.telescope.port != TelescopePort::Train)
+    for (const std::complex<double> &eta : mirror_eta)
+      out.mirror_.push_back(mirror_element(eta, std::sqrt(0.5)));
   out.band_ = std::move(band);
   out.pixel_arcsec_ = pixel_scale_arcsec(instrument.telescope, instrument.detector.pixel_um);
   return out;
 }
 
-InstrumentMueller BandObserver::port(std::size_t node, Angle altitude) const {
+InstrumentMueller BandObserver::port(std::size_t node, Angle altitude, Angle azimuth) const {
   const TelescopePort where = instrument_.telescope.port;
-  if (where == TelescopePort::Cassegrain || mirror_.empty())
+  if (where == TelescopePort::Cassegrain || mirror_eta_.empty())
     return identity_element();
+  if (where == TelescopePort::Train) {
+    const std::size_t mirrors = port_mirrors(instrument_.telescope);
+    return trace_train(instrument_.telescope.train,
+                       std::span(mirror_eta_).subspan(node * mirrors, mirrors), altitude, azimuth)
+        .matrix;
+  }
   return nasmyth_port(mirror_[node],
                       where == TelescopePort::NasmythRight ? NasmythSide::Right : NasmythSide::Left,
                       altitude);
 }
 
 Stokes<InstrumentAxes> BandObserver::at_polarimeter(std::size_t node, const Stokes<SkyNorth> &s,
-                                                    Angle altitude, Angle axis_zenith) const {
-  if (mirror_.empty())
+                                                    Angle altitude, Angle axis_zenith,
+                                                    Angle azimuth) const {
+  if (mirror_eta_.empty())
     return rotate_to<InstrumentAxes>(s, axis_zenith);
-  // At a Nasmyth focus the x axis is counted from the vertical there: after the mirror.
+  // Behind mirrors the x axis is counted from what stands there: at a Nasmyth focus the vertical.
   const Stokes<InstrumentAxes> up{s.i, s.q, s.u, s.v};
-  return axes_turned(axis_zenith) * (port(node, altitude) * up);
+  return axes_turned(axis_zenith) * (port(node, altitude, azimuth) * up);
 }
 
 Result<void> BandObserver::prepare(const PolarimeterState &state) {
@@ -159,7 +168,8 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
   const double peak =
       star * lattice / share * peak_share(light.airmass) + out.mean_sky / out.pixels;
-  out.is_saturated = corrected.is_saturated || peak > saturation_e(d);
+  const double rate = (star + out.mean_sky) / plan.exposure_s;
+  out.is_saturated = corrected.is_saturated || peak > saturation_e(d) || is_paralysed(d, rate);
 }
 
 Result<std::vector<ChannelCounts>> BandObserver::expected(const ExposurePlan &plan,
@@ -174,9 +184,10 @@ Result<std::vector<ChannelCounts>> BandObserver::expected(const ExposurePlan &pl
   for (std::size_t k = 0; k < band_.nm.size(); ++k) {
     const double bare = rate_[k] * plan.exposure_s;
     const double through = transmission(band_.nm[k], conditions_.air, light.airmass);
-    const auto sky = at_polarimeter(k, light.sky, light.altitude, light.axis_zenith);
-    const InstrumentMueller from_sky =
-        axes_turned(light.axis_zenith) * port(k, light.altitude) * axes_turned(light.zenith);
+    const auto sky = at_polarimeter(k, light.sky, light.altitude, light.axis_zenith, light.azimuth);
+    const InstrumentMueller from_sky = axes_turned(light.axis_zenith) *
+                                       port(k, light.altitude, light.azimuth) *
+                                       axes_turned(light.zenith);
     for (std::size_t c = 0; c < out.size(); ++c) {
       const PolarimeterChannel &channel = (*channels)[k][c];
       const StokesRow real = channel.row * own;

@@ -1,3 +1,4 @@
+#include <umov/instrument/mirrors.h>
 #include <umov/instrument/telescope.h>
 
 #include <algorithm>
@@ -18,16 +19,25 @@ double pixel_scale_arcsec(const Telescope &t, double pixel_um) {
   return pixel_um * 1e-6 / t.focal_length_m / arcsec;
 }
 
-Angle axis_from_zenith(const Telescope &t, Angle x_axis, Angle parallactic_angle, Angle altitude) {
+Angle axis_from_zenith(const Telescope &t, Angle x_axis, Angle parallactic_angle, Angle altitude,
+                       Angle azimuth) {
   if (t.mount == Mount::AltAz && !t.has_derotator)
     return x_axis;
   const Angle from_zenith = Angle::radians(x_axis.radians() - parallactic_angle.radians());
+  if (t.port == TelescopePort::Train && !is_mirrored(t))
+    return Angle::radians(from_zenith.radians() +
+                          trace_train(t.train, {}, altitude, azimuth).zenith.radians());
   // The mirror swaps the hand and the altitude turns the image: done twice, both are undone.
-  return axis_on_sky(t, from_zenith, altitude);
+  return axis_on_sky(t, from_zenith, altitude, azimuth);
 }
 
-Angle axis_on_sky(const Telescope &t, Angle axis, Angle altitude) {
+Angle axis_on_sky(const Telescope &t, Angle axis, Angle altitude, Angle azimuth) {
   switch (t.port) {
+  case TelescopePort::Train: {
+    const double turned =
+        axis.radians() - trace_train(t.train, {}, altitude, azimuth).zenith.radians();
+    return Angle::radians(is_mirrored(t) ? -turned : turned);
+  }
   case TelescopePort::NasmythRight:
     return Angle::radians(altitude.radians() - axis.radians());
   case TelescopePort::NasmythLeft:
@@ -37,6 +47,14 @@ Angle axis_on_sky(const Telescope &t, Angle axis, Angle altitude) {
   }
   return axis;
 }
+
+std::size_t port_mirrors(const Telescope &t) {
+  if (t.port == TelescopePort::Train)
+    return t.train.mirrors.size();
+  return t.port == TelescopePort::Cassegrain ? 0 : 1;
+}
+
+bool is_mirrored(const Telescope &t) { return port_mirrors(t) % 2 == 1; }
 
 double share_inside(ImageProfile profile, double radius_fwhm) {
   const double diameters = 2 * radius_fwhm;

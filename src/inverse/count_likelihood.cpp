@@ -11,7 +11,8 @@ constexpr std::size_t most = 8; // channels at once; of more, the rest is a set 
 constexpr double least_electrons = 1e-3;
 
 /// Electrons of one channel per unit of the scale.
-double light_of(const ObservedCount &count, const ModelLight &model, std::size_t at) {
+template <class Light>
+double light_of(const ObservedCount &count, const Light &model, std::size_t at) {
   return count.by_i * model.i[at] + count.by_q * model.q[at] + count.by_u * model.u[at];
 }
 
@@ -51,15 +52,17 @@ WhitenedCounts CountLikelihood::whitened(const ModelLight &model, double scale) 
   WhitenedCounts out;
   out.net.resize(counts_.size());
   out.light.resize(counts_.size());
+  out.parts.assign(model.parts.size(), std::vector<double>(counts_.size()));
+  algebra::Whitener whitener;
   for (const Set &set : sets_)
-    whiten_set(set, model, scale, out);
+    whiten_set(set, model, scale, whitener, out);
   return out;
 }
 
 /// C = noise of the model's own counts + what moves the channels together: transparency and the
 /// model's error in I, its errors in q and u, its numerical error.
 void CountLikelihood::whiten_set(const Set &set, const ModelLight &model, double scale,
-                                 WhitenedCounts &out) const {
+                                 algebra::Whitener &whitener, WhitenedCounts &out) const {
   constexpr std::size_t terms = 5;
   constexpr double half_width = 1.96;
   const double clouds = errors_.has_clouds ? errors_.zero_point_sd : 0;
@@ -68,39 +71,36 @@ void CountLikelihood::whiten_set(const Set &set, const ModelLight &model, double
   const double in_i = scale * model.i[set.at];
   const double width =
       model.i_half_width.empty() ? 0 : scale * model.i_half_width[set.at] / half_width;
-  std::array<std::array<double, terms>, most> common{};
-  std::array<std::array<double, most>, most> c{};
+  std::array<double, terms * most> common{};
+  std::array<double, most> variance{};
   for (std::size_t a = 0; a < set.size; ++a) {
     const ObservedCount &count = counts_[set.begin + a];
     const double light = light_of(count, model, set.at), mean = scale * light;
     const double flicker = count.has_own_pupil ? 0 : count.scintillation;
-    common[a] = {mean * std::sqrt(floor * floor + clouds * clouds + flicker * flicker),
-                 count.by_q * in_i * of_q, count.by_u * in_i * of_q,
-                 count.by_i * errors_.floor_median * median_i_, count.by_i * width};
-    c[a][a] = count.excess2 * std::max(mean + count.sky, least_electrons) + count.fixed_variance;
+    const double effects[terms] = {
+        mean * std::sqrt(floor * floor + clouds * clouds + flicker * flicker),
+        count.by_q * in_i * of_q, count.by_u * in_i * of_q,
+        count.by_i * errors_.floor_median * median_i_, count.by_i * width};
+    std::ranges::copy(effects, common.begin() + static_cast<std::ptrdiff_t>(a * terms));
+    variance[a] =
+        count.excess2 * std::max(mean + count.sky, least_electrons) + count.fixed_variance;
     if (count.has_own_pupil)
-      c[a][a] += std::pow(mean * count.scintillation, 2);
+      variance[a] += std::pow(mean * count.scintillation, 2);
     out.net[set.begin + a] = count.net;
     out.light[set.begin + a] = light;
-    for (std::size_t b = 0; b <= a; ++b)
-      for (std::size_t t = 0; t < terms; ++t)
-        c[a][b] += common[a][t] * common[b][t];
+    for (std::size_t p = 0; p < out.parts.size(); ++p)
+      out.parts[p][set.begin + a] = light_of(count, model.parts[p], set.at);
   }
-  for (std::size_t a = 0; a < set.size; ++a) { // Cholesky, and both sides solved on the way
-    double &net = out.net[set.begin + a], &light = out.light[set.begin + a];
-    for (std::size_t b = 0; b < a; ++b) {
-      for (std::size_t k = 0; k < b; ++k)
-        c[a][b] -= c[a][k] * c[b][k];
-      c[a][b] /= c[b][b];
-      c[a][a] -= c[a][b] * c[a][b];
-      net -= c[a][b] * out.net[set.begin + b];
-      light -= c[a][b] * out.light[set.begin + b];
-    }
-    c[a][a] = std::sqrt(c[a][a]);
-    out.log_det += 2 * std::log(c[a][a]);
-    net /= c[a][a];
-    light /= c[a][a];
-  }
+  whitener.reset(std::span(variance).first(set.size), std::span(common).first(set.size * terms),
+                 terms);
+  out.log_det += whitener.log_determinant();
+  const auto whiten = [&](std::vector<double> &side) {
+    whitener.whiten(std::span(side).subspan(set.begin, set.size));
+  };
+  whiten(out.net);
+  whiten(out.light);
+  for (std::vector<double> &part : out.parts)
+    whiten(part);
 }
 
 } // namespace umov::inverse

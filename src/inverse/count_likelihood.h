@@ -1,6 +1,8 @@
 #pragma once
 // Private: electrons held against the light of a model: docs/theory/inverse.md, section 2.
 
+#include "algebra/whitener.h"
+
 #include <umov/inverse/likelihood.h>
 #include <vector>
 
@@ -9,7 +11,8 @@ namespace umov::inverse {
 /// Counts and the model's electrons, both whitened: residuals are net - gain * light.
 struct WhitenedCounts {
   std::vector<double> net, light;
-  double log_det = 0; ///< of the covariances
+  double log_det = 0;                     ///< of the covariances
+  std::vector<std::vector<double>> parts; ///< electrons of each part, by the same whitening
 };
 
 /// The channels of exposures, ready to be compared with many models.
@@ -31,7 +34,8 @@ public:
   [[nodiscard]] WhitenedCounts whitened(const ModelLight &model, double scale) const;
 
 private:
-  void whiten_set(const Set &set, const ModelLight &model, double scale, WhitenedCounts &out) const;
+  void whiten_set(const Set &set, const ModelLight &model, double scale,
+                  algebra::Whitener &whitener, WhitenedCounts &out) const;
   std::vector<ObservedCount> counts_;
   std::vector<Set> sets_;
   CurveErrors errors_;

@@ -19,11 +19,64 @@ Pose pose_at(const Turning &turning, const ObservedEpoch &epoch) {
 }
 
 CurveModel::CurveModel(const ObservedCurve &curve, PoseLighting light,
-                       std::vector<std::size_t> column)
+                       std::vector<std::size_t> column, std::vector<PartKind> parts)
     : curve_(curve), light_(std::move(light)), column_(std::move(column)),
-      all_(curve.epochs.size()) {
+      all_(curve.epochs.size()), parts_(std::move(parts)) {
   std::iota(all_.begin(), all_.end(), std::size_t{0});
 }
+
+namespace {
+
+/// Light of one turning, and room for the next.
+class Room {
+public:
+  Room(std::size_t size, const std::vector<PartKind> &kinds) : width_(size), blocks_(1) {
+    for (const PartKind &kind : kinds)
+      blocks_ += kind.blocks();
+    for (auto *one : {&i_, &q_, &u_})
+      one->resize(blocks_ * size);
+    const auto of = [&](const std::vector<double> &all, std::size_t block) {
+      return std::span(all).subspan(block * size, size);
+    };
+    std::size_t at = 1;
+    for (const PartKind &kind : kinds) {
+      PartLight part{of(i_, at), of(q_, at), of(u_, at), {}, {}, kind.sd};
+      if (kind.slope_sd > 0) {
+        part.smooth = of(i_, at + 1);
+        part.rough = of(i_, at + 2);
+      }
+      at += kind.blocks();
+      parts_.push_back(part);
+    }
+  }
+  [[nodiscard]] std::size_t blocks() const { return blocks_; }
+  /// Row `from` of the table, of all bands of which `column` is one, becomes number `to`.
+  void take(const StokesTable &table, std::size_t pose, std::size_t column, std::size_t to) {
+    const std::size_t bands = table.bands / blocks_, size = width_.size();
+    for (std::size_t block = 0; block < blocks_; ++block) {
+      const std::size_t from = pose * table.bands + block * bands + column;
+      // A pose whose light is no number counts as dark.
+      const bool is_lit = std::isfinite(table.i[from]) && std::isfinite(table.q[from]);
+      i_[block * size + to] = is_lit ? table.i[from] : 0;
+      q_[block * size + to] = is_lit ? table.q[from] : 0;
+      u_[block * size + to] = is_lit ? table.u[from] : 0;
+      if (block == 0)
+        width_[to] = is_lit && table.i_err.size() == table.i.size() ? table.i_err[from] : 0;
+    }
+  }
+  [[nodiscard]] ModelLight light() const {
+    const std::size_t size = width_.size();
+    return {std::span(i_).first(size), std::span(q_).first(size), std::span(u_).first(size), width_,
+            parts_};
+  }
+
+private:
+  std::vector<double> i_, q_, u_, width_;
+  std::vector<PartLight> parts_;
+  std::size_t blocks_;
+};
+
+} // namespace
 
 bool CurveModel::for_each(std::span<const Turning> turnings, std::span<const std::size_t> epochs,
                           unsigned threads,
@@ -46,23 +99,15 @@ bool CurveModel::for_each(std::span<const Turning> turnings, std::span<const std
       return false;
     poses_lit_ += poses.size();
     const std::size_t size = curve_.epochs.size() * bands;
-    const bool has_widths = table.i_err.size() == table.i.size();
-    constexpr std::size_t chunk = 64; // turnings that share one buffer
+    // Turnings that share one buffer: parts are fitted to each, so that few are work for a thread.
+    const std::size_t chunk = parts_.empty() ? 64 : 8;
     parallel_for((count + chunk - 1) / chunk, threads, [&](std::size_t c) {
-      std::vector<double> i(size), q(size), u(size), width(size);
+      Room room(size, parts_);
       for (std::size_t k = c * chunk; k < std::min(count, (c + 1) * chunk); ++k) {
         for (std::size_t e = 0; e < per; ++e)
-          for (std::size_t b = 0; b < bands; ++b) {
-            const std::size_t from = (k * per + e) * table.bands + column_[b];
-            const std::size_t to = epochs[e] * bands + b;
-            // A pose whose light is no number counts as dark.
-            const bool is_lit = std::isfinite(table.i[from]) && std::isfinite(table.q[from]);
-            i[to] = is_lit ? table.i[from] : 0;
-            q[to] = is_lit ? table.q[from] : 0;
-            u[to] = is_lit ? table.u[from] : 0;
-            width[to] = is_lit && has_widths ? table.i_err[from] : 0;
-          }
-        take(begin + k, {i, q, u, width});
+          for (std::size_t b = 0; b < bands; ++b)
+            room.take(table, k * per + e, column_[b], epochs[e] * bands + b);
+        take(begin + k, room.light());
       }
     });
   }

@@ -1,6 +1,6 @@
 #include <umov/inverse/likelihood.h>
 
-#include "inverse/count_likelihood.h"
+#include "inverse/likelihood_sums.h"
 #include <umov/inverse/sample_errors.h>
 
 #include <algorithm>
@@ -16,20 +16,7 @@ double chi2_probability(double chi2, double dof) {
   return std::erfc(z / std::sqrt(2.0)) / 2;
 }
 
-/// Factors between model and data, and the common scale behind them.
-struct CurveLikelihood::Gains {
-  std::vector<double> gain; ///< per group
-  double scale = 1;
-  double prior_chi2 = 0; ///< of the gains' own priors
-  double log_det = 0;    ///< what the integrals over scale and gains leave behind
-};
-
-/// Data as a model is held against them.
-struct CurveLikelihood::Weighed {
-  std::vector<double> weights; ///< of the rows
-  inverse::WhitenedCounts counts;
-  double grown = 0; ///< ln of what variances have grown by, and of those that the model makes
-};
+using inverse::Gains;
 
 CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &errors,
                                  std::span<const std::size_t> epochs)
@@ -83,6 +70,18 @@ std::vector<CurveLikelihood::Block> CurveLikelihood::blocks() const {
   return out;
 }
 
+std::vector<CurveLikelihood::Place> CurveLikelihood::places() const {
+  std::vector<Place> out;
+  const std::size_t bands = bands_.size();
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+    if (rows_[k].weight > 0)
+      out.push_back({rows_[k].at / bands, rows_[k].at % bands, 3 * k, 1});
+  if (counts_)
+    for (const auto &set : counts_->sets())
+      out.push_back({set.at / bands, set.at % bands, 3 * rows_.size() + set.begin, set.size});
+  return out;
+}
+
 /// Weights of the rows: those of the data, less where the model itself is not sure.
 CurveLikelihood::Weighed CurveLikelihood::weigh(const ModelLight &model) const {
   Weighed out;
@@ -91,6 +90,7 @@ CurveLikelihood::Weighed CurveLikelihood::weigh(const ModelLight &model) const {
     constexpr int rounds = 2;
     for (int round = 0; round < rounds; ++round) {
       out.counts = counts_->whitened(model, scale);
+      out.scale = scale;
       double cross = 0, square = 0;
       for (std::size_t k = 0; k < counts_->size(); ++k) {
         cross += out.counts.net[k] * out.counts.light[k];
@@ -123,18 +123,6 @@ CurveLikelihood::Weighed CurveLikelihood::weigh(const ModelLight &model) const {
   return out;
 }
 
-/// Sums over data and model that the gains follow from, of each group and of all.
-struct CurveLikelihood::GainSums {
-  std::vector<double> cross, square;
-  double all_cross = 0, all_square = 0;
-  void add(std::size_t group, double weight, double data, double model) {
-    cross[group] += weight * data * model;
-    square[group] += weight * model * model;
-    all_cross += weight * data * model;
-    all_square += weight * model * model;
-  }
-};
-
 CurveLikelihood::GainSums CurveLikelihood::sums_of(const ModelLight &model,
                                                    const Weighed &data) const {
   GainSums out{std::vector<double>(groups_, 0), std::vector<double>(groups_, 0)};
@@ -150,9 +138,8 @@ CurveLikelihood::GainSums CurveLikelihood::sums_of(const ModelLight &model,
 
 /// The best gains, by least squares: without clouds the gain of a band is normal around the scale,
 /// g_b = s (1 + z_b), which for a given s is linear, and so is s then (section 2 of the page).
-CurveLikelihood::Gains CurveLikelihood::gains_of(const ModelLight &model,
-                                                 const Weighed &data) const {
-  const auto [cross, square, all_cross, all_square] = sums_of(model, data);
+Gains CurveLikelihood::gains_of(const GainSums &sums) const {
+  const auto &[cross, square, all_cross, all_square] = sums;
   constexpr double least = 1e-9; // light is not negative, however dark the data
   Gains out;
   out.gain.assign(groups_, 1);
@@ -223,9 +210,23 @@ double CurveLikelihood::fill(const ModelLight &model, const Gains &gains, const 
 }
 
 Comparison CurveLikelihood::compare(const ModelLight &model) const {
+  if (model.parts.empty())
+    return compare_as_it_is(model);
+  const FittedLight fitted = fit_parts(model);
+  Comparison out = compare_as_it_is({fitted.i, fitted.q, fitted.u, model.i_half_width});
+  for (const double off : fitted.off) {
+    out.chi2 += off * off;
+    out.minus_2_log += off * off;
+    out.residuals.push_back(off);
+  }
+  out.minus_2_log += fitted.log_det;
+  return out;
+}
+
+Comparison CurveLikelihood::compare_as_it_is(const ModelLight &model) const {
   Comparison out;
   const Weighed data = weigh(model);
-  Gains gains = gains_of(model, data);
+  Gains gains = gains_of(sums_of(model, data));
   out.chi2 = fill(model, gains, data, out.residuals);
   out.minus_2_log = out.chi2 + gains.log_det + data.grown;
   out.scale = gains.scale;
@@ -259,7 +260,7 @@ Comparison CurveLikelihood::compare(const ModelLight &model) const {
           trusted.counts.net[at] *= std::sqrt(trust[k]);
           trusted.counts.light[at] *= std::sqrt(trust[k]);
         }
-      gains = gains_of(model, trusted);
+      gains = gains_of(sums_of(model, trusted));
       // As before, residuals are whitened by all of the weight.
       out.chi2 = fill(model, gains, data, out.residuals);
     }

@@ -1,6 +1,7 @@
 #include <umov/inverse/pose_search.h>
 
 #include "algebra/dense.h"
+#include "inverse/model_error.h"
 #include "inverse/posterior.h"
 #include "inverse/some_epochs.h"
 
@@ -181,18 +182,20 @@ struct Peaks {
   bool is_settled = true;
 };
 
-/// Draws that fit better than any of the fits: these had not come to rest, or missed a peak.
+/// Draws that fit better than any of the fits: these had not come to rest, or missed a peak. What
+/// counts is chi-square, which is what fits lessen: integrals over unknown parts move the peak of
+/// the likelihood beside its bottom.
 std::vector<Turning> better_draws(const Samples &samples, const std::vector<TurningFit> &fits) {
-  constexpr double better = 1; // in -2 ln of the likelihood, which masks make rough by less
+  constexpr double better = 1; // in chi-square, which masks make rough by less
   constexpr std::size_t most = 4;
   double best = 1e300;
   for (const TurningFit &fit : fits)
-    best = std::min(best, fit.at.minus_2_log);
+    best = std::min(best, fit.at.chi2);
   std::vector<PoseSample> found;
   for (const PoseSample &s : samples.draws)
-    if (s.minus_2_log < best - better)
+    if (s.chi2 < best - better)
       found.push_back(s);
-  std::ranges::stable_sort(found, {}, &PoseSample::minus_2_log);
+  std::ranges::stable_sort(found, {}, &PoseSample::chi2);
   std::vector<Turning> out;
   for (std::size_t k = 0; k < std::min(most, found.size()); ++k)
     out.push_back(found[k].turning);
@@ -230,6 +233,32 @@ struct Judged {
   std::size_t of = 0;
 };
 
+/// Takes away the turnings that a few epochs rule out by e^20 and more: each further row adds to
+/// what speaks against them. Not of counts, whose variances are the model's. False if it was
+/// stopped.
+bool drop_hopeless(const CurveModel &model, const CurveLikelihood &likelihood, double log_evidence,
+                   unsigned threads, std::vector<Turning> &turnings, std::vector<double> &weights) {
+  constexpr std::size_t few = 8;
+  constexpr double nothing = 20; // e-folds
+  const std::size_t count = model.curve().epochs.size();
+  if (!model.curve().counts.empty() || count <= 2 * few || turnings.empty())
+    return true;
+  const auto epochs = inverse::some_epochs(count, few);
+  const CurveLikelihood some(model.curve(), likelihood.errors(), epochs);
+  const auto compared = inverse::compare_all(model, some, turnings, epochs, threads);
+  if (compared.empty())
+    return false;
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < compared.size(); ++k)
+    if (!(compared[k].minus_2_log / 2 > nothing - log_evidence)) {
+      turnings[kept] = turnings[k];
+      weights[kept++] = weights[k];
+    }
+  turnings.resize(kept);
+  weights.resize(kept);
+  return true;
+}
+
 /// Evidence that judged attitudes hold away from all peaks, in parts of that of the peaks: where
 /// little light was seen there are more peaks than fits. Less than 0 if it was stopped.
 double evidence_beside(const CurveModel &model, const CurveLikelihood &likelihood,
@@ -249,14 +278,21 @@ double evidence_beside(const CurveModel &model, const CurveLikelihood &likelihoo
   const std::size_t stride =
       beside.size() > 2 * each ? (beside.size() - each + each - 1) / each : 1;
   std::vector<Turning> asked;
-  for (std::size_t k = 0; k < beside.size(); k += k < each ? 1 : stride)
+  std::vector<double> weights; // attitudes that each stands for
+  for (std::size_t k = 0; k < beside.size(); k += k < each ? 1 : stride) {
     asked.push_back(beside[k]);
+    weights.push_back(static_cast<double>(k < each ? 1 : stride));
+  }
+  if (!drop_hopeless(model, likelihood, peaks.samples.log_evidence, threads, asked, weights))
+    return -1;
+  if (asked.empty())
+    return 0;
   const auto compared = inverse::compare_all(model, likelihood, asked, {}, threads);
   if (compared.empty())
     return -1;
   double out = 0;
   for (std::size_t k = 0; k < compared.size(); ++k)
-    out += static_cast<double>(k < each ? 1 : stride) *
+    out += weights[k] *
            std::exp(std::min(-compared[k].minus_2_log / 2 - peaks.samples.log_evidence, 50.0));
   return out / static_cast<double>(judged.of);
 }
@@ -313,55 +349,132 @@ double PoseMode::sd_rad() const {
 }
 
 Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options) {
-  return search_pose(model, model, options);
+  return search_pose({model, model, model}, options);
 }
 
-Result<PoseAnswer> search_pose(const CurveModel &model, const CurveModel &quick,
-                               const SearchOptions &options) {
-  const CurveLikelihood exact(model.curve(), options.errors);
-  if (exact.measurements() == 0)
+namespace {
+
+/// The errors that the best of some fits leave, and the likelihood of them.
+class FoundErrors {
+public:
+  FoundErrors(const CurveModel &model, const SearchOptions &options)
+      : model_(model), options_(options), error_{options.errors, 0, 1, 0},
+        likelihood_(model.curve(), options.errors) {}
+  /// Asks the data; false if it was stopped. `changed`: by more than the data can tell.
+  bool ask(std::span<const Turning> best, bool &changed) {
+    changed = false;
+    if (!(options_.largest_floor > options_.errors.floor))
+      return true;
+    constexpr std::size_t few = 5;
+    inverse::ModelError found;
+    if (!inverse::find_model_error(model_, options_.errors, options_.largest_floor,
+                                   best.first(std::min(few, best.size())), options_.threads, found))
+      return false;
+    constexpr double much = 1.15;
+    const double times = found.errors.floor / std::max(error_.errors.floor, 1e-9);
+    changed = times > much || times < 1 / much;
+    error_ = found;
+    likelihood_ = CurveLikelihood(model_.curve(), found.errors);
+    return true;
+  }
+  [[nodiscard]] const CurveLikelihood &likelihood() const { return likelihood_; }
+  void tell(PoseAnswer &answer) const {
+    answer.errors = error_.errors;
+    answer.model_error = error_.found;
+    answer.related = error_.related;
+    answer.misfit = error_.found > 0 ? error_.chi2 : answer.chi2;
+  }
+
+private:
+  const CurveModel &model_;
+  const SearchOptions &options_;
+  inverse::ModelError error_;
+  CurveLikelihood likelihood_;
+};
+
+std::vector<Turning> best_of(const std::vector<TurningFit> &fits, std::size_t count) {
+  std::vector<Turning> out;
+  for (std::size_t j = 0; j < std::min(fits.size(), count); ++j)
+    out.push_back(fits[j].turning);
+  return out;
+}
+
+/// The last steps, until the errors that they leave are those that they were taken with.
+Result<std::vector<TurningFit>> settled_fits(const CurveModel &model, std::vector<Turning> from,
+                                             Freedom freedom, FoundErrors &errors,
+                                             const SearchOptions &options) {
+  constexpr int rounds = 3;
+  for (int round = 0;; ++round) {
+    auto fits =
+        inverse::fit_turnings(model, errors.likelihood(), from, {}, last_steps(freedom, options));
+    if (fits.empty())
+      return tl::unexpected(stopped());
+    constexpr std::size_t most = 24;
+    from = best_of(fits, most);
+    bool has_changed = false;
+    if (round + 1 == rounds)
+      return fits;
+    if (!errors.ask(from, has_changed))
+      return tl::unexpected(stopped());
+    if (!has_changed)
+      return fits;
+  }
+}
+
+} // namespace
+
+Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options) {
+  const auto &[model, first, quick] = models;
+  FoundErrors errors(model, options);
+  if (errors.likelihood().measurements() == 0)
     return fail(ErrorCode::BadInput,
                 "nothing was measured: no row has light with an error or above 0, nor q and u");
   UMOV_ASSIGN(left, search_grid(quick, options));
-  const auto starts = spread_out(left, options.starts, 5 * degree);
+  std::vector<Turning> from = spread_out(left, options.starts, 5 * degree);
   const CurveLikelihood rough(model.curve(), tempered(options.errors));
   const auto some = inverse::some_epochs(model.curve().epochs.size(), 60);
   // Many at first, and few of those that stay apart: a basin of one glint is a long valley, and
   // there is one for each flat that could have mirrored the Sun.
   const inverse::FitPlan tempered_steps{Freedom::Attitude, 4, 0, 0, 2e-3, options.threads};
   const inverse::FitPlan first_steps{Freedom::Attitude, 12, 0, 0, 1e-3, options.threads};
-  const inverse::FitPlan plans[] = {tempered_steps, first_steps,
-                                    last_steps(Freedom::Attitude, options)};
-  constexpr std::size_t kept[] = {80, 24, 0};
-  std::vector<Turning> from = starts;
-  std::vector<TurningFit> fits;
-  for (std::size_t k = 0; k < std::size(plans); ++k) {
+  constexpr std::size_t after_tempered = 80, after_first = 24, steps = 3;
+  const auto tell = [&](std::size_t done) {
     if (options.progress)
-      options.progress("refine", k, std::size(plans));
-    const bool is_first = k == 0, is_last = k + 1 == std::size(plans);
-    fits = inverse::fit_turnings(is_last ? model : quick, is_first ? rough : exact, from,
-                                 is_first ? std::span(some) : std::span<const std::size_t>(),
-                                 plans[k]);
-    if (fits.empty())
-      return tl::unexpected(stopped());
-    from.clear();
-    for (std::size_t j = 0; j < std::min(fits.size(), kept[k]); ++j)
-      from.push_back(fits[j].turning);
-  }
-  UMOV_ASSIGN(
-      out, answer_of(model, quick, exact, fits, Freedom::Attitude, {left, options.grid}, options));
+      options.progress("refine", done, steps);
+  };
+  tell(0);
+  auto fits = inverse::fit_turnings(quick, rough, from, some, tempered_steps);
+  from = best_of(fits, after_tempered);
+  bool has_changed = false;
+  if (fits.empty() || !errors.ask(from, has_changed))
+    return tl::unexpected(stopped());
+  tell(1);
+  fits = inverse::fit_turnings(first, errors.likelihood(), from, {}, first_steps);
+  from = best_of(fits, after_first);
+  if (fits.empty() || !errors.ask(from, has_changed))
+    return tl::unexpected(stopped());
+  tell(2);
+  UMOV_ASSIGN(last, settled_fits(model, from, Freedom::Attitude, errors, options));
+  UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), last, Freedom::Attitude,
+                             {left, options.grid}, options));
+  errors.tell(out);
+  if (&quick != &first && &quick != &model)
+    out.poses_lit += quick.poses_lit();
   out.unknowns = 4; // attitude and scale
   return out;
 }
 
 Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,
                                const SearchOptions &options) {
-  const CurveLikelihood exact(model.curve(), options.errors);
-  auto fits = inverse::fit_turnings(model, exact, {starts.begin(), starts.end()}, {},
-                                    last_steps(Freedom::AttitudeAndRate, options));
-  if (fits.empty())
+  FoundErrors errors(model, options);
+  bool has_changed = false;
+  if (!errors.ask(starts, has_changed))
     return tl::unexpected(stopped());
-  UMOV_ASSIGN(out, answer_of(model, model, exact, fits, Freedom::AttitudeAndRate, {}, options));
+  UMOV_ASSIGN(fits, settled_fits(model, {starts.begin(), starts.end()}, Freedom::AttitudeAndRate,
+                                 errors, options));
+  UMOV_ASSIGN(out, answer_of(model, model, errors.likelihood(), fits, Freedom::AttitudeAndRate, {},
+                             options));
+  errors.tell(out);
   out.unknowns = 7; // attitude, rate and scale
   return out;
 }

@@ -71,8 +71,11 @@ double log_density(const std::vector<Proposal> &mixture, const Turning &at, doub
   return std::log(sum + 1e-300);
 }
 
-/// Weights from logarithms, and what they add up to.
+/// Weights from logarithms, and what they add up to. What has none (NaN) weighs nothing.
 double normalize(std::vector<PoseSample> &draws, std::vector<double> log_weight) {
+  constexpr double none = -1e300;
+  for (double &one : log_weight)
+    one = one > none ? one : none;
   const double highest = *std::ranges::max_element(log_weight);
   double sum = 0;
   for (std::size_t k = 0; k < draws.size(); ++k)
@@ -193,6 +196,7 @@ Samples sample_modes(const CurveModel &model, const CurveLikelihood &likelihood,
     parallel_for(drawn.size(), options.threads, [&](std::size_t k) {
       out.draws[k].turning = drawn[k];
       out.draws[k].minus_2_log = compared[k].minus_2_log;
+      out.draws[k].chi2 = compared[k].chi2;
       log_weight[k] = -compared[k].minus_2_log / 2 - log_density(mixture, drawn[k], span);
     });
     out.log_evidence = normalize(out.draws, log_weight) -
@@ -349,6 +353,24 @@ bool move(const CurveModel &model, const CurveLikelihood &likelihood, const Sear
   return true;
 }
 
+/// Effective size where copies that have not moved apart count as one: no more than that many are
+/// independent.
+double different(std::vector<PoseSample> draws) {
+  std::ranges::stable_sort(draws, {}, [](const PoseSample &s) { return s.minus_2_log; });
+  double squares = 0;
+  for (std::size_t k = 0; k < draws.size();) {
+    double weight = 0;
+    const Quaternion q = draws[k].turning.attitude;
+    const double value = draws[k].minus_2_log;
+    for (; k < draws.size() && draws[k].minus_2_log == value &&
+           angle_between(draws[k].turning.attitude, q) < 1e-7;
+         ++k)
+      weight += draws[k].weight;
+    squares += weight * weight;
+  }
+  return squares > 0 ? 1 / squares : 0;
+}
+
 } // namespace
 
 Samples sample_all(const CurveModel &model, const CurveLikelihood &likelihood,
@@ -374,7 +396,7 @@ Samples sample_all(const CurveModel &model, const CurveLikelihood &likelihood,
     if (options.progress)
       options.progress("posterior", static_cast<std::size_t>(power * 1000), 1000);
   }
-  out.effective = effective_size(out.draws);
+  out.effective = different(out.draws);
   return out;
 }
 

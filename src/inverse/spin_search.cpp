@@ -213,7 +213,7 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
   const double shift = curve.epochs[curve.epochs.size() / 2].seconds;
   for (ObservedEpoch &epoch : middle.epochs)
     epoch.seconds -= shift;
-  const CurveModel model(middle, light, column);
+  const CurveModel model(middle, light, column, request.parts);
   const CurveModel coarse(middle, request.coarse ? request.coarse : light, column);
   std::vector<Turning> starts;
   for (std::size_t k = 0; k < request.periods_s.size(); ++k) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <map>
 #include <umov/core/files.h>
+#include <umov/core/text.h>
 #include <umov/scene/pose.h>
 #include <umov/surface/surface.h>
 
@@ -26,13 +27,14 @@ Result<void> check_angles(const BrdfGeometry &row, const std::string &which, con
 class Surfaces {
 public:
   explicit Surfaces(const Material &material) : material_(material) {}
-  Result<Surface> at(double wavelength_nm) {
-    if (const auto found = known_.find(wavelength_nm); found != known_.end())
-      return found->second;
-    const Band band{fmt::format("nm:{}", wavelength_nm), Wavelength::nm(wavelength_nm)};
-    UMOV_ASSIGN(surface, Surface::compile(material_, {band}));
-    known_.emplace(wavelength_nm, surface);
-    return surface;
+  Result<const Surface *> at(double wavelength_nm) {
+    auto found = known_.find(wavelength_nm);
+    if (found == known_.end()) {
+      const Band band{fmt::format("nm:{}", wavelength_nm), Wavelength::nm(wavelength_nm)};
+      UMOV_ASSIGN(surface, Surface::compile(material_, {band}));
+      found = known_.emplace(wavelength_nm, std::move(surface)).first;
+    }
+    return &found->second;
   }
 
 private:
@@ -42,11 +44,17 @@ private:
 
 struct BrdfColumns {
   std::vector<std::vector<double>> in{4}, mueller{16}, terms{5};
+  void reserve(std::size_t rows) {
+    for (auto *columns : {&in, &mueller})
+      for (std::vector<double> &column : *columns)
+        column.reserve(rows);
+  }
 };
 
 Result<void> evaluate(const BrdfGeometry &row, bool with_terms, Surfaces &surfaces,
                       BrdfColumns &out) {
-  UMOV_ASSIGN(surface, surfaces.at(row.wavelength_nm));
+  UMOV_ASSIGN(found, surfaces.at(row.wavelength_nm));
+  const Surface &surface = *found;
   constexpr double rad = pi / 180;
   SurfaceDirections at =
       directions_from_angles(row.theta_i_deg == 90 ? pi / 2 : row.theta_i_deg * rad,
@@ -85,10 +93,15 @@ Result<std::vector<BrdfGeometry>> read_brdf_geometries(const std::string &path,
   return rows;
 }
 
-Result<Table> brdf_table(const BrdfRequest &request) {
+Result<Table> brdf_table(const BrdfRequest &request, const Monitor &monitor) {
   Surfaces surfaces(request.material);
   BrdfColumns columns;
+  columns.reserve(request.rows.size());
   for (std::size_t i = 0; i < request.rows.size(); ++i) {
+    if (monitor.is_cancelled())
+      return fail(ErrorCode::Interrupted,
+                  fmt::format("stopped by the user after {} of {}", i,
+                              counted(request.rows.size(), "geometry", "geometries")));
     UMOV_TRY(check_angles(request.rows[i],
                           request.rows.size() > 1 ? fmt::format("row {}: ", i + 1) : "",
                           {request.file}));

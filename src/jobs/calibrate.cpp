@@ -1,6 +1,7 @@
 #include <umov/jobs/calibrate.h>
 
 #include <algorithm>
+#include <array>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <fmt/format.h>
@@ -19,9 +20,9 @@ std::string note_of(const CountsFile &counts, const char *name) {
 }
 
 /// No set of a standard: for want of its name, or of q and u.
-std::string no_standard(const Table &table, const std::vector<PolarizedStandard> &standards) {
+std::string no_standard(const Table &table, const std::vector<StandardStar> &standards) {
   std::vector<std::string> seen, known;
-  for (const PolarizedStandard &one : standards)
+  for (const StandardStar &one : standards)
     known.push_back(printable(one.name));
   for (std::size_t k = 0; k < table.rows(); ++k)
     if (const std::string name = printable(table.text("name", k));
@@ -55,17 +56,203 @@ void warn_of_standards(const std::vector<StandardMeasurement> &data,
                                  found.chi2, found.dof));
 }
 
+/// Sets of standards, as the two fits want them.
+struct Measured {
+  std::vector<StandardMeasurement> polarized;
+  std::vector<PhotometricStandard> bright;
+};
+
+/// A set's magnitude behind the air, by the w0 of its counts.
+PhotometricStandard measured_light(const Table &table, std::size_t k, const StandardStar &star) {
+  const double through = table.number("I_obs", k) / table.number("I", k);
+  return {star.mag, table.number("mag", k) - 2.5 * std::log10(through), table.number("airmass", k),
+          star.colour};
+}
+
+StandardMeasurement measured_polarization(const Table &table, std::size_t k,
+                                          const StandardStar &star, std::size_t number) {
+  const double axis = table.number("x_axis_pa", k) * pi / 180;
+  const double variance = (table.number("cov_qq", k) + table.number("cov_uu", k)) / 2;
+  return {std::complex(table.number("q", k), table.number("u", k)) * std::polar(1.0, -2 * axis),
+          std::polar(star.p, 2 * star.angle_rad),
+          axis,
+          std::sqrt(variance),
+          number,
+          star.p_sd,
+          star.angle_sd};
+}
+
+Measured measured(const Table &table, const std::vector<StandardStar> &standards) {
+  Measured out;
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    const auto star = std::ranges::find(standards, table.text("name", k), &StandardStar::name);
+    if (star == standards.end())
+      continue;
+    if (!std::isnan(star->p) && std::isfinite(table.number("q", k)))
+      out.polarized.push_back(measured_polarization(
+          table, k, *star, static_cast<std::size_t>(star - standards.begin())));
+    if (!std::isnan(star->mag) && table.number("I", k) > 0) // what was not seen has no magnitude
+      out.bright.push_back(measured_light(table, k, *star));
+  }
+  return out;
+}
+
+/// Zero point and extinction; the colour term where every star has a colour.
+Result<PhotometricCalibration> photometry_of(const std::vector<PhotometricStandard> &stars,
+                                             bool has_second_order) {
+  for (const PhotometricStandard &one : stars) {
+    if (!std::isfinite(one.instrumental_mag))
+      return fail(ErrorCode::BadInput,
+                  "photometry of counts without magnitudes behind the air: columns airmass and "
+                  "k_mag (0 where w0 knows no air) and a line \"zero_flux BAND\" of the header "
+                  "were expected");
+    if (constexpr double least = 0.99; !(one.airmass >= least))
+      return fail(ErrorCode::BadInput, fmt::format("photometry at an air mass of {}: a column "
+                                                   "airmass of 1 and more was expected",
+                                                   one.airmass));
+  }
+  const auto known = std::ranges::count_if(
+      stars, [](const PhotometricStandard &one) { return !std::isnan(one.colour); });
+  if (known == 0 && !has_second_order)
+    return calibrate_photometry(stars, 2);
+  if (known < static_cast<std::ptrdiff_t>(stars.size()))
+    return fail(ErrorCode::BadInput,
+                fmt::format("a colour stands beside {} of {} measurements of standards: all of "
+                            "them, or none (and no k''), were expected",
+                            known, stars.size()));
+  return calibrate_photometry(stars, has_second_order ? 4 : 3);
+}
+
+/// Both fits; where one of them works, what hinders the other is a warning.
+Result<void> fit(const Measured &data, bool has_second_order, CalibrationFile &out,
+                 Diagnostics &diagnostics) {
+  std::vector<std::string> hindered;
+  if (!data.polarized.empty()) {
+    const auto found = calibrate_polarimeter(data.polarized);
+    if (found) {
+      out.calibration = *found;
+      warn_of_standards(data.polarized, *found, diagnostics);
+    } else {
+      hindered.push_back(found.error().message);
+    }
+  }
+  if (!data.bright.empty()) {
+    const auto found = photometry_of(data.bright, has_second_order);
+    if (found)
+      out.photometry = *found;
+    else
+      hindered.push_back(found.error().message);
+  }
+  if (!out.calibration && !out.photometry)
+    return fail(ErrorCode::BadInput, hindered.front());
+  for (const std::string &words : hindered)
+    diagnostics.warn(words);
+  return {};
+}
+
+/// The table of channels, row by row.
+class ChannelColumns {
+public:
+  Result<void> add(const std::string &name, const std::vector<PolarizerCount> &all,
+                   Diagnostics &diagnostics);
+  Table table() &&;
+
+private:
+  std::vector<std::string> names_;
+  std::vector<std::int64_t> angles_, dof_;
+  std::array<std::vector<double>, 11> numbers_;
+};
+
+Result<void> ChannelColumns::add(const std::string &name, const std::vector<PolarizerCount> &all,
+                                 Diagnostics &diagnostics) {
+  std::vector<double> angles, counts;
+  double variance = 0;
+  for (const PolarizerCount &one : all)
+    if (one.channel == name) {
+      angles.push_back(one.angle_rad);
+      counts.push_back(one.counts);
+      variance += one.variance;
+    }
+  const auto n = static_cast<double>(counts.size());
+  // Over even angles the variances of the counts act as their mean.
+  auto found = calibrate_channel(angles, counts, variance / n);
+  if (!found)
+    return fail(found.error().code,
+                name.empty()
+                    ? found.error().message
+                    : fmt::format("channel \"{}\": {}", printable(name), found.error().message));
+  const ChannelAnalyser analyser = analyser_of(*found);
+  double chi2 = 0;
+  for (std::size_t k = 0, at = 0; k < all.size(); ++k)
+    if (all[k].channel == name) {
+      const double twice = 2 * angles[at];
+      const double missed = counts[at++] - found->row[0] - found->row[1] * std::cos(twice) -
+                            found->row[2] * std::sin(twice);
+      chi2 += missed * missed / all[k].variance;
+    }
+  const int dof = static_cast<int>(counts.size()) - 3;
+  if (constexpr double chance = 1e-3; dof > 0 && boost::math::gamma_q(dof / 2., chi2 / 2) < chance)
+    diagnostics.warn(fmt::format("{}chi2 = {:.3g} of {} degrees of freedom: the counts do not "
+                                 "follow a polarizer's cosine. Did the lamp change, or is an angle "
+                                 "wrong?",
+                                 name.empty() ? "" : "channel \"" + printable(name) + "\": ", chi2,
+                                 dof));
+  constexpr double degree = pi / 180;
+  names_.push_back(name);
+  angles_.push_back(static_cast<std::int64_t>(counts.size()));
+  dof_.push_back(dof);
+  const double values[] = {found->row[0],
+                           found->row[1],
+                           found->row[2],
+                           found->sd[0],
+                           found->sd[1],
+                           found->sd[2],
+                           analyser.efficiency,
+                           analyser.efficiency_sd,
+                           analyser.angle_rad / degree,
+                           analyser.angle_sd / degree,
+                           chi2};
+  for (std::size_t k = 0; k < numbers_.size(); ++k)
+    numbers_[k].push_back(values[k]);
+  return {};
+}
+
+Table ChannelColumns::table() && {
+  constexpr std::array texts{
+      std::array{"w0", "electron", "of unpolarized light as bright as the lamp"},
+      std::array{"w1", "electron", "counts = w0 + w1 cos 2a + w2 sin 2a at an angle a"},
+      std::array{"w2", "electron", "the same"},
+      std::array{"w0_err", "electron", "standard deviation"},
+      std::array{"w1_err", "electron", "standard deviation"},
+      std::array{"w2_err", "electron", "standard deviation"},
+      std::array{"efficiency", "", "of the analyser, the polarizer's own in it"},
+      std::array{"efficiency_err", "", "standard deviation"},
+      std::array{"analyser_deg", "deg", "from where the polarizer's circle begins"},
+      std::array{"analyser_err", "deg", "standard deviation"},
+      std::array{"chi2", "", "of the fit"}};
+  Table out;
+  out.add("channel", "", "as in the file", std::move(names_));
+  out.add("n_angle", "", "angles of the polarizer", std::move(angles_));
+  for (std::size_t k = 0; k < texts.size(); ++k)
+    out.add(texts[k][0], texts[k][1], texts[k][2], std::move(numbers_[k]));
+  out.add("dof", "", "degrees of freedom", std::move(dof_));
+  note_conventions(out);
+  return out;
+}
+
 } // namespace
 
 Result<CalibrationFile> calibrate(const CountsFile &counts,
-                                  const std::vector<PolarizedStandard> &standards,
+                                  const std::vector<StandardStar> &standards, bool has_second_order,
                                   Diagnostics &diagnostics) {
   CalibrationFile out;
   out.band = counts.rows.front().band;
   out.instrument = note_of(counts, "instrument");
   out.pol_frame = note_of(counts, "pol_frame");
   out.made_utc = to_iso(counts.rows.back().time);
-  if (!out.pol_frame.empty() && out.pol_frame != "equatorial")
+  const bool has_angles =
+      std::ranges::any_of(standards, [](const StandardStar &star) { return star.p > 0; });
+  if (has_angles && !out.pol_frame.empty() && out.pol_frame != "equatorial")
     return fail(ErrorCode::BadInput, "standards have position angles from north: counts in the "
                                      "frame \"" +
                                          out.pol_frame + "\" cannot be held against them");
@@ -74,27 +261,27 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
       return fail(ErrorCode::BadInput,
                   "two bands, " + out.band + " and " + row.band + ": calibrate each by itself");
   UMOV_ASSIGN(table, reduce(counts, {}, {}, diagnostics));
-  std::vector<StandardMeasurement> data;
-  for (std::size_t k = 0; k < table.rows(); ++k) {
-    const std::string name = table.text("name", k);
-    const auto star = std::ranges::find(standards, name, &PolarizedStandard::name);
-    const std::complex<double> z(table.number("q", k), table.number("u", k));
-    if (star == standards.end() || !std::isfinite(z.real()))
-      continue;
-    const double axis = table.number("x_axis_pa", k) * pi / 180;
-    const double variance = (table.number("cov_qq", k) + table.number("cov_uu", k)) / 2;
-    data.push_back({z * std::polar(1.0, -2 * axis), std::polar(star->p, 2 * star->angle_rad), axis,
-                    std::sqrt(variance), static_cast<std::size_t>(star - standards.begin()),
-                    star->p_sd, star->angle_sd});
-  }
-  if (data.empty())
+  const Measured data = measured(table, standards);
+  if (data.polarized.empty() && data.bright.empty())
     return fail(ErrorCode::BadInput, no_standard(table, standards));
-  UMOV_ASSIGN(calibration, calibrate_polarimeter(data));
-  out.calibration = calibration;
-  warn_of_standards(data, calibration, diagnostics);
+  if (has_second_order && data.bright.empty())
+    return fail(ErrorCode::BadInput, "k'' was asked for, and no standard of the counts has a mag");
+  UMOV_TRY(fit(data, has_second_order, out, diagnostics));
   for (const Warning &one : diagnostics.warnings())
     out.warnings.push_back(one.message);
   return out;
+}
+
+Result<Table> calibrate_channels(const std::vector<PolarizerCount> &counts,
+                                 Diagnostics &diagnostics) {
+  std::vector<std::string> names;
+  for (const PolarizerCount &one : counts)
+    if (std::ranges::find(names, one.channel) == names.end())
+      names.push_back(one.channel);
+  ChannelColumns out;
+  for (const std::string &name : names)
+    UMOV_TRY(out.add(name, counts, diagnostics));
+  return std::move(out).table();
 }
 
 Result<void> check_calibration(const CalibrationFile &file, const CountsFile &counts,
@@ -112,7 +299,7 @@ Result<void> check_calibration(const CalibrationFile &file, const CountsFile &co
                               "calibrate that one",
                               what, own, other),
                   {path});
-  if (!file.pol_frame.empty() && file.pol_frame != "equatorial")
+  if (file.calibration && !file.pol_frame.empty() && file.pol_frame != "equatorial")
     return fail(
         ErrorCode::BadInput,
         fmt::format("this calibration has its angles in the frame \"{}\"; those of standards "

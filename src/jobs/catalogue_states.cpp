@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <mutex>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
@@ -50,17 +51,28 @@ Table catalogue_table(const CatalogueStates &all, const std::vector<Epoch<Utc>> 
   return t;
 }
 
-/// Objects by times, object by object; whole blocks of objects are missing after a stop.
-CatalogueStates propagate_all(const std::vector<ElementSet> &sets,
-                              const std::vector<Epoch<Utc>> &times, unsigned threads,
-                              const Monitor &monitor) {
-  CatalogueStates out;
-  const std::size_t rows = sets.size() * times.size();
+/// States that are still to be had, of all objects. Bit by bit, as the system takes seconds to give
+/// gigabytes; false where somebody stopped it.
+bool make_room(const std::vector<ElementSet> &sets, std::size_t times, const Monitor &monitor,
+               CatalogueStates &out) {
   for (const ElementSet &set : sets)
     out.norad_cat_id.push_back(set.norad_cat_id);
-  out.states.assign(rows, no_state);
+  const std::size_t rows = sets.size() * times;
+  out.states.reserve(rows);
   out.codes.assign(rows, Sgp4Code::Ok);
   out.is_done.assign(rows, 0);
+  constexpr std::size_t at_once = 1u << 20;
+  do
+    out.states.resize(std::min(rows, out.states.size() + at_once), no_state);
+  while (out.states.size() < rows && !monitor.is_cancelled());
+  return out.states.size() == rows;
+}
+
+/// Objects by times, object by object; parts of blocks of objects are missing after a stop.
+void propagate_all(const std::vector<ElementSet> &sets, const std::vector<Epoch<Utc>> &times,
+                   unsigned threads, const Monitor &monitor, CatalogueStates &out) {
+  std::mutex telling; // one call at a time
+  std::size_t done = 0;
   constexpr std::size_t block = 256; // objects side by side in lanes
   parallel_for((sets.size() + block - 1) / block, threads, [&](std::size_t b) {
     const std::size_t first = b * block, count = std::min(block, sets.size() - first);
@@ -82,21 +94,28 @@ CatalogueStates propagate_all(const std::vector<ElementSet> &sets,
         out.is_done[row] = 1;
       }
     }
+    const std::lock_guard lock(telling);
+    monitor.advance("objects", done += count, sets.size());
   });
-  return out;
 }
 
 /// A catalogue has many ages: one line for all that are too old to trust, and a refusal only where
 /// none is better.
 Result<void> check_ages(const StatesRequest &request, bool allow_old,
                         const std::vector<ElementSet> &sets, Diagnostics &diagnostics) {
+  if (request.times.empty())
+    return {};
+  const auto is_earlier = [](Epoch<Utc> a, Epoch<Utc> b) { return seconds_between(a, b) < 0; };
+  // The farthest of all times is one of these.
+  const auto [first, last] =
+      std::minmax_element(request.times.begin(), request.times.end(), is_earlier);
   std::size_t doubtful = 0, old = 0;
   const ElementSet *oldest = nullptr;
   double age_max = 0;
+  warn_if_beyond_leap_seconds(*last, diagnostics);
   for (const ElementSet &set : sets) {
-    double age = 0;
-    for (const Epoch<Utc> time : request.times)
-      age = std::max(age, std::abs(clock_days_between(time, set.epoch)));
+    const double age = std::max(std::abs(clock_days_between(*first, set.epoch)),
+                                std::abs(clock_days_between(*last, set.epoch)));
     doubtful += age > 7 ? 1u : 0u;
     old += age > 30 ? 1u : 0u;
     if (age > age_max) {
@@ -147,9 +166,10 @@ Result<CatalogueStates> propagate_catalogue(const StatesRequest &request, const 
   UMOV_ASSIGN(sets, read_elements(text, request.orbit,
                                   {options.allow_bad_checksum, request.keep_going}, diagnostics));
   UMOV_TRY(check_ages(request, options.allow_old_elements, sets, diagnostics));
-  for (const Epoch<Utc> time : request.times)
-    warn_if_beyond_leap_seconds(time, diagnostics);
-  CatalogueStates out = propagate_all(sets, request.times, options.threads, monitor);
+  CatalogueStates out;
+  if (!make_room(sets, request.times.size(), monitor, out))
+    return fail(ErrorCode::Interrupted, "stopped by the user before the first state");
+  propagate_all(sets, request.times, options.threads, monitor, out);
   const auto done =
       static_cast<std::size_t>(std::count(out.is_done.begin(), out.is_done.end(), char{1}));
   const std::size_t failed = tell_of_failures(out, request.times, diagnostics);

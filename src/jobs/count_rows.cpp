@@ -33,6 +33,18 @@ std::vector<ChannelDatum> data_of(Rows rows, const ReduceOptions &options) {
   return out;
 }
 
+ModelledDatum modelled(const CountRow &row, const ChannelDatum &datum,
+                       const std::array<double, 4> &stokes, std::size_t gain) {
+  constexpr double degree = pi / 180;
+  return {datum,
+          stokes,
+          row.x_axis_pa_deg * degree,
+          gain,
+          row.plate_deg * degree,
+          row.retardance_deg * degree,
+          row.turn_deg_s * degree};
+}
+
 std::vector<std::size_t> gains_of(Rows rows) {
   std::map<std::string, std::size_t> known;
   std::vector<std::size_t> out;
@@ -55,6 +67,8 @@ CountRow middle_of(Rows rows) {
   out.ra_deg = a.ra_deg + share * std::remainder(b.ra_deg - a.ra_deg, 360);
   out.dec_deg = a.dec_deg + share * (b.dec_deg - a.dec_deg);
   out.range_km = a.range_km + share * (b.range_km - a.range_km);
+  out.airmass = a.airmass + share * (b.airmass - a.airmass);
+  out.k_mag = a.k_mag + share * (b.k_mag - a.k_mag);
   out.pa_scat_deg = between_axes(a.pa_scat_deg, b.pa_scat_deg, share);
   out.phase_angle_deg = a.phase_angle_deg + share * (b.phase_angle_deg - a.phase_angle_deg);
   return out;
@@ -64,11 +78,29 @@ void add_flag(std::string &flags, const char *flag) {
   flags += flags.empty() ? flag : std::string(" ") + flag;
 }
 
+namespace {
+
+/// Zero point and extinction are wrong by the same in a whole run: I, Q, U and V move together.
+void add_common_light(Reduced &r, const ReduceOptions &options) {
+  double variance = options.zero_sd_mag * options.zero_sd_mag;
+  if (options.photometry)
+    variance +=
+        offset_of(*options.photometry, r.middle.airmass, options.colour.value_or(solar_colour))
+            .variance;
+  const double per_mag = std::log(10.) / 2.5;
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = 0; b < 4; ++b)
+      r.fit.covariance[a][b] += r.fit.stokes[a] * r.fit.stokes[b] * variance * per_mag * per_mag;
+}
+
+} // namespace
+
 void judge(Reduced &r, const ReduceOptions &options) {
   if (options.calibration && r.is_solved)
     for (std::size_t k = 0; k < 2; ++k)
       r.fractions.covariance[k][k] +=
           common_variance(*options.calibration, {r.fractions.value[0], r.fractions.value[1]});
+  add_common_light(r, options);
   constexpr double chance = 1e-6; // of a sound set: none in a long night
   if (r.fit.dof > 0 && boost::math::gamma_q(r.fit.dof / 2., r.fit.chi2 / 2) < chance)
     add_flag(r.flags, "misfit");

@@ -16,6 +16,10 @@ using Rows = std::span<const CountRow>;
 ChannelDatum datum_of(const CountRow &row, const ReduceOptions &options);
 std::vector<ChannelDatum> data_of(Rows rows, const ReduceOptions &options);
 
+/// A row's datum with the light that a model has at its time, for errors that rows share.
+ModelledDatum modelled(const CountRow &row, const ChannelDatum &datum,
+                       const std::array<double, 4> &stokes, std::size_t gain);
+
 /// Channels of one name share a gain; without names each has its own.
 std::vector<std::size_t> gains_of(Rows rows);
 

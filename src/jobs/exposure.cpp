@@ -13,20 +13,31 @@
 namespace umov::jobs {
 namespace {
 
-/// The band that is asked for.
-Result<BandResponse> band_of(const ExposureRequest &r) {
-  if (r.band.empty())
-    return narrow_band(fmt::format("nm:{:g}", r.nm), r.nm, r.width_nm);
-  UMOV_ASSIGN(bands, bands_named({r.band}));
+/// The band that is asked for, by name.
+Result<Band> named_band(const ExposureRequest &r) {
+  const std::string name = r.band.empty() ? fmt::format("nm:{:g}", r.nm) : r.band;
+  UMOV_ASSIGN(bands, bands_named({name}));
   if (bands.size() != 1)
     return fail(ErrorCode::Usage, fmt::format("--band {} is a group of {} bands; name one, as {}",
                                               r.band, bands.size(), bands.front().name));
-  const Band &band = bands.front();
+  return bands.front();
+}
+
+/// The same as an observer needs it.
+Result<BandResponse> response_of(const ExposureRequest &r, const Band &band) {
   if (!band.curve)
-    return narrow_band(band.name, band.wavelength.nm(), r.width_nm);
+    return narrow_band(r.band.empty() ? fmt::format("nm:{:g}", r.nm) : band.name,
+                       band.wavelength.nm(), r.width_nm);
   UMOV_ASSIGN(response, curve_band(*band.curve));
-  UMOV_ASSIGN(grid, BandGrid::make(bands));
+  UMOV_ASSIGN(grid, BandGrid::make({band}));
   return at_nodes(std::move(response), grid, 0);
+}
+
+/// AB magnitude less that of another system.
+Result<double> ab_less(MagnitudeSystem system, const Band &band) {
+  UMOV_ASSIGN(zero, zero_irradiance(band, system));
+  UMOV_ASSIGN(zero_ab, zero_irradiance(band, MagnitudeSystem::AB));
+  return -2.5 * std::log10(zero / zero_ab);
 }
 
 /// A quantity and what it means, row by row.
@@ -66,6 +77,7 @@ Result<void> check(const ExposureRequest &r) {
                          {"--nm", r.nm, 300, 1200},
                          {"--width-nm", r.width_nm, 1e-3, 1000},
                          {"--seeing", r.seeing_arcsec, 1e-3, 100},
+                         {"--aperture-fwhm", r.aperture_fwhm, 0.1, 20},
                          {"--exposure-s", r.exposure_s, 0, 1e6}})
     if (!(b.value >= b.low && b.value <= b.high))
       return fail(ErrorCode::Usage,
@@ -85,8 +97,11 @@ std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, bool
                              fills_s, fills_s / 2);
   out += fmt::format("the brightest pixel is {} % full, so it does not saturate. ",
                      percent(frame.full));
+  if (constexpr double briefest_s = 1e-5; frame.seconds < briefest_s)
+    out +=
+        fmt::format("Cameras expose for some {:g} s at least: take a neutral filter. ", briefest_s);
   if (frames <= 1)
-    return out + fmt::format("That is the error of p asked for, {:g}", sd_p);
+    return out + fmt::format("That is the error of p that is wanted (--sd-p {:g})", sd_p);
   out += fmt::format("{:.0f} of them{} tell p to {:g}", frames, of, sd_p);
   constexpr double many = 1000;
   if (frames > many)
@@ -102,8 +117,12 @@ std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, bool
 Result<ExposureSetup> exposure_setup(const ExposureRequest &r) {
   UMOV_TRY(check(r));
   UMOV_ASSIGN(instrument, read_instrument(r.instrument));
-  UMOV_ASSIGN(band, band_of(r));
-  return exposure_setup(r, instrument, band);
+  UMOV_ASSIGN(band, named_band(r));
+  UMOV_ASSIGN(response, response_of(r, band));
+  UMOV_ASSIGN(to_ab, ab_less(r.magnitudes, band));
+  UMOV_ASSIGN(out, exposure_setup(r, instrument, response));
+  out.to_ab = to_ab;
+  return out;
 }
 
 Result<ExposureSetup> exposure_setup(const ExposureRequest &r, const Instrument &instrument,
@@ -111,7 +130,7 @@ Result<ExposureSetup> exposure_setup(const ExposureRequest &r, const Instrument 
   ObservingConditions conditions;
   conditions.air.pressure_hpa = standard_pressure_hpa(r.height_m);
   conditions.seeing = {r.seeing_arcsec, 500, 25};
-  conditions.aperture_fwhm = 1;
+  conditions.aperture_fwhm = r.aperture_fwhm;
   conditions.scintillation = ScintillationSite{r.height_m, 1.5};
   UMOV_ASSIGN(observer, BandObserver::make(instrument, band, conditions, {}));
   const PolarimeterType type = instrument.polarimeter.type;
@@ -128,15 +147,15 @@ Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
   const BandResponse &band = s.observer.band();
   const double x = s.airmass, zero = band.zero_flux * s.observer.rate_per_flux();
   StarRates out;
-  out.whole = zero * std::pow(10, -0.4 * mag) * s.observer.mean_transmission(x);
+  out.whole = zero * std::pow(10, -0.4 * (mag + s.to_ab)) * s.observer.mean_transmission(x);
   UMOV_ASSIGN(channels, polarimeter_channels(s.instrument.polarimeter, {}, band.pivot_nm));
   double largest = 0, through = 0; // of unpolarized light
   for (const PolarimeterChannel &channel : channels) {
     through += channel.row[0];
     largest = std::max(largest, channel.row[0]);
   }
-  const double width = s.observer.fwhm_arcsec(x);
-  out.star = out.whole * share_inside(ImageProfile::Moffat, 1) * through;
+  const double width = s.request.aperture_fwhm * s.observer.fwhm_arcsec(x);
+  out.star = out.whole * share_inside(ImageProfile::Moffat, s.request.aperture_fwhm) * through;
   out.sky = zero * std::pow(10, -0.4 * s.request.sky_mag) * pi * width * width * through;
   const double pixels = s.observer.aperture_pixels(x) * static_cast<double>(channels.size());
   out.dark = s.instrument.detector.dark_e_s * pixels;
@@ -169,6 +188,31 @@ std::string exposure_verdict(const ExposureSetup &s, const StarRates &rates) {
   return verdict_of(star_frame(s, rates, taken), s.request.sd_p, rates.fills_s, s.states > 1);
 }
 
+std::string magnitude_words(const ExposureSetup &s) {
+  const double ab = s.request.mag + s.to_ab;
+  std::string out = fmt::format("{:.4g} AB above the air", ab);
+  const auto band = named_band(s.request);
+  if (const auto less = band ? ab_less(MagnitudeSystem::Vega, *band) : Result<double>(0);
+      band && less)
+    out += fmt::format(", {:.4g} Vega", ab - *less);
+  return out;
+}
+
+std::string exposure_terms(const ExposureSetup &s) {
+  const PolarimeterType type = s.instrument.polarimeter.type;
+  const bool has_common_air =
+      is_simultaneous(type) && !s.instrument.polarimeter.has_separate_pupils;
+  return fmt::format(
+      "S/N is that of I: photons, sky, dark current, reading and scintillation. The error of p is "
+      "of "
+      "photons, sky, dark current and reading{}. Summed within {:g} of a star's width "
+      "(--aperture-fwhm; umov observe: observation.aperture_fwhm, 2 unless told)",
+      has_common_air
+          ? ": scintillation is the same in all channels of an exposure and leaves p alone"
+          : " alone: scintillation between exposures comes on top of it",
+      s.request.aperture_fwhm);
+}
+
 Result<Table> exposure(const ExposureRequest &r) {
   UMOV_ASSIGN(setup, exposure_setup(r));
   UMOV_ASSIGN(rates, star_rates(setup, r.mag));
@@ -180,7 +224,8 @@ Result<Table> exposure(const ExposureRequest &r) {
   out.add("zero_point", 2.5 * std::log10(setup.observer.rate_per_flux() * band.zero_flux),
           "mag(AB)", "of 1 electron a second, no air, no polarizer");
   out.add("rate_whole", rates.whole, "electron / s", "through the air, before polarizers");
-  out.add("rate", rates.star, "electron / s", "detected in all channels, aperture of one width");
+  out.add("rate", rates.star, "electron / s",
+          fmt::format("detected in all channels, within {:g} of a star's width", r.aperture_fwhm));
   out.add("time", t, "s",
           parameters_of(polarimeter.type) == 4
               ? "of a whole sequence, until q, u and v are known to sd_p"
@@ -200,6 +245,8 @@ Result<Table> exposure(const ExposureRequest &r) {
             "of four states in a row while brightness changes as told");
   Table table = std::move(out).table();
   table.note("band", band.name);
+  table.note("magnitude", magnitude_words(setup));
+  table.note("terms", exposure_terms(setup));
   table.note("verdict", exposure_verdict(setup, rates));
   return table;
 }

@@ -66,14 +66,14 @@ Result<std::vector<PlotFigure>> frames(const ExposureSetup &s, const std::vector
     }
   }
   errors.lines.push_back(
-      level(fmt::format("asked for: {:g}", s.request.sd_p), number, s.request.sd_p, seconds));
+      level(fmt::format("wanted: {:g}", s.request.sd_p), number, s.request.sd_p, seconds));
   return std::vector<PlotFigure>{std::move(errors), std::move(signal)};
 }
 
 /// How long, against magnitude.
 Result<PlotFigure> times(const ExposureSetup &s) {
-  PlotFigure out =
-      figure("How long until p is known", "magnitude (AB), above the air", "time [s]", false);
+  PlotFigure out = figure("How long until p is known", "", "time [s]", false);
+  out.x_title = fmt::format("magnitude ({}), above the air", name_of(s.request.magnitudes));
   PlotLine whole = line(fmt::format("p to {:g}, all states together", s.request.sd_p), 0);
   PlotLine full = line("longest frame: the brightest pixel is full", 1);
   for (double mag = s.request.mag - 6; mag <= s.request.mag + 6; mag += 0.25) {
@@ -116,11 +116,13 @@ PlotFigure growth(const ExposureSetup &s, const StarRates &r, double seconds) {
              "share, and S/N over its largest", false);
   out.has_log_y = false;
   PlotLine light = line("light inside", 0), signal = line("S/N of photons, sky and reading", 1);
-  const double one_width = share_inside(ImageProfile::Moffat, 1); // of which the rates are
+  const double summed = s.request.aperture_fwhm; // of which the rates are
+  const double one = share_inside(ImageProfile::Moffat, summed);
   double largest = 0;
   for (int k = 1; k <= 120; ++k) {
     const double radius = .025 * k, share = share_inside(ImageProfile::Moffat, radius);
-    const double star = r.star * share / one_width * seconds, area = radius * radius;
+    const double star = r.star * share / one * seconds;
+    const double area = radius * radius / (summed * summed);
     const double others = (s.excess2 * (r.sky + r.dark) * seconds + r.fixed) * area;
     light.x.push_back(radius);
     light.y.push_back(share);
@@ -151,17 +153,17 @@ Result<std::string> exposure_page(const ExposureRequest &r) {
   figures.push_back(growth(setup, rates, frame_s));
   std::vector<std::string> notes{exposure_verdict(setup, rates) + "."};
   notes.push_back(fmt::format(
-      "{} in {}: magnitude {:g} (AB, above the air) at {:g} deg, site {:g} m high, a star {:g} "
-      "arcsec wide at the zenith, sky of {:g} mag/arcsec2; summed within one width. Lines end "
-      "where the brightest pixel is full. The error of p is that of photons, sky and reading{}.",
-      r.instrument, setup.observer.band().name, r.mag, r.altitude_deg, r.height_m, r.seeing_arcsec,
-      r.sky_mag,
+      "{} in {}: magnitude {} at {:g} deg, site {:g} m high, a star {:g} "
+      "arcsec wide at the zenith, sky of {:g} mag/arcsec2 (AB). Lines end "
+      "where the brightest pixel is full. {}{}.",
+      r.instrument, setup.observer.band().name, magnitude_words(setup), r.altitude_deg, r.height_m,
+      r.seeing_arcsec, r.sky_mag, exposure_terms(setup),
       setup.states > 1 ? "; what the object changes from one analyser to the next comes on top "
                          "(--change-per-s)"
                        : ""));
   notes.push_back(
       fmt::format("The growth curve is of Moffat's profile, in frames of {:.3g} s.", frame_s));
-  return make_plot_page(fmt::format("How long to expose: {}", r.instrument), figures, notes);
+  return make_answer_page(fmt::format("How long to expose: {}", r.instrument), figures, notes);
 }
 
 } // namespace umov::jobs

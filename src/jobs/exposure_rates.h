@@ -15,6 +15,7 @@ struct ExposureSetup {
   double factor = 2;  ///< sd of p is sqrt(factor/N): 3 where all four parameters are told
   double states = 1;  ///< exposures one after the other, until p is known at all
   double airmass = 1;
+  double to_ab = 0; ///< added to magnitudes of the request's system
 };
 /// Usage or BadInput for what cannot be meant.
 Result<ExposureSetup> exposure_setup(const ExposureRequest &request);
@@ -31,7 +32,7 @@ struct StarRates {
   double scintillation = 0;            ///< relative sd of 1 s
   double fills_s = 0;                  ///< exposure that fills the brightest pixel
 };
-/// Of a star of magnitude `mag`.
+/// Of a star of magnitude `mag` in the request's system.
 Result<StarRates> star_rates(const ExposureSetup &setup, double mag);
 
 /// One frame, or one of each analyser where they follow each other: how long, what it reaches, and
@@ -45,6 +46,11 @@ StarFrame star_frame(const ExposureSetup &setup, const StarRates &rates, double 
 /// What the frame reaches that is asked for, or that a star would get, at what it fails, and what
 /// helps.
 std::string exposure_verdict(const ExposureSetup &setup, const StarRates &rates);
+
+/// The magnitude asked about, in both systems where the band has both.
+std::string magnitude_words(const ExposureSetup &setup);
+/// What the signal to noise and the error of p count, and over what they are summed.
+std::string exposure_terms(const ExposureSetup &setup);
 
 /// Time in which p of a star is known to the wanted error [s], all states together, read once.
 double time_for(const ExposureSetup &setup, const StarRates &rates);

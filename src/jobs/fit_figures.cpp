@@ -148,6 +148,20 @@ PlotLine ellipse(const FittedNumbers &n, std::size_t a, std::size_t b, double si
   return out;
 }
 
+/// Polarization of less than a rounded intermediate is none: an axis of 1e-12 would say that
+/// something is seen. Where nothing is, the axis has the size of what could have been.
+void drop_rounding(PlotFigure &figure) {
+  constexpr double rounding = 1e-9, seen = 1e-6, span = 0.01;
+  double largest = 0;
+  for (PlotLine &line : figure.lines)
+    for (double &y : line.y) {
+      y = std::abs(y) < rounding ? 0 : y;
+      largest = std::isfinite(y) ? std::max(largest, std::abs(y)) : largest;
+    }
+  if (!figure.lines.empty() && largest < seen)
+    figure.y_span = {-span, span};
+}
+
 } // namespace
 
 void add_data_figures(std::vector<PlotFigure> &figures, const Table &fit) {
@@ -172,6 +186,7 @@ void add_data_figures(std::vector<PlotFigure> &figures, const Table &fit) {
     const PlotLine bars = bars_of(fit, band, rest, "intensity_err");
     add_lines(left, {bars, rest});
   }
+  drop_rounding(polarization);
   for (const PlotFigure *figure : {&light, &left, &polarization})
     if (!figure->lines.empty())
       figures.push_back(*figure);
@@ -193,14 +208,15 @@ void add_error_figures(std::vector<PlotFigure> &figures, const FittedNumbers &nu
 
 PlotFigure parts_figure(const std::string &title, const std::string &x_title,
                         const std::vector<PartAnswer> &parts) {
-  PlotFigure out{title, x_title, "part of the data", {}};
+  PlotFigure out{title, x_title, "", {}};
   double low = 0, high = 0; // no change is always seen
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const PartAnswer &part = parts[k];
+    out.y_names.push_back(part.part);
     if (!std::isfinite(part.value) || !std::isfinite(part.error))
       continue;
     const double y = static_cast<double>(k) + 1;
-    PlotLine point{fmt::format("{}: {}", k + 1, part.part), {part.value}, {y}, k};
+    PlotLine point{part.part, {part.value}, {y}, k};
     point.has_markers = true;
     PlotLine bar{{}, {part.value - part.error, part.value + part.error}, {y, y}, k};
     bar.is_faint = true;

@@ -41,6 +41,12 @@ bool is_misfit(const Health &health) {
   return dof > 0 && best > 2 * dof && chi2_probability(best, dof) < unlikely;
 }
 
+/// A change without the digits that its error leaves open: what is left of 0 is 0.
+double rounded(const HealthRow &row) {
+  const double step = row.change_err / 100;
+  return std::round(row.change / step) * step + 0.0;
+}
+
 } // namespace
 
 Table health_table(const Health &health, Verdict verdict) {
@@ -106,7 +112,7 @@ std::string health_page(const std::string &title, const Table &fit, const Health
     lines.push_back(is_visible(row)
                         ? fmt::format("{}: {:.3g} +- {:.2g} of the group; the smallest change that "
                                       "shows at 3 sigma is {:.2g}",
-                                      row.name, row.change, row.change_err, row.detectable)
+                                      row.name, rounded(row), row.change_err, row.detectable)
                         : row.name + ": not visible");
     std::vector<PartAnswer> answers;
     for (const PartHealth &one : parts)
@@ -117,7 +123,7 @@ std::string health_page(const std::string &title, const Table &fit, const Health
                                      "change " + row.name, answers));
   }
   add_error_figures(figures, numbers);
-  const auto page = make_plot_page(title, figures, lines);
+  const auto page = make_answer_page(title, figures, lines);
   return page ? *page : std::string();
 }
 

@@ -179,7 +179,7 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
   columns_[k] = columns;
   const CurveModel model(curve, lighting_of(light.light, options_.threads, monitor_), columns);
   const CurveModel quick(curve, quick_lighting(light, options_.threads, monitor_), columns);
-  UMOV_ASSIGN(found, search_pose(model, quick, search));
+  UMOV_ASSIGN(found, search_pose({model, quick, quick}, search));
   used_[k] = light_used(light, scenario, diagnostics_);
   return std::optional(
       OwnAnswer{std::move(found), CurveLikelihood(curve, search.errors).log_variance()});
@@ -230,6 +230,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
   const ObservedCurve &curve = observed.curve;
   IdentifyOptions how;
   how.search = search_options(scenario, request.observed, options, monitor);
+  how.search.largest_floor = 0; // evidences of candidates are those of the same errors
   how.none_prior = request.none_prior;
   SearchOptions own_search = how.search;
   own_search.progress = {};
@@ -246,17 +247,18 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
       library.names(), library.errors(), &answer, verdict_of(answer, curve, errors), {}};
   words.notes = notes_of(words, curve, errors);
   const std::size_t best = answer.order.front();
-  const PoseAnswer &pose = answer.candidates[best].answer;
+  PoseAnswer pose = answer.candidates[best].answer;
+  pose.errors = errors;
   Table fit;
   if (const SearchedLight *light = own.light(best)) {
     const CurveModel model(curve, lighting_of(light->light, options.threads, monitor),
                            own.columns(best));
-    fit = fit_table(observed, model, pose, request.observed.errors);
+    fit = fit_table(observed, model, pose);
     out.light = own.used(best);
   } else {
     UMOV_TRY(library.lend(best, curve, [&](const Signature &s, std::span<const std::size_t> c) {
       const CurveModel model(curve, lighting_of(s, options.threads), {c.begin(), c.end()});
-      fit = fit_table(observed, model, pose, request.observed.errors);
+      fit = fit_table(observed, model, pose);
     }));
   }
   out.verdict = words.verdict;
@@ -267,7 +269,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
                 {"fit", std::move(fit)}};
   out.page =
       inversion_page(fmt::format("Which object: {} at its best", printable(words.names[best])),
-                     out.tables[2].table, pose, out.summary);
+                     out.tables[2].table, pose, out.summary + odds_of(words));
   out.inputs.insert(out.inputs.end(), observed.inputs.begin(), observed.inputs.end());
   out.seed = scenario.seed;
   return out;

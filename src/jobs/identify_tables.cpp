@@ -26,6 +26,12 @@ const std::string &best_name(const IdentityWords &words) {
   return words.names[words.answer->order.front()];
 }
 
+/// A probability in words; what is left of e^-700 is no number to tell anybody.
+std::string chance(double probability) {
+  constexpr double told = 1e-4;
+  return probability > 0 && probability < told ? "< 0.01 %" : percent(probability) + " %";
+}
+
 } // namespace
 
 Table identity_table(const IdentityWords &words) {
@@ -116,9 +122,9 @@ std::string summary_of(const IdentityWords &words) {
   constexpr double told = 0.01;
   for (const std::size_t k : answer.order)
     if (answer.candidates[k].probability > told)
-      out += fmt::format("{} {} %, ", printable(words.names[k]),
-                         percent(answer.candidates[k].probability));
-  out += fmt::format("{} {} %. {} looked at, {} searched\n", none_of_these, percent(answer.none),
+      out += fmt::format("{} {}, ", printable(words.names[k]),
+                         chance(answer.candidates[k].probability));
+  out += fmt::format("{} {}. {} looked at, {} searched\n", none_of_these, chance(answer.none),
                      counted(words.names.size(), "object"), count);
   const PoseAnswer &fit = best_of(words).answer;
   out += fmt::format("{}: chi-square {:.4g} of {:.0f} degrees of freedom (chance {:.2g})\n",
@@ -126,6 +132,22 @@ std::string summary_of(const IdentityWords &words) {
                      chi2_probability(fit.chi2, dof_of(fit)));
   for (const std::string &note : words.notes)
     out += "- " + note + "\n";
+  return out;
+}
+
+std::string odds_of(const IdentityWords &words) {
+  constexpr std::size_t most = 10;
+  const Table table = identity_table(words);
+  const auto &name = std::get<std::vector<std::string>>(table.find("name")->cells);
+  const auto &by = std::get<std::vector<std::string>>(table.find("by")->cells);
+  std::string out;
+  for (std::size_t row = 0; row < std::min(most, name.size()); ++row)
+    out +=
+        fmt::format("{}: probability {:.2g}, ln evidence {:.1f} (by {})\n", printable(name[row]),
+                    table.number("probability", row), table.number("log_evidence", row), by[row]);
+  if (name.size() > most)
+    out += fmt::format("and {} less probable: identity.ecsv has all\n",
+                       counted(name.size() - most, "object"));
   return out;
 }
 

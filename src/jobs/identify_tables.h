@@ -28,6 +28,8 @@ Verdict verdict_of(const IdentityAnswer &answer, const ObservedCurve &curve,
 std::vector<std::string> notes_of(const IdentityWords &words, const ObservedCurve &curve,
                                   const CurveErrors &errors);
 std::string summary_of(const IdentityWords &words);
+/// A line of each of the most probable rows of the table, for the page.
+std::string odds_of(const IdentityWords &words);
 /// `library`: SHA-256 of what its objects were made from.
 std::string json_of(const IdentityWords &words, const std::string &library);
 

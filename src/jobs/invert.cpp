@@ -12,6 +12,7 @@ Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &req
                               const JobOptions &options, const Monitor &monitor,
                               Diagnostics &diagnostics) {
   UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics));
+  take_apart(ready, request, options, diagnostics);
   UMOV_ASSIGN(out,
               pose_answer(scenario, request, options, ready.observed, ready, monitor, diagnostics));
   keep_masks(ready);
@@ -24,10 +25,13 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                               Diagnostics &diagnostics) {
   const auto light = lighting_of(ready.light, options.threads, monitor);
   const auto quick_light = quick_lighting(ready, options.threads, monitor);
-  const CurveModel model(observed.curve, light, observed.column);
+  const CurveModel model(observed.curve, searched_lighting(ready, options.threads, monitor),
+                         observed.column, parts_of(ready));
+  const CurveModel first(observed.curve, first_lighting(ready, options.threads, monitor),
+                         observed.column, parts_of(ready));
   const CurveModel quick(observed.curve, quick_light, observed.column);
-  UMOV_ASSIGN(answer,
-              search_pose(model, quick, search_options(scenario, request, options, monitor)));
+  UMOV_ASSIGN(answer, search_pose({model, first, quick},
+                                  search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
   const Judgement judgement = judge(answer, model, request.errors, symmetries);
   Inversion out;
@@ -38,7 +42,7 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                 {"set95", set_table(answer)},
                 {"samples", samples_table(answer, false)},
                 {"twins", twins_table(answer, symmetries)},
-                {"fit", fit_table(observed, model, answer, request.errors)}};
+                {"fit", fit_table(observed, model, answer)}};
   out.page =
       inversion_page("Which attitude: " + scenario.title, out.tables[4].table, answer, out.summary);
   out.inputs = observed.inputs;
@@ -60,10 +64,11 @@ std::vector<NamedTable> no_pose_tables() {
 std::string text_of(const InvertRequest &request) {
   const CurveErrors &e = request.errors;
   return fmt::format("grid {} method {} old {}; errors {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {} "
-                     "{:.17g} {:.17g} {}",
+                     "{:.17g} {:.17g} {}; materials {:.17g} {:.17g} {:.17g} floor {:.17g}",
                      request.grid, name_of(request.method), request.allow_old_elements, e.floor,
                      e.floor_q, e.floor_median, e.zero_point_sd, e.scale_sd, e.has_clouds,
-                     e.outlier_share, e.outlier_factor, e.has_polarization);
+                     e.outlier_share, e.outlier_factor, e.has_polarization, request.materials.slope,
+                     request.materials.reflectance, request.materials.haze, request.largest_floor);
 }
 
 Result<void> write_inversion(const Inversion &inversion, const Scenario &scenario,

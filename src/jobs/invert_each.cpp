@@ -185,6 +185,7 @@ Result<std::unique_ptr<RangedJob>> ranged_poses(const Scenario &scenario,
                                                 Diagnostics &diagnostics) {
   Diagnostics told;
   UMOV_ASSIGN(light, prepare_light(scenario, request, options, told));
+  take_apart(light, request, options, told);
   const auto ready = std::make_shared<const SearchedLight>(std::move(light));
   CurveQuestion question;
   question.curves = request.observations;

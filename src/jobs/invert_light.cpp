@@ -26,7 +26,7 @@ Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertReques
   constexpr double coarsest = 0.02;
   lit.accuracy = std::max(scenario.light.accuracy, std::min(request.errors.floor, coarsest));
   UMOV_ASSIGN(light, PoseLight::make(scenario, lit, options, diagnostics));
-  SearchedLight out{std::move(light), {}};
+  SearchedLight out{std::move(light), {}, {}};
   if (out.light.model().facts().method == LightMethod::Auto) {
     SignatureRequest rough;
     rough.method = LightMethod::Masks;
@@ -34,8 +34,67 @@ Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertReques
     Diagnostics twice;
     UMOV_ASSIGN(masks, PoseLight::make(scenario, rough, options, twice));
     out.masks.emplace(std::move(masks));
+    out.light.model().take_masks_of(out.masks->model());
   }
   return out;
+}
+
+void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOptions &options,
+                Diagnostics &diagnostics) {
+  if (!request.materials.is_any())
+    return;
+  if (request.method != LightMethod::Rays && ready.light.options().bounces <= 1)
+    ready.parts = LightByPart::make((ready.masks ? *ready.masks : ready.light).model(),
+                                    request.materials, options);
+  if (!ready.parts)
+    diagnostics.warn("the light of this object cannot be taken apart by material (rays alone, "
+                     "light between surfaces, parts that turn, measured or brushed surfaces): "
+                     "roughness and reflectance are taken for right");
+}
+
+std::vector<PartKind> parts_of(const SearchedLight &ready) {
+  return ready.parts ? ready.parts->kinds() : std::vector<PartKind>();
+}
+
+namespace {
+
+PoseLighting lighting_by_part(const LightByPart &parts, bool is_quick, unsigned threads,
+                              const Monitor &monitor) {
+  return [&parts, is_quick, threads, &monitor](std::span<const Pose> poses, StokesTable &out) {
+    // Sums of a block take a hundred times its poses' bytes.
+    constexpr std::size_t block = 1u << 13;
+    StokesTable some;
+    out = {};
+    for (std::size_t begin = 0; begin < poses.size(); begin += block) {
+      const auto now = poses.subspan(begin, std::min(block, poses.size() - begin));
+      if (monitor.is_cancelled() || !parts.evaluate(now, some, threads, is_quick, monitor.cancel))
+        return false;
+      if (now.size() == poses.size()) {
+        out = std::move(some);
+        return true;
+      }
+      out.bands = some.bands;
+      for (const auto column :
+           {&StokesTable::i, &StokesTable::q, &StokesTable::u, &StokesTable::i_err})
+        (out.*column).insert((out.*column).end(), (some.*column).begin(), (some.*column).end());
+    }
+    return true;
+  };
+}
+
+} // namespace
+
+PoseLighting searched_lighting(const SearchedLight &ready, unsigned threads,
+                               const Monitor &monitor) {
+  if (!ready.parts)
+    return lighting_of(ready.light, threads, monitor);
+  return lighting_by_part(*ready.parts, false, threads, monitor);
+}
+
+PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
+  if (!ready.parts)
+    return quick_lighting(ready, threads, monitor);
+  return lighting_by_part(*ready.parts, true, threads, monitor);
 }
 
 PoseLighting quick_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor) {
@@ -75,12 +134,15 @@ void keep_masks(const SearchedLight &ready) {
   (void)ready.light.model().keep_masks();
   if (ready.masks)
     (void)ready.masks->model().keep_masks();
+  if (ready.parts)
+    ready.parts->keep_masks();
 }
 
 SearchOptions search_options(const Scenario &scenario, const InvertRequest &request,
                              const JobOptions &options, const Monitor &monitor) {
   SearchOptions out;
   out.errors = request.errors;
+  out.largest_floor = request.largest_floor;
   out.grid = request.grid;
   out.seed = scenario.seed;
   out.threads = options.threads;

@@ -1,6 +1,8 @@
 #pragma once
 // Private: what every question to observations begins with.
 
+#include "jobs/part_light.h"
+
 #include <optional>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/pose_light.h>
@@ -11,6 +13,8 @@ namespace umov::jobs {
 struct SearchedLight {
   PoseLight light;
   std::optional<PoseLight> masks; ///< for the search, where `light` mends them; else none
+  /// The light of `light` by material, where that is not quite known and can be taken apart.
+  std::unique_ptr<LightByPart> parts = {};
 };
 /// Observations, the object that they are of, and its light.
 struct Prepared : SearchedLight {
@@ -23,6 +27,18 @@ Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
 /// The light alone, as exact as the request's errors ask for.
 Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
                                     const JobOptions &options, Diagnostics &diagnostics);
+/// The light by material, as little of that as the request says is known; warns where it cannot be
+/// had, so that materials are taken for right.
+void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOptions &options,
+                Diagnostics &diagnostics);
+/// Light that a search rests on, with the parts that there are. `ready` and `monitor` must outlive
+/// it.
+PoseLighting searched_lighting(const SearchedLight &ready, unsigned threads,
+                               const Monitor &monitor);
+/// The same for the first fits and for what is far from the peaks: masks as they are.
+PoseLighting first_lighting(const SearchedLight &ready, unsigned threads, const Monitor &monitor);
+/// Those parts; none where the materials are known.
+std::vector<PartKind> parts_of(const SearchedLight &ready);
 /// `light` and `monitor` must outlive it.
 PoseLighting lighting_of(const PoseLight &light, unsigned threads, const Monitor &monitor);
 /// Light for a search: masks as they are, without half-widths, where the last steps mend them. What

@@ -208,7 +208,7 @@ std::string material_page_of(const std::string &title, const Table &fit, const U
   if (!parts.empty())
     figures.push_back(parts_figure("What each band and Stokes component says by itself",
                                    "part of " + first, parts));
-  const auto page = make_plot_page(title, figures, page_lines(summary));
+  const auto page = make_answer_page(title, figures, page_lines(summary));
   return page ? *page : std::string();
 }
 

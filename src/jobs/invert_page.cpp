@@ -111,7 +111,7 @@ std::string inversion_page(const std::string &title, const Table &fit, const Pos
     figures.push_back(axes_figure(samples));
     add_corner(figures, answer, samples);
   }
-  const auto page = make_plot_page(title, figures, lines_of(summary, answer));
+  const auto page = make_answer_page(title, figures, lines_of(summary, answer));
   return page ? *page : std::string();
 }
 

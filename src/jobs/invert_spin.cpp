@@ -94,19 +94,22 @@ std::string spin_words(const SpinAnswer &answer, Verdict verdict) {
     return "no period explains the data\n";
   std::string out;
   if (verdict == Verdict::Undetermined)
-    out = "the period is not known; of the spins that were tried:\n";
+    out = "the period is not known; of the spins that were tried, ";
   for (const SpinPeriod &p : answer.periods)
     out += fmt::format("period {:.6g} +- {:.2g} s with {:.3g} % of the probability\n", p.period_s,
                        p.period_err_s, 100 * p.weight);
   return out;
 }
 
-/// Chi-square of the best attitude of a body that does not turn.
-Result<double> chi2_at_rest(const CurveModel &model, const CurveModel &coarse,
+/// Chi-square of the best attitude of a body that does not turn, to the errors of the one that
+/// does.
+Result<double> chi2_at_rest(const SearchModels &models, const CurveErrors &errors,
                             SearchOptions options) {
   constexpr std::size_t enough = 20'000; // as in the search for spins, basins are wide
   options.grid = std::min(options.grid, enough);
-  UMOV_ASSIGN(answer, search_pose(model, coarse, options));
+  options.errors = errors;
+  options.largest_floor = 0;
+  UMOV_ASSIGN(answer, search_pose(models, options));
   return answer.chi2;
 }
 
@@ -140,6 +143,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                               const SpinOptions &spin, const JobOptions &options,
                               const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics));
+  take_apart(ready, request, options, diagnostics);
   const ObservedCurve &curve = ready.observed.curve;
   const auto light = lighting_of(ready.light, options.threads, monitor);
   UMOV_ASSIGN(periods, periods_to_try(curve, spin));
@@ -147,19 +151,23 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   SpinRequest asked;
   asked.periods_s = periods;
   asked.axis = axis_of(spin.axis);
+  asked.parts = parts_of(ready);
   asked.coarse =
       coarse_light(quick_lighting(ready, options.threads, monitor), curve, options.threads);
   if (!asked.coarse)
     return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
-  UMOV_ASSIGN(answer, search_spin(curve, light, ready.observed.column, asked,
+  const auto searched = searched_lighting(ready, options.threads, monitor);
+  UMOV_ASSIGN(answer, search_spin(curve, searched, ready.observed.column, asked,
                                   search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
   keep_masks(ready);
-  const CurveModel model(curve, light, ready.observed.column);
+  const CurveModel model(curve, searched, ready.observed.column, asked.parts);
   Judgement judgement = judge(answer.pose, model, request.errors, symmetries);
   const CurveModel coarse(curve, asked.coarse, ready.observed.column);
-  UMOV_ASSIGN(at_rest,
-              chi2_at_rest(model, coarse, search_options(scenario, request, options, monitor)));
+  const CurveModel first(curve, first_lighting(ready, options.threads, monitor),
+                         ready.observed.column, asked.parts);
+  UMOV_ASSIGN(at_rest, chi2_at_rest({model, first, coarse}, answer.pose.errors,
+                                    search_options(scenario, request, options, monitor)));
   doubt_period(answer, at_rest, spin, curve, request.errors, judgement);
   Inversion out;
   out.verdict = judgement.verdict;
@@ -169,7 +177,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                 {"periods", periods_table(answer, periods)},
                 {"set95", set_table(answer.pose)},
                 {"samples", samples_table(answer.pose, true)},
-                {"fit", fit_table(ready.observed, model, answer.pose, request.errors)}};
+                {"fit", fit_table(ready.observed, model, answer.pose)}};
   out.page = inversion_page("Which spin: " + scenario.title, out.tables[4].table, answer.pose,
                             out.summary);
   out.inputs = ready.observed.inputs;

@@ -201,19 +201,27 @@ Table fit_table(const ObservedLightCurve &observed, const EndMember &model,
   return table_of(observed, model, {}, errors);
 }
 
+BestLight best_light(const CurveModel &model, const PoseAnswer &answer) {
+  BestLight out;
+  if (answer.modes.empty())
+    return out;
+  const CurveLikelihood likelihood(model.curve(), answer.errors);
+  const Turning best[] = {answer.modes.front().turning};
+  (void)model.for_each(best, {}, 1, [&](std::size_t, const ModelLight &lit) {
+    auto fitted = likelihood.fit_parts(lit);
+    out.light.i = std::move(fitted.i);
+    out.light.q = std::move(fitted.q);
+    out.light.u = std::move(fitted.u);
+    out.parts = std::move(fitted.off);
+    out.half_width.assign(lit.i_half_width.begin(), lit.i_half_width.end());
+  });
+  return out;
+}
+
 Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
-                const PoseAnswer &answer, const CurveErrors &errors) {
-  EndMember light;
-  std::vector<double> half_width;
-  if (!answer.modes.empty())
-    (void)model.for_each(std::vector<Turning>{answer.modes.front().turning}, {}, 1,
-                         [&](std::size_t, const ModelLight &lit) {
-                           light.i.assign(lit.i.begin(), lit.i.end());
-                           light.q.assign(lit.q.begin(), lit.q.end());
-                           light.u.assign(lit.u.begin(), lit.u.end());
-                           half_width.assign(lit.i_half_width.begin(), lit.i_half_width.end());
-                         });
-  return table_of(observed, light, half_width, errors);
+                const PoseAnswer &answer) {
+  const BestLight best = best_light(model, answer);
+  return table_of(observed, best.light, best.half_width, answer.errors);
 }
 
 std::array<double, 3> axis_spread_deg(const PoseAnswer &answer) {

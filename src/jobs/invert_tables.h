@@ -17,9 +17,16 @@ Table twins_table(const PoseAnswer &answer, const std::vector<BodySymmetry> &sym
 /// fit.ecsv: what was measured, over its best scale, beside a model's light.
 Table fit_table(const ObservedLightCurve &observed, const EndMember &model,
                 const CurveErrors &errors);
-/// The same of the best turning.
+/// The same of the best turning, with the errors that the answer rests on.
 Table fit_table(const ObservedLightCurve &observed, const CurveModel &model,
-                const PoseAnswer &answer, const CurveErrors &errors);
+                const PoseAnswer &answer);
+/// Light of the best turning, its parts as they fit best; empty without modes.
+struct BestLight {
+  EndMember light;
+  std::vector<double> half_width;
+  std::vector<double> parts; ///< as CurveLikelihood::FittedLight::off
+};
+BestLight best_light(const CurveModel &model, const PoseAnswer &answer);
 
 /// How far the samples spread about the mean direction of each body axis [deg], root mean square.
 std::array<double, 3> axis_spread_deg(const PoseAnswer &answer);
@@ -42,6 +49,7 @@ struct Judgement {
   NullTest null_test;
   std::vector<std::string> notes;
   std::vector<Parameter> nuisances;
+  std::vector<double> fitted; ///< of those that are parts of the light, the last ones: [sd]
 };
 /// All of it, of an answer.
 Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,

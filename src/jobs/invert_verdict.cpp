@@ -32,7 +32,7 @@ Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
   const double dof =
       static_cast<double>(answer.measurements) - static_cast<double>(answer.unknowns);
   constexpr double unlikely = 1e-6; // and a model twice as far off as it was taken to be
-  if (dof > 0 && chi2_probability(answer.chi2, dof) < unlikely && answer.chi2 > 2 * dof)
+  if (dof > 0 && chi2_probability(answer.misfit, dof) < unlikely && answer.misfit > 2 * dof)
     return Verdict::NoFit;
   constexpr double wide = 0.01; // of all attitudes
   if (answer.is_broad || answer.share_of_so3 > wide || answer.modes.empty())
@@ -49,19 +49,46 @@ Verdict verdict_of(const PoseAnswer &answer, const Families &families) {
 namespace {
 
 /// U/I of the best fit in every sample: bodies of paint have some without any instrument.
-std::vector<double> fitted_u(const PoseAnswer &answer, const CurveModel &model) {
-  const ObservedCurve &curve = model.curve();
+std::vector<double> fitted_u(const BestLight &best, const ObservedCurve &curve) {
   std::vector<double> out(curve.samples.size(), 0);
-  if (answer.modes.empty())
-    return out;
-  const Turning best[] = {answer.modes.front().turning};
-  (void)model.for_each(best, {}, 1, [&](std::size_t, const ModelLight &light) {
-    for (std::size_t k = 0; k < out.size(); ++k) {
-      const std::size_t at = curve.samples[k].epoch * curve.bands.size() + curve.samples[k].band;
-      out[k] = light.i[at] > 0 ? light.u[at] / light.i[at] : 0;
-    }
-  });
+  for (std::size_t k = 0; k < out.size() && !best.light.i.empty(); ++k) {
+    const std::size_t at = curve.samples[k].epoch * curve.bands.size() + curve.samples[k].band;
+    out[k] = best.light.i[at] > 0 ? best.light.u[at] / best.light.i[at] : 0;
+  }
   return out;
+}
+
+} // namespace
+
+namespace {
+
+/// Parts of the light as unknowns, in the order of CurveLikelihood::FittedLight::off.
+void add_parts(const std::vector<PartKind> &parts, const BestLight &best, Judgement &out) {
+  const auto add = [&](const std::string &name, double sd) {
+    if (sd > 0)
+      out.nuisances.push_back({name, "ln", -10, 10, Prior::Normal, 0, sd});
+  };
+  for (const PartKind &part : parts)
+    add("amount of the " + part.name, part.sd);
+  for (const PartKind &part : parts)
+    add("slopes of the " + part.name, part.slope_sd);
+  out.fitted = best.parts;
+}
+
+/// A misfit far beyond the floor, which no material within its priors and no attitude explains.
+void doubt_model(double model_error, double floor, Judgement &out) {
+  constexpr double other = 2.5, none = 4, least = 0.005;
+  const double times = model_error / std::max(floor, least);
+  if (!(times > other))
+    return;
+  out.notes.push_back(fmt::format("the best attitude misses the data by {:.2g} of I, the floor is "
+                                  "{:.2g}: materials or shape are others than these, and the "
+                                  "attitude is not sure",
+                                  model_error, floor));
+  if (times > none)
+    out.verdict = Verdict::NoFit;
+  else if (out.verdict == Verdict::Determined)
+    out.verdict = Verdict::Undetermined;
 }
 
 } // namespace
@@ -78,9 +105,12 @@ Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveEr
   if (out.verdict == Verdict::Determined && curve.epochs.size() == 1)
     out.verdict = Verdict::Ambiguous;
   out.axis_spread_deg = axis_spread_deg(answer);
-  out.null_test = null_test(curve, fitted_u(answer, model));
+  const BestLight best = best_light(model, answer);
+  out.null_test = null_test(curve, fitted_u(best, curve));
   out.nuisances = CurveLikelihood(curve, errors).nuisances();
+  add_parts(model.parts(), best, out);
   out.notes = limits_of(curve, errors, Asked::Attitude);
+  doubt_model(answer.model_error, errors.floor, out);
   for (const BodySymmetry &s : symmetries)
     out.notes.push_back("no light tells the body from itself after " + s.text);
   if (out.null_test.is_flagged())
@@ -115,6 +145,9 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   out["chi2"] = answer.chi2;
   out["dof"] = dof;
   out["p_value"] = chi2_probability(answer.chi2, dof);
+  out["floor"] = answer.errors.floor;
+  out["model_error"] = answer.model_error;
+  out["related_numbers"] = answer.related;
   out["log_evidence"] = answer.log_evidence;
   out["families"] = judgement.families.count;
   out["heaviest"] = judgement.families.heaviest;
@@ -142,8 +175,13 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
                         {"q0_sd", u.q0_sd},         {"u0", u.u0},
                         {"u0_sd", u.u0_sd},         {"flagged", u.is_flagged()}};
   ordered_json unknowns = ordered_json::array();
-  for (const Parameter &p : judgement.nuisances)
+  const std::size_t first = judgement.nuisances.size() - judgement.fitted.size();
+  for (std::size_t k = 0; k < judgement.nuisances.size(); ++k) {
+    const Parameter &p = judgement.nuisances[k];
     unknowns.push_back({{"name", p.name}, {"prior", name_of(p.prior)}, {"sd", p.sd}});
+    if (k >= first) // of the best attitude
+      unknowns.back()["value"] = p.sd * judgement.fitted[k - first];
+  }
   out["nuisances"] = unknowns;
   out["notes"] = judgement.notes;
   return out.dump(1) + "\n";
@@ -189,8 +227,11 @@ std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
     out += "- " + text + "\n";
   // No chi-square tells it: lobes that are a fifth off are fitted well by an attitude beside.
   if (judgement.verdict == Verdict::Determined)
-    out += "- this holds for materials and a shape that are right to --floor; where they are known "
-           "to a tenth or a fifth, ask again with a --floor of 0.3\n";
+    out += judgement.fitted.empty()
+               ? "- this holds for materials and a shape that are right to --floor; where they are "
+                 "known to a tenth or a fifth, ask again with a --floor of 0.3\n"
+               : "- this holds for materials that are right to --slope-sd, --reflectance-sd and "
+                 "--haze-sd, and for a shape that is right to --floor\n";
   return out;
 }
 

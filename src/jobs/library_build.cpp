@@ -93,9 +93,9 @@ bool SummedLight::make(std::size_t cells, const Monitor &monitor, Making &out,
   for (std::size_t begin = 0; begin < pairs && !monitor.is_cancelled(); begin += block) {
     const std::size_t end = std::min(begin + block, pairs);
     const auto poses = signature_poses(cells, begin, end, out.text.sun_radius_rad);
-    if (!sums_->evaluate(poses, sums, options_.threads))
+    if (!sums_->evaluate(poses, sums, options_.threads, monitor.cancel))
       return false;
-    tables->apply(sums, part, options_.threads);
+    tables->apply(sums, part, options_.threads, monitor.cancel);
     append(part, light);
     for (const double sum : sums.sum)
       out.sums.push_back(static_cast<float>(sum));

@@ -136,8 +136,9 @@ Result<Table> index_table(const IndexTable &index, const std::vector<double> &wa
     if (!eta) {
       const auto others = indices_covering(index.name, Wavelength::nm(nm));
       return fail(ErrorCode::BadInput,
-                  eta.error().message +
-                      fmt::format(" Tables that cover it: {}.", fmt::join(others, ", ")));
+                  others.empty() ? eta.error().message
+                                 : eta.error().message + fmt::format(" Tables that cover it: {}.",
+                                                                     fmt::join(others, ", ")));
     }
     n.push_back(eta->real());
     k.push_back(eta->imag());

@@ -23,7 +23,7 @@ Angle zenith_in(PolarizationFrame frame, const ObservingGeometry &g) {
 
 Angle x_axis_from_zenith(const Instrument &instrument, const ObservingGeometry &g) {
   return axis_from_zenith(instrument.telescope, Angle::degrees(instrument.polarimeter.x_axis_deg),
-                          zenith_in(PolarizationFrame::Equatorial, g), g.altitude);
+                          zenith_in(PolarizationFrame::Equatorial, g), g.altitude, g.azimuth);
 }
 
 Result<LitBlock> light_of(const Setup &s, const LightModel &light,
@@ -65,15 +65,25 @@ Stokes<ScatteringPlane> irradiance_of(const BandResult &lit, const BandResponse 
 
 /// Light of each node of the exposure, as it reaches the polarimeter.
 using Moments = std::vector<std::vector<Stokes<InstrumentAxes>>>;
+/// The band's light of each node above the air.
+using Truths = std::vector<Stokes<SkyNorth>>;
+
+Stokes<SkyNorth> mean_of(const Truths &truths, const std::vector<double> &weight) {
+  Stokes<SkyNorth> out{};
+  for (std::size_t n = 0; n < truths.size(); ++n)
+    out += truths[n] * weight[n];
+  return out;
+}
 
 ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit,
-                       Recorded &out, Moments &moments) {
+                       Recorded &out, Moments &moments, Truths &truths) {
   const BandObserver &observer = s.observers[e.planned.band];
   const BandResponse &band = observer.band();
   const ObservingGeometry &g = e.middle;
   ExposureLight light;
   light.flux.resize(band.nm.size());
   moments.resize(s.nodes.size());
+  truths.assign(s.nodes.size(), {});
   for (std::size_t n = 0; n < s.nodes.size(); ++n) {
     const std::size_t at = number * s.nodes.size() + n;
     const ObservingGeometry &now = lit.points[at].geometry;
@@ -85,15 +95,17 @@ ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, co
           irradiance_of(lit.table.at(at, s.terms[e.planned.band][k].node), band, now);
       const auto zenith_axes =
           rotate_to<SkyNorth>(light_here, Angle::radians(-now.pa_scat_altaz.radians()));
-      const auto here = observer.at_polarimeter(k, zenith_axes, now.altitude, x_axis);
+      const auto here = observer.at_polarimeter(k, zenith_axes, now.altitude, x_axis, now.azimuth);
       light.flux[k] += here * s.nodes[n].weight;
       if (s.observation.makes_frames)
         moments[n].push_back(here);
-      out.truth += rotate_to<SkyNorth>(light_here, to_file) * (band.weight[k] * s.nodes[n].weight);
+      truths[n] += rotate_to<SkyNorth>(light_here, to_file) * band.weight[k];
     }
+    out.truth += truths[n] * s.nodes[n].weight;
   }
   light.sky = sky_light(s.sky, band, g);
   light.altitude = g.altitude;
+  light.azimuth = g.azimuth;
   const Angle seen = apparent_altitude(band.pivot_nm, g.altitude, s.surface);
   light.airmass = airmass(seen);
   light.axis_zenith = x_axis_from_zenith(s.observation.instrument, g);
@@ -106,21 +118,35 @@ ExposureLight arriving(const Setup &s, const Exposure &e, std::size_t number, co
   return light;
 }
 
+/// How many times as long as a row the object is exposed.
+double stretch_of(const Setup &s, const Exposure &e, std::span<const TrackPoint> points) {
+  const Instrument &instrument = s.observation.instrument;
+  const bool may_roll = instrument.detector.has_rolling_shutter &&
+                        instrument.telescope.tracking != Tracking::Satellite;
+  return may_roll ? FrameView(s, e).stretch(points) : 1;
+}
+
 } // namespace
 
 Recorded record(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit) {
   Recorded out;
   const BandObserver &observer = s.observers[e.planned.band];
   Moments moments;
-  const ExposureLight light = arriving(s, e, number, lit, out, moments);
-  const Angle on_sky =
-      axis_on_sky(s.observation.instrument.telescope, light.axis_zenith, e.middle.altitude);
+  Truths truths;
+  ExposureLight light = arriving(s, e, number, lit, out, moments, truths);
+  const std::span<const TrackPoint> points(&lit.points[number * s.nodes.size()], s.nodes.size());
+  const double stretch = stretch_of(s, e, points);
+  for (Stokes<InstrumentAxes> &flux : light.flux)
+    flux = flux * stretch;
+  const Angle on_sky = axis_on_sky(s.observation.instrument.telescope, light.axis_zenith,
+                                   e.middle.altitude, e.middle.azimuth);
   out.axis = Angle::radians(on_sky.radians() + light.zenith.radians());
   out.airmass = light.airmass;
   out.rate_rad_s = light.rate_rad_s;
+  constexpr double notable = 1e-3;
+  out.is_rolled = std::abs(stretch - 1) > notable;
   out.k_mag = -2.5 * std::log10(observer.mean_transmission(light.airmass)) / light.airmass;
   if (s.observation.makes_frames) {
-    const std::span<const TrackPoint> points(&lit.points[number * s.nodes.size()], s.nodes.size());
     const double width = observer.fwhm_arcsec(light.airmass) / observer.pixel_arcsec();
     auto framed = observe_frames(observer, s.images, e.planned.plan, light,
                                  FrameView(s, e).plan(points, std::move(moments), width));
@@ -129,6 +155,10 @@ Recorded record(const Setup &s, const Exposure &e, std::size_t number, const Lit
       return out;
     }
     out.channels = std::move(framed->channels);
+    for (FramedSlice &slice : framed->slices)
+      out.slices.push_back(
+          {slice.offset_s, std::move(slice.channels), mean_of(truths, slice.weight)});
+    framed->slices.clear();
     out.frames = std::move(*framed);
     return out;
   }

@@ -40,12 +40,21 @@ struct Setup {
   unsigned threads = 0;
 };
 
+/// A piece of a trail, or all of an exposure where none is cut.
+struct RecordedSlice {
+  double offset_s = 0; ///< from the middle of the exposure
+  std::vector<ChannelCounts> channels;
+  Stokes<SkyNorth> truth;
+};
+
 /// One exposure, finished.
 struct Recorded {
   std::vector<ChannelCounts> channels;
-  Stokes<SkyNorth> truth; ///< in the frame of the files [W m-2 nm-1]
-  Angle axis;             ///< of the instrument's x axis in that frame
+  Stokes<SkyNorth> truth;            ///< in the frame of the files [W m-2 nm-1]
+  std::vector<RecordedSlice> slices; ///< where trails are cut
+  Angle axis;                        ///< of the instrument's x axis in that frame
   double airmass = 0, k_mag = 0, rate_rad_s = 0;
+  bool is_rolled = false;               ///< a rolling shutter exposes its trail longer or shorter
   std::optional<FramedExposure> frames; ///< where they are made
   std::optional<Error> error;
 };

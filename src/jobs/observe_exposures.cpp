@@ -33,7 +33,12 @@ Result<EpochSpan> grid_of(const Scenario &scenario, const LightCurveRequest &req
   const double half = o.exposure_s / 2;
   EpochSpan span{plus_seconds(request.span.start, half), plus_seconds(request.span.stop, -half),
                  o.cadence_s};
-  if (seconds_between(span.stop, span.start) < 0)
+  // Times of day are known to a part of a microsecond: an exposure may fill its span.
+  constexpr double rounding_s = 1e-6;
+  const double room_s = seconds_between(span.stop, span.start);
+  if (room_s < 0 && room_s > -rounding_s)
+    span.stop = span.start;
+  else if (room_s < 0)
     return fail(ErrorCode::BadInput,
                 fmt::format("exposure_s = {} is longer than the span of [time], {} s; shorten one "
                             "or lengthen the other",

@@ -61,8 +61,7 @@ double trail_feature_s(const ScenarioObservation &o, const Track &track,
 }
 
 FrameView::FrameView(const Setup &setup, const Exposure &exposure)
-    : s_(setup), e_(exposure),
-      is_mirrored_(setup.observation.instrument.telescope.port != TelescopePort::Cassegrain) {
+    : s_(setup), e_(exposure), is_mirrored_(is_mirrored(setup.observation.instrument.telescope)) {
   const ScenarioObservation &o = s_.observation;
   middle_ = at(e_.middle);
   Draws draws({s_.scenario.seed, s_.observers[e_.planned.band].conditions().object,
@@ -76,7 +75,7 @@ FrameView::FrameView(const Setup &setup, const Exposure &exposure)
 Angle FrameView::axis_pa(const ObservingGeometry &g) const {
   const Instrument &instrument = s_.observation.instrument;
   const Angle on_sky =
-      axis_on_sky(instrument.telescope, x_axis_from_zenith(instrument, g), g.altitude);
+      axis_on_sky(instrument.telescope, x_axis_from_zenith(instrument, g), g.altitude, g.azimuth);
   return Angle::radians(on_sky.radians() + zenith_in(PolarizationFrame::Equatorial, g).radians());
 }
 
@@ -107,6 +106,37 @@ std::optional<FramePoint> FrameView::image(const Axes &axes, Vec3<Gcrs> directio
                     origin_.y + dot(direction, axes.y) * scale};
 }
 
+/// Row y begins y line times after the first, so what moves by v rows a second meets its rows'
+/// shutters 1/(1 - v line time) times as far apart as if it stood.
+double FrameView::stretch(Speed speed) const {
+  const double lines = rolling_change(s_.observation.instrument.detector, speed.y);
+  constexpr double fastest = 0.5; // half as fast as the read-out: no shutter is meant for it
+  return 1 / (1 - std::clamp(lines, -fastest, fastest));
+}
+
+double FrameView::stretch(std::span<const TrackPoint> points) const {
+  return stretch(speed_of(points));
+}
+
+FrameView::Speed FrameView::speed_of(std::span<const TrackPoint> points) const {
+  const ObservingGeometry &first = points.front().geometry, &last = points.back().geometry;
+  const auto from = image(at(first), first.to_observer * -1.);
+  const auto to = image(at(last), last.to_observer * -1.);
+  const double seconds = seconds_between(last.time, first.time);
+  if (!from || !to || !(seconds > 0))
+    return {};
+  return {(to->x - from->x) / seconds, (to->y - from->y) / seconds};
+}
+
+/// Where something is when its row is exposed that would be at `at` if all rows were exposed with
+/// the middle one. The light is that of the same moment: a trail's rows are a millisecond apart.
+FramePoint FrameView::rolled(FramePoint at, Speed speed) const {
+  const double middle_row = (s_.observation.frame_px[1] - 1) / 2.;
+  const double later =
+      rolling_change(s_.observation.instrument.detector, at.y - middle_row) * stretch(speed);
+  return {at.x + speed.x * later, at.y + speed.y * later};
+}
+
 std::optional<FrameStar> FrameView::star(const FieldStar &star, std::span<const TrackPoint> points,
                                          double fwhm_px) const {
   const Vec3<Gcrs> direction = direction_of(star);
@@ -128,12 +158,14 @@ std::optional<FrameStar> FrameView::star(const FieldStar &star, std::span<const 
   if (x[1] < -margin || y[1] < -margin || x[1] > size[0] + margin || y[1] > size[1] + margin)
     return std::nullopt;
   const double exposure = e_.planned.plan.exposure_s;
-  const double speed = std::hypot(x[2] - x[0], y[2] - y[0]) / (t[2] - t[0]);
+  const Speed moves{(x[2] - x[0]) / (t[2] - t[0]), (y[2] - y[0]) / (t[2] - t[0])};
+  const double speed = std::hypot(moves.x, moves.y);
   FrameStar out;
   for (const ExposureNode &node :
        exposure_nodes(exposure, speed > 0 ? fwhm_px / 2 / speed : exposure)) {
-    out.path.push_back({parabola(t, x, node.offset_s), parabola(t, y, node.offset_s)});
-    out.weight.push_back(node.weight);
+    out.path.push_back(
+        rolled({parabola(t, x, node.offset_s), parabola(t, y, node.offset_s)}, moves));
+    out.weight.push_back(node.weight * stretch(moves));
   }
   out.flux = s_.observers[e_.planned.band].band().zero_flux * std::pow(10, -0.4 * star.mag);
   return out;
@@ -147,10 +179,13 @@ FramePlan FrameView::plan(std::span<const TrackPoint> points,
   out.columns = o.frame_px[0];
   out.rows = o.frame_px[1];
   out.photometry = o.photometry;
+  out.cuts_trail = o.cuts_trail;
+  const Speed moves = speed_of(points);
   for (std::size_t n = 0; n < points.size(); ++n) {
     const ObservingGeometry &g = points[n].geometry;
-    const auto there = image(at(g), g.to_observer * -1.);
-    out.object.push_back({there.value_or(origin_), s_.nodes[n].weight, std::move(flux[n])});
+    const FramePoint there = image(at(g), g.to_observer * -1.).value_or(origin_);
+    out.object.push_back({rolled(there, moves), s_.nodes[n].weight * stretch(moves),
+                          s_.nodes[n].offset_s, std::move(flux[n])});
   }
   for (const FieldStar &one : s_.stars)
     if (auto found = star(one, points, fwhm_px))

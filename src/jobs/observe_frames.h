@@ -24,6 +24,9 @@ public:
   [[nodiscard]] FramePlan plan(std::span<const TrackPoint> points,
                                std::vector<std::vector<Stokes<InstrumentAxes>>> flux,
                                double fwhm_px) const;
+  /// How many times as long as its rows, under a rolling shutter, the object is exposed: it runs
+  /// along with the read-out, or against it.
+  [[nodiscard]] double stretch(std::span<const TrackPoint> points) const;
   /// The world coordinates of the frame in the middle of the exposure, as header lines.
   [[nodiscard]] std::vector<FitsCard> world() const;
 
@@ -31,6 +34,13 @@ private:
   struct Axes {
     Vec3<Gcrs> centre, x, y;
   };
+  /// What moves over the frame: pixels a second.
+  struct Speed {
+    double x = 0, y = 0;
+  };
+  [[nodiscard]] Speed speed_of(std::span<const TrackPoint> points) const;
+  [[nodiscard]] double stretch(Speed speed) const;
+  [[nodiscard]] FramePoint rolled(FramePoint at, Speed speed) const;
   [[nodiscard]] Axes at(const ObservingGeometry &g) const;
   [[nodiscard]] Angle axis_pa(const ObservingGeometry &g) const;
   [[nodiscard]] std::optional<FramePoint> image(const Axes &axes, Vec3<Gcrs> direction) const;

@@ -372,8 +372,13 @@ std::array<double, 2> from_zero(std::array<double, 2> span) {
 std::vector<PlotFigure> stokes_figures(StokesLines &lines, const std::string &time) {
   const Span q = lines.q.span(), u = lines.u.span(), mag = lines.mag.span();
   std::vector<PlotLine> p = with_bars(std::move(lines.degree), std::move(lines.intervals));
-  for (PlotLine &one : std::move(lines.limits).all())
+  std::size_t colours = 0; // limits are told apart from what is detected
+  for (const PlotLine &one : p)
+    colours = std::max(colours, one.colour + 1);
+  for (PlotLine &one : std::move(lines.limits).all()) {
+    one.colour += colours;
     p.push_back(std::move(one));
+  }
   std::vector<PlotFigure> out;
   add_figure(out, "q and u against time", time, "q, u in the sky frame",
              with_bars(std::move(lines.points), std::move(lines.bars)), {},
@@ -391,6 +396,40 @@ std::vector<PlotFigure> stokes_figures(StokesLines &lines, const std::string &ti
   return out;
 }
 
+/// The page in a sentence or two: how much is known.
+std::string stokes_answer(const Table &stokes) {
+  std::size_t known = 0, polarized = 0;
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  double least = infinite, most = 0, brightest = infinite, faintest = -infinite;
+  for (std::size_t row = 0; row < stokes.rows(); ++row) {
+    if (const double mag = stokes.number("mag", row); std::isfinite(mag)) {
+      brightest = std::min(brightest, mag);
+      faintest = std::max(faintest, mag);
+    }
+    if (!std::isfinite(stokes.number("q", row)))
+      continue;
+    ++known;
+    if (!(stokes.number("p_lo", row) > 0))
+      continue;
+    ++polarized;
+    const double p = stokes.number("p_debiased", row);
+    least = std::min(least, p);
+    most = std::max(most, p);
+  }
+  std::string out = known == 0
+                        ? fmt::format("No set of {} tells q and u.", stokes.rows())
+                        : fmt::format("{} of {} tell q and u, to {:.2g} in the median", known,
+                                      counted(stokes.rows(), "set"), median_error(stokes));
+  if (known > 0 && polarized == 0)
+    out += "; no polarization is beyond doubt.";
+  else if (known > 0)
+    out += fmt::format("; {} polarized beyond doubt (95 %), p {:.2g} to {:.2g}.",
+                       polarized == 1 ? "1 is" : fmt::format("{} are", polarized), least, most);
+  if (brightest <= faintest)
+    out += fmt::format(" Magnitude {:.1f} to {:.1f}.", brightest, faintest);
+  return out;
+}
+
 } // namespace
 
 Result<std::string> stokes_page(const Table &stokes, const std::string &title,
@@ -405,6 +444,7 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
     lines.add(stokes, row, clock(row));
   const std::vector<PlotFigure> figures = stokes_figures(lines, clock.title());
   std::vector<std::string> notes{
+      stokes_answer(stokes),
       "Ellipses and bars of q and u: one standard deviation. Bars of p: 95 % intervals; points "
       "where "
       "it is detected, else the upper limit. Axes reach what is known: sets with errors wider than "
@@ -414,7 +454,7 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
     notes.push_back(fmt::format("One set in {} has its ellipse.", lines.stride));
   for (const Warning &warning : diagnostics.warnings())
     notes.push_back("warning: " + warning.text());
-  return make_plot_page(title, figures, notes);
+  return make_answer_page(title, figures, notes);
 }
 
 } // namespace umov::jobs

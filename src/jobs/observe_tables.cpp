@@ -10,10 +10,18 @@
 
 namespace umov::jobs {
 
-void ExposureColumns::add(const Setup &setup, const Exposure &exposure, const Epoch<Utc> &time) {
-  time_.push_back(to_iso(time));
-  exposure_.push_back(exposure.planned.plan.index);
-  set_.push_back(static_cast<std::int64_t>(exposure.planned.set));
+void ExposureColumns::add(const Setup &setup, const Exposure &exposure, const Epoch<Utc> &time,
+                          std::size_t slice) {
+  // Pieces of a trail are exposures and sets of their own; no frame has as many.
+  constexpr std::int64_t most = 10'000;
+  const auto number = [&](auto of_exposure) {
+    const auto whole = static_cast<std::int64_t>(of_exposure);
+    return setup.observation.cuts_trail ? whole * most + static_cast<std::int64_t>(slice) : whole;
+  };
+  constexpr int milliseconds = 3, microseconds = 6;
+  time_.push_back(to_iso(time, setup.observation.cuts_trail ? microseconds : milliseconds));
+  exposure_.push_back(number(exposure.planned.plan.index));
+  set_.push_back(number(exposure.planned.set));
   name_.push_back(setup.object);
   band_.push_back(setup.observers[exposure.planned.band].band().name);
 }
@@ -27,8 +35,17 @@ void ExposureColumns::put(Table &table) && {
 }
 
 void CountsTable::add(const Exposure &e, const Recorded &r) {
-  for (const ChannelCounts &c : r.channels) {
-    exposures_.add(s_, e, e.stamp);
+  if (r.slices.empty())
+    return add(e, r, r.channels, 0, 0);
+  for (std::size_t k = 0; k < r.slices.size(); ++k)
+    add(e, r, r.slices[k].channels, r.slices[k].offset_s, k);
+}
+
+void CountsTable::add(const Exposure &e, const Recorded &r,
+                      const std::vector<ChannelCounts> &channels, double offset_s,
+                      std::size_t slice) {
+  for (const ChannelCounts &c : channels) {
+    exposures_.add(s_, e, plus_seconds(e.stamp, offset_s), slice);
     channel_.push_back(c.channel);
     saturated_.push_back(c.is_saturated);
     const double axis = std::fmod(std::fmod(r.axis.degrees(), 180) + 180, 180);
@@ -96,17 +113,25 @@ Table CountsTable::table() && {
 }
 
 void TruthTable::add(const Exposure &e, const Recorded &r) {
+  if (r.slices.empty())
+    return add(e, r, {0, r.channels, r.truth}, 0);
+  for (std::size_t k = 0; k < r.slices.size(); ++k)
+    add(e, r, r.slices[k], k);
+}
+
+void TruthTable::add(const Exposure &e, const Recorded &r, const RecordedSlice &slice,
+                     std::size_t number) {
   const double zero = s_.zero_flux[e.planned.band];
-  exposures_.add(s_, e, e.middle.time);
+  exposures_.add(s_, e, plus_seconds(e.middle.time, slice.offset_s), number);
   double electrons = 0, sky = 0;
-  for (const ChannelCounts &c : r.channels)
+  for (const ChannelCounts &c : slice.channels)
     electrons += c.mean_star, sky += c.mean_sky;
-  const double i = r.truth.i;
+  const double i = slice.truth.i;
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const double values[] = {i,
-                           i > 0 ? r.truth.q / i : none,
-                           i > 0 ? r.truth.u / i : none,
-                           i > 0 ? r.truth.v / i : none,
+                           i > 0 ? slice.truth.q / i : none,
+                           i > 0 ? slice.truth.u / i : none,
+                           i > 0 ? slice.truth.v / i : none,
                            i > 0 ? -2.5 * std::log10(i / zero) : none,
                            electrons,
                            sky,
@@ -138,6 +163,15 @@ Table TruthTable::table() && {
   return out;
 }
 
+namespace {
+
+bool has_plate(PolarimeterType type) {
+  return type == PolarimeterType::HwpDualBeam || type == PolarimeterType::SpinningHwpDualBeam ||
+         type == PolarimeterType::RotatingRetarder || type == PolarimeterType::Flc;
+}
+
+} // namespace
+
 void note_observation(Table &table, const Scenario &scenario, const ObservedBands &bands) {
   const ScenarioObservation &o = *scenario.observation;
   note_conventions(table);
@@ -149,6 +183,11 @@ void note_observation(Table &table, const Scenario &scenario, const ObservedBand
   table.note("mag_system", name_of(scenario.magnitudes));
   for (std::size_t b = 0; b < bands.responses.size(); ++b)
     table.note("zero_flux " + bands.responses[b].name, shortest(bands.zero_flux[b]));
+  if (has_plate(o.instrument.polarimeter.type))
+    for (const BandResponse &band : bands.responses)
+      if (const auto retardance = value_at(o.instrument.polarimeter.retardance_deg,
+                                           Wavelength::nm(band.pivot_nm), "retardance_deg"))
+        table.note("retardance_deg " + band.name, shortest(*retardance));
   table.note("seed", fmt::format("{}", scenario.seed));
   table.note("site", scenario.observer->name);
   table.note("site_lat_deg", shortest(scenario.observer->latitude.degrees()));

@@ -11,7 +11,8 @@ namespace umov::jobs {
 /// What the rows of both tables begin with.
 class ExposureColumns {
 public:
-  void add(const Setup &setup, const Exposure &exposure, const Epoch<Utc> &time);
+  void add(const Setup &setup, const Exposure &exposure, const Epoch<Utc> &time,
+           std::size_t slice = 0);
   void put(Table &table) &&;
 
 private:
@@ -19,7 +20,7 @@ private:
   std::vector<std::int64_t> exposure_, set_;
 };
 
-/// A row for each channel of an exposure.
+/// A row for each channel of an exposure, or of a piece of its trail.
 class CountsTable {
 public:
   explicit CountsTable(const Setup &setup) : s_(setup) {}
@@ -27,6 +28,8 @@ public:
   [[nodiscard]] Table table() &&;
 
 private:
+  void add(const Exposure &exposure, const Recorded &recorded,
+           const std::vector<ChannelCounts> &channels, double offset_s, std::size_t slice);
   const Setup &s_;
   ExposureColumns exposures_;
   std::vector<std::string> channel_;
@@ -34,7 +37,7 @@ private:
   std::array<std::vector<double>, 22> numbers_;
 };
 
-/// A row for each exposure: what was there to be seen.
+/// A row for each exposure or piece: what was there to be seen.
 class TruthTable {
 public:
   explicit TruthTable(const Setup &setup) : s_(setup) {}
@@ -42,6 +45,8 @@ public:
   [[nodiscard]] Table table() &&;
 
 private:
+  void add(const Exposure &exposure, const Recorded &recorded, const RecordedSlice &slice,
+           std::size_t number);
   const Setup &s_;
   ExposureColumns exposures_;
   std::array<std::vector<double>, 10> numbers_;

@@ -84,6 +84,11 @@ std::vector<Tally> ObservationTally::words(const Scenario &scenario, std::size_t
                   "with a sky more than ten times as bright as the object in the aperture: an "
                   "error of one per cent of it is a tenth of the object",
                   ""};
+  out[Rolled] = {"exposure",
+                 "of an object that trails under a rolling shutter: by its direction it is exposed "
+                 "by more than a thousandth longer or shorter than exposure_s, and I is as much "
+                 "too large or too small",
+                 ""};
   out[Saturated] = {"", "exposures are saturated",
                     fmt::format("every exposure of {} is saturated. Shorten observation.exposure_s "
                                 "= {}, or defocus (atmosphere.seeing.arcsec)",
@@ -94,6 +99,7 @@ std::vector<Tally> ObservationTally::words(const Scenario &scenario, std::size_t
 void ObservationTally::add(const Recorded &r) {
   const auto count = [this](Kind kind, bool is_such) { counts_[kind] += is_such ? 1u : 0u; };
   count(Glaring, is_glaring(r));
+  count(Rolled, r.is_rolled);
   count(Saturated, has_full_channel(r));
   if (!r.frames)
     return;

@@ -31,6 +31,13 @@ ObservingConditions conditions_of(const Scenario &scenario, std::uint32_t object
   return out;
 }
 
+/// Of a mirror of the port.
+const std::string &metal_of(const Telescope &telescope, std::size_t mirror) {
+  const bool is_own =
+      telescope.port == TelescopePort::Train && !telescope.train.mirrors[mirror].index.empty();
+  return is_own ? telescope.train.mirrors[mirror].index : telescope.mirror;
+}
+
 /// Each band at the wavelengths of the scene's grid: they stand closer where its colours ask for
 /// it.
 Result<std::vector<BandObserver>> observers_of(const ScenarioObservation &o,
@@ -40,13 +47,13 @@ Result<std::vector<BandObserver>> observers_of(const ScenarioObservation &o,
   for (std::size_t b = 0; b < bands.responses.size(); ++b) {
     const BandResponse band = at_nodes(bands.responses[b], grid, b);
     std::vector<std::complex<double>> eta;
-    if (o.instrument.telescope.port != TelescopePort::Cassegrain) {
-      UMOV_ASSIGN(index, find_index(o.instrument.telescope.mirror));
-      for (const double nm : band.nm) {
+    const Telescope &telescope = o.instrument.telescope;
+    for (const double nm : band.nm)
+      for (std::size_t m = 0; m < port_mirrors(telescope); ++m) {
+        UMOV_ASSIGN(index, find_index(metal_of(telescope, m)));
         UMOV_ASSIGN(value, index_at(index, Wavelength::nm(nm)));
         eta.push_back(value);
       }
-    }
     UMOV_ASSIGN(one, BandObserver::make(o.instrument, band, conditions, eta));
     out.push_back(std::move(one));
   }
@@ -67,6 +74,8 @@ double shortest_feature_s(const Track &track, const std::vector<Exposure> &expos
 
 /// Of two times, where 0 is none.
 double shorter(double a, double b) { return a > 0 && b > 0 ? std::min(a, b) : std::max(a, b); }
+
+constexpr const char *stopped = "stopped; nothing was written";
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -206,7 +215,7 @@ Result<void> ObservedObject::record(IndexRange range, const Monitor &monitor, Re
   std::size_t done = 0;
   for (std::size_t at = range.first; at < range.end(); at = range.first + done) {
     if (monitor.is_cancelled())
-      return fail(ErrorCode::Interrupted, "stopped; nothing was written");
+      return fail(ErrorCode::Interrupted, stopped);
     const std::size_t first = shares_paths ? at / length * length : at;
     const std::size_t behind = std::min(range.end(), first + length);
     const std::size_t lit_behind =
@@ -230,8 +239,11 @@ Result<void> ObservedObject::record_block(IndexRange block, IndexRange wanted,
   const std::size_t before = wanted.first - block.first;
   std::vector<Recorded> recorded(wanted.count);
   parallel_for(wanted.count, s.threads, [&](std::size_t k) {
-    recorded[k] = jobs::record(s, part[before + k], before + k, lit);
+    if (!monitor.is_cancelled())
+      recorded[k] = jobs::record(s, part[before + k], before + k, lit);
   });
+  if (monitor.is_cancelled())
+    return fail(ErrorCode::Interrupted, stopped);
   CountsTable counts(s);
   TruthTable truth(s);
   for (std::size_t k = 0; k < wanted.count; ++k) {

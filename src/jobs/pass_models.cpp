@@ -23,8 +23,9 @@ Result<PassModels> PassModels::of_body(const PassModel &wanted, Diagnostics &dia
                 PassLight::of_body({std::move(scene), TwoAxisLaw{}, {}}, pass_light_options()));
     out.other_ = cube;
   }
-  out.description_ = fmt::format("{} of {:g} m, {}, {}", is_sphere ? "sphere" : "cube",
-                                 wanted.size_m, wanted.material, bands.front().name);
+  out.description_ =
+      fmt::format("{} {:g} m, {}, {}", is_sphere ? "sphere of radius" : "cube with edges of",
+                  wanted.size_m, wanted.material, bands.front().name);
   return out;
 }
 

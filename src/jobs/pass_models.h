@@ -11,6 +11,7 @@ namespace umov::jobs {
 /// Objects of a scenario by their catalogue number, and one model for all others.
 class PassModels {
 public:
+  static constexpr const char *unknown = "none: no magnitudes"; ///< description of no model
   static Result<PassModels> make(const PassModel &wanted, const JobOptions &options,
                                  Diagnostics &diagnostics);
   /// Null: nothing is said about that object's light.
@@ -32,7 +33,7 @@ private:
   std::optional<PassLight> other_;
   std::size_t band_ = 0;
   bool has_air_ = false;
-  std::string description_ = "none: no magnitudes";
+  std::string description_ = unknown;
 };
 
 } // namespace umov::jobs

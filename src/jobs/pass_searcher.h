@@ -18,8 +18,9 @@ struct FoundPasses {
   SearchTally tally;
 };
 
-/// By what passes are put in order: seconds from the begin of the span to the rise.
-double rise_order(const PassesRequest &request, const SitePass &pass);
+/// By what passes are put in order, the least first: seconds from the begin of the span to the
+/// rise, or what PassesRequest::order says; 1e300 where a pass has none of it.
+double order_of(const PassesRequest &request, const ObjectPass &one);
 
 /// What is said where nothing was found.
 std::string no_pass(const PassesRequest &request);

@@ -1,6 +1,7 @@
 #include <umov/jobs/passes.h>
 
 #include "jobs/pass_searcher.h"
+#include "jobs/standing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -170,7 +171,12 @@ std::string problem_of(const Result<SitePasses> &found) {
   return out;
 }
 
-/// Passes of all objects by the time of rise; warnings for the first objects that failed.
+bool is_wanted(const PassesRequest &request, const SitePass &pass, const PassBrightness &light) {
+  return (!request.is_visible_only || pass.visible_s > 0) &&
+         (!request.magnitude_max || light.magnitude_min <= *request.magnitude_max);
+}
+
+/// Passes of all objects that are wanted, in order; warnings for the first objects that failed.
 SearchTally gather(const PassesRequest &request, std::vector<Found> &&all, PassesResult &out,
                    Diagnostics &diagnostics) {
   constexpr std::size_t told_max = 10;
@@ -186,27 +192,35 @@ SearchTally gather(const PassesRequest &request, std::vector<Found> &&all, Passe
     if (!geometry)
       continue;
     for (std::size_t k = 0; k < geometry->passes.size(); ++k)
-      if (SitePass &pass = geometry->passes[k]; !request.is_visible_only || pass.visible_s > 0)
+      if (SitePass &pass = geometry->passes[k]; is_wanted(request, pass, all[i]->light[k]))
         out.found.push_back({i, std::move(pass), std::move(all[i]->light[k])});
   }
   if (tally.failed > told_max)
     diagnostics.warn(fmt::format("{} more objects like these", tally.failed - told_max));
   std::stable_sort(out.found.begin(), out.found.end(),
                    [&request](const ObjectPass &a, const ObjectPass &b) {
-                     return rise_order(request, a.pass) < rise_order(request, b.pass);
+                     return order_of(request, a) < order_of(request, b);
                    });
   return tally;
 }
 
 } // namespace
 
-double rise_order(const PassesRequest &request, const SitePass &pass) {
-  return seconds_between(pass.rise.time, request.start);
+double order_of(const PassesRequest &request, const ObjectPass &one) {
+  constexpr double last = 1e300; // and not infinity: shards keep it in their files
+  if (request.order == PassOrder::Magnitude)
+    return std::isnan(one.light.magnitude_min) ? last : one.light.magnitude_min;
+  if (request.order == PassOrder::Altitude)
+    return one.pass.visible_s > 0 ? -one.pass.visible_altitude_max.degrees() : last;
+  return seconds_between(one.pass.rise.time, request.start);
 }
 
 std::string no_pass(const PassesRequest &request) {
-  return fmt::format("no {}pass above {:g} deg in this span",
-                     request.is_visible_only ? "visible " : "", request.altitude_min.degrees());
+  return fmt::format("no {}pass above {:g} deg{} in this span",
+                     request.is_visible_only ? "visible " : "", request.altitude_min.degrees(),
+                     request.magnitude_max
+                         ? fmt::format(" as bright as magnitude {:g}", *request.magnitude_max)
+                         : "");
 }
 
 Result<PassSearcher> PassSearcher::make(const PassesRequest &request, const JobOptions &options,
@@ -218,6 +232,13 @@ Result<PassSearcher> PassSearcher::make(const PassesRequest &request, const JobO
                 fmt::format("{} to {} are {:.0f} years; passes are searched over 100 at most. Is "
                             "the year of --stop mistyped?",
                             to_iso(request.start), to_iso(request.stop), days / 365.25));
+  const bool has_light = request.model.scene || request.model.body != PassModel::Body::None;
+  if (!has_light && (request.magnitude_max || request.order == PassOrder::Magnitude))
+    return fail(
+        ErrorCode::Usage,
+        fmt::format("{}: nothing is known of magnitudes. Say what the objects are: --scene, "
+                    "or --model sphere --material paint_white (in Python: a Satellite)",
+                    request.magnitude_max ? "--mag-max" : "--sort mag"));
   PassSearcher out;
   UMOV_ASSIGN(orbits, read_orbits(request, options, diagnostics));
   warn_if_beyond_leap_seconds(request.stop, diagnostics);
@@ -262,8 +283,12 @@ Result<PassesResult> passes(const PassesRequest &request, const JobOptions &opti
   if (found.tally.failed == out.orbits.size() && out.found.empty() && !out.orbits.empty())
     return fail(ErrorCode::Physics, "no pass before the orbit of every object ends",
                 {request.orbit});
+  const std::string standing =
+      out.found.empty() && out.orbits.size() == 1
+          ? where_it_stands(out.orbits[0], request.site, request.start, request.altitude_min)
+          : "";
   if (out.found.empty())
-    return fail(ErrorCode::Nothing, no_pass(request));
+    return fail(ErrorCode::Nothing, no_pass(request) + (standing.empty() ? "" : "." + standing));
   return std::move(out);
 }
 

@@ -31,18 +31,19 @@ Result<std::string> identity_of(const PassesRequest &r, const JobOptions &option
     UMOV_ASSIGN(material, read_file(r.model.material));
     inputs.push_back({r.model.material, sha256_hex(material)});
   }
-  return job_text(scene, inputs,
-                  fmt::format("passes of {}; site {} {:.17g} {:.17g} {:.17g}; {} to {}; above "
-                              "{:.17g}, dark below {:.17g}, "
-                              "shadow {}; {} {}; model {} {:.17g} {} {}; scene {}; old {} bad {}",
-                              fmt::join(r.norad, ","), r.site.name, r.site.latitude.degrees(),
-                              r.site.longitude.degrees(), r.site.altitude_m, to_iso_exact(r.start),
-                              to_iso_exact(r.stop), r.altitude_min.degrees(),
-                              r.sun_altitude_max.degrees(), static_cast<int>(r.shadow),
-                              r.is_visible_only, r.keep_going, static_cast<int>(r.model.body),
-                              r.model.size_m, r.model.material, r.model.band,
-                              r.model.scene.has_value(), options.allow_old_elements,
-                              options.allow_bad_checksum));
+  return job_text(
+      scene, inputs,
+      fmt::format("passes of {}; site {} {:.17g} {:.17g} {:.17g}; {} to {}; above "
+                  "{:.17g}, dark below {:.17g}, "
+                  "shadow {}; {} {} {:.17g} {}; model {} {:.17g} {} {}; scene {}; old {} bad {}",
+                  fmt::join(r.norad, ","), r.site.name, r.site.latitude.degrees(),
+                  r.site.longitude.degrees(), r.site.altitude_m, to_iso_exact(r.start),
+                  to_iso_exact(r.stop), r.altitude_min.degrees(), r.sun_altitude_max.degrees(),
+                  static_cast<int>(r.shadow), r.is_visible_only, r.keep_going,
+                  r.magnitude_max.value_or(1e9), static_cast<int>(r.order),
+                  static_cast<int>(r.model.body), r.model.size_m, r.model.material, r.model.band,
+                  r.model.scene.has_value(), options.allow_old_elements,
+                  options.allow_bad_checksum));
 }
 
 class RangedPasses final : public RangedJob {
@@ -65,8 +66,8 @@ public:
     Table table = passes_table(searcher_.request(), found.result);
     std::vector<double> order;
     for (const ObjectPass &one : found.result.found)
-      order.push_back(rise_order(searcher_.request(), one.pass));
-    table.add(order_column, "s", "rise after the begin of the span", std::move(order));
+      order.push_back(order_of(searcher_.request(), one));
+    table.add(order_column, "", "what rows are put in order by", std::move(order));
     return sink.add(0, std::move(table));
   }
 

@@ -1,6 +1,7 @@
 // The rows of a search for passes.
 
 #include "jobs/columns.h"
+#include "jobs/pass_models.h"
 #include <umov/jobs/passes.h>
 
 #include <cmath>
@@ -82,7 +83,9 @@ void PassColumns::add_names() {
 void PassColumns::add_way() {
   text("rise_utc", "crosses the altitude going up; empty: it is up when the span begins",
        [](E, P p) { return p.is_rise_cut ? std::string() : to_iso(p.rise.time); });
-  text("culmination_utc", "highest point within the span",
+  text("culmination_utc",
+       "highest point of the whole pass, beyond the span's ends too; within them of what hardly "
+       "moves",
        [](E, P p) { return to_iso(p.culmination.time); });
   text("set_utc", "crosses the altitude going down; empty: it is up when the span ends",
        [](E, P p) { return p.is_set_cut ? std::string() : to_iso(p.set.time); });
@@ -104,7 +107,9 @@ void PassColumns::add_light() {
          [](E, P p) { return std::round(p.sunlit_share * 1e9) / 1e9; }); // no .9999999999999999
   number("visible", "s", "sunlit, with the site's Sun below --sun-alt-max-deg",
          [](E, P p) { return p.visible_s; });
-  number("range_min", "km", "smallest distance from the site",
+  number("visible_alt", "deg", "highest while visible; empty: never",
+         [](E, P p) { return p.visible_s > 0 ? p.visible_altitude_max.degrees() : none; });
+  number("range_min", "km", "smallest distance from the site, within the span",
          [](E, P p) { return p.range_min_km; });
   number("phase_min", "deg", "smallest phase angle while sunlit",
          [](E, P p) { return p.sunlit_share > 0 ? p.phase_min.degrees() : none; });
@@ -163,6 +168,9 @@ Table passes_table(const PassesRequest &request, const PassesResult &result) {
   Table out = std::move(columns.table);
   const Site &site = request.site;
   out.note("model", result.model);
+  if (result.model != PassModels::unknown)
+    out.note("magnitudes", "of samples 5 s apart at most, and of glints, to a few hundredths: umov "
+                           "run with a shorter step finds brighter and fainter moments");
   out.note("track_error",
            "roughly 1 km and 2 km per day of age below 2,000 km, 0.2 km per day above");
   out.note("site",

@@ -1,43 +1,35 @@
-#include <umov/jobs/period.h>
+#include "jobs/period_search.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <umov/core/text.h>
-#include <umov/lightcurve/periodogram.h>
 
 namespace umov::jobs {
 namespace {
-
-/// Brightness of one band without a long gap, in magnitudes.
-struct Stretch {
-  std::string band;
-  Epoch<Utc> begin{};
-  std::vector<double> seconds, magnitudes;
-};
 
 /// What a row says of brightness; NaN where it says nothing.
 double magnitude_of(const ObservedRow &row) {
   return row.flux > 0 ? -2.5 * std::log10(row.flux) : row.mag;
 }
 
-std::vector<Stretch> stretches_of(const ObservationsFile &file, const std::string &band,
-                                  double gap_s) {
-  std::vector<Stretch> out;
+void add_stretches(const ObservationsFile &file, const std::string &band, double gap_s,
+                   std::vector<Stretch> &out) {
+  const std::size_t before = out.size();
   for (const ObservedRow &row : file.rows) {
     const double magnitude = magnitude_of(row);
     if (row.band != band || !std::isfinite(magnitude))
       continue;
-    const double seconds = out.empty() ? 0 : seconds_between(row.time, out.back().begin);
-    if (out.empty() || seconds - out.back().seconds.back() > gap_s) {
-      out.push_back({band, row.time, {0}, {magnitude}});
+    const bool is_first = out.size() == before;
+    const double seconds = is_first ? 0 : seconds_between(row.time, out.back().begin);
+    if (is_first || seconds - out.back().seconds.back() > gap_s) {
+      out.push_back({band, row.time, {0}, {magnitude}, row.flux > 0});
     } else {
       out.back().seconds.push_back(seconds);
       out.back().magnitudes.push_back(magnitude);
     }
   }
-  return out;
 }
 
 std::vector<std::string> bands_of(const ObservationsFile &file) {
@@ -46,6 +38,21 @@ std::vector<std::string> bands_of(const ObservationsFile &file) {
     if (std::ranges::find(out, row.band) == out.end())
       out.push_back(row.band);
   return out;
+}
+
+Result<std::vector<std::string>> wanted_bands(const ObservationsFile &observations,
+                                              const std::string &band) {
+  std::vector<std::string> bands = bands_of(observations);
+  if (band.empty())
+    return bands;
+  if (std::ranges::find(bands, band) == bands.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("holds no band \"{}\"; it has {}", printable(band),
+                            bands == std::vector<std::string>{""}
+                                ? "no column \"band\": leave --band out"
+                                : printable(fmt::format("{}", fmt::join(bands, ", ")))),
+                {observations.path});
+  return std::vector<std::string>{band};
 }
 
 /// The longest periods that are tried take more than any peak.
@@ -74,6 +81,7 @@ struct PeriodRows {
   std::vector<std::string> time, band, meaning;
   std::vector<std::int64_t> epochs, rank;
   std::vector<double> span, period, error, power, false_alarm;
+  std::vector<const Stretch *> stretch;
 
   void add(const Stretch &of, std::span<const PeriodPeak> peaks) {
     const std::vector<PeakRelation> relations = relate_peaks(peaks, of.seconds);
@@ -88,30 +96,33 @@ struct PeriodRows {
       power.push_back(peaks[k].power);
       false_alarm.push_back(peaks[k].false_alarm);
       meaning.push_back(meaning_of(relations[k]));
+      stretch.push_back(&of);
     }
   }
 
-  /// Which spins the surest highest peak may mean.
-  [[nodiscard]] std::string spins() const {
+  /// The row of the surest highest peak.
+  [[nodiscard]] std::size_t surest() const {
     std::size_t best = 0;
     for (std::size_t k = 0; k < rank.size(); ++k)
       if (rank[k] == 1 && (false_alarm[k] < false_alarm[best] ||
                            (false_alarm[k] == false_alarm[best] && power[k] > power[best])))
         best = k;
-    const std::string row =
-        band[best].empty() ? "" : fmt::format(" ({}, {})", printable(band[best]), time[best]);
-    return fmt::format(
-        "light repeats every {:.4g} s{}: the spin is {:.4g} s, or twice that, {:.4g} s, if two "
-        "sides are alike, or, of a tumbling body, half of it, {:.4g} s; each synodic. Brightness "
-        "alone does not tell which: fold at each, or umov invert spin",
-        period[best], row, period[best], 2 * period[best], period[best] / 2);
+    return best;
+  }
+  /// What that peak is.
+  [[nodiscard]] SurestPeak surest_peak() const {
+    const std::size_t k = surest();
+    return {stretch[k], period[k],
+            band[k].empty() ? "" : fmt::format(" ({}, {})", printable(band[k]), time[k])};
   }
 };
 
-Table table_of(PeriodRows &&rows, const std::string &path) {
+Table table_of(PeriodRows &&rows, const PeriodRequest &request, const std::string &path) {
   Table out;
   out.note("what", "periods that the light of " + path + " shows, by Lomb-Scargle");
-  out.note("spin", rows.spins());
+  const SurestPeak best = rows.surest_peak();
+  out.note("spin",
+           describe(repetition_of(*best.stretch, best.period_s, request.false_alarm), best.where));
   out.note("synodic", "they are of the light as the observer saw it: a spin is off by the turn of "
                       "the bisector of Sun and observer, and two like sides show half of it");
   out.add("time_utc", "", "begin of the stretch", std::move(rows.time));
@@ -124,7 +135,9 @@ Table table_of(PeriodRows &&rows, const std::string &path) {
           std::move(rows.error));
   out.add("power", "", "part of the variance that a sine of that period takes",
           std::move(rows.power));
-  out.add("false_alarm", "", "chance that white noise has a peak as high",
+  out.add("false_alarm", "",
+          "chance that white noise has a peak as high; of lower ranks an upper bound, since the "
+          "higher peaks count as noise",
           std::move(rows.false_alarm));
   out.add("meaning", "",
           "period; part or multiple of a higher peak; alias: made of one by the times",
@@ -166,21 +179,6 @@ struct Findings {
   }
 };
 
-Result<std::vector<std::string>> wanted_bands(const ObservationsFile &observations,
-                                              const std::string &band) {
-  std::vector<std::string> bands = bands_of(observations);
-  if (band.empty())
-    return bands;
-  if (std::ranges::find(bands, band) == bands.end())
-    return fail(ErrorCode::BadInput,
-                fmt::format("holds no band \"{}\"; it has {}", printable(band),
-                            bands == std::vector<std::string>{""}
-                                ? "no column \"band\": leave --band out"
-                                : printable(fmt::format("{}", fmt::join(bands, ", ")))),
-                {observations.path});
-  return std::vector<std::string>{band};
-}
-
 void warn_of_search(const Findings &found, const PeriodRequest &request, const std::string &path,
                     Diagnostics &diagnostics) {
   if (found.too_slow > 0)
@@ -209,20 +207,17 @@ void warn_of_left_out(const Findings &found, const std::string &path, Diagnostic
                      {path});
 }
 
-} // namespace
-
-Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
-                     Diagnostics &diagnostics) {
-  const std::string &path = observations.path;
-  UMOV_ASSIGN(bands, wanted_bands(observations, request.band));
+/// Peaks of all stretches; at least one. Warnings go to `diagnostics`, where it is given.
+Result<Findings> search(const std::vector<Stretch> &stretches, const PeriodRequest &request,
+                        const std::string &path, Diagnostics *diagnostics = nullptr) {
   if (!(request.shortest_s < request.longest_s))
     return fail(ErrorCode::Usage, fmt::format("periods from {:g} to {:g} s: none lies between",
                                               request.shortest_s, request.longest_s));
   Findings found;
-  for (const std::string &band : bands)
-    for (const Stretch &one : stretches_of(observations, band, request.gap_s))
-      found.look_at(one, request);
-  warn_of_search(found, request, path, diagnostics);
+  for (const Stretch &one : stretches)
+    found.look_at(one, request);
+  if (diagnostics != nullptr)
+    warn_of_search(found, request, path, *diagnostics);
   if (found.rows.period.empty() && found.noisy > 0)
     return fail(
         ErrorCode::Nothing,
@@ -236,8 +231,34 @@ Result<Table> period(const ObservationsFile &observations, const PeriodRequest &
         fmt::format("{} shows no period: twelve brightnesses without a gap of {:g} s that "
                     "change otherwise than evenly are needed, with a peak in the range asked for",
                     path, request.gap_s));
-  warn_of_left_out(found, path, diagnostics);
-  return table_of(std::move(found.rows), path);
+  if (diagnostics != nullptr)
+    warn_of_left_out(found, path, *diagnostics);
+  return found;
+}
+
+} // namespace
+
+Result<std::vector<Stretch>> stretches_of(const ObservationsFile &file,
+                                          const PeriodRequest &request) {
+  UMOV_ASSIGN(bands, wanted_bands(file, request.band));
+  std::vector<Stretch> out;
+  for (const std::string &band : bands)
+    add_stretches(file, band, request.gap_s, out);
+  return out;
+}
+
+Result<SurestPeak> surest_peak(const std::vector<Stretch> &stretches, const PeriodRequest &request,
+                               const std::string &path) {
+  UMOV_ASSIGN(found, search(stretches, request, path));
+  return found.rows.surest_peak();
+}
+
+Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
+                     Diagnostics &diagnostics) {
+  const std::string &path = observations.path;
+  UMOV_ASSIGN(stretches, stretches_of(observations, request));
+  UMOV_ASSIGN(found, search(stretches, request, path, &diagnostics));
+  return table_of(std::move(found.rows), request, path);
 }
 
 } // namespace umov::jobs

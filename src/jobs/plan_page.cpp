@@ -123,7 +123,7 @@ std::string plan_page(const std::string &title, const Plan &plan) {
   std::vector<std::string> notes = page_lines(plan_summary(plan));
   for (std::string &line : band_lines(plan))
     notes.push_back(std::move(line));
-  const auto page = make_plot_page(title, figures, notes);
+  const auto page = make_answer_page(title, figures, notes);
   return page ? *page : std::string();
 }
 

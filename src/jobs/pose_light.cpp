@@ -24,7 +24,7 @@ Result<Stokes<ScatteringPlane>> source_of(const SignatureRequest &request) {
     return fail(ErrorCode::Usage,
                 fmt::format("--state {} {} {} {}: I > 0 and sqrt(Q2 + U2 + V2) <= I were expected",
                             s.i, s.q, s.u, s.v));
-  return s * (1 / s.i);
+  return Stokes<ScatteringPlane>{1, s.q / s.i, s.u / s.i, s.v / s.i}; // 1 / i may be infinite
 }
 
 /// What the options say against each other.

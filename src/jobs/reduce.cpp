@@ -1,4 +1,5 @@
 #include "jobs/count_rows.h"
+#include "jobs/prepared_counts.h"
 #include "jobs/reduce_series.h"
 #include "jobs/result_folder.h"
 
@@ -145,11 +146,11 @@ Result<StokesFit> with_common_errors(const Set &set, const std::vector<ChannelDa
     if (pass > 0)
       cloud = cloudy(set.rows, data, fit->stokes, has_separate_pupils);
     const auto &seen = pass > 0 ? cloud.data : data;
-    std::vector<ModelledDatum> modelled;
+    std::vector<ModelledDatum> model;
     for (std::size_t k = 0; k < data.size(); ++k)
-      modelled.push_back({seen[k], fit->stokes, set.rows[k].x_axis_pa_deg * pi / 180, gains[k]});
-    std::vector<CommonError> common = common_errors(options.priors, modelled);
-    add_scintillation(common, pass > 0 ? cloud.rows : set.rows, modelled, has_separate_pupils);
+      model.push_back(modelled(set.rows[k], seen[k], fit->stokes, gains[k]));
+    std::vector<CommonError> common = common_errors(options.priors, model);
+    add_scintillation(common, pass > 0 ? cloud.rows : set.rows, model, has_separate_pupils);
     if (!common.empty())
       fit = fit_stokes(seen, parameters, common);
   }
@@ -231,7 +232,7 @@ void warn_of_drift(const std::vector<Set> &sets, const std::vector<Reduced> &red
 /// Every set by itself.
 Result<std::vector<Reduced>> set_by_set(const CountsFile &file, std::size_t parameters,
                                         bool has_separate_pupils, const ReduceOptions &options,
-                                        Diagnostics &diagnostics) {
+                                        const Monitor &monitor, Diagnostics &diagnostics) {
   std::vector<Set> sets = sets_of(file);
   const std::size_t full = std::erase_if(sets, [](const Set &set) { return set.rows.empty(); });
   if (sets.empty())
@@ -241,8 +242,11 @@ Result<std::vector<Reduced>> set_by_set(const CountsFile &file, std::size_t para
                                  counted(full, "set"), full + sets.size()));
   std::vector<Reduced> out(sets.size());
   parallel_for(sets.size(), options.threads, [&](std::size_t k) {
-    out[k] = solve(sets[k], parameters, has_separate_pupils, options);
+    if (!monitor.is_cancelled())
+      out[k] = solve(sets[k], parameters, has_separate_pupils, options);
   });
+  if (monitor.is_cancelled())
+    return fail(ErrorCode::Interrupted, "stopped by the user in the reduction of sets");
   const auto solved =
       std::ranges::count_if(out, [](const Reduced &r) { return r.fit.covariance[0][0] > 0; });
   if (solved == 0) {
@@ -291,28 +295,29 @@ void note(Table &table, const CountsFile &file) {
   table.note("POLCCONV", "IAU");
 }
 
-/// The same counts where cloud is not known beside scintillation.
-CountsFile clouded(CountsFile file, double transparency_sd) {
-  for (CountRow &row : file.rows)
-    row.scintillation = std::hypot(row.scintillation, transparency_sd);
-  return file;
-}
-
 } // namespace
 
 Result<Table> reduce(const CountsFile &given, const ReduceOptions &options, const Monitor &monitor,
                      Diagnostics &diagnostics) {
-  const bool is_cloudy = options.transparency_sd > 0;
-  const CountsFile through_cloud =
-      is_cloudy ? clouded(given, options.transparency_sd) : CountsFile{};
-  const CountsFile &file = is_cloudy ? through_cloud : given;
+  CountsFile prepared;
+  if (is_prepared(options)) {
+    UMOV_ASSIGN(made, prepare(given, options));
+    prepared = std::move(made);
+  }
+  const CountsFile &file = is_prepared(options) ? prepared : given;
+  if (options.photometry && !options.colour &&
+      (options.photometry->colour_term != 0 || options.photometry->second_order != 0))
+    diagnostics.warn(fmt::format("the object is taken to have the Sun's colour, B - V = {}; give "
+                                 "--colour in the index of the standards",
+                                 solar_colour));
   const std::size_t parameters = parameters_of(file);
   const auto pupils = file.notes.find("pupils");
   const bool has_separate_pupils = pupils != file.notes.end() && pupils->second == "separate";
-  UMOV_ASSIGN(reduced,
-              options.period_s > 0 || options.knot_s > 0
-                  ? reduce_series(file, parameters, has_separate_pupils, options, diagnostics)
-                  : set_by_set(file, parameters, has_separate_pupils, options, diagnostics));
+  UMOV_ASSIGN(
+      reduced,
+      options.period_s > 0 || options.knot_s > 0
+          ? reduce_series(file, parameters, has_separate_pupils, options, diagnostics)
+          : set_by_set(file, parameters, has_separate_pupils, options, monitor, diagnostics));
   monitor.advance("sets", reduced.size(), reduced.size());
   if (!(options.period_s > 0 || options.knot_s > 0)) // a series has told its own
     warn_of_gaps(file.rows, false, diagnostics);

@@ -23,12 +23,11 @@ Result<SequenceFit> fit_series(Rows rows, std::size_t parameters, bool has_separ
   UMOV_ASSIGN(fit, options.knot_s > 0
                        ? fit_spline(data, options.knot_s, unknowns)
                        : fit_sequence(data, options.period_s, options.harmonics, unknowns));
-  std::vector<ModelledDatum> modelled;
+  std::vector<ModelledDatum> model;
   const auto gains = gains_of(rows);
   for (std::size_t k = 0; k < rows.size(); ++k)
-    modelled.push_back({data[k].datum, stokes_at(fit, data[k].time_s),
-                        rows[k].x_axis_pa_deg * pi / 180, gains[k]});
-  const auto common = common_errors(options.priors, modelled);
+    model.push_back(modelled(rows[k], data[k].datum, stokes_at(fit, data[k].time_s), gains[k]));
+  const auto common = common_errors(options.priors, model);
   if (common.empty())
     return fit;
   return fit_sequence(data, fit, common);

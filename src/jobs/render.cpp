@@ -134,21 +134,24 @@ using Rasters = std::vector<KeyFrameRaster>; ///< of one shot, a band each
 
 /// 8-bit pictures, one exposure for all.
 Result<void> put_png(const RenderRequest &request, const std::vector<Rasters> &all,
-                     const PictureSink &sink) {
+                     const PictureSink &sink, const Monitor &monitor) {
   Rasters flat;
-  for (const Rasters &rasters : all)
-    flat.insert(flat.end(), rasters.begin(), rasters.end());
-  const double white = common_exposure(flat);
+  if (all.size() > 1) // a single large picture takes gigabytes
+    for (const Rasters &rasters : all)
+      flat.insert(flat.end(), rasters.begin(), rasters.end());
+  const double white = common_exposure(all.size() > 1 ? flat : all.front());
   std::vector<std::vector<std::uint8_t>> frames;
   for (const Rasters &rasters : all) {
     if (request.shade == Shade::Colour) {
-      UMOV_ASSIGN(rgb, shade_colour(rasters, white));
+      UMOV_ASSIGN(rgb, shade_colour(rasters, white, monitor.cancel));
       frames.push_back(std::move(rgb));
     } else {
-      frames.push_back(shade(rasters.front(), shading_of(request.shade), white));
+      frames.push_back(shade(rasters.front(), shading_of(request.shade), white, monitor.cancel));
       draw_colour_bar(frames.back(), request.side, shading_of(request.shade));
     }
   }
+  if (monitor.is_cancelled())
+    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
   if (frames.size() > 1 && !request.has_file_each) {
     UMOV_ASSIGN(movie, encode_animation(request.side, request.side, frames, request.frames_per_s));
     return sink(0, std::move(movie));
@@ -249,11 +252,11 @@ Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
   }
   const KeyFrameOptions how{request.side,         request.samples, band,
                             request.half_width_m, options.threads, scenario.light.bounces,
-                            request.paths,        scenario.seed};
+                            request.paths,        scenario.seed,   monitor.cancel};
   UMOV_TRY(take_part(request.part, subject));
   UMOV_ASSIGN(traced_all, trace(request, scenario, subject, how, sink, monitor));
   if (!request.is_exr)
-    UMOV_TRY(put_png(request, traced_all.kept, sink));
+    UMOV_TRY(put_png(request, traced_all.kept, sink, monitor));
   return Rendered{subject.shots.size(), traced_all.width_m, subject.shots.front().when,
                   subject.shots.back().when};
 }

@@ -3,6 +3,7 @@
 #include "jobs/haze_spread.h"
 #include "jobs/job_journal.h"
 #include "jobs/run_report.h"
+#include "jobs/standing.h"
 #include "jobs/wanted_passes.h"
 
 #include <algorithm>
@@ -39,7 +40,9 @@ Result<Error> nothing_found(const LightCurveRequest &request) {
     text += fmt::format(" The next one: {}Z, max alt {:.0f}.",
                         to_iso(next->first_row).substr(0, 16), next->altitude_max.degrees());
   else
-    text += fmt::format(" None in the next {:.0f} days either.", days);
+    text += fmt::format(" None in the next {:.0f} days either.{}", days,
+                        where_it_stands(request.track.orbit, request.track.site, span.start,
+                                        request.only.altitude_min));
   return Error{ErrorCode::Nothing, text, {}};
 }
 

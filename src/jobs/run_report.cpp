@@ -55,32 +55,35 @@ struct PassNumbers {
   bool has_limit = false; ///< samples fainter than can be told
 };
 
+/// A band as people write it: 550 nm.
+std::string spelt(const std::string &band) {
+  return band.starts_with("nm:") ? band.substr(3) + " nm" : band;
+}
+
+/// Of one band, the middle one: a range over several would mix the object's colour into it.
 PassNumbers numbers_of(const LightCurve &curve, const std::string &id) {
   PassNumbers out;
-  const std::size_t bands = curve.bands.size();
+  const std::size_t bands = curve.bands.size(), band = bands / 2;
   for (std::size_t i = 0; i < curve.epochs.size(); ++i) {
     if (curve.epochs[i].pass_id != id)
       continue;
     const double phase = curve.epochs[i].geometry.phase_angle.degrees();
     out.phase_min = std::min(out.phase_min, phase);
     out.phase_max = std::max(out.phase_max, phase);
-    for (std::size_t b = 0; b < bands; ++b) {
-      const LightCurveSample &s = curve.samples[i * bands + b];
-      if (std::isnan(s.magnitude))
-        continue;
-      if (has_magnitude_limit(s)) {
-        out.has_limit = true;
-        out.faintest = std::max(out.faintest, s.magnitude);
-        continue;
-      }
-      if (s.magnitude < out.brightest) {
-        out.brightest = s.magnitude;
-        out.brightest_at = i;
-      }
-      out.faintest = std::max(out.faintest, s.magnitude);
-      if (!std::isnan(s.p) && is_p_known(s.intensity, s.half_width))
-        out.p_max = std::max(out.p_max, s.p);
+    const LightCurveSample &s = curve.samples[i * bands + band];
+    if (std::isnan(s.magnitude))
+      continue;
+    out.faintest = std::max(out.faintest, s.magnitude);
+    if (has_magnitude_limit(s)) {
+      out.has_limit = true;
+      continue;
     }
+    if (s.magnitude < out.brightest) {
+      out.brightest = s.magnitude;
+      out.brightest_at = i;
+    }
+    if (!std::isnan(s.p) && is_p_known(s.intensity, s.half_width))
+      out.p_max = std::max(out.p_max, s.p);
   }
   return out;
 }
@@ -173,10 +176,11 @@ std::string summarize(const LightCurveOutcome &outcome) {
                        is_outside ? " (not among the epochs)" : "", n.phase_min, n.phase_max);
     if (std::isfinite(n.brightest)) {
       const ObservingGeometry &best = curve.epochs[n.brightest_at].geometry;
-      out +=
-          fmt::format("  mag {:.1f} to {}{:.1f} {}, brightest {} at phase {:.0f}  p up to {:.0f} %",
-                      n.brightest, n.has_limit ? "> " : "", n.faintest, name_of(curve.magnitudes),
-                      to_iso(best.time).substr(11, 8), best.phase_angle.degrees(), 100 * n.p_max);
+      out += fmt::format(
+          "  {}: mag {:.1f} to {}{:.1f} {}, brightest {} at phase {:.0f}  p up to {:.0f} %",
+          spelt(curve.bands[curve.bands.size() / 2].name), n.brightest, n.has_limit ? "> " : "",
+          n.faintest, name_of(curve.magnitudes), to_iso(best.time).substr(11, 8),
+          best.phase_angle.degrees(), 100 * n.p_max);
     } else if (n.has_limit)
       out += "  too faint for a magnitude throughout: see mag_limit";
     out += "\n";
@@ -210,9 +214,11 @@ std::string summary_json(const LightCurveOutcome &outcome) {
   }
   const auto dark = std::count_if(curve.epochs.begin(), curve.epochs.end(),
                                   [](const LightCurveEpoch &e) { return e.is_dark; });
-  Json out{{"name", curve.object},          {"norad_cat_id", curve.norad_cat_id},
-           {"epochs", curve.epochs.size()}, {"dark", dark},
-           {"bands", std::move(bands)},     {"passes", std::move(passes)}};
+  Json out{
+      {"name", curve.object},          {"norad_cat_id", curve.norad_cat_id},
+      {"epochs", curve.epochs.size()}, {"dark", dark},
+      {"bands", std::move(bands)},     {"band_of_passes", curve.bands[curve.bands.size() / 2].name},
+      {"passes", std::move(passes)}};
   if (const MagnitudeSpread spread = magnitude_spread(curve); spread.samples > 0)
     out["haze"] = {{"mag_median", spread.median}, {"mag_most", spread.most}};
   return out.dump(-1, ' ', false, Json::error_handler_t::replace);

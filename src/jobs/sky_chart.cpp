@@ -43,6 +43,7 @@ SkyTrack track_of(const Trajectory &orbit, const ObjectPass &found, const Passes
   out.set = pass.is_set_cut ? "" : to_iso(pass.set.time);
   out.brightest = found.light.brightest ? to_iso(*found.light.brightest) : "";
   out.altitude_max = pass.culmination.altitude.degrees();
+  out.visible_altitude = pass.visible_s > 0 ? pass.visible_altitude_max.degrees() : none;
   out.magnitude_min = found.light.magnitude_min;
   out.magnitude_max = found.light.magnitude_max;
   out.phase_min = is_lit ? pass.phase_min.degrees() : none;
@@ -82,7 +83,8 @@ std::vector<std::size_t> chosen(const PassesResult &result) {
   const auto rank = [&](std::size_t k) {
     const auto &[object, pass, light] = result.found[k];
     const double faint = std::isnan(light.magnitude_min) ? 99 : light.magnitude_min;
-    return std::tuple(faint, pass.visible_s > 0 ? 0 : 1, -pass.culmination.altitude.degrees());
+    return std::tuple(faint, pass.visible_s > 0 ? 0 : 1, -pass.visible_altitude_max.degrees(),
+                      -pass.culmination.altitude.degrees());
   };
   std::ranges::stable_sort(out, [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   out.resize(passes_max);
@@ -95,6 +97,9 @@ std::vector<std::size_t> chosen(const PassesResult &result) {
 std::string sky_chart(const PassesRequest &request, const PassesResult &result) {
   SkyPage page;
   page.title = "Passes over " + place_of(request.site);
+  page.order = request.order == PassOrder::Magnitude  ? "mag"
+               : request.order == PassOrder::Altitude ? "alt"
+                                                      : "";
   const auto drawn = chosen(result);
   bool has_magnitudes = false;
   for (const std::size_t k : drawn) {
@@ -106,7 +111,9 @@ std::string sky_chart(const PassesRequest &request, const PassesResult &result) 
   page.notes = {
       "The sky overhead: zenith in the middle, north up, east left, the horizon outside. Times "
       "are UTC; an arrow stands at the end of each track.",
-      "Dotted: more than half of the Sun's disk is behind the Earth."};
+      "Dotted: more than half of the Sun's disk is behind the Earth.",
+      "alt: the highest while visible, that is sunlit in a dark sky; in brackets the highest of a "
+      "pass that never is."};
   if (has_magnitudes)
     page.notes.push_back(
         fmt::format("Colour and mag: the brightest magnitude ({}) of the pass while sunlit, at "

@@ -74,7 +74,8 @@ public:
         {"ra", "deg", "of the object, ICRS axes, middle of the set"},
         {"dec", "deg", "the same"},
         {"range", "km", "of the object"},
-        {"I_obs", "W / (m2 nm)", "I behind the air of the site: less k_mag airmass of the counts"}};
+        {"I_obs", "W / (m2 nm)", "I behind the air of the site: less k_mag airmass of the counts"},
+        {"airmass", "", "of the counts, middle of the set"}};
     for (std::size_t k = 0; k < std::size(names); ++k) {
       out.add(names[k][0], names[k][1], names[k][2], std::move(columns_[k]));
       if (k == 2)
@@ -91,8 +92,8 @@ private:
     return value.value_or(no_number);
   }
 
-  [[nodiscard]] std::array<double, 30> numbers(const Reduced &r) const {
-    std::array<double, 30> out;
+  [[nodiscard]] std::array<double, 31> numbers(const Reduced &r) const {
+    std::array<double, 31> out;
     out.fill(no_number);
     const bool was_fitted = r.fit.covariance[0][0] > 0;
     if (was_fitted) {
@@ -109,6 +110,7 @@ private:
     out[26] = r.middle.ra_deg - 360 * std::floor(r.middle.ra_deg / 360);
     out[27] = r.middle.dec_deg;
     out[28] = r.middle.range_km;
+    out[30] = r.middle.airmass > 0 ? r.middle.airmass : no_number;
     if (!r.is_solved)
       return out;
     out[24] = r.null[0];
@@ -146,7 +148,7 @@ private:
   std::string magnitudes_ = "AB";
   std::vector<std::string> time_, name_, band_, system_, flags_;
   std::vector<std::int64_t> set_;
-  std::array<std::vector<double>, 30> columns_;
+  std::array<std::vector<double>, 31> columns_;
 };
 
 } // namespace

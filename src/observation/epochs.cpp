@@ -61,7 +61,7 @@ struct GridPasses {
 };
 
 GridPasses find_on_grid(const TrackRequest &track, const std::vector<Epoch<Utc>> &times,
-                        Angle altitude_min) {
+                        Angle altitude_min, const std::atomic<bool> &cancel) {
   constexpr double slack_s = 2e-3; // crossings and edges are good to a millisecond
   const auto index = [&times](Epoch<Utc> time) {
     const auto at = std::partition_point(times.begin(), times.end(), [time](Epoch<Utc> one) {
@@ -70,7 +70,7 @@ GridPasses find_on_grid(const TrackRequest &track, const std::vector<Epoch<Utc>>
     return static_cast<std::size_t>(at - times.begin());
   };
   const PassSpans found =
-      find_pass_spans(track.orbit, track.site, times.front(), times.back(), altitude_min);
+      find_pass_spans(track.orbit, track.site, times.front(), times.back(), altitude_min, &cancel);
   GridPasses out{{}, 0, {}, times.size()};
   for (const PassSpan &span : found.spans)
     out.passes.push_back(
@@ -174,18 +174,25 @@ Result<std::size_t> epoch_count(const EpochSpan &of) {
   return static_cast<std::size_t>(steps) + 1;
 }
 
-Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &of) {
+Epoch<Utc> epoch_of(const EpochSpan &span, std::size_t index) {
+  return plus_seconds(span.start, static_cast<double>(index) * span.step_s);
+}
+
+Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &of, const std::atomic<bool> *cancel) {
   UMOV_ASSIGN(count, epoch_count(of));
   std::vector<Epoch<Utc>> out(count);
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] = plus_seconds(of.start, static_cast<double>(i) * of.step_s);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (cancel != nullptr && *cancel)
+      return fail(ErrorCode::Interrupted, "stopped before the first row");
+    out[i] = epoch_of(of, i);
+  }
   return out;
 }
 
 Result<KeptEpochs> keep_epochs(const Track &track, const EpochSpan &span, const EpochFilter &only,
                                unsigned threads, const std::atomic<bool> &cancel) {
-  UMOV_ASSIGN(times, time_grid(span));
-  GridPasses found = find_on_grid(track.request(), times, only.altitude_min);
+  UMOV_ASSIGN(times, time_grid(span, &cancel));
+  GridPasses found = find_on_grid(track.request(), times, only.altitude_min, cancel);
   const auto grid = observe_grid(track, times, found.passes, threads, cancel);
   if (cancel)
     return fail(ErrorCode::Interrupted, "stopped before the first row");
@@ -215,9 +222,11 @@ std::optional<NextPass> find_next_pass(const Track &track, const EpochFilter &on
     std::optional<NextPass> next;
     for (double s = 0; s <= seconds_between(span.set, span.rise); s += step_s) {
       const EpochGeometry at = geometry_at(track, plus_seconds(span.rise, s));
-      if (!next && is_kept(at, only))
+      if (!is_kept(at, only))
+        continue;
+      if (!next)
         next = NextPass{at.geometry.time, at.geometry.altitude};
-      else if (next && at.is_there)
+      else
         next->altitude_max =
             Angle::radians(std::max(next->altitude_max.radians(), at.geometry.altitude.radians()));
     }

@@ -8,6 +8,10 @@
 namespace umov {
 namespace {
 
+/// Beyond all matter (k of metals in the far infrared is some 1e3; 1e9 is a perfect conductor to
+/// double precision); squares of far larger numbers leave its reach, and reflectances were none.
+constexpr double index_max = 1e6, absorption_max = 1e9;
+
 tl::unexpected<Error> problem(const std::string &text) { return fail(ErrorCode::BadInput, text); }
 
 /// Sum of pairs C_i x^C_{i+1} from coefficient `from` on.
@@ -136,13 +140,15 @@ Result<std::complex<double>> index_at(const IndexTable &table, Wavelength wavele
   const WavelengthRange range = range_of(table);
   const double nm = wavelength.nm();
   if (!(nm >= range.first_nm && nm <= range.last_nm))
-    return problem(fmt::format("index \"{}\" covers {:g}-{:g} nm; {:g} nm was asked for. "
+    return problem(fmt::format("{} covers {:g}-{:g} nm; {:g} nm was asked for. "
                                "Extrapolation is off.",
-                               table.name, range.first_nm, range.last_nm, nm));
+                               table.name == "in place" ? "an index written in place"
+                                                        : "index \"" + table.name + "\"",
+                               range.first_nm, range.last_nm, nm));
   const auto *formula = std::get_if<DispersionFormula>(&table.n);
   const double n = formula != nullptr ? evaluate(*formula, nm / 1000)
                                       : interpolate(std::get<Tabulated>(table.n), nm);
-  if (!(n > 0) || !std::isfinite(n))
+  if (!(n >= 1 / index_max && n <= index_max))
     return problem(
         fmt::format("index \"{}\": its formula has no real n at {:g} nm", table.name, nm));
   return std::complex<double>(n, interpolate(table.k, nm));
@@ -207,14 +213,16 @@ Result<void> check_index(const IndexTable &table) {
     const auto &n = std::get<Tabulated>(table.n);
     UMOV_TRY(check_tabulated(n, "n"));
     for (const double value : n.value)
-      if (!(value > 0))
-        return problem(fmt::format("n = {:g}; a positive number was expected", value));
+      if (!(value >= 1 / index_max && value <= index_max))
+        return problem(fmt::format("n = {:g}; a positive number, {:g} to {:g}, was expected", value,
+                                   1 / index_max, index_max));
   }
   UMOV_TRY(check_tabulated(table.k, "k"));
   for (const double value : table.k.value)
-    if (!(value >= 0))
+    if (!(value >= 0 && value <= absorption_max))
       return problem(
-          fmt::format("k = {:g}; 0 or more was expected (n + ik, k > 0 absorbs)", value));
+          fmt::format("k = {:g}; 0 or more was expected (n + ik, k > 0 absorbs), up to {:g}", value,
+                      absorption_max));
   const WavelengthRange range = range_of(table);
   if (!(range.first_nm <= range.last_nm))
     return problem(fmt::format("n and k have no wavelength in common ({:g} nm is above {:g} nm)",

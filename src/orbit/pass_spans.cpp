@@ -229,8 +229,8 @@ Found search(const Trajectory &orbit, const Site &site, Epoch<Utc> start, Epoch<
 } // namespace passes
 
 PassSpans find_pass_spans(const Trajectory &orbit, const Site &site, Epoch<Utc> start,
-                          Epoch<Utc> stop, Angle altitude_min) {
-  auto found = passes::search(orbit, site, start, stop, altitude_min);
+                          Epoch<Utc> stop, Angle altitude_min, const std::atomic<bool> *cancel) {
+  auto found = passes::search(orbit, site, start, stop, altitude_min, cancel);
   PassSpans out{{}, std::move(found.gaps), std::move(found.end)};
   for (const Stretch &one : found.stretches)
     out.spans.push_back({.rise = plus_seconds(start, one.rise_s),

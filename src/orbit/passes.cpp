@@ -31,8 +31,27 @@ private:
   ShadowModel shadow_;
 };
 
-/// Everything along a pass that needs samples: shadow, phase, range. Returns them if they are
-/// wanted.
+bool is_dark(const ObservingGeometry &at, const PassSearch &search) {
+  return at.sun_altitude.radians() < search.sun_altitude_max.radians();
+}
+
+/// Takes a sunlit point into the highest that is visible: samples, where the shadow begins or ends
+/// between two of them, the highest point within the span.
+void raise_visible(SitePass &pass, const ObservingGeometry &at, const PassSearch &search) {
+  if (is_dark(at, search) && at.altitude.radians() > pass.visible_altitude_max.radians())
+    pass.visible_altitude_max = at.altitude;
+}
+
+/// The highest point beyond an end of the span that cuts the pass, where the orbit can be had
+/// there.
+void raise_culmination(const View &view, double whole_s, SitePass &pass) {
+  const ObservingGeometry whole = view(whole_s);
+  if (whole.range_km > 0 && whole.altitude.radians() > pass.culmination.altitude.radians())
+    pass.culmination = whole;
+}
+
+/// Everything along a pass that needs samples: shadow, phase, range. Its culmination is that within
+/// the span. Returns the samples if they are wanted.
 std::vector<ObservingGeometry> describe(const View &view, const Stretch &stretch,
                                         const PassSearch &search, SitePass &out) {
   std::vector<ObservingGeometry> samples;
@@ -52,8 +71,11 @@ std::vector<ObservingGeometry> describe(const View &view, const Stretch &stretch
     if (search.on_pass)
       samples.push_back(at);
     const double now = at.sunlit - 0.5;
-    if (k > 0 && (now > 0) != (before > 0))
-      out.shadow.push_back({view(passes::crossing(light, previous_time, t)).time, before > 0});
+    if (k > 0 && (now > 0) != (before > 0)) {
+      const ObservingGeometry edge = view(passes::crossing(light, previous_time, t));
+      out.shadow.push_back({edge.time, before > 0});
+      raise_visible(out, edge, search);
+    }
     before = now;
     previous_time = t;
     out.range_min_km = std::min(out.range_min_km, at.range_km);
@@ -66,8 +88,11 @@ std::vector<ObservingGeometry> describe(const View &view, const Stretch &stretch
         lit == 0 ? at.phase_angle
                  : Angle::radians(std::max(out.phase_max.radians(), at.phase_angle.radians()));
     ++lit;
-    visible += at.sun_altitude.radians() < search.sun_altitude_max.radians() ? 1u : 0u;
+    visible += is_dark(at, search) ? 1u : 0u;
+    raise_visible(out, at, search);
   }
+  if (out.culmination.sunlit > 0)
+    raise_visible(out, out.culmination, search);
   const double share = 1 / static_cast<double>(steps + 1);
   out.sunlit_share = static_cast<double>(lit) * share;
   out.visible_s = static_cast<double>(visible) * share * length;
@@ -94,6 +119,8 @@ Result<SitePasses> find_passes(const Trajectory &orbit, const Site &site, Epoch<
     pass.is_rise_cut = stretch.is_rise_cut;
     pass.is_set_cut = stretch.is_set_cut;
     const auto along = describe(view, stretch, search, pass);
+    if (pass.is_rise_cut || pass.is_set_cut)
+      raise_culmination(view, seconds_between(pass.whole_culmination, start), pass);
     if (search.on_pass)
       UMOV_TRY(search.on_pass(pass, along));
     out.passes.push_back(std::move(pass));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <umov/core/quantity.h>
+#include <umov/light/light_task.h>
 
 namespace umov {
 namespace {
@@ -46,10 +47,11 @@ Rgb sample_rgb(const KeyFrameSample &s, KeyFrameShading shading, double white, d
 
 /// Mean over the samples of each pixel.
 template <class Colour>
-std::vector<std::uint8_t> pixels(std::size_t side, std::size_t samples, Colour &&colour) {
+std::vector<std::uint8_t> pixels(std::size_t side, std::size_t samples,
+                                 const std::atomic<bool> *cancel, Colour &&colour) {
   const std::size_t size = side / samples;
   std::vector<std::uint8_t> out(3 * size * size);
-  for (std::size_t y = 0; y < size; ++y)
+  for (std::size_t y = 0; y < size && !is_stopped(cancel); ++y)
     for (std::size_t x = 0; x < size; ++x) {
       Rgb sum{};
       for (std::size_t i = 0; i < samples * samples; ++i) {
@@ -95,22 +97,22 @@ double common_exposure(std::span<const KeyFrameRaster> rasters) {
   return lit[rank];
 }
 
-std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading,
-                                double white) {
-  return pixels(raster.side, raster.samples, [&](std::size_t i) {
+std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading, double white,
+                                const std::atomic<bool> *cancel) {
+  return pixels(raster.side, raster.samples, cancel, [&](std::size_t i) {
     return sample_rgb(raster.points[i], shading, white, raster.pa_scat_rad);
   });
 }
 
 Result<std::vector<std::uint8_t>> shade_colour(std::span<const KeyFrameRaster> red_green_blue,
-                                               double white) {
+                                               double white, const std::atomic<bool> *cancel) {
   if (red_green_blue.size() != 3)
     return fail(ErrorCode::BadInput, "a picture in colour takes three bands");
   const KeyFrameRaster &first = red_green_blue[0];
   for (const KeyFrameRaster &raster : red_green_blue)
     if (raster.side != first.side || raster.samples != first.samples)
       return fail(ErrorCode::BadInput, "the bands of a picture in colour differ in size");
-  return pixels(first.side, first.samples, [&](std::size_t i) {
+  return pixels(first.side, first.samples, cancel, [&](std::size_t i) {
     Rgb out = sky;
     if (first.points[i].material == no_index)
       return out;

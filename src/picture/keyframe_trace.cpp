@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <umov/core/parallel.h>
+#include <umov/light/light_task.h>
 
 namespace umov {
 namespace {
@@ -251,9 +252,12 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
   for (const Surface &surface : scene.back)
     camera.back_material.push_back(material_at(out.materials, surface.material().name));
   const std::size_t side = out.side;
-  out.points.resize(side * side);
   std::vector<KeyFrameRaster> rasters(bands.size(), out);
+  for (KeyFrameRaster &raster : rasters) // one by one: they take most of the memory
+    raster.points.resize(side * side);
   parallel_for(side, options.threads, [&](std::size_t row) {
+    if (is_stopped(options.cancel))
+      return;
     std::vector<KeyFrameSample> dark(side); // what all bands share
     const std::vector<Seen> seen = look(camera, row, dark);
     const std::vector<Seen> lit = reached_by_sun(camera, seen);
@@ -273,6 +277,8 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
         add_indirect(seen, more, scene.grid, bands[b], line);
     }
   });
+  if (is_stopped(options.cancel))
+    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
   return rasters;
 }
 

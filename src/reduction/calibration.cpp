@@ -190,34 +190,90 @@ Result<ChannelCalibration> calibrate_channel(std::span<const double> angles_rad,
   for (Eigen::Index k = 0; k < 3; ++k) {
     out.row[static_cast<std::size_t>(k)] = row(k);
     out.sd[static_cast<std::size_t>(k)] = std::sqrt(variance * inverse(k, k));
+    for (Eigen::Index l = 0; l < 3; ++l)
+      out.covariance[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] =
+          variance * inverse(k, l);
   }
   return out;
 }
 
-Result<PhotometricCalibration> calibrate_photometry(std::span<const PhotometricStandard> stars) {
-  const auto n = static_cast<Eigen::Index>(stars.size());
-  MatrixXd m(n, 3);
+ChannelAnalyser analyser_of(const ChannelCalibration &channel) {
+  const double whole = channel.row[0], part = std::hypot(channel.row[1], channel.row[2]);
+  const double c = channel.row[1] / part, s = channel.row[2] / part;
+  ChannelAnalyser out;
+  out.efficiency = part / whole;
+  out.angle_rad = std::atan2(s, c) / 2;
+  if (out.angle_rad < 0)
+    out.angle_rad += pi;
+  const auto sd_along = [&](const std::array<double, 3> &effect) {
+    double variance = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t l = 0; l < 3; ++l)
+        variance += effect[k] * effect[l] * channel.covariance[k][l];
+    return std::sqrt(variance);
+  };
+  out.efficiency_sd = sd_along({-out.efficiency / whole, c / whole, s / whole});
+  out.angle_sd = sd_along({0, -s / (2 * part), c / (2 * part)});
+  return out;
+}
+
+namespace {
+
+/// What zero point, extinction, colour term and k'' do to m - m_inst.
+std::array<double, 4> photometric_effects(double airmass, double colour) {
+  return {1, -airmass, -colour, colour * airmass};
+}
+
+} // namespace
+
+Result<PhotometricCalibration> calibrate_photometry(std::span<const PhotometricStandard> stars,
+                                                    std::size_t terms) {
+  const auto n = static_cast<Eigen::Index>(stars.size()),
+             columns = static_cast<Eigen::Index>(terms);
+  MatrixXd m(n, columns);
   VectorXd y(n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const PhotometricStandard &one = stars[static_cast<std::size_t>(k)];
-    m.row(k) << 1, -one.airmass, -one.colour;
+    const auto effects = photometric_effects(one.airmass, one.colour);
+    for (Eigen::Index c = 0; c < columns; ++c)
+      m(k, c) = effects[static_cast<std::size_t>(c)];
     y(k) = one.catalogue_mag - one.instrumental_mag;
   }
   const MatrixXd normal = algebra::gram(m);
-  if (n < 4 || !is_regular(normal))
-    return fail(ErrorCode::BadInput,
-                fmt::format("{} standards do not tell zero point, extinction and colour term; at "
-                            "least four with different air masses and colours were expected",
-                            n));
+  if (n <= columns || !is_regular(normal)) {
+    constexpr std::array words{"zero point and extinction",
+                               "zero point, extinction and colour term",
+                               "zero point, extinction, colour term and k''"};
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("{} measurements of standards do not tell {}; at least {} with different "
+                    "air masses{} were expected",
+                    n, words[terms - 2], terms + 1, terms > 2 ? " and colours" : ""));
+  }
   const MatrixXd inverse = algebra::inverse_of(normal);
   const VectorXd found = algebra::times(inverse, algebra::transposed_times(m, y));
-  PhotometricCalibration out{found(0), found(1), found(2), {}, 0};
+  PhotometricCalibration out;
+  const std::array targets{&out.zero_point, &out.extinction, &out.colour_term, &out.second_order};
   out.residual_sd =
-      std::sqrt((y - algebra::times(m, found)).squaredNorm() / static_cast<double>(n - 3));
-  for (Eigen::Index a = 0; a < 3; ++a)
-    for (Eigen::Index b = 0; b < 3; ++b)
+      std::sqrt((y - algebra::times(m, found)).squaredNorm() / static_cast<double>(n - columns));
+  for (Eigen::Index a = 0; a < columns; ++a) {
+    *targets[static_cast<std::size_t>(a)] = found(a);
+    for (Eigen::Index b = 0; b < columns; ++b)
       out.covariance[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)] =
-          out.residual_sd * out.residual_sd * inverse(a, b);
+          out.residual_sd * out.residual_sd * (inverse(a, b) + inverse(b, a)) / 2;
+  }
+  return out;
+}
+
+PhotometricOffset offset_of(const PhotometricCalibration &c, double airmass, double colour) {
+  const auto effects = photometric_effects(airmass, colour);
+  const std::array values{c.zero_point, c.extinction, c.colour_term, c.second_order};
+  PhotometricOffset out;
+  for (std::size_t a = 0; a < 4; ++a) {
+    out.mag += effects[a] * values[a];
+    for (std::size_t b = 0; b < 4; ++b)
+      out.variance += effects[a] * c.covariance[a][b] * effects[b];
+  }
   return out;
 }
 

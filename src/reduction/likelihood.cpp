@@ -1,6 +1,6 @@
 #include <umov/reduction/likelihood.h>
 
-#include "algebra/dense.h"
+#include "algebra/whitener.h"
 #include <algorithm>
 #include <boost/math/special_functions/bessel.hpp>
 #include <boost/math/special_functions/erf.hpp>
@@ -75,32 +75,21 @@ double log_likelihood(std::span<const PredictedCounts> counts) {
 
 double log_likelihood(std::span<const PredictedCounts> counts,
                       std::span<const CommonError> common) {
-  const auto n = static_cast<Eigen::Index>(counts.size());
-  const auto m = static_cast<Eigen::Index>(common.size());
-  Eigen::VectorXd residual(n), weight(n);
-  double log_determinant = 0;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const PredictedCounts &one = counts[static_cast<std::size_t>(k)];
-    const double variance = one.datum.excess2 * one.mean + one.datum.fixed_variance;
-    residual(k) = one.datum.counts - one.mean;
-    weight(k) = 1 / variance;
-    log_determinant += std::log(variance);
+  std::vector<double> variance, residual, effects;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const PredictedCounts &one = counts[k];
+    variance.push_back(one.datum.excess2 * one.mean + one.datum.fixed_variance);
+    residual.push_back(one.datum.counts - one.mean);
+    for (const CommonError &error : common)
+      effects.push_back(error.effect[k] * error.sd);
   }
-  double chi2 = residual.dot(weight.cwiseProduct(residual));
-  if (m > 0) {
-    Eigen::MatrixXd j(n, m);
-    for (Eigen::Index c = 0; c < m; ++c) {
-      const CommonError &one = common[static_cast<std::size_t>(c)];
-      j.col(c) = Eigen::Map<const Eigen::VectorXd>(one.effect.data(), n) * one.sd;
-    }
-    const Eigen::MatrixXd weighted = weight.asDiagonal() * j;
-    const algebra::SymmetricFactor factor(Eigen::MatrixXd::Identity(m, m) +
-                                          algebra::transposed_product(j, weighted));
-    const Eigen::VectorXd projected = algebra::transposed_times(weighted, residual);
-    chi2 -= projected.dot(factor.solve(projected));
-    log_determinant += factor.log_determinant();
-  }
-  return -(chi2 + log_determinant) / 2;
+  algebra::Whitener whitener;
+  whitener.reset(variance, effects, common.size());
+  whitener.whiten(residual);
+  double chi2 = 0;
+  for (const double x : residual)
+    chi2 += x * x;
+  return -(chi2 + whitener.log_determinant()) / 2;
 }
 
 } // namespace umov

@@ -121,6 +121,35 @@ Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t par
   return put(s, solution, c, scale);
 }
 
+namespace {
+
+/// What a channel answers to more retardance, per radian, before the polarimeter or of its plate:
+/// retarders of one axis add up, whatever stands behind them. `angle_rad`: of that axis, from the
+/// instrument's x.
+double retardance_effect(const ModelledDatum &m, double angle_rad) {
+  const double axis = m.axis_rad + angle_rad;
+  const StokesRow row = row_on_sky(m.datum.row, Angle::radians(-axis));
+  const double u = m.stokes[2] * std::cos(2 * axis) - m.stokes[1] * std::sin(2 * axis);
+  return row[3] * u - row[2] * m.stokes[3];
+}
+
+/// The same of a plate that is turned a little further, per radian.
+double plate_effect(const ModelledDatum &m) {
+  const Angle retardance = Angle::radians(m.retardance_rad);
+  const StokesRow own = row_on_sky(m.datum.row, Angle::radians(-m.axis_rad));
+  const StokesRow analyser =
+      own * retarder(Angle::radians(-m.retardance_rad), Angle::radians(m.plate_rad));
+  constexpr double step = 1e-4; // its square is left out
+  const auto turned = [&](double by) {
+    const StokesRow row = analyser * retarder(retardance, Angle::radians(m.plate_rad + by));
+    const auto &[i, q, u, v] = m.stokes;
+    return respond(row_on_sky(row, Angle::radians(m.axis_rad)), Stokes<InstrumentAxes>{i, q, u, v});
+  };
+  return (turned(step) - turned(-step)) / (2 * step);
+}
+
+} // namespace
+
 std::vector<CommonError> common_errors(const ErrorPriors &priors,
                                        std::span<const ModelledDatum> data) {
   std::vector<CommonError> out;
@@ -147,13 +176,20 @@ std::vector<CommonError> common_errors(const ErrorPriors &priors,
   for (const std::size_t channel : channels)
     add(priors.gain, [&](const auto &m) { return m.channel == channel ? star(m) : 0; });
   add(priors.transparency, star);
-  add(priors.angle_rad, [](const ModelledDatum &m) {
+  const auto turn = [](const ModelledDatum &m) { // of the x axis, per radian
     return 2 * (m.datum.row[2] * m.stokes[1] - m.datum.row[1] * m.stokes[2]);
-  });
+  };
+  add(priors.angle_rad, turn);
   add(priors.efficiency, [](const ModelledDatum &m) {
     return m.datum.row[1] * m.stokes[1] + m.datum.row[2] * m.stokes[2];
   });
   add(priors.sky, [](const ModelledDatum &m) { return m.datum.sky; });
+  add(priors.crosstalk, [](const ModelledDatum &m) { return retardance_effect(m, 0); });
+  add(priors.crosstalk, [](const ModelledDatum &m) { return retardance_effect(m, pi / 4); });
+  add(priors.plate_rad, plate_effect);
+  add(priors.retardance_rad,
+      [](const ModelledDatum &m) { return retardance_effect(m, m.plate_rad); });
+  add(priors.time_s, [&](const ModelledDatum &m) { return m.turn_rad_s * turn(m); });
   return out;
 }
 

@@ -129,7 +129,7 @@ private:
 } // namespace
 
 Result<Rate> measure(jobs::RangedJob &job, double setup_cpu_s, const jobs::Monitor &monitor) {
-  constexpr double enough_s = 1.5, at_most_s = 20, settled = 0.15;
+  constexpr double enough_s = 1.25, at_most_s = 20, settled = 0.15;
   const std::size_t total = job.total();
   std::size_t length = std::max<std::size_t>(1, std::min(total, job.grain() / 64));
   Rate out;

@@ -23,7 +23,7 @@ tl::unexpected<Error> unknown_model(const std::string &name) {
     known.emplace_back(model->name);
   const auto near = nearest_name(name, known);
   return fail(ErrorCode::BadInput,
-              fmt::format("distribution model \"{}\" is unknown; {} was expected.{}", name,
+              fmt::format("distribution model \"{}\" is unknown; one of {} was expected.{}", name,
                           fmt::join(known, ", "),
                           near ? fmt::format(" Did you mean \"{}\"?", *near) : ""));
 }

@@ -38,7 +38,7 @@ CONFIGURATION = [
     (("step_s = 20", "stepp = 20"), ['"step_s"']),
     (('formats = ["ecsv", "csv", "html"]', "formats = []"), ["scenario.toml:23:1", "empty"]),
     (('mode = "nadir"', 'mode = "nadir", point = "+X"'), ["point", 'mode = "nadir"']),
-    (('mode = "nadir"', 'mode = "nadirr"'), ["; nadir, inertial, spin, tumble, aem, pieces was expected"]),
+    (('mode = "nadir"', 'mode = "nadirr"'), ["; nadir, inertial, spin, tumble, aem or pieces was expected"]),
     (('mode = "nadir"', 'at = "nadir", toward = "zenith"'), ["one line at all times"]),
     (("seed = 1", 'seed = 1\n[material.paper_al]\nindex = "paper_au"\n'
       'distribution = { model = "blinn_phong", m = 10 }'), ["paper_al", "the paper's", "scenario.toml:3"]),

@@ -87,8 +87,7 @@ def test_groff_reads_the_manual_page(umov, tmp_path):
 def test_every_verb_has_the_same_habits(umov):
     found = leaves(umov)
     no_table = {"mesh make", "mesh convert", "material plot", "material import", "orbit convert",
-                "paper", "render", "schema", "completion", "man", "observe", "calibrate",
-                "instrument show"}
+                "paper", "render", "schema", "completion", "man", "observe", "instrument show"}
     # Jobs in parts: what they make is a folder, or the table of another verb.
     no_table |= {f"scale {verb}" for verb in ("run", "merge", "verify", "repair", "script", "worker", "hold")}
     assert {path[5:] for path, words in found.items() if "--json" not in words} == no_table
@@ -157,3 +156,15 @@ def test_a_material_is_shown_as_a_table(umov, tmp_path):
         assert row["reflectance_0"] == pytest.approx(((n - 1)**2 + k**2) / ((n + 1)**2 + k**2), rel=1e-12)
     assert umov("material", "show", "paper_au", "-o", "m.csv").code == 0
     assert float(read_csv(tmp_path / "m.csv")[1]["n"]) == rows[1]["n"]
+
+
+@pytest.mark.parametrize("arguments", [("orbit", "convert", HST), ("orbit", "ephemeris", HST, "-s", "maui"), ("passes", HST)])
+def test_a_file_without_its_option_is_told_which_one(umov, arguments):
+    done = umov(*arguments)
+    assert done.code == 2 and f"Did you mean --orbit {HST}?" in done.err, done.err
+
+
+@pytest.mark.parametrize("arguments, verb", [((), "passes"), (("orbit",), "convert"), (("invert",), "health")])
+def test_who_gives_no_verb_is_told_which_there_are(umov, arguments, verb):
+    done = umov(*arguments)
+    assert done.code == 2 and re.search(rf"no verb was given; there are .*\b{verb}\b", done.err), done.err

@@ -1,5 +1,6 @@
 """--device: cards by a driver without one (src/backend/cuda/tests), and what is said where there is none."""
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -287,13 +288,20 @@ def test_an_inversion_on_a_card_answers_as_the_processor_does(umov, curve, setti
 
 def test_an_attitude_by_the_light_of_a_card(umov, curve, settings, tmp_path):
     settings()
+    # Not the verdicts: 13 epochs are at the edge of what peaks describe, and the last digits of the light decide
+    # whether particles from all attitudes find as much and the posterior is called broad.
     command = ("invert", "pose", curve[0], "--scenario", curve[1], "--grid", 1000, "--visibility", "masks")
     answers = {}
     for device in ("cpu", "cuda"):
         done = umov(*command, "--device", device, "-o", device)
         assert done.code == 0, done.err
-        answers[device] = json.loads((tmp_path / device / "verdict.json").read_text())["verdict"]
-    assert answers["cpu"] == answers["cuda"]
+        answers[device] = json.loads((tmp_path / device / "verdict.json").read_text())
+    assert all(one["heaviest"] > 0.95 and one["share_of_so3"] < 1e-5 for one in answers.values())
+    best = [max(one["modes"], key=lambda mode: mode["weight"]) for one in answers.values()]
+    # Half turns about +Z are alike: the angle between the two attitudes, less those.
+    (w1, x1, y1, z1), (w2, x2, y2, z2) = (one["q"] for one in best)
+    real, about_z = w1 * w2 + x1 * x2 + y1 * y2 + z1 * z2, w1 * z2 - z1 * w2 + y1 * x2 - x1 * y2
+    assert 2 * math.degrees(math.acos(min(1, max(abs(real), abs(about_z))))) < max(one["sd_deg"] for one in best)
 
 
 def test_a_library_by_the_light_of_a_card(umov, scenario, settings, tmp_path, monkeypatch):

@@ -34,6 +34,29 @@ def test_zero_points_in_v(umov, tmp_path, instrument):
         assert read == list(TELESCOPES[instrument])
 
 
+# Analysers: what share of unpolarized light they let through at once (of three lenses of their own, three halves), and E.
+ANALYSERS = {"c11_imx250": (0.5, 300), "usafa16": (0.5, 1000), "mmt9_channel": (1.5, 100), "hwp_wollaston_1m": (1, math.inf),
+             "moptop_2m": (1, math.inf), "full_stokes_3m6": (0.5, math.inf)}
+
+
+@pytest.mark.parametrize("instrument", TELESCOPES)
+def test_electrons_a_second_of_magnitude_8(umov, tmp_path, instrument):
+    """The zero point of the anchors (bands.csv), the light inside one width (anchor moffat_1), and half of it behind one analyser,
+    whichever it is: 37,301 a second for the camera behind k X = .2."""
+    aperture, hole, throughput = TELESCOPES[instrument]
+    photons = next(float(row["ab_zero_1e9_photons_s_m2"]) * 1e9 for row in anchors("bands") if row["name"] == "Bessell.V")
+    inside = next(float(row["value"]) for row in anchors("observing_instrument") if row["name"] == "moffat_1")
+    passed, extinction = ANALYSERS[instrument]
+    bare = math.pi / 4 * aperture**2 * (1 - hole**2) * throughput * photons * 10 ** (-0.4 * 8)
+    rows, _ = rows_of(umov, tmp_path, "--instrument", instrument, "--band", "Bessell.V", "--mag", 8)
+    air = rows["rate_whole"] / bare
+    assert 0.5 < air < 1
+    assert rows["rate"] / (rows["rate_whole"] * inside * passed * (1 + 1 / extinction)) == pytest.approx(1, abs=2e-6)
+    assert rows["electrons"] == pytest.approx(rows["rate"] * rows["time"], rel=1e-6)
+    if instrument == "c11_imx250":
+        assert bare * 10 ** (-0.4 * 0.2) * 0.84 / 2 == pytest.approx(37300.85, rel=1e-5)
+
+
 def test_one_wavelength_is_the_same_by_name(umov, tmp_path):
     by_name, _ = rows_of(umov, tmp_path, "--instrument", "c11_imx250", "--band", "nm:650", "--width-nm", 40)
     by_number, _ = rows_of(umov, tmp_path, "--instrument", "c11_imx250", "--nm", 650, "--width-nm", 40)
@@ -68,3 +91,34 @@ def test_page_of_figures(umov, tmp_path, instrument):
         assert title in page
     verdict = done.err.strip() or done.out
     assert verdict.splitlines()[-1].split(":")[0] in page
+
+
+def test_frames_that_no_camera_takes_are_told(umov):
+    """Sun and full Moon as points: p is known to .01 in less than any shutter can do."""
+    for mag, is_told in ((-26.8, True), (-12.0, True), (6.0, False)):
+        done = umov("exposure", "--instrument", "c11_imx250", "--mag", str(mag))
+        assert done.code == 0 and ("take a neutral filter" in done.out + done.err) == is_told, done.out + done.err
+
+
+def test_magnitudes_of_vega(umov, tmp_path):
+    """I = 8 (Vega) is I = 8.41 (AB): Willmer (2018), Table 4 by the curve's own zero; both are told, and the terms of both errors."""
+    ask = ("--instrument", "c11_imx250", "--band", "Bessell.I")
+    vega, done = rows_of(umov, tmp_path, *ask, "--mag", 8, "--mag-system", "Vega")
+    ab = float(re.search(r"magnitude ([0-9.]+) AB above the air, 8 Vega", done.err)[1])
+    assert ab - 8 == pytest.approx(0.41, abs=0.03)  # .38 to .45 in the literature, by the curve of I
+    same, _ = rows_of(umov, tmp_path, *ask, "--mag", ab)
+    assert vega["rate"] == pytest.approx(same["rate"], rel=2e-3)  # four digits are told
+    assert "S/N is that of I" in done.err and "scintillation is the same in all channels" in done.err
+    narrow = umov("exposure", "--instrument", "c11_imx250", "--mag-system", "Vega")
+    assert narrow.code == 3 and "no zero point in the Vega system" in narrow.err, narrow.err
+
+
+def test_the_aperture_that_is_summed(umov, tmp_path):
+    """Two widths hold more light and four times the sky; Moffat's profile of exponent b holds 1 - (1 + (r / a)^2)^(1 - b) of it."""
+    one, _ = rows_of(umov, tmp_path, "--instrument", "c11_imx250", "--band", "Bessell.V")
+    two, done = rows_of(umov, tmp_path, "--instrument", "c11_imx250", "--band", "Bessell.V", "--aperture-fwhm", 2)
+    exponent = 4.765  # Trujillo et al. (2001), docs/theory/observing.md
+    a = 0.5 / math.sqrt(2 ** (1 / exponent) - 1)
+    inside = [1 - (1 + (r / a) ** 2) ** (1 - exponent) for r in (1, 2)]
+    assert two["rate"] / one["rate"] == pytest.approx(inside[1] / inside[0], rel=1e-4)
+    assert "within 2 of a star's width" in done.err

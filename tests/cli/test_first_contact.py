@@ -89,6 +89,9 @@ def test_a_slip_of_the_unit_is_noticed(umov, scenario, tmp_path):
     ([("lat_deg", "lat"), ("lon_deg", "lon"), ("alt_m", "alt"), ("pol", "pol")],
      ['"lat_deg"', '"lon_deg"', '"alt_m"']),
     ([("step_s = 20", "step = 20"), ('set = "paper_rgb"', 'sett = "paper_rgb"')], ['"step_s"', '"set"']),
+    ([('mesh = { file = "cube.obj", unit = "m", up = "+Z", normals = "flat" }', 'mesh = "cube.obj"'),
+      ('attitude = { mode = "nadir" }', 'attitude = "nadir"')],
+     ['as in mesh = { file = "cube.obj" }', 'as in attitude = { mode = "nadir" }']),
 ])
 def test_hints_by_meaning_and_all_slips_at_once(umov, scenario, changes, words):
     done = umov("run", scenario(*[c for c in changes if c != ("pol", "pol")]), "--dry-run")
@@ -181,8 +184,11 @@ def test_a_run_tells_programs_what_it_found(umov, scenario, tmp_path):
     assert told["complete"] and told["folder"].endswith("told")
     assert one["epochs"] * bands == len(rows) and one["dark"] >= 0
     first = one["passes"][0]
-    known = [row["mag"] for row in rows if row["pass_id"] == first["pass_id"] and str(row["mag_limit"]) == "False"]
+    # One band, the middle one: a range over several would mix the colour into it.
+    known = [row["mag"] for row in rows if row["pass_id"] == first["pass_id"] and row["band"] == one["band_of_passes"] and str(row["mag_limit"]) == "False"]
+    assert one["band_of_passes"] == one["bands"][len(one["bands"]) // 2]
     assert first["mag_min"] == pytest.approx(min(known), abs=1e-9)
+    assert re.search(r"550 nm: mag \d", umov("run", scenario(), "-o", "other").out)
 
 
 def test_a_dry_run_looks_at_the_folder_last(umov, scenario, tmp_path):
@@ -491,7 +497,7 @@ def test_an_attitude_without_epoch_says_from_when_it_turns(umov, scenario, tmp_p
 def test_an_exposure_ends_with_what_it_means(umov):
     exposure = ("exposure", "--instrument", "c11_imx250")
     fine = umov(*exposure, "--mag", 8)
-    assert "S/N" in fine.err and "does not saturate" in fine.err and "the error of p asked for, 0.01" in fine.err, fine.err
+    assert "S/N" in fine.err and "does not saturate" in fine.err and "the error of p that is wanted (--sd-p 0.01)" in fine.err, fine.err
     # Photons make nearly all of the noise: a twelfth of the time has a twelfth of them, and twelve or thirteen frames do.
     seconds = float(re.search(r"One exposure of ([0-9.]+) s", fine.err).group(1))
     short = umov(*exposure, "--mag", 8, "--exposure-s", seconds / 12)
@@ -537,3 +543,16 @@ def test_hints_name_what_the_reader_can_type(umov, scenario, tmp_path):
     (tmp_path / "job/job.json").write_text("")
     done = umov("scale", "status", "job")
     assert done.code == 3 and "job.json: is empty" in done.err and "begin the job again" in done.err, done.err
+
+
+@pytest.mark.parametrize(("given", "words"), [("mine.csv", "--geometry FILE.csv"), ("1e3", "1 to 10000000"), ("0", "1 to 10000000"),
+                                              ("10000001", "1 to 10000000"), ("99999999999999999999", "1 to 10000000")])
+def test_a_file_given_as_a_number_of_poses(umov, scenario, given, words):
+    done = umov("signature", scenario(), "--poses", given, "--phase", 60)
+    assert done.code == 2 and given in done.err and words in done.err
+    assert ("--geometry" in done.err) == (not given.isdigit())
+
+
+def test_words_to_choose_from_are_told_as_in_a_sentence(umov, scenario):
+    done = umov("run", scenario(), "--set", "output.pol_frame=icrs")
+    assert done.code == 3 and "equatorial, altaz or scattering was expected" in done.err

@@ -163,3 +163,54 @@ def test_troubles_are_told(scene, umov, tmp_path):
     path = scene('exposure_s = 0.02\nlevel = "image"\nframe_px = [64, 64]', 'tracking = "sidereal"', stop="00.06")
     done = umov("observe", path)
     assert done.code == 0 and "frame_px" in done.err, done.err
+
+
+def test_a_trail_cut_into_pieces_is_a_light_curve(scene, umov, tmp_path):
+    """Pieces hold the counts of the whole trail between them, each with the light of its own time."""
+    observation = 'exposure_s = 0.02\ncadence_s = 0.05\nframe_px = [256, 256]\nlevel = "image"'
+    whole = scene(observation, 'tracking = "sidereal"', stop="04")
+    make_sphere(umov, 5, 24)
+    assert umov("observe", whole, "-o", "whole").code == 0
+    cut = scene(observation + '\ntrail = "slices"', 'tracking = "sidereal"', stop="04")
+    done = umov("observe", cut)
+    assert done.code == 0, done.err
+    all_of_it, counts = Table.read(tmp_path / "whole/counts.ecsv"), Table.read(tmp_path / "out/counts.ecsv")
+    truth = Table.read(tmp_path / "out/truth.ecsv")
+    pieces = len(truth) / (len(all_of_it) / 4)
+    # 0.53 deg/s over 0.02 s is 149 px of 0.2547", and a star 4 to 5 px wide: 1" at the zenith, 35 deg from it.
+    assert 25 < pieces < 40 and len(counts) == 4 * len(truth)
+    assert sum(counts["counts"]) == pytest.approx(sum(all_of_it["counts"]), rel=1e-12)
+    assert sum(counts["n_pixel"]) == sum(all_of_it["n_pixel"])
+    assert sum(counts["sky"]) == pytest.approx(sum(all_of_it["sky"]), rel=1e-9)
+    # What a piece has lost to its neighbours they have gained: shares add up, but for the ring's .00004.
+    assert sum(counts["w0"]) == pytest.approx(sum(all_of_it["w0"]), rel=2e-4)
+    assert umov("reduce", "out/counts.ecsv", "-o", "stokes.ecsv").code == 0
+    for name, values in pulls(Table.read(tmp_path / "stokes.ecsv"), truth).items():
+        n = len(values)
+        assert n > 2000 and abs(statistics.mean(values)) < 4 / math.sqrt(n) + 0.05, name
+        assert abs(statistics.stdev(values) - 1) < 0.05, name
+
+
+def test_pieces_of_a_trail_follow_the_light(scene, umov, tmp_path):
+    """A plate that turns three times in a second, in one exposure of the stars: its pieces against short exposures of what is followed."""
+    assert umov("mesh", "make", "plate", "--width", 2, "--height", 2, "--two-sided", "-o", "sphere.obj").code == 0
+
+    def turning(path):
+        text = path.read_text()
+        path.write_text(text.replace("materials =", 'attitude = { mode = "spin", axis = "+X", rate_deg_s = 1080 }\nmaterials ='))
+        return path
+
+    frame = 'exposure_s = 0.1\nframe_px = [1024, 1024]\nlevel = "image"\ntrail = "slices"'
+    done = umov("observe", turning(scene(frame, 'tracking = "sidereal"\ntracking_error_arcsec = 0', stop="00.1")))
+    assert done.code == 0, done.err
+    cut = Table.read(tmp_path / "out/truth.ecsv")
+    done = umov("observe", turning(scene("exposure_s = 0.0006", 'tracking = "satellite"', stop="00.1")), "-o", "short")
+    assert done.code == 0, done.err
+    short = Table.read(tmp_path / "short/truth.ecsv")
+    times = numpy.array([float(text[17:].rstrip("Z")) for text in cut["time_utc"]])
+    inside = slice(1, -1)  # ends have half a star
+    expected = numpy.interp(times[inside], 0.0006 * (numpy.arange(len(short)) + 0.5), short["I"])
+    found = numpy.array(cut["I"])[inside]
+    assert max(expected) > 1.5 * min(expected)
+    # A piece is as long as a star is wide, .4 deg of the plate's turn: what bends over that is lost.
+    assert numpy.abs(found - expected).max() < 0.01 * max(expected)

@@ -2,6 +2,7 @@
 looks light up between 9 degrees and, where scenarios are named, in masks."""
 import json
 import random
+import re
 
 import pytest
 from astropy.table import Table
@@ -61,6 +62,7 @@ def test_each_object_is_found_in_its_own_light(umov, scene, library, tmp_path):
         assert abs(sum(table["probability"]) - 1) < 1e-9
     for file in ("identity.ecsv", "modes.ecsv", "fit.ecsv", "verdict.json", "manifest.json", "scenario.lock.toml", "report.html"):
         assert (tmp_path / "out" / file).exists(), file
+    assert re.search(r"none of these (< 0\.01|\d+(\.\d+)?) %\.", (tmp_path / "out/log.txt").read_text())  # not 2e-31 %
 
 
 def test_an_object_that_is_not_in_the_library_is_none(umov, scene, library, tmp_path):

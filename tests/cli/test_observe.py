@@ -267,7 +267,7 @@ def test_gaps_are_told(umov, tmp_path):
 BAD_COUNTS = [(COUNTS.replace(",var_read", ",read"), "var_read"), (COUNTS.replace("234", "-234"), "variances"),
               (COUNTS.replace("05:12:00Z,1,V,2650", "05:11:00Z,1,V,2650"), "times go back"),
               (COUNTS.replace("2705", "many"), "no number"), (COUNTS.replace("2705", "1e200"), "electrons"),
-              ("\n".join(COUNTS.splitlines()[:3]) + "\n", "cannot tell"), ("", "without the column")]
+              ("\n".join(COUNTS.splitlines()[:3]) + "\n", "cannot tell"), ("", "holds no table")]
 
 
 @pytest.mark.parametrize("text, told", BAD_COUNTS)

@@ -38,12 +38,16 @@ REFUSED = [
     ("exposure_s = 1\n[polarimeter]\nlayout = [[90, 45, 135], [0]]", "[[90, 45], [135, 0]]"),
     ("exposure_s = 1\n[polarimeter]\nq0 = 0.9\nu0 = 0.9", "at most 1"),
     ("exposure_s = 1\naperture_fwhm = 4.5", "would hold the star"),
+    ("exposure_s = 1\ntrail = \"slices\"", "trail is of frames"),
+    ("exposure_s = 1\nlevel = \"image\"\nphotometry = \"image\"\ntrail = \"slices\"", "pieces of a trail are summed"),
+    ("exposure_s = 1\nlevel = \"image\"\ntrail = \"pieces\"", "slices"),
     ("exposure_s = 1\nbands = []", "one or more were expected"),
     ("exposure_s = 1\n[polarimeter]\nretardance_deg = 90", "says nothing to a polarimeter of type \"mosaic\""),
     ("exposure_s = 1\n[polarimeter]\nangles_deg = [0, 60, 120]", "angles_deg says nothing"),
     ("exposure_s = 1\n[polarimeter]\nperiod_s = 2", "period_s says nothing"),
     ("exposure_s = 1\n[polarimeter]\ntype = \"none\"\nq0 = 0.1", "q0 says nothing"),
     ("exposure_s = 1\n[detector]\ndead_time_s = 1e-6", "only a counter"),
+    ("exposure_s = 1\n[detector]\nmodel = \"counter\"\nparalyzable = true", "without a dead time"),
 ]
 
 
@@ -63,6 +67,8 @@ def test_day_is_refused(scene, umov):
 
 
 WARNED = [
+    # Some .6 deg/s over pixels of .25 arcsec are 8,000 rows a second: 8 % of each exposure.
+    ('exposure_s = 0.01\n[telescope]\ntracking = "sidereal"\n[detector]\nshutter = "rolling"\nline_time_s = 1e-5', {}, "under a rolling shutter"),
     ("exposure_s = 1\n[detector]\nwell_e = 1e5", {}, "numbers fill first"),
     ("exposure_s = 0.1", {"air": "seeing = { arcsec = 0.5 }"}, "under 3 px"),
     ("exposure_s = 0.1\naperture_fwhm = 1", {}, "cuts the four orientations unevenly"),

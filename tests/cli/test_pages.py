@@ -1,6 +1,8 @@
 """Pages as their readers see them: opened from disk in a browser without network, each figure drawn, none too wide for a phone."""
 import json
+import math
 import subprocess
+import time
 
 import pytest
 
@@ -27,10 +29,14 @@ def pages(tmp_path_factory):
          "--set", 'output.formats=["ecsv","html"]', "-q")
     umov("reduce", "observe/counts.ecsv", "-o", "s.ecsv", "--page", "reduce.html", "-q")
     umov("exposure", "--instrument", "c11_imx250", "--band", "Bessell.V", "--page", "exposure.html", "-o", "e.csv", "-q")
+    (folder / "sine.csv").write_text("mjd_utc,mag\n" + "\n".join(f"{60000 + t / 86400:.9f},{8 + math.sin(t / 2):.4f}" for t in range(200)) + "\n")
+    umov("period", "sine.csv", "--page", "period.html", "-o", "period.csv", "-q")
     umov("mesh", "make", "chamfered-cube", "-o", "cube.obj")
     cube = f'object.0.mesh={{file="{folder}/cube.obj",unit="m",up="+Z"}}'
     umov("run", example, "--set", cube, "--set", 'object.0.materials={default="cell_gaas"}', "--set", "time.step_s=20",
          "--set", "output.dir=cube", "-q")
+    umov("run", example, "--set", cube, "--set", 'object.0.materials={default="cell_gaas"}', "--set", "time.step_s=20", "--set", "bands.set=nm:550",
+         "--set", "time.only={alt_min_deg=10,sun_alt_max_deg=-6,sunlit=false}", "--set", "output.dir=tracks", "-q")  # in the shadow too: whole passes
     umov("invert", "pose", "cube/lightcurve.ecsv", "--scenario", "cube/scenario.lock.toml", "-o", "invert", "--grid", 2000, "-q")
     drift = ("cube/lightcurve.ecsv", "--scenario", "cube/scenario.lock.toml", "-q")
     group = next(line.split()[1] for line in (folder / "cube.obj").read_text().splitlines() if line.startswith("usemtl"))
@@ -71,10 +77,11 @@ KINDS = {  # page: figures that it must have, marks of its sky chart
     "observe/report.html": ({"Counts in the aperture"}, 0),
     "reduce.html": ({"Polarization", "Brightness"}, 0),
     "exposure.html": ({"Error of p", "Signal to noise", "How long until p is known", "What makes the error of p"}, 0),
+    "period.html": ({"Brightness", "How it repeats: a sine of each period"}, 0),
     "invert/report.html": ({"Brightness: measured and fitted", "Brightness left over", "Errors of the heaviest attitude: about +X and +Y"}, 0),
     "mixture/report.html": ({"Brightness: measured and fitted", "What each band and Stokes component says by itself"}, 0),
     "health/report.html": ({"Brightness left over", "Polarization: measured and fitted"}, 0),
-    "plan/report.html": ({"What each pass tells", "The two that are most alike", "Best pass: brightness in nm:550", "Best pass: polarization in nm:550"}, 0),
+    "plan/report.html": ({"What each pass tells", "The two that are most alike", "Best pass: brightness in 550 nm", "Best pass: polarization in 550 nm"}, 0),
     "paper/index.html": (set(), 0),
 }
 
@@ -96,6 +103,15 @@ def test_figures_are_drawn_and_nothing_scrolls_sideways(pages, browser, name):
             assert seen["sideways"] == 0, seen["wide"]
 
 
+@pytest.mark.parametrize("name, begin", [("invert/report.html", "undetermined: "), ("mixture/report.html", "determined: "),
+                                         ("health/report.html", "determined: "), ("plan/report.html", "determined: "),
+                                         ("exposure.html", "One exposure of ")])
+def test_an_answer_stands_before_the_figures(pages, browser, name, begin):
+    with browser.opened(pages / name) as tab:
+        said = value_of(tab, '(document.getElementById("lead").hidden ? "" : document.getElementById("lead").textContent)')
+        assert said.startswith(begin) and said not in value_of(tab, 'document.getElementById("notes").textContent')
+
+
 def test_a_figure_that_fails_is_found(pages, browser):
     """The slip of November 2026, put back: rows without limits were asked for them, and q, u and p came out empty."""
     text = (pages / "run/report.html").read_text()
@@ -115,12 +131,28 @@ def value_of(tab, expression):
 def test_a_figure_as_wide_as_the_window_fits_on_paper(pages, browser):
     """What a browser says before and after it prints; A4 within margins of 12 mm has 703 px, and a card its padding."""
     widths = '[...document.querySelectorAll(".plot")].map((plot) => plot._fullLayout.width)'
+    heights = widths.replace("width", "height")
     with browser.opened(pages / "paper/index.html") as tab:
         tab.seen(1400)
-        before = value_of(tab, widths)
+        before, tall = value_of(tab, widths), value_of(tab, heights)
         assert before and min(before) > 1000
         assert max(value_of(tab, f'(window.dispatchEvent(new Event("beforeprint")), {widths})')) <= 660
+        assert max(value_of(tab, heights)) <= max(640, *tall)  # figures in space stay as high as they are
         assert value_of(tab, f'(window.dispatchEvent(new Event("afterprint")), {widths})') == before
+        assert value_of(tab, heights) == tall
+
+
+@pytest.mark.parametrize("width", [1400, 390])
+def test_letters_of_the_sky_do_not_cover_each_other(pages, browser, width):
+    """Passes of HST that set where each other does: their times, the names of directions and the altitudes."""
+    with browser.opened(pages / "tracks/report.html", width) as tab:
+        tab.seen()
+        texts = value_of(tab, '''[...document.querySelectorAll("#sky .textpoint text, #sky .angularaxistick text, #sky .radial-axis text")]
+            .map((one) => { const box = one.getBoundingClientRect(); return [one.textContent.trim(), box.left, box.top, box.right, box.bottom]; })
+            .filter(([text]) => text)''')
+    assert {"N", "E", "60°"} < {text for text, *_ in texts} and sum(":" in text for text, *_ in texts) >= (8 if width > 1000 else 2), texts
+    assert not [(a[0], b[0]) for k, a in enumerate(texts) for b in texts[:k]
+                if a[1] < b[3] and b[1] < a[3] and a[2] < b[4] and b[2] < a[4]]
 
 
 def test_light_that_fades_out_leaves_the_rest_tall(pages, browser):
@@ -130,3 +162,34 @@ def test_light_that_fades_out_leaves_the_rest_tall(pages, browser):
         ranges = value_of(tab, """[...document.querySelectorAll(".plot")].filter((plot) => plot.parentElement.querySelector("h2")
                                       .textContent.startsWith("Best pass: brightness")).map((plot) => plot._fullLayout.yaxis.range)""")
         assert len(ranges) == 3 and all(0 < top - bottom < 5.5 for bottom, top in ranges), ranges
+
+
+def test_the_cursor_moves_through_all_figures_and_pictures(pages, browser):
+    """The pointer over the first figure: a line stands in the others, and the picture nearest in time is framed."""
+    with browser.opened(pages / "run/report.html") as tab:
+        tab.seen(1400)
+        x, y = value_of(tab, """(() => {
+            const box = document.querySelector("#brightness .nsewdrag").getBoundingClientRect();
+            return [box.left + box.width / 2, box.top + box.height / 2]; })()""")
+        for step in range(3):
+            tab.ask("Input.dispatchMouseEvent", type="mouseMoved", x=x + step, y=y)
+        shown = """(() => [[...document.querySelectorAll(".cursor")].filter((line) => !line.hidden).length,
+                           document.querySelectorAll(".frame.near").length])()"""
+        deadline = time.monotonic() + 20
+        while value_of(tab, shown) == [0, 0] and time.monotonic() < deadline:
+            time.sleep(0.1)
+        lines, framed = value_of(tab, shown)
+        assert lines >= 4 and framed == 1, (lines, framed)
+
+
+def test_a_figure_that_is_saved_is_light_and_says_what_it_is(pages, browser):
+    with browser.opened(pages / "run/report.html", dark=True) as tab:
+        tab.seen(1400)
+        saved = value_of(tab, """(() => {
+            document.documentElement.dataset.theme = "dark";
+            let seen = null;
+            Plotly.downloadImage = (figure, options) => { seen = { ground: figure.layout.paper_bgcolor, title: figure.layout.title.text, ...options }; };
+            document.querySelector("#brightness").parentElement.querySelector('button[title="Save as PNG"]').click();
+            return seen; })()""")
+        assert saved["ground"] == "#ffffff" and saved["format"] == "png" and saved["filename"] == "HST_brightness_mag"
+        assert saved["title"] == "HST: brightness against time"

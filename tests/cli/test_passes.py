@@ -157,6 +157,85 @@ def test_glints_of_a_spinning_plate_stand_in_the_run(umov, scenario, tmp_path):
     assert "://" not in re.sub(r"http://www.w3.org/2000/svg", "", page), "nothing is loaded from anywhere"
 
 
+ISS = ("passes", "--orbit", ROOT / "data/tle/iss.tle", "-s", "maui", "--start", "2018-01-20T12:00:00Z", "--stop", "2018-01-27T00:00:00Z")
+BALL = ("--model", "sphere", "--material", "paint_white", "--size-m", 5)
+
+
+def test_the_brightest_and_the_highest_first(umov, tmp_path):
+    """--mag-max, --sort and visible_alt, which no other option of the search changes."""
+    told = {}
+    for name, options in {"all": (), "mag": ("--sort", "mag", "--chart", "mag.html"), "alt": ("--sort", "alt"), "bright": ("--mag-max", 1, "--sort", "mag")}.items():
+        done = umov(*ISS, *BALL, *options, "-o", f"{name}.csv")
+        assert done.code == 0, done.err
+        told[name] = read_csv(tmp_path / f"{name}.csv")
+    by_id = {row["pass_id"]: row for row in told["all"]}
+    bright = [row for row in told["all"] if row["mag_min"] and float(row["mag_min"]) <= 1]
+    assert 0 < len(bright) < len(by_id)
+    assert sorted(row["pass_id"] for row in bright) == sorted(row["pass_id"] for row in told["bright"])
+    mags = [float(row["mag_min"] or "inf") for row in told["mag"]]
+    alts = [float(row["visible_alt"] or "-inf") for row in told["alt"]]
+    assert mags == sorted(mags) and alts == sorted(alts, reverse=True) and len(mags) == len(alts) == len(by_id)
+    assert all(by_id[row["pass_id"]] == row for row in told["mag"])
+    assert '"order":"mag"' in (tmp_path / "mag.html").read_text()  # the chart's table begins so too
+    assert "sphere of radius 5 m" in (tmp_path / "all.csv").read_text()
+    done = umov(*ISS, *BALL, "--mag-max", -30)
+    assert done.code == 5 and "as bright as magnitude -30" in done.err
+    for options in (("--mag-max", 3), ("--sort", "mag")):
+        done = umov(*ISS, *options)
+        assert done.code == 2 and options[0] in done.err and "--model sphere" in done.err, done.err
+
+
+def test_the_greatest_altitude_while_visible(umov, tmp_path):
+    """Beside the rows of an ephemeris 2 s apart: sunlit, and the Sun 6 deg below the horizon."""
+    done = umov(*ISS, "-o", "p.csv", "--chart", "sky.html")
+    assert done.code == 0, done.err
+    rows = read_csv(tmp_path / "p.csv")
+    lower = [row for row in rows if row["visible_alt"] and float(row["visible_alt"]) < float(row["culmination_alt"]) - 2]
+    assert lower and all(bool(row["visible_alt"]) == (float(row["visible"]) > 0) for row in rows)
+    for row in lower[:2]:
+        done = umov("orbit", "ephemeris", "--orbit", ROOT / "data/tle/iss.tle", "--lat-deg", 20.7083, "--lon-deg", -156.2578, "--alt-m", 3058,
+                    "--start", row["rise_utc"], "--stop", row["set_utc"], "--step-s", 2, "-o", "e.csv")
+        assert done.code == 0, done.err
+        seen = [float(one["alt"]) for one in read_csv(tmp_path / "e.csv") if float(one["sunlit"]) > 0 and float(one["sun_alt"]) < -6]
+        assert float(row["visible_alt"]) == pytest.approx(max(seen), abs=0.6)  # 4 s apart at a quarter of a degree a second, half lit
+    track = next(one for one in json.loads(re.search(r'id="data">(.*?)</script>', (tmp_path / "sky.html").read_text()).group(1))["tracks"]
+                 if one["id"] == lower[0]["pass_id"])
+    assert track["alt_visible"] == pytest.approx(float(lower[0]["visible_alt"]), abs=0.01)
+
+
+def test_a_geostationary_satellite_that_never_rises_is_explained(umov, scenario):
+    """GOES 15 stood over 135 W in January 2018, 122 deg of arc from Calar Alto; above 10 deg it is seen from 71 deg."""
+    day = ("--start", "2018-01-21T00:00:00Z", "--stop", "2018-01-22T00:00:00Z")
+    done = umov("passes", "--orbit", ROOT / "data/tle/goes15.tle", "-s", "calar alto", *day)
+    assert done.code == 5 and re.search(r"over longitude 13[45]\.\d W: above 10 deg it is seen within 71 deg", done.err), done.err
+    assert "122 deg away" in done.err
+    # HST over the pole of the same search is another matter: it goes round.
+    assert "longitude" not in umov("passes", "--orbit", HST, "-s", "80,0,0", *day).err
+
+
+def test_the_next_pass_is_as_high_as_it_is_seen(umov, tmp_path):
+    """The ISS rises over Calar Alto at 19:42:33 and goes dark ten seconds later, at 11 deg; at 58 deg it is in the shadow."""
+    assert umov("mesh", "make", "chamfered-cube", "-o", "cube.obj").code == 0
+    (tmp_path / "s.toml").write_text(f'''umov = 1
+[observer]
+name = "Calar Alto"
+[time]
+start = 2018-01-22T05:00:00Z
+stop = 2018-01-22T07:00:00Z
+only = {{ alt_min_deg = 10, sun_alt_max_deg = -6, sunlit = true }}
+[[object]]
+orbit = {{ file = "{ROOT}/data/tle/iss.tle" }}
+mesh = {{ file = "cube.obj", unit = "m", up = "+Z" }}
+attitude = {{ mode = "nadir" }}
+[object.materials]
+default = "paint_white"
+[bands]
+set = "nm:550"
+''')
+    done = umov("run", "s.toml")
+    assert done.code == 5 and re.search(r"The next one: 2018-01-22T19:42Z, max alt 1[01]\.", done.err), done.err
+
+
 @pytest.mark.parametrize("change, words", [
     (("--model", "sphere"), ["--material"]),
     (("--model", "ball", "--material", "paper_al"), ["sphere"]),

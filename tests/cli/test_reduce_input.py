@@ -124,3 +124,33 @@ def test_full_channels_are_left_out_of_a_series_aloud(umov, tmp_path):
     (tmp_path / "c.csv").write_text("\n".join(lines).replace("False", "True") + "\n")
     done = umov("reduce", "c.csv", "--model", "spline:10")
     assert done.code == 4 and "every channel is saturated" in done.err
+
+
+@pytest.mark.parametrize("spoil, words", [
+    (lambda text: text + text.splitlines()[-1] + "\n", ":6: the same row a second time"),
+    (lambda text: "# retardance_deg V: lots\n" + text, "retardance_deg V of the header is \"lots\""),
+    (lambda text: "", "holds no table"),
+])
+def test_tables_that_are_refused(umov, tmp_path, spoil, words):
+    (tmp_path / "c.csv").write_text(spoil(COUNTS))
+    done = umov("reduce", "c.csv")
+    assert done.code == 3 and words in done.err, done.err
+
+
+def test_a_channel_twice_is_refused(umov, tmp_path):
+    """Two rows of one channel would make errors too small by the square root of two; of other exposures they are not the same."""
+    head, *rows = COUNTS.splitlines()
+    named = [head + ",channel,exposure"] + [row + f",{k},0" for k, row in enumerate(rows)]
+    (tmp_path / "c.csv").write_text("\n".join(named) + "\n")
+    assert umov("reduce", "c.csv").code == 0
+    (tmp_path / "c.csv").write_text("\n".join(named + [rows[0] + ",0,0"]) + "\n")
+    done = umov("reduce", "c.csv")
+    assert done.code == 3 and 'channel "0" a second time in this exposure' in done.err, done.err
+    (tmp_path / "c.csv").write_text("\n".join(named + [row + f",{k},1" for k, row in enumerate(rows)]) + "\n")
+    assert umov("reduce", "c.csv").code == 0
+
+
+def test_counts_below_nothing_are_told(umov, tmp_path):
+    (tmp_path / "c.csv").write_text(COUNTS.replace("2210", "-2210"))
+    done = umov("reduce", "c.csv")
+    assert "1 of 4 counts below 0 by more than reading does" in done.err, done.err

@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   const auto read = read_standards_text(fuzz::text_of(data, size), "input");
   if (!fuzz::is_read(read))
     return 0;
-  for (const PolarizedStandard &star : *read)
-    fuzz::require(star.p >= 0 && star.p <= 1, "a degree of polarization");
+  for (const StandardStar &star : *read)
+    fuzz::require(!(star.p < 0 || star.p > 1), "a degree of polarization");
   return 0;
 }

@@ -1,6 +1,11 @@
 """Telescopes, detectors and polarimeters (docs/theory/observing.md 3 and 4), from fields, sums and integrals."""
 
+import tomllib
+from math import erf
+
 import numpy as np
+
+from passbands import AB_ZERO, DATA, PLANCK, points, trapezoid
 
 DEGREE = np.pi / 180
 STOKES = np.array([1, .2, -.1, .05])
@@ -117,6 +122,21 @@ def mosaic(x, y, fwhm):
     return (n0 - n90) / (n0 + n90), (n45 - n135) / (n45 + n135)
 
 
+def boxed(fwhm, half):
+    """False q of a star on a mosaic in a box that follows it, over its phases: root mean square, and the largest."""
+    from math import erf
+    s = fwhm / np.sqrt(8 * np.log(2)) * np.sqrt(2)
+
+    def along(x):
+        """Light of even and of odd pixels within the box."""
+        pixels = [k for k in range(48) if abs(k - x) <= half]
+        return [sum((erf((k + .5 - x) / s) - erf((k - .5 - x) / s)) / 2 for k in pixels if k % 2 == odd) for odd in (0, 1)]
+
+    places = [along(24 + k / 8) for k in range(17)]
+    q = np.array([(y[1] * x[1] - y[0] * x[0]) / (y[1] * x[1] + y[0] * x[0]) for x in places for y in places])
+    return np.sqrt(np.mean(q ** 2)), np.max(np.abs(q))
+
+
 # Telescope and detector.
 def moffat_share(radius, beta=4.765):
     """Radial integral of the profile, in full widths."""
@@ -142,6 +162,31 @@ def excess(gain, stages=536):
 def ccd(star, pixels, sky, dark, read, step, ring=np.inf, f2=1, gain=1):
     each = f2 * (sky + dark) + (read / gain) ** 2 + (step / gain) ** 2 / 12
     return f2 * star + pixels * each * (1 + pixels / ring)
+
+
+def bent_polarization(q=.05, kappa=.02):
+    """What two beams at a full well tell of q by numbers that bend."""
+    n = np.array([1 + q, 1 - q])
+    n = n * (1 - kappa * n)
+    return (n[0] - n[1]) / (n[0] + n[1])
+
+
+def trail_box(length=11, around=2):
+    """Light of a trail of a Gaussian (sigma 1 px) in a box of two pixels around it."""
+    share = lambda a, b: .5 * (erf(b / 2 ** .5) - erf(a / 2 ** .5))  # noqa: E731
+    steps = 4000
+    along = np.mean([share(-around - s, length + around - s) for s in (np.arange(steps) + .5) * length / steps])
+    return along * share(-around, around)
+
+
+def zero_points():
+    """AB magnitude of one electron a second in V, without air and polarizers, of each instrument's file."""
+    nm, response, _ = points("Bessell.V")
+    photons = AB_ZERO / PLANCK * trapezoid(response / nm, nm)
+    for path in sorted((DATA / "instruments").glob("*.toml")):
+        t = tomllib.loads(path.read_text())["telescope"]
+        area = np.pi / 4 * t["aperture_m"] ** 2 * (1 - t.get("obstruction", 0) ** 2)
+        yield path.stem, 2.5 * np.log10(area * t["throughput"] * photons)
 
 
 def panel_error(exposure, panel):
@@ -204,6 +249,9 @@ def rows():
         yield f"mosaic_q_{fwhm:g}", four, (mosaic(0, 0, fwhm)[0], "9g")
     for k, name in ((0, "q"), (1, "u")):
         yield f"mosaic_off_{name}", four, (mosaic(.3, .1, 2)[k], "9g")
+    for fwhm, half in ((3, 4), (3, 6), (4, 6), (4, 8)):
+        for name, value in zip(("rms", "worst"), boxed(fwhm, half)):
+            yield f"box_{fwhm}_{half}_{name}", four, (value, "9g")
     three = "observing.md 3"
     yield "area_c11", three, (np.pi / 4 * .2794 ** 2 * (1 - .34 ** 2), "9g")
     for radius in (.5, 1, 1.5):
@@ -218,7 +266,12 @@ def rows():
         noise = np.sqrt(ccd(40, 9, .1, .01, read, step, f2=excess(register), gain=register))
         yield f"faint_{name}", three, (40 / noise, "9g")
     yield "bent", three, (9000 * (1 - .02 * 9000 / 10500), "9g")
+    yield "bent_q", three, (bent_polarization(), "9g")
+    yield "trail_box", three, (trail_box(), "7g")
+    for name, zero in zero_points():
+        yield f"zero_point_{name}", three, (zero, "9g")
     yield "dead_time", three, (1e6 / 1.05, "9g")
+    yield "prolonged", three, (1e6 * np.exp(-.05), "9g")
     for exposure in (.5, 1, 2, 5):
         yield f"panel_{exposure:g}", three, (panel_error(exposure, 1), "4g")
         yield f"half_panel_{exposure:g}", three, (panel_error(exposure, .5), "4g")

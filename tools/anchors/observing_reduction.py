@@ -163,6 +163,64 @@ def photometry():
     return found, np.sqrt(np.diag(covariance)), np.sqrt(left[0] / 3), covariance
 
 
+def second_order():
+    """The six stars with k'' = .035 beside, and two more; the offset of a source of B - V .653 at an air mass of 2."""
+    star = np.array([8.120, 9.455, 8.902, 10.231, 9.017, 9.788, 8.551, 9.203])
+    x = np.array([1.02, 1.21, 1.55, 1.08, 1.90, 1.37, 2.10, 1.15])
+    c = np.array([.05, .62, 1.10, .35, .71, -.02, 1.25, 1.31])
+    left = np.array([.004, -.003, .002, -.005, .001, .001, -.002, .003])
+    seen = star - 20.571 + .118 * x - .030 * c - .035 * c * x + left
+    m = np.column_stack([np.ones(8), -x, -c, c * x])
+    found, rest = np.linalg.lstsq(m, star - seen, rcond=None)[:2]
+    covariance = np.linalg.inv(m.T @ m) * rest[0] / 4
+    effect = np.array([1, -2, -.653, .653 * 2])
+    return found, np.sqrt(np.diag(covariance)), effect @ found, np.sqrt(effect @ covariance @ effect)
+
+
+def turn(x):
+    c, s = np.cos(2 * x), np.sin(2 * x)
+    return np.array([[1, 0, 0, 0], [0, c, s, 0], [0, -s, c, 0], [0, 0, 0, 1]])
+
+
+def retarder(d, x):
+    c, s = np.cos(d), np.sin(d)
+    return turn(-x) @ np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, c, -s], [0, 0, s, c]]) @ turn(x)
+
+
+def retarder_rows(d=131.8 * DEGREE, zero=0, chi=25 * DEGREE, leaks=(0, 0)):
+    """Four states of a retarder before an analyser of extinction 300, behind retarders at 0 and 45 deg."""
+    analyser = (1 + 1 / 300) / 2 * np.array([1, D300, 0, 0])
+    before = retarder(leaks[0], 0) @ retarder(leaks[1], 45 * DEGREE) @ turn(chi)
+    return np.array([analyser @ retarder(d, x * DEGREE + zero) @ before for x in (-51.69, -15.12, 15.12, 51.69)])
+
+
+def instrument_priors():
+    """sd of q, u, v of 4e6 electrons with one error of the instrument, by differences of the whole chain."""
+    s = 1e6 * np.array([1, .2, -.1, .05])
+    step = 1e-5
+    ways = {"crosstalk": ([{"leaks": (1, 0)}, {"leaks": (0, 1)}], .02), "plate": ([{"zero": 1}], .1 * DEGREE),
+            "retardance": ([{"d": 1}], 2 * DEGREE), "clock": ([{"chi": 1}], .5 * DEGREE)}  # .5 s at 1 deg/s
+    base = {"d": 131.8 * DEGREE, "zero": 0, "chi": 25 * DEGREE, "leaks": (0, 0)}
+    moved = lambda way, by: {k: np.add(base[k], np.multiply(v, by)) for k, v in way.items()}  # noqa: E731
+    w = retarder_rows()
+    for name, (all_ways, sd) in ways.items():
+        j = [sd * (retarder_rows(**moved(way, step)) - retarder_rows(**moved(way, -step))) @ s / (2 * step) for way in all_ways]
+        c = np.diag(w @ s) + sum(np.outer(one, one) for one in j)
+        covariance = np.linalg.inv(w.T @ np.linalg.inv(c) @ w)
+        f = np.column_stack([-s[1:] / s[0] ** 2, np.eye(3) / s[0]])
+        yield name, np.sqrt(np.diag(f @ covariance @ f.T))
+
+
+def data_weighted(mean, read):
+    """Mean of counts about `mean` read with a normal error, each weighted by the variance that it seems to have itself."""
+    n = np.arange(0, 100)[:, None]
+    z = np.linspace(-8, 8, 2001)[None, :]
+    p = np.exp(-mean) * np.cumprod(np.concatenate([[1.], mean / np.arange(1, 100)]))[:, None] * np.exp(-z ** 2 / 2)
+    seen = n + read * z
+    weight = p / (np.maximum(seen, 0) + read ** 2)
+    return (weight * seen).sum() / weight.sum()
+
+
 def sequence_rms(order, exposure):
     angles = np.array(order) * DEGREE
     begin = np.arange(len(order)) * exposure
@@ -217,10 +275,21 @@ def rows():
         yield f"photometry_{name}_sd", five, (sds[k], "9g")
     yield "photometry_residual", five, (residual, "9g")
     yield "photometry_correlation", five, (c[0, 1] / sds[0] / sds[1], "9g")
+    found, sds, offset, spread = second_order()
+    for k, name in enumerate(("zero", "extinction", "colour", "second")):
+        yield f"second_order_{name}", five, (found[k], "9g")
+        yield f"second_order_{name}_sd", five, (sds[k], "9g")
+    yield "second_order_offset", five, (offset, "9g")
+    yield "second_order_offset_sd", five, (spread, "9g")
     seven = "observing.md 7"
+    for name, numbers in instrument_priors():
+        for letter, number in zip("quv", numbers):
+            yield f"{name}_sd_{letter}", seven, (number, "7g")
     for name, number in nuisance_rows():
         yield name, seven, (number, "9g")
     for n, mu, read in ((3.2, 5, 1.6), (52.3, 45, 3), (1012, 980, 7)):
         for kind, number in zip(("exact", "shifted", "normal"), counts_likelihood(n, mu, read)):
             yield f"{kind}_{mu}", seven, (number, "8g")
+    for mean in (2, 5, 20):
+        yield f"data_weighted_{mean}", seven, (data_weighted(mean, 1.6), "6g")
     yield "multiplied", seven, (multiplied(1500, 3, 300), "8g")

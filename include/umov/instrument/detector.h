@@ -31,7 +31,8 @@ struct Detector {
   double nonlinearity = 0; ///< kappa: a full well reads 1 - kappa of itself
   double em_gain = 1;
   int em_stages = 536;
-  double dead_time_s = 0; ///< non-paralyzable
+  double dead_time_s = 0;      ///< of a counter, after each photon that it tells
+  bool is_paralyzable = false; ///< after every photon: those that are lost prolong it
   bool has_rolling_shutter = false;
   double line_time_s = 0;
 };
@@ -68,6 +69,13 @@ double straightened(const Detector &detector, double reading);
 double counted_rate(const Detector &detector, double rate);
 /// Variance of its counts over their mean.
 double counter_fano(const Detector &detector, double rate);
+/// A rate at which counts do not tell how bright light is, though they may look sound: beyond a
+/// photon in a dead time a counter that is prolonged tells fewer the more there are.
+bool is_paralysed(const Detector &detector, double rate);
+
+/// By which part of itself a rolling shutter's exposure is longer or shorter for something that
+/// runs along the read-out by so many rows a second. 0 of a global shutter.
+double rolling_change(const Detector &detector, double rows_per_s);
 
 /// A sum of counts behind all corrections.
 struct CorrectedCount {
@@ -75,7 +83,8 @@ struct CorrectedCount {
   bool is_saturated = false;
 };
 /// What a counter told, with those that fell into its dead time: n = m/(1 - m tau), whose variance
-/// is n (1 + n tau). Of other detectors as it is.
+/// is n (1 + n tau); where photons prolong it, n tau = -W(-m tau) with the variance n (e^(n tau) -
+/// 2 n tau)/(1 - n tau)^2. Of other detectors as it is.
 CorrectedCount corrected_count(const Detector &detector, double told, double exposure_s);
 
 /// One pixel, read out.

@@ -3,13 +3,15 @@
 
 #include <umov/instrument/frame_photometry.h>
 #include <umov/instrument/observe.h>
+#include <umov/instrument/trail_slices.h>
 
 namespace umov {
 
 /// The object during a part of an exposure.
 struct FrameMoment {
-  FramePoint at;     ///< its image
-  double weight = 1; ///< part of the exposure
+  FramePoint at;       ///< its image
+  double weight = 1;   ///< part of the exposure
+  double offset_s = 0; ///< from its middle
   /// At each node, as `ExposureLight::flux`.
   std::vector<Stokes<InstrumentAxes>> flux;
 };
@@ -30,6 +32,14 @@ struct FramePlan {
   std::vector<FrameMoment> object;
   std::vector<FrameStar> stars;
   FramePhotometry photometry = FramePhotometry::Aperture;
+  bool cuts_trail = false; ///< counts also of pieces of the trail, each as long as a star is wide
+};
+
+/// A piece of a trail.
+struct FramedSlice {
+  std::vector<double> weight;          ///< of the object's moments in its light, sum 1
+  double offset_s = 0;                 ///< mean time of that light, from the middle of the exposure
+  std::vector<ChannelCounts> channels; ///< counts - sky = row . S of those moments' mean
 };
 
 /// One detector, beam or phase: a mosaic has one for all its orientations.
@@ -42,6 +52,7 @@ struct FramePlane {
 struct FramedExposure {
   std::vector<FramePlane> planes;
   std::vector<ChannelCounts> channels;
+  std::vector<FramedSlice> slices;   ///< where they are asked for
   bool has_star_in_aperture = false; ///< other light of more than a hundredth of the object's
   bool is_cut = false;               ///< the aperture reaches over the frame's edge
 };

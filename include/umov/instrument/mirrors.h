@@ -2,8 +2,10 @@
 // Mirrors of a telescope that polarize.
 
 #include <complex>
+#include <span>
 #include <umov/core/vec3.h>
 #include <umov/instrument/mueller.h>
+#include <umov/instrument/telescope.h>
 
 namespace umov {
 
@@ -40,5 +42,16 @@ private:
   InstrumentMueller matrix_ = identity_element();
   Vec3<Enu> x_, k_, image_;
 };
+
+/// A train as it lies where the telescope points.
+struct TrainFocus {
+  /// From Stokes parameters in zenith axes to those in the focus, +Q along `x_from`.
+  InstrumentMueller matrix;
+  Angle zenith; ///< where the zenith direction appears, from `x_from`
+};
+/// Follows a beam through a train. `eta`: of each mirror; none: geometry alone, as if all reflected
+/// perfectly.
+TrainFocus trace_train(const MirrorTrain &train, std::span<const std::complex<double>> eta,
+                       Angle altitude, Angle azimuth);
 
 } // namespace umov

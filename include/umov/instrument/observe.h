@@ -77,6 +77,7 @@ struct ExposureLight {
   Angle zenith;          ///< position angle of the zenith in the sky frame of the files
   double rate_rad_s = 0; ///< of the object over the sky
   double transparency = 1;
+  Angle azimuth; ///< of the object
 };
 
 /// One channel of one exposure, as a reduction gets it.
@@ -98,7 +99,8 @@ struct ChannelCounts {
 /// An instrument in one band under given conditions.
 class BandObserver {
 public:
-  /// `mirror_eta`: of the flat mirror at each node; empty at a Cassegrain focus.
+  /// `mirror_eta`: of the port's flat mirrors, [node * mirrors + mirror]; empty at a Cassegrain
+  /// focus.
   static Result<BandObserver> make(const Instrument &instrument, BandResponse band,
                                    const ObservingConditions &conditions,
                                    const std::vector<std::complex<double>> &mirror_eta);
@@ -106,7 +108,8 @@ public:
   /// Light of one node in zenith axes, as it reaches the polarimeter.
   [[nodiscard]] Stokes<InstrumentAxes> at_polarimeter(std::size_t node,
                                                       const Stokes<SkyNorth> &zenith_axes,
-                                                      Angle altitude, Angle axis_zenith) const;
+                                                      Angle altitude, Angle axis_zenith,
+                                                      Angle azimuth = {}) const;
   /// Expected and drawn counts of all channels; of a state that was prepared, from any thread.
   [[nodiscard]] Result<std::vector<ChannelCounts>> observe(const ExposurePlan &plan,
                                                            const ExposureLight &light) const;
@@ -151,7 +154,7 @@ private:
   using Channels = std::vector<std::vector<PolarimeterChannel>>; ///< [node][channel]
   BandObserver() = default;
   [[nodiscard]] const Channels *channels_of(const PolarimeterState &state) const;
-  [[nodiscard]] InstrumentMueller port(std::size_t node, Angle altitude) const;
+  [[nodiscard]] InstrumentMueller port(std::size_t node, Angle altitude, Angle azimuth) const;
   void draw(const ExposurePlan &plan, const ExposureLight &light, std::size_t channel,
             double factor, ChannelCounts &out) const;
   [[nodiscard]] double sky_pixels(double airmass) const;
@@ -160,8 +163,9 @@ private:
   Instrument instrument_;
   BandResponse band_;
   ObservingConditions conditions_;
-  std::vector<double> rate_;              ///< per node: electrons per second of unit flux, no air
-  std::vector<InstrumentMueller> mirror_; ///< per node; empty at a Cassegrain focus
+  std::vector<double> rate_; ///< per node: electrons per second of unit flux, no air
+  std::vector<std::complex<double>> mirror_eta_;
+  std::vector<InstrumentMueller> mirror_; ///< per node, of a Nasmyth port
   double pixel_arcsec_ = 1;
   std::map<StateKey, Channels> channels_;
 };

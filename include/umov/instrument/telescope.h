@@ -2,11 +2,25 @@
 #include <string>
 #include <umov/core/quantity.h>
 #include <umov/optics/index.h>
+#include <vector>
 
 namespace umov {
 
-/// Where the light leaves the telescope.
-enum class TelescopePort { Cassegrain, NasmythLeft, NasmythRight };
+/// Where the light leaves the telescope; `Train`: behind further mirrors.
+enum class TelescopePort { Cassegrain, NasmythLeft, NasmythRight, Train };
+/// Where a beam goes: in the fork of an alt-azimuth mount, which turns with the azimuth (left and
+/// right of who looks towards the azimuth), or over the ground. Up and down are the same in both.
+enum class BeamDirection { Up, Down, Left, Right, Forward, Back, North, East, South, West };
+/// A flat mirror of a train.
+struct TrainMirror {
+  BeamDirection to = BeamDirection::Right; ///< of the light behind it
+  std::string index;                       ///< of its metal; empty: the telescope's `mirror`
+};
+/// The mirrors behind the telescope's own two.
+struct MirrorTrain {
+  std::vector<TrainMirror> mirrors;
+  BeamDirection x_from = BeamDirection::Up; ///< from which the instrument's x axis is counted
+};
 /// What carries it.
 enum class Mount { AltAz, Equatorial };
 
@@ -20,7 +34,8 @@ struct Telescope {
   double focal_length_m = 0;
   Tabulated throughput{{}, {1}}; ///< optics times detector, without polarizers, against wavelength
   TelescopePort port = TelescopePort::Cassegrain;
-  std::string mirror = "Al_Rakic"; ///< index of the flat mirror of a Nasmyth port
+  std::string mirror = "Al_Rakic"; ///< index of the flat mirrors of its port
+  MirrorTrain train;               ///< of the port `Train`
   Mount mount = Mount::AltAz;
   bool has_derotator = false; ///< turns the whole instrument with the sky
   Tracking tracking = Tracking::Satellite;
@@ -33,11 +48,17 @@ double collecting_area_m2(const Telescope &telescope);
 double pixel_scale_arcsec(const Telescope &telescope, double pixel_um);
 /// Angle of the instrument's x axis in the focus: from the zenith direction, at a Nasmyth port from
 /// the vertical there, in its mirrored image. `parallactic_angle`: of the zenith from the pole;
-/// `altitude`: where the telescope points.
+/// `altitude` and `azimuth`: where the telescope points; the azimuth matters to trains that end on
+/// the ground.
 Angle axis_from_zenith(const Telescope &telescope, Angle x_axis, Angle parallactic_angle,
-                       Angle altitude);
+                       Angle altitude, Angle azimuth = {});
 /// Where on the sky that axis lies, from the zenith direction.
-Angle axis_on_sky(const Telescope &telescope, Angle axis_from_zenith, Angle altitude);
+Angle axis_on_sky(const Telescope &telescope, Angle axis_from_zenith, Angle altitude,
+                  Angle azimuth = {});
+/// Flat mirrors between the telescope's own two and the focus.
+std::size_t port_mirrors(const Telescope &telescope);
+/// An odd number of mirrors shows the sky with the other hand.
+bool is_mirrored(const Telescope &telescope);
 
 /// Profile of a star's image.
 enum class ImageProfile { Gauss, Moffat }; ///< Moffat with exponent 4.765 (Trujillo et al. 2001)

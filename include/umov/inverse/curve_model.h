@@ -12,7 +12,9 @@
 
 namespace umov {
 
-/// Light of poses in the bands of a curve; false if it is to stop.
+/// Light of poses in the bands of a curve; false if it is to stop. Of a model with parts the bands
+/// stand several times: all of the light, then of each part its own and, where its slopes are not
+/// known, that of smaller and of larger ones.
 using PoseLighting = std::function<bool(std::span<const Pose>, StokesTable &)>;
 
 /// How a body is turned: an attitude at second 0 of the curve, and a constant turn from there on.
@@ -30,7 +32,8 @@ class CurveModel {
 public:
   /// `light` and `curve` must outlive it. `bands`: of the light, of which column `column[b]` is
   /// band b of the curve.
-  CurveModel(const ObservedCurve &curve, PoseLighting light, std::vector<std::size_t> column);
+  CurveModel(const ObservedCurve &curve, PoseLighting light, std::vector<std::size_t> column,
+             std::vector<PartKind> parts = {});
 
   /// Calls `take(k, light)` for turning k, from any thread: light at `epochs` (all, if none are
   /// named), the rest is 0. False if it was stopped.
@@ -41,11 +44,14 @@ public:
   [[nodiscard]] std::size_t poses_lit() const { return poses_lit_; }
   /// The curve.
   [[nodiscard]] const ObservedCurve &curve() const { return curve_; }
+  /// Parts of the light that are not quite known.
+  [[nodiscard]] const std::vector<PartKind> &parts() const { return parts_; }
 
 private:
   const ObservedCurve &curve_;
   PoseLighting light_;
   std::vector<std::size_t> column_, all_;
+  std::vector<PartKind> parts_;
   mutable std::size_t poses_lit_ = 0;
 };
 

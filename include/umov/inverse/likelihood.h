@@ -12,7 +12,11 @@ namespace umov {
 
 namespace inverse {
 class CountLikelihood;
-}
+class PartFit;
+struct Gains;
+struct Weighed;
+struct GainSums;
+} // namespace inverse
 
 /// What is not known beside the light itself.
 struct CurveErrors {
@@ -37,11 +41,28 @@ inline constexpr double best_relative = 1e-4;
 /// 1931).
 double chi2_probability(double chi2, double dof);
 
+/// A part of a body's light whose amount is not quite known, nor how rough the surface is.
+struct PartKind {
+  std::string name;
+  double sd = 0;       ///< of ln of its amount
+  double slope_sd = 0; ///< of ln of the slopes of its lobe; 0: it has none, or they are known
+  /// Of a PoseLighting: its light, and that of smaller and of larger slopes.
+  [[nodiscard]] std::size_t blocks() const { return slope_sd > 0 ? 3 : 1; }
+};
+/// Light of one part as the model has it: [epoch * bands + band].
+struct PartLight {
+  std::span<const double> i, q, u;
+  /// `i` with slopes one standard deviation smaller and larger; empty: they are known.
+  std::span<const double> smooth, rough = {};
+  double sd = 0; ///< of ln of its amount
+};
+
 /// Light of a model at all epochs and bands: [epoch * bands + band], scattering plane.
 struct ModelLight {
   std::span<const double> i, q, u;
   /// Numerical 95 % half-width of `i`, which is an error of its own in each row; may be empty.
   std::span<const double> i_half_width = {};
+  std::span<const PartLight> parts = {}; ///< of which it may have more or less
 };
 
 /// A model held against a curve.
@@ -62,12 +83,28 @@ public:
   CurveLikelihood(const ObservedCurve &curve, const CurveErrors &errors,
                   std::span<const std::size_t> epochs = {});
 
-  /// Holds a model against the curve.
+  /// Holds a model against the curve; its parts are fitted under their priors, and integrated over
+  /// by Laplace's rule.
   [[nodiscard]] Comparison compare(const ModelLight &model) const;
+  /// The light of a model with its parts as they fit best.
+  struct FittedLight {
+    std::vector<double> i, q, u;
+    std::vector<double> off; ///< of each part its amount, then its slope [standard deviations]
+    double log_det = 0;      ///< of what the data add to the priors of `off`
+  };
+  /// The light with its parts as they fit best, under their priors (docs/theory/inverse.md, 4b).
+  [[nodiscard]] FittedLight fit_parts(const ModelLight &model) const;
+  /// Residuals that are wrong together: of one epoch and band.
+  struct Place {
+    std::size_t epoch = 0, band = 0;
+    std::size_t begin = 0, size = 0; ///< among those of `compare`; those of I
+  };
+  /// All of them, in the order of `compare`.
+  [[nodiscard]] std::vector<Place> places() const;
   /// Numbers that were measured.
   [[nodiscard]] std::size_t measurements() const { return measurements_; }
-  /// Whitened residuals: measurements, and what the priors of zero points add.
-  [[nodiscard]] std::size_t residual_count() const;
+  /// What data and model may be off by.
+  [[nodiscard]] const CurveErrors &errors() const { return errors_; }
   /// Unknowns that `compare` integrates over.
   [[nodiscard]] std::vector<Parameter> nuisances() const;
   /// Median of the measured I; 0 if there is none.
@@ -84,12 +121,16 @@ private:
     /// Rows of the inverse square root of the covariance of q, u; all 0: not measured.
     double l_qq = 0, l_uq = 0, l_uu = 0;
   };
-  struct Gains;
-  struct Weighed;
-  struct GainSums;
+  friend class inverse::PartFit;
+  /// Whitened residuals: measurements, and what the priors of zero points add.
+  [[nodiscard]] std::size_t residual_count() const;
+  using Gains = inverse::Gains;
+  using Weighed = inverse::Weighed;
+  using GainSums = inverse::GainSums;
   [[nodiscard]] GainSums sums_of(const ModelLight &model, const Weighed &data) const;
   [[nodiscard]] Weighed weigh(const ModelLight &model) const;
-  [[nodiscard]] Gains gains_of(const ModelLight &model, const Weighed &data) const;
+  [[nodiscard]] Gains gains_of(const GainSums &sums) const;
+  [[nodiscard]] Comparison compare_as_it_is(const ModelLight &model) const;
   double fill(const ModelLight &model, const Gains &gains, const Weighed &data,
               std::vector<double> &residuals) const;
 

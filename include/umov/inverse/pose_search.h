@@ -13,6 +13,9 @@ namespace umov {
 /// How a search is run.
 struct SearchOptions {
   CurveErrors errors;
+  /// The model may turn out to be as far off as that, in parts of I: the floor is then as large as
+  /// the misfit of the best attitude asks. 0: the floor is what `errors` say.
+  double largest_floor = 0;
   std::size_t grid = 60'000;  ///< attitudes that are looked at first
   std::size_t starts = 300;   ///< of them, spread out, that are refined
   std::size_t samples = 1000; ///< of the posterior
@@ -39,7 +42,7 @@ struct PoseMode {
 struct PoseSample {
   Turning turning;
   double weight = 0; ///< they add up to 1
-  double minus_2_log = 0;
+  double minus_2_log = 0, chi2 = 0;
 };
 
 /// One ball of a set of attitudes.
@@ -56,6 +59,10 @@ struct PoseAnswer {
   double share_of_so3 = 0;         ///< volume of that union in parts of all attitudes
   double log_evidence = 0;         ///< over a prior that takes all attitudes alike
   double chi2 = 0;                 ///< of the best one
+  CurveErrors errors;              ///< that it rests on
+  double model_error = 0;          ///< in parts of I, as the misfit says; 0: nobody asked the data
+  double related = 1;              ///< how many numbers are wrong together
+  double misfit = 0; ///< chi2 of the best if numbers were off by `model_error` each by itself
   std::size_t measurements = 0, unknowns = 0;
   /// The posterior is no few narrow peaks: its samples were followed from all attitudes on, and
   /// covariances of modes say little.
@@ -69,10 +76,15 @@ struct PoseAnswer {
 /// All fixed attitudes that explain a curve. Interrupted if the light stopped; BadInput for a curve
 /// without measurements.
 Result<PoseAnswer> search_pose(const CurveModel &model, const SearchOptions &options);
-/// The same with a `quick` model for the search over all attitudes and the first fits; last fits
-/// and samples of peaks are the model's own.
-Result<PoseAnswer> search_pose(const CurveModel &model, const CurveModel &quick,
-                               const SearchOptions &options);
+/// Models of one curve, the more often they are asked the quicker.
+struct SearchModels {
+  const CurveModel &last; ///< for the last fits and samples of peaks
+  /// For the first fits and what is far from the peaks; its parts are those of `last`.
+  const CurveModel &first;
+  const CurveModel &quick; ///< for the search over all attitudes
+};
+/// The same with quicker models where they will do.
+Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options);
 
 /// The same around given turnings with their rate free too: the last step of a search for a spin.
 Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,

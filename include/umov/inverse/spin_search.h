@@ -10,8 +10,10 @@ namespace umov {
 struct SpinRequest {
   std::vector<double> periods_s;  ///< inertial periods to be tried, each good to a few per cent
   std::optional<Vec3<Body>> axis; ///< in the body, either sense; absent: any
-  /// Coarse light for the first steps (DirectionTable::lighting); empty: the light itself.
+  /// Coarse light for the first steps (DirectionTable::lighting); empty: the light itself, which
+  /// then has no parts.
   PoseLighting coarse = {};
+  std::vector<PartKind> parts = {};         ///< of the light itself, of which `coarse` has none
   std::size_t attitudes = 6000, axes = 150; ///< of the first grid: spacing 14 and 17 deg
 };
 

@@ -22,6 +22,8 @@ struct CountRow {
   double scintillation = 0; ///< relative standard deviation of the exposure's transparency
   double x_axis_pa_deg = 0, phase_angle_deg = 0, pa_scat_deg = 0, airmass = 0;
   double plate_deg = 0;
+  double retardance_deg = 180; ///< of the plate, by the header
+  double turn_deg_s = 0;       ///< of x_axis_pa, where somebody has worked it out: no column
   double k_mag = std::numeric_limits<double>::quiet_NaN(); ///< extinction [mag per air mass]
   double ra_deg = std::numeric_limits<double>::quiet_NaN(), dec_deg = ra_deg,
          range_km = ra_deg; ///< of the object

@@ -44,6 +44,7 @@ struct ScenarioObservation {
   std::array<int, 2> frame_px{256, 256}; ///< columns, rows
   std::string stars;                     ///< file of the field's, empty: none
   FramePhotometry photometry = FramePhotometry::Aperture;
+  bool cuts_trail = false; ///< each trail is cut into a light curve of its own
 };
 
 /// Names of the instruments that are compiled in.

@@ -32,12 +32,17 @@ struct PlotFigure {
   /// What the axes of the page show, from the first to the second; alike: all there is.
   std::array<double, 2> x_span{}, y_span{};
   bool has_log_x = false;
+  std::vector<std::string> y_names = {}; ///< page: at y = 1, 2, ... for numbers and legend
 };
 
 /// The page: title, one card per figure (each can be saved as SVG), notes at the end. Same input,
 /// same bytes. Internal if this build has no plotting script.
 Result<std::string> make_plot_page(const std::string &title, const std::vector<PlotFigure> &figures,
                                    const std::vector<std::string> &notes);
+/// The same where the first note is the answer: it stands below the title, not at the end.
+Result<std::string> make_answer_page(const std::string &title,
+                                     const std::vector<PlotFigure> &figures,
+                                     const std::vector<std::string> &notes);
 
 /// One figure as an SVG picture of 640 x 440, white ground; one in space as a parallel projection.
 /// Same input, same bytes.

@@ -12,7 +12,8 @@ struct SkyTrack {
   std::string id, name;
   std::string rise, culmination, set; ///< UTC, "" where the span cuts the pass
   std::string brightest;              ///< UTC; "" where no magnitude is known
-  double altitude_max = 0;            ///< [deg]
+  double altitude_max = 0;            ///< of the whole pass [deg]
+  double visible_altitude = 0;        ///< the highest while visible [deg]
   double magnitude_min = 0, magnitude_max = 0;
   double phase_min = 0, phase_max = 0;   ///< while sunlit [deg]
   double visible_s = 0;                  ///< sunlit in a dark sky
@@ -24,6 +25,7 @@ struct SkyTrack {
 struct SkyPage {
   std::string title;
   std::vector<SkyTrack> tracks;
+  std::string order;              ///< of the table's rows at first: "mag", "alt", else by time
   std::string model;              ///< what the magnitudes are of; "": there are none
   std::vector<std::string> notes; ///< one sentence each
 };

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <umov/io/table.h>
+#include <umov/jobs/monitor.h>
 #include <umov/surface/material.h>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct BrdfRequest {
 Result<std::vector<BrdfGeometry>> read_brdf_geometries(const std::string &path, double azimuth_deg);
 
 /// A row per geometry: all sixteen entries [1/sr]. Usage or BadInput (of a file) for angles that
-/// are not between 0 and 90 deg.
-Result<Table> brdf_table(const BrdfRequest &request);
+/// are not between 0 and 90 deg; Interrupted where the monitor cancels.
+Result<Table> brdf_table(const BrdfRequest &request, const Monitor &monitor = {});
 
 } // namespace umov::jobs

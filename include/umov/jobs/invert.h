@@ -15,10 +15,22 @@
 
 namespace umov::jobs {
 
+/// How well the materials of an object are known, as standard deviations of logarithms; 0: exactly.
+struct MaterialErrors {
+  double slope = 0.2;       ///< of the slopes of each lobe
+  double reflectance = 0.1; ///< of what a lobe and a body reflect
+  double haze = 0.3;        ///< of what a material without a body scatters beside its lobe
+  /// Any of them is not known.
+  [[nodiscard]] bool is_any() const { return slope > 0 || reflectance > 0 || haze > 0; }
+};
+
 /// What is asked of the observations.
 struct InvertRequest {
   std::vector<std::string> observations; ///< files; all of them are one fit
   CurveErrors errors;
+  MaterialErrors materials; ///< unknowns of a search for attitudes and spins
+  double largest_floor =
+      0.1; ///< of such a search, whose floor grows with the misfit; 0: it does not
   std::size_t grid = 60'000;
   LightMethod method = LightMethod::Auto;
   bool allow_old_elements = false; ///< over 30 days from the observations

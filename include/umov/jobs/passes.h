@@ -25,6 +25,10 @@ struct PassModel {
   std::string band;     ///< of the magnitudes; "": the middle one
 };
 
+/// What comes first: the earliest, the brightest, or what stands highest while visible. Passes
+/// without a magnitude, or never visible, come last.
+enum class PassOrder { Rise, Magnitude, Altitude };
+
 /// Orbits, a site, a span, and what a pass is.
 struct PassesRequest {
   std::string orbit;      ///< file of elements or of an ephemeris
@@ -35,7 +39,10 @@ struct PassesRequest {
   Angle sun_altitude_max = Angle::degrees(-6); ///< the sky is dark below it
   ShadowModel shadow = ShadowModel::Ellipsoid;
   bool is_visible_only = false; ///< sunlit in a dark sky for some time
-  bool keep_going = false;      ///< bad sets of the file are reported, the others kept
+  /// Only passes that get as bright as this while sunlit; those without a magnitude are left out.
+  std::optional<double> magnitude_max;
+  PassOrder order = PassOrder::Rise;
+  bool keep_going = false; ///< bad sets of the file are reported, the others kept
   PassModel model;
 };
 
@@ -49,16 +56,16 @@ struct ObjectPass {
 /// Passes found, and how the search ended.
 struct PassesResult {
   std::vector<Trajectory> orbits; ///< of the objects that were to be searched
-  std::vector<ObjectPass> found;  ///< by the time of rise
+  std::vector<ObjectPass> found;  ///< in PassesRequest::order
   std::string model;              ///< what the objects were taken for, in words
   MagnitudeSystem magnitudes = MagnitudeSystem::AB;
   bool has_air = false;         ///< the scene has an atmosphere: magnitudes behind it too
   std::optional<Error> stopped; ///< Interrupted: passes of some objects are not there
 };
 
-/// Searches all objects side by side, or those that JobOptions::part has of them. Nothing if there
-/// is no pass; Physics if every orbit ends within the span; warnings tell of old elements and of
-/// objects that failed.
+/// Searches all objects side by side, or those that JobOptions::part has of them. Usage where
+/// magnitudes are asked about and no model gives them; Nothing if there is no pass; Physics if
+/// every orbit ends within the span; warnings tell of old elements and of objects that failed.
 Result<PassesResult> passes(const PassesRequest &request, const JobOptions &options,
                             const Monitor &monitor, Diagnostics &diagnostics);
 

@@ -18,10 +18,14 @@ struct PeriodRequest {
 
 /// Peaks of the periodogram of every stretch and band, the highest first, each with what it is: a
 /// period, a part or a multiple of a higher one, or what the times of the data make of one. The
-/// note "spin" says which spins the surest of them may mean. BadInput for a band that the file does
-/// not have; Nothing where no stretch has twelve brightnesses that change, or none stands out of
-/// noise.
+/// note "spin" says which spins the surest of them may mean, and whether turns twice as long
+/// differ. BadInput for a band that the file does not have; Nothing where no stretch has twelve
+/// brightnesses that change, or none stands out of noise.
 Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
                      Diagnostics &diagnostics);
+
+/// A page of figures of the stretch with the surest peak: its brightness, its periodogram, and the
+/// curve folded at the period and at twice that. Errors as of `period`.
+Result<std::string> period_page(const ObservationsFile &observations, const PeriodRequest &request);
 
 } // namespace umov::jobs

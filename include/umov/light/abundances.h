@@ -2,6 +2,7 @@
 // Geometric sums of poses, before any colour: rendered once, they serve every band and every set of
 // materials of the same roughness. docs/theory/engine.md
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -48,8 +49,9 @@ class MaterialTables {
 public:
   /// Stokes of every pose of `from`, which must be of the engine that made these tables. `out` is
   /// resized. The same bits as Engine::evaluate gives for the engine's own materials, but for
-  /// rounding.
-  void apply(const AbundanceTable &from, StokesTable &out, unsigned threads = 1) const;
+  /// rounding. Of no use once `cancel` became true.
+  void apply(const AbundanceTable &from, StokesTable &out, unsigned threads = 1,
+             const std::atomic<bool> *cancel = nullptr) const;
   /// Bands of the materials.
   [[nodiscard]] std::size_t band_count() const;
   /// Largest relative error of the diffuse light from sums made for other materials; it is in the

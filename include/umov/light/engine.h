@@ -91,6 +91,9 @@ public:
   /// Puts what was traced into EngineOptions::mask_cache, if that has grown. In silence: whatever
   /// goes wrong, the masks are made anew.
   void keep_masks() const;
+  /// Copies from now on what another engine has traced of the same masks, in place of tracing it
+  /// again; nothing changes where its masks are others. Never both ways, or around.
+  void take_masks_of(const Engine &elder) const;
   /// Bytes of the masks as they are now.
   [[nodiscard]] std::size_t mask_bytes() const;
   /// Rows were traced since the masks were read.
@@ -118,9 +121,9 @@ public:
                               std::span<const std::uint32_t> material_of = {}) const;
 
   /// Sums of every pose before any colour. BadInput if a material has none (measured or
-  /// anisotropic surfaces: they are lit facet by facet).
-  Result<void> abundances(std::span<const Pose> poses, AbundanceTable &out,
-                          unsigned threads = 1) const;
+  /// anisotropic surfaces: they are lit facet by facet); Interrupted if `cancel` became true.
+  Result<void> abundances(std::span<const Pose> poses, AbundanceTable &out, unsigned threads = 1,
+                          const std::atomic<bool> *cancel = nullptr) const;
   /// What other materials and bands (of a scene with the same mesh groups) make of this engine's
   /// sums. Their roughness and shadowing must be those of the engine's own or of its hypotheses;
   /// BadInput says which is not. Body light of others is expressed in the profiles that there are:

@@ -115,6 +115,9 @@ public:
   /// Keeps what was learnt of the masks for later jobs (LightOptions::mask_cache or mask_file).
   /// Device if the file that was asked for cannot be written; the cache fails in silence.
   [[nodiscard]] virtual Result<void> keep_masks() const { return {}; }
+  /// Copies from now on what another model has traced of the same masks, in place of tracing it
+  /// again; nothing changes where its masks are others, or none. Never both ways, or around.
+  virtual void take_masks_of(const LightModel &elder) const { (void)elder; }
   /// Bytes of the masks as they are now: rows are traced when they are first asked for.
   [[nodiscard]] virtual std::size_t mask_bytes() const { return 0; }
 

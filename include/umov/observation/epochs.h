@@ -45,8 +45,12 @@ struct KeptEpochs {
 
 /// How many epochs a span has; BadInput if step <= 0, stop < start or more than 10 million.
 Result<std::size_t> epoch_count(const EpochSpan &span);
-/// They themselves: start, start + step, ... up to `stop`. BadInput as epoch_count.
-Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &span);
+/// One of them, by its number from 0.
+Epoch<Utc> epoch_of(const EpochSpan &span, std::size_t index);
+/// They themselves: start, start + step, ... up to `stop`. BadInput as epoch_count; Interrupted if
+/// `cancel` became true.
+Result<std::vector<Epoch<Utc>>> time_grid(const EpochSpan &span,
+                                          const std::atomic<bool> *cancel = nullptr);
 
 /// Propagates and observes a span. Interrupted if `cancel` became true; BadInput as time_grid.
 Result<KeptEpochs> keep_epochs(const Track &track, const EpochSpan &span, const EpochFilter &only,

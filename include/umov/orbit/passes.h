@@ -41,9 +41,11 @@ struct PassSpans {
 
 /// Every stretch of time in which an object stands above `altitude_min` at a site: the altitude on
 /// a grid as coarse as the orbit allows (Trajectory::search_step_s), its tops and crossings
-/// refined. This is the one search for passes; all other functions on passes build on it.
+/// refined. This is the one search for passes; all other functions on passes build on it. Some may
+/// be missing once `cancel` became true.
 PassSpans find_pass_spans(const Trajectory &orbit, const Site &site, Epoch<Utc> start,
-                          Epoch<Utc> stop, Angle altitude_min);
+                          Epoch<Utc> stop, Angle altitude_min,
+                          const std::atomic<bool> *cancel = nullptr);
 
 /// Time of culmination to 1 ms of the pass that is above the horizon at `near`, beyond the ends of
 /// any span: the altitude is followed uphill from `near`. `near` itself where the altitude goes on
@@ -58,15 +60,18 @@ struct ShadowCrossing {
 
 /// A pass as seen from a site, described.
 struct SitePass {
-  ObservingGeometry rise, culmination, set; ///< rise and set: where it crosses the altitude
-  /// Highest point of the whole pass, beyond the span's ends too, to 1 ms: what it is named by.
-  Epoch<Utc> whole_culmination{};
+  ObservingGeometry rise, set; ///< where it crosses the altitude, or is at the span's end
+  /// Highest point of the whole pass, beyond the span's ends too; within them where the orbit ends
+  /// or the altitude goes on growing for an hour.
+  ObservingGeometry culmination;
+  Epoch<Utc> whole_culmination{}; ///< its time to 1 ms: what the pass is named by
   bool is_rise_cut = false,
        is_set_cut = false;            ///< it is above already, or still, at the span's end
   std::vector<ShadowCrossing> shadow; ///< between rise and set, in order
   double range_min_km = 0;
   double sunlit_share = 0;    ///< of the time between rise and set
   double visible_s = 0;       ///< sunlit, with the site's Sun below PassSearch::sun_altitude_max
+  Angle visible_altitude_max; ///< highest while visible; 0 if never
   Angle phase_min, phase_max; ///< while sunlit; 0 if never
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 // Pictures of the object as the observer sees it: parallel rays, celestial north up, east left.
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -33,6 +34,7 @@ struct KeyFrameOptions {
   std::size_t bounces = 1;   ///< surfaces that the light may touch, 1..64
   std::size_t paths = 16;    ///< per ray, of light that touched several; their noise shows
   std::uint64_t seed = 0;    ///< of those paths
+  const std::atomic<bool> *cancel = nullptr; ///< Interrupted where it comes true
 };
 
 /// What one ray found.
@@ -98,17 +100,20 @@ double common_exposure(std::span<const KeyFrameRaster> rasters);
 /// light stays visible; Polarization: the map of `polarization_scale`; PositionAngle: hue, once
 /// round in 180 deg from up (red) over left, paler below p = 10 %; Material: its colour, darker
 /// in shadow. What is seen but gives no light is slate blue, the sky is near black.
-std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading,
-                                double white);
+/// Of no use once `cancel` became true.
+std::vector<std::uint8_t> shade(const KeyFrameRaster &raster, KeyFrameShading shading, double white,
+                                const std::atomic<bool> *cancel = nullptr);
 
 /// Puts a bar of the colours with its numbers into the lower left corner of a picture of p or of
 /// the position angle; other and small pictures stay as they are.
 void draw_colour_bar(std::span<std::uint8_t> rgb, std::uint32_t side, KeyFrameShading shading);
 
 /// The object in colour, from rasters of one view in three bands: red, green, blue. Each channel is
-/// compressed alike, so what is grey reflects all three alike. BadInput unless they fit.
+/// compressed alike, so what is grey reflects all three alike. BadInput unless they fit. Of no use
+/// once `cancel` became true.
 Result<std::vector<std::uint8_t>> shade_colour(std::span<const KeyFrameRaster> red_green_blue,
-                                               double white);
+                                               double white,
+                                               const std::atomic<bool> *cancel = nullptr);
 
 /// Channels of a raster averaged over the samples of each pixel: "I", "Q", "U", "V" [1/sr] per unit
 /// solar irradiance, +Q along the picture's up and +U 45 deg from it to the left (IAU), and "A",

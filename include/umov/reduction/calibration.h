@@ -62,23 +62,39 @@ CalibratedTarget apply(const PolarimeterCalibration &calibration, std::complex<d
 struct ChannelCalibration {
   StokesRow row{};
   std::array<double, 3> sd{};
+  std::array<std::array<double, 3>, 3> covariance{}; ///< of I, Q, U in the row
 };
 /// Counts are taken to have the variance `variance`.
 Result<ChannelCalibration> calibrate_channel(std::span<const double> angles_rad,
                                              std::span<const double> counts, double variance);
+/// How well a channel tells polarization apart, and along which angle [rad, 0 to pi].
+struct ChannelAnalyser {
+  double efficiency = 0, efficiency_sd = 0;
+  double angle_rad = 0, angle_sd = 0;
+};
+/// Of a channel whose row was found, to first order in its errors.
+ChannelAnalyser analyser_of(const ChannelCalibration &channel);
 
 /// A standard in the light of one band.
 struct PhotometricStandard {
   double catalogue_mag = 0, instrumental_mag = 0, airmass = 1, colour = 0;
 };
-/// m_std - m_inst = Z - k X - c C.
+/// m_std - m_inst = Z - k X - c C + k'' C X.
 struct PhotometricCalibration {
-  double zero_point = 0, extinction = 0, colour_term = 0;
-  std::array<std::array<double, 3>, 3> covariance{}; ///< in that order
+  double zero_point = 0, extinction = 0, colour_term = 0, second_order = 0;
+  std::array<std::array<double, 4>, 4> covariance{}; ///< in that order; 0: not fitted
   double residual_sd = 0;
 };
-/// Linear least squares with equal weights. BadInput with fewer than four stars or where air mass
-/// or colour do not change.
-Result<PhotometricCalibration> calibrate_photometry(std::span<const PhotometricStandard> stars);
+/// Linear least squares with equal weights of the first `terms` of those: 2 to 4. BadInput with no
+/// more stars than terms or where air mass or colour do not change.
+Result<PhotometricCalibration> calibrate_photometry(std::span<const PhotometricStandard> stars,
+                                                    std::size_t terms = 3);
+/// m - m_inst above the air of a source of that colour at an air mass, and its variance.
+struct PhotometricOffset {
+  double mag = 0, variance = 0;
+};
+/// Of a calibration.
+PhotometricOffset offset_of(const PhotometricCalibration &calibration, double airmass,
+                            double colour);
 
 } // namespace umov

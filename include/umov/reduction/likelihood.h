@@ -31,7 +31,6 @@ struct PredictedCounts {
 /// little reading noise, else the shifted Poisson number; normal behind a register.
 double log_likelihood(std::span<const PredictedCounts> counts);
 /// Of a set whose channels share errors: normal with C = C_n + J Sigma J^T, without n/2 ln 2 pi.
-/// Solved by one small matrix of the common terms (Woodbury).
 double log_likelihood(std::span<const PredictedCounts> counts, std::span<const CommonError> common);
 
 } // namespace umov

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <umov/core/quantity.h>
 #include <umov/core/result.h>
 #include <umov/instrument/mueller.h>
 #include <vector>
@@ -50,6 +51,12 @@ struct ErrorPriors {
   double angle_rad = 0;    ///< of the instrument's x axis
   double efficiency = 0;   ///< of q, u
   double sky = 0;          ///< of the whole sky, relative
+  /// Of two retardances before the polarimeter, along its x axis and at 45 deg to it [rad]: what
+  /// mirrors make of U, and of Q, in V and back.
+  double crosstalk = 0;
+  double plate_rad = 0;      ///< of the zero of the plate's angle
+  double retardance_rad = 0; ///< of the plate
+  double time_s = 0;         ///< of the clock: where the instrument's axes turn in the sky
 };
 /// A channel of an exposure, and what is known of it.
 struct ModelledDatum {
@@ -57,6 +64,9 @@ struct ModelledDatum {
   std::array<double, 4> stokes{}; ///< of the model at its time
   double axis_rad = 0;            ///< of the instrument's x axis in the frame of the rows
   std::size_t channel = 0;        ///< those of one number share a gain
+  double plate_rad = 0;           ///< angle of a plate behind the telescope, from that x axis
+  double retardance_rad = pi;     ///< of the plate
+  double turn_rad_s = 0;          ///< of the x axis
 };
 /// Effects of the priors on channels of one exposure or of many.
 std::vector<CommonError> common_errors(const ErrorPriors &priors,

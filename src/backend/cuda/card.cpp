@@ -9,7 +9,7 @@ namespace {
 /// Of the driver's CUdevice_attribute.
 constexpr int attribute_processors = 16, attribute_major = 75, attribute_minor = 76;
 /// Threads of a block: a pose needs some 128 registers, of which four such blocks fill a
-/// multiprocessor.
+/// multiprocessor; one with curved classes 148, three blocks.
 constexpr unsigned threads_per_block = 128;
 /// Poses times facets of a launch, for each multiprocessor: well below the seconds after which a
 /// card that drives a screen too ends what runs (CUDA_ERROR_LAUNCH_TIMEOUT).
@@ -89,6 +89,7 @@ Result<std::unique_ptr<Card>> Card::open(const CudaDriver &driver, const CardFac
                                        "code that it loads");
   for (const auto &[function, name] : {std::pair{&out->prepare_, "umov_prepare_poses"},
                                        {&out->sum_, "umov_sum_poses"},
+                                       {&out->sum_curved_, "umov_sum_curved_poses"},
                                        {&out->colour_, "umov_colour_poses"},
                                        {&out->weigh_, "umov_weigh_poses"}})
     UMOV_TRY(driver.check(driver.function_of(function, out->module_, name),
@@ -147,12 +148,13 @@ CudaCode Card::launch_sums(const CardScene &scene, const CardBatch &batch,
       std::max<std::size_t>(facts_.processors * work_of_a_launch /
                                 (std::max<std::size_t>(batch.poses.size(), 1) * facets_of_a_chunk),
                             1);
+  const CudaHandle sum = scene.scene.patches_of.empty() ? sum_ : sum_curved_;
   CardScene part = scene;
   CardBatch at = batch;
   std::size_t first = 0;
   do {
     part.scene.chunks = {all.data() + first, std::min(most, all.size() - first)};
-    if (const CudaCode code = launch_one(sum_, part, at, stream); code != cuda_success)
+    if (const CudaCode code = launch_one(sum, part, at, stream); code != cuda_success)
       return code;
     at.goes_on = true;
     first += most;

@@ -107,7 +107,7 @@ private:
   const CudaDriver &driver_;
   CardFacts facts_;
   CudaHandle context_ = nullptr, module_ = nullptr, prepare_ = nullptr, sum_ = nullptr,
-             colour_ = nullptr, weigh_ = nullptr;
+             sum_curved_ = nullptr, colour_ = nullptr, weigh_ = nullptr;
 };
 
 /// All cards of one sort, that of the first: they share the poses of a batch.

@@ -111,7 +111,8 @@ UMOV_KERNEL void prepare_on_card(const CardScene &card, const CardBatch &batch, 
     batch.reflection[pose] = {kernel::rounded(incidence_cosine(of.cos_phase)), of.has_plane};
 }
 
-/// Sums over all facets of a pose that is ready.
+/// Sums over all facets of a pose that is ready. `has_curved` as FacetLoops has it.
+template <bool has_curved>
 UMOV_KERNEL void sum_on_card(const CardScene &card, const CardBatch &batch, std::size_t pose) {
   const CardColumns columns = columns_of(card);
   RunningSum *const first = batch.sums + pose * columns.size();
@@ -119,8 +120,8 @@ UMOV_KERNEL void sum_on_card(const CardScene &card, const CardBatch &batch, std:
     first[k] = RunningSum();
   PoseSumsOf<RunningSum> sums = columns.sums_at(first);
   sums.is_any_seen = batch.goes_on && batch.is_any_seen[pose] != 0;
-  kernel::FacetLoops<ThreadMachine>(card.scene, card.has_masks ? &card.masks : nullptr, card.error,
-                                    batch.ready[pose], sums)
+  kernel::FacetLoops<ThreadMachine, has_curved>(card.scene, card.has_masks ? &card.masks : nullptr,
+                                                card.error, batch.ready[pose], sums)
       .run();
   batch.is_any_seen[pose] = sums.is_any_seen ? 1 : 0;
 }

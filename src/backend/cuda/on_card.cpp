@@ -11,7 +11,9 @@ template <class T> std::size_t bytes_of(View<T> view) { return view.size() * siz
 std::size_t bytes_of(const SceneData<float> &scene) {
   return bytes_of(scene.groups) + 4 * bytes_of(scene.cones.x) + bytes_of(scene.chunks) +
          bytes_of(scene.slots) + bytes_of(scene.lobes) + bytes_of(scene.families) +
-         bytes_of(scene.profiles) + bytes_of(scene.products) + bytes_of(scene.cluster_error);
+         bytes_of(scene.profiles) + bytes_of(scene.products) + bytes_of(scene.cluster_error) +
+         bytes_of(scene.patches) + bytes_of(scene.patches_of) +
+         3 * bytes_of(scene.patch_nodes.weight);
 }
 
 std::size_t bytes_of(const Masks &masks) {
@@ -92,6 +94,11 @@ Result<std::unique_ptr<CardLoops::OnCard>> CardLoops::OnCard::make(const Card &c
   put(from.profiles, to.profiles);
   put(from.products, to.products);
   put(from.cluster_error, to.cluster_error);
+  put(from.patches, to.patches);
+  put(from.patches_of, to.patches_of);
+  put(from.patch_nodes.first, to.patch_nodes.first);
+  put(from.patch_nodes.second, to.patch_nodes.second);
+  put(from.patch_nodes.weight, to.patch_nodes.weight);
   put(source.lobes, out->scene_.lobes);
   UMOV_TRY(failed);
   UMOV_TRY(out->put_colours(source.colours));

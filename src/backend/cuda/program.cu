@@ -21,7 +21,15 @@ extern "C" __global__ void umov_sum_poses(umov::backend::CardScene scene,
                                           umov::backend::CardBatch batch) {
   const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i < batch.poses.size())
-    umov::backend::sum_on_card(scene, batch, i);
+    umov::backend::sum_on_card<false>(scene, batch, i);
+}
+
+// Apart from the other: lobes narrower than a curved part's elements need some twenty registers more.
+extern "C" __global__ void umov_sum_curved_poses(umov::backend::CardScene scene,
+                                                 umov::backend::CardBatch batch) {
+  const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < batch.poses.size())
+    umov::backend::sum_on_card<true>(scene, batch, i);
 }
 
 extern "C" __global__ void umov_colour_poses(umov::backend::CardScene scene,

@@ -12,7 +12,7 @@ set(texts
     umov/kernel/lobe.h=include/umov/kernel/lobe.h)
 foreach(header IN ITEMS
         backend/colours.h backend/cuda/card_poses.h backend/cuda/running_sum.h backend/cuda/thread_machine.h
-        backend/facet_loops.inl.h backend/lit_facets.inl.h backend/mask_look.inl.h backend/octahedron.h
+        backend/curved_classes.inl.h backend/facet_loops.inl.h backend/lit_facets.inl.h backend/mask_look.inl.h backend/octahedron.h
         backend/one_facet_machine.h
         backend/pose_constants.h backend/scene_data.h backend/view.h kernel/angles.inl.h kernel/begin.h
         kernel/body.inl.h kernel/disk_lobe.h kernel/disk_lobe.inl.h kernel/end.h kernel/facet.inl.h

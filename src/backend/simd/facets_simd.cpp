@@ -2,6 +2,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "backend/simd/facets_simd.cpp"
+#include "backend/simd/curved_simd.h"
+
 #include <bit>
 #include <hwy/foreach_target.h>
 // foreach_target comes first: it includes this file once for each instruction set.
@@ -11,7 +13,7 @@
 
 void sum_facets_here(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
                      const PoseData<float> &pose, backend::PoseSums &out) {
-  FacetLoops<SimdMachine>(scene, masks, model, pose, out).run();
+  FacetLoops<SimdMachine, false>(scene, masks, model, pose, out).run();
 }
 
 #include "kernel/end.h"
@@ -27,6 +29,8 @@ namespace umov::backend {
 
 void sum_facets(const SceneData<float> &scene, const Masks *masks, const MaskErrorModel &model,
                 const PoseData<float> &pose, backend::PoseSums &out) {
+  if (!scene.patches_of.empty())
+    return sum_curved_facets(scene, masks, model, pose, out);
   using namespace kernel; // the table of HWY_EXPORT stands there
   HWY_DYNAMIC_DISPATCH(sum_facets_here)(scene, masks, model, pose, out);
 }

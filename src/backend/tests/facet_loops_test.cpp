@@ -31,6 +31,35 @@ template <class T> struct Heap {
   std::vector<Product> products{{0, 0}, {0, 1}};
   std::vector<LobeAtPose<T>> at;
   PoseData<T> pose;
+  std::vector<NormalPatch<T>> patches;
+  std::vector<PatchRange> patches_of;
+  std::vector<T> node[3]; ///< PatchNodes
+
+  /// Every third class takes on normals of two triangles, .06 rad around its own.
+  void add_patches() {
+    for (const T value : {T(0.25), T(0.5), T(0.125)})
+      for (std::size_t k = 0; k < 3; ++k)
+        node[k].push_back(k < 2 ? value : T(1) / 3);
+    for (std::vector<T> &column : node)
+      column.resize(lanes);
+    for (std::size_t g = 0; g < group_count; ++g)
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        const std::uint32_t count = (g + lane) % 3 == 0 ? 2 : 0;
+        patches_of.push_back({static_cast<std::uint32_t>(patches.size()), count});
+        const T n[3] = {groups[g].nx[lane], groups[g].ny[lane], groups[g].nz[lane]};
+        for (std::uint32_t p = 0; p < count; ++p) {
+          NormalPatch<T> &patch = patches.emplace_back();
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            patch.corner[axis] = n[axis];
+            patch.first[axis] = T(0.06) * n[(axis + 1 + p) % 3];
+            patch.second[axis] = T(-0.06) * n[(axis + 2 - p) % 3];
+          }
+          patch.share = p == 0 ? T(0.75) : T(0.25);
+          patch.node_count = lanes;
+        }
+      }
+    slots[0].patch_spread = 0.0625F;
+  }
 
   Heap() {
     std::mt19937 random(7); // NOLINT: the same heap every time
@@ -112,9 +141,12 @@ template <class T> struct Heap {
       kernel::round_lobe_at_pose(exact, out);
   }
   [[nodiscard]] SceneData<T> scene() const {
-    return {
-        groups, {cone[0], cone[1], cone[2], cone[3]}, chunks, slots, lobes, {}, profiles, products,
-        {}};
+    return {groups,     {cone[0], cone[1], cone[2], cone[3]},
+            chunks,     slots,
+            lobes,      {},
+            profiles,   products,
+            {},         patches,
+            patches_of, {node[0], node[1], node[2]}};
   }
 };
 
@@ -197,6 +229,45 @@ TEST(FacetLoops, LanesAgreeWithTheReference) {
     }
     choose_instruction_set(InstructionSet::Best);
   }
+}
+
+/// The same of classes whose normals are taken one by one; and what is listed with weights adds up
+/// to the sums.
+TEST(FacetLoops, LanesAgreeOnCurvedClasses) {
+  Heap<double> exact, plain;
+  Heap<float> single;
+  exact.add_patches();
+  single.add_patches();
+  const RandomMasks masks;
+  const MaskErrorModel model{1.5F, 0.25F};
+  Summed flat, wanted;
+  sum_facets(plain.scene(), &masks.view, model, plain.pose, flat.sums);
+  sum_facets(exact.scene(), &masks.view, model, exact.pose, wanted.sums);
+  for (std::size_t k = 0; k < lobe_count; ++k) // the last two are narrow: few classes are near
+    EXPECT_GT(std::abs(wanted.sums.specular[k] / flat.sums.specular[k] - 1), k < 3 ? 1e-3 : 1e-10)
+        << k;
+  EXPECT_EQ(wanted.sums.product[0], flat.sums.product[0]);
+  std::vector<SeenFacet> room(group_count * lanes);
+  std::vector<double> weights(room.size() * (lobe_count + 2));
+  WeighedList list{SeenList(room), weights, lobe_count + 2};
+  list_weighed(exact.scene(), &masks.view, model, exact.pose, list);
+  for (std::size_t lobe = 0; lobe < lobe_count; ++lobe) {
+    double sum = 0;
+    for (std::size_t k = 0; k < list.facets.size(); ++k)
+      sum += list.facets[k].area * weights.data()[k * list.terms + lobe];
+    EXPECT_NEAR(sum, wanted.sums.specular[lobe], 1e-12 * sum);
+  }
+  for (const auto set : {InstructionSet::Baseline, InstructionSet::Sse4, InstructionSet::Avx2,
+                         InstructionSet::Avx512}) {
+    if (!choose_instruction_set(set))
+      continue; // this machine lacks it
+    Summed found;
+    sum_facets(single.scene(), &masks.view, model, single.pose, found.sums);
+    for (std::size_t k = 0; k < wanted.room.size(); ++k)
+      EXPECT_NEAR(found.room[k], wanted.room[k], 2e-5 * std::abs(wanted.room[k]))
+          << "number " << k << ", " << instruction_set_name();
+  }
+  choose_instruction_set(InstructionSet::Best);
 }
 
 /// Doubts add one variance to every facet that faces both directions, hidden or free, and no light:

@@ -59,6 +59,17 @@ TEST(Detector, BendsAndIsStraightenedAgain) {
     EXPECT_NEAR(straightened(d, bent(d, x)) / x, 1, 1e-12);
 }
 
+/// A fiftieth of a full well turns q = .05 of two beams into .04898.
+TEST(Detector, NumbersThatBendDilutePolarization) { // nine digits
+  Detector d = camera(DetectorModel::Ccd);
+  d.nonlinearity = .02;
+  d.well_e = 10500;
+  const auto q_of = [](double o, double x) { return (o - x) / (o + x); };
+  const double o = bent(d, 10500 * 1.05), x = bent(d, 10500 * .95);
+  EXPECT_NEAR(q_of(o, x), of("bent_q"), 1e-10);
+  EXPECT_NEAR(q_of(straightened(d, o), straightened(d, x)), .05, 1e-13);
+}
+
 TEST(Detector, DeadTime) {
   Detector d = camera(DetectorModel::Counter);
   d.dead_time_s = 50e-9;
@@ -119,6 +130,61 @@ TEST(Detector, CountersLoseWhatComesWhileTheyAreDead) {
     EXPECT_NEAR(mean, 0, 4 * std::sqrt(expected / trials)) << photons;
     EXPECT_NEAR(variance / expected, 1, 4 * std::sqrt((2 + 1 / expected) / trials)) << photons;
   }
+}
+
+TEST(Detector, RollingShuttersExposeWhatRunsLongerOrShorter) {
+  Detector d = camera(DetectorModel::Cmos);
+  d.line_time_s = 9.24e-6;
+  EXPECT_EQ(rolling_change(d, 112.5), 0); // of a global one
+  d.has_rolling_shutter = true;
+  EXPECT_NEAR(rolling_change(d, 112.5), .0010395,
+              1e-10); // .5 deg/s on 16 arcsec: 112.5 rows a second
+}
+
+/// Photons one by one, each of which is told if the last before it came longer ago than the dead
+/// time: mean and variance of what is told, and of what that is taken for.
+TEST(Detector, CountersThatAreProlonged) {
+  Detector d;
+  d.model = DetectorModel::Counter;
+  d.is_paralyzable = true;
+  d.dead_time_s = 50e-9;
+  EXPECT_NEAR(counted_rate(d, 1e6), of("prolonged"), 1e-3); // nine digits
+  for (const double x : {.05, .3}) {
+    const double rate = x / d.dead_time_s, exposure_s = 4000 / rate;
+    constexpr std::uint32_t trials = 2000;
+    double told = 0, squares = 0, drawn = 0, drawn_squares = 0, back = 0, back_squares = 0;
+    for (std::uint32_t k = 0; k < trials; ++k) {
+      Draws photons({61, 0, k, static_cast<std::uint32_t>(100 * x), 0});
+      double n = 0, t = 0;
+      while (true) {
+        const double gap = photons.gamma(1) / rate; // between two photons
+        t += gap;
+        if (t > exposure_s)
+          break;
+        n += gap > d.dead_time_s ? 1 : 0;
+      }
+      const double photons_back = corrected_count(d, n, exposure_s).electrons;
+      Draws draws({62, 0, k, static_cast<std::uint32_t>(100 * x), 0});
+      const double ours = draw_aperture(d, 4000, 1, exposure_s, draws);
+      told += n / trials, squares += n * n / trials;
+      drawn += ours / trials, drawn_squares += ours * ours / trials;
+      back += photons_back / trials, back_squares += photons_back * photons_back / trials;
+    }
+    const double variance = squares - told * told;
+    const double se = 4 * std::sqrt(variance / trials), share = 4 * std::sqrt(2. / trials);
+    EXPECT_NEAR(told, counted_rate(d, rate) * exposure_s, se);
+    EXPECT_NEAR(variance / (told * counter_fano(d, rate)), 1, share);
+    EXPECT_NEAR(drawn, told, std::sqrt(2.) * se);
+    EXPECT_NEAR((drawn_squares - drawn * drawn) / variance, 1, std::sqrt(2.) * share);
+    const CorrectedCount mean = corrected_count(d, told, exposure_s);
+    EXPECT_NEAR(back, 4000, se * std::sqrt(mean.excess2) * 1.5 + 1); // and a photon for its bend
+    EXPECT_NEAR((back_squares - back * back) / (4000 * mean.excess2), 1, share);
+  }
+  // At its peak it tells nothing, and beyond the same as before.
+  EXPECT_TRUE(corrected_count(d, .36 / d.dead_time_s, 1).is_saturated);
+  EXPECT_FALSE(corrected_count(d, .3 / d.dead_time_s, 1).is_saturated);
+  EXPECT_TRUE(is_paralysed(d, 3 / d.dead_time_s));
+  EXPECT_FALSE(is_paralysed(d, .5 / d.dead_time_s));
 }
 
 TEST(Detector, RoundingHasNoBias) { // of a camera without noise of its own

@@ -189,5 +189,95 @@ TEST(TracedBeam, EveryMirrorTurnsCircularLightOver) {
   EXPECT_GT(beam.matrix().m[3][3], 0);
 }
 
+/// Light of the named directions by hand, for a telescope that looks towards azimuth 140.5.
+TEST(Train, CoudeAsFieldsGiveIt) {
+  const double azimuth = 140.5 * pi / 180, altitude = 55.8 * pi / 180;
+  const std::complex<double> eta = aluminium(550);
+  const Vec3<Enu> forward{std::sin(azimuth), std::cos(azimuth), 0};
+  const Vec3<Enu> right{std::cos(azimuth), -std::sin(azimuth), 0}; // at azimuth + 90 deg
+  const Vec3<Enu> sky = forward * std::cos(altitude) + Vec3<Enu>{0, 0, std::sin(altitude)};
+  const Vec3<Enu> x0 = Vec3<Enu>{0, 0, std::cos(altitude)} - forward * std::sin(altitude);
+  Vec3<Enu> k = sky * -1.;
+  const Vec3<Enu> y0 = cross(k, x0);
+  std::array<Field, 3> fields{along(x0, 1), along(y0, 1),
+                              along(x0, std::sqrt(.5)) + along(y0, std::sqrt(.5))};
+  // Right along the altitude axis, back through the fork, down the azimuth axis, to a room in the
+  // east, and up there.
+  for (const Vec3<Enu> &out :
+       {right, forward * -1., Vec3<Enu>{0, 0, -1}, Vec3<Enu>{1, 0, 0}, Vec3<Enu>{0, 0, 1}}) {
+    for (Field &field : fields)
+      field = reflected(field, k, normalized(out - k), eta);
+    k = out;
+  }
+  using enum BeamDirection;
+  const MirrorTrain train{{{Right, ""}, {Back, ""}, {Down, ""}, {East, ""}, {Up, ""}}, North};
+  const std::vector<std::complex<double>> metals(5, eta);
+  const TrainFocus found =
+      trace_train(train, metals, Angle::radians(altitude), Angle::radians(azimuth));
+  const Vec3<Enu> north{0, 1, 0};
+  std::array<std::array<double, 4>, 3> s;
+  for (std::size_t f = 0; f < 3; ++f)
+    s[f] = stokes_of(fields[f], north, k);
+  for (std::size_t r = 0; r < 4; ++r) {
+    EXPECT_NEAR(found.matrix.m[r][0], (s[0][r] + s[1][r]) / 2, 1e-12) << r;
+    EXPECT_NEAR(found.matrix.m[r][1], (s[0][r] - s[1][r]) / 2, 1e-12) << r;
+    EXPECT_NEAR(found.matrix.m[r][2], s[2][r] - (s[0][r] + s[1][r]) / 2, 1e-12) << r;
+  }
+}
+
+TEST(Train, OneMirrorIsANasmythPort) {
+  const std::vector<std::complex<double>> eta{aluminium(425)};
+  Telescope named, traced;
+  traced.port = TelescopePort::Train;
+  for (const auto &[port, side, to] :
+       {std::tuple{TelescopePort::NasmythRight, NasmythSide::Right, BeamDirection::Right},
+        {TelescopePort::NasmythLeft, NasmythSide::Left, BeamDirection::Left}})
+    for (const double altitude : {11., 55.844337, 88.})
+      for (const double azimuth : {0., 77., 290.}) {
+        const Angle up = Angle::degrees(altitude), towards = Angle::degrees(azimuth);
+        named.port = port;
+        traced.train = {{{to, ""}}, BeamDirection::Up};
+        const auto closed = nasmyth_port(mirror_element(eta[0], at_45), side, up);
+        const TrainFocus found = trace_train(traced.train, eta, up, towards);
+        for (std::size_t r = 0; r < 4; ++r)
+          for (std::size_t c = 0; c < 4; ++c)
+            EXPECT_NEAR(found.matrix.m[r][c], closed.m[r][c], 1e-12) << r << c;
+        EXPECT_TRUE(is_mirrored(traced));
+        EXPECT_NEAR(std::remainder(axis_on_sky(traced, Angle::degrees(30), up, towards).degrees() -
+                                       axis_on_sky(named, Angle::degrees(30), up).degrees(),
+                                   360),
+                    0, 1e-9);
+      }
+}
+
+/// Behind a perfect train, light along a direction on the sky stands where the axes say.
+TEST(Train, AxesAreThoseOfPerfectMirrors) {
+  using enum BeamDirection;
+  const std::vector<std::complex<double>> perfect(4, {0, 1e9});
+  for (const MirrorTrain &train :
+       {MirrorTrain{{{Left, ""}, {Down, ""}}, Forward},
+        MirrorTrain{{{Right, ""}, {Down, ""}, {South, ""}}, Up},
+        MirrorTrain{{{Right, ""}, {Back, ""}, {Down, ""}, {West, ""}}, Up}})
+    for (const bool has_derotator : {false, true}) {
+      Telescope telescope;
+      telescope.port = TelescopePort::Train;
+      telescope.train = train;
+      telescope.has_derotator = has_derotator;
+      const Angle up = Angle::degrees(33), towards = Angle::degrees(250), pa = Angle::degrees(-41);
+      const Angle axis = axis_from_zenith(telescope, Angle::degrees(30), pa, up, towards);
+      const double on_sky = axis_on_sky(telescope, axis, up, towards).radians();
+      if (has_derotator) {
+        EXPECT_NEAR(std::remainder(on_sky - (30 + 41) * pi / 180, 2 * pi), 0, 1e-12);
+      }
+      const Stokes<InstrumentAxes> light{1, std::cos(2 * on_sky), std::sin(2 * on_sky), 0};
+      const auto seen =
+          axes_turned(axis) *
+          (trace_train(train, std::span(perfect).first(train.mirrors.size()), up, towards).matrix *
+           light);
+      EXPECT_NEAR(seen.q, 1, 1e-6);
+      EXPECT_NEAR(seen.u, 0, 1e-6);
+    }
+}
+
 } // namespace
 } // namespace umov

@@ -1,4 +1,6 @@
 // The trail of an object across a frame against package satsim's (tests/data/detector/README.md).
+#include "instrument/tests/anchor.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -6,6 +8,7 @@
 #include <sstream>
 #include <umov/instrument/exposure.h>
 #include <umov/instrument/pixel_image.h>
+#include <umov/instrument/trail_slices.h>
 
 namespace umov {
 namespace {
@@ -45,6 +48,23 @@ PixelFrame trail() {
   return out;
 }
 
+/// A trail of 11 px of an image of sigma 1 px: what two pixels around it hold, in closed form.
+TEST(Trail, BoxAroundIt) {
+  const double width = std::sqrt(8 * std::log(2.));
+  const PixelImage image(ImageProfile::Gauss, width);
+  PixelFrame frame = PixelFrame::blank(40, 28);
+  constexpr double length = 11, x0 = 12.5, y0 = 12.5; // corners of pixels
+  for (const ExposureNode &node : exposure_nodes(1, width / 2 / length)) {
+    const double light = node.weight;
+    image.add(frame, x0 + length * (.5 + node.offset_s), y0, {light, light, light, light});
+  }
+  double inside = 0;
+  for (int row = 11; row <= 14; ++row) // from 10.5 to 14.5
+    for (int column = 11; column <= 25; ++column)
+      inside += frame.value[frame.index(column, row)];
+  EXPECT_NEAR(inside, of("trail_box"), 1e-4); // cubics of the image's table
+}
+
 TEST(Trail, IsThatOfSatsim) {
   const auto theirs = trail_by_satsim();
   ASSERT_GT(theirs.size(), 200U);
@@ -68,6 +88,30 @@ TEST(Trail, IsThatOfSatsim) {
       theirs_along += p.electrons;
     }
   EXPECT_NEAR(along / theirs_along, 1, .01);
+}
+
+/// A Gaussian star over the middle of a piece as long as it is wide: erf(sqrt(ln 2)) of its light
+/// lies between the cuts.
+TEST(TrailSlices, PiecesShareAStar) {
+  const PixelImage image(ImageProfile::Gauss, 4);
+  const FrameAperture aperture{{{10, 20}, {30, 20}, {50, 20}}, 8, 16, 24};
+  const TrailSlices slices = cut_trail(aperture, 64, 41, 4);
+  EXPECT_EQ(slices.count, 10u);
+  // Piece 5 has the columns 30 to 33.
+  const std::vector<LatticeValues> shares = shares_in(slices, image, {31.5, 20});
+  double all = 0;
+  for (std::size_t k = 0; k < slices.count; ++k)
+    for (const double share : shares[k])
+      all += share;
+  const double own = shares[5][0] + shares[5][1] + shares[5][2] + shares[5][3];
+  EXPECT_NEAR(own, std::erf(std::sqrt(std::log(2.))), 1e-4);
+  EXPECT_NEAR(all, 1, 1e-4); // a circle of two widths
+  double pixels = 0;
+  for (const double one : slices.pixels)
+    pixels += one;
+  EXPECT_NEAR(pixels, 40 * 17 + pi * 64, 20); // a stadium, its edge along pixels
+  // A star that stands makes one piece.
+  EXPECT_EQ(cut_trail({{{10, 20}}, 8, 16, 24}, 64, 41, 4).count, 1u);
 }
 
 } // namespace

@@ -43,6 +43,13 @@ private:
   bool is_plain_;
 };
 
+/// A model that is right.
+inline CurveErrors no_floor() {
+  CurveErrors out;
+  out.floor = out.floor_median = 0;
+  return out;
+}
+
 /// A pass: the Sun stands, the observer moves by 100 deg.
 inline ObservedCurve pass(std::size_t epochs) {
   ObservedCurve out;

@@ -36,12 +36,6 @@ ObservedCurve layout_of(std::size_t epochs) {
   return out;
 }
 
-CurveErrors no_floor() {
-  CurveErrors out;
-  out.floor = out.floor_median = 0;
-  return out;
-}
-
 /// A few degrees apart, so that neither is sure.
 std::vector<Alternative> three(const ObservedCurve &layout, double snr) {
   const Quaternion q = turned({}, Vec3<Body>{0.3, 0.2, -0.4});

@@ -1,3 +1,5 @@
+#include "inverse/tests/box_light.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,12 +31,6 @@ std::vector<double> model_light() {
   std::vector<double> out(20);
   for (std::size_t k = 0; k < 20; ++k)
     out[k] = 1 + 0.5 * std::sin(0.7 * static_cast<double>(k));
-  return out;
-}
-
-CurveErrors no_floor() {
-  CurveErrors out;
-  out.floor = out.floor_median = 0;
   return out;
 }
 

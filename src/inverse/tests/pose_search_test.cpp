@@ -132,7 +132,8 @@ TEST(PoseSearch, AQuickModelSearchesAndTheModelItselfAnswers) {
   ObservedCurve curve = pass(24);
   observe(curve, box, {truth, {}}, 50, 1);
   const CurveModel model(curve, box, {0, 1}), quick(curve, slightly_off, {0, 1});
-  const auto answer = search_pose(model, quick, small()), alone = search_pose(model, small());
+  const auto answer = search_pose({model, quick, quick}, small()),
+             alone = search_pose(model, small());
   ASSERT_TRUE(answer && alone);
   EXPECT_NEAR(answer->chi2, alone->chi2, 0.1); // what steps that gain less than 0.01 leave
   EXPECT_GT(quick.poses_lit(), 8'000u * 8);    // the grid's first round

@@ -142,7 +142,9 @@ Result<void> check_sum(const Line &line, const std::string &file, bool is_allowe
   const std::string message = std::string("checksum is ") + found + ", computed " +
                               std::to_string(sum % 10) + "; a character was probably changed.";
   if (!is_allowed)
-    return fail(ErrorCode::BadInput, message + " Fetch the set again or pass --allow-bad-checksum.",
+    return fail(ErrorCode::BadInput,
+                message + " Fetch the set again or pass --allow-bad-checksum (in Python "
+                          "allow_bad_checksum=True).",
                 where);
   notes.bad_checksum = message;
   return {};

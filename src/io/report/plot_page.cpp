@@ -58,15 +58,35 @@ Json figure_json(const PlotFigure &figure) {
            {"lines", lines}};
   if (figure.has_log_x)
     out["xlog"] = true;
+  if (!figure.y_names.empty())
+    out["ynames"] = figure.y_names;
   return out;
 }
 
-Result<std::string> make_plot_page(const std::string &title, const std::vector<PlotFigure> &figures,
-                                   const std::vector<std::string> &notes) {
-  Json data{{"title", title}, {"figures", Json::array()}, {"notes", notes}};
+namespace {
+
+Result<std::string> page_of(Json data, const std::vector<PlotFigure> &figures) {
   for (const PlotFigure &figure : figures)
     data["figures"].push_back(figure_json(figure));
   return fill_plot_page(plot_page_template(), data, plot_page_js());
+}
+
+} // namespace
+
+Result<std::string> make_plot_page(const std::string &title, const std::vector<PlotFigure> &figures,
+                                   const std::vector<std::string> &notes) {
+  return page_of({{"title", title}, {"figures", Json::array()}, {"notes", notes}}, figures);
+}
+
+Result<std::string> make_answer_page(const std::string &title,
+                                     const std::vector<PlotFigure> &figures,
+                                     const std::vector<std::string> &notes) {
+  if (notes.empty())
+    return make_plot_page(title, figures, notes);
+  const std::vector<std::string> rest(notes.begin() + 1, notes.end());
+  return page_of(
+      {{"title", title}, {"lead", notes.front()}, {"figures", Json::array()}, {"notes", rest}},
+      figures);
 }
 
 } // namespace umov

@@ -16,15 +16,12 @@ Result<std::string> encode_png(std::uint32_t width, std::uint32_t height,
   image.width = width;
   image.height = height;
   image.format = PNG_FORMAT_RGB;
-  // libpng says first how much memory it needs, then fills it.
-  png_alloc_size_t size = 0;
-  std::string out;
-  if (png_image_write_get_memory_size(image, size, 0, rgb.data(), 0, nullptr) != 0) {
+  // The most that it can need: to be told exactly would be to compress twice.
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string out(size, '\0');
+  if (png_image_write_to_memory(&image, out.data(), &size, 0, rgb.data(), 0, nullptr) != 0) {
     out.resize(size);
-    if (png_image_write_to_memory(&image, out.data(), &size, 0, rgb.data(), 0, nullptr) != 0) {
-      out.resize(size);
-      return out;
-    }
+    return out;
   }
   const std::string reason = image.message;
   png_image_free(&image);

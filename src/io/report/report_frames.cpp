@@ -61,6 +61,11 @@ std::size_t worth(const LightCurve &curve, const std::vector<std::size_t> &lit) 
   return 1 + static_cast<std::size_t>(length / apart_s);
 }
 
+/// A band as people write it: 550 nm.
+std::string spelt(const std::string &band) {
+  return band.starts_with("nm:") ? band.substr(3) + " nm" : band;
+}
+
 std::string caption_of(const LightCurve &curve, std::size_t epoch, std::size_t band) {
   const LightCurveSample &s = curve.samples[epoch * curve.bands.size() + band];
   std::string text =
@@ -70,7 +75,7 @@ std::string caption_of(const LightCurve &curve, std::size_t epoch, std::size_t b
         fmt::format(", {}{:.2f} mag", has_magnitude_limit(s) ? "fainter than " : "", s.magnitude);
   if (std::isfinite(s.p))
     text += fmt::format(", p {:.1f} %", 100 * s.p);
-  return text + " (" + curve.bands[band].name + ")";
+  return text + " (" + spelt(curve.bands[band].name) + ")";
 }
 
 Result<ReportKeyFrame> picture_set(const KeyFrameRaster &raster, const LightCurve &curve,

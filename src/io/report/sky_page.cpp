@@ -33,6 +33,7 @@ Json track_json(const SkyTrack &track) {
           {"set", track.set},
           {"brightest", track.brightest},
           {"alt", number(track.altitude_max, 0.01)},
+          {"alt_visible", number(track.visible_altitude, 0.01)},
           {"mag", number(track.magnitude_min, 0.001)},
           {"mag_faint", number(track.magnitude_max, 0.001)},
           {"phase", {number(track.phase_min, 0.1), number(track.phase_max, 0.1)}},
@@ -47,6 +48,7 @@ Json track_json(const SkyTrack &track) {
 std::string make_sky_page(const SkyPage &page) {
   Json data{{"title", page.title},
             {"model", page.model},
+            {"order", page.order},
             {"tracks", Json::array()},
             {"notes", page.notes}};
   for (const SkyTrack &track : page.tracks)

@@ -1,4 +1,5 @@
 #include "io/scenario/instrument.h"
+#include "io/scenario/parse_toml.h"
 
 #include "io/scenario/parts.h"
 
@@ -9,7 +10,6 @@
 #include <umov/core/embedded.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
-#include <umov/io/index_file.h>
 
 namespace umov {
 
@@ -103,15 +103,8 @@ Result<void> read_telescope(const Node &node, Telescope &out) {
                        out.focal_length_m));
   UMOV_TRY(check_focal_ratio(node, out));
   UMOV_TRY(read_curve(node, "throughput", {0, 1, "0 to 1"}, out.throughput));
-  const char *ports[] = {"cassegrain", "nasmyth_left", "nasmyth_right"};
-  UMOV_ASSIGN(
-      port, node.choice("port", ports[static_cast<int>(out.port)], {ports[0], ports[1], ports[2]}));
-  out.port = static_cast<TelescopePort>(std::find(ports, ports + 3, port) - ports);
-  if (node.has("mirror")) {
-    out.mirror = node.text("mirror", "");
-    if (auto found = find_index(out.mirror); !found)
-      return fail(ErrorCode::BadInput, found.error().message, node.where("mirror"));
-  }
+  UMOV_TRY(read_port(node, out));
+  UMOV_TRY(read_metal(node, "mirror", out.mirror));
   UMOV_ASSIGN(mount, node.choice("mount", out.mount == Mount::AltAz ? "altaz" : "equatorial",
                                  {"altaz", "equatorial"}));
   out.mount = mount == "altaz" ? Mount::AltAz : Mount::Equatorial;
@@ -119,9 +112,9 @@ Result<void> read_telescope(const Node &node, Telescope &out) {
   UMOV_TRY(read_tracking(node, out));
   if (out.mount == Mount::Equatorial && out.port != TelescopePort::Cassegrain)
     return fail(ErrorCode::BadInput,
-                fmt::format("port = \"{}\" on an equatorial mount: a Nasmyth port lies on the "
-                            "altitude axis of an altaz one",
-                            port),
+                fmt::format("port = {} on an equatorial mount: a Nasmyth port lies on the "
+                            "altitude axis of an altaz one, and so do the mirrors of a train",
+                            port_toml(out)),
                 node.where(node.has("port") ? "port" : "mount"));
   return {};
 }
@@ -173,6 +166,11 @@ Result<void> read_detector(const Node &node, Detector &out) {
                             "a photon",
                             out.dead_time_s, name_of(out.model)),
                 node.where("dead_time_s"));
+  out.is_paralyzable = node.boolean("paralyzable", out.is_paralyzable);
+  if (out.is_paralyzable && !(out.dead_time_s > 0))
+    return fail(ErrorCode::BadInput,
+                "paralyzable = true without a dead time; a counter with dead_time_s was expected",
+                node.where("paralyzable"));
   const auto bits = node.integer("bits", out.bits);
   if (bits < 1 || bits > 32)
     return fail(ErrorCode::BadInput, fmt::format("bits = {}; 1 to 32 was expected", bits),
@@ -354,13 +352,12 @@ Result<void> read_instrument_tables(const Node &top, Instrument &out) {
 std::string instrument_tables_toml(const Instrument &i) {
   const Telescope &t = i.telescope;
   const Detector &d = i.detector;
-  const char *ports[] = {"cassegrain", "nasmyth_left", "nasmyth_right"};
   std::string out = fmt::format(
       "\n[telescope]\naperture_m = {}\nobstruction = {}\nfocal_length_m = {}\nthroughput = {}\n"
-      "port = \"{}\"\nmirror = {}\nmount = \"{}\"\nderotator = {}\ntracking = \"{}\"\n"
+      "port = {}\nmirror = {}\nmount = \"{}\"\nderotator = {}\ntracking = \"{}\"\n"
       "tracking_error_arcsec = {}\n",
       shortest(t.aperture_m), shortest(t.obstruction), shortest(t.focal_length_m),
-      curve_toml(t.throughput), ports[static_cast<int>(t.port)], quoted(t.mirror),
+      curve_toml(t.throughput), port_toml(t), quoted(t.mirror),
       t.mount == Mount::AltAz ? "altaz" : "equatorial", t.has_derotator,
       tracking_names[static_cast<int>(t.tracking)], shortest(t.tracking_error_arcsec));
   out += fmt::format(
@@ -377,7 +374,8 @@ std::string instrument_tables_toml(const Instrument &i) {
   if (d.em_gain != 1)
     out += fmt::format("em_gain = {}\n", shortest(d.em_gain));
   if (d.dead_time_s > 0)
-    out += fmt::format("dead_time_s = {}\n", shortest(d.dead_time_s));
+    out += fmt::format("dead_time_s = {}\nparalyzable = {}\n", shortest(d.dead_time_s),
+                       d.is_paralyzable);
   return out + polarimeter_toml(i.polarimeter);
 }
 
@@ -392,30 +390,26 @@ std::vector<std::string> instrument_names() {
 }
 
 Result<Instrument> read_instrument_text(const std::string &text, const std::string &path) {
-  try {
-    const toml::table document = toml::parse(text, path);
-    const scenario::Node top(document, "instrument_file", "", path);
-    UMOV_TRY(top.check());
-    for (const char *name : {"description", "source", "assumed", "telescope", "detector"})
-      UMOV_TRY(top.require(name));
-    Instrument out;
-    const std::filesystem::path file = path;
-    out.description = top.text("description", "");
-    out.source = top.text("source", "");
-    out.assumed = top.text("assumed", "");
-    const scenario::Node tables(document, "", "", path);
-    UMOV_TRY(scenario::read_instrument_tables(tables, out));
-    for (const auto &[table, key] : {std::pair{"telescope", "aperture_m"},
-                                     {"telescope", "focal_length_m"},
-                                     {"detector", "pixel_um"}}) {
-      UMOV_ASSIGN(node, tables.child(table));
-      UMOV_TRY(node.require(key));
-    }
-    out.name = file.stem().string();
-    return out;
-  } catch (const toml::parse_error &problem) {
-    return tl::unexpected(scenario::no_toml(problem, path));
+  UMOV_ASSIGN(document, scenario::parse_toml(text, path));
+  const scenario::Node top(document, "instrument_file", "", path);
+  UMOV_TRY(top.check());
+  for (const char *name : {"description", "source", "assumed", "telescope", "detector"})
+    UMOV_TRY(top.require(name));
+  Instrument out;
+  const std::filesystem::path file = path;
+  out.description = top.text("description", "");
+  out.source = top.text("source", "");
+  out.assumed = top.text("assumed", "");
+  const scenario::Node tables(document, "", "", path);
+  UMOV_TRY(scenario::read_instrument_tables(tables, out));
+  for (const auto &[table, key] : {std::pair{"telescope", "aperture_m"},
+                                   {"telescope", "focal_length_m"},
+                                   {"detector", "pixel_um"}}) {
+    UMOV_ASSIGN(node, tables.child(table));
+    UMOV_TRY(node.require(key));
   }
+  out.name = file.stem().string();
+  return out;
 }
 
 Result<Instrument> read_instrument(const std::string &name_or_path) {

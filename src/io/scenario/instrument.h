@@ -9,6 +9,12 @@ namespace umov::scenario {
 
 /// [telescope], [detector] and [polarimeter] of a document; what they leave out is that of `out`.
 Result<void> read_instrument_tables(const Node &top, Instrument &out);
+/// A key that names an index of refraction, if it is there.
+Result<void> read_metal(const Node &node, const char *key, std::string &out);
+/// telescope.port, if it is there: a name, or { mirrors = [...], x_from = ... }.
+Result<void> read_port(const Node &node, Telescope &out);
+/// What it says, as TOML.
+std::string port_toml(const Telescope &telescope);
 /// [atmosphere] and [observation], with the instrument that the document names; absent without
 /// [observation].
 Result<std::optional<ScenarioObservation>> read_observation(const Node &top,

@@ -214,8 +214,22 @@ const std::vector<Key> &keys() {
       {"telescope", "focal_length_m", Number, "", "[m]"},
       {"telescope", "throughput", Any, "1.0",
        "optics times detector, without polarizers: a number or { wavelength_nm, value }"},
-      {"telescope", "port", String, "\"cassegrain\"", "cassegrain, nasmyth_left or nasmyth_right"},
-      {"telescope", "mirror", String, "\"Al_Rakic\"", "index of the flat mirror of a Nasmyth port"},
+      {"telescope", "port", Any, "\"cassegrain\"",
+       "cassegrain, nasmyth_left, nasmyth_right, or { mirrors, x_from }: where flat mirrors send "
+       "the "
+       "light, left or right (along the altitude axis) at first, then up, down, left, right, "
+       "forward "
+       "or back of the fork, and north, east, south or west behind the azimuth axis; { to, mirror "
+       "} "
+       "gives one its metal"},
+      {"telescope.port", "mirrors", List, "",
+       "where each sends the light, or tables { to, mirror }"},
+      {"telescope.port.mirrors", "to", String, "", "where it sends the light"},
+      {"telescope.port.mirrors", "mirror", String, "",
+       "index of this one; default: telescope.mirror"},
+      {"telescope.port", "x_from", String, "",
+       "where x_axis_deg is counted from; default: up of a level beam, forward of a vertical one"},
+      {"telescope", "mirror", String, "\"Al_Rakic\"", "index of the flat mirrors of the port"},
       {"telescope", "mount", String, "\"altaz\"", "altaz or equatorial"},
       {"telescope", "derotator", Boolean, "false", "the instrument turns with the sky"},
       {"telescope", "tracking", String, "\"satellite\"",
@@ -236,6 +250,7 @@ const std::vector<Key> &keys() {
       {"detector", "line_time_s", Number, "", "of a rolling shutter [s]"},
       {"detector", "em_gain", Number, "1.0", "of an emccd"},
       {"detector", "dead_time_s", Number, "0.0", "of a counter [s]"},
+      {"detector", "paralyzable", Boolean, "false", "photons that a counter misses prolong it"},
       {"polarimeter", "type", String, "\"none\"",
        "none, polarizer_wheel, hwp_dual_beam, spinning_hwp_dual_beam, rotating_retarder, pem, flc, "
        "four_camera or mosaic"},
@@ -270,6 +285,9 @@ const std::vector<Key> &keys() {
        "of the field: a file with ra_deg, dec_deg (ICRS, of the date) and mag (AB in the band)"},
       {"observation", "photometry", String, "\"aperture\"",
        "of frames: aperture, or image: fitted by the star's, for each orientation"},
+      {"observation", "trail", String, "\"whole\"",
+       "frames: whole, or slices: a set of rows for each piece of a trail as long as a star is "
+       "wide"},
       {"observation", "clock_error_s", Number, "0.001", "of the time stamps, constant in a run"},
       {"calibration_file", "instrument", String, "", "that was calibrated"},
       {"calibration_file", "band", String, "", "in which"},
@@ -283,6 +301,18 @@ const std::vector<Key> &keys() {
       {"calibration_file", "q0_sd", Number, "", "standard deviation of q0 and of u0"},
       {"calibration_file", "chi2", Number, "", "of the fit"},
       {"calibration_file", "dof", Integer, "", "its degrees of freedom"},
+      {"calibration_file", "photometry", Table, "",
+       "of brightness, by standards of known magnitude"},
+      {"calibration_photometry", "zero_mag", Number, "",
+       "what the zero point of the counts is off"},
+      {"calibration_photometry", "k_mag", Number, "", "extinction per air mass"},
+      {"calibration_photometry", "colour_term", Number, "",
+       "taken off, per unit of the colour index"},
+      {"calibration_photometry", "k2_mag", Number, "0",
+       "k'' of second order: what colour and air mass add together"},
+      {"calibration_photometry", "residual_mag", Number, "", "standard deviation of what is left"},
+      {"calibration_photometry", "covariance", List, "",
+       "of these four in their order, 16 numbers row by row"},
       {"curve", "wavelength_nm", List, "", "[nm], increasing"},
       {"curve", "value", List, "", "at those wavelengths"},
       {"instrument_file", "description", String, "", "what it is"},

@@ -210,6 +210,11 @@ bool covers(const IndexTable &table, const Band &band) {
   return table.holds_ends || tail_of(*band.curve, umov::range_of(table)) <= negligible_tail;
 }
 
+/// " NAME", or where it was written.
+std::string named(const IndexTable &table) {
+  return table.name == "in place" ? ", written in place," : " \"" + table.name + "\"";
+}
+
 /// What could stand in a material's place: the library's of which all is known in the band.
 std::string materials_that_cover(const Band &band) {
   std::vector<std::string> out;
@@ -234,9 +239,9 @@ Result<void> check_bands(const Material &material, const Named &of, const std::s
       const WavelengthRange known = umov::range_of(*table);
       if (!covers(*table, band))
         return fail(ErrorCode::BadInput,
-                    fmt::format("{} = \"{}\": its index \"{}\" covers {:g}-{:g} nm; band \"{}\" "
+                    fmt::format("{} = \"{}\": its index{} covers {:g}-{:g} nm; band \"{}\" "
                                 "needs {}. Extrapolation is off.{}",
-                                key, material.name, table->name, known.first_nm, known.last_nm,
+                                key, material.name, named(*table), known.first_nm, known.last_nm,
                                 band.name,
                                 band.curve ? fmt::format("{:g}-{:g} nm", first, last)
                                            : fmt::format("{:g} nm", first),

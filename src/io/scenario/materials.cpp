@@ -1,3 +1,4 @@
+#include "io/scenario/parse_toml.h"
 #include "io/scenario/parts.h"
 
 #include <filesystem>
@@ -238,20 +239,16 @@ Result<void> check_own_names(const Node &top, const std::map<std::string, Materi
 }
 
 Result<Material> read_material_text(const std::string &text, const std::string &file) {
-  try {
-    const toml::table document = toml::parse(text, file);
-    const Node top(document, "", "", file);
-    UMOV_TRY(top.check());
-    UMOV_ASSIGN(all, read_material_tables(top));
-    if (all.size() != 1)
-      return fail(
-          ErrorCode::BadInput,
-          fmt::format("holds {} materials; one [material.NAME] table was expected", all.size()),
-          {file});
-    return all.begin()->second;
-  } catch (const toml::parse_error &problem) {
-    return tl::unexpected(no_toml(problem, file));
-  }
+  UMOV_ASSIGN(document, scenario::parse_toml(text, file));
+  const Node top(document, "", "", file);
+  UMOV_TRY(top.check());
+  UMOV_ASSIGN(all, read_material_tables(top));
+  if (all.size() != 1)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("holds {} materials; one [material.NAME] table was expected", all.size()),
+        {file});
+  return all.begin()->second;
 }
 
 bool is_material_file(const std::string &name, const Scenario &scenario) {

@@ -61,6 +61,16 @@ std::string shown(const toml::node &node) {
   return {};
 }
 
+/// How a word that stands in place of a table is written in one: the file or the mode that it
+/// names.
+std::string in_a_table(const std::string &below, const std::string &name, const toml::node &value) {
+  if (value.is_string())
+    for (const char *key : {"mode", "file"})
+      if (find_key(below, key) != nullptr)
+        return fmt::format(", as in {} = {{ {} = {} }}", name, key, shown(value).substr(2));
+  return {};
+}
+
 /// A TOML date-time as ISO text; without an offset if it has none.
 std::string iso_of(const toml::date_time &t) {
   std::string out = fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", t.date.year, t.date.month,
@@ -81,29 +91,6 @@ Error named(Error error, const Where &at) {
   const std::string place = to_text(at); // ends with ": "
   error.message += fmt::format(" (named in {})", place.substr(0, place.size() - 2));
   return error;
-}
-
-Error no_toml(const toml::parse_error &problem, const std::string &file) {
-  const std::string_view said = problem.description();
-  const auto speaks_of = [&](const char *words) {
-    return said.find(words) != std::string_view::npos;
-  };
-  const char *remedy = "A TOML file was expected: KEY = VALUE, texts in quotes, times such as "
-                       "2018-01-21T04:00:00Z.";
-  if (speaks_of("redefine"))
-    remedy = "It stands twice: keep one of them.";
-  else if (speaks_of("invalid utf-8"))
-    remedy = "Save the file as UTF-8.";
-  else if (speaks_of("saw 60"))
-    remedy = "Write a leap second in quotes: \"2016-12-31T23:59:60Z\".";
-  else if (speaks_of("expected day") || speaks_of("expected month") || speaks_of("expected hour"))
-    remedy = "Correct the date.";
-  else if (speaks_of("not representable"))
-    remedy = "Take a smaller number.";
-  else if (speaks_of("nested"))
-    remedy = "Simplify the file.";
-  return {ErrorCode::BadInput, fmt::format("{}. {}", printable(said), remedy),
-          place_of(problem.source(), file)};
 }
 
 Where place_of(const toml::source_region &source, const std::string &file) {
@@ -134,9 +121,13 @@ std::optional<Error> Node::problem_of(const toml::key &key, const toml::node &va
                    place_of(key.source(), file_));
   }
   if (!is_of(value, spec->kind))
-    return problem(fmt::format("{} is {}{}; {} was expected ({})", name, name_of(value),
-                               shown(value), to_text(spec->kind), spec->text),
-                   place_of(key, value, file_));
+    return problem(
+        fmt::format("{} is {}{}; {} was expected ({}){}", name, name_of(value), shown(value),
+                    to_text(spec->kind), spec->text,
+                    spec->kind == Kind::Table
+                        ? in_a_table(schema_.empty() ? name : schema_ + "." + name, name, value)
+                        : std::string()),
+        place_of(key, value, file_));
   if (const auto number = value.value<double>();
       number && spec->kind == Kind::Number && !std::isfinite(*number))
     return problem(fmt::format("{} is {}; a finite number was expected", name, *number),
@@ -316,6 +307,14 @@ Result<void> Node::require(const char *name) const {
               where());
 }
 
+/// "a, b or c".
+static std::string one_of(const std::vector<std::string> &words) {
+  if (words.size() < 2)
+    return fmt::format("{}", fmt::join(words, ""));
+  const auto last = words.end() - 1;
+  return fmt::format("{} or {}", fmt::join(words.begin(), last, ", "), *last);
+}
+
 Result<std::string> Node::choice(const char *name, const std::string &fallback,
                                  const std::vector<std::string> &known,
                                  const std::vector<std::string> &later) const {
@@ -332,8 +331,7 @@ Result<std::string> Node::choice(const char *name, const std::string &fallback,
                 where(name));
   const auto near = nearest_name(given, shown);
   return fail(ErrorCode::BadInput,
-              fmt::format("{} = \"{}\" is unknown; {} was expected.{}", name, given,
-                          fmt::join(shown, ", "),
+              fmt::format("{} = \"{}\" is unknown; {} was expected.{}", name, given, one_of(shown),
                           near ? fmt::format(" Did you mean \"{}\"?", *near) : ""),
               where(name));
 }

@@ -62,8 +62,6 @@ Result<Epoch<Utc>> time_of(const Node &node, const toml::node &item);
 
 /// The error of a file, with the place that names the file.
 Error named(Error error, const Where &at);
-/// Text that is no TOML: what the parser says, and how such a thing is mended.
-Error no_toml(const toml::parse_error &problem, const std::string &file);
 
 /// Place of a node or key; values of --set carry their own source name.
 Where place_of(const toml::source_region &source, const std::string &file);

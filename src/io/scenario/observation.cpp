@@ -148,8 +148,15 @@ Result<void> read_frames(const Node &node, const std::string &folder, ScenarioOb
   out.stars = node.text("stars", "");
   if (!out.stars.empty() && !out.stars.starts_with('/') && !folder.empty())
     out.stars = folder + "/" + out.stars;
+  UMOV_ASSIGN(trail, node.choice("trail", "whole", {"whole", "slices"}));
+  out.cuts_trail = trail == "slices";
+  if (out.cuts_trail && out.photometry == FramePhotometry::Image)
+    return fail(ErrorCode::BadInput,
+                "trail = \"slices\" with photometry = \"image\": pieces of a trail are summed; "
+                "photometry = \"aperture\" was expected",
+                node.where("trail"));
   if (!out.makes_frames)
-    for (const char *name : {"frame_px", "stars", "photometry"})
+    for (const char *name : {"frame_px", "stars", "photometry", "trail"})
       if (node.has(name))
         return fail(ErrorCode::BadInput,
                     fmt::format("{} is of frames, and level = \"{}\" makes none; add level = "
@@ -323,6 +330,8 @@ std::string observation_toml(const ScenarioObservation &o) {
                     o.frame_px[1], o.photometry == FramePhotometry::Image ? "image" : "aperture");
     if (!o.stars.empty())
       out += "stars = " + quoted(o.stars) + "\n";
+    if (o.cuts_trail)
+      out += "trail = \"slices\"\n";
   }
   std::string bands, steps;
   for (const std::string &band : o.bands)

@@ -1,4 +1,5 @@
 #include "io/scenario/instrument.h"
+#include "io/scenario/parse_toml.h"
 #include "io/scenario/parts.h"
 
 #include <algorithm>
@@ -23,12 +24,12 @@ Result<void> override_key(toml::table &document, const std::string &text) {
     return fail(ErrorCode::Usage, "--set " + text + ": KEY=VALUE was expected");
   const std::string key = text.substr(0, equals), value = text.substr(equals + 1);
   const std::string origin = "--set " + key;
-  toml::table parsed;
-  try {
-    parsed = toml::parse("x = " + value, origin);
-  } catch (const toml::parse_error &) { // a bare word
-    parsed = toml::parse("x = " + scenario::quoted(value), origin);
-  }
+  UMOV_TRY(scenario::check_key_depth(text, origin));
+  auto parsed = scenario::parse_toml("x = " + value, origin);
+  if (!parsed) // a bare word
+    parsed = scenario::parse_toml("x = " + scenario::quoted(value), origin);
+  if (!parsed)
+    return fail(parsed.error().code, parsed.error().message, {origin});
   toml::table *at = &document;
   std::size_t begin = 0;
   const auto next_name = [&]() -> std::optional<std::string> {
@@ -40,7 +41,7 @@ Result<void> override_key(toml::table &document, const std::string &text) {
   while (const auto name = next_name()) {
     begin += name->size() + 1;
     if (!at->contains(*name))
-      at->insert(toml::key(*name, toml::source_region(parsed.source())), toml::table{});
+      at->insert(toml::key(*name, toml::source_region(parsed->source())), toml::table{});
     toml::node *next = at->get(*name);
     if (toml::array *list = next->as_array(); list != nullptr && !list->empty()) {
       std::size_t index = 0;
@@ -60,7 +61,8 @@ Result<void> override_key(toml::table &document, const std::string &text) {
       return fail(ErrorCode::BadInput, origin + ": " + *name + " is not a table");
   }
   at->erase(key.substr(begin)); // an assignment would keep the place of the old key
-  at->insert(toml::key(key.substr(begin), toml::source_region(parsed.source())), *parsed.get("x"));
+  at->insert(toml::key(key.substr(begin), toml::source_region(parsed->source())),
+             *parsed->get("x"));
   return {};
 }
 
@@ -460,14 +462,10 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
 
 Result<Scenario> read_scenario_text(const std::string &text, const fs::path &path,
                                     const std::vector<std::string> &overrides) {
-  try {
-    toml::table document = toml::parse(text, path.string());
-    for (const std::string &one : overrides)
-      UMOV_TRY(override_key(document, one));
-    return read_document(document, path);
-  } catch (const toml::parse_error &problem) {
-    return tl::unexpected(scenario::no_toml(problem, path.string()));
-  }
+  UMOV_ASSIGN(document, scenario::parse_toml(text, path.string()));
+  for (const std::string &one : overrides)
+    UMOV_TRY(override_key(document, one));
+  return read_document(document, path);
 }
 
 Result<Scenario> read_scenario(const fs::path &path, const std::vector<std::string> &overrides) {

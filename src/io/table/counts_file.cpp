@@ -8,7 +8,9 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <set>
 #include <string_view>
+#include <tuple>
 #include <umov/core/text.h>
 
 namespace umov {
@@ -24,15 +26,14 @@ public:
 
   [[nodiscard]] Where where(std::size_t row) const { return {file_, table_.lines[row]}; }
   [[nodiscard]] bool has(std::string_view name) const { return places_.contains(name); }
-  [[nodiscard]] const std::string &text(std::string_view name, std::size_t row) const {
-    static const std::string none;
+  [[nodiscard]] std::string_view text(std::string_view name, std::size_t row) const {
     const auto at = places_.find(name);
-    return at == places_.end() ? none : table_.rows[row][at->second];
+    return at == places_.end() ? std::string_view() : table_.cell(row, at->second);
   }
   /// `fallback` where there is no such column or the cell is empty.
   [[nodiscard]] Result<double> number(std::string_view name, std::size_t row,
                                       double fallback) const {
-    const std::string &cell = text(name, row);
+    const std::string_view cell = text(name, row);
     if (cell.empty())
       return fallback;
     if (cell == "nan" || cell == "NaN")
@@ -78,11 +79,17 @@ Result<void> check_notes(const TextTable &table, const std::string &file) {
                 fmt::format("mag_system of the header is \"{}\": {} was expected",
                             printable(system->second), fmt::join(systems, ", ")),
                 {file});
+  for (const auto &[key, value] : table.notes)
+    if (key.starts_with("retardance_deg") && !parse_number(value))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} of the header is \"{}\": a number was expected", printable(key),
+                              printable(value)),
+                  {file});
   return check_polcconv(table, file);
 }
 
 Result<bool> truth_in(const CountCells &cells, const std::string &name, std::size_t row) {
-  if (const auto value = truth_of(cells.text(name, row)))
+  if (const auto value = truth_of(std::string(cells.text(name, row))))
     return *value;
   return fail(ErrorCode::BadInput,
               fmt::format("{} = \"{}\"; True or False was expected", name,
@@ -135,6 +142,16 @@ Result<void> read_numbers(const CountCells &cells, std::size_t row, CountRow &ou
   return {};
 }
 
+/// Of the plate in a band, by a line "retardance_deg BAND" or "retardance_deg" of the header.
+double retardance_in(const std::map<std::string, std::string> &notes, const std::string &band) {
+  for (const std::string &key : {"retardance_deg " + band, std::string("retardance_deg")})
+    if (const auto told = notes.find(key); told != notes.end())
+      if (const auto value = parse_number(told->second))
+        return *value;
+  constexpr double half_wave = 180;
+  return half_wave;
+}
+
 Result<void> check_row(const CountRow &row, const Where &where) {
   if (!(row.var_read >= 0 && row.sky_err >= 0 && row.excess2 >= 1))
     return fail(ErrorCode::BadInput,
@@ -163,22 +180,66 @@ Result<void> check_row(const CountRow &row, const Where &where) {
   return {};
 }
 
+/// Rows of one time, among which none may stand twice: a set would count its light twice.
+class RowsOfATime {
+public:
+  /// Whether a row is the same as one before it: a channel of its exposure, or without names of
+  /// channels the same in every number.
+  bool has_twice(const CountRow &row) {
+    if (seconds_between(row.time, time_) != 0)
+      seen_.clear();
+    time_ = row.time;
+    const auto [w0, w1, w2, w3] = row.row;
+    const auto numbers = row.channel.empty() ? std::array{row.counts, row.sky, w0, w1, w2, w3}
+                                             : std::array<double, 6>{};
+    return !seen_.insert({row.name, row.band, row.channel, row.set, row.exposure, numbers}).second;
+  }
+
+private:
+  Epoch<Utc> time_{};
+  std::set<std::tuple<std::string, std::string, std::string, std::int64_t, std::int64_t,
+                      std::array<double, 6>>>
+      seen_;
+};
+
+/// Electrons are no fewer than none but for what reading does.
+bool is_below_nothing(const CountRow &row) {
+  constexpr double deviations = 5;
+  return row.counts < -deviations * std::sqrt(row.var_read + 1);
+}
+
+void warn_of_rows(std::size_t dropped, std::size_t negative, std::size_t all,
+                  const std::string &file, Diagnostics &diagnostics) {
+  if (dropped > 0)
+    diagnostics.warn(fmt::format("{} of {} left out: without counts", dropped, counted(all, "row")),
+                     {file});
+  if (negative > 0)
+    diagnostics.warn(fmt::format("{} of {} below 0 by more than reading does: counts hold the sky, "
+                                 "and no bias; was one of them taken off twice?",
+                                 negative, counted(all, "count")),
+                     {file});
+}
+
 } // namespace
 
 Result<CountsFile> read_counts_text(std::string_view text, const std::string &file,
                                     Diagnostics &diagnostics) {
   UMOV_ASSIGN(table, read_text_table(text, file));
+  if (table.columns.empty())
+    return fail(ErrorCode::BadInput, "holds no table: names of columns and rows were expected",
+                {file});
   const CountCells cells(table, file);
   UMOV_TRY(check_columns(cells, table, file));
   UMOV_TRY(check_notes(table, file));
   CountsFile out;
   out.notes = table.notes;
-  std::size_t dropped = 0;
-  out.rows.reserve(table.rows.size());
+  std::size_t dropped = 0, negative = 0;
+  RowsOfATime rows_of_time;
+  out.rows.reserve(table.rows());
   Epoch<Utc> time{};
-  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+  for (std::size_t k = 0; k < table.rows(); ++k) {
     CountRow row;
-    const std::string &stamp = cells.text("time_utc", k);
+    const std::string_view stamp = cells.text("time_utc", k);
     if (k == 0 || stamp != cells.text("time_utc", k - 1)) { // channels share a time
       const auto read = utc_from_iso(stamp);
       if (!read)
@@ -192,6 +253,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
     UMOV_ASSIGN(is_saturated, truth_in(cells, "saturated", k));
     row.is_saturated = is_saturated;
     UMOV_TRY(read_numbers(cells, k, row));
+    row.retardance_deg = retardance_in(out.notes, row.band);
     if (!std::isfinite(row.counts) || !std::isfinite(row.sky)) {
       ++dropped;
       continue;
@@ -200,12 +262,19 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
     if (!out.rows.empty() && out.rows.back().name == row.name &&
         seconds_between(row.time, out.rows.back().time) < -1e-6)
       return fail(ErrorCode::BadInput, "times go back; sort the rows by time", cells.where(k));
+    if (rows_of_time.has_twice(row))
+      return fail(
+          ErrorCode::BadInput,
+          row.channel.empty()
+              ? std::string("the same row a second time; take one of them out")
+              : fmt::format("channel \"{}\" a second time in this exposure; take one of them "
+                            "out",
+                            printable(row.channel)),
+          cells.where(k));
+    negative += is_below_nothing(row) ? 1u : 0u;
     out.rows.push_back(std::move(row));
   }
-  if (dropped > 0)
-    diagnostics.warn(fmt::format("{} of {} left out: without counts", dropped,
-                                 counted(table.rows.size(), "row")),
-                     {file});
+  warn_of_rows(dropped, negative, table.rows(), file, diagnostics);
   if (out.rows.empty())
     return fail(ErrorCode::BadInput, "no row of counts; some were expected below the names",
                 {file});

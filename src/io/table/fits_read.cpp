@@ -29,7 +29,8 @@ public:
 private:
   Result<void> to_table();
   Result<void> read_columns(TextTable &out);
-  Result<void> read_cells(int column, std::size_t rows, TextTable &out);
+  Result<void> add_column(int column, TextTable &out);
+  Result<void> read_cell(std::size_t column, std::size_t row, TextTable &out);
   void read_notes(TextTable &out);
   [[nodiscard]] std::string key(const std::string &name);
   [[nodiscard]] tl::unexpected<Error> refuse(const std::string &what) const {
@@ -46,6 +47,8 @@ private:
   std::size_t size_;
   const std::string &name_;
   std::unique_ptr<fitsfile, Closer> file_;
+  std::vector<int> types_;                   ///< of the columns
+  std::string cell_ = std::string(64, '\0'); ///< room for the longest text of one
   int status_ = 0;
 };
 
@@ -89,42 +92,50 @@ Result<void> FitsReader::to_table() {
   return refuse("holds no table: a binary table with one row a measurement was expected");
 }
 
-Result<void> FitsReader::read_cells(int column, std::size_t rows, TextTable &out) {
+Result<void> FitsReader::add_column(int column, TextTable &out) {
+  std::string name = key(fmt::format("TTYPE{}", column));
+  if (std::ranges::find(out.columns, name) != out.columns.end())
+    return refuse(fmt::format("column \"{}\" stands twice; leave one out", printable(name)));
+  if (std::string unit = key(fmt::format("TUNIT{}", column)); !unit.empty())
+    out.units[name] = std::move(unit);
   int type = 0;
   long repeat = 0, width = 0;
   if (fits_get_coltype(file_.get(), column, &type, &repeat, &width, &status_) != 0)
     return refuse("is damaged");
-  const std::string &name = out.columns.back();
-  const bool is_text = type == TSTRING;
-  if (type < 0 || type == TCOMPLEX || type == TDBLCOMPLEX || (!is_text && repeat != 1))
+  if (type < 0 || type == TCOMPLEX || type == TDBLCOMPLEX || (type != TSTRING && repeat != 1))
     return refuse(fmt::format("column \"{}\" has more than one number in a row; columns of single "
                               "numbers and texts were expected",
                               printable(name)));
+  out.columns.push_back(std::move(name));
+  types_.push_back(type);
   const auto room = static_cast<std::size_t>(std::max(width, repeat)) + 1;
-  std::string cell(std::max<std::size_t>(room, 64), '\0');
-  for (std::size_t k = 0; k < rows; ++k) {
-    const LONGLONG row = static_cast<LONGLONG>(k) + 1;
-    int is_missing = 0;
-    std::string value;
-    if (is_text) {
-      char *at = cell.data();
-      char nothing[] = "";
-      fits_read_col_str(file_.get(), column, row, 1, 1, nothing, &at, &is_missing, &status_);
-      value = trimmed(std::string_view(cell.c_str()));
-    } else if (type == TLOGICAL) {
-      char is_true = 0;
-      fits_read_col_log(file_.get(), column, row, 1, 1, 0, &is_true, &is_missing, &status_);
-      value = is_true != 0 ? "True" : "False";
-    } else {
-      double number = 0;
-      fits_read_col_dbl(file_.get(), column, row, 1, 1, std::nan(""), &number, &is_missing,
-                        &status_);
-      value = std::isfinite(number) ? fmt::format("{}", number) : "";
-    }
-    if (status_ != 0)
-      return refuse(fmt::format("column \"{}\", row {}: cannot be read", printable(name), k + 1));
-    out.rows[k].push_back(std::move(value));
+  cell_.resize(std::max(room, cell_.size()));
+  return {};
+}
+
+Result<void> FitsReader::read_cell(std::size_t column, std::size_t row, TextTable &out) {
+  const int at = static_cast<int>(column) + 1;
+  const auto line = static_cast<LONGLONG>(row) + 1;
+  int is_missing = 0;
+  std::string value;
+  if (types_[column] == TSTRING) {
+    char *begin = cell_.data();
+    char nothing[] = "";
+    fits_read_col_str(file_.get(), at, line, 1, 1, nothing, &begin, &is_missing, &status_);
+    value = trimmed(std::string_view(cell_.c_str()));
+  } else if (types_[column] == TLOGICAL) {
+    char is_true = 0;
+    fits_read_col_log(file_.get(), at, line, 1, 1, 0, &is_true, &is_missing, &status_);
+    value = is_true != 0 ? "True" : "False";
+  } else {
+    double number = 0;
+    fits_read_col_dbl(file_.get(), at, line, 1, 1, std::nan(""), &number, &is_missing, &status_);
+    value = std::isfinite(number) ? fmt::format("{}", number) : "";
   }
+  if (status_ != 0)
+    return refuse(fmt::format("column \"{}\", row {}: cannot be read",
+                              printable(out.columns[column]), row + 1));
+  out.add_cell(value);
   return {};
 }
 
@@ -137,18 +148,16 @@ Result<void> FitsReader::read_columns(TextTable &out) {
   if (status_ != 0 || rows < 0 || columns < 1 ||
       static_cast<std::size_t>(rows) > size_ / static_cast<std::size_t>(columns))
     return refuse("is damaged or has no columns");
-  const auto count = static_cast<std::size_t>(rows);
-  out.rows.assign(count, {});
-  for (std::size_t k = 0; k < count; ++k)
-    out.lines.push_back(k + 1);
-  for (int c = 1; c <= columns; ++c) {
-    std::string name = key(fmt::format("TTYPE{}", c));
-    if (std::ranges::find(out.columns, name) != out.columns.end())
-      return refuse(fmt::format("column \"{}\" stands twice; leave one out", printable(name)));
-    if (std::string unit = key(fmt::format("TUNIT{}", c)); !unit.empty())
-      out.units[name] = std::move(unit);
-    out.columns.push_back(std::move(name));
-    UMOV_TRY(read_cells(c, count, out));
+  if (static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns) > table_cells_max)
+    return refuse(fmt::format("has more than {} cells, which would fill the memory; split the "
+                              "table, or leave out columns",
+                              table_cells_max));
+  for (int c = 1; c <= columns; ++c)
+    UMOV_TRY(add_column(c, out));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(rows); ++k) {
+    for (std::size_t c = 0; c < types_.size(); ++c)
+      UMOV_TRY(read_cell(c, k, out));
+    out.end_row(k + 1);
   }
   return {};
 }

@@ -53,7 +53,7 @@ std::string fits_unit(std::string unit) {
 }
 
 /// Printable ASCII, which is all that a header may hold.
-std::string printable(std::string text) {
+std::string fits_text(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c < 32 || c > 126; }, '?');
   return text;
@@ -113,7 +113,7 @@ Result<void> FitsTable::begin(const Table &columns, int status) {
     const Form form = form_of(c);
     names.push_back(printable(c.name));
     forms.push_back(form.text);
-    units.push_back(printable(fits_unit(c.unit)));
+    units.push_back(fits_text(fits_unit(c.unit)));
     widths_.push_back(form.bytes);
     row_bytes_ += form.bytes;
   }
@@ -135,7 +135,7 @@ Result<void> FitsTable::begin(const Table &columns, int status) {
     if (key == "POLCCONV") // a keyword of its own (Hamaker & Bregman 1996; astropy's convention)
       fits_write_key_str(file, "POLCCONV", value.c_str(), "convention of Q, U", &status);
     else
-      fits_write_comment(file, printable(key + ": " + value).c_str(), &status);
+      fits_write_comment(file, fits_text(key + ": " + value).c_str(), &status);
   }
   return check(status, "write the header");
 }

@@ -25,8 +25,8 @@ struct ObservationColumns {
 };
 
 /// A word of a list of flags, however they are parted and written.
-bool has_flag(const std::string &flags, std::string_view wanted) {
-  const std::string text = lower_case(flags);
+bool has_flag(std::string_view flags, std::string_view wanted) {
+  const std::string text = lower_case(std::string(flags));
   const auto is_part = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
   };
@@ -47,8 +47,8 @@ public:
 
   Result<ObservationColumns> columns() const;
   Result<std::optional<ObservedRow>> row(const ObservationColumns &c, std::size_t k);
-  [[nodiscard]] std::string text(int column, std::size_t k) const {
-    return column < 0 ? std::string() : table_.rows[k][static_cast<std::size_t>(column)];
+  [[nodiscard]] std::string_view text(int column, std::size_t k) const {
+    return column < 0 ? std::string_view() : table_.cell(k, static_cast<std::size_t>(column));
   }
   [[nodiscard]] Where where(std::size_t k, int column) const {
     return {file_, table_.lines[k],
@@ -136,7 +136,7 @@ Result<ObservationColumns> ObservationReader::columns() const {
 }
 
 Result<double> ObservationReader::number(int column, std::size_t k) const {
-  const std::string cell = text(column, k);
+  const std::string_view cell = text(column, k);
   if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "-")
     return std::numeric_limits<double>::quiet_NaN();
   constexpr double most = 1e30; // squares of it are numbers still
@@ -163,7 +163,7 @@ Result<double> ObservationReader::magnitude(int column, std::size_t k) const {
 
 /// The magnitude of the row is a limit.
 Result<bool> ObservationReader::limit(const ObservationColumns &c, std::size_t k) const {
-  if (const auto value = truth_of(text(c.limit, k)))
+  if (const auto value = truth_of(std::string(text(c.limit, k))))
     return *value;
   return fail(
       ErrorCode::BadInput,
@@ -349,10 +349,10 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
   if (is_fits(text)) // no lines to look for cells in
     text = {};
   ObservationReader reader(text, file, table);
-  if (table.columns.empty() || table.rows.empty())
+  if (table.columns.empty() || table.rows() == 0)
     return fail(ErrorCode::BadInput, "no row of observations", {file});
   UMOV_ASSIGN(columns, reader.columns());
-  UMOV_TRY(check_name(reader, columns, table.rows.size()));
+  UMOV_TRY(check_name(reader, columns, table.rows()));
   UMOV_TRY(check_polcconv(table, file));
   ObservationsFile out;
   out.path = file;
@@ -360,12 +360,13 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
   out.is_absolute = is_irradiance(table, columns);
   UMOV_ASSIGN(frame, frame_of(table, columns, file));
   out.frame = frame;
-  for (std::size_t k = 0; k < table.rows.size(); ++k) {
+  out.rows.reserve(table.rows());
+  for (std::size_t k = 0; k < table.rows(); ++k) {
     UMOV_ASSIGN(row, reader.row(columns, k));
     if (row)
       out.rows.push_back(std::move(*row));
   }
-  const std::size_t empty = table.rows.size() - out.rows.size() - reader.saturated();
+  const std::size_t empty = table.rows() - out.rows.size() - reader.saturated();
   if (reader.saturated() > 0)
     diagnostics.warn(
         fmt::format("{} flagged as saturated left out", counted(reader.saturated(), "row")),
@@ -377,10 +378,12 @@ Result<ObservationsFile> read_observations_text(std::string_view text, const std
     return fail(ErrorCode::BadInput,
                 "no row holds a measurement: all are empty, nan or flagged as saturated", {file});
   warn_of_order(out, diagnostics);
-  std::ranges::stable_sort(out.rows, [](const ObservedRow &a, const ObservedRow &b) {
+  const auto is_before = [](const ObservedRow &a, const ObservedRow &b) {
     const double apart = seconds_between(a.time, b.time);
     return std::abs(apart) < 1e-6 ? std::tie(a.band, a.site) < std::tie(b.band, b.site) : apart < 0;
-  });
+  };
+  if (!std::ranges::is_sorted(out.rows, is_before)) // sorting takes room for half of them
+    std::ranges::stable_sort(out.rows, is_before);
   UMOV_TRY(check_no_row_twice(out));
   return out;
 }

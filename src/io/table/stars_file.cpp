@@ -22,7 +22,7 @@ constexpr Wanted wanted[] = {{"ra_deg", 0, 360, &FieldStar::ra_deg},
 
 Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std::string &file) {
   UMOV_ASSIGN(table, read_text_table(text, file));
-  std::vector<FieldStar> out(table.rows.size());
+  std::vector<FieldStar> out(table.rows());
   for (const Wanted &one : wanted) {
     const auto found = std::find(table.columns.begin(), table.columns.end(), one.name);
     if (found == table.columns.end())
@@ -32,8 +32,8 @@ Result<std::vector<FieldStar>> read_stars_text(std::string_view text, const std:
                               one.name),
                   {file});
     const auto column = static_cast<std::size_t>(found - table.columns.begin());
-    for (std::size_t row = 0; row < table.rows.size(); ++row) {
-      const std::string &cell = table.rows[row][column];
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+      const std::string_view cell = table.cell(row, column);
       const auto value = parse_number(cell);
       if (!value || !(*value >= one.low && *value <= one.high))
         return fail(

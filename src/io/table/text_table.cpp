@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <umov/core/text.h>
+#include <utility>
 
 namespace umov {
 namespace {
@@ -36,17 +37,6 @@ std::optional<std::vector<CsvCell>> blank_cells(std::string_view line) {
     }
     out.push_back({std::move(cell), column});
   }
-  return out;
-}
-
-std::optional<std::vector<std::string>> cells_of(std::string_view line, bool has_blanks) {
-  auto cells = has_blanks ? blank_cells(line) : csv_cells(line);
-  if (!cells)
-    return std::nullopt;
-  std::vector<std::string> out;
-  out.reserve(cells->size());
-  for (CsvCell &cell : *cells)
-    out.push_back(std::move(cell.text));
   return out;
 }
 
@@ -109,13 +99,14 @@ void read_note(std::string_view line, TextTable &table) {
     notes[std::string(text.substr(0, colon))] = trimmed(text.substr(colon + 2));
 }
 
-Result<void> add_header(TextTable &out, std::vector<std::string> cells, const Where &where) {
-  std::vector<std::string> sorted = cells;
+Result<void> add_header(TextTable &out, const std::vector<CsvCell> &cells, const Where &where) {
+  for (const CsvCell &cell : cells)
+    out.columns.push_back(cell.text);
+  std::vector<std::string> sorted = out.columns;
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
     return fail(ErrorCode::BadInput,
                 fmt::format("column \"{}\" stands twice; leave one out", printable(*twice)), where);
-  out.columns = std::move(cells);
   // The line that CSV files of ours have above the names.
   if (const auto told = out.notes.find("unit"); told != out.notes.end())
     if (const auto units = csv_cells(told->second); units && units->size() == out.columns.size())
@@ -125,6 +116,22 @@ Result<void> add_header(TextTable &out, std::vector<std::string> cells, const Wh
 }
 
 } // namespace
+
+std::string_view TextTable::cell(std::size_t row, std::size_t column) const {
+  const std::size_t at = row * columns.size() + column;
+  const std::uint32_t begin = column == 0 ? 0 : ends_[at - 1];
+  return std::string_view(text_).substr(begins_[row] + begin, ends_[at] - begin);
+}
+
+void TextTable::add_cell(std::string_view text) {
+  text_ += text;
+  ends_.push_back(static_cast<std::uint32_t>(text_.size() - begin_));
+}
+
+void TextTable::end_row(std::size_t line) {
+  begins_.push_back(std::exchange(begin_, text_.size()));
+  lines.push_back(line);
+}
 
 std::string lower_case(std::string text) {
   std::ranges::transform(text, text.begin(), [](char c) {
@@ -155,7 +162,6 @@ Result<void> check_polcconv(const TextTable &table, const std::string &file) {
 
 Result<TextTable> read_text_table(std::string_view text, const std::string &file) {
   constexpr std::size_t rows_max = 20'000'000, line_max = 100'000;
-  constexpr std::size_t cells_max = 50'000'000; // some 50 bytes each: 2.5 GB
   if (const auto why = why_no_text(text))
     return fail(ErrorCode::BadInput, *why, {file});
   if (text.starts_with("\xEF\xBB\xBF")) // a mark that spreadsheets put before UTF-8
@@ -175,23 +181,23 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
       read_note(line, out);
       continue;
     }
-    if (line.size() > line_max || out.rows.size() >= rows_max)
+    if (line.size() > line_max || out.rows() >= rows_max)
       return fail(ErrorCode::BadInput, "this is longer than a table of counts; is it one?", where);
     if (out.columns.empty())
       has_blanks = line.find(',') == std::string_view::npos;
-    if ((out.rows.size() + 1) * out.columns.size() > cells_max)
+    if ((out.rows() + 1) * out.columns.size() > table_cells_max)
       return fail(
           ErrorCode::BadInput,
           fmt::format("more than {} cells, which would fill the memory; split the table, or "
                       "leave out columns",
-                      cells_max),
+                      table_cells_max),
           where);
-    auto cells = cells_of(line, has_blanks);
+    const auto cells = has_blanks ? blank_cells(line) : csv_cells(line);
     if (!cells)
       return fail(ErrorCode::BadInput, "a quote is not closed in this row; close it with \"",
                   where);
     if (out.columns.empty()) {
-      UMOV_TRY(add_header(out, std::move(*cells), where));
+      UMOV_TRY(add_header(out, *cells, where));
       continue;
     }
     if (cells->size() != out.columns.size())
@@ -199,8 +205,9 @@ Result<TextTable> read_text_table(std::string_view text, const std::string &file
                   fmt::format("{} cells in a table of {} columns; one for each name was expected",
                               cells->size(), out.columns.size()),
                   where);
-    out.rows.push_back(std::move(*cells));
-    out.lines.push_back(number);
+    for (const CsvCell &cell : *cells)
+      out.add_cell(cell.text);
+    out.end_row(number);
   }
   return out;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Private: a table of texts, from CSV or ECSV.
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,13 +11,31 @@
 
 namespace umov {
 
-/// Cells as they stand in a file.
+/// No table has more cells: some 15 bytes each, and what they are made into.
+inline constexpr std::size_t table_cells_max = 50'000'000;
+
+/// Cells as they stand in a file, one behind the other in one text: a string of its own for each
+/// would take fourteen times the file.
 struct TextTable {
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
   std::vector<std::size_t> lines; ///< of each row
   std::map<std::string, std::string> notes;
   std::map<std::string, std::string> units; ///< by column, where the header tells them
+
+  /// Number of rows that are complete.
+  [[nodiscard]] std::size_t rows() const { return lines.size(); }
+  /// A cell of a row and a column that are there; good until one is added.
+  [[nodiscard]] std::string_view cell(std::size_t row, std::size_t column) const;
+  /// The next cell of the row that is being added.
+  void add_cell(std::string_view text);
+  /// That row, which has a cell for each column, is complete.
+  void end_row(std::size_t line);
+
+private:
+  std::string text_;
+  std::vector<std::size_t> begins_; ///< of each row in the text
+  std::vector<std::uint32_t> ends_; ///< of each cell behind the begin of its row
+  std::size_t begin_ = 0;           ///< of the row that is being added
 };
 /// Blank-separated where the header is, else comma-separated. BadInput for an open quote, a ragged
 /// row or a column that stands twice.

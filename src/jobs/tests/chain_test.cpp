@@ -1,5 +1,7 @@
 // The worked chain of docs/theory/observing.md: HST at 2018-01-21T05:12:00Z through air, telescope
 // and polarization camera, and back. Numbers of an independent program in numpy.
+#include "core/tests/anchors.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <umov/atmosphere/refraction.h>
@@ -7,6 +9,7 @@
 #include <umov/instrument/telescope.h>
 #include <umov/io/observation.h>
 #include <umov/io/passband_file.h>
+#include <umov/jobs/exposure.h>
 #include <umov/optics/passband.h>
 #include <umov/photometry/radiometry.h>
 #include <umov/reduction/polarization.h>
@@ -58,6 +61,23 @@ TEST(Chain, AirAndTelescope) {
               2e-6); // its pivot was taken on a grid of .25 nm
   const Air air{standard_pressure_hpa(3058), .02, 1.3, 260, 0};
   EXPECT_NEAR(rate(v, air, airmass(seen)), 41236.31, .02); // seven digits
+}
+
+/// Magnitude of one electron a second in V of every instrument, without air and polarizers.
+TEST(Chain, ZeroPointsOfTheInstruments) {
+  const Anchors numbers("observing_instrument");
+  for (const std::string &name : instrument_names()) {
+    ExposureRequest request;
+    request.instrument = name;
+    request.band = "Bessell.V";
+    const auto table = exposure(request);
+    ASSERT_TRUE(table) << table.error().message;
+    double found = 0;
+    for (std::size_t k = 0; k < table->rows(); ++k)
+      if (table->text("quantity", k) == "zero_point")
+        found = table->number("value", k);
+    EXPECT_NEAR(found, numbers.row({("zero_point_" + name).c_str()})["value"], 2e-6) << name;
+  }
 }
 
 TEST(Chain, CountsAndBack) {

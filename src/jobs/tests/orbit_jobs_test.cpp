@@ -56,6 +56,32 @@ TEST(EphemerisJob, AnOrbitThatEndsGivesTheRowsBefore) {
   EXPECT_EQ(done->error->code, ErrorCode::Physics);
 }
 
+TEST(EphemerisJob, StopsWithWhatIsDone) {
+  Diagnostics diagnostics;
+  EphemerisRequest request;
+  request.orbit = agena;
+  request.site = maui();
+  request.start = utc("2018-01-21T04:00:00Z");
+  request.stop = utc("2018-01-21T05:00:00Z");
+  request.step_s = 0.1;
+  std::atomic<bool> cancel{false};
+  Monitor monitor;
+  monitor.cancel = &cancel;
+  monitor.progress = [&cancel](const std::string &, std::size_t, std::size_t) { cancel = true; };
+  const auto part = ephemeris(request, {}, monitor, diagnostics);
+  ASSERT_TRUE(part) << part.error().text();
+  ASSERT_TRUE(part->error);
+  EXPECT_EQ(part->error->code, ErrorCode::Interrupted);
+  const std::size_t rows = part->table.rows();
+  ASSERT_GT(rows, 0u);
+  ASSERT_LT(rows, 36'001u);
+  const auto whole = ephemeris(request, {}, {}, diagnostics);
+  ASSERT_TRUE(whole);
+  ASSERT_EQ(whole->table.rows(), 36'001u);
+  for (const char *name : {"az", "teme_z", "sunlit"})
+    EXPECT_EQ(part->table.number(name, rows - 1), whole->table.number(name, rows - 1)) << name;
+}
+
 TEST(CatalogueJob, EveryObjectHasItsTimesInOrder) {
   Diagnostics diagnostics;
   StatesRequest request;

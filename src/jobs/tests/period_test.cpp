@@ -51,6 +51,54 @@ TEST(Period, RangeAndBandAreKeptTo) {
   EXPECT_NE(unknown.error().message.find("it has V"), std::string::npos);
 }
 
+/// The note "spin" of a table of two maxima in 40 s, of which every second is higher by `uneven`.
+std::string said_of(double uneven) {
+  std::string text = "mjd_utc,mag\n";
+  for (int k = 0; k < 400; ++k) {
+    const double turn = 2 * pi * k / 40.0;
+    // .03 of something that looks like noise: 1 s is no part of a period of it.
+    text += fmt::format("{:.12f},{:.5f}\n", 60000 + k / 86400.0,
+                        7 + 0.4 * std::sin(2 * turn) + uneven * std::sin(turn) +
+                            0.03 * std::sin(12.9898 * k * k));
+  }
+  Diagnostics diagnostics;
+  const auto file = read_observations_text(text, "two.csv", diagnostics);
+  const auto found = period(*file, {"", 3}, diagnostics);
+  EXPECT_TRUE(found) << found.error().text();
+  for (const auto &[key, said] : found ? found->notes() : Table().notes())
+    if (key == "spin")
+      return said;
+  return "";
+}
+
+double number_after(const std::string &text, const std::string &words) {
+  const std::size_t at = text.find(words);
+  return at == std::string::npos ? -1 : std::stod(text.substr(at + words.size()));
+}
+
+TEST(Period, SaysWhatTheDataTellOfTwiceThePeriod) {
+  const std::string uneven = said_of(0.1), even = said_of(0);
+  // sin(turn) is .1 high, so that one turn of 20 s less the next is .14 in the root mean square.
+  // The period to a hundredth of the width of a peak, 20^2 / 400 s: as above.
+  EXPECT_NEAR(number_after(uneven, "repeats every "), 40, 0.04) << uneven;
+  EXPECT_NE(uneven.find("differs by 0.14 mag"), std::string::npos) << uneven;
+  EXPECT_NEAR(number_after(uneven, "The spin is "), 40, 0.04) << uneven;
+  EXPECT_NEAR(number_after(even, "repeats every "), 20, 0.02) << even;
+  EXPECT_NE(even.find("as noise makes them"), std::string::npos) << even;
+}
+
+TEST(Period, ThePageHasTheCurveFoldedAtBoth) {
+  Diagnostics diagnostics;
+  const auto file = read_observations_text(two_passes(), "two.csv", diagnostics);
+  ASSERT_TRUE(file);
+  const auto page = period_page(*file, {});
+  ASSERT_TRUE(page) << page.error().text();
+  for (const char *title : {"Brightness", "How it repeats", "do its halves differ"})
+    EXPECT_NE(page->find(title), std::string::npos) << title;
+  // Of the pass with the surest peak, that of more turns.
+  EXPECT_NEAR(number_after(*page, "Folded at "), second_s, 0.01 * second_s * second_s / 240);
+}
+
 TEST(Period, TooFewRowsAreNoResult) {
   Diagnostics diagnostics;
   const auto file = read_observations_text(

@@ -110,6 +110,35 @@ TEST(Reduce, WhereTheLightCameFromIsOfTheMiddleOfASet) {
   }
 }
 
+/// Axes that turn by 1.2 deg a second are .6 deg off by a clock that is .5 s off; where they stand,
+/// the clock does not matter.
+TEST(Reduce, AClockThatIsOffTurnsTheAxes) {
+  ReduceOptions clock, angle;
+  clock.priors.time_s = .5;
+  angle.priors.angle_rad = .6 * degree;
+  for (const double first : {10., 170.}) { // the second goes through 180
+    const CountsFile file = wheel({}, first, 12);
+    const Table a = reduced(file, clock), b = reduced(file, angle), none = reduced(file);
+    for (const char *column : {"cov_qq", "cov_uu", "cov_qu"})
+      EXPECT_NEAR(a.number(column, 0) / b.number(column, 0), 1, 1e-9) << column;
+    EXPECT_GT(a.number("cov_uu", 0), 3 * none.number("cov_uu", 0));
+  }
+  const CountsFile still = wheel({}, 10, 0);
+  EXPECT_NEAR(reduced(still, clock).number("cov_uu", 0) / reduced(still).number("cov_uu", 0), 1,
+              1e-12);
+}
+
+TEST(Reduce, TheHeaderTellsThePlatesRetardance) {
+  const std::string rows = "time_utc,set_id,band,counts,sky,sky_err,var_read,w0,w1,w2,w3\n"
+                           "2018-01-21T05:00:00Z,0,V,100,0,0,0,1,0,0,0\n";
+  Diagnostics diagnostics;
+  for (const auto &[note, expected] : {std::pair{"# retardance_deg V: 131.8\n", 131.8},
+                                       {"# retardance_deg B: 131.8\n", 180.},
+                                       {"# retardance_deg: 90\n", 90.}})
+    EXPECT_EQ(read_counts_text(note + rows, "c.csv", diagnostics)->rows.front().retardance_deg,
+              expected);
+}
+
 TEST(Reduce, EveryExposureIsCalibratedByItsOwnAxis) {
   Source source;
   source.instrument.factor = std::polar(.9, 2 * 3 * degree);

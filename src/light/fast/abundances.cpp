@@ -109,7 +109,8 @@ Result<MaterialTables> make_material_tables(const Scene &materials, const Compil
 std::size_t MaterialTables::band_count() const { return state_->colours.band_count(); }
 double MaterialTables::diffuse_error() const { return state_->diffuse_error; }
 
-void MaterialTables::apply(const AbundanceTable &from, StokesTable &out, unsigned threads) const {
+void MaterialTables::apply(const AbundanceTable &from, StokesTable &out, unsigned threads,
+                           const std::atomic<bool> *cancel) const {
   const State &s = *state_;
   out.resize(from.poses(), band_count());
   const std::size_t columns = from.columns.size();
@@ -120,7 +121,7 @@ void MaterialTables::apply(const AbundanceTable &from, StokesTable &out, unsigne
         BandLight light;
         std::vector<double> deviation(columns);
         const std::size_t end = std::min(from.poses(), (task + 1) * poses_per_task);
-        for (std::size_t row = task * poses_per_task; row < end; ++row) {
+        for (std::size_t row = task * poses_per_task; row < end && !is_stopped(cancel); ++row) {
           if (from.is_dark[row] != 0) {
             put_darkness(row, out);
             continue;

@@ -97,7 +97,7 @@ void Colours::prepare(double cos_phase, bool has_plane, PhaseFactors &out) const
   out.b.resize(columns);
   for (auto *room : {&out.ratio, &out.dev_i, &out.dev_q, &out.dev_u})
     room->resize(bands_);
-  fresnel_.at(cos_phase, out.a.data(), out.b.data());
+  fresnel_.at(cos_phase, out.a.data(), out.b.data(), out.recent);
   if (!has_plane)
     std::fill(out.b.begin(), out.b.end(), 0);
 }

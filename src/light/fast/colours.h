@@ -31,6 +31,7 @@ struct PhaseFactors {
   std::vector<double> a, b; ///< by column: M00, M10; b = 0 without a plane
   /// Of one slot: M10/M00, and deviations of I, Q, U.
   std::vector<double> ratio, dev_i, dev_q, dev_u;
+  FresnelTable::Recent recent;
 };
 
 /// What a set of materials makes of sums, in single precision and in one piece of memory each.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
 #include <map>
 #include <umov/core/quantity.h>
 
@@ -133,6 +134,31 @@ CompiledScene compile_scene(const Scene &scene, const std::vector<Scene> &hypoth
   return out;
 }
 
+namespace {
+
+void round_patches(const SceneStore<double> &from, SceneStore<float> &out) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  out.patches_of = from.patches_of;
+  out.patches.reserve(from.patches.size());
+  for (const auto &patch : from.patches) {
+    auto &to = out.patches.emplace_back();
+    std::transform(std::begin(patch.corner), std::end(patch.corner), to.corner, f);
+    std::transform(std::begin(patch.first), std::end(patch.first), to.first, f);
+    std::transform(std::begin(patch.second), std::end(patch.second), to.second, f);
+    to.share = f(patch.share);
+    to.node_first = patch.node_first;
+    to.node_count = patch.node_count;
+  }
+  const auto round = [&](const std::vector<double> &list, std::vector<float> &to) {
+    std::transform(list.begin(), list.end(), std::back_inserter(to), f);
+  };
+  round(from.node_first, out.node_first);
+  round(from.node_second, out.node_second);
+  round(from.node_weight, out.node_weight);
+}
+
+} // namespace
+
 SceneStore<float> round_scene(const SceneStore<double> &from) {
   const auto f = [](double x) { return static_cast<float>(x); };
   SceneStore<float> out;
@@ -152,6 +178,7 @@ SceneStore<float> round_scene(const SceneStore<double> &from) {
     auto &to = out.cluster_error.emplace_back();
     std::transform(std::begin(error.value), std::end(error.value), to.value, f);
   }
+  round_patches(from, out);
   for (const auto &lobe : from.lobes)
     out.lobes.push_back(kernel::round_lobe(lobe));
   for (const auto &family : from.families) {

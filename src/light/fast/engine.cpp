@@ -2,6 +2,7 @@
 
 #include "light/fast/abundance_state.h"
 #include "light/fast/mask_cache.h"
+#include "light/fast/patches.h"
 #include "light/fast/pose_data.h"
 #include "light/fast/pose_order.h"
 #include "light/fast/state.h"
@@ -160,7 +161,23 @@ MaskSize Engine::State::mask_size() const {
 }
 
 /// Everything but the masks.
-Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), options(with) {
+namespace {
+
+/// All of a few bands; of the many wavelengths of a curve the heaviest and others spread over it.
+std::vector<std::uint32_t> some_bands(std::size_t count) {
+  constexpr std::size_t enough = 6;
+  std::vector<std::uint32_t> out;
+  const std::size_t wanted = std::min(count, enough);
+  for (std::size_t n = 0; n < wanted; ++n)
+    out.push_back(static_cast<std::uint32_t>(
+        n == 0 ? 0 : 1 + (n - 1) * (count - 2) / std::max<std::size_t>(1, wanted - 2)));
+  return out;
+}
+
+} // namespace
+
+Engine::State::State(const Scene &of, const EngineOptions &with)
+    : scene(of), options(with), judged_bands(some_bands(of.grid.nodes().size())) {
   facts.is_convex = is_proven_convex(scene.mesh);
   elements = make_elements(scene, visible_sides(scene.mesh));
   const SharedSlots shared = share_materials(scene, options.hypotheses, elements);
@@ -168,6 +185,8 @@ Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), op
   plan = plan_groups(classes, has_masks() ? std::max<std::size_t>(options.masks.points, 1) : 0);
   compiled = compile_scene(scene, options.hypotheses, shared, classes, plan, options.cluster_rad,
                            options.is_intensity_only);
+  if (!(options.cluster_rad > 0)) // unlike normals are one there, whatever the lobe
+    add_patches(elements, classes, plan, compiled);
   single = round_scene(compiled.data);
   flats = find_flats();
   views.whole = compiled.data.view();
@@ -176,8 +195,11 @@ Engine::State::State(const Scene &of, const EngineOptions &with) : scene(of), op
   facts.classes = classes.list.size();
   facts.groups = plan.groups.size();
   facts.general_classes = compiled.general_classes;
-  facts.scene_bytes = compiled.data.groups.size() *
-                      (sizeof(backend::FacetGroup<double>) + sizeof(backend::FacetGroup<float>));
+  facts.scene_bytes =
+      compiled.data.groups.size() *
+          (sizeof(backend::FacetGroup<double>) + sizeof(backend::FacetGroup<float>)) +
+      compiled.data.patches.size() *
+          (sizeof(backend::NormalPatch<double>) + sizeof(backend::NormalPatch<float>));
 }
 
 void Engine::State::take_masks(std::optional<MaskStore> ready) {
@@ -186,7 +208,7 @@ void Engine::State::take_masks(std::optional<MaskStore> ready) {
   occluder.emplace(scene.mesh);
   if (!ready)
     ready = read_cached_masks(options.mask_cache, key_of_masks(), plan, mask_size());
-  masks = std::make_unique<LazyMasks>(ready ? std::move(*ready) : empty_masks(plan, mask_size()),
+  masks = std::make_shared<LazyMasks>(ready ? std::move(*ready) : empty_masks(plan, mask_size()),
                                       MaskTracer(scene, elements, classes, plan, *occluder));
   if (!options.is_lazy)
     masks->ensure_all(options.threads);
@@ -242,6 +264,13 @@ Result<void> Engine::save_masks(const std::filesystem::path &file) const {
 }
 
 void Engine::keep_masks() const { state_->keep_masks(); }
+
+void Engine::take_masks_of(const Engine &elder) const {
+  const State &own = *state_, &other = *elder.state_;
+  if (own.masks && other.masks && own.masks != other.masks &&
+      own.key_of_masks() == other.key_of_masks())
+    own.masks->take_rows_of(other.masks);
+}
 
 std::size_t Engine::mask_bytes() const { return state_->masks ? state_->masks->bytes() : 0; }
 
@@ -304,8 +333,8 @@ bool Engine::evaluate(std::span<const Pose> poses, StokesTable &out, const Light
   return !is_stopped(task.cancel);
 }
 
-Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out,
-                                unsigned threads) const {
+Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out, unsigned threads,
+                                const std::atomic<bool> *cancel) const {
   const State &s = *state_;
   for (std::size_t slot = 0; slot < s.compiled.slots.size(); ++slot)
     if (s.compiled.data.slots[slot].is_general)
@@ -315,6 +344,7 @@ Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out
   begin_abundances(s.compiled, s.scene.mesh, poses, out);
   LightTask task;
   task.threads = threads;
+  task.cancel = cancel;
   FromCards from_cards;
   if (s.on_cards && !s.needs_pose_beside_cards(task))
     from_cards = {backend::CardWants::Abundances,
@@ -326,13 +356,18 @@ Result<void> Engine::abundances(std::span<const Pose> poses, AbundanceTable &out
   s.for_each(
       poses, task,
       [&](std::size_t row, const Pose &pose, const State::Prepared &at, State::Workspace &work) {
-        out.is_dark[row] = s.sum(pose, at, work) ? 0 : 1;
+        // No colour is asked for but by rays, which go where the light is in doubt.
+        const bool has_light =
+            s.may_mend() ? s.sum(pose, at, work) : s.add_up(pose, at, work, false);
+        out.is_dark[row] = has_light ? 0 : 1;
         if (work.has_variances)
           s.sum_variances(work);
         if (out.is_dark[row] == 0)
           put_abundances(s.compiled, work.sums, row, out);
       },
       from_cards);
+  if (is_stopped(cancel))
+    return fail(ErrorCode::Interrupted, "stopped by the user");
   return {};
 }
 

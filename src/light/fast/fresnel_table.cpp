@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint32_t steps = 1024; ///< in the cosine of incidence, from 0 to 1
 constexpr double tolerance = 1e-7;
+constexpr double digits = 1 << 30; ///< an incidence is told from another by its cosine
 
 /// Reflection at an incidence, from the phase angle that has it.
 MuellerEntries reflection(const Surface &surface, std::size_t band, double cosine) {
@@ -53,13 +54,36 @@ backend::ReflectionTable<double> FresnelTable::view() const {
   return {values_, static_cast<std::uint32_t>(columns_), steps};
 }
 
-void FresnelTable::at(double cos_phase, double *a, double *b) const {
+void FresnelTable::put_exact(std::int64_t key, double *values) const {
+  for (const Exact &e : exact_) {
+    const auto m = reflection(*surfaces_[e.surface], e.band, static_cast<double>(key) / digits);
+    *values++ = m.a;
+    *values++ = m.b;
+  }
+}
+
+void FresnelTable::at(double cos_phase, double *a, double *b, Recent &recent) const {
   const double cosine = backend::incidence_cosine(cos_phase);
   backend::reflect(view(), cosine, a, b);
+  if (exact_.empty())
+    return;
+  constexpr std::size_t places = 256;
+  constexpr std::int64_t empty = -1;
+  if (recent.key.empty()) {
+    recent.key.assign(places, empty);
+    recent.values.resize(places * 2 * exact_.size());
+  }
+  // Rounded for all alike, so that what is kept is what would be computed.
+  const auto key = static_cast<std::int64_t>(std::clamp(cosine, 0.0, 1.0) * digits + 0.5);
+  constexpr std::uint64_t scatter = 0x9E3779B97F4A7C15ull; // Fibonacci hashing: Knuth, TAOCP 3, 6.4
+  const std::size_t place = (static_cast<std::uint64_t>(key) * scatter) >> 56;
+  double *values = recent.values.data() + place * 2 * exact_.size();
+  if (recent.key[place] != key)
+    put_exact(key, values);
+  recent.key[place] = key;
   for (const Exact &e : exact_) {
-    const auto m = reflection(*surfaces_[e.surface], e.band, cosine);
-    a[e.column] = m.a;
-    b[e.column] = m.b;
+    a[e.column] = *values++;
+    b[e.column] = *values++;
   }
 }
 

@@ -70,6 +70,22 @@ void LazyMasks::trace(std::span<const std::uint32_t> directions, bool is_large, 
   is_complete_ = missing(false).empty() && missing(true).empty();
 }
 
+void LazyMasks::take_rows_of(std::shared_ptr<const LazyMasks> elder) {
+  const WriteLock lock(mutex_);
+  elder_ = std::move(elder);
+  elder_version_ = 0;
+}
+
+/// Copies what the elder has more than when it was last asked. A copy of all rows takes less time
+/// than tracing one in a hundred of them.
+void LazyMasks::take_known() {
+  if (!elder_ || elder_->version() == elder_version_)
+    return;
+  elder_version_ = elder_->version(); // what is traced from here on is copied another time
+  elder_->read([this](const MaskStore &known) { add_rows(known, store_); });
+  ++version_;
+}
+
 ReadLock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads,
                            const std::atomic<bool> *cancel) {
   if (is_complete_)
@@ -82,6 +98,7 @@ ReadLock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads,
         return lock;
     }
     const WriteLock lock(mutex_);
+    take_known();
     for (const bool is_large : {false, true})
       trace(missing(poses, is_large, threads), is_large, threads, cancel);
   }
@@ -89,6 +106,7 @@ ReadLock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads,
 
 void LazyMasks::ensure_all(unsigned threads) {
   const WriteLock lock(mutex_);
+  take_known();
   for (const bool is_large : {false, true})
     trace(missing(is_large), is_large, threads, nullptr);
 }

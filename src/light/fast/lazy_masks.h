@@ -4,6 +4,7 @@
 #include "light/fast/masks.h"
 
 #include <atomic>
+#include <memory>
 #include <umov/core/locks.h>
 #include <umov/scene/pose.h>
 
@@ -21,6 +22,9 @@ public:
   [[nodiscard]] ReadLock ensure(std::span<const Pose> poses, unsigned threads,
                                 const std::atomic<bool> *cancel);
   void ensure_all(unsigned threads);
+  /// Rows that `elder` has are copied from now on, not traced again: it is of the same points and
+  /// directions. Never both ways, or around: each would wait for the other.
+  void take_rows_of(std::shared_ptr<const LazyMasks> elder);
 
   /// What the loops read: it holds for poses that were ensured, while their lock is held.
   [[nodiscard]] const backend::Masks &view() const { return view_; }
@@ -46,6 +50,7 @@ private:
   [[nodiscard]] std::vector<std::uint32_t> missing(bool is_large) const;
   void trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
              const std::atomic<bool> *cancel);
+  void take_known();
 
   MaskStore store_;
   MaskTracer tracer_;
@@ -53,6 +58,8 @@ private:
   mutable Mutex mutex_;
   std::atomic<bool> is_complete_{false}, has_grown_{false};
   std::atomic<std::size_t> version_{1};
+  std::shared_ptr<const LazyMasks> elder_; ///< null: none
+  std::size_t elder_version_ = 0;          ///< whose rows were copied
 };
 
 } // namespace umov

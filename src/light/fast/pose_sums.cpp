@@ -34,12 +34,14 @@ void Engine::State::sum_facets(const Prepared &at, SumsStore &out) const {
     add_alike(out);
 }
 
-bool Engine::State::add_up(const Pose &pose, const Prepared &at, Workspace &work) const {
+bool Engine::State::add_up(const Pose &pose, const Prepared &at, Workspace &work,
+                           bool has_colours) const {
   sum_facets(at, work.sums);
   work.is_mended = work.has_variances = work.is_coloured = false;
   if (!work.sums.is_any_seen && !doubts_darkness())
     return false;
-  compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
+  if (has_colours)
+    compiled.colours.prepare(at.cos_phase, has_scattering_plane(pose), work.factors);
   if (compiled.general_classes > 0) {
     work.general.reset(bands(), true);
     work.general_i.assign(compiled.slots.size() * bands(), 0);

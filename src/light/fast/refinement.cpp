@@ -82,29 +82,17 @@ void Engine::State::list_uncertain(const Pose &pose, const Prepared &at,
     work.uncertain.keep_if([](const backend::SeenFacet &facet) { return facet.variance > 0; });
   const std::size_t count = work.uncertain.facets.size();
   work.points.assign(count, 0);
-  work.facet_light.resize(count * bands());
-  std::uint32_t slot = no_index; // facets of one slot follow each other
+  work.unit_first.assign(compiled.slots.size(), no_index);
+  work.unit_light.clear();
+  if (compiled.general_classes > 0)
+    work.facet_light.resize(count * bands());
   for (std::size_t k = 0; k < count; ++k) {
     const backend::SeenFacet &facet = work.uncertain.facets[k];
-    Stokes<ScatteringPlane> *light = work.facet_light.data() + k * bands();
-    if (compiled.data.slots[facet.slot].is_general) {
-      light_of_general(pose, at, facet, work, light);
-      continue;
-    }
-    if (facet.slot != slot)
+    if (compiled.data.slots[facet.slot].is_general)
+      light_of_general(pose, at, facet, work, work.facet_light.data() + k * bands());
+    else if (work.unit_first[facet.slot] == no_index)
       light_units(facet.slot, work);
-    slot = facet.slot;
-    colour_facet(work.uncertain.weights_of(k), compiled.data.slots[slot], work, light);
   }
-}
-
-/// Light of one facet with a kernel per unit area.
-void Engine::State::colour_facet(const double *weight, const backend::SlotTerms &terms,
-                                 const Workspace &work, Stokes<ScatteringPlane> *light) const {
-  std::fill_n(light, bands(), Stokes<ScatteringPlane>{});
-  for (std::size_t t = 0; t < terms.lobe_count + terms.product_count; ++t)
-    for (std::size_t b = 0; b < bands(); ++b)
-      light[b] += work.unit_light[t * bands() + b] * weight[t];
 }
 
 /// Light per unit of each term of a slot.
@@ -112,7 +100,7 @@ void Engine::State::light_units(std::uint32_t slot, Workspace &work) const {
   const backend::SlotTerms &terms = compiled.data.slots[slot];
   const std::size_t count = terms.lobe_count + terms.product_count;
   work.unit.assign(2 * count, 0); // a one among zeros, and zeros
-  work.unit_light.resize(count * bands());
+  work.unit_first[slot] = static_cast<std::uint32_t>(work.unit_light.size());
   const double *one = work.unit.data(), *none = one + count;
   for (std::size_t t = 0; t < count; ++t) {
     work.unit[t] = 1;
@@ -121,23 +109,80 @@ void Engine::State::light_units(std::uint32_t slot, Workspace &work) const {
                               work.factors, work.part);
     work.unit[t] = 0;
     for (std::size_t b = 0; b < bands(); ++b)
-      work.unit_light[t * bands() + b] = {work.part.i[b], work.part.q[b],
-                                          compiled.has_u ? work.part.u[b] : 0, 0};
+      work.unit_light.push_back(
+          {work.part.i[b], work.part.q[b], compiled.has_u ? work.part.u[b] : 0, 0});
   }
 }
 
+/// Light of an uncertain facet per unit area, in one band.
+Stokes<ScatteringPlane> Engine::State::facet_light(std::size_t k, std::size_t band,
+                                                   const Workspace &work) const {
+  const std::uint32_t slot = work.uncertain.facets[k].slot;
+  const backend::SlotTerms &terms = compiled.data.slots[slot];
+  if (terms.is_general)
+    return work.facet_light[k * bands() + band];
+  const double *weight = work.uncertain.weights_of(k);
+  const Stokes<ScatteringPlane> *unit = work.unit_light.data() + work.unit_first[slot] + band;
+  Stokes<ScatteringPlane> out{};
+  for (std::size_t t = 0; t < terms.lobe_count + terms.product_count; ++t)
+    out += unit[t * bands()] * weight[t];
+  return out;
+}
+
 /// Error of I, or of Q at constant Q/I, per area of each uncertain facet, in parts of the light of
-/// the whole: of the band where it is worst.
+/// the whole: of the band where it is worst. Which facets err most is seen in a few wavelengths of
+/// the many that a curve is made of.
 void Engine::State::weigh_errors(Workspace &work) const {
   const std::size_t count = work.uncertain.facets.size();
   work.error_per_area.assign(count, 0);
   for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t b = 0; b < bands(); ++b) {
-      const auto &light = work.facet_light[k * bands() + b];
+    for (const std::uint32_t b : judged_bands) {
+      const auto light = facet_light(k, b, work);
       const double worst =
           std::max(light.i, std::abs(light.q - light.i * work.q_share[b]) / options.q_part);
       work.error_per_area[k] = std::max(work.error_per_area[k], worst / work.reference[b]);
     }
+}
+
+/// Adds the variances of one general facet.
+void Engine::State::add_general_variance(std::size_t k, double deviation, Workspace &work) const {
+  BandLight &out = work.variances;
+  const double variance = work.uncertain.facets[k].variance;
+  for (std::size_t b = 0; b < bands(); ++b) {
+    const auto &s = work.facet_light[k * bands() + b];
+    out.var_i[b] += s.i * s.i * variance;
+    out.var_q[b] += s.q * s.q * variance;
+    out.var_u[b] += s.u * s.u * variance;
+    out.var_v[b] += s.v * s.v * variance;
+    out.i[b] += s.i * deviation;
+    out.q[b] += s.q * deviation;
+  }
+}
+
+/// Adds the variances of a slot's facets, from `moments` of their weights. The square of a facet's
+/// light is a quadratic form in its weights, the same for all facets of a slot: facets are added up
+/// before there is any colour.
+void Engine::State::add_slot_variance(std::uint32_t slot, Workspace &work) const {
+  const backend::SlotTerms &terms = compiled.data.slots[slot];
+  const std::size_t count = terms.lobe_count + terms.product_count, all = bands();
+  const Stokes<ScatteringPlane> *unit = work.unit_light.data() + work.unit_first[slot];
+  const double *linear = work.moments.data(), *square = linear + count;
+  BandLight &out = work.variances;
+  for (std::size_t t = 0; t < count; ++t) {
+    for (std::size_t b = 0; b < all; ++b) {
+      out.i[b] += unit[t * all + b].i * linear[t];
+      out.q[b] += unit[t * all + b].q * linear[t];
+    }
+    for (std::size_t r = 0; r <= t; ++r, ++square) {
+      const double twice = (r < t ? 2 : 1) * *square;
+      for (std::size_t b = 0; b < all; ++b) {
+        const auto &one = unit[t * all + b], &other = unit[r * all + b];
+        out.var_i[b] += one.i * other.i * twice;
+        out.var_q[b] += one.q * other.q * twice;
+        out.var_u[b] += one.u * other.u * twice;
+      }
+    }
+  }
 }
 
 /// Variances of the light from those that the facets have now: of every facet that could be seen,
@@ -146,26 +191,33 @@ void Engine::State::add_up_variances(Workspace &work) const {
   BandLight &out = work.variances;
   out.reset(bands(), true);
   std::vector<double> &alike = out.i; // deviations that are looked up, added up
-  const bool has_u_or_v = compiled.has_u || compiled.general_classes > 0;
-  for (std::size_t k = 0; k < work.uncertain.facets.size(); ++k) {
-    const double variance = work.uncertain.facets[k].variance;
-    const double deviation = work.points[k] != 0 ? 0 : std::sqrt(variance);
-    const Stokes<ScatteringPlane> *light = work.facet_light.data() + k * bands();
-    for (std::size_t b = 0; b < bands(); ++b) {
-      const auto &s = light[b];
-      out.var_i[b] += s.i * s.i * variance;
-      out.var_q[b] += s.q * s.q * variance;
-      alike[b] += s.i * deviation;
-      out.q[b] += s.q * deviation;
+  const std::size_t facets = work.uncertain.facets.size();
+  for (std::size_t k = 0; k < facets; ++k) {
+    const backend::SeenFacet &facet = work.uncertain.facets[k];
+    const backend::SlotTerms &terms = compiled.data.slots[facet.slot];
+    const double deviation = work.points[k] != 0 ? 0 : std::sqrt(facet.variance);
+    if (terms.is_general) {
+      add_general_variance(k, deviation, work);
+      continue;
     }
-    for (std::size_t b = 0; has_u_or_v && b < bands(); ++b) {
-      out.var_u[b] += light[b].u * light[b].u * variance;
-      out.var_v[b] += light[b].v * light[b].v * variance;
+    const std::size_t count = terms.lobe_count + terms.product_count;
+    if (k == 0 || work.uncertain.facets[k - 1].slot != facet.slot)
+      work.moments.assign(count + count * (count + 1) / 2, 0);
+    const double *weight = work.uncertain.weights_of(k);
+    double *linear = work.moments.data(), *square = linear + count;
+    for (std::size_t t = 0; t < count; ++t) {
+      linear[t] += weight[t] * deviation;
+      for (std::size_t r = 0; r <= t; ++r, ++square)
+        *square += weight[t] * weight[r] * facet.variance;
     }
+    if (k + 1 == facets || work.uncertain.facets[k + 1].slot != facet.slot)
+      add_slot_variance(facet.slot, work);
   }
   for (std::size_t b = 0; b < bands(); ++b) {
     out.var_i[b] += mask_alike * alike[b] * alike[b];
     out.var_q[b] += mask_alike * out.q[b] * out.q[b];
+    for (std::vector<double> *variance : {&out.var_i, &out.var_q, &out.var_u})
+      (*variance)[b] = std::max((*variance)[b], 0.0); // products of unlike terms round
   }
   work.has_variances = true;
 }
@@ -175,7 +227,15 @@ void Engine::State::trace_facet(const Pose &pose, std::size_t k, std::size_t poi
                                 Workspace &work) const {
   const TracedShare traced = work.tracer->trace(work.uncertain.facets[k], points, pose);
   put_share(k, traced.share, traced.points,
-            share_variance(traced.share, static_cast<double>(traced.points)), work);
+            traced_variance(traced.share, static_cast<double>(traced.points)), work);
+}
+
+/// Neighbours in a series ask the same points too, and err together. Where these agree, the one
+/// pseudo-disagreement is large enough as it is.
+double Engine::State::traced_variance(double share, double points) const {
+  const bool is_edge = share * points > 1 && (1 - share) * points > 1;
+  const double alike = options.doubts_all && is_edge ? static_cast<double>(mask_series) : 1;
+  return alike * share_variance(share, points);
 }
 
 void Engine::State::put_share(std::size_t k, double share, std::size_t points, double variance,
@@ -209,13 +269,13 @@ void Engine::State::look_closer(const Pose &pose, const Prepared &at, double wan
     const double doubted = static_cast<double>(asked.doubted) / count;
     if (asked.asked == asked.doubted) {
       const double share = static_cast<double>(asked.sure + asked.free) / count;
-      put_share(asked.which, share, asked.points.size(), share_variance(share, count), work);
+      put_share(asked.which, share, asked.points.size(), traced_variance(share, count), work);
       continue;
     }
     const double found = static_cast<double>(asked.free) / static_cast<double>(asked.asked);
     const double share = static_cast<double>(asked.sure) / count + doubted * found;
     const double variance =
-        share_variance(share, count) +
+        traced_variance(share, count) +
         doubted * doubted * random_variance(found, static_cast<double>(asked.asked));
     put_share(asked.which, share, asked.points.size(), variance, work);
   }

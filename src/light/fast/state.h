@@ -47,7 +47,7 @@ struct Engine::State {
   GroupPlan plan;
   CompiledScene compiled;
   SceneStore<float> single;
-  std::unique_ptr<LazyMasks> masks;
+  std::shared_ptr<LazyMasks> masks; ///< null: nothing hides anything
   /// Of `compiled` and `single`, for the loops.
   struct Views {
     backend::SceneData<double> whole;
@@ -55,6 +55,7 @@ struct Engine::State {
   } views;
   std::optional<Occluder> occluder;
   RefinePoints refine_points;
+  std::vector<std::uint32_t> judged_bands; ///< in which the errors of single facets are weighed
   /// Flat classes: where each is, and how near the half vector must be.
   struct Flat {
     Vec3<Body> normal;
@@ -91,11 +92,15 @@ struct Engine::State {
     std::vector<double> reference; ///< per band: what relative errors refer to
     std::vector<double> q_share;   ///< per band: Q/I of the whole
     WeighedStore uncertain;
-    std::vector<Stokes<ScatteringPlane>> facet_light; ///< [uncertain * bands + band], per area
-    std::vector<double> unit;                         ///< a one among zeros
-    std::vector<Stokes<ScatteringPlane>> unit_light;  ///< of one slot: [term * bands + band]
-    BandLight variances;                              ///< of the whole, facet by facet
-    bool has_variances = false;                       ///< they take the place of those of the sums
+    /// Of facets without a kernel: [uncertain * bands + band], per area.
+    std::vector<Stokes<ScatteringPlane>> facet_light;
+    std::vector<double> unit; ///< a one among zeros
+    /// Slot by slot [term * bands + band], and where each slot begins.
+    std::vector<Stokes<ScatteringPlane>> unit_light;
+    std::vector<std::uint32_t> unit_first;
+    std::vector<double> moments; ///< of a slot's weights: with deviations, and pairs with variances
+    BandLight variances;         ///< of the whole, facet by facet
+    bool has_variances = false;  ///< they take the place of those of the sums
     std::vector<std::pair<double, std::uint32_t>> worst; ///< error and which, as a heap
     std::vector<double> error_per_area;  ///< per uncertain facet, in parts of the whole light
     std::vector<AskedClass> asked;       ///< classes that are looked at together
@@ -126,8 +131,8 @@ struct Engine::State {
   /// All sums of a pose, and the light that has none; false if nothing is both lit and seen, beyond
   /// doubt.
   bool sum(const Pose &pose, const Prepared &at, Workspace &work) const;
-  /// The same without rays.
-  bool add_up(const Pose &pose, const Prepared &at, Workspace &work) const;
+  /// The same without rays. `has_colours`: what reflection depends on is made ready too.
+  bool add_up(const Pose &pose, const Prepared &at, Workspace &work, bool has_colours = true) const;
   /// work.light from the sums.
   void colour(Workspace &work) const;
   /// The same, with I of each slot's material added to intensity[material * bands + band].
@@ -177,13 +182,14 @@ struct Engine::State {
   void list_uncertain(const Pose &pose, const Prepared &at, const backend::MaskErrorModel &error,
                       Workspace &work) const;
   void light_units(std::uint32_t slot, Workspace &work) const;
-  void colour_facet(const double *weight, const backend::SlotTerms &terms, const Workspace &work,
-                    Stokes<ScatteringPlane> *light) const;
+  [[nodiscard]] Stokes<ScatteringPlane> facet_light(std::size_t k, std::size_t band,
+                                                    const Workspace &work) const;
   void weigh_errors(Workspace &work) const;
   void trace(const Pose &pose, const Prepared &at, double part, Workspace &work) const;
   double trace_worst(const Pose &pose, const Prepared &at, double wanted, Workspace &work) const;
   void look_closer(const Pose &pose, const Prepared &at, double wanted, Workspace &work) const;
   void list_doubtful(const Prepared &at, std::uint32_t n, double wanted, Workspace &work) const;
+  [[nodiscard]] double traced_variance(double share, double points) const;
   void put_share(std::size_t k, double share, std::size_t points, double variance,
                  Workspace &work) const;
   bool trace_more(const Pose &pose, double allowed, Workspace &work) const;
@@ -191,6 +197,8 @@ struct Engine::State {
   void change_area(std::size_t k, double change, Workspace &work) const;
   /// A variance of the seen area of work.uncertain[k] besides what the sums hold.
   void add_variance(std::size_t k, double variance, Workspace &work) const;
+  void add_general_variance(std::size_t k, double deviation, Workspace &work) const;
+  void add_slot_variance(std::uint32_t slot, Workspace &work) const;
   void add_up_variances(Workspace &work) const;
   /// Those of the sums, for whoever asks for sums.
   void sum_variances(Workspace &work) const;

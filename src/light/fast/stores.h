@@ -41,10 +41,14 @@ template <class T> struct SceneStore {
   std::vector<backend::Profile<T>> profiles;
   std::vector<backend::Product> products;
   std::vector<backend::LaneNumbers<T>> cluster_error;
+  std::vector<backend::NormalPatch<T>> patches;
+  std::vector<backend::PatchRange> patches_of;
+  std::vector<T> node_first, node_second, node_weight;
 
   [[nodiscard]] backend::SceneData<T> view() const {
-    return {groups,   cones.view(), chunks,   slots,        lobes,
-            families, profiles,     products, cluster_error};
+    return {groups,        cones.view(), chunks,     slots,
+            lobes,         families,     profiles,   products,
+            cluster_error, patches,      patches_of, {node_first, node_second, node_weight}};
   }
 };
 

@@ -124,6 +124,12 @@ Result<void> MasksLight::keep_masks() const {
   return {};
 }
 
+void MasksLight::take_masks_of(const LightModel &elder) const {
+  const auto *const other = dynamic_cast<const MasksLight *>(&elder);
+  if (engine_ && other != nullptr && other->engine_)
+    engine_->take_masks_of(*other->engine_);
+}
+
 std::size_t MasksLight::mask_bytes() const {
   return engine_ ? engine_->mask_bytes() : turning_->mask_bytes();
 }

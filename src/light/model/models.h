@@ -41,6 +41,9 @@ public:
                                                   std::vector<double> typical_i,
                                                   double curved_error);
   [[nodiscard]] Result<void> keep_masks() const override;
+  void take_masks_of(const LightModel &elder) const override;
+  /// Null for a body whose parts turn.
+  [[nodiscard]] const Engine *engine() const { return engine_ ? &*engine_ : nullptr; }
   [[nodiscard]] std::size_t mask_bytes() const override;
   [[nodiscard]] std::string device() const override;
   [[nodiscard]] std::string instruction_set() const override;

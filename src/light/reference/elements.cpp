@@ -66,7 +66,7 @@ public:
       }
     }
     if (most <= turn_max_ || depth == depth_max) {
-      add(c);
+      add(c, most);
       return;
     }
     const Corner m = middle(c[edge], c[(edge + 1) % 3], is_curved_);
@@ -76,8 +76,10 @@ public:
   }
 
 private:
-  void add(const std::array<Corner, 3> &c) {
+  void add(const std::array<Corner, 3> &c, double turn) {
     Element e = prototype_;
+    e.turn_rad = static_cast<float>(turn);
+    e.turn_max_rad = static_cast<float>(turn_max_);
     e.area_m2 = patch_area(c, is_curved_);
     for (std::size_t k = 0; k < 3; ++k) {
       e.normal[k] = c[k].normal;

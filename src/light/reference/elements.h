@@ -19,6 +19,8 @@ struct Element {
   double area_m2 = 0;                          ///< of the curved surface where normals are smooth
   std::uint32_t triangle = 0;
   bool is_flat = true; ///< one normal all over
+  /// How far the normal turns over it, and may turn over what is lit as one [rad].
+  float turn_rad = 0, turn_max_rad = 0;
 };
 
 /// What each side of a triangle is: a slot is a mesh group with the front or back surface of it.

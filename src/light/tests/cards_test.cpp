@@ -75,6 +75,13 @@ std::vector<Case> all_cases() {
   out.push_back({"thick film", scene_of(cube, NormalMode::Flat, {film}), Visibility::None});
   out.push_back({"smooth", scene_of(make_cylinder(1, 2, 24), NormalMode::Smooth, four_materials()),
                  Visibility::None});
+  // Narrower than a curved part's elements: the entry of cards that is compiled apart
+  for (const auto &lobe : {DistributionChoice{"ggx", {{"alpha", 0.01}}, {}, {}, {}},
+                           DistributionChoice{"beckmann", {{"alpha", 0.01}}, {}, {}, {}}})
+    out.push_back({"narrow on curved",
+                   scene_of(make_cylinder(1, 2, 24), NormalMode::Smooth,
+                            {with_lobe("paper_al", lobe, Shadowing::Smith)}),
+                   Visibility::None});
   out.push_back({"box with wings",
                  scene_of(make_box_wing({3000, 0}), NormalMode::Flat, four_materials()),
                  Visibility::Masks});

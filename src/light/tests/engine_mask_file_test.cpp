@@ -47,6 +47,30 @@ TEST_F(MaskFile, GivesTheSameBytes) {
   EXPECT_EQ(refusal(scene_of(make_box_wing({1000, 0}), NormalMode::Flat, others), options_), "");
 }
 
+// What another engine has traced is copied: nothing is left to trace for the same poses, and the
+// light is that of an engine alone, whose rows were traced one by one.
+TEST_F(MaskFile, RowsOfAnotherEngineAreCopied) {
+  options_.is_lazy = true;
+  const Engine elder(scene(), options_), younger(scene(), options_), alone(scene(), options_);
+  younger.take_masks_of(elder);
+  const auto poses = random_poses(200, solar_radius), more = random_poses(300, solar_radius);
+  const StokesTable seen = evaluated(elder, poses), copied = evaluated(younger, poses);
+  EXPECT_TRUE(elder.has_new_masks());
+  EXPECT_FALSE(younger.has_new_masks());
+  EXPECT_EQ(copied.i, seen.i);
+  EXPECT_EQ(copied.i_err, seen.i_err);
+  // Poses that the elder has not seen, before and after it has.
+  const StokesTable expected = evaluated(alone, more);
+  EXPECT_EQ(evaluated(younger, more).i, expected.i);
+  EXPECT_EQ(evaluated(elder, more).i, expected.i);
+  // Masks of another mesh are no help, and do no harm.
+  const Scene other = scene_of(make_box_wing({500, 0}), NormalMode::Flat, four_materials());
+  const Engine stranger(other, options_), as_it_is(other, options_);
+  stranger.take_masks_of(elder);
+  EXPECT_EQ(evaluated(stranger, poses).i, evaluated(as_it_is, poses).i);
+  EXPECT_TRUE(stranger.has_new_masks());
+}
+
 TEST_F(MaskFile, IsRefusedForAnythingElse) {
   ASSERT_TRUE(Engine(scene(), options_).save_masks(file_));
   Mesh moved = make_box_wing({1000, 0});

@@ -42,6 +42,41 @@ TEST(LightSums, OfItsOwnMaterialsAreItsLight) {
   sums->keep_masks(); // without a cache: nothing to be done, nothing said
 }
 
+// Below its floor no light is mended by rays: with a floor above all light the sums are those of
+// masks alone. Without one, rays change those of dim poses.
+TEST(LightSums, OfLightBelowItsFloorAreThoseOfMasks) {
+  const Scene scene = box_wing_scene();
+  std::vector<Pose> poses;
+  for (std::size_t k = 0; k < 100; ++k)
+    poses.push_back(random_pose(5, k, Angle::degrees(100 + 0.5 * static_cast<double>(k))));
+  const auto sums_with = [&](const SumsOptions &options) {
+    const auto made = make_sums(scene, options);
+    AbundanceTable out;
+    EXPECT_TRUE(made && (*made)->evaluate(poses, out));
+    return out.sum;
+  };
+  const auto masks = sums_with({.accuracy = 0.02, .threads = 1});
+  EXPECT_EQ(sums_with({.accuracy_floor = 1e6, .threads = 1}), masks);
+  EXPECT_NE(sums_with({.threads = 1}), masks);
+}
+
+// As of engines: the masks of a model that has traced them are not traced again, and the sums are
+// those of an object alone.
+TEST(LightSums, TakeMasksOfTheSameObject) {
+  const Scene scene = box_wing_scene();
+  const auto poses = poses_of(8);
+  const auto model = make_light(scene, {}, {.method = LightMethod::Masks, .threads = 1});
+  const auto own = make_sums(scene, {.accuracy = 0.02, .threads = 1});
+  const auto alone = make_sums(scene, {.accuracy = 0.02, .threads = 1});
+  ASSERT_TRUE(model && own && alone);
+  StokesTable light;
+  ASSERT_TRUE((*model)->evaluate(poses, {}, light));
+  (*own)->take_masks_of(**model);
+  AbundanceTable a, b;
+  ASSERT_TRUE((*own)->evaluate(poses, a) && (*alone)->evaluate(poses, b));
+  EXPECT_EQ(a.sum, b.sum);
+}
+
 /// Share of the hemisphere of a point of the floor that the wall x = 0 of `corner` fills: Lambert's
 /// sum over the edges, for the parts of the wall on both sides of the point, `c` away from it.
 double wall_share(double c, double y) {

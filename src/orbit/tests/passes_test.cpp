@@ -33,7 +33,7 @@ Epoch<Utc> utc(const std::string &text) { return *utc_from_iso(text); }
 /// column).
 struct Row {
   Epoch<Utc> time;
-  double elevation, sunlit, phase;
+  double elevation, sunlit, phase, sun_elevation;
 };
 std::vector<std::vector<Row>> read_rows(const std::string &file) {
   std::ifstream stream(folder + file);
@@ -52,7 +52,7 @@ std::vector<std::vector<Row>> read_rows(const std::string &file) {
     const auto number = [&](const char *name) { return std::stod(cell[column.at(name)]); };
     out[column.contains("pass") ? cell[0] : ""].push_back(
         {utc(cell[column.at("utc")]), number("el_deg"), number("sun_frac_ellipsoid"),
-         number("phase_deg")});
+         number("phase_deg"), number("sun_el_deg")});
   }
   std::vector<std::vector<Row>> list;
   for (auto &[name, rows] : out)
@@ -102,21 +102,46 @@ TEST(Passes, EightPassesOfExplorer27RiseAndSetWhenTheReferenceSays) {
     ASSERT_NE(pass, nullptr) << to_iso(rows.front().time);
     EXPECT_NEAR(seconds_between(pass->rise.time, rows[0].time), crossing(rows, 10, true), 0.1);
     EXPECT_NEAR(seconds_between(pass->set.time, rows[0].time), crossing(rows, 10, false), 0.1);
-    double top = 0, low = 180, high = 0;
+    double top = 0, low = 180, high = 0, seen = 0;
     for (const Row &row : rows) {
       top = std::max(top, row.elevation);
+      if (row.elevation > 10 && row.sunlit > 0 && row.sun_elevation < -6)
+        seen = std::max(seen, row.elevation);
       if (row.elevation > 10 && row.sunlit > 0) {
         low = std::min(low, row.phase);
         high = std::max(high, row.phase);
       }
     }
     EXPECT_NEAR(pass->culmination.altitude.degrees(), top, 0.02); // rows are 5 s apart
+    // One of the eight is highest before it is dark; .1 deg/s then, between rows of 5 s.
+    EXPECT_NEAR(pass->visible_altitude_max.degrees(), seen, seen < top ? 0.5 : 0.02);
     EXPECT_NEAR(pass->rise.altitude.degrees(), 10, 1e-4);
     EXPECT_NEAR(pass->set.altitude.degrees(), 10, 1e-4);
     if (high > 0) { // the file's samples at 5 s against ours
       EXPECT_NEAR(pass->phase_min.degrees(), low, 1);
       EXPECT_NEAR(pass->phase_max.degrees(), high, 1);
     }
+  }
+}
+
+TEST(Passes, TheEndsOfASpanDoNotMoveTheCulmination) {
+  const Trajectory orbit(elements_of(folder + "elements.tle", 1328));
+  const auto whole =
+      find_passes(orbit, maui, utc("2022-02-22T00:00:00Z"), utc("2022-02-23T00:00:00Z"), {});
+  ASSERT_TRUE(whole && !whole->passes.empty());
+  const SitePass &pass = whole->passes[0];
+  const auto before = find_passes(orbit, maui, utc("2022-02-22T00:00:00Z"),
+                                  plus_seconds(pass.culmination.time, -120), {});
+  const auto after = find_passes(orbit, maui, plus_seconds(pass.culmination.time, 120),
+                                 plus_seconds(pass.set.time, 600), {});
+  for (const auto *cut : {&before, &after}) {
+    ASSERT_TRUE(*cut && !(*cut)->passes.empty());
+    const SitePass &part = cut == &before ? (*cut)->passes.back() : (*cut)->passes.front();
+    EXPECT_TRUE(part.is_rise_cut != part.is_set_cut);
+    EXPECT_NEAR(seconds_between(part.culmination.time, pass.culmination.time), 0, 0.1);
+    EXPECT_NEAR(part.culmination.altitude.degrees(), pass.culmination.altitude.degrees(), 1e-4);
+    EXPECT_LT(part.visible_altitude_max.degrees(), pass.culmination.altitude.degrees() - 1);
+    EXPECT_GT(part.range_min_km, pass.range_min_km + 10); // of the span alone
   }
 }
 

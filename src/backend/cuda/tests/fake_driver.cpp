@@ -40,6 +40,7 @@ std::size_t asked(const char *name, std::size_t otherwise) {
 std::mutex lock;
 std::map<void *, std::size_t> allocated;
 std::size_t used = 0;
+char used_by_none = 0; ///< an address
 std::atomic<std::size_t> launches{0};
 std::map<void *, std::size_t> under_way; ///< launches of each stream
 thread_local void *current = nullptr;    ///< context
@@ -51,7 +52,7 @@ bool is_lost() { return launches > asked("UMOV_FAKE_LAUNCHES", ~std::size_t{0});
 std::size_t memory() { return asked("UMOV_FAKE_MEMORY", 1'000'000'000); }
 
 void *const prepare = &used, *const sum = &launches, *const colour = &allocated,
-            *const weighing = &lock;
+            *const weighing = &lock, *const sum_curved = &used_by_none;
 
 } // namespace
 
@@ -138,6 +139,7 @@ Code cuModuleUnload(void *) { return fine; }
 Code cuModuleGetFunction(void **function, void *, const char *name) {
   const std::map<std::string, void *> all{{"umov_prepare_poses", prepare},
                                           {"umov_sum_poses", sum},
+                                          {"umov_sum_curved_poses", sum_curved},
                                           {"umov_colour_poses", colour},
                                           {"umov_weigh_poses", weighing}};
   const auto found = all.find(name);
@@ -222,7 +224,8 @@ Code cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigne
   if (is_copy_under_way)
     return not_ready; // the kernel would read what has not come
   const std::size_t facets = scene.scene.chunks.size() * groups_per_thread * lanes;
-  if (function == sum && facets * batch.poses.size() > asked("UMOV_FAKE_WATCHDOG", ~std::size_t{0}))
+  const bool is_sum = function == sum || function == sum_curved;
+  if (is_sum && facets * batch.poses.size() > asked("UMOV_FAKE_WATCHDOG", ~std::size_t{0}))
     return timed_out;
   ++launches;
   if (is_lost())
@@ -239,7 +242,9 @@ Code cuLaunchKernel(void *function, unsigned blocks, unsigned, unsigned, unsigne
       if (function == prepare)
         prepare_on_card(scene, batch, i);
       else if (function == sum)
-        sum_on_card(scene, batch, i);
+        sum_on_card<false>(scene, batch, i);
+      else if (function == sum_curved)
+        sum_on_card<true>(scene, batch, i);
       else if (function == colour)
         colour_on_card(scene, batch, i);
       else

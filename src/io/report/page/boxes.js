@@ -12,18 +12,22 @@ function coordinates(site) {
   return (site.name ? site.name + " (" : "") + north + ", " + east + ", " + site.alt_m.toFixed(0) + " m" + (site.name ? ")" : "");
 }
 
-/// Magnitudes from bright to faint over some rows and all bands; limits count as ">".
+/// What the magnitudes of the summary are: of one band, since a range over several would mix the object's colour into it.
+const magnitudeTitle = report.mag_system + " magnitude" + (bands.length ? ", " + bands[middleBand].label : "");
+
+/// Magnitudes from bright to faint over some rows; limits count as ">".
 function magnitudeText(rows) {
-  const known = range(rows.flatMap((i) => bands.map((band) => band.mag_limit[i] ? null : band.mag[i])));
-  const limits = range(rows.flatMap((i) => bands.map((band) => band.mag_limit[i] ? band.mag[i] : null)));
+  const band = bands[middleBand] || { mag: [], mag_limit: [] };
+  const known = range(rows.map((i) => band.mag_limit[i] ? null : band.mag[i]));
+  const limits = range(rows.map((i) => band.mag_limit[i] ? band.mag[i] : null));
   if (!known) return limits ? "> " + limits[0].toFixed(2) : "no light";
   return known[0].toFixed(2) + " to " + (limits ? "> " + Math.max(known[1], limits[1]).toFixed(2) : known[1].toFixed(2));
 }
 
-/// When it is brightest, in any band, and at which phase; "" where no magnitude is known.
+/// When it is brightest, and at which phase; "" where no magnitude is known.
 function brightestText() {
   let best = null;
-  for (const band of bands)
+  for (const band of bands.slice(middleBand, middleBand + 1))
     band.mag.forEach((mag, i) => {
       if (mag !== null && !band.mag_limit[i] && (best === null || mag < best.mag)) best = { mag, row: i };
     });
@@ -39,14 +43,16 @@ function greatestP(rows) {
 }
 
 function passTable() {
-  const head = ["pass", "rise", "culmination", "set", "max altitude", "rows", report.mag_system + " magnitude", "max p"];
+  const head = ["pass", "rise", "culmination", "set", "max altitude", "rows", magnitudeTitle, "max p"];
   const body = report.passes.map((pass) => {
     const own = passes.filter((p) => p.id === pass.id).flatMap((p) => p.rows);
     const p = greatestP(own);
     const cells = [pass.id, (pass.open_start ? "before " : "") + pass.rise.slice(0, 19).replace("T", " "), pass.culmination.slice(pass.culmination.slice(0, 10) === pass.rise.slice(0, 10) ? 11 : 0, 19).replace("T", " "),
       (pass.open_end ? "after " : "") + pass.set.slice(pass.set.slice(0, 10) === pass.rise.slice(0, 10) ? 11 : 0, 19).replace("T", " "), pass.altitude_max.toFixed(1) + "°", String(pass.rows),
-      magnitudeText(own), p ? fixed(100 * p.p, 1) + " %" : "undefined"];
-    return element("tr", {}, ...cells.map((cell, k) => element("td", { "data-label": head[k] }, cell)));
+      magnitudeText(own), p ? fixed(100 * p.p, 1) + "\u00a0%" : "undefined"];
+    // A date is not broken at its hyphens.
+    const words = (text) => text.split(" ").flatMap((word) => [element("span", { class: "whole" }, word), " "]);
+    return element("tr", {}, ...cells.map((cell, k) => element("td", { "data-label": head[k] }, ...(k ? words(cell) : [cell]))));
   });
   return element("table", { class: "passes" },
     element("thead", {}, element("tr", {}, ...head.map((name) => element("th", { scope: "col" }, name)))),
@@ -66,7 +72,7 @@ function fillSummary() {
     fact("Bands", bands.map((band) => band.label).join(", ") || "none"),
     fact("Maximum altitude", altitude ? altitude[1].toFixed(1) + "°" : "none"),
     fact("Phase angle", phase ? phase[0].toFixed(1) + "° to " + phase[1].toFixed(1) + "°" : "none"),
-    fact(report.mag_system + " magnitude", magnitudeText(all) + brightestText()),
+    fact(magnitudeTitle, magnitudeText(all) + brightestText()),
     fact("Maximum p", p ? (100 * p.p).toFixed(1) + " % (" + p.band + ", phase " + epochs.phase[p.row].toFixed(1) + "°)" : "undefined"));
   byId("summary").append(facts, report.passes.length ? passTable() : "");
   const span = epochCount ? epochs.time[0].slice(0, 19) + "Z to " + epochs.time[epochCount - 1].slice(0, 19) + "Z" : "no epochs";
@@ -110,8 +116,9 @@ function overlay(frame) {
   if (length > 0.02) {
     const x = right / length, y = -up / length;
     const at = (r, side) => (50 + r * x - side * y).toFixed(2) + " " + (50 + r * y + side * x).toFixed(2);
-    picture.append(svg("path", { d: "M" + at(47, 0) + " L" + at(43.5, 2) + " L" + at(43.5, -2) + " Z", fill: "#f0c040", stroke: "#0a0c12", "stroke-width": "0.6" }),
-      svg("text", { ...mark, fill: "#f0c040", x: 50 + 39 * x, y: 52 + 39 * y }, "Sun"));
+    const middle = 41.5 - 6.5 * Math.abs(x) - 3.5 * Math.abs(y); // the word ends where the arrow begins
+    picture.append(svg("text", { ...mark, fill: "#f0c040", x: 50 + middle * x, y: 52 + middle * y }, "Sun"),
+      svg("path", { d: "M" + at(48, 0) + " L" + at(43, 2.6) + " L" + at(43, -2.6) + " Z", fill: "#f0c040", stroke: "#0a0c12", "stroke-width": "0.6" }));
   }
   return picture;
 }

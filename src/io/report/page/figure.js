@@ -15,7 +15,12 @@ const umovFigure = (() => {
   const legend = () => ({ orientation: "h", yref: "container", y: 0, yanchor: "bottom", font: { size: 11 } });
   const symbols = ["circle", "square", "diamond", "cross", "triangle-up", "x"];
   // Plotly takes some HTML in names: they are shown as they stand.
-  const safe = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+  // Bands are spelt for people, but for what is to be typed, which stands in quotes or after "=".
+  const words = (text) => text.replace(/(?<!["'=\w])nm:(\d+(?:\.\d+)?)/g, "$1 nm");
+  const safe = (text) => words(text).replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+  // Thousands of bars hide each other and their points, unless they are paler and the points smaller.
+  const paleness = (line) => line.faint ? Math.max(0.05, Math.min(0.35, 150 / line.x.length)) : 1;
+  const dot = (most) => most < 60 ? 8 : most < 2000 ? 4 : 2.5;
   // The sky overhead: zenith in the middle, north up, east left.
   const drawSky = (plot, figure) => {
     plot.style.height = "640px";
@@ -52,19 +57,26 @@ const umovFigure = (() => {
       legend: legend(), ...ground(),
     }, options(figure));
   };
+  // Marks at powers of ten alone where an axis goes over two decades: a small 2 and 5 between them are no easier to read.
+  const decades = (figure, along) => {
+    const values = figure.lines.flatMap((line) => line[along]).filter((value) => value > 0).map(Math.log10);
+    const low = values.reduce((a, b) => Math.min(a, b), Infinity), high = values.reduce((a, b) => Math.max(a, b), -Infinity);
+    return high - low < 2 ? {} : { dtick: Math.max(1, Math.round((high - low) / 6)) };
+  };
   const drawPlane = (plot, figure) => {
+    const most = Math.max(...figure.lines.map((line) => line.faint || !line.markers ? 0 : line.x.length));
     const lines = figure.lines.map((line, index) => ({
       type: line.x.length > 2000 ? "scattergl" : "scatter", mode: line.markers ? "markers" : "lines",
-      name: safe(line.name), x: line.x, y: line.y, opacity: line.faint ? 0.35 : 1, showlegend: line.name !== "",
+      name: safe(line.name), x: line.x, y: line.y, opacity: paleness(line), showlegend: line.name !== "" && !figure.ynames && paleness(line) > 0.1,
       line: { color: line.colour, dash: line.dash, width: line.faint ? 1 : 2 },
-      marker: { color: line.colour, size: line.x.length < 60 ? 8 : 4, symbol: symbols[index % symbols.length] },
+      marker: { color: line.colour, size: dot(most), symbol: symbols[index % symbols.length] },
     }));
-    const axis = (title, more) => Object.assign({ title: { text: title, font: { size: plot.clientWidth < 460 ? 11 : 13 } }, automargin: true }, grid(), more);
+    const axis = (title, more) => Object.assign({ title: { text: safe(title), font: { size: plot.clientWidth < 460 ? 11 : 13 } }, automargin: true, exponentformat: "power" }, grid(), more);
     Plotly.newPlot(plot, lines, {
       autosize: true,
-      margin: { l: 60, r: 12, t: 10, b: 60 + 17 * Math.ceil(lines.length / 3) },
-      xaxis: axis(figure.x, { ...(figure.xlog ? { type: "log", exponentformat: "power" } : {}), ...(figure.xspan ? { range: figure.xspan } : {}) }),
-      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", exponentformat: "power", ...(figure.log ? { nticks: 6 } : {}), ...(figure.yspan ? { range: figure.log ? figure.yspan.map(Math.log10) : figure.yspan } : {}) }),
+      margin: { l: 60, r: 12, t: 10, b: 60 + (figure.ynames ? 0 : 17 * Math.ceil(lines.length / 3)) },
+      xaxis: axis(figure.x, { ...(figure.xlog ? { type: "log", ...decades(figure, "x") } : {}), ...(figure.xspan ? { range: figure.xspan } : {}) }),
+      yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", ...(figure.ynames ? { tickvals: figure.ynames.map((_, k) => k + 1), ticktext: figure.ynames.map(safe) } : {}), ...(figure.log ? { nticks: 6, ...decades(figure, "y") } : {}), ...(figure.yspan ? { range: figure.log ? figure.yspan.map(Math.log10) : figure.yspan } : {}) }),
       legend: legend(), ...ground(),
     }, options(figure));
     if (plot.isWatched) return;
@@ -81,16 +93,16 @@ const umovFigure = (() => {
   const drawn = [];
   const drawAll = () => drawn.forEach(([plot, figure]) => draw(plot, figure));
   isDark.addEventListener("change", drawAll);
-  // Paper is narrower than a window, and who observes sizes does not hear of it.
-  const paperWidth = 640, narrowed = new Set();
+  // Paper has a width of its own, and who observes sizes does not hear of it; two figures and a title fit on a sheet.
+  const paper = { width: 640, height: 370 }, fitted = new Set();
   const fitPaper = () => drawn.forEach(([plot]) => {
-    if (!plot.layout || plot.clientWidth <= paperWidth) return;
-    narrowed.add(plot);
-    Plotly.relayout(plot, { width: paperWidth });
+    if (!plot.layout) return;
+    fitted.add(plot);
+    Plotly.relayout(plot, plot.style.height ? { width: paper.width } : paper);
   });
   const fitWindow = () => {
-    for (const plot of narrowed) Plotly.relayout(plot, { width: null, autosize: true });
-    narrowed.clear();
+    for (const plot of fitted) Plotly.relayout(plot, { width: null, height: null, autosize: true });
+    fitted.clear();
   };
   for (const [event, value] of [["beforeprint", true], ["afterprint", false]])
     window.addEventListener(event, () => {
@@ -100,8 +112,9 @@ const umovFigure = (() => {
       }
       (value ? fitPaper : fitWindow)();
     });
-  return (plot, figure) => {
+  const show = (plot, figure) => {
     drawn.push([plot, figure]);
     draw(plot, figure);
   };
+  return Object.assign(show, { words });
 })();

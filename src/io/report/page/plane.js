@@ -20,13 +20,24 @@ function joined(x, y) {
 }
 
 /// Where the name of a pure-material curve stands: each material at its own phase angle, so that
-/// names of like curves do not cover each other.
-function pureLabel(curve, m, shown) {
+/// names of like curves do not cover each other, or near it where neither values nor other names are.
+function pureLabel(curve, m, shown, taken) {
   const share = (m + 0.5) / pureMaterials.length;
   const wanted = shown.x[0] + (0.39 + 0.33 * share) * (shown.x[1] - shown.x[0]);
   const seen = curve.phase.map((x, i) => ({ x, y: percent(curve.q_scat[i]) }))
     .filter((at) => at.y !== null && at.x >= shown.x[0] && at.x <= shown.x[1] && at.y >= shown.y[0] && at.y <= shown.y[1] - 0.1 * (shown.y[1] - shown.y[0])); // below the legend
-  return seen.sort((a, b) => Math.abs(a.x - wanted) - Math.abs(b.x - wanted))[0] || null;
+  // A letter and a line of text in parts of the axes.
+  const wide = (isNarrow() ? 0.02 : 0.013) * curve.material.length * (shown.x[1] - shown.x[0]), high = 0.055 * (shown.y[1] - shown.y[0]);
+  const inside = (box, [x, y]) => x > box[0] && x < box[2] && y > box[1] && y < box[3];
+  const placed = seen.map((at) => {
+    const box = [at.x - wide / 2, at.y, at.x + wide / 2, at.y + high]; // it stands above its curve
+    const covered = taken.points.filter((point) => inside(box, point)).length
+      + 20 * taken.boxes.filter((one) => one[0] < box[2] && box[0] < one[2] && one[1] < box[3] && box[1] < one[3]).length;
+    return { at, box, cost: covered + 12 * Math.abs(at.x - wanted) / (shown.x[1] - shown.x[0]) };
+  });
+  const best = placed.sort((a, b) => a.cost - b.cost)[0];
+  if (best) taken.boxes.push(best.box);
+  return best ? best.at : null;
 }
 
 /// What the axes of Q against phase reach: the object's own values with room about them, or all.
@@ -40,6 +51,7 @@ function phaseReach(state) {
 
 function pureTraces(data, plan, shownBand, shown) {
   const theme = themeColours();
+  const taken = { boxes: [], points: shownBand === "all" ? [] : shownRows().map((i) => [epochs.phase[i], percent(bands[shownBand].q_scat[i])]) };
   report.pure_materials.forEach((curve) => {
     if (shownBand !== "all" && curve.band !== shownBand) return;
     const m = pureMaterials.indexOf(curve.material);
@@ -50,7 +62,7 @@ function pureTraces(data, plan, shownBand, shown) {
       hovertemplate: "%{y:.1f} % at %{x}°<extra>" + plain(curve.material + " " + bands[curve.band].label) + "</extra>",
     });
     if (shownBand !== "all") {
-      const at = pureLabel(curve, m, shown);
+      const at = pureLabel(curve, m, shown, taken);
       if (at) plan.annotations.push({ x: at.x, y: at.y, text: plain(curve.material), showarrow: false, yshift: 8, font: { size: 10, color: theme.soft }, bgcolor: theme.card, opacity: 0.85, borderpad: 1 });
     }
   });
@@ -197,15 +209,17 @@ const rgbFigure = {
       marker: { size: 3.5, color: rows.map((i) => epochs.phase[i]), coloraxis: "coloraxis" },
       hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %<br>%{text}",
     });
+    const isSmall = isNarrow() || paper.isPrinting;
+    const far = isSmall ? 1.25 : 1; // names of axes stand outside of the cube
     // The axes follow the object; material curves that go beyond are cut.
     const side = (b) => {
       const [low, high] = range(rows.map((i) => percent(bands[b].q_scat[i]))) || [0, 1];
       const pad = Math.max(0.5, 0.35 * (high - low));
-      return axis({ title: { text: plain(bands[b].label) + " [%]" }, backgroundcolor: theme.card, range: [low - pad, high + pad], nticks: 5 });
+      return axis({ title: { text: plain(bands[b].label) + " [%]", font: { size: isSmall ? 10 : 13 } }, tickfont: { size: isSmall ? 9 : 11 }, backgroundcolor: theme.card, range: [low - pad, high + pad], nticks: 5 });
     };
     return { data, layout: layout({
       coloraxis: phaseAxis({ y: -0.02 }), margin: { l: 0, r: 0, t: 8, b: 60 }, dragmode: "turntable",
-      scene: { xaxis: side(rgbBands[0]), yaxis: side(rgbBands[1]), zaxis: side(rgbBands[2]), aspectmode: "cube", dragmode: "turntable", camera: { eye: { x: 2.1, y: -1.25, z: 0.8 } } } }) };
+      scene: { xaxis: side(rgbBands[0]), yaxis: side(rgbBands[1]), zaxis: side(rgbBands[2]), aspectmode: "cube", dragmode: "turntable", camera: { eye: { x: far * 2.1, y: -far * 1.25, z: far * 0.8 } } } }) };
   },
   table: () => ({
     columns: [{ name: "time_utc", unit: "" }, { name: "phase_angle", unit: "deg" }, ...rgbBands.map((b) => ({ name: "q_scat " + bands[b].name, unit: "" }))],
@@ -220,11 +234,46 @@ function trackOf(pass) {
   return rows.length ? { source: track, rows } : { source: epochs, rows: pass.rows };
 }
 
-/// Where the time of an end of a track stands: outward of it, above or below the name of a direction that is there.
-function labelPlace(azimuth, altitude) {
-  const named = 45 * Math.round(azimuth / 45), north = (degrees) => Math.cos(degrees * Math.PI / 180);
-  const isNamed = altitude < 15 && Math.abs(azimuth - named) < 8;
-  return (isNamed ? (north(azimuth) < north(named) ? "bottom " : "top ") : "middle ") + (azimuth % 360 > 180 ? "right" : "left");
+/// Where letters of the whole sky stand, as seen from the zenith in pixels: the axis of altitude in the quarter that tracks leave most
+/// free (`axisAngle`), and the times at their ends (`place`, one after the other): where the fewest points of tracks and
+/// neither names of directions, altitudes nor other times are, outward before inward, or nowhere ("").
+function skyLetters(isSmall) {
+  const radius = isSmall ? 118 : 150, wide = isSmall ? 48 : 60, high = isSmall ? 12 : 15;
+  const at = (azimuth, altitude) => {
+    const r = (90 - altitude) / 90 * radius, turn = azimuth * Math.PI / 180;
+    return [-r * Math.sin(turn), -r * Math.cos(turn)];
+  };
+  const around = ([x, y], w, h) => [x - w / 2, y - h / 2, x + w / 2, y + h / 2];
+  const points = shownPasses().flatMap((pass) => {
+    const { source, rows } = trackOf(pass);
+    return rows.map((i) => at(source.az[i], source.alt[i]));
+  });
+  const meets = (a, b) => a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+  const pointsIn = (box) => points.filter(([x, y]) => meets(box, [x - 4, y - 4, x + 4, y + 4])).length;
+  // Angle from the right against the clock; numbers stand beside the axis, on its side with the clock.
+  const marksAt = (angle) => [30, 60].map((altitude) => {
+    const [x, y] = at(angle - 90, altitude), turn = (angle - 90) * Math.PI / 180;
+    return around([x + 20 * Math.sign(Math.cos(turn)), y - 7 * Math.sign(Math.sin(turn))], 28, 14);
+  });
+  const covered = (angle) => marksAt(angle).reduce((sum, box) => sum + pointsIn(box), 0);
+  const axisAngle = [45, 135, 225, 315].reduce((best, angle) => covered(angle) < covered(best) ? angle : best);
+  const taken = marksAt(axisAngle);
+  for (let k = 0; k < 8; ++k) taken.push(around(at(45 * k, -10), k % 2 ? 20 : 12, high)); // N, NE, ...
+  const place = (azimuth, altitude) => {
+    const [x, y] = at(azimuth, altitude), away = 9;
+    const side = x < 0 ? "left" : "right", other = x < 0 ? "right" : "left", up = y < 0 ? "top" : "bottom", down = y < 0 ? "bottom" : "top";
+    const places = [["middle", side], [up, side], [down, side], [up, other], ["middle", other], [down, other]];
+    const boxes = places.map(([vertical, across]) => {
+      const left = across === "left" ? x - away - wide : x + away, top = y + { top: -high - 3, middle: -high / 2, bottom: 3 }[vertical];
+      return [left, top, left + wide, top + high];
+    });
+    const cost = boxes.map((box, k) => taken.some((one) => meets(box, one)) ? Infinity : k / 10 + pointsIn(box));
+    const best = cost.indexOf(Math.min(...cost));
+    if (cost[best] === Infinity) return "";
+    taken.push(boxes[best]);
+    return places[best].join(" ");
+  };
+  return { axisAngle, place };
 }
 
 /// The shown tracks as azimuths and altitudes, where all of them together are smaller than a dot would be on the
@@ -280,6 +329,7 @@ const skyFigure = {
     const near = closeUp();
     if (near) return closeUpPlot(near, isAngle, { ...colours, colorbar: { ...colours.colorbar, y: -0.18 } });
     const shadow = { r: [], theta: [] };
+    const letters = skyLetters(isNarrow());
     shownPasses().forEach((pass) => {
       const track = trackOf(pass);
       data.push({
@@ -297,10 +347,10 @@ const skyFigure = {
         marker: { size: 6, color: pass.rows.map((i) => isAngle ? bands[middleBand].pa[i] : epochs.phase[i]), coloraxis: "coloraxis" },
         hovertemplate: "%{text}<br>azimuth %{theta:.1f}°, altitude %{customdata[0]:.1f}°<br>phase %{customdata[1]:.1f}°<extra></extra>",
       });
-      const ends = [track.rows[0], track.rows[track.rows.length - 1]];
+      const ends = [track.rows[0], track.rows[track.rows.length - 1]], places = ends.map((i) => letters.place(track.source.az[i], track.source.alt[i]));
       data.push({
         type: "scatterpolar", mode: "markers+text", r: ends.map((i) => 90 - track.source.alt[i]), theta: ends.map((i) => track.source.az[i]), cliponaxis: false,
-        text: ends.map((i) => "\u00a0\u00a0\u00a0" + track.source.time[i].slice(11, 19) + "\u00a0\u00a0\u00a0"), textposition: ends.map((i) => labelPlace(track.source.az[i], track.source.alt[i])), textfont: { size: isNarrow() ? 9 : 11 },
+        text: ends.map((i, k) => places[k] ? "\u00a0\u00a0\u00a0" + track.source.time[i].slice(11, 19) + "\u00a0\u00a0\u00a0" : ""), textposition: places.map((place) => place || "middle right"), textfont: { size: isNarrow() ? 9 : 11 },
         marker: { size: 8, symbol: ["circle-open", "x-thin-open"], color: theme.text, line: { width: 2 } }, hoverinfo: "skip", showlegend: false,
       });
     });
@@ -310,7 +360,7 @@ const skyFigure = {
       coloraxis: colours, margin: isNarrow() ? { l: 46, r: 46, t: 26, b: 84 } : { l: 62, r: 62, t: 26, b: 84 }, dragmode: false,
       polar: {
         bgcolor: theme.card,
-        radialaxis: { range: [0, 90], tickvals: [0, 30, 60, 90], ticktext: ["90°", "60°", "30°", ""], angle: 45, tickangle: 0, gridcolor: theme.grid, linecolor: theme.line, tickfont: { color: theme.soft } },
+        radialaxis: { range: [0, 90], tickvals: [0, 30, 60, 90], ticktext: ["90°", "60°", "30°", ""], angle: letters.axisAngle, tickangle: letters.axisAngle, gridcolor: theme.grid, linecolor: theme.line, tickfont: { color: theme.soft } },
         angularaxis: { rotation: 90, direction: "counterclockwise", tickvals: [0, 45, 90, 135, 180, 225, 270, 315], ticktext: ["N", "NE", "E", "SE", "S", "SW", "W", "NW"], gridcolor: theme.grid, linecolor: theme.line },
       } }) };
   },

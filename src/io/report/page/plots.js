@@ -2,11 +2,16 @@
 (() => {
   "use strict";
   const page = JSON.parse(document.getElementById("data").textContent);
-  document.title = "umov: " + page.title;
-  document.getElementById("title").textContent = page.title;
+  document.title = "umov: " + umovFigure.words(page.title);
+  document.getElementById("title").textContent = umovFigure.words(page.title);
+  if (page.lead) {
+    const lead = document.getElementById("lead");
+    lead.textContent = umovFigure.words(page.lead);
+    lead.hidden = false;
+  }
   for (const note of page.notes) {
     const item = document.createElement("li");
-    item.textContent = note;
+    item.textContent = umovFigure.words(note);
     document.getElementById("notes").append(item);
   }
   // All cards first: a plot takes the width that its card has once the grid is laid out.
@@ -14,7 +19,7 @@
     const card = document.createElement("section");
     card.className = "card";
     const heading = document.createElement("h2");
-    heading.textContent = figure.title;
+    heading.textContent = umovFigure.words(figure.title);
     const plot = document.createElement("div");
     plot.className = "plot";
     card.append(heading, plot);

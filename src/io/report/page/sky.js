@@ -36,11 +36,12 @@
   };
   const shareOf = (mag) => faintest > brightest ? (faintest - mag) / (faintest - brightest) : 1;
   const colourOf = (track) => track.mag !== null ? mixed(shareOf(track.mag)) : hasMagnitudes ? "#8a93a2" : track.visible > 0 ? "#cc4778" : "#7e8aa0";
+  const seen = (track) => track.alt_visible ?? track.alt - 90; // what is never visible stands below all that is
   // The best first: bright, and without magnitudes high.
   const order = tracks.map((_, i) => i).sort((a, b) => {
     const x = tracks[a], y = tracks[b];
-    if (hasMagnitudes) return (x.mag ?? 99) - (y.mag ?? 99) || y.alt - x.alt;
-    return (y.visible > 0) - (x.visible > 0) || y.alt - x.alt;
+    if (hasMagnitudes) return (x.mag ?? 99) - (y.mag ?? 99) || seen(y) - seen(x);
+    return seen(y) - seen(x);
   });
 
   const best = new Set(order.slice(0, drawnFull));
@@ -118,18 +119,18 @@
   });
   /// Whether a track other than `i` runs under a box.
   const isCrossed = (box, i) => order.slice(0, drawnFull).some((j) => j !== i && places[j].some(([x, y]) => x > box[0] - 4 && x < box[2] + 4 && y > box[1] - 4 && y < box[3] + 4));
-  /// A label beside a track where nothing else is, or null.
+  /// A label beside a track where nothing else is, at the most the track itself, or null.
   const labelFor = (i, taken, isForced) => {
     const track = tracks[i], text = textOf(track, isForced || !isSmall()), font = fontSize();
     const width = 0.56 * font * text.length + 8, height = 1.3 * font;
-    for (const share of [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92])
-      for (const side of [1, -1]) {
+    for (const [share, own] of [undefined, i].flatMap((one) => [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92].map((at) => [at, one])))
+      for (const [across, down] of [[1, 0], [-1, 0], [0, -1], [0, 1]]) { // beside it, above, below
         const [x, y] = places[i][labelled[i][Math.round(share * (labelled[i].length - 1))]];
-        const left = side > 0 ? x + 8 : x - 8 - width, top = y - height / 2;
+        const left = x - width / 2 + across * (width / 2 + 8), top = y - height / 2 + down * (height / 2 + 8);
         const box = [left, top, left + width, top + height];
         const isInside = box[0] > 2 && box[1] > 2 && box[2] < size - 2 && box[3] < size - 2;
         const isFree = taken.every((other) => box[2] < other[0] || box[0] > other[2] || box[3] < other[1] || box[1] > other[3]);
-        if (!isInside || !(isForced || (isFree && !isCrossed(box, i)))) continue;
+        if (!isInside || !(isForced || (isFree && !isCrossed(box, own)))) continue;
         taken.push(box);
         const group = svg("g", { "pointer-events": "none" });
         group.append(svg("rect", { x: left, y: top, width, height, rx: 4, fill: "var(--card)", opacity: 0.86 }),
@@ -189,19 +190,23 @@
     point(near, true);
   };
 
-  const seconds = (s) => s >= 60 ? Math.floor(s / 60) + " min " + String(Math.round(s % 60)).padStart(2, "0") + " s" : Math.round(s) + " s";
+  const two = (n) => String(n).padStart(2, "0");
+  const duration = (seconds) => {
+    const s = Math.round(seconds), min = Math.round(s / 60);
+    return s < 60 ? s + " s" : s < 3600 ? Math.floor(s / 60) + " min " + two(s % 60) + " s" : Math.floor(min / 60) + " h " + two(min % 60) + " min";
+  };
   const columns = [
     { name: "object", text: (t) => t.name, key: (t) => t.name },
     { name: "highest [UTC]", text: (t) => isOneDay ? clock(t.culmination) : t.culmination.slice(5, 19).replace("T", " "), key: (t) => t.culmination },
     ...(hasMagnitudes ? [{ name: "brightest", wide: true, text: (t) => clock(t.brightest), key: (t) => t.brightest || "9" }] : []),
-    { name: "alt [°]", number: true, text: (t) => t.alt.toFixed(0), key: (t) => -t.alt },
+    { name: "alt [°]", number: true, text: (t) => t.alt_visible === null ? "(" + t.alt.toFixed(0) + ")" : t.alt_visible.toFixed(0), key: (t) => -seen(t) },
     ...(hasMagnitudes ? [{ name: "mag", number: true, text: (t) => t.mag === null ? "" : t.mag.toFixed(1), key: (t) => t.mag ?? 99 }] : []),
     { name: "phase [°]", number: true, middle: true, text: (t) => t.phase[0] === null ? "" : t.phase[0].toFixed(0) + "–" + t.phase[1].toFixed(0), key: (t) => t.phase[0] ?? 999 },
-    { name: "visible", number: true, middle: true, text: (t) => t.visible > 0 ? seconds(t.visible) : "", key: (t) => -t.visible },
+    { name: "visible", number: true, middle: true, text: (t) => t.visible > 0 ? duration(t.visible) : "", key: (t) => -t.visible },
     { name: "rise", wide: true, text: (t) => clock(t.rise) || "before", key: (t) => t.rise },
     { name: "set", wide: true, text: (t) => clock(t.set) || "after", key: (t) => t.set || "9" },
   ];
-  const sorting = { column: columns[1], isReversed: false };
+  const sorting = { column: columns.find((column) => page.order && column.name.split(" ")[0] === page.order) || columns[1], isReversed: false };
   const fillTable = () => {
     const rows = tracks.map((_, i) => i).sort((a, b) => {
       const x = sorting.column.key(tracks[a]), y = sorting.column.key(tracks[b]);
@@ -234,7 +239,7 @@
 
   document.title = "umov: " + page.title;
   byId("title").textContent = page.title;
-  byId("subtitle").textContent = (isOneDay && tracks.length ? tracks[0].culmination.slice(0, 10) + ": " : "") + tracks.length + (tracks.length === 1 ? " pass" : " passes") + (page.model ? "; magnitudes: " + page.model : "");
+  byId("subtitle").textContent = (isOneDay && tracks.length ? tracks[0].culmination.slice(0, 10) + ": " : "") + tracks.length + (tracks.length === 1 ? " pass" : " passes") + (page.model ? "; magnitudes: " + page.model.replace(/\bnm:([0-9.]+)/, "$1 nm") : "");
   for (const note of page.notes) byId("notes").append(html("li", {}, note));
   drawChart();
   fillTable();

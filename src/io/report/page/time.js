@@ -82,12 +82,12 @@ function magnitudeSpan(shown) {
 
 /// What an axis in percent reaches: all values, and of their errors those that are no wider than the curve is high. One
 /// stretch of light too faint to be known would else flatten all the rest.
-const percentSpan = (name) => (shown) => {
+const percentSpan = (name, least = -Infinity) => (shown) => {
   const values = [], ends = [];
   for (const i of shown.flatMap((pass) => pass.rows))
     for (const band of bands) {
       values.push(percent(band[name][i]));
-      const ends_of = within(percent(band[name][i]), percent(band[name + "_err"][i]));
+      const ends_of = within(percent(band[name][i]), percent(band[name + "_err"][i]), least);
       if (ends_of) ends.push(ends_of);
     }
   const known = range(values);
@@ -221,7 +221,7 @@ const timeFigures = [
     id: "p_pa", isAgainstTime: true, title: "Degree and angle of linear polarization", height: () => isNarrow() ? 400 : 460, controls: [bandControl],
     caption: "p in percent; position angle in [0°, 180°) from " + skyNorth + ". The angle is cyclic: no line joins 180° to 0°.",
     build: (state) => timeFigure([
-      { title: "p [%]", at: (band, i) => percent(band.p[i]), bounds: (band, i) => within(percent(band.p[i]), percent(band.p_err[i]), 0, 100), span: percentSpan("p"), spread: "p", factor: 100, digits: "2f", unit: "%" },
+      { title: "p [%]", at: (band, i) => percent(band.p[i]), bounds: (band, i) => within(percent(band.p[i]), percent(band.p_err[i]), 0, 100), span: percentSpan("p", 0), spread: "p", factor: 100, digits: "2f", unit: "%" },
       { title: "angle [°]", at: (band, i) => band.pa[i], cyclic: true, range: [0, 180], dtick: 45, digits: "1f", unit: "°",
         bounds: (band, i) => within(band.pa[i], band.pa_err[i], 0, 180) }], state),
     table: () => tidyTable([["p", "", (b, i) => b.p[i]], ["p_err", "", (b, i) => b.p_err[i]], ["pa", "deg", (b, i) => b.pa[i]], ["pa_err", "deg", (b, i) => b.pa_err[i]]]),

@@ -183,5 +183,28 @@ TEST(Schema, IsJsonWithEveryTable) {
       schema["properties"]["material"]["additionalProperties"]["properties"].contains("body"));
 }
 
+// The parser of TOML goes one call deeper for each name of a dotted key and ends by a segmentation
+// fault at some ten thousand.
+TEST(Scenario, KeysOfEndlessDepthAreRefused) {
+  std::string deep = "a";
+  for (int k = 0; k < 100'000; ++k)
+    deep += ".a";
+  for (const std::string &text :
+       {deep + " = 1", "[" + deep + "]", "[[" + deep + "]]", "x = { " + deep + " = 1 }",
+        "y = \"\"\"\n. # \"\n\"\"\"\n" + deep + " = 1"}) {
+    const auto read = read_scenario_text(text, "deep.toml", {});
+    ASSERT_FALSE(read.has_value());
+    EXPECT_NE(read.error().message.find("names with dots between"), std::string::npos);
+    EXPECT_EQ(read.error().where.line, text[0] == 'y' ? 4u : 1u);
+  }
+  EXPECT_FALSE(read_scenario_text(good, "good.toml", {deep + "=1"}).has_value());
+  EXPECT_FALSE(read_scenario_text(good, "good.toml", {"title={" + deep + "=1}"}).has_value());
+  // Dots that are no names: in texts, comments and lists of numbers.
+  const std::string dots(1000, '.');
+  EXPECT_TRUE(
+      read_scenario_text(with("a \\\"quoted\\\" title", dots) + "# " + dots + "\n", "good.toml", {})
+          .has_value());
+}
+
 } // namespace
 } // namespace umov

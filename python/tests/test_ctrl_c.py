@@ -1,0 +1,125 @@
+"""Every long call hears Ctrl-C within a fifth of a second, and gives what is done.
+
+The signal comes after so much of the processor's time, and how long the call goes on is counted in it too: what a busy
+machine does besides is not the call's. SIGPROF has Python's handler of Ctrl-C; all that follows is that of SIGINT.
+"""
+import contextlib
+import signal
+import time
+
+import numpy as np
+import pytest
+import umov
+from astropy.time import Time
+from conftest import DATA, EXAMPLES, ROOT
+
+CATALOGUE = ROOT / "tests/data/tle/mixed_979_2018-01-20.tle"
+#: A fifth of a second on one thread, and what pages take that are given back to the system.
+LONGEST_S = 0.3
+
+
+@contextlib.contextmanager
+def ctrl_c(after_s):
+    """Yields a call that says for how long the work went on after Ctrl-C."""
+    before = signal.signal(signal.SIGPROF, signal.default_int_handler)
+    begun = time.process_time()
+    signal.setitimer(signal.ITIMER_PROF, after_s)
+    try:
+        yield lambda: time.process_time() - begun - after_s
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def many_times(count):
+    """Times three seconds apart."""
+    return Time(2458139.7 + np.arange(count) / 1440 / 20, format="jd")
+
+
+def grid(*shape):
+    return np.linspace(0, 89, shape[0])[:, None], np.linspace(0, 89, shape[1])[None, :]
+
+
+def sums_of(scene):
+    sums, poses = umov.Sums(scene, threads=1, cache=False), umov.random_poses(300_000, 60)
+    return lambda: sums.abundances(*poses)
+
+
+def colours_of(plate):
+    sums = umov.Sums(plate, threads=1)
+    made = sums.abundances(*umov.random_poses(2_000_000, 60))
+    return lambda: sums.apply(made)
+
+
+def states(_):
+    times = many_times(20_000)
+    return lambda: umov.propagate(CATALOGUE, times, threads=1, allow_bad_checksum=True)
+
+
+def exposures(_):
+    scenario = umov.Scenario(EXAMPLES / "observe_hst.toml", set={"observation.exposure_s": 0.02})
+    return lambda: umov.observe(scenario, threads=1)
+
+
+pytestmark = pytest.mark.filterwarnings("ignore::umov.UmovWarning")  # of old elements
+
+#: What makes the call ready, and after how much of it Ctrl-C comes [s].
+LONG = {
+    "abundances": (sums_of, 0.5), "apply": (colours_of, 0.2), "propagate": (states, 0.3), "propagate later": (states, 1.0),
+    "ephemeris": (lambda _: lambda: umov.ephemeris(DATA / "tle/hst.tle", "maui", "2018-01-20T00:00Z", "2018-01-24T00:00Z",
+                                                   step_s=0.1, threads=1), 0.3),
+    "brdf": (lambda _: lambda: umov.brdf("gold", 550.0, *grid(2000, 700)), 0.2),
+    "render": (lambda hst: lambda: umov.render(hst, sun=[1, 1, 1], observer=[0, 1, 1], side=1500, threads=1), 0.5),
+    "random poses": (lambda _: lambda: umov.random_poses(20_000_000, 60), 0.3),
+    "grid of a run": (lambda _: lambda: umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 0.005}, threads=1), 0.3),
+    "observe": (exposures, 1.5),
+}
+
+
+@pytest.mark.parametrize("name", LONG)
+def test_ctrl_c_is_heard(name, hst, plate):
+    make, after_s = LONG[name]
+    call = make(plate if name == "apply" else hst)
+    with ctrl_c(after_s) as late:
+        with pytest.raises(KeyboardInterrupt):
+            call()
+        assert late() < LONGEST_S
+
+
+def test_poses_that_were_lit_are_given(hst):
+    engine = umov.Engine(hst, bands=["nm:550"], method="rays", threads=1)
+    sun, observer = (one.reshape(2, 10_000, 3) for one in umov.random_poses(20_000, 60))
+    for call in (engine.evaluate, engine.light):
+        with ctrl_c(0.3), pytest.raises(umov.Interrupted) as caught:
+            call(sun, observer)
+        part = caught.value.partial
+        part, method = (part, None) if call == engine.evaluate else (part.stokes, part.method)
+        assert part.shape[1:] == (1, 4) and 0 < len(part) < 20_000
+        assert method is None or method.shape == part.shape[:1]
+        few = min(len(part), 50)
+        np.testing.assert_array_equal(part[:few], engine.evaluate(sun[0, :few], observer[0, :few]))
+
+
+def test_sums_that_were_made_are_given(plate):
+    sums, (sun, observer) = umov.Sums(plate, threads=1), umov.random_poses(3_000_000, 60)
+    with ctrl_c(0.2), pytest.raises(umov.Interrupted, match="poses") as caught:
+        sums.abundances(sun, observer)
+    part = caught.value.partial
+    assert 0 < len(part.sum) < len(sun)
+    np.testing.assert_array_equal(part.sum, sums.abundances(sun[:len(part.sum)], observer[:len(part.sum)]).sum)
+    assert sums.apply(part).stokes.shape == (len(part.sum), 3, 4)
+
+
+def test_sums_tell_how_far_they_are(plate):
+    seen = []
+    umov.Sums(plate).abundances(*umov.random_poses(1_000_000, 60), progress=lambda *news: seen.append(news))
+    assert {what for what, _, _ in seen} == {"poses"} and seen[-1][1:] == (1_000_000, 1_000_000)
+
+
+def test_states_that_nobody_came_to_are_marked():
+    times = many_times(20_000)
+    with ctrl_c(1.5), pytest.raises(umov.Interrupted) as caught:
+        umov.propagate(CATALOGUE, times, threads=1, allow_bad_checksum=True)
+    part = caught.value.partial
+    assert (part.error == -1).any() and (part.error == 0).any()
+    np.testing.assert_array_equal(np.isnan(part.position_km[..., 0]), part.error != 0)

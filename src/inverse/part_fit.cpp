@@ -1,0 +1,316 @@
+// How much light the parts of a body give, and how rough they are, as fits best at one attitude:
+// docs/theory/inverse.md, section 2.
+
+#include "inverse/likelihood_sums.h"
+
+#include "algebra/dense.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umov::inverse {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// One fit. Unknowns are in units of their standard deviations: first ln of the amounts of all
+/// parts, then ln of the slopes of those that have some.
+class PartFit {
+public:
+  PartFit(const CurveLikelihood &likelihood, const ModelLight &model);
+  CurveLikelihood::FittedLight run();
+
+private:
+  /// Part and whether it is its slope.
+  struct Unknown {
+    std::size_t part = 0;
+    bool is_slope = false;
+  };
+  /// A number that is linear in the light: I of a sample, or electrons of a channel.
+  struct Linear {
+    std::size_t at = 0, group = 0;
+    double data = 0, light = 0;
+  };
+  void put_slopes();
+  void put_rows(const Weighed &data);
+  void set(const VectorXd &off);
+  [[nodiscard]] double change(std::size_t unknown, std::size_t at) const;
+  double residuals();
+  bool trust();
+  void jacobian();
+  void eliminate(MatrixXd &normal) const;
+  bool step(VectorXd &off);
+
+  const CurveLikelihood &of_;
+  const ModelLight &model_;
+  std::size_t cells_;
+  std::vector<Unknown> unknowns_;
+  /// ln I(y)/I(0) = first y + second y^2, y the slope's unknown: [part * cells + cell].
+  std::vector<double> first_, second_;
+  std::vector<double> factor_, by_slope_; ///< of each part now; derivative of its ln
+  std::vector<Linear> linear_;
+  MatrixXd linear_parts_;           ///< light of the parts in those numbers
+  std::vector<std::size_t> ratios_; ///< rows with q and u
+  std::vector<double> i_, q_, u_;   ///< light of the model now
+  std::vector<double> root_;        ///< of what each number is trusted
+  std::vector<double> light_;       ///< of the linear numbers now
+  Gains gains_;
+  GainSums sums_;
+  VectorXd residual_;
+  MatrixXd jacobian_;
+  double log_det_ = 0;
+};
+
+PartFit::PartFit(const CurveLikelihood &likelihood, const ModelLight &model)
+    : of_(likelihood), model_(model), cells_(model.i.size()) {
+  for (std::size_t p = 0; p < model.parts.size(); ++p)
+    if (model.parts[p].sd > 0)
+      unknowns_.push_back({p, false});
+  for (std::size_t p = 0; p < model.parts.size(); ++p)
+    if (!model.parts[p].smooth.empty())
+      unknowns_.push_back({p, true});
+  put_slopes();
+  put_rows(of_.weigh(model));
+  i_.resize(cells_);
+  q_.resize(cells_);
+  u_.resize(cells_);
+  light_.resize(linear_.size());
+  const auto numbers = static_cast<Index>(linear_.size() + 2 * ratios_.size());
+  residual_.resize(numbers);
+  root_.assign(static_cast<std::size_t>(numbers), 1);
+  jacobian_.resize(numbers, static_cast<Index>(unknowns_.size()));
+}
+
+/// Far from a lobe's middle its light goes with a power of e of the slope, and near it nearly so.
+void PartFit::put_slopes() {
+  const std::size_t size = model_.parts.size() * cells_;
+  first_.assign(size, 0);
+  second_.assign(size, 0);
+  factor_.assign(size, 1);
+  by_slope_.assign(size, 0);
+  for (const Unknown &unknown : unknowns_) {
+    const PartLight &part = model_.parts[unknown.part];
+    for (std::size_t k = 0; unknown.is_slope && k < cells_; ++k) {
+      constexpr double dark = 1e-6; // of all light: whatever it becomes is not seen
+      const double least = dark * model_.i[k];
+      if (!(model_.i[k] > 0) || !(std::max({part.i[k], part.smooth[k], part.rough[k]}) > least))
+        continue;
+      const double less = std::log((part.smooth[k] + least) / (part.i[k] + least));
+      const double more = std::log((part.rough[k] + least) / (part.i[k] + least));
+      first_[unknown.part * cells_ + k] = (more - less) / 2;
+      second_[unknown.part * cells_ + k] = (more + less) / 2;
+    }
+  }
+}
+
+void PartFit::put_rows(const Weighed &data) {
+  std::vector<std::pair<std::size_t, double>> from; // row, root of its weight
+  for (std::size_t k = 0; k < of_.rows_.size(); ++k) {
+    const auto &row = of_.rows_[k];
+    if (row.l_qq > 0 && model_.i[row.at] > 0)
+      ratios_.push_back(k);
+    if (!(data.weights[k] > 0))
+      continue;
+    const double root = std::sqrt(data.weights[k]);
+    from.emplace_back(k, root);
+    linear_.push_back({row.at, row.group, root * row.i, root * model_.i[row.at]});
+  }
+  if (of_.counts_)
+    for (const auto &set : of_.counts_->sets())
+      for (std::size_t k = set.begin; k < set.begin + set.size; ++k)
+        linear_.push_back({set.at, set.group, data.counts.net[k], data.counts.light[k]});
+  const auto parts = static_cast<Index>(model_.parts.size());
+  linear_parts_.resize(static_cast<Index>(linear_.size()), parts);
+  for (Index p = 0; p < parts; ++p)
+    for (std::size_t k = 0; k < linear_.size(); ++k)
+      linear_parts_(static_cast<Index>(k), p) =
+          k < from.size()
+              ? from[k].second * model_.parts[static_cast<std::size_t>(p)].i[linear_[k].at]
+              : data.counts.parts[static_cast<std::size_t>(p)][k - from.size()];
+}
+
+/// Light with the parts so far off.
+void PartFit::set(const VectorXd &off) {
+  const std::size_t parts = model_.parts.size();
+  std::vector<double> amount(parts, 1), slope(parts, 0);
+  for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+    const double value = off[static_cast<Index>(k)];
+    const std::size_t p = unknowns_[k].part;
+    (unknowns_[k].is_slope ? slope[p] : amount[p]) =
+        unknowns_[k].is_slope ? value : std::exp(model_.parts[p].sd * value);
+  }
+  std::ranges::copy(model_.i, i_.begin());
+  std::ranges::copy(model_.q, q_.begin());
+  std::ranges::copy(model_.u, u_.begin());
+  constexpr double most = 5; // e-folds: beyond, three roughnesses say nothing
+  for (std::size_t p = 0; p < parts; ++p) {
+    const PartLight &part = model_.parts[p];
+    for (std::size_t k = 0; k < cells_; ++k) {
+      const std::size_t at = p * cells_ + k;
+      const double y = slope[p], power = y * (first_[at] + y * second_[at]);
+      by_slope_[at] = std::abs(power) < most ? first_[at] + 2 * y * second_[at] : 0;
+      factor_[at] = amount[p] * (power == 0 ? 1 : std::exp(std::clamp(power, -most, most)));
+      const double more = factor_[at] - 1;
+      i_[k] += more * part.i[k];
+      q_[k] += more * part.q[k];
+      u_[k] += more * part.u[k];
+    }
+  }
+}
+
+/// Derivative of the factor of the part that an unknown is of.
+double PartFit::change(std::size_t unknown, std::size_t at) const {
+  const auto &[part, is_slope] = unknowns_[unknown];
+  const std::size_t k = part * cells_ + at;
+  return factor_[k] * (is_slope ? by_slope_[k] : model_.parts[part].sd);
+}
+
+/// Puts residuals of the best gains; returns chi-square without the parts' priors.
+double PartFit::residuals() {
+  sums_ = GainSums{std::vector<double>(of_.groups_, 0), std::vector<double>(of_.groups_, 0)};
+  for (std::size_t k = 0; k < linear_.size(); ++k) {
+    double light = linear_[k].light;
+    for (std::size_t p = 0; p < model_.parts.size(); ++p)
+      light += (factor_[p * cells_ + linear_[k].at] - 1) *
+               linear_parts_(static_cast<Index>(k), static_cast<Index>(p));
+    light_[k] = light;
+    sums_.add(linear_[k].group, root_[k] * root_[k], linear_[k].data, light);
+  }
+  gains_ = of_.gains_of(sums_);
+  for (std::size_t k = 0; k < linear_.size(); ++k)
+    residual_[static_cast<Index>(k)] =
+        root_[k] * (linear_[k].data - gains_.gain[linear_[k].group] * light_[k]);
+  for (std::size_t j = 0; j < ratios_.size(); ++j) {
+    const auto &row = of_.rows_[ratios_[j]];
+    const double light = std::max(i_[row.at], 1e-9 * model_.i[row.at]);
+    const double dq = row.q - q_[row.at] / light, du = row.u - u_[row.at] / light;
+    const std::size_t at = linear_.size() + 2 * j;
+    residual_[static_cast<Index>(at)] = root_[at] * row.l_qq * dq;
+    residual_[static_cast<Index>(at + 1)] = root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
+  }
+  return residual_.squaredNorm() + gains_.prior_chi2;
+}
+
+/// Numbers that are likely wrong count less, each by itself, as in the mixture of `compare`; false
+/// if all are trusted.
+bool PartFit::trust() {
+  if (!(of_.errors_.outlier_share > 0))
+    return false;
+  const double wide = of_.errors_.outlier_factor, share = of_.errors_.outlier_share;
+  for (std::size_t k = 0; k < root_.size(); ++k) {
+    const double x = residual_[static_cast<Index>(k)] / root_[k];
+    // Which of both it is by logarithms: far out both densities are 0 in double precision.
+    const double odds =
+        std::log(share / ((1 - share) * wide)) + x * x / 2 * (1 - 1 / (wide * wide));
+    const double wrong = 1 / (1 + std::exp(-odds));
+    root_[k] = std::sqrt(1 - wrong + wrong / (wide * wide));
+  }
+  return true;
+}
+
+void PartFit::jacobian() {
+  for (std::size_t n = 0; n < unknowns_.size(); ++n) {
+    const auto column = static_cast<Index>(n);
+    const auto part = static_cast<Index>(unknowns_[n].part);
+    const PartLight &light = model_.parts[unknowns_[n].part];
+    for (std::size_t k = 0; k < linear_.size(); ++k)
+      jacobian_(static_cast<Index>(k), column) = -root_[k] * gains_.gain[linear_[k].group] *
+                                                 change(n, linear_[k].at) *
+                                                 linear_parts_(static_cast<Index>(k), part);
+    for (std::size_t j = 0; j < ratios_.size(); ++j) {
+      const auto &row = of_.rows_[ratios_[j]];
+      const double all = std::max(i_[row.at], 1e-9 * model_.i[row.at]);
+      const double more = change(n, row.at) / all;
+      const double dq = -more * (light.q[row.at] - q_[row.at] / all * light.i[row.at]);
+      const double du = -more * (light.u[row.at] - u_[row.at] / all * light.i[row.at]);
+      const std::size_t at = linear_.size() + 2 * j;
+      jacobian_(static_cast<Index>(at), column) = root_[at] * row.l_qq * dq;
+      jacobian_(static_cast<Index>(at + 1), column) =
+          root_[at + 1] * (row.l_uq * dq + row.l_uu * du);
+    }
+  }
+}
+
+/// The gains and their scale move with the parts, and are eliminated (Schur's complement): gains of
+/// groups, which are normal about the scale, then the scale itself.
+void PartFit::eliminate(MatrixXd &normal) const {
+  const auto count = static_cast<Index>(unknowns_.size());
+  const bool has_clouds = of_.errors_.has_clouds;
+  MatrixXd along = MatrixXd::Zero(count, static_cast<Index>(of_.groups_));
+  for (std::size_t k = 0; k < linear_.size(); ++k)
+    along.col(static_cast<Index>(linear_[k].group)) -=
+        root_[k] * light_[k] * jacobian_.row(static_cast<Index>(k)).transpose();
+  // As gains_of has it, about the scale.
+  const double sd = std::max(of_.errors_.zero_point_sd, 1e-6) * gains_.scale;
+  const double stiffness = has_clouds ? 0 : 1 / (sd * sd);
+  VectorXd by_scale = VectorXd::Zero(count);
+  double scale = of_.is_absolute_ && of_.errors_.scale_sd > 0
+                     ? 1 / (of_.errors_.scale_sd * of_.errors_.scale_sd)
+                     : 0;
+  for (std::size_t g = 0; g < of_.groups_; ++g) {
+    const double own = sums_.square[g] + stiffness;
+    if (!(own > 0))
+      continue;
+    const auto column = along.col(static_cast<Index>(g));
+    normal -= column * column.transpose() / own;
+    by_scale += column * (stiffness / own);
+    scale += stiffness * sums_.square[g] / own;
+  }
+  if (!has_clouds && scale > 0)
+    normal -= by_scale * by_scale.transpose() / scale;
+}
+
+/// A Gauss-Newton step; true if it was next to nothing.
+bool PartFit::step(VectorXd &off) {
+  jacobian();
+  MatrixXd normal = algebra::gram(jacobian_);
+  eliminate(normal);
+  normal.diagonal().array() += 1; // the priors
+  const algebra::SymmetricFactor factor(normal);
+  log_det_ = factor.log_determinant();
+  VectorXd by = factor.solve(-(algebra::transposed_times(jacobian_, residual_) + off));
+  constexpr double longest = 2, smallest = 5e-3; // standard deviations
+  const double length = by.cwiseAbs().maxCoeff();
+  if (length > longest)
+    by *= longest / length;
+  off += by;
+  return length < smallest;
+}
+
+CurveLikelihood::FittedLight PartFit::run() {
+  VectorXd off = VectorXd::Zero(static_cast<Index>(unknowns_.size()));
+  VectorXd best = off;
+  double least = 1e300;
+  constexpr int rounds = 8;
+  for (int round = 0; round < rounds && !unknowns_.empty(); ++round) {
+    set(off);
+    const double objective = residuals() + off.squaredNorm();
+    if (!(objective < least)) { // too far: half of the way
+      if ((off - best).cwiseAbs().maxCoeff() < 1e-3)
+        break;
+      off = (off + best) / 2;
+      continue;
+    }
+    least = objective;
+    best = off;
+    if (trust())
+      residuals(); // gains go with what each number counts
+    if (step(off)) {
+      best = off;
+      break;
+    }
+  }
+  set(best);
+  return {i_, q_, u_, {best.data(), best.data() + best.size()}, log_det_};
+}
+
+} // namespace umov::inverse
+
+namespace umov {
+
+CurveLikelihood::FittedLight CurveLikelihood::fit_parts(const ModelLight &model) const {
+  return inverse::PartFit(*this, model).run();
+}
+
+} // namespace umov

@@ -1,0 +1,211 @@
+// Parts of the light that are not quite known: against integrals and searches by brute force, and
+// on bodies whose light is written down here.
+
+#include "inverse/tests/box_light.h"
+
+#include <array>
+#include <numbers>
+
+namespace umov {
+namespace {
+
+/// One band: a lobe whose light goes with a power of the slopes, and the rest.
+struct Toy {
+  std::vector<double> all, lobe, smooth, rough, q, rest, none;
+  Toy() {
+    for (int k = 0; k < 30; ++k) {
+      const double x = 0.2 * k - 3;
+      none.push_back(0);
+      lobe.push_back(2 * std::exp(-x * x));
+      smooth.push_back(lobe.back() * std::exp(-0.4 * (x * x - 1)));
+      rough.push_back(lobe.back() * std::exp(0.4 * (x * x - 1)));
+      rest.push_back(1 + 0.1 * x);
+      all.push_back(lobe.back() + rest.back());
+      q.push_back(0.3 * lobe.back());
+    }
+  }
+  /// With a lobe that is so much off, in standard deviations.
+  [[nodiscard]] std::array<std::vector<double>, 2> off(double amount, double slope) const {
+    std::array<std::vector<double>, 2> out{all, q};
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const double x = 0.2 * static_cast<double>(k) - 3;
+      const double times = std::exp(0.1 * amount + slope * 0.4 * (x * x - 1));
+      out[0][k] += (times - 1) * lobe[k];
+      out[1][k] *= times;
+    }
+    return out;
+  }
+  [[nodiscard]] ObservedCurve seen(double amount, double slope) const {
+    const auto [i, p] = off(amount, slope);
+    ObservedCurve out;
+    out.bands = {"a"};
+    out.epochs.resize(i.size());
+    for (std::size_t k = 0; k < i.size(); ++k) {
+      ObservedSample s;
+      s.epoch = k;
+      s.i = 3 * i[k] * (1 + 0.01 * noise(5, k));
+      s.i_sd = 0.03 * i[k];
+      s.q = p[k] / i[k] + 0.01 * noise(6, k);
+      s.u = 0.01 * noise(7, k);
+      s.cov_qq = s.cov_uu = 1e-4;
+      out.samples.push_back(s);
+    }
+    return out;
+  }
+};
+
+TEST(PartFit, FindsWhatALobeIsOff) {
+  const Toy toy;
+  const CurveLikelihood likelihood(toy.seen(1.4, -0.7), no_floor());
+  const PartLight lobe{toy.lobe, toy.q, toy.none, toy.smooth, toy.rough, 0.1};
+  const PartLight parts[] = {lobe};
+  const auto found = likelihood.fit_parts({toy.all, toy.q, toy.none, {}, parts});
+  ASSERT_EQ(found.off.size(), 2u);
+  EXPECT_NEAR(found.off[0], 1.4, 0.3);
+  EXPECT_NEAR(found.off[1], -0.7, 0.1);
+}
+
+// A number a thousand standard deviations off: both densities of the mixture are 0 in double
+// precision, and it counts as wrong (its root is one over the factor).
+TEST(PartFit, NumbersFarOutLeaveItFinite) {
+  const Toy toy;
+  ObservedCurve seen = toy.seen(0, 0);
+  seen.samples[7].i *= 1e4;
+  CurveErrors errors = no_floor();
+  errors.outlier_share = 0.05;
+  const CurveLikelihood likelihood(seen, errors);
+  const PartLight parts[] = {{toy.lobe, toy.q, toy.none, toy.smooth, toy.rough, 0.1}};
+  const auto found = likelihood.fit_parts({toy.all, toy.q, toy.none, {}, parts});
+  for (const double off : found.off)
+    EXPECT_TRUE(std::isfinite(off));
+  EXPECT_TRUE(std::isfinite(found.log_det));
+}
+
+/// -2 ln of the integral over both unknowns, by a sum over a grid of models without any.
+double integral(const Toy &toy, const CurveLikelihood &likelihood) {
+  constexpr double step = 0.05;
+  double sum = 0;
+  for (double a = -4; a <= 4; a += step)
+    for (double s = -3; s <= 3; s += step) {
+      const auto [i, q] = toy.off(a, s);
+      const double prior = std::exp(-(a * a + s * s) / 2) / (2 * std::numbers::pi);
+      sum += prior * std::exp(-likelihood.compare({i, q, toy.none}).minus_2_log / 2);
+    }
+  return -2 * std::log(sum * step * step);
+}
+
+TEST(PartFit, IntegratesOverWhatItDoesNotKnow) {
+  const Toy toy;
+  const PartLight parts[] = {{toy.lobe, toy.q, toy.none, toy.smooth, toy.rough, 0.1}};
+  for (const auto &[amount, slope] : {std::pair(0.0, 0.0), {1.0, 0.5}, {-1.0, 1.0}}) {
+    const CurveLikelihood likelihood(toy.seen(amount, slope), no_floor());
+    EXPECT_NEAR(likelihood.compare({toy.all, toy.q, toy.none, {}, parts}).minus_2_log,
+                integral(toy, likelihood), 0.1) // Laplace's rule is good to first order
+        << amount << " " << slope;
+  }
+}
+
+/// A box of six faces, each of a colour of its own, and one lobe: [all, lobe, smoother, rougher,
+/// faces].
+class PartedBox {
+public:
+  std::array<double, 6> colour_off{}; ///< ln
+  double lobe_off = 0, slope_off = 0;
+  static std::vector<PartKind> kinds() {
+    std::vector<PartKind> out{{"lobe", 0.1, 0.2}};
+    for (int f = 0; f < 6; ++f)
+      out.push_back({"face", 0.1, 0});
+    return out;
+  }
+  /// `blocks`: all of the light alone, or its parts behind it.
+  [[nodiscard]] PoseLighting lighting(bool has_parts) const {
+    return [*this, has_parts](std::span<const Pose> poses, StokesTable &out) {
+      const std::size_t blocks = has_parts ? 10 : 1;
+      out.resize(poses.size(), 2 * blocks);
+      for (std::size_t k = 0; k < poses.size(); ++k)
+        for (std::size_t b = 0; b < 2; ++b) {
+          std::array<double, 10> light{};
+          put(poses[k], b, light);
+          const double lobe = light[1];
+          for (std::size_t block = 0; block < blocks; ++block)
+            out.put(k, 2 * block + b, {{light[block], block < 2 ? 0.2 * lobe : 0, 0, 0}, {}});
+        }
+      return true;
+    };
+  }
+
+private:
+  void put(const Pose &p, std::size_t b, std::array<double, 10> &light) const {
+    const Vec3<Body> normals[] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+                                  {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
+    const double colour[6][2] = {{.2, .9}, {.8, .3}, {.5, .5}, {.9, .8}, {.3, .1}, {.6, .9}};
+    const Vec3<Body> half = normalized(p.sun + p.observer);
+    for (std::size_t f = 0; f < 6; ++f) {
+      const double s = std::max(0.0, dot(normals[f], p.sun));
+      const double o = std::max(0.0, dot(normals[f], p.observer));
+      light[4 + f] = colour[f][b] * std::exp(colour_off[f]) * s * o;
+      light[0] += light[4 + f];
+      for (std::size_t level = 0; level < 3 && s > 0 && o > 0; ++level) {
+        const double steps[] = {0, -0.2, 0.2}; // of ln of the slopes
+        const double m = 20 * std::exp(-2 * (slope_off + steps[level]));
+        light[1 + level] +=
+            (m + 2) / 22 * std::exp(lobe_off) * std::pow(std::max(0.0, dot(normals[f], half)), m);
+      }
+    }
+    light[0] += light[1];
+  }
+};
+
+TEST(PartFit, ASetHoldsTheTruthWhereTheMaterialsAreOthers) {
+  const PartedBox model;
+  SearchOptions options = small();
+  options.errors.floor = 0.005;
+  std::size_t in = 0, in_without = 0;
+  constexpr std::uint64_t trials = 12;
+  for (std::uint64_t t = 0; t < trials; ++t) {
+    PartedBox truth;
+    for (std::size_t f = 0; f < 6; ++f)
+      truth.colour_off[f] = 0.1 * noise(100 + t, f);
+    truth.lobe_off = 0.1 * noise(100 + t, 6);
+    truth.slope_off = 0.2 * noise(100 + t, 7);
+    const Quaternion at = turned(turned({}, {0.9 * static_cast<double>(t), 0, 0}),
+                                 {0, 0.5 * static_cast<double>(t), 0.3});
+    ObservedCurve curve = pass(24);
+    observe(curve, truth.lighting(false), {at, {}}, 100, t);
+    const CurveModel whole(curve, model.lighting(false), {0, 1});
+    const CurveModel parted(curve, model.lighting(true), {0, 1}, PartedBox::kinds());
+    const auto answer = search_pose({parted, parted, whole}, options);
+    const auto without = search_pose(whole, options);
+    ASSERT_TRUE(answer && without);
+    in += is_in(answer->set95, at) ? 1 : 0;
+    in_without += is_in(without->set95, at) ? 1 : 0;
+  }
+  EXPECT_GE(in, 10u); // of 95 % one in a hundred times less
+  EXPECT_LE(in_without, 6u);
+}
+
+TEST(PartFit, TheFloorIsWhatTheModelMisses) {
+  const PoseLighting light = PartedBox().lighting(false);
+  const Turning truth{turned({}, {0.4, -0.9, 0.3}), {}};
+  ObservedCurve curve = pass(40);
+  observe(curve, light, truth, 100, 1);
+  SearchOptions options = small();
+  options.errors.floor = 0.005;
+  options.errors.has_polarization = false; // I alone is made wrong
+  options.largest_floor = 0.3;
+  const CurveModel model(curve, light, {0, 1});
+  const auto right = search_pose(model, options);
+  ASSERT_TRUE(right) << right.error().text();
+  EXPECT_LT(right->errors.floor, 0.01);
+  constexpr double off = 0.1;
+  for (std::size_t k = 0; k < curve.samples.size(); ++k)
+    curve.samples[k].i *= 1 + off * noise(9, k);
+  const auto wrong = search_pose(model, options);
+  ASSERT_TRUE(wrong) << wrong.error().text();
+  EXPECT_NEAR(wrong->model_error, off, 0.025); // 80 numbers tell it to 8 %
+  EXPECT_GE(wrong->errors.floor, wrong->model_error);
+  EXPECT_NEAR(wrong->misfit / static_cast<double>(wrong->measurements), 1, 0.5);
+}
+
+} // namespace
+} // namespace umov

@@ -1,0 +1,74 @@
+#include <umov/io/polarizer_file.h>
+
+#include "io/table/text_table.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <optional>
+#include <umov/core/quantity.h>
+#include <umov/core/text.h>
+
+namespace umov {
+namespace {
+
+/// Where a column stands; empty without it.
+std::optional<std::size_t> column_named(const TextTable &table, const char *name) {
+  const auto at = std::ranges::find(table.columns, name);
+  if (at == table.columns.end())
+    return std::nullopt;
+  return static_cast<std::size_t>(at - table.columns.begin());
+}
+
+Result<double> number_in(const TextTable &table, std::size_t row, std::size_t column, double low,
+                         const char *what, const std::string &file) {
+  const std::string_view cell = table.cell(row, column);
+  const auto value = parse_number(cell);
+  constexpr double most = 1e15;
+  if (!value || !(*value >= low && *value <= most))
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("{} = \"{}\"; {} was expected", table.columns[column], printable(cell), what),
+        {file, table.lines[row]});
+  return *value;
+}
+
+} // namespace
+
+Result<std::vector<PolarizerCount>> read_polarizer_text(std::string_view text,
+                                                        const std::string &file) {
+  UMOV_ASSIGN(table, read_text_table(text, file));
+  const auto angle = column_named(table, "angle_deg"), counts = column_named(table, "counts");
+  const auto channel = column_named(table, "channel"), variance = column_named(table, "variance");
+  if (!angle || !counts)
+    return fail(ErrorCode::BadInput,
+                fmt::format("no column \"{}\"; angle_deg and counts were expected, with channel "
+                            "where there are several",
+                            angle ? "counts" : "angle_deg"),
+                {file, 1});
+  std::vector<PolarizerCount> out;
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    PolarizerCount one;
+    UMOV_ASSIGN(degrees, number_in(table, k, *angle, -1e4, "an angle in degrees", file));
+    UMOV_ASSIGN(found, number_in(table, k, *counts, 0, "a number of electrons", file));
+    one.angle_rad = degrees * pi / 180;
+    one.counts = one.variance = found;
+    if (variance) {
+      UMOV_ASSIGN(told, number_in(table, k, *variance, 0, "a variance in electron^2", file));
+      one.variance = told;
+    }
+    if (!(one.variance > 0))
+      return fail(ErrorCode::BadInput,
+                  "a variance of 0; counts above 0, or a column variance that says what dark "
+                  "counts err by, was expected",
+                  {file, table.lines[k]});
+    if (channel)
+      one.channel = table.cell(k, *channel);
+    out.push_back(std::move(one));
+  }
+  if (out.empty())
+    return fail(ErrorCode::BadInput, "no counts in this table; a row for each angle was expected",
+                {file});
+  return out;
+}
+
+} // namespace umov
