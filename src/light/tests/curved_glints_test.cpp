@@ -174,22 +174,6 @@ double roughness(const Scene &scene, const std::vector<Pose> &poses) {
   return worst / peak;
 }
 
-/// The half vector from the side of a shape's glint to the other, at an azimuth that moves along.
-std::vector<Pose> through_glint(double polar, double reach, std::size_t count) {
-  std::vector<Pose> out;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double along = 2.0 * static_cast<double>(k) / static_cast<double>(count - 1) - 1;
-    const double theta = polar + reach * along, phi = 0.2 + 0.6 * reach * along, half = 0.6;
-    const Vec3<Body> h{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
-                       std::cos(theta)};
-    const Vec3<Body> e = any_perpendicular(h);
-    Pose &pose = out.emplace_back(
-        Pose{std::cos(half) * h + std::sin(half) * e, std::cos(half) * h - std::sin(half) * e});
-    pose.sun_radius_rad = solar_radius;
-  }
-  return out;
-}
-
 // In steps of a seventh to a third of the lobe. The narrower one is cut into chords here and into a
 // contour there (lobes.md), 1e-3 of the peak apart; it costs the reference a tenth of a second a
 // pose on the cylinder, and seconds on a sphere.

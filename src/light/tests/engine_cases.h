@@ -45,11 +45,27 @@ inline std::vector<Pose> random_poses(std::size_t count, double sun_radius_rad =
   return out;
 }
 
+inline constexpr double solar_radius = 0.2665 * pi / 180;
+
+/// The half vector from the side of a shape's glint to the other, at an azimuth that moves along.
+inline std::vector<Pose> through_glint(double polar, double reach, std::size_t count) {
+  std::vector<Pose> out;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double along = 2.0 * static_cast<double>(k) / static_cast<double>(count - 1) - 1;
+    const double theta = polar + reach * along, phi = 0.2 + 0.6 * reach * along, half = 0.6;
+    const Vec3<Body> h{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi),
+                       std::cos(theta)};
+    const Vec3<Body> e = any_perpendicular(h);
+    Pose &pose = out.emplace_back(
+        Pose{std::cos(half) * h + std::sin(half) * e, std::cos(half) * h - std::sin(half) * e});
+    pose.sun_radius_rad = solar_radius;
+  }
+  return out;
+}
+
 inline double quantile(std::vector<double> v, double share) {
   std::sort(v.begin(), v.end());
   return v[std::min(v.size() - 1, static_cast<std::size_t>(share * static_cast<double>(v.size())))];
 }
-
-inline constexpr double solar_radius = 0.2665 * pi / 180;
 
 } // namespace umov::cases
