@@ -3,7 +3,9 @@
 the coarser mesh. Prints one line per curve and the summary.
 
 usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--wrong 1] [--only TRIAL] [--umov PATH] [options of umov invert]
-OBJECT: agena, hst, box-wing or cubesat. --spin: the body turns about a random axis; the search is told its period to 1 %.
+       bench/peers/run inverse metals TRIALS --truth mitsuba [--surfaces 3] ...
+OBJECT: agena, hst, box-wing, cubesat, or metals: a box-wing of four rough metals. --truth mitsuba: the data's light is another program's
+(mitsuba_truth.py), of paths that touch up to --surfaces; before the answers stands how far it is from umov's rays. --spin: the body turns about a random axis; the search is told its period to 1 %.
 --wrong 1: the true object is another one than the one that is fitted: slopes of each material's lobe are 20 % off (normal, ln), reflectances of
 paints 10 %, haze 30 %, lengths along each axis of the mesh 2.5 % (areas 3.5 %); other numbers are parts or multiples of that."""
 import argparse
@@ -17,6 +19,8 @@ import tempfile
 import time
 import tomllib
 
+import mitsuba_truth
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MATERIALS = {
     "hst": dict(light_shield="film_aluminized", forward_shell="film_aluminized", equipment="film_silvered",
@@ -28,12 +32,14 @@ MATERIALS = {
     "cubesat": dict(body_px="aluminium_anodized", body_mx="cell_gaas", body_py="cell_gaas", body_my="paint_white",
                     body_pz="mli_kapton", body_mz="aluminium_anodized", panel_px_front="cell_gaas",
                     panel_px_back="paint_black", panel_px_edge="aluminium_anodized"),
+    "metals": {group: f"peer_{group}" for group in mitsuba_truth.compare.MATERIALS},
 }
 MESH = {  # fitted, true
     "hst": (["hst", "--sides", 36], ["hst", "--sides", 60]),
     "agena": (["agena", "--sides", 36], ["agena", "--sides", 60]),
     "box-wing": (["box-wing", "--facets", 600], ["box-wing", "--facets", 1500]),
     "cubesat": (["cubesat", "--panels", 1], ["cubesat", "--panels", 1]),
+    "metals": (["box-wing", "--facets", 600], ["box-wing", "--facets", 10000]),
 }
 SCENARIO = """umov = 1
 title = "blind"
@@ -156,6 +162,8 @@ def main():
     parser.add_argument("--spin", type=float)
     parser.add_argument("--wrong", type=float, default=0)
     parser.add_argument("--only", type=int, help="of the trials, this one alone (the others' curves are made, for the same noise)")
+    parser.add_argument("--truth", choices=["rays", "mitsuba"], default="rays")
+    parser.add_argument("--surfaces", type=int, default=1, help="with --truth mitsuba: that a path touches at most")
     parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert
@@ -165,6 +173,9 @@ def main():
     for mesh, words in zip(meshes, MESH[o.object]):
         if not mesh.exists():
             run(o.umov, "mesh", "make", *words, "-o", mesh, "-q")
+    if o.truth == "mitsuba" and (o.object != "metals" or o.wrong):
+        parser.error("--truth mitsuba knows the object metals, and no --wrong")
+    o.truth = mitsuba_truth.Truth(o.umov, meshes[1], [425, 550, 650], o.surfaces) if o.truth == "mitsuba" else None
     if o.spin:
         return spins(o, work, meshes)
     poses(o, work, meshes)
@@ -221,11 +232,17 @@ def make_curve(o, work, meshes, trial, law, step, rng):
                                               (meshes[0], "masks", "fit", inertial([1, 0, 0, 0]), "fit.toml")):
         text = SCENARIO.format(seed=o.seed + trial, name=o.object, root=ROOT, mesh=mesh, law=attitude, step=step, materials=materials,
                                method=method, out=work / out)
+        if o.object == "metals":
+            text += mitsuba_truth.materials_in_toml()
         if o.wrong and out == "truth":
             text = other_object(o, trial, text, mesh, work / "wrong.obj")
         (work / name).write_text(text)
     run(o.umov, "run", work / "true.toml", "-o", work / "truth", "--force", "-q")
     rows = rows_of(work / "truth/lightcurve.csv")
+    if o.truth:
+        relit = o.truth.relit(rows)
+        print("Mitsuba less rays: median {:.1e} of I, {:.1e} in q".format(*mitsuba_truth.difference(rows, relit)), flush=True)
+        rows = relit
     observed(rows, o.snr, rng, work / "obs.csv")
     return rows
 
