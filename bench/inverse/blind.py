@@ -39,7 +39,7 @@ MESH = {  # fitted, true
     "agena": (["agena", "--sides", 36], ["agena", "--sides", 60]),
     "box-wing": (["box-wing", "--facets", 600], ["box-wing", "--facets", 1500]),
     "cubesat": (["cubesat", "--panels", 1], ["cubesat", "--panels", 1]),
-    "metals": (["box-wing", "--facets", 600], ["box-wing", "--facets", 10000]),
+    "metals": (["box-wing", "--facets", 2000], ["box-wing", "--facets", 10000]),
 }
 SCENARIO = """umov = 1
 title = "blind"
