@@ -147,7 +147,7 @@ Result<void> ObservedObject::set_up(Diagnostics &diagnostics) {
       exposure_nodes(o.exposure_s, shorter(shortest_feature_s(ready_->track, exposures),
                                            trail_feature_s(o, ready_->track, exposures, width))),
       request_.object,
-      {conditions.air.pressure_hpa, 283.15, 4},
+      {conditions.air.pressure_hpa, 283.15, std::min(4., conditions.air.pressure_hpa)},
       {o.sky, conditions.air, plan_->bands.v},
       stars_,
       ready_->images,

@@ -161,11 +161,35 @@ def test_air_near_the_horizon_is_told(scene, umov):
     assert done.code == 0 and "air mass is extrapolated" in done.err, done.err
 
 
-def test_air_is_described_once(scene, umov):
+@pytest.mark.parametrize("air", ['"clear"', '"none"', "{ ozone_du = 300 }"])
+def test_air_is_described_once(scene, umov, air):
     path = scene("exposure_s = 1")
-    path.write_text(path.read_text().replace("alt_m = 3058", 'alt_m = 3058\natmosphere = "clear"'))
-    done = umov("observe", path)
-    assert done.code == 3 and "observe.toml:" in done.err and "beside [atmosphere]" in done.err
+    path.write_text(path.read_text().replace("alt_m = 3058", f"alt_m = 3058\natmosphere = {air}"))
+    for verb in ("observe", "run"):
+        done = umov(verb, path)
+        assert done.code == 3 and "observe.toml:8:" in done.err and "beside [atmosphere]: leave one out" in done.err, done.err
+
+
+def test_without_air_nothing_is_taken_away(scene, umov, tmp_path):
+    """atmosphere = "none" beside [observation]: light as above the air, steady, under a sky that nothing lights up; the lock says so too."""
+    path = scene("exposure_s = 1", air='')
+    clear = path.read_text().replace("[atmosphere]\nseeing = { arcsec = 3 }\n", "")
+    path.write_text(clear)
+    assert umov("observe", path, "-o", "clear").code == 0
+    path.write_text(clear.replace("alt_m = 3058", 'alt_m = 3058\natmosphere = "none"'))
+    assert umov("observe", path, "-o", "none").code == 0
+    seen, airless = (Table.read(tmp_path / name / "counts.ecsv") for name in ("clear", "none"))
+    assert set(airless["k_mag"]) == {0} and set(airless["scint_sd"]) == {0} and min(seen["scint_sd"]) > 0
+    for behind, above in zip(seen, airless):
+        # The air's part by the columns of the other table: nothing but extinction lies between the two.
+        assert behind["w0"] / above["w0"] == pytest.approx(10 ** (-0.4 * behind["k_mag"] * behind["airmass"]), rel=2e-4)
+    assert umov("observe", "none/scenario.lock.toml", "-o", "again").code == 0
+    for name in ("counts.ecsv", "scenario.lock.toml"):
+        assert (tmp_path / "none" / name).read_bytes() == (tmp_path / "again" / name).read_bytes().replace(b"again", b"none")
+    # umov run has the columns behind the air where umov observe looks through it.
+    for folder, has_air in (("clear", True), ("none", False)):
+        assert umov("run", f"{folder}/scenario.lock.toml", "-o", "run_" + folder, "--set", "time.step_s=1").code == 0
+        assert ("I_obs" in Table.read(tmp_path / f"run_{folder}/lightcurve.ecsv").colnames) == has_air
 
 
 def test_a_table_is_no_folder(scene, umov, tmp_path):

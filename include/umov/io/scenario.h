@@ -67,7 +67,7 @@ struct Scenario {
   std::string file, title;
   std::uint64_t seed = 0;
   std::optional<Site> observer;
-  std::optional<SiteAir> air; ///< [observer] atmosphere, or [atmosphere]; absent: "none"
+  std::optional<SiteAir> air; ///< [observer] atmosphere, or [atmosphere]; absent: none
   std::optional<ScenarioTime> time;
   std::filesystem::path earth_orientation; ///< table in place of the compiled-in one; empty: that
   std::vector<ScenarioObject> objects;     ///< at least one

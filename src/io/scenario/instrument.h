@@ -15,16 +15,17 @@ Result<void> read_metal(const Node &node, const char *key, std::string &out);
 Result<void> read_port(const Node &node, Telescope &out);
 /// What it says, as TOML.
 std::string port_toml(const Telescope &telescope);
-/// [atmosphere] and [observation], with the instrument that the document names; absent without
-/// [observation].
-Result<std::optional<ScenarioObservation>> read_observation(const Node &top,
-                                                            const std::string &folder);
-/// What [observer] says of the air, or [atmosphere]; absent where neither does.
+/// [atmosphere] and [observation] behind the air of the site, with the instrument that the document
+/// names; absent without [observation].
+Result<std::optional<ScenarioObservation>>
+read_observation(const Node &top, const std::optional<SiteAir> &air, const std::string &folder);
+/// What [observer] says of the air, or [atmosphere]; where neither does, clear air beside
+/// [observation] and none without. BadInput where both do.
 Result<std::optional<SiteAir>> read_site_air(const Node &top);
 /// `atmosphere` of [observer] as TOML.
 std::string clear_air_toml(const SiteAir &air);
-/// The tables as TOML, those of the instrument included.
-std::string observation_toml(const ScenarioObservation &observation);
+/// The tables as TOML, those of the instrument included; [atmosphere] where there is air.
+std::string observation_toml(const ScenarioObservation &observation, bool has_air);
 /// [telescope], [detector] and [polarimeter].
 std::string instrument_tables_toml(const Instrument &instrument);
 

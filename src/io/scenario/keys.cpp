@@ -59,7 +59,7 @@ const std::vector<Key> &keys() {
       {"observer", "alt_m", Number, "", "height above the WGS 84 ellipsoid [m]"},
       {"observer", "atmosphere", Any, "\"none\"",
        "\"clear\", or the numbers of clear air: columns I_obs and mag_obs; [atmosphere] says it "
-       "too"},
+       "instead. Beside [observation] \"clear\" unless told; \"none\" observes without air"},
       {"observer.atmosphere", "pressure_hpa", Number, "", "default: of the site's height"},
       {"observer.atmosphere", "aerosol", Table, "", "dust and haze, as in [atmosphere]"},
       {"observer.atmosphere", "ozone_du", Number, "260.0", "ozone [Dobson units]"},

@@ -138,7 +138,7 @@ std::string locked_scenario(const Scenario &s) {
     out += fmt::format("earthshine = {{ albedo = {}, patches = {}, accuracy = {} }}\n",
                        shortest(s.earthshine->albedo), s.earthshine->patches,
                        shortest(s.earthshine->accuracy));
-  out += s.observation ? scenario::observation_toml(*s.observation)
+  out += s.observation ? scenario::observation_toml(*s.observation, s.air.has_value())
                        : std::string("\n[detector]\nmodel = \"ideal\"\n");
   out += fmt::format("\n[output]\ndir = {}\nformats = {}\ncsv_digits = \"{}\"\n"
                      "keep_inputs = {}\npol_frame = \"{}\"\n",

@@ -105,14 +105,23 @@ Result<SiteAir> read_clear_air(const Node &node) {
   return out;
 }
 
+/// The air of an observation. Where there is none, nothing flickers or scatters the light of Sun
+/// and Moon; the dark sky, much of it starlight and zodiacal light, stays.
+void put_air(const std::optional<SiteAir> &site, ScenarioObservation &out) {
+  out.air =
+      site ? site->air : Air{.pressure_hpa = 0, .aerosol_550 = 0, .ozone_du = 0, .water_cm = 0};
+  out.has_own_pressure = !site || site->has_own_pressure;
+  if (site)
+    return;
+  out.scintillation_c_y.reset();
+  out.sky.has_twilight = out.sky.has_moon = false;
+}
+
 Result<void> read_atmosphere(const Node &top, ScenarioObservation &out) {
   out.seeing.outer_scale_m = 25;
   if (!top.has("atmosphere"))
     return {};
   UMOV_ASSIGN(air, top.child("atmosphere"));
-  UMOV_ASSIGN(clear, read_clear_air(air));
-  out.air = clear.air;
-  out.has_own_pressure = clear.has_own_pressure;
   UMOV_TRY(read_seeing(air, out.seeing));
   UMOV_TRY(read_scintillation(air, out));
   UMOV_TRY(read_sky(air, out.sky));
@@ -212,31 +221,30 @@ Result<void> read_exposures(const Node &node, const std::string &folder, Scenari
 } // namespace
 
 Result<std::optional<SiteAir>> read_site_air(const Node &top) {
-  const bool is_described = top.has("atmosphere");
   if (top.has("observer")) {
     UMOV_ASSIGN(observer, top.child("observer"));
     if (const toml::node *value = observer.get("atmosphere"); value != nullptr) {
-      if (!value->is_table()) {
-        UMOV_ASSIGN(name, observer.choice("atmosphere", "none", {"none", "clear"}));
-        if (name == "none")
-          return std::optional<SiteAir>();
+      if (top.has("atmosphere"))
+        return fail(
+            ErrorCode::BadInput,
+            fmt::format("atmosphere{} beside [atmosphere]: leave one out, both say what air "
+                        "there is",
+                        value->is_string() ? " = " + quoted(**value->as_string()) : ""),
+            observer.where("atmosphere"));
+      if (value->is_table()) {
+        UMOV_ASSIGN(node, observer.child("atmosphere"));
+        return read_clear_air(node);
       }
-      if (is_described)
-        return fail(ErrorCode::BadInput,
-                    "atmosphere beside [atmosphere]: leave one out, both say what air there is",
-                    observer.where("atmosphere"));
-      if (!value->is_table())
-        return std::optional(SiteAir());
-      UMOV_ASSIGN(node, observer.child("atmosphere"));
-      UMOV_ASSIGN(air, read_clear_air(node));
-      return std::optional(air);
+      UMOV_ASSIGN(name, observer.choice("atmosphere", "none", {"none", "clear"}));
+      return name == "none" ? std::optional<SiteAir>() : SiteAir();
     }
   }
-  if (!is_described)
-    return std::optional<SiteAir>();
-  UMOV_ASSIGN(node, top.child("atmosphere"));
-  UMOV_ASSIGN(air, read_clear_air(node));
-  return std::optional(air);
+  if (top.has("atmosphere")) {
+    UMOV_ASSIGN(node, top.child("atmosphere"));
+    return read_clear_air(node);
+  }
+  // What is observed is seen through air unless someone says otherwise.
+  return top.has("observation") ? SiteAir() : std::optional<SiteAir>();
 }
 
 std::string clear_air_toml(const SiteAir &o) {
@@ -248,8 +256,8 @@ std::string clear_air_toml(const SiteAir &o) {
       shortest(o.air.water_cm));
 }
 
-Result<std::optional<ScenarioObservation>> read_observation(const Node &top,
-                                                            const std::string &folder) {
+Result<std::optional<ScenarioObservation>>
+read_observation(const Node &top, const std::optional<SiteAir> &air, const std::string &folder) {
   ScenarioObservation out;
   if (top.has("instrument")) {
     const std::string name = top.text("instrument", "");
@@ -261,6 +269,7 @@ Result<std::optional<ScenarioObservation>> read_observation(const Node &top,
   }
   UMOV_TRY(read_instrument_tables(top, out.instrument));
   UMOV_TRY(read_atmosphere(top, out));
+  put_air(air, out);
   if (!top.has("observation"))
     return std::optional<ScenarioObservation>();
   UMOV_ASSIGN(node, top.child("observation"));
@@ -318,8 +327,8 @@ std::string atmosphere_toml(const ScenarioObservation &o) {
 
 } // namespace
 
-std::string observation_toml(const ScenarioObservation &o) {
-  std::string out = atmosphere_toml(o) + instrument_tables_toml(o.instrument);
+std::string observation_toml(const ScenarioObservation &o, bool has_air) {
+  std::string out = (has_air ? atmosphere_toml(o) : "") + instrument_tables_toml(o.instrument);
   out += fmt::format("\n[observation]\nexposure_s = {}\ncadence_s = {}\nwidth_nm = {}\n"
                      "aperture_fwhm = {}\nclock_error_s = {}\n",
                      shortest(o.exposure_s), shortest(o.cadence_s), shortest(o.width_nm),

@@ -446,11 +446,11 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(read_render(top, out));
   UMOV_TRY(read_vary(top, out));
   UMOV_TRY(read_output(top, out));
-  UMOV_ASSIGN(observation, scenario::read_observation(top, path.parent_path().string()));
-  out.observation = observation;
-  note_places(top, out);
   UMOV_ASSIGN(air, scenario::read_site_air(top));
   out.air = air;
+  UMOV_ASSIGN(observation, scenario::read_observation(top, air, path.parent_path().string()));
+  out.observation = observation;
+  note_places(top, out);
   UMOV_ASSIGN(own, scenario::read_material_tables(top));
   UMOV_TRY(scenario::check_own_names(top, own));
   out.own_materials = own;

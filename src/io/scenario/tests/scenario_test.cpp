@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <umov/atmosphere/air.h>
 #include <umov/io/scenario.h>
 
 namespace umov {
@@ -138,6 +139,69 @@ TEST(Scenario, ASceneNeedsNoOrbit) {
   EXPECT_NE(complete.error().message.find("[observer], [time], object.orbit"), std::string::npos);
 }
 
+/// Ways to say what air there is, or nothing; and what the lock says of it.
+struct AirWords {
+  const char *in_observer, *table;
+  bool has_observation;
+  const char *locked;
+};
+
+TEST(Scenario, TheLockSaysTheAirOnceAndReadsBackToItself) {
+  const AirWords all[] = {
+      {"", "", false, "\natmosphere = \"none\"\n"},
+      {"atmosphere = \"none\"\n", "", false, "\natmosphere = \"none\"\n"},
+      {"atmosphere = \"clear\"\n", "", false, "\natmosphere = { aerosol = { tau_550 = 0.02"},
+      {"", "[atmosphere]\nozone_du = 300\n", false, "ozone_du = 300, water_cm"},
+      {"", "", true, "\n[atmosphere]\naerosol"},
+      {"atmosphere = \"none\"\n", "", true, "\natmosphere = \"none\"\n"},
+      {"atmosphere = \"clear\"\n", "", true, "\n[atmosphere]\naerosol"},
+      {"atmosphere = { ozone_du = 300 }\n", "", true, "\nozone_du = 300\n"},
+      {"", "[atmosphere]\npressure_hpa = 500\n", true, "\npressure_hpa = 500\n"}};
+  for (const AirWords &one : all) {
+    const std::string text =
+        "umov = 1\n" + std::string(one.has_observation ? "instrument = \"c11_imx250\"\n" : "") +
+        "[observer]\nlat_deg = 20\nlon_deg = -156\nalt_m = 3000\n" + one.in_observer + one.table +
+        (one.has_observation ? "[observation]\nexposure_s = 1\n" : "") +
+        "[[object]]\nmesh = { file = \"a.obj\", unit = \"m\", up = \"+Z\" }\n";
+    SCOPED_TRACE(text);
+    const auto s = read_scenario_text(text, "/base/s.toml", {});
+    ASSERT_TRUE(s) << s.error().text();
+    const std::string lock = locked_scenario(*s);
+    EXPECT_NE(lock.find(one.locked), std::string::npos) << lock;
+    EXPECT_NE(lock.find("\natmosphere = ") == std::string::npos,
+              lock.find("\n[atmosphere]") == std::string::npos)
+        << lock;
+    const auto again = read_scenario_text(lock, "/base/lock.toml", {});
+    ASSERT_TRUE(again) << again.error().text() << lock;
+    EXPECT_EQ(locked_scenario(*again), lock);
+    EXPECT_EQ(again->air.has_value(), s->air.has_value());
+    if (one.has_observation)
+      EXPECT_EQ(again->observation->air.ozone_du, s->observation->air.ozone_du);
+  }
+}
+
+TEST(Scenario, AirOfTheObserverIsThatOfTheObservation) {
+  const auto read = [](const char *atmosphere) {
+    return read_scenario_text("umov = 1\ninstrument = \"c11_imx250\"\n[observer]\nlat_deg = 20\n"
+                              "lon_deg = -156\nalt_m = 3000\n" +
+                                  std::string(atmosphere) +
+                                  "[observation]\nexposure_s = 1\n[[object]]\nmesh = { file = "
+                                  "\"a.obj\", unit = \"m\", up = \"+Z\" }\n",
+                              "s.toml", {});
+  };
+  const auto hazy = read("atmosphere = { aerosol = { tau_550 = 0.3 } }\n");
+  ASSERT_TRUE(hazy) << hazy.error().text();
+  EXPECT_EQ(hazy->observation->air.aerosol_550, 0.3);
+  EXPECT_TRUE(hazy->observation->scintillation_c_y);
+  const auto airless = read("atmosphere = \"none\"\n");
+  ASSERT_TRUE(airless) << airless.error().text();
+  EXPECT_FALSE(airless->air);
+  for (const double nm : {350., 550., 940.}) // Rayleigh, ozone, water
+    EXPECT_EQ(transmission(nm, airless->observation->air, 2), 1) << nm;
+  EXPECT_FALSE(airless->observation->scintillation_c_y);
+  EXPECT_FALSE(airless->observation->sky.has_twilight || airless->observation->sky.has_moon);
+}
+
 struct Wrong {
   const char *name, *from, *to;
   std::size_t line;
@@ -156,23 +220,28 @@ TEST_P(ScenarioRefused, SaysWhereAndWhat) {
 
 INSTANTIATE_TEST_SUITE_P(
     Keys, ScenarioRefused,
-    testing::Values(Wrong{"typo", "shadowing =", "shadwing =", 27, "Did you mean \"shadowing\"?"},
-                    Wrong{"type", "alt_m = 3058", "alt_m = \"7 km\"", 8, "a number was expected"},
-                    Wrong{"nan", "alt_m = 3058", "alt_m = nan", 8, "finite"},
-                    Wrong{"zone", "05:00:00Z", "05:00:00", 10, "has no zone"},
-                    Wrong{"order", "2018-01-21T05:10", "2018-01-20T05:10", 11, "before start"},
-                    Wrong{"repeated", "seed = 7", "seed = 7\nseed = 8", 4, "seed"},
-                    Wrong{"latitude", "20.7083", "-90.5", 6, "-90 to 90"},
-                    Wrong{"material", "\"paper_al\"", "\"paper_la\"", 20,
-                          "Did you mean \"paper_al\"?"},
-                    Wrong{"target", "\"sun\"", "\"sum\"", 18, "Did you mean \"sun\"?"},
-                    Wrong{"axis", "\"+X\"", "\"X\"", 18, "body axis"},
-                    Wrong{"parallel", "then = \"+X\"", "then = \"-Z\"", 18, "parallel"},
-                    Wrong{"no_distribution", "distribution", "#", 24, "distribution"},
-                    Wrong{"lacks_alpha", "blinn_phong", "ggx", 26, "needs alpha"},
-                    Wrong{"unsorted", "[400, 700], n", "[700, 400], n", 24, "increasing"},
-                    Wrong{"negative_k", "[1.9, 3.1]", "[1.9, -3.1]", 24, "k ="},
-                    Wrong{"unknown_band", "nm:500", "Besell.V", 23, "Did you mean"}),
+    testing::Values(
+        Wrong{"typo", "shadowing =", "shadwing =", 27, "Did you mean \"shadowing\"?"},
+        Wrong{"type", "alt_m = 3058", "alt_m = \"7 km\"", 8, "a number was expected"},
+        Wrong{"nan", "alt_m = 3058", "alt_m = nan", 8, "finite"},
+        Wrong{"zone", "05:00:00Z", "05:00:00", 10, "has no zone"},
+        Wrong{"order", "2018-01-21T05:10", "2018-01-20T05:10", 11, "before start"},
+        Wrong{"repeated", "seed = 7", "seed = 7\nseed = 8", 4, "seed"},
+        Wrong{"latitude", "20.7083", "-90.5", 6, "-90 to 90"},
+        Wrong{"material", "\"paper_al\"", "\"paper_la\"", 20, "Did you mean \"paper_al\"?"},
+        Wrong{"target", "\"sun\"", "\"sum\"", 18, "Did you mean \"sun\"?"},
+        Wrong{"axis", "\"+X\"", "\"X\"", 18, "body axis"},
+        Wrong{"parallel", "then = \"+X\"", "then = \"-Z\"", 18, "parallel"},
+        Wrong{"no_distribution", "distribution", "#", 24, "distribution"},
+        Wrong{"lacks_alpha", "blinn_phong", "ggx", 26, "needs alpha"},
+        Wrong{"unsorted", "[400, 700], n", "[700, 400], n", 24, "increasing"},
+        Wrong{"air_twice", "alt_m = 3058", "alt_m = 3058\natmosphere = \"none\"\n[atmosphere]", 9,
+              "atmosphere = \"none\" beside [atmosphere]: leave one out"},
+        Wrong{"air_as_table_twice", "alt_m = 3058",
+              "alt_m = 3058\natmosphere = { ozone_du = 300 }\n[atmosphere]", 9,
+              "atmosphere beside [atmosphere]: leave one out"},
+        Wrong{"negative_k", "[1.9, 3.1]", "[1.9, -3.1]", 24, "k ="},
+        Wrong{"unknown_band", "nm:500", "Besell.V", 23, "Did you mean"}),
     [](const auto &test) { return std::string(test.param.name); });
 
 TEST(Schema, IsJsonWithEveryTable) {
