@@ -5,6 +5,7 @@ import re
 import pytest
 
 from conftest import read_csv
+from sphere_over_maui import make_sphere, write_scene
 from test_observe import COUNTS, standards
 
 KNOWN = "name,p_percent,pa_deg\nnone,0,0\nHD 204827,4.893,59.10\n"
@@ -154,3 +155,40 @@ def test_counts_below_nothing_are_told(umov, tmp_path):
     (tmp_path / "c.csv").write_text(COUNTS.replace("2210", "-2210"))
     done = umov("reduce", "c.csv")
     assert "1 of 4 counts below 0 by more than reading does" in done.err, done.err
+
+
+INSTRUMENTS = ["c11_imx250", "usafa16", "mmt9_channel", "hwp_wollaston_1m", "moptop_2m", "full_stokes_3m6"]
+OWN = {"flc": 'type = "flc"', "pem": 'type = "pem"', "wheel": 'type = "polarizer_wheel"'}
+
+
+@pytest.mark.parametrize("instrument, polarimeter, telescope", [(name, "", "") for name in INSTRUMENTS] + [
+    ("hwp_wollaston_1m", OWN["flc"], ""), ("hwp_wollaston_1m", OWN["pem"], ""), ("c11_imx250", "", 'port = "nasmyth_left"'),
+    ("c11_imx250", "", 'port = { mirrors = ["left", "down"] }'), ("usafa16", OWN["wheel"], 'mount = "altaz"\nport = "nasmyth_right"'),
+    ("usafa16", "", 'mount = "altaz"')])
+def test_angles_and_rows_of_observe_agree(umov, tmp_path, instrument, polarimeter, telescope):
+    """Whatever turns the light before the analysers, no table of umov observe contradicts itself."""
+    make_sphere(umov, 0.2)
+    path = write_scene(tmp_path, 'bands = ["nm:550"]\nexposure_s = 0.1' + (polarimeter and "\n[polarimeter]\n" + polarimeter),
+                       instrument=instrument, telescope=telescope)
+    done = umov("observe", path)
+    assert done.code == 0, done.err
+    done = umov("reduce", "out/counts.ecsv", "-o", "s.ecsv")
+    assert done.code == 0 and "analyser_deg" not in done.err, done.err
+
+
+def test_angles_that_contradict_their_rows_are_told(umov, tmp_path):
+    """Names of two orientations exchanged: the weights are what is fitted, and one of the two is wrong."""
+    make_sphere(umov, 0.2)
+    assert umov("observe", write_scene(tmp_path, 'bands = ["nm:550"]\nexposure_s = 1')).code == 0
+    lines = (tmp_path / "out/counts.ecsv").read_text().splitlines()
+    head = next(k for k, line in enumerate(lines) if line.startswith("time_utc"))
+    at = lines[head].split().index("analyser_deg")
+    for k in range(head + 1, len(lines)):
+        cells = lines[k].split()
+        cells[at] = {"45": "90", "90": "45"}.get(cells[at], cells[at])
+        lines[k] = " ".join(cells)
+    (tmp_path / "swapped.ecsv").write_text("\n".join(lines) + "\n")
+    done = umov("reduce", "swapped.ecsv", "-o", "s.ecsv")
+    told = re.search(r"swapped.ecsv:(\d+): analyser_deg = (\d+), but w1 = \S+, w2 = \S+ are those of an analyser at (\d+) deg", done.err)
+    assert done.code == 0 and told, done.err
+    assert int(told[1]) == head + 2 and {told[2], told[3]} == {"45", "90"}

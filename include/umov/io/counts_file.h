@@ -22,8 +22,10 @@ struct CountRow {
   double scintillation = 0; ///< relative standard deviation of the exposure's transparency
   double x_axis_pa_deg = 0, phase_angle_deg = 0, pa_scat_deg = 0, airmass = 0;
   double plate_deg = 0;
-  double retardance_deg = 180; ///< of the plate, by the header
-  double turn_deg_s = 0;       ///< of x_axis_pa, where somebody has worked it out: no column
+  double analyser_deg = std::numeric_limits<double>::quiet_NaN(); ///< from the x axis; the fit
+                                                                  ///< takes the row
+  double retardance_deg = 180;                                    ///< of the plate, by the header
+  double turn_deg_s = 0; ///< of x_axis_pa, where somebody has worked it out: no column
   double k_mag = std::numeric_limits<double>::quiet_NaN(); ///< extinction [mag per air mass]
   double ra_deg = std::numeric_limits<double>::quiet_NaN(), dec_deg = ra_deg,
          range_km = ra_deg; ///< of the object
@@ -40,7 +42,8 @@ struct CountsFile {
 /// Reads ECSV (blank-separated) or CSV with the columns time_utc, set_id, band, counts, sky,
 /// sky_err, var_read, w0, w1, w2 and w3; of the others those that are there. Rows whose counts are
 /// no number are left out with a warning. BadInput with line and column for what is missing, a
-/// negative variance and times that go back.
+/// negative variance and times that go back; a warning where analyser_deg is told and w1, w2 are
+/// those of another angle.
 Result<CountsFile> read_counts_text(std::string_view text, const std::string &file,
                                     Diagnostics &diagnostics);
 

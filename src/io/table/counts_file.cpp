@@ -1,5 +1,6 @@
 #include <umov/io/counts_file.h>
 
+#include "io/table/analyser_axes.h"
 #include "io/table/text_table.h"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <tuple>
 #include <umov/core/text.h>
+#include <vector>
 
 namespace umov {
 namespace {
@@ -115,6 +117,7 @@ Result<void> read_numbers(const CountCells &cells, std::size_t row, CountRow &ou
                           {"airmass", &out.airmass},
                           {"k_mag", &out.k_mag},
                           {"plate_deg", &out.plate_deg},
+                          {"analyser_deg", &out.analyser_deg},
                           {"ra", &out.ra_deg},
                           {"dec", &out.dec_deg},
                           {"range", &out.range_km},
@@ -235,6 +238,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   out.notes = table.notes;
   std::size_t dropped = 0, negative = 0;
   RowsOfATime rows_of_time;
+  std::vector<std::size_t> lines;
   out.rows.reserve(table.rows());
   Epoch<Utc> time{};
   for (std::size_t k = 0; k < table.rows(); ++k) {
@@ -273,11 +277,13 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
           cells.where(k));
     negative += is_below_nothing(row) ? 1u : 0u;
     out.rows.push_back(std::move(row));
+    lines.push_back(table.lines[k]);
   }
   warn_of_rows(dropped, negative, table.rows(), file, diagnostics);
   if (out.rows.empty())
     return fail(ErrorCode::BadInput, "no row of counts; some were expected below the names",
                 {file});
+  warn_of_analysers(out, lines, cells.has("x_axis_pa"), file, diagnostics);
   return out;
 }
 
