@@ -112,6 +112,29 @@ std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, bool
   return out;
 }
 
+/// Where the air's flicker gets into q and u.
+enum class Flicker {
+  InI,              ///< nowhere: the channels of an exposure share it and tell q, u by their ratios
+  FromStateToState, ///< one beam, one state after the other
+  FromLensToLens
+};
+
+Flicker flicker_of(const Polarimeter &p) {
+  if (p.has_separate_pupils)
+    return Flicker::FromLensToLens;
+  const bool has_one_beam =
+      p.type == PolarimeterType::PolarizerWheel || p.type == PolarimeterType::RotatingRetarder;
+  return has_one_beam ? Flicker::FromStateToState : Flicker::InI;
+}
+
+/// How many telescopes of the instrument's size there are, in words where they are more than one.
+std::size_t lenses_of(const Polarimeter &p) {
+  return p.has_separate_pupils ? p.angles_deg.size() : 1;
+}
+std::string of_one_lens(const Polarimeter &p) {
+  return p.has_separate_pupils ? fmt::format(", of one of {} lenses", lenses_of(p)) : "";
+}
+
 } // namespace
 
 Result<ExposureSetup> exposure_setup(const ExposureRequest &r) {
@@ -170,7 +193,8 @@ Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
 StarFrame star_frame(const ExposureSetup &s, const StarRates &r, double seconds) {
   const double star = r.star * seconds;
   const double variance = s.excess2 * (r.star + r.sky + r.dark) * seconds + r.fixed;
-  const double flicker2 = r.scintillation * r.scintillation / seconds;
+  const double flicker2 = r.scintillation * r.scintillation / seconds /
+                          static_cast<double>(lenses_of(s.instrument.polarimeter));
   return {seconds, 1 / std::sqrt(variance / (star * star) + flicker2),
           std::sqrt(s.factor / s.states * variance) / star, seconds / r.fills_s};
 }
@@ -199,19 +223,38 @@ std::string magnitude_words(const ExposureSetup &s) {
 }
 
 std::string exposure_terms(const ExposureSetup &s) {
-  const PolarimeterType type = s.instrument.polarimeter.type;
-  const bool has_common_air =
-      is_simultaneous(type) && !s.instrument.polarimeter.has_separate_pupils;
+  const auto of_p = [&] {
+    switch (flicker_of(s.instrument.polarimeter)) {
+    case Flicker::FromStateToState:
+      return " alone: scintillation between exposures comes on top of it";
+    case Flicker::FromLensToLens:
+      return " alone: scintillation, which each lens has of its own, comes on top of it";
+    default:
+      return ": scintillation is the same in all channels of an exposure and leaves p alone";
+    }
+  };
   return fmt::format(
       "S/N is that of I: photons, sky, dark current, reading and scintillation. The error of p is "
-      "of "
-      "photons, sky, dark current and reading{}. Summed within {:g} of a star's width "
+      "of photons, sky, dark current and reading{}. Summed within {:g} of a star's width "
       "(--aperture-fwhm; umov observe: observation.aperture_fwhm, 2 unless told)",
-      has_common_air
-          ? ": scintillation is the same in all channels of an exposure and leaves p alone"
-          : " alone: scintillation between exposures comes on top of it",
-      s.request.aperture_fwhm);
+      of_p(), s.request.aperture_fwhm);
 }
+
+namespace {
+
+/// What the row of scintillation is.
+const char *flicker_words(const Polarimeter &p) {
+  switch (flicker_of(p)) {
+  case Flicker::FromStateToState:
+    return "relative, of each exposure of that length";
+  case Flicker::FromLensToLens:
+    return "relative, of each lens in an exposure of that length";
+  default:
+    return "relative, of I alone: channels share it";
+  }
+}
+
+} // namespace
 
 Result<Table> exposure(const ExposureRequest &r) {
   UMOV_ASSIGN(setup, exposure_setup(r));
@@ -222,8 +265,9 @@ Result<Table> exposure(const ExposureRequest &r) {
   const double all = f2 * (rates.star + rates.sky + rates.dark) * t + rates.fixed;
   Sheet out;
   out.add("zero_point", 2.5 * std::log10(setup.observer.rate_per_flux() * band.zero_flux),
-          "mag(AB)", "of 1 electron a second, no air, no polarizer");
-  out.add("rate_whole", rates.whole, "electron / s", "through the air, before polarizers");
+          "mag(AB)", "of 1 electron a second, no air, no polarizer" + of_one_lens(polarimeter));
+  out.add("rate_whole", rates.whole, "electron / s",
+          "through the air, before polarizers" + of_one_lens(polarimeter));
   out.add("rate", rates.star, "electron / s",
           fmt::format("detected in all channels, within {:g} of a star's width", r.aperture_fwhm));
   out.add("time", t, "s",
@@ -236,11 +280,8 @@ Result<Table> exposure(const ExposureRequest &r) {
   out.add("share_sky", f2 * rates.sky * t / all, "", "the sky's");
   out.add("share_dark", f2 * rates.dark * t / all, "", "dark current");
   out.add("share_read", rates.fixed / all, "", "reading and rounding, once");
-  out.add("scintillation", rates.scintillation / std::sqrt(t), "",
-          is_simultaneous(polarimeter.type) && !polarimeter.has_separate_pupils
-              ? "relative, of I alone: channels share it"
-              : "relative, of each exposure of that length");
-  if (!is_simultaneous(polarimeter.type) && r.change_per_s > 0)
+  out.add("scintillation", rates.scintillation / std::sqrt(t), "", flicker_words(polarimeter));
+  if (flicker_of(polarimeter) == Flicker::FromStateToState && r.change_per_s > 0)
     out.add("false_p", std::sqrt(2.0) * r.change_per_s * t / 4, "",
             "of four states in a row while brightness changes as told");
   Table table = std::move(out).table();

@@ -122,3 +122,35 @@ def test_the_aperture_that_is_summed(umov, tmp_path):
     inside = [1 - (1 + (r / a) ** 2) ** (1 - exponent) for r in (1, 2)]
     assert two["rate"] / one["rate"] == pytest.approx(inside[1] / inside[0], rel=1e-4)
     assert "within 2 of a star's width" in done.err
+
+
+def words_of(tmp_path):
+    return {line.split(",")[0]: line for line in (tmp_path / "e.csv").read_text().splitlines() if line[0] != "#"}
+
+
+def test_three_lenses_are_told_from_one(umov, tmp_path):
+    """Rates behind three polaroids are of three lenses, what stands before polarizers is of one: more is detected than it says."""
+    rows, done = rows_of(umov, tmp_path, "--instrument", "mmt9_channel", "--band", "Bessell.V")
+    words = words_of(tmp_path)
+    assert rows["rate"] > rows["rate_whole"]
+    assert "of one of 3 lenses" in words["rate_whole"] and "of one of 3 lenses" in words["zero_point"]
+    assert "detected in all channels" in words["rate"] and "each lens" in words["scintillation"]
+    assert "which each lens has of its own" in done.err
+    rows_of(umov, tmp_path, "--instrument", "c11_imx250", "--band", "Bessell.V")
+    assert "lens" not in "".join(words_of(tmp_path).values())
+
+
+def test_flicker_of_three_lenses_averages(umov, tmp_path):
+    """Of a star so bright that photons do not matter S/N is that of the air: each lens' own, over the square root of three."""
+    rows, done = rows_of(umov, tmp_path, "--instrument", "mmt9_channel", "--band", "Bessell.V", "--mag", "-5", "--exposure-s", "0.1")
+    flicker = rows["scintillation"] * math.sqrt(rows["time"] / 0.1)
+    assert float(re.search(r"S/N ([0-9.]+)", done.out + done.err)[1]) == pytest.approx(math.sqrt(3) / flicker, rel=0.02)
+
+
+@pytest.mark.parametrize("instrument, is_felt", [("c11_imx250", False), ("hwp_wollaston_1m", False), ("moptop_2m", False),
+                                                 ("usafa16", True), ("full_stokes_3m6", True), ("mmt9_channel", True)])
+def test_where_flicker_gets_into_p(umov, tmp_path, instrument, is_felt):
+    """Two beams share the air of each exposure as the orientations of a mosaic do; one beam and lenses of their own do not."""
+    rows, done = rows_of(umov, tmp_path, "--instrument", instrument, "--band", "Bessell.V", "--change-per-s", "0.05")
+    assert ("comes on top of it" in done.err) == is_felt and ("leaves p alone" in done.err) != is_felt
+    assert ("false_p" in rows) == (is_felt and instrument != "mmt9_channel")
