@@ -167,7 +167,7 @@ def test_air_is_described_once(scene, umov, air):
     path.write_text(path.read_text().replace("alt_m = 3058", f"alt_m = 3058\natmosphere = {air}"))
     for verb in ("observe", "run"):
         done = umov(verb, path)
-        assert done.code == 3 and "observe.toml:8:" in done.err and "beside [atmosphere]: leave one out" in done.err, done.err
+        assert done.code == 3 and "observe.toml:9:" in done.err and "beside [atmosphere]: leave one out" in done.err, done.err
 
 
 def test_without_air_nothing_is_taken_away(scene, umov, tmp_path):
