@@ -263,18 +263,24 @@ Result<std::string> observation_page(const Observation &observation, const std::
 
 namespace {
 
+/// Light was seen; the magnitude of noise says nothing.
+bool is_seen(const Table &stokes, std::size_t row) {
+  return stokes.number("I", row) > 3 * stokes.number("I_err", row);
+}
+
 /// The lines of a page of reduced sets, and what their axes reach.
 struct StokesLines {
   Lines plane{true}, ellipses{false}, points{true}, bars{false}, degree{true}, intervals{false},
       limits{true}, mags{true}, tests{true}, nulls{true};
-  Known q, u, p, mag;
+  Known q, u, v, p, mag;
+  bool has_v = false;
   std::string mag_title;
   std::size_t stride = 1;   ///< every n-th set has an ellipse, if its errors are not far wider
   double widest = INFINITY; ///< than those of most
 
   void add(const Table &stokes, std::size_t row, double t) {
     const std::string band = stokes.text("band", row);
-    if (stokes.number("I", row) > 3 * stokes.number("I_err", row)) { // else nothing was seen
+    if (is_seen(stokes, row)) {
       mags.add(band, t, stokes.number("mag", row));
       mag.add(stokes.number("mag", row),
               1.0857 * stokes.number("I_err", row) / stokes.number("I", row));
@@ -293,15 +299,22 @@ struct StokesLines {
       add_ellipse(stokes, row, band);
     for (const auto &[name, variance, null, known] :
          {std::tuple{"q", "cov_qq", "null_q", &q}, std::tuple{"u", "cov_uu", "null_u", &u}}) {
-      const double value = stokes.number(name, row), sd = std::sqrt(stokes.number(variance, row));
+      const double sd = std::sqrt(stokes.number(variance, row));
       if (const double half = stokes.number(null, row); std::isfinite(half))
         nulls.add(fmt::format("{} {}", name, band), t, half / sd);
-      const std::string line_name = fmt::format("{} {}", name, band);
-      points.add(line_name, t, value);
-      for (const double y : {value - sd, value + sd, std::nan("")})
-        bars.add(line_name, t, y);
-      known->add(value, sd);
+      add_point(fmt::format("{} {}", name, band), t, stokes.number(name, row), sd, *known);
     }
+    if (const double sd = std::sqrt(stokes.number("cov_vv", row)); std::isfinite(sd)) {
+      add_point("v " + band, t, stokes.number("v", row), sd, v);
+      has_v = true;
+    }
+  }
+
+  void add_point(const std::string &name, double t, double value, double sd, Known &known) {
+    points.add(name, t, value);
+    for (const double y : {value - sd, value + sd, std::nan("")})
+      bars.add(name, t, y);
+    known.add(value, sd);
   }
 
   void add_degree(const Table &stokes, std::size_t row, double t, const std::string &band) {
@@ -371,6 +384,7 @@ std::array<double, 2> from_zero(std::array<double, 2> span) {
 
 std::vector<PlotFigure> stokes_figures(StokesLines &lines, const std::string &time) {
   const Span q = lines.q.span(), u = lines.u.span(), mag = lines.mag.span();
+  const Span v = lines.has_v ? lines.v.span() : q;
   std::vector<PlotLine> p = with_bars(std::move(lines.degree), std::move(lines.intervals));
   std::size_t colours = 0; // limits are told apart from what is detected
   for (const PlotLine &one : p)
@@ -380,9 +394,10 @@ std::vector<PlotFigure> stokes_figures(StokesLines &lines, const std::string &ti
     p.push_back(std::move(one));
   }
   std::vector<PlotFigure> out;
-  add_figure(out, "q and u against time", time, "q, u in the sky frame",
+  add_figure(out, lines.has_v ? "q, u and v against time" : "q and u against time", time,
+             lines.has_v ? "q, u in the sky frame, v" : "q, u in the sky frame",
              with_bars(std::move(lines.points), std::move(lines.bars)), {},
-             {std::min(q[0], u[0]), std::max(q[1], u[1])});
+             {std::min({q[0], u[0], v[0]}), std::max({q[1], u[1], v[1]})});
   add_figure(out, "Degree of linear polarization", time, "p", std::move(p), {},
              from_zero(lines.p.span()));
   add_figure(out, "Brightness", time, lines.mag_title.c_str(), std::move(lines.mags).all(), {},
@@ -397,12 +412,12 @@ std::vector<PlotFigure> stokes_figures(StokesLines &lines, const std::string &ti
 }
 
 /// The page in a sentence or two: how much is known.
-std::string stokes_answer(const Table &stokes) {
+std::string stokes_answer(const Table &stokes, bool has_v) {
   std::size_t known = 0, polarized = 0;
   constexpr double infinite = std::numeric_limits<double>::infinity();
   double least = infinite, most = 0, brightest = infinite, faintest = -infinite;
   for (std::size_t row = 0; row < stokes.rows(); ++row) {
-    if (const double mag = stokes.number("mag", row); std::isfinite(mag)) {
+    if (const double mag = stokes.number("mag", row); std::isfinite(mag) && is_seen(stokes, row)) {
       brightest = std::min(brightest, mag);
       faintest = std::max(faintest, mag);
     }
@@ -418,8 +433,9 @@ std::string stokes_answer(const Table &stokes) {
   }
   std::string out = known == 0
                         ? fmt::format("No set of {} tells q and u.", stokes.rows())
-                        : fmt::format("{} of {} tell q and u, to {:.2g} in the median", known,
-                                      counted(stokes.rows(), "set"), median_error(stokes));
+                        : fmt::format("{} of {} tell {}, to {:.2g} in the median", known,
+                                      counted(stokes.rows(), "set"),
+                                      has_v ? "q, u and v" : "q and u", median_error(stokes));
   if (known > 0 && polarized == 0)
     out += "; no polarization is beyond doubt.";
   else if (known > 0)
@@ -444,8 +460,8 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
     lines.add(stokes, row, clock(row));
   const std::vector<PlotFigure> figures = stokes_figures(lines, clock.title());
   std::vector<std::string> notes{
-      stokes_answer(stokes),
-      "Ellipses and bars of q and u: one standard deviation. Bars of p: 95 % intervals; points "
+      stokes_answer(stokes, lines.has_v),
+      "Ellipses and bars of q, u and v: one standard deviation. Bars of p: 95 % intervals; points "
       "where "
       "it is detected, else the upper limit. Axes reach what is known: sets with errors wider than "
       "that, as in the penumbra, lie outside (a double click shows all).",

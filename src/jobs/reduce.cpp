@@ -192,11 +192,35 @@ Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
   return out;
 }
 
+/// The polarization that brightness looks like which changes by `drift` of itself from exposure to
+/// exposure: what the fit makes of unpolarized light that does (docs/theory/observing.md, 6).
+double false_polarization(Rows rows, const ReduceOptions &options, std::size_t parameters,
+                          double intensity, double drift) {
+  std::vector<ChannelDatum> data = data_of(rows, options);
+  const double middle = static_cast<double>(rows.back().exposure + rows.front().exposure) / 2;
+  for (std::size_t k = 0; k < data.size(); ++k)
+    data[k].counts =
+        data[k].sky +
+        data[k].row[0] * intensity * (1 + drift * (static_cast<double>(rows[k].exposure) - middle));
+  const auto fit = fit_stokes(data, parameters);
+  if (!fit)
+    return nan;
+  const auto &[q, u, v] = fractions_of(*fit).value;
+  return std::hypot(q, u, parameters == 4 ? v : 0);
+}
+
+/// The middle one; `values` is not empty.
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// A change of brightness from exposure to exposure looks like polarization where analysers follow
 /// each other: told in figures, from one set of a band to its next.
 void warn_of_drift(const std::vector<Set> &sets, const std::vector<Reduced> &reduced,
-                   Diagnostics &diagnostics) {
-  std::vector<double> drifts, errors;
+                   std::size_t parameters, const ReduceOptions &options, Diagnostics &diagnostics) {
+  std::vector<double> drifts, errors, seeming;
   std::map<std::pair<std::string, std::string>, std::size_t> before;
   for (std::size_t k = 0; k < reduced.size(); ++k) {
     const Reduced &b = reduced[k];
@@ -211,22 +235,24 @@ void warn_of_drift(const std::vector<Set> &sets, const std::vector<Reduced> &red
       continue;
     const auto steps =
         static_cast<double>(rows.front().exposure - sets[last].rows.front().exposure);
-    drifts.push_back(std::abs(b.fit.stokes[0] / reduced[last].fit.stokes[0] - 1) / steps);
+    const double drift = std::abs(b.fit.stokes[0] / reduced[last].fit.stokes[0] - 1) / steps;
+    const double looks = false_polarization(rows, options, parameters, b.fit.stokes[0], drift);
+    if (!std::isfinite(looks))
+      continue;
+    drifts.push_back(drift);
+    seeming.push_back(looks);
     errors.push_back(std::sqrt(b.fractions.covariance[0][0]));
   }
   if (drifts.empty())
     return;
-  const auto middle = static_cast<std::ptrdiff_t>(drifts.size() / 2);
-  std::nth_element(drifts.begin(), drifts.begin() + middle, drifts.end());
-  std::nth_element(errors.begin(), errors.begin() + middle, errors.end());
-  const double drift = drifts[static_cast<std::size_t>(middle)];
-  const double error = errors[static_cast<std::size_t>(middle)];
-  if (std::sqrt(2.0) * drift > error)
+  const double looks = median_of(seeming), error = median_of(errors);
+  if (looks > error)
     diagnostics.warn(fmt::format(
-        "brightness changes by {:.2g} from exposure to exposure while the analyser turns: that "
-        "alone looks like p = {:.2g}, more than its error {:.2g}. Reduce with --model "
-        "fourier:PERIOD, or take the analysers at once",
-        drift, std::sqrt(2.0) * drift, error));
+        "brightness changes by {:.2g} from exposure to exposure while the {} turns: that alone "
+        "looks like {} {:.2g}, more than its error {:.2g}. Reduce with --model fourier:PERIOD, "
+        "or take the analysers at once",
+        median_of(drifts), parameters == 4 ? "retarder" : "analyser",
+        parameters == 4 ? "q, u, v of" : "p =", looks, error));
 }
 
 /// Every set by itself.
@@ -256,7 +282,7 @@ Result<std::vector<Reduced>> set_by_set(const CountsFile &file, std::size_t para
                         "counts, sky and w0 to w3 in the units that umov observe writes?")
                  : tl::unexpected(first.error());
   }
-  warn_of_drift(sets, out, diagnostics);
+  warn_of_drift(sets, out, parameters, options, diagnostics);
   return out;
 }
 

@@ -1,5 +1,6 @@
 """umov observe and reduce: from a scenario to counts and back, through every instrument."""
 import math
+import re
 import statistics
 
 import pytest
@@ -130,6 +131,19 @@ def test_counts_can_be_fitted_without_umov(scene, umov, tmp_path):
 def test_a_drift_is_told_in_figures(scene, umov, tmp_path):
     _, _, said = observed(umov, tmp_path, scene("usafa16", "exposure_s = 2", air='scintillation = "none"'))
     assert "fourier:PERIOD" in said and "looks like p" in said
+
+
+def test_a_drift_behind_a_retarder_is_told_in_figures(scene, umov, tmp_path):
+    """One beam behind a retarder in four steps: a linear drift is odd in the angle, as V is. The states by their Mueller rows."""
+    import numpy
+    _, _, said = observed(umov, tmp_path, scene("full_stokes_3m6", "exposure_s = 0.01\ncadence_s = 0.5", air='scintillation = "none"', seconds=30))
+    told = re.search(r"changes by (\S+) from exposure to exposure while the retarder turns: that alone looks like q, u, v of (\S+),", said)
+    assert told, said
+    c, s, d = *(f(numpy.radians(2 * numpy.array([-51.69, -15.12, 15.12, 51.69]))) for f in (numpy.cos, numpy.sin)), math.radians(131.8)
+    rows = numpy.stack([numpy.ones(4), c * c + s * s * math.cos(d), c * s * (1 - math.cos(d)), s * math.sin(d)], axis=1)
+    seeming = numpy.linalg.norm(numpy.linalg.solve(rows, numpy.arange(4) - 1.5)[1:])
+    # Two digits are printed of each, and the mirror before it polarizes by some 3 %.
+    assert float(told[2]) / float(told[1]) == pytest.approx(seeming, rel=0.1)
 
 
 BAD = [("exposure_s = 0", "exposure_s = 0"), ("exposure_s = 1\ncadence_s = 0.5", "cannot overlap"),

@@ -63,9 +63,9 @@ Odd odd_of(std::span<const Axis> group, double hand) {
 struct Found {
   std::size_t odd = 0, rows = 0;
   std::optional<Axis> first;
-  double says_deg = 0;           ///< where the weights put the first's analyser
-  const char *beside = nullptr;  ///< whose other rows say so
-  bool is_mirrored = true;       ///< angles that run the other way would explain all
+  double says_deg = 0;          ///< where the weights put the first's analyser
+  const char *beside = nullptr; ///< whose other rows say so
+  bool is_mirrored = true;      ///< angles that run the other way would explain all
 
   void add(std::span<const Axis> group, const char *of) {
     rows += group.size();
@@ -93,7 +93,8 @@ bool is_plain(const CountsFile &file) {
 }
 
 bool is_same_exposure(const CountRow &a, const CountRow &b) {
-  return std::tie(a.exposure, a.set, a.name, a.band) == std::tie(b.exposure, b.set, b.name, b.band) &&
+  return std::tie(a.exposure, a.set, a.name, a.band) ==
+             std::tie(b.exposure, b.set, b.name, b.band) &&
          seconds_between(a.time, b.time) == 0;
 }
 
@@ -138,8 +139,8 @@ void warn_of_analysers(const CountsFile &file, const std::vector<std::size_t> &l
       fmt::format("analyser_deg = {:g}, but w1 = {:g}, w2 = {:g} are those of an analyser at "
                   "{:.3g} deg beside the others of its {} ({} of {} so). The fit takes w1 and w2: "
                   "if they are right, mend analyser_deg, else q and u are wrong{}",
-                  first.told_deg, w[1], w[2], found.says_deg,
-                  found.beside, found.odd, counted(found.rows, "row"),
+                  first.told_deg, w[1], w[2], found.says_deg, found.beside, found.odd,
+                  counted(found.rows, "row"),
                   found.is_mirrored ? ". Behind a mirror angles run the other way: then all agree"
                                     : ""),
       {name, lines[first.row]});

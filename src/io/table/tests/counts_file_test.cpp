@@ -9,7 +9,8 @@ namespace {
 
 /// A row of an ideal analyser whose axis on the sky is at `axis_deg` (Malus), as umov reduce
 /// reads it.
-std::string row_of(double analyser_deg, double axis_deg, int exposure, const std::string &more = "") {
+std::string row_of(double analyser_deg, double axis_deg, int exposure,
+                   const std::string &more = "") {
   const double twice = 2 * axis_deg * std::numbers::pi / 180;
   return fmt::format("2018-01-21T05:12:{:02}Z,{},1,V,{:g}-{:g},1000,10,1,30,{},{:.4f},{:.4f}{}\n",
                      exposure, exposure, analyser_deg, axis_deg, analyser_deg, 5 * std::cos(twice),
@@ -51,8 +52,8 @@ TEST(CountsFile, AnalysersThatAreTakenForEachOtherAreTold) {
   const auto of_mosaic = warnings("", rows);
   ASSERT_EQ(of_mosaic.size(), 1u);
   EXPECT_EQ(of_mosaic[0].where.line, 3u);
-  for (const char *words : {"analyser_deg = 45, but w1 = ", "an analyser at 135 deg", "its exposure",
-                            "4 of 8 rows", "Behind a mirror"})
+  for (const char *words : {"analyser_deg = 45, but w1 = ", "an analyser at 135 deg",
+                            "its exposure", "4 of 8 rows", "Behind a mirror"})
     EXPECT_NE(of_mosaic[0].message.find(words), std::string::npos) << of_mosaic[0].message;
   std::string wheel;
   for (int k = 0; k < 4; ++k)
@@ -60,7 +61,8 @@ TEST(CountsFile, AnalysersThatAreTakenForEachOtherAreTold) {
   const auto of_wheel = warnings(",x_axis_pa", wheel);
   ASSERT_EQ(of_wheel.size(), 1u);
   EXPECT_EQ(of_wheel[0].where.line, 4u);
-  for (const char *words : {"analyser_deg = 70,", "an analyser at 90 deg", "its set", "1 of 4 rows"})
+  for (const char *words :
+       {"analyser_deg = 70,", "an analyser at 90 deg", "its set", "1 of 4 rows"})
     EXPECT_NE(of_wheel[0].message.find(words), std::string::npos) << of_wheel[0].message;
   EXPECT_EQ(of_wheel[0].message.find("mirror"), std::string::npos);
 }
@@ -80,7 +82,8 @@ TEST(CountsFile, WhatTurnsLightBeforeAnAnalyserIsNoContradiction) {
   EXPECT_TRUE(warnings(",x_axis_pa", turning).empty());
   EXPECT_TRUE(warnings("", mirror).empty());
   // A plate whose axis flips within the exposure has no angle: the header names it.
-  const std::string flips = row_of(0, 0, 0) + row_of(90, 90, 0) + row_of(0, 45, 0) + row_of(90, 135, 0);
+  const std::string flips =
+      row_of(0, 0, 0) + row_of(90, 90, 0) + row_of(0, 45, 0) + row_of(90, 135, 0);
   EXPECT_TRUE(warnings("", flips, "# polarimeter: flc\n").empty());
   EXPECT_EQ(warnings("", flips, "# polarimeter: mosaic\n").size(), 1u);
 }
