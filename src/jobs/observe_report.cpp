@@ -459,8 +459,10 @@ Result<std::string> stokes_page(const Table &stokes, const std::string &title,
   for (std::size_t row = 0; row < stokes.rows(); ++row)
     lines.add(stokes, row, clock(row));
   const std::vector<PlotFigure> figures = stokes_figures(lines, clock.title());
+  const std::size_t warned = diagnostics.warnings().size();
   std::vector<std::string> notes{
-      stokes_answer(stokes, lines.has_v),
+      stokes_answer(stokes, lines.has_v) +
+          (warned > 0 ? fmt::format(" Below: {}.", counted(warned, "warning")) : ""),
       "Ellipses and bars of q, u and v: one standard deviation. Bars of p: 95 % intervals; points "
       "where "
       "it is detected, else the upper limit. Axes reach what is known: sets with errors wider than "

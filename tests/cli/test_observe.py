@@ -136,7 +136,7 @@ def test_a_drift_is_told_in_figures(scene, umov, tmp_path):
 def test_a_drift_behind_a_retarder_is_told_in_figures(scene, umov, tmp_path):
     """One beam behind a retarder in four steps: a linear drift is odd in the angle, as V is. The states by their Mueller rows."""
     import numpy
-    _, _, said = observed(umov, tmp_path, scene("full_stokes_3m6", "exposure_s = 0.01\ncadence_s = 0.5", air='scintillation = "none"', seconds=30))
+    _, _, said = observed(umov, tmp_path, scene("full_stokes_3m6", "exposure_s = 0.1\ncadence_s = 0.5", air='scintillation = "none"', seconds=30))
     told = re.search(r"changes by (\S+) from exposure to exposure while the retarder turns: that alone looks like q, u, v of (\S+),", said)
     assert told, said
     c, s, d = *(f(numpy.radians(2 * numpy.array([-51.69, -15.12, 15.12, 51.69]))) for f in (numpy.cos, numpy.sin)), math.radians(131.8)

@@ -271,8 +271,18 @@ def test_pages_of_plots(scene, umov, tmp_path):
         assert title in page
     assert umov("reduce", "out/counts.ecsv", "-o", "s.ecsv", "--page", "s.html").code == 0
     page = (tmp_path / "s.html").read_text()
-    for title in ("Polarization", "Degree of linear polarization", "Brightness", "chi2/dof"):
+    for title in ("Polarization", "Degree of linear polarization", "Brightness", "chi2/dof", "q and u against time"):
         assert title in page
+    assert "Below: " not in page and "q, u and v against time" not in page
+
+
+def test_a_page_of_all_four_parameters(scene, umov, tmp_path):
+    """V has its points where it is known, and the answer says how much stands in doubt below."""
+    assert umov("observe", scene("exposure_s = 0.01\ncadence_s = 0.5", instrument="full_stokes_3m6", stop="2018-01-21T05:11:20Z")).code == 0
+    done = umov("reduce", "out/counts.ecsv", "-o", "s.ecsv", "--page", "s.html")
+    page, warned = (tmp_path / "s.html").read_text(), done.err.count("warning: ")
+    assert done.code == 0 and "q, u and v against time" in page and "v nm:550" in page and "tell q, u and v, to " in page, done.err
+    assert (f"Below: {warned} warning" in page) == (warned > 0), done.err
 
 
 def test_magnitudes_of_the_vega_system(umov, tmp_path):
