@@ -281,9 +281,14 @@ Result<Table> exposure(const ExposureRequest &r) {
   out.add("share_dark", f2 * rates.dark * t / all, "", "dark current");
   out.add("share_read", rates.fixed / all, "", "reading and rounding, once");
   out.add("scintillation", rates.scintillation / std::sqrt(t), "", flicker_words(polarimeter));
-  if (flicker_of(polarimeter) == Flicker::FromStateToState && r.change_per_s > 0)
-    out.add("false_p", std::sqrt(2.0) * r.change_per_s * t / 4, "",
-            "of four states in a row while brightness changes as told");
+  if (flicker_of(polarimeter) == Flicker::FromStateToState && r.change_per_s > 0) {
+    // Of four states that follow each other; of a balanced retarder in any order.
+    const bool is_full = parameters_of(polarimeter.type) == 4;
+    out.add("false_p", (is_full ? std::sqrt(15.0) / 2 : std::sqrt(2.0)) * r.change_per_s * t / 4,
+            "",
+            is_full ? "of q, u and v together, while brightness changes as told"
+                    : "of four states in a row while brightness changes as told");
+  }
   Table table = std::move(out).table();
   table.note("band", band.name);
   table.note("magnitude", magnitude_words(setup));

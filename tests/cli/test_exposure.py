@@ -154,3 +154,8 @@ def test_where_flicker_gets_into_p(umov, tmp_path, instrument, is_felt):
     rows, done = rows_of(umov, tmp_path, "--instrument", instrument, "--band", "Bessell.V", "--change-per-s", "0.05")
     assert ("comes on top of it" in done.err) == is_felt and ("leaves p alone" in done.err) != is_felt
     assert ("false_p" in rows) == (is_felt and instrument != "mmt9_channel")
+    if "false_p" in rows:
+        # A drift r from state to state: sqrt(2) r of p behind analysers at 0 45 90 135. Four balanced states have unit vectors m with
+        # sum m m^T = 4/3, so that (3/4) |sum m_k r (k - 3/2)| = sqrt(3/4 5) r, in any order.
+        by_drift = math.sqrt(15) / 2 if instrument == "full_stokes_3m6" else math.sqrt(2)
+        assert rows["false_p"] == pytest.approx(by_drift * 0.05 * rows["time"] / 4, rel=1e-5)
