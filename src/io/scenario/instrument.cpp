@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/embedded.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
@@ -221,7 +222,9 @@ Result<void> read_layout(const Node &node, Polarimeter &out) {
                        sorted[1] != sorted[2] && sorted[2] != sorted[3];
   if (!is_fine)
     return fail(ErrorCode::BadInput,
-                "layout: two rows of two different angles were expected, as [[90, 45], [135, 0]]",
+                fmt::format("layout holds the angles {}; two rows of two were expected, all four "
+                            "different (180 deg is 0), as [[90, 45], [135, 0]]",
+                            fmt::join(angles, ", ")),
                 node.where("layout"));
   out.angles_deg = angles;
   return {};

@@ -265,7 +265,10 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
     UMOV_TRY(check_row(row, cells.where(k)));
     if (!out.rows.empty() && out.rows.back().name == row.name &&
         seconds_between(row.time, out.rows.back().time) < -1e-6)
-      return fail(ErrorCode::BadInput, "times go back; sort the rows by time", cells.where(k));
+      return fail(ErrorCode::BadInput,
+                  fmt::format("times go back, from {} to {}; sort the rows by time",
+                              to_iso(out.rows.back().time), to_iso(row.time)),
+                  cells.where(k));
     if (rows_of_time.has_twice(row))
       return fail(
           ErrorCode::BadInput,
