@@ -14,6 +14,9 @@ constexpr double planck_j_s = 6.62607015e-34, light_m_s = 299792458; // exact, S
 /// Random streams of one exposure.
 enum Stream : std::uint32_t { Light = 0, Sky = 1, Air = 2 };
 
+/// Orientations that share the pixels of a detector.
+double parts_of(const Polarimeter &p) { return p.type == PolarimeterType::Mosaic ? 4 : 1; }
+
 } // namespace
 
 Result<BandResponse> narrow_band(std::string name, double nm, double width_nm) {
@@ -99,8 +102,11 @@ double BandObserver::fwhm_arcsec(double airmass) const {
 
 double BandObserver::pixels_of_circle(double radius_fwhm, double airmass) const {
   const double radius = radius_fwhm * fwhm_arcsec(airmass) / pixel_arcsec_;
-  const double parts = instrument_.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
-  return pi * radius * radius / parts;
+  const double parts = parts_of(instrument_.polarimeter);
+  // No less than a pixel is read of each channel: of lenses whose pixels are wider than stars, sky
+  // and reading are those of a whole one, and the ring about it is as much wider.
+  const double ratio = radius_fwhm / conditions_.aperture_fwhm;
+  return std::max(pi * radius * radius / parts, ratio * ratio);
 }
 
 double BandObserver::aperture_pixels(double airmass) const {
@@ -164,7 +170,7 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   of_sky.pixel = Stream::Sky;
   Draws sky_draws(of_sky);
   out.sky = out.mean_sky + out.sky_err * sky_draws.normal();
-  const double lattice = instrument_.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
+  const double lattice = parts_of(instrument_.polarimeter);
   const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
   const double peak =
       star * lattice / share * peak_share(light.airmass) + out.mean_sky / out.pixels;
@@ -218,7 +224,8 @@ Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &pla
                                                          const ExposureLight &light) const {
   const double radius = conditions_.aperture_fwhm * fwhm_arcsec(light.airmass);
   const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
-  UMOV_ASSIGN(out, expected(plan, light, share, pi * radius * radius));
+  const double pixel2 = parts_of(instrument_.polarimeter) * pixel_arcsec_ * pixel_arcsec_;
+  UMOV_ASSIGN(out, expected(plan, light, share, std::max(pi * radius * radius, pixel2)));
   const double pixels = aperture_pixels(light.airmass);
   for (std::size_t c = 0; c < out.size(); ++c) {
     out[c].pixels = pixels;

@@ -177,13 +177,14 @@ Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
     through += channel.row[0];
     largest = std::max(largest, channel.row[0]);
   }
-  const double width = s.request.aperture_fwhm * s.observer.fwhm_arcsec(x);
   out.star = out.whole * share_inside(ImageProfile::Moffat, s.request.aperture_fwhm) * through;
-  out.sky = zero * std::pow(10, -0.4 * s.request.sky_mag) * pi * width * width * through;
+  const double lattice = s.instrument.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
+  const double arcsec2 =
+      s.observer.aperture_pixels(x) * lattice * std::pow(s.observer.pixel_arcsec(), 2);
+  out.sky = zero * std::pow(10, -0.4 * s.request.sky_mag) * arcsec2 * through;
   const double pixels = s.observer.aperture_pixels(x) * static_cast<double>(channels.size());
   out.dark = s.instrument.detector.dark_e_s * pixels;
   out.fixed = pixels * fixed_variance(s.instrument.detector);
-  const double lattice = s.instrument.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
   out.peak = out.whole * largest * lattice * s.observer.peak_share(x);
   out.scintillation = s.observer.scintillation_sd(1, x, 0);
   out.fills_s = saturation_e(s.instrument.detector) / out.peak;

@@ -159,3 +159,15 @@ def test_where_flicker_gets_into_p(umov, tmp_path, instrument, is_felt):
         # sum m m^T = 4/3, so that (3/4) |sum m_k r (k - 3/2)| = sqrt(3/4 5) r, in any order.
         by_drift = math.sqrt(15) / 2 if instrument == "full_stokes_3m6" else math.sqrt(2)
         assert rows["false_p"] == pytest.approx(by_drift * 0.05 * rows["time"] / 4, rel=1e-5)
+
+
+def test_no_less_than_a_pixel_is_read(umov, tmp_path):
+    """Of a lens whose pixels are 16 arcsec wide, the sky of a whole pixel and its reading come with a star 1 arcsec wide."""
+    rows, _ = rows_of(umov, tmp_path, "--instrument", "mmt9_channel", "--band", "Bessell.V", "--mag", 8, "--sky-mag", 20)
+    bare = 10 ** (0.4 * (rows["zero_point"] - 8))
+    inside = next(float(row["value"]) for row in anchors("observing_instrument") if row["name"] == "moffat_1")
+    pixel = math.degrees(6.5e-6 / 0.0838) * 3600
+    assert rows["share_sky"] / rows["share_star"] == pytest.approx(
+        10 ** (-0.4 * (20 - 8)) * pixel**2 / (rows["rate_whole"] / bare * inside), rel=1e-4)
+    # Three pixels of 1.5 e and of rounding to .5 e, once; F^2 is 1.
+    assert rows["share_read"] / rows["share_star"] == pytest.approx(3 * (1.5**2 + 0.5**2 / 12) / rows["electrons"], rel=1e-4)

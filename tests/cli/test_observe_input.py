@@ -276,6 +276,26 @@ def test_pages_of_plots(scene, umov, tmp_path):
     assert "Below: " not in page and "q, u and v against time" not in page
 
 
+def test_pixels_wider_than_stars_are_read_whole(scene, umov, tmp_path):
+    """16 arcsec a pixel and stars of 1 arcsec: one pixel for each lens, its reading and the sky of 256 arcsec2; a fine camera has its circle."""
+    for instrument, pixels in (("mmt9_channel", 1), ("usafa16", None)):
+        path = scene("exposure_s = 0.1", air="seeing = { arcsec = 1, outer_scale_m = 0 }\nsky = { mag = 18 }", instrument=instrument)
+        assert umov("observe", path, "--force").code == 0
+        row = Table.read(tmp_path / "out/counts.ecsv")[0]
+        if pixels is None:  # F X^.6 lambda^-.2 (docs/theory/observing.md, 3), two widths about it
+            width = row["airmass"] ** 0.6 * (550 / 500) ** -0.2 / math.degrees(13e-6 / 3.3325) / 3600
+            pixels = math.pi * (2 * width) ** 2
+        assert row["n_pixel"] == pytest.approx(pixels, rel=1e-6)
+        if instrument == "mmt9_channel":
+            assert row["var_read"] == pytest.approx(1.5**2 + 0.5**2 / 12, rel=1e-9)
+            # Of 18 mag/arcsec2 (AB) in 10 nm at 550 nm: 5.48e10 dlnlambda photons s-1 m-2 of AB 0, 3.14 e by 1.57e-3 m2 behind half a polaroid.
+            mean = 5.47986954e10 * 10 / 550 * 10 ** (-0.4 * 18) * (6.5e-6 / 0.0838 * 206264.806) ** 2
+            mean *= math.pi / 4 * 0.0708**2 * 0.4 * (1 + 1 / 100) / 2 * 0.1
+            skies = Table.read(tmp_path / "out/counts.ecsv")["sky"]
+            errors = Table.read(tmp_path / "out/counts.ecsv")["sky_err"]
+            assert abs(sum(skies) / len(skies) - mean - 0.05) < 4 * max(errors) / math.sqrt(len(skies))
+
+
 def test_a_page_of_all_four_parameters(scene, umov, tmp_path):
     """V has its points where it is known, and the answer says how much stands in doubt below."""
     assert umov("observe", scene("exposure_s = 0.01\ncadence_s = 0.5", instrument="full_stokes_3m6", stop="2018-01-21T05:11:20Z")).code == 0
