@@ -87,10 +87,13 @@ Result<void> check(const ExposureRequest &r) {
 
 /// What a frame reaches, what it fails at, and what helps, in a sentence.
 std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, bool is_sequence) {
-  const double frames = std::ceil(std::pow(frame.sd_p / sd_p, 2) - 1e-9);
+  const double reached = std::hypot(frame.sd_p, frame.flicker_p);
+  const double frames = std::ceil(std::pow(reached / sd_p, 2) - 1e-9);
   const char *of = is_sequence ? " of each analyser" : "";
-  std::string out = fmt::format("One exposure of {:.3g} s{}: S/N {:.3g}, error of p {:.2g}; ",
-                                frame.seconds, of, frame.snr, frame.sd_p);
+  std::string out = fmt::format(
+      "One exposure of {:.3g} s{}: S/N {:.3g}, error of p {:.2g}{}; ", frame.seconds, of, frame.snr,
+      frame.sd_p,
+      frame.flicker_p > 0 ? fmt::format(", with scintillation {:.2g}", reached) : std::string());
   if (frame.full >= 1)
     return out + fmt::format("it saturates (the brightest pixel is full after {:.3g} s). Expose at "
                              "most {:.3g} s and take more frames, defocus, or take a narrower band",
@@ -194,10 +197,14 @@ Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
 StarFrame star_frame(const ExposureSetup &s, const StarRates &r, double seconds) {
   const double star = r.star * seconds;
   const double variance = s.excess2 * (r.star + r.sky + r.dark) * seconds + r.fixed;
-  const double flicker2 = r.scintillation * r.scintillation / seconds /
-                          static_cast<double>(lenses_of(s.instrument.polarimeter));
-  return {seconds, 1 / std::sqrt(variance / (star * star) + flicker2),
-          std::sqrt(s.factor / s.states * variance) / star, seconds / r.fills_s};
+  const Polarimeter &p = s.instrument.polarimeter;
+  const auto lenses = static_cast<double>(lenses_of(p));
+  const double flicker2 = r.scintillation * r.scintillation / seconds;
+  // Of one state against the others it acts as the noise of so many counts does.
+  const double of_p = flicker_of(p) == Flicker::InI ? 0 : s.factor / std::max(s.states, lenses);
+  return {seconds, 1 / std::sqrt(variance / (star * star) + flicker2 / lenses),
+          std::sqrt(s.factor / s.states * variance) / star, seconds / r.fills_s,
+          std::sqrt(of_p * flicker2)};
 }
 
 double time_for(const ExposureSetup &s, const StarRates &r) {

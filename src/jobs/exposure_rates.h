@@ -39,6 +39,7 @@ Result<StarRates> star_rates(const ExposureSetup &setup, double mag);
 /// how full it makes the brightest pixel.
 struct StarFrame {
   double seconds = 0, snr = 0, sd_p = 0, full = 0;
+  double flicker_p = 0; ///< what scintillation adds to sd_p, in quadrature; 0 where it is shared
 };
 /// A frame of so many seconds.
 StarFrame star_frame(const ExposureSetup &setup, const StarRates &rates, double seconds);

@@ -147,6 +147,19 @@ def test_flicker_of_three_lenses_averages(umov, tmp_path):
     assert float(re.search(r"S/N ([0-9.]+)", done.out + done.err)[1]) == pytest.approx(math.sqrt(3) / flicker, rel=0.02)
 
 
+def test_flicker_is_in_what_a_frame_is_said_to_reach(umov, tmp_path):
+    """Of exposures one after the other sd q is s/sqrt 2, s of each (docs/theory/observing.md, 2); of three lenses sqrt(2/3) s."""
+    for instrument, felt in (("usafa16", 1 / math.sqrt(2)), ("mmt9_channel", math.sqrt(2 / 3)), ("c11_imx250", None)):
+        rows, done = rows_of(umov, tmp_path, "--instrument", instrument, "--band", "Bessell.V", "--exposure-s", "0.2")
+        told = re.search(r"error of p (\S+?), with scintillation (\S+?);", done.err)
+        assert (told is not None) == (felt is not None), done.err
+        if told:
+            flicker = felt * rows["scintillation"] * math.sqrt(rows["time"] / 0.2)
+            assert float(told[2]) == pytest.approx(math.hypot(float(told[1]), flicker), rel=0.03)
+            # As many as bring the sum to what is wanted, .01; two digits of it are told.
+            assert int(re.search(r"(\d+) of them", done.err)[1]) == pytest.approx((float(told[2]) / 0.01) ** 2, rel=0.06, abs=1)
+
+
 @pytest.mark.parametrize("instrument, is_felt", [("c11_imx250", False), ("hwp_wollaston_1m", False), ("moptop_2m", False),
                                                  ("usafa16", True), ("full_stokes_3m6", True), ("mmt9_channel", True)])
 def test_where_flicker_gets_into_p(umov, tmp_path, instrument, is_felt):
