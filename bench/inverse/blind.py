@@ -5,7 +5,7 @@ the coarser mesh. Prints one line per curve and the summary.
 usage: blind.py OBJECT TRIALS [--snr 20] [--seed 1] [--spin PERIOD_S] [--wrong 1] [--only TRIAL] [--umov PATH] [options of umov invert]
        bench/peers/run inverse metals TRIALS --truth mitsuba [--surfaces 3] ...
 OBJECT: agena, hst, box-wing, cubesat, or metals: a box-wing of four rough metals. --truth mitsuba: the data's light is another program's
-(mitsuba_truth.py), of paths that touch up to --surfaces; before the answers stands how far it is from umov's rays. --spin: the body turns about a random axis; the search is told its period to 1 %.
+(mitsuba_truth.py); before the answers stands how far it is from umov's rays. --surfaces 3: light between surfaces in the data, not in the fit. --spin: the body turns about a random axis; the search is told its period to 1 %.
 --wrong 1: the true object is another one than the one that is fitted: slopes of each material's lobe are 20 % off (normal, ln), reflectances of
 paints 10 %, haze 30 %, lengths along each axis of the mesh 2.5 % (areas 3.5 %); other numbers are parts or multiples of that."""
 import argparse
@@ -163,7 +163,7 @@ def main():
     parser.add_argument("--wrong", type=float, default=0)
     parser.add_argument("--only", type=int, help="of the trials, this one alone (the others' curves are made, for the same noise)")
     parser.add_argument("--truth", choices=["rays", "mitsuba"], default="rays")
-    parser.add_argument("--surfaces", type=int, default=1, help="with --truth mitsuba: that a path touches at most")
+    parser.add_argument("--surfaces", type=int, default=1, help="that the light of the truth touches at most; of the fit 1")
     parser.add_argument("--umov", default=ROOT / "build/release/apps/cli/umov")
     parser.add_argument("--work", type=pathlib.Path)
     o, o.rest = parser.parse_known_args()  # what is not ours goes to umov invert
@@ -232,6 +232,8 @@ def make_curve(o, work, meshes, trial, law, step, rng):
                                               (meshes[0], "masks", "fit", inertial([1, 0, 0, 0]), "fit.toml")):
         text = SCENARIO.format(seed=o.seed + trial, name=o.object, root=ROOT, mesh=mesh, law=attitude, step=step, materials=materials,
                                method=method, out=work / out)
+        if o.surfaces > 1 and out == "truth" and not o.truth:
+            text = text.replace(f'method = "{method}"', f'method = "{method}"\nbounces = {o.surfaces}')
         if o.object == "metals":
             text += mitsuba_truth.materials_in_toml()
         if o.wrong and out == "truth":

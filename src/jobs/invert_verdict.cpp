@@ -228,10 +228,12 @@ std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
   // No chi-square tells it: lobes that are a fifth off are fitted well by an attitude beside.
   if (judgement.verdict == Verdict::Determined)
     out += judgement.fitted.empty()
-               ? "- this holds for materials and a shape that are right to --floor; where they are "
-                 "known to a tenth or a fifth, ask again with a --floor of 0.3\n"
+               ? "- this holds for materials and a shape that are right to --floor, and where little "
+                 "light goes from surface to surface; where materials are known to a tenth or a "
+                 "fifth, ask again with a --floor of 0.3\n"
                : "- this holds for materials that are right to --slope-sd, --reflectance-sd and "
-                 "--haze-sd, and for a shape that is right to --floor\n";
+                 "--haze-sd, for a shape that is right to --floor, and where little light goes from "
+                 "surface to surface\n";
   return out;
 }
 
