@@ -120,7 +120,7 @@ SurfaceDirections in_plane(const Subject &s, double theta_i_deg, double deg) {
 
 PlotFigure lobes(const std::vector<Subject> &subjects, double theta_i) {
   return {fmt::format("BRDF in the plane of incidence, source at {:g} deg", theta_i),
-          "observer [deg], mirror side positive", "m00 [1/sr]",
+          "observer [deg], mirror side positive", "BRDF (m00) [1/sr]",
           lines_over(subjects, steps(-88, 88, 0.5),
                      [theta_i](const Subject &s, std::size_t b, double deg) {
                        const double value = s.surface.brdf(b, in_plane(s, theta_i, deg)).m[0][0];
@@ -232,7 +232,7 @@ Result<std::string> material_gallery(const std::vector<double> &wavelengths_nm) 
     notes.push_back(name + ": " +
                     (material.description.empty() ? "Table 1 of the paper" : material.description));
   }
-  return make_plot_page("All materials", figures, notes);
+  return make_answer_page("All materials", figures, notes);
 }
 
 Result<std::string> material_page(const MaterialPageRequest &request) {

@@ -266,7 +266,7 @@ def test_pages_of_plots(scene, umov, tmp_path):
     path.write_text(path.read_text().replace('["ecsv"]', '["ecsv", "html"]'))
     assert umov("observe", path).code == 0
     page = (tmp_path / "out/report.html").read_text()
-    for title in ("Counts in the aperture", "What the model leaves", "Pulls of the counts", "Noise of the first channel",
+    for title in ("Counts in the aperture", "What the model leaves", "How often counts miss by how many errors", "Noise of the first channel",
                   "What was there"):
         assert title in page
     assert umov("reduce", "out/counts.ecsv", "-o", "s.ecsv", "--page", "s.html").code == 0

@@ -24,6 +24,8 @@ def pages(tmp_path_factory):
     example = ROOT / "examples/hst_maui.toml"
     umov("run", example, "--set", "time.step_s=20", "--set", "output.dir=run", "-q")
     umov("passes", "--orbit", ROOT / "data/tle/hst.tle", "-s", "maui", *DAY, "--chart", "chart.html", "-o", "p.csv")
+    umov("passes", "--orbit", ROOT / "tests/data/tle/mixed_979_2018-01-20.tle", "-s", "kitt peak", "--start", "2018-01-21T00:00:00Z", "--stop",
+         "2018-01-21T06:00:00Z", "--visible", "--model", "sphere", "--material", "aluminium", "--chart", "crowd.html", "-o", "c.csv", "-q")
     umov("material", "plot", "gold", "paint_white", "-o", "material.html")
     umov("observe", ROOT / "examples/observe_hst.toml", "--set", "output.dir=observe", "--set", "time.start=2018-01-21T05:09:16Z", "--set", "time.stop=2018-01-21T05:09:30Z",
          "--set", 'output.formats=["ecsv","html"]', "-q")
@@ -153,6 +155,74 @@ def test_letters_of_the_sky_do_not_cover_each_other(pages, browser, width):
     assert {"N", "E", "60°"} < {text for text, *_ in texts} and sum(":" in text for text, *_ in texts) >= (8 if width > 1000 else 2), texts
     assert not [(a[0], b[0]) for k, a in enumerate(texts) for b in texts[:k]
                 if a[1] < b[3] and b[1] < a[3] and a[2] < b[4] and b[2] < a[4]]
+
+
+@pytest.mark.parametrize("width", [1400, 390])
+def test_a_crowded_sky_names_its_best_and_cuts_no_column(pages, browser, width):
+    """Hundreds of tracks of two days, names as long as 24 letters: everywhere a label is over some track."""
+    with browser.opened(pages / "crowd.html", width) as tab:
+        tab.seen()
+        rows, labels, wide = value_of(tab, """(() => { const list = document.getElementById("list"); return [document.querySelectorAll("tbody tr").length,
+            [...document.querySelectorAll("#sky g[pointer-events=none] text")].map((one) => one.textContent), list.scrollWidth - list.clientWidth]; })()""")
+    assert rows > 200 and len(labels) >= 3 and wide == 0, (rows, labels, wide)
+
+
+def test_a_track_without_magnitudes_is_told_by_its_time_on_a_phone(pages, browser):
+    with browser.opened(pages / "chart.html", 390) as tab:
+        tab.seen()
+        labels = value_of(tab, '[...document.querySelectorAll("#sky g[pointer-events=none] text")].map((one) => one.textContent)')
+    assert labels and all(label.startswith("HST, ") and label.count(":") == 2 for label in labels), labels
+
+
+@pytest.mark.parametrize("is_paper", [False, True])
+def test_a_colour_bar_is_clear_of_the_axis_above_it(pages, browser, is_paper):
+    boxes = """[".xtitle", ".cbtitle"].map((name) => { const box = document.querySelector("#qu_plane " + name).getBoundingClientRect();
+        return [box.top, box.bottom]; })"""
+    with browser.opened(pages / "run/report.html") as tab:
+        tab.seen(1400)
+        axis, bar = value_of(tab, f'({"window.dispatchEvent(new Event(`beforeprint`))" if is_paper else 0}, {boxes})')
+    assert axis[1] > axis[0] and bar[0] > axis[1], (axis, bar)
+
+
+def test_errors_of_an_angle_do_not_jump_where_it_goes_round(pages, browser):
+    """HST's position angle goes through 0: no outline crosses the figure. Errors reach 90 deg at most."""
+    with browser.opened(pages / "run/report.html") as tab:
+        tab.seen(1400)
+        outlines = value_of(tab, 'document.getElementById("p_pa")._fullData.filter((one) => one.fill === "toself" && one.yaxis === "y2").map((one) => [...one.y])')
+        angles = value_of(tab, 'document.getElementById("p_pa")._fullData.filter((one) => one.mode !== "lines" && one.yaxis === "y2").map((one) => [...one.y])')
+    assert any(a is None for line in angles for a in line), "it goes round"
+    for outline in outlines:
+        parts, part = [], []
+        for value in [*outline, None]:
+            if value is None:
+                parts.append(part)
+                part = []
+            else:
+                part.append(value)
+        for part in filter(None, parts):
+            half = len(part) // 2  # there along the lower bounds, back along the upper ones
+            assert all(abs(b - a) < 90 for side in (part[:half], part[half:]) for a, b in zip(side, side[1:])), part
+
+
+def test_colours_of_the_phase_angle_are_seen_on_a_dark_page(pages, browser):
+    """3:1 against the card, which WCAG 2.2 (1.4.11) asks of graphics."""
+    def luminance(text):
+        parts = [int(text[k:k + 2], 16) / 255 for k in (1, 3, 5)]
+        return sum(share * (x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4) for share, x in zip((0.2126, 0.7152, 0.0722), parts))
+    with browser.opened(pages / "run/report.html", dark=True) as tab:
+        tab.seen(1400)
+        card, scale = value_of(tab, '(({ paper_bgcolor, coloraxis }) => [paper_bgcolor, coloraxis.colorscale.map((one) => one[1])])'
+                                    '(document.getElementById("qu_plane")._fullLayout)')
+    assert all((luminance(colour) + 0.05) / (luminance(card) + 0.05) > 3 for colour in scale), (card, scale)
+
+
+def test_marks_of_a_logarithmic_axis_are_whole_numbers_by_themselves(pages, browser):
+    with browser.opened(pages / "period.html") as tab:
+        tab.seen(1400)
+        marks = value_of(tab, """[...document.querySelectorAll(".card")].filter((card) => card.textContent.startsWith("How it repeats")).map((card) =>
+            [...card.querySelectorAll(".xaxislayer-above .xtick text")].map((one) => [one.getBoundingClientRect().left, Number(one.textContent)]))[0]""")
+    values = [value for _, value in sorted(marks)]
+    assert len(values) >= 3 and values == sorted(set(values)), values
 
 
 def test_light_that_fades_out_leaves_the_rest_tall(pages, browser):

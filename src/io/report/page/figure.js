@@ -57,11 +57,12 @@ const umovFigure = (() => {
       legend: legend(), ...ground(),
     }, options(figure));
   };
-  // Marks at powers of ten alone where an axis goes over two decades: a small 2 and 5 between them are no easier to read.
+  // Marks of a logarithmic axis are numbers that stand by themselves ("20", not a small 2 beside 10): of 1, 2 and 5 of
+  // each decade, or of powers of ten alone where it goes over more than two decades.
   const decades = (figure, along) => {
     const values = figure.lines.flatMap((line) => line[along]).filter((value) => value > 0).map(Math.log10);
     const low = values.reduce((a, b) => Math.min(a, b), Infinity), high = values.reduce((a, b) => Math.max(a, b), -Infinity);
-    return high - low < 2 ? {} : { dtick: Math.max(1, Math.round((high - low) / 6)) };
+    return { tickformat: "~g", ...(high - low > 2 ? { dtick: Math.max(1, Math.round((high - low) / 6)) } : high - low > 0.7 ? { dtick: "D2" } : {}) };
   };
   const drawPlane = (plot, figure) => {
     const most = Math.max(...figure.lines.map((line) => line.faint || !line.markers ? 0 : line.x.length));
@@ -71,13 +72,14 @@ const umovFigure = (() => {
       line: { color: line.colour, dash: line.dash, width: line.faint ? 1 : 2 },
       marker: { color: line.colour, size: dot(most), symbol: symbols[index % symbols.length] },
     }));
-    const axis = (title, more) => Object.assign({ title: { text: safe(title), font: { size: plot.clientWidth < 460 ? 11 : 13 } }, automargin: true, exponentformat: "power" }, grid(), more);
+    const axis = (title, more) => Object.assign({ title: { text: safe(title), font: { size: plot.clientWidth < 460 ? 11 : 13 } }, automargin: true, exponentformat: "power", minexponent: 5, separatethousands: true }, grid(), more);
     Plotly.newPlot(plot, lines, {
       autosize: true,
       margin: { l: 60, r: 12, t: 10, b: 60 + (figure.ynames ? 0 : 17 * Math.ceil(lines.length / 3)) },
       xaxis: axis(figure.x, { ...(figure.xlog ? { type: "log", ...decades(figure, "x") } : {}), ...(figure.xspan ? { range: figure.xspan } : {}) }),
       yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", ...(figure.ynames ? { tickvals: figure.ynames.map((_, k) => k + 1), ticktext: figure.ynames.map(safe) } : {}), ...(figure.log ? { nticks: 6, ...decades(figure, "y") } : {}), ...(figure.yspan ? { range: figure.log ? figure.yspan.map(Math.log10) : figure.yspan } : {}) }),
-      legend: legend(), ...ground(),
+      // Points too small for a legend are shown larger there; lines would lose their dashes.
+      legend: { ...legend(), ...(lines.every((line) => line.mode === "markers") ? { itemsizing: "constant" } : {}) }, ...ground(),
     }, options(figure));
     if (plot.isWatched) return;
     plot.isWatched = true;

@@ -100,7 +100,7 @@ const phaseFigure = {
 /// Limits of the phase colour map: the shown epochs.
 function phaseAxis(extra) {
   const limits = range(shownRows().map((i) => epochs.phase[i])) || [0, 180];
-  return { colorscale: "Cividis", cmin: limits[0], cmax: limits[1], colorbar: colourBar("phase angle [°]", extra) };
+  return { colorscale: phaseScale(), cmin: limits[0], cmax: limits[1], colorbar: colourBar("phase angle [°]", extra) };
 }
 
 /// Rows before the least phase angle of their pass, and those from it on: the night's two branches.
@@ -165,7 +165,7 @@ const planeFigure = {
       type: "scatter", mode: "markers", x: [null], y: [null], name: plain(bands[b].label), hoverinfo: "skip",
       marker: { symbol: bands[b].symbol, size: 9, color: theme.soft } }));
     return { data, layout: layout({
-      hovermode: "closest", coloraxis: phaseAxis(), margin: { l: 50, r: 14, t: 8, b: 90 },
+      hovermode: "closest", coloraxis: phaseAxis({ y: below(54, planeFigure.height(), 125) }), margin: { l: 50, r: 14, t: 8, b: 94 },
       xaxis: axis({ title: "q [%]", zeroline: true, zerolinecolor: theme.soft }),
       yaxis: axis({ title: "u [%]", scaleanchor: "x", zeroline: true, zerolinecolor: theme.soft }) }) };
   },
@@ -210,7 +210,7 @@ const rgbFigure = {
       hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %<br>%{text}",
     });
     const isSmall = isNarrow() || paper.isPrinting;
-    const far = isSmall ? 1.25 : 1; // names of axes stand outside of the cube
+    const far = isNarrow() ? 1.1 : 0.95; // names of axes stand outside of the cube, most of them below it
     // The axes follow the object; material curves that go beyond are cut.
     const side = (b) => {
       const [low, high] = range(rows.map((i) => percent(bands[b].q_scat[i]))) || [0, 1];
@@ -219,7 +219,7 @@ const rgbFigure = {
     };
     return { data, layout: layout({
       coloraxis: phaseAxis({ y: -0.02 }), margin: { l: 0, r: 0, t: 8, b: 60 }, dragmode: "turntable",
-      scene: { xaxis: side(rgbBands[0]), yaxis: side(rgbBands[1]), zaxis: side(rgbBands[2]), aspectmode: "cube", dragmode: "turntable", camera: { eye: { x: far * 2.1, y: -far * 1.25, z: far * 0.8 } } } }) };
+      scene: { xaxis: side(rgbBands[0]), yaxis: side(rgbBands[1]), zaxis: side(rgbBands[2]), aspectmode: "cube", dragmode: "turntable", camera: { eye: { x: far * 2.1, y: -far * 1.25, z: far * 0.8 }, center: { x: 0, y: 0, z: -0.15 } } } }) };
   },
   table: () => ({
     columns: [{ name: "time_utc", unit: "" }, { name: "phase_angle", unit: "deg" }, ...rgbBands.map((b) => ({ name: "q_scat " + bands[b].name, unit: "" }))],
@@ -304,8 +304,10 @@ function closeUpPlot(near, isAngle, colours) {
       text: pass.rows.map((i) => epochs.time[i]), customdata: pass.rows.map((i) => epochs.phase[i]), showlegend: false,
       marker: { size: 6, color: pass.rows.map((i) => isAngle ? bands[middleBand].pa[i] : epochs.phase[i]), coloraxis: "coloraxis" },
       hovertemplate: "%{text}<br>azimuth %{x:.3f}°, altitude %{y:.3f}°<br>phase %{customdata:.1f}°<extra></extra>" });
-    [[rows[0], "circle-open", "top center"], [rows[rows.length - 1], "x-thin-open", "bottom center"]].forEach(([i, symbol, place]) => data.push({
-      type: "scatter", mode: "markers+text", x: [azimuth(source.az[i])], y: [source.alt[i]], text: [source.time[i].slice(11, 16)], textposition: place,
+    const last = rows.length - 1; // a time stands on the side to which the track does not go
+    [[rows[0], rows[Math.min(1, last)], "circle-open"], [rows[last], rows[Math.max(0, last - 1)], "x-thin-open"]].forEach(([i, beside, symbol]) => data.push({
+      type: "scatter", mode: "markers+text", x: [azimuth(source.az[i])], y: [source.alt[i]], text: [source.time[i].slice(11, 16)],
+      textposition: source.alt[beside] > source.alt[i] ? "bottom center" : "top center",
       marker: { size: 8, symbol, color: theme.text, line: { width: 2 } }, hoverinfo: "skip", showlegend: false }));
   });
   const middle = (near.alt[0] + near.alt[1]) / 2, half = 0.7 * near.reach;
@@ -324,10 +326,10 @@ const skyFigure = {
     const data = [];
     const isAngle = state.colour === "pa" && bands.length > 0;
     const colours = isAngle
-      ? { colorscale: cyclicScale, cmin: 0, cmax: 180, colorbar: colourBar("position angle, " + bands[middleBand].label + " [°]", { tickvals: [0, 45, 90, 135, 180], y: -0.1 }) }
-      : phaseAxis({ y: -0.1 });
+      ? { colorscale: cyclicScale(), cmin: 0, cmax: 180, colorbar: colourBar("position angle, " + bands[middleBand].label + " [°]", { tickvals: [0, 45, 90, 135, 180] }) }
+      : phaseAxis();
     const near = closeUp();
-    if (near) return closeUpPlot(near, isAngle, { ...colours, colorbar: { ...colours.colorbar, y: -0.18 } });
+    if (near) return closeUpPlot(near, isAngle, { ...colours, colorbar: { ...colours.colorbar, y: below(63, skyFigure.height(), 112) } });
     const shadow = { r: [], theta: [] };
     const letters = skyLetters(isNarrow());
     shownPasses().forEach((pass) => {

@@ -37,15 +37,28 @@ function layout(extra) {
 /// A horizontal colour bar under the plot takes no width from it.
 function colourBar(title, extra) {
   return {
-    orientation: "h", x: 0.5, xanchor: "center", y: -0.16, yanchor: "top", thickness: 10, len: 0.9,
+    orientation: "h", x: 0.5, xanchor: "center", y: -0.1, yanchor: "top", thickness: 10, len: 0.9,
     outlinewidth: 0, title: { text: title, side: "top", font: { size: 12 } }, ...extra,
   };
 }
 
+const printedShare = 0.78; // of a figure's height on the screen
+/// So many pixels below a plot whose figure is as high and leaves as much to margins and legend, in the plot's heights:
+/// a bar keeps clear of the name of the axis above it, on paper too.
+const below = (pixels, height, margins) => -pixels / ((paper.isPrinting ? printedShare : 1) * height - margins);
+
+const isDarkPage = () => document.documentElement.dataset.theme === "dark";
+
+/// From blue to yellow as Cividis (Nunez et al. 2018), which on dark pages begins with a blue that is seen there.
+const phaseScale = () => isDarkPage()
+  ? ["#5b7fd0", "#7d90b4", "#96978f", "#b4a976", "#d8c35f", "#ffe945"].map((c, i) => [i / 5, c]) : "Cividis";
+
 // A cyclic map for angles that come back after 180 deg: twilight_shifted at 0, 1/12, ... 1
-// (Bechtold 2018, CC0). Its dark end stands for 0, so that 0 is seen on a white page.
-const cyclicScale = ["#301437", "#4e186f", "#5e45a6", "#6276ba", "#7ca2c2", "#b3c6ce", "#e2d9e2", "#d4bcac",
-  "#c6896c", "#b25652", "#8d2b50", "#581647", "#2f1436"].map((c, i) => [i / 12, c]);
+// (Bechtold 2018, CC0). Its dark end stands for 0, so that 0 is seen on a white page; on a dark one all are paler.
+const twilightShifted = ["#301437", "#4e186f", "#5e45a6", "#6276ba", "#7ca2c2", "#b3c6ce", "#e2d9e2", "#d4bcac",
+  "#c6896c", "#b25652", "#8d2b50", "#581647", "#2f1436"];
+const paler = (hex) => "#" + [1, 3, 5].map((k) => Math.round(0.6 * parseInt(hex.slice(k, k + 2), 16) + 0.4 * 255).toString(16).padStart(2, "0")).join("");
+const cyclicScale = () => twilightShifted.map((c, i) => [i / 12, isDarkPage() ? paler(c) : c]);
 
 function download(name, text, type) {
   const link = document.createElement("a");
@@ -181,7 +194,7 @@ class FigureCard {
     try {
       const { data, layout: plan } = this.figure.build(this.state);
       const height = typeof this.figure.height === "function" ? this.figure.height() : this.figure.height || 380;
-      Plotly.react(this.plot, data, { ...plan, height: paper.isPrinting ? 0.78 * height : height },
+      Plotly.react(this.plot, data, { ...plan, height: paper.isPrinting ? printedShare * height : height },
         { displaylogo: false, displayModeBar: hasHover ? "hover" : false, modeBarButtonsToRemove: ["select2d", "lasso2d", "toImage"] });
       cursor.follow(this);
     } catch (error) {

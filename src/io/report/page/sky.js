@@ -110,8 +110,8 @@
     return group;
   };
 
-  // With a magnitude, the time at which it has it.
-  const textOf = (track, isFull) => [track.name, track.mag !== null ? track.mag.toFixed(1) + " mag" : "", isFull ? clock(track.brightest || track.culmination) : ""].filter(Boolean).join(", ");
+  // With a magnitude, the time at which it has it; where little room is, one of the two.
+  const textOf = (track, isFull) => [track.name, track.mag !== null ? track.mag.toFixed(1) + " mag" : "", isFull || track.mag === null ? clock(track.brightest || track.culmination) : ""].filter(Boolean).join(", ");
   /// Points of a track that a label may stand at: the lit ones, where there are any.
   const labelled = tracks.map((track) => {
     const all = track.az100.map((_, k) => k), lit = all.filter((k) => track.sunlit[k] === 1);
@@ -119,18 +119,20 @@
   });
   /// Whether a track other than `i` runs under a box.
   const isCrossed = (box, i) => order.slice(0, drawnFull).some((j) => j !== i && places[j].some(([x, y]) => x > box[0] - 4 && x < box[2] + 4 && y > box[1] - 4 && y < box[3] + 4));
-  /// A label beside a track where nothing else is, at the most the track itself, or null.
+  /// A label beside a track where nothing else is, at the most the track itself, or in a sky full of tracks any of
+  /// them, or null.
   const labelFor = (i, taken, isForced) => {
     const track = tracks[i], text = textOf(track, isForced || !isSmall()), font = fontSize();
     const width = 0.56 * font * text.length + 8, height = 1.3 * font;
-    for (const [share, own] of [undefined, i].flatMap((one) => [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92].map((at) => [at, one])))
+    const isAlone = (box, own) => own === "any" || !isCrossed(box, own);
+    for (const [share, own] of [undefined, i, "any"].flatMap((one) => [0.5, 0.35, 0.65, 0.2, 0.8, 0.08, 0.92].map((at) => [at, one])))
       for (const [across, down] of [[1, 0], [-1, 0], [0, -1], [0, 1]]) { // beside it, above, below
         const [x, y] = places[i][labelled[i][Math.round(share * (labelled[i].length - 1))]];
         const left = x - width / 2 + across * (width / 2 + 8), top = y - height / 2 + down * (height / 2 + 8);
         const box = [left, top, left + width, top + height];
         const isInside = box[0] > 2 && box[1] > 2 && box[2] < size - 2 && box[3] < size - 2;
         const isFree = taken.every((other) => box[2] < other[0] || box[0] > other[2] || box[3] < other[1] || box[1] > other[3]);
-        if (!isInside || !(isForced || (isFree && !isCrossed(box, own)))) continue;
+        if (!isInside || !(isForced || (isFree && isAlone(box, own)))) continue;
         taken.push(box);
         const group = svg("g", { "pointer-events": "none" });
         group.append(svg("rect", { x: left, y: top, width, height, rx: 4, fill: "var(--card)", opacity: 0.86 }),

@@ -110,8 +110,9 @@ function limitTraces(pass, k, curve, key, edge, data) {
   });
 }
 
-/// Bands behind a curve (`bounds` of each row), one outline per stretch of neighbouring values.
-function outlineTraces(pass, k, curve, bounds, opacity, key, data) {
+/// Bands behind a curve (`bounds` of each row), one outline per stretch of neighbouring values; an angle that goes
+/// round begins another.
+function outlineTraces(pass, k, curve, bounds, opacity, key, data, isCyclic) {
   const x = [], y = [];
   for (const run of pass.runs) {
     let part = [];
@@ -124,8 +125,9 @@ function outlineTraces(pass, k, curve, bounds, opacity, key, data) {
       part = [];
     };
     for (const i of run) {
-      if (curve.at(i) !== null && bounds(i)) part.push(i);
-      else close();
+      const isKnown = curve.at(i) !== null && bounds(i);
+      if (!isKnown || (isCyclic && part.length && Math.abs(curve.at(i) - curve.at(part[part.length - 1])) > 90)) close();
+      if (isKnown) part.push(i);
     }
     close();
   }
@@ -174,7 +176,7 @@ function timeFigure(rows, state = {}) {
     shown.forEach((pass, k) => curves.forEach((curve) => {
       if (row.isLimit) limitTraces(pass, k, curve, key, span ? span[0] - 0.02 * (span[0] - span[1]) : Infinity, data);
       if (curve.spread) outlineTraces(pass, k, curve, curve.spread, 0.13, key, data);
-      if (curve.bounds) outlineTraces(pass, k, curve, curve.bounds, 0.22, key, data);
+      if (curve.bounds) outlineTraces(pass, k, curve, curve.bounds, 0.22, key, data, row.cyclic);
       const line = (row.cyclic ? gappedCyclic : gapped)(pass, curve.at);
       data.push({
         type: "scatter", mode: "lines+markers", x: line.x, y: line.y, customdata: line.row.map((i) => epochs.phase[i]),

@@ -69,7 +69,7 @@ const turningFigure = turning && {
     });
     periodMarks(one, plan, reach);
     Object.assign(plan, {
-      xaxis: axis({ title: "period [s]", type: "log", range: reach.map(Math.log10), anchor: "y", nticks: isNarrow() ? 5 : 10, dtick: "D2" }),
+      xaxis: axis({ title: "period [s]", type: "log", range: reach.map(Math.log10), anchor: "y", dtick: reach[1] > 300 * reach[0] ? 1 : "D2", tickformat: "~g" }),
       yaxis: axis({ title: "power", domain: [0.6, 1], rangemode: "tozero" }),
       xaxis2: axis({ title: "turns of " + secondsText(period) + " (pass " + one.pass.label + ")", anchor: "y2", range: [0, 1] }),
       yaxis2: axis({ title: "mag less trend", domain: [0, 0.42], autorange: "reversed" }),
