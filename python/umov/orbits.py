@@ -93,7 +93,8 @@ def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, nor
     visible_only
         Only passes that are sunlit in a dark sky at some time.
     mag_max
-        Only passes that get as bright as this magnitude while sunlit; `orbit` is a Satellite.
+        Only passes that get as bright as this magnitude while sunlit; `orbit` is a Satellite. Light is looked at 5 s apart,
+        in glints and beside the brightest samples: a flash that comes and goes in between is missed.
     sort
         What comes first: "rise", the earliest, "mag", the brightest, or "alt", what stands highest while visible.
     shadow

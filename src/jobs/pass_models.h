@@ -8,6 +8,13 @@
 
 namespace umov::jobs {
 
+/// What magnitudes of passes are made of, for people: PassLight::describe of the samples of
+/// find_passes.
+inline constexpr const char *how_magnitudes_are_sampled =
+    "of samples 5 s apart (a two-thousandth of visits over 2.7 h), of glints of flats and of times "
+    "beside the brightest samples, to a few hundredths: a flash of a curved part that comes and "
+    "goes between two samples is missed; umov run with a shorter step shows it";
+
 /// Objects of a scenario by their catalogue number, and one model for all others.
 class PassModels {
 public:

@@ -169,8 +169,7 @@ Table passes_table(const PassesRequest &request, const PassesResult &result) {
   const Site &site = request.site;
   out.note("model", result.model);
   if (result.model != PassModels::unknown)
-    out.note("magnitudes", "of samples 5 s apart at most, and of glints, to a few hundredths: umov "
-                           "run with a shorter step finds brighter and fainter moments");
+    out.note("magnitudes", how_magnitudes_are_sampled);
   out.note("track_error",
            "roughly 1 km and 2 km per day of age below 2,000 km, 0.2 km per day above");
   out.note("site",

@@ -1,5 +1,6 @@
 // Tracks of passes over a site's sky.
 
+#include "jobs/pass_models.h"
 #include <umov/jobs/passes.h>
 
 #include <algorithm>
@@ -116,9 +117,9 @@ std::string sky_chart(const PassesRequest &request, const PassesResult &result) 
       "pass that never is."};
   if (has_magnitudes)
     page.notes.push_back(
-        fmt::format("Colour and mag: the brightest magnitude ({}) of the pass while sunlit, at "
-                    "the time beside it.",
-                    name_of(result.magnitudes)));
+        fmt::format("Colour and mag: the brightest magnitude ({}) of the pass while sunlit; its "
+                    "time stands beside it where there is room. Magnitudes are {}.",
+                    name_of(result.magnitudes), how_magnitudes_are_sampled));
   else
     page.notes.emplace_back(
         "No magnitudes: give --model sphere --material paint_white, or --scene.");

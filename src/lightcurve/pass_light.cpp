@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <umov/light/light_model.h>
 #include <umov/observation/track.h>
 #include <umov/photometry/radiometry.h>
@@ -157,6 +158,85 @@ Result<std::vector<PassGlint>> PassLight::glints_of(const State &state, const Tr
   return out;
 }
 
+/// The light of a body at some of a pass's epochs.
+Result<std::vector<PassSample>> PassLight::light_of(const State &state, const Track &track,
+                                                    std::size_t band,
+                                                    std::span<const ObservingGeometry> at,
+                                                    const std::atomic<bool> *cancel) {
+  std::vector<Pose> poses;
+  std::vector<double> angles;
+  for (const ObservingGeometry &g : at) {
+    UMOV_ASSIGN(point, track.place(g));
+    poses.push_back(point.pose);
+    angles.insert(angles.end(), point.joint_angles_rad.begin(), point.joint_angles_rad.end());
+  }
+  StokesTable table;
+  LightTask task;
+  task.threads = 1; // objects are side by side
+  task.cancel = cancel;
+  if (!state.light->evaluate(poses, angles, table, task))
+    return fail(ErrorCode::Interrupted, stopped);
+  std::vector<PassSample> out;
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    out.push_back({at[k], table.at(k, band)});
+  return out;
+}
+
+namespace {
+
+/// Irradiance of a sample, or 0 where its light is not known.
+double brightness(const PassSample &sample, const PhotometricBand &band) {
+  const auto &[s, half_width] = sample.light;
+  const ObservingGeometry &g = sample.geometry;
+  const double out =
+      observed_light(s.i, band, {g.sun_distance_km, g.range_km, g.sunlit}).irradiance;
+  return out > 0 && is_known(s.i, half_width) ? out : 0;
+}
+
+/// Sunlit epochs on both sides of the `most` brightest tops of samples in order of time, six to
+/// each step.
+Result<std::vector<ObservingGeometry>> beside_tops(const std::vector<PassSample> &samples,
+                                                   const PhotometricBand &band, const Track &track,
+                                                   std::size_t most) {
+  constexpr int parts = 7;
+  constexpr double shortest_s = 0.05; // steps that light hardly changes in
+  std::vector<double> value;
+  for (const PassSample &sample : samples)
+    value.push_back(brightness(sample, band));
+  std::vector<std::size_t> tops;
+  for (std::size_t k = 0; k < value.size(); ++k)
+    if (value[k] > 0 && (k == 0 || value[k] >= value[k - 1]) &&
+        (k + 1 == value.size() || value[k] > value[k + 1]))
+      tops.push_back(k);
+  std::ranges::stable_sort(tops,
+                           [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
+  tops.resize(std::min(tops.size(), most));
+  std::set<std::size_t> steps; // by their first sample; two tops may share one
+  for (const std::size_t k : tops) {
+    if (k > 0)
+      steps.insert(k - 1);
+    if (k + 1 < value.size())
+      steps.insert(k);
+  }
+  std::vector<ObservingGeometry> out;
+  for (const std::size_t k : steps) {
+    const Epoch<Utc> from = samples[k].geometry.time;
+    const double length = seconds_between(samples[k + 1].geometry.time, from);
+    for (int part = 1; part < parts && length > shortest_s; ++part) {
+      UMOV_ASSIGN(at, track.observe(plus_seconds(from, length * part / parts)));
+      if (at.sunlit > 0)
+        out.push_back(at);
+    }
+  }
+  return out;
+}
+
+bool is_earlier(const ObservingGeometry &a, const ObservingGeometry &b) {
+  return seconds_between(a.time, b.time) < 0;
+}
+
+} // namespace
+
 Result<PassBrightness> PassLight::describe(const Trajectory &orbit, const Site &site,
                                            ShadowModel shadow, std::size_t band,
                                            std::span<const ObservingGeometry> samples,
@@ -186,23 +266,19 @@ Result<PassBrightness> PassLight::describe(const Trajectory &orbit, const Site &
   // First: their peaks count for the magnitudes.
   UMOV_ASSIGN(glints, glints_of(state, track, cancel, lit));
   pass.glints = std::move(glints);
-  std::vector<Pose> poses;
-  std::vector<double> angles;
-  for (const ObservingGeometry &g : lit) {
-    UMOV_ASSIGN(point, track.place(g));
-    poses.push_back(point.pose);
-    angles.insert(angles.end(), point.joint_angles_rad.begin(), point.joint_angles_rad.end());
+  std::ranges::stable_sort(lit, is_earlier);
+  UMOV_ASSIGN(seen, light_of(state, track, band, lit, cancel));
+  // Tops of the samples first, then the brightest of what they turned out to be.
+  for (const std::size_t most : {8u, 1u}) {
+    UMOV_ASSIGN(between, beside_tops(seen, state.bands[band], track, most));
+    UMOV_ASSIGN(more, light_of(state, track, band, between, cancel));
+    seen.insert(seen.end(), more.begin(), more.end());
+    std::ranges::stable_sort(seen, is_earlier, &PassSample::geometry);
   }
-  StokesTable table;
-  LightTask task;
-  task.threads = 1; // objects are side by side
-  task.cancel = cancel;
-  if (!state.light->evaluate(poses, angles, table, task))
-    return fail(ErrorCode::Interrupted, stopped);
-  for (std::size_t k = 0; k < poses.size(); ++k)
-    take(table.at(k, band), lit[k], state.bands[band],
+  for (const PassSample &sample : seen)
+    take(sample.light, sample.geometry, state.bands[band],
          state.air ? band_transmission(state.light->scene().grid, band, air_over(*state.air, site),
-                                       lit[k].altitude)
+                                       sample.geometry.altitude)
                    : std::numeric_limits<double>::quiet_NaN(),
          pass);
   return pass;

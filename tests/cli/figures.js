@@ -25,11 +25,22 @@
       inside: inside(plot, trace, plot.calcdata[k] || []), paths: group ? [...group.querySelectorAll("path, text")].filter((one) => one.tagName === "text" || isPath(one)).length : 0,
     };
   });
+  /// Titles of axes and bars that reach beyond their figure.
+  const cutTitles = (plot) => [...plot.querySelectorAll(".xtitle, .ytitle, .cbtitle")].filter((title) => {
+    const own = title.getBoundingClientRect(), all = plot.getBoundingClientRect();
+    return own.left < all.left - 1 || own.right > all.right + 1 || own.top < all.top - 1 || own.bottom > all.bottom + 1;
+  }).map((title) => title.textContent);
+  /// Marks of one axis that say the same, such as 05:29 and 05:29.
+  const marksTwice = (plot) => {
+    const said = [...plot.querySelectorAll(".xtick, .x2tick, .x3tick, .ytick, .y2tick")].map((mark) => [...mark.classList].join(" ") + mark.textContent);
+    return said.filter((one, k) => said.indexOf(one) !== k);
+  };
   const figures = plots().map((plot) => ({
     title: plot.parentElement.querySelector("h2, h4").textContent,
     note: plot.querySelector(".note") ? plot.querySelector(".note").textContent : "",
     traces: plot._fullData ? traces(plot) : [],
     canvases: plot.querySelectorAll("canvas").length,
+    cut: cutTitles(plot), twice: marksTwice(plot),
     height: plot.getBoundingClientRect().height,
   }));
   const root = document.documentElement;

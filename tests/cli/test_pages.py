@@ -39,6 +39,8 @@ def pages(tmp_path_factory):
          "--set", "output.dir=cube", "-q")
     umov("run", example, "--set", cube, "--set", 'object.0.materials={default="cell_gaas"}', "--set", "time.step_s=20", "--set", "bands.set=nm:550",
          "--set", "time.only={alt_min_deg=10,sun_alt_max_deg=-6,sunlit=false}", "--set", "output.dir=tracks", "-q")  # in the shadow too: whole passes
+    umov("run", "run/scenario.lock.toml", "--set", "time.start=2018-01-21T05:09:30Z", "--set", "time.stop=2018-01-21T05:13:20Z", "--set", "time.step_s=20", "--set",
+         "output.dir=short", "-q")  # not a round number of minutes
     umov("invert", "pose", "cube/lightcurve.ecsv", "--scenario", "cube/scenario.lock.toml", "-o", "invert", "--grid", 2000, "-q")
     drift = ("cube/lightcurve.ecsv", "--scenario", "cube/scenario.lock.toml", "-q")
     group = next(line.split()[1] for line in (folder / "cube.obj").read_text().splitlines() if line.startswith("usemtl"))
@@ -74,6 +76,7 @@ def is_drawn(figure):
 KINDS = {  # page: figures that it must have, marks of its sky chart
     "run/report.html": ({"Brightness against time", "q and u against time", "Degree and angle of linear polarization", "q-u plane",
                          "Q against phase angle", "Track in the sky"}, 0),
+    "short/report.html": ({"Brightness against time"}, 0),
     "chart.html": (set(), 10),
     "material.html": (set(), 0),
     "observe/report.html": ({"Counts in the aperture"}, 0),
@@ -100,7 +103,7 @@ def test_figures_are_drawn_and_nothing_scrolls_sideways(pages, browser, name):
             assert [url for url in seen["requests"] if not url.startswith(("data:", "blob:"))] == [(pages / name).as_uri()]
             assert titles <= {figure["title"] for figure in seen["figures"]} and (seen["figures"] or marks)
             for figure in seen["figures"]:
-                assert is_drawn(figure) and empty_traces(figure) == [], figure["title"]
+                assert is_drawn(figure) and empty_traces(figure) == [] and figure["cut"] == [] and figure["twice"] == [], (figure["title"], figure["cut"], figure["twice"])
             assert seen["svg"] >= marks and (not marks or seen["rows"] > 0)
             assert seen["sideways"] == 0, seen["wide"]
 

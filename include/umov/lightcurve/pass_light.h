@@ -46,6 +46,12 @@ struct PassBrightness {
   std::vector<PassGlint> glints;            ///< in order
 };
 
+/// An epoch of a pass and the light that the object gives then.
+struct PassSample {
+  ObservingGeometry geometry;
+  BandResult light;
+};
+
 /// What an object is made of and how it moves; ready for many passes.
 class PassLight {
 public:
@@ -56,7 +62,9 @@ public:
                                      const std::vector<Band> &bands);
 
   /// Magnitudes, largest p and glints of a pass from its samples (those with sunlight), in one
-  /// band. Samples whose I is not three times its half-width count for neither magnitude, those
+  /// band; of a body also from times between the brightest of them and their neighbours, down to a
+  /// fortieth of the step: what flashes and fades between two samples without a glint is not seen.
+  /// Samples whose I is not three times its half-width count for neither magnitude, those
   /// whose p is not known to 0.1 not for p. Glints: candidates of flats, of parts that turn too,
   /// that give more than half of the light at their time. Interrupted if `cancel` became true.
   Result<PassBrightness> describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
@@ -70,6 +78,9 @@ private:
   static Result<std::vector<PassGlint>> glints_of(const State &state, const Track &track,
                                                   const std::atomic<bool> *cancel,
                                                   std::vector<ObservingGeometry> &lit);
+  static Result<std::vector<PassSample>>
+  light_of(const State &state, const Track &track, std::size_t band,
+           std::span<const ObservingGeometry> at, const std::atomic<bool> *cancel);
   std::shared_ptr<const State> state_;
 };
 

@@ -62,18 +62,25 @@ Result<Passband> curve_of(const Known &one) {
   return fail(ErrorCode::Internal, one.stem + ": not compiled in");
 }
 
-/// What was meant by an unknown name: other capitals, a letter alone or of another system, a
-/// wavelength, a slip.
+/// What was meant by an unknown name: other capitals, a letter alone or of another system, letters
+/// in a row, a wavelength, a slip.
 std::string suggestion(const std::string &name) {
   if (const std::string digits = name.substr(0, name.find_first_not_of("0123456789."));
       !digits.empty() &&
       (digits.size() == name.size() || lowered(name.substr(digits.size())) == "nm"))
     return fmt::format(" Did you mean \"nm:{}\"?", digits);
+  if (name.size() > 1 && name.find_first_not_of("UBVRI") == std::string::npos) {
+    std::vector<std::string> each;
+    for (const char letter : name)
+      each.push_back(fmt::format("\"Bessell.{}\"", letter));
+    return fmt::format(" Did you mean [{}]?", fmt::join(each, ", "));
+  }
   std::vector<std::string> names = passband_names(), alike;
   const std::string letter = name.substr(name.rfind('.') + 1);
   for (const std::string &one : names) {
-    if (lowered(one) == lowered(name))
-      return fmt::format(" Did you mean \"{}\"?", one);
+    for (const std::string &known_as : {one, group_of(one)})
+      if (lowered(known_as) == lowered(name))
+        return fmt::format(" Did you mean \"{}\"?", known_as);
     if (one.substr(one.find('.') + 1) == letter)
       alike.push_back(fmt::format("\"{}\"", one));
   }

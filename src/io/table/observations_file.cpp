@@ -94,7 +94,7 @@ double ObservationReader::scale_of(int column) const {
 Result<ObservationColumns> ObservationReader::columns() const {
   ObservationColumns c;
   c.time = find({"time_utc"});
-  c.mjd = find({"mjd_utc", "mjd"});
+  c.mjd = find({"mjd_utc", "mjd", "MJD"});
   c.band = find({"band", "filter"});
   c.site = find({"site"});
   c.name = find({"name", "object"});
@@ -118,14 +118,15 @@ Result<ObservationColumns> ObservationReader::columns() const {
   const std::string found = fmt::format("{}", fmt::join(table_.columns, ", "));
   if (c.time < 0 && c.mjd < 0)
     return fail(ErrorCode::BadInput,
-                fmt::format("no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" was "
-                            "expected; there are {}",
+                fmt::format("no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a Julian "
+                            "date in UTC less 2400000.5) was expected in the line of names; there "
+                            "are {}. Name yours so",
                             printable(found)),
                 header);
   if (c.flux < 0 && c.mag < 0 && (c.q < 0 || c.u < 0))
     return fail(ErrorCode::BadInput,
                 fmt::format("nothing measured: a column \"I\", \"flux\" or \"mag\", or \"q\" and "
-                            "\"u\", was expected; there are {}",
+                            "\"u\", was expected; there are {}. Name yours so",
                             printable(found)),
                 header);
   if ((c.q < 0) != (c.u < 0))

@@ -216,6 +216,8 @@ TEST(Bands, OfAScenarioByTheirNames) {
   for (const auto &[written, meant] : {std::pair{"bessell.v", "Bessell.V\"?"},
                                        {"V", "\"Bessell.V\"?"},
                                        {"Johnson.V", "\"Bessell.V\"?"},
+                                       {"UBV", "[\"Bessell.U\", \"Bessell.B\", \"Bessell.V\"]?"},
+                                       {"bessell", "\"Bessell\"?"},
                                        {"550nm", "\"nm:550\"?"},
                                        {"550", "\"nm:550\"?"}}) {
     const auto refused = find_passband(written);

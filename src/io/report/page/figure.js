@@ -60,7 +60,7 @@ const umovFigure = (() => {
   // Marks of a logarithmic axis are numbers that stand by themselves ("20", not a small 2 beside 10): of 1, 2 and 5 of
   // each decade, or of powers of ten alone where it goes over more than two decades.
   const decades = (figure, along) => {
-    const values = figure.lines.flatMap((line) => line[along]).filter((value) => value > 0).map(Math.log10);
+    const values = (figure[along + "span"] || figure.lines.flatMap((line) => line[along])).filter((value) => value > 0).map(Math.log10);
     const low = values.reduce((a, b) => Math.min(a, b), Infinity), high = values.reduce((a, b) => Math.max(a, b), -Infinity);
     return { tickformat: "~g", ...(high - low > 2 ? { dtick: Math.max(1, Math.round((high - low) / 6)) } : high - low > 0.7 ? { dtick: "D2" } : {}) };
   };
@@ -72,7 +72,8 @@ const umovFigure = (() => {
       line: { color: line.colour, dash: line.dash, width: line.faint ? 1 : 2 },
       marker: { color: line.colour, size: dot(most), symbol: symbols[index % symbols.length] },
     }));
-    const axis = (title, more) => Object.assign({ title: { text: safe(title), font: { size: plot.clientWidth < 460 ? 11 : 13 } }, automargin: true, exponentformat: "power", minexponent: 5, separatethousands: true }, grid(), more);
+    const isSmall = plot.clientWidth < 460; // where a title that ends in a time takes two lines
+    const axis = (title, more) => Object.assign({ title: { text: isSmall ? safe(title).replace(/ (since|after) (?=\d)/, " $1<br>") : safe(title), font: { size: isSmall ? 11 : 13 } }, automargin: true, exponentformat: "power", minexponent: 5, separatethousands: true }, grid(), more);
     Plotly.newPlot(plot, lines, {
       autosize: true,
       margin: { l: 60, r: 12, t: 10, b: 60 + (figure.ynames ? 0 : 17 * Math.ceil(lines.length / 3)) },

@@ -39,10 +39,11 @@ function timeAxes(shown, plan) {
     const first = clock[pass.rows[0]], last = clock[pass.rows[pass.rows.length - 1]];
     const pad = Math.max(500, 0.02 * (last - first));
     const iso = (t) => new Date(t).toISOString().replace("T", " ").replace("Z", "");
+    const marks = Math.max(1, Math.round((isNarrow() ? 5 : 9) * (domains[k][1] - domains[k][0])));
     plan["xaxis" + (k ? k + 1 : "")] = axis({
       type: "date", domain: domains[k], anchor: "y", title: panelTitle(shown, k, domains[k][1] - domains[k][0]),
-      range: [iso(first - pad), iso(last + pad)], tickformat: last - first < 180000 ? "%H:%M:%S" : "%H:%M",
-      hoverformat: "%H:%M:%S", nticks: Math.max(1, Math.round((isNarrow() ? 5 : 9) * (domains[k][1] - domains[k][0]))),
+      range: [iso(first - pad), iso(last + pad)], tickformat: last - first + 2 * pad < 30000 * marks ? "%H:%M:%S" : "%H:%M", // at a minute or more
+      hoverformat: "%H:%M:%S", nticks: marks,
       showticklabels: domains[k][1] - domains[k][0] > (isNarrow() ? 0.2 : 0.09),
       showline: true, tickangle: 0, zeroline: false,
     });

@@ -63,6 +63,12 @@ TEST(Observations, RowsAreInOrderOfTime) {
   EXPECT_EQ(to_iso(file->rows.front().time), "2018-01-21T06:00:00.000Z"); // 0.25 d
 }
 
+TEST(Observations, ModifiedJulianDatesAreTakenInCapitals) {
+  const auto file = read("MJD,mag\n58139.25,7\n");
+  ASSERT_TRUE(file) << file.error().text();
+  EXPECT_EQ(to_iso(file->rows.front().time), "2018-01-21T06:00:00.000Z");
+}
+
 TEST(Observations, EveryFaultHasItsPlace) {
   struct Case {
     std::string text, message;
@@ -72,6 +78,10 @@ TEST(Observations, EveryFaultHasItsPlace) {
   for (const Case &c : {
            Case{"", "obs.csv: no row of observations"},
            Case{"band,I\nV,1\n", "obs.csv:1: no column of time"},
+           Case{"JD,mag\n2458139.5,7\n",
+                "obs.csv:1: no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a Julian "
+                "date in UTC less 2400000.5) was expected in the line of names; there are JD, mag. "
+                "Name yours so"},
            Case{"time_utc,band\n" + t + ",V\n", "obs.csv:1: nothing measured"},
            Case{"time_utc,q\n" + t + ",1\n", "obs.csv:1: nothing measured"},
            Case{"time_utc,I,q\n" + t + ",1,0.1\n", "obs.csv:1: q and u go together"},
