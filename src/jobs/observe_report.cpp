@@ -122,7 +122,13 @@ private:
 };
 
 PlotFigure histogram_of(const std::vector<double> &pulls) {
-  PlotFigure out{"How often counts miss by how many errors", "(counts - expected)/error", "share", {}, false, false, {}};
+  PlotFigure out{"How often counts miss by how many errors",
+                 "(counts - expected)/error",
+                 "share",
+                 {},
+                 false,
+                 false,
+                 {}};
   PlotLine found = line("counts", 0, false), normal = line("normal", 1, false);
   constexpr int bins = 24;
   constexpr double width = 0.5, first = -6;

@@ -208,8 +208,7 @@ Result<std::vector<ObservingGeometry>> beside_tops(const std::vector<PassSample>
     if (value[k] > 0 && (k == 0 || value[k] >= value[k - 1]) &&
         (k + 1 == value.size() || value[k] > value[k + 1]))
       tops.push_back(k);
-  std::ranges::stable_sort(tops,
-                           [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
+  std::ranges::stable_sort(tops, [&](std::size_t a, std::size_t b) { return value[a] > value[b]; });
   tops.resize(std::min(tops.size(), most));
   std::set<std::size_t> steps; // by their first sample; two tops may share one
   for (const std::size_t k : tops) {

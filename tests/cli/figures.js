@@ -32,7 +32,7 @@
   }).map((title) => title.textContent);
   /// Marks of one axis that say the same, such as 05:29 and 05:29.
   const marksTwice = (plot) => {
-    const said = [...plot.querySelectorAll(".xtick, .x2tick, .x3tick, .ytick, .y2tick")].map((mark) => [...mark.classList].join(" ") + mark.textContent);
+    const said = ["xtick", "x2tick", "x3tick", "ytick", "y2tick"].flatMap((axis) => [...plot.querySelectorAll("." + axis + " text")].map((mark) => axis + " " + mark.textContent));
     return said.filter((one, k) => said.indexOf(one) !== k);
   };
   const figures = plots().map((plot) => ({

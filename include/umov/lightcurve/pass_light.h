@@ -78,9 +78,10 @@ private:
   static Result<std::vector<PassGlint>> glints_of(const State &state, const Track &track,
                                                   const std::atomic<bool> *cancel,
                                                   std::vector<ObservingGeometry> &lit);
-  static Result<std::vector<PassSample>>
-  light_of(const State &state, const Track &track, std::size_t band,
-           std::span<const ObservingGeometry> at, const std::atomic<bool> *cancel);
+  static Result<std::vector<PassSample>> light_of(const State &state, const Track &track,
+                                                  std::size_t band,
+                                                  std::span<const ObservingGeometry> at,
+                                                  const std::atomic<bool> *cancel);
   std::shared_ptr<const State> state_;
 };
 

@@ -117,12 +117,13 @@ Result<ObservationColumns> ObservationReader::columns() const {
   const Where header{file_, table_.lines.empty() || text_.empty() ? 0 : table_.lines.front() - 1};
   const std::string found = fmt::format("{}", fmt::join(table_.columns, ", "));
   if (c.time < 0 && c.mjd < 0)
-    return fail(ErrorCode::BadInput,
-                fmt::format("no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a Julian "
-                            "date in UTC less 2400000.5) was expected in the line of names; there "
-                            "are {}. Name yours so",
-                            printable(found)),
-                header);
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a Julian "
+                    "date in UTC less 2400000.5) was expected in the line of names; there "
+                    "are {}. Name yours so",
+                    printable(found)),
+        header);
   if (c.flux < 0 && c.mag < 0 && (c.q < 0 || c.u < 0))
     return fail(ErrorCode::BadInput,
                 fmt::format("nothing measured: a column \"I\", \"flux\" or \"mag\", or \"q\" and "

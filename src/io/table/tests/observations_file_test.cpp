@@ -79,7 +79,8 @@ TEST(Observations, EveryFaultHasItsPlace) {
            Case{"", "obs.csv: no row of observations"},
            Case{"band,I\nV,1\n", "obs.csv:1: no column of time"},
            Case{"JD,mag\n2458139.5,7\n",
-                "obs.csv:1: no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a Julian "
+                "obs.csv:1: no column of time: \"time_utc\" (ISO 8601 with Z) or \"mjd_utc\" (a "
+                "Julian "
                 "date in UTC less 2400000.5) was expected in the line of names; there are JD, mag. "
                 "Name yours so"},
            Case{"time_utc,band\n" + t + ",V\n", "obs.csv:1: nothing measured"},
