@@ -170,6 +170,16 @@ def test_a_crowded_sky_names_its_best_and_cuts_no_column(pages, browser, width):
     assert rows > 200 and len(labels) >= 3 and wide == 0, (rows, labels, wide)
 
 
+def test_heads_of_a_table_are_no_buttons_on_paper(pages, browser):
+    """A head comes again on each sheet, where Chromium leaves buttons blank."""
+    buttons = 'document.querySelectorAll("thead button").length'
+    with browser.opened(pages / "crowd.html") as tab:
+        tab.seen()
+        before = value_of(tab, buttons)
+        assert before and value_of(tab, f'(window.dispatchEvent(new Event("beforeprint")), {buttons})') == 0
+        assert value_of(tab, f'(window.dispatchEvent(new Event("afterprint")), {buttons})') == before
+
+
 def test_a_track_without_magnitudes_is_told_by_its_time_on_a_phone(pages, browser):
     with browser.opened(pages / "chart.html", 390) as tab:
         tab.seen()

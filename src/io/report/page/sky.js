@@ -209,6 +209,7 @@
     { name: "set", wide: true, text: (t) => clock(t.set) || "after", key: (t) => t.set || "9" },
   ];
   const sorting = { column: columns.find((column) => page.order && column.name.split(" ")[0] === page.order) || columns[1], isReversed: false };
+  let isOnPaper = false;
   const fillTable = () => {
     const rows = tracks.map((_, i) => i).sort((a, b) => {
       const x = sorting.column.key(tracks[a]), y = sorting.column.key(tracks[b]);
@@ -217,7 +218,8 @@
     const kind = (column) => [column.number ? "number" : "", column.wide ? "wide" : "", column.middle ? "middle" : ""].filter(Boolean).join(" ").trim();
     const head = columns.map((column) => {
       const isSorted = column === sorting.column;
-      const button = html("button", { type: "button", class: kind(column) }, column.name + (isSorted ? (sorting.isReversed ? " ▾" : " ▴") : ""));
+      // A button in a head that comes again on each sheet is left blank there.
+      const button = html(isOnPaper ? "span" : "button", isOnPaper ? {} : { type: "button", class: kind(column) }, column.name + (isSorted ? (sorting.isReversed ? " ▾" : " ▴") : ""));
       button.addEventListener("click", () => {
         sorting.isReversed = isSorted && !sorting.isReversed;
         sorting.column = column;
@@ -262,10 +264,12 @@
   window.addEventListener("beforeprint", () => {
     near = picked = null;
     scale = lightScale;
+    isOnPaper = true;
     redraw();
   });
   window.addEventListener("afterprint", () => {
     scale = darkPage.matches ? darkScale : lightScale;
+    isOnPaper = false;
     redraw();
   });
 })();
