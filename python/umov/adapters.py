@@ -31,13 +31,7 @@ class Files:
         self.key = hashlib.sha256(repr(sorted(self.texts.items())).encode()).hexdigest()
         self._end = weakref.finalize(self, _remove, folder, list(texts), os.getpid())
 
-
-    def without_place(self, text: str) -> str:
-        """A text that names them, by what they hold instead of where they are."""
-        return text.replace(str(self.folder), f"made:{self.key}")
-
-    def moved(self, text: str, folder: Any) -> str:
-        """A text that names them as they stand in another folder, where they are put; `UsageError` without one."""
+    def _moved(self, text: str, folder: Any) -> str:
         names = " and ".join(self.texts)
         if folder is None:
             raise UsageError(f"{names} were made of what was given in memory, and go with this object; a folder for them was expected: "
@@ -52,6 +46,17 @@ class Files:
         except (OSError, UnicodeDecodeError) as error:
             raise DeviceError(f"{into}: {names} cannot be written ({error}); a folder for them was expected") from error
         return text.replace(str(self.folder), str(into))
+
+
+def put_down(text: str, files: Files | None, folder: Any) -> str:
+    """The text of an object as others may read it: files that were made for it (None: none were) are put into a folder and named as
+    they stand there; `UsageError` without one."""
+    return text if files is None else files._moved(text, folder)
+
+
+def by_content(text: str, files: Files | None) -> str:
+    """The text of an object as it is compared: such files by what they hold instead of where they are."""
+    return text if files is None else text.replace(str(files.folder), f"made:{files.key}")
 
 
 def _remove(folder: str, names: list[str], owner: int) -> None:

@@ -240,7 +240,7 @@ class Satellite(Made):
             Where a mesh of arrays and an orbit of lines are put, as mesh.obj and orbit.tle: no file holds them. `UsageError` if
             there are some and no folder is given.
         """
-        return self._text() if self._files is None else self._files.moved(self._text(), folder)
+        return adapters.put_down(self._text(), self._files, folder)
 
     def _text(self) -> str:
         table = self.to_dict()
@@ -351,7 +351,7 @@ class Satellite(Made):
 
     def _told(self) -> str:
         """All of it: what adapters made by what it holds."""
-        return self._text() if self._files is None else self._files.without_place(self._text())
+        return adapters.by_content(self._text(), self._files)
 
     def __repr__(self) -> str:
         mesh = pathlib.Path(str(self._table["mesh"]["file"])).name

@@ -112,13 +112,11 @@ class Scenario(Made):
             Where a mesh of arrays and an orbit of lines are put, as mesh.obj and orbit.tle: no file holds them. `UsageError` if
             there are some and no folder is given.
         """
-        files = _files_of(self)
-        return self._scenario.locked if files is None else files.moved(self._scenario.locked, folder)
+        return adapters.put_down(self._scenario.locked, _files_of(self), folder)
 
     def _told(self) -> str:
         """All of it: what adapters made by what it holds."""
-        files = _files_of(self)
-        return self._scenario.locked if files is None else files.without_place(self._scenario.locked)
+        return adapters.by_content(self._scenario.locked, _files_of(self))
 
     def _said(self) -> str:
         """The same without what was left to those who use it: `run` and `Engine` ask for another accuracy each."""
