@@ -25,6 +25,7 @@
 #include <umov/core/random.h>
 #include <umov/core/result.h>
 #include <umov/core/rotation.h>
+#include <umov/core/stop.h>
 #include <umov/core/temporary.h>
 #include <umov/core/text.h>
 #include <umov/core/vec3.h>

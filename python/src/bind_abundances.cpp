@@ -28,10 +28,10 @@ public:
   Sums(const Scenario &scenario, const std::vector<Scenario> &others,
        const jobs::JobOptions &options, nb::handle watch) {
     Attention attention(watch);
-    auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) {
-      return make(scenario, others, options, diagnostics);
+    auto made = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+      return make(scenario, others, options, monitor, diagnostics);
     });
-    attention.settle(false);
+    attention.settle(was_interrupted(made));
     light_ = take(std::move(made));
     sun_radius_rad_ = scenario.has_solar_disk ? sun_radius_at_1au_rad : 0;
   }
@@ -40,20 +40,20 @@ public:
   [[nodiscard]] double sun_radius_rad() const { return sun_radius_rad_; }
 
 private:
-  static Result<std::unique_ptr<LightSums>> make(const Scenario &scenario,
-                                                 const std::vector<Scenario> &others,
-                                                 const jobs::JobOptions &options,
-                                                 Diagnostics &diagnostics) {
-    UMOV_ASSIGN(object, load_object(scenario, 0, {}, diagnostics));
+  static Result<std::unique_ptr<LightSums>>
+  make(const Scenario &scenario, const std::vector<Scenario> &others,
+       const jobs::JobOptions &options, const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    const LoadOptions stoppable{.cancel = monitor.cancel};
+    UMOV_ASSIGN(object, load_object(scenario, 0, stoppable, diagnostics));
     SumsOptions how;
     how.mask_cache = options.mask_cache;
     how.threads = options.threads;
     how.device = options.device;
     for (const Scenario &other : others) {
-      UMOV_ASSIGN(loaded, load_object(other, 0, {}, diagnostics));
+      UMOV_ASSIGN(loaded, load_object(other, 0, stoppable, diagnostics));
       how.hypotheses.push_back(std::move(loaded.scene));
     }
-    UMOV_ASSIGN(sums, make_sums(object.scene, how));
+    UMOV_ASSIGN(sums, make_sums(object.scene, how, monitor.cancel));
     jobs::tell_of_device(sums->device(), diagnostics);
     return std::move(sums);
   }
@@ -166,7 +166,7 @@ nb::tuple applied(const Sums &sums, const Abundances &abundances, const Scenario
   Attention attention(watch);
   auto made = attend(
       attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<double> {
-        UMOV_ASSIGN(object, load_object(scenario, 0, {}, diagnostics));
+        UMOV_ASSIGN(object, load_object(scenario, 0, {.cancel = monitor.cancel}, diagnostics));
         UMOV_ASSIGN(tables, sums.light().tables_for(object.scene));
         if (tables.band_count() != bands)
           return fail(ErrorCode::Internal, "a scene has other bands than its scenario");

@@ -184,13 +184,13 @@ void make_light_for(Light *self, const Scenario &scenario, const std::optional<s
     request.source = jobs::SignatureRequest::Source::Thermal;
   }
   Attention attention(watch);
-  auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) {
-    auto light = jobs::PoseLight::make(scenario, request, options, diagnostics);
+  auto made = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    auto light = jobs::PoseLight::make(scenario, request, options, diagnostics, monitor.cancel);
     if (light)
       jobs::tell_of_device(light->model().device(), diagnostics);
     return light;
   });
-  attention.settle(false);
+  attention.settle(was_interrupted(made));
   new (self) Light(take(std::move(made)));
 }
 

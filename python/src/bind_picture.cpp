@@ -70,10 +70,10 @@ nb::bytes render(const Scenario &scenario, const std::string &shade, const std::
 /// Corners (V, 3) [m, body frame], triangles (F, 3), the group of each, and the groups' names.
 nb::tuple mesh_of(const Scenario &scenario, std::size_t object, nb::handle watch) {
   Attention attention(watch);
-  auto made = attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) {
-    return load_object(scenario, object, {}, diagnostics);
+  auto made = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return load_object(scenario, object, {.cancel = monitor.cancel}, diagnostics);
   });
-  attention.settle(false);
+  attention.settle(was_interrupted(made));
   const Mesh mesh = take(std::move(made)).scene.mesh;
   const NewArray<double> corners(3 * mesh.positions.size());
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {

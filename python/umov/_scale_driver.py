@@ -217,8 +217,8 @@ class Driver:
         if self.lost == _LOSSES:
             predicted = self.result.lock["predicted"]["cpu_s"] * self.result.lock["per_shard"]
             print(f"{_LOSSES} workers were lost without a shard done between them: a shard takes about "
-                  f"{predicted:.0f} s, which is longer than they live. Shorter shards (--per-shard) or longer lives "
-                  "are needed.", file=sys.stderr, flush=True)
+                  f"{predicted:.0f} s, which is longer than they live. Shorter shards, of fewer rows each, or "
+                  "longer lives are needed.", file=sys.stderr, flush=True)
         if not self.quiet and now - self.told > 5:
             self.told = now
             ended = self.done + self.failed

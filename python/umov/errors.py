@@ -46,7 +46,7 @@ class Error(Exception):
     ...     umov.Material("paper_gold")
     ... except umov.Error as error:
     ...     print(error)
-    unknown material "paper_gold". Did you mean "paper_al"? Known: umov material list.
+    unknown material "paper_gold". Did you mean "paper_al"? Known: umov.materials().
     """
 
     exit_code = 1

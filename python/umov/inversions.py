@@ -13,7 +13,7 @@ import numpy as np
 from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._numbers import between, path_text, whole_between
-from ._words import in_python
+from ._words import in_python, told_in_python
 from .errors import UsageError
 from .light_curves import LightCurve
 from .observing import _text_of
@@ -157,7 +157,7 @@ def _request(files: list[str] | None, fit: Fit | None) -> _umov.InvertRequest:
 def _inversion(found: _umov.Inversion) -> Inversion:
     import json
     tables = {name: Table(found.table(k)) for k, name in enumerate(found.names)}
-    return Inversion(found.verdict, tables, json.loads(found.json), in_python(found.summary), found.page)
+    return Inversion(found.verdict, tables, told_in_python(json.loads(found.json)), in_python(found.summary), found.page)
 
 
 def invert_pose(light: AnyCurves, scenario: AnyScenario, *, set: Mapping[str, Any] | None = None, fit: Fit | None = None,

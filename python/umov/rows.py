@@ -25,7 +25,7 @@ def _about(path: pathlib.Path) -> dict[str, Any]:
         file.seek(max(0, size - 24))
         tail = file.read(24)
         if len(tail) < 24 or tail[16:] != _MAGIC:
-            raise InputError("is no whole file of rows; umov scale verify tells more", Where(str(path)))
+            raise InputError("is no whole file of rows; umov.scale.Result(folder).verify() tells more", Where(str(path)))
         begin, length = struct.unpack("<QQ", tail[:16])
         file.seek(begin)
         out: dict[str, Any] = json.loads(file.read(length))

@@ -37,7 +37,7 @@ Result<void> add_haze_spread(ObjectRun &one, KeptBlocks blocks, const Monitor &m
     UMOV_ASSIGN(varied, with_materials(scene, [is_high](const Material &material) {
                   return at_end(material, is_high);
                 }));
-    UMOV_ASSIGN(models, make_light_models(one.request, varied));
+    UMOV_ASSIGN(models, make_light_models(one.request, varied, monitor.cancel));
     KeptBlocks kept = blocks; // parts of their own beside those of the objects
     kept.part |= std::uint64_t{is_high ? 2u : 1u} << 32;
     const std::string what = std::string("haze at its ") + (is_high ? "most" : "least");

@@ -166,7 +166,8 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
   for (const Band &band : scenario.bands)
     bands.push_back(band.name);
   UMOV_ASSIGN(columns, columns_in(bands, curve, named->second));
-  UMOV_ASSIGN(made, ready_.light(named->second, request_.observed, options_, diagnostics_));
+  UMOV_ASSIGN(made, ready_.light(named->second, request_.observed, options_, diagnostics_,
+                                 monitor_.cancel));
   const SearchedLight &light = *made;
   UMOV_ASSIGN(file, SignatureFile::open(library.file(k)));
   const SignatureText &text = file.view().text;

@@ -11,8 +11,8 @@ namespace umov::jobs {
 Result<Inversion> invert_pose(const Scenario &scenario, const InvertRequest &request,
                               const JobOptions &options, const Monitor &monitor,
                               Diagnostics &diagnostics) {
-  UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics));
-  take_apart(ready, request, options, diagnostics);
+  UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics, monitor.cancel));
+  take_apart(ready, request, options, diagnostics, monitor.cancel);
   UMOV_ASSIGN(out,
               pose_answer(scenario, request, options, ready.observed, ready, monitor, diagnostics));
   keep_masks(ready);

@@ -51,7 +51,8 @@ Result<DriftedLight> light_of(const Scenario &scenario, const InvertRequest &req
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, request.errors.has_polarization,
                                        options.threads, inputs, diagnostics));
-  UMOV_ASSIGN(own, observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
+  UMOV_ASSIGN(own, observed_light_curve(scenario, files, request.allow_old_elements, diagnostics,
+                                        true, monitor.cancel));
   DriftedLight out{std::move(own), {}, {}, {}};
   ObservedLightCurve &observed = out.observed;
   observed.inputs.insert(observed.inputs.end(), inputs.begin(), inputs.end());

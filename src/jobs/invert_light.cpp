@@ -5,34 +5,36 @@
 namespace umov::jobs {
 
 Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
-                         const JobOptions &options, Diagnostics &diagnostics) {
+                         const JobOptions &options, Diagnostics &diagnostics,
+                         const std::atomic<bool> *cancel) {
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, request.errors.has_polarization,
                                        options.threads, inputs, diagnostics));
-  UMOV_ASSIGN(observed,
-              observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
+  UMOV_ASSIGN(observed, observed_light_curve(scenario, files, request.allow_old_elements,
+                                             diagnostics, true, cancel));
   Diagnostics twice; // the object was read for its orbit: its warnings are known
-  UMOV_ASSIGN(light, prepare_light(scenario, request, options, twice));
+  UMOV_ASSIGN(light, prepare_light(scenario, request, options, twice, cancel));
   for (InputFile &input : inputs)
     observed.inputs.push_back(std::move(input));
   return Prepared{std::move(light), std::move(observed)};
 }
 
 Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
-                                    const JobOptions &options, Diagnostics &diagnostics) {
+                                    const JobOptions &options, Diagnostics &diagnostics,
+                                    const std::atomic<bool> *cancel) {
   SignatureRequest lit;
   lit.method = request.method;
   // Light need not be known better than the model is.
   constexpr double coarsest = 0.02;
   lit.accuracy = std::max(scenario.light.accuracy, std::min(request.errors.floor, coarsest));
-  UMOV_ASSIGN(light, PoseLight::make(scenario, lit, options, diagnostics));
+  UMOV_ASSIGN(light, PoseLight::make(scenario, lit, options, diagnostics, cancel));
   SearchedLight out{std::move(light), {}, {}};
   if (out.light.model().facts().method == LightMethod::Auto) {
     SignatureRequest rough;
     rough.method = LightMethod::Masks;
     rough.accuracy = lit.accuracy;
     Diagnostics twice;
-    UMOV_ASSIGN(masks, PoseLight::make(scenario, rough, options, twice));
+    UMOV_ASSIGN(masks, PoseLight::make(scenario, rough, options, twice, cancel));
     out.masks.emplace(std::move(masks));
     out.light.model().take_masks_of(out.masks->model());
   }
@@ -40,13 +42,13 @@ Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertReques
 }
 
 void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOptions &options,
-                Diagnostics &diagnostics) {
+                Diagnostics &diagnostics, const std::atomic<bool> *cancel) {
   if (!request.materials.is_any())
     return;
   if (request.method != LightMethod::Rays && ready.light.options().bounces <= 1)
     ready.parts = LightByPart::make((ready.masks ? *ready.masks : ready.light).model(),
-                                    request.materials, options);
-  if (!ready.parts)
+                                    request.materials, options, cancel);
+  if (!ready.parts && !is_stopped(cancel))
     diagnostics.warn("the light of this object cannot be taken apart by material (rays alone, "
                      "light between surfaces, parts that turn, measured or brushed surfaces): "
                      "roughness and reflectance are taken for right");

@@ -23,14 +23,16 @@ struct Prepared : SearchedLight {
 
 /// Reads and compiles what a request names.
 Result<Prepared> prepare(const Scenario &scenario, const InvertRequest &request,
-                         const JobOptions &options, Diagnostics &diagnostics);
+                         const JobOptions &options, Diagnostics &diagnostics,
+                         const std::atomic<bool> *cancel);
 /// The light alone, as exact as the request's errors ask for.
 Result<SearchedLight> prepare_light(const Scenario &scenario, const InvertRequest &request,
-                                    const JobOptions &options, Diagnostics &diagnostics);
+                                    const JobOptions &options, Diagnostics &diagnostics,
+                                    const std::atomic<bool> *cancel = nullptr);
 /// The light by material, as little of that as the request says is known; warns where it cannot be
 /// had, so that materials are taken for right.
 void take_apart(SearchedLight &ready, const InvertRequest &request, const JobOptions &options,
-                Diagnostics &diagnostics);
+                Diagnostics &diagnostics, const std::atomic<bool> *cancel = nullptr);
 /// Light that a search rests on, with the parts that there are. `ready` and `monitor` must outlive
 /// it.
 PoseLighting searched_lighting(const SearchedLight &ready, unsigned threads,

@@ -230,8 +230,8 @@ Result<Inversion> invert_material(const Scenario &scenario, const InvertRequest 
   std::vector<InputFile> inputs;
   UMOV_ASSIGN(files, read_observations(request.observations, request.errors.has_polarization,
                                        options.threads, inputs, diagnostics));
-  UMOV_ASSIGN(observed,
-              observed_light_curve(scenario, files, request.allow_old_elements, diagnostics));
+  UMOV_ASSIGN(observed, observed_light_curve(scenario, files, request.allow_old_elements,
+                                             diagnostics, true, monitor.cancel));
   UMOV_TRY(check_candidates(material.candidates));
   if (std::ranges::all_of(observed.curve.samples,
                           [](const ObservedSample &s) { return std::isnan(s.i); }))

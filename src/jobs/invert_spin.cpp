@@ -142,8 +142,8 @@ void doubt_period(const SpinAnswer &answer, double chi2_at_rest, const SpinOptio
 Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &request,
                               const SpinOptions &spin, const JobOptions &options,
                               const Monitor &monitor, Diagnostics &diagnostics) {
-  UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics));
-  take_apart(ready, request, options, diagnostics);
+  UMOV_ASSIGN(ready, prepare(scenario, request, options, diagnostics, monitor.cancel));
+  take_apart(ready, request, options, diagnostics, monitor.cancel);
   const ObservedCurve &curve = ready.observed.curve;
   const auto light = lighting_of(ready.light, options.threads, monitor);
   UMOV_ASSIGN(periods, periods_to_try(curve, spin));

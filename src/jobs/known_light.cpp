@@ -9,14 +9,15 @@ Result<EndMember> known_light(const Scenario &scenario, const KnownLightRequest 
                               const JobOptions &options, const Monitor &monitor,
                               ManifestInput::Light &used) {
   Diagnostics known; // those of the same files, told before
-  UMOV_ASSIGN(object, load_object(scenario, 0, {.allow_old_elements = true}, known));
+  UMOV_ASSIGN(object, load_object(scenario, 0,
+                                  {.allow_old_elements = true, .cancel = monitor.cancel}, known));
   const auto &moving = scenario.objects.front().parts;
   UMOV_ASSIGN(
       track, Track::make({*object.orbit, scenario.observer.value_or(Site()), ShadowModel::Ellipsoid,
                           object.attitude, moving, scenario.has_solar_disk}));
   LightOptions lit = light_options(scenario, options);
   lit.method = request.method.value_or(lit.method);
-  UMOV_ASSIGN(light, make_light(object.scene, joints_of(moving), lit));
+  UMOV_ASSIGN(light, make_light(object.scene, joints_of(moving), lit, monitor.cancel));
   const auto turned_back = rotation_from<Body, Body>(turned({}, request.turn)); // of directions
   std::vector<Pose> poses;
   std::vector<double> angles;

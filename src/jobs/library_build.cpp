@@ -32,8 +32,9 @@ struct Making {
 /// Light by sums before any colour: for objects without parts that turn, in single wavelengths.
 class SummedLight {
 public:
-  static Result<SummedLight> of(const Scene &scene, const JobOptions &options, double accuracy) {
-    UMOV_ASSIGN(sums, make_sums(scene, sums_options(options, accuracy)));
+  static Result<SummedLight> of(const Scene &scene, const JobOptions &options, double accuracy,
+                                const std::atomic<bool> *cancel) {
+    UMOV_ASSIGN(sums, make_sums(scene, sums_options(options, accuracy), cancel));
     return SummedLight(std::move(sums), scene, options);
   }
 
@@ -249,7 +250,7 @@ Result<void> SignatureMaker::make(const std::string &path, const std::string &na
     return fail(ErrorCode::Usage, fits.error().message, {path});
   SignatureRequest asked;
   asked.method = LightMethod::Masks;
-  UMOV_ASSIGN(own, PoseLight::make(scenario, asked, options_, diagnostics_));
+  UMOV_ASSIGN(own, PoseLight::make(scenario, asked, options_, diagnostics_, monitor_.cancel));
   const JobBy job_by = [&](const std::string &device) {
     return signature_job(scenario, own.inputs(), request_.cells, device);
   };
@@ -325,7 +326,8 @@ Result<Making> SignatureMaker::light(const Scenario &scenario, const PoseLight &
   const bool has_sums = own.model().joints().empty() && own.model().scene().grid.is_plain() &&
                         own.options().bounces <= 1;
   if (has_sums) {
-    UMOV_ASSIGN(sums, SummedLight::of(own.model().scene(), options_, own.options().accuracy));
+    UMOV_ASSIGN(sums, SummedLight::of(own.model().scene(), options_, own.options().accuracy,
+                                      monitor_.cancel));
     UMOV_ASSIGN(recoloured, colour(sums, own, job_by, file, out, light));
     is_lit = recoloured;
     if (!recoloured) {

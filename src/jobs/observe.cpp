@@ -65,7 +65,8 @@ Result<void> record_all(const ObservationPlan &plan, const Monitor &monitor, Rec
   std::vector<ObservedObject> objects;
   std::vector<std::size_t> counts;
   for (std::size_t k = 0; k < plan.scenario.objects.size(); ++k) {
-    UMOV_ASSIGN(object, ObservedObject::load(plan, static_cast<std::uint32_t>(k), diagnostics));
+    UMOV_ASSIGN(object,
+                ObservedObject::load(plan, static_cast<std::uint32_t>(k), monitor, diagnostics));
     out.inputs.insert(out.inputs.end(), object.inputs().begin(), object.inputs().end());
     UMOV_TRY(object.prepare(monitor, diagnostics));
     if (!object.left_out().empty())

@@ -138,7 +138,7 @@ Result<std::unique_ptr<RangedJob>> ranged_observe(const Scenario &scenario,
   std::vector<ObservedObject> objects;
   std::vector<std::size_t> found;
   for (std::size_t k = 0; k < count; ++k) {
-    UMOV_ASSIGN(object, ObservedObject::load(*plan, static_cast<std::uint32_t>(k), told));
+    UMOV_ASSIGN(object, ObservedObject::load(*plan, static_cast<std::uint32_t>(k), monitor, told));
     if (layout.size() != 2 * count) {
       UMOV_TRY(object.prepare(monitor, told));
       found.insert(found.end(), {object.exposures(), object.nodes()});

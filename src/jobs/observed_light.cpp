@@ -337,15 +337,16 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
 Result<ObservedLightCurve> observed_light_curve(const Scenario &scenario,
                                                 const std::vector<ObservationsFile> &files,
                                                 bool allow_old_elements, Diagnostics &diagnostics,
-                                                bool reads_shape) {
+                                                bool reads_shape, const std::atomic<bool> *cancel) {
   if (!scenario.objects.front().orbit)
     return fail(ErrorCode::BadInput,
                 "holds no orbit: object.orbit = { file = ... } says where the object was",
                 {scenario.file});
-  UMOV_ASSIGN(object,
-              load_object(over_the_rows(scenario, files), 0,
-                          {.allow_old_elements = allow_old_elements, .reads_shape = reads_shape},
-                          diagnostics));
+  UMOV_ASSIGN(object, load_object(over_the_rows(scenario, files), 0,
+                                  {.allow_old_elements = allow_old_elements,
+                                   .reads_shape = reads_shape,
+                                   .cancel = cancel},
+                                  diagnostics));
   UMOV_ASSIGN(colours, photometric_bands(scenario.bands, scenario.magnitudes));
   CurveMaker maker(scenario, *object.orbit, std::move(colours));
   for (const ObservationsFile &file : files)

@@ -104,11 +104,13 @@ ObservedObject::ObservedObject(const ObservationPlan &plan, std::uint32_t number
       inputs_(loaded_.inputs) {}
 
 Result<ObservedObject> ObservedObject::load(const ObservationPlan &plan, std::uint32_t number,
-                                            Diagnostics &diagnostics) {
+                                            const Monitor &monitor, Diagnostics &diagnostics) {
   const JobOptions &options = plan.options;
-  UMOV_ASSIGN(loaded,
-              load_object(plan.scenario, number,
-                          {options.allow_bad_checksum, options.allow_old_elements}, diagnostics));
+  UMOV_ASSIGN(loaded, load_object(plan.scenario, number,
+                                  {.allow_bad_checksum = options.allow_bad_checksum,
+                                   .allow_old_elements = options.allow_old_elements,
+                                   .cancel = monitor.cancel},
+                                  diagnostics));
   ObservedObject out(plan, number, std::move(loaded));
   UMOV_ASSIGN(stars, field_of(*plan.scenario.observation, out.inputs_));
   out.stars_ = std::move(stars);
@@ -171,14 +173,14 @@ Result<void> ObservedObject::keep_masks() const {
 }
 
 /// Light and channels, before the first exposure.
-Result<void> ObservedObject::make_ready() {
+Result<void> ObservedObject::make_ready(const Monitor &monitor) {
   if (ready_->models.light)
     return {};
   std::vector<BandObserver> &observers = ready_->setup->observers;
   for (const Exposure &e : ready_->exposures)
     if (!observers[e.planned.band].is_prepared(e.planned.plan.state))
       UMOV_TRY(observers[e.planned.band].prepare(e.planned.plan.state));
-  UMOV_ASSIGN(models, make_light_models(request_, loaded_.scene));
+  UMOV_ASSIGN(models, make_light_models(request_, loaded_.scene, monitor.cancel));
   ready_->models = std::move(models);
   return {};
 }
@@ -207,7 +209,7 @@ std::size_t ObservedObject::block() const {
 
 Result<void> ObservedObject::record(IndexRange range, const Monitor &monitor, RecordedSink &sink) {
   const auto began = std::chrono::steady_clock::now();
-  UMOV_TRY(make_ready());
+  UMOV_TRY(make_ready(monitor));
   sink.light_s += seconds_since(began);
   const std::size_t length = block();
   // Light that touches several surfaces shares its paths within a block, which is then lit whole.

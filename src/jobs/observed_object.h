@@ -55,7 +55,7 @@ class ObservedObject {
 public:
   /// Reads its files. The plan outlives it.
   static Result<ObservedObject> load(const ObservationPlan &plan, std::uint32_t number,
-                                     Diagnostics &diagnostics);
+                                     const Monitor &monitor, Diagnostics &diagnostics);
 
   /// Its name in the tables.
   [[nodiscard]] const std::string &name() const { return request_.object; }
@@ -85,7 +85,7 @@ private:
     void operator()(Ready *ready) const;
   };
   ObservedObject(const ObservationPlan &plan, std::uint32_t number, LoadedObject loaded);
-  [[nodiscard]] Result<void> make_ready();
+  [[nodiscard]] Result<void> make_ready(const Monitor &monitor);
   [[nodiscard]] Result<void> set_up(Diagnostics &diagnostics);
   [[nodiscard]] std::size_t block() const;
   [[nodiscard]] Result<void> record_block(IndexRange block, IndexRange wanted,

@@ -29,7 +29,8 @@ const Material &material_of(const Scene &scene, const AbundanceColumn &column) {
 
 std::unique_ptr<LightByPart> LightByPart::make(const LightModel &elder,
                                                const MaterialErrors &errors,
-                                               const JobOptions &options) {
+                                               const JobOptions &options,
+                                               const std::atomic<bool> *cancel) {
   if (!errors.is_any() || !elder.joints().empty())
     return nullptr;
   std::unique_ptr<LightByPart> out(new LightByPart);
@@ -53,7 +54,7 @@ std::unique_ptr<LightByPart> LightByPart::make(const LightModel &elder,
   how.accuracy_floor = default_accuracy_floor(LightMethod::Auto);
   how.is_for_many_poses = true;
   for (auto *one : {&out->sums_, &out->quick_}) {
-    auto sums = make_sums(out->scenes_.front(), how);
+    auto sums = make_sums(out->scenes_.front(), how, cancel);
     if (!sums)
       return nullptr;
     *one = std::move(*sums);
@@ -68,7 +69,7 @@ std::unique_ptr<LightByPart> LightByPart::make(const LightModel &elder,
   }
   AbundanceTable first;
   const Pose any[] = {{{0, 0, 1}, {1, 0, 0}, 0}};
-  if (!out->sums_->evaluate(any, first, 1) || !out->name_parts(first, errors))
+  if (!out->sums_->evaluate(any, first, 1, cancel) || !out->name_parts(first, errors))
     return nullptr;
   return out;
 }

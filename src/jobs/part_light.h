@@ -17,7 +17,8 @@ public:
   /// None where an object has no such sums: parts that turn, several bounces, measured or brushed
   /// surfaces. Masks that `elder` has traced are not traced again.
   static std::unique_ptr<LightByPart> make(const LightModel &elder, const MaterialErrors &errors,
-                                           const JobOptions &options);
+                                           const JobOptions &options,
+                                           const std::atomic<bool> *cancel = nullptr);
   /// In the order of the table's blocks of bands.
   [[nodiscard]] const std::vector<PartKind> &kinds() const { return kinds_; }
   /// As CurveModel has it. False where a card failed or `cancel` became true. `is_quick`: masks as

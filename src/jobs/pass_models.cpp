@@ -45,18 +45,19 @@ LightOptions options_of(const Scenario &scene, const JobOptions &job) {
 } // namespace
 
 Result<PassModels> PassModels::of_scene(const PassModel &wanted, const JobOptions &options,
-                                        Diagnostics &diagnostics) {
+                                        Diagnostics &diagnostics, const std::atomic<bool> *cancel) {
   PassModels out;
   Scenario scene = *wanted.scene;
   UMOV_TRY(check_magnitudes(scene));
   scene.time.reset(); // orbits come from the file of the passes
   for (std::size_t k = 0; k < scene.objects.size(); ++k) {
     const int norad = scene.objects[k].orbit ? scene.objects[k].orbit->norad : 0;
-    UMOV_ASSIGN(object, load_object(scene, k, {.allow_old_elements = true}, diagnostics));
+    UMOV_ASSIGN(object,
+                load_object(scene, k, {.allow_old_elements = true, .cancel = cancel}, diagnostics));
     UMOV_ASSIGN(
         light, PassLight::of_body({std::move(object.scene), object.attitude, scene.objects[k].parts,
                                    scene.has_solar_disk, scene.magnitudes, scene.air},
-                                  options_of(scene, options)));
+                                  options_of(scene, options), cancel));
     if (norad > 0)
       out.by_number_.insert_or_assign(norad, light);
     else
@@ -70,11 +71,11 @@ Result<PassModels> PassModels::of_scene(const PassModel &wanted, const JobOption
 }
 
 Result<PassModels> PassModels::make(const PassModel &wanted, const JobOptions &options,
-                                    Diagnostics &diagnostics) {
+                                    Diagnostics &diagnostics, const std::atomic<bool> *cancel) {
   if (wanted.body != PassModel::Body::None)
     return of_body(wanted, diagnostics);
   if (wanted.scene)
-    return of_scene(wanted, options, diagnostics);
+    return of_scene(wanted, options, diagnostics, cancel);
   if (!wanted.band.empty())
     return fail(ErrorCode::Usage, "--band needs --scene or --model");
   return PassModels{};

@@ -20,7 +20,8 @@ class PassModels {
 public:
   static constexpr const char *unknown = "none: no magnitudes"; ///< description of no model
   static Result<PassModels> make(const PassModel &wanted, const JobOptions &options,
-                                 Diagnostics &diagnostics);
+                                 Diagnostics &diagnostics,
+                                 const std::atomic<bool> *cancel = nullptr);
   /// Null: nothing is said about that object's light.
   [[nodiscard]] const PassLight *of(int norad) const;
   /// There is light for some objects; those without are to be told.
@@ -34,7 +35,7 @@ public:
 private:
   static Result<PassModels> of_body(const PassModel &wanted, Diagnostics &diagnostics);
   static Result<PassModels> of_scene(const PassModel &wanted, const JobOptions &options,
-                                     Diagnostics &diagnostics);
+                                     Diagnostics &diagnostics, const std::atomic<bool> *cancel);
 
   std::map<int, PassLight> by_number_;
   std::optional<PassLight> other_;

@@ -29,7 +29,8 @@ std::string no_pass(const PassesRequest &request);
 class PassSearcher {
 public:
   static Result<PassSearcher> make(const PassesRequest &request, const JobOptions &options,
-                                   Diagnostics &diagnostics);
+                                   Diagnostics &diagnostics,
+                                   const std::atomic<bool> *cancel = nullptr);
   [[nodiscard]] std::size_t objects() const { return orbits_.size(); }
   [[nodiscard]] const PassesRequest &request() const { return request_; }
   /// Objects of a range side by side; `stopped` of the result where not all were searched.

@@ -224,7 +224,7 @@ std::string no_pass(const PassesRequest &request) {
 }
 
 Result<PassSearcher> PassSearcher::make(const PassesRequest &request, const JobOptions &options,
-                                        Diagnostics &diagnostics) {
+                                        Diagnostics &diagnostics, const std::atomic<bool> *cancel) {
   if (seconds_between(request.stop, request.start) < 0)
     return fail(ErrorCode::Usage, "--stop lies before --start");
   if (const double days = clock_days_between(request.stop, request.start); days > span_days_max)
@@ -243,7 +243,7 @@ Result<PassSearcher> PassSearcher::make(const PassesRequest &request, const JobO
   UMOV_ASSIGN(orbits, read_orbits(request, options, diagnostics));
   warn_if_beyond_leap_seconds(request.stop, diagnostics);
   warn_if_outside_eop(request.start, request.stop, diagnostics);
-  UMOV_ASSIGN(models, PassModels::make(request.model, options, diagnostics));
+  UMOV_ASSIGN(models, PassModels::make(request.model, options, diagnostics, cancel));
   warn_of_unknown(orbits, models, diagnostics);
   out.request_ = request;
   out.threads_ = options.threads;
@@ -273,7 +273,7 @@ FoundPasses PassSearcher::search(IndexRange range, const Monitor &monitor,
 
 Result<PassesResult> passes(const PassesRequest &request, const JobOptions &options,
                             const Monitor &monitor, Diagnostics &diagnostics) {
-  UMOV_ASSIGN(searcher, PassSearcher::make(request, options, diagnostics));
+  UMOV_ASSIGN(searcher, PassSearcher::make(request, options, diagnostics, monitor.cancel));
   UMOV_ASSIGN(range, options.part.of(searcher.objects(), "objects"));
   FoundPasses found = searcher.search(range, monitor, diagnostics);
   PassesResult &out = found.result;

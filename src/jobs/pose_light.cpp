@@ -56,13 +56,14 @@ Result<void> check_request(const Scenario &scenario, const SignatureRequest &req
 
 Result<std::unique_ptr<LightModel>> light_of(const Scene &scene, const std::vector<Joint> &joints,
                                              const SignatureRequest &request,
-                                             const LightOptions &options) {
+                                             const LightOptions &options,
+                                             const std::atomic<bool> *cancel) {
   if (request.source != Source::Thermal)
-    return make_light(scene, joints, options);
+    return make_light(scene, joints, options, cancel);
   if (options.device.choice == DeviceChoice::Cuda)
     return fail(ErrorCode::Usage, "own heat is lit by the processor: take --device cpu");
   UMOV_ASSIGN(kelvin, temperatures_of(request.temperatures, scene.mesh));
-  return make_thermal_light(scene, joints, kelvin, options);
+  return make_thermal_light(scene, joints, kelvin, options, cancel);
 }
 
 /// What the request says goes over what the scenario says.
@@ -102,14 +103,16 @@ Result<void> PoseLight::check(const Scenario &scenario, const SignatureRequest &
 }
 
 Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureRequest &request,
-                                  const JobOptions &options, Diagnostics &diagnostics) {
+                                  const JobOptions &options, Diagnostics &diagnostics,
+                                  const std::atomic<bool> *cancel) {
   UMOV_ASSIGN(source, source_of(request));
   const LightOptions light = light_asked_for(scenario, request, source, options);
   UMOV_TRY(check_request(scenario, request));
   const bool is_sun = request.source == Source::Sun;
-  UMOV_ASSIGN(
-      object,
-      load_object(scenario, 0, {.allow_old_elements = true, .source_is_sun = is_sun}, diagnostics));
+  UMOV_ASSIGN(object,
+              load_object(scenario, 0,
+                          {.allow_old_elements = true, .source_is_sun = is_sun, .cancel = cancel},
+                          diagnostics));
   auto state = std::make_unique<State>();
   state->options = light;
   state->inputs = std::move(object.inputs);
@@ -118,7 +121,8 @@ Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureReque
   // A body that is another one at every pose shares nothing, and a pose by itself is not worth it.
   if (!state->parts->joints().empty() || state->options.between == BetweenMethod::Auto)
     state->options.between = BetweenMethod::Paths;
-  UMOV_ASSIGN(model, light_of(object.scene, state->parts->joints(), request, state->options));
+  UMOV_ASSIGN(model,
+              light_of(object.scene, state->parts->joints(), request, state->options, cancel));
   state->model = std::move(model);
   return PoseLight(std::move(state));
 }

@@ -14,12 +14,13 @@ Result<const Scenario *> ReadyObjects::scenario(const std::string &path) {
 Result<const SearchedLight *> ReadyObjects::light(const std::string &path,
                                                   const InvertRequest &request,
                                                   const JobOptions &options,
-                                                  Diagnostics &diagnostics) {
+                                                  Diagnostics &diagnostics,
+                                                  const std::atomic<bool> *cancel) {
   One &one = all_.at(path);
   auto made = Result<void>();
   if (!one.light) {
     Diagnostics told;
-    auto light = prepare_light(one.scenario, request, options, told);
+    auto light = prepare_light(one.scenario, request, options, told, cancel);
     one.told = std::move(told);
     if (light)
       one.light = std::move(*light);

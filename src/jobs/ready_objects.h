@@ -16,7 +16,8 @@ public:
   Result<const Scenario *> scenario(const std::string &path);
   /// The light of an object whose scenario was asked for, under one request and options.
   Result<const SearchedLight *> light(const std::string &path, const InvertRequest &request,
-                                      const JobOptions &options, Diagnostics &diagnostics);
+                                      const JobOptions &options, Diagnostics &diagnostics,
+                                      const std::atomic<bool> *cancel);
   /// Masks of all lights, for later jobs.
   void keep() const;
 

@@ -235,9 +235,11 @@ Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
                         const PictureSink &sink, const JobOptions &options, const Monitor &monitor,
                         Diagnostics &diagnostics) {
   UMOV_TRY(check(request, scenario));
-  UMOV_ASSIGN(object,
-              load_object(scenario, request.object,
-                          {options.allow_bad_checksum, options.allow_old_elements}, diagnostics));
+  UMOV_ASSIGN(object, load_object(scenario, request.object,
+                                  {.allow_bad_checksum = options.allow_bad_checksum,
+                                   .allow_old_elements = options.allow_old_elements,
+                                   .cancel = monitor.cancel},
+                                  diagnostics));
   const std::vector<Band> &bands = object.scene.bands;
   UMOV_ASSIGN(band, band_index(request.band, bands));
   UMOV_ASSIGN(traced, bands_of(request, band, bands.size()));

@@ -136,7 +136,7 @@ Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks bloc
                                   const Monitor &monitor, Diagnostics &diagnostics) try {
   const std::string what = is_alone ? "light curve" : one.request.object;
   monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
-  UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene));
+  UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene, monitor.cancel));
   one.light = models.light->facts();
   auto out = compute_wanted(
       one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
@@ -177,9 +177,11 @@ Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptio
   UMOV_TRY(check_magnitudes(scenario));
   std::vector<ObjectRun> out;
   for (std::size_t k = 0; k < scenario.objects.size(); ++k) {
-    UMOV_ASSIGN(object,
-                load_object(scenario, k, {options.allow_bad_checksum, options.allow_old_elements},
-                            diagnostics));
+    UMOV_ASSIGN(object, load_object(scenario, k,
+                                    {.allow_bad_checksum = options.allow_bad_checksum,
+                                     .allow_old_elements = options.allow_old_elements,
+                                     .cancel = monitor.cancel},
+                                    diagnostics));
     LightCurveRequest request = light_curve_request(scenario, scenario.objects[k], object, options);
     for (const InputFile &input : object.inputs)
       monitor.tell(fmt::format("read {} (SHA-256 {})", input.path, input.sha256));

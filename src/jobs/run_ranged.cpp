@@ -90,7 +90,8 @@ private:
                               "program or other files. Begin the job anew.",
                               objects_[k].request.object, kept.passes.size(), layout_[k]));
     objects_[k].kept = std::make_shared<const KeptEpochs>(std::move(kept));
-    UMOV_ASSIGN(models, make_light_models(objects_[k].request, objects_[k].object.scene));
+    UMOV_ASSIGN(models,
+                make_light_models(objects_[k].request, objects_[k].object.scene, monitor.cancel));
     models_ = std::move(models);
     ready_ = k;
     return {};

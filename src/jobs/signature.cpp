@@ -253,8 +253,8 @@ Result<void> signature(const Scenario &scenario, const PoseList &poses,
   UMOV_ASSIGN(range, options.part.of(poses.count, "poses"));
   monitor.tell("preparing the scene ...");
   const bool had_file = file_exists(request.mask_file);
-  UMOV_ASSIGN(light,
-              PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
+  UMOV_ASSIGN(light, PoseLight::make(scenario, decided(scenario, poses, request), options,
+                                     diagnostics, monitor.cancel));
   const LightModel &model = light.model();
   UMOV_ASSIGN(device, device_text(options.device));
   UMOV_ASSIGN(journal,

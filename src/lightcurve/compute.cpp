@@ -290,15 +290,16 @@ Result<void> LightModels::keep_masks() const {
 
 std::string LightModels::device() const { return device_of(*light, many_directions.get()); }
 
-Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene) {
+Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene,
+                                      const std::atomic<bool> *cancel) {
   LightOptions options = request.light;
   options.threads = request.threads;
   const std::vector<Joint> joints = joints_of(request.track.joints);
   LightModels out;
-  UMOV_ASSIGN(light, make_light(scene, joints, options));
+  UMOV_ASSIGN(light, make_light(scene, joints, options, cancel));
   out.light = std::move(light);
   if (request.earthshine || request.has_moonlight) {
-    UMOV_ASSIGN(many, make_light_for_many(scene, joints, options));
+    UMOV_ASSIGN(many, make_light_for_many(scene, joints, options, cancel));
     out.many_directions = std::move(many);
   }
   return out;
@@ -369,7 +370,7 @@ Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request,
 Result<LightCurveOutcome> compute_light_curve(const LightCurveRequest &request, const Scene &scene,
                                               const Progress &progress,
                                               const std::atomic<bool> &cancel) {
-  UMOV_ASSIGN(models, make_light_models(request, scene));
+  UMOV_ASSIGN(models, make_light_models(request, scene, &cancel));
   auto out =
       compute_light_curve(request, *models.light, models.many_directions.get(), progress, cancel);
   UMOV_TRY(models.keep_masks());

@@ -40,7 +40,8 @@ LightOptions pass_light_options(LightMethod method) {
   return out;
 }
 
-Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options) {
+Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options,
+                                     const std::atomic<bool> *cancel) {
   auto state = std::make_shared<State>();
   UMOV_ASSIGN(colours, photometric_bands(body.scene.bands, body.magnitudes));
   state->bands = std::move(colours);
@@ -53,7 +54,7 @@ Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options)
   for (const GlintFlat &flat : glint_flats(body.scene))
     state->flats[part_of[flat.group]].push_back(flat);
   state->joints = std::move(body.joints);
-  UMOV_ASSIGN(light, make_light(body.scene, joints, options));
+  UMOV_ASSIGN(light, make_light(body.scene, joints, options, cancel));
   state->light = std::move(light);
   PassLight out;
   out.state_ = std::move(state);

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <umov/core/quantity.h>
-#include <umov/light/light_task.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 #include <umov/core/parallel.h>
-#include <umov/light/light_task.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {

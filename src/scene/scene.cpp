@@ -33,7 +33,8 @@ void warn_of_odd_normals(const Mesh &mesh, const std::string &file, Diagnostics 
 
 Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector<Band> &bands,
                          const std::vector<Material> &front, const std::vector<Material> &back,
-                         Diagnostics &diagnostics, double crease_rad, const std::string &file) {
+                         Diagnostics &diagnostics, double crease_rad, const std::string &file,
+                         const std::atomic<bool> *cancel) {
   if (front.size() != mesh.groups.size() || back.size() != mesh.groups.size())
     return fail(ErrorCode::BadInput,
                 fmt::format("{} front and {} back materials for a mesh with {} groups; give one of "
@@ -41,13 +42,13 @@ Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector
                             front.size(), back.size(), mesh.groups.size()));
   if (bands.empty())
     return fail(ErrorCode::BadInput, "the scene has no band; name at least one, such as nm:550");
-  UMOV_ASSIGN(cleaned, clean_mesh(mesh, diagnostics, file));
+  UMOV_ASSIGN(cleaned, clean_mesh(mesh, diagnostics, file, cancel));
   Scene scene;
   scene.mesh = std::move(cleaned);
   scene.normals = normals;
   scene.bands = bands;
   if (normals == NormalMode::Smooth) { // where the mesh has none
-    scene.mesh = with_vertex_normals(scene.mesh, crease_rad);
+    scene.mesh = with_vertex_normals(scene.mesh, crease_rad, cancel);
     warn_of_odd_normals(scene.mesh, file, diagnostics);
   }
   UMOV_ASSIGN(materials, CompiledMaterials::make(bands, front, back));

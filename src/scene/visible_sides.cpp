@@ -6,16 +6,19 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <umov/core/stop.h>
 #include <utility>
 
 namespace umov {
 namespace {
 
 /// Vertex numbers in which coincident vertices (to `grain`) are one.
-std::vector<std::size_t> weld(const std::vector<Vec3<Body>> &positions, double grain) {
+std::vector<std::size_t> weld(const std::vector<Vec3<Body>> &positions, double grain,
+                              const std::atomic<bool> *cancel) {
   std::map<std::array<double, 3>, std::size_t> seen;
   std::vector<std::size_t> out(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
+    leave_if_stopped(cancel, i);
     const Vec3<Body> p = positions[i] / grain;
     out[i] = seen.try_emplace({std::round(p.x), std::round(p.y), std::round(p.z)}, i).first->second;
   }
@@ -52,21 +55,24 @@ struct EdgeUse {
 
 } // namespace
 
-std::vector<VisibleSides> visible_sides(const Mesh &mesh) {
+std::vector<VisibleSides> visible_sides(const Mesh &mesh, const std::atomic<bool> *cancel) {
   const std::size_t count = mesh.triangles.size();
   const double size = size_of(mesh);
   std::vector<VisibleSides> out(count);
   if (!(size > 0))
     return out;
-  const auto vertex = weld(mesh.positions, 1e-6 * size);
+  const auto vertex = weld(mesh.positions, 1e-6 * size, cancel);
   std::map<std::pair<std::size_t, std::size_t>, EdgeUse> edges;
-  for (std::size_t t = 0; t < count; ++t)
+  for (std::size_t t = 0; t < count; ++t) {
+    leave_if_stopped(cancel, t);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t a = vertex[mesh.triangles[t].vertex[k]];
       const std::size_t b = vertex[mesh.triangles[t].vertex[(k + 1) % 3]];
       EdgeUse &use = edges[std::minmax(a, b)];
       (a < b ? use.up : use.down).push_back(t);
     }
+  }
+  leave_if_stopped(cancel);
   Parts parts(count);
   for (const auto &[edge, use] : edges)
     if (use.up.size() == 1 && use.down.size() == 1)

@@ -70,16 +70,17 @@ void warn_of_rest(const Mesh &mesh, const Coincidence &found, Diagnostics &diagn
 
 } // namespace
 
-Result<Mesh> clean_mesh(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file) {
+Result<Mesh> clean_mesh(const Mesh &mesh, Diagnostics &diagnostics, const std::string &file,
+                        const std::atomic<bool> *cancel) {
   UMOV_TRY(check_numbers(mesh));
-  const auto welded = weld(mesh, weld_distance(mesh));
+  const auto welded = weld(mesh, weld_distance(mesh), cancel);
   std::vector<bool> skip(mesh.triangles.size());
   std::size_t degenerate = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     skip[i] = is_degenerate(mesh, mesh.triangles[i], welded);
     degenerate += skip[i] ? 1u : 0u;
   }
-  const Coincidence found = find_coincidence(mesh, welded, skip);
+  const Coincidence found = find_coincidence(mesh, welded, skip, cancel);
   Mesh out;
   out.positions = mesh.positions;
   out.normals = mesh.normals;

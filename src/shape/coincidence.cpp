@@ -8,11 +8,12 @@
 #include <map>
 #include <numeric>
 #include <tuple>
+#include <umov/core/stop.h>
 
 namespace umov {
 
 FacePairs find_pairs(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                     const std::vector<bool> &skip) {
+                     const std::vector<bool> &skip, const std::atomic<bool> *cancel) {
   FacePairs out;
   out.partner.resize(mesh.triangles.size());
   out.is_opposite.assign(mesh.triangles.size(), false);
@@ -21,6 +22,7 @@ FacePairs find_pairs(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
   };
   std::map<std::array<std::uint32_t, 3>, Seen> seen;
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    leave_if_stopped(cancel, i);
     out.partner[i] = i;
     if (skip[i])
       continue;
@@ -70,19 +72,20 @@ using OverlapList = std::vector<const Overlap *>;
 
 class Sorting {
 public:
-  Sorting(const Mesh &mesh, const std::vector<std::uint32_t> &welded, const std::vector<bool> &skip)
+  Sorting(const Mesh &mesh, const std::vector<std::uint32_t> &welded, const std::vector<bool> &skip,
+          const std::atomic<bool> *cancel)
       : mesh_(mesh), welded_(welded), near_(2 * weld_distance(mesh)) {
     const std::size_t count = mesh.triangles.size();
     out_.is_dropped.assign(count, false);
     out_.back.assign(count, no_index);
-    pairs_ = find_pairs(mesh, welded, skip);
+    pairs_ = find_pairs(mesh, welded, skip, cancel);
     std::vector<bool> leave_out = skip;
     for (std::uint32_t i = 0; i < count; ++i)
       if (pairs_.partner[i] != i && !pairs_.is_opposite[i]) {
         drop_duplicate(i, pairs_.partner[i]);
         leave_out[i] = true;
       }
-    overlaps_ = find_overlaps(mesh, welded, leave_out);
+    overlaps_ = find_overlaps(mesh, welded, leave_out, cancel);
     out_.not_searched = overlaps_.not_searched;
   }
 
@@ -276,8 +279,8 @@ private:
 } // namespace
 
 Coincidence find_coincidence(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                             const std::vector<bool> &skip) {
-  return Sorting(mesh, welded, skip).run();
+                             const std::vector<bool> &skip, const std::atomic<bool> *cancel) {
+  return Sorting(mesh, welded, skip, cancel).run();
 }
 
 } // namespace umov

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <umov/core/quantity.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -157,22 +158,25 @@ bool is_flat_sheet(const Mesh &mesh) {
 
 } // namespace
 
-MeshReport inspect(const Mesh &mesh, bool with_coincidence) {
+MeshReport inspect(const Mesh &mesh, bool with_coincidence, const std::atomic<bool> *cancel) {
   MeshReport out;
   Work work{mesh,
             mesh_size(mesh),
-            weld(mesh, weld_distance(mesh)),
+            weld(mesh, weld_distance(mesh), cancel),
             std::vector<bool>(mesh.triangles.size(), false),
             {}};
   out.triangles = mesh.triangles.size();
   for (std::uint32_t i = 0; i < work.welded.size(); ++i)
     out.vertices += work.welded[i] == i ? 1u : 0u;
   measure_faces(work, out);
+  leave_if_stopped(cancel);
   work.edges = sorted_edges(mesh, work.welded, work.skip);
+  leave_if_stopped(cancel);
   count_edges(work, out);
   count_parts(work, out);
+  leave_if_stopped(cancel);
   if (with_coincidence) {
-    const Coincidence found = find_coincidence(mesh, work.welded, work.skip);
+    const Coincidence found = find_coincidence(mesh, work.welded, work.skip, cancel);
     out.duplicate = found.duplicates;
     out.opposite_pairs = found.opposites;
   }
@@ -181,8 +185,8 @@ MeshReport inspect(const Mesh &mesh, bool with_coincidence) {
   return out;
 }
 
-bool is_proven_convex(const Mesh &mesh) {
-  return is_flat_sheet(mesh) || inspect(mesh, false).is_convex;
+bool is_proven_convex(const Mesh &mesh, const std::atomic<bool> *cancel) {
+  return is_flat_sheet(mesh) || inspect(mesh, false, cancel).is_convex;
 }
 
 double silhouette_upper_bound(const Mesh &mesh, Vec3<Body> direction) {

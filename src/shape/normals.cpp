@@ -3,6 +3,7 @@
 #include "shape/weld.h"
 
 #include <cmath>
+#include <umov/core/stop.h>
 
 namespace umov {
 
@@ -19,9 +20,9 @@ Vec3<Body> weighted_normal(const Mesh &mesh, const Triangle &t, std::size_t corn
 
 } // namespace
 
-Mesh with_vertex_normals(const Mesh &mesh, double crease_rad) {
+Mesh with_vertex_normals(const Mesh &mesh, double crease_rad, const std::atomic<bool> *cancel) {
   Mesh out = mesh;
-  const auto welded = weld(mesh, weld_distance(mesh));
+  const auto welded = weld(mesh, weld_distance(mesh), cancel);
   std::vector<std::vector<std::uint32_t>> around(mesh.positions.size());
   std::vector<Vec3<Body>> area(mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -31,6 +32,7 @@ Mesh with_vertex_normals(const Mesh &mesh, double crease_rad) {
   }
   const double limit = std::cos(crease_rad);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    leave_if_stopped(cancel, i);
     Triangle &t = out.triangles[i];
     if (t.normal[0] != no_index || !(norm(area[i]) > 0))
       continue;

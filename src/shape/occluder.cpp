@@ -8,6 +8,7 @@
 #include <limits>
 #include <type_traits>
 #include <umov/core/result.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 
 namespace umov {
@@ -84,6 +85,14 @@ void check(RTCDevice device, const Mesh &mesh, const void *made) {
 void check(RTCDevice device, const Mesh &mesh) { check(device, mesh, device); }
 
 using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, void (*)(RTCGeometry)>;
+/// Who may stop the building of a tree.
+struct Watch {
+  const std::atomic<bool> *cancel;
+};
+bool goes_on(void *watch, double /*part*/) {
+  return !is_stopped(static_cast<const Watch *>(watch)->cancel);
+}
+
 Geometry new_geometry(RTCDevice device, const Mesh &mesh) {
   Geometry out(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE), rtcReleaseGeometry);
   check(device, mesh, out.get());
@@ -92,10 +101,13 @@ Geometry new_geometry(RTCDevice device, const Mesh &mesh) {
 
 } // namespace
 
-Occluder::Occluder(const Mesh &mesh, Rays rays) : state_(std::make_unique<State>()) {
+Occluder::Occluder(const Mesh &mesh, Rays rays, const std::atomic<bool> *cancel)
+    : state_(std::make_unique<State>()) {
   try {
-    build(mesh, rays);
+    build(mesh, rays, cancel);
   } catch (...) {
+    if (is_stopped(cancel))
+      throw;
     // Embree takes memory to release a scene, and ends the program where there is none: what could
     // not be built is left as it is.
     [[maybe_unused]] const State *left = state_.release();
@@ -103,7 +115,8 @@ Occluder::Occluder(const Mesh &mesh, Rays rays) : state_(std::make_unique<State>
   }
 }
 
-void Occluder::build(const Mesh &mesh, Rays rays) {
+void Occluder::build(const Mesh &mesh, Rays rays, const std::atomic<bool> *cancel) {
+  leave_if_stopped(cancel);
   const Box box = bounds(mesh);
   state_->centre = box.centre;
   state_->scale = 1 / box.half;
@@ -137,7 +150,11 @@ void Occluder::build(const Mesh &mesh, Rays rays) {
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(state_->scene, geometry.get());
   }
+  Watch watch{cancel};
+  rtcSetSceneProgressMonitorFunction(state_->scene, goes_on, &watch);
   rtcCommitScene(state_->scene);
+  rtcSetSceneProgressMonitorFunction(state_->scene, nullptr, nullptr);
+  leave_if_stopped(cancel);
   check(state_->device, mesh); // a scene that failed here would let every ray through
 }
 

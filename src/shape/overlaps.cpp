@@ -10,6 +10,7 @@
 #include <optional>
 #include <tuple>
 #include <umov/core/parallel.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -192,13 +193,14 @@ public:
     }
   }
 
-  [[nodiscard]] Overlaps run() const {
+  [[nodiscard]] Overlaps run(const std::atomic<bool> *cancel) const {
     const BoxTree tree(boxes_, items_);
     // Some seconds of work in the worst of crowds; a mesh that is not one never gets near it.
     const std::size_t most = std::max<std::size_t>(2000, 4'000'000'000 / (items_.size() + 1));
     std::vector<std::vector<Overlap>> found(items_.size());
     std::vector<unsigned char> is_cut(items_.size(), 0);
     parallel_for(items_.size(), 0, [&](std::size_t k) {
+      leave_if_stopped(cancel);
       const std::uint32_t i = tree.items()[k];
       std::size_t seen = 0;
       tree.visit_behind(k, [&](std::uint32_t j) {
@@ -283,8 +285,8 @@ private:
 } // namespace
 
 Overlaps find_overlaps(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                       const std::vector<bool> &skip) {
-  Overlaps out = Search(mesh, welded, skip).run();
+                       const std::vector<bool> &skip, const std::atomic<bool> *cancel) {
+  Overlaps out = Search(mesh, welded, skip).run(cancel);
   if (std::none_of(out.pairs.begin(), out.pairs.end(),
                    [](const Overlap &o) { return o.is_opposite; }))
     return out;

@@ -1,6 +1,7 @@
 #pragma once
 // Private: faces that lie upon each other.
 
+#include <atomic>
 #include <cstdint>
 #include <umov/shape/mesh.h>
 #include <vector>
@@ -15,8 +16,9 @@ struct FacePairs {
   std::vector<bool> is_opposite;
 };
 
+/// Throws Failure (Interrupted), here and below, once `cancel`, which may be null, became true.
 FacePairs find_pairs(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                     const std::vector<bool> &skip);
+                     const std::vector<bool> &skip, const std::atomic<bool> *cancel);
 
 /// Two triangles of one plane with an area in common.
 struct Overlap {
@@ -37,7 +39,7 @@ struct Overlaps {
 /// cut along another diagonal. Solid parts that stand against each other do not count: nothing sees
 /// the faces between them.
 Overlaps find_overlaps(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                       const std::vector<bool> &skip);
+                       const std::vector<bool> &skip, const std::atomic<bool> *cancel);
 
 /// What lies upon what, face by face however the faces are cut.
 struct Coincidence {
@@ -57,6 +59,6 @@ struct Coincidence {
 };
 
 Coincidence find_coincidence(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                             const std::vector<bool> &skip);
+                             const std::vector<bool> &skip, const std::atomic<bool> *cancel);
 
 } // namespace umov

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <umov/core/stop.h>
 #include <unordered_map>
 
 namespace umov {
@@ -35,7 +36,8 @@ double mesh_size(const Mesh &mesh) {
 
 double weld_distance(const Mesh &mesh) { return 1e-6 * mesh_size(mesh); }
 
-std::vector<std::uint32_t> weld(const Mesh &mesh, double distance) {
+std::vector<std::uint32_t> weld(const Mesh &mesh, double distance,
+                                const std::atomic<bool> *cancel) {
   std::vector<std::uint32_t> out(mesh.positions.size());
   std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells;
   const double width = std::max(distance, 1e-300);
@@ -45,6 +47,7 @@ std::vector<std::uint32_t> weld(const Mesh &mesh, double distance) {
     return static_cast<std::int64_t>(std::clamp(std::floor(v / width), -0x1p50, 0x1p50));
   };
   for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) {
+    leave_if_stopped(cancel, i);
     const Vec3<Body> p = mesh.positions[i];
     const Cell home{index(p.x), index(p.y), index(p.z)};
     out[i] = i;

@@ -1,6 +1,7 @@
 #pragma once
 // Private: which vertices are the same point.
 
+#include <atomic>
 #include <cstdint>
 #include <umov/shape/mesh.h>
 #include <vector>
@@ -11,7 +12,8 @@ namespace umov {
 double mesh_size(const Mesh &mesh);
 
 /// For each position the index of the first one within `distance` of it (in order of the list).
-std::vector<std::uint32_t> weld(const Mesh &mesh, double distance);
+/// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
+std::vector<std::uint32_t> weld(const Mesh &mesh, double distance, const std::atomic<bool> *cancel);
 
 /// Distance at which corners count as one: 1e-6 of the size of the mesh.
 double weld_distance(const Mesh &mesh);

@@ -1,6 +1,7 @@
 #pragma once
 // The scenario file: what a run is about.
 
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -141,9 +142,11 @@ struct LoadOptions {
   bool allow_bad_checksum = false, allow_old_elements = false;
   bool source_is_sun = true; ///< false: a laser, for which a mirror is no matter of the disk
   bool reads_shape = true;   ///< false: the orbit alone; attitude and scene stay empty
+  const std::atomic<bool> *cancel = nullptr; ///< ends the reading where it comes true
 };
 
-/// Reads the files that an object of a scenario names and compiles its scene.
+/// Reads the files that an object of a scenario names and compiles its scene. Interrupted where
+/// LoadOptions::cancel comes true.
 Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
                                  const LoadOptions &options, Diagnostics &diagnostics);
 

@@ -31,10 +31,12 @@ Result<std::vector<ObservationsFile>> read_observations(const std::vector<std::s
 /// observer, elements over 30 days away unless allowed, a band that it has not, and curves without
 /// an epoch in sunlight, and files whose header tells a place more than 5 km from the observer;
 /// Physics where the orbit cannot be had. Without `reads_shape` the object's
-/// mesh and materials are left alone: only where it was is asked.
+/// mesh and materials are left alone: only where it was is asked. Interrupted once `cancel` became
+/// true.
 Result<ObservedLightCurve> observed_light_curve(const Scenario &scenario,
                                                 const std::vector<ObservationsFile> &files,
                                                 bool allow_old_elements, Diagnostics &diagnostics,
-                                                bool reads_shape = true);
+                                                bool reads_shape = true,
+                                                const std::atomic<bool> *cancel = nullptr);
 
 } // namespace umov::jobs

@@ -17,9 +17,10 @@ public:
   /// Usage or BadInput for what does not go together, before anything is read.
   static Result<void> check(const Scenario &scenario, const SignatureRequest &request);
   /// Checks, reads and compiles. Usage for what does not go together; warns of parts that cannot
-  /// turn here.
+  /// turn here; Interrupted once `cancel` became true.
   static Result<PoseLight> make(const Scenario &scenario, const SignatureRequest &request,
-                                const JobOptions &options, Diagnostics &diagnostics);
+                                const JobOptions &options, Diagnostics &diagnostics,
+                                const std::atomic<bool> *cancel = nullptr);
   PoseLight(PoseLight &&) noexcept;
   PoseLight &operator=(PoseLight &&) noexcept;
   ~PoseLight();

@@ -13,9 +13,9 @@ namespace umov {
 /// thousand poses per second and core where parts hide each other.
 class ArticulatedEngine {
 public:
-  /// `joints` have passed check_joints for the scene's mesh.
+  /// `joints` have passed check_joints for the scene's mesh. Throws as Engine.
   ArticulatedEngine(const Scene &scene, const std::vector<Joint> &joints,
-                    const EngineOptions &options);
+                    const EngineOptions &options, const std::atomic<bool> *cancel = nullptr);
   ~ArticulatedEngine();
   ArticulatedEngine(ArticulatedEngine &&) noexcept;
   ArticulatedEngine &operator=(ArticulatedEngine &&) noexcept;

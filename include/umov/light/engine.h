@@ -80,12 +80,15 @@ struct EngineFacts {
 /// bits for any number of threads and any split of the poses.
 class Engine {
 public:
-  /// Compiles a scene and traces its masks.
-  Engine(const Scene &scene, const EngineOptions &options);
+  /// Compiles a scene and traces its masks. Throws Failure: Interrupted if `cancel` became true,
+  /// Device where the ray tree cannot be built.
+  Engine(const Scene &scene, const EngineOptions &options,
+         const std::atomic<bool> *cancel = nullptr);
   /// The same with masks that `save_masks` has written for this very mesh, material groups and
   /// quality. BadInput if the file is none, is damaged or was made for something else.
   static Result<Engine> with_masks(const std::filesystem::path &file, const Scene &scene,
-                                   const EngineOptions &options);
+                                   const EngineOptions &options,
+                                   const std::atomic<bool> *cancel = nullptr);
   /// Writes the masks, whole or not at all (nothing for a convex mesh: Usage). Device if it fails.
   [[nodiscard]] Result<void> save_masks(const std::filesystem::path &file) const;
   /// Puts what was traced into EngineOptions::mask_cache, if that has grown. In silence: whatever

@@ -64,8 +64,8 @@ class ThermalEmission;
 /// the number of threads and whatever was computed before.
 class Integrator {
 public:
-  /// Compiles a scene.
-  explicit Integrator(const Scene &scene);
+  /// Compiles a scene. Throws as Engine.
+  explicit Integrator(const Scene &scene, const std::atomic<bool> *cancel = nullptr);
   ~Integrator();
   Integrator(Integrator &&) noexcept;
   Integrator &operator=(Integrator &&) noexcept;

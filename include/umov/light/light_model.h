@@ -151,26 +151,33 @@ double default_accuracy_floor(LightMethod method);
 
 /// The model for a scene: the one place that decides how it is lit. `joints` have passed
 /// check_joints. BadInput for options outside their ranges, a mask file that does not fit, and one
-/// for an object whose parts turn.
+/// for an object whose parts turn; Device where the ray tree cannot be built; Interrupted if
+/// `cancel` became true.
 Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
-                                               const LightOptions &options);
+                                               const LightOptions &options,
+                                               const std::atomic<bool> *cancel = nullptr);
 
 /// The same for hundreds of directions at each epoch, as light of the Earth asks for: direct light
 /// by masks alone.
-Result<std::unique_ptr<LightModel>>
-make_light_for_many(const Scene &scene, std::vector<Joint> joints, LightOptions options);
+Result<std::unique_ptr<LightModel>> make_light_for_many(const Scene &scene,
+                                                        std::vector<Joint> joints,
+                                                        LightOptions options,
+                                                        const std::atomic<bool> *cancel = nullptr);
 
 /// What the body emits by itself at temperatures [K] of its mesh groups: Stokes [W sr-1 nm-1], from
-/// up to options.bounces surfaces. BadInput as ThermalEmission::make.
+/// up to options.bounces surfaces. BadInput as ThermalEmission::make; Device and Interrupted as
+/// above.
 Result<std::unique_ptr<LightModel>> make_thermal_light(const Scene &scene,
                                                        std::vector<Joint> joints,
                                                        std::span<const double> temperature_k,
-                                                       const LightOptions &options);
+                                                       const LightOptions &options,
+                                                       const std::atomic<bool> *cancel = nullptr);
 
 /// Per node of the scene's grid [m2/sr]: the median over 256 random poses (phase angles spread
 /// evenly over 30 to 150 deg) of I if nothing hid anything. A property of the object, so that no
-/// row's accuracy depends on which other rows are asked for.
-std::vector<double> typical_light(const Scene &scene);
+/// row's accuracy depends on which other rows are asked for. Throws Failure (Interrupted) if
+/// `cancel` became true.
+std::vector<double> typical_light(const Scene &scene, const std::atomic<bool> *cancel = nullptr);
 
 /// Names of all materials of a scene in order of first use (fronts, then backs).
 std::vector<std::string> material_names(const Scene &scene);

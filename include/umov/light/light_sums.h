@@ -65,8 +65,9 @@ protected:
   LightSums() = default;
 };
 
-/// The sums of a scene. Device where DeviceChoice::Cuda lacks something; a card that is lost later
-/// throws Failure.
-Result<std::unique_ptr<LightSums>> make_sums(const Scene &scene, const SumsOptions &options);
+/// The sums of a scene. Device where DeviceChoice::Cuda lacks something; Interrupted if `cancel`
+/// became true; a card that is lost later throws Failure.
+Result<std::unique_ptr<LightSums>> make_sums(const Scene &scene, const SumsOptions &options,
+                                             const std::atomic<bool> *cancel = nullptr);
 
 } // namespace umov

@@ -1,10 +1,7 @@
 #pragma once
-#include <atomic>
+#include <umov/core/stop.h>
 
 namespace umov {
-
-/// Somebody wants the work to end. nullptr: nobody can.
-inline bool is_stopped(const std::atomic<bool> *cancel) { return cancel != nullptr && *cancel; }
 
 /// How a batch of poses is lit: which optional columns of the table are filled, on how many
 /// threads, and when to stop.

@@ -62,7 +62,8 @@ struct LightModels {
 };
 
 /// Models for what is asked of a scene.
-Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene);
+Result<LightModels> make_light_models(const LightCurveRequest &request, const Scene &scene,
+                                      const std::atomic<bool> *cancel = nullptr);
 
 /// Where the blocks of a light curve that are finished are kept and found again, and under which
 /// part of the job; null: nowhere.

@@ -56,7 +56,8 @@ struct PassSample {
 class PassLight {
 public:
   /// A body with an attitude.
-  static Result<PassLight> of_body(PassBody body, const LightOptions &options);
+  static Result<PassLight> of_body(PassBody body, const LightOptions &options,
+                                   const std::atomic<bool> *cancel = nullptr);
   /// A sphere: the same from everywhere.
   static Result<PassLight> of_sphere(double radius_m, const Material &material,
                                      const std::vector<Band> &bands);

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <umov/core/diagnostics.h>
@@ -31,11 +32,11 @@ inline constexpr double default_crease_rad = 35 * 3.14159265358979323846 / 180;
 /// Cleans the mesh, makes vertex normals for `Smooth` where it has none and compiles each distinct
 /// material once. `front` and `back` name the material of each group of `mesh.groups`.
 /// `file` is what messages about the mesh name. BadInput if their number differs from that of the
-/// groups, or from the mesh or a material.
+/// groups, or from the mesh or a material. Throws Failure (Interrupted) once `cancel` became true.
 Result<Scene> make_scene(const Mesh &mesh, NormalMode normals, const std::vector<Band> &bands,
                          const std::vector<Material> &front, const std::vector<Material> &back,
                          Diagnostics &diagnostics, double crease_rad = default_crease_rad,
-                         const std::string &file = {});
+                         const std::string &file = {}, const std::atomic<bool> *cancel = nullptr);
 
 /// The scene with each material replaced by what `change` makes of it; the mesh stays. BadInput
 /// from a material.
@@ -58,7 +59,9 @@ struct VisibleSides {
 /// Per triangle: the inner side of a closed, consistently wound part (triangles joined by edges
 /// that exactly two of them share, in opposite directions) is hidden by the part itself. Vertices
 /// are joined if their coordinates agree within 1e-6 of the size. A part must not cut itself.
-std::vector<VisibleSides> visible_sides(const Mesh &mesh);
+/// Throws as above.
+std::vector<VisibleSides> visible_sides(const Mesh &mesh,
+                                        const std::atomic<bool> *cancel = nullptr);
 
 /// The surface of one side of a triangle. Where two opposite faces were merged into one (its back
 /// is of another group), the back shows the front surface of the other face.

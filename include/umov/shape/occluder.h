@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <memory>
 #include <span>
 #include <umov/shape/mesh.h>
@@ -13,8 +14,10 @@ public:
     Each, ///< every one counts: none slips between two triangles
     Grid, ///< so many that one of a million may, for half the time: directions of a grid, say
   };
-  /// Throws `Failure` (Device) where the tree cannot be built: out of memory, unknown processor.
-  explicit Occluder(const Mesh &mesh, Rays rays = Rays::Each);
+  /// Throws `Failure`: Device where the tree cannot be built (out of memory, unknown processor),
+  /// Interrupted once `cancel` became true.
+  explicit Occluder(const Mesh &mesh, Rays rays = Rays::Each,
+                    const std::atomic<bool> *cancel = nullptr);
   ~Occluder();
   Occluder(Occluder &&) noexcept;
   Occluder &operator=(Occluder &&) noexcept;
@@ -46,7 +49,7 @@ public:
   [[nodiscard]] Hit nearest(Vec3<Body> origin, Vec3<Body> direction) const;
 
 private:
-  void build(const Mesh &mesh, Rays rays);
+  void build(const Mesh &mesh, Rays rays, const std::atomic<bool> *cancel);
   [[nodiscard]] bool is_one_free(Point origin, Point direction) const;
   struct State;
   std::unique_ptr<State> state_;

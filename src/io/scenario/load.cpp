@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/files.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 #include <umov/io/attitude_file.h>
 #include <umov/io/index_file.h>
@@ -291,10 +292,9 @@ Result<void> note_material_files(const Named &of, const std::vector<Material> &m
   return {};
 }
 
-} // namespace
-
-Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
-                                 const LoadOptions &options, Diagnostics &diagnostics) {
+/// As load_object; throws Failure where it is stopped.
+Result<LoadedObject> load(const Scenario &scenario, std::size_t which, const LoadOptions &options,
+                          Diagnostics &diagnostics) {
   LoadedObject out;
   const Named of{scenario, scenario.objects[which], which};
   if (which == 0) {
@@ -307,6 +307,7 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   if (of.object.mesh.file.empty())
     return fail(ErrorCode::BadInput, "[object] has no \"mesh\" (shape). Add it.", of.place("mesh"));
   UMOV_ASSIGN(read, load_mesh(of, diagnostics, out));
+  leave_if_stopped(options.cancel);
   UMOV_TRY(check_mtl(of, read));
   UMOV_TRY(check_material_keys(of, read.mesh));
   UMOV_TRY(load_attitude(of, read.mesh, diagnostics, out));
@@ -314,7 +315,7 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
   if (auto checked = check_joints(joints, read.mesh); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("part"));
   read.mesh = with_joined_groups(read.mesh, joint_of_groups(read.mesh, joints));
-  const MeshReport report = inspect(read.mesh, false);
+  const MeshReport report = inspect(read.mesh, false, options.cancel);
   if (report.inward_parts > 0)
     diagnostics.warn(fmt::format("the faces of {} look inward: what is seen of them is their back. "
                                  "Turn them round where that is not meant",
@@ -339,9 +340,9 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
     for (Material &material : *side)
       hold_tails(material, scenario.bands);
   UMOV_TRY(note_material_files(of, checked, out));
-  auto scene =
-      make_scene(read.mesh, of.object.mesh.normals, scenario.bands, front, back, diagnostics,
-                 of.object.mesh.crease_deg * pi / 180, of.object.mesh.file.string());
+  auto scene = make_scene(read.mesh, of.object.mesh.normals, scenario.bands, front, back,
+                          diagnostics, of.object.mesh.crease_deg * pi / 180,
+                          of.object.mesh.file.string(), options.cancel);
   if (!scene)
     return fail(scene.error().code, scene.error().message,
                 scene.error().where.file.empty() ? Where{scenario.file} : scene.error().where);
@@ -360,6 +361,13 @@ Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
                          {surface.material().measured_file});
     }
   return out;
+}
+
+} // namespace
+
+Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
+                                 const LoadOptions &options, Diagnostics &diagnostics) {
+  return without_failures([&] { return load(scenario, which, options, diagnostics); });
 }
 
 } // namespace umov

@@ -8,7 +8,7 @@
 #include <map>
 #include <umov/core/parallel.h>
 #include <umov/core/random.h>
-#include <umov/light/light_task.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {

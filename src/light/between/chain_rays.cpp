@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <umov/core/random.h>
-#include <umov/light/light_task.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <span>
 #include <umov/core/locks.h>
+#include <umov/core/stop.h>
 #include <umov/light/integrator.h>
-#include <umov/light/light_task.h>
 
 namespace umov {
 

@@ -7,8 +7,8 @@
 
 #include <atomic>
 #include <span>
+#include <umov/core/stop.h>
 #include <umov/light/integrator.h>
-#include <umov/light/light_task.h>
 #include <umov/light/thermal.h>
 #include <umov/shape/occluder.h>
 

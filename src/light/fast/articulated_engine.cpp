@@ -44,7 +44,7 @@ struct ArticulatedEngine::State {
     std::vector<Sphere> cover;
     RefinePoints points;
 
-    Part(const Scene &scene, const EngineOptions &options);
+    Part(const Scene &scene, const EngineOptions &options, const std::atomic<bool> *cancel);
   };
   std::vector<Joint> joints;
   std::vector<std::size_t> motion_of; ///< per part: its joint, or joints.size()
@@ -91,10 +91,11 @@ struct ArticulatedEngine::State {
   void put_columns(Workspace &work, std::size_t row, StokesTable &out) const;
 };
 
-ArticulatedEngine::State::Part::Part(const Scene &scene, const EngineOptions &options)
-    : engine(std::make_unique<Engine::State>(scene, options)), occluder(scene.mesh),
-      cover(umov::cover(scene.mesh)) {
-  engine->take_masks({});
+ArticulatedEngine::State::Part::Part(const Scene &scene, const EngineOptions &options,
+                                     const std::atomic<bool> *cancel)
+    : engine(std::make_unique<Engine::State>(scene, options, cancel)),
+      occluder(scene.mesh, Occluder::Rays::Each, cancel), cover(umov::cover(scene.mesh)) {
+  engine->take_masks({}, cancel);
   points = RefinePoints(engine->scene, engine->elements, engine->classes, engine->plan, occluder);
 }
 
@@ -319,7 +320,7 @@ void ArticulatedEngine::State::put_columns(Workspace &work, std::size_t row,
 }
 
 ArticulatedEngine::ArticulatedEngine(const Scene &scene, const std::vector<Joint> &joints,
-                                     const EngineOptions &options)
+                                     const EngineOptions &options, const std::atomic<bool> *cancel)
     : state_(std::make_unique<State>()) {
   state_->joints = joints;
   state_->bands = scene.grid.nodes().size();
@@ -330,7 +331,7 @@ ArticulatedEngine::ArticulatedEngine(const Scene &scene, const std::vector<Joint
     if (part.mesh.triangles.empty())
       continue;
     state_->motion_of.push_back(k);
-    state_->parts.push_back(std::make_unique<State::Part>(part, options));
+    state_->parts.push_back(std::make_unique<State::Part>(part, options, cancel));
     state_->has_u_or_v = state_->has_u_or_v || state_->parts.back()->engine->compiled.has_u;
   }
 }

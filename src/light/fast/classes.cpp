@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <umov/core/stop.h>
 #include <unordered_map>
 
 namespace umov {
@@ -163,9 +164,11 @@ Vec3<Body> place_of(const Element &e, Vec3<Body> middle) {
 
 } // namespace
 
-FacetClasses join_facets(const Elements &elements, double tolerance_rad) {
+FacetClasses join_facets(const Elements &elements, double tolerance_rad,
+                         const std::atomic<bool> *cancel) {
   Joiner joiner(std::max(tolerance_rad, equal_normals_rad));
   for (std::size_t i = 0; i < elements.list.size(); ++i) {
+    leave_if_stopped(cancel, i);
     const Element &e = elements.list[i];
     const Vec3<Body> middle = shading_normal(e, 1.0 / 3, 1.0 / 3, 1.0 / 3);
     const SideSlots slots = elements.slots[e.triangle];

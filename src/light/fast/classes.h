@@ -26,6 +26,8 @@ inline constexpr double equal_normals_rad = 1e-5;
 /// Joins sides of elements whose normals lie within `tolerance_rad` of the first of the class.
 /// Curved elements count with the normal at their middle, and those that turn less than an element
 /// may are joined up to that turn: classes follow the curvature, however fine the mesh.
-FacetClasses join_facets(const Elements &elements, double tolerance_rad);
+/// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
+FacetClasses join_facets(const Elements &elements, double tolerance_rad,
+                         const std::atomic<bool> *cancel = nullptr);
 
 } // namespace umov

@@ -176,18 +176,22 @@ std::vector<std::uint32_t> some_bands(std::size_t count) {
 
 } // namespace
 
-Engine::State::State(const Scene &of, const EngineOptions &with)
+Engine::State::State(const Scene &of, const EngineOptions &with, const std::atomic<bool> *cancel)
     : scene(of), options(with), judged_bands(some_bands(of.grid.nodes().size())) {
-  facts.is_convex = is_proven_convex(scene.mesh);
-  elements = make_elements(scene, visible_sides(scene.mesh));
+  leave_if_stopped(cancel);
+  facts.is_convex = is_proven_convex(scene.mesh, cancel);
+  elements = make_elements(scene, visible_sides(scene.mesh, cancel), cancel);
   const SharedSlots shared = share_materials(scene, options.hypotheses, elements);
-  classes = join_facets(elements, options.cluster_rad);
+  classes = join_facets(elements, options.cluster_rad, cancel);
   plan = plan_groups(classes, has_masks() ? std::max<std::size_t>(options.masks.points, 1) : 0);
+  leave_if_stopped(cancel);
   compiled = compile_scene(scene, options.hypotheses, shared, classes, plan, options.cluster_rad,
                            options.is_intensity_only);
+  leave_if_stopped(cancel);
   if (!(options.cluster_rad > 0)) // unlike normals are one there, whatever the lobe
-    add_patches(elements, classes, plan, compiled);
+    add_patches(elements, classes, plan, compiled, cancel);
   single = round_scene(compiled.data);
+  leave_if_stopped(cancel);
   flats = find_flats();
   views.whole = compiled.data.view();
   views.single = single.view();
@@ -202,16 +206,18 @@ Engine::State::State(const Scene &of, const EngineOptions &with)
           (sizeof(backend::NormalPatch<double>) + sizeof(backend::NormalPatch<float>));
 }
 
-void Engine::State::take_masks(std::optional<MaskStore> ready) {
+void Engine::State::take_masks(std::optional<MaskStore> ready, const std::atomic<bool> *cancel) {
   if (!has_masks())
     return;
-  occluder.emplace(scene.mesh);
+  occluder.emplace(scene.mesh, Occluder::Rays::Each, cancel);
   if (!ready)
     ready = read_cached_masks(options.mask_cache, key_of_masks(), plan, mask_size());
-  masks = std::make_shared<LazyMasks>(ready ? std::move(*ready) : empty_masks(plan, mask_size()),
-                                      MaskTracer(scene, elements, classes, plan, *occluder));
+  masks =
+      std::make_shared<LazyMasks>(ready ? std::move(*ready) : empty_masks(plan, mask_size()),
+                                  MaskTracer(scene, elements, classes, plan, *occluder, cancel));
   if (!options.is_lazy)
-    masks->ensure_all(options.threads);
+    masks->ensure_all(options.threads, cancel);
+  leave_if_stopped(cancel);
   if (options.masks.refine_above > 0)
     refine_points = RefinePoints(scene, elements, classes, plan, *occluder);
   facts.mask_bytes = masks->bytes();
@@ -232,24 +238,24 @@ void Engine::State::keep_masks() const {
     });
 }
 
-Engine::Engine(const Scene &scene, const EngineOptions &options) {
+Engine::Engine(const Scene &scene, const EngineOptions &options, const std::atomic<bool> *cancel) {
   const auto start = std::chrono::steady_clock::now();
-  state_ = std::make_unique<State>(scene, options);
-  state_->take_masks({});
+  state_ = std::make_unique<State>(scene, options, cancel);
+  state_->take_masks({}, cancel);
   state_->facts.setup_s = seconds_since(start);
 }
 
 Engine::Engine(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Result<Engine> Engine::with_masks(const std::filesystem::path &file, const Scene &scene,
-                                  const EngineOptions &options) {
+                                  const EngineOptions &options, const std::atomic<bool> *cancel) {
   const auto start = std::chrono::steady_clock::now();
-  auto state = std::make_unique<State>(scene, options);
+  auto state = std::make_unique<State>(scene, options, cancel);
   if (state->has_masks()) {
     const std::uint64_t key =
         mask_key(state->scene.mesh, state->classes, state->plan, state->mask_size());
     UMOV_ASSIGN(masks, read_masks(file, key, state->plan, state->mask_size()));
-    state->take_masks(std::move(masks));
+    state->take_masks(std::move(masks), cancel);
   }
   state->facts.setup_s = seconds_since(start);
   return Engine(std::move(state));

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <umov/core/parallel.h>
-#include <umov/light/light_task.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -104,11 +104,11 @@ ReadLock LazyMasks::ensure(std::span<const Pose> poses, unsigned threads,
   }
 }
 
-void LazyMasks::ensure_all(unsigned threads) {
+void LazyMasks::ensure_all(unsigned threads, const std::atomic<bool> *cancel) {
   const WriteLock lock(mutex_);
   take_known();
   for (const bool is_large : {false, true})
-    trace(missing(is_large), is_large, threads, nullptr);
+    trace(missing(is_large), is_large, threads, cancel);
 }
 
 } // namespace umov

@@ -21,7 +21,7 @@ public:
   /// still be lacking once `cancel` is true.
   [[nodiscard]] ReadLock ensure(std::span<const Pose> poses, unsigned threads,
                                 const std::atomic<bool> *cancel);
-  void ensure_all(unsigned threads);
+  void ensure_all(unsigned threads, const std::atomic<bool> *cancel);
   /// Rows that `elder` has are copied from now on, not traced again: it is of the same points and
   /// directions. Never both ways, or around: each would wait for the other.
   void take_rows_of(std::shared_ptr<const LazyMasks> elder);

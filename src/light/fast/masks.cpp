@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <umov/core/parallel.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -113,9 +114,11 @@ MaskStore empty_masks(const GroupPlan &plan, const MaskSize &size) {
 }
 
 MaskTracer::MaskTracer(const Scene &scene, const Elements &elements, const FacetClasses &classes,
-                       const GroupPlan &plan, const Occluder &occluder)
+                       const GroupPlan &plan, const Occluder &occluder,
+                       const std::atomic<bool> *cancel)
     : occluder_(occluder) {
   for (const GroupPlan::Group &group : plan.groups) {
+    leave_if_stopped(cancel);
     MaskEntry entry;
     entry.is_large = group.is_large;
     entry.blocks = group.is_large ? group.words / backend::lanes : group.words;

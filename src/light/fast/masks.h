@@ -29,8 +29,9 @@ struct MaskEntry {
 /// bytes of a row for any number of threads and any order of the rows. `occluder` must live.
 class MaskTracer {
 public:
+  /// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
   MaskTracer(const Scene &scene, const Elements &elements, const FacetClasses &classes,
-             const GroupPlan &plan, const Occluder &occluder);
+             const GroupPlan &plan, const Occluder &occluder, const std::atomic<bool> *cancel);
   /// Adds the rows of directions that have none yet.
   void trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
              MaskStore &masks) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -190,13 +191,14 @@ bool is_curved(const Elements &elements, const FacetClasses &classes, const Face
 } // namespace
 
 void add_patches(const Elements &elements, const FacetClasses &classes, const GroupPlan &plan,
-                 CompiledScene &out) {
+                 CompiledScene &out, const std::atomic<bool> *cancel) {
   Patches patches(out);
   std::vector<backend::PatchRange> ranges(plan.groups.size() * backend::lanes);
   for (const backend::Chunk &chunk : out.data.chunks) {
     backend::SlotTerms &slot = out.data.slots[chunk.slot];
     const std::optional<double> width = width_of(slot, out);
-    for (std::uint32_t g = chunk.first; width && g < chunk.first + chunk.count; ++g)
+    for (std::uint32_t g = chunk.first; width && g < chunk.first + chunk.count; ++g) {
+      leave_if_stopped(cancel);
       for (std::size_t lane = 0; lane < backend::lanes; ++lane) {
         const std::uint32_t member = plan.groups[g].member[lane];
         if (member == no_index || !is_curved(elements, classes, classes.list[member]))
@@ -205,6 +207,7 @@ void add_patches(const Elements &elements, const FacetClasses &classes, const Gr
                                           ranges[g * backend::lanes + lane]);
         slot.patch_spread = std::max(slot.patch_spread, static_cast<float>(spread));
       }
+    }
   }
   if (!out.data.patches.empty())
     out.data.patches_of = std::move(ranges);

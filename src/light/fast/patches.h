@@ -7,8 +7,9 @@
 namespace umov {
 
 /// Adds to `out`, whose groups are those of `plan`, what the normals of curved elements take on, in
-/// slots with a lobe that is narrower than elements are cut (element_turn_min_rad).
+/// slots with a lobe that is narrower than elements are cut (element_turn_min_rad). Throws Failure
+/// (Interrupted) once `cancel`, which may be null, became true.
 void add_patches(const Elements &elements, const FacetClasses &classes, const GroupPlan &plan,
-                 CompiledScene &out);
+                 CompiledScene &out, const std::atomic<bool> *cancel);
 
 } // namespace umov

@@ -31,11 +31,12 @@ struct FromCards {
 };
 
 struct Engine::State {
-  State(const Scene &of, const EngineOptions &with);
+  /// Throws as Engine, here and below.
+  State(const Scene &of, const EngineOptions &with, const std::atomic<bool> *cancel);
   State(const State &) = delete; // `views` point into it
   State &operator=(const State &) = delete;
   /// Masks read from a file, or made.
-  void take_masks(std::optional<MaskStore> ready);
+  void take_masks(std::optional<MaskStore> ready, const std::atomic<bool> *cancel);
   [[nodiscard]] bool has_masks() const;
   [[nodiscard]] MaskSize mask_size() const;
 

@@ -57,21 +57,33 @@ Scene at_nodes(const Scene &scene, const std::vector<std::size_t> &which) {
   return out;
 }
 
+StokesTable lit_by(const Engine &engine, const std::vector<Pose> &poses,
+                   const std::atomic<bool> *cancel) {
+  StokesTable out;
+  LightTask task;
+  task.threads = 1;
+  task.cancel = cancel;
+  (void)engine.evaluate(poses, out, task);
+  leave_if_stopped(cancel);
+  return out;
+}
+
 } // namespace
 
 double curved_error(const Scene &scene, const Engine &unhidden,
-                    const std::vector<double> &typical_i, unsigned threads) {
+                    const std::vector<double> &typical_i, unsigned threads,
+                    const std::atomic<bool> *cancel) {
   constexpr double least = 1e-4;
   if (scene.normals != NormalMode::Smooth)
     return least;
   const std::vector<Pose> poses = typical_poses(12);
-  StokesTable fast;
-  unhidden.evaluate(poses, fast);
-  const Elements elements = make_elements(scene, visible_sides(scene.mesh));
+  const StokesTable fast = lit_by(unhidden, poses, cancel);
+  const Elements elements = make_elements(scene, visible_sides(scene.mesh, cancel), cancel);
   const std::vector<std::size_t> nodes = few_nodes(fast.bands); // it hardly depends on them
   const Scene few = nodes.size() < fast.bands ? at_nodes(scene, nodes) : scene;
   std::vector<double> errors(poses.size(), 0);
   parallel_for(poses.size(), threads, [&](std::size_t k) {
+    leave_if_stopped(cancel);
     const LitElements lit =
         light_elements(few, elements, geometry_of(poses[k]), Stokes<ScatteringPlane>{1, 0, 0, 0});
     for (std::size_t b = 0; b < nodes.size(); ++b)
@@ -83,15 +95,13 @@ double curved_error(const Scene &scene, const Engine &unhidden,
 
 namespace {
 
-Engine unhidden_engine(const Scene &scene) {
-  return Engine(scene, {.visibility = Visibility::None, .threads = 1});
+Engine unhidden_engine(const Scene &scene, const std::atomic<bool> *cancel) {
+  return Engine(scene, {.visibility = Visibility::None, .threads = 1}, cancel);
 }
 
-std::vector<double> typical_light(const Engine &unhidden) {
+std::vector<double> typical_light(const Engine &unhidden, const std::atomic<bool> *cancel) {
   constexpr std::size_t count = 256;
-  const std::vector<Pose> poses = typical_poses(count);
-  StokesTable table;
-  unhidden.evaluate(poses, table);
+  const StokesTable table = lit_by(unhidden, typical_poses(count), cancel);
   std::vector<double> out;
   for (std::size_t b = 0; b < table.bands; ++b) {
     std::vector<double> light;
@@ -113,8 +123,8 @@ bool takes_rays(const Scene &scene, const std::vector<Joint> &joints, const Ligh
 
 } // namespace
 
-std::vector<double> typical_light(const Scene &scene) {
-  return typical_light(unhidden_engine(scene));
+std::vector<double> typical_light(const Scene &scene, const std::atomic<bool> *cancel) {
+  return typical_light(unhidden_engine(scene, cancel), cancel);
 }
 
 std::vector<double> floor_of(const LightOptions &options, const std::vector<double> &typical_i) {
@@ -180,8 +190,12 @@ Result<void> check(const LightOptions &options) {
 
 } // namespace
 
-Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
-                                               const LightOptions &options) {
+namespace {
+
+/// As make_light; throws what keeps an engine from being made.
+Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> joints,
+                                         const LightOptions &options,
+                                         const std::atomic<bool> *cancel) {
   UMOV_TRY(check(options));
   const bool has_rays = takes_rays(scene, joints, options);
   if (has_rays && options.device.choice == DeviceChoice::Cuda)
@@ -192,23 +206,33 @@ Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<J
   std::vector<double> typical_i;
   std::optional<Engine> unhidden;
   if (!has_rays || options.accuracy_floor.value_or(0) > 0)
-    typical_i = typical_light(unhidden.emplace(unhidden_engine(scene)));
+    typical_i = typical_light(unhidden.emplace(unhidden_engine(scene, cancel)), cancel);
   if (!options.mask_file.empty() && !joints.empty())
     return fail(ErrorCode::BadInput,
                 fmt::format("{} cannot hold the masks: each part that turns has "
                             "its own. Leave the file out; the cache keeps them.",
                             options.mask_file.string()));
   if (has_rays)
-    return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i);
-  const double missed = curved_error(scene, *unhidden, typical_i, options.threads);
-  return MasksLight::make(scene, std::move(joints), options, std::move(typical_i), missed);
+    return std::make_unique<RaysLight>(scene, std::move(joints), options, typical_i, cancel);
+  const double missed = curved_error(scene, *unhidden, typical_i, options.threads, cancel);
+  return MasksLight::make(scene, std::move(joints), options, std::move(typical_i), missed, cancel);
 }
 
-Result<std::unique_ptr<LightModel>>
-make_light_for_many(const Scene &scene, std::vector<Joint> joints, LightOptions options) {
+} // namespace
+
+Result<std::unique_ptr<LightModel>> make_light(const Scene &scene, std::vector<Joint> joints,
+                                               const LightOptions &options,
+                                               const std::atomic<bool> *cancel) {
+  return without_failures([&] { return make(scene, std::move(joints), options, cancel); });
+}
+
+Result<std::unique_ptr<LightModel>> make_light_for_many(const Scene &scene,
+                                                        std::vector<Joint> joints,
+                                                        LightOptions options,
+                                                        const std::atomic<bool> *cancel) {
   options.method = LightMethod::Masks;
   options.bounces = 1;
-  return make_light(scene, std::move(joints), options);
+  return make_light(scene, std::move(joints), options, cancel);
 }
 
 } // namespace umov

@@ -6,12 +6,13 @@
 namespace umov {
 namespace {
 
-EngineOptions engine_options(const Scene &scene, const SumsOptions &options) {
+EngineOptions engine_options(const Scene &scene, const SumsOptions &options,
+                             const std::atomic<bool> *cancel) {
   EngineOptions out;
   if (options.accuracy)
     out.masks = masks_for(*options.accuracy);
   else if (options.accuracy_floor > 0)
-    for (const double light : typical_light(scene))
+    for (const double light : typical_light(scene, cancel))
       out.floor_i.push_back(options.accuracy_floor * light);
   out.is_for_many_poses = options.is_for_many_poses;
   out.hypotheses = options.hypotheses;
@@ -23,8 +24,8 @@ EngineOptions engine_options(const Scene &scene, const SumsOptions &options) {
 
 class EngineSums final : public LightSums {
 public:
-  EngineSums(const Scene &scene, const SumsOptions &options)
-      : engine_(scene, engine_options(scene, options)) {}
+  EngineSums(const Scene &scene, const SumsOptions &options, const std::atomic<bool> *cancel)
+      : engine_(scene, engine_options(scene, options, cancel), cancel) {}
   Result<void> take_device(const DeviceOptions &device) {
     UMOV_ASSIGN(taken, take_cards(engine_, device));
     device_ = std::move(taken);
@@ -54,10 +55,13 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<LightSums>> make_sums(const Scene &scene, const SumsOptions &options) {
-  auto out = std::make_unique<EngineSums>(scene, options);
-  UMOV_TRY(out->take_device(options.device));
-  return out;
+Result<std::unique_ptr<LightSums>> make_sums(const Scene &scene, const SumsOptions &options,
+                                             const std::atomic<bool> *cancel) {
+  return without_failures([&]() -> Result<std::unique_ptr<LightSums>> {
+    auto out = std::make_unique<EngineSums>(scene, options, cancel);
+    UMOV_TRY(out->take_device(options.device));
+    return out;
+  });
 }
 
 } // namespace umov

@@ -32,14 +32,15 @@ MasksLight::MasksLight(const Scene &of, std::vector<Joint> turning, const LightO
 Result<std::unique_ptr<LightModel>> MasksLight::make(const Scene &scene, std::vector<Joint> joints,
                                                      const LightOptions &options,
                                                      std::vector<double> typical_i,
-                                                     double curved_error) {
+                                                     double curved_error,
+                                                     const std::atomic<bool> *cancel) {
   std::unique_ptr<MasksLight> out(
       new MasksLight(scene, std::move(joints), options, std::move(typical_i), curved_error));
-  UMOV_TRY(out->prepare());
+  UMOV_TRY(out->prepare(cancel));
   return out;
 }
 
-Result<void> MasksLight::prepare() {
+Result<void> MasksLight::prepare(const std::atomic<bool> *cancel) {
   const auto start = std::chrono::steady_clock::now();
   const bool is_auto = options_.method == LightMethod::Auto;
   floor_i_ = floor_of(options_, typical_i_);
@@ -60,12 +61,12 @@ Result<void> MasksLight::prepare() {
   with.mask_cache = options_.mask_file.empty() ? options_.mask_cache : "";
   with.floor_i = floor_i_;
   if (joints().empty() && !options_.mask_file.empty() && file_exists(options_.mask_file)) {
-    UMOV_ASSIGN(read, Engine::with_masks(options_.mask_file, scene(), with));
+    UMOV_ASSIGN(read, Engine::with_masks(options_.mask_file, scene(), with, cancel));
     engine_.emplace(std::move(read));
   } else if (joints().empty()) {
-    engine_.emplace(scene(), with);
+    engine_.emplace(scene(), with, cancel);
   } else {
-    turning_.emplace(scene(), joints(), with);
+    turning_.emplace(scene(), joints(), with, cancel);
   }
   facts_.method = options_.method;
   facts_.instruction_set = engine_instruction_set();

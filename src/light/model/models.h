@@ -17,15 +17,17 @@ inline constexpr double dim_part = 0.1;
 /// What the engine errs by lighting curved elements by their middle: the second largest of 24
 /// random poses (95 %) of its difference from the reference, nothing hidden, in parts of I (of dim
 /// light: see `dim_part`); at least 1e-4, which is all where every facet is flat. `unhidden` is the
-/// scene's engine without visibility.
+/// scene's engine without visibility. Throws Failure (Interrupted) once `cancel`, which may be
+/// null, became true.
 double curved_error(const Scene &scene, const Engine &unhidden,
-                    const std::vector<double> &typical_i, unsigned threads);
+                    const std::vector<double> &typical_i, unsigned threads,
+                    const std::atomic<bool> *cancel = nullptr);
 
 /// Each pose by rays, with light between surfaces where it is asked for.
 class RaysLight final : public LightModel {
 public:
   RaysLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
-            const std::vector<double> &typical_i);
+            const std::vector<double> &typical_i, const std::atomic<bool> *cancel);
 
 private:
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
@@ -36,10 +38,9 @@ private:
 /// Masks; with LightMethod::Auto mended by rays, class by class and pose by pose.
 class MasksLight final : public LightModel {
 public:
-  static Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> joints,
-                                                  const LightOptions &options,
-                                                  std::vector<double> typical_i,
-                                                  double curved_error);
+  static Result<std::unique_ptr<LightModel>>
+  make(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
+       std::vector<double> typical_i, double curved_error, const std::atomic<bool> *cancel);
   [[nodiscard]] Result<void> keep_masks() const override;
   void take_masks_of(const LightModel &elder) const override;
   /// Null for a body whose parts turn.
@@ -52,7 +53,7 @@ public:
 private:
   MasksLight(const Scene &scene, std::vector<Joint> joints, const LightOptions &options,
              std::vector<double> typical_i, double curved_error);
-  Result<void> prepare();
+  Result<void> prepare(const std::atomic<bool> *cancel);
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
              const LightTask &task) const override;
   Result<void> take_device();

@@ -41,8 +41,9 @@ RayTracer::RayTracer(const Scene &scene, const std::vector<Joint> &joints,
     options_.between = BetweenMethod::Paths;
 }
 
-const Integrator &RayTracer::integrator() const {
-  std::call_once(is_made_, [this] { integrator_ = std::make_unique<const Integrator>(scene_); });
+const Integrator &RayTracer::integrator(const std::atomic<bool> *cancel) const {
+  std::call_once(is_made_,
+                 [&] { integrator_ = std::make_unique<const Integrator>(scene_, cancel); });
   return *integrator_;
 }
 
@@ -74,19 +75,19 @@ void RayTracer::put(const PoseResult &result, std::size_t row, StokesTable &out)
 
 bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angles_rad,
                       std::span<const std::size_t> which, StokesTable &out,
-                      const LightTask &task) const {
+                      const LightTask &task) const try {
   std::vector<Pose> chosen;
   for (const std::size_t k : which)
     chosen.push_back(poses[k]);
   std::vector<PoseResult> found;
   if (joints_.empty()) {
-    found = integrator().evaluate(chosen, options_, task.threads, task.cancel);
+    found = integrator(task.cancel).evaluate(chosen, options_, task.threads, task.cancel);
   } else {
     found.resize(which.size());
     parallel_for(which.size(), task.threads, [&](std::size_t k) {
       if (!is_stopped(task.cancel))
-        found[k] =
-            Integrator(turned(scene_, joints_, angles_rad, which[k])).evaluate(chosen[k], options_);
+        found[k] = Integrator(turned(scene_, joints_, angles_rad, which[k]), task.cancel)
+                       .evaluate(chosen[k], options_);
     });
   }
   if (is_stopped(task.cancel) || found.size() < which.size())
@@ -96,19 +97,23 @@ bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angle
   for (std::size_t k = 0; k < which.size(); ++k)
     put(found[k], which[k], out);
   return true;
+} catch (const Failure &) { // while the body was made ready
+  if (!is_stopped(task.cancel))
+    throw;
+  return false;
 }
 
 bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double> angles_rad,
-                             StokesTable &out, const LightTask &task) const {
+                             StokesTable &out, const LightTask &task) const try {
   const std::vector<double> direct = out.i;
   std::vector<IndirectLight> more;
   if (joints_.empty()) {
-    more = integrator().indirect(poses, direct, options_, task.threads, task.cancel);
+    more = integrator(task.cancel).indirect(poses, direct, options_, task.threads, task.cancel);
   } else {
     more.resize(poses.size());
     parallel_for(poses.size(), task.threads, [&](std::size_t k) {
       if (!is_stopped(task.cancel))
-        more[k] = Integrator(turned(scene_, joints_, angles_rad, k))
+        more[k] = Integrator(turned(scene_, joints_, angles_rad, k), task.cancel)
                       .indirect(poses.subspan(k, 1),
                                 std::span(direct).subspan(k * out.bands, out.bands), options_, 1)
                       .front();
@@ -131,6 +136,10 @@ bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double
       out.glint_share[k] *= before / out.i[k * out.bands];
   }
   return true;
+} catch (const Failure &) { // as above
+  if (!is_stopped(task.cancel))
+    throw;
+  return false;
 }
 
 } // namespace umov

@@ -32,12 +32,15 @@ public:
   /// Adds the light of more than one surface to direct light in `out`; false if it was cancelled.
   [[nodiscard]] bool add_indirect(std::span<const Pose> poses, std::span<const double> angles_rad,
                                   StokesTable &out, const LightTask &task) const;
-  [[nodiscard]] bool is_convex() const { return joints_.empty() && integrator().is_convex(); }
+  /// Throws as Engine.
+  [[nodiscard]] bool is_convex(const std::atomic<bool> *cancel) const {
+    return joints_.empty() && integrator(cancel).is_convex();
+  }
 
 private:
   /// Of a body whose parts do not turn; made when a pose first needs it: ray tree and elements cost
-  /// more than all poses of a job that masks light.
-  [[nodiscard]] const Integrator &integrator() const;
+  /// more than all poses of a job that masks light. Throws as Engine; the next one makes it then.
+  [[nodiscard]] const Integrator &integrator(const std::atomic<bool> *cancel) const;
   void put(const PoseResult &result, std::size_t row, StokesTable &out) const;
 
   const Scene &scene_;

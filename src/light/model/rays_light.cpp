@@ -5,12 +5,12 @@
 namespace umov {
 
 RaysLight::RaysLight(const Scene &of, std::vector<Joint> turning, const LightOptions &options,
-                     const std::vector<double> &typical_i)
+                     const std::vector<double> &typical_i, const std::atomic<bool> *cancel)
     : LightModel(of, std::move(turning)),
       rays_(scene(), joints(), integration_of(options, floor_of(options, typical_i)), materials()) {
   facts_.floor_i = of_bands(floor_of(options, typical_i));
   facts_.method = LightMethod::Rays;
-  facts_.is_convex = rays_.is_convex();
+  facts_.is_convex = rays_.is_convex(cancel);
   facts_.instruction_set = "scalar double";
   if (options.device.choice == DeviceChoice::Auto)
     facts_.device = "cpu: rays are traced by the processor";

@@ -10,9 +10,9 @@ namespace {
 class ThermalLight final : public LightModel {
 public:
   ThermalLight(const Scene &of, std::vector<Joint> turning, ThermalEmission emission,
-               const LightOptions &options)
+               const LightOptions &options, const std::atomic<bool> *cancel)
       : LightModel(of, std::move(turning)), emission_(std::move(emission)),
-        options_(integration_of(options, {})), integrator_(scene()) {
+        options_(integration_of(options, {})), integrator_(scene(), cancel) {
     facts_.method = LightMethod::Rays;
     facts_.is_convex = joints().empty() && integrator_.is_convex();
     facts_.instruction_set = "scalar double";
@@ -68,9 +68,13 @@ private:
 Result<std::unique_ptr<LightModel>> make_thermal_light(const Scene &scene,
                                                        std::vector<Joint> joints,
                                                        std::span<const double> temperature_k,
-                                                       const LightOptions &options) {
+                                                       const LightOptions &options,
+                                                       const std::atomic<bool> *cancel) {
   UMOV_ASSIGN(emission, ThermalEmission::make(scene, temperature_k));
-  return std::make_unique<ThermalLight>(scene, std::move(joints), std::move(emission), options);
+  return without_failures([&]() -> Result<std::unique_ptr<LightModel>> {
+    return std::make_unique<ThermalLight>(scene, std::move(joints), std::move(emission), options,
+                                          cancel);
+  });
 }
 
 } // namespace umov

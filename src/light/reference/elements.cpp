@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -140,13 +141,15 @@ double diagonal(const Mesh &mesh) {
 
 } // namespace
 
-Elements make_elements(const Scene &scene, const std::vector<VisibleSides> &sides) {
+Elements make_elements(const Scene &scene, const std::vector<VisibleSides> &sides,
+                       const std::atomic<bool> *cancel) {
   const Mesh &mesh = scene.mesh;
   Elements out;
   out.size_m = diagonal(mesh);
   out.slots.resize(mesh.triangles.size());
   out.normal.resize(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    leave_if_stopped(cancel, i);
     const Triangle &t = mesh.triangles[i];
     out.slots[i] = slots_of(t, sides[i]);
     const Vec3<Body> doubled = area_vector_doubled(mesh, t);

@@ -2,6 +2,7 @@
 // Private: the surface of a scene cut into elements over which the shading normal turns little.
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <umov/scene/scene.h>
 #include <vector>
@@ -53,7 +54,9 @@ inline constexpr double element_turn_max_rad = 0.09;
 /// lights few of them, which are cut further then.
 inline constexpr double element_turn_min_rad = 0.02;
 
-Elements make_elements(const Scene &scene, const std::vector<VisibleSides> &sides);
+/// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
+Elements make_elements(const Scene &scene, const std::vector<VisibleSides> &sides,
+                       const std::atomic<bool> *cancel = nullptr);
 
 /// Shading normal at barycentric weights of the element's corners; not normalised if flat.
 inline Vec3<Body> shading_normal(const Element &e, double b0, double b1, double b2) {

@@ -29,11 +29,11 @@ struct PathGround {
 } // namespace
 
 struct Integrator::State {
-  explicit State(const Scene &of)
-      : scene(of), is_convex(is_proven_convex(of.mesh)), sides(visible_sides(of.mesh)),
-        elements(make_elements(scene, sides)) {
+  State(const Scene &of, const std::atomic<bool> *cancel)
+      : scene(of), is_convex(is_proven_convex(of.mesh, cancel)),
+        sides(visible_sides(of.mesh, cancel)), elements(make_elements(scene, sides, cancel)) {
     if (!is_convex)
-      occluder.emplace(scene.mesh);
+      occluder.emplace(scene.mesh, Occluder::Rays::Each, cancel);
   }
   /// Made when it is first asked for: direct light needs none of it. A convex body, of which
   /// nothing is hidden, has ray tests from then on.
@@ -71,7 +71,8 @@ private:
   mutable std::map<std::pair<std::size_t, std::uint64_t>, std::unique_ptr<const ChainStore>> stores;
 };
 
-Integrator::Integrator(const Scene &scene) : state_(std::make_unique<State>(scene)) {}
+Integrator::Integrator(const Scene &scene, const std::atomic<bool> *cancel)
+    : state_(std::make_unique<State>(scene, cancel)) {}
 Integrator::~Integrator() = default;
 Integrator::Integrator(Integrator &&) noexcept = default;
 Integrator &Integrator::operator=(Integrator &&) noexcept = default;
