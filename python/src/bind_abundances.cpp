@@ -7,6 +7,7 @@
 #include "errors.h"
 #include "options.h"
 
+#include <algorithm>
 #include <cstring>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
@@ -144,16 +145,47 @@ struct StokesArrays {
   double *stokes, *half_width;
 };
 
-/// Interrupted where the monitor says so.
-Result<void> put(const StokesTable &table, const jobs::Monitor &monitor, StokesArrays to) {
-  constexpr std::size_t at_once = 1u << 16;
+/// Poses `first` and those behind it.
+void put(const StokesTable &table, std::size_t first, StokesArrays to) {
   for (std::size_t k = 0; k < table.poses() * table.bands; ++k) {
-    if (k % at_once == 0 && monitor.is_cancelled())
-      return fail(ErrorCode::Interrupted, "stopped by the user");
-    double *const out = to.stokes + 4 * k, *const err = to.half_width + 4 * k;
+    double *const out = to.stokes + 4 * (first * table.bands + k);
+    double *const err = to.half_width + 4 * (first * table.bands + k);
     out[0] = table.i[k], out[1] = table.q[k], out[2] = table.u[k], out[3] = table.v[k];
     err[0] = table.i_err[k], err[1] = table.q_err[k], err[2] = table.u_err[k];
     err[3] = table.v_err[k];
+  }
+}
+
+AbundanceTable part_of(const AbundanceTable &whole, std::size_t first, std::size_t count) {
+  AbundanceTable out;
+  out.columns = whole.columns;
+  const auto take = [first, count](const auto &from, auto &to, std::size_t width) {
+    const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first * width);
+    to.assign(begin, begin + static_cast<std::ptrdiff_t>(count * width));
+  };
+  const std::size_t width = whole.columns.size();
+  take(whole.sum, out.sum, width);
+  take(whole.half_width, out.half_width, width);
+  take(whole.bias, out.bias, width);
+  take(whole.cos_phase, out.cos_phase, 1);
+  take(whole.has_plane, out.has_plane, 1);
+  take(whole.is_dark, out.is_dark, 1);
+  return out;
+}
+
+/// All poses, some at a time, so that results stand nowhere twice and somebody may stop it.
+/// Interrupted where the monitor says so.
+Result<void> apply(const MaterialTables &tables, const AbundanceTable &from, unsigned threads,
+                   const jobs::Monitor &monitor, StokesArrays to) {
+  constexpr std::size_t at_once = 1u << 15;
+  StokesTable table;
+  for (std::size_t first = 0; first < from.poses(); first += at_once) {
+    const std::size_t count = std::min(at_once, from.poses() - first);
+    tables.apply(part_of(from, first, count), table, threads, monitor.cancel);
+    if (monitor.is_cancelled())
+      return fail(ErrorCode::Interrupted, "stopped by the user");
+    put(table, first, to);
+    monitor.advance("poses", first + count, from.poses());
   }
   return {};
 }
@@ -170,9 +202,7 @@ nb::tuple applied(const Sums &sums, const Abundances &abundances, const Scenario
         UMOV_ASSIGN(tables, sums.light().tables_for(object.scene));
         if (tables.band_count() != bands)
           return fail(ErrorCode::Internal, "a scene has other bands than its scenario");
-        StokesTable table;
-        tables.apply(abundances.table, table, threads, monitor.cancel);
-        UMOV_TRY(put(table, monitor, {stokes.data, half_width.data}));
+        UMOV_TRY(apply(tables, abundances.table, threads, monitor, {stokes.data, half_width.data}));
         return tables.diffuse_error();
       });
   attention.settle(was_interrupted(made));

@@ -105,7 +105,8 @@ public:
 
 private:
   struct State;
-  [[nodiscard]] PoseResult direct(const Pose &pose, const IntegrationOptions &options) const;
+  [[nodiscard]] PoseResult direct(const Pose &pose, const IntegrationOptions &options,
+                                  const std::atomic<bool> *cancel) const;
   std::unique_ptr<State> state_;
 };
 

@@ -83,9 +83,8 @@ double curved_error(const Scene &scene, const Engine &unhidden,
   const Scene few = nodes.size() < fast.bands ? at_nodes(scene, nodes) : scene;
   std::vector<double> errors(poses.size(), 0);
   parallel_for(poses.size(), threads, [&](std::size_t k) {
-    leave_if_stopped(cancel);
     const LitElements lit =
-        light_elements(few, elements, geometry_of(poses[k]), Stokes<ScatteringPlane>{1, 0, 0, 0});
+        light_elements(few, elements, geometry_of(poses[k]), {1, 0, 0, 0}, cancel);
     for (std::size_t b = 0; b < nodes.size(); ++b)
       errors[k] = std::max(errors[k], std::abs(fast.i[k * fast.bands + nodes[b]] - lit.total[b]) /
                                           std::max(lit.total[b], dim_part * typical_i[nodes[b]]));

@@ -85,9 +85,12 @@ bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angle
   } else {
     found.resize(which.size());
     parallel_for(which.size(), task.threads, [&](std::size_t k) {
-      if (!is_stopped(task.cancel))
-        found[k] = Integrator(turned(scene_, joints_, angles_rad, which[k]), task.cancel)
-                       .evaluate(chosen[k], options_);
+      if (is_stopped(task.cancel))
+        return;
+      const Integrator own(turned(scene_, joints_, angles_rad, which[k]), task.cancel);
+      auto one = own.evaluate(std::vector{chosen[k]}, options_, 1, task.cancel);
+      if (!one.empty())
+        found[k] = std::move(one.front());
     });
   }
   if (is_stopped(task.cancel) || found.size() < which.size())

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <umov/core/stop.h>
 #include <umov/light/glints.h>
 
 namespace umov {
@@ -86,8 +87,9 @@ public:
     integrals_.diffuse.resize(bands_);
   }
 
-  LitElements run() {
+  LitElements run(const std::atomic<bool> *cancel) {
     for (std::size_t i = 0; i < elements_.list.size(); ++i) {
+      leave_if_stopped(cancel, i);
       const Element &e = elements_.list[i];
       const SideSlots slots = elements_.slots[e.triangle];
       if (slots.front != no_index)
@@ -297,8 +299,8 @@ PoseGeometry geometry_of(const Pose &pose) {
 }
 
 LitElements light_elements(const Scene &scene, const Elements &elements, const PoseGeometry &pose,
-                           const Stokes<ScatteringPlane> &source) {
-  return Lighter(scene, elements, pose, source).run();
+                           const Stokes<ScatteringPlane> &source, const std::atomic<bool> *cancel) {
+  return Lighter(scene, elements, pose, source).run(cancel);
 }
 
 } // namespace umov

@@ -57,7 +57,9 @@ inline const Element &element_of(const Elements &elements, const LitElements &li
 SurfaceDirections directions_at(const Scene &scene, const PoseGeometry &pose, const Element &e,
                                 std::uint32_t slot, Vec3<Body> normal);
 
+/// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
 LitElements light_elements(const Scene &scene, const Elements &elements, const PoseGeometry &pose,
-                           const Stokes<ScatteringPlane> &source);
+                           const Stokes<ScatteringPlane> &source,
+                           const std::atomic<bool> *cancel = nullptr);
 
 } // namespace umov

@@ -79,15 +79,17 @@ Integrator &Integrator::operator=(Integrator &&) noexcept = default;
 
 bool Integrator::is_convex() const { return state_->is_convex; }
 
-PoseResult Integrator::direct(const Pose &pose, const IntegrationOptions &options) const {
+/// Throws Failure where it is stopped.
+PoseResult Integrator::direct(const Pose &pose, const IntegrationOptions &options,
+                              const std::atomic<bool> *cancel) const {
   const Scene &scene = state_->scene;
   const std::size_t bands = scene.grid.nodes().size(), groups = scene.mesh.groups.size();
   const PoseGeometry geometry = geometry_of(pose);
-  const LitElements lit = light_elements(scene, state_->elements, geometry, options.source);
+  const LitElements lit = light_elements(scene, state_->elements, geometry, options.source, cancel);
   const VisibleSums sums =
       state_->is_convex
           ? sum_unhidden(scene, lit)
-          : sum_visible(scene, state_->elements, *state_->occluder, geometry, lit, options);
+          : sum_visible(scene, state_->elements, *state_->occluder, geometry, lit, options, cancel);
   PoseResult out;
   out.rays = sums.rays;
   out.is_dark = !sums.is_any_seen;
@@ -256,11 +258,11 @@ PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &opti
 
 std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
                                              const IntegrationOptions &options, unsigned threads,
-                                             const std::atomic<bool> *cancel) const {
+                                             const std::atomic<bool> *cancel) const try {
   std::vector<PoseResult> out(poses.size());
   parallel_for(poses.size(), threads, [&](std::size_t i) {
-    if (!is_stopped(cancel)) // a pose may take seconds
-      out[i] = direct(poses[i], options);
+    if (!is_stopped(cancel))
+      out[i] = direct(poses[i], options, cancel); // which may take seconds
   });
   if (is_stopped(cancel))
     return {};
@@ -276,6 +278,10 @@ std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
   for (std::size_t i = 0; i < out.size(); ++i)
     add(more[i], out[i]);
   return out;
+} catch (const Failure &) {
+  if (!is_stopped(cancel))
+    throw;
+  return {};
 }
 
 } // namespace umov

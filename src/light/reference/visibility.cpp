@@ -99,9 +99,10 @@ Growth grow_to(const std::vector<Block> &blocks, const std::vector<double> &spre
 class Refiner {
 public:
   Refiner(const Scene &scene, const Elements &elements, const Occluder &occluder,
-          const PoseGeometry &pose, const LitElements &lit, const IntegrationOptions &options)
+          const PoseGeometry &pose, const LitElements &lit, const IntegrationOptions &options,
+          const std::atomic<bool> *cancel)
       : scene_(scene), elements_(elements), occluder_(occluder), pose_(pose), lit_(lit),
-        options_(options) {}
+        options_(options), cancel_(cancel) {}
 
   VisibleSums run() {
     for (const LitElement &lit : lit_.list)
@@ -132,7 +133,7 @@ private:
     for (double &c : cells)
       c *= density;
     Measurement out = measure(scene_, elements_, occluder_, pose_, lit_, make_blocks(lit_, cells),
-                              options_.seed, stream_++);
+                              options_.seed, stream_++, cancel_);
     rays_ += out.sums.rays;
     return out;
   }
@@ -166,6 +167,7 @@ private:
   const PoseGeometry &pose_;
   const LitElements &lit_;
   const IntegrationOptions &options_;
+  const std::atomic<bool> *cancel_;
   std::vector<double> cells_; ///< wanted per lit element
   std::uint32_t stream_ = 0;
   std::uint64_t rays_ = 0;
@@ -197,10 +199,10 @@ VisibleSums sum_unhidden(const Scene &scene, const LitElements &lit) {
 
 VisibleSums sum_visible(const Scene &scene, const Elements &elements, const Occluder &occluder,
                         const PoseGeometry &pose, const LitElements &lit,
-                        const IntegrationOptions &options) {
+                        const IntegrationOptions &options, const std::atomic<bool> *cancel) {
   if (lit.list.empty())
     return sum_unhidden(scene, lit);
-  return Refiner(scene, elements, occluder, pose, lit, options).run();
+  return Refiner(scene, elements, occluder, pose, lit, options, cancel).run();
 }
 
 } // namespace umov

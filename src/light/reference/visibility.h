@@ -23,10 +23,11 @@ struct VisibleSums {
 VisibleSums sum_unhidden(const Scene &scene, const LitElements &lit);
 
 /// Sums by ray-tested points, refined until the half-width of I is `options.accuracy` times I in
-/// each band or `options.max_points` are used (docs/theory/visibility.md).
+/// each band or `options.max_points` are used (docs/theory/visibility.md). Throws Failure
+/// (Interrupted) once `cancel`, which may be null, became true.
 VisibleSums sum_visible(const Scene &scene, const Elements &elements, const Occluder &occluder,
                         const PoseGeometry &pose, const LitElements &lit,
-                        const IntegrationOptions &options);
+                        const IntegrationOptions &options, const std::atomic<bool> *cancel);
 
 /// Two-sided 95 % quantile of Student's t for `freedom` >= 1 (Abramowitz & Stegun 1972, 26.7.5).
 double student_95(double freedom);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <umov/core/random.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 namespace {
@@ -39,11 +40,11 @@ class PointSampler {
 public:
   PointSampler(const Scene &scene, const Elements &elements, const Occluder &occluder,
                const PoseGeometry &pose, const LitElements &lit, std::uint64_t seed,
-               std::uint32_t stream)
+               std::uint32_t stream, const std::atomic<bool> *cancel)
       : scene_(scene), elements_(elements), occluder_(occluder), pose_(pose), lit_(lit),
         seed_(seed), stream_(stream), bands_(scene.grid.nodes().size()), lobes_(lit.lobes),
         kinds_(lit.lobes + 1), variance_(bands_), block_specular_(lobes_), block_diffuse_(bands_),
-        block_rule_(bands_), ratio_(kinds_), weight_sum_(kinds_) {
+        block_rule_(bands_), ratio_(kinds_), weight_sum_(kinds_), cancel_(cancel) {
     out_.sums.specular.assign(2 * scene.mesh.groups.size() * lobes_, 0);
     out_.sums.diffuse.resize(2 * scene.mesh.groups.size() * bands_);
     out_.sums.intensity.assign(bands_, 0);
@@ -72,6 +73,7 @@ public:
 private:
   void draw(const Block &block) {
     for (std::size_t cell = 0; cell < block.cells(); ++cell) {
+      leave_if_stopped(cancel_, cell);
       const auto u = uniform4(seed_, stream_, 2 * pair_);
       const auto choice = uniform4(seed_, stream_, 2 * pair_ + 1);
       ++pair_;
@@ -286,6 +288,7 @@ private:
   std::vector<Stokes<ScatteringPlane>> block_diffuse_, block_rule_;
   std::vector<double> ratio_, weight_sum_; ///< per kind: visible share, sum of weights
   double block_glint_ = 0;
+  const std::atomic<bool> *cancel_;
   Measurement out_;
 };
 
@@ -331,8 +334,9 @@ std::vector<Block> make_blocks(const LitElements &lit, const std::vector<double>
 
 Measurement measure(const Scene &scene, const Elements &elements, const Occluder &occluder,
                     const PoseGeometry &pose, const LitElements &lit, std::vector<Block> blocks,
-                    std::uint64_t seed, std::uint32_t stream) {
-  return PointSampler(scene, elements, occluder, pose, lit, seed, stream).run(std::move(blocks));
+                    std::uint64_t seed, std::uint32_t stream, const std::atomic<bool> *cancel) {
+  return PointSampler(scene, elements, occluder, pose, lit, seed, stream, cancel)
+      .run(std::move(blocks));
 }
 
 } // namespace umov

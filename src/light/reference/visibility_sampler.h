@@ -23,9 +23,10 @@ struct Measurement {
 /// Blocks for the wanted number of cells of each lit element (a fraction shares a cell).
 std::vector<Block> make_blocks(const LitElements &lit, const std::vector<double> &cells);
 
-/// Draws and traces the points of `blocks`; `stream` names the independent set.
+/// Draws and traces the points of `blocks`; `stream` names the independent set. Throws as
+/// sum_visible.
 Measurement measure(const Scene &scene, const Elements &elements, const Occluder &occluder,
                     const PoseGeometry &pose, const LitElements &lit, std::vector<Block> blocks,
-                    std::uint64_t seed, std::uint32_t stream);
+                    std::uint64_t seed, std::uint32_t stream, const std::atomic<bool> *cancel);
 
 } // namespace umov
