@@ -212,6 +212,8 @@ nb::dict facts_of(const Light &light) {
 /// [2, count, 3]: directions of the Sun and of the observer.
 nb::ndarray<nb::numpy, double, nb::c_contig>
 random_directions(std::size_t count, double phase_deg, std::uint64_t seed, std::size_t first) {
+  if (first + count < count)
+    throw Failure({ErrorCode::Usage, "first and count are too large together", {}});
   const jobs::PoseList list = take(jobs::random_poses(first + count, {phase_deg}, seed));
   const NewArray<double> out(count * 6);
   constexpr std::size_t at_once = 1u << 14;

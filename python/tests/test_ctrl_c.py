@@ -61,6 +61,17 @@ def exposures(_):
     return lambda: umov.observe(scenario, threads=1)
 
 
+def one_exact_pose(hst):
+    engine = umov.Engine(hst, ["nm:550"], method="rays", accuracy=1e-6, threads=1)
+    return lambda: engine.evaluate([0.1, 0.2, 1], [0.1, 1, 1])
+
+
+def poses_of_a_curve(_):
+    scenario = EXAMPLES / "agena_maui.toml"
+    curve = umov.run(scenario, set={"time.step_s": 20})
+    return lambda: umov.invert_pose(curve, scenario, threads=1, cache=False)
+
+
 pytestmark = pytest.mark.filterwarnings("ignore::umov.UmovWarning")  # of old elements
 
 #: What makes the call ready, and after how much of it Ctrl-C comes [s].
@@ -73,6 +84,10 @@ LONG = {
     "random poses": (lambda _: lambda: umov.random_poses(20_000_000, 60), 0.3),
     "grid of a run": (lambda _: lambda: umov.run(EXAMPLES / "hst_maui.toml", set={"time.step_s": 0.005}, threads=1), 0.3),
     "observe": (exposures, 1.5),
+    "run by rays": (lambda _: lambda: umov.run(EXAMPLES / "hst_maui.toml", set={"render.method": "rays", "time.step_s": 0.5,
+                                                                                "render.accuracy": 0.0005}, threads=1), 2.0),
+    "exact rays": (one_exact_pose, 1.0),
+    **{f"invert_pose at {after_s}": (poses_of_a_curve, after_s) for after_s in (0.1, 0.3, 0.5, 0.7, 1.0)},
 }
 
 
@@ -84,6 +99,43 @@ def test_ctrl_c_is_heard(name, hst, plate):
         with pytest.raises(KeyboardInterrupt):
             call()
         assert late() < LONGEST_S
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory):
+    """Two spheres side by side, 164,000 triangles with smooth normals, of which the one hides the other."""
+    import trimesh
+    file = tmp_path_factory.mktemp("mesh") / "two.ply"
+    one, other = (trimesh.creation.icosphere(subdivisions=6) for _ in range(2))
+    other.apply_translation([3, 0, 0])
+    trimesh.util.concatenate([one, other]).export(file)
+    return umov.Satellite(mesh=file, unit="m", up="+Z", materials="gold", normals="smooth", orbit=DATA / "tle/hst.tle",
+                          attitude={"mode": "nadir"}, name="two")
+
+
+AT_ONCE = {"threads": 1, "cache": False}
+SET_UP = {
+    "Engine": lambda large: umov.Engine(large, ["nm:550"], **AT_ONCE),
+    "Engine by rays": lambda large: umov.Engine(large, ["nm:550"], method="rays", **AT_ONCE).evaluate([0, 0, 1], [0, 1, 1]),
+    "Engine of heat": lambda large: umov.Engine(large, ["nm:1000"], temperatures=[300], **AT_ONCE),
+    "Sums": lambda large: umov.Sums(large, **AT_ONCE),
+    "mesh": umov.mesh,
+    "light_curve": lambda large: large.light_curve("maui", "2018-01-21T05:10Z", "2018-01-21T05:10Z", bands=["nm:550"], **AT_ONCE),
+    "passes": lambda large: umov.passes(large, "maui", "2018-01-21T05:00Z", "2018-01-21T05:20Z", bands=["nm:550"], **AT_ONCE),
+}
+
+
+@pytest.mark.parametrize("name", SET_UP)
+def test_what_takes_long_to_make_ready_may_be_stopped(name, large):
+    """At any time of it: a large mesh is read, cleaned, cut and joined for seconds before the first pose."""
+    begun = time.process_time()
+    SET_UP[name](large)
+    whole_s = time.process_time() - begun
+    for part in (0.1, 0.25, 0.4, 0.55, 0.7, 0.85):
+        with ctrl_c(part * whole_s) as late:
+            with pytest.raises(KeyboardInterrupt):
+                SET_UP[name](large)
+            assert late() < LONGEST_S, part
 
 
 def test_poses_that_were_lit_are_given(hst):

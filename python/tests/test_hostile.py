@@ -86,6 +86,17 @@ def test_names_of_files_that_are_no_utf8(tmp_path, name):
         calls[name]()
 
 
+class _PathOfANumber(os.PathLike):
+    def __fspath__(self):
+        return 5
+
+
+def _list_in_itself():
+    out = []
+    out.append(out)
+    return out
+
+
 def _in_itself():
     table = {"umov": 1}
     table["object"] = table
@@ -154,6 +165,22 @@ WRONG = {
                                   "broadcast to 1099511627776 poses; at most"),
     "angles beyond memory": (lambda e: umov.brdf("gold", 550, np.zeros((2**15, 1)), np.zeros(2**15)), "1073741824 geometries; at most"),
     "figure of nothing": (lambda e: umov.plot.overview(None), "curve is a NoneType; a LightCurve"),
+    "number for axes": (lambda e: umov.plot.picture(umov.render(e.scenario, sun=[1, 1, 1], observer=[0, 1, 1], side=8, samples=1), axes=3),
+                        "axes is a int; Axes of matplotlib"),
+    "time before calendars": (lambda e: umov.propagate(DATA / "tle/hst.tle", Time(1e9, format="jd")), "is none in UTC .*; one of our calendar"),
+    "number for others": (lambda e: umov.Sums(e.scenario, others=3), "others is 3; a list of scenes"),
+    "name for others": (lambda e: umov.Sums(e.scenario, others="abc"), "others is 'abc'; a list of scenes"),
+    "table for a material": (lambda e: umov.Material({"index": 1}), "name is a dict; the name of a file"),
+    "nothing for a band": (lambda e: umov.band(None), "name is None; a text"),
+    "path of a number": (lambda e: umov.Engine(_PathOfANumber()), "a _PathOfANumber that names no file"),
+    "empty path": (lambda e: umov.Scenario(""), 'the path of a scenario is ""; the name of a file'),
+    "a generator": (lambda e: e.evaluate((one for one in [0, 0, 1]), [0, 0, 1]), "sun is <generator .*; numbers, directions"),
+    "a list in itself": (lambda e: e.evaluate(_list_in_itself(), [0, 0, 1]), "numbers, directions"),
+    "a direction of the sky": (lambda e: e.evaluate(SkyCoord(1 * u.deg, 2 * u.deg), [0, 0, 1]), "sun is <SkyCoord .*; numbers, directions"),
+    "a place for a direction": (lambda e: e.evaluate(A_PLACE, [0, 0, 1]), "numbers, directions"),
+    "corners beyond numbers": (lambda e: umov.Satellite(mesh=(TRIANGLE, np.array([[0, 1, 2**64 - 1]], "u8")), materials="gold"),
+                               "faces name vertices 0 to 18446744073709551615"),
+    "poses beyond numbers": (lambda e: umov._umov.random_directions(2**63, 30.0, 0, 2**63), "first and count are too large"),
 }
 
 
@@ -177,6 +204,12 @@ def test_what_is_no_input_is_told_of(name):
     call, words = NO_INPUT[name]
     with pytest.raises((umov.InputError, umov.UsageError), match=words):
         call()
+
+
+def test_a_key_of_a_million_letters_is_soon_refused():
+    """The nearest of the known keys was looked for: a distance takes the product of both lengths, minutes here."""
+    with pytest.raises(umov.InputError, match="unknown key"):
+        umov.Scenario.from_toml("a" * 1_000_000 + " = 1")
 
 
 def test_what_has_no_numbers_and_what_cannot_be_written(plate, hst, tmp_path):

@@ -34,6 +34,8 @@ def of_a_curve(draw: _Draw) -> _Draw:
 def axes_or_new(axes: Axes | None, projection: str | None = None) -> Axes:
     """Those given, or those of a new figure."""
     if axes is not None:
+        if not hasattr(axes, "plot") or not hasattr(axes, "figure"):
+            raise UsageError(f"axes is a {type(axes).__name__}; Axes of matplotlib were expected, or None for new ones")
         return axes
     try:
         import matplotlib.pyplot as plt

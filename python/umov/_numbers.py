@@ -98,8 +98,12 @@ def path_text(value: Any, name: str) -> str:
     character 0 would be another file's."""
     if not isinstance(value, (str, os.PathLike)):
         raise UsageError(f"{name} is a {type(value).__name__}; the name of a file was expected")
-    text = os.fspath(value)
-    text = text if isinstance(text, str) else os.fsdecode(text)
+    try:
+        text = os.fsdecode(value)
+    except TypeError as error:
+        raise UsageError(f"{name} is a {type(value).__name__} that names no file ({error}); the name of a file was expected") from error
+    if not text:
+        raise UsageError(f"{name} is \"\"; the name of a file was expected")
     if "\0" in text:  # the system takes a name to end there: another file
         raise UsageError(f"{name} is {text!r}; the name of a file without the character 0 was expected")
     return utf8(text, name)

@@ -120,6 +120,8 @@ class Sums(Made):
                  cache: bool | str | os.PathLike[str] = True, device: str = "cpu", progress: Progress = None) -> None:
         self.scenario = Scenario(scene)  #: what is lit
         self._source = scene
+        if isinstance(others, (str, os.PathLike)) or not isinstance(others, Sequence):
+            raise UsageError(f"others is {others!r}; a list of scenes was expected")
         self._others = [Scenario(one) for one in others]
         self._threads, self._cache, self._device = threads, cache, device
         told = "\n".join(one._told() for one in (self.scenario, *self._others))

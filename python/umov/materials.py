@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _toml, _umov
 from ._made import Made
-from ._numbers import number_array, text as utf8_text
+from ._numbers import number_array, path_text, text as utf8_text
 from .errors import UsageError
 from .tables import Table
 
@@ -49,7 +49,7 @@ class Material(Made):
     """
 
     def __init__(self, name: str) -> None:
-        self._material = _umov.Material.read(str(name))
+        self._material = _umov.Material.read(path_text(name, "name"))
         #: the library or a file has it: scenarios may name it
         self.is_named = not str(name).endswith(".toml")
 

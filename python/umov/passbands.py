@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _toml, _umov
 from ._made import Made
-from ._numbers import number
+from ._numbers import number, text
 from .errors import UsageError
 from .tables import Table
 
@@ -143,4 +143,4 @@ def band(name: str, *, unit: str = "", detector: str = "") -> Table:
         raise UsageError(f"unit is {unit!r}; nm, um or Angstrom was expected")
     if detector not in ("", "photon", "energy"):
         raise UsageError(f"detector is {detector!r}; photon or energy was expected")
-    return Table(_umov.band_table(str(name), unit, detector))
+    return Table(_umov.band_table(text(name, "name"), unit, detector))

@@ -578,6 +578,8 @@ def overview(curve: LightCurve, figure: Figure | None = None) -> Figure:
         except ImportError as error:
             raise UsageError("a figure needs the package matplotlib: pip install matplotlib") from error
         figure = plt.figure(figsize=(10, 7))
+    if not hasattr(figure, "set_layout_engine"):
+        raise UsageError(f"figure is a {type(figure).__name__}; a Figure of matplotlib was expected, or None for a new one")
     figure.set_layout_engine("constrained")
     axes = figure.subplots(3, 2)
     magnitude(curve, axes[0, 0])

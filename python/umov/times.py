@@ -31,8 +31,13 @@ def _exact(time: Time) -> Time:
     if time.scale == "local":
         raise UsageError(f"{time!r} is of scale local, which nobody can bring to UTC; another scale was expected, such as "
                          'Time(..., scale="utc")')
-    out = time.utc.replicate(format="isot")
-    out.precision = 9
+    try:
+        out = time.utc.replicate(format="isot")
+        out.precision = 9
+        out.value  # noqa: B018  # which has a calendar only for some thousand years
+    except Exception as error:
+        raise UsageError(f"a Time of scale {time.scale} and format {time.format} is none in UTC ({error}); one of our calendar was "
+                         "expected") from error
     return out
 
 

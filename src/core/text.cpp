@@ -95,6 +95,10 @@ std::optional<std::string> kindred_name(std::string_view given,
 
 std::optional<std::string> nearest_name(std::string_view given,
                                         std::span<const std::string> known) {
+  // Nobody mistypes so much, and a distance takes the product of both lengths.
+  constexpr std::size_t longest = 256;
+  if (given.size() > longest)
+    return {};
   if (auto longer = longer_name(given, known))
     return longer;
   const std::size_t reach = std::max<std::size_t>(2, given.size() / 3);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <span>
 #include <umov/core/stop.h>
 #include <utility>
 
@@ -48,10 +49,60 @@ private:
   std::vector<std::size_t> parent_;
 };
 
-/// Triangles along one welded edge, those that run it upwards and downwards.
+/// One use of a welded edge by a triangle, which runs it upwards or downwards.
 struct EdgeUse {
-  std::vector<std::size_t> up, down;
+  std::uint32_t high, triangle;
+  bool is_up;
 };
+
+/// All uses by their lower vertex, and in there by the higher one. No map: a million nodes take
+/// half a second to be given back, which nobody can stop.
+class Edges {
+public:
+  Edges(const Mesh &mesh, const std::vector<std::size_t> &vertex, const std::atomic<bool> *cancel)
+      : first_(vertex.size() + 1, 0), uses_(3 * mesh.triangles.size()) {
+    const auto for_each = [&](const auto &take) {
+      for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        leave_if_stopped(cancel, t);
+        for (std::size_t k = 0; k < 3; ++k)
+          take(t, vertex[mesh.triangles[t].vertex[k]],
+               vertex[mesh.triangles[t].vertex[(k + 1) % 3]]);
+      }
+    };
+    for_each([&](std::size_t, std::size_t a, std::size_t b) { ++first_[std::min(a, b) + 1]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+    for_each([&](std::size_t t, std::size_t a, std::size_t b) {
+      uses_[next[std::min(a, b)]++] = {static_cast<std::uint32_t>(std::max(a, b)),
+                                       static_cast<std::uint32_t>(t), a < b};
+    });
+    for (std::size_t v = 0; v + 1 < first_.size(); ++v) {
+      leave_if_stopped(cancel, v);
+      std::ranges::stable_sort(of(v), {}, &EdgeUse::high);
+    }
+  }
+  /// Calls take(uses) for each edge.
+  template <class Take> void for_each(const Take &take) const {
+    for (std::size_t v = 0; v + 1 < first_.size(); ++v)
+      for (std::size_t i = first_[v], end = i; i < first_[v + 1]; i = end) {
+        while (end < first_[v + 1] && uses_[end].high == uses_[i].high)
+          ++end;
+        take(std::span(uses_).subspan(i, end - i));
+      }
+  }
+
+private:
+  [[nodiscard]] std::span<EdgeUse> of(std::size_t vertex) {
+    return std::span(uses_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
+  }
+  std::vector<std::size_t> first_; ///< per lower vertex: into `uses_`
+  std::vector<EdgeUse> uses_;
+};
+
+/// Two triangles meet there, wound alike.
+bool is_joint(std::span<const EdgeUse> uses) {
+  return uses.size() == 2 && uses[0].is_up != uses[1].is_up;
+}
 
 } // namespace
 
@@ -62,28 +113,19 @@ std::vector<VisibleSides> visible_sides(const Mesh &mesh, const std::atomic<bool
   if (!(size > 0))
     return out;
   const auto vertex = weld(mesh.positions, 1e-6 * size, cancel);
-  std::map<std::pair<std::size_t, std::size_t>, EdgeUse> edges;
-  for (std::size_t t = 0; t < count; ++t) {
-    leave_if_stopped(cancel, t);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t a = vertex[mesh.triangles[t].vertex[k]];
-      const std::size_t b = vertex[mesh.triangles[t].vertex[(k + 1) % 3]];
-      EdgeUse &use = edges[std::minmax(a, b)];
-      (a < b ? use.up : use.down).push_back(t);
-    }
-  }
-  leave_if_stopped(cancel);
+  const Edges edges(mesh, vertex, cancel);
   Parts parts(count);
-  for (const auto &[edge, use] : edges)
-    if (use.up.size() == 1 && use.down.size() == 1)
-      parts.join(use.up[0], use.down[0]);
+  edges.for_each([&](std::span<const EdgeUse> uses) {
+    if (is_joint(uses))
+      parts.join(uses[0].triangle, uses[1].triangle);
+  });
   std::vector<char> is_closed(count, 1);
   std::vector<double> volume(count, 0);
-  for (const auto &[edge, use] : edges)
-    if (use.up.size() != 1 || use.down.size() != 1)
-      for (const auto &list : {use.up, use.down})
-        for (const std::size_t t : list)
-          is_closed[parts.root(t)] = 0;
+  edges.for_each([&](std::span<const EdgeUse> uses) {
+    for (const EdgeUse &use : uses)
+      if (!is_joint(uses))
+        is_closed[parts.root(use.triangle)] = 0;
+  });
   for (std::size_t t = 0; t < count; ++t)
     volume[parts.root(t)] += dot(mesh.positions[mesh.triangles[t].vertex[0]],
                                  area_vector_doubled(mesh, mesh.triangles[t]));

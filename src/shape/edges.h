@@ -2,8 +2,10 @@
 // Private: edges of a welded mesh with the faces on both sides.
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <tuple>
+#include <umov/core/stop.h>
 #include <umov/shape/mesh.h>
 #include <vector>
 
@@ -15,12 +17,15 @@ struct EdgeUse {
   bool forward;
 };
 
-/// All uses, sorted by edge. `skip[i]` leaves a triangle out.
+/// All uses, sorted by edge. `skip[i]` leaves a triangle out. Throws Failure (Interrupted) once
+/// `cancel`, which may be null, became true.
 inline std::vector<EdgeUse> sorted_edges(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                                         const std::vector<bool> &skip) {
+                                         const std::vector<bool> &skip,
+                                         const std::atomic<bool> *cancel) {
   std::vector<EdgeUse> uses;
   uses.reserve(3 * mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    leave_if_stopped(cancel, i);
     if (skip[i])
       continue;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -170,7 +170,7 @@ MeshReport inspect(const Mesh &mesh, bool with_coincidence, const std::atomic<bo
     out.vertices += work.welded[i] == i ? 1u : 0u;
   measure_faces(work, out);
   leave_if_stopped(cancel);
-  work.edges = sorted_edges(mesh, work.welded, work.skip);
+  work.edges = sorted_edges(mesh, work.welded, work.skip, cancel);
   leave_if_stopped(cancel);
   count_edges(work, out);
   count_parts(work, out);

@@ -140,7 +140,8 @@ double common_area(const std::array<Flat, 3> &a, const std::array<Flat, 3> &b) {
 /// Number of the solid part that a triangle bounds, or no_index: triangles joined by edges that
 /// exactly two of them share in opposite directions, without an open edge, round some volume.
 std::vector<std::uint32_t> solid_parts(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
-                                       const std::vector<bool> &skip) {
+                                       const std::vector<bool> &skip,
+                                       const std::atomic<bool> *cancel) {
   std::vector<std::uint32_t> parent(mesh.triangles.size());
   std::iota(parent.begin(), parent.end(), std::uint32_t{0});
   const auto root = [&](std::uint32_t i) {
@@ -151,7 +152,7 @@ std::vector<std::uint32_t> solid_parts(const Mesh &mesh, const std::vector<std::
   const auto is_joint = [](const EdgeUse *first, const EdgeUse *last) {
     return last - first == 2 && first[0].forward != first[1].forward;
   };
-  const auto edges = sorted_edges(mesh, welded, skip);
+  const auto edges = sorted_edges(mesh, welded, skip, cancel);
   for_each_edge(edges, [&](const EdgeUse *first, const EdgeUse *last) {
     if (is_joint(first, last))
       parent[root(first[0].triangle)] = root(first[1].triangle);
@@ -290,7 +291,7 @@ Overlaps find_overlaps(const Mesh &mesh, const std::vector<std::uint32_t> &welde
   if (std::none_of(out.pairs.begin(), out.pairs.end(),
                    [](const Overlap &o) { return o.is_opposite; }))
     return out;
-  const auto solid = solid_parts(mesh, welded, skip);
+  const auto solid = solid_parts(mesh, welded, skip, cancel);
   std::erase_if(out.pairs, [&](const Overlap &o) {
     return o.is_opposite && solid[o.first] != no_index && solid[o.second] != no_index &&
            solid[o.first] != solid[o.second];

@@ -3,6 +3,8 @@
 
 #include "light/reference/elements.h"
 
+#include <atomic>
+
 namespace umov {
 
 /// One side of elements that share normal and slot.

@@ -4,6 +4,8 @@
 #include "light/fast/mask_points.h"
 #include "light/fast/stores.h"
 
+#include <atomic>
+
 namespace umov {
 
 struct MaskSize {

@@ -4,6 +4,8 @@
 #include "light/fast/compile.h"
 #include "light/fast/mask_points.h"
 
+#include <atomic>
+
 namespace umov {
 
 /// Adds to `out`, whose groups are those of `plan`, what the normals of curved elements take on, in
