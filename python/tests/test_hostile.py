@@ -207,7 +207,7 @@ def test_what_is_no_input_is_told_of(name):
 
 
 def test_a_key_of_a_million_letters_is_soon_refused():
-    """The nearest of the known keys was looked for: a distance takes the product of both lengths, minutes here."""
+    """What looked for the nearest of the known keys, and for names in the message, took the product of two lengths: hours here."""
     with pytest.raises(umov.InputError, match="unknown key"):
         umov.Scenario.from_toml("a" * 1_000_000 + " = 1")
 

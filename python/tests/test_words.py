@@ -79,7 +79,8 @@ REFUSED = {
     "bad step": lambda hst: umov.Scenario(EXAMPLES / "hst_maui.toml", set={"time.step_s": -1}),
     "wrong key": lambda hst: umov.Scenario(EXAMPLES / "hst_maui.toml", set={"time.stp_s": 1}),
     "one alternative": lambda hst: umov.invert_plan(EXAMPLES / "hst_maui.toml", {"a": {}}),
-    "no group": lambda hst: umov.invert_material(DATA / "none.ecsv", EXAMPLES / "hst_maui.toml", "wing", candidates=["gold", "gold"]),
+    "no group": lambda hst: umov.invert_material(
+        DATA / "none.ecsv", EXAMPLES / "hst_maui.toml", group="wing", candidates=["gold", "gold"]),
 }
 
 

@@ -46,7 +46,9 @@ def _function(verb: re.Match[str]) -> str:
 def in_python(text: str) -> str:
     """A message with the names of arguments and functions in place of options and verbs: "a larger --floor" is "a larger floor",
     "Known: umov material list" is "Known: umov.materials()"."""
-    text = _MADE.sub(lambda m: _GIVEN[m[1]], text.removeprefix("-o "))  # that option is a path here
+    text = text.removeprefix("-o ")  # that option is a path here
+    if "/umov-" in text:  # the pattern takes the square of the length of a word
+        text = _MADE.sub(lambda m: _GIVEN[m[1]], text)
     text = _VERB.sub(_function, text)
     if "--" not in text:
         return text
