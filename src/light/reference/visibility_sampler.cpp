@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <umov/core/random.h>
 #include <umov/core/stop.h>
 
@@ -106,8 +107,10 @@ private:
   /// Weights of a block's points in its integrals: each lobe's, then that of diffuse light.
   void weigh_block(std::size_t at, std::size_t count) {
     weights_.clear();
-    for (std::size_t i = at; i < at + count; ++i)
+    for (std::size_t i = at; i < at + count; ++i) {
+      leave_if_stopped(cancel_, i);
       weigh(lit_.list[drawn_[i].lit], drawn_[i].point);
+    }
   }
 
   void weigh(const LitElement &lit, std::array<double, 2> p) {
@@ -136,17 +139,27 @@ private:
     weights_.push_back(scale * at.l.z * at.v.z);
   }
 
+  /// Which origins are free, some at a time: a large flat has millions.
+  void test(std::span<const Vec3<Body>> origins, Vec3<Body> direction,
+            std::span<unsigned char> free) const {
+    for (std::size_t begin = 0; begin < origins.size(); begin += batch_points) {
+      leave_if_stopped(cancel_);
+      const std::size_t count = std::min(batch_points, origins.size() - begin);
+      occluder_.is_free(origins.subspan(begin, count), direction, free.subspan(begin, count));
+    }
+  }
+
   /// free_[i]: both directions are free at the same point.
   void trace() {
     const std::size_t count = origins_.size();
     free_.assign(count, 0);
-    occluder_.is_free(origins_, pose_.sun, free_);
+    test(origins_, pose_.sun, free_);
     lit_origins_.clear();
     for (std::size_t i = 0; i < count; ++i)
       if (free_[i] != 0)
         lit_origins_.push_back(origins_[i]);
     seen_.assign(lit_origins_.size(), 0);
-    occluder_.is_free(lit_origins_, pose_.observer, seen_);
+    test(lit_origins_, pose_.observer, seen_);
     out_.sums.rays += count + lit_origins_.size();
     std::size_t at = 0;
     for (std::size_t i = 0; i < count; ++i)
@@ -234,6 +247,7 @@ private:
   void add_variance(Block &block, std::size_t at, std::size_t slot) {
     std::vector<double> difference(kinds_);
     for (std::size_t i = 0; i < 2 * block.cells(); i += 2) {
+      leave_if_stopped(cancel_, i);
       for (std::size_t k = 0; k < kinds_; ++k) {
         const auto residual = [&](std::size_t point) {
           const double v = free_[at + point] != 0 ? 1 : 0;
