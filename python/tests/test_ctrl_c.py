@@ -61,11 +61,6 @@ def exposures(_):
     return lambda: umov.observe(scenario, threads=1)
 
 
-def one_exact_pose(hst):
-    engine = umov.Engine(hst, ["nm:550"], method="rays", accuracy=1e-6, threads=1)
-    return lambda: engine.evaluate([0.1, 0.2, 1], [0.1, 1, 1])
-
-
 def poses_of_a_curve(_):
     scenario = EXAMPLES / "agena_maui.toml"
     curve = umov.run(scenario, set={"time.step_s": 20})
@@ -86,7 +81,6 @@ LONG = {
     "observe": (exposures, 1.5),
     "run by rays": (lambda _: lambda: umov.run(EXAMPLES / "hst_maui.toml", set={"render.method": "rays", "time.step_s": 0.5,
                                                                                 "render.accuracy": 0.0005}, threads=1), 2.0),
-    "exact rays": (one_exact_pose, 1.0),
     **{f"invert_pose at {after_s}": (poses_of_a_curve, after_s) for after_s in (0.1, 0.3, 0.5, 0.7, 1.0)},
 }
 

@@ -61,7 +61,9 @@ void LazyMasks::trace(std::span<const std::uint32_t> directions, bool is_large, 
   const std::size_t at_once = cancel != nullptr ? 64 : 1024;
   while (!directions.empty() && !is_stopped(cancel)) {
     const std::size_t count = std::min(at_once, directions.size());
-    tracer_.trace(directions.first(count), is_large, threads, store_);
+    tracer_.trace(directions.first(count), is_large, threads, store_, cancel);
+    if (is_stopped(cancel))
+      break;
     directions = directions.subspan(count);
     has_grown_ = true;
     ++version_;

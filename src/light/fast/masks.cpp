@@ -139,15 +139,19 @@ MaskTracer::MaskTracer(const Scene &scene, const Elements &elements, const Facet
 }
 
 void MaskTracer::trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
-                       MaskStore &masks) const {
+                       MaskStore &masks, const std::atomic<bool> *cancel) const {
   MaskTableStore &table = is_large ? masks.large : masks.small;
   const std::vector<MaskEntry> &entries = is_large ? large_ : small_;
   std::vector<Row> rows(directions.size());
   parallel_for(directions.size(), threads, [&](std::size_t k) {
+    if (is_stopped(cancel)) // a row of a large mesh takes a hundredth of a second
+      return;
     RowTracer tracer(occluder_, grid_reach(table.cells));
     for (const MaskEntry &entry : entries)
       tracer.add(entry, grid_direction(table.cells, directions[k]), rows[k]);
   });
+  if (is_stopped(cancel))
+    return;
   const backend::Masks known = masks.view();
   std::size_t blocks = masks.pool.size();
   for (const Row &row : rows)

@@ -34,9 +34,10 @@ public:
   /// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
   MaskTracer(const Scene &scene, const Elements &elements, const FacetClasses &classes,
              const GroupPlan &plan, const Occluder &occluder, const std::atomic<bool> *cancel);
-  /// Adds the rows of directions that have none yet.
+  /// Adds the rows of directions that have none yet; none of them once `cancel`, which may be null,
+  /// became true.
   void trace(std::span<const std::uint32_t> directions, bool is_large, unsigned threads,
-             MaskStore &masks) const;
+             MaskStore &masks, const std::atomic<bool> *cancel) const;
   /// What the bits of a lane stand for, in their order.
   [[nodiscard]] std::span<const Occluder::Point> points(const backend::GroupMask &group,
                                                         std::uint32_t lane) const {
