@@ -1,6 +1,7 @@
 #include <umov/jobs/invert.h>
 
 #include "jobs/curve_questions.h"
+#include "jobs/invert_between.h"
 #include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
 
@@ -33,7 +34,12 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
   UMOV_ASSIGN(answer, search_pose({model, first, quick},
                                   search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
-  const Judgement judgement = judge(answer, model, request.errors, symmetries);
+  Judgement judgement = judge(answer, model, request.errors, symmetries);
+  if (!answer.modes.empty()) {
+    UMOV_ASSIGN(between, share_between(scenario, ready, observed.curve,
+                                       answer.modes.front().turning, options, monitor));
+    doubt_direct_light(between, request.errors.floor, judgement);
+  }
   Inversion out;
   out.verdict = judgement.verdict;
   out.summary = summary_of(answer, judgement);

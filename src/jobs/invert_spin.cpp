@@ -1,4 +1,5 @@
 #include "jobs/curve_limits.h"
+#include "jobs/invert_between.h"
 #include "jobs/invert_light.h"
 #include "jobs/invert_page.h"
 #include "jobs/invert_tables.h"
@@ -163,6 +164,11 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   keep_masks(ready);
   const CurveModel model(curve, searched, ready.observed.column, asked.parts);
   Judgement judgement = judge(answer.pose, model, request.errors, symmetries);
+  if (!answer.pose.modes.empty()) {
+    UMOV_ASSIGN(between, share_between(scenario, ready, curve, answer.pose.modes.front().turning,
+                                       options, monitor));
+    doubt_direct_light(between, request.errors.floor, judgement);
+  }
   const CurveModel coarse(curve, asked.coarse, ready.observed.column);
   const CurveModel first(curve, first_lighting(ready, options.threads, monitor),
                          ready.observed.column, asked.parts);

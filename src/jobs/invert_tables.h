@@ -50,6 +50,7 @@ struct Judgement {
   std::vector<std::string> notes;
   std::vector<Parameter> nuisances;
   std::vector<double> fitted; ///< of those that are parts of the light, the last ones: [sd]
+  double light_between = 0;   ///< `share_between` of the best attitude
 };
 /// All of it, of an answer.
 Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,

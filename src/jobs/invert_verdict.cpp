@@ -155,6 +155,7 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   out["share_of_so3"] = answer.share_of_so3;
   out["settled"] = answer.is_settled;
   out["effective_samples"] = answer.effective;
+  out["light_between"] = judgement.light_between;
   out["axis_spread_deg"] = judgement.axis_spread_deg;
   ordered_json modes = ordered_json::array();
   for (const PoseMode &mode : answer.modes) {
@@ -227,13 +228,14 @@ std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
     out += "- " + text + "\n";
   // No chi-square tells it: lobes that are a fifth off are fitted well by an attitude beside.
   if (judgement.verdict == Verdict::Determined)
-    out += judgement.fitted.empty()
-               ? "- this holds for materials and a shape that are right to --floor, and where little "
-                 "light goes from surface to surface; where materials are known to a tenth or a "
-                 "fifth, ask again with a --floor of 0.3\n"
-               : "- this holds for materials that are right to --slope-sd, --reflectance-sd and "
-                 "--haze-sd, for a shape that is right to --floor, and where little light goes from "
-                 "surface to surface\n";
+    out +=
+        judgement.fitted.empty()
+            ? "- this holds for materials and a shape that are right to --floor, and where little "
+              "light goes from surface to surface; where materials are known to a tenth or a "
+              "fifth, ask again with a --floor of 0.3\n"
+            : "- this holds for materials that are right to --slope-sd, --reflectance-sd and "
+              "--haze-sd, for a shape that is right to --floor, and where little light goes from "
+              "surface to surface\n";
   return out;
 }
 

@@ -1,0 +1,69 @@
+#include "jobs/invert_between.h"
+
+#include "jobs/invert_tables.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/inverse/curve_model.h>
+#include <vector>
+
+namespace umov::jobs {
+namespace {
+
+/// Some of the epochs, even over all.
+std::vector<Pose> some_poses(const ObservedCurve &curve, const Turning &at) {
+  constexpr std::size_t most = 12;
+  const std::size_t count = std::min(curve.epochs.size(), most);
+  std::vector<Pose> out;
+  for (std::size_t k = 0; k < count; ++k)
+    out.push_back(pose_at(at, curve.epochs[(2 * k + 1) * curve.epochs.size() / (2 * count)]));
+  return out;
+}
+
+} // namespace
+
+Result<double> share_between(const Scenario &scenario, const SearchedLight &ready,
+                             const ObservedCurve &curve, const Turning &at,
+                             const JobOptions &options, const Monitor &monitor) {
+  if (scenario.light.bounces > 1 || ready.light.model().facts().is_convex)
+    return 0.0;
+  Scenario with = scenario;
+  with.light.bounces = 3;
+  SignatureRequest rough;
+  rough.method = LightMethod::Rays;
+  rough.accuracy = 0.1;
+  Diagnostics twice; // the object was read before: its warnings are known
+  UMOV_ASSIGN(whole, PoseLight::make(with, rough, options, twice, monitor.cancel));
+  const std::vector<Pose> poses = some_poses(curve, at);
+  LightTask task;
+  task.threads = options.threads;
+  task.cancel = monitor.cancel;
+  StokesTable all, direct;
+  if (monitor.is_cancelled() || !whole.evaluate(poses, all, task) ||
+      !ready.light.evaluate(poses, direct, task))
+    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
+  std::vector<double> shares;
+  for (std::size_t k = 0; k < all.i.size(); ++k)
+    if (all.i[k] > 0)
+      shares.push_back(std::clamp(1 - direct.i[k] / all.i[k], 0.0, 1.0));
+  if (shares.empty())
+    return 0.0;
+  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+  std::nth_element(shares.begin(), middle, shares.end());
+  return *middle;
+}
+
+void doubt_direct_light(double share, double floor, Judgement &out) {
+  constexpr double much = 2.5, least = 0.005; // as of what the best attitude misses
+  out.light_between = share;
+  if (!(share > std::max(floor, least)))
+    return;
+  out.notes.push_back(fmt::format("light from surface to surface, which this fit leaves out, would "
+                                  "be {:.2g} of I in the best attitude (in the median; the floor "
+                                  "is {:.2g}): attitudes may be wrong",
+                                  share, floor));
+  if (share > much * std::max(floor, least) && out.verdict == Verdict::Determined)
+    out.verdict = Verdict::Undetermined;
+}
+
+} // namespace umov::jobs
