@@ -19,8 +19,6 @@ import tempfile
 import time
 import tomllib
 
-import mitsuba_truth
-
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MATERIALS = {
     "hst": dict(light_shield="film_aluminized", forward_shell="film_aluminized", equipment="film_silvered",
@@ -32,7 +30,7 @@ MATERIALS = {
     "cubesat": dict(body_px="aluminium_anodized", body_mx="cell_gaas", body_py="cell_gaas", body_my="paint_white",
                     body_pz="mli_kapton", body_mz="aluminium_anodized", panel_px_front="cell_gaas",
                     panel_px_back="paint_black", panel_px_edge="aluminium_anodized"),
-    "metals": {group: f"peer_{group}" for group in mitsuba_truth.compare.MATERIALS},
+    "metals": dict(bus="peer_bus", panels="peer_panels", tank="peer_tank", dish="peer_dish"),
 }
 MESH = {  # fitted, true
     "hst": (["hst", "--sides", 36], ["hst", "--sides", 60]),
@@ -175,7 +173,7 @@ def main():
             run(o.umov, "mesh", "make", *words, "-o", mesh, "-q")
     if o.truth == "mitsuba" and (o.object != "metals" or o.wrong):
         parser.error("--truth mitsuba knows the object metals, and no --wrong")
-    o.truth = mitsuba_truth.Truth(o.umov, meshes[1], [425, 550, 650], o.surfaces) if o.truth == "mitsuba" else None
+    o.truth = by_mitsuba(o.umov, meshes[1], o.surfaces) if o.truth == "mitsuba" else None
     if o.spin:
         return spins(o, work, meshes)
     poses(o, work, meshes)
@@ -225,6 +223,18 @@ def other_object(o, trial, scenario, mesh, path):
     return scenario.replace(str(mesh), str(path)) + "".join(other_material(name, o.wrong, rng) for name in names)
 
 
+def metals_in_toml():
+    from mitsuba_truth import materials_in_toml
+
+    return materials_in_toml()
+
+
+def by_mitsuba(program, mesh, surfaces):
+    from mitsuba_truth import Truth
+
+    return Truth(program, mesh, [425, 550, 650], surfaces)
+
+
 def make_curve(o, work, meshes, trial, law, step, rng):
     """Scenarios of truth and fit, and what an observer has of the truth; returns its rows."""
     materials = "\n".join(f'{k} = "{v}"' for k, v in MATERIALS[o.object].items())
@@ -235,7 +245,7 @@ def make_curve(o, work, meshes, trial, law, step, rng):
         if o.surfaces > 1 and out == "truth" and not o.truth:
             text = text.replace(f'method = "{method}"', f'method = "{method}"\nbounces = {o.surfaces}')
         if o.object == "metals":
-            text += mitsuba_truth.materials_in_toml()
+            text += metals_in_toml()
         if o.wrong and out == "truth":
             text = other_object(o, trial, text, mesh, work / "wrong.obj")
         (work / name).write_text(text)
@@ -243,7 +253,7 @@ def make_curve(o, work, meshes, trial, law, step, rng):
     rows = rows_of(work / "truth/lightcurve.csv")
     if o.truth:
         relit = o.truth.relit(rows)
-        print("Mitsuba less rays: median {:.1e} of I, {:.1e} in q".format(*mitsuba_truth.difference(rows, relit)), flush=True)
+        print("Mitsuba less rays: median {:.1e} of I, {:.1e} in q".format(*o.truth.difference(rows, relit)), flush=True)
         rows = relit
     observed(rows, o.snr, rng, work / "obs.csv")
     return rows

@@ -81,10 +81,10 @@ class Truth:
             out.append(changed)
         return out
 
-
-def difference(rows, relit):
-    """Median of |dI|/I and of |dq| of two tables, of rows above a hundredth of the median light."""
-    light = [float(row["intensity"]) for row in rows]
-    pairs = [(a, b) for a, b, i in zip(rows, relit, light) if i > 0.01 * np.median(light) and a["q"]]
-    return (float(np.median([abs(float(b["intensity"]) / float(a["intensity"]) - 1) for a, b in pairs])),
-            float(np.median([abs(float(b["q"]) - float(a["q"])) for a, b in pairs])))
+    @staticmethod
+    def difference(rows, relit):
+        """Median of |dI|/I and of |dq| of two tables, of rows above a hundredth of the median light."""
+        light = [float(row["intensity"]) for row in rows]
+        pairs = [(a, b) for a, b, i in zip(rows, relit, light) if i > 0.01 * np.median(light) and a["q"]]
+        return (float(np.median([abs(float(b["intensity"]) / float(a["intensity"]) - 1) for a, b in pairs])),
+                float(np.median([abs(float(b["q"]) - float(a["q"])) for a, b in pairs])))

@@ -93,19 +93,19 @@ def text(value: Any, name: str) -> str:
     return utf8(value, name)
 
 
-def path_text(value: Any, name: str) -> str:
+def path_text(value: Any, name: str, wanted: str = "the name of a file") -> str:
     """The path of a file as text. A name that is no UTF-8 cannot stand in a scenario, a table or a message; one with the
     character 0 would be another file's."""
     if not isinstance(value, (str, os.PathLike)):
-        raise UsageError(f"{name} is a {type(value).__name__}; the name of a file was expected")
+        raise UsageError(f"{name} is a {type(value).__name__}; {wanted} was expected")
     try:
         text = os.fsdecode(value)
     except TypeError as error:
-        raise UsageError(f"{name} is a {type(value).__name__} that names no file ({error}); the name of a file was expected") from error
+        raise UsageError(f"{name} is a {type(value).__name__} that names no file ({error}); {wanted} was expected") from error
     if not text:
-        raise UsageError(f"{name} is \"\"; the name of a file was expected")
+        raise UsageError(f"{name} is \"\"; {wanted} was expected")
     if "\0" in text:  # the system takes a name to end there: another file
-        raise UsageError(f"{name} is {text!r}; the name of a file without the character 0 was expected")
+        raise UsageError(f"{name} is {text!r}; {wanted} without the character 0 was expected")
     return utf8(text, name)
 
 

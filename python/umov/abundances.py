@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
@@ -116,11 +116,11 @@ class Sums(Made):
     (100, 4, 4)
     """
 
-    def __init__(self, scene: AnyScenario, *, others: Sequence[AnyScenario] = (), threads: int = 0,
+    def __init__(self, scene: AnyScenario, *, others: Iterable[AnyScenario] = (), threads: int = 0,
                  cache: bool | str | os.PathLike[str] = True, device: str = "cpu", progress: Progress = None) -> None:
         self.scenario = Scenario(scene)  #: what is lit
         self._source = scene
-        if isinstance(others, (str, os.PathLike)) or not isinstance(others, Sequence):
+        if isinstance(others, (str, os.PathLike)) or not isinstance(others, Iterable):
             raise UsageError(f"others is {others!r}; a list of scenes was expected")
         self._others = [Scenario(one) for one in others]
         self._threads, self._cache, self._device = threads, cache, device

@@ -49,7 +49,7 @@ class Material(Made):
     """
 
     def __init__(self, name: str) -> None:
-        self._material = _umov.Material.read(path_text(name, "name"))
+        self._material = _umov.Material.read(path_text(name, "name", "the name of a material or of its file"))
         #: the library or a file has it: scenarios may name it
         self.is_named = not str(name).endswith(".toml")
 

@@ -10,6 +10,24 @@
 namespace umov::jobs {
 namespace {
 
+Result<const PoseLight *> whole_light(WholeLight &whole, const Scenario &scenario,
+                                      const JobOptions &options, const Monitor &monitor) {
+  const std::lock_guard lock(whole.making);
+  if (!whole.light) {
+    Scenario with = scenario;
+    with.light.bounces = 3;
+    SignatureRequest rough;
+    rough.method = LightMethod::Rays;
+    rough.accuracy = 0.1;
+    JobOptions by_processor = options; // cards trace no rays
+    by_processor.device = {};
+    Diagnostics twice; // the object was read before: its warnings are known
+    UMOV_ASSIGN(made, PoseLight::make(with, rough, by_processor, twice, monitor.cancel));
+    whole.light.emplace(std::move(made));
+  }
+  return &*whole.light;
+}
+
 /// Some of the epochs, even over all.
 std::vector<Pose> some_poses(const ObservedCurve &curve, const Turning &at) {
   constexpr std::size_t most = 12;
@@ -22,24 +40,20 @@ std::vector<Pose> some_poses(const ObservedCurve &curve, const Turning &at) {
 
 } // namespace
 
-Result<double> share_between(const Scenario &scenario, const SearchedLight &ready,
-                             const ObservedCurve &curve, const Turning &at,
-                             const JobOptions &options, const Monitor &monitor) {
-  if (scenario.light.bounces > 1 || ready.light.model().facts().is_convex)
+Result<std::optional<double>> share_between(const Scenario &scenario, const SearchedLight &ready,
+                                            const ObservedCurve &curve, const Turning &at,
+                                            const JobOptions &options, const Monitor &monitor) {
+  if (scenario.light.bounces > 1)
+    return std::nullopt;
+  if (ready.light.model().facts().is_convex)
     return 0.0;
-  Scenario with = scenario;
-  with.light.bounces = 3;
-  SignatureRequest rough;
-  rough.method = LightMethod::Rays;
-  rough.accuracy = 0.1;
-  Diagnostics twice; // the object was read before: its warnings are known
-  UMOV_ASSIGN(whole, PoseLight::make(with, rough, options, twice, monitor.cancel));
+  UMOV_ASSIGN(whole, whole_light(*ready.whole, scenario, options, monitor));
   const std::vector<Pose> poses = some_poses(curve, at);
   LightTask task;
   task.threads = options.threads;
   task.cancel = monitor.cancel;
   StokesTable all, direct;
-  if (monitor.is_cancelled() || !whole.evaluate(poses, all, task) ||
+  if (monitor.is_cancelled() || !whole->evaluate(poses, all, task) ||
       !ready.light.evaluate(poses, direct, task))
     return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
   std::vector<double> shares;
@@ -53,16 +67,17 @@ Result<double> share_between(const Scenario &scenario, const SearchedLight &read
   return *middle;
 }
 
-void doubt_direct_light(double share, double floor, Judgement &out) {
+void doubt_direct_light(std::optional<double> share, double floor, Judgement &out) {
   constexpr double much = 2.5, least = 0.005; // as of what the best attitude misses
   out.light_between = share;
-  if (!(share > std::max(floor, least)))
+  const double allowed = std::max(floor, least);
+  if (!share || !(*share > allowed))
     return;
-  out.notes.push_back(fmt::format("light from surface to surface, which this fit leaves out, would "
-                                  "be {:.2g} of I in the best attitude (in the median; the floor "
-                                  "is {:.2g}): attitudes may be wrong",
-                                  share, floor));
-  if (share > much * std::max(floor, least) && out.verdict == Verdict::Determined)
+  out.notes.push_back(fmt::format(
+      "light from surface to surface, which this fit leaves out, would be {:.2g} of I in the best "
+      "attitude (in the median): more than --floor {:.2g}, so the set may lie beside the truth",
+      *share, floor));
+  if (*share > much * allowed && out.verdict == Verdict::Determined)
     out.verdict = Verdict::Undetermined;
 }
 

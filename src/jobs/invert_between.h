@@ -8,14 +8,14 @@ namespace umov::jobs {
 struct Judgement;
 
 /// What light from surface to surface, up to three of them, is of the light at a turning: the
-/// median over a dozen epochs, and over all bands. Searches have direct light alone. 0 where the
-/// scenario counts that light itself, where the body is convex and where nothing is lit. Good to a
-/// tenth of the light: it is for a note. Interrupted if the monitor says so.
-Result<double> share_between(const Scenario &scenario, const SearchedLight &ready,
-                             const ObservedCurve &curve, const Turning &at,
-                             const JobOptions &options, const Monitor &monitor);
+/// median over a dozen epochs and all bands. Searches have direct light alone; none is told where
+/// the scenario has them count all of it. 0 where the body is convex and where nothing is lit. Good
+/// to a tenth of the light: it is for a note. Interrupted if the monitor says so.
+Result<std::optional<double>> share_between(const Scenario &scenario, const SearchedLight &ready,
+                                            const ObservedCurve &curve, const Turning &at,
+                                            const JobOptions &options, const Monitor &monitor);
 /// Says so where it is more than the floor that was asked for, and takes a verdict back where it is
 /// far more: what grows with the misfit covers errors of each row, not one that all share.
-void doubt_direct_light(double share, double floor, Judgement &out);
+void doubt_direct_light(std::optional<double> share, double floor, Judgement &out);
 
 } // namespace umov::jobs

@@ -3,18 +3,27 @@
 
 #include "jobs/part_light.h"
 
+#include <mutex>
 #include <optional>
 #include <umov/jobs/invert.h>
 #include <umov/jobs/pose_light.h>
 
 namespace umov::jobs {
 
+/// Light of an object with what goes from surface to surface: made when it is first asked for, once
+/// for all curves.
+struct WholeLight {
+  std::mutex making;
+  std::optional<PoseLight> light;
+};
 /// Light of an object as a search wants it.
 struct SearchedLight {
   PoseLight light;
   std::optional<PoseLight> masks; ///< for the search, where `light` mends them; else none
   /// The light of `light` by material, where that is not quite known and can be taken apart.
   std::unique_ptr<LightByPart> parts = {};
+  /// What `share_between` asks.
+  std::unique_ptr<WholeLight> whole = std::make_unique<WholeLight>();
 };
 /// Observations, the object that they are of, and its light.
 struct Prepared : SearchedLight {

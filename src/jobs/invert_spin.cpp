@@ -90,11 +90,12 @@ PoseLighting coarse_light(const PoseLighting &light, const ObservedCurve &curve,
   return table ? DirectionTable::lighting(std::move(table), threads) : PoseLighting();
 }
 
-std::string spin_words(const SpinAnswer &answer, Verdict verdict) {
+/// `is_doubted`: the period itself, not the attitude alone.
+std::string spin_words(const SpinAnswer &answer, Verdict verdict, bool is_doubted) {
   if (verdict == Verdict::NoFit)
     return "no period explains the data\n";
   std::string out;
-  if (verdict == Verdict::Undetermined)
+  if (is_doubted)
     out = "the period is not known; of the spins that were tried, ";
   for (const SpinPeriod &p : answer.periods)
     out += fmt::format("period {:.6g} +- {:.2g} s with {:.3g} % of the probability\n", p.period_s,
@@ -114,8 +115,8 @@ Result<double> chi2_at_rest(const SearchModels &models, const CurveErrors &error
   return answer.chi2;
 }
 
-/// What makes a period less than an answer, however narrow its peak.
-void doubt_period(const SpinAnswer &answer, double chi2_at_rest, const SpinOptions &asked,
+/// What makes a period less than an answer, however narrow its peak; false if nothing does.
+bool doubt_period(const SpinAnswer &answer, double chi2_at_rest, const SpinOptions &asked,
                   const ObservedCurve &curve, const CurveErrors &errors, Judgement &judgement) {
   std::vector<std::string> doubts;
   if (!(asked.period_s > 0) && shows_no_turn(curve, errors))
@@ -135,7 +136,9 @@ void doubt_period(const SpinAnswer &answer, double chi2_at_rest, const SpinOptio
                                  span));
   if (!doubts.empty() && judgement.verdict != Verdict::NoFit)
     judgement.verdict = Verdict::Undetermined;
+  const bool is_doubted = !doubts.empty();
   std::ranges::move(doubts, std::back_inserter(judgement.notes));
+  return is_doubted;
 }
 
 } // namespace
@@ -164,7 +167,7 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   keep_masks(ready);
   const CurveModel model(curve, searched, ready.observed.column, asked.parts);
   Judgement judgement = judge(answer.pose, model, request.errors, symmetries);
-  if (!answer.pose.modes.empty()) {
+  if (!answer.pose.modes.empty() && judgement.verdict != Verdict::NoFit) {
     UMOV_ASSIGN(between, share_between(scenario, ready, curve, answer.pose.modes.front().turning,
                                        options, monitor));
     doubt_direct_light(between, request.errors.floor, judgement);
@@ -174,10 +177,14 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
                          ready.observed.column, asked.parts);
   UMOV_ASSIGN(at_rest, chi2_at_rest({model, first, coarse}, answer.pose.errors,
                                     search_options(scenario, request, options, monitor)));
-  doubt_period(answer, at_rest, spin, curve, request.errors, judgement);
+  constexpr double sure = 0.95;
+  const bool is_doubted = doubt_period(answer, at_rest, spin, curve, request.errors, judgement) ||
+                          (judgement.verdict == Verdict::Undetermined &&
+                           (answer.periods.empty() || answer.periods.front().weight < sure));
   Inversion out;
   out.verdict = judgement.verdict;
-  out.summary = spin_words(answer, judgement.verdict) + summary_of(answer.pose, judgement);
+  out.summary =
+      spin_words(answer, judgement.verdict, is_doubted) + summary_of(answer.pose, judgement);
   out.json = json_of("spin", answer.pose, judgement, symmetries);
   out.tables = {{"modes", modes_table(answer.pose, true)},
                 {"periods", periods_table(answer, periods)},

@@ -1,6 +1,7 @@
 #pragma once
 // Private: answers of an inversion as tables and words.
 
+#include <optional>
 #include <umov/inverse/unmix.h>
 #include <umov/jobs/invert.h>
 
@@ -50,7 +51,7 @@ struct Judgement {
   std::vector<std::string> notes;
   std::vector<Parameter> nuisances;
   std::vector<double> fitted; ///< of those that are parts of the light, the last ones: [sd]
-  double light_between = 0;   ///< `share_between` of the best attitude
+  std::optional<double> light_between; ///< `share_between` of the best attitude, if it was asked
 };
 /// All of it, of an answer.
 Judgement judge(const PoseAnswer &answer, const CurveModel &model, const CurveErrors &errors,

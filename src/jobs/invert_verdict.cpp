@@ -155,7 +155,10 @@ std::string json_of(const char *question, const PoseAnswer &answer, const Judgem
   out["share_of_so3"] = answer.share_of_so3;
   out["settled"] = answer.is_settled;
   out["effective_samples"] = answer.effective;
-  out["light_between"] = judgement.light_between;
+  if (judgement.light_between)
+    out["light_between"] = *judgement.light_between;
+  else
+    out["light_between"] = nullptr;
   out["axis_spread_deg"] = judgement.axis_spread_deg;
   ordered_json modes = ordered_json::array();
   for (const PoseMode &mode : answer.modes) {
@@ -203,6 +206,21 @@ std::string axes_words(const Judgement &judgement) {
   return out;
 }
 
+/// What no chi-square tells: lobes that are a fifth off are fitted well by an attitude beside.
+std::string what_it_rests_on(const Judgement &judgement) {
+  const bool is_by_part = !judgement.fitted.empty();
+  std::string out = is_by_part
+                        ? "- this holds for materials that are right to --slope-sd, "
+                          "--reflectance-sd and --haze-sd, and for a shape that is right to --floor"
+                        : "- this holds for materials and a shape that are right to --floor";
+  if (judgement.light_between.value_or(0) > 0)
+    out += fmt::format("; light from surface to surface, {:.2g} of I in the median, is left out",
+                       *judgement.light_between);
+  if (!is_by_part)
+    out += "; where materials are known to a tenth or a fifth, ask again with a --floor of 0.3";
+  return out + "\n";
+}
+
 } // namespace
 
 std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
@@ -226,16 +244,8 @@ std::string summary_of(const PoseAnswer &answer, const Judgement &judgement) {
   out += "\n";
   for (const std::string &text : judgement.notes)
     out += "- " + text + "\n";
-  // No chi-square tells it: lobes that are a fifth off are fitted well by an attitude beside.
   if (judgement.verdict == Verdict::Determined)
-    out +=
-        judgement.fitted.empty()
-            ? "- this holds for materials and a shape that are right to --floor, and where little "
-              "light goes from surface to surface; where materials are known to a tenth or a "
-              "fifth, ask again with a --floor of 0.3\n"
-            : "- this holds for materials that are right to --slope-sd, --reflectance-sd and "
-              "--haze-sd, for a shape that is right to --floor, and where little light goes from "
-              "surface to surface\n";
+    out += what_it_rests_on(judgement);
   return out;
 }
 

@@ -194,8 +194,8 @@ Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
 
 /// The polarization that brightness looks like which changes by `drift` of itself from exposure to
 /// exposure: what the fit makes of unpolarized light that does (docs/theory/observing.md, 6).
-double false_polarization(Rows rows, const ReduceOptions &options, std::size_t parameters,
-                          double intensity, double drift) {
+double seeming_polarization(Rows rows, const ReduceOptions &options, std::size_t parameters,
+                            double intensity, double drift) {
   std::vector<ChannelDatum> data = data_of(rows, options);
   const double middle = static_cast<double>(rows.back().exposure + rows.front().exposure) / 2;
   for (std::size_t k = 0; k < data.size(); ++k)
@@ -236,12 +236,14 @@ void warn_of_drift(const std::vector<Set> &sets, const std::vector<Reduced> &red
     const auto steps =
         static_cast<double>(rows.front().exposure - sets[last].rows.front().exposure);
     const double drift = std::abs(b.fit.stokes[0] / reduced[last].fit.stokes[0] - 1) / steps;
-    const double looks = false_polarization(rows, options, parameters, b.fit.stokes[0], drift);
+    const double looks = seeming_polarization(rows, options, parameters, b.fit.stokes[0], drift);
     if (!std::isfinite(looks))
       continue;
     drifts.push_back(drift);
     seeming.push_back(looks);
-    errors.push_back(std::sqrt(b.fractions.covariance[0][0]));
+    const auto &cov = b.fractions.covariance;
+    errors.push_back(parameters == 4 ? std::sqrt(cov[0][0] + cov[1][1] + cov[2][2])
+                                     : std::sqrt(cov[0][0]));
   }
   if (drifts.empty())
     return;

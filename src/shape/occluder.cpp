@@ -29,6 +29,11 @@ struct Occluder::State {
       rtcReleaseDevice(device);
   }
   [[nodiscard]] Vec3<Body> to_model(Vec3<Body> p) const { return (p - centre) * scale; }
+  /// Embree takes memory to release a scene, and ends the program where there is none: what could
+  /// not be built for lack of it is left as it is.
+  static void leave(std::unique_ptr<State> &state) {
+    [[maybe_unused]] const State *left = state.release();
+  }
 };
 
 namespace {
@@ -85,6 +90,7 @@ void check(RTCDevice device, const Mesh &mesh, const void *made) {
 void check(RTCDevice device, const Mesh &mesh) { check(device, mesh, device); }
 
 using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, void (*)(RTCGeometry)>;
+
 /// Who may stop the building of a tree.
 struct Watch {
   const std::atomic<bool> *cancel;
@@ -105,12 +111,12 @@ Occluder::Occluder(const Mesh &mesh, Rays rays, const std::atomic<bool> *cancel)
     : state_(std::make_unique<State>()) {
   try {
     build(mesh, rays, cancel);
+  } catch (const Failure &why) {
+    if (why.error().code != ErrorCode::Interrupted)
+      State::leave(state_);
+    throw;
   } catch (...) {
-    if (is_stopped(cancel))
-      throw;
-    // Embree takes memory to release a scene, and ends the program where there is none: what could
-    // not be built is left as it is.
-    [[maybe_unused]] const State *left = state_.release();
+    State::leave(state_);
     throw;
   }
 }

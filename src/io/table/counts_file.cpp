@@ -117,7 +117,6 @@ Result<void> read_numbers(const CountCells &cells, std::size_t row, CountRow &ou
                           {"airmass", &out.airmass},
                           {"k_mag", &out.k_mag},
                           {"plate_deg", &out.plate_deg},
-                          {"analyser_deg", &out.analyser_deg},
                           {"ra", &out.ra_deg},
                           {"dec", &out.dec_deg},
                           {"range", &out.range_km},
@@ -134,6 +133,8 @@ Result<void> read_numbers(const CountCells &cells, std::size_t row, CountRow &ou
     UMOV_ASSIGN(value, cells.number(field.name, row, *field.value));
     *field.value = value;
   }
+  // It checks the answers alone: who calls beams H and V here has told no angle.
+  out.analyser_deg = parse_number(cells.text("analyser_deg", row)).value_or(std::nan(""));
   constexpr double whole_max = 1e15;
   for (const auto &[name, value] : {std::pair{"exposure", exposure}, {"set_id", set}})
     if (!(std::abs(value) < whole_max && value == std::floor(value)))
