@@ -81,6 +81,31 @@ Result<void> check_output(const std::string &path) {
   return {};
 }
 
+Result<void> check_apart(const std::vector<std::string> &inputs,
+                         const std::vector<std::string> &outputs) {
+  namespace fs = std::filesystem;
+  const auto place = [](const std::string &path) {
+    std::error_code code;
+    const fs::path out = fs::weakly_canonical(path, code);
+    return code ? fs::path(path) : out;
+  };
+  std::vector<fs::path> taken;
+  for (const std::string &input : inputs)
+    if (!input.empty())
+      taken.push_back(place(input));
+  const auto read = static_cast<std::ptrdiff_t>(taken.size());
+  for (const std::string &output : outputs) {
+    if (output.empty() || output == "-")
+      continue;
+    const auto first = std::ranges::find(taken, place(output)) - taken.begin();
+    if (first < static_cast<std::ptrdiff_t>(taken.size()))
+      return fail(ErrorCode::Usage, fmt::format("{} is {} already: another name was expected",
+                                                output, first < read ? "read" : "written"));
+    taken.push_back(place(output));
+  }
+  return {};
+}
+
 Result<void> check_folder_name(const std::string &path) {
   const std::string suffix = std::filesystem::path(path).extension().string();
   if (std::ranges::find(table_suffixes(), suffix) == table_suffixes().end())

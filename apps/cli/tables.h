@@ -27,6 +27,9 @@ Result<void> put_table(const std::string &path, const Table &table, const Common
 Result<void> check_output(const std::string &path);
 /// Usage for a page (x.html) whose name says another form; `option` names it.
 Result<void> check_page(const char *option, const std::string &path);
+/// Usage where an output is an input, or two outputs are one file; empty names and "-" are none.
+Result<void> check_apart(const std::vector<std::string> &inputs,
+                         const std::vector<std::string> &outputs);
 /// An error that names no file, with the one that the user gave.
 template <class T> Result<T> of_file(Result<T> done, const std::string &file) {
   if (!done && done.error().where.file.empty())

@@ -32,6 +32,7 @@ Result<void> run_polarizer(const CalibrateOptions &o, const Common &common,
 
 Result<void> run_calibrate(const CalibrateOptions &o, const Common &common,
                            Diagnostics &diagnostics) {
+  UMOV_TRY(check_apart({o.counts, o.standards}, {o.output}));
   if (o.is_polarizer)
     return run_polarizer(o, common, diagnostics);
   if (common.json)

@@ -83,6 +83,7 @@ Result<void> put_measurements(const ReduceVerb &o, const CountsFile &counts, con
 Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_TRY(check_output(o.output));
   UMOV_TRY(check_page("--page", o.page));
+  UMOV_TRY(check_apart({o.counts, o.calibration}, {o.output, o.page, o.tdm, o.score}));
   jobs::ReduceOptions options;
   UMOV_TRY(read_model(o.model, options));
   put_errors(o, options);

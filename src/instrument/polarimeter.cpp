@@ -166,11 +166,14 @@ ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::si
   // Of W^T W, rising.
   const algebra::SymmetricEigen squares = algebra::symmetric_eigen(algebra::gram(w));
   ModulationQuality out;
-  constexpr double rounding = 1e-14;
+  // Field rotation of a second of arc makes plates at 0 and 45 deg tell U by name, with errors a
+  // thousand times and more those of q: nothing is told.
+  constexpr double worst_condition = 1000;
+  constexpr double blind = 1 / (worst_condition * worst_condition);
   const double smallest = squares.values(0), largest = squares.values(columns - 1);
-  if (!(smallest > rounding * largest)) {
+  if (!(smallest > blind * largest)) {
     out.condition = out.weighted_variance = std::numeric_limits<double>::infinity();
-    out.missing = blind_to(squares, rounding * largest);
+    out.missing = blind_to(squares, blind * largest);
     return out;
   }
   out.condition = std::sqrt(largest / smallest);

@@ -60,6 +60,7 @@ void warn_of_standards(const std::vector<StandardMeasurement> &data,
 struct Measured {
   std::vector<StandardMeasurement> polarized;
   std::vector<PhotometricStandard> bright;
+  std::size_t faint = 0; ///< sets of standards with magnitudes that were hardly seen
 };
 
 /// A set's magnitude behind the air, by the w0 of its counts.
@@ -91,7 +92,12 @@ Measured measured(const Table &table, const std::vector<StandardStar> &standards
     if (!std::isnan(star->p) && std::isfinite(table.number("q", k)))
       out.polarized.push_back(measured_polarization(
           table, k, *star, static_cast<std::size_t>(star - standards.begin())));
-    if (!std::isnan(star->mag) && table.number("I", k) > 0) // what was not seen has no magnitude
+    if (std::isnan(star->mag))
+      continue;
+    // What was not seen has no magnitude, and what was hardly seen one that a cloud made.
+    if (!(table.number("I", k) > 0) || table.text("flags", k).find("faint") != std::string::npos)
+      ++out.faint;
+    else
       out.bright.push_back(measured_light(table, k, *star));
   }
   return out;
@@ -262,6 +268,10 @@ Result<CalibrationFile> calibrate(const CountsFile &counts,
                   "two bands, " + out.band + " and " + row.band + ": calibrate each by itself");
   UMOV_ASSIGN(table, reduce(counts, {}, {}, diagnostics));
   const Measured data = measured(table, standards);
+  if (data.faint > 0)
+    diagnostics.warn(fmt::format("{} of standards left out of photometry: fainter than three times "
+                                 "their error",
+                                 counted(data.faint, "set")));
   if (data.polarized.empty() && data.bright.empty())
     return fail(ErrorCode::BadInput, no_standard(table, standards));
   if (has_second_order && data.bright.empty())

@@ -188,7 +188,10 @@ Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
   const double pixels = s.observer.aperture_pixels(x) * static_cast<double>(channels.size());
   out.dark = s.instrument.detector.dark_e_s * pixels;
   out.fixed = pixels * fixed_variance(s.instrument.detector);
-  out.peak = out.whole * largest * lattice * s.observer.peak_share(x);
+  const double sky_of_pixel =
+      zero * std::pow(10, -0.4 * s.request.sky_mag) * std::pow(s.observer.pixel_arcsec(), 2);
+  out.peak = (out.whole * s.observer.peak_share(x) + sky_of_pixel) * largest * lattice +
+             s.instrument.detector.dark_e_s;
   out.scintillation = s.observer.scintillation_sd(1, x, 0);
   out.fills_s = saturation_e(s.instrument.detector) / out.peak;
   return out;

@@ -13,8 +13,11 @@ std::string note_of(const MeasurementNotes &from, const char *key, const char *f
   return found == from.notes.end() || found->second.empty() ? fallback : found->second;
 }
 
+/// Neither what has none nor what was hardly seen: a TDM has no place for an error, and of light in
+/// the noise only what chance brightens would have a magnitude.
 bool has_magnitude(const Table &stokes, std::size_t row) {
-  return std::isfinite(stokes.number("mag", row));
+  return std::isfinite(stokes.number("mag", row)) &&
+         stokes.text("flags", row).find("faint") == std::string::npos;
 }
 
 /// Times without the Z, which some readers of KVN do not take.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <set>
 #include <umov/core/text.h>
 #include <umov/time/earth_orientation.h>
 
@@ -100,6 +101,19 @@ Result<void> warn_of_exposures(const ObservationPlan &plan, const RecordedSink &
   return {};
 }
 
+/// Counts of two objects can be told apart by their names alone.
+Result<void> check_names(const Scenario &scenario) {
+  std::set<std::string> names;
+  for (const ScenarioObject &object : scenario.objects)
+    if (!names.insert(object.name).second)
+      return fail(ErrorCode::BadInput,
+                  fmt::format("two objects have {}: a name of its own was expected of each, by "
+                              "which their counts are told apart",
+                              object.name.empty() ? "no name" : "the name \"" + object.name + "\""),
+                  {scenario.file});
+  return {};
+}
+
 } // namespace
 
 Result<ObservationPlan> plan_observation(const Scenario &scenario, const JobOptions &options,
@@ -110,6 +124,7 @@ Result<ObservationPlan> plan_observation(const Scenario &scenario, const JobOpti
                 "umov observe also needs [observation] and an instrument: add instrument = "
                 "\"c11_imx250\" (umov instrument list has others) and [observation] exposure_s",
                 {scenario.file});
+  UMOV_TRY(check_names(scenario));
   UMOV_ASSIGN(bands, observed_bands(scenario));
   UMOV_ASSIGN(programme, Programme::make(scenario, bands.responses, diagnostics));
   warn_if_beyond_leap_seconds(scenario.time->stop, diagnostics);

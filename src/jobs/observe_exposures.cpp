@@ -19,7 +19,9 @@ public:
       return 1;
     const double kept = std::exp(-elapsed_s / time_);
     mag_ = mag_ * kept + sd_ * std::sqrt(1 - kept * kept) * draws_.normal();
-    return std::pow(10, -0.4 * mag_);
+    // Its mean is 1, as that of scintillation: magnitudes are normal, transparency is not.
+    const double of_ln = 0.4 * std::log(10.) * sd_;
+    return std::exp(-of_ln * of_ln / 2) * std::pow(10, -0.4 * mag_);
   }
 
 private:

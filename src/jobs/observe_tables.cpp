@@ -48,11 +48,13 @@ void CountsTable::add(const Exposure &e, const Recorded &r,
     exposures_.add(s_, e, plus_seconds(e.stamp, offset_s), slice);
     channel_.push_back(c.channel);
     saturated_.push_back(c.is_saturated);
+    // The object outside the frame: no count of it, which umov reduce leaves out.
+    const double none = c.row[0] > 0 ? 0 : std::nan("");
     const double axis = std::fmod(std::fmod(r.axis.degrees(), 180) + 180, 180);
     const double values[] = {c.analyser_deg,
                              e.planned.plan.state.plate_deg,
                              axis,
-                             c.counts,
+                             c.counts + none,
                              c.recorded / s_.observation.instrument.detector.gain_e_adu,
                              c.sky,
                              c.sky_err,

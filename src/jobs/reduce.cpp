@@ -320,7 +320,6 @@ void note(Table &table, const CountsFile &file) {
                           "site_lon_deg", "site_alt_m", "norad"})
     if (const auto found = file.notes.find(key); found != file.notes.end())
       table.note(key, found->second);
-  table.note("POLCCONV", "IAU");
 }
 
 } // namespace

@@ -123,7 +123,8 @@ Result<PolarimeterCalibration> calibrate_polarimeter(std::span<const StandardMea
     wz += w * z;
   }
   const double determinant = gg * ww - std::norm(gw);
-  if (std::abs(determinant) < 1e-12 * gg * ww)
+  constexpr double alike = 1e-6; // a twentieth of a degree between two angles
+  if (std::abs(determinant) < alike * gg * ww)
     return fail(ErrorCode::BadInput,
                 "all standards stand at one instrument angle: the angle of the instrument and its "
                 "own polarization cannot be told apart. Turn it, or take an unpolarized star too");

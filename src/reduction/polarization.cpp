@@ -132,14 +132,15 @@ PolarizationEstimate polarization_of(double q, double u, const LinearCovariance 
   out.p = std::hypot(q, u);
   const double phi = std::atan2(u, q), x = std::cos(phi), y = std::sin(phi);
   const double along = x * x * c[0][0] + 2 * x * y * c[0][1] + y * y * c[1][1];
-  const double across = y * y * c[0][0] - 2 * x * y * c[0][1] + x * x * c[1][1];
-  out.sd = std::sqrt(along);
+  // Of a covariance that is all but singular rounding can leave less than nothing.
+  const double across = std::max(0.0, y * y * c[0][0] - 2 * x * y * c[0][1] + x * x * c[1][1]);
+  out.sd = std::sqrt(std::max(0.0, along));
   out.across = std::sqrt(across);
   out.debiased = out.p > 0 && across > 0
                      ? out.p - across * (1 - std::exp(-out.p * out.p / across)) / (2 * out.p)
                      : out.p;
   out.angle_rad = phi < 0 ? phi / 2 + pi : phi / 2;
-  const double ratio = out.p / out.across;
+  const double ratio = out.across > 0 ? out.p / out.across : INFINITY;
   constexpr double linear_from = 4;
   out.angle_sd_rad = ratio >= linear_from ? out.across / (2 * out.p) : angle_half_width(ratio);
   return out;

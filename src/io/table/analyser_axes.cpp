@@ -115,12 +115,14 @@ Found found_in(const CountsFile &file, bool has_axis) {
     else if (has_axis)
       alone[{row.name, row.band, row.set}].push_back(group.front());
   }
-  for (const auto &[key, group] : alone)
+  for (const auto &[key, group] : alone) {
     // One analyser that never turns, before which something unnamed does.
-    if (std::ranges::any_of(group, [&](const Axis &a) {
-          return std::abs(turned_deg(a.told_deg, group.front().told_deg)) > apart_deg;
+    const double first_deg = group.front().told_deg;
+    if (std::ranges::any_of(group, [=](const Axis &a) {
+          return std::abs(turned_deg(a.told_deg, first_deg)) > apart_deg;
         }))
       out.add(group, "set");
+  }
   return out;
 }
 

@@ -188,15 +188,17 @@ Result<void> check_row(const CountRow &row, const Where &where) {
 class RowsOfATime {
 public:
   /// Whether a row is the same as one before it: a channel of its exposure, or without names of
-  /// channels the same in every number.
-  bool has_twice(const CountRow &row) {
+  /// channels or numbers of exposures the same in every number.
+  bool has_twice(const CountRow &row, bool has_exposures) {
     if (seconds_between(row.time, time_) != 0)
       seen_.clear();
     time_ = row.time;
     const auto [w0, w1, w2, w3] = row.row;
-    const auto numbers = row.channel.empty() ? std::array{row.counts, row.sky, w0, w1, w2, w3}
-                                             : std::array<double, 6>{};
-    return !seen_.insert({row.name, row.band, row.channel, row.set, row.exposure, numbers}).second;
+    const auto numbers = row.channel.empty() || !has_exposures
+                             ? std::array{row.counts, row.sky, w0, w1, w2, w3}
+                             : std::array<double, 6>{};
+    const std::int64_t exposure = has_exposures ? row.exposure : 0;
+    return !seen_.insert({row.name, row.band, row.channel, row.set, exposure, numbers}).second;
   }
 
 private:
@@ -204,6 +206,33 @@ private:
   std::set<std::tuple<std::string, std::string, std::string, std::int64_t, std::int64_t,
                       std::array<double, 6>>>
       seen_;
+};
+
+/// Numbers of exposures where a table has none: rows of one time are one, unless a channel comes
+/// again. Sequences of analysers at times of their own are several, each with its own scintillation
+/// and cloud.
+class ExposureNumbers {
+public:
+  std::int64_t next(const CountRow &row) {
+    const bool is_new =
+        seconds_between(row.time, time_) != 0 || row.name != name_ || row.band != band_ ||
+        (!row.channel.empty() && std::ranges::find(channels_, row.channel) != channels_.end());
+    if (is_new) {
+      ++number_;
+      channels_.clear();
+    }
+    time_ = row.time;
+    name_ = row.name;
+    band_ = row.band;
+    channels_.push_back(row.channel);
+    return number_;
+  }
+
+private:
+  Epoch<Utc> time_{};
+  std::string name_, band_;
+  std::vector<std::string> channels_;
+  std::int64_t number_ = -1;
 };
 
 /// Electrons are no fewer than none but for what reading does.
@@ -239,6 +268,8 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   out.notes = table.notes;
   std::size_t dropped = 0, negative = 0;
   RowsOfATime rows_of_time;
+  ExposureNumbers exposures;
+  const bool has_exposures = cells.has("exposure");
   std::vector<std::size_t> lines;
   out.rows.reserve(table.rows());
   Epoch<Utc> time{};
@@ -258,6 +289,8 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
     UMOV_ASSIGN(is_saturated, truth_in(cells, "saturated", k));
     row.is_saturated = is_saturated;
     UMOV_TRY(read_numbers(cells, k, row));
+    if (!has_exposures)
+      row.exposure = exposures.next(row);
     row.retardance_deg = retardance_in(out.notes, row.band);
     if (!std::isfinite(row.counts) || !std::isfinite(row.sky)) {
       ++dropped;
@@ -270,10 +303,10 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
                   fmt::format("times go back, from {} to {}; sort the rows by time",
                               to_iso(out.rows.back().time), to_iso(row.time)),
                   cells.where(k));
-    if (rows_of_time.has_twice(row))
+    if (rows_of_time.has_twice(row, has_exposures))
       return fail(
           ErrorCode::BadInput,
-          row.channel.empty()
+          row.channel.empty() || !has_exposures
               ? std::string("the same row a second time; take one of them out")
               : fmt::format("channel \"{}\" a second time in this exposure; take one of them "
                             "out",
