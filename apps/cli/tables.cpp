@@ -86,7 +86,7 @@ Result<void> check_apart(const std::vector<std::string> &inputs,
   namespace fs = std::filesystem;
   const auto place = [](const std::string &path) {
     std::error_code code;
-    const fs::path out = fs::weakly_canonical(path, code);
+    const fs::path out = fs::weakly_canonical(fs::absolute(path), code);
     return code ? fs::path(path) : out;
   };
   std::vector<fs::path> taken;

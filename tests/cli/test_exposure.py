@@ -184,3 +184,13 @@ def test_no_less_than_a_pixel_is_read(umov, tmp_path):
         10 ** (-0.4 * (20 - 8)) * pixel**2 / (rows["rate_whole"] / bare * inside), rel=1e-4)
     # Three pixels of 1.5 e and of rounding to .5 e, once; F^2 is 1.
     assert rows["share_read"] / rows["share_star"] == pytest.approx(3 * (1.5**2 + 0.5**2 / 12) / rows["electrons"], rel=1e-4)
+
+
+def test_the_sky_fills_pixels_too(umov, tmp_path):
+    """A sky of AB 10 a square arc second fills pixels long before a star of magnitude 20 does."""
+    def fills_s(sky):
+        return rows_of(umov, tmp_path, "--instrument", "c11_imx250", "--mag", "20", "--sky-mag", sky)[0]["saturation"]
+
+    # 2.5 magnitudes are a factor of 10; dark current, 1 e/s, is a fiftieth of the darker of these skies.
+    assert fills_s("12.5") == pytest.approx(10 * fills_s("10"), rel=0.03)
+    assert fills_s("22") > 20 * fills_s("12.5")

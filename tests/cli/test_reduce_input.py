@@ -192,3 +192,44 @@ def test_angles_that_contradict_their_rows_are_told(umov, tmp_path):
     told = re.search(r"swapped.ecsv:(\d+): analyser_deg = (\d+), but w1 = \S+, w2 = \S+ are those of an analyser at (\d+) deg", done.err)
     assert done.code == 0 and told, done.err
     assert int(told[1]) == head + 2 and {told[2], told[3]} == {"45", "90"}
+
+
+FIELD_TURNS = """time_utc,set_id,band,counts,sky,sky_err,var_read,w0,w1,w2,w3,exposure
+2018-01-21T05:00:00Z,1,nm:550,399992,0,0,36,0.5,0.137818678,0.480630848,0,0
+2018-01-21T05:00:00Z,1,nm:550,400243,0,0,36,0.5,-0.137818678,-0.480630848,0,0
+2018-01-21T05:00:05Z,1,nm:550,398822,0,0,36,0.5,0.137818124,0.480631007,0,1
+2018-01-21T05:00:05Z,1,nm:550,401601,0,0,36,0.5,-0.137818124,-0.480631007,0,1
+"""
+
+
+def test_a_field_that_hardly_turns_tells_no_second_parameter(umov, tmp_path):
+    """One axis of the analyser, and a second of arc: q of 1165 came of it, or a crash."""
+    (tmp_path / "c.csv").write_text(FIELD_TURNS)
+    for more in ((), ("--transparency-sd", "0.1")):
+        done = umov("reduce", "c.csv", *more)
+        assert done.code == 3 and "cannot tell Q, U" in done.err, done.err
+
+
+def test_analysers_at_times_of_their_own_share_no_cloud(umov, tmp_path):
+    """A table without a column `exposure` has one for each time: errors are those of a table that numbers them."""
+    rows = [(k, axis) for k, axis in enumerate(((1, 0), (0, 1), (-1, 0), (0, -1)))]
+    head = "time_utc,set_id,band,counts,sky,sky_err,var_read,w0,w1,w2,w3"
+    text = [f"2018-01-21T05:00:0{k}Z,1,nm:550,100000,0,0,25,0.5,{q / 2},{u / 2},0" for k, (q, u) in rows]
+    (tmp_path / "told.csv").write_text("\n".join([head + ",exposure", *(f"{row},{k}" for k, row in enumerate(text))]) + "\n")
+    (tmp_path / "untold.csv").write_text("\n".join([head, *text]) + "\n")
+    errors = []
+    for name in ("told", "untold"):
+        assert umov("reduce", f"{name}.csv", "--transparency-sd", "0.1", "-o", f"{name}_s.csv").code == 0
+        errors.append(math.sqrt(float(read_csv(tmp_path / f"{name}_s.csv")[0]["cov_qq"])))
+    assert errors[0] == errors[1]
+    # q is the difference of two exposures over their sum: .1/sqrt 2 of it, but for photons (.003).
+    assert errors[1] == pytest.approx(0.1 / math.sqrt(2), rel=0.08)
+
+
+def test_no_output_is_an_input(umov, calibrated):
+    before = (calibrated / "stars.csv").read_bytes()
+    for words in (("reduce", "stars.csv", "-o", "stars.csv"), ("reduce", "stars.csv", "-o", "a.csv", "--score", "./a.csv"),
+                  ("calibrate", "stars.csv", "--standards", "known.csv", "-o", "known.csv")):
+        done = umov(*words)
+        assert done.code == 2 and "another name was expected" in done.err, done.err
+    assert (calibrated / "stars.csv").read_bytes() == before and not (calibrated / "a.csv").exists()
