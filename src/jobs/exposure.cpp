@@ -184,12 +184,12 @@ Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
   const double lattice = s.instrument.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
   const double arcsec2 =
       s.observer.aperture_pixels(x) * lattice * std::pow(s.observer.pixel_arcsec(), 2);
-  out.sky = zero * std::pow(10, -0.4 * s.request.sky_mag) * arcsec2 * through;
+  const double sky_arcsec2 = zero * std::pow(10, -0.4 * s.request.sky_mag);
+  out.sky = sky_arcsec2 * arcsec2 * through;
   const double pixels = s.observer.aperture_pixels(x) * static_cast<double>(channels.size());
   out.dark = s.instrument.detector.dark_e_s * pixels;
   out.fixed = pixels * fixed_variance(s.instrument.detector);
-  const double sky_of_pixel =
-      zero * std::pow(10, -0.4 * s.request.sky_mag) * std::pow(s.observer.pixel_arcsec(), 2);
+  const double sky_of_pixel = sky_arcsec2 * std::pow(s.observer.pixel_arcsec(), 2);
   out.peak = (out.whole * s.observer.peak_share(x) + sky_of_pixel) * largest * lattice +
              s.instrument.detector.dark_e_s;
   out.scintillation = s.observer.scintillation_sd(1, x, 0);

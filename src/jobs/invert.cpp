@@ -35,11 +35,8 @@ Result<Inversion> pose_answer(const Scenario &scenario, const InvertRequest &req
                                   search_options(scenario, request, options, monitor)));
   const auto symmetries = find_symmetries(light, scenario.seed);
   Judgement judgement = judge(answer, model, request.errors, symmetries);
-  if (!answer.modes.empty() && judgement.verdict != Verdict::NoFit) {
-    UMOV_ASSIGN(between, share_between(scenario, ready, observed.curve,
-                                       answer.modes.front().turning, options, monitor));
-    doubt_direct_light(between, request.errors.floor, judgement);
-  }
+  UMOV_TRY(judge_direct_light(scenario, request, ready, observed.curve, answer, options, monitor,
+                              judgement));
   Inversion out;
   out.verdict = judgement.verdict;
   out.summary = summary_of(answer, judgement);

@@ -81,4 +81,16 @@ void doubt_direct_light(std::optional<double> share, double floor, Judgement &ou
     out.verdict = Verdict::Undetermined;
 }
 
+Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &request,
+                                const SearchedLight &ready, const ObservedCurve &curve,
+                                const PoseAnswer &answer, const JobOptions &options,
+                                const Monitor &monitor, Judgement &out) {
+  if (answer.modes.empty() || out.verdict == Verdict::NoFit)
+    return {};
+  UMOV_ASSIGN(
+      share, share_between(scenario, ready, curve, answer.modes.front().turning, options, monitor));
+  doubt_direct_light(share, request.errors.floor, out);
+  return {};
+}
+
 } // namespace umov::jobs

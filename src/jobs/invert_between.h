@@ -17,5 +17,10 @@ Result<std::optional<double>> share_between(const Scenario &scenario, const Sear
 /// Says so where it is more than the floor that was asked for, and takes a verdict back where it is
 /// far more: what grows with the misfit covers errors of each row, not one that all share.
 void doubt_direct_light(std::optional<double> share, double floor, Judgement &out);
+/// Both, of the best attitude of an answer that fits.
+Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &request,
+                                const SearchedLight &ready, const ObservedCurve &curve,
+                                const PoseAnswer &answer, const JobOptions &options,
+                                const Monitor &monitor, Judgement &out);
 
 } // namespace umov::jobs

@@ -167,11 +167,8 @@ Result<Inversion> invert_spin(const Scenario &scenario, const InvertRequest &req
   keep_masks(ready);
   const CurveModel model(curve, searched, ready.observed.column, asked.parts);
   Judgement judgement = judge(answer.pose, model, request.errors, symmetries);
-  if (!answer.pose.modes.empty() && judgement.verdict != Verdict::NoFit) {
-    UMOV_ASSIGN(between, share_between(scenario, ready, curve, answer.pose.modes.front().turning,
-                                       options, monitor));
-    doubt_direct_light(between, request.errors.floor, judgement);
-  }
+  UMOV_TRY(judge_direct_light(scenario, request, ready, curve, answer.pose, options, monitor,
+                              judgement));
   const CurveModel coarse(curve, asked.coarse, ready.observed.column);
   const CurveModel first(curve, first_lighting(ready, options.threads, monitor),
                          ready.observed.column, asked.parts);
