@@ -122,10 +122,12 @@ SET_UP = {
 @pytest.mark.parametrize("name", SET_UP)
 def test_what_takes_long_to_make_ready_may_be_stopped(name, large):
     """At any time of it: a large mesh is read, cleaned, cut and joined for seconds before the first pose."""
-    begun = time.process_time()
-    SET_UP[name](large)
-    whole_s = time.process_time() - begun
-    for part in (0.1, 0.25, 0.4, 0.55, 0.7):  # of a first time, which takes longer than those after it
+    def processor_s():
+        begun = time.process_time()
+        SET_UP[name](large)
+        return time.process_time() - begun
+    whole_s = min(processor_s(), processor_s())  # on a busy machine the same work takes up to 1.5 times as long
+    for part in (0.1, 0.25, 0.4, 0.55):
         with ctrl_c(part * whole_s) as late:
             with pytest.raises(KeyboardInterrupt):
                 SET_UP[name](large)

@@ -170,7 +170,7 @@ WRONG = {
     "time before calendars": (lambda e: umov.propagate(DATA / "tle/hst.tle", Time(1e9, format="jd")), "is none in UTC .*; one of our calendar"),
     "number for others": (lambda e: umov.Sums(e.scenario, others=3), "others is 3; a list of scenes"),
     "name for others": (lambda e: umov.Sums(e.scenario, others="abc"), "others is 'abc'; a list of scenes"),
-    "table for a material": (lambda e: umov.Material({"index": 1}), "name is a dict; the name of a file"),
+    "table for a material": (lambda e: umov.Material({"index": 1}), "name is a dict; the name of a material or of its file"),
     "nothing for a band": (lambda e: umov.band(None), "name is None; a text"),
     "path of a number": (lambda e: umov.Engine(_PathOfANumber()), "a _PathOfANumber that names no file"),
     "empty path": (lambda e: umov.Scenario(""), 'the path of a scenario is ""; the name of a file'),
