@@ -171,6 +171,10 @@ std::string json_of(const IdentityWords &words, const std::string &library) {
   out["objects"] = words.names.size();
   out["library_sha256"] = library;
   out["is_cut"] = answer.is_cut;
+  if (words.light_between)
+    out["light_between"] = *words.light_between;
+  else
+    out["light_between"] = nullptr;
   out["by"] = name_of(best_of(words).by);
   ordered_json rows = ordered_json::array();
   for (const std::size_t k : answer.order)

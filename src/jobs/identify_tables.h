@@ -13,6 +13,8 @@ struct IdentityWords {
   const IdentityAnswer *answer = nullptr;
   Verdict verdict = Verdict::Undetermined;
   std::vector<std::string> notes;
+  /// What the own light of the best leaves out, if it was asked.
+  std::optional<double> light_between = {};
 };
 
 /// The name of the row that stands for none of the library.

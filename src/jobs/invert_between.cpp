@@ -67,18 +67,18 @@ Result<std::optional<double>> share_between(const Scenario &scenario, const Sear
   return *middle;
 }
 
-void doubt_direct_light(std::optional<double> share, double floor, Judgement &out) {
+void doubt_direct_light(std::optional<double> share, double floor, Verdict &verdict,
+                        std::vector<std::string> &notes) {
   constexpr double much = 2.5, least = 0.005; // as of what the best attitude misses
-  out.light_between = share;
   const double allowed = std::max(floor, least);
   if (!share || !(*share > allowed))
     return;
-  out.notes.push_back(fmt::format(
+  notes.push_back(fmt::format(
       "light from surface to surface, which this fit leaves out, would be {:.2g} of I in the best "
       "attitude (in the median): more than --floor {:.2g}, so the set may lie beside the truth",
       *share, floor));
-  if (*share > much * allowed && out.verdict == Verdict::Determined)
-    out.verdict = Verdict::Undetermined;
+  if (*share > much * allowed && verdict == Verdict::Determined)
+    verdict = Verdict::Undetermined;
 }
 
 Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &request,
@@ -89,7 +89,8 @@ Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &r
     return {};
   UMOV_ASSIGN(
       share, share_between(scenario, ready, curve, answer.modes.front().turning, options, monitor));
-  doubt_direct_light(share, request.errors.floor, out);
+  out.light_between = share;
+  doubt_direct_light(share, request.errors.floor, out.verdict, out.notes);
   return {};
 }
 

@@ -16,7 +16,8 @@ Result<std::optional<double>> share_between(const Scenario &scenario, const Sear
                                             const JobOptions &options, const Monitor &monitor);
 /// Says so where it is more than the floor that was asked for, and takes a verdict back where it is
 /// far more: what grows with the misfit covers errors of each row, not one that all share.
-void doubt_direct_light(std::optional<double> share, double floor, Judgement &out);
+void doubt_direct_light(std::optional<double> share, double floor, Verdict &verdict,
+                        std::vector<std::string> &notes);
 /// Both, of the best attitude of an answer that fits.
 Result<void> judge_direct_light(const Scenario &scenario, const InvertRequest &request,
                                 const SearchedLight &ready, const ObservedCurve &curve,

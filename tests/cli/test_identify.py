@@ -57,6 +57,7 @@ def test_each_object_is_found_in_its_own_light(umov, scene, library, tmp_path):
         found = asked(umov, "-o", "out", "--objects", *scenarios)
         assert (found["best"], found["by"]) == (name, "model"), found
         assert found["verdict"] == "determined" and found["probability"] > 0.95
+        assert 0 < found["light_between"] < 0.02  # of a panel beside a box (docs/theory/inverse.md, 6); never asked before
         table = Table.read(tmp_path / "out/identity.ecsv")
         assert table["name"][0] == name and "none of these" in list(table["name"]) and len(table) == 5
         assert abs(sum(table["probability"]) - 1) < 1e-9

@@ -71,10 +71,9 @@ TEST_F(LightBetween, IsNothingOfABallAndNotAskedWhereTheFitHasIt) {
 
 TEST(DoubtDirectLight, TakesAVerdictBackWhereItIsFarMoreThanTheFloor) {
   const auto judged = [](std::optional<double> share, double floor, Verdict before) {
-    Judgement out;
-    out.verdict = before;
-    doubt_direct_light(share, floor, out);
-    return std::pair(out.verdict, out.notes.size());
+    std::vector<std::string> notes;
+    doubt_direct_light(share, floor, before, notes);
+    return std::pair(before, notes.size());
   };
   using enum Verdict;
   EXPECT_EQ(judged(0.01, 0.02, Determined), std::pair(Determined, std::size_t{0}));
