@@ -8,7 +8,7 @@ namespace umov::cli {
 namespace {
 
 Result<void> run_exposure(const jobs::ExposureRequest &o, bool has_width, const std::string &output,
-                          const std::string &page, const Common &common) {
+                          const std::string &page, const Common &common, Diagnostics &diagnostics) {
   if (has_width && !o.band.empty() && !o.band.starts_with("nm:"))
     return fail(ErrorCode::Usage, "--width-nm beside --band " + o.band +
                                       ": its curve says how wide it is. Leave one out");
@@ -19,6 +19,9 @@ Result<void> run_exposure(const jobs::ExposureRequest &o, bool has_width, const 
     UMOV_ASSIGN(text, jobs::exposure_page(o));
     UMOV_TRY(put(page, text));
   }
+  for (const auto &[key, text] : table.notes())
+    if (key == "warning")
+      diagnostics.warn(text);
   for (const auto &[key, text] : table.notes())
     if (key == "verdict" || key == "terms" || key == "magnitude")
       note(common, key == "magnitude" ? "magnitude " + text : text);
@@ -61,11 +64,11 @@ void add_exposure(CLI::App &app, const Exit &exit_with) {
   verb->add_option("--page", *page, "Also a page of figures: x.html");
   add_table_output(*verb, *output);
   add_common(*verb, *common, true);
-  verb->callback(finishing(exit_with, [=] {
+  verb->callback(finishing(exit_with, common, [=](Diagnostics &diagnostics) {
     o->magnitudes = *system == "Vega" ? MagnitudeSystem::Vega
                     : *system == "ST" ? MagnitudeSystem::ST
                                       : MagnitudeSystem::AB;
-    return run_exposure(*o, width->count() > 0, *output, *page, *common);
+    return run_exposure(*o, width->count() > 0, *output, *page, *common, diagnostics);
   }));
 }
 

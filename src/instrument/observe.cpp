@@ -14,9 +14,6 @@ constexpr double planck_j_s = 6.62607015e-34, light_m_s = 299792458; // exact, S
 /// Random streams of one exposure.
 enum Stream : std::uint32_t { Light = 0, Sky = 1, Air = 2 };
 
-/// Orientations that share the pixels of a detector.
-double parts_of(const Polarimeter &p) { return p.type == PolarimeterType::Mosaic ? 4 : 1; }
-
 } // namespace
 
 Result<BandResponse> narrow_band(std::string name, double nm, double width_nm) {
@@ -102,7 +99,7 @@ double BandObserver::fwhm_arcsec(double airmass) const {
 
 double BandObserver::pixels_of_circle(double radius_fwhm, double airmass) const {
   const double radius = radius_fwhm * fwhm_arcsec(airmass) / pixel_arcsec_;
-  const double parts = parts_of(instrument_.polarimeter);
+  const double parts = pixel_parts(instrument_.polarimeter);
   // No less than a pixel is read of each channel: of lenses whose pixels are wider than stars, sky
   // and reading are those of a whole one, and the ring about it is as much wider.
   const double ratio = radius_fwhm / conditions_.aperture_fwhm;
@@ -129,6 +126,13 @@ double BandObserver::mean_transmission(double airmass) const {
   double sum = 0;
   for (std::size_t k = 0; k < band_.nm.size(); ++k)
     sum += rate_[k] * transmission(band_.nm[k], conditions_.air, airmass);
+  return sum / rate_per_flux();
+}
+
+double BandObserver::port_transmission(Angle altitude, Angle azimuth) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < band_.nm.size(); ++k)
+    sum += rate_[k] * port(k, altitude, azimuth).m[0][0];
   return sum / rate_per_flux();
 }
 
@@ -170,7 +174,7 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   of_sky.pixel = Stream::Sky;
   Draws sky_draws(of_sky);
   out.sky = out.mean_sky + out.sky_err * sky_draws.normal();
-  const double lattice = parts_of(instrument_.polarimeter);
+  const double lattice = pixel_parts(instrument_.polarimeter);
   const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
   const double peak =
       star * lattice / share * peak_share(light.airmass) + out.mean_sky / out.pixels;
@@ -224,7 +228,7 @@ Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &pla
                                                          const ExposureLight &light) const {
   const double radius = conditions_.aperture_fwhm * fwhm_arcsec(light.airmass);
   const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
-  const double pixel2 = parts_of(instrument_.polarimeter) * pixel_arcsec_ * pixel_arcsec_;
+  const double pixel2 = pixel_parts(instrument_.polarimeter) * pixel_arcsec_ * pixel_arcsec_;
   UMOV_ASSIGN(out, expected(plan, light, share, std::max(pi * radius * radius, pixel2)));
   const double pixels = aperture_pixels(light.airmass);
   for (std::size_t c = 0; c < out.size(); ++c) {

@@ -116,6 +116,8 @@ bool is_simultaneous(PolarimeterType type) {
          type == PolarimeterType::Mosaic;
 }
 
+double pixel_parts(const Polarimeter &p) { return p.type == PolarimeterType::Mosaic ? 4 : 1; }
+
 std::size_t parameters_of(PolarimeterType type) {
   if (type == PolarimeterType::None)
     return 1;
@@ -172,12 +174,18 @@ ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::si
   constexpr double blind = 1 / (worst_condition * worst_condition);
   const double smallest = squares.values(0), largest = squares.values(columns - 1);
   if (!(smallest > blind * largest)) {
-    out.condition = out.weighted_variance = std::numeric_limits<double>::infinity();
+    out.condition = out.weighted_variance = out.polarized_variance =
+        std::numeric_limits<double>::infinity();
     out.missing = blind_to(squares, blind * largest);
     return out;
   }
   out.condition = std::sqrt(largest / smallest);
   out.weighted_variance = squares.values.cwiseInverse().sum();
+  const double of_intensity =
+      squares.vectors.row(0).cwiseAbs2().dot(squares.values.cwiseInverse().transpose());
+  if (parameters > 1)
+    out.polarized_variance =
+        (out.weighted_variance - of_intensity) / static_cast<double>(parameters - 1);
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <umov/core/text.h>
 #include <umov/io/passband_file.h>
 #include <umov/photometry/radiometry.h>
@@ -20,6 +21,7 @@ Result<Band> named_band(const ExposureRequest &r) {
   if (bands.size() != 1)
     return fail(ErrorCode::Usage, fmt::format("--band {} is a group of {} bands; name one, as {}",
                                               r.band, bands.size(), bands.front().name));
+  UMOV_TRY(check_air_reaches(bands, {}));
   return bands.front();
 }
 
@@ -86,10 +88,9 @@ Result<void> check(const ExposureRequest &r) {
 }
 
 /// What a frame reaches, what it fails at, and what helps, in a sentence.
-std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, bool is_sequence) {
+std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, const char *of) {
   const double reached = std::hypot(frame.sd_p, frame.flicker_p);
   const double frames = std::ceil(std::pow(reached / sd_p, 2) - 1e-9);
-  const char *of = is_sequence ? " of each analyser" : "";
   std::string out = fmt::format(
       "One exposure of {:.3g} s{}: S/N {:.3g}, error of p {:.2g}{}; ", frame.seconds, of, frame.snr,
       frame.sd_p,
@@ -130,6 +131,53 @@ Flicker flicker_of(const Polarimeter &p) {
   return has_one_beam ? Flicker::FromStateToState : Flicker::InI;
 }
 
+/// The exposure that a plate's turn is counted by; 0 where none turns by itself. Sixteen to a turn
+/// where nobody says (MOPTOP: Shrestha et al. 2020).
+double frame_of(const ExposureRequest &r, const Polarimeter &p) {
+  if (p.type != PolarimeterType::SpinningHwpDualBeam)
+    return 0;
+  return r.exposure_s > 0 ? r.exposure_s : p.period_s / 16;
+}
+
+/// Of a set, by exposures of that length where a plate turns by itself.
+std::vector<PolarimeterState> states_of(const Polarimeter &p, double frame_s) {
+  std::vector<PolarimeterState> out = usual_states(p.type);
+  // Shorter ones begin as far apart, so that a set stays one.
+  const PlateTurn turn = turn_of(p, frame_s, std::max(frame_s, p.period_s / 16));
+  out.resize(out.size() * static_cast<std::size_t>(turn.frames()), out.front());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = turn.at(out[k], k);
+  return out;
+}
+
+/// What a set of states makes of electrons, by the rows that a reduction gets of it.
+Result<void> put_states(ExposureSetup &s, const std::vector<PolarimeterState> &states) {
+  const Polarimeter &p = s.instrument.polarimeter;
+  ExposureLight light;
+  light.flux.resize(s.observer.band().nm.size());
+  light.airmass = s.airmass;
+  light.altitude = Angle::degrees(s.request.altitude_deg);
+  const double whole =
+      s.observer.rate_per_flux() * s.observer.mean_transmission(s.airmass) * s.port;
+  std::vector<StokesRow> rows;
+  for (const PolarimeterState &state : states) {
+    UMOV_TRY(s.observer.prepare(state));
+    UMOV_ASSIGN(channels, s.observer.expected({0, 1, state}, light, 1, 0));
+    for (const ChannelCounts &channel : channels)
+      rows.push_back(channel.row * (1 / whole));
+  }
+  UMOV_ASSIGN(quality, told_by(rows, p.type, "polarimeter", s.observer.band().name));
+  s.states = static_cast<double>(states.size());
+  if (parameters_of(p.type) < 3) {
+    s.factor = std::numeric_limits<double>::infinity();
+    return {};
+  }
+  // Variance of q, u in that of a row, (V/rows) over (electrons/through)^2 (docs/theory, 6).
+  const double channels = static_cast<double>(rows.size()) / s.states;
+  s.factor = s.states * quality.polarized_variance * s.through * s.through / channels;
+  return {};
+}
+
 /// How many telescopes of the instrument's size there are, in words where they are more than one.
 std::size_t lenses_of(const Polarimeter &p) {
   return p.has_separate_pupils ? p.angles_deg.size() : 1;
@@ -143,49 +191,76 @@ std::string of_one_lens(const Polarimeter &p) {
 Result<ExposureSetup> exposure_setup(const ExposureRequest &r) {
   UMOV_TRY(check(r));
   UMOV_ASSIGN(instrument, read_instrument(r.instrument));
+  if (parameters_of(instrument.polarimeter.type) < 3)
+    return fail(ErrorCode::BadInput,
+                "polarimeter.type = \"none\" counts I alone, and how long p takes is asked for; an "
+                "instrument with a polarimeter was expected (umov instrument list)",
+                {r.instrument});
   UMOV_ASSIGN(band, named_band(r));
   UMOV_ASSIGN(response, response_of(r, band));
   UMOV_ASSIGN(to_ab, ab_less(r.magnitudes, band));
-  UMOV_ASSIGN(out, exposure_setup(r, instrument, response));
-  out.to_ab = to_ab;
+  const double frame_s = frame_of(r, instrument.polarimeter);
+  auto out = exposure_setup(r, instrument, response, states_of(instrument.polarimeter, frame_s));
+  if (!out)
+    return fail(out.error().code, out.error().message, {r.instrument});
+  out->to_ab = to_ab;
+  out->frame_s = frame_s;
   return out;
 }
 
 Result<ExposureSetup> exposure_setup(const ExposureRequest &r, const Instrument &instrument,
-                                     const BandResponse &band) {
+                                     const BandResponse &band,
+                                     const std::vector<PolarimeterState> &states) {
   ObservingConditions conditions;
   conditions.air.pressure_hpa = standard_pressure_hpa(r.height_m);
   conditions.seeing = {r.seeing_arcsec, 500, 25};
   conditions.aperture_fwhm = r.aperture_fwhm;
   conditions.scintillation = ScintillationSite{r.height_m, 1.5};
-  UMOV_ASSIGN(observer, BandObserver::make(instrument, band, conditions, {}));
-  const PolarimeterType type = instrument.polarimeter.type;
-  return ExposureSetup{r,
-                       instrument,
-                       std::move(observer),
-                       excess_variance(instrument.detector),
-                       parameters_of(type) == 4 ? 3. : 2.,
-                       static_cast<double>(usual_states(type).size()),
-                       airmass(Angle::degrees(r.altitude_deg))};
+  UMOV_ASSIGN(metals, port_metals(instrument.telescope, band.nm));
+  UMOV_ASSIGN(observer, BandObserver::make(instrument, band, conditions, metals));
+  ExposureSetup out{r, instrument, std::move(observer), excess_variance(instrument.detector)};
+  out.airmass = airmass(Angle::degrees(r.altitude_deg));
+  out.port = out.observer.port_transmission(Angle::degrees(r.altitude_deg), {});
+  UMOV_ASSIGN(channels, polarimeter_channels(instrument.polarimeter, {}, band.pivot_nm));
+  out.through = 0;
+  for (const PolarimeterChannel &channel : channels)
+    out.through += channel.row[0];
+  UMOV_TRY(put_states(out, states));
+  return out;
+}
+
+ExposureSetup of_frames(const ExposureSetup &s, double seconds) {
+  const Polarimeter &p = s.instrument.polarimeter;
+  ExposureSetup out = s;
+  if (p.type != PolarimeterType::SpinningHwpDualBeam || seconds == s.frame_s)
+    return out;
+  out.frame_s = seconds;
+  if (!put_states(out, states_of(p, seconds))) // in so long an exposure the plate blurs q or u
+    out.factor = std::numeric_limits<double>::infinity();
+  return out;
+}
+
+const char *of_each_state(const ExposureSetup &s) {
+  if (s.instrument.polarimeter.type == PolarimeterType::SpinningHwpDualBeam)
+    return " of each in a quarter turn of the plate";
+  return s.states > 1 ? " of each analyser" : "";
 }
 
 Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
   const BandResponse &band = s.observer.band();
-  const double x = s.airmass, zero = band.zero_flux * s.observer.rate_per_flux();
+  const double x = s.airmass, zero = band.zero_flux * s.observer.rate_per_flux() * s.port;
   StarRates out;
   out.whole = zero * std::pow(10, -0.4 * (mag + s.to_ab)) * s.observer.mean_transmission(x);
   UMOV_ASSIGN(channels, polarimeter_channels(s.instrument.polarimeter, {}, band.pivot_nm));
-  double largest = 0, through = 0; // of unpolarized light
-  for (const PolarimeterChannel &channel : channels) {
-    through += channel.row[0];
+  double largest = 0; // of unpolarized light
+  for (const PolarimeterChannel &channel : channels)
     largest = std::max(largest, channel.row[0]);
-  }
-  out.star = out.whole * share_inside(ImageProfile::Moffat, s.request.aperture_fwhm) * through;
-  const double lattice = s.instrument.polarimeter.type == PolarimeterType::Mosaic ? 4 : 1;
+  out.star = out.whole * share_inside(ImageProfile::Moffat, s.request.aperture_fwhm) * s.through;
+  const double lattice = pixel_parts(s.instrument.polarimeter);
   const double arcsec2 =
       s.observer.aperture_pixels(x) * lattice * std::pow(s.observer.pixel_arcsec(), 2);
   const double sky_arcsec2 = zero * std::pow(10, -0.4 * s.request.sky_mag);
-  out.sky = sky_arcsec2 * arcsec2 * through;
+  out.sky = sky_arcsec2 * arcsec2 * s.through;
   const double pixels = s.observer.aperture_pixels(x) * static_cast<double>(channels.size());
   out.dark = s.instrument.detector.dark_e_s * pixels;
   out.fixed = pixels * fixed_variance(s.instrument.detector);
@@ -211,16 +286,25 @@ StarFrame star_frame(const ExposureSetup &s, const StarRates &r, double seconds)
 }
 
 double time_for(const ExposureSetup &s, const StarRates &r) {
-  // sd^2 (s t)^2 = factor (F^2 (s + b) t + v): a quadratic in t.
+  // sd^2 (s t)^2 = factor (F^2 (s + b) t + v): a quadratic in t; v of every frame where a plate
+  // turns by itself, else of each state once.
   const double a = std::pow(s.request.sd_p * r.star, 2);
-  const double b = s.factor * s.excess2 * (r.star + r.sky + r.dark), c = s.factor * r.fixed;
+  const double b = s.factor * s.excess2 * (r.star + r.sky + r.dark);
+  if (s.frame_s > 0)
+    return (b + s.factor * r.fixed / s.frame_s) / a;
+  const double c = s.factor * r.fixed * s.states;
   return (b + std::sqrt(b * b + 4 * a * c)) / (2 * a);
 }
 
+bool mistakes_changes(const Polarimeter &p) { return flicker_of(p) == Flicker::FromStateToState; }
+
 std::string exposure_verdict(const ExposureSetup &s, const StarRates &rates) {
   const double own = s.request.exposure_s;
-  const double taken = own > 0 ? own : std::min(time_for(s, rates) / s.states, rates.fills_s / 2);
-  return verdict_of(star_frame(s, rates, taken), s.request.sd_p, rates.fills_s, s.states > 1);
+  const double wanted = s.frame_s > 0 ? s.frame_s : time_for(s, rates) / s.states;
+  const double taken = own > 0 ? own : std::min(wanted, rates.fills_s / 2);
+  const ExposureSetup of_taken = of_frames(s, taken);
+  return verdict_of(star_frame(of_taken, rates, taken), s.request.sd_p, rates.fills_s,
+                    of_each_state(of_taken));
 }
 
 std::string magnitude_words(const ExposureSetup &s) {
@@ -273,12 +357,15 @@ Result<Table> exposure(const ExposureRequest &r) {
   const Polarimeter &polarimeter = setup.instrument.polarimeter;
   const BandResponse &band = setup.observer.band();
   const double t = time_for(setup, rates), f2 = setup.excess2;
-  const double all = f2 * (rates.star + rates.sky + rates.dark) * t + rates.fixed;
+  const double read = rates.fixed * (setup.frame_s > 0 ? t / setup.frame_s : setup.states);
+  const double all = f2 * (rates.star + rates.sky + rates.dark) * t + read;
   Sheet out;
   out.add("zero_point", 2.5 * std::log10(setup.observer.rate_per_flux() * band.zero_flux),
           "mag(AB)", "of 1 electron a second, no air, no polarizer" + of_one_lens(polarimeter));
   out.add("rate_whole", rates.whole, "electron / s",
-          "through the air, before polarizers" + of_one_lens(polarimeter));
+          (setup.port < 1 ? "through the air and the mirrors of the port, before polarizers"
+                          : "through the air, before polarizers") +
+              of_one_lens(polarimeter));
   out.add("rate", rates.star, "electron / s",
           fmt::format("detected in all channels, within {:g} of a star's width", r.aperture_fwhm));
   out.add("time", t, "s",
@@ -290,9 +377,11 @@ Result<Table> exposure(const ExposureRequest &r) {
   out.add("share_star", f2 * rates.star * t / all, "", "of the variance: the object's own photons");
   out.add("share_sky", f2 * rates.sky * t / all, "", "the sky's");
   out.add("share_dark", f2 * rates.dark * t / all, "", "dark current");
-  out.add("share_read", rates.fixed / all, "", "reading and rounding, once");
+  out.add("share_read", read / all, "",
+          setup.frame_s > 0 ? fmt::format("reading and rounding, every {:g} s", setup.frame_s)
+                            : "reading and rounding, once of each state");
   out.add("scintillation", rates.scintillation / std::sqrt(t), "", flicker_words(polarimeter));
-  if (flicker_of(polarimeter) == Flicker::FromStateToState && r.change_per_s > 0) {
+  if (mistakes_changes(polarimeter) && r.change_per_s > 0) {
     // Of four states that follow each other; of a balanced retarder in any order.
     const bool is_full = parameters_of(polarimeter.type) == 4;
     out.add("false_p", (is_full ? std::sqrt(15.0) / 2 : std::sqrt(2.0)) * r.change_per_s * t / 4,
@@ -305,6 +394,10 @@ Result<Table> exposure(const ExposureRequest &r) {
   table.note("magnitude", magnitude_words(setup));
   table.note("terms", exposure_terms(setup));
   table.note("verdict", exposure_verdict(setup, rates));
+  if (r.change_per_s > 0 && !mistakes_changes(polarimeter))
+    table.note("warning", fmt::format("--change-per-s {:g} says nothing to a polarimeter of type "
+                                      "\"{}\": channels of an exposure see the same change",
+                                      r.change_per_s, name_of(polarimeter.type)));
   return table;
 }
 

@@ -41,6 +41,8 @@ PlotFigure figure(const char *title, const char *x, std::string y, bool has_log_
 }
 
 const char *length_title(const ExposureSetup &s) {
+  if (s.frame_s > 0)
+    return "exposure, of each in a quarter turn of the plate [s]";
   return s.states > 1 ? "exposure of each analyser [s]" : "exposure [s]";
 }
 
@@ -51,13 +53,17 @@ Result<std::vector<PlotFigure>> frames(const ExposureSetup &s, const std::vector
   PlotFigure errors = figure("Error of p", x, "standard deviation of p", true);
   PlotFigure signal = figure("Signal to noise", x, "S/N of I, scintillation in it", true);
   std::size_t number = 0;
+  std::vector<ExposureSetup> of_length;
+  for (const double t : seconds)
+    of_length.push_back(of_frames(s, t));
   for (const double step : {-4., -2., 0., 2., 4.}) {
     const double mag = s.request.mag + step;
     UMOV_ASSIGN(rates, star_rates(s, mag));
     errors.lines.push_back(line(fmt::format("magnitude {:g}", mag), number));
     signal.lines.push_back(line(fmt::format("magnitude {:g}", mag), number++));
-    for (const double t : seconds) {
-      const StarFrame frame = star_frame(s, rates, t);
+    for (std::size_t k = 0; k < seconds.size(); ++k) {
+      const double t = seconds[k];
+      const StarFrame frame = star_frame(of_length[k], rates, t);
       const bool is_shown = frame.full < 1 && frame.sd_p < 1; // p is never above 1
       errors.lines.back().x.push_back(t);
       errors.lines.back().y.push_back(is_shown ? frame.sd_p : nowhere);
@@ -152,15 +158,16 @@ Result<std::string> exposure_page(const ExposureRequest &r) {
   const double frame_s = r.exposure_s > 0 ? r.exposure_s : std::min(t, full);
   figures.push_back(growth(setup, rates, frame_s));
   std::vector<std::string> notes{exposure_verdict(setup, rates) + "."};
-  notes.push_back(fmt::format(
-      "{} in {}: magnitude {} at {:g} deg, site {:g} m high, a star {:g} "
-      "arcsec wide at the zenith, sky of {:g} mag/arcsec2 (AB). Lines end "
-      "where the brightest pixel is full. {}{}.",
-      r.instrument, setup.observer.band().name, magnitude_words(setup), r.altitude_deg, r.height_m,
-      r.seeing_arcsec, r.sky_mag, exposure_terms(setup),
-      setup.states > 1 ? "; what the object changes from one analyser to the next comes on top "
-                         "(--change-per-s)"
-                       : ""));
+  notes.push_back(
+      fmt::format("{} in {}: magnitude {} at {:g} deg, site {:g} m high, a star {:g} "
+                  "arcsec wide at the zenith, sky of {:g} mag/arcsec2 (AB). Lines end "
+                  "where the brightest pixel is full. {}{}.",
+                  r.instrument, setup.observer.band().name, magnitude_words(setup), r.altitude_deg,
+                  r.height_m, r.seeing_arcsec, r.sky_mag, exposure_terms(setup),
+                  mistakes_changes(setup.instrument.polarimeter)
+                      ? "; what the object changes from one analyser to the next comes on top "
+                        "(--change-per-s)"
+                      : ""));
   notes.push_back(
       fmt::format("The growth curve is of Moffat's profile, in frames of {:.3g} s.", frame_s));
   return make_answer_page(fmt::format("How long to expose: {}", r.instrument), figures, notes);

@@ -12,16 +12,29 @@ struct ExposureSetup {
   Instrument instrument;
   BandObserver observer;
   double excess2 = 1; ///< of the detector
-  double factor = 2;  ///< sd of p is sqrt(factor/N): 3 where all four parameters are told
+  /// sd of q, u (and v) is sqrt(factor/N) of N electrons: 2 of ideal analysers, 3 where all four
+  /// parameters are told as well as can be, infinite where they are not told.
+  double factor = 2;
   double states = 1;  ///< exposures one after the other, until p is known at all
+  double through = 1; ///< of unpolarized light, all channels of an exposure together
+  double port = 1;    ///< of it behind the mirrors of the port
+  double frame_s = 0; ///< of a plate that turns by itself: the exposure that `factor` is of
   double airmass = 1;
   double to_ab = 0; ///< added to magnitudes of the request's system
 };
 /// Usage or BadInput for what cannot be meant.
 Result<ExposureSetup> exposure_setup(const ExposureRequest &request);
-/// Of an instrument and a band that were read already; the request's own are not looked at.
+/// Of an instrument and a band that were read already, with the states of a set; the request's own
+/// are not looked at. BadInput where the states cannot tell what the type is made for.
 Result<ExposureSetup> exposure_setup(const ExposureRequest &request, const Instrument &instrument,
-                                     const BandResponse &band);
+                                     const BandResponse &band,
+                                     const std::vector<PolarimeterState> &states);
+/// The same with exposures of another length, in which a plate that turns by itself turns further.
+ExposureSetup of_frames(const ExposureSetup &setup, double seconds);
+/// One exposure, as its words go on: of each analyser, or of each part of a turn.
+const char *of_each_state(const ExposureSetup &setup);
+/// What changes from one exposure of a set to the next is taken for polarization.
+bool mistakes_changes(const Polarimeter &polarimeter);
 
 /// Rates of one instrument on one star [1/s], all channels together.
 struct StarRates {

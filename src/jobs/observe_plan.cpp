@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <umov/core/text.h>
+#include <umov/io/index_file.h>
 #include <umov/io/passband_file.h>
 
 namespace umov::jobs {
@@ -29,6 +30,73 @@ std::vector<PolarimeterState> usual_states(PolarimeterType type) {
   default:
     return {{}};
   }
+}
+
+PlateTurn turn_of(const Polarimeter &p, double exposure_s, double cadence_s) {
+  if (p.type != PolarimeterType::SpinningHwpDualBeam)
+    return {};
+  return {360 * cadence_s / p.period_s, 360 * exposure_s / p.period_s};
+}
+
+PolarimeterState PlateTurn::at(PolarimeterState start, std::size_t k) const {
+  if (!(per_exposure > 0))
+    return start;
+  start.plate_deg += std::fmod(per_cadence * static_cast<double>(k) + per_exposure / 2, 360);
+  start.plate_turn_deg = per_exposure;
+  return start;
+}
+
+double PlateTurn::frames() const {
+  return per_cadence > 0 ? std::max(2.0, std::round(90 / per_cadence)) : 1;
+}
+
+namespace {
+
+/// What helps where rows do not tell a Stokes parameter.
+const char *mend_of(PolarimeterType type) {
+  if (type == PolarimeterType::SpinningHwpDualBeam)
+    return "shorten the exposures, or check polarimeter.period_s, retardance_deg and extinction";
+  return "give other angles, or check polarimeter.extinction and retardance_deg";
+}
+
+} // namespace
+
+Result<ModulationQuality> told_by(const std::vector<StokesRow> &rows, PolarimeterType type,
+                                  const std::string &key, const std::string &band) {
+  const std::size_t parameters = parameters_of(type);
+  const ModulationQuality quality = modulation_quality(rows, parameters);
+  if (parameters < 3 || std::isfinite(quality.condition))
+    return quality;
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("{} with {} in band \"{}\" cannot tell {}{} (condition number {:.3g}); {}", key,
+                  counted(rows.size(), "row"), band, quality.missing,
+                  quality.missing.size() > 1 ? " apart" : "", quality.condition,
+                  rows.size() < parameters ? fmt::format("{} or more are needed", parameters)
+                                           : mend_of(type)));
+}
+
+namespace {
+
+/// Of a mirror of the port.
+const std::string &metal_of(const Telescope &telescope, std::size_t mirror) {
+  const bool is_own =
+      telescope.port == TelescopePort::Train && !telescope.train.mirrors[mirror].index.empty();
+  return is_own ? telescope.train.mirrors[mirror].index : telescope.mirror;
+}
+
+} // namespace
+
+Result<std::vector<std::complex<double>>> port_metals(const Telescope &telescope,
+                                                      const std::vector<double> &nm) {
+  std::vector<std::complex<double>> out;
+  for (const double one : nm)
+    for (std::size_t m = 0; m < port_mirrors(telescope); ++m) {
+      UMOV_ASSIGN(index, find_index(metal_of(telescope, m)));
+      UMOV_ASSIGN(value, index_at(index, Wavelength::nm(one)));
+      out.push_back(value);
+    }
+  return out;
 }
 
 namespace {
@@ -70,6 +138,8 @@ Result<ObservedBands> observed_bands(const Scenario &scenario) {
       return fail(own.error().code, own.error().message + " (named in observation.bands)",
                   own.error().where.file.empty() ? Where{scenario.file} : own.error().where);
     bands = std::move(*own);
+    if (scenario.air)
+      UMOV_TRY(check_air_reaches(bands, scenario.place("observation.bands")));
   }
   ObservedBands out;
   for (const Band &band : bands) {
@@ -115,9 +185,8 @@ Result<Programme> Programme::make(const Scenario &scenario, const std::vector<Ba
     for (const PolarimeterState &state : usual_states(p.type))
       steps.push_back({state, ""});
   if (p.type == PolarimeterType::SpinningHwpDualBeam) {
-    out.turn_per_cadence_ = 360 * o.cadence_s / p.period_s;
-    out.turn_per_exposure_ = 360 * o.exposure_s / p.period_s;
-    const double frames = 90 / out.turn_per_cadence_;
+    out.turn_ = turn_of(p, o.exposure_s, o.cadence_s);
+    const double frames = 90 / out.turn_.per_cadence;
     constexpr double most = 10'000;
     if (!(frames <= most))
       return fail(ErrorCode::BadInput,
@@ -125,8 +194,7 @@ Result<Programme> Programme::make(const Scenario &scenario, const std::vector<Ba
                               "turn at observation.cadence_s = {}; {} is the limit",
                               p.period_s, frames, o.cadence_s, most),
                   scenario.place("polarimeter.period_s"));
-    const auto whole = static_cast<std::size_t>(std::max(2.0, std::round(frames)));
-    steps.resize(whole, steps.front());
+    steps.resize(static_cast<std::size_t>(out.turn_.frames()), steps.front());
   }
   std::vector<std::string> names;
   names.reserve(bands.size());
@@ -156,16 +224,13 @@ Result<Programme> Programme::make(const Scenario &scenario, const std::vector<Ba
 Result<void> Programme::check(const Scenario &scenario, const std::vector<BandResponse> &bands,
                               Diagnostics &diagnostics) const {
   const Polarimeter &p = scenario.observation->instrument.polarimeter;
-  const std::size_t parameters = parameters_of(p.type);
   // Angles of what has all channels at once are those of its analysers.
   const std::string key =
       p.type == PolarimeterType::FourCamera ? "polarimeter.angles_deg" : "observation.sequence";
   for (std::size_t b = 0; b < bands.size(); ++b) {
     std::vector<StokesRow> rows;
-    for (std::size_t k = 0; k < steps_.size(); ++k) {
-      if (steps_[k].band != b)
-        continue;
-      UMOV_ASSIGN(channels, polarimeter_channels(p, at(k).plan.state, bands[b].pivot_nm));
+    for (const PolarimeterState &state : states(b)) {
+      UMOV_ASSIGN(channels, polarimeter_channels(p, state, bands[b].pivot_nm));
       for (const PolarimeterChannel &channel : channels)
         rows.push_back(channel.row);
     }
@@ -175,23 +240,13 @@ Result<void> Programme::check(const Scenario &scenario, const std::vector<BandRe
                               "it out of observation.bands",
                               bands[b].name),
                   scenario.place("observation.sequence"));
-    if (parameters < 3)
-      continue;
-    const ModulationQuality quality = modulation_quality(rows, parameters);
-    if (!std::isfinite(quality.condition))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} with {} in band \"{}\" cannot tell {}{} (condition number "
-                              "{:.3g}); {}",
-                              key, counted(rows.size(), "row"), bands[b].name, quality.missing,
-                              quality.missing.size() > 1 ? " apart" : "", quality.condition,
-                              rows.size() < parameters
-                                  ? fmt::format("{} or more are needed", parameters)
-                                  : "give other angles"),
-                  scenario.place(key));
-    if (constexpr double poor = 10; quality.condition > poor)
+    const auto quality = told_by(rows, p.type, key, bands[b].name);
+    if (!quality)
+      return fail(quality.error().code, quality.error().message, scenario.place(key));
+    if (constexpr double poor = 10; parameters_of(p.type) >= 3 && quality->condition > poor)
       diagnostics.warn(fmt::format("{}: the states tell the Stokes parameters badly (condition "
                                    "number {:.3g}, 1.4 to 1.7 is good): their errors will be large",
-                                   bands[b].name, quality.condition),
+                                   bands[b].name, quality->condition),
                        scenario.place(key));
   }
   return {};
@@ -199,13 +254,16 @@ Result<void> Programme::check(const Scenario &scenario, const std::vector<BandRe
 
 PlannedExposure Programme::at(std::size_t k) const {
   const Step &step = steps_[k % steps_.size()];
-  PlannedExposure out{
-      {static_cast<std::uint32_t>(k), exposure_s_, step.state}, step.band, k / set_size_};
-  if (turn_per_exposure_ > 0) {
-    const double middle = turn_per_cadence_ * static_cast<double>(k) + turn_per_exposure_ / 2;
-    out.plan.state.plate_deg += std::fmod(middle, 360);
-    out.plan.state.plate_turn_deg = turn_per_exposure_;
-  }
+  return {{static_cast<std::uint32_t>(k), exposure_s_, turn_.at(step.state, k)},
+          step.band,
+          k / set_size_};
+}
+
+std::vector<PolarimeterState> Programme::states(std::size_t band) const {
+  std::vector<PolarimeterState> out;
+  for (std::size_t k = 0; k < steps_.size(); ++k)
+    if (steps_[k].band == band)
+      out.push_back(turn_.at(steps_[k].state, k));
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Private: which exposures are taken, with what, and in which bands.
 
+#include <complex>
 #include <umov/core/diagnostics.h>
 #include <umov/io/scenario.h>
 #include <umov/optics/band_grid.h>
@@ -9,6 +10,22 @@ namespace umov::jobs {
 
 /// States that a polarimeter of this type goes through where nothing else is said.
 std::vector<PolarimeterState> usual_states(PolarimeterType type);
+
+/// How far a plate that turns by itself does so [deg]; 0 of all others.
+struct PlateTurn {
+  double per_cadence = 0, per_exposure = 0;
+  /// Exposure number k, begun at `start`.
+  [[nodiscard]] PolarimeterState at(PolarimeterState start, std::size_t k) const;
+  /// Exposures of a quarter turn, after which the modulation comes again; 1 where nothing turns.
+  [[nodiscard]] double frames() const;
+};
+/// Of exposures that begin every `cadence_s`.
+PlateTurn turn_of(const Polarimeter &polarimeter, double exposure_s, double cadence_s);
+
+/// How well the rows of a set in a band tell what the polarimeter is made for. BadInput, in words
+/// that begin with `key`, where they do not.
+Result<ModulationQuality> told_by(const std::vector<StokesRow> &rows, PolarimeterType type,
+                                  const std::string &key, const std::string &band);
 
 /// Bands, and what the instrument makes of each.
 struct ObservedBands {
@@ -20,6 +37,11 @@ struct ObservedBands {
 /// Those of the observation, else of the scenario. BadInput for one without a zero in the
 /// scenario's system of magnitudes.
 Result<ObservedBands> observed_bands(const Scenario &scenario);
+
+/// Refractive indices of the port's mirrors at each of the wavelengths, as `BandObserver` takes
+/// them.
+Result<std::vector<std::complex<double>>> port_metals(const Telescope &telescope,
+                                                      const std::vector<double> &nm);
 
 /// A band at the wavelengths of a grid, of which it is number `b`.
 BandResponse at_nodes(BandResponse response, const BandGrid &grid, std::size_t b);
@@ -39,6 +61,8 @@ public:
                                 Diagnostics &diagnostics);
   /// Exposure k.
   [[nodiscard]] PlannedExposure at(std::size_t k) const;
+  /// Of the first set, in one band.
+  [[nodiscard]] std::vector<PolarimeterState> states(std::size_t band) const;
 
 private:
   [[nodiscard]] Result<void> check(const Scenario &scenario, const std::vector<BandResponse> &bands,
@@ -48,7 +72,8 @@ private:
     std::size_t band;
   };
   std::vector<Step> steps_;
-  double exposure_s_ = 1, turn_per_exposure_ = 0, turn_per_cadence_ = 0;
+  double exposure_s_ = 1;
+  PlateTurn turn_;
   std::size_t set_size_ = 1; ///< exposures of a set: a round of all states in all bands
 };
 

@@ -10,7 +10,6 @@
 #include <umov/core/constants.h>
 #include <umov/core/parallel.h>
 #include <umov/instrument/pixel_image.h>
-#include <umov/io/index_file.h>
 
 namespace umov::jobs {
 namespace {
@@ -31,13 +30,6 @@ ObservingConditions conditions_of(const Scenario &scenario, std::uint32_t object
   return out;
 }
 
-/// Of a mirror of the port.
-const std::string &metal_of(const Telescope &telescope, std::size_t mirror) {
-  const bool is_own =
-      telescope.port == TelescopePort::Train && !telescope.train.mirrors[mirror].index.empty();
-  return is_own ? telescope.train.mirrors[mirror].index : telescope.mirror;
-}
-
 /// Each band at the wavelengths of the scene's grid: they stand closer where its colours ask for
 /// it.
 Result<std::vector<BandObserver>> observers_of(const ScenarioObservation &o,
@@ -46,14 +38,7 @@ Result<std::vector<BandObserver>> observers_of(const ScenarioObservation &o,
   std::vector<BandObserver> out;
   for (std::size_t b = 0; b < bands.responses.size(); ++b) {
     const BandResponse band = at_nodes(bands.responses[b], grid, b);
-    std::vector<std::complex<double>> eta;
-    const Telescope &telescope = o.instrument.telescope;
-    for (const double nm : band.nm)
-      for (std::size_t m = 0; m < port_mirrors(telescope); ++m) {
-        UMOV_ASSIGN(index, find_index(metal_of(telescope, m)));
-        UMOV_ASSIGN(value, index_at(index, Wavelength::nm(nm)));
-        eta.push_back(value);
-      }
+    UMOV_ASSIGN(eta, port_metals(o.instrument.telescope, band.nm));
     UMOV_ASSIGN(one, BandObserver::make(o.instrument, band, conditions, eta));
     out.push_back(std::move(one));
   }

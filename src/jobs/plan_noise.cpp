@@ -1,5 +1,6 @@
 #include "jobs/plan_noise.h"
 
+#include "core/median.h"
 #include "jobs/exposure_rates.h"
 #include "jobs/observe_plan.h"
 
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/photometry/radiometry.h>
+#include <utility>
 
 namespace umov::jobs {
 namespace {
@@ -26,18 +28,14 @@ Result<std::vector<double>> irradiances(const Scenario &scenario, const PlannedL
 }
 
 /// Median irradiance of a band over all alternatives, of what is lit.
-double median_of(const PlannedLight &light, const std::vector<double> &per_intensity,
-                 std::size_t band) {
+double median_irradiance(const PlannedLight &light, const std::vector<double> &per_intensity,
+                         std::size_t band) {
   std::vector<double> lit;
   for (const Alternative &a : light.alternatives)
     for (std::size_t k = band; k < per_intensity.size(); k += light.bands)
       if (a.light.i[k] > 0)
         lit.push_back(a.light.i[k] * per_intensity[k]);
-  if (lit.empty())
-    return 0;
-  const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2);
-  std::nth_element(lit.begin(), middle, lit.end());
-  return *middle;
+  return lit.empty() ? 0 : median_of(std::move(lit));
 }
 
 /// Photon noise of a stated size: an ideal polarimeter gives I at the full rate, q and u at half.
@@ -47,7 +45,7 @@ PlannedErrors stated(const PlannedLight &light, const std::vector<double> &per_i
   out.text = fmt::format("photon noise, S/N {:g} in a row of median brightness", snr);
   std::vector<double> median;
   for (std::size_t b = 0; b < light.bands; ++b)
-    median.push_back(median_of(light, per_intensity, b));
+    median.push_back(median_irradiance(light, per_intensity, b));
   for (const Alternative &a : light.alternatives) {
     ExpectedErrors one;
     for (std::size_t k = 0; k < per_intensity.size(); ++k) {
@@ -83,6 +81,8 @@ Result<InstrumentErrors> InstrumentErrors::make(const Scenario &scenario,
   const ScenarioObservation &o = *scenario.observation;
   InstrumentErrors out;
   UMOV_ASSIGN(bands, observed_bands(scenario));
+  Diagnostics told_when_observed;
+  UMOV_ASSIGN(programme, Programme::make(scenario, bands.responses, told_when_observed));
   UMOV_ASSIGN(grid, BandGrid::make(scenario.bands));
   UMOV_ASSIGN(colours, photometric_bands(scenario.bands, MagnitudeSystem::AB));
   out.colours_ = std::move(colours);
@@ -91,7 +91,8 @@ Result<InstrumentErrors> InstrumentErrors::make(const Scenario &scenario,
   asked.sky_mag = request.sky_mag;
   asked.seeing_arcsec = o.seeing.arcsec;
   for (std::size_t b = 0; b < bands.responses.size(); ++b) {
-    UMOV_ASSIGN(setup, exposure_setup(asked, o.instrument, at_nodes(bands.responses[b], grid, b)));
+    UMOV_ASSIGN(setup, exposure_setup(asked, o.instrument, at_nodes(bands.responses[b], grid, b),
+                                      programme.states(b)));
     out.setups_.push_back(std::move(setup));
   }
   const ExposureSetup &first = out.setups_.front();

@@ -2,6 +2,7 @@
 import math
 import re
 
+import numpy as np
 import pytest
 
 from conftest import anchors
@@ -194,3 +195,95 @@ def test_the_sky_fills_pixels_too(umov, tmp_path):
     # 2.5 magnitudes are a factor of 10; dark current, 1 e/s, is a fiftieth of the darker of these skies.
     assert fills_s("12.5") == pytest.approx(10 * fills_s("10"), rel=0.03)
     assert fills_s("22") > 20 * fills_s("12.5")
+
+
+# What polarimeters really tell: numbers follow from the rows of docs/theory/observing.md, 4, by numpy.
+
+
+def instrument_file(umov, tmp_path, name, **changes):
+    """A built-in instrument with keys of [polarimeter] changed."""
+    head, body = umov("instrument", "show", name).out.split("[polarimeter]")
+    for key, value in changes.items():
+        body = re.sub(rf"^{key} = .*\n", "", body, flags=re.M) + f"{key} = {value}\n"
+    (tmp_path / "own.toml").write_text(head + "[polarimeter]" + body)
+    return ("--instrument", "own.toml", "--band", "nm:550", "--width-nm", "10")
+
+
+def plate_rows(plates_deg, retardance_deg=180.0, extinction=math.inf, turn_deg=0.0):
+    """Beams o and x behind a plate, averaged over its turn (midpoints)."""
+    d = (1 - 1 / extinction) / (1 + 1 / extinction)
+    cosine, n = math.cos(math.radians(retardance_deg)), 400
+    rows = []
+    for plate in plates_deg:
+        turned = np.radians(plate + turn_deg * ((np.arange(n) + 0.5) / n - 0.5))
+        c, s = np.cos(2 * turned), np.sin(2 * turned)
+        q, u = np.mean(c**2 + s**2 * cosine), np.mean(c * s * (1 - cosine))
+        rows += [[0.5 * (1 + 1 / extinction) * x for x in (1, sign * d * q, sign * d * u)] for sign in (1, -1)]
+    return np.array(rows)
+
+
+def electrons_for(rows, sd_p):
+    """Photons alone: a row has n/rows electrons of the n, I is n over what all rows take of it."""
+    variance = np.diag(np.linalg.inv(rows.T @ rows))
+    return len(rows) * np.mean(variance[1:]) * (np.mean(rows[:, 0]) / sd_p) ** 2
+
+
+BRIGHT = ("--mag", "0")  # what sky and reading add, 1/share_star, is taken off
+
+
+@pytest.mark.parametrize("extinction", [1.5, 300, 1e5])
+def test_poor_analysers_take_longer(umov, tmp_path, extinction):
+    """sd p = sqrt(2/N)/D, D = (E - 1)/(E + 1): 25 times the light at E = 1.5."""
+    rows, _ = rows_of(umov, tmp_path, *instrument_file(umov, tmp_path, "c11_imx250", extinction=extinction), *BRIGHT)
+    assert rows["electrons"] * rows["share_star"] == pytest.approx(2 / (0.01 * (extinction - 1) / (extinction + 1)) ** 2, rel=1e-4)
+
+
+@pytest.mark.parametrize("retardance, extinction", [(180, 1e9), (150, 1e9), (120, 30), (225, 1e9)])
+def test_retardance_of_a_plate_costs_time(umov, tmp_path, retardance, extinction):
+    ask = instrument_file(umov, tmp_path, "hwp_wollaston_1m", retardance_deg=retardance, extinction=extinction)
+    rows, _ = rows_of(umov, tmp_path, *ask, *BRIGHT)
+    expected = electrons_for(plate_rows((0, 45, 22.5, 67.5), retardance, extinction), 0.01)
+    assert rows["electrons"] * rows["share_star"] == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("per_turn", [16, 12, 40])
+def test_a_plate_that_turns_blurs(umov, tmp_path, per_turn):
+    """16 frames a turn: efficiency sin(2a)/(2a) = .9003 (Shrestha et al. 2020); longer frames are worse, shorter better."""
+    seconds = 6.4 / per_turn
+    rows, done = rows_of(umov, tmp_path, "--instrument", "moptop_2m", "--band", "Bessell.V", "--mag", "4", "--exposure-s", seconds)
+    turn = math.radians(360 / per_turn)
+    assert rows["electrons"] * rows["share_star"] == pytest.approx(2 / (0.01 * math.sin(2 * turn) / (2 * turn)) ** 2, rel=2e-3)
+    assert "of each in a quarter turn" in done.err
+
+
+def test_frames_that_are_too_long_for_a_turning_plate(umov):
+    """Two frames in a quarter turn tell u alone: observe refuses them too."""
+    done = umov("exposure", "--instrument", "moptop_2m", "--exposure-s", "0.8")
+    assert done.code == 3 and "cannot tell Q" in done.err and "shorten the exposures" in done.err, done.err
+
+
+def test_what_tells_no_p_is_refused(umov, tmp_path):
+    head = umov("instrument", "show", "c11_imx250").out.split("[polarimeter]")[0]
+    (tmp_path / "bare.toml").write_text(head)
+    done = umov("exposure", "--instrument", "bare.toml")
+    assert done.code == 3 and "counts I alone" in done.err, done.err
+    # An analyser that lets all through, and a plate of a whole wave.
+    for name, changes in (("c11_imx250", {"extinction": 1}), ("hwp_wollaston_1m", {"retardance_deg": 360})):
+        done = umov("exposure", *instrument_file(umov, tmp_path, name, **changes))
+        assert done.code == 3 and "cannot tell" in done.err and "own.toml" in done.err, done.err
+
+
+def test_mirrors_of_the_port_take_light(umov, tmp_path):
+    """Aluminium at 45 deg reflects .90 to .92 at 550 nm (Rakic 1995: n 1.01, k 6.63: .916 at normal incidence)."""
+    rows, _ = rows_of(umov, tmp_path, "--instrument", "full_stokes_3m6", "--band", "nm:550")
+    text = umov("instrument", "show", "full_stokes_3m6").out
+    (tmp_path / "straight.toml").write_text(re.sub(r"^port = .*\n", "", text, flags=re.M))
+    straight, _ = rows_of(umov, tmp_path, "--instrument", "straight.toml", "--band", "nm:550")
+    assert 0.89 < rows["rate_whole"] / straight["rate_whole"] < 0.93
+    assert "mirrors of the port" not in words_of(tmp_path)["rate_whole"]
+
+
+def test_changes_that_all_channels_see_are_told(umov):
+    for name, is_told in (("c11_imx250", True), ("hwp_wollaston_1m", True), ("usafa16", False)):
+        done = umov("exposure", "--instrument", name, "--change-per-s", "0.05")
+        assert done.code == 0 and ("--change-per-s 0.05 says nothing" in done.err) == is_told, done.err

@@ -12,6 +12,10 @@ struct Air {
   double water_cm = 0.3;         ///< precipitable water [cm]
 };
 
+/// Wavelengths between which something is known of it [nm]: where the fit of the molecules begins
+/// (Bodhaine et al. 1999) and the table of the gases ends (Bird & Riordan 1984).
+inline constexpr double air_from_nm = 250, air_to_nm = 4000;
+
 /// Pressure of the US Standard Atmosphere 1976 at a height in metres [hPa].
 double standard_pressure_hpa(double height_m);
 

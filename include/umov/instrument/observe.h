@@ -144,6 +144,8 @@ public:
   [[nodiscard]] double rate_per_flux() const;
   /// Mean transmission of the air in the band, photon-weighted.
   [[nodiscard]] double mean_transmission(double airmass) const;
+  /// Mean transmission of the port's mirrors for unpolarized light, photon-weighted; 1 without.
+  [[nodiscard]] double port_transmission(Angle altitude, Angle azimuth) const;
   /// Standard deviation of the transparency by scintillation.
   [[nodiscard]] double scintillation_sd(double exposure_s, double airmass, double rate_rad_s) const;
   /// Share of a star's light that falls on the brightest pixel.

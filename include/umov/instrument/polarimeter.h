@@ -61,6 +61,8 @@ polarimeter_channels(const Polarimeter &polarimeter, const PolarimeterState &sta
 bool is_simultaneous(PolarimeterType type);
 /// How many Stokes parameters it can tell: 1, 3 or 4.
 std::size_t parameters_of(PolarimeterType type);
+/// Orientations that share the pixels of one detector: each has as small a part of them.
+double pixel_parts(const Polarimeter &polarimeter);
 /// As written in files.
 const char *name_of(PolarimeterType type);
 /// All names, in the order of the enumeration.
@@ -70,7 +72,9 @@ const std::vector<std::string> &polarimeter_names();
 struct ModulationQuality {
   double condition = 0; ///< largest over smallest singular value; infinite where one is missing
   double weighted_variance = 0; ///< tr (W^T W)^-1 (Sabatke et al. 2000)
-  std::string missing;          ///< "Q", "U" or "V", of what cannot be told; else empty
+  /// Mean of it over all parameters but I: variance of Q, U (and V) in that of a row.
+  double polarized_variance = 0;
+  std::string missing; ///< "Q", "U" or "V", of what cannot be told; else empty
 };
 /// Of `parameters` columns of the rows.
 ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::size_t parameters);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <umov/instrument/frame_observer.h>
+#include <umov/optics/band.h>
 #include <vector>
 
 namespace umov {
@@ -46,6 +47,9 @@ struct ScenarioObservation {
   FramePhotometry photometry = FramePhotometry::Aperture;
   bool cuts_trail = false; ///< each trail is cut into a light curve of its own
 };
+
+/// BadInput for a band at which nothing is known of what air takes.
+Result<void> check_air_reaches(const std::vector<Band> &bands, const Where &where);
 
 /// Names of the instruments that are compiled in.
 std::vector<std::string> instrument_names();

@@ -167,6 +167,7 @@ TEST(Modulation, RetarderSchemes) {
   const auto balanced = at(131.8, {-51.69, -15.12, 15.12, 51.69});
   EXPECT_NEAR(balanced.condition, of("balanced_condition"), 1e-8);
   EXPECT_NEAR(balanced.weighted_variance, of("balanced_variance"), 1e-7);
+  EXPECT_NEAR(balanced.polarized_variance, 3, 1e-4); // sd(q, u, v) = sqrt(3/N), angles to .01 deg
   const auto rounded = at(132, {-51.7, -15.1, 15.1, 51.7});
   EXPECT_NEAR(rounded.condition, of("rounded_condition"), 1e-8);
   EXPECT_NEAR(rounded.weighted_variance, of("rounded_variance"), 1e-7);
@@ -182,6 +183,9 @@ TEST(Modulation, FourAnalysersAreAsGoodAsThree) {
   p.type = PolarimeterType::Mosaic;
   p.angles_deg = {90, 45, 135, 0};
   EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).condition, std::sqrt(2.), 1e-12);
+  // W^T W of n rows (1, cos, sin)/(2 n): diag(1, 1/2, 1/2)/(4 n).
+  EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).polarized_variance, 8 * 4, 1e-9);
+  EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).weighted_variance, 20 * 4, 1e-9);
   p.angles_deg = {0, 60, 120};
   EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).condition, std::sqrt(2.), 1e-12);
 }

@@ -20,6 +20,15 @@ Result<void> read_at_least(const Node &node, const char *name, double low, doubl
               node.where(name));
 }
 
+/// A key's number from 0 to 1.
+Result<void> read_share(const Node &node, const char *name, double &out) {
+  out = node.number(name, out);
+  if (out >= 0 && out <= 1)
+    return {};
+  return fail(ErrorCode::BadInput, fmt::format("{} = {}; 0 to 1 was expected", name, out),
+              node.where(name));
+}
+
 Result<void> read_seeing(const Node &air, Seeing &out) {
   out.outer_scale_m = 25;
   if (!air.has("seeing"))
@@ -69,16 +78,25 @@ Result<void> read_sky(const Node &air, SkyOptions &out) {
   out.has_moon = moon != "none";
   if (node.has("dilution")) {
     UMOV_ASSIGN(dilution, node.child("dilution"));
-    UMOV_TRY(read_at_least(dilution, "sun", 0, out.dilution_sun));
-    UMOV_TRY(read_at_least(dilution, "moon", 0, out.dilution_moon));
+    UMOV_TRY(read_share(dilution, "sun", out.dilution_sun));
+    UMOV_TRY(read_share(dilution, "moon", out.dilution_moon));
   }
-  if (node.has("mag"))
+  if (node.has("mag")) {
+    for (const char *name : {"dark_mag", "twilight", "moon", "dilution"})
+      if (node.has(name))
+        return fail(ErrorCode::BadInput,
+                    fmt::format("{} beside mag: a sky of one brightness has no other parts; leave "
+                                "one of them out",
+                                name),
+                    node.where(name));
     out.mag = node.number("mag", 0);
-  UMOV_TRY(read_at_least(node, "p", 0, out.p));
-  if (out.p > 1)
-    return fail(ErrorCode::BadInput, fmt::format("p = {}; 0 to 1 was expected", out.p),
+  } else if (node.has("p")) {
+    return fail(ErrorCode::BadInput,
+                "p without mag: the polarization of dark sky, twilight and moonlight is computed "
+                "(dilution scales it); give mag too, or leave p out",
                 node.where("p"));
-  return {};
+  }
+  return read_share(node, "p", out.p);
 }
 
 Result<SiteAir> read_clear_air(const Node &node) {
@@ -182,6 +200,13 @@ Result<void> read_frames(const Node &node, const std::string &folder, ScenarioOb
                 fmt::format("frame_px: [columns, rows], each {} to {}, was expected", least, most),
                 node.where("frame_px"));
   out.frame_px = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  const auto &has = out.instrument.detector.size_px;
+  if (has[0] > 0 && (out.frame_px[0] > has[0] || out.frame_px[1] > has[1]))
+    return fail(ErrorCode::BadInput,
+                fmt::format("frame_px = [{}, {}] on a detector of size_px = [{}, {}]: a frame is a "
+                            "part of it",
+                            out.frame_px[0], out.frame_px[1], has[0], has[1]),
+                node.where("frame_px"));
   return {};
 }
 
@@ -219,6 +244,26 @@ Result<void> read_exposures(const Node &node, const std::string &folder, Scenari
 }
 
 } // namespace
+
+} // namespace umov::scenario
+
+namespace umov {
+
+Result<void> check_air_reaches(const std::vector<Band> &bands, const Where &where) {
+  for (const Band &band : bands)
+    if (const double nm = band.wavelength.nm(); !(nm >= air_from_nm && nm <= air_to_nm))
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("band \"{}\" is at {:g} nm: what air takes is known from {:g} to {:g} "
+                      "nm. Take another band, or [observer] atmosphere = \"none\"",
+                      band.name, nm, air_from_nm, air_to_nm),
+          where);
+  return {};
+}
+
+} // namespace umov
+
+namespace umov::scenario {
 
 Result<std::optional<SiteAir>> read_site_air(const Node &top) {
   if (top.has("observer")) {
@@ -268,6 +313,11 @@ read_observation(const Node &top, const std::optional<SiteAir> &air, const std::
     out.instrument = *found;
   }
   UMOV_TRY(read_instrument_tables(top, out.instrument));
+  if (top.has("instrument_name") && top.has("instrument"))
+    return fail(ErrorCode::BadInput,
+                "instrument_name beside instrument, which has a name; leave one out",
+                top.where("instrument_name"));
+  out.instrument.name = top.text("instrument_name", out.instrument.name);
   UMOV_TRY(read_atmosphere(top, out));
   put_air(air, out);
   if (!top.has("observation"))
@@ -290,18 +340,18 @@ read_observation(const Node &top, const std::optional<SiteAir> &air, const std::
 namespace {
 
 std::string sky_toml(const SkyOptions &sky) {
+  if (sky.mag)
+    return fmt::format("sky = {{ mag = {}, p = {} }}\n", shortest(*sky.mag), shortest(sky.p));
   std::string dark;
   for (const auto &[letter, mag] : sky.dark_mag)
     dark += (dark.empty() ? "" : ", ") + letter + " = " + shortest(mag);
   std::string out =
       fmt::format("sky = {{ twilight = \"{}\", moon = \"{}\", dilution = {{ sun = "
-                  "{}, moon = {} }}, p = {}",
+                  "{}, moon = {} }}",
                   sky.has_twilight ? "patat2006" : "none", sky.has_moon ? "ks1991" : "none",
-                  shortest(sky.dilution_sun), shortest(sky.dilution_moon), shortest(sky.p));
+                  shortest(sky.dilution_sun), shortest(sky.dilution_moon));
   if (!dark.empty())
     out += ", dark_mag = { " + dark + " }";
-  if (sky.mag)
-    out += ", mag = " + shortest(*sky.mag);
   return out + " }\n";
 }
 
