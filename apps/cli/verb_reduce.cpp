@@ -119,7 +119,7 @@ void add_errors(CLI::App &verb, ReduceVerb &o) {
     std::string name = std::string("--") + priors[k].name;
     std::ranges::replace(name, '_', '-');
     verb.add_option(name, o.errors[k], priors[k].text)
-        ->check(CLI::Range(0.0, 1e3))
+        ->check(CLI::Range(0.0, 1e5))
         ->capture_default_str();
   }
 }

@@ -12,7 +12,7 @@ _SAME = frozenset((
     "accept allow-bad-checksum allow-old-elements aperture-fwhm band bands calibration candidates cells change-per-s clouds colour "
     "device drift exposure-s false-alarm floor frames gap-s grid haze-sd height-m knot-s largest-floor longest-s mag mag-max method nm "
     "norad object objects observer outliers peaks reflectance-sd samples scale-sd sd-p set shade shadow shortest-s side sky-mag sky-sd "
-    "slope-sd sort start step-s stop sun sun-alt-max-deg threads time transparency-sd up unit width-nm zero-point-sd").split())
+    "slope-sd sort start step-s stop sun sun-alt-max-deg threads time transparency-sd transparency-time-s up unit width-nm zero-point-sd").split())
 #: What several words of the command are together, and what is said of it alone.
 _TOGETHER = (("--visibility masks of signature and invert", 'method="masks" of umov.Engine and umov.Fit'),
              ("--model fourier:PERIOD", "period_s"), ("--source laser", "laser"), ("--source thermal", "temperatures"), (" or --eop", ""))

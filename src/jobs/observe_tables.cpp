@@ -19,7 +19,9 @@ void ExposureColumns::add(const Setup &setup, const Exposure &exposure, const Ep
     return setup.observation.cuts_trail ? whole * most + static_cast<std::int64_t>(slice) : whole;
   };
   constexpr int milliseconds = 3, microseconds = 6;
-  time_.push_back(to_iso(time, setup.observation.cuts_trail ? microseconds : milliseconds));
+  constexpr double fast_s = 0.01; // half a millisecond is much of it
+  const bool is_fine = setup.observation.cuts_trail || setup.observation.cadence_s < fast_s;
+  time_.push_back(to_iso(time, is_fine ? microseconds : milliseconds));
   exposure_.push_back(number(exposure.planned.plan.index));
   set_.push_back(number(exposure.planned.set));
   name_.push_back(setup.object);
@@ -190,6 +192,8 @@ void note_observation(Table &table, const Scenario &scenario, const ObservedBand
       if (const auto retardance = value_at(o.instrument.polarimeter.retardance_deg,
                                            Wavelength::nm(band.pivot_nm), "retardance_deg"))
         table.note("retardance_deg " + band.name, shortest(*retardance));
+  if (o.cloud_sd_mag > 0)
+    table.note("cloud_time_s", shortest(o.cloud_time_s));
   table.note("seed", fmt::format("{}", scenario.seed));
   table.note("site", scenario.observer->name);
   table.note("site_lat_deg", shortest(scenario.observer->latitude.degrees()));

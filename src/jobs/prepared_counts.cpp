@@ -63,8 +63,8 @@ void put_turns(CountsFile &file) {
 } // namespace
 
 bool is_prepared(const ReduceOptions &o) {
-  return o.transparency_sd > 0 || o.aperture_sd > 0 || o.photometry || o.priors.time_s > 0 ||
-         o.priors.plate_rad > 0 || o.priors.retardance_rad > 0;
+  return o.aperture_sd > 0 || o.photometry || o.priors.time_s > 0 || o.priors.plate_rad > 0 ||
+         o.priors.retardance_rad > 0;
 }
 
 Result<CountsFile> prepare(CountsFile file, const ReduceOptions &options) {
@@ -72,7 +72,7 @@ Result<CountsFile> prepare(CountsFile file, const ReduceOptions &options) {
     return fail(ErrorCode::BadInput, "an error of the plate was given, and these counts know none: "
                                      "their plate_deg is one and the same");
   for (CountRow &row : file.rows)
-    row.scintillation = std::hypot(row.scintillation, options.transparency_sd, options.aperture_sd);
+    row.scintillation = std::hypot(row.scintillation, options.aperture_sd);
   if (options.priors.time_s > 0)
     put_turns(file);
   if (options.photometry)

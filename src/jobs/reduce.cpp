@@ -1,7 +1,9 @@
+#include "core/median.h"
 #include "jobs/count_rows.h"
 #include "jobs/prepared_counts.h"
 #include "jobs/reduce_series.h"
 #include "jobs/result_folder.h"
+#include "reduction/open_air.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,62 +59,20 @@ std::size_t parameters_of(const CountsFile &file) {
   return circular > answers ? 4 : linear > answers ? 3 : 1;
 }
 
-/// Light flickers from exposure to exposure, alike in all channels of one pupil.
-void add_scintillation(std::vector<CommonError> &out, Rows rows,
-                       std::span<const ModelledDatum> data, bool has_separate_pupils) {
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const bool is_first = k == 0 || has_separate_pupils || rows[k].exposure != rows[k - 1].exposure;
-    if (!is_first || !(rows[k].scintillation > 0))
-      continue;
-    CommonError one{std::vector<double>(rows.size(), 0), rows[k].scintillation};
-    const std::size_t behind = has_separate_pupils ? k + 1 : rows.size();
-    for (std::size_t j = k; j < behind && rows[j].exposure == rows[k].exposure; ++j)
-      for (std::size_t p = 0; p < 4; ++p)
-        one.effect[j] += data[j].datum.row[p] * data[j].stokes[p];
-    out.push_back(std::move(one));
-  }
-}
-
-/// A set about the transparency that each of its exposures seems to have had, with what is left
-/// open of it.
-struct CloudySet {
-  std::vector<CountRow> rows;
-  std::vector<ChannelDatum> data;
-};
-
 /// Errors of gains act on the light that came through: a fifth of cloud times a twentieth of gain
 /// is a hundredth, and half of that in q. So rows are those behind the air t of their exposure, the
 /// most likely one for the model m; its prior is about 1 as before, which m (1 - t) brings to the
 /// counts.
-CloudySet cloudy(Rows rows, const std::vector<ChannelDatum> &data,
-                 const std::array<double, 4> &stokes, bool has_separate_pupils) {
-  CloudySet out{{rows.begin(), rows.end()}, data};
-  std::vector<double> model(data.size(), 0);
-  std::map<std::size_t, std::array<double, 2>> sums; // of m (n - b - m)/v and m^2/v
-  const auto air_of = [&](std::size_t k) {
-    return has_separate_pupils ? k : static_cast<std::size_t>(rows[k].exposure);
-  };
+std::vector<ChannelDatum> behind(std::span<const double> transparencies,
+                                 std::vector<ChannelDatum> data,
+                                 const std::array<double, 4> &stokes) {
   for (std::size_t k = 0; k < data.size(); ++k) {
-    const ChannelDatum &one = data[k];
+    const double t = transparencies[k];
     for (std::size_t p = 0; p < 4; ++p)
-      model[k] += one.row[p] * stokes[p];
-    const double m = model[k];
-    const double v = one.excess2 * std::max(1e-3, m + one.sky) + one.fixed_variance;
-    auto &[off, weight] = sums[air_of(k)];
-    off += m * (one.counts - one.sky - m) / v;
-    weight += m * m / v;
+      data[k].counts -= data[k].row[p] * stokes[p] * (1 - t);
+    data[k].row = data[k].row * t;
   }
-  for (std::size_t k = 0; k < data.size(); ++k) {
-    const auto &[off, weight] = sums[air_of(k)];
-    const double sd = rows[k].scintillation;
-    if (!(sd > 0))
-      continue;
-    const double t = std::max(.05, 1 + off / (weight + 1 / (sd * sd)));
-    out.data[k].counts -= model[k] * (1 - t);
-    out.data[k].row = data[k].row * t;
-    out.rows[k].scintillation = sd / t;
-  }
-  return out;
+  return data;
 }
 
 /// q and u of the plate's first half turn against those of its second, which should be the same.
@@ -138,19 +98,25 @@ Result<StokesFit> with_common_errors(const Set &set, const std::vector<ChannelDa
                                      Result<StokesFit> fit, std::size_t parameters,
                                      bool has_separate_pupils, const ReduceOptions &options) {
   const auto gains = gains_of(set.rows);
-  CloudySet cloud;
+  std::vector<AirPlace> places;
+  for (const CountRow &row : set.rows)
+    places.push_back(
+        {seconds_between(row.time, set.rows.front().time), row.exposure, row.scintillation});
+  const OpenAir air(places, has_separate_pupils,
+                    {options.transparency_sd, options.transparency_time_s});
+  std::vector<double> transparencies;
   // What is common moves counts as the model has them: under cloud, as that of a fit which knows
   // it.
   const int passes = options.transparency_sd > 0 ? 5 : 1;
   for (int pass = 0; pass < passes && fit; ++pass) {
     if (pass > 0)
-      cloud = cloudy(set.rows, data, fit->stokes, has_separate_pupils);
-    const auto &seen = pass > 0 ? cloud.data : data;
+      transparencies = air.transparencies(data, fit->stokes);
+    const auto seen = pass > 0 ? behind(transparencies, data, fit->stokes) : data;
     std::vector<ModelledDatum> model;
     for (std::size_t k = 0; k < data.size(); ++k)
       model.push_back(modelled(set.rows[k], seen[k], fit->stokes, gains[k]));
     std::vector<CommonError> common = common_errors(options.priors, model);
-    add_scintillation(common, pass > 0 ? cloud.rows : set.rows, model, has_separate_pupils);
+    air.add_errors(common, model, transparencies);
     if (!common.empty())
       fit = fit_stokes(seen, parameters, common);
   }
@@ -207,13 +173,6 @@ double seeming_polarization(Rows rows, const ReduceOptions &options, std::size_t
     return nan;
   const auto &[q, u, v] = fractions_of(*fit).value;
   return std::hypot(q, u, parameters == 4 ? v : 0);
-}
-
-/// The middle one; `values` is not empty.
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// A change of brightness from exposure to exposure looks like polarization where analysers follow
@@ -314,6 +273,18 @@ void warn_of_rows(const std::vector<Reduced> &reduced, Diagnostics &diagnostics)
                                  counted(bright, "set")));
 }
 
+/// With the time in which a cloud changes, as the header tells it where no option does.
+Result<ReduceOptions> with_clouds_of(const CountsFile &file, ReduceOptions options) {
+  if (options.transparency_time_s > 0 && !(options.transparency_sd > 0))
+    return fail(ErrorCode::Usage, "--transparency-time-s without --transparency-sd: how much the "
+                                  "air changes is not told. Give both, or neither");
+  const auto told = file.notes.find("cloud_time_s");
+  if (!(options.transparency_sd > 0) || options.transparency_time_s > 0 || told == file.notes.end())
+    return options;
+  options.transparency_time_s = parse_number(told->second).value_or(0); // checked by its reader
+  return options;
+}
+
 void note(Table &table, const CountsFile &file) {
   note_conventions(table);
   for (const char *key : {"pol_frame", "instrument", "polarimeter", "site", "site_lat_deg",
@@ -324,8 +295,14 @@ void note(Table &table, const CountsFile &file) {
 
 } // namespace
 
-Result<Table> reduce(const CountsFile &given, const ReduceOptions &options, const Monitor &monitor,
+Result<Table> reduce(const CountsFile &given, const ReduceOptions &asked, const Monitor &monitor,
                      Diagnostics &diagnostics) {
+  UMOV_ASSIGN(options, with_clouds_of(given, asked));
+  if (options.colour && !options.photometry)
+    return fail(ErrorCode::Usage,
+                fmt::format("--colour {} without a calibration of brightness: only its colour term "
+                            "takes it. Give --calibration with [photometry], or leave it out",
+                            *options.colour));
   CountsFile prepared;
   if (is_prepared(options)) {
     UMOV_ASSIGN(made, prepare(given, options));

@@ -34,6 +34,10 @@ std::span<const ReducePrior> reduce_priors() {
                   "How much the air lets through changes from exposure to exposure, relative: thin "
                   "cloud",
                   1, [](O &o) -> double & { return o.transparency_sd; }},
+      ReducePrior{"transparency_time_s",
+                  "Time in which such cloud changes [s]: exposures that are closer share it; 0: "
+                  "the header's cloud_time_s, else each has its own",
+                  1, [](O &o) -> double & { return o.transparency_time_s; }},
       ReducePrior{"aperture_sd",
                   "How well the share of the light in the apertures of an exposure is known, "
                   "relative",

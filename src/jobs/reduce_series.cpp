@@ -20,9 +20,10 @@ Result<SequenceFit> fit_series(Rows rows, std::size_t parameters, bool has_separ
                     has_separate_pupils ? k : static_cast<std::size_t>(rows[k].exposure),
                     rows[k].scintillation});
   const std::size_t unknowns = std::max<std::size_t>(3, parameters);
+  const CloudPrior cloud{options.transparency_sd, options.transparency_time_s};
   UMOV_ASSIGN(fit, options.knot_s > 0
-                       ? fit_spline(data, options.knot_s, unknowns)
-                       : fit_sequence(data, options.period_s, options.harmonics, unknowns));
+                       ? fit_spline(data, options.knot_s, unknowns, cloud)
+                       : fit_sequence(data, options.period_s, options.harmonics, unknowns, cloud));
   std::vector<ModelledDatum> model;
   const auto gains = gains_of(rows);
   for (std::size_t k = 0; k < rows.size(); ++k)
@@ -30,7 +31,7 @@ Result<SequenceFit> fit_series(Rows rows, std::size_t parameters, bool has_separ
   const auto common = common_errors(options.priors, model);
   if (common.empty())
     return fit;
-  return fit_sequence(data, fit, common);
+  return fit_sequence(data, fit, common, cloud);
 }
 
 /// Counts of one object in one band.

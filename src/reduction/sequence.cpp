@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace umov {
 namespace {
@@ -110,11 +111,77 @@ tl::unexpected<Error> indistinct() {
                                    "between the counts), or more analyser angles are needed");
 }
 
+/// A cloud over the moments of a series: the inverse of its covariance is a band of three.
+class Clouds {
+public:
+  Clouds(std::span<const TimedDatum> data, const CloudPrior &prior) {
+    if (!(prior.sd > 0))
+      return;
+    std::vector<double> apart; // each moment from the one before it, in times of the cloud
+    double last_s = 0;
+    for (std::size_t k = 0; k < data.size(); ++k) {
+      const bool is_new = k == 0 || (data[k].exposure != data[k - 1].exposure &&
+                                     data[k].time_s - data[k - 1].time_s > 1e-9);
+      if (is_new) {
+        constexpr double far = std::numeric_limits<double>::infinity();
+        apart.push_back(k > 0 && prior.time_s > 0 ? (data[k].time_s - last_s) / prior.time_s : far);
+        last_s = data[k].time_s;
+      }
+      moment_.push_back(static_cast<Eigen::Index>(apart.size()) - 1);
+    }
+    const auto n = static_cast<Eigen::Index>(apart.size());
+    diagonal_ = Vector::Zero(n), before_ = Vector::Zero(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double x = apart[static_cast<std::size_t>(k)], r = std::exp(-x);
+      const double precision = -1 / (prior.sd * prior.sd * std::expm1(-2 * x));
+      diagonal_(k) += precision;
+      before_(k) = -r * precision;
+      if (k > 0)
+        diagonal_(k - 1) += r * r * precision;
+    }
+  }
+
+  [[nodiscard]] bool empty() const { return moment_.empty(); }
+
+  /// (D + A K A^T)^-1 m (Woodbury) of D^-1 m and D^-1 a, a what a transparency of 1 more does to
+  /// each count.
+  [[nodiscard]] Matrix under(Matrix plain, const Matrix &m, const Vector &effect,
+                             const Vector &weighted) const {
+    Vector pivot = diagonal_;
+    Matrix right = Matrix::Zero(diagonal_.size(), m.cols());
+    for (Eigen::Index r = 0; r < m.rows(); ++r) {
+      pivot(at(r)) += effect(r) * weighted(r);
+      right.row(at(r)) += weighted(r) * m.row(r);
+    }
+    for (Eigen::Index k = 1; k < pivot.size(); ++k) {
+      const double factor = before_(k) / pivot(k - 1);
+      pivot(k) -= factor * before_(k);
+      right.row(k) -= factor * right.row(k - 1);
+    }
+    for (Eigen::Index k = pivot.size() - 1; k >= 0; --k) {
+      if (k + 1 < pivot.size())
+        right.row(k) -= before_(k + 1) * right.row(k + 1);
+      right.row(k) /= pivot(k);
+    }
+    for (Eigen::Index r = 0; r < m.rows(); ++r)
+      plain.row(r) -= weighted(r) * right.row(at(r));
+    return plain;
+  }
+
+private:
+  [[nodiscard]] Eigen::Index at(Eigen::Index row) const {
+    return moment_[static_cast<std::size_t>(row)];
+  }
+  std::vector<Eigen::Index> moment_; ///< of each count
+  Vector diagonal_, before_;         ///< before: of a moment with the one before it
+};
+
 /// Data as matrices, and what the fit needs of them.
 class SequenceSolver {
 public:
-  SequenceSolver(std::span<const TimedDatum> data, const BrightnessBasis &made_of)
-      : data_(data), made_of_(made_of) {
+  SequenceSolver(std::span<const TimedDatum> data, const BrightnessBasis &made_of,
+                 const CloudPrior &cloud)
+      : data_(data), made_of_(made_of), clouds_(data, cloud) {
     const auto n = static_cast<Eigen::Index>(data.size());
     basis_.resize(n, basis_at(made_of, data.front().time_s).size());
     counts_.resize(n), sky_.resize(n), fixed_.resize(n), excess_.resize(n);
@@ -204,13 +271,22 @@ private:
     return out;
   }
 
+  /// The same under the cloud.
+  [[nodiscard]] Matrix cloudy_inverse_times(const Vector &mean, const Matrix &m) const {
+    Matrix plain = own_inverse_times(mean, m);
+    if (clouds_.empty())
+      return plain;
+    const Vector effect = mean - sky_;
+    return clouds_.under(std::move(plain), m, effect, own_inverse_times(mean, effect).col(0));
+  }
+
   /// C^-1 times a matrix (Woodbury).
   [[nodiscard]] Matrix inverse_times(const Vector &mean, const Matrix &effects,
                                      const Matrix &m) const {
-    Matrix plain = own_inverse_times(mean, m);
+    Matrix plain = cloudy_inverse_times(mean, m);
     if (effects.cols() == 0)
       return plain;
-    const Matrix weighted = own_inverse_times(mean, effects);
+    const Matrix weighted = cloudy_inverse_times(mean, effects);
     const Matrix small = Matrix::Identity(effects.cols(), effects.cols()) +
                          algebra::transposed_product(effects, weighted);
     const algebra::SymmetricFactor factor(small);
@@ -239,6 +315,7 @@ private:
 
   std::span<const TimedDatum> data_;
   BrightnessBasis made_of_;
+  Clouds clouds_;
   double scale_ = 0, light_ = 0;
   Matrix basis_;
   Vector counts_, sky_, fixed_, excess_;
@@ -249,28 +326,29 @@ private:
 namespace {
 
 Result<SequenceFit> fit_basis(std::span<const TimedDatum> data, const BrightnessBasis &basis,
-                              Eigen::Index terms, std::size_t parameters, const char *fewer) {
+                              Eigen::Index terms, std::size_t parameters, const char *fewer,
+                              const CloudPrior &cloud) {
   const auto n = static_cast<Eigen::Index>(data.size());
   const auto fractions = static_cast<Eigen::Index>(parameters) - 1;
   if (n <= terms + fractions)
     return fail(ErrorCode::BadInput,
                 fmt::format("{} counts for {} unknowns; a longer series, or {}, is needed", n,
                             terms + fractions, fewer));
-  const SequenceSolver solver(data, basis);
+  const SequenceSolver solver(data, basis, cloud);
   return solver.solve(solver.flat(fractions), {});
 }
 
 } // namespace
 
 Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, double period_s, int harmonics,
-                                 std::size_t parameters) {
+                                 std::size_t parameters, const CloudPrior &cloud) {
   const std::string fewer = fmt::format("fewer harmonics than {}", harmonics);
   return fit_basis(data, {period_s, harmonics, 0, 0, 0}, 1 + 2 * harmonics, parameters,
-                   fewer.c_str());
+                   fewer.c_str(), cloud);
 }
 
 Result<SequenceFit> fit_spline(std::span<const TimedDatum> data, double knot_s,
-                               std::size_t parameters) {
+                               std::size_t parameters, const CloudPrior &cloud) {
   if (data.empty())
     return fail(ErrorCode::BadInput, "a series without counts");
   const auto [first, last] = std::ranges::minmax(data, {}, &TimedDatum::time_s);
@@ -282,12 +360,12 @@ Result<SequenceFit> fit_spline(std::span<const TimedDatum> data, double knot_s,
                             "is the least distance",
                             pieces, knot_s, most, span / most));
   const BrightnessBasis basis{0, 0, span / pieces, first.time_s, static_cast<int>(pieces)};
-  return fit_basis(data, basis, basis.pieces + 3, parameters, "knots further apart");
+  return fit_basis(data, basis, basis.pieces + 3, parameters, "knots further apart", cloud);
 }
 
 Result<SequenceFit> fit_sequence(std::span<const TimedDatum> data, const SequenceFit &without,
-                                 std::span<const CommonError> common) {
-  const SequenceSolver solver(data, without.basis);
+                                 std::span<const CommonError> common, const CloudPrior &cloud) {
+  const SequenceSolver solver(data, without.basis, cloud);
   return solver.solve(solver.from(without), common);
 }
 

@@ -23,8 +23,12 @@ struct ReduceOptions {
   /// The same with splines, knots this far apart [s], where there is no period. 0: none.
   double knot_s = 0;
   ErrorPriors priors; ///< of the instrument, beside the scintillation that the file tells
-  /// Relative standard deviation of each exposure's transparency beside scintillation: thin cloud.
+  /// Relative standard deviation of each exposure's transparency beside scintillation: thin cloud,
+  /// one for all pupils.
   double transparency_sd = 0;
+  /// In which it changes by that [s]: exposures share it as exp(-dt/this). 0: as the header's
+  /// `cloud_time_s` has it; without one each exposure has its own.
+  double transparency_time_s = 0;
   /// Relative standard deviation of the share of the light in each exposure's apertures.
   double aperture_sd = 0;
   double zero_sd_mag = 0; ///< of the zero point, the same in the whole run

@@ -1,6 +1,8 @@
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
+#include <string>
 #include <umov/core/quantity.h>
 #include <umov/jobs/reduce.h>
 
@@ -97,6 +99,77 @@ TEST(Reduce, CloudIsCommonToTheBeamsOfAnExposure) {
   EXPECT_NEAR(both.number("u", 0), -.1, .1 * square);
   EXPECT_EQ(both.text("flags", 0), "");
   EXPECT_GT(std::abs(neither.number("q", 0) - .3), 4 * std::sqrt(neither.number("cov_qq", 0)));
+}
+
+/// Four exposures 10 s apart of one cloud's process: the best mean of n of them with correlation r
+/// from one to the next has the variance (1 + r)/(n - (n - 2) r) of one (Fuller 1996, 2.1).
+TEST(Reduce, SlowCloudIsSharedByTheExposuresOfASet) {
+  const auto counts = two_beams_through({1, 1, 1, 1});
+  ReduceOptions options;
+  options.transparency_sd = .15;
+  const double q_sd = std::sqrt(reduced(counts, options).number("cov_qq", 0));
+  for (const auto &[time_s, r] : {std::pair{1e5, std::exp(-1e-4)}, {10., std::exp(-1.)}}) {
+    options.transparency_time_s = time_s;
+    const Table table = reduced(counts, options);
+    const double mean_of_four = .15 * std::sqrt((1 + r) / (4 - 2 * r));
+    // Photons add .001, and what is next order in .15 is 2 % of it.
+    EXPECT_NEAR(table.number("I_err", 0) / table.number("I", 0) / mean_of_four, 1, .02) << time_s;
+    EXPECT_NEAR(std::sqrt(table.number("cov_qq", 0)) / q_sd, 1, .05); // beams share it as before
+  }
+  CountsFile told = counts; // by the header, as umov observe writes it
+  told.notes["cloud_time_s"] = "1e5";
+  options.transparency_time_s = 0;
+  EXPECT_NEAR(reduced(told, options).number("I_err", 0) / reduced(told, options).number("I", 0),
+              .15, .003);
+}
+
+TEST(Reduce, PullsOfBrightnessUnderCloudsThatAreSlow) {
+  std::mt19937_64 random(22);
+  std::normal_distribution<double> normal;
+  constexpr double sd = .1, time_s = 120;
+  const double r = std::exp(-10 / time_s);
+  ReduceOptions options;
+  options.transparency_sd = sd;
+  options.transparency_time_s = time_s;
+  double sum2 = 0;
+  constexpr int sets = 400; // the sd of pulls is known to 1/sqrt(2 n) = .035
+  for (int k = 0; k < sets; ++k) {
+    std::array<double, 4> air{};
+    double x = normal(random);
+    for (double &t : air) {
+      t = 1 + sd * x;
+      x = r * x + std::sqrt(1 - r * r) * normal(random);
+    }
+    const Table table = reduced(two_beams_through(air), options);
+    sum2 += std::pow((table.number("I", 0) - electrons) / table.number("I_err", 0), 2);
+  }
+  EXPECT_NEAR(std::sqrt(sum2 / sets), 1, .12); // three of its sd, and .02 of the next order
+}
+
+/// Lenses of one telescope look through one cloud, each with scintillation of its own.
+TEST(Reduce, OneCloudIsBeforeAllLenses) {
+  CountsFile file;
+  for (const double analyser : {0., 45., 90., 135.}) {
+    file.rows.push_back(behind({}, analyser, 0, 0));
+    file.rows.back().channel = std::to_string(std::lround(analyser));
+  }
+  file.notes["pupils"] = "separate";
+  const double known = std::sqrt(reduced(file).number("cov_qq", 0));
+  ReduceOptions options;
+  options.transparency_sd = .1;
+  const Table table = reduced(file, options);
+  EXPECT_NEAR(table.number("I_err", 0) / table.number("I", 0), .1, .002);
+  EXPECT_NEAR(std::sqrt(table.number("cov_qq", 0)) / known, 1, .05);
+  for (CountRow &row : file.rows)
+    row.scintillation = .1; // .1/sqrt 4 of I, .1 sqrt(2/4) of q
+  EXPECT_GT(std::sqrt(reduced(file, options).number("cov_qq", 0)), .05);
+}
+
+TEST(Reduce, ATimeOfCloudsWithoutCloudsIsRefused) {
+  ReduceOptions options;
+  options.transparency_time_s = 60;
+  Diagnostics diagnostics;
+  EXPECT_FALSE(reduce(two_beams_through({1, 1, 1, 1}), options, {}, diagnostics));
 }
 
 TEST(Reduce, WhereTheLightCameFromIsOfTheMiddleOfASet) {
@@ -212,9 +285,39 @@ TEST(Reduce, BeamsOfOneExposureFlickerTogetherInASeries) {
   // What both share says nothing of q: only the little that their sum told is lost.
   const double one_pupil = reduced(file, options).number("cov_qq", 0);
   EXPECT_LT(one_pupil / still, 1.2);
+  ReduceOptions cloudy = options; // one cloud before both, the same or from one to the next
+  cloudy.transparency_sd = .05;
+  CountsFile clear = file;
+  for (CountRow &row : clear.rows)
+    row.scintillation = 0;
+  for (const double time_s : {0., 1., 1e4}) {
+    cloudy.transparency_time_s = time_s;
+    clear.notes["pupils"] = "separate";
+    EXPECT_LT(reduced(clear, cloudy).number("cov_qq", 0) / still, 1.2) << time_s;
+  }
   file.notes["pupils"] = "separate";
   // 5 % on each of 60 counts along q: sd .05/sqrt(120) of q at least.
   EXPECT_GT(reduced(file, options).number("cov_qq", 0), .8 * .05 * .05 / 120);
+}
+
+/// One beam through a cloud that stays: a factor of all light, which q does not know and I is not
+/// known better than; through clouds of their own exposures are so many uncertain counts.
+TEST(Reduce, ASeriesKnowsHowLongACloudStays) {
+  ReduceOptions options;
+  options.period_s = 20;
+  options.harmonics = 1;
+  const Table clear = reduced(series(false), options);
+  options.transparency_sd = .05;
+  const Table each = reduced(series(false), options);
+  options.transparency_time_s = 1e5; // 60 s are a minute of a day
+  const Table one = reduced(series(false), options);
+  const auto relative = [](const Table &t) { return t.number("I_err", 0) / t.number("I", 0); };
+  EXPECT_NEAR(relative(one), .05, .001);
+  EXPECT_NEAR(relative(each) / (.05 / std::sqrt(60.)), 1, .1); // the series has 3 terms
+  EXPECT_GT(std::sqrt(each.number("cov_qq", 0)), .8 * .05 * std::sqrt(2 / 60.));
+  // It wanders by .05 sqrt(2/1e5) a second, which is .0002.
+  EXPECT_LT(std::sqrt(one.number("cov_qq", 0)),
+            std::sqrt(clear.number("cov_qq", 0) + 2. / 60 * .0002 * .0002 * 60));
 }
 
 TEST(Reduce, DriftIsToldThoughOtherBandsComeBetween) {
