@@ -72,7 +72,8 @@ void add_calibrate(CLI::App &app, const Exit &exit_with) {
       ->excludes("--standards");
   verb->add_flag("--second-order", o->has_second_order,
                  "Also k'', the extinction's change with colour: of stars of many colours at many "
-                 "air masses");
+                 "air masses")
+      ->excludes("--polarizer");
   verb->add_option("-o,--output", o->output,
                    "TOML file for umov reduce --calibration; a table with --polarizer");
   add_common(*verb, *common, true);

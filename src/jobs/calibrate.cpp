@@ -187,7 +187,15 @@ Result<void> ChannelColumns::add(const std::string &name, const std::vector<Pola
                 name.empty()
                     ? found.error().message
                     : fmt::format("channel \"{}\": {}", printable(name), found.error().message));
-  const ChannelAnalyser analyser = analyser_of(*found);
+  ChannelAnalyser analyser = analyser_of(*found);
+  if (constexpr double seen = 3; !(analyser.efficiency > seen * analyser.efficiency_sd)) {
+    analyser.angle_rad = analyser.angle_sd = std::nan("");
+    diagnostics.warn(fmt::format("{}efficiency {:.2g}, error {:.2g}: the polarizer makes no "
+                                 "difference, so that no angle is told. Did it turn, and is there "
+                                 "an analyser?",
+                                 name.empty() ? "" : "channel \"" + printable(name) + "\": ",
+                                 analyser.efficiency, analyser.efficiency_sd));
+  }
   double chi2 = 0;
   for (std::size_t k = 0, at = 0; k < all.size(); ++k)
     if (all[k].channel == name) {
@@ -318,8 +326,9 @@ Result<void> check_calibration(const CalibrationFile &file, const CountsFile &co
         {path});
   constexpr double old_days = 30;
   if (const auto made = utc_from_iso(file.made_utc))
-    if (const double days = seconds_between(first.time, *made) / 86400; days > old_days)
-      diagnostics.warn(fmt::format("the calibration is {:.0f} days older than the counts", days),
+    if (const double days = seconds_between(first.time, *made) / 86400; std::abs(days) > old_days)
+      diagnostics.warn(fmt::format("the calibration is {:.0f} days {} than the counts",
+                                   std::abs(days), days > 0 ? "older" : "younger"),
                        {path});
   return {};
 }

@@ -1,5 +1,7 @@
 #include "jobs/count_rows.h"
 
+#include "core/median.h"
+
 #include <algorithm>
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include <map>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
+#include <utility>
 
 namespace umov::jobs {
 namespace {
@@ -115,9 +118,7 @@ void warn_of_gaps(const std::vector<CountRow> &rows, bool is_series, Diagnostics
       steps.push_back(step);
   if (steps.size() < 4)
     return;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double usual = *middle;
+  const double usual = median_of(std::move(steps));
   std::size_t gaps = 0;
   double longest = 0;
   for (std::size_t k = 1; k < rows.size(); ++k) {

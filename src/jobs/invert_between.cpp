@@ -1,10 +1,12 @@
 #include "jobs/invert_between.h"
 
+#include "core/median.h"
 #include "jobs/invert_tables.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <umov/inverse/curve_model.h>
+#include <utility>
 #include <vector>
 
 namespace umov::jobs {
@@ -62,9 +64,7 @@ Result<std::optional<double>> share_between(const Scenario &scenario, const Sear
       shares.push_back(std::clamp(1 - direct.i[k] / all.i[k], 0.0, 1.0));
   if (shares.empty())
     return 0.0;
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
-  return *middle;
+  return median_of(std::move(shares));
 }
 
 void doubt_direct_light(std::optional<double> share, double floor, Verdict &verdict,

@@ -1,5 +1,6 @@
 #include <umov/jobs/measurement_files.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/text.h>
@@ -20,6 +21,24 @@ bool has_magnitude(const Table &stokes, std::size_t row) {
          stokes.text("flags", row).find("faint") == std::string::npos;
 }
 
+/// A TDM is of ASCII (CCSDS 503.0-B-2, 4.3): other letters become a question mark each.
+std::string ascii(const std::string &text) {
+  std::string out;
+  for (const char c : text)
+    if (const auto byte = static_cast<unsigned char>(c); byte < 0x80)
+      out += c;
+    else if (byte >= 0xc0) // the first of a letter's bytes
+      out += '?';
+  return out;
+}
+
+/// As many digits behind the point as an error to two of its own has.
+int digits_of(double error) {
+  if (!(error > 0 && std::isfinite(error)))
+    return 4;
+  return std::clamp(static_cast<int>(1 - std::floor(std::log10(error))), 0, 9);
+}
+
 /// Times without the Z, which some readers of KVN do not take.
 std::string epoch_of(const Table &stokes, std::size_t row) {
   std::string text = stokes.text("time_utc", row);
@@ -31,8 +50,8 @@ std::string epoch_of(const Table &stokes, std::size_t row) {
 ccsds::Segment segment_of(const std::string &name, const std::string &band,
                           const MeasurementNotes &notes) {
   ccsds::Segment out;
-  const auto put = [&](const char *key, std::string text) {
-    out.metadata.push_back({key, std::move(text), "", 0});
+  const auto put = [&](const char *key, const std::string &text) {
+    out.metadata.push_back({key, ascii(text), "", 0});
   };
   put("COMMENT",
       "MAG: " + note_of(notes, "mag_system", "AB") + " magnitude above the air in " + band);
@@ -135,9 +154,11 @@ Result<Table> as_score(const Table &stokes, const MeasurementNotes &from) {
     cells["satellite_name"].push_back(stokes.text("name", row));
     cells["norad_cat_id"].push_back(note_of(from, "norad", ""));
     cells["observation_time_utc"].push_back(stokes.text("time_utc", row));
-    cells["apparent_magnitude"].push_back(number("mag", row, "{:.4f}"));
-    cells["apparent_magnitude_uncertainty"].push_back(
-        fmt::format("{:.4f}", 2.5 / std::log(10.) * relative));
+    const double error = 2.5 / std::log(10.) * relative;
+    const int digits = digits_of(error);
+    cells["apparent_magnitude"].push_back(
+        fmt::format("{:.{}f}", stokes.number("mag", row), digits));
+    cells["apparent_magnitude_uncertainty"].push_back(fmt::format("{:.{}f}", error, digits));
     cells["observer_latitude_deg"].push_back(note_of(from, "site_lat_deg", ""));
     cells["observer_longitude_deg"].push_back(note_of(from, "site_lon_deg", ""));
     cells["observer_altitude_m"].push_back(note_of(from, "site_alt_m", ""));

@@ -58,6 +58,23 @@ void warn_of_setup(const Setup &s, Diagnostics &diagnostics) {
         fmt::format("detector: a well of {:g} e is more than bits = {} with {:g} e/ADU "
                     "tell ({:g} e): numbers fill first",
                     d.well_e, d.bits, d.gain_e_adu, numbers));
+  // Noise of half a step makes a mean of steps that of the light; of a third it does not.
+  if (constexpr double coarse = 3;
+      has_numbers && d.em_gain <= 1 && d.gain_e_adu > coarse * std::hypot(d.read_e, 1.0))
+    diagnostics.warn(fmt::format("detector: gain_e_adu = {:g} with read_e = {:g}: dark pixels fall "
+                                 "on one number, and their mean is off by up to half of it. A "
+                                 "step of {:.2g} e or less was expected",
+                                 d.gain_e_adu, d.read_e, coarse * std::hypot(d.read_e, 1.0)));
+  if (d.nonlinearity > 0 && !s.observation.makes_frames)
+    diagnostics.warn(fmt::format("detector.nonlinearity = {:g} says nothing to level = "
+                                 "\"aperture\", whose counts are those behind its correction; "
+                                 "level = \"image\" has it",
+                                 d.nonlinearity));
+  if (s.observation.width_nm != line_width_nm &&
+      std::ranges::all_of(s.scenario.bands, [](const Band &b) { return b.curve != nullptr; }))
+    diagnostics.warn(fmt::format("observation.width_nm = {:g} says nothing to bands with a curve, "
+                                 "which have their own width; it is of nm:550 and the like",
+                                 s.observation.width_nm));
   const double site_height_m = s.scenario.observer->altitude_m;
   if (constexpr double highest = 9000; site_height_m > highest)
     diagnostics.warn(fmt::format("observer.alt_m = {:g}: higher than any mountain. It is in metres",

@@ -32,7 +32,7 @@ public:
   }
 
   void add(const Reduced &r) {
-    time_.push_back(to_iso(r.middle.time));
+    time_.push_back(to_iso_microseconds(r.middle.time));
     name_.push_back(r.middle.name);
     band_.push_back(r.middle.band);
     system_.push_back(magnitudes_);

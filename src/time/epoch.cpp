@@ -152,6 +152,12 @@ std::string to_iso(Epoch<Utc> time, int digits) {
                      clock[1], clock[2], clock[3], digits);
 }
 
+std::string to_iso_microseconds(Epoch<Utc> time) {
+  std::string text = to_iso(time);
+  const auto back = utc_from_iso(text);
+  return back && std::abs(seconds_between(*back, time)) < 1e-6 ? text : to_iso(time, 6);
+}
+
 std::string to_iso_exact(Epoch<Utc> time) {
   for (const int digits : {3, 6}) {
     const std::string text = to_iso(time, digits);

@@ -48,6 +48,11 @@ REFUSED = [
     ("exposure_s = 1\n[polarimeter]\ntype = \"none\"\nq0 = 0.1", "q0 says nothing"),
     ("exposure_s = 1\n[detector]\ndead_time_s = 1e-6", "only a counter"),
     ("exposure_s = 1\n[detector]\nmodel = \"counter\"\nparalyzable = true", "without a dead time"),
+    ("exposure_s = 1\n[detector]\nline_time_s = 1e-5", 'shutter = "global"'),
+    ("exposure_s = 1\n[telescope]\nthroughput = 0", "no light comes through"),
+    ("exposure_s = 1\n[telescope]\nthroughput = { wavelength_nm = [400, 700], value = [0, 0] }", "no light comes through"),
+    ('exposure_s = 1\nlevel = "image"\nframe_px = [256, 256]\n[detector]\nsize_px = [128, 512]', "size_px = [128, 512]"),
+    ('exposure_s = 1\nbands = ["nm:5500"]', "what air takes is known from 250 to 4000 nm"),
 ]
 
 
@@ -56,6 +61,36 @@ def test_what_is_refused(scene, umov, observation, told):
     done = umov("observe", scene(observation))
     assert done.code == 3, done.err
     assert told in done.err and "observe.toml:" in done.err
+
+
+@pytest.mark.parametrize("sky, told", [
+    ("p = 0.3", "p without mag"), ("mag = 20, p = 1.5", "p = 1.5; 0 to 1"), ('mag = 20, twilight = "none"', "twilight beside mag"),
+    ("mag = 20, dark_mag = { V = 21 }", "dark_mag beside mag"), ('mag = 20, moon = "none"', "moon beside mag"),
+    ("mag = 20, dilution = { sun = 0.5 }", "dilution beside mag"), ("dilution = { sun = 1.2 }", "sun = 1.2; 0 to 1"),
+    ("dilution = { moon = -0.1 }", "moon = -0.1; 0 to 1")])
+def test_skies_that_are_refused(scene, umov, sky, told):
+    done = umov("observe", scene("exposure_s = 1", air=f"sky = {{ {sky} }}"))
+    assert done.code == 3 and told in done.err and re.search(r"observe.toml:\d+", done.err), done.err
+
+
+def test_no_air_has_no_wavelengths(scene, umov):
+    assert umov("bands", "list").code == 0
+    done = umov("observe", scene('exposure_s = 1\nbands = ["nm:5500"]'), "--set", 'observer.atmosphere="none"')
+    assert "what air takes" not in done.err, done.err
+
+
+@pytest.mark.parametrize("sky", ["mag = 20, p = 0.3", 'twilight = "none"', "dilution = { sun = 0.5 }"])
+def test_locks_of_skies_and_own_instruments_are_read_again(scene, umov, tmp_path, sky):
+    head = umov("instrument", "show", "c11_imx250").out
+    (tmp_path / "garage.toml").write_text(head)
+    assert umov("observe", scene("exposure_s = 1", air=f"sky = {{ {sky} }}", instrument="garage.toml")).code == 0
+    first = Table.read(tmp_path / "out/counts.ecsv")
+    assert first.meta["instrument"] == "garage"
+    lock = next((tmp_path / "out").glob("*.lock*"))
+    done = umov("observe", str(lock), "-o", "again")
+    assert done.code == 0, done.err
+    second = Table.read(tmp_path / "again/counts.ecsv")
+    assert second.meta["instrument"] == "garage" and list(first["counts"]) == list(second["counts"])
 
 
 def test_day_is_refused(scene, umov):
@@ -73,6 +108,9 @@ WARNED = [
     ("exposure_s = 0.1", {"air": "seeing = { arcsec = 0.5 }"}, "under 3 px"),
     ("exposure_s = 0.1\naperture_fwhm = 1", {}, "cuts the four orientations unevenly"),
     ("exposure_s = 1", {"alt_m": 10033}, "is in metres"),
+    ("exposure_s = 1\n[detector]\ngain_e_adu = 12\nread_e = 2", {}, "dark pixels fall on one number"),
+    ("exposure_s = 1\n[detector]\nnonlinearity = 0.02", {}, 'says nothing to level = "aperture"'),
+    ('exposure_s = 1\nwidth_nm = 40\nbands = ["Bessell.V"]', {}, "says nothing to bands with a curve"),
     ("exposure_s = 1", {"air": "sky = { mag = 9 }"}, "more than ten times"),
     ("exposure_s = 1\nsequence = [{ analyser_deg = 45 }]", {}, "says nothing to a polarimeter"),
     ("exposure_s = 0.5\nsequence = [{ analyser_deg = 0 }, { analyser_deg = 4 }, { analyser_deg = 8 }]\n"
@@ -331,3 +369,10 @@ def test_magnitudes_of_the_vega_system(umov, tmp_path):
     done = umov("run", path, "-o", "run")
     assert done.code == 3 and "has no zero point in the Vega system" in done.err
     assert "observe.toml:" in done.err and "observation.bands" in done.err
+
+
+def test_stamps_of_fast_exposures_differ(scene, umov, tmp_path):
+    done = umov("observe", scene("exposure_s = 0.0004\nclock_error_s = 0", start="2018-01-21T05:11:00Z", stop="2018-01-21T05:11:00.01Z"))
+    assert done.code == 0, done.err
+    counts = Table.read(tmp_path / "out/counts.ecsv")
+    assert len(set(counts["time_utc"])) == len(set(counts["exposure"])) > 10

@@ -86,7 +86,9 @@ std::string to_ecsv(const Table &table);
 /// header; NaN is an empty cell; a ' stands before a text that spreadsheets would compute as a
 /// formula.
 std::string to_csv(const Table &table);
-/// A binary table of a FITS file (standard 4.0). BadInput for text that a column cannot hold.
+/// A binary table of a FITS file (standard 4.0); where it has time_utc, I and I_err, they follow
+/// once more as `time` (MJD), `flux` and `flux_err`, as readers of light curves want them. BadInput
+/// for text that a column cannot hold.
 Result<std::string> to_fits(const Table &table);
 /// Its two parts: everything above the rows, and rows [begin, end).
 std::string csv_header(const Table &table);

@@ -22,6 +22,8 @@ template <class Scale> struct Epoch { double jd1 = 0, jd2 = 0; };
 Result<Epoch<Utc>> utc_from_iso(std::string_view text);
 /// "2018-01-21T04:00:00.000Z": milliseconds, rounded, leap seconds as :60.
 std::string to_iso(Epoch<Utc> time, int digits = 3);
+/// Milliseconds, or microseconds where those would lose more than one.
+std::string to_iso_microseconds(Epoch<Utc> time);
 /// With as many digits (3, 6 or 9) as it takes to read the same time back.
 std::string to_iso_exact(Epoch<Utc> time);
 /// Modified Julian date, UTC.

@@ -26,6 +26,12 @@ Result<PolarimeterCalibration> read_polarimeter(const Node &top) {
         top.where("efficiency"));
   c.factor = std::polar(efficiency, 2 * top.number("phi0_deg", 0) * pi / 180);
   c.offset = {top.number("q0", 0), top.number("u0", 0)};
+  if (!(std::abs(c.offset) <= 1))
+    return fail(ErrorCode::BadInput,
+                fmt::format("q0 = {}, u0 = {}: together they polarize by {:.3g}; at most 1 was "
+                            "expected (per cent are divided by 100)",
+                            c.offset.real(), c.offset.imag(), std::abs(c.offset)),
+                top.where("q0"));
   c.factor_sd = top.number("efficiency_sd", 0);
   c.offset_sd = top.number("q0_sd", 0);
   if (!(c.factor_sd >= 0 && c.offset_sd >= 0))

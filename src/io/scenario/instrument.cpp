@@ -104,6 +104,10 @@ Result<void> read_telescope(const Node &node, Telescope &out) {
                        out.focal_length_m));
   UMOV_TRY(check_focal_ratio(node, out));
   UMOV_TRY(read_curve(node, "throughput", {0, 1, "0 to 1"}, out.throughput));
+  if (!(std::ranges::max(out.throughput.value) > 0))
+    return fail(ErrorCode::BadInput,
+                "throughput is 0: no light comes through; a share above 0, up to 1, was expected",
+                node.where("throughput"));
   UMOV_TRY(read_port(node, out));
   UMOV_TRY(read_metal(node, "mirror", out.mirror));
   UMOV_ASSIGN(mount, node.choice("mount", out.mount == Mount::AltAz ? "altaz" : "equatorial",
@@ -129,6 +133,12 @@ Result<void> read_shutter(const Node &node, Detector &out) {
     return fail(ErrorCode::BadInput,
                 "shutter = \"rolling\" without line_time_s; add the time from row to row",
                 node.where("shutter"));
+  if (node.has("line_time_s") && !out.has_rolling_shutter)
+    return fail(ErrorCode::BadInput,
+                fmt::format("line_time_s = {} with shutter = \"global\": all rows begin at once; "
+                            "leave it out, or give shutter = \"rolling\"",
+                            out.line_time_s),
+                node.where("line_time_s"));
   return {};
 }
 
@@ -372,7 +382,7 @@ std::string instrument_tables_toml(const Instrument &i) {
       shortest(d.read_e), shortest(d.dark_e_s), shortest(d.gain_e_adu), d.bits,
       shortest(d.bias_adu), shortest(d.well_e), shortest(d.nonlinearity),
       d.has_rolling_shutter ? "rolling" : "global");
-  if (d.line_time_s > 0)
+  if (d.has_rolling_shutter)
     out += fmt::format("line_time_s = {}\n", shortest(d.line_time_s));
   if (d.em_gain != 1)
     out += fmt::format("em_gain = {}\n", shortest(d.em_gain));

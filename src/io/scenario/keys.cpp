@@ -41,6 +41,8 @@ const std::vector<Key> &keys() {
       {"", "object", List, "", "[[object]]: one object"},
       {"", "bands", Table, "", "wavelengths and filters, and the zero of magnitudes"},
       {"", "render", Table, "", "how the light is computed"},
+      {"", "instrument_name", String, "",
+       "of tables that are here in whole, as in lock files; counts and calibrations have it"},
       {"", "instrument", String, "",
        "a named set of telescope, detector and polarimeter, or a file"},
       {"", "atmosphere", Table, "", "the air over the site; of umov observe"},

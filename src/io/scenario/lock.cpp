@@ -119,6 +119,8 @@ std::string locked_scenario(const Scenario &s) {
     if (const auto names = instrument_names();
         std::ranges::find(names, s.observation->instrument.name) != names.end())
       out += fmt::format("instrument = {}\n", quoted(s.observation->instrument.name));
+    else if (!s.observation->instrument.name.empty())
+      out += fmt::format("instrument_name = {}\n", quoted(s.observation->instrument.name));
   out += observer_and_time(s);
   if (!s.earth_orientation.empty())
     out += fmt::format("\n[earth]\neop = {}\n", absolute_path(s.earth_orientation));

@@ -65,6 +65,25 @@ Result<void> check_columns(const CountCells &cells, const TextTable &table,
   return {};
 }
 
+/// What a line of the header should hold and does not; null where it does, or says nothing to a
+/// reduction.
+const char *expected_of(const std::string &key, const std::string &value) {
+  const auto number = parse_number(value);
+  if (key.starts_with("retardance_deg"))
+    return number ? nullptr : "a number";
+  if (key == "pupils")
+    return value == "separate" || value == "common" ? nullptr : "\"separate\" or \"common\"";
+  if (key == "parameters")
+    return number && (*number == 1 || *number == 3 || *number == 4)
+               ? nullptr
+               : "1 (I), 3 (I, Q, U) or 4 (V too)";
+  if (key.starts_with("zero_flux"))
+    return number && *number > 0 ? nullptr : "a flux above 0 [W m-2 nm-1]";
+  if (key == "cloud_time_s")
+    return number && *number >= 0 ? nullptr : "a number of seconds";
+  return nullptr;
+}
+
 /// What the header says of the frame, which the fit takes for granted.
 Result<void> check_notes(const TextTable &table, const std::string &file) {
   constexpr std::array frames{"equatorial", "altaz", "scattering"};
@@ -82,12 +101,26 @@ Result<void> check_notes(const TextTable &table, const std::string &file) {
                             printable(system->second), fmt::join(systems, ", ")),
                 {file});
   for (const auto &[key, value] : table.notes)
-    if (key.starts_with("retardance_deg") && !parse_number(value))
+    if (const char *expected = expected_of(key, value))
       return fail(ErrorCode::BadInput,
-                  fmt::format("{} of the header is \"{}\": a number was expected", printable(key),
-                              printable(value)),
+                  fmt::format("{} of the header is \"{}\": {} was expected", printable(key),
+                              printable(value), expected),
                   {file});
   return check_polcconv(table, file);
+}
+
+/// Lines of the header that speak of a band which no row has.
+void warn_of_notes(const CountsFile &counts, const std::string &file, Diagnostics &diagnostics) {
+  for (const auto &[key, value] : counts.notes) {
+    if (!key.starts_with("zero_flux"))
+      continue;
+    const std::string band = key.substr(std::min<std::size_t>(key.size(), 10));
+    if (band.empty() || std::ranges::find(counts.rows, band, &CountRow::band) == counts.rows.end())
+      diagnostics.warn(fmt::format("{} of the header is of no band of the counts; \"zero_flux {}\" "
+                                   "was expected",
+                                   printable(key), printable(counts.rows.front().band)),
+                       {file});
+  }
 }
 
 Result<bool> truth_in(const CountCells &cells, const std::string &name, std::size_t row) {
@@ -172,6 +205,10 @@ Result<void> check_row(const CountRow &row, const Where &where) {
                 fmt::format("counts = {}, sky = {}; counts of electrons were expected", row.counts,
                             row.sky),
                 where);
+  if (row.airmass < 0)
+    return fail(ErrorCode::BadInput,
+                fmt::format("airmass = {}; 1 or more was expected, or an empty cell", row.airmass),
+                where);
   for (const double w : row.row)
     if (!(std::abs(w) < most))
       return fail(ErrorCode::BadInput, "w0 to w3 are numbers; some are missing or too large",
@@ -181,6 +218,16 @@ Result<void> check_row(const CountRow &row, const Where &where) {
         ErrorCode::BadInput,
         fmt::format("w0 = {}; light must make counts: a number above 0 was expected", row.row[0]),
         where);
+  // Measured rows are good to some per cent, and rows are typed to two digits.
+  constexpr double rounding = 1.05;
+  if (const double polarized = std::hypot(row.row[1], row.row[2], row.row[3]);
+      polarized > rounding * row.row[0])
+    return fail(ErrorCode::BadInput,
+                fmt::format("w1 = {:g}, w2 = {:g}, w3 = {:g} are together {:.3g} of w0 = {:g}: "
+                            "light polarized across would make less than no counts; at most 1 was "
+                            "expected. An analyser takes half of unpolarized light: w0 = 0.5",
+                            row.row[1], row.row[2], row.row[3], polarized / row.row[0], row.row[0]),
+                where);
   return {};
 }
 
@@ -320,6 +367,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   if (out.rows.empty())
     return fail(ErrorCode::BadInput, "no row of counts; some were expected below the names",
                 {file});
+  warn_of_notes(out, file, diagnostics);
   warn_of_analysers(out, lines, cells.has("x_axis_pa"), file, diagnostics);
   return out;
 }

@@ -1,4 +1,5 @@
 #include "io/table/fits_table.h"
+#include "io/table/light_curve_names.h"
 
 #include <algorithm>
 #include <bit>
@@ -214,7 +215,8 @@ Result<std::string> FitsTable::take() {
   return std::string(static_cast<const char *>(memory_->bytes), static_cast<std::size_t>(end));
 }
 
-Result<std::string> to_fits(const Table &table) {
+Result<std::string> to_fits(const Table &given) {
+  const Table table = with_light_curve(given);
   UMOV_ASSIGN(file, FitsTable::create_in_memory(table));
   std::string bytes;
   UMOV_TRY(file.encode(table, 0, table.rows(), bytes));

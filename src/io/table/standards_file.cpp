@@ -3,6 +3,7 @@
 #include "io/table/text_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,6 +18,17 @@ const std::vector<EmbeddedFile> &standard_files();
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// The column that is meant by one of another's spelling; null for those that say nothing to us.
+const char *misspelt(std::string_view column) {
+  constexpr std::array names{std::pair{"color", "colour"},      std::pair{"b_v", "colour"},
+                             std::pair{"B-V", "colour"},        std::pair{"p", "p_percent"},
+                             std::pair{"pa", "pa_deg"},         std::pair{"p_err", "p_err_percent"},
+                             std::pair{"pa_err", "pa_err_deg"}, std::pair{"magnitude", "mag"}};
+  const auto found =
+      std::ranges::find_if(names, [column](const auto &one) { return column == one.first; });
+  return found == names.end() ? nullptr : found->second;
+}
 
 class StandardsReader {
 public:
@@ -61,6 +73,12 @@ Result<void> StandardsReader::check_columns() const {
                       "were expected",
                       one, other),
           header);
+  for (const std::string &column : table_.columns)
+    if (const char *meant = misspelt(column))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("a table of standards with the column \"{}\"; \"{}\" was expected",
+                              printable(column), meant),
+                  header);
   if (!has("p_percent") && !has("mag"))
     return fail(ErrorCode::BadInput,
                 "a table of standards that tells nothing of them: the columns \"p_percent\" and "

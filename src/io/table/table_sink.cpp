@@ -1,5 +1,7 @@
 #include <umov/io/table_sink.h>
 
+#include "io/table/light_curve_names.h"
+
 #include <future>
 #include <optional>
 #include <system_error>
@@ -111,7 +113,7 @@ Result<void> write_table(const fs::path &path, const Table &table) {
   if (suffix == ".json")
     return write_file_atomically(path, to_json(table));
   if (suffix == ".fits") {
-    UMOV_ASSIGN(stream, TableStream::open(path, table));
+    UMOV_ASSIGN(stream, TableStream::open(path, with_light_curve(table)));
     return stream.commit();
   }
   return fail(ErrorCode::Usage, "-o " + path.string() +
