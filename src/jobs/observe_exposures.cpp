@@ -17,7 +17,8 @@ public:
   double next(double elapsed_s) {
     if (!(sd_ > 0))
       return 1;
-    const double kept = std::exp(-elapsed_s / time_);
+    const double kept = has_begun_ ? std::exp(-elapsed_s / time_) : 0; // any cloud at first
+    has_begun_ = true;
     mag_ = mag_ * kept + sd_ * std::sqrt(1 - kept * kept) * draws_.normal();
     // Its mean is 1, as that of scintillation: magnitudes are normal, transparency is not.
     const double of_ln = 0.4 * std::log(10.) * sd_;
@@ -26,6 +27,7 @@ public:
 
 private:
   double sd_, time_, mag_ = 0;
+  bool has_begun_ = false;
   Draws draws_;
 };
 

@@ -79,36 +79,41 @@ std::vector<double> OpenAir::transparencies(std::span<const ChannelDatum> data,
   const Matrix root = Eigen::Map<const Rows>(
       root_.data(), static_cast<Eigen::Index>(root_.size()) / std::max<Eigen::Index>(1, causes),
       causes);
-  // Normal equations of the counts over the numbers behind the transparencies.
-  Vector off = Vector::Zero(root.rows()), weight = off;
-  for (std::size_t k = 0; k < data.size(); ++k) {
-    const ChannelDatum &one = data[k];
-    const double m = light_of(one.row, stokes);
-    const double v = one.excess2 * std::max(1e-3, m + one.sky) + one.fixed_variance;
-    const auto pupil = static_cast<Eigen::Index>(pupil_[k]);
-    off(pupil) += m * (one.counts - one.sky - m) / v;
-    weight(pupil) += m * m / v;
+  Vector logs = Vector::Zero(root.rows());
+  constexpr int rounds = 8; // Newton's: each doubles the digits
+  for (int round = 0; round < rounds; ++round) {
+    // Normal equations over the numbers behind the logarithms, about those found so far.
+    Vector off = Vector::Zero(root.rows()), weight = off;
+    for (std::size_t k = 0; k < data.size(); ++k) {
+      const ChannelDatum &one = data[k];
+      const auto pupil = static_cast<Eigen::Index>(pupil_[k]);
+      const double m = light_of(one.row, stokes) * std::exp(logs(pupil));
+      const double v = one.excess2 * std::max(1e-3, m + one.sky) + one.fixed_variance;
+      off(pupil) += m * (one.counts - one.sky - m + m * logs(pupil)) / v;
+      weight(pupil) += m * m / v;
+    }
+    Matrix normal = algebra::gram(weight.cwiseSqrt().asDiagonal() * root);
+    normal.diagonal().array() += 1;
+    const Vector next = algebra::times(
+        root, algebra::solve_symmetric(normal, algebra::transposed_times(root, off)));
+    constexpr double darkest = -3, brightest = 1; // of what is still seen
+    logs = next.cwiseMax(darkest).cwiseMin(brightest);
   }
-  Matrix normal = algebra::gram(weight.cwiseSqrt().asDiagonal() * root);
-  normal.diagonal().array() += 1;
-  const Vector changes =
-      algebra::times(root, algebra::solve_symmetric(normal, algebra::transposed_times(root, off)));
   std::vector<double> out;
   for (const std::size_t pupil : pupil_)
-    out.push_back(std::max(.05, 1 + changes(static_cast<Eigen::Index>(pupil))));
+    out.push_back(std::exp(logs(static_cast<Eigen::Index>(pupil))));
   return out;
 }
 
-void OpenAir::add_errors(std::vector<CommonError> &out, std::span<const ModelledDatum> model,
-                         std::span<const double> transparencies) const {
+void OpenAir::add_errors(std::vector<CommonError> &out,
+                         std::span<const ModelledDatum> model) const {
   for (std::size_t c = 0; c < causes_; ++c) {
     CommonError one{{}, 1};
     bool acts = false;
     for (std::size_t k = 0; k < model.size(); ++k) {
       const double change = root_[pupil_[k] * causes_ + c];
       acts = acts || change != 0;
-      one.effect.push_back(light_of(model[k].datum.row, model[k].stokes) * change /
-                           (transparencies.empty() ? 1 : transparencies[k]));
+      one.effect.push_back(light_of(model[k].datum.row, model[k].stokes) * change);
     }
     if (acts)
       out.push_back(std::move(one));

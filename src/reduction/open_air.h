@@ -13,9 +13,10 @@ struct AirPlace {
   double flicker = 0;        ///< relative standard deviation by scintillation
 };
 
-/// Transparencies of a set's exposures as a normal prior about 1: scintillation of each exposure
-/// (of each count behind pupils of their own), and a cloud that all pupils of a moment share and
-/// that wanders as umov observe draws it (an Ornstein-Uhlenbeck process).
+/// Logarithms of the transparencies of a set's exposures, normal about 0: scintillation of each
+/// exposure (of each count behind pupils of their own), and a cloud that all pupils of a moment
+/// share and that wanders as umov observe draws it (an Ornstein-Uhlenbeck process). In logarithms a
+/// cloud over all of a set and a brighter object are the same, whatever else the air does.
 class OpenAir {
 public:
   /// `places` in the order of time.
@@ -24,14 +25,13 @@ public:
   /// The most likely transparency of each count, for the light of a model.
   [[nodiscard]] std::vector<double> transparencies(std::span<const ChannelDatum> data,
                                                    const std::array<double, 4> &stokes) const;
-  /// What is left open of it, as errors of counts whose rows are behind `transparencies` (none: 1).
-  void add_errors(std::vector<CommonError> &out, std::span<const ModelledDatum> model,
-                  std::span<const double> transparencies) const;
+  /// What is left open of it, as errors of counts whose rows are behind the transparencies found.
+  void add_errors(std::vector<CommonError> &out, std::span<const ModelledDatum> model) const;
 
 private:
   std::vector<std::size_t> pupil_; ///< of each count: an exposure of a pupil
   std::size_t causes_ = 0;
-  /// [pupil * causes + cause]: transparency - 1 is the sum of these times numbers of mean 0 and
+  /// [pupil * causes + cause]: the logarithm is the sum of these times numbers of mean 0 and
   /// variance 1.
   std::vector<double> root_;
 };

@@ -123,6 +123,18 @@ TEST(Reduce, SlowCloudIsSharedByTheExposuresOfASet) {
               .15, .003);
 }
 
+/// What becomes brighter under a cloud that stays is not a thousandth of the cloud's own steps: its
+/// mean is that of the counts.
+TEST(Reduce, AChangeOfLightUnderASlowCloudIsNotTakenForMuchMoreLight) {
+  ReduceOptions options;
+  options.transparency_sd = .1;
+  options.transparency_time_s = 1e4;
+  const Table table = reduced(two_beams_through({.96, .99, 1.01, 1.04}), options);
+  // Ends count for more than the middle, alike on both sides; .04^2 is of the next order.
+  EXPECT_NEAR(table.number("I", 0) / electrons, 1, .005);
+  EXPECT_NEAR(table.number("q", 0), .3, 1e-4);
+}
+
 TEST(Reduce, PullsOfBrightnessUnderCloudsThatAreSlow) {
   std::mt19937_64 random(22);
   std::normal_distribution<double> normal;
