@@ -242,7 +242,7 @@ ExposureSetup of_frames(const ExposureSetup &s, double seconds) {
 
 const char *of_each_state(const ExposureSetup &s) {
   if (s.instrument.polarimeter.type == PolarimeterType::SpinningHwpDualBeam)
-    return " of each in a quarter turn of the plate";
+    return " at each angle of a quarter turn of the plate";
   return s.states > 1 ? " of each analyser" : "";
 }
 

@@ -253,7 +253,7 @@ def test_a_plate_that_turns_blurs(umov, tmp_path, per_turn):
     rows, done = rows_of(umov, tmp_path, "--instrument", "moptop_2m", "--band", "Bessell.V", "--mag", "4", "--exposure-s", seconds)
     turn = math.radians(360 / per_turn)
     assert rows["electrons"] * rows["share_star"] == pytest.approx(2 / (0.01 * math.sin(2 * turn) / (2 * turn)) ** 2, rel=2e-3)
-    assert "of each in a quarter turn" in done.err
+    assert "at each angle of a quarter turn" in done.err
 
 
 def test_frames_that_are_too_long_for_a_turning_plate(umov):
