@@ -1,5 +1,6 @@
 #include "finishing.h"
 #include "job_console.h"
+#include "reduce_model.h"
 #include "tables.h"
 #include "verbs.h"
 
@@ -8,7 +9,6 @@
 #include <fmt/chrono.h>
 #include <optional>
 #include <umov/core/files.h>
-#include <umov/core/text.h>
 #include <umov/jobs/calibrate.h>
 #include <umov/jobs/measurement_files.h>
 #include <umov/jobs/reduce.h>
@@ -22,39 +22,6 @@ struct ReduceVerb {
   std::vector<double> errors = std::vector<double>(jobs::reduce_priors().size(), 0); ///< as given
   std::optional<double> colour;
 };
-
-/// "static", "fourier:PERIOD", "fourier:PERIOD:HARMONICS" or "spline:KNOTS".
-Result<void> read_model(const std::string &text, jobs::ReduceOptions &out) {
-  if (text == "static")
-    return {};
-  const auto wrong = [&] {
-    return fail(ErrorCode::Usage, "--model " + text +
-                                      ": static, fourier:PERIOD_S, fourier:PERIOD_S:HARMONICS or "
-                                      "spline:KNOTS_S was expected");
-  };
-  if (text.starts_with("spline:")) {
-    const auto knot = parse_number(text.substr(7));
-    if (!knot || !(*knot > 0))
-      return wrong();
-    out.knot_s = *knot;
-    return {};
-  }
-  if (!text.starts_with("fourier:"))
-    return wrong();
-  const std::string rest = text.substr(8);
-  const std::size_t colon = std::min(rest.find(':'), rest.size());
-  const auto period = parse_number(rest.substr(0, colon));
-  if (!period || !(*period > 0))
-    return wrong();
-  out.period_s = *period;
-  if (colon == rest.size())
-    return {};
-  const auto harmonics = parse_number(rest.substr(colon + 1));
-  if (!harmonics || !(*harmonics >= 1 && *harmonics <= 100))
-    return wrong();
-  out.harmonics = static_cast<int>(*harmonics);
-  return {};
-}
 
 void put_errors(const ReduceVerb &o, jobs::ReduceOptions &out) {
   const auto priors = jobs::reduce_priors();
@@ -85,7 +52,7 @@ Result<void> run_reduce(const ReduceVerb &o, const Common &common, Diagnostics &
   UMOV_TRY(check_page("--page", o.page));
   UMOV_TRY(check_apart({o.counts, o.calibration}, {o.output, o.page, o.tdm, o.score}));
   jobs::ReduceOptions options;
-  UMOV_TRY(read_model(o.model, options));
+  UMOV_TRY(read_reduce_model(o.model, options));
   put_errors(o, options);
   options.threads = static_cast<unsigned>(common.threads);
   constexpr std::size_t largest = 1u << 31;

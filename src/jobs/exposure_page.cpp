@@ -42,7 +42,7 @@ PlotFigure figure(const char *title, const char *x, std::string y, bool has_log_
 
 const char *length_title(const ExposureSetup &s) {
   if (s.frame_s > 0)
-    return "exposure at each angle of a quarter turn of the plate [s]";
+    return "exposure at each angle of the plate's turn [s]";
   return s.states > 1 ? "exposure of each analyser [s]" : "exposure [s]";
 }
 
