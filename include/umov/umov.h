@@ -20,6 +20,7 @@
 #include <umov/core/journal.h>
 #include <umov/core/locks.h>
 #include <umov/core/mapped_file.h>
+#include <umov/core/median.h>
 #include <umov/core/parallel.h>
 #include <umov/core/quantity.h>
 #include <umov/core/random.h>
@@ -182,6 +183,7 @@
 #include <umov/picture/keyframe.h>
 #include <umov/reduction/calibration.h>
 #include <umov/reduction/likelihood.h>
+#include <umov/reduction/open_air.h>
 #include <umov/reduction/polarization.h>
 #include <umov/reduction/ratio.h>
 #include <umov/reduction/sequence.h>

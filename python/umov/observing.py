@@ -463,7 +463,10 @@ def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: f
     if mag_system not in ("AB", "ST", "Vega"):
         raise UsageError(f"mag_system is {mag_system!r}; AB, ST or Vega was expected")
     request.magnitudes, request.aperture_fwhm = mag_system, number(aperture_fwhm, "aperture_fwhm")
-    return Table(_umov.exposure(request))
+    found = Table(_umov.exposure(request))
+    if "warning" in found.notes:
+        Watch(None).warn(found.notes["warning"])
+    return found
 
 
 def instruments() -> Table:

@@ -1,6 +1,6 @@
 #include "jobs/count_rows.h"
 
-#include "core/median.h"
+#include <umov/core/median.h>
 
 #include <algorithm>
 #include <boost/math/special_functions/gamma.hpp>

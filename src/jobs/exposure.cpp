@@ -201,8 +201,10 @@ Result<ExposureSetup> exposure_setup(const ExposureRequest &r) {
   UMOV_ASSIGN(to_ab, ab_less(r.magnitudes, band));
   const double frame_s = frame_of(r, instrument.polarimeter);
   auto out = exposure_setup(r, instrument, response, states_of(instrument.polarimeter, frame_s));
-  if (!out)
+  if (!out && out.error().where.file.empty())
     return fail(out.error().code, out.error().message, {r.instrument});
+  if (!out)
+    return out;
   out->to_ab = to_ab;
   out->frame_s = frame_s;
   return out;

@@ -1,7 +1,7 @@
 #include "jobs/invert_between.h"
 
-#include "core/median.h"
 #include "jobs/invert_tables.h"
+#include <umov/core/median.h>
 
 #include <algorithm>
 #include <fmt/format.h>

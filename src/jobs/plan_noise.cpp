@@ -1,8 +1,8 @@
 #include "jobs/plan_noise.h"
 
-#include "core/median.h"
 #include "jobs/exposure_rates.h"
 #include "jobs/observe_plan.h"
+#include <umov/core/median.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "core/median.h"
 #include "jobs/count_rows.h"
 #include "jobs/prepared_counts.h"
 #include "jobs/reduce_series.h"
 #include "jobs/result_folder.h"
-#include "reduction/open_air.h"
+#include <umov/core/median.h>
+#include <umov/reduction/open_air.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "reduction/open_air.h"
+#include <umov/reduction/open_air.h>
 
 #include "algebra/dense.h"
 

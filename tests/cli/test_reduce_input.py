@@ -253,6 +253,12 @@ def test_zero_fluxes_of_no_band_are_told(umov, tmp_path, line):
     assert done.code == 0 and "is of no band of the counts" in done.err, done.err
 
 
+def test_zero_fluxes_of_bands_that_were_taken_out_are_not_told(umov, tmp_path):
+    (tmp_path / "c.csv").write_text("# zero_flux V: 3e-11\n# zero_flux R: 2e-11\n" + COUNTS)
+    done = umov("reduce", "c.csv")
+    assert done.code == 0 and "zero_flux" not in done.err, done.err
+
+
 def changed(column, value):
     head, *rows = COUNTS.splitlines()
     names = head.split(",")
@@ -288,6 +294,8 @@ def test_options_of_reduce_and_calibrate_that_say_nothing(umov, calibrated):
     (calibrated / "known.csv").write_text("name,mag,color\nnone,8,0.5\n")
     done = umov("calibrate", "stars.csv", "--standards", "known.csv")
     assert done.code == 3 and '"colour" was expected' in done.err and "known.csv:1" in done.err, done.err
+    (calibrated / "known.csv").write_text("name,mag,colour,color\nnone,8,0.5,blue\n")  # ours is there; the other is somebody's own
+    assert '"colour" was expected' not in umov("calibrate", "stars.csv", "--standards", "known.csv").err
 
 
 def test_lamps_without_an_analyser_tell_no_angle(umov, tmp_path):

@@ -81,22 +81,29 @@ Result<void> read_sky(const Node &air, SkyOptions &out) {
     UMOV_TRY(read_share(dilution, "sun", out.dilution_sun));
     UMOV_TRY(read_share(dilution, "moon", out.dilution_moon));
   }
+  UMOV_TRY(read_share(node, "p", out.p));
+  const SkyOptions usual; // which earlier locks spell out, whatever it says to a sky
   if (node.has("mag")) {
-    for (const char *name : {"dark_mag", "twilight", "moon", "dilution"})
-      if (node.has(name))
+    for (const auto &[name, is_unusual] :
+         {std::pair{"dark_mag", node.has("dark_mag")},
+          {"twilight", out.has_twilight != usual.has_twilight},
+          {"moon", out.has_moon != usual.has_moon},
+          {"dilution",
+           out.dilution_sun != usual.dilution_sun || out.dilution_moon != usual.dilution_moon}})
+      if (is_unusual)
         return fail(ErrorCode::BadInput,
                     fmt::format("{} beside mag: a sky of one brightness has no other parts; leave "
                                 "one of them out",
                                 name),
                     node.where(name));
     out.mag = node.number("mag", 0);
-  } else if (node.has("p")) {
+  } else if (out.p != usual.p) {
     return fail(ErrorCode::BadInput,
                 "p without mag: the polarization of dark sky, twilight and moonlight is computed "
                 "(dilution scales it); give mag too, or leave p out",
                 node.where("p"));
   }
-  return read_share(node, "p", out.p);
+  return {};
 }
 
 Result<SiteAir> read_clear_air(const Node &node) {

@@ -448,10 +448,11 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   UMOV_TRY(read_output(top, out));
   UMOV_ASSIGN(air, scenario::read_site_air(top));
   out.air = air;
-  if (air)
-    UMOV_TRY(check_air_reaches(out.bands, top.where("bands")));
   UMOV_ASSIGN(observation, scenario::read_observation(top, air, path.parent_path().string()));
   out.observation = observation;
+  if (air &&
+      !(observation && !observation->bands.empty())) // those are observed in the place of these
+    UMOV_TRY(check_air_reaches(out.bands, top.where("bands")));
   note_places(top, out);
   UMOV_ASSIGN(own, scenario::read_material_tables(top));
   UMOV_TRY(scenario::check_own_names(top, own));

@@ -109,18 +109,23 @@ Result<void> check_notes(const TextTable &table, const std::string &file) {
   return check_polcconv(table, file);
 }
 
-/// Lines of the header that speak of a band which no row has.
+/// Lines of the header that speak of no band of the rows, where a band of them has none: others
+/// are of a table from which bands were taken out.
 void warn_of_notes(const CountsFile &counts, const std::string &file, Diagnostics &diagnostics) {
-  for (const auto &[key, value] : counts.notes) {
-    if (!key.starts_with("zero_flux"))
-      continue;
-    const std::string band = key.substr(std::min<std::size_t>(key.size(), 10));
-    if (band.empty() || std::ranges::find(counts.rows, band, &CountRow::band) == counts.rows.end())
+  const std::string start = "zero_flux";
+  const auto bare = std::ranges::find_if(counts.rows, [&](const CountRow &row) {
+    return !counts.notes.contains(start + " " + row.band);
+  });
+  if (bare == counts.rows.end())
+    return;
+  for (const auto &[key, value] : counts.notes)
+    if (key.starts_with(start) && std::ranges::none_of(counts.rows, [&](const CountRow &row) {
+          return key == start + " " + row.band;
+        }))
       diagnostics.warn(fmt::format("{} of the header is of no band of the counts; \"zero_flux {}\" "
                                    "was expected",
-                                   printable(key), printable(counts.rows.front().band)),
+                                   printable(key), printable(bare->band)),
                        {file});
-  }
 }
 
 Result<bool> truth_in(const CountCells &cells, const std::string &name, std::size_t row) {
@@ -189,6 +194,30 @@ double retardance_in(const std::map<std::string, std::string> &notes, const std:
   return half_wave;
 }
 
+constexpr double too_large = 1e100; // squares of less are numbers still
+
+/// w0 to w3 of a row.
+Result<void> check_response(const StokesRow &w, const Where &where) {
+  for (const double one : w)
+    if (!(std::abs(one) < too_large))
+      return fail(ErrorCode::BadInput, "w0 to w3 are numbers; some are missing or too large",
+                  where);
+  if (!(w[0] > 0))
+    return fail(ErrorCode::BadInput,
+                fmt::format("w0 = {}; light must make counts: a number above 0 was expected", w[0]),
+                where);
+  // Measured rows are good to some per cent, and rows are typed to two digits.
+  constexpr double rounding = 1.05;
+  if (const double polarized = std::hypot(w[1], w[2], w[3]); polarized > rounding * w[0])
+    return fail(ErrorCode::BadInput,
+                fmt::format("w1 = {:g}, w2 = {:g}, w3 = {:g} are together {:.3g} of w0 = {:g}: "
+                            "light polarized across would make less than no counts; at most 1 was "
+                            "expected. An analyser takes half of unpolarized light: w0 = 0.5",
+                            w[1], w[2], w[3], polarized / w[0], w[0]),
+                where);
+  return {};
+}
+
 Result<void> check_row(const CountRow &row, const Where &where) {
   if (!(row.var_read >= 0 && row.sky_err >= 0 && row.excess2 >= 1))
     return fail(ErrorCode::BadInput,
@@ -199,8 +228,7 @@ Result<void> check_row(const CountRow &row, const Where &where) {
   if (!(row.scintillation >= 0 && std::isfinite(row.scintillation)))
     return fail(ErrorCode::BadInput,
                 fmt::format("scint_sd = {}; 0 or more was expected", row.scintillation), where);
-  constexpr double most = 1e100; // squares of it are numbers still
-  if (!(std::abs(row.counts) < most && std::abs(row.sky) < most))
+  if (!(std::abs(row.counts) < too_large && std::abs(row.sky) < too_large))
     return fail(ErrorCode::BadInput,
                 fmt::format("counts = {}, sky = {}; counts of electrons were expected", row.counts,
                             row.sky),
@@ -209,26 +237,7 @@ Result<void> check_row(const CountRow &row, const Where &where) {
     return fail(ErrorCode::BadInput,
                 fmt::format("airmass = {}; 1 or more was expected, or an empty cell", row.airmass),
                 where);
-  for (const double w : row.row)
-    if (!(std::abs(w) < most))
-      return fail(ErrorCode::BadInput, "w0 to w3 are numbers; some are missing or too large",
-                  where);
-  if (!(row.row[0] > 0))
-    return fail(
-        ErrorCode::BadInput,
-        fmt::format("w0 = {}; light must make counts: a number above 0 was expected", row.row[0]),
-        where);
-  // Measured rows are good to some per cent, and rows are typed to two digits.
-  constexpr double rounding = 1.05;
-  if (const double polarized = std::hypot(row.row[1], row.row[2], row.row[3]);
-      polarized > rounding * row.row[0])
-    return fail(ErrorCode::BadInput,
-                fmt::format("w1 = {:g}, w2 = {:g}, w3 = {:g} are together {:.3g} of w0 = {:g}: "
-                            "light polarized across would make less than no counts; at most 1 was "
-                            "expected. An analyser takes half of unpolarized light: w0 = 0.5",
-                            row.row[1], row.row[2], row.row[3], polarized / row.row[0], row.row[0]),
-                where);
-  return {};
+  return check_response(row.row, where);
 }
 
 /// Rows of one time, among which none may stand twice: a set would count its light twice.

@@ -74,7 +74,7 @@ Result<void> StandardsReader::check_columns() const {
                       one, other),
           header);
   for (const std::string &column : table_.columns)
-    if (const char *meant = misspelt(column))
+    if (const char *meant = misspelt(column); meant != nullptr && !has(meant))
       return fail(ErrorCode::BadInput,
                   fmt::format("a table of standards with the column \"{}\"; \"{}\" was expected",
                               printable(column), meant),

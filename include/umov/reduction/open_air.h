@@ -1,5 +1,5 @@
 #pragma once
-// Private to the library: what is not known of the air over the exposures of a set.
+// What is not known of the air over the exposures of a set.
 
 #include <cstdint>
 #include <umov/reduction/sequence.h>
