@@ -77,3 +77,40 @@ def test_an_inversion_takes_it():
     found = umov.invert_pose(umov.flux_table(series, "nm:550"), scene, **options)
     assert found.verdict in ("determined", "ambiguous", "undetermined")
     assert len(found.tables["fit"]) == len(series)
+
+
+def series(**columns):
+    return TimeSeries(time=UTC, data={"flux": np.array([1.0, 2.0, 3.0, 4.0]), **columns})
+
+
+def test_errors_are_taken_in_the_unit_of_the_flux():
+    """A thousand of the one are one of the other: the numbers alone made errors a thousand times too large."""
+    found = umov.flux_table(series(flux=np.arange(1, 5) * u.Jy, flux_err=[100, 200, 300, 400] * u.mJy), "nm:550")
+    np.testing.assert_allclose(found["flux_err"], [0.1, 0.2, 0.3, 0.4], rtol=1e-15)
+
+
+@pytest.mark.parametrize(("columns", "words"), [
+    ({"flux": [7.0, 7, 7, 7] * u.mag}, "column flux in mag; a flux, linear in light"),
+    ({"flux": [7.0, 7, 7, 7] * u.ABmag}, r"column flux in mag\(AB\); a flux"),
+    ({"flux_err": [1.0, 1, 1, 1] * u.mag}, "column flux_err in mag; a flux"),
+    ({"flux": ["a", "b", "c", "d"]}, r"column flux has shape \(4,\) of <U1; one number a row"),
+    ({"flux": np.ones((4, 3))}, r"column flux has shape \(4, 3\) of float64; one number a row"),
+    ({"quality": ["good"] * 4}, "column quality has shape .* of <U4; one number a row"),
+    ({"timecorr": [1.0, 1, 1, 1] * u.km}, "column timecorr is in km; what goes into d")])
+def test_columns_that_are_no_flux_are_told_of(columns, words):
+    with pytest.raises(umov.UsageError, match=words):
+        umov.flux_table(series(**columns), "nm:550", is_barycentric="timecorr" in columns)
+
+
+def test_a_correction_in_minutes_is_in_minutes():
+    for correction in (CORRECTION, CORRECTION * u.d, (CORRECTION * u.d).to(u.min)):
+        bary = TimeSeries(time=UTC.tdb + TimeDelta(CORRECTION, format="jd"), data={"flux": np.ones(4), "timecorr": correction})
+        with pytest.warns(umov.UmovWarning, match="brought back by timecorr"):
+            assert seconds_off(umov.flux_table(bary, "nm:550", is_barycentric=True), UTC) < 2e-6  # the text tells a microsecond
+
+
+@pytest.mark.parametrize(("options", "words"), [({"band": 5}, "band is 5; a text"), ({"flux": 5}, "flux is 5; a text"),
+                                                ({"is_barycentric": "no"}, "is_barycentric is 'no'; True or False")])
+def test_words_of_a_flux_table(options, words):
+    with pytest.raises(umov.UsageError, match=words):
+        umov.flux_table(series(), **{"band": "nm:550", **options})

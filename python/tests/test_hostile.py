@@ -13,7 +13,7 @@ import umov
 import umov.plot
 import umov.scale
 from astropy import units, units as u
-from astropy.coordinates import EarthLocation, SkyCoord
+from astropy.coordinates import ICRS, EarthLocation, SkyCoord
 from astropy.table import QTable, Table
 from astropy.time import Time
 from astropy.timeseries import TimeSeries
@@ -180,6 +180,16 @@ WRONG = {
     "a place for a direction": (lambda e: e.evaluate(A_PLACE, [0, 0, 1]), "numbers, directions"),
     "corners beyond numbers": (lambda e: umov.Satellite(mesh=(TRIANGLE, np.array([[0, 1, 2**64 - 1]], "u8")), materials="gold"),
                                "faces name vertices 0 to 18446744073709551615"),
+    "texts of a table": (lambda e: e.evaluate(np.array(["1", "0", "0"], object), [0, 0, 1]), "sun is .*; numbers, directions"),
+    "angles for lengths in a list": (lambda e: e.evaluate([0 * u.deg, 0 * u.deg, 1 * u.deg], [0, 0, 1]), "sun is in deg; a direction"),
+    "a list of two quantities": (lambda e: umov.brdf("gold", 550, [10 * u.deg, 1 * u.km]), "theta_i_deg is .*; quantities of one kind"),
+    "no time of pandas": (lambda e: umov.utc(pandas.NaT), "NaT is no time"),
+    "no time of numpy": (lambda e: umov.utc(np.datetime64("NaT")), "NaT is no time"),
+    "times without order": (lambda e: umov.propagate(DATA / "tle/hst.tle", {START, STOP}), "is a set; a time or a list of times"),
+    "a frame without a direction": (lambda e: umov.Satellite(mesh="a.obj", materials="gold", attitude={"point": "+Z", "at": ICRS()}),
+                                    "ICRS Frame> is no direction"),
+    "a list of no orbits": (lambda e: umov.propagate([None], START), "orbit is a NoneType; a file, the lines"),
+    "numbers without order": (lambda e: umov.passes(DATA / "tle/hst.tle", "maui", START, STOP, norad={20580}), r"norad is \{20580\}; a whole"),
     "poses beyond numbers": (lambda e: umov._umov.random_directions(2**63, 30.0, 0, 2**63), "first and count are too large"),
 }
 
@@ -302,6 +312,62 @@ def test_times_of_skyfield():
     scale = api.load.timescale(builtin=True)
     assert umov.utc(scale.utc(2018, 1, 21, 5, 10)) == "2018-01-21T05:10:00.000Z"
     assert umov.propagate(DATA / "tle/hst.tle", [scale.utc(2018, 1, 21)]).error.tolist() == [[0]]
+    # A datetime knows no leap second, and no nanosecond.
+    assert umov.utc(scale.utc(2016, 12, 31, 23, 59, 60.5)) == "2016-12-31T23:59:60.500Z"
+    assert umov.utc(scale.utc(2018, 1, 21, 5, 10, 0.123456789)) == "2018-01-21T05:10:00.123456789Z"
+    several = scale.utc(2018, 1, 21, 5, [10, 11])
+    np.testing.assert_array_equal(umov.propagate(DATA / "tle/hst.tle", several).position_km,
+                                  umov.propagate(DATA / "tle/hst.tle", [START, STOP]).position_km)
+    with pytest.raises(umov.UsageError, match=r"shape \(2,\); a single time was expected"):
+        umov.utc(several)
+
+
+def test_catalogues_of_others():
+    """As skyfield and sgp4 hold them: a list of objects; lines as numpy, pandas and a file have them."""
+    api, sgp4 = pytest.importorskip("skyfield.api"), pytest.importorskip("sgp4.api")
+    expected = umov.propagate(DATA / "tle/hst.tle", START)
+    scale = api.load.timescale(builtin=True)
+    two = [api.EarthSatellite(*LINES, "a\nname", scale), sgp4.Satrec.twoline2rv(*LINES)]
+    found = umov.propagate(two, START)
+    assert found.norad_cat_id.tolist() == [20580, 20580]
+    for position in found.position_km:  # fields of a TLE hold all of it
+        np.testing.assert_array_equal(position, expected.position_km[0])
+    with open(DATA / "tle/hst.tle") as file:
+        for lines in (np.array(LINES), pandas.Series(LINES), file):
+            np.testing.assert_array_equal(umov.propagate(lines, START).position_km, expected.position_km)
+    assert umov.passes(two[0], "maui", START, "2018-01-21T16:00Z", norad=pandas.Series([20580]))["name"][0] == "a name"
+
+
+def test_a_shallow_copy_has_files_of_its_own():
+    """The copy's names of files stood in the table of both, and went with the copy."""
+    one = umov.Satellite(mesh=(TRIANGLE, [[0, 1, 2]]), materials="paper_al", orbit=LINES)
+    two = copy.copy(one)
+    assert one == two
+    del two
+    gc.collect()
+    assert umov.mesh(one).vertices.shape == (3, 3) and umov.propagate(one, START).error.tolist() == [[0]]
+
+
+def test_times_and_directions_in_tables():
+    def made(attitude):
+        satellite = umov.Satellite(mesh=(TRIANGLE, [[0, 1, 2]]), materials="paper_al", attitude=attitude)
+        return umov.Scenario(satellite).to_dict()["object"][0]["attitude"]
+    spin = {"mode": "spin", "axis": "+Z", "period_s": 2 * u.min}
+    assert made({**spin, "epoch": Time(START)}) == made({**spin, "epoch": START}) == made({**spin, "epoch": pandas.Timestamp(START)})
+    point = {"point": "+Z", "then": "+X", "toward": "velocity"}
+    assert made({**point, "at": ICRS(10 * u.deg, 20 * u.deg)}) == made({**point, "at": {"ra_deg": 10, "dec_deg": 20}})
+
+
+def test_sites_of_rows():
+    row = {"lat_deg": 20.5 * u.deg, "lon_deg": -156 * u.deg, "alt_m": 3 * u.km}
+    table = QTable({name: [value] for name, value in row.items()} | {"name": ["here"]})
+    assert umov.Site(table[0]) == umov.Site(pandas.Series({"lat_deg": 20.5, "lon_deg": -156, "alt_m": 3000, "name": "here"}))
+
+
+def test_lists_of_quantities(plate):
+    engine = umov.Engine(plate, ["nm:550"], cache=False)
+    np.testing.assert_array_equal(engine.evaluate([0 * u.km, 0 * u.m, 1 * u.km], [0, 1, 1]), engine.evaluate([0, 0, 1], [0, 1, 1]))
+    np.testing.assert_array_equal(umov.brdf("paper_bk7", 550 * u.nm, [10 * u.deg, 20 * u.deg]), umov.brdf("paper_bk7", 550, [10, 20]))
 
 
 def test_a_part_of_a_curve_has_its_own_period():

@@ -15,10 +15,11 @@ _UNITS = {"_deg_s": "deg/s", "_km_s": "km/s", "_e_s": "electron/s", "_hpa": "hPa
 
 
 def plain(value: Any, name: str) -> Any:
-    """A Quantity in the unit that the name ends with; all else as it is."""
+    """A Quantity in the unit that the name ends with, a list of them too; all else as it is."""
+    value = joined(value, name)
     if not hasattr(value, "to_value"):
         return value
-    if "_" not in name:
+    if "_" not in name and name != "mag":
         raise UsageError(f"{name} has a unit; plain numbers were expected")
     unit = next((unit for end, unit in _UNITS.items() if name.endswith(end)), name.rsplit("_", 1)[-1])
     try:
@@ -27,10 +28,25 @@ def plain(value: Any, name: str) -> Any:
         raise UsageError(f"{name} is {value!r}; it does not go into that unit ({error})") from error
 
 
+def joined(value: Any, name: str) -> Any:
+    """A list of Quantities as one; all else as it is."""
+    if not isinstance(value, (list, tuple)) or not value or not all(hasattr(one, "to_value") for one in value):
+        return value
+    from astropy.units import Quantity
+    try:
+        return Quantity(value)
+    except Exception as error:
+        raise UsageError(f"{name} is {_short(value)}; quantities of one kind and shape were expected ({error})") from error
+
+
 def _is_masked(value: Any) -> bool:
     """Of numpy or astropy, with something behind the mask: an array would show what nobody is to see."""
     mask = getattr(value, "mask", None)
     return isinstance(mask, (bool, np.bool_, np.ndarray)) and bool(np.any(mask))
+
+
+#: What float() takes for numbers.
+_NO_NUMBERS = (str, bytes, bool, np.bool_)
 
 
 def real_array(value: Any, name: str, expected: str = "numbers") -> NDArray[np.float64]:
@@ -41,7 +57,7 @@ def real_array(value: Any, name: str, expected: str = "numbers") -> NDArray[np.f
     try:
         with np.errstate(over="ignore"):
             given = np.asarray(value)
-            if given.dtype.kind not in "fiuO":
+            if given.dtype.kind not in "fiuO" or (given.dtype.kind == "O" and any(isinstance(one, _NO_NUMBERS) for one in given.flat)):
                 raise TypeError(given.dtype)
             return given.astype(np.float64, copy=False)
     except (TypeError, ValueError, OverflowError) as error:

@@ -47,7 +47,7 @@ def value_text(value: Any, name: str = "value") -> str:
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
     if isinstance(value, os.PathLike):
         return value_text(os.fspath(value), name)
-    if isinstance(value, datetime.datetime):
+    if isinstance(value, datetime.datetime) or hasattr(type(value), "sidereal_time") or hasattr(value, "utc_iso"):  # of astropy, skyfield
         from .times import utc
         return utc(value)
     if isinstance(value, Mapping):
@@ -55,7 +55,7 @@ def value_text(value: Any, name: str = "value") -> str:
         return "{ " + ", ".join(inside) + " }"
     if hasattr(value, "to_value") and not hasattr(value, "scale") and "_" in name:  # into the unit that the key ends with
         return value_text(plain(value, name), name)
-    if hasattr(value, "to_value") or hasattr(value, "scale"):  # a unit or a time, of which a scenario has its own forms
+    if hasattr(value, "to_value") or hasattr(value, "scale"):  # a unit or a length of time, of which a scenario has its own forms
         raise UsageError(f"{name} is {value!r}; a plain number or a text was expected, in the unit that the key says")
     if hasattr(value, "tolist"):  # numpy arrays and numbers
         return value_text(value.tolist(), name)

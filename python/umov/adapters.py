@@ -8,7 +8,7 @@ import os
 import pathlib
 import tempfile
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import Any
 
 import numpy as np
@@ -69,22 +69,31 @@ def _remove(folder: str, names: list[str], owner: int) -> None:
 
 
 def orbit_text(orbit: Any) -> str | None:
-    """TLE lines of an sgp4 Satrec, a skyfield EarthSatellite or a text of two or three lines; None
+    """TLE lines of an sgp4 Satrec, a skyfield EarthSatellite or a list of them, or a text of two or three lines; None
     for what is a file or a table already."""
     if isinstance(orbit, str):
         return orbit if "\n" in orbit.strip() else None
     if isinstance(orbit, (os.PathLike, Mapping)):
         return None
-    if isinstance(orbit, Sequence) and all(isinstance(line, str) for line in orbit):
-        return "\n".join(orbit) + "\n"
-    name = getattr(orbit, "name", None) or ""
+    if hasattr(orbit, "__iter__") and not isinstance(orbit, (bytes, Set)):
+        return "".join(one.rstrip("\r\n") + "\n" if isinstance(one, str) else _lines(one) for one in orbit)
+    return _lines(orbit)
+
+
+def _lines(orbit: Any) -> str:
+    """TLE lines of one object of another package, under its name."""
+    name = " ".join(str(getattr(orbit, "name", None) or "").split())
     model = getattr(orbit, "model", orbit)  # skyfield keeps its Satrec there
     if hasattr(model, "satnum") and hasattr(model, "jdsatepoch"):
         try:
             from sgp4.exporter import export_tle
         except ImportError as error:
             raise UsageError("an sgp4 Satrec needs the package sgp4: pip install sgp4") from error
-        return "\n".join([*([name] if name else []), *export_tle(model)]) + "\n"
+        try:
+            return "\n".join([*([name] if name else []), *export_tle(model)]) + "\n"
+        except Exception as error:
+            raise UsageError(f"{orbit!r} cannot be written as lines of a TLE ({error}); elements that can were expected, or a file "
+                             "of them (OMM)") from error
     raise UsageError(f"orbit is a {type(orbit).__name__}; a file, the lines of a TLE, a table of the scenario, "
                      "an sgp4 Satrec or a skyfield EarthSatellite was expected")
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._made import Made
-from ._numbers import between, number_array, path_text, real_array, whole
+from ._numbers import between, joined, number_array, path_text, real_array, whole
 from .errors import UsageError, raise_stopped
 from .satellites import AnyBands, band_changes
 from .scenarios import AnyScenario, Scenario
@@ -217,7 +217,8 @@ def kelvins(temperatures: Any) -> list[str]:
 
 
 def _lengths(value: Any, name: str) -> Any:
-    """The numbers of a Quantity of lengths, whose unit does not matter; all else as it is."""
+    """The numbers of a Quantity of lengths, or of a list of them, whose unit does not matter; all else as it is."""
+    value = joined(value, name)
     if not hasattr(value, "to_value") or not hasattr(value, "unit"):
         return value
     if value.unit.physical_type not in ("length", "dimensionless"):

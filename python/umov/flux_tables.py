@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._jobs import Watch
-from ._numbers import path_text
+from ._numbers import in_units, path_text, text, truth
 from .errors import InputError, UsageError
 
 if TYPE_CHECKING:
@@ -53,6 +53,7 @@ def flux_table(light: Any, band: str, *, flux: str = "flux", is_barycentric: boo
     '2018-01-21T05:09:00.000000Z'
     """
     from astropy.table import Table
+    band, flux = text(band, "band"), text(flux, "flux")
     if isinstance(light, (str, os.PathLike)):
         light = _read(path_text(light, "light"))
     names = {name.lower(): name for name in getattr(light, "colnames", ())}
@@ -64,11 +65,13 @@ def flux_table(light: Any, band: str, *, flux: str = "flux", is_barycentric: boo
             raise InputError(f"light has no column {wanted!r}; there are {', '.join(names.values())}. Name the flux by flux=...")
     time, assumed = _time_of(light, names)
     time, more = _at_the_observer(time, light, names, is_barycentric)
-    values = _numbers(light[names[flux.lower()]])
     error_name = flux.lower() + "_err"
-    errors = _numbers(light[names[error_name]]) if error_name in names else np.full(len(values), np.nan)
-    flags = _numbers(light[names["quality"]]) if "quality" in names else np.zeros(len(values))
-    kept = np.isfinite(values) & (flags == 0) & np.isfinite(_numbers(time.jd))
+    given = {name: light[names[column]] for name, column in (("flux", flux.lower()), ("flux_err", error_name)) if column in names}
+    in_one_unit = in_units(Table(given, copy=False), "light")
+    values = _numbers(in_one_unit["flux"], flux)
+    errors = _numbers(in_one_unit["flux_err"], error_name) if error_name in names else np.full(len(values), np.nan)
+    flags = _numbers(light[names["quality"]], "quality") if "quality" in names else np.zeros(len(values))
+    kept = np.isfinite(values) & (flags == 0) & np.isfinite(_numbers(time.jd, "time"))
     if not kept.any():
         raise InputError(f"light has no row with a finite {flux} and quality 0; rows: {len(values)}")
     assumed += more
@@ -100,9 +103,19 @@ def _read(path: str) -> AstropyTable:
         raise InputError(f"{path}: cannot be read as FITS ({error}); a light curve of TESS or Kepler was expected") from error
 
 
-def _numbers(column: Any) -> np.ndarray:
+def _numbers(column: Any, name: str, into: str | None = None) -> np.ndarray:
+    """One number a row, NaN where there is none; in the unit `into` where the column has one."""
     values = np.ma.asarray(getattr(column, "value", column))
-    return np.asarray(np.ma.filled(values.astype(float), np.nan), dtype=float)
+    if values.ndim != 1 or values.dtype.kind not in "fiub":
+        raise UsageError(f"light's column {name} has shape {values.shape} of {values.dtype}; one number a row was expected")
+    out = np.asarray(np.ma.filled(values.astype(float), np.nan), dtype=float)
+    unit = getattr(column, "unit", None)
+    if unit is None or into is None:
+        return out
+    try:
+        return out * float(unit.to(into))
+    except Exception as error:
+        raise UsageError(f"light's column {name} is in {unit}; what goes into {into} was expected ({error})") from error
 
 
 def _time_of(light: Any, names: dict[str, str]) -> tuple[Time, list[str]]:
@@ -117,7 +130,7 @@ def _time_of(light: Any, names: dict[str, str]) -> tuple[Time, list[str]]:
                          "Time(light['time'], format='mjd', scale='utc'), or the header's BJDREFI as in files of TESS")
     zero = float(meta["BJDREFI"]) + float(meta.get("BJDREFF", 0))
     scale = str(meta.get("TIMESYS", "TDB")).strip().lower()
-    values = _numbers(column)
+    values = _numbers(column, "time")
     out = Time(np.where(np.isfinite(values), values, 0.0), zero, format="jd", scale=scale)
     out[~np.isfinite(values)] = np.ma.masked
     return out, [f"times are days of {scale.upper()} since JD {zero:.0f} and are brought to UTC"]
@@ -127,12 +140,14 @@ def _at_the_observer(time: Time, light: Any, names: dict[str, str], is_barycentr
     """Times of light at the telescope, of times of light at the barycentre."""
     from astropy.time import TimeDelta
     meta = {str(key).upper(): value for key, value in getattr(light, "meta", {}).items()}
-    if is_barycentric is None:
+    if is_barycentric is not None:
+        is_barycentric = truth(is_barycentric, "is_barycentric")
+    else:
         is_barycentric = time.format in ("btjd", "bkjd") or "SOLARSYSTEM" in str(meta.get("TIMEREF", "")).upper().replace(" ", "")
     if not is_barycentric:
         return time, []
     if "timecorr" not in names:
         raise InputError("light's times are those at the barycentre of the solar system and there is no column timecorr to bring "
                          "them back, up to 8.3 min; add it, or give is_barycentric=False if they are the telescope's own")
-    days = _numbers(light[names["timecorr"]])
+    days = _numbers(light[names["timecorr"]], "timecorr", "d")
     return time - TimeDelta(np.nan_to_num(days), format="jd"), ["times at the barycentre are brought back by timecorr"]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Union
 from . import _toml, _umov
 from ._jobs import Progress, Watch, job_options
 from ._made import Made
-from ._numbers import between, in_units, number, path_text, text as text_of, whole
+from ._numbers import between, in_units, number, path_text, text as text_of, truth, whole
 from .errors import DeviceError, InputError, UsageError
 from .scenarios import AnyScenario, Scenario
 from .tables import Table
@@ -366,7 +366,7 @@ def calibrate(counts: AnyCounts, standards: str | os.PathLike[str] | Table | QTa
         stars = _umov.standards_text(standards), standards
     else:
         stars = _text_of(standards, "standards")
-    return Calibration.from_toml(_umov.calibrate(*_text_of(counts, "counts"), *stars, bool(second_order), Watch(None)))
+    return Calibration.from_toml(_umov.calibrate(*_text_of(counts, "counts"), *stars, truth(second_order, "second_order"), Watch(None)))
 
 
 def standards() -> list[str]:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
 import numpy as np
@@ -47,7 +47,7 @@ def _numbers(norad: Numbers, orbit: AnyOrbit) -> list[int]:
     if norad is None:
         own = orbit.norad if isinstance(orbit, Satellite) else None
         return [] if own is None else [own]
-    if isinstance(norad, (list, tuple)) or (isinstance(norad, np.ndarray) and norad.ndim == 1):
+    if hasattr(norad, "__iter__") and not isinstance(norad, (str, bytes, Mapping, Set)) and np.ndim(norad) == 1:
         return [whole(one, "norad") for one in norad]
     return [whole(norad, "norad")]
 
@@ -76,7 +76,8 @@ def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, nor
     Parameters
     ----------
     orbit
-        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec or a skyfield EarthSatellite.
+        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec, a skyfield EarthSatellite, or a list of
+        these two.
     site
         A name of `umov.site_names()`, a Site, an astropy EarthLocation, a skyfield topos or a table with lat_deg,
         lon_deg and alt_m.
@@ -156,7 +157,8 @@ def ephemeris(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, 
     Parameters
     ----------
     orbit
-        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec or a skyfield EarthSatellite.
+        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec, a skyfield EarthSatellite, or a list of
+        these two.
     site
         A name of `umov.site_names()`, a Site, an astropy EarthLocation, a skyfield topos or a table with lat_deg,
         lon_deg and alt_m.
@@ -230,7 +232,8 @@ def propagate(orbit: AnyOrbit, times: AnyTime | Sequence[AnyTime], *, threads: i
     Parameters
     ----------
     orbit
-        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec or a skyfield EarthSatellite.
+        A file (TLE, 3LE, OMM, OEM), the lines of a TLE, a Satellite, an sgp4 Satrec, a skyfield EarthSatellite, or a list of
+        these two.
     times
         One time, a list of them, or an astropy Time of any shape (ISO 8601 with offset, aware datetime, Time).
     threads

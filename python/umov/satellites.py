@@ -47,13 +47,16 @@ _FAR_KM = 3.0856775814913673e13
 
 
 def _direction(value: Any) -> Any:
-    """A SkyCoord as the table of a scenario; all else as it is."""
-    if not hasattr(value, "transform_to") or not hasattr(value, "frame"):
+    """A SkyCoord, or a frame of astropy with data, as the table of a scenario; all else as it is."""
+    if not hasattr(value, "transform_to") or not (hasattr(value, "frame") or hasattr(value, "has_data")):
         return value
+    if not getattr(value, "has_data", True):
+        raise UsageError(f"{value!r} is no direction; one with coordinates was expected")
     if not value.isscalar:
         raise UsageError(f"a SkyCoord of shape {value.shape} is no direction; a single one was expected")
     try:
-        found = value.transform_to("icrs")
+        from astropy.coordinates import SkyCoord
+        found = SkyCoord(value).transform_to("icrs")
         far = found.distance.to_value("km") if found.distance.unit.is_equivalent("km") else _FAR_KM
     except Exception as error:
         raise UsageError(f"{value!r} does not go into ICRS ({error}); a direction among the stars was expected. AltAz needs "
@@ -379,7 +382,7 @@ class Satellite(Made):
 
     def __getstate__(self) -> dict[str, Any]:
         state = dict(self.__dict__)
-        state["_files"] = None
+        state["_files"], state["_table"] = None, dict(self._table)  # a copy has files, and names of them, of its own
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:

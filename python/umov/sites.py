@@ -140,7 +140,8 @@ def _told(site: AnySite, name: str) -> tuple[str, float, float, float]:
     if isinstance(site, str):
         told = _umov.site(utf8(site, "site"))
         return (name or told[0]), told[1], told[2], told[3]
-    if isinstance(site, Mapping):
+    if hasattr(site, "keys") and hasattr(site, "__getitem__"):  # a dictionary, a row of astropy's or pandas'
+        site = {key: site[key] for key in site.keys()}
         if "lat_deg" not in site and "name" in site:
             return _told(str(site["name"]), name)
         if missing := [key for key in ("lat_deg", "lon_deg", "alt_m") if key not in site]:

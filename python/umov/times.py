@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any, TypeGuard, Union
 
 import numpy as np
@@ -22,6 +22,10 @@ AnyTime = Union[str, datetime.datetime, "Time"]
 def _is_astropy(time: Any) -> TypeGuard[Time]:
     """A Time of astropy, which need not be imported; a TimeDelta knows no stars."""
     return hasattr(type(time), "sidereal_time")
+
+
+def _is_skyfield(time: Any) -> bool:
+    return hasattr(time, "utc_iso") and hasattr(time, "tai")
 
 
 def _exact(time: Time) -> Time:
@@ -60,6 +64,8 @@ def utc(time: AnyTime) -> str:
     """
     if isinstance(time, str):
         return _umov.check_time(time)
+    if isinstance(time, (datetime.datetime, np.datetime64)) and time != time:
+        raise UsageError("NaT is no time; a time that is known was expected. Leave it out.")
     if isinstance(time, datetime.datetime):
         if time.tzinfo is None:
             raise UsageError(
@@ -74,8 +80,10 @@ def utc(time: AnyTime) -> str:
     if isinstance(time, np.datetime64):
         raise UsageError(f"{time!r} has no time zone; an aware time was expected. In UTC that is astropy.time.Time({str(time)!r}, "
                          'scale="utc")')
-    if hasattr(time, "utc_datetime") and hasattr(time, "tai"):  # of skyfield
-        return utc(time.utc_datetime())
+    if _is_skyfield(time):
+        if time.shape:
+            raise UsageError(f"a Time of skyfield of shape {time.shape}; a single time was expected, such as times[0]")
+        return _umov.check_time(time.utc_iso(places=9))  # a datetime knows neither leap seconds nor less than a microsecond
     raise UsageError(f"{time!r} is a {type(time).__name__}; a time was expected: ISO 8601 with an offset "
                      "(\"2018-01-21T04:00:00Z\"), an aware datetime or an astropy Time")
 
@@ -84,10 +92,12 @@ def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
     """Times of a call, and whether it was a single one."""
     if isinstance(times, (str, datetime.datetime)):
         return [utc(times)], True
-    if _is_astropy(times) and times.isscalar:
+    if (_is_astropy(times) and times.isscalar) or (_is_skyfield(times) and not getattr(times, "shape", ())):
         return [utc(times)], True
+    if _is_skyfield(times):  # whose several are no list
+        return [_umov.check_time(one) for one in times.utc_iso(places=9)], False
     listed: Any = times
-    if not isinstance(listed, Iterable) or not getattr(listed, "shape", (1,)):
+    if not isinstance(listed, Iterable) or isinstance(listed, (Mapping, Set)) or not getattr(listed, "shape", (1,)):
         raise UsageError(f"{times!r} is a {type(times).__name__}; a time or a list of times was expected")
     if _is_astropy(listed):  # one conversion for all
         return [_umov.check_time(f"{one}Z") for one in _exact(listed).value.ravel().tolist()], False
