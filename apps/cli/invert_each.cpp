@@ -24,9 +24,9 @@ Result<void> answer_each(InvertVerb &o, const EachOptions &each, const EachJob &
   }
   settle(o);
   JobConsole console(o.common);
-  UMOV_ASSIGN(job, many(scenario, o, job_options(o.common), diagnostics));
-  UMOV_ASSIGN(answers,
-              jobs::answer_curves(*job, part, console.monitor(o.common.verbose), diagnostics));
+  const jobs::Monitor monitor = console.monitor(o.common.verbose);
+  UMOV_ASSIGN(job, many(scenario, o, job_options(o.common), monitor, diagnostics));
+  UMOV_ASSIGN(answers, jobs::answer_curves(*job, part, monitor, diagnostics));
   if (folder)
     UMOV_TRY(jobs::write_answers(answers, scenario, manifest_of_command(o.common, started),
                                  diagnostics, *folder));
@@ -57,7 +57,7 @@ Result<RangedVerb> in_parts(CLI::App &verb, const std::vector<std::string> &argu
   settle(*o);
   jobs::JobOptions options = setting.options;
   options.device = device_options(o->common);
-  UMOV_ASSIGN(job, many(scenario, *o, options, diagnostics));
+  UMOV_ASSIGN(job, many(scenario, *o, options, setting.monitor, diagnostics));
   return RangedVerb{std::move(job), ""};
 }
 

@@ -15,7 +15,8 @@ struct EachOptions {
 };
 /// The job of all curves.
 using EachJob = std::function<Result<std::unique_ptr<jobs::RangedJob>>(
-    const Scenario &, const InvertVerb &, const jobs::JobOptions &, Diagnostics &)>;
+    const Scenario &, const InvertVerb &, const jobs::JobOptions &, const jobs::Monitor &,
+    Diagnostics &)>;
 
 /// Options of umov invert pose and of umov identify, and what --each makes of them.
 EachJob pose_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o, EachOptions &each);

@@ -70,6 +70,7 @@ Result<scale::JobLock> measured_job(const ScaleJobOptions &o, const scale::PlanS
   PartsSetting parts;
   parts.options.threads = 1; // CPU seconds of a core are what is told
   parts.options.mask_cache = fs::absolute(o.folder) / "masks";
+  parts.monitor.cancel = &interrupted();
   note(common, "reading the job and measuring some of it ...");
   const double before = cpu_seconds();
   UMOV_ASSIGN(made, verb_in_parts(o.verb, o.arguments, parts, diagnostics));
@@ -89,9 +90,7 @@ Result<scale::JobLock> measured_job(const ScaleJobOptions &o, const scale::PlanS
   out.problems = job->problems();
   out.warnings = job->warnings();
   out.tallies = job->tallies();
-  jobs::Monitor monitor;
-  monitor.cancel = &interrupted();
-  UMOV_ASSIGN(rate, scale::measure(*job, cpu_seconds() - before, monitor));
+  UMOV_ASSIGN(rate, scale::measure(*job, cpu_seconds() - before, parts.monitor));
   out.rate = rate;
   scale::PlanSettings wanted = settings;
   wanted.per_shard = o.per_shard;

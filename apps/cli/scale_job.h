@@ -11,6 +11,7 @@ namespace umov::cli {
 struct PartsSetting {
   jobs::JobOptions options;
   std::vector<std::size_t> layout; ///< RangedJob::layout, where it is known
+  jobs::Monitor monitor = {};
 };
 
 /// A verb's job, and the name of a file that its rows depend on besides; "" for none.

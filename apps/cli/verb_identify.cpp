@@ -17,9 +17,9 @@ EachJob identify_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o,
       ->check(CLI::Range(1e-6, 0.999))
       ->capture_default_str();
   return [asked](const Scenario &scenario, const InvertVerb &given, const jobs::JobOptions &options,
-                 Diagnostics &diagnostics) {
+                 const jobs::Monitor &monitor, Diagnostics &diagnostics) {
     asked->observed = given.request;
-    return jobs::ranged_identities(scenario, *asked, options, diagnostics);
+    return jobs::ranged_identities(scenario, *asked, options, monitor, diagnostics);
   };
 }
 

@@ -94,8 +94,8 @@ EachJob pose_options(CLI::App &verb, const std::shared_ptr<InvertVerb> &o, EachO
   add_material_errors(verb, o);
   add_each(verb, each);
   return [](const Scenario &scenario, const InvertVerb &asked, const jobs::JobOptions &options,
-            Diagnostics &diagnostics) {
-    return jobs::ranged_poses(scenario, asked.request, options, diagnostics);
+            const jobs::Monitor &monitor, Diagnostics &diagnostics) {
+    return jobs::ranged_poses(scenario, asked.request, options, monitor, diagnostics);
   };
 }
 

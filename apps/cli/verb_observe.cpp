@@ -80,7 +80,8 @@ Result<RangedVerb> observe_in_parts(const std::vector<std::string> &arguments,
   UMOV_ASSIGN(scenario, read_scenario(o.scenario, o.overrides));
   jobs::JobOptions options = with_elements(setting.options, o.elements);
   options.device = device_options(common);
-  UMOV_ASSIGN(job, jobs::ranged_observe(scenario, options, setting.layout, {}, diagnostics));
+  UMOV_ASSIGN(
+      job, jobs::ranged_observe(scenario, options, setting.layout, setting.monitor, diagnostics));
   return RangedVerb{std::move(job), ""};
 }
 

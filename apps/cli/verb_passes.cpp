@@ -44,8 +44,8 @@ Result<RangedVerb> passes_in_parts(const std::vector<std::string> &arguments,
   UMOV_TRY(parse_verb(verb, arguments));
   UMOV_TRY(refuse_output(o.output, o.part));
   UMOV_ASSIGN(request, request_of(o, common));
-  UMOV_ASSIGN(
-      job, jobs::ranged_passes(request, with_elements(setting.options, o.elements), diagnostics));
+  UMOV_ASSIGN(job, jobs::ranged_passes(request, with_elements(setting.options, o.elements),
+                                       setting.monitor, diagnostics));
   return RangedVerb{std::move(job), o.site.earth_orientation};
 }
 

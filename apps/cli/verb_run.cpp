@@ -66,7 +66,8 @@ Result<RangedVerb> run_in_parts(const std::vector<std::string> &arguments,
   UMOV_ASSIGN(scenario, scenario_of(o));
   jobs::JobOptions options = with_elements(setting.options, o.elements);
   options.device = device_options(common);
-  UMOV_ASSIGN(job, jobs::ranged_run(scenario, options, setting.layout, {}, diagnostics));
+  UMOV_ASSIGN(job,
+              jobs::ranged_run(scenario, options, setting.layout, setting.monitor, diagnostics));
   return RangedVerb{std::move(job), scenario.earth_orientation.string()};
 }
 

@@ -46,7 +46,8 @@ Result<RangedVerb> signature_in_parts(const std::vector<std::string> &arguments,
   UMOV_ASSIGN(poses, poses_of(o, scenario));
   jobs::JobOptions options = setting.options;
   options.device = device_options(common);
-  UMOV_ASSIGN(job, jobs::ranged_signature(scenario, poses, request_of(o), options, diagnostics));
+  UMOV_ASSIGN(job, jobs::ranged_signature(scenario, poses, request_of(o), options, setting.monitor,
+                                          diagnostics));
   return RangedVerb{std::move(job), ""};
 }
 

@@ -181,11 +181,13 @@ public:
 
 Result<std::unique_ptr<RangedJob>> ranged_poses(const Scenario &scenario,
                                                 const InvertRequest &request,
-                                                const JobOptions &options,
+                                                const JobOptions &options, const Monitor &made_by,
                                                 Diagnostics &diagnostics) {
   Diagnostics told;
-  UMOV_ASSIGN(light, prepare_light(scenario, request, options, told));
-  take_apart(light, request, options, told);
+  UMOV_ASSIGN(light, prepare_light(scenario, request, options, told, made_by.cancel));
+  take_apart(light, request, options, told, made_by.cancel);
+  if (made_by.is_cancelled())
+    return fail(ErrorCode::Interrupted, "stopped by the user; nothing was written");
   const auto ready = std::make_shared<const SearchedLight>(std::move(light));
   CurveQuestion question;
   question.curves = request.observations;
@@ -205,10 +207,9 @@ Result<std::unique_ptr<RangedJob>> ranged_poses(const Scenario &scenario,
   return job_of(std::move(question), scenario, options, told, diagnostics);
 }
 
-Result<std::unique_ptr<RangedJob>> ranged_identities(const Scenario &scenario,
-                                                     const IdentifyRequest &request,
-                                                     const JobOptions &options,
-                                                     Diagnostics &diagnostics) {
+Result<std::unique_ptr<RangedJob>>
+ranged_identities(const Scenario &scenario, const IdentifyRequest &request,
+                  const JobOptions &options, const Monitor &made_by, Diagnostics &diagnostics) {
   UMOV_ASSIGN(library, library_text(request.library));
   CurveQuestion question;
   question.curves = request.observed.observations;
@@ -222,7 +223,8 @@ Result<std::unique_ptr<RangedJob>> ranged_identities(const Scenario &scenario,
     question.inputs.push_back({object, sha256_hex(text)});
     UMOV_ASSIGN(own, read_scenario(object, {}));
     Diagnostics told_with_each;
-    UMOV_ASSIGN(loaded, load_object(own, 0, {.allow_old_elements = true}, told_with_each));
+    UMOV_ASSIGN(loaded, load_object(own, 0, {.allow_old_elements = true, .cancel = made_by.cancel},
+                                    told_with_each));
     question.inputs.insert(question.inputs.end(), loaded.inputs.begin(), loaded.inputs.end());
   }
   question.asked = fmt::format("identity; {}; none {:.17g}; library {}", text_of(request.observed),

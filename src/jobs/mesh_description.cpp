@@ -2,23 +2,26 @@
 
 #include <array>
 #include <nlohmann/json.hpp>
+#include <umov/core/stop.h>
 
 namespace umov::jobs {
 
 Result<MeshDescription> describe_mesh(const std::string &path, const MeshFileOptions &options,
                                       MeshLook look, Diagnostics &diagnostics) {
-  UMOV_ASSIGN(read, read_mesh(path, options, diagnostics));
-  Mesh mesh = with_joined_groups(read.mesh);
-  const MeshReport raw = inspect(mesh);
-  if (look == MeshLook::Cleaned) {
-    UMOV_ASSIGN(cleaned, clean_mesh(mesh, diagnostics, path));
-    mesh = std::move(cleaned);
-  }
-  MeshDescription out{read.format, mesh.groups, read.nodes, inspect(mesh, false)};
-  out.report.degenerate = raw.degenerate;
-  out.report.duplicate = raw.duplicate;
-  out.report.opposite_pairs = raw.opposite_pairs;
-  return out;
+  return without_failures([&]() -> Result<MeshDescription> {
+    UMOV_ASSIGN(read, read_mesh(path, options, diagnostics));
+    Mesh mesh = with_joined_groups(read.mesh);
+    const MeshReport raw = inspect(mesh, true, options.cancel);
+    if (look == MeshLook::Cleaned) {
+      UMOV_ASSIGN(cleaned, clean_mesh(mesh, diagnostics, path, options.cancel));
+      mesh = std::move(cleaned);
+    }
+    MeshDescription out{read.format, mesh.groups, read.nodes, inspect(mesh, false, options.cancel)};
+    out.report.degenerate = raw.degenerate;
+    out.report.duplicate = raw.duplicate;
+    out.report.opposite_pairs = raw.opposite_pairs;
+    return out;
+  });
 }
 
 Table group_table(const MeshDescription &mesh) {

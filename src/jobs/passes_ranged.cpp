@@ -16,7 +16,8 @@ constexpr const char *order_column = "_order";
 
 /// All that the rows depend on. The files of a scene stand in the locked scenario with their own
 /// contents.
-Result<std::string> identity_of(const PassesRequest &r, const JobOptions &options) {
+Result<std::string> identity_of(const PassesRequest &r, const JobOptions &options,
+                                const Monitor &monitor) {
   UMOV_ASSIGN(orbits, read_file(r.orbit));
   std::vector<InputFile> inputs{{r.orbit, sha256_hex(orbits)}};
   const Scenario scene = r.model.scene.value_or(Scenario{});
@@ -24,7 +25,9 @@ Result<std::string> identity_of(const PassesRequest &r, const JobOptions &option
     Diagnostics heard_before;
     Scenario timeless = scene;
     timeless.time.reset();
-    UMOV_ASSIGN(object, load_object(timeless, k, {.allow_old_elements = true}, heard_before));
+    UMOV_ASSIGN(object,
+                load_object(timeless, k, {.allow_old_elements = true, .cancel = monitor.cancel},
+                            heard_before));
     inputs.insert(inputs.end(), object.inputs.begin(), object.inputs.end());
   }
   if (!r.model.material.empty() && file_exists(r.model.material)) {
@@ -78,10 +81,11 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<RangedJob>>
-ranged_passes(const PassesRequest &request, const JobOptions &options, Diagnostics &diagnostics) {
-  UMOV_ASSIGN(identity, identity_of(request, options));
-  UMOV_ASSIGN(searcher, PassSearcher::make(request, options, diagnostics));
+Result<std::unique_ptr<RangedJob>> ranged_passes(const PassesRequest &request,
+                                                 const JobOptions &options, const Monitor &monitor,
+                                                 Diagnostics &diagnostics) {
+  UMOV_ASSIGN(identity, identity_of(request, options, monitor));
+  UMOV_ASSIGN(searcher, PassSearcher::make(request, options, diagnostics, monitor.cancel));
   return std::make_unique<RangedPasses>(std::move(searcher), std::move(identity));
 }
 

@@ -192,9 +192,10 @@ struct Traced {
 
 /// Traces each shot; those of OpenEXR are written at once.
 Result<Traced> trace(const RenderRequest &request, const Scenario &scenario, const Subject &subject,
-                     const KeyFrameOptions &how, const PictureSink &sink, const Monitor &monitor) {
+                     const KeyFrameOptions &how, const PictureSink &sink,
+                     const Monitor &monitor) try {
   const KeyFrameStage stage(subject.object.scene, joints_of(scenario.objects[request.object].parts),
-                            how.bounces);
+                            how.bounces, how.cancel);
   Traced out;
   for (std::size_t k = 0; k < subject.shots.size(); ++k) {
     const Shot &shot = subject.shots[k];
@@ -214,6 +215,8 @@ Result<Traced> trace(const RenderRequest &request, const Scenario &scenario, con
     monitor.advance("pictures", k + 1, subject.shots.size());
   }
   return out;
+} catch (const Failure &stop) {
+  return tl::unexpected(stop.error());
 }
 
 /// Keeps the shots of the part that was asked for.

@@ -232,14 +232,13 @@ private:
 
 } // namespace
 
-Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, const PoseList &poses,
-                                                    const SignatureRequest &request,
-                                                    const JobOptions &options,
-                                                    Diagnostics &diagnostics) {
+Result<std::unique_ptr<RangedJob>>
+ranged_signature(const Scenario &scenario, const PoseList &poses, const SignatureRequest &request,
+                 const JobOptions &options, const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_TRY(PoseLight::check(scenario, request));
   UMOV_TRY(check_device_of_shards(options.device));
-  UMOV_ASSIGN(light,
-              PoseLight::make(scenario, decided(scenario, poses, request), options, diagnostics));
+  UMOV_ASSIGN(light, PoseLight::make(scenario, decided(scenario, poses, request), options,
+                                     diagnostics, monitor.cancel));
   UMOV_ASSIGN(device, device_text(options.device));
   std::string identity = job_of(scenario, poses, request, light, device);
   return std::make_unique<RangedSignature>(poses, request, options, std::move(light),

@@ -8,6 +8,7 @@
 #include <optional>
 #include <umov/core/golden_section.h>
 #include <umov/core/quantity.h>
+#include <umov/core/stop.h>
 #include <unordered_map>
 
 namespace umov {
@@ -148,8 +149,9 @@ void collect(Miss &miss, const std::vector<Sample> &samples, double limit, std::
 
 } // namespace
 
-std::vector<GlintFlat> glint_flats(const Scene &scene, double least_share, double widest_rad) {
-  const std::vector<VisibleSides> sides = visible_sides(scene.mesh);
+std::vector<GlintFlat> glint_flats(const Scene &scene, double least_share, double widest_rad,
+                                   const std::atomic<bool> *cancel) {
+  const std::vector<VisibleSides> sides = visible_sides(scene.mesh, cancel);
   // Normals alike to 1e-5 are one flat.
   std::map<std::array<long, 5>, GlintFlat> found;
   const auto add = [&](Vec3<Body> normal, double area, std::uint32_t group, const Surface &surface,
@@ -165,6 +167,7 @@ std::vector<GlintFlat> glint_flats(const Scene &scene, double least_share, doubl
     flat.group = group;
   };
   for (std::size_t t = 0; t < scene.mesh.triangles.size(); ++t) {
+    leave_if_stopped(cancel, t);
     const Triangle &triangle = scene.mesh.triangles[t];
     const Vec3<Body> doubled = area_vector_doubled(scene.mesh, triangle);
     const double area = 0.5 * norm(doubled);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/quantity.h>
+#include <umov/core/stop.h>
 #include <umov/surface/rough_emission.h>
 
 namespace umov {
@@ -17,18 +18,21 @@ constexpr std::size_t steps = 90;
 constexpr double last_rad = 89.9 * pi / 180;
 
 /// Emissivity of a surface over the angle, band after band.
-std::vector<Emissivity> emissivities(const Surface &surface) {
+std::vector<Emissivity> emissivities(const Surface &surface, const std::atomic<bool> *cancel) {
   std::vector<Emissivity> out;
   for (std::size_t band = 0; band < surface.band_count(); ++band)
-    for (std::size_t k = 0; k <= steps; ++k)
+    for (std::size_t k = 0; k <= steps; ++k) {
+      leave_if_stopped(cancel);
       out.push_back(rough_emissivity(surface, band, last_rad * static_cast<double>(k) / steps));
+    }
   return out;
 }
 
 } // namespace
 
 Result<ThermalEmission> ThermalEmission::make(const Scene &scene,
-                                              std::span<const double> temperature_k) {
+                                              std::span<const double> temperature_k,
+                                              const std::atomic<bool> *cancel) {
   if (temperature_k.size() != scene.mesh.groups.size())
     return fail(ErrorCode::BadInput,
                 fmt::format("{} temperatures for a mesh of {} groups; one for each was expected",
@@ -54,7 +58,7 @@ Result<ThermalEmission> ThermalEmission::make(const Scene &scene,
       });
       const std::vector<Emissivity> &of =
           same != known.end() ? same->second
-                              : known.emplace_back(surface, emissivities(*surface)).second;
+                              : known.emplace_back(surface, emissivities(*surface, cancel)).second;
       for (std::size_t band = 0; band < out.bands_; ++band) {
         const double planck = planck_radiance(scene.grid.nodes()[band].wavelength, kelvin);
         Table &table = tables.emplace_back();

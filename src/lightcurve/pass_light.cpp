@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <umov/core/stop.h>
 #include <umov/light/light_model.h>
 #include <umov/observation/track.h>
 #include <umov/photometry/radiometry.h>
@@ -41,7 +42,7 @@ LightOptions pass_light_options(LightMethod method) {
 }
 
 Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options,
-                                     const std::atomic<bool> *cancel) {
+                                     const std::atomic<bool> *cancel) try {
   auto state = std::make_shared<State>();
   UMOV_ASSIGN(colours, photometric_bands(body.scene.bands, body.magnitudes));
   state->bands = std::move(colours);
@@ -51,7 +52,7 @@ Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options,
   const std::vector<Joint> joints = joints_of(body.joints);
   const std::vector<std::size_t> part_of = joint_of_groups(body.scene.mesh, joints);
   state->flats.resize(joints.size() + 1);
-  for (const GlintFlat &flat : glint_flats(body.scene))
+  for (const GlintFlat &flat : glint_flats(body.scene, 0.02, widest_glint_rad, cancel))
     state->flats[part_of[flat.group]].push_back(flat);
   state->joints = std::move(body.joints);
   UMOV_ASSIGN(light, make_light(body.scene, joints, options, cancel));
@@ -59,6 +60,8 @@ Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options,
   PassLight out;
   out.state_ = std::move(state);
   return out;
+} catch (const Failure &stop) {
+  return tl::unexpected(stop.error());
 }
 
 Result<PassLight> PassLight::of_sphere(double radius_m, const Material &material,
@@ -131,6 +134,8 @@ Result<std::vector<PassGlint>> PassLight::glints_of(const State &state, const Tr
     if (state.flats[part].empty())
       continue;
     const GlintPath path = [&, part](double seconds) -> Result<GlintView> {
+      if (is_stopped(cancel)) // up to millions of times
+        return fail(ErrorCode::Interrupted, stopped);
       UMOV_ASSIGN(point, track.at(plus_seconds(origin, seconds)));
       if (part == joints.size())
         return GlintView{point.pose.sun, point.pose.observer};

@@ -266,7 +266,8 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
       std::vector<SurfacePoint> points;
       for (const Seen &point : seen)
         points.push_back(point.at);
-      more = between->radiance(view.pose, points, {options.bounces, options.paths, options.seed},
+      more = between->radiance(view.pose, points,
+                               {options.bounces, options.paths, options.seed, options.cancel},
                                row * side);
     }
     for (std::size_t b = 0; b < bands.size(); ++b) {
@@ -282,23 +283,27 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
   return rasters;
 }
 
-KeyFrameStage::KeyFrameStage(const Scene &scene, std::vector<Joint> joints, std::size_t bounces)
-    : scene_(scene), joints_(std::move(joints)), still_(scene.mesh) {
+KeyFrameStage::KeyFrameStage(const Scene &scene, std::vector<Joint> joints, std::size_t bounces,
+                             const std::atomic<bool> *cancel)
+    : scene_(scene), joints_(std::move(joints)), still_(scene.mesh, Occluder::Rays::Each, cancel) {
   if (bounces > 1)
-    between_ = make_between_light(scene);
+    between_ = make_between_light(scene, cancel);
 }
 
 Result<std::vector<KeyFrameRaster>>
 KeyFrameStage::trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,
-                     const KeyFrameOptions &options, std::span<const std::size_t> bands) const {
+                     const KeyFrameOptions &options, std::span<const std::size_t> bands) const try {
   if (joint_angles_rad.empty())
     return trace_key_frames(scene_, still_, view, options, bands, between_.get());
   Scene turned = scene_;
   turned.mesh = posed(scene_.mesh, joints_, joint_angles_rad);
   std::unique_ptr<BetweenLight> between;
   if (between_)
-    between = make_between_light(turned);
-  return trace_key_frames(turned, Occluder(turned.mesh), view, options, bands, between.get());
+    between = make_between_light(turned, options.cancel);
+  const Occluder occluder(turned.mesh, Occluder::Rays::Each, options.cancel);
+  return trace_key_frames(turned, occluder, view, options, bands, between.get());
+} catch (const Failure &stop) {
+  return tl::unexpected(stop.error());
 }
 
 } // namespace umov

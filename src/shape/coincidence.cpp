@@ -17,10 +17,13 @@ FacePairs find_pairs(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
   FacePairs out;
   out.partner.resize(mesh.triangles.size());
   out.is_opposite.assign(mesh.triangles.size(), false);
-  struct Seen {
-    std::uint32_t forward = no_index, backward = no_index;
+  struct Face {
+    std::array<std::uint32_t, 3> corners; ///< sorted
+    std::uint32_t triangle;
+    bool forward;
   };
-  std::map<std::array<std::uint32_t, 3>, Seen> seen;
+  std::vector<Face> faces;
+  faces.reserve(mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     leave_if_stopped(cancel, i);
     out.partner[i] = i;
@@ -33,18 +36,26 @@ FacePairs find_pairs(const Mesh &mesh, const std::vector<std::uint32_t> &welded,
     std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
     const bool forward = key[1] < key[2];
     std::sort(key.begin(), key.end());
-    Seen &entry = seen[key];
-    std::uint32_t &same = forward ? entry.forward : entry.backward;
-    const std::uint32_t other = forward ? entry.backward : entry.forward;
-    if (same != no_index) {
-      out.partner[i] = same;
-    } else if (other != no_index) {
-      out.partner[i] = other;
-      out.is_opposite[i] = true;
-      same = i;
-    } else {
-      same = i;
-    }
+    faces.push_back({key, i, forward});
+  }
+  std::size_t compared = 0;
+  std::sort(faces.begin(), faces.end(), [&](const Face &a, const Face &b) {
+    leave_if_stopped(cancel, compared++);
+    return std::tie(a.corners, a.triangle) < std::tie(b.corners, b.triangle);
+  });
+  std::uint32_t first[2] = {no_index, no_index}; // of these corners, one for each winding
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    const Face &face = faces[k];
+    if (k == 0 || face.corners != faces[k - 1].corners)
+      first[0] = first[1] = no_index;
+    std::uint32_t &same = first[face.forward ? 1 : 0];
+    const std::uint32_t other = first[face.forward ? 0 : 1];
+    if (same == no_index && other != no_index)
+      out.is_opposite[face.triangle] = true;
+    if (same != no_index || other != no_index)
+      out.partner[face.triangle] = same != no_index ? same : other;
+    if (same == no_index)
+      same = face.triangle;
   }
   return out;
 }

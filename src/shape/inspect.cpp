@@ -173,6 +173,7 @@ MeshReport inspect(const Mesh &mesh, bool with_coincidence, const std::atomic<bo
   work.edges = sorted_edges(mesh, work.welded, work.skip, cancel);
   leave_if_stopped(cancel);
   count_edges(work, out);
+  leave_if_stopped(cancel);
   count_parts(work, out);
   leave_if_stopped(cancel);
   if (with_coincidence) {
@@ -181,12 +182,15 @@ MeshReport inspect(const Mesh &mesh, bool with_coincidence, const std::atomic<bo
     out.opposite_pairs = found.opposites;
   }
   out.is_closed = out.triangles > out.degenerate && out.open_edges + out.non_manifold_edges == 0;
+  leave_if_stopped(cancel);
   out.is_convex = is_convex(work, out);
   return out;
 }
 
 bool is_proven_convex(const Mesh &mesh, const std::atomic<bool> *cancel) {
-  return is_flat_sheet(mesh) || inspect(mesh, false, cancel).is_convex;
+  const bool is_flat = is_flat_sheet(mesh);
+  leave_if_stopped(cancel);
+  return is_flat || inspect(mesh, false, cancel).is_convex;
 }
 
 double silhouette_upper_bound(const Mesh &mesh, Vec3<Body> direction) {

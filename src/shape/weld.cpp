@@ -39,7 +39,13 @@ double weld_distance(const Mesh &mesh) { return 1e-6 * mesh_size(mesh); }
 std::vector<std::uint32_t> weld(const Mesh &mesh, double distance,
                                 const std::atomic<bool> *cancel) {
   std::vector<std::uint32_t> out(mesh.positions.size());
-  std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells;
+  // Vertices of a cell follow each other by `next`: a list for each takes as long to be given back
+  // as to be made, which nobody can stop.
+  struct Ends {
+    std::uint32_t first = no_index, last = no_index;
+  };
+  std::unordered_map<Cell, Ends, CellHash> cells;
+  std::vector<std::uint32_t> next(mesh.positions.size(), no_index);
   const double width = std::max(distance, 1e-300);
   // Far cells share one number: vertices that no face uses may lie anywhere, and the distance test
   // decides in the end.
@@ -56,14 +62,17 @@ std::vector<std::uint32_t> weld(const Mesh &mesh, double distance,
           cells.find({home.x + k % 3 - 1, home.y + k / 3 % 3 - 1, home.z + k / 9 - 1});
       if (found == cells.end())
         continue;
-      for (const std::uint32_t other : found->second)
+      for (std::uint32_t other = found->second.first; other != no_index; other = next[other])
         if (norm(mesh.positions[other] - p) <= distance) {
           out[i] = other;
           break;
         }
     }
-    if (out[i] == i)
-      cells[home].push_back(i);
+    if (out[i] != i)
+      continue;
+    Ends &ends = cells[home];
+    (ends.first == no_index ? ends.first : next[ends.last]) = i;
+    ends.last = i;
   }
   return out;
 }

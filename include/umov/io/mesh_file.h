@@ -1,6 +1,7 @@
 #pragma once
 // Files of meshes, whatever their format.
 
+#include <atomic>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@ struct MeshFileOptions {
   std::string up;                        ///< "+X" to "-Z": the file's axis that becomes body +Z
   std::size_t max_triangles = 5'000'000; ///< refused before the mesh is built
   bool is_of_command = false; ///< hints name options of a command, not keys of a scenario
+  const std::atomic<bool> *cancel = nullptr; ///< ends the reading where it comes true
 };
 
 /// A node of the file's tree that has faces.
@@ -50,7 +52,8 @@ struct MeshFile {
 /// and for -Z, -Y, -X (x,-y,-z), (x,z,-y), (-y,z,-x): all proper. Groups are the file's material
 /// names, else object names, else "default"; with a tree there is one group for each pair of
 /// material and node (`Mesh::nodes`). BadInput names what was found, what was expected, what to do;
-/// no file, however broken, ends the program, and none is believed about its size.
+/// no file, however broken, ends the program, and none is believed about its size. Interrupted
+/// where MeshFileOptions::cancel comes true.
 Result<MeshFile> read_mesh(const std::filesystem::path &path, const MeshFileOptions &options,
                            Diagnostics &diagnostics);
 

@@ -9,16 +9,16 @@ namespace umov::jobs {
 
 /// `umov invert pose --each` by curves: every file of `request.observations` is one. Tables: curves
 /// (a row of each: verdict, or what the problem with it is), then those of invert_pose with a first
-/// column `curve`. A curve that cannot be inverted ends none of the others.
+/// column `curve`. A curve that cannot be inverted ends none of the others. Interrupted where
+/// `monitor` cancels.
 Result<std::unique_ptr<RangedJob>> ranged_poses(const Scenario &scenario,
                                                 const InvertRequest &request,
-                                                const JobOptions &options,
+                                                const JobOptions &options, const Monitor &monitor,
                                                 Diagnostics &diagnostics);
 /// The same of `umov identify --each` and identify_object.
-Result<std::unique_ptr<RangedJob>> ranged_identities(const Scenario &scenario,
-                                                     const IdentifyRequest &request,
-                                                     const JobOptions &options,
-                                                     Diagnostics &diagnostics);
+Result<std::unique_ptr<RangedJob>>
+ranged_identities(const Scenario &scenario, const IdentifyRequest &request,
+                  const JobOptions &options, const Monitor &monitor, Diagnostics &diagnostics);
 
 /// Answers to a part of the curves.
 struct CurveAnswers {

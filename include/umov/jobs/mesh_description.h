@@ -25,6 +25,7 @@ enum class MeshLook {
 };
 
 /// Reads and inspects a mesh; triangles that a scene would drop are counted either way.
+/// Interrupted where MeshFileOptions::cancel comes true.
 Result<MeshDescription> describe_mesh(const std::string &path, const MeshFileOptions &options,
                                       MeshLook look, Diagnostics &diagnostics);
 

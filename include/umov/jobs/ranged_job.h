@@ -64,14 +64,14 @@ public:
   [[nodiscard]] virtual Result<void> keep() { return {}; }
 };
 
-/// `umov signature` by poses.
-Result<std::unique_ptr<RangedJob>> ranged_signature(const Scenario &scenario, const PoseList &poses,
-                                                    const SignatureRequest &request,
-                                                    const JobOptions &options,
-                                                    Diagnostics &diagnostics);
-/// `umov passes` by objects.
+/// `umov signature` by poses. Here and below: Interrupted where `monitor` cancels.
 Result<std::unique_ptr<RangedJob>>
-ranged_passes(const PassesRequest &request, const JobOptions &options, Diagnostics &diagnostics);
+ranged_signature(const Scenario &scenario, const PoseList &poses, const SignatureRequest &request,
+                 const JobOptions &options, const Monitor &monitor, Diagnostics &diagnostics);
+/// `umov passes` by objects.
+Result<std::unique_ptr<RangedJob>> ranged_passes(const PassesRequest &request,
+                                                 const JobOptions &options, const Monitor &monitor,
+                                                 Diagnostics &diagnostics);
 /// `umov run` by passes, object after object. `layout` as the job gave it once; empty: the passes
 /// are looked for.
 Result<std::unique_ptr<RangedJob>> ranged_run(const Scenario &scenario, const JobOptions &options,

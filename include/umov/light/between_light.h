@@ -1,6 +1,7 @@
 #pragma once
 // Light between surfaces at points that an observer sees: what pictures add to direct light.
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -16,6 +17,7 @@ struct BetweenLightOptions {
   std::size_t bounces = 2; ///< surfaces that the light may touch; 1: there is none of it
   std::size_t paths = 16;  ///< per point
   std::uint64_t seed = 0;
+  const std::atomic<bool> *cancel = nullptr; ///< what is returned once it is true is of no use
 };
 
 /// A scene, its parts as the mesh has them, ready to be asked. Thread safe.
@@ -36,7 +38,8 @@ protected:
   BetweenLight() = default;
 };
 
-/// That of a scene.
-std::unique_ptr<BetweenLight> make_between_light(const Scene &scene);
+/// That of a scene. Throws Failure (Interrupted) once `cancel` became true.
+std::unique_ptr<BetweenLight> make_between_light(const Scene &scene,
+                                                 const std::atomic<bool> *cancel = nullptr);
 
 } // namespace umov

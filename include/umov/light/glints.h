@@ -1,6 +1,7 @@
 #pragma once
 // Glints of flats: found by bounding how fast they can come, not by chance of the step.
 
+#include <atomic>
 #include <functional>
 #include <umov/core/result.h>
 #include <umov/scene/scene.h>
@@ -20,9 +21,11 @@ struct GlintFlat {
 };
 
 /// Flats that can glint: of `flat` normals, at least `least_share` of the largest one's area, lobes
-/// no wider than `widest_rad`; the largest first.
+/// no wider than `widest_rad`; the largest first. Throws Failure (Interrupted) once `cancel` became
+/// true.
 std::vector<GlintFlat> glint_flats(const Scene &scene, double least_share = 0.02,
-                                   double widest_rad = widest_glint_rad);
+                                   double widest_rad = widest_glint_rad,
+                                   const std::atomic<bool> *cancel = nullptr);
 
 /// Unit vectors to Sun and observer, body frame.
 struct GlintView {

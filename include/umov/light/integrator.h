@@ -95,11 +95,12 @@ public:
                                                    const std::atomic<bool> *cancel = nullptr) const;
   /// Radiance [1/sr] per unit irradiance that points send to the observer, who sees them, after
   /// more than one surface, in the scattering plane: the mean of `paths` sampled paths each, [point
-  /// * bands + band]. `first`: number of the first point, so that no two draw alike.
+  /// * bands + band]. `first`: number of the first point, so that no two draw alike. Of no use once
+  /// `cancel` became true; throws Failure (Interrupted) where that comes before the first point.
   [[nodiscard]] std::vector<Stokes<ScatteringPlane>>
   indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
-                    const IntegrationOptions &options, std::size_t paths,
-                    std::uint64_t first) const;
+                    const IntegrationOptions &options, std::size_t paths, std::uint64_t first,
+                    const std::atomic<bool> *cancel = nullptr) const;
   /// Nothing of the body can hide anything else of it.
   [[nodiscard]] bool is_convex() const;
 

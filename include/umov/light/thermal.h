@@ -1,6 +1,7 @@
 #pragma once
 // What a warm body sends out by itself.
 
+#include <atomic>
 #include <memory>
 #include <span>
 #include <umov/core/result.h>
@@ -15,8 +16,10 @@ namespace umov {
 class ThermalEmission {
 public:
   /// temperature_k: [K] of each mesh group, both sides. BadInput for other numbers of them, a
-  /// temperature below 0 or no number, and surfaces whose lobe depends on the azimuth.
-  static Result<ThermalEmission> make(const Scene &scene, std::span<const double> temperature_k);
+  /// temperature below 0 or no number, and surfaces whose lobe depends on the azimuth. Throws
+  /// Failure (Interrupted) once `cancel` became true.
+  static Result<ThermalEmission> make(const Scene &scene, std::span<const double> temperature_k,
+                                      const std::atomic<bool> *cancel = nullptr);
 
   /// Spectral radiance [W m-2 sr-1 nm-1] towards a cosine from the normal: i, and q referred to
   /// s = n x v.

@@ -78,8 +78,9 @@ Result<std::vector<KeyFrameRaster>> trace_key_frames(const Scene &scene, const O
 class KeyFrameStage {
 public:
   /// `bounces`: as in the options of the pictures to come; above 1 more has to be made ready.
+  /// Throws as Occluder.
   explicit KeyFrameStage(const Scene &scene, std::vector<Joint> joints = {},
-                         std::size_t bounces = 1);
+                         std::size_t bounces = 1, const std::atomic<bool> *cancel = nullptr);
   /// As trace_key_frames; no angles: as the mesh has its parts.
   [[nodiscard]] Result<std::vector<KeyFrameRaster>>
   trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,

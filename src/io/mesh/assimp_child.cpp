@@ -15,6 +15,7 @@
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <umov/core/stop.h>
 #include <unistd.h>
 
 namespace umov::mesh_io {
@@ -72,19 +73,23 @@ void send(int pipe, const std::string &bytes) {
   ::_exit(0);
 }
 
-/// What the child sends until it ends, is silent for too long or sends too much.
-std::string receive(int pipe, const ChildLimits &limits, bool &is_late) {
+/// What the child sends until it ends, is silent for too long or sends too much, or nobody wants it
+/// any more.
+std::string receive(int pipe, const ChildLimits &limits, const std::atomic<bool> *cancel,
+                    bool &is_late) {
+  constexpr long look_ms = 50;
   using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::seconds(limits.seconds);
   std::string out;
   std::array<char, 65536> part{};
-  while (true) {
+  while (!is_stopped(cancel)) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
     struct pollfd wait {
       pipe, POLLIN, 0
     };
-    const int ready = ::poll(&wait, 1, static_cast<int>(std::max<long>(left.count(), 0)));
-    if (ready < 0 && errno == EINTR)
+    const int ready =
+        ::poll(&wait, 1, static_cast<int>(std::clamp<long>(left.count(), 0, look_ms)));
+    if ((ready < 0 && errno == EINTR) || (ready == 0 && left.count() > 0))
       continue;
     is_late = ready <= 0;
     if (is_late || out.size() > limits.answer)
@@ -96,12 +101,13 @@ std::string receive(int pipe, const ChildLimits &limits, bool &is_late) {
       return out;
     out.append(part.data(), static_cast<std::size_t>(count));
   }
+  return out;
 }
 
 } // namespace
 
 Result<std::string> import_in_child(const std::filesystem::path &path, bool drops_root,
-                                    const ChildLimits &limits) {
+                                    const ChildLimits &limits, const std::atomic<bool> *cancel) {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     return fail(ErrorCode::Device, "no pipe can be made to read the file through", {path.string()});
@@ -110,15 +116,16 @@ Result<std::string> import_in_child(const std::filesystem::path &path, bool drop
     work(ends[1], path, drops_root, limits);
   ::close(ends[1]);
   bool is_late = false;
-  std::string answer = child > 0 ? receive(ends[0], limits, is_late) : std::string();
+  std::string answer = child > 0 ? receive(ends[0], limits, cancel, is_late) : std::string();
   ::close(ends[0]);
   if (child < 0)
     return fail(ErrorCode::Device, "no process can be made to read the file in", {path.string()});
-  if (is_late || answer.size() > limits.answer)
+  if (is_late || is_stopped(cancel) || answer.size() > limits.answer)
     ::kill(child, SIGKILL);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  leave_if_stopped(cancel);
   const char *remedy = "Export it again, best as glTF (.glb).";
   if (is_late || answer.empty() || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
     return fail(

@@ -2,6 +2,7 @@
 // Private: Assimp in a process of its own. Its parsers were made for assets that one trusts: a
 // broken file can end or hang the program that reads it, and here it can only end the child.
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -17,8 +18,9 @@ struct ChildLimits {
 
 /// Lets Assimp read a file and returns the scene as `pack_scene` packs it. `drops_root`: leave the
 /// transformation of the root node out, with which Assimp turns some formats to +Y up. BadInput
-/// with what Assimp says, or that it broke down.
+/// with what Assimp says, or that it broke down; Interrupted once `cancel` became true.
 Result<std::string> import_in_child(const std::filesystem::path &path, bool drops_root,
-                                    const ChildLimits &limits);
+                                    const ChildLimits &limits,
+                                    const std::atomic<bool> *cancel = nullptr);
 
 } // namespace umov::mesh_io

@@ -47,7 +47,7 @@ Result<MeshFile> read_with_assimp(const std::filesystem::path &path, MeshFileOpt
                             format->name),
                 {path.string()});
   const bool is_overruled = format->is_stated && !options.unit.empty();
-  UMOV_ASSIGN(packed, import_in_child(path, format->is_turned || is_overruled, {}));
+  UMOV_ASSIGN(packed, import_in_child(path, format->is_turned || is_overruled, {}, options.cancel));
   if (format->is_stated && !is_overruled) {
     options.unit = "m";
     options.up = "+Y";

@@ -8,6 +8,7 @@
 #include <assimp/scene.h>
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 
 namespace umov::mesh_io {
 namespace {
@@ -130,7 +131,7 @@ private:
 class Builder {
 public:
   Builder(std::string_view bytes, const std::string &file, const MeshFileOptions &options)
-      : from_(bytes), file_(file), polygons_(out_.mesh, options.max_triangles) {}
+      : from_(bytes), file_(file), cancel_(options.cancel), polygons_(out_.mesh, options) {}
 
   Result<MeshFile> build(Diagnostics &diagnostics);
 
@@ -146,6 +147,7 @@ private:
 
   Unpacker from_;
   const std::string &file_;
+  const std::atomic<bool> *cancel_;
   MeshFile out_;
   GroupIndex groups_{out_.mesh};
   PolygonMaker polygons_;
@@ -153,6 +155,7 @@ private:
 
 Result<void> Builder::vertices(bool has_normals, bool has_textures, std::size_t count) {
   for (std::size_t v = 0; v < count && !from_.is_short; ++v) {
+    leave_if_stopped(cancel_, v);
     out_.mesh.positions.push_back(from_.vector());
     if (is_out_of_reach(out_.mesh.positions.back()))
       return bad(fmt::format("a vertex at {}; finite coordinates up to {:g} were expected",
@@ -220,7 +223,7 @@ Result<MeshFile> Builder::build(Diagnostics &diagnostics) {
     return bad("the scene that was read is not complete");
   polygons_.finish();
   polygons_.warn(diagnostics, {file_});
-  join_equal(out_.mesh);
+  join_equal(out_.mesh, cancel_);
   return std::move(out_);
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <umov/core/files.h>
+#include <umov/core/stop.h>
 #include <umov/io/obj.h>
 #include <umov/shape/topology.h>
 
@@ -63,7 +64,7 @@ Kind kind_of(std::string_view bytes, const std::string &suffix) {
 Result<MeshFile> read_other(std::string_view bytes, const fs::path &path, MeshFileOptions &options,
                             Diagnostics &diagnostics) {
   if (suffix_of(path) == ".off")
-    UMOV_TRY(mesh_io::check_off(bytes, path.string()));
+    UMOV_TRY(mesh_io::check_off(bytes, path.string(), options.cancel));
   UMOV_ASSIGN(out, mesh_io::read_with_assimp(path, options, diagnostics));
   UMOV_ASSIGN(now, read_file(path));
   if (now != bytes)
@@ -109,10 +110,12 @@ Result<MeshFile> read_mesh_bytes(std::string_view bytes, const fs::path &path,
   const Kind kind = kind_of(bytes, suffix_of(path));
   if (kind == Kind::Obj)
     return mesh_io::read_obj_bytes(bytes, path, options, diagnostics);
-  MeshFileOptions filled = options;
-  UMOV_ASSIGN(out, read_kind(kind, bytes, path, filled, diagnostics));
-  UMOV_TRY(mesh_io::to_body_frame(out, filled, path.string(), diagnostics));
-  return std::move(out);
+  return without_failures([&]() -> Result<MeshFile> {
+    MeshFileOptions filled = options;
+    UMOV_ASSIGN(out, read_kind(kind, bytes, path, filled, diagnostics));
+    UMOV_TRY(mesh_io::to_body_frame(out, filled, path.string(), diagnostics));
+    return std::move(out);
+  });
 }
 
 Result<void> write_mesh(const fs::path &path, const Mesh &mesh, Diagnostics &diagnostics) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 #include <umov/shape/triangulate.h>
 #include <unordered_map>
@@ -200,6 +201,7 @@ Vec3<Body> PolygonMaker::tangent(const std::array<Corner, 3> &c) const {
 
 Result<void> PolygonMaker::add(std::span<const Corner> corners, std::uint32_t group,
                                const Where &where) {
+  leave_if_stopped(cancel_, added_++);
   if (corners.size() < 3) {
     ++short_faces_;
     return {};
@@ -292,13 +294,16 @@ Result<void> to_body_frame(MeshFile &read, const MeshFileOptions &options, const
   return {};
 }
 
-void join_equal(Mesh &mesh) {
+void join_equal(Mesh &mesh, const std::atomic<bool> *cancel) {
   Joined positions(mesh.positions), normals(mesh.normals);
-  for (Triangle &t : mesh.triangles)
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    leave_if_stopped(cancel, i);
+    Triangle &t = mesh.triangles[i];
     for (std::size_t k = 0; k < 3; ++k) {
       t.vertex[k] = positions.of(t.vertex[k]);
       t.normal[k] = normals.of(t.normal[k]);
     }
+  }
   mesh.positions = std::move(positions.kept);
   mesh.normals = std::move(normals.kept);
 }

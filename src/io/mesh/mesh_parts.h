@@ -54,11 +54,11 @@ struct Corner {
 /// Makes triangles of polygons, with their tangents, and counts the odd ones.
 class PolygonMaker {
 public:
-  PolygonMaker(Mesh &mesh, std::size_t max_triangles)
-      : mesh_(mesh), max_triangles_(max_triangles) {}
+  PolygonMaker(Mesh &mesh, const MeshFileOptions &options)
+      : mesh_(mesh), max_triangles_(options.max_triangles), cancel_(options.cancel) {}
 
   /// BadInput where the mesh or the polygon is beyond its limit. Fewer than three corners are
-  /// counted only.
+  /// counted only. Throws Failure (Interrupted) where MeshFileOptions::cancel came true.
   Result<void> add(std::span<const Corner> corners, std::uint32_t group, const Where &where);
   /// Tells of polygons that were skipped or odd.
   void warn(Diagnostics &diagnostics, const Where &file) const;
@@ -72,7 +72,8 @@ private:
 
   Mesh &mesh_;
   std::size_t max_triangles_;
-  std::size_t short_faces_ = 0, concave_ = 0, crossed_ = 0, bent_ = 0;
+  const std::atomic<bool> *cancel_;
+  std::size_t added_ = 0, short_faces_ = 0, concave_ = 0, crossed_ = 0, bent_ = 0;
 };
 
 /// The refusal of a mesh that is too large.
@@ -84,7 +85,8 @@ Result<void> to_body_frame(MeshFile &read, const MeshFileOptions &options, const
                            Diagnostics &diagnostics);
 
 /// Makes positions and normals that are equal to the bit one, and drops those that no triangle
-/// uses: formats without shared vertices, or with seams, give each corner its own.
-void join_equal(Mesh &mesh);
+/// uses: formats without shared vertices, or with seams, give each corner its own. Throws Failure
+/// (Interrupted) once `cancel`, which may be null, became true.
+void join_equal(Mesh &mesh, const std::atomic<bool> *cancel);
 
 } // namespace umov::mesh_io

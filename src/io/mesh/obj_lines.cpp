@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 
 namespace umov::obj {
@@ -20,7 +21,8 @@ std::size_t comment_begin(std::string_view line) {
 
 } // namespace
 
-Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {
+Lines::Lines(std::string_view text, std::string file, const std::atomic<bool> *cancel)
+    : rest_(text), file_(std::move(file)), cancel_(cancel) {
   if (rest_.starts_with("\xEF\xBB\xBF"))
     rest_.remove_prefix(3);
 }
@@ -28,7 +30,7 @@ Lines::Lines(std::string_view text, std::string file) : rest_(text), file_(std::
 bool Lines::next(std::vector<Word> &words) {
   words.clear();
   while (!rest_.empty()) {
-    ++line_;
+    leave_if_stopped(cancel_, ++line_);
     const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
     std::string_view line = rest_.substr(0, end);
     const bool is_crlf = rest_.substr(end).starts_with("\r\n");

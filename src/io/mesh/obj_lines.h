@@ -1,6 +1,7 @@
 #pragma once
 // Private: the lines of an OBJ or MTL text as words with columns.
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -22,8 +23,9 @@ inline constexpr std::size_t words_max = 20'000;
 /// the end of a line (continuation) are understood.
 class Lines {
 public:
-  Lines(std::string_view text, std::string file);
-  /// Words of the next line that has any; false at the end.
+  Lines(std::string_view text, std::string file, const std::atomic<bool> *cancel = nullptr);
+  /// Words of the next line that has any; false at the end. Throws Failure (Interrupted) once
+  /// `cancel` became true.
   bool next(std::vector<Word> &words);
   [[nodiscard]] Where where(const Word &word) const { return {file_, word.line, word.column}; }
   [[nodiscard]] const std::string &file() const { return file_; }
@@ -33,6 +35,7 @@ public:
 private:
   std::string_view rest_;
   std::string file_;
+  const std::atomic<bool> *cancel_;
   std::size_t line_ = 0, cut_line_ = 0;
 };
 

@@ -13,6 +13,7 @@
 #include <optional>
 #include <set>
 #include <umov/core/files.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 
 namespace umov {
@@ -37,8 +38,8 @@ class Reader {
 public:
   Reader(std::string_view text, const std::string &file, const MeshFileOptions &options,
          const MtlLoader &load_mtl, Diagnostics &diagnostics)
-      : lines_(text, file), options_(options), load_mtl_(load_mtl), diagnostics_(diagnostics),
-        polygons_(out_.mesh, options.max_triangles) {
+      : lines_(text, file, options.cancel), options_(options), load_mtl_(load_mtl),
+        diagnostics_(diagnostics), polygons_(out_.mesh, options) {
     out_.format = "OBJ";
   }
 
@@ -225,7 +226,7 @@ Result<bool> Reader::takes_mtl(const std::string &name, const Word &statement) {
     return false;
   known->second = true;
   out_.files.push_back({name, sha256_hex(*text)});
-  Lines lines(*text, name);
+  Lines lines(*text, name, options_.cancel);
   for (std::vector<Word> mtl; lines.next(mtl);)
     if (mtl[0].text == "newmtl")
       out_.defined.push_back(name_of(mtl));
@@ -330,7 +331,8 @@ Result<MeshFile> Reader::read() {
 Result<MeshFile> read_obj_text(std::string_view text, const std::string &file,
                                const MeshFileOptions &options, const MtlLoader &load_mtl,
                                Diagnostics &diagnostics) {
-  return Reader(text, file, options, load_mtl, diagnostics).read();
+  return without_failures(
+      [&] { return Reader(text, file, options, load_mtl, diagnostics).read(); });
 }
 
 Result<MeshFile> mesh_io::read_obj_bytes(std::string_view bytes, const fs::path &path,

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <fmt/format.h>
 #include <optional>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 #include <vector>
 
@@ -16,15 +17,16 @@ namespace {
 /// Lines with words in them, without comments.
 class OffLines {
 public:
-  explicit OffLines(std::string_view text) : text_(text) {}
+  OffLines(std::string_view text, const std::atomic<bool> *cancel) : text_(text), cancel_(cancel) {}
 
   bool next() {
     words.clear();
     while (words.empty() && !text_.empty()) {
       const std::size_t end = std::min(text_.find('\n'), text_.size());
-      split(text_.substr(0, std::min(text_.find('#'), end)));
+      const std::string_view one = text_.substr(0, end);
+      split(one.substr(0, one.find('#')));
       text_.remove_prefix(std::min(end + 1, text_.size()));
-      ++line;
+      leave_if_stopped(cancel_, ++line);
     }
     return !words.empty();
   }
@@ -45,6 +47,7 @@ private:
     }
   }
   std::string_view text_;
+  const std::atomic<bool> *cancel_;
 };
 
 std::optional<std::size_t> whole(std::string_view word) {
@@ -58,8 +61,8 @@ std::optional<std::size_t> whole(std::string_view word) {
 
 class OffCheck {
 public:
-  OffCheck(std::string_view bytes, const std::string &file)
-      : bytes_(bytes), file_(file), lines_(bytes) {}
+  OffCheck(std::string_view bytes, const std::string &file, const std::atomic<bool> *cancel)
+      : bytes_(bytes), file_(file), lines_(bytes, cancel) {}
 
   Result<void> check() {
     UMOV_TRY(counts());
@@ -124,10 +127,11 @@ private:
 
 } // namespace
 
-Result<void> check_off(std::string_view bytes, const std::string &file) {
+Result<void> check_off(std::string_view bytes, const std::string &file,
+                       const std::atomic<bool> *cancel) {
   if (const auto why = why_no_text(bytes))
     return fail(ErrorCode::BadInput, *why, {file});
-  return OffCheck(bytes, file).check();
+  return OffCheck(bytes, file, cancel).check();
 }
 
 } // namespace umov::mesh_io

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <optional>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 
 namespace umov::mesh_io {
@@ -23,11 +24,14 @@ constexpr const char *again = "Export or fetch the file again.";
 /// Numbers of the body one after the other, whatever the form.
 class Values {
 public:
-  Values(std::string_view bytes, const ply::Header &header, const std::string &file)
-      : bytes_(bytes), at_(header.body), form_(header.form), line_(header.lines + 1), file_(file) {}
+  Values(std::string_view bytes, const ply::Header &header, const std::string &file,
+         const std::atomic<bool> *cancel)
+      : bytes_(bytes), at_(header.body), form_(header.form), line_(header.lines + 1), file_(file),
+        cancel_(cancel) {}
 
   /// False at the end or at a word that is no number; `error` says which.
   bool next(Type type, double &out) {
+    leave_if_stopped(cancel_, taken_++);
     return form_ == ply::Form::Text ? word(out) : raw(type, out);
   }
   [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
@@ -45,6 +49,8 @@ private:
   ply::Form form_;
   std::size_t line_;
   const std::string &file_;
+  const std::atomic<bool> *cancel_;
+  std::size_t taken_ = 0;
   std::string found_ = "the end of the file";
 };
 
@@ -117,8 +123,8 @@ class PlyReader {
 public:
   PlyReader(std::string_view bytes, const std::string &file, const ply::Header &header,
             const MeshFileOptions &options)
-      : header_(header), file_(file), values_(bytes, header, file), max_(options.max_triangles),
-        polygons_(out_.mesh, options.max_triangles) {}
+      : header_(header), file_(file), values_(bytes, header, file, options.cancel),
+        options_(options), polygons_(out_.mesh, options) {}
 
   Result<MeshFile> read(Diagnostics &diagnostics);
 
@@ -136,7 +142,7 @@ private:
   const ply::Header &header_;
   const std::string &file_;
   Values values_;
-  std::size_t max_;
+  const MeshFileOptions &options_;
   MeshFile out_;
   GroupIndex groups_{out_.mesh};
   PolygonMaker polygons_;
@@ -271,8 +277,8 @@ Result<void> PlyReader::read_faces(const Element &element) {
       if (p.name != "vertex_indices" && p.name != "vertex_index")
         continue;
       triangles += list.size() < 3 ? 0 : list.size() - 2;
-      if (triangles > max_)
-        return too_many_triangles(max_, values_.where());
+      if (triangles > options_.max_triangles)
+        return too_many_triangles(options_.max_triangles, values_.where());
       for (const double index : list) {
         if (!(index >= 0) || index != std::floor(index) || index >= 4294967295.0)
           return fail(ErrorCode::BadInput,
@@ -342,7 +348,7 @@ Result<MeshFile> PlyReader::read(Diagnostics &diagnostics) {
   polygons_.finish();
   polygons_.warn(diagnostics, {file_});
   out_.format = "PLY";
-  join_equal(out_.mesh);
+  join_equal(out_.mesh, options_.cancel);
   return std::move(out_);
 }
 

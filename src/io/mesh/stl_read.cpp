@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 
 namespace umov::mesh_io {
 namespace {
@@ -26,7 +27,7 @@ std::string lower(std::string_view text) {
 class TextReader {
 public:
   TextReader(std::string_view text, const std::string &file, const MeshFileOptions &options)
-      : lines_(text, file), polygons_(out_.mesh, options.max_triangles) {}
+      : lines_(text, file, options.cancel), polygons_(out_.mesh, options) {}
 
   Result<MeshFile> read(Diagnostics &diagnostics);
 
@@ -182,6 +183,7 @@ Result<MeshFile> read_binary(std::string_view bytes, const std::string &file,
   MeshFile out;
   GroupIndex groups(out.mesh);
   for (std::size_t i = 0; i < count; ++i) {
+    leave_if_stopped(options.cancel, i);
     Triangle triangle;
     triangle.front = triangle.back = groups.of("default");
     for (std::size_t k = 0; k < 3; ++k) {
@@ -226,7 +228,7 @@ Result<MeshFile> read_stl(std::string_view bytes, const std::string &file,
                        : TextReader(bytes, file, options).read(diagnostics);
   if (out) {
     out->format = "STL";
-    join_equal(out->mesh);
+    join_equal(out->mesh, options.cancel);
   }
   return out;
 }

@@ -113,10 +113,13 @@ Result<void> load_attitude(const Named &of, const Mesh &mesh, Diagnostics &diagn
 }
 
 /// The mesh of the very bytes whose hashes are kept.
-Result<MeshFile> load_mesh(const Named &of, Diagnostics &diagnostics, LoadedObject &out) {
+Result<MeshFile> load_mesh(const Named &of, const std::atomic<bool> *cancel,
+                           Diagnostics &diagnostics, LoadedObject &out) {
   const ScenarioMesh &mesh = of.object.mesh;
   UMOV_ASSIGN(bytes, read_input(mesh.file, of.place("mesh"), out));
-  auto read = read_mesh_bytes(bytes, mesh.file, {.unit = mesh.unit, .up = mesh.up}, diagnostics);
+  auto read = read_mesh_bytes(bytes, mesh.file,
+                              {.unit = mesh.unit, .up = mesh.up, .cancel = cancel}, diagnostics);
+  leave_if_stopped(cancel);
   if (!read && read.error().where.line == 0) // such as no unit, which the scenario has to give
     return tl::unexpected(scenario::named(read.error(), of.place("mesh")));
   if (!read)
@@ -306,8 +309,7 @@ Result<LoadedObject> load(const Scenario &scenario, std::size_t which, const Loa
     return out;
   if (of.object.mesh.file.empty())
     return fail(ErrorCode::BadInput, "[object] has no \"mesh\" (shape). Add it.", of.place("mesh"));
-  UMOV_ASSIGN(read, load_mesh(of, diagnostics, out));
-  leave_if_stopped(options.cancel);
+  UMOV_ASSIGN(read, load_mesh(of, options.cancel, diagnostics, out));
   UMOV_TRY(check_mtl(of, read));
   UMOV_TRY(check_material_keys(of, read.mesh));
   UMOV_TRY(load_attitude(of, read.mesh, diagnostics, out));

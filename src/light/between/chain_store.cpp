@@ -70,9 +70,9 @@ struct ChainStore::Climb {
 };
 
 ChainStore::ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
-                       std::uint64_t seed)
+                       std::uint64_t seed, const std::atomic<bool> *cancel)
     : surfaces_(scene.scene()), rays_(scene, occluder, surfaces_, bounces, seed),
-      occluder_(occluder), grids_(scene.scene().mesh, Occluder::Rays::Grid),
+      occluder_(occluder), grids_(scene.scene().mesh, Occluder::Rays::Grid, cancel),
       bands_(scene.scene().grid.nodes().size()), seed_(seed) {}
 
 const ChainLevel *ChainStore::level(std::size_t index, unsigned threads,

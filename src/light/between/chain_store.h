@@ -17,8 +17,9 @@ namespace umov {
 /// safe; what it is made from must live.
 class ChainStore {
 public:
+  /// Throws Failure (Interrupted) once `cancel`, which may be null, became true.
   ChainStore(const BounceScene &scene, const Occluder &occluder, std::size_t bounces,
-             std::uint64_t seed);
+             std::uint64_t seed, const std::atomic<bool> *cancel);
 
   struct Answer {
     std::vector<IndirectLight> light;

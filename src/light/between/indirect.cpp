@@ -109,7 +109,7 @@ private:
       known.add(learnt_[pose], 1);
       sampler.start_from(known);
       for (std::size_t r = 0; r < replicates; ++r)
-        for (std::size_t i = first; i < first + count; ++i)
+        for (std::size_t i = first; i < first + count && !is_stopped(cancel_); ++i)
           sampler.add(lattices_[r].at(i), stream_of(r, i), sums.of(pose, r));
       learnt_[pose].add(sampler.learnt(), 1);
       known.add(sampler.learnt(), 1);

@@ -5,7 +5,8 @@ namespace {
 
 class SampledBetweenLight final : public BetweenLight {
 public:
-  explicit SampledBetweenLight(const Scene &scene) : integrator_(scene) {}
+  SampledBetweenLight(const Scene &scene, const std::atomic<bool> *cancel)
+      : integrator_(scene, cancel) {}
 
   [[nodiscard]] std::vector<Stokes<ScatteringPlane>> radiance(const Pose &pose,
                                                               std::span<const SurfacePoint> points,
@@ -14,7 +15,8 @@ public:
     IntegrationOptions integration;
     integration.bounces = options.bounces;
     integration.seed = options.seed;
-    return integrator_.indirect_radiance(pose, points, integration, options.paths, first);
+    return integrator_.indirect_radiance(pose, points, integration, options.paths, first,
+                                         options.cancel);
   }
 
 private:
@@ -23,8 +25,9 @@ private:
 
 } // namespace
 
-std::unique_ptr<BetweenLight> make_between_light(const Scene &scene) {
-  return std::make_unique<SampledBetweenLight>(scene);
+std::unique_ptr<BetweenLight> make_between_light(const Scene &scene,
+                                                 const std::atomic<bool> *cancel) {
+  return std::make_unique<SampledBetweenLight>(scene, cancel);
 }
 
 } // namespace umov

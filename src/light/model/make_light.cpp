@@ -114,10 +114,12 @@ std::vector<double> typical_light(const Engine &unhidden, const std::atomic<bool
 
 /// Masks hold for sunlight. A convex body needs no rays: its light by the reference is exact, where
 /// the engine's joined normals err by more than their half-widths tell.
-bool takes_rays(const Scene &scene, const std::vector<Joint> &joints, const LightOptions &options) {
+bool takes_rays(const Scene &scene, const std::vector<Joint> &joints, const LightOptions &options,
+                const std::atomic<bool> *cancel) {
   if (options.method == LightMethod::Rays || !is_sunlight(options.source))
     return true;
-  return options.method == LightMethod::Auto && joints.empty() && is_proven_convex(scene.mesh);
+  return options.method == LightMethod::Auto && joints.empty() &&
+         is_proven_convex(scene.mesh, cancel);
 }
 
 } // namespace
@@ -196,7 +198,7 @@ Result<std::unique_ptr<LightModel>> make(const Scene &scene, std::vector<Joint> 
                                          const LightOptions &options,
                                          const std::atomic<bool> *cancel) {
   UMOV_TRY(check(options));
-  const bool has_rays = takes_rays(scene, joints, options);
+  const bool has_rays = takes_rays(scene, joints, options, cancel);
   if (has_rays && options.device.choice == DeviceChoice::Cuda)
     return fail(ErrorCode::Usage, "rays are traced by the processor, and cards add up what masks "
                                   "tell: take render.method = \"masks\" (--visibility masks of "

@@ -115,11 +115,14 @@ bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double
   } else {
     more.resize(poses.size());
     parallel_for(poses.size(), task.threads, [&](std::size_t k) {
-      if (!is_stopped(task.cancel))
-        more[k] = Integrator(turned(scene_, joints_, angles_rad, k), task.cancel)
-                      .indirect(poses.subspan(k, 1),
-                                std::span(direct).subspan(k * out.bands, out.bands), options_, 1)
-                      .front();
+      if (is_stopped(task.cancel))
+        return;
+      auto one =
+          Integrator(turned(scene_, joints_, angles_rad, k), task.cancel)
+              .indirect(poses.subspan(k, 1), std::span(direct).subspan(k * out.bands, out.bands),
+                        options_, 1, task.cancel);
+      if (!one.empty())
+        more[k] = std::move(one.front());
     });
   }
   if (is_stopped(task.cancel) || more.size() < poses.size())

@@ -1,6 +1,7 @@
 #include "light/model/ray_tracer.h"
 
 #include <umov/core/parallel.h>
+#include <umov/core/stop.h>
 #include <umov/light/thermal.h>
 
 namespace umov {
@@ -23,7 +24,7 @@ public:
 
 private:
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
-             const LightTask &task) const override {
+             const LightTask &task) const override try {
     out.resize(poses.size(), scene().grid.nodes().size());
     out.glint_share.assign(task.has_glints ? poses.size() : 0, 0); // heat has none
     out.material_i.assign(task.has_materials ? poses.size() * materials().size() * out.bands : 0,
@@ -41,6 +42,10 @@ private:
       }
     }
     return true;
+  } catch (const Failure &) { // while the turned body was made ready
+    if (!is_stopped(task.cancel))
+      throw;
+    return false;
   }
 
   [[nodiscard]] std::vector<IndirectLight> emitted(std::span<const Pose> poses,
@@ -50,10 +55,12 @@ private:
       return integrator_.thermal(poses, emission_, options_, task.threads, task.cancel);
     std::vector<IndirectLight> out(poses.size());
     parallel_for(poses.size(), task.threads, [&](std::size_t k) {
-      if (!is_stopped(task.cancel))
-        out[k] = Integrator(turned(scene(), joints(), angles_rad, k))
-                     .thermal(poses.subspan(k, 1), emission_, options_, 1)
-                     .front();
+      if (is_stopped(task.cancel))
+        return;
+      auto one = Integrator(turned(scene(), joints(), angles_rad, k), task.cancel)
+                     .thermal(poses.subspan(k, 1), emission_, options_, 1, task.cancel);
+      if (!one.empty())
+        out[k] = std::move(one.front());
     });
     return out;
   }
@@ -70,8 +77,8 @@ Result<std::unique_ptr<LightModel>> make_thermal_light(const Scene &scene,
                                                        std::span<const double> temperature_k,
                                                        const LightOptions &options,
                                                        const std::atomic<bool> *cancel) {
-  UMOV_ASSIGN(emission, ThermalEmission::make(scene, temperature_k));
   return without_failures([&]() -> Result<std::unique_ptr<LightModel>> {
+    UMOV_ASSIGN(emission, ThermalEmission::make(scene, temperature_k, cancel));
     return std::make_unique<ThermalLight>(scene, std::move(joints), std::move(emission), options,
                                           cancel);
   });

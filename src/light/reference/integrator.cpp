@@ -12,6 +12,7 @@
 #include <mutex>
 #include <optional>
 #include <umov/core/parallel.h>
+#include <umov/core/stop.h>
 #include <umov/shape/topology.h>
 
 namespace umov {
@@ -19,6 +20,13 @@ namespace {
 
 /// Rounding of a sum of positive terms, in parts of the sum: some units in the last place.
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
+
+/// While a Failure is handled: it goes on unless it was a stop.
+template <class T> std::vector<T> nothing_if_stopped(const std::atomic<bool> *cancel) {
+  if (!is_stopped(cancel))
+    throw;
+  return {};
+}
 
 /// What paths are drawn on.
 struct PathGround {
@@ -37,24 +45,25 @@ struct Integrator::State {
   }
   /// Made when it is first asked for: direct light needs none of it. A convex body, of which
   /// nothing is hidden, has ray tests from then on.
-  PathGround paths() const {
+  PathGround paths(const std::atomic<bool> *cancel) const {
     std::call_once(has_bounces, [&] {
       if (!occluder)
-        occluder.emplace(scene.mesh);
+        occluder.emplace(scene.mesh, Occluder::Rays::Each, cancel);
       bounces.emplace(scene, sides);
     });
     return {*bounces, *occluder};
   }
   /// Chains of up to so many surfaces; null where they cannot draw anything.
-  const ChainStore *chains(const IntegrationOptions &options) const {
+  const ChainStore *chains(const IntegrationOptions &options,
+                           const std::atomic<bool> *cancel) const {
     if (options.between != BetweenMethod::Chains || !is_sunlight(options.source))
       return nullptr;
-    const PathGround ground = paths();
+    const PathGround ground = paths(cancel);
     const WriteLock lock(store_mutex);
     auto &store = stores[{options.bounces, options.seed}];
     if (!store)
       store = std::make_unique<const ChainStore>(ground.scene, ground.occluder, options.bounces,
-                                                 options.seed);
+                                                 options.seed, cancel);
     return store->surfaces().has_any() ? store.get() : nullptr;
   }
 
@@ -207,7 +216,7 @@ std::vector<IndirectLight> by_chains(const ChainStore &store, const PathGround &
 std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
                                                 std::span<const double> direct_i,
                                                 const IntegrationOptions &options, unsigned threads,
-                                                const std::atomic<bool> *cancel) const {
+                                                const std::atomic<bool> *cancel) const try {
   const std::size_t bands = state_->scene.grid.nodes().size();
   if (state_->is_convex || options.bounces < 2)
     return {poses.size(), IndirectLight{std::vector<BandResult>(bands), 0}};
@@ -215,31 +224,35 @@ std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
   std::vector<double> refers_to(direct_i.begin(), direct_i.end());
   for (std::size_t at = 0; at < refers_to.size() && !options.floor_i.empty(); ++at)
     refers_to[at] = std::max(refers_to[at], options.floor_i[at % bands]);
-  if (const ChainStore *store = state_->chains(options))
-    return by_chains(*store, state_->paths(), poses, refers_to, options, threads, cancel);
-  return by_paths(state_->paths(), poses, refers_to, options, threads, cancel, nullptr);
+  if (const ChainStore *store = state_->chains(options, cancel))
+    return by_chains(*store, state_->paths(cancel), poses, refers_to, options, threads, cancel);
+  return by_paths(state_->paths(cancel), poses, refers_to, options, threads, cancel, nullptr);
+} catch (const Failure &) {
+  return nothing_if_stopped<IndirectLight>(cancel);
 }
 
 std::vector<IndirectLight> Integrator::thermal(std::span<const Pose> poses,
                                                const ThermalEmission &emission,
                                                const IntegrationOptions &options, unsigned threads,
-                                               const std::atomic<bool> *cancel) const {
+                                               const std::atomic<bool> *cancel) const try {
   const std::vector<double> nothing(poses.size() * state_->scene.grid.nodes().size());
-  return by_paths(state_->paths(), poses, nothing, options, threads, cancel, &emission);
+  return by_paths(state_->paths(cancel), poses, nothing, options, threads, cancel, &emission);
+} catch (const Failure &) {
+  return nothing_if_stopped<IndirectLight>(cancel);
 }
 
 std::vector<Stokes<ScatteringPlane>>
 Integrator::indirect_radiance(const Pose &pose, std::span<const SurfacePoint> points,
                               const IntegrationOptions &options, std::size_t paths,
-                              std::uint64_t first) const {
+                              std::uint64_t first, const std::atomic<bool> *cancel) const {
   const std::size_t bands = state_->scene.grid.nodes().size();
   std::vector<Stokes<ScatteringPlane>> out(points.size() * bands);
   if (state_->is_convex || options.bounces < 2 || points.empty())
     return out;
-  const PathGround ground = state_->paths();
+  const PathGround ground = state_->paths(cancel);
   PathSampler sampler(ground.scene, ground.occluder, pose, options, nullptr, false);
   std::vector<Stokes<ScatteringPlane>> sum(bands);
-  for (std::size_t k = 0; k < points.size(); ++k) {
+  for (std::size_t k = 0; k < points.size() && !is_stopped(cancel); ++k) {
     std::fill(sum.begin(), sum.end(), Stokes<ScatteringPlane>{});
     for (std::size_t i = 0; i < paths; ++i)
       sampler.look(points[k], (first + k) * paths + i, sum);
@@ -279,9 +292,7 @@ std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
     add(more[i], out[i]);
   return out;
 } catch (const Failure &) {
-  if (!is_stopped(cancel))
-    throw;
-  return {};
+  return nothing_if_stopped<PoseResult>(cancel);
 }
 
 } // namespace umov

@@ -9,6 +9,7 @@
 #include <array>
 #include <fmt/format.h>
 #include <umov/core/files.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 
 namespace umov::mesh_io::gltf {
@@ -16,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_bytes = 512u << 20; ///< of all buffers together
 
-std::optional<std::string> from_base64(std::string_view text) {
+std::optional<std::string> from_base64(std::string_view text, const std::atomic<bool> *cancel) {
   constexpr std::string_view digits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::array<int, 256> value{};
@@ -30,6 +31,7 @@ std::optional<std::string> from_base64(std::string_view text) {
   std::uint32_t bits = 0;
   int held = 0;
   for (const char c : text) {
+    leave_if_stopped(cancel, out.size());
     const int digit = value[static_cast<unsigned char>(c)];
     if (digit < 0)
       return {};
@@ -85,7 +87,7 @@ Result<std::string> Document::load_uri(const std::string &uri, const std::string
     const std::size_t comma = uri.find(',');
     const std::string head = uri.substr(0, comma);
     auto bytes = comma != std::string::npos && head.ends_with(";base64")
-                     ? from_base64(std::string_view(uri).substr(comma + 1))
+                     ? from_base64(std::string_view(uri).substr(comma + 1), cancel_)
                      : std::nullopt;
     if (!bytes)
       return bad(place + ".uri", brief, "\"data:...;base64,\" and base64 digits");
@@ -199,6 +201,7 @@ Result<void> Document::read_sparse(const Json &sparse, const std::string &place,
                           bytes_of(out.type_) * out.components_, false));
   which.run_ = run_of_indices;
   for (std::size_t k = 0; k < count; ++k) {
+    leave_if_stopped(cancel_, k);
     const auto element = static_cast<std::uint32_t>(which.value(k, 0));
     if (element >= out.count_ || (k > 0 && element <= out.replaced_.back()))
       return bad(fmt::format("{}.indices, number {},", place, k), std::to_string(element),

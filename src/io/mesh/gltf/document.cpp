@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <fmt/format.h>
+#include <iterator>
+#include <umov/core/stop.h>
 
 namespace umov::mesh_io::gltf {
 namespace {
@@ -21,10 +23,11 @@ struct Scan {
   std::size_t values = 0;
 };
 
-Scan scan(std::string_view text) {
+Scan scan(std::string_view text, const std::atomic<bool> *cancel) {
   Scan out;
   bool is_text = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
+    leave_if_stopped(cancel, i);
     const char c = text[i];
     if (is_text) {
       i += c == '\\' ? 1u : 0u;
@@ -42,6 +45,32 @@ Scan scan(std::string_view text) {
   }
   return out;
 }
+
+/// Letters of a text one after the other as long as nobody stops it: buffers written in place are
+/// hundreds of megabytes of one word.
+class Letters {
+public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char *;
+  using reference = const char &;
+
+  Letters(const char *at, const std::atomic<bool> *cancel) : at_(at), cancel_(cancel) {}
+  reference operator*() const { return *at_; }
+  Letters &operator++() {
+    leave_if_stopped(cancel_, read_++);
+    ++at_;
+    return *this;
+  }
+  friend bool operator==(const Letters &a, const Letters &b) { return a.at_ == b.at_; }
+  friend bool operator!=(const Letters &a, const Letters &b) { return a.at_ != b.at_; }
+
+private:
+  const char *at_;
+  const std::atomic<bool> *cancel_;
+  std::size_t read_ = 0;
+};
 
 Where line_and_column(const std::string &file, std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
@@ -138,7 +167,7 @@ Result<void> Document::split_glb(std::string_view bytes, std::string_view &json)
 Result<void> Document::parse(std::string_view text, bool is_glb) {
   if (text.starts_with("\xEF\xBB\xBF"))
     text.remove_prefix(3);
-  const Scan found = scan(text);
+  const Scan found = scan(text, cancel_);
   if (found.deepest > deepest || found.values > most_values)
     return fail(ErrorCode::BadInput,
                 fmt::format("JSON of {} values, nested {} deep; up to {} and {} were expected. "
@@ -146,7 +175,8 @@ Result<void> Document::parse(std::string_view text, bool is_glb) {
                             found.values, found.deepest, most_values, deepest),
                 {file_});
   try {
-    json_ = std::make_shared<const Json>(Json::parse(text));
+    const Letters end(text.data() + text.size(), nullptr);
+    json_ = std::make_shared<const Json>(Json::parse(Letters(text.data(), cancel_), end));
   } catch (const Json::parse_error &problem) {
     std::string why = problem.what();
     why = why.substr(why.find("] ") == std::string::npos ? 0 : why.find("] ") + 2);
@@ -215,8 +245,9 @@ Result<void> Document::check_version() const {
 }
 
 Result<Document> Document::open(std::string_view bytes, const std::filesystem::path &path,
-                                std::size_t max_elements) {
+                                std::size_t max_elements, const std::atomic<bool> *cancel) {
   Document out;
+  out.cancel_ = cancel;
   out.file_ = path.string();
   out.folder_ = path.parent_path();
   out.max_elements_ = max_elements;

@@ -45,9 +45,10 @@ private:
 
 class Document {
 public:
-  /// Takes JSON or GLB apart. `path`: for messages, and the folder of external buffers.
+  /// Takes JSON or GLB apart. `path`: for messages, and the folder of external buffers. What is
+  /// asked of it later throws Failure (Interrupted) once `cancel`, which may be null, became true.
   static Result<Document> open(std::string_view bytes, const std::filesystem::path &path,
-                               std::size_t max_elements);
+                               std::size_t max_elements, const std::atomic<bool> *cancel);
 
   [[nodiscard]] const std::string &file() const { return file_; }
   /// The number of entries of a list of the document, such as "nodes".
@@ -85,6 +86,7 @@ private:
   std::string file_;
   std::filesystem::path folder_;
   std::size_t max_elements_ = 0;
+  const std::atomic<bool> *cancel_ = nullptr;
   std::shared_ptr<const Json> json_;
   std::optional<std::string> chunk_; ///< the second part of a GLB
   std::map<std::size_t, std::shared_ptr<const std::string>> buffers_;

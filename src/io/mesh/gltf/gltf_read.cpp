@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
+#include <umov/core/stop.h>
 #include <utility>
 
 namespace umov::mesh_io {
@@ -30,8 +31,8 @@ struct Pending {
 
 class GltfReader {
 public:
-  GltfReader(Document &document, std::size_t max_triangles)
-      : document_(document), primitives_(document, max_triangles), max_(max_triangles) {}
+  GltfReader(Document &document, const MeshFileOptions &options)
+      : document_(document), primitives_(document, options), options_(options) {}
 
   Result<MeshFile> read(Diagnostics &diagnostics);
 
@@ -47,7 +48,7 @@ private:
 
   Document &document_;
   gltf::PrimitiveReader primitives_;
-  std::size_t max_;
+  const MeshFileOptions &options_;
   MeshFile out_;
   GroupIndex groups_{out_.mesh};
   std::vector<Pending> pending_;
@@ -128,8 +129,9 @@ Result<void> GltfReader::push(const std::vector<std::size_t> &nodes, const Place
 Result<void> GltfReader::add(const Primitive &primitive, const Placement &place,
                              std::uint32_t group) {
   Mesh &mesh = out_.mesh;
-  if (++instances_ > most_instances || mesh.triangles.size() + primitive.triangles.size() > max_)
-    return too_many_triangles(max_, {document_.file()});
+  if (++instances_ > most_instances ||
+      mesh.triangles.size() + primitive.triangles.size() > options_.max_triangles)
+    return too_many_triangles(options_.max_triangles, {document_.file()});
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   const auto first_normal = static_cast<std::uint32_t>(mesh.normals.size());
   for (const Vec3<Body> p : primitive.positions) {
@@ -145,6 +147,7 @@ Result<void> GltfReader::add(const Primitive &primitive, const Placement &place,
   }
   const bool is_mirrored = place.determinant() < 0;
   for (auto corners : primitive.triangles) {
+    leave_if_stopped(options_.cancel, mesh.triangles.size());
     if (is_mirrored)
       std::swap(corners[1], corners[2]);
     Triangle triangle;
@@ -207,7 +210,7 @@ Result<MeshFile> GltfReader::read(Diagnostics &diagnostics) {
   }
   if (!has_textures_)
     out_.mesh.tangents.clear();
-  join_equal(out_.mesh);
+  join_equal(out_.mesh, options_.cancel);
   out_.files = document_.files();
   const auto warn = [&](bool is_so, const std::string &what) {
     if (is_so)
@@ -229,8 +232,8 @@ Result<MeshFile> GltfReader::read(Diagnostics &diagnostics) {
 Result<MeshFile> read_gltf(std::string_view bytes, const std::filesystem::path &path,
                            const MeshFileOptions &options, Diagnostics &diagnostics) {
   const std::size_t max_elements = 3 * options.max_triangles;
-  UMOV_ASSIGN(document, Document::open(bytes, path, max_elements));
-  return GltfReader(document, options.max_triangles).read(diagnostics);
+  UMOV_ASSIGN(document, Document::open(bytes, path, max_elements, options.cancel));
+  return GltfReader(document, options).read(diagnostics);
 }
 
 } // namespace umov::mesh_io

@@ -3,6 +3,7 @@
 #include "io/mesh/mesh_parts.h"
 
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 #include <unordered_map>
 
 namespace umov::mesh_io::gltf {
@@ -83,10 +84,11 @@ Result<void> PrimitiveReader::take_corners(const Sources &from, std::size_t mode
   const std::size_t corners = from.index != nullptr ? from.index->count() : from.position->count();
   const std::size_t count = mode == Triangles ? corners / 3 : corners < 3 ? 0 : corners - 2;
   triangles_ += count;
-  if (triangles_ > max_triangles_)
-    return too_many_triangles(max_triangles_, {document_.file()});
+  if (triangles_ > options_.max_triangles)
+    return too_many_triangles(options_.max_triangles, {document_.file()});
   std::unordered_map<std::size_t, std::uint32_t> places;
   for (std::size_t t = 0; t < count; ++t) {
+    leave_if_stopped(options_.cancel, t);
     const auto at = corners_of(mode, t);
     std::array<std::uint32_t, 3> triangle{};
     for (std::size_t k = 0; k < 3; ++k) {

@@ -24,8 +24,9 @@ struct Skipped {
 /// Reads primitives, each mesh once; only corners that a triangle uses are kept.
 class PrimitiveReader {
 public:
-  PrimitiveReader(Document &document, std::size_t max_triangles)
-      : document_(document), max_triangles_(max_triangles) {}
+  /// Throws Failure (Interrupted) where MeshFileOptions::cancel comes true.
+  PrimitiveReader(Document &document, const MeshFileOptions &options)
+      : document_(document), options_(options) {}
 
   Result<const std::vector<Primitive> *> mesh(std::size_t i);
   [[nodiscard]] const Skipped &skipped() const { return skipped_; }
@@ -42,7 +43,7 @@ private:
                             Primitive &out);
 
   Document &document_;
-  std::size_t max_triangles_;
+  const MeshFileOptions &options_;
   std::size_t triangles_ = 0;
   std::map<std::size_t, std::vector<Primitive>> known_;
   Skipped skipped_;
