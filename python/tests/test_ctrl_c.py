@@ -4,6 +4,7 @@ The signal comes after so much of the processor's time, and how long the call go
 machine does besides is not the call's. SIGPROF has Python's handler of Ctrl-C; all that follows is that of SIGINT.
 """
 import contextlib
+import pathlib
 import signal
 import time
 
@@ -97,18 +98,45 @@ def test_ctrl_c_is_heard(name, hst, plate):
 
 @pytest.fixture(scope="module")
 def large(tmp_path_factory):
-    """Two spheres side by side, 164,000 triangles with smooth normals, of which the one hides the other."""
+    """Two spheres side by side, 164,000 triangles with smooth normals, of which the one hides the other. Beside its file, the same in
+    other formats, and one sphere alone."""
     import trimesh
     file = tmp_path_factory.mktemp("mesh") / "two.ply"
     one, other = (trimesh.creation.icosphere(subdivisions=6) for _ in range(2))
+    one.export(file.with_name("one.ply"))
     other.apply_translation([3, 0, 0])
-    trimesh.util.concatenate([one, other]).export(file)
+    for suffix in (".ply", ".obj", ".glb"):
+        trimesh.util.concatenate([one, other]).export(file.with_suffix(suffix))
     return umov.Satellite(mesh=file, unit="m", up="+Z", materials="gold", normals="smooth", orbit=DATA / "tle/hst.tle",
                           attitude={"mode": "nadir"}, name="two")
 
 
 AT_ONCE = {"threads": 1, "cache": False}
+#: One pose of which takes a second: all the paths that a pose may have.
+MANY_PATHS = {"render.bounces": 16, "render.accuracy": 1e-5}
+
+
+def beside(large, name):
+    """Another file of the fixture."""
+    file = pathlib.Path(large.to_dict()["mesh"]["file"]).with_name(name)
+    return umov.Satellite(mesh=file, unit="m", up="+Z", materials="gold")
+
+
+def turning(**options):
+    """A pose of a body whose one wing turns: another body at every pose."""
+    wing = {"groups": [f"wing_py_{part}" for part in ("front", "back", "edge", "yoke")], "axis": "+Y", "angle_deg": 30}
+    body = umov.Satellite(mesh=DATA / "mesh/box_wing.obj", unit="m", up="+Z", materials="aluminium", parts=[wing])
+    return umov.Engine(body, ["nm:1000"], set=MANY_PATHS, **options, **AT_ONCE).evaluate([0.1, 0.4, 1], [0, 1, 1])
+
+
 SET_UP = {
+    "Engine of a ball": lambda large: umov.Engine(beside(large, "one.ply"), ["nm:550"], **AT_ONCE),
+    "mesh of OBJ": lambda large: umov.mesh(beside(large, "two.obj")),
+    "mesh of glTF": lambda large: umov.mesh(beside(large, "two.glb")),
+    "light between surfaces": lambda large: umov.Engine(large, ["nm:550"], set={"render.bounces": 2, "render.accuracy": 0.002},
+                                                        method="rays", **AT_ONCE).evaluate([0, 0, 1], [0, 1, 1]),
+    "light between parts that turn": lambda _: turning(method="masks"),
+    "heat of parts that turn": lambda _: turning(temperatures=[300]),
     "Engine": lambda large: umov.Engine(large, ["nm:550"], **AT_ONCE),
     "Engine by rays": lambda large: umov.Engine(large, ["nm:550"], method="rays", **AT_ONCE).evaluate([0, 0, 1], [0, 1, 1]),
     "Engine of heat": lambda large: umov.Engine(large, ["nm:1000"], temperatures=[300], **AT_ONCE),
