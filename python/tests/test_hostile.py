@@ -190,6 +190,11 @@ WRONG = {
                                     "ICRS Frame> is no direction"),
     "a list of no orbits": (lambda e: umov.propagate([None], START), "orbit is a NoneType; a file, the lines"),
     "numbers without order": (lambda e: umov.passes(DATA / "tle/hst.tle", "maui", START, STOP, norad={20580}), r"norad is \{20580\}; a whole"),
+    "wavelengths in seconds": (lambda e: umov.Material("gold").refractive_index(5 * u.s), "does not go into"),
+    "texts for wavelengths": (lambda e: umov.Material("gold").refractive_index("550"), "wavelength_nm is '550'; numbers"),
+    "masked wavelengths": (lambda e: umov.Material("gold").refractive_index(np.ma.array([550.0, 600.0], mask=[0, 1])), "wavelength_nm has masked"),
+    "a time for a temperature": (lambda e: umov.Engine(e.scenario, temperatures=[3 * u.s]), "temperatures_K is .*; it does not go into"),
+    "seconds for a direction": (lambda e: umov.render(e.scenario, sun=[1, 1, 1] * u.s, observer=[0, 1, 1]), "sun is in s; a direction"),
     "poses beyond numbers": (lambda e: umov._umov.random_directions(2**63, 30.0, 0, 2**63), "first and count are too large"),
 }
 
@@ -362,6 +367,18 @@ def test_sites_of_rows():
     row = {"lat_deg": 20.5 * u.deg, "lon_deg": -156 * u.deg, "alt_m": 3 * u.km}
     table = QTable({name: [value] for name, value in row.items()} | {"name": ["here"]})
     assert umov.Site(table[0]) == umov.Site(pandas.Series({"lat_deg": 20.5, "lon_deg": -156, "alt_m": 3000, "name": "here"}))
+
+
+def test_quantities_of_indices_temperatures_and_pictures(plate):
+    """5500 Angstrom were taken for 5500 nm."""
+    of = umov.Material("gold").refractive_index
+    np.testing.assert_allclose(of([5500, 6000] * u.AA), of([550, 600]), rtol=1e-12)  # the conversion rounds
+    kelvin = umov.Engine(plate, ["nm:550"], temperatures=[300], cache=False).evaluate([0, 0, 1], [0, 0.1, 1])
+    for given in ([300 * u.K], [300] * u.K, np.array([300.0])):
+        found = umov.Engine(plate, ["nm:550"], temperatures=given, cache=False).evaluate([0, 0, 1], [0, 0.1, 1])
+        np.testing.assert_array_equal(found, kelvin)
+    pictures = [umov.render(plate, sun=sun, observer=[0, 1, 1], side=16, samples=1).png for sun in ([1, 1, 1], [1, 1, 1] * u.km)]
+    assert pictures[0] == pictures[1]
 
 
 def test_lists_of_quantities(plate):

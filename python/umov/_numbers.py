@@ -39,6 +39,16 @@ def joined(value: Any, name: str) -> Any:
         raise UsageError(f"{name} is {_short(value)}; quantities of one kind and shape were expected ({error})") from error
 
 
+def lengths(value: Any, name: str) -> Any:
+    """The numbers of a Quantity of lengths, or of a list of them, whose unit does not matter; all else as it is."""
+    value = joined(value, name)
+    if not hasattr(value, "to_value") or not hasattr(value, "unit"):
+        return value
+    if value.unit.physical_type not in ("length", "dimensionless"):
+        raise UsageError(f"{name} is in {value.unit}; a direction was expected, (..., 3) of lengths or plain numbers")
+    return value.to_value(value.unit)
+
+
 def _is_masked(value: Any) -> bool:
     """Of numpy or astropy, with something behind the mask: an array would show what nobody is to see."""
     mask = getattr(value, "mask", None)

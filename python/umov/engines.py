@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._made import Made
-from ._numbers import between, joined, number_array, path_text, real_array, whole
+from ._numbers import between, lengths, number_array, path_text, real_array, whole
 from .errors import UsageError, raise_stopped
 from .satellites import AnyBands, band_changes
 from .scenarios import AnyScenario, Scenario
@@ -211,25 +211,15 @@ def _stokes(laser: Any) -> list[float]:
 
 def kelvins(temperatures: Any) -> list[str]:
     """Temperatures as the command takes them."""
-    if isinstance(temperatures, (str, bytes)) or np.ndim(temperatures) != 1:
+    if isinstance(temperatures, (str, bytes)) or not hasattr(temperatures, "__iter__") or getattr(temperatures, "ndim", 1) != 1:
         raise UsageError(f"temperatures is {temperatures!r}; a list was expected, such as [300, \"wing=350\"]")
     return [one if isinstance(one, str) else f"{between(one, 'temperatures_K', 0, 1e6):.17g}" for one in temperatures]
-
-
-def _lengths(value: Any, name: str) -> Any:
-    """The numbers of a Quantity of lengths, or of a list of them, whose unit does not matter; all else as it is."""
-    value = joined(value, name)
-    if not hasattr(value, "to_value") or not hasattr(value, "unit"):
-        return value
-    if value.unit.physical_type not in ("length", "dimensionless"):
-        raise UsageError(f"{name} is in {value.unit}; a direction was expected, (..., 3) of lengths or plain numbers")
-    return value.to_value(value.unit)
 
 
 def directions(sun: ArrayLike, observer: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:
     given = []
     for value, name in ((sun, "sun"), (observer, "observer")):
-        one = real_array(_lengths(value, name), name, "numbers, directions (..., 3),")
+        one = real_array(lengths(value, name), name, "numbers, directions (..., 3),")
         if one.ndim == 0 or one.shape[-1] != 3:
             raise UsageError(f"{name} has shape {one.shape}; directions (..., 3) were expected")
         given.append(one)

@@ -151,7 +151,7 @@ class Material(Made):
         >>> round(complex(umov.Material("paper_bk7").refractive_index(550)).real, 2)
         1.52
         """
-        asked = np.asarray(wavelength_nm, dtype=np.float64)
+        asked = number_array(wavelength_nm, "wavelength_nm")
         table = Table(self._material.index_table(np.atleast_1d(asked).ravel().tolist()))
         return (table["n"] + 1j * table["k"]).reshape(asked.shape)
 

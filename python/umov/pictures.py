@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _umov
 from ._jobs import Progress, Watch, job_options
 from ._made import Made
-from ._numbers import number_array, path_text, text, whole_between
+from ._numbers import lengths, number_array, path_text, text, whole_between
 from .errors import DeviceError, UsageError
 from .scenarios import AnyScenario, Scenario
 from .times import AnyTime, utc
@@ -111,7 +111,7 @@ def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: 
 
 
 def _three(value: Any, name: str) -> tuple[float, float, float]:
-    out = number_array(value, name)
+    out = number_array(lengths(value, name), name)
     if out.shape != (3,):
         raise UsageError(f"{name} has shape {out.shape}; (3,) was expected")
     return float(out[0]), float(out[1]), float(out[2])
