@@ -140,7 +140,7 @@ def _told(site: AnySite, name: str) -> tuple[str, float, float, float]:
     if isinstance(site, str):
         told = _umov.site(utf8(site, "site"))
         return (name or told[0]), told[1], told[2], told[3]
-    if hasattr(site, "keys") and hasattr(site, "__getitem__"):  # a dictionary, a row of astropy's or pandas'
+    if isinstance(site, Mapping) or (hasattr(site, "keys") and hasattr(site, "__getitem__")):  # a dictionary, a row of astropy's or pandas'
         site = {key: site[key] for key in site.keys()}
         if "lat_deg" not in site and "name" in site:
             return _told(str(site["name"]), name)

@@ -94,9 +94,9 @@ def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
         return [utc(times)], True
     if (_is_astropy(times) and times.isscalar) or (_is_skyfield(times) and not getattr(times, "shape", ())):
         return [utc(times)], True
-    if _is_skyfield(times):  # whose several are no list
-        return [_umov.check_time(one) for one in times.utc_iso(places=9)], False
     listed: Any = times
+    if _is_skyfield(listed):  # whose several are no list
+        return [_umov.check_time(one) for one in listed.utc_iso(places=9)], False
     if not isinstance(listed, Iterable) or isinstance(listed, (Mapping, Set)) or not getattr(listed, "shape", (1,)):
         raise UsageError(f"{times!r} is a {type(times).__name__}; a time or a list of times was expected")
     if _is_astropy(listed):  # one conversion for all
