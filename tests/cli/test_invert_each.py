@@ -1,6 +1,11 @@
 """Many curves, each a question of its own: answers are those of the curve alone, and those of any part are those of the whole."""
 import json
+import os
+import pathlib
+import resource
+import signal
 import subprocess
+import time
 
 import pytest
 from astropy.table import Table
@@ -173,3 +178,42 @@ def test_what_has_no_parts_is_refused(umov, tmp_path, words, told):
     done = umov(*words)
     assert done.code == 2 and told in done.err, done.err
     assert not (tmp_path / "job").exists()
+
+
+def processor_s(process):
+    """Seconds of the processor that a process has had."""
+    fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+@pytest.mark.parametrize("words", [("invert", "pose", "--each", "--scenario", "big.toml", ROOT / "examples/agena_pass.csv"),
+                                   ("scale", "plan", "job", "signature", "big.toml", "--poses", "1000", "--phase", "60")], ids=["each", "scale"])
+def test_a_job_is_stopped_while_it_is_made(umov, tmp_path, words):
+    """A mesh of 200,000 triangles takes seconds to be made ready; nothing listened until it was."""
+    umov("mesh", "make", "sphere", "--facets", 200_000, "-o", tmp_path / "ball.obj")
+    (tmp_path / "big.toml").write_text(f"""umov = 1
+[observer]
+name = "maui"
+[time]
+start = 2018-01-21T05:10:00Z
+stop = 2018-01-21T05:11:00Z
+[[object]]
+mesh = {{ file = "ball.obj", unit = "m", up = "+Z" }}
+orbit = {{ file = "{ROOT}/data/tle/hst.tle" }}
+attitude = {{ mode = "nadir" }}
+materials = {{ default = "gold" }}
+[bands]
+set = ["nm:550"]
+""")
+    process = subprocess.Popen([UMOV, *map(str, words)], cwd=tmp_path, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    while processor_s(process) < 0.4:
+        time.sleep(0.01)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    had = processor_s(process)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=120)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    assert process.returncode == 130, told
+    assert "stopped by the user" in told
+    # A fifth of a second, and what the pages take that are given back; /proc counts hundredths.
+    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime - had < 0.4
