@@ -118,8 +118,9 @@ void warn_of_notes(const CountsFile &counts, const std::string &file, Diagnostic
   });
   if (bare == counts.rows.end())
     return;
-  for (const auto &[key, value] : counts.notes)
-    if (key.starts_with(start) && std::ranges::none_of(counts.rows, [&](const CountRow &row) {
+  for (const auto &note : counts.notes)
+    if (const std::string &key = note.first;
+        key.starts_with(start) && std::ranges::none_of(counts.rows, [&](const CountRow &row) {
           return key == start + " " + row.band;
         }))
       diagnostics.warn(fmt::format("{} of the header is of no band of the counts; \"zero_flux {}\" "
