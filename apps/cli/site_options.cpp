@@ -1,10 +1,9 @@
 #include "site_options.h"
 
-#include <algorithm>
 #include <fmt/format.h>
-#include <string_view>
 #include <umov/io/sites.h>
 #include <umov/time/earth_orientation.h>
+#include <umov/time/typed.h>
 
 namespace umov::cli {
 
@@ -47,20 +46,8 @@ Result<Site> site_of(const SiteOptions &o, const Common &common) {
   return make_site("", o.latitude_deg, o.longitude_deg, o.altitude_m);
 }
 
-namespace {
-
-/// 2018-01-21, whether there is such a day or not.
-bool is_date(std::string_view text) {
-  constexpr std::string_view form = "0000-00-00";
-  return std::ranges::equal(text, form, [](char one, char of) {
-    return of == '0' ? one >= '0' && one <= '9' : one == of;
-  });
-}
-
-} // namespace
-
 Result<Epoch<Utc>> time_of(const char *option, const std::string &text) {
-  auto time = utc_from_iso(is_date(text) ? text + "T00:00:00Z" : text);
+  auto time = utc_from_iso_or_day(text);
   if (!time)
     return fail(ErrorCode::BadInput, fmt::format("{} {}", option, time.error().message));
   return time;

@@ -11,6 +11,7 @@
 #include <umov/io/scenario.h>
 #include <umov/io/sites.h>
 #include <umov/time/epoch.h>
+#include <umov/time/typed.h>
 
 namespace umov::python {
 namespace {
@@ -85,7 +86,8 @@ void bind_scenario(nb::module_ &m) {
       },
       "name"_a, "lat_deg"_a, "lon_deg"_a, "alt_m"_a);
   m.def(
-      "check_time", [](const std::string &text) { return to_iso_exact(take(utc_from_iso(text))); },
+      "check_time",
+      [](const std::string &text) { return to_iso_exact(take(utc_from_iso_or_day(text))); },
       "text"_a);
 }
 

@@ -51,8 +51,8 @@ def utc(time: AnyTime) -> str:
     Parameters
     ----------
     time
-        ISO 8601 with an offset or Z, an aware datetime, an astropy Time of any scale or one of skyfield; `UsageError` for a time
-        without a zone, with the two lines that mend it.
+        ISO 8601 with an offset or Z, a day alone (its 0 h UTC), an aware datetime, an astropy Time of any scale or one of
+        skyfield; `UsageError` for a time without a zone, with the two lines that mend it.
 
     Examples
     --------

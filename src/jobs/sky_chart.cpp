@@ -111,7 +111,7 @@ std::string sky_chart(const PassesRequest &request, const PassesResult &result) 
   page.model = has_magnitudes ? result.model : "";
   page.notes = {
       "The sky overhead: zenith in the middle, north up, east left, the horizon outside. Times "
-      "are UTC; an arrow stands at the end of each track.",
+      "are UTC; an arrow stands at the end of each track, a ring about what hardly moves.",
       "Dotted: more than half of the Sun's disk is behind the Earth.",
       "alt: the highest while visible, that is sunlit in a dark sky; in brackets the highest of a "
       "pass that never is."};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <erfa.h>
 #include <fmt/format.h>
+#include <umov/time/typed.h>
 
 namespace umov {
 namespace {
@@ -142,6 +143,10 @@ Result<Epoch<Utc>> utc_from_iso(std::string_view text) {
   if (const std::string why = outside_dates(out); !why.empty())
     return bad_time(text, why);
   return out;
+}
+
+Result<Epoch<Utc>> utc_from_iso_or_day(std::string_view text) {
+  return is_date(text) ? utc_from_iso(std::string(text) + "T00:00:00Z") : utc_from_iso(text);
 }
 
 std::string to_iso(Epoch<Utc> time, int digits) {

@@ -92,6 +92,11 @@ def test_a_slip_of_the_unit_is_noticed(umov, scenario, tmp_path):
     ([('mesh = { file = "cube.obj", unit = "m", up = "+Z", normals = "flat" }', 'mesh = "cube.obj"'),
       ('attitude = { mode = "nadir" }', 'attitude = "nadir"')],
      ['as in mesh = { file = "cube.obj" }', 'as in attitude = { mode = "nadir" }']),
+    # Values too, of each table and of each material:
+    ([('default = "paper_al"', 'default = "solar_cell"\nother = "gildd"'), ("step_s = 20", "step_s = -20"), ("lat_deg = ", "lat_deg = 1"), ('set = "paper_rgb"', 'set = "nm:x"')],
+     ["lat_deg = ", "step_s = -20", "nm:x"]),
+    ([('default = "paper_al"', 'default = "solar_cell"\nother = "gildd"'), ('attitude = { mode = "nadir" }', 'attitude = { mode = "nadirr" }'), ('set = "paper_rgb"', 'set = "nm:x"')],
+     ['"cell_', "gildd", "nadirr", "nm:x"]),
 ])
 def test_hints_by_meaning_and_all_slips_at_once(umov, scenario, changes, words):
     done = umov("run", scenario(*[c for c in changes if c != ("pol", "pol")]), "--dry-run")
@@ -171,8 +176,9 @@ def test_a_date_alone_begins_its_day(umov, scenario, tmp_path):
                     "2018-01-22" + clock, "-o", name + ".csv")
         assert done.code == 0, done.err
     assert (tmp_path / "a.csv").read_text() == (tmp_path / "b.csv").read_text()
-    done = umov("run", scenario(), "--dry-run", "--set", "time.start=2018-01-21", "--set", "time.stop=2018-01-22")
-    assert done.code == 0, done.err
+    for quote in ("", '"'):  # a date of TOML, and a string
+        done = umov("run", scenario(), "--dry-run", "--set", f"time.start={quote}2018-01-21{quote}", "--set", f"time.stop={quote}2018-01-22{quote}")
+        assert done.code == 0, done.err
 
 
 def test_a_run_tells_programs_what_it_found(umov, scenario, tmp_path):

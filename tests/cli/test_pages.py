@@ -187,6 +187,35 @@ def test_a_track_without_magnitudes_is_told_by_its_time_on_a_phone(pages, browse
     assert labels and all(label.startswith("HST, ") and label.count(":") == 2 for label in labels), labels
 
 
+def test_what_hardly_moves_has_a_ring_and_no_arrow(pages, browser):
+    """GOES 15, which stays within .2 deg: a fifteen-hundredth of a chart's radius, a dot without the ring."""
+    with browser.opened(pages / "crowd.html") as tab:
+        tab.seen()
+        rings, tracks = value_of(tab, """[document.querySelectorAll("#sky g[data-track] circle").length,
+            [...document.querySelectorAll("#sky g[data-track]")].filter((one) => [...one.querySelectorAll("path")].every((path) => path.getBoundingClientRect().width < 15)
+                && !one.querySelector("circle")).length]""")
+    assert rings >= 1 and tracks == 0, (rings, tracks)
+
+
+def test_marks_of_points_are_seen_in_a_legend(pages, browser):
+    """Thousands of points are 2.5 px wide, and lines beside them keep their dashes; 5 px is the least that shows a sign."""
+    widths = """[...document.querySelectorAll(".plot .legendpoints path")].map((one) => one.getBoundingClientRect().width)"""
+    with browser.opened(pages / "reduce.html") as tab:
+        tab.seen()
+        assert min(value_of(tab, widths)) >= 5
+
+
+def test_a_material_has_one_colour_in_all_figures(pages, browser):
+    """But for yellow, of which lines are olive."""
+    colours = """["contribution", "q_rgb"].map((id) => Object.fromEntries(document.getElementById(id)._fullData.filter((one) => one.showlegend && one.name !== "glint")
+        .map((one) => [one.name, one.fillcolor || one.line.color])))"""
+    with browser.opened(pages / "run/report.html") as tab:
+        tab.seen()
+        areas, lines = value_of(tab, colours)
+    both = areas.keys() & lines.keys()
+    assert len(both) >= 5 and {name: areas[name].replace("#f0e442", "#857a00") for name in both} == {name: lines[name] for name in both}, (areas, lines)
+
+
 @pytest.mark.parametrize("is_paper", [False, True])
 def test_a_colour_bar_is_clear_of_the_axis_above_it(pages, browser, is_paper):
     boxes = """[".xtitle", ".cbtitle"].map((name) => { const box = document.querySelector("#qu_plane " + name).getBoundingClientRect();

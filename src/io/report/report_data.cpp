@@ -173,6 +173,7 @@ Json contributions_json(const ReportInput &input, std::size_t stride) {
       }));
     out.push_back({{"material", names[m]},
                    {"colour", material_colour(m)},
+                   {"line_colour", plot_colour(m)},
                    {"intensity", is_used ? std::move(per_band) : Json::array()}});
   }
   return out;

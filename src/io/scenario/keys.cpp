@@ -69,7 +69,7 @@ const std::vector<Key> &keys() {
       {"observer.atmosphere.aerosol", "tau_550", Number, "0.02", "optical depth at 550 nm"},
       {"observer.atmosphere.aerosol", "exponent", Number, "1.3",
        "depth goes with wavelength^-exponent"},
-      {"time", "start", Time, "", "first epoch, with Z or an offset"},
+      {"time", "start", Time, "", "first epoch, with Z or an offset; a day alone is its 0 h UTC"},
       {"time", "stop", Time, "", "last epoch, included"},
       {"time", "step_s", Number, "1.0", "step [s]"},
       {"time", "only", Table, "", "which epochs are kept"},

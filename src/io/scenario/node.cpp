@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <umov/core/text.h>
+#include <umov/time/typed.h>
 
 namespace umov::scenario {
 namespace {
@@ -135,13 +136,13 @@ std::optional<Error> Node::problem_of(const toml::key &key, const toml::node &va
   return {};
 }
 
-void Node::add_problems(std::vector<Error> &problems) const {
+void Node::add_problems(Problems &problems) const {
   for (const auto &[key, value] : *table_)
     if (auto problem = problem_of(key, value))
-      problems.push_back(std::move(*problem));
+      problems.add(std::move(*problem));
 }
 
-void Node::add_problems_below(std::vector<Error> &problems) const {
+void Node::add_problems_below(Problems &problems) const {
   add_problems(problems);
   const auto look_into = [&](const toml::node &value, const std::string &schema) {
     const toml::table *table = value.as_table();
@@ -162,33 +163,34 @@ void Node::add_problems_below(std::vector<Error> &problems) const {
   }
 }
 
-namespace {
+bool Problems::went(const Result<void> &result) {
+  if (!result)
+    found_.push_back(result.error());
+  return result.has_value();
+}
 
-/// The first problem, and the others in lines of their own.
-Result<void> told(const std::vector<Error> &problems) {
-  if (problems.empty())
+Result<void> Problems::told() const {
+  if (found_.empty())
     return {};
-  Error out = problems.front();
+  Error out = found_.front();
   constexpr std::size_t most = 10;
-  for (std::size_t i = 1; i < std::min(problems.size(), most); ++i)
-    out.message += "\n  and " + problems[i].text();
-  if (problems.size() > most)
-    out.message += fmt::format("\n  and {} more", problems.size() - most);
+  for (std::size_t i = 1; i < std::min(found_.size(), most); ++i)
+    out.message += "\n  and " + found_[i].text();
+  if (found_.size() > most)
+    out.message += fmt::format("\n  and {} more", found_.size() - most);
   return tl::unexpected(out);
 }
 
-} // namespace
-
 Result<void> Node::check() const {
-  std::vector<Error> problems;
+  Problems problems;
   add_problems(problems);
-  return told(problems);
+  return problems.told();
 }
 
 Result<void> Node::check_with_all_below() const {
-  std::vector<Error> problems;
+  Problems problems;
   add_problems_below(problems);
-  return told(problems);
+  return problems.told();
 }
 
 Where Node::where(const char *name) const {
@@ -214,11 +216,10 @@ bool Node::boolean(const char *name, bool fallback) const {
 namespace {
 
 Result<Epoch<Utc>> time_from(const toml::node &node) {
-  if (const auto day = node.value<toml::date>()) // alone: 0 h UTC
-    return utc_from_iso(
-        fmt::format("{:04}-{:02}-{:02}T00:00:00Z", day->year, day->month, day->day));
+  if (const auto day = node.value<toml::date>())
+    return utc_from_iso_or_day(fmt::format("{:04}-{:02}-{:02}", day->year, day->month, day->day));
   const auto stamp = node.value<toml::date_time>();
-  return utc_from_iso(stamp ? iso_of(*stamp) : node.value_or(std::string()));
+  return utc_from_iso_or_day(stamp ? iso_of(*stamp) : node.value_or(std::string()));
 }
 
 } // namespace

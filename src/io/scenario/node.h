@@ -10,6 +10,19 @@
 
 namespace umov::scenario {
 
+/// What is wrong with a file in places that do not follow from each other, to be told at once.
+class Problems {
+public:
+  /// Whether that went well; else keeps why.
+  bool went(const Result<void> &result);
+  void add(Error problem) { found_.push_back(std::move(problem)); }
+  /// The first problem, with the others in lines of their own.
+  [[nodiscard]] Result<void> told() const;
+
+private:
+  std::vector<Error> found_;
+};
+
 /// What a reader needs to know besides the node: the file for messages.
 class Node {
 public:
@@ -51,8 +64,8 @@ public:
 private:
   [[nodiscard]] std::optional<Error> problem_of(const toml::key &key,
                                                 const toml::node &value) const;
-  void add_problems(std::vector<Error> &problems) const;
-  void add_problems_below(std::vector<Error> &problems) const;
+  void add_problems(Problems &problems) const;
+  void add_problems_below(Problems &problems) const;
   const toml::table *table_;
   std::string schema_, label_, file_;
 };

@@ -13,7 +13,7 @@
 namespace umov {
 namespace {
 
-using scenario::Node;
+using scenario::Node, scenario::Problems;
 namespace fs = std::filesystem;
 
 /// Puts one "dotted.key=value" into the document; "object.x" means its first object, "object.1.x"
@@ -78,8 +78,10 @@ Result<void> read_observer(const Node &top, Scenario &out) {
     out.observer = *known;
     return {};
   }
+  Problems problems;
   for (const char *name : {"lat_deg", "lon_deg", "alt_m"})
-    UMOV_TRY(node.require(name));
+    problems.went(node.require(name));
+  UMOV_TRY(problems.told());
   auto site = make_site(node.text("name", ""), node.number("lat_deg", 0), node.number("lon_deg", 0),
                         node.number("alt_m", 0));
   if (!site) // the message begins with the name of the key
@@ -154,6 +156,7 @@ Result<void> read_materials(const Node &object, Scenario &out) {
     return {};
   const toml::table *table = object.table().get_as<toml::table>("materials");
   const Node node(*table, "", "object.materials", out.file);
+  Problems problems;
   for (const auto &[key, value] : *table) {
     const std::string name(key.str());
     MaterialNames sides;
@@ -172,11 +175,11 @@ Result<void> read_materials(const Node &object, Scenario &out) {
     const Where where = scenario::place_of(key, value, out.file);
     for (const std::string &side : {sides.front, sides.back})
       if (auto found = scenario::find_material(side, out); !found)
-        return fail(found.error().code, found.error().text(), where);
+        problems.add({found.error().code, found.error().text(), where});
     out.places[key_of(out, "materials." + name)] = scenario::place_of(key.source(), out.file);
     out.objects.back().materials.emplace(name, sides);
   }
-  return {};
+  return problems.told();
 }
 
 Result<void> read_mesh(const Node &object, const fs::path &folder, Scenario &out) {
@@ -270,26 +273,33 @@ Result<void> read_parts(const Node &object, Scenario &out) {
   return {};
 }
 
+Result<void> read_attitude_of(const Node &object, const fs::path &folder, Scenario &out) {
+  if (!object.has("attitude"))
+    return {};
+  ScenarioObject &one = out.objects.back();
+  UMOV_ASSIGN(node, object.child("attitude"));
+  out.places[key_of(out, "attitude")] = object.where("attitude");
+  const auto begin = out.time ? std::optional(out.time->start) : std::nullopt;
+  UMOV_ASSIGN(law, scenario::read_attitude(node, folder, {out.seed, begin}));
+  one.attitude = law;
+  const std::string mode = node.text("mode", "");
+  one.has_assumed_epoch = begin && (mode == "spin" || mode == "tumble") && !node.has("epoch");
+  return {};
+}
+
 Result<void> read_object(const Node &object, const fs::path &folder, Scenario &out) {
   UMOV_TRY(object.check());
-  ScenarioObject &one = out.objects.emplace_back();
-  one.name = object.text("name", "");
-  UMOV_TRY(read_orbit(object, folder, out));
+  out.objects.emplace_back().name = object.text("name", "");
+  Problems problems;
+  problems.went(read_orbit(object, folder, out));
   if (object.has("mesh"))
-    UMOV_TRY(read_mesh(object, folder, out));
+    problems.went(read_mesh(object, folder, out));
   else // where it was is enough for some questions; whoever asks for its shape is told
     out.places[key_of(out, "mesh")] = object.where();
-  if (object.has("attitude")) {
-    UMOV_ASSIGN(node, object.child("attitude"));
-    out.places[key_of(out, "attitude")] = object.where("attitude");
-    const auto begin = out.time ? std::optional(out.time->start) : std::nullopt;
-    UMOV_ASSIGN(law, scenario::read_attitude(node, folder, {out.seed, begin}));
-    one.attitude = law;
-    const std::string mode = node.text("mode", "");
-    one.has_assumed_epoch = begin && (mode == "spin" || mode == "tumble") && !node.has("epoch");
-  }
-  UMOV_TRY(read_parts(object, out));
-  return read_materials(object, out);
+  problems.went(read_attitude_of(object, folder, out));
+  problems.went(read_parts(object, out));
+  problems.went(read_materials(object, out));
+  return problems.told();
 }
 
 Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out) {
@@ -300,13 +310,14 @@ Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out
     return fail(ErrorCode::BadInput,
                 fmt::format("object: 1 to {} tables [[object]] were expected", objects_max),
                 top.where("object"));
+  Problems problems;
   for (const toml::node &item : *list) {
     if (!item.is_table())
       return fail(ErrorCode::BadInput, "object: a table [[object]] was expected",
                   top.where("object"));
-    UMOV_TRY(read_object(Node(*item.as_table(), "object", "object", out.file), folder, out));
+    problems.went(read_object(Node(*item.as_table(), "object", "object", out.file), folder, out));
   }
-  return {};
+  return problems.told();
 }
 
 Result<void> read_method(const Node &render, LightOptions &out) {
@@ -424,6 +435,24 @@ Result<void> read_output(const Node &top, Scenario &out) {
   return {};
 }
 
+Result<void> read_air(const Node &top, const fs::path &folder, Scenario &out) {
+  UMOV_ASSIGN(air, scenario::read_site_air(top));
+  out.air = air;
+  UMOV_ASSIGN(observation, scenario::read_observation(top, air, folder.string()));
+  out.observation = observation;
+  const bool has_bands_of_its_own = observation && !observation->bands.empty();
+  if (air && !has_bands_of_its_own)
+    return check_air_reaches(out.bands, top.where("bands"));
+  return {};
+}
+
+Result<void> read_own_materials(const Node &top, Scenario &out) {
+  UMOV_ASSIGN(own, scenario::read_material_tables(top));
+  UMOV_TRY(scenario::check_own_names(top, own));
+  out.own_materials = own;
+  return {};
+}
+
 Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   Scenario out;
   out.file = path.string();
@@ -439,25 +468,20 @@ Result<Scenario> read_document(toml::table &document, const fs::path &path) {
                 top.where("seed"));
   out.seed = static_cast<std::uint64_t>(seed);
   out.title = top.text("title", "");
-  UMOV_TRY(read_observer(top, out));
-  UMOV_TRY(read_earth(top, path.parent_path(), out));
-  UMOV_TRY(read_time(top, out));
-  UMOV_TRY(scenario::read_bands(top, path.parent_path(), out));
-  UMOV_TRY(read_render(top, out));
-  UMOV_TRY(read_vary(top, out));
-  UMOV_TRY(read_output(top, out));
-  UMOV_ASSIGN(air, scenario::read_site_air(top));
-  out.air = air;
-  UMOV_ASSIGN(observation, scenario::read_observation(top, air, path.parent_path().string()));
-  out.observation = observation;
-  if (air &&
-      !(observation && !observation->bands.empty())) // those are observed in the place of these
-    UMOV_TRY(check_air_reaches(out.bands, top.where("bands")));
+  Problems problems;
+  problems.went(read_observer(top, out));
+  problems.went(read_earth(top, path.parent_path(), out));
+  const bool has_time = problems.went(read_time(top, out));
+  problems.went(scenario::read_bands(top, path.parent_path(), out));
+  problems.went(read_render(top, out));
+  problems.went(read_vary(top, out));
+  problems.went(read_output(top, out));
+  problems.went(read_air(top, path.parent_path(), out));
   note_places(top, out);
-  UMOV_ASSIGN(own, scenario::read_material_tables(top));
-  UMOV_TRY(scenario::check_own_names(top, own));
-  out.own_materials = own;
-  UMOV_TRY(read_objects(top, path.parent_path(), out));
+  // An attitude turns from the start of the time, and objects are made of the materials.
+  if (problems.went(read_own_materials(top, out)) && has_time)
+    problems.went(read_objects(top, path.parent_path(), out));
+  UMOV_TRY(problems.told());
   return out;
 }
 

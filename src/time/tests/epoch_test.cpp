@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <umov/time/epoch.h>
 #include <umov/time/time_system.h>
+#include <umov/time/typed.h>
 
 namespace umov {
 namespace {
@@ -17,16 +18,27 @@ TEST(Epoch, ReadsAndWritesIso) {
 TEST(Epoch, RefusesWhatIsNotATimeAndSaysWhy) {
   const struct {
     const char *text, *word;
-  } rows[] = {{"2018-01-21T04:00:00", "has no zone"},    {"2018-01-21", "is not a time"},
-              {"2018-13-21T04:00:00Z", "calendar"},      {"2018-02-30T04:00:00Z", "calendar"},
-              {"2018-01-21T25:00:00Z", "calendar"},      {"2018-01-21T04:00:60Z", "leap second"},
-              {"1971-12-31T00:00:00Z", "before 1972"},   {"", "is not a time"},
+  } rows[] = {{"2018-01-21T04:00:00", "has no zone"},
+              {"2018-01-21", "2018-01-21T00:00:00Z was expected"},
+              {"2018-13-21T04:00:00Z", "calendar"},
+              {"2018-02-30T04:00:00Z", "calendar"},
+              {"2018-01-21T25:00:00Z", "calendar"},
+              {"2018-01-21T04:00:60Z", "leap second"},
+              {"1971-12-31T00:00:00Z", "before 1972"},
+              {"", "is not a time"},
               {"2018-01-21T04:00:00Zx", "is not a time"}};
   for (const auto &row : rows) {
     const auto result = utc_from_iso(row.text);
     ASSERT_FALSE(result) << row.text;
     EXPECT_NE(result.error().message.find(row.word), std::string::npos) << result.error().message;
   }
+}
+
+TEST(Epoch, ADayAloneIsItsBeginningWherePeopleTypeTimes) {
+  EXPECT_EQ(to_iso(*utc_from_iso_or_day("2018-01-21")), "2018-01-21T00:00:00.000Z");
+  EXPECT_EQ(to_iso(*utc_from_iso_or_day("2018-01-21T04:00-10:00")), "2018-01-21T14:00:00.000Z");
+  for (const char *text : {"2018-02-30", "2018-1-21", "2018-01-21T04:00:00", "1971-12-31"})
+    EXPECT_FALSE(utc_from_iso_or_day(text)) << text;
 }
 
 TEST(Epoch, LeapSecondIsParsedOrderedAndRoundTripped) {

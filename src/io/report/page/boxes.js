@@ -108,7 +108,7 @@ function svg(tag, attributes, text) {
 /// Compass and the side of the Sun, drawn over a picture.
 function overlay(frame) {
   const picture = svg("svg", { viewBox: "0 0 100 100", "aria-hidden": "true" });
-  const mark = { fill: "#cfd6e4", "font-size": "6", "font-family": "sans-serif", "text-anchor": "middle", stroke: "#0a0c12", "stroke-width": "1.6", "paint-order": "stroke" };
+  const mark = { fill: "#cfd6e4", "font-size": "6", "font-family": "sans-serif", "text-anchor": "middle", stroke: "#0a0c12", "stroke-width": "2.4", "paint-order": "stroke" };
   picture.append(svg("path", { d: "M91 93 V82 M91 93 H80", stroke: "#cfd6e4", "stroke-width": "0.7", fill: "none" }),
     svg("text", { x: 91, y: 80, ...mark }, "N"), svg("text", { x: 77, y: 95, ...mark }, "E"));
   const [right, up] = frame.sun;

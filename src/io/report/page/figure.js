@@ -8,7 +8,7 @@ const umovFigure = (() => {
     ? { card: "#1a1f28", text: "#e5e9f0", grid: "#303846", line: "#566072" } : { card: "#ffffff", text: "#1b1f24", grid: "#e6e9ee", line: "#b8bfc9" };
   const font = () => ({ family: "system-ui, sans-serif", size: 13, color: theme().text });
   const ground = () => ({ paper_bgcolor: theme().card, plot_bgcolor: theme().card, font: font() });
-  const grid = () => ({ gridcolor: theme().grid, zerolinecolor: theme().line });
+  const grid = () => ({ gridcolor: theme().grid, zerolinecolor: theme().line, tickcolor: theme().line });
   const options = (figure) => ({
     responsive: true, displaylogo: false, displayModeBar: window.matchMedia("(hover: hover)").matches ? "hover" : false, toImageButtonOptions: { format: "svg", filename: figure.title },
   });
@@ -72,15 +72,20 @@ const umovFigure = (() => {
       line: { color: line.colour, dash: line.dash, width: line.faint ? 1 : 2 },
       marker: { color: line.colour, size: dot(most), symbol: symbols[index % symbols.length] },
     }));
+    // Points too small for a legend are shown larger there, by marks of no point: larger signs as such would cost lines their dashes.
+    const legendMarks = lines.filter((line) => line.showlegend && line.mode === "markers").map((line) => {
+      line.showlegend = false;
+      line.legendgroup = line.name;
+      return { type: "scatter", mode: "markers", name: line.name, legendgroup: line.name, x: [null], y: [null], hoverinfo: "skip", marker: { ...line.marker, size: 8 } };
+    });
     const isSmall = plot.clientWidth < 460; // where a title that ends in a time takes two lines
-    const axis = (title, more) => Object.assign({ title: { text: isSmall ? safe(title).replace(/ (since|after) (?=\d)/, " $1<br>") : safe(title), font: { size: isSmall ? 11 : 13 } }, automargin: true, exponentformat: "power", minexponent: 5, separatethousands: true }, grid(), more);
-    Plotly.newPlot(plot, lines, {
+    const axis = (title, more) => Object.assign({ title: { text: isSmall ? safe(title).replace(/ (since|after) (?=\d)/, " $1<br>") : safe(title), font: { size: isSmall ? 11 : 13 } }, automargin: true, ticks: "outside", ticklen: 4, exponentformat: "power", minexponent: 5, separatethousands: true }, grid(), more);
+    Plotly.newPlot(plot, [...lines, ...legendMarks], {
       autosize: true,
       margin: { l: 60, r: 12, t: 10, b: 60 + (figure.ynames ? 0 : 17 * Math.ceil(lines.length / 3)) },
       xaxis: axis(figure.x, { ...(figure.xlog ? { type: "log", ...decades(figure, "x") } : {}), ...(figure.xspan ? { range: figure.xspan } : {}) }),
       yaxis: axis(figure.y, { type: figure.log ? "log" : "linear", ...(figure.ynames ? { tickvals: figure.ynames.map((_, k) => k + 1), ticktext: figure.ynames.map(safe) } : {}), ...(figure.log ? { nticks: 6, ...decades(figure, "y") } : {}), ...(figure.yspan ? { range: figure.log ? figure.yspan.map(Math.log10) : figure.yspan } : {}) }),
-      // Points too small for a legend are shown larger there; lines would lose their dashes.
-      legend: { ...legend(), ...(lines.every((line) => line.mode === "markers") ? { itemsizing: "constant" } : {}) }, ...ground(),
+      legend: legend(), ...ground(),
     }, options(figure));
     if (plot.isWatched) return;
     plot.isWatched = true;

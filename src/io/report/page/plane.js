@@ -199,9 +199,10 @@ const rgbFigure = {
     pureMaterials.forEach((name, m) => {
       const parts = rgbBands.map((b) => report.pure_materials.find((c) => c.material === name && c.band === b));
       if (parts.some((part) => !part)) return;
+      const own = report.contributions.find((part) => part.material === name);
       const at = parts[0].phase.map((phase, k) => ({ phase, q: parts.map((part) => percent(part.q_scat[k])) })).filter((e) => e.phase >= limits[0] - 1 && e.phase <= limits[1] + 1);
       data.push({ type: "scatter3d", mode: "lines", name, x: at.map((e) => e.q[0]), y: at.map((e) => e.q[1]), z: at.map((e) => e.q[2]),
-        line: { color: manyBandColours[m % 7], width: 4, dash: m >= 7 ? "dash" : "solid" }, hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %" });
+        line: { color: own ? own.line_colour : theme.soft, width: 4, dash: m >= 7 ? "dash" : "solid" }, hovertemplate: "%{x:.1f}, %{y:.1f}, %{z:.1f} %" });
     });
     data.push({
       type: "scatter3d", mode: "markers", name: plain(report.object || "object"), showlegend: false, text: rows.map((i) => epochs.time[i]),

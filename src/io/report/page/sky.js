@@ -4,6 +4,7 @@
   const page = JSON.parse(document.getElementById("data").textContent);
   const tracks = page.tracks;
   const drawnFull = 40; // tracks that are not mere hints
+  const stands = 9; // a track that is no longer is a point
   const size = 1000, middle = size / 2, radius = 440;
   const space = "http://www.w3.org/2000/svg"; // the name of SVG, nothing is loaded from it
   const byId = (id) => document.getElementById(id);
@@ -95,9 +96,11 @@
     const lit = pathOf(i, 1), dark = pathOf(i, 0);
     if (dark) group.append(svg("path", { d: dark, "stroke-width": isHint ? 1.5 : 2, "stroke-dasharray": "2 6", opacity: 0.7 }));
     if (lit) group.append(svg("path", { d: lit, "stroke-width": isHint ? 2 : 3.5 }));
-    // An arrow head at the end tells the way.
-    const last = track.az100.length - 1;
-    if (last > 0 && !isHint) {
+    // An arrow head at the end tells the way; what hardly moves has none, and a ring about it to be seen by.
+    const last = track.az100.length - 1, centre = places[i][Math.floor(last / 2)];
+    if (places[i].every(([x, y]) => Math.hypot(x - centre[0], y - centre[1]) < stands)) {
+      group.append(svg("circle", { cx: centre[0].toFixed(1), cy: centre[1].toFixed(1), r: stands, "stroke-width": isHint ? 2 : 3.5 }));
+    } else if (last > 0 && !isHint) {
       const [x, y] = places[i][last], [px, py] = places[i][last - 1], length = Math.hypot(x - px, y - py) || 1;
       const ux = (x - px) / length, uy = (y - py) / length;
       const at = (along, side) => (x + along * ux - side * uy).toFixed(1) + " " + (y + along * uy + side * ux).toFixed(1);
