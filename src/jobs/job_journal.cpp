@@ -31,7 +31,7 @@ Result<Journal> open_journal(const JobOptions &options, const std::string &job,
   case Journal::Found::Nothing:
     break;
   case Journal::Found::Ours:
-    monitor.tell(fmt::format("going on from {}: {} are there", name,
+    monitor.tell(fmt::format("going on from {}, which has {}", name,
                              counted(out.count(), "finished block")));
     break;
   case Journal::Found::Foreign:

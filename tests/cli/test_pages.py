@@ -188,11 +188,11 @@ def test_a_track_without_magnitudes_is_told_by_its_time_on_a_phone(pages, browse
 
 
 def test_what_hardly_moves_has_a_ring_and_no_arrow(pages, browser):
-    """GOES 15, which stays within .2 deg: a fifteen-hundredth of a chart's radius, a dot without the ring."""
+    """GOES 15, which stays within .2 deg, a five-hundredth of a chart's radius: a dot of a pixel or two without the ring."""
     with browser.opened(pages / "crowd.html") as tab:
         tab.seen()
         rings, tracks = value_of(tab, """[document.querySelectorAll("#sky g[data-track] circle").length,
-            [...document.querySelectorAll("#sky g[data-track]")].filter((one) => [...one.querySelectorAll("path")].every((path) => path.getBoundingClientRect().width < 15)
+            [...document.querySelectorAll("#sky g[data-track]")].filter((one) => [...one.querySelectorAll("path")].every((path) => Math.hypot(path.getBoundingClientRect().width, path.getBoundingClientRect().height) < 5)
                 && !one.querySelector("circle")).length]""")
     assert rings >= 1 and tracks == 0, (rings, tracks)
 
