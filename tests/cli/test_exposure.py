@@ -1,6 +1,7 @@
 """umov exposure: bands by name, and its page of figures."""
 import math
 import re
+import time
 
 import numpy as np
 import pytest
@@ -260,6 +261,17 @@ def test_frames_that_are_too_long_for_a_turning_plate(umov):
     """Two frames in a quarter turn tell u alone: observe refuses them too."""
     done = umov("exposure", "--instrument", "moptop_2m", "--exposure-s", "0.8")
     assert done.code == 3 and "cannot tell Q" in done.err and "shorten the exposures" in done.err, done.err
+
+
+def test_pages_of_a_turning_plate_end(umov, tmp_path):
+    """Frames of a page last up to millions of turns; those end at once, and their lines where q or u is no longer told."""
+    begun = time.monotonic()
+    done = umov("exposure", "--instrument", "moptop_2m", "--mag", "18", "--page", "e.html")
+    assert done.code == 0, done.err
+    fast = instrument_file(umov, tmp_path, "moptop_2m", period_s=1e-4)
+    done = umov("exposure", *fast, "--exposure-s", "100")
+    assert done.code == 3 and "cannot tell" in done.err, done.err
+    assert time.monotonic() - begun < 10  # a fraction of a second; it was minutes
 
 
 def test_what_tells_no_p_is_refused(umov, tmp_path):
