@@ -61,15 +61,15 @@ std::size_t parameters_of(const CountsFile &file) {
 
 /// Errors of gains act on the light that came through: a fifth of cloud times a twentieth of gain
 /// is a hundredth, and half of that in q. So rows are those behind the air t of their exposure, the
-/// most likely one for the model m; its logarithm is about 0 as before, which m t ln t brings to
-/// the counts.
-std::vector<ChannelDatum> behind(std::span<const double> transparencies,
+/// most likely one for the model m; its logarithm is about its mean as before, which m t (ln t -
+/// mean) brings to the counts.
+std::vector<ChannelDatum> behind(const OpenAir &air, std::span<const double> transparencies,
                                  std::vector<ChannelDatum> data,
                                  const std::array<double, 4> &stokes) {
   for (std::size_t k = 0; k < data.size(); ++k) {
     const double t = transparencies[k];
     for (std::size_t p = 0; p < 4; ++p)
-      data[k].counts += data[k].row[p] * stokes[p] * t * std::log(t);
+      data[k].counts += data[k].row[p] * stokes[p] * t * (std::log(t) - air.mean_logarithm(k));
     data[k].row = data[k].row * t;
   }
   return data;
@@ -111,14 +111,13 @@ Result<StokesFit> with_common_errors(const Set &set, const std::vector<ChannelDa
   for (int pass = 0; pass < passes && fit; ++pass) {
     if (pass > 0)
       transparencies = air.transparencies(data, fit->stokes);
-    const auto seen = pass > 0 ? behind(transparencies, data, fit->stokes) : data;
+    const auto seen = pass > 0 ? behind(air, transparencies, data, fit->stokes) : data;
     std::vector<ModelledDatum> model;
     for (std::size_t k = 0; k < data.size(); ++k)
       model.push_back(modelled(set.rows[k], seen[k], fit->stokes, gains[k]));
-    std::vector<CommonError> common = common_errors(options.priors, model);
-    air.add_errors(common, model);
-    if (!common.empty())
-      fit = fit_stokes(seen, parameters, common);
+    const auto common = common_errors(options.priors, model);
+    if (!common.empty() || !air.is_known())
+      fit = fit_stokes(seen, parameters, common, air, fit->stokes);
   }
   return fit;
 }

@@ -1,123 +1,118 @@
 #include <umov/reduction/open_air.h>
 
 #include "algebra/dense.h"
+#include "reduction/count_covariance.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace umov {
 namespace {
 
-using Matrix = algebra::MatrixXd;
 using Vector = algebra::VectorXd;
-/// As the class keeps it.
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 double light_of(const StokesRow &row, const std::array<double, 4> &stokes) {
   return respond(row, Stokes<InstrumentAxes>{stokes[0], stokes[1], stokes[2], stokes[3]});
 }
 
-/// Exposures of pupils, and the moments at which clouds were met.
-struct Moments {
-  std::vector<double> flicker;      ///< of each exposure of a pupil
-  std::vector<Eigen::Index> moment; ///< of the same
-  std::vector<double> kept;         ///< of the moment before, by each moment
+/// What the counts of a pupil say of the logarithm of its transparency: how far it is off its mean,
+/// times its weight, and the weight.
+struct Seen {
+  Vector off, weight;
 };
 
-/// x_0 = s n_0, x_k = r x_(k-1) + s sqrt(1 - r^2) n_k.
-Matrix cloud_root(const std::vector<double> &kept, double sd) {
-  const auto n = static_cast<Eigen::Index>(kept.size());
-  Matrix out = Matrix::Zero(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double r = kept[static_cast<std::size_t>(k)];
-    if (k > 0)
-      out.row(k) = out.row(k - 1) * r;
-    out(k, k) = sd * std::sqrt(1 - r * r);
+/// Deviations of the pupils' logarithms from their means, the most likely ones by what was seen.
+Vector deviations(const AirOfCounts &air, const std::vector<Eigen::Index> &moment,
+                  const Seen &seen) {
+  // Flicker is each pupil's own: what is seen of the cloud through it is that much less certain.
+  const Vector flicker2 = air.flicker.cwiseAbs2();
+  const Vector kept = (1. + seen.weight.array() * flicker2.array()).inverse();
+  Vector cloud = Vector::Zero(flicker2.size());
+  if (!air.cloud.empty()) {
+    Vector weights = Vector::Zero(air.cloud.moments());
+    algebra::MatrixXd right = algebra::MatrixXd::Zero(weights.size(), 1);
+    for (std::size_t p = 0; p < moment.size(); ++p) {
+      const auto pupil = static_cast<Eigen::Index>(p);
+      weights(moment[p]) += seen.weight(pupil) * kept(pupil);
+      right(moment[p], 0) += seen.off(pupil) * kept(pupil);
+    }
+    const algebra::MatrixXd found = air.cloud.solve(weights, std::move(right));
+    for (std::size_t p = 0; p < moment.size(); ++p)
+      cloud(static_cast<Eigen::Index>(p)) = found(moment[p], 0);
   }
-  return out;
+  return cloud +
+         flicker2.cwiseProduct(kept).cwiseProduct(seen.off - seen.weight.cwiseProduct(cloud));
 }
-
-Eigen::Index last_of(const auto &all) { return static_cast<Eigen::Index>(all.size()) - 1; }
 
 } // namespace
 
 OpenAir::OpenAir(std::span<const AirPlace> places, bool has_separate_pupils,
-                 const CloudPrior &cloud) {
-  Moments all;
-  double last_s = 0;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const AirPlace &one = places[k];
-    const bool is_new_exposure = k == 0 || one.exposure != places[k - 1].exposure;
-    if (is_new_exposure && (k == 0 || one.time_s - places[k - 1].time_s > 1e-9)) {
-      const bool is_kept = k > 0 && cloud.time_s > 0;
-      all.kept.push_back(is_kept ? std::exp((last_s - one.time_s) / cloud.time_s) : 0);
-      last_s = one.time_s;
-    }
-    if (is_new_exposure || has_separate_pupils) {
-      all.flicker.push_back(one.flicker);
-      all.moment.push_back(last_of(all.kept));
-    }
-    pupil_.push_back(all.flicker.size() - 1);
+                 const CloudPrior &cloud)
+    : places_(places.begin(), places.end()), cloud_(cloud) {
+  std::map<std::int64_t, std::size_t> of_exposure;
+  for (const AirPlace &one : places) {
+    const std::size_t next = flicker_.size();
+    pupil_.push_back(
+        has_separate_pupils ? next : of_exposure.try_emplace(one.exposure, next).first->second);
+    if (pupil_.back() == next)
+      flicker_.push_back(one.flicker);
   }
-  const auto pupils = static_cast<Eigen::Index>(all.flicker.size());
-  const Eigen::Index moments = cloud.sd > 0 ? last_of(all.kept) + 1 : 0;
-  Rows root = Rows::Zero(pupils, moments + pupils);
-  if (moments > 0) {
-    const Matrix of_cloud = cloud_root(all.kept, cloud.sd);
-    for (Eigen::Index p = 0; p < pupils; ++p)
-      root.row(p).head(moments) = of_cloud.row(all.moment[static_cast<std::size_t>(p)]);
-  }
-  for (Eigen::Index p = 0; p < pupils; ++p)
-    root(p, moments + p) = all.flicker[static_cast<std::size_t>(p)];
-  causes_ = static_cast<std::size_t>(root.cols());
-  root_.assign(root.data(), root.data() + root.size());
+}
+
+AirOfCounts air_of(const OpenAir &air) {
+  std::vector<CountMoment> counts;
+  for (const AirPlace &one : air.places_)
+    counts.push_back({one.time_s, one.exposure});
+  AirOfCounts out{{air.pupil_.begin(), air.pupil_.end()}, {}, CloudChain(counts, air.cloud_)};
+  out.flicker =
+      Eigen::Map<const Vector>(air.flicker_.data(), static_cast<Eigen::Index>(air.flicker_.size()));
+  return out;
+}
+
+bool OpenAir::is_known() const {
+  return !(cloud_.sd > 0) && std::ranges::none_of(flicker_, [](double s) { return s > 0; });
+}
+
+double OpenAir::mean_logarithm(std::size_t count) const {
+  const double flicker = flicker_[pupil_[count]];
+  return -(cloud_.sd * cloud_.sd + flicker * flicker) / 2;
 }
 
 std::vector<double> OpenAir::transparencies(std::span<const ChannelDatum> data,
                                             const std::array<double, 4> &stokes) const {
-  const auto causes = static_cast<Eigen::Index>(causes_);
-  const Matrix root = Eigen::Map<const Rows>(
-      root_.data(), static_cast<Eigen::Index>(root_.size()) / std::max<Eigen::Index>(1, causes),
-      causes);
-  Vector logs = Vector::Zero(root.rows());
+  const AirOfCounts air = air_of(*this);
+  const auto pupils = air.flicker.size();
+  std::vector<Eigen::Index> moment(static_cast<std::size_t>(pupils), 0);
+  Vector mean(pupils);
+  for (std::size_t k = 0; k < pupil_.size(); ++k) {
+    moment[pupil_[k]] = air.cloud.empty() ? 0 : air.cloud.moment(k);
+    mean(air.pupil[k]) = mean_logarithm(k);
+  }
+  Vector logs = mean;
   constexpr int rounds = 8; // Newton's: each doubles the digits
   for (int round = 0; round < rounds; ++round) {
-    // Normal equations over the numbers behind the logarithms, about those found so far.
-    Vector off = Vector::Zero(root.rows()), weight = off;
+    Seen seen{Vector::Zero(pupils), Vector::Zero(pupils)};
     for (std::size_t k = 0; k < data.size(); ++k) {
       const ChannelDatum &one = data[k];
-      const auto pupil = static_cast<Eigen::Index>(pupil_[k]);
+      const Eigen::Index pupil = air.pupil[k];
       const double m = light_of(one.row, stokes) * std::exp(logs(pupil));
       const double v = one.excess2 * std::max(1e-3, m + one.sky) + one.fixed_variance;
-      off(pupil) += m * (one.counts - one.sky - m + m * logs(pupil)) / v;
-      weight(pupil) += m * m / v;
+      seen.off(pupil) += m * (one.counts - one.sky - m + m * (logs(pupil) - mean(pupil))) / v;
+      seen.weight(pupil) += m * m / v;
     }
-    Matrix normal = algebra::gram(weight.cwiseSqrt().asDiagonal() * root);
-    normal.diagonal().array() += 1;
-    const Vector next = algebra::times(
-        root, algebra::solve_symmetric(normal, algebra::transposed_times(root, off)));
     constexpr double darkest = -3, brightest = 1; // of what is still seen
-    logs = next.cwiseMax(darkest).cwiseMin(brightest);
+    const Vector next =
+        (mean + deviations(air, moment, seen)).cwiseMax(darkest).cwiseMin(brightest);
+    const double change = (next - logs).cwiseAbs().maxCoeff();
+    logs = next;
+    if (change < 1e-10)
+      break;
   }
   std::vector<double> out;
-  for (const std::size_t pupil : pupil_)
-    out.push_back(std::exp(logs(static_cast<Eigen::Index>(pupil))));
+  for (const Eigen::Index pupil : air.pupil)
+    out.push_back(std::exp(logs(pupil)));
   return out;
-}
-
-void OpenAir::add_errors(std::vector<CommonError> &out,
-                         std::span<const ModelledDatum> model) const {
-  for (std::size_t c = 0; c < causes_; ++c) {
-    CommonError one{{}, 1};
-    bool acts = false;
-    for (std::size_t k = 0; k < model.size(); ++k) {
-      const double change = root_[pupil_[k] * causes_ + c];
-      acts = acts || change != 0;
-      one.effect.push_back(light_of(model[k].datum.row, model[k].stokes) * change);
-    }
-    if (acts)
-      out.push_back(std::move(one));
-  }
 }
 
 } // namespace umov

@@ -1,10 +1,11 @@
 #include <umov/reduction/sequence.h>
 
 #include "algebra/dense.h"
+#include "reduction/count_covariance.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 
 namespace umov {
 namespace {
@@ -111,77 +112,28 @@ tl::unexpected<Error> indistinct() {
                                    "between the counts), or more analyser angles are needed");
 }
 
-/// A cloud over the moments of a series: the inverse of its covariance is a band of three.
-class Clouds {
-public:
-  Clouds(std::span<const TimedDatum> data, const CloudPrior &prior) {
-    if (!(prior.sd > 0))
-      return;
-    std::vector<double> apart; // each moment from the one before it, in times of the cloud
-    double last_s = 0;
-    for (std::size_t k = 0; k < data.size(); ++k) {
-      const bool is_new = k == 0 || (data[k].exposure != data[k - 1].exposure &&
-                                     data[k].time_s - data[k - 1].time_s > 1e-9);
-      if (is_new) {
-        constexpr double far = std::numeric_limits<double>::infinity();
-        apart.push_back(k > 0 && prior.time_s > 0 ? (data[k].time_s - last_s) / prior.time_s : far);
-        last_s = data[k].time_s;
-      }
-      moment_.push_back(static_cast<Eigen::Index>(apart.size()) - 1);
-    }
-    const auto n = static_cast<Eigen::Index>(apart.size());
-    diagonal_ = Vector::Zero(n), before_ = Vector::Zero(n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const double x = apart[static_cast<std::size_t>(k)], r = std::exp(-x);
-      const double precision = -1 / (prior.sd * prior.sd * std::expm1(-2 * x));
-      diagonal_(k) += precision;
-      before_(k) = -r * precision;
-      if (k > 0)
-        diagonal_(k - 1) += r * r * precision;
-    }
+/// The air before a series: neighbours of one exposure share its flicker.
+AirOfCounts air_before(std::span<const TimedDatum> data, const CloudPrior &prior) {
+  AirOfCounts out;
+  std::vector<CountMoment> counts;
+  std::vector<double> flicker;
+  for (std::size_t k = 0; k < data.size(); ++k) {
+    if (k == 0 || data[k].exposure != data[k - 1].exposure)
+      flicker.push_back(data[k].flicker);
+    out.pupil.push_back(static_cast<Eigen::Index>(flicker.size()) - 1);
+    counts.push_back({data[k].time_s, static_cast<std::int64_t>(data[k].exposure)});
   }
-
-  [[nodiscard]] bool empty() const { return moment_.empty(); }
-
-  /// (D + A K A^T)^-1 m (Woodbury) of D^-1 m and D^-1 a, a what a transparency of 1 more does to
-  /// each count.
-  [[nodiscard]] Matrix under(Matrix plain, const Matrix &m, const Vector &effect,
-                             const Vector &weighted) const {
-    Vector pivot = diagonal_;
-    Matrix right = Matrix::Zero(diagonal_.size(), m.cols());
-    for (Eigen::Index r = 0; r < m.rows(); ++r) {
-      pivot(at(r)) += effect(r) * weighted(r);
-      right.row(at(r)) += weighted(r) * m.row(r);
-    }
-    for (Eigen::Index k = 1; k < pivot.size(); ++k) {
-      const double factor = before_(k) / pivot(k - 1);
-      pivot(k) -= factor * before_(k);
-      right.row(k) -= factor * right.row(k - 1);
-    }
-    for (Eigen::Index k = pivot.size() - 1; k >= 0; --k) {
-      if (k + 1 < pivot.size())
-        right.row(k) -= before_(k + 1) * right.row(k + 1);
-      right.row(k) /= pivot(k);
-    }
-    for (Eigen::Index r = 0; r < m.rows(); ++r)
-      plain.row(r) -= weighted(r) * right.row(at(r));
-    return plain;
-  }
-
-private:
-  [[nodiscard]] Eigen::Index at(Eigen::Index row) const {
-    return moment_[static_cast<std::size_t>(row)];
-  }
-  std::vector<Eigen::Index> moment_; ///< of each count
-  Vector diagonal_, before_;         ///< before: of a moment with the one before it
-};
+  out.flicker = Eigen::Map<const Vector>(flicker.data(), static_cast<Eigen::Index>(flicker.size()));
+  out.cloud = CloudChain(counts, prior);
+  return out;
+}
 
 /// Data as matrices, and what the fit needs of them.
 class SequenceSolver {
 public:
   SequenceSolver(std::span<const TimedDatum> data, const BrightnessBasis &made_of,
                  const CloudPrior &cloud)
-      : data_(data), made_of_(made_of), clouds_(data, cloud) {
+      : data_(data), made_of_(made_of), air_(air_before(data, cloud)) {
     const auto n = static_cast<Eigen::Index>(data.size());
     basis_.resize(n, basis_at(made_of, data.front().time_s).size());
     counts_.resize(n), sky_.resize(n), fixed_.resize(n), excess_.resize(n);
@@ -216,14 +168,16 @@ public:
 
   /// Gauss-Newton with the variance of the model, and of what is common to several counts.
   Result<SequenceFit> solve(State state, std::span<const CommonError> common) const {
-    const Matrix effects = effects_of(common);
+    const Matrix effects = effects_of(common, counts_.size());
     Matrix covariance;
     SequenceFit out;
     constexpr int rounds = 15;
     for (int k = 0; k < rounds; ++k) {
       const Linearised now = linearise(data_, basis_, state, scale_);
       const Vector residual = counts_ - now.mean;
-      const Matrix weighted = inverse_times(now.mean, effects, now.jacobian).transpose();
+      const CountCovariance c(now.mean.cwiseMax(1).cwiseProduct(excess_) + fixed_, now.mean - sky_,
+                              &air_, effects);
+      const Matrix weighted = c.inverse_times(now.jacobian).transpose();
       const Matrix normal = algebra::product(weighted, now.jacobian);
       if (!tells_apart(normal))
         return indistinct();
@@ -234,66 +188,13 @@ public:
       state.series += step.head(state.series.size());
       state.fractions += step.tail(state.fractions.size());
       covariance = factor.inverse();
-      out.chi2 = residual.dot(inverse_times(now.mean, effects, residual).col(0));
+      out.chi2 = residual.dot(c.inverse_times(residual).col(0));
     }
     put(state, covariance, out);
     return out;
   }
 
 private:
-  /// J sqrt(Sigma), one column for each.
-  [[nodiscard]] Matrix effects_of(std::span<const CommonError> common) const {
-    Matrix out(counts_.size(), static_cast<Eigen::Index>(common.size()));
-    for (std::size_t c = 0; c < common.size(); ++c)
-      out.col(static_cast<Eigen::Index>(c)) =
-          Eigen::Map<const Vector>(common[c].effect.data(), counts_.size()) * common[c].sd;
-    return out;
-  }
-
-  /// (C_n)^-1 times a matrix: every exposure is a diagonal and what its channels share (Sherman &
-  /// Morrison).
-  [[nodiscard]] Matrix own_inverse_times(const Vector &mean, const Matrix &m) const {
-    const Vector weight = (mean.cwiseMax(1).cwiseProduct(excess_) + fixed_).cwiseInverse();
-    Matrix out = weight.asDiagonal() * m;
-    const Eigen::Index n = counts_.size();
-    for (Eigen::Index begin = 0, end = 0; begin < n; begin = end) {
-      const TimedDatum &first = data_[static_cast<std::size_t>(begin)];
-      while (end < n && data_[static_cast<std::size_t>(end)].exposure == first.exposure)
-        ++end;
-      if (!(first.flicker > 0))
-        continue;
-      const Eigen::Index count = end - begin;
-      const Vector effect = (mean - sky_).segment(begin, count) * first.flicker;
-      const Vector weighted = weight.segment(begin, count).cwiseProduct(effect);
-      const Vector along = algebra::transposed_times(out.middleRows(begin, count), effect);
-      out.middleRows(begin, count) -= weighted * along.transpose() / (1 + effect.dot(weighted));
-    }
-    return out;
-  }
-
-  /// The same under the cloud.
-  [[nodiscard]] Matrix cloudy_inverse_times(const Vector &mean, const Matrix &m) const {
-    Matrix plain = own_inverse_times(mean, m);
-    if (clouds_.empty())
-      return plain;
-    const Vector effect = mean - sky_;
-    return clouds_.under(std::move(plain), m, effect, own_inverse_times(mean, effect).col(0));
-  }
-
-  /// C^-1 times a matrix (Woodbury).
-  [[nodiscard]] Matrix inverse_times(const Vector &mean, const Matrix &effects,
-                                     const Matrix &m) const {
-    Matrix plain = cloudy_inverse_times(mean, m);
-    if (effects.cols() == 0)
-      return plain;
-    const Matrix weighted = cloudy_inverse_times(mean, effects);
-    const Matrix small = Matrix::Identity(effects.cols(), effects.cols()) +
-                         algebra::transposed_product(effects, weighted);
-    const algebra::SymmetricFactor factor(small);
-    return plain - algebra::product(
-                       weighted, factor.solve_columns(algebra::transposed_product(effects, plain)));
-  }
-
   void put(const State &state, const Matrix &covariance, SequenceFit &out) const {
     const Eigen::Index terms = state.series.size(), fractions = state.fractions.size();
     out.basis = made_of_;
@@ -315,7 +216,7 @@ private:
 
   std::span<const TimedDatum> data_;
   BrightnessBasis made_of_;
-  Clouds clouds_;
+  AirOfCounts air_;
   double scale_ = 0, light_ = 0;
   Matrix basis_;
   Vector counts_, sky_, fixed_, excess_;

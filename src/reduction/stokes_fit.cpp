@@ -1,6 +1,9 @@
 #include <umov/reduction/stokes_fit.h>
 
 #include "algebra/dense.h"
+#include "reduction/count_covariance.h"
+#include "reduction/open_air.h"
+
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
@@ -52,15 +55,15 @@ struct Solution {
   Matrix covariance;
 };
 
-Solution solve(const System &s, const Matrix &inverse_c) {
-  const Matrix weighted = algebra::transposed_product(s.w, inverse_c);
+Solution solve(const System &s, const CountCovariance &c) {
+  const Matrix weighted = c.inverse_times(s.w);
   Solution out;
-  out.covariance = algebra::inverse_of(algebra::product(weighted, s.w));
-  out.stokes = algebra::times(out.covariance, algebra::times(weighted, s.n - s.sky));
+  out.covariance = algebra::inverse_of(algebra::transposed_product(weighted, s.w));
+  out.stokes = algebra::times(out.covariance, algebra::transposed_times(weighted, s.n - s.sky));
   return out;
 }
 
-StokesFit put(const System &s, const Solution &solution, const Matrix &c, double scale) {
+StokesFit put(const System &s, const Solution &solution, const CountCovariance &c, double scale) {
   StokesFit out;
   const auto k = solution.stokes.size();
   for (Eigen::Index i = 0; i < k; ++i) {
@@ -70,10 +73,9 @@ StokesFit put(const System &s, const Solution &solution, const Matrix &c, double
           solution.covariance(i, j) / scale / scale;
   }
   const Vector residual = s.n - s.sky - algebra::times(s.w, solution.stokes);
-  const algebra::SymmetricFactor factor(c);
-  out.chi2 = residual.dot(factor.solve(residual));
+  out.chi2 = residual.dot(c.inverse_times(residual).col(0));
   out.dof = static_cast<int>(s.n.size() - k);
-  out.minus_2_log_likelihood = out.chi2 + factor.log_determinant();
+  out.minus_2_log_likelihood = out.chi2 + c.log_determinant();
   return out;
 }
 
@@ -93,32 +95,52 @@ Result<void> check_rows(std::span<const ChannelDatum> data, std::size_t paramete
 
 } // namespace
 
+namespace {
+
+/// `light`: of each count, on which an air that is not known acts.
+Result<StokesFit> fit_under(std::span<const ChannelDatum> data, std::size_t parameters,
+                            std::span<const CommonError> common, const AirOfCounts *air,
+                            const Vector &light) {
+  const double scale = scale_of(data);
+  UMOV_TRY(check_rows(data, parameters, scale));
+  System s = system_of(data, parameters);
+  s.w /= scale;
+  Vector variance = s.n.cwiseMax(1).cwiseProduct(s.excess) + s.fixed;
+  const auto plain = [&] { return CountCovariance(variance, light, nullptr, {}); };
+  Solution solution;
+  constexpr int rounds = 8; // each gains two digits or more
+  for (int k = 0; k < rounds; ++k) {
+    solution = solve(s, plain());
+    variance = variance_of(s, solution.stokes);
+  }
+  if (common.empty() && air == nullptr)
+    return put(s, solution, plain(), scale);
+  const CountCovariance c(variance, light, air, effects_of(common, s.n.size()));
+  return put(s, solve(s, c), c, scale);
+}
+
+} // namespace
+
 Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t parameters) {
   return fit_stokes(data, parameters, {});
 }
 
 Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t parameters,
                              std::span<const CommonError> common) {
-  const double scale = scale_of(data);
-  UMOV_TRY(check_rows(data, parameters, scale));
-  System s = system_of(data, parameters);
-  s.w /= scale;
-  Vector variance = s.n.cwiseMax(1).cwiseProduct(s.excess) + s.fixed;
-  Solution solution;
-  constexpr int rounds = 8; // each gains two digits or more
-  for (int k = 0; k < rounds; ++k) {
-    solution = solve(s, variance.cwiseInverse().asDiagonal());
-    variance = variance_of(s, solution.stokes);
-  }
-  Matrix c = variance.asDiagonal();
-  if (!common.empty()) {
-    for (const CommonError &one : common) {
-      const Eigen::Map<const Vector> effect(one.effect.data(), s.n.size());
-      c += one.sd * one.sd * effect * effect.transpose();
-    }
-    solution = solve(s, algebra::inverse_of(c));
-  }
-  return put(s, solution, c, scale);
+  return fit_under(data, parameters, common, nullptr, {});
+}
+
+Result<StokesFit> fit_stokes(std::span<const ChannelDatum> data, std::size_t parameters,
+                             std::span<const CommonError> common, const OpenAir &air,
+                             const std::array<double, 4> &stokes) {
+  const auto &[i, q, u, v] = stokes;
+  Vector light(static_cast<Eigen::Index>(data.size()));
+  for (std::size_t k = 0; k < data.size(); ++k)
+    light(static_cast<Eigen::Index>(k)) = respond(data[k].row, Stokes<InstrumentAxes>{i, q, u, v});
+  if (air.is_known())
+    return fit_under(data, parameters, common, nullptr, light);
+  const AirOfCounts before = air_of(air);
+  return fit_under(data, parameters, common, &before, light);
 }
 
 namespace {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -135,27 +136,55 @@ TEST(Reduce, AChangeOfLightUnderASlowCloudIsNotTakenForMuchMoreLight) {
   EXPECT_NEAR(table.number("q", 0), .3, 1e-4);
 }
 
+/// A cloud of umov observe, of mean transparency 1, and the one whose logarithm is as far off its
+/// mean on the other side: photons aside both together tell the mean logarithm of I without error.
+std::array<std::array<double, 4>, 2> opposite_clouds(double sd, double r, auto &normal) {
+  std::array<std::array<double, 4>, 2> out{};
+  double x = normal();
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (const double side : {1., -1.})
+      out[side > 0 ? 0 : 1][k] = std::exp(side * sd * x - sd * sd / 2);
+    x = r * x + std::sqrt(1 - r * r) * normal();
+  }
+  return out;
+}
+
 TEST(Reduce, PullsOfBrightnessUnderCloudsThatAreSlow) {
   std::mt19937_64 random(22);
-  std::normal_distribution<double> normal;
-  constexpr double sd = .1, time_s = 120;
-  const double r = std::exp(-10 / time_s);
-  ReduceOptions options;
-  options.transparency_sd = sd;
-  options.transparency_time_s = time_s;
-  double sum2 = 0;
-  constexpr int sets = 400; // the sd of pulls is known to 1/sqrt(2 n) = .035
-  for (int k = 0; k < sets; ++k) {
-    std::array<double, 4> air{};
-    double x = normal(random);
-    for (double &t : air) {
-      t = 1 + sd * x;
-      x = r * x + std::sqrt(1 - r * r) * normal(random);
-    }
-    const Table table = reduced(two_beams_through(air), options);
-    sum2 += std::pow((table.number("I", 0) - electrons) / table.number("I_err", 0), 2);
+  std::normal_distribution<double> of_normal;
+  const auto normal = [&] { return of_normal(random); };
+  for (const double sd : {.1, .45}) { // a tenth and half a magnitude
+    constexpr double time_s = 120;
+    ReduceOptions options;
+    options.transparency_sd = sd;
+    options.transparency_time_s = time_s;
+    double sum = 0, sum2 = 0;
+    constexpr int pairs = 200;
+    for (int k = 0; k < pairs; ++k)
+      for (const auto &air : opposite_clouds(sd, std::exp(-10 / time_s), normal)) {
+        const Table table = reduced(two_beams_through(air), options);
+        // Errors are a part of I: its logarithm is normal, I itself is not.
+        const double i = table.number("I", 0),
+                     pull = std::log(i / electrons) * i / table.number("I_err", 0);
+        sum += pull / (2 * pairs), sum2 += pull * pull / (2 * pairs);
+      }
+    // With clouds about a logarithm of 0 it was -sd/2 and more.
+    EXPECT_NEAR(sum, 0, .01) << sd;
+    EXPECT_NEAR(std::sqrt(sum2), 1, .15) << sd; // three of 1/sqrt(2 * 200)
   }
-  EXPECT_NEAR(std::sqrt(sum2 / sets), 1, .12); // three of its sd, and .02 of the next order
+}
+
+/// Rows that a caller has in another order, as those of two objects, are the same counts.
+TEST(Reduce, TheOrderOfExposuresUnderACloudDoesNotMatter) {
+  ReduceOptions options;
+  options.transparency_sd = .1;
+  options.transparency_time_s = 5;
+  CountsFile file = two_beams_through({1, .9, .95, 1.05});
+  const Table sorted = reduced(file, options);
+  std::rotate(file.rows.begin(), file.rows.begin() + 6, file.rows.end()); // the last comes first
+  const Table other = reduced(file, options);
+  for (const char *name : {"I", "I_err", "q", "cov_qq"})
+    EXPECT_NEAR(other.number(name, 0) / sorted.number(name, 0), 1, 1e-9) << name;
 }
 
 /// Lenses of one telescope look through one cloud, each with scintillation of its own.
@@ -302,14 +331,29 @@ TEST(Reduce, BeamsOfOneExposureFlickerTogetherInASeries) {
   CountsFile clear = file;
   for (CountRow &row : clear.rows)
     row.scintillation = 0;
-  for (const double time_s : {0., 1., 1e4}) {
+  clear.notes["pupils"] = "separate";
+  // I is known as the cloud's mean is: of 60 exposures, correlated by e^-1 from one to the next
+  // (Fuller 1996, 2.1), or one; the series' other terms add a little.
+  const double next = std::exp(-1.);
+  for (const auto &[time_s, of_cloud] : {std::pair{0., 1 / std::sqrt(60.)},
+                                         {1., std::sqrt((1 + next) / (1 - next) / 60)},
+                                         {1e4, 1.}}) {
     cloudy.transparency_time_s = time_s;
-    clear.notes["pupils"] = "separate";
-    EXPECT_LT(reduced(clear, cloudy).number("cov_qq", 0) / still, 1.2) << time_s;
+    const Table table = reduced(clear, cloudy);
+    EXPECT_LT(table.number("cov_qq", 0) / still, 1.2) << time_s;
+    EXPECT_NEAR(table.number("I_err", 0) / table.number("I", 0) / (.05 * of_cloud), 1, .1)
+        << time_s;
   }
   file.notes["pupils"] = "separate";
   // 5 % on each of 60 counts along q: sd .05/sqrt(120) of q at least.
   EXPECT_GT(reduced(file, options).number("cov_qq", 0), .8 * .05 * .05 / 120);
+}
+
+ReduceOptions set_under(double cloud_time_s) {
+  ReduceOptions out;
+  out.transparency_sd = .05;
+  out.transparency_time_s = cloud_time_s;
+  return out;
 }
 
 /// One beam through a cloud that stays: a factor of all light, which q does not know and I is not
@@ -325,6 +369,11 @@ TEST(Reduce, ASeriesKnowsHowLongACloudStays) {
   const Table one = reduced(series(false), options);
   const auto relative = [](const Table &t) { return t.number("I_err", 0) / t.number("I", 0); };
   EXPECT_NEAR(relative(one), .05, .001);
+  for (const double time_s : {1e12, 1e17, 1e300}) { // a level, however long it stays
+    options.transparency_time_s = time_s;
+    EXPECT_NEAR(relative(reduced(series(false), options)), .05, .001) << time_s;
+    EXPECT_NEAR(relative(reduced(two_beams_through({1, 1, 1, 1}), set_under(time_s))), .05, .001);
+  }
   EXPECT_NEAR(relative(each) / (.05 / std::sqrt(60.)), 1, .1); // the series has 3 terms
   EXPECT_GT(std::sqrt(each.number("cov_qq", 0)), .8 * .05 * std::sqrt(2 / 60.));
   // It wanders by .05 sqrt(2/1e5) a second, which is .0002.
