@@ -32,6 +32,25 @@ def calibrated(umov, tmp_path):
     return tmp_path
 
 
+def test_times_of_an_object_that_go_back_between_those_of_another(umov, tmp_path):
+    """Two objects in turn, each in the order of time or not; clouds are by the time between."""
+    head, *rows = COUNTS.splitlines()
+
+    def table(times):
+        lines = [head.replace("time_utc", "name,time_utc")]
+        for row, (a, b) in zip(rows, times):
+            lines += [f"{name},2018-01-21T05:12:{second:02d}Z,{row.split(',', 1)[1]}" for name, second in (("A", a), ("B", b))]
+        return "\n".join(lines) + "\n"
+
+    cloud = ("--transparency-sd", ".1", "--transparency-time-s", "5", "-o", "s.csv")
+    (tmp_path / "c.csv").write_text(table([(10, 0), (13, 1), (14, 2), (15, 3)]))
+    assert umov("reduce", "c.csv", *cloud).code == 0
+    assert all(float(row["I_err"]) > 0 for row in read_csv(tmp_path / "s.csv"))
+    (tmp_path / "c.csv").write_text(table([(10, 0), (3, 1), (4, 2), (5, 3)]))
+    done = umov("reduce", "c.csv", *cloud)
+    assert done.code == 3 and "c.csv:4" in done.err and "times go back" in done.err and "05:12:03" in done.err, done.err
+
+
 def test_more_polarized_than_light_can_be(umov, tmp_path):
     # q = (3000 - 400)/(.3 times 4080) with its sd of .015: far beyond 1.
     (tmp_path / "c.csv").write_text(COUNTS.replace(".4867,0", ".3,0").replace("-.5066,0", "-.3,0").replace("2210", "520"))

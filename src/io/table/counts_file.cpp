@@ -9,10 +9,12 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <tuple>
 #include <umov/core/text.h>
+#include <utility>
 #include <vector>
 
 namespace umov {
@@ -265,6 +267,32 @@ private:
       seen_;
 };
 
+/// Times of an object, which may not go back from row to row, nor within a band where rows of
+/// others come between.
+class RisingTimes {
+public:
+  /// The time before a row that is later than its own.
+  std::optional<Epoch<Utc>> later_than(const CountRow &row) {
+    const auto is_back = [&](Epoch<Utc> from) { return seconds_between(row.time, from) < -1e-6; };
+    const Epoch<Utc> last = std::exchange(last_, row.time);
+    if (std::exchange(name_, row.name) == row.name && !latest_.empty() && is_back(last))
+      return last;
+    const auto [at, is_first] = latest_.try_emplace({row.name, row.band}, row.time);
+    if (is_first)
+      return std::nullopt;
+    if (is_back(at->second))
+      return at->second;
+    at->second =
+        std::max(at->second, row.time, [](auto a, auto b) { return seconds_between(a, b) < 0; });
+    return std::nullopt;
+  }
+
+private:
+  Epoch<Utc> last_{};
+  std::string name_;
+  std::map<std::pair<std::string, std::string>, Epoch<Utc>> latest_; ///< by name and band
+};
+
 /// Numbers of exposures where a table has none: rows of one time are one, unless a channel comes
 /// again. Sequences of analysers at times of their own are several, each with its own scintillation
 /// and cloud.
@@ -325,6 +353,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   out.notes = table.notes;
   std::size_t dropped = 0, negative = 0;
   RowsOfATime rows_of_time;
+  RisingTimes rising;
   ExposureNumbers exposures;
   const bool has_exposures = cells.has("exposure");
   std::vector<std::size_t> lines;
@@ -354,11 +383,10 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
       continue;
     }
     UMOV_TRY(check_row(row, cells.where(k)));
-    if (!out.rows.empty() && out.rows.back().name == row.name &&
-        seconds_between(row.time, out.rows.back().time) < -1e-6)
+    if (const auto before = rising.later_than(row))
       return fail(ErrorCode::BadInput,
                   fmt::format("times go back, from {} to {}; sort the rows by time",
-                              to_iso(out.rows.back().time), to_iso(row.time)),
+                              to_iso(*before), to_iso(row.time)),
                   cells.where(k));
     if (rows_of_time.has_twice(row, has_exposures))
       return fail(
