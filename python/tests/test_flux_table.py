@@ -3,15 +3,17 @@ import numpy as np
 import pytest
 from astropy import units as u
 from astropy.io import fits
-from astropy.table import Table
+from astropy.table import MaskedColumn, Table
 from astropy.time import Time, TimeDelta
 from astropy.timeseries import TimeSeries
+from astropy.utils.masked import Masked
 
 import umov
 from conftest import EXAMPLES
 
 UTC = Time("2018-01-21T05:09:00", scale="utc") + TimeDelta(np.arange(4) * 20, format="sec")
 FLUX = np.array([1.0, 2.0, np.nan, 4.0])
+HIDDEN = [False, True, False, False]
 CORRECTION = np.array([0.004, 0.0041, 0.0042, 0.0043])  # days: the barycentre hears of it later
 
 
@@ -89,6 +91,17 @@ def test_errors_are_taken_in_the_unit_of_the_flux():
     np.testing.assert_allclose(found["flux_err"], [0.1, 0.2, 0.3, 0.4], rtol=1e-15)
 
 
+@pytest.mark.parametrize("unit", ["Jy", "mJy"])
+@pytest.mark.parametrize("made", [lambda values, unit: MaskedColumn(values, mask=HIDDEN, unit=unit),
+                                  lambda values, unit: Masked(values * u.Unit(unit), mask=HIDDEN)], ids=["column", "quantity"])
+def test_a_masked_error_is_none_in_any_unit(made, unit):
+    """A change of unit brought out the number behind the mask."""
+    light = Table({"time": UTC, "flux": np.arange(1, 5) * u.Jy, "flux_err": made([1, 2, 3, 4], unit)})
+    found = umov.flux_table(light, "nm:550")["flux_err"]
+    scale = u.Unit(unit).to("Jy")
+    np.testing.assert_allclose(found, [scale, np.nan, 3 * scale, 4 * scale], rtol=1e-15)
+
+
 @pytest.mark.parametrize(("columns", "words"), [
     ({"flux": [7.0, 7, 7, 7] * u.mag}, "column flux in mag; a flux, linear in light"),
     ({"flux": [7.0, 7, 7, 7] * u.ABmag}, r"column flux in mag\(AB\); a flux"),
@@ -103,7 +116,7 @@ def test_columns_that_are_no_flux_are_told_of(columns, words):
 
 
 def test_a_correction_in_minutes_is_in_minutes():
-    for correction in (CORRECTION, CORRECTION * u.d, (CORRECTION * u.d).to(u.min)):
+    for correction in (CORRECTION, CORRECTION * u.one, CORRECTION * u.d, (CORRECTION * u.d).to(u.min)):
         bary = TimeSeries(time=UTC.tdb + TimeDelta(CORRECTION, format="jd"), data={"flux": np.ones(4), "timecorr": correction})
         with pytest.warns(umov.UmovWarning, match="brought back by timecorr"):
             assert seconds_off(umov.flux_table(bary, "nm:550", is_barycentric=True), UTC) < 2e-6  # the text tells a microsecond

@@ -207,12 +207,12 @@ def in_units(table: Any, what: str) -> Any:
                 raise UsageError(f"{what} has the column {name} in {unit} and {name[:-4]} in {into}; the same unit was expected")
         if into is not None and into != unit:
             out = out.copy() if out is table else out
-            out[name] = column.to(into) if hasattr(column, "to") else _scaled(column, unit.to(into), into)
+            out[name] = column.to(into) if hasattr(column, "to_value") else _scaled(column, unit.to(into), into)
     return out
 
 
 def _scaled(column: Any, factor: float, unit: Any) -> Any:
-    """A plain column, with its mask."""
+    """A plain column, with its mask, which its own `to` drops."""
     out = column * factor
     out.unit = unit
     return out

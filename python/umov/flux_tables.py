@@ -104,7 +104,7 @@ def _read(path: str) -> AstropyTable:
 
 
 def _numbers(column: Any, name: str, into: str | None = None) -> np.ndarray:
-    """One number a row, NaN where there is none; in the unit `into` where the column has one."""
+    """One number a row, NaN where there is none; in the unit `into`, which numbers without one are in."""
     values = np.ma.asarray(getattr(column, "value", column))
     if values.ndim != 1 or values.dtype.kind not in "fiub":
         raise UsageError(f"light's column {name} has shape {values.shape} of {values.dtype}; one number a row was expected")
@@ -113,7 +113,7 @@ def _numbers(column: Any, name: str, into: str | None = None) -> np.ndarray:
     if unit is None or into is None:
         return out
     try:
-        return out * float(unit.to(into))
+        return out * float(unit.to("" if unit.is_equivalent("") else into))
     except Exception as error:
         raise UsageError(f"light's column {name} is in {unit}; what goes into {into} was expected ({error})") from error
 
