@@ -189,6 +189,11 @@ WRONG = {
     "a frame without a direction": (lambda e: umov.Satellite(mesh="a.obj", materials="gold", attitude={"point": "+Z", "at": ICRS()}),
                                     "ICRS Frame> is no direction"),
     "a list of no orbits": (lambda e: umov.propagate([None], START), "orbit is a NoneType; a file, the lines"),
+    "a table of orbits": (lambda e: umov.propagate(pandas.DataFrame({"line": LINES}), START), "orbit is a DataFrame; a file, the lines"),
+    "a table of orbits for a satellite": (lambda e: umov.Satellite(mesh="a.obj", materials="gold", orbit=Table({"line": LINES})),
+                                          "orbit is a Table; a file, the lines"),
+    "no orbits": (lambda e: umov.propagate([], START), r"orbit is an empty list; a file, the lines"),
+    "an array of a number": (lambda e: umov.propagate(np.array(5), START), "orbit is a int; a file, the lines"),
     "numbers without order": (lambda e: umov.passes(DATA / "tle/hst.tle", "maui", START, STOP, norad={20580}), r"norad is \{20580\}; a whole"),
     "wavelengths in seconds": (lambda e: umov.Material("gold").refractive_index(5 * u.s), "does not go into"),
     "texts for wavelengths": (lambda e: umov.Material("gold").refractive_index("550"), "wavelength_nm is '550'; numbers"),
@@ -338,7 +343,7 @@ def test_catalogues_of_others():
     for position in found.position_km:  # fields of a TLE hold all of it
         np.testing.assert_array_equal(position, expected.position_km[0])
     with open(DATA / "tle/hst.tle") as file:
-        for lines in (np.array(LINES), pandas.Series(LINES), file):
+        for lines in (np.array(LINES), np.array("\n".join(LINES)), np.array(str(DATA / "tle/hst.tle")), pandas.Series(LINES), file):
             np.testing.assert_array_equal(umov.propagate(lines, START).position_km, expected.position_km)
     assert umov.passes(two[0], "maui", START, "2018-01-21T16:00Z", norad=pandas.Series([20580]))["name"][0] == "a name"
 

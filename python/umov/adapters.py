@@ -75,9 +75,22 @@ def orbit_text(orbit: Any) -> str | None:
         return orbit if "\n" in orbit.strip() else None
     if isinstance(orbit, (os.PathLike, Mapping)):
         return None
-    if hasattr(orbit, "__iter__") and not isinstance(orbit, (bytes, Set)):
-        return "".join(one.rstrip("\r\n") + "\n" if isinstance(one, str) else _lines(one) for one in orbit)
-    return _lines(orbit)
+    if not hasattr(orbit, "__iter__") or isinstance(orbit, (bytes, Set)) or hasattr(orbit, "columns"):  # a table gives its names
+        return _lines(orbit)
+    texts = [one.rstrip("\r\n") + "\n" if isinstance(one, str) else _lines(one) for one in orbit]
+    if not texts:
+        raise _no_orbit(f"an empty {type(orbit).__name__}")
+    return "".join(texts)
+
+
+def out_of_array(value: Any) -> Any:
+    """What an array without dimensions holds; all else as it is."""
+    return value.item() if isinstance(value, np.ndarray) and value.ndim == 0 else value
+
+
+def _no_orbit(what: str) -> UsageError:
+    return UsageError(f"orbit is {what}; a file, the lines of a TLE, a table of the scenario, an sgp4 Satrec or a skyfield "
+                      "EarthSatellite was expected")
 
 
 def _lines(orbit: Any) -> str:
@@ -94,8 +107,7 @@ def _lines(orbit: Any) -> str:
         except Exception as error:
             raise UsageError(f"{orbit!r} cannot be written as lines of a TLE ({error}); elements that can were expected, or a file "
                              "of them (OMM)") from error
-    raise UsageError(f"orbit is a {type(orbit).__name__}; a file, the lines of a TLE, a table of the scenario, "
-                     "an sgp4 Satrec or a skyfield EarthSatellite was expected")
+    raise _no_orbit(f"a {type(orbit).__name__}")
 
 
 #: Units of a mesh by the names that trimesh has for them.

@@ -33,6 +33,7 @@ def _orbit(orbit: AnyOrbit) -> tuple[str, adapters.Files | None]:
         if orbit.orbit_file is None:
             raise UsageError("the satellite has no file of an orbit; give it one")
         return orbit.orbit_file, orbit._files
+    orbit = adapters.out_of_array(orbit)
     lines = adapters.orbit_text(orbit)
     if lines is None:
         if not isinstance(orbit, (str, os.PathLike)):

@@ -142,6 +142,7 @@ class Satellite(Made):
     def _orbit(self, orbit: Any, norad: int | None) -> dict[str, Any] | None:
         if orbit is None:
             return None
+        orbit = adapters.out_of_array(orbit)
         text = adapters.orbit_text(orbit)
         if text is not None:
             self._texts["orbit.tle"] = text
