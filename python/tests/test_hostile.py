@@ -1,6 +1,7 @@
 """What goes wrong in a notebook: things of the wrong kind, copies, forks, files that go away."""
 import copy
 import gc
+import math
 import multiprocessing
 import os
 import pathlib
@@ -14,7 +15,7 @@ import umov.plot
 import umov.scale
 from astropy import units, units as u
 from astropy.coordinates import ICRS, EarthLocation, SkyCoord
-from astropy.table import QTable, Table
+from astropy.table import Column, QTable, Table
 from astropy.time import Time
 from astropy.timeseries import TimeSeries
 from astropy.utils.masked import Masked
@@ -372,6 +373,21 @@ def test_sites_of_rows():
     row = {"lat_deg": 20.5 * u.deg, "lon_deg": -156 * u.deg, "alt_m": 3 * u.km}
     table = QTable({name: [value] for name, value in row.items()} | {"name": ["here"]})
     assert umov.Site(table[0]) == umov.Site(pandas.Series({"lat_deg": 20.5, "lon_deg": -156, "alt_m": 3000, "name": "here"}))
+
+
+def test_a_row_of_a_plain_table_has_the_units_of_its_columns():
+    """The cells of a Table are numbers alone: 3 km were 3 m, and radians degrees."""
+    table = Table({"lat_deg": [0.25], "lon_deg": [-156.0], "alt_m": [3.0], "name": ["here"]},
+                  units={"lat_deg": u.rad, "lon_deg": None, "alt_m": u.km}, masked=True)
+    site = umov.Site(table[0])
+    assert (site.name, site.lon_deg, site.alt_m) == ("here", -156, 3000)
+    assert site.lat_deg == pytest.approx(math.degrees(0.25), rel=1e-15)  # the last digit of a double
+    table["alt_m"].mask = [True]
+    with pytest.raises(umov.UsageError, match="alt_m has masked values"):
+        umov.Site(table[0])
+    table.replace_column("alt_m", Column([3.0], unit="s"))
+    with pytest.raises(umov.UsageError, match="alt_m is .*does not go into that unit"):
+        umov.Site(table[0])
 
 
 def test_quantities_of_indices_temperatures_and_pictures(plate):

@@ -4,6 +4,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Union
 
+import numpy as np
+
 from . import _toml, _umov
 from ._made import Made
 from ._numbers import number, text, utf8
@@ -134,6 +136,13 @@ class Site(Made):
 AnySite = Union[str, Site, Mapping[str, Any], "EarthLocation", Any]
 
 
+def _with_unit(cell: Any, columns: Any, name: str) -> Any:
+    """A number of a row in the unit of its column, which a Table of astropy keeps apart; all else as it is."""
+    unit = getattr(columns[name], "unit", None) if hasattr(columns, "colnames") else None
+    is_bare = isinstance(cell, (int, float, np.number, np.ndarray)) and not (cell is np.ma.masked or hasattr(cell, "to_value"))
+    return cell * unit if unit is not None and is_bare and not isinstance(cell, bool) else cell
+
+
 def _told(site: AnySite, name: str) -> tuple[str, float, float, float]:
     if isinstance(site, Site):
         return (name or site.name), site.lat_deg, site.lon_deg, site.alt_m
@@ -141,13 +150,14 @@ def _told(site: AnySite, name: str) -> tuple[str, float, float, float]:
         told = _umov.site(utf8(site, "site"))
         return (name or told[0]), told[1], told[2], told[3]
     if isinstance(site, Mapping) or (hasattr(site, "keys") and hasattr(site, "__getitem__")):  # a dictionary, a row of astropy's or pandas'
+        columns = getattr(site, "table", None)
         site = {key: site[key] for key in site.keys()}
         if "lat_deg" not in site and "name" in site:
             return _told(str(site["name"]), name)
         if missing := [key for key in ("lat_deg", "lon_deg", "alt_m") if key not in site]:
             raise UsageError(f"a site has no {missing[0]}; lat_deg, lon_deg and alt_m were expected, there are "
                              f"{', '.join(map(str, site)) or 'none'}")
-        numbers = [number(site[key], key) for key in ("lat_deg", "lon_deg", "alt_m")]
+        numbers = [number(_with_unit(site[key], columns, key), key) for key in ("lat_deg", "lon_deg", "alt_m")]
         return _umov.check_site(name or str(site.get("name", "")), *numbers)
     if hasattr(site, "geodetic"):  # astropy
         if not site.isscalar:
