@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 #include <functional>
 #include <umov/core/files.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/io/signature_file.h>
@@ -423,12 +424,13 @@ Result<LibraryBuilt> build_library(const LibraryRequest &request, const JobOptio
   for (std::size_t k = first; k < end; ++k) {
     monitor.advance("objects", k - first, end - first);
     Result<void> made;
-    try {
+    const auto done = without_failures([&]() -> Result<void> {
       made = maker.make(request.scenarios[k], names[k]);
-    } catch (const Failure &failure) { // a card
-      Error lost = failure.error();
-      lost.message += ". Finished objects stay, and the same command goes on";
-      made = tl::unexpected(std::move(lost));
+      return {};
+    });
+    if (!done) { // a card
+      made = done;
+      made.error().message += ". Finished objects stay, and the same command goes on";
     }
     if (made)
       continue;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/io/exr.h>
@@ -192,31 +193,31 @@ struct Traced {
 
 /// Traces each shot; those of OpenEXR are written at once.
 Result<Traced> trace(const RenderRequest &request, const Scenario &scenario, const Subject &subject,
-                     const KeyFrameOptions &how, const PictureSink &sink,
-                     const Monitor &monitor) try {
-  const KeyFrameStage stage(subject.object.scene, joints_of(scenario.objects[request.object].parts),
-                            how.bounces, how.cancel);
-  Traced out;
-  for (std::size_t k = 0; k < subject.shots.size(); ++k) {
-    const Shot &shot = subject.shots[k];
-    if (monitor.is_cancelled())
-      return fail(ErrorCode::Interrupted,
-                  request.is_exr && k > 0
-                      ? fmt::format("stopped by the user; {} written", counted(k, "picture"))
-                      : "stopped by the user; nothing was written");
-    UMOV_ASSIGN(rasters, stage.trace(shot.view, shot.joint_angles_rad, how, subject.bands));
-    out.width_m = 2 * rasters.front().half_width_m;
-    if (request.is_exr) {
-      UMOV_ASSIGN(file, exr_of(request, subject.object.scene.bands, shot, rasters, how.bounces));
-      UMOV_TRY(sink(subject.first + k, std::move(file)));
-    } else {
-      out.kept.push_back(std::move(rasters));
+                     const KeyFrameOptions &how, const PictureSink &sink, const Monitor &monitor) {
+  return without_failures([&]() -> Result<Traced> {
+    const KeyFrameStage stage(subject.object.scene,
+                              joints_of(scenario.objects[request.object].parts), how.bounces,
+                              how.cancel);
+    Traced out;
+    for (std::size_t k = 0; k < subject.shots.size(); ++k) {
+      const Shot &shot = subject.shots[k];
+      if (monitor.is_cancelled())
+        return fail(ErrorCode::Interrupted,
+                    request.is_exr && k > 0
+                        ? fmt::format("stopped by the user; {} written", counted(k, "picture"))
+                        : "stopped by the user; nothing was written");
+      UMOV_ASSIGN(rasters, stage.trace(shot.view, shot.joint_angles_rad, how, subject.bands));
+      out.width_m = 2 * rasters.front().half_width_m;
+      if (request.is_exr) {
+        UMOV_ASSIGN(file, exr_of(request, subject.object.scene.bands, shot, rasters, how.bounces));
+        UMOV_TRY(sink(subject.first + k, std::move(file)));
+      } else {
+        out.kept.push_back(std::move(rasters));
+      }
+      monitor.advance("pictures", k + 1, subject.shots.size());
     }
-    monitor.advance("pictures", k + 1, subject.shots.size());
-  }
-  return out;
-} catch (const Failure &stop) {
-  return tl::unexpected(stop.error());
+    return out;
+  });
 }
 
 /// Keeps the shots of the part that was asked for.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 #include <umov/core/text.h>
 #include <umov/time/earth_orientation.h>
 
@@ -133,29 +134,35 @@ void warn_of_step(const ObjectRun &one, double step_s, Diagnostics &diagnostics)
 }
 
 Result<LightCurveOutcome> compute(ObjectRun &one, bool is_alone, KeptBlocks blocks,
-                                  const Monitor &monitor, Diagnostics &diagnostics) try {
-  const std::string what = is_alone ? "light curve" : one.request.object;
-  monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
-  UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene, monitor.cancel));
-  one.light = models.light->facts();
-  auto out = compute_wanted(
-      one, models, [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
-      monitor.cancel_flag(), blocks);
-  one.light.device = lit_by(*blocks.journal, blocks.part, models.device());
-  one.light.instruction_set = models.light->instruction_set();
-  tell_of_device(models.device(), diagnostics);
-  UMOV_TRY(models.keep_masks());
-  return out;
-} catch (const Failure &lost) { // a card: what was finished is in the journal
-  return tl::unexpected(lost.error());
+                                  const Monitor &monitor, Diagnostics &diagnostics) {
+  // A card may be lost: what was finished is in the journal.
+  return without_failures([&]() -> Result<LightCurveOutcome> {
+    const std::string what = is_alone ? "light curve" : one.request.object;
+    monitor.advance(what, 0, 1); // the search of the epochs and the first masks take their time
+    UMOV_ASSIGN(models, make_light_models(one.request, one.object.scene, monitor.cancel));
+    one.light = models.light->facts();
+    auto out = compute_wanted(
+        one, models,
+        [&](std::size_t done, std::size_t total) { monitor.advance(what, done, total); },
+        monitor.cancel_flag(), blocks);
+    one.light.device = lit_by(*blocks.journal, blocks.part, models.device());
+    one.light.instruction_set = models.light->instruction_set();
+    tell_of_device(models.device(), diagnostics);
+    UMOV_TRY(models.keep_masks());
+    return out;
+  });
 }
 
 Result<void> spread(ObjectRun &one, KeptBlocks blocks, const Monitor &monitor,
-                    Diagnostics &diagnostics) try {
-  return add_haze_spread(one, blocks, monitor, diagnostics);
-} catch (const Failure &lost) { // as above
-  one.outcome.stopped = lost.error();
-  return {};
+                    Diagnostics &diagnostics) {
+  Result<void> out;
+  const auto done = without_failures([&]() -> Result<void> {
+    out = add_haze_spread(one, blocks, monitor, diagnostics);
+    return {};
+  });
+  if (!done) // a card, as above
+    one.outcome.stopped = done.error();
+  return out;
 }
 
 Result<Journal> journal_of(const std::vector<ObjectRun> &objects, const Scenario &scenario,

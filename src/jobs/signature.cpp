@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <umov/core/files.h>
 #include <umov/core/parallel.h>
+#include <umov/core/stop.h>
 #include <umov/jobs/pose_light.h>
 #include <umov/jobs/ranged_job.h>
 
@@ -139,12 +140,14 @@ public:
 
 private:
   bool evaluate() {
-    try {
-      return light_.evaluate(part_, results_, task_);
-    } catch (const Failure &failure) {
-      lost_ = failure.error();
-      return false;
-    }
+    bool is_lit = false;
+    const auto done = without_failures([&]() -> Result<void> {
+      is_lit = light_.evaluate(part_, results_, task_);
+      return {};
+    });
+    if (!done)
+      lost_ = done.error();
+    return is_lit;
   }
   void take(std::size_t begin, std::size_t count) {
     part_.resize(count);

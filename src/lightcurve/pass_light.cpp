@@ -42,26 +42,26 @@ LightOptions pass_light_options(LightMethod method) {
 }
 
 Result<PassLight> PassLight::of_body(PassBody body, const LightOptions &options,
-                                     const std::atomic<bool> *cancel) try {
-  auto state = std::make_shared<State>();
-  UMOV_ASSIGN(colours, photometric_bands(body.scene.bands, body.magnitudes));
-  state->bands = std::move(colours);
-  state->attitude = body.attitude;
-  state->has_solar_disk = body.has_solar_disk;
-  state->air = body.air;
-  const std::vector<Joint> joints = joints_of(body.joints);
-  const std::vector<std::size_t> part_of = joint_of_groups(body.scene.mesh, joints);
-  state->flats.resize(joints.size() + 1);
-  for (const GlintFlat &flat : glint_flats(body.scene, 0.02, widest_glint_rad, cancel))
-    state->flats[part_of[flat.group]].push_back(flat);
-  state->joints = std::move(body.joints);
-  UMOV_ASSIGN(light, make_light(body.scene, joints, options, cancel));
-  state->light = std::move(light);
-  PassLight out;
-  out.state_ = std::move(state);
-  return out;
-} catch (const Failure &stop) {
-  return tl::unexpected(stop.error());
+                                     const std::atomic<bool> *cancel) {
+  return without_failures([&]() -> Result<PassLight> {
+    auto state = std::make_shared<State>();
+    UMOV_ASSIGN(colours, photometric_bands(body.scene.bands, body.magnitudes));
+    state->bands = std::move(colours);
+    state->attitude = body.attitude;
+    state->has_solar_disk = body.has_solar_disk;
+    state->air = body.air;
+    const std::vector<Joint> joints = joints_of(body.joints);
+    const std::vector<std::size_t> part_of = joint_of_groups(body.scene.mesh, joints);
+    state->flats.resize(joints.size() + 1);
+    for (const GlintFlat &flat : glint_flats(body.scene, 0.02, widest_glint_rad, cancel))
+      state->flats[part_of[flat.group]].push_back(flat);
+    state->joints = std::move(body.joints);
+    UMOV_ASSIGN(light, make_light(body.scene, joints, options, cancel));
+    state->light = std::move(light);
+    PassLight out;
+    out.state_ = std::move(state);
+    return out;
+  });
 }
 
 Result<PassLight> PassLight::of_sphere(double radius_m, const Material &material,

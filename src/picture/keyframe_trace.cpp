@@ -292,18 +292,18 @@ KeyFrameStage::KeyFrameStage(const Scene &scene, std::vector<Joint> joints, std:
 
 Result<std::vector<KeyFrameRaster>>
 KeyFrameStage::trace(const KeyFrameView &view, const std::vector<double> &joint_angles_rad,
-                     const KeyFrameOptions &options, std::span<const std::size_t> bands) const try {
-  if (joint_angles_rad.empty())
-    return trace_key_frames(scene_, still_, view, options, bands, between_.get());
-  Scene turned = scene_;
-  turned.mesh = posed(scene_.mesh, joints_, joint_angles_rad);
-  std::unique_ptr<BetweenLight> between;
-  if (between_)
-    between = make_between_light(turned, options.cancel);
-  const Occluder occluder(turned.mesh, Occluder::Rays::Each, options.cancel);
-  return trace_key_frames(turned, occluder, view, options, bands, between.get());
-} catch (const Failure &stop) {
-  return tl::unexpected(stop.error());
+                     const KeyFrameOptions &options, std::span<const std::size_t> bands) const {
+  return without_failures([&]() -> Result<std::vector<KeyFrameRaster>> {
+    if (joint_angles_rad.empty())
+      return trace_key_frames(scene_, still_, view, options, bands, between_.get());
+    Scene turned = scene_;
+    turned.mesh = posed(scene_.mesh, joints_, joint_angles_rad);
+    std::unique_ptr<BetweenLight> between;
+    if (between_)
+      between = make_between_light(turned, options.cancel);
+    const Occluder occluder(turned.mesh, Occluder::Rays::Each, options.cancel);
+    return trace_key_frames(turned, occluder, view, options, bands, between.get());
+  });
 }
 
 } // namespace umov

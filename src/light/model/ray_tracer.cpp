@@ -1,9 +1,11 @@
 #include "light/model/ray_tracer.h"
 
 #include "light/reference/elements.h"
+#include "light/unless_stopped.h"
 
 #include <algorithm>
 #include <umov/core/parallel.h>
+#include <umov/core/stop.h>
 
 namespace umov {
 
@@ -75,77 +77,73 @@ void RayTracer::put(const PoseResult &result, std::size_t row, StokesTable &out)
 
 bool RayTracer::light(std::span<const Pose> poses, std::span<const double> angles_rad,
                       std::span<const std::size_t> which, StokesTable &out,
-                      const LightTask &task) const try {
-  std::vector<Pose> chosen;
-  for (const std::size_t k : which)
-    chosen.push_back(poses[k]);
-  std::vector<PoseResult> found;
-  if (joints_.empty()) {
-    found = integrator(task.cancel).evaluate(chosen, options_, task.threads, task.cancel);
-  } else {
-    found.resize(which.size());
-    parallel_for(which.size(), task.threads, [&](std::size_t k) {
-      if (is_stopped(task.cancel))
-        return;
-      const Integrator own(turned(scene_, joints_, angles_rad, which[k]), task.cancel);
-      auto one = own.evaluate(std::vector{chosen[k]}, options_, 1, task.cancel);
-      if (!one.empty())
-        found[k] = std::move(one.front());
-    });
-  }
-  if (is_stopped(task.cancel) || found.size() < which.size())
-    return false;
-  if (options_.bounces > 1)
-    out.indirect.resize(out.i.size());
-  for (std::size_t k = 0; k < which.size(); ++k)
-    put(found[k], which[k], out);
-  return true;
-} catch (const Failure &) { // while the body was made ready
-  if (!is_stopped(task.cancel))
-    throw;
-  return false;
+                      const LightTask &task) const {
+  return unless_stopped(task.cancel, [&] {
+    std::vector<Pose> chosen;
+    for (const std::size_t k : which)
+      chosen.push_back(poses[k]);
+    std::vector<PoseResult> found;
+    if (joints_.empty()) {
+      found = integrator(task.cancel).evaluate(chosen, options_, task.threads, task.cancel);
+    } else {
+      found.resize(which.size());
+      parallel_for(which.size(), task.threads, [&](std::size_t k) {
+        if (is_stopped(task.cancel))
+          return;
+        const Integrator own(turned(scene_, joints_, angles_rad, which[k]), task.cancel);
+        auto one = own.evaluate(std::vector{chosen[k]}, options_, 1, task.cancel);
+        if (!one.empty())
+          found[k] = std::move(one.front());
+      });
+    }
+    if (is_stopped(task.cancel) || found.size() < which.size())
+      return false;
+    if (options_.bounces > 1)
+      out.indirect.resize(out.i.size());
+    for (std::size_t k = 0; k < which.size(); ++k)
+      put(found[k], which[k], out);
+    return true;
+  });
 }
 
 bool RayTracer::add_indirect(std::span<const Pose> poses, std::span<const double> angles_rad,
-                             StokesTable &out, const LightTask &task) const try {
-  const std::vector<double> direct = out.i;
-  std::vector<IndirectLight> more;
-  if (joints_.empty()) {
-    more = integrator(task.cancel).indirect(poses, direct, options_, task.threads, task.cancel);
-  } else {
-    more.resize(poses.size());
-    parallel_for(poses.size(), task.threads, [&](std::size_t k) {
-      if (is_stopped(task.cancel))
-        return;
-      auto one =
-          Integrator(turned(scene_, joints_, angles_rad, k), task.cancel)
-              .indirect(poses.subspan(k, 1), std::span(direct).subspan(k * out.bands, out.bands),
-                        options_, 1, task.cancel);
-      if (!one.empty())
-        more[k] = std::move(one.front());
-    });
-  }
-  if (is_stopped(task.cancel) || more.size() < poses.size())
-    return false;
-  out.indirect.resize(out.i.size());
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    const double before = out.i[k * out.bands];
-    for (std::size_t b = 0; b < out.bands; ++b) {
-      BandResult whole = out.at(k, b);
-      add(more[k].bands[b], whole);
-      out.put(k, b, whole);
-      out.indirect[k * out.bands + b] = more[k].bands[b].stokes;
-      if (more[k].bands[b].stokes.i > 0)
-        out.is_dark[k] = 0;
+                             StokesTable &out, const LightTask &task) const {
+  return unless_stopped(task.cancel, [&] {
+    const std::vector<double> direct = out.i;
+    std::vector<IndirectLight> more;
+    if (joints_.empty()) {
+      more = integrator(task.cancel).indirect(poses, direct, options_, task.threads, task.cancel);
+    } else {
+      more.resize(poses.size());
+      parallel_for(poses.size(), task.threads, [&](std::size_t k) {
+        if (is_stopped(task.cancel))
+          return;
+        auto one =
+            Integrator(turned(scene_, joints_, angles_rad, k), task.cancel)
+                .indirect(poses.subspan(k, 1), std::span(direct).subspan(k * out.bands, out.bands),
+                          options_, 1, task.cancel);
+        if (!one.empty())
+          more[k] = std::move(one.front());
+      });
     }
-    if (!out.glint_share.empty() && before > 0)
-      out.glint_share[k] *= before / out.i[k * out.bands];
-  }
-  return true;
-} catch (const Failure &) { // as above
-  if (!is_stopped(task.cancel))
-    throw;
-  return false;
+    if (is_stopped(task.cancel) || more.size() < poses.size())
+      return false;
+    out.indirect.resize(out.i.size());
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      const double before = out.i[k * out.bands];
+      for (std::size_t b = 0; b < out.bands; ++b) {
+        BandResult whole = out.at(k, b);
+        add(more[k].bands[b], whole);
+        out.put(k, b, whole);
+        out.indirect[k * out.bands + b] = more[k].bands[b].stokes;
+        if (more[k].bands[b].stokes.i > 0)
+          out.is_dark[k] = 0;
+      }
+      if (!out.glint_share.empty() && before > 0)
+        out.glint_share[k] *= before / out.i[k * out.bands];
+    }
+    return true;
+  });
 }
 
 } // namespace umov

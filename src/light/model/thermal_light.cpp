@@ -1,4 +1,5 @@
 #include "light/model/ray_tracer.h"
+#include "light/unless_stopped.h"
 
 #include <umov/core/parallel.h>
 #include <umov/core/stop.h>
@@ -24,7 +25,12 @@ public:
 
 private:
   bool light(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
-             const LightTask &task) const override try {
+             const LightTask &task) const override {
+    return unless_stopped(task.cancel, [&] { return light_now(poses, angles_rad, out, task); });
+  }
+
+  bool light_now(std::span<const Pose> poses, std::span<const double> angles_rad, StokesTable &out,
+                 const LightTask &task) const {
     out.resize(poses.size(), scene().grid.nodes().size());
     out.glint_share.assign(task.has_glints ? poses.size() : 0, 0); // heat has none
     out.material_i.assign(task.has_materials ? poses.size() * materials().size() * out.bands : 0,
@@ -42,10 +48,6 @@ private:
       }
     }
     return true;
-  } catch (const Failure &) { // while the turned body was made ready
-    if (!is_stopped(task.cancel))
-      throw;
-    return false;
   }
 
   [[nodiscard]] std::vector<IndirectLight> emitted(std::span<const Pose> poses,

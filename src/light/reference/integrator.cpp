@@ -5,6 +5,7 @@
 #include "light/between/indirect.h"
 #include "light/between/path_sampler.h"
 #include "light/reference/visibility.h"
+#include "light/unless_stopped.h"
 
 #include <cmath>
 #include <limits>
@@ -20,13 +21,6 @@ namespace {
 
 /// Rounding of a sum of positive terms, in parts of the sum: some units in the last place.
 constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
-
-/// While a Failure is handled: it goes on unless it was a stop.
-template <class T> std::vector<T> nothing_if_stopped(const std::atomic<bool> *cancel) {
-  if (!is_stopped(cancel))
-    throw;
-  return {};
-}
 
 /// What paths are drawn on.
 struct PathGround {
@@ -216,29 +210,29 @@ std::vector<IndirectLight> by_chains(const ChainStore &store, const PathGround &
 std::vector<IndirectLight> Integrator::indirect(std::span<const Pose> poses,
                                                 std::span<const double> direct_i,
                                                 const IntegrationOptions &options, unsigned threads,
-                                                const std::atomic<bool> *cancel) const try {
-  const std::size_t bands = state_->scene.grid.nodes().size();
-  if (state_->is_convex || options.bounces < 2)
-    return {poses.size(), IndirectLight{std::vector<BandResult>(bands), 0}};
-  // The accuracy refers to the whole light, or to the floor.
-  std::vector<double> refers_to(direct_i.begin(), direct_i.end());
-  for (std::size_t at = 0; at < refers_to.size() && !options.floor_i.empty(); ++at)
-    refers_to[at] = std::max(refers_to[at], options.floor_i[at % bands]);
-  if (const ChainStore *store = state_->chains(options, cancel))
-    return by_chains(*store, state_->paths(cancel), poses, refers_to, options, threads, cancel);
-  return by_paths(state_->paths(cancel), poses, refers_to, options, threads, cancel, nullptr);
-} catch (const Failure &) {
-  return nothing_if_stopped<IndirectLight>(cancel);
+                                                const std::atomic<bool> *cancel) const {
+  return unless_stopped(cancel, [&]() -> std::vector<IndirectLight> {
+    const std::size_t bands = state_->scene.grid.nodes().size();
+    if (state_->is_convex || options.bounces < 2)
+      return {poses.size(), IndirectLight{std::vector<BandResult>(bands), 0}};
+    // The accuracy refers to the whole light, or to the floor.
+    std::vector<double> refers_to(direct_i.begin(), direct_i.end());
+    for (std::size_t at = 0; at < refers_to.size() && !options.floor_i.empty(); ++at)
+      refers_to[at] = std::max(refers_to[at], options.floor_i[at % bands]);
+    if (const ChainStore *store = state_->chains(options, cancel))
+      return by_chains(*store, state_->paths(cancel), poses, refers_to, options, threads, cancel);
+    return by_paths(state_->paths(cancel), poses, refers_to, options, threads, cancel, nullptr);
+  });
 }
 
 std::vector<IndirectLight> Integrator::thermal(std::span<const Pose> poses,
                                                const ThermalEmission &emission,
                                                const IntegrationOptions &options, unsigned threads,
-                                               const std::atomic<bool> *cancel) const try {
-  const std::vector<double> nothing(poses.size() * state_->scene.grid.nodes().size());
-  return by_paths(state_->paths(cancel), poses, nothing, options, threads, cancel, &emission);
-} catch (const Failure &) {
-  return nothing_if_stopped<IndirectLight>(cancel);
+                                               const std::atomic<bool> *cancel) const {
+  return unless_stopped(cancel, [&]() -> std::vector<IndirectLight> {
+    const std::vector<double> nothing(poses.size() * state_->scene.grid.nodes().size());
+    return by_paths(state_->paths(cancel), poses, nothing, options, threads, cancel, &emission);
+  });
 }
 
 std::vector<Stokes<ScatteringPlane>>
@@ -271,28 +265,28 @@ PoseResult Integrator::evaluate(const Pose &pose, const IntegrationOptions &opti
 
 std::vector<PoseResult> Integrator::evaluate(const std::vector<Pose> &poses,
                                              const IntegrationOptions &options, unsigned threads,
-                                             const std::atomic<bool> *cancel) const try {
-  std::vector<PoseResult> out(poses.size());
-  parallel_for(poses.size(), threads, [&](std::size_t i) {
-    if (!is_stopped(cancel))
-      out[i] = direct(poses[i], options, cancel); // which may take seconds
-  });
-  if (is_stopped(cancel))
-    return {};
-  if (options.bounces < 2)
+                                             const std::atomic<bool> *cancel) const {
+  return unless_stopped(cancel, [&]() -> std::vector<PoseResult> {
+    std::vector<PoseResult> out(poses.size());
+    parallel_for(poses.size(), threads, [&](std::size_t i) {
+      if (!is_stopped(cancel))
+        out[i] = direct(poses[i], options, cancel); // which may take seconds
+    });
+    if (is_stopped(cancel))
+      return {};
+    if (options.bounces < 2)
+      return out;
+    std::vector<double> direct_i;
+    for (const PoseResult &one : out)
+      for (const BandResult &band : one.bands)
+        direct_i.push_back(band.stokes.i);
+    const auto more = indirect(poses, direct_i, options, threads, cancel);
+    if (more.size() < out.size())
+      return {};
+    for (std::size_t i = 0; i < out.size(); ++i)
+      add(more[i], out[i]);
     return out;
-  std::vector<double> direct_i;
-  for (const PoseResult &one : out)
-    for (const BandResult &band : one.bands)
-      direct_i.push_back(band.stokes.i);
-  const auto more = indirect(poses, direct_i, options, threads, cancel);
-  if (more.size() < out.size())
-    return {};
-  for (std::size_t i = 0; i < out.size(); ++i)
-    add(more[i], out[i]);
-  return out;
-} catch (const Failure &) {
-  return nothing_if_stopped<PoseResult>(cancel);
+  });
 }
 
 } // namespace umov
