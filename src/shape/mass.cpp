@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/core/stop.h>
 #include <umov/shape/topology.h>
 
 namespace umov {
@@ -41,40 +42,46 @@ private:
 
 } // namespace
 
-Result<MassProperties> mass_properties(const Mesh &mesh, MassModel model) {
-  Moments sum;
-  const bool is_solid = model == MassModel::Solid;
-  if (is_solid && !inspect(mesh, false).is_closed)
-    return fail(ErrorCode::BadInput,
-                "the mesh is not closed and has no inside; take the inertia of "
-                "its shell, or give numbers");
-  // Volumes are taken from a point of the mesh: a far origin would cost digits.
-  const Vec3<Body> origin = mesh.positions.empty() ? Vec3<Body>{} : mesh.positions.front();
-  for (const Triangle &t : mesh.triangles) {
-    const Vec3<Body> a = mesh.positions[t.vertex[0]] - origin,
-                     b = mesh.positions[t.vertex[1]] - origin,
-                     c = mesh.positions[t.vertex[2]] - origin;
-    if (is_solid)
-      sum.add<4>({Vec3<Body>{}, a, b, c}, dot(a, cross(b, c)) / 6);
-    else
-      sum.add<3>({a, b, c}, norm(cross(b - a, c - a)) / 2);
-  }
-  if (!(std::abs(sum.amount) > 0))
-    return fail(ErrorCode::BadInput, is_solid ? "the mesh has no volume" : "the mesh has no area");
-  MassProperties out;
-  const double per = 1 / sum.amount; // a mesh wound inside out has everything negative
-  const Vec3<Body> c = sum.first * per;
-  const double xx = sum.xx * per - c.x * c.x, yy = sum.yy * per - c.y * c.y,
-               zz = sum.zz * per - c.z * c.z;
-  out.inertia = {yy + zz,
-                 xx + zz,
-                 xx + yy,
-                 c.x * c.y - sum.xy * per,
-                 c.x * c.z - sum.xz * per,
-                 c.y * c.z - sum.yz * per};
-  out.center = c + origin;
-  out.amount = std::abs(sum.amount);
-  return out;
+Result<MassProperties> mass_properties(const Mesh &mesh, MassModel model,
+                                       const std::atomic<bool> *cancel) {
+  return without_failures([&]() -> Result<MassProperties> {
+    Moments sum;
+    const bool is_solid = model == MassModel::Solid;
+    if (is_solid && !inspect(mesh, false, cancel).is_closed)
+      return fail(ErrorCode::BadInput,
+                  "the mesh is not closed and has no inside; take the inertia of "
+                  "its shell, or give numbers");
+    // Volumes are taken from a point of the mesh: a far origin would cost digits.
+    const Vec3<Body> origin = mesh.positions.empty() ? Vec3<Body>{} : mesh.positions.front();
+    for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
+      leave_if_stopped(cancel, k);
+      const Triangle &t = mesh.triangles[k];
+      const Vec3<Body> a = mesh.positions[t.vertex[0]] - origin,
+                       b = mesh.positions[t.vertex[1]] - origin,
+                       c = mesh.positions[t.vertex[2]] - origin;
+      if (is_solid)
+        sum.add<4>({Vec3<Body>{}, a, b, c}, dot(a, cross(b, c)) / 6);
+      else
+        sum.add<3>({a, b, c}, norm(cross(b - a, c - a)) / 2);
+    }
+    if (!(std::abs(sum.amount) > 0))
+      return fail(ErrorCode::BadInput,
+                  is_solid ? "the mesh has no volume" : "the mesh has no area");
+    MassProperties out;
+    const double per = 1 / sum.amount; // a mesh wound inside out has everything negative
+    const Vec3<Body> c = sum.first * per;
+    const double xx = sum.xx * per - c.x * c.x, yy = sum.yy * per - c.y * c.y,
+                 zz = sum.zz * per - c.z * c.z;
+    out.inertia = {yy + zz,
+                   xx + zz,
+                   xx + yy,
+                   c.x * c.y - sum.xy * per,
+                   c.x * c.z - sum.xz * per,
+                   c.y * c.z - sum.yz * per};
+    out.center = c + origin;
+    out.amount = std::abs(sum.amount);
+    return out;
+  });
 }
 
 Result<PrincipalAxes> principal_axes(const Inertia &i) {

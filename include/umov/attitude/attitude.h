@@ -1,6 +1,7 @@
 #pragma once
 // Which way the body points: laws as the user states them, and the attitude that they give.
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -141,10 +142,12 @@ Result<void> check_attitude(const AttitudeLaw &law);
 
 /// True if some law within wants the inertia of the mesh.
 bool needs_mesh(const AttitudeLaw &law);
-/// The law with the inertia of the mesh where it wants that, and with tables read by `read`.
+/// The law with the inertia of the mesh where it wants that, and with tables read by `read`;
+/// Interrupted once `cancel` became true.
 Result<AttitudeLaw> completed(
     const AttitudeLaw &law, const Mesh &mesh,
-    const std::function<Result<std::shared_ptr<const AttitudeTable>>(const std::string &)> &read);
+    const std::function<Result<std::shared_ptr<const AttitudeTable>>(const std::string &)> &read,
+    const std::atomic<bool> *cancel = nullptr);
 
 /// A quaternion as the user gave it: normalised if within 1e-6 of unit length, else BadInput.
 Result<Quaternion> unit_quaternion(Quaternion q);

@@ -2,6 +2,7 @@
 // Where the mass of an object is: its inertia.
 
 #include <array>
+#include <atomic>
 #include <umov/core/result.h>
 #include <umov/shape/mesh.h>
 
@@ -24,8 +25,9 @@ struct MassProperties {
 };
 
 /// Exact integrals over triangles or tetrahedra (Tonon 2004). BadInput for a solid that is not
-/// closed or has no volume.
-Result<MassProperties> mass_properties(const Mesh &mesh, MassModel model);
+/// closed or has no volume, Interrupted once `cancel` became true.
+Result<MassProperties> mass_properties(const Mesh &mesh, MassModel model,
+                                       const std::atomic<bool> *cancel = nullptr);
 
 /// Principal moments in ascending order and their axes (rows: right-handed axes in body
 /// components). BadInput if they cannot be those of a rigid body: not positive, or one larger than

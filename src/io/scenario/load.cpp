@@ -87,15 +87,17 @@ Result<void> load_orbit(const Named &of, const LoadOptions &options, Diagnostics
   return {};
 }
 
-Result<void> load_attitude(const Named &of, const Mesh &mesh, Diagnostics &diagnostics,
-                           LoadedObject &out) {
-  auto law =
-      completed(of.object.attitude, mesh,
-                [&](const std::string &file) -> Result<std::shared_ptr<const AttitudeTable>> {
-                  UMOV_ASSIGN(text, read_input(file, of.place("attitude"), out));
-                  UMOV_ASSIGN(table, read_attitude_table(text, file, diagnostics));
-                  return std::make_shared<const AttitudeTable>(table);
-                });
+Result<void> load_attitude(const Named &of, const Mesh &mesh, const std::atomic<bool> *cancel,
+                           Diagnostics &diagnostics, LoadedObject &out) {
+  auto law = completed(
+      of.object.attitude, mesh,
+      [&](const std::string &file) -> Result<std::shared_ptr<const AttitudeTable>> {
+        UMOV_ASSIGN(text, read_input(file, of.place("attitude"), out));
+        UMOV_ASSIGN(table, read_attitude_table(text, file, diagnostics));
+        return std::make_shared<const AttitudeTable>(table);
+      },
+      cancel);
+  leave_if_stopped(cancel);
   if (!law)
     return fail(law.error().code, law.error().message,
                 law.error().where.file.empty() ? of.place("attitude") : law.error().where);
@@ -312,7 +314,7 @@ Result<LoadedObject> load(const Scenario &scenario, std::size_t which, const Loa
   UMOV_ASSIGN(read, load_mesh(of, options.cancel, diagnostics, out));
   UMOV_TRY(check_mtl(of, read));
   UMOV_TRY(check_material_keys(of, read.mesh));
-  UMOV_TRY(load_attitude(of, read.mesh, diagnostics, out));
+  UMOV_TRY(load_attitude(of, read.mesh, options.cancel, diagnostics, out));
   const std::vector<Joint> joints = joints_of(of.object.parts);
   if (auto checked = check_joints(joints, read.mesh); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("part"));

@@ -67,6 +67,15 @@ TEST(Mass, PrincipalAxesOfATurnedBox) {
   EXPECT_NEAR(dot(cross(axes->axis[0], axes->axis[1]), axes->axis[2]), 1, 1e-12);
 }
 
+TEST(Mass, OfALargeMeshIsStopped) {
+  const std::atomic<bool> stop = true;
+  for (const MassModel model : {MassModel::Solid, MassModel::Shell}) {
+    const auto found = mass_properties(box(1, 2, 3, {}), model, &stop);
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().code, ErrorCode::Interrupted);
+  }
+}
+
 TEST(Mass, RefusesWhatNoBodyHas) {
   Mesh open = box(1, 1, 1, {});
   open.triangles.pop_back();
