@@ -29,10 +29,21 @@ Result<void> work(const std::string &path, const Common &common) {
   parts.options = job_options(common);
   parts.options.mask_cache = folder.path() / "masks";
   parts.layout = lock.layout;
+  parts.monitor.cancel = &scale::parent_has_left();
   Diagnostics told_at_the_begin;
   UMOV_ASSIGN(job, verb_in_parts(lock.verb, lock.arguments, parts, told_at_the_begin));
   UMOV_TRY(scale::check_same_job(folder, *job));
   return scale::serve_shards(folder, *job);
+}
+
+/// The exit code; who asks for shards hears why there are none.
+int code_of(const Result<void> &done) {
+  if (done)
+    return 0;
+  if (done.error().code == ErrorCode::Interrupted) // as who asked has left
+    return static_cast<int>(ErrorCode::Interrupted);
+  scale::refuse_shards(done.error());
+  return report(done.error());
 }
 
 } // namespace
@@ -48,9 +59,7 @@ void add_scale_worker(CLI::App &scale, const Exit &exit_with) {
   verb->callback([=] {
     std::signal(SIGINT, SIG_IGN); // who started it says when it ends
     const auto done = work(*folder, *common);
-    if (!done)
-      scale::refuse_shards(done.error());
-    exit_with(done ? 0 : report(done.error()));
+    exit_with(code_of(done));
   });
 }
 

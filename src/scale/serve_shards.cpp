@@ -62,6 +62,11 @@ private:
   std::thread reader_;
 };
 
+Asked &asked() {
+  static Asked out; // outlives the thread that reads
+  return out;
+}
+
 Result<void> say(const std::string &line) {
   const std::string all = line + "\n";
   std::size_t at = 0;
@@ -84,18 +89,19 @@ void refuse_shards(const Error &why) {
   (void)say(to_json(out));
 }
 
+const std::atomic<bool> &parent_has_left() { return asked().is_over(); }
+
 Result<void> serve_shards(const JobFolder &folder, jobs::RangedJob &job) {
-  static Asked asked; // outlives the thread that reads
   jobs::Monitor monitor;
-  monitor.cancel = &asked.is_over();
+  monitor.cancel = &parent_has_left();
   bool has_kept = false;
   UMOV_TRY(job.keep()); // from here on, of each object that a shard is done with
-  while (const auto index = asked.next()) {
+  while (const auto index = asked().next()) {
     UMOV_TRY(say(to_json(do_shard(folder, job, *index, monitor))));
     if (!std::exchange(has_kept, true))
       UMOV_TRY(job.keep()); // for the processes that start after this one
   }
-  return asked.is_over() ? job.keep() : Result<void>();
+  return parent_has_left() ? job.keep() : Result<void>();
 }
 
 } // namespace umov::scale

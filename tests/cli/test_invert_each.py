@@ -186,10 +186,9 @@ def processor_s(process):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-@pytest.mark.parametrize("words", [("invert", "pose", "--each", "--scenario", "big.toml", ROOT / "examples/agena_pass.csv"),
-                                   ("scale", "plan", "job", "signature", "big.toml", "--poses", "1000", "--phase", "60")], ids=["each", "scale"])
-def test_a_job_is_stopped_while_it_is_made(umov, tmp_path, words):
-    """A mesh of 200,000 triangles takes seconds to be made ready; nothing listened until it was."""
+@pytest.fixture
+def large(umov, tmp_path):
+    """The scenario of a mesh of 200,000 triangles, which takes seconds to be made ready."""
     umov("mesh", "make", "sphere", "--facets", 200_000, "-o", tmp_path / "ball.obj")
     (tmp_path / "big.toml").write_text(f"""umov = 1
 [observer]
@@ -205,15 +204,41 @@ materials = {{ default = "gold" }}
 [bands]
 set = ["nm:550"]
 """)
-    process = subprocess.Popen([UMOV, *map(str, words)], cwd=tmp_path, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+def seconds_to_stop(process, stop):
+    """Seconds of the processor that it takes from when its job is being made until it has ended, and what it said of that."""
     while processor_s(process) < 0.4:
         time.sleep(0.01)
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     had = processor_s(process)
-    process.send_signal(signal.SIGINT)
-    _, told = process.communicate(timeout=120)
+    stop(process)
+    told = process.stderr.read()
+    process.wait(timeout=120)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime - had, told
+
+
+#: A fifth of a second, and what the pages take that are given back; /proc counts hundredths.
+SOON = 0.4
+
+
+@pytest.mark.parametrize("words", [("invert", "pose", "--each", "--scenario", "big.toml", ROOT / "examples/agena_pass.csv"),
+                                   ("scale", "plan", "job", "signature", "big.toml", "--poses", "1000", "--phase", "60")], ids=["each", "scale"])
+def test_a_job_is_stopped_while_it_is_made(large, tmp_path, words):
+    """Nothing listened until it was."""
+    process = subprocess.Popen([UMOV, *map(str, words)], cwd=tmp_path, text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    took, told = seconds_to_stop(process, lambda one: one.send_signal(signal.SIGINT))
     assert process.returncode == 130, told
     assert "stopped by the user" in told
-    # A fifth of a second, and what the pages take that are given back; /proc counts hundredths.
-    assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime - had < 0.4
+    assert took < SOON
+
+
+def test_a_worker_whose_driver_went_ends_while_its_job_is_made(umov, large, tmp_path):
+    """It looked when the job was made; nobody is there who would hear of it."""
+    assert umov("scale", "lock", "job", "signature", "big.toml", "--poses", "4", "--phase", "60").code == 0
+    process = subprocess.Popen([UMOV, "scale", "worker", "job"], cwd=tmp_path, text=True, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.PIPE)
+    took, told = seconds_to_stop(process, lambda one: one.stdin.close())
+    assert (process.returncode, told) == (130, "")
+    assert took < SOON

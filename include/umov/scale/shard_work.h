@@ -1,6 +1,7 @@
 #pragma once
 // One shard after the other: the work of a process that made the job ready once.
 
+#include <atomic>
 #include <optional>
 #include <string>
 #include <umov/scale/job_folder.h>
@@ -34,6 +35,9 @@ Result<void> check_same_job(const JobFolder &folder, const jobs::RangedJob &job)
 /// Does one shard; what goes wrong is in the record.
 ShardRecord do_shard(const JobFolder &folder, jobs::RangedJob &job, std::size_t index,
                      const jobs::Monitor &monitor);
+
+/// Begins to listen to the standard input; true once it has ended, with the parent or at its will.
+const std::atomic<bool> &parent_has_left();
 
 /// Takes indices line by line from the standard input until its end, and prints a record for each:
 /// the parent's death ends the process, whatever it is at.
