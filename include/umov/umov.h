@@ -211,6 +211,7 @@
 #include <umov/time/hourly.h>
 #include <umov/time/span.h>
 #include <umov/time/time_system.h>
+#include <umov/time/typed.h>
 // clang-format on
 
 /// Light of satellites, from mesh, material, orbit and attitude to Stokes vectors over time.

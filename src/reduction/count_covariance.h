@@ -4,7 +4,7 @@
 #include "reduction/cloud_chain.h"
 
 #include <optional>
-#include "reduction/open_air.h"
+#include <umov/reduction/open_air.h>
 
 namespace umov {
 
@@ -37,10 +37,10 @@ private:
   algebra::VectorXd weight_, light_;
   const AirOfCounts *air_;
   algebra::MatrixXd effects_;
-  algebra::VectorXd flickers_;            ///< of each count: flicker times its light
-  algebra::VectorXd widened_;             ///< of each pupil: 1 + F^T D^-1 F
-  algebra::VectorXd clouded_;             ///< (D + F F^T)^-1 times the light
-  algebra::VectorXd cloud_weights_;       ///< of each moment
+  algebra::VectorXd flickers_;      ///< of each count: flicker times its light
+  algebra::VectorXd widened_;       ///< of each pupil: 1 + F^T D^-1 F
+  algebra::VectorXd clouded_;       ///< (D + F F^T)^-1 times the light
+  algebra::VectorXd cloud_weights_; ///< of each moment
   algebra::MatrixXd weighted_effects_;
   std::optional<algebra::SymmetricFactor> small_;
 };

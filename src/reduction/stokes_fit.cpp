@@ -2,7 +2,7 @@
 
 #include "algebra/dense.h"
 #include "reduction/count_covariance.h"
-#include "reduction/open_air.h"
+#include <umov/reduction/open_air.h>
 
 #include <cmath>
 #include <fmt/format.h>

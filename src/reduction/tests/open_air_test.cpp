@@ -1,4 +1,4 @@
-#include "reduction/open_air.h"
+#include <umov/reduction/open_air.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -19,8 +19,8 @@ double of_light(const StokesRow &row) {
   return respond(row, Stokes<InstrumentAxes>{light[0], light[1], light[2], light[3]});
 }
 
-/// Two beams at four positions of a plate, in exposures `step_s` apart, with noise and transparencies
-/// of some hundredths.
+/// Two beams at four positions of a plate, in exposures `step_s` apart, with noise and
+/// transparencies of some hundredths.
 struct Counted {
   std::vector<ChannelDatum> data;
   std::vector<AirPlace> places;
@@ -75,8 +75,8 @@ struct Case {
   bool is_apart;
   CloudPrior cloud;
 };
-const std::vector<Case> cases{{0, false, {.1, 0}},  {0, false, {.1, 60}},  {.02, false, {}},
-                              {.02, true, {}},      {.02, false, {.1, 60}}, {.02, true, {.1, 1e4}}};
+const std::vector<Case> cases{{0, false, {.1, 0}}, {0, false, {.1, 60}},   {.02, false, {}},
+                              {.02, true, {}},     {.02, false, {.1, 60}}, {.02, true, {.1, 1e4}}};
 
 /// As with a common error for each column of a root of the whole covariance.
 TEST(OpenAir, ItsFitIsThatOfTheWholeMatrix) {
@@ -97,8 +97,7 @@ TEST(OpenAir, ItsFitIsThatOfTheWholeMatrix) {
       all.push_back(std::move(column));
     }
     const auto whole = fit_stokes(c.data, 3, all);
-    const auto fit =
-        fit_stokes(c.data, 3, own, OpenAir(c.places, one.is_apart, one.cloud), light);
+    const auto fit = fit_stokes(c.data, 3, own, OpenAir(c.places, one.is_apart, one.cloud), light);
     ASSERT_TRUE(whole && fit);
     // Eigenvalues know 1e-15 of the largest: 1e-17 beside the 1e-6 of photons, through 1e4 of them.
     constexpr double digits = 1e-7;
