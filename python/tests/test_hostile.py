@@ -194,6 +194,8 @@ WRONG = {
     "a table of orbits for a satellite": (lambda e: umov.Satellite(mesh="a.obj", materials="gold", orbit=Table({"line": LINES})),
                                           "orbit is a Table; a file, the lines"),
     "no orbits": (lambda e: umov.propagate([], START), r"orbit is an empty list; a file, the lines"),
+    "a time for an orbit": (lambda e: umov.propagate(Time(START), START), "orbit is a Time; a file, the lines"),
+    "a length for an orbit": (lambda e: umov.propagate(3 * u.m, START), "orbit is a Quantity; a file, the lines"),
     "an array of a number": (lambda e: umov.propagate(np.array(5), START), "orbit is a int; a file, the lines"),
     "numbers without order": (lambda e: umov.passes(DATA / "tle/hst.tle", "maui", START, STOP, norad={20580}), r"norad is \{20580\}; a whole"),
     "wavelengths in seconds": (lambda e: umov.Material("gold").refractive_index(5 * u.s), "does not go into"),

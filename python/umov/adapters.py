@@ -75,12 +75,21 @@ def orbit_text(orbit: Any) -> str | None:
         return orbit if "\n" in orbit.strip() else None
     if isinstance(orbit, (os.PathLike, Mapping)):
         return None
-    if not hasattr(orbit, "__iter__") or isinstance(orbit, (bytes, Set)) or hasattr(orbit, "columns"):  # a table gives its names
+    if not _is_iterable(orbit) or isinstance(orbit, (bytes, Set)) or hasattr(orbit, "columns"):  # a table gives its names
         return _lines(orbit)
     texts = [one.rstrip("\r\n") + "\n" if isinstance(one, str) else _lines(one) for one in orbit]
     if not texts:
         raise _no_orbit(f"an empty {type(orbit).__name__}")
     return "".join(texts)
+
+
+def _is_iterable(value: Any) -> bool:
+    """A single Time or Quantity has __iter__, and refuses."""
+    try:
+        iter(value)
+    except TypeError:
+        return False
+    return True
 
 
 def out_of_array(value: Any) -> Any:
