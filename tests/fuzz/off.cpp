@@ -8,7 +8,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size) {
   using namespace umov;
   const std::string_view text = fuzz::text_of(data, size);
-  if (fuzz::is_read(mesh_io::check_off(text, "input")))
+  if (fuzz::is_read(mesh_io::check_off(text, "input", nullptr)))
     fuzz::require(text.find("OFF") != std::string_view::npos, "the mark of the format");
   return 0;
 }
