@@ -36,14 +36,17 @@ Result<void> put_measurements(const ReduceVerb &o, const CountsFile &counts, con
   const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
   const jobs::MeasurementNotes notes{counts.notes, o.output == "-" ? "" : o.output,
                                      fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(seconds))};
+  std::vector<std::pair<std::string, std::string>> files; // written once each can be
   if (!o.tdm.empty()) {
     UMOV_ASSIGN(text, jobs::as_tdm(stokes, notes));
-    UMOV_TRY(put(o.tdm, text));
+    files.emplace_back(o.tdm, std::move(text));
   }
   if (!o.score.empty()) {
     UMOV_ASSIGN(text, jobs::score_text(stokes, notes));
-    UMOV_TRY(put(o.score, text));
+    files.emplace_back(o.score, std::move(text));
   }
+  for (const auto &[path, text] : files)
+    UMOV_TRY(put(path, text));
   return {};
 }
 

@@ -183,18 +183,19 @@ ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::si
   constexpr double blind = 1 / (worst_condition * worst_condition);
   const double smallest = squares.values(0), largest = squares.values(columns - 1);
   if (!(smallest > blind * largest)) {
-    out.condition = out.weighted_variance = out.polarized_variance =
+    out.condition = out.weighted_variance = out.linear_variance =
         std::numeric_limits<double>::infinity();
     out.missing = blind_to(squares, blind * largest);
     return out;
   }
   out.condition = std::sqrt(largest / smallest);
   out.weighted_variance = squares.values.cwiseInverse().sum();
-  const double of_intensity =
-      squares.vectors.row(0).cwiseAbs2().dot(squares.values.cwiseInverse().transpose());
-  if (parameters > 1)
-    out.polarized_variance =
-        (out.weighted_variance - of_intensity) / static_cast<double>(parameters - 1);
+  const auto variance = [&](Eigen::Index parameter) {
+    return squares.vectors.row(parameter).cwiseAbs2().dot(
+        squares.values.cwiseInverse().transpose());
+  };
+  if (columns > 2)
+    out.linear_variance = (variance(1) + variance(2)) / 2;
   return out;
 }
 

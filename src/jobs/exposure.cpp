@@ -101,14 +101,17 @@ std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, cons
                              fills_s, fills_s / 2);
   out += fmt::format("the brightest pixel is {} % full, so it does not saturate. ",
                      percent(frame.full));
-  if (constexpr double briefest_s = 1e-5; frame.seconds < briefest_s)
-    out +=
-        fmt::format("Cameras expose for some {:g} s at least: take a neutral filter. ", briefest_s);
+  constexpr double briefest_s = 1e-5, many = 1000, endless = 1e6;
+  if (frame.seconds < briefest_s)
+    out += fmt::format("Cameras expose for some {:g} s at least: take a neutral filter, or expose "
+                       "longer where that does not saturate. ",
+                       briefest_s);
   if (frames <= 1)
     return out + fmt::format("That is the error of p that is wanted (--sd-p {:g})", sd_p);
   out += fmt::format("{:.0f} of them{} tell p to {:g}", frames, of, sd_p);
-  constexpr double many = 1000;
-  if (frames > many)
+  if (frames > endless)
+    out += ", which nobody waits for";
+  if (frames > many && !(frame.seconds < briefest_s))
     out += frame.full < 0.1
                ? "; longer ones read less noise, and a wider band or more aperture has "
                  "more light"
@@ -139,11 +142,17 @@ double frame_of(const ExposureRequest &r, const Polarimeter &p) {
   return r.exposure_s > 0 ? r.exposure_s : p.period_s / 16;
 }
 
-/// Of a set, by exposures of that length where a plate turns by itself.
+/// Exposures of a set: of a quarter turn, one after the other, where a plate turns by itself.
+double frames_of(const Polarimeter &p, double frame_s) {
+  return static_cast<double>(usual_states(p.type).size()) * turn_of(p, frame_s, frame_s).frames();
+}
+
+/// Of a set, by exposures of that length where a plate turns by itself. No more than stand for
+/// all: what a turn tells in so many electrons does not depend on how finely it is cut.
 std::vector<PolarimeterState> states_of(const Polarimeter &p, double frame_s) {
+  constexpr double most = 32;
   std::vector<PolarimeterState> out = usual_states(p.type);
-  // Shorter ones begin as far apart, so that a set stays one.
-  const PlateTurn turn = turn_of(p, frame_s, std::max(frame_s, p.period_s / 16));
+  const PlateTurn turn = turn_of(p, frame_s, std::max(frame_s, p.period_s / 4 / most));
   out.resize(out.size() * static_cast<std::size_t>(turn.frames()), out.front());
   for (std::size_t k = 0; k < out.size(); ++k)
     out[k] = turn.at(out[k], k);
@@ -174,7 +183,7 @@ Result<void> put_states(ExposureSetup &s, const std::vector<PolarimeterState> &s
   }
   // Variance of q, u in that of a row, (V/rows) over (electrons/through)^2 (docs/theory, 6).
   const double channels = static_cast<double>(rows.size()) / s.states;
-  s.factor = s.states * quality.polarized_variance * s.through * s.through / channels;
+  s.factor = s.states * quality.linear_variance * s.through * s.through / channels;
   return {};
 }
 
@@ -207,6 +216,7 @@ Result<ExposureSetup> exposure_setup(const ExposureRequest &r) {
     return out;
   out->to_ab = to_ab;
   out->frame_s = frame_s;
+  out->states = frames_of(instrument.polarimeter, frame_s);
   return out;
 }
 
@@ -239,6 +249,7 @@ ExposureSetup of_frames(const ExposureSetup &s, double seconds) {
   out.frame_s = seconds;
   if (!put_states(out, states_of(p, seconds))) // in so long an exposure the plate blurs q or u
     out.factor = std::numeric_limits<double>::infinity();
+  out.states = frames_of(p, seconds);
   return out;
 }
 
@@ -300,13 +311,29 @@ double time_for(const ExposureSetup &s, const StarRates &r) {
 
 bool mistakes_changes(const Polarimeter &p) { return flicker_of(p) == Flicker::FromStateToState; }
 
+namespace {
+
+/// What is taken for polarization while brightness changes as told, over a set of so many seconds:
+/// of four states that follow each other; of a balanced retarder in any order, q, u and v together.
+double false_p(const ExposureSetup &s, double set_s) {
+  const bool is_full = parameters_of(s.instrument.polarimeter.type) == 4;
+  return (is_full ? std::sqrt(15.0) / 2 : std::sqrt(2.0)) * s.request.change_per_s * set_s / 4;
+}
+
+} // namespace
+
 std::string exposure_verdict(const ExposureSetup &s, const StarRates &rates) {
   const double own = s.request.exposure_s;
   const double wanted = s.frame_s > 0 ? s.frame_s : time_for(s, rates) / s.states;
   const double taken = own > 0 ? own : std::min(wanted, rates.fills_s / 2);
   const ExposureSetup of_taken = of_frames(s, taken);
-  return verdict_of(star_frame(of_taken, rates, taken), s.request.sd_p, rates.fills_s,
-                    of_each_state(of_taken));
+  std::string out = verdict_of(star_frame(of_taken, rates, taken), s.request.sd_p, rates.fills_s,
+                               of_each_state(of_taken));
+  if (mistakes_changes(s.instrument.polarimeter) && s.request.change_per_s > 0)
+    out += fmt::format(". A brightness that changes by {:g} of itself a second makes a false p of "
+                       "{:.2g} in such a set, which more of them do not lessen; shorter ones do",
+                       s.request.change_per_s, false_p(of_taken, taken * of_taken.states));
+  return out;
 }
 
 std::string magnitude_words(const ExposureSetup &s) {
@@ -372,7 +399,7 @@ Result<Table> exposure(const ExposureRequest &r) {
           fmt::format("detected in all channels, within {:g} of a star's width", r.aperture_fwhm));
   out.add("time", t, "s",
           parameters_of(polarimeter.type) == 4
-              ? "of a whole sequence, until q, u and v are known to sd_p"
+              ? "of a whole sequence, until q and u are known to sd_p"
               : "of all states together, until p is known to sd_p");
   out.add("electrons", rates.star * t, "electron", "detected in that time");
   out.add("saturation", rates.fills_s, "s", "exposure that fills the brightest pixel");
@@ -384,10 +411,8 @@ Result<Table> exposure(const ExposureRequest &r) {
                             : "reading and rounding, once of each state");
   out.add("scintillation", rates.scintillation / std::sqrt(t), "", flicker_words(polarimeter));
   if (mistakes_changes(polarimeter) && r.change_per_s > 0) {
-    // Of four states that follow each other; of a balanced retarder in any order.
     const bool is_full = parameters_of(polarimeter.type) == 4;
-    out.add("false_p", (is_full ? std::sqrt(15.0) / 2 : std::sqrt(2.0)) * r.change_per_s * t / 4,
-            "",
+    out.add("false_p", false_p(setup, t), "",
             is_full ? "of q, u and v together, while brightness changes as told"
                     : "of four states in a row while brightness changes as told");
   }

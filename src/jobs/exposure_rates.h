@@ -12,7 +12,7 @@ struct ExposureSetup {
   Instrument instrument;
   BandObserver observer;
   double excess2 = 1; ///< of the detector
-  /// sd of q, u (and v) is sqrt(factor/N) of N electrons: 2 of ideal analysers, 3 where all four
+  /// sd of q and u is sqrt(factor/N) of N electrons: 2 of ideal analysers, 3 where all four
   /// parameters are told as well as can be, infinite where they are not told.
   double factor = 2;
   double states = 1;  ///< exposures one after the other, until p is known at all

@@ -128,8 +128,10 @@ Result<std::string> as_tdm(const Table &stokes, const MeasurementNotes &notes) {
     out.segments[at->second].data.push_back(record_of(stokes, row));
   }
   if (out.segments.empty())
-    return fail(ErrorCode::BadInput, "no row has a magnitude, which is all that a TDM can hold of "
-                                     "light: counts of umov observe tell their zero_flux");
+    return fail(ErrorCode::BadInput,
+                "no row has a magnitude that is more than noise, which is all that "
+                "a TDM can hold of light: rows that are \"faint\" have none, nor "
+                "those of bands without a zero_flux in the header of the counts");
   return ccsds::write_message(out, ccsds::Form::Kvn);
 }
 

@@ -299,3 +299,34 @@ def test_changes_that_all_channels_see_are_told(umov):
     for name, is_told in (("c11_imx250", True), ("hwp_wollaston_1m", True), ("usafa16", False)):
         done = umov("exposure", "--instrument", name, "--change-per-s", "0.05")
         assert done.code == 0 and ("--change-per-s 0.05 says nothing" in done.err) == is_told, done.err
+
+
+def error_of_p(umov, *options):
+    done = umov("exposure", *options)
+    assert done.code == 0, done.err
+    return float(re.search(r"error of p (\S+?)[,;]", done.err + done.out)[1])
+
+
+@pytest.mark.parametrize("exposure_s", [0.05, 0.1, 0.2])
+def test_short_frames_of_a_turning_plate_fill_its_turn(umov, exposure_s):
+    """umov observe takes them one after the other: a quarter turn in .05 s frames tells as much as one in .2 s frames. .97e-3 is what
+    observe and reduce gave of a steady sphere in each of them (300 sets, 4 %; two digits are printed)."""
+    found = error_of_p(umov, "--instrument", "moptop_2m", "--mag", 9.45706, "--alt", 56.9198, "--band", "Bessell.V", "--height-m", 4205,
+                       "--aperture-fwhm", 2, "--exposure-s", exposure_s)
+    assert found == pytest.approx(0.97e-3, rel=0.08)
+
+
+def test_a_changing_brightness_is_told_in_the_verdict(umov):
+    done = umov("exposure", "--instrument", "usafa16", "--mag", 8, "--exposure-s", 0.05, "--change-per-s", 5)
+    # Four exposures of .05 s: sqrt(2) 5 .2/4 (docs/theory/observing.md).
+    assert "false p of 0.35" in done.err + done.out, (done.err, done.out)
+    steady = umov("exposure", "--instrument", "usafa16", "--mag", 8, "--exposure-s", 0.05)
+    assert "false p" not in steady.err + steady.out
+
+
+def test_hopeless_and_too_brief_exposures_are_called_so(umov):
+    done = umov("exposure", "--instrument", "c11_imx250", "--mag", 30)
+    assert "nobody waits" in done.err + done.out
+    done = umov("exposure", "--instrument", "c11_imx250", "--exposure-s", 1e-9)
+    told = done.err + done.out
+    assert "expose longer" in told and "more aperture" not in told, told

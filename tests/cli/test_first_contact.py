@@ -103,7 +103,6 @@ def test_hints_by_meaning_and_all_slips_at_once(umov, scenario, changes, words):
     assert done.code == 3 and all(word in done.err for word in words), done.err
 
 
-
 def test_a_spin_starts_with_the_scenario(umov, scenario, tmp_path):
     name = scenario(('attitude = { mode = "nadir" }',
                      'attitude = { mode = "spin", axis = "+X", period_s = 20, start = { mode = "nadir" } }'))
@@ -562,3 +561,8 @@ def test_a_file_given_as_a_number_of_poses(umov, scenario, given, words):
 def test_words_to_choose_from_are_told_as_in_a_sentence(umov, scenario):
     done = umov("run", scenario(), "--set", "output.pol_frame=icrs")
     assert done.code == 3 and "equatorial, altaz or scattering was expected" in done.err
+
+
+def test_one_material_of_front_and_back_is_told_once(umov, scenario):
+    done = umov("run", scenario(('default = "paper_al"', 'default = "paint_whit"')), "--dry-run")
+    assert done.code == 3 and done.err.count('unknown material "paint_whit"') == 1, done.err

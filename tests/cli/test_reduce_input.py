@@ -258,7 +258,9 @@ def test_no_output_is_an_input(umov, calibrated):
 @pytest.mark.parametrize("line, told", [
     ("pupils: seperate", '"separate" or "common" was expected'), ("parameters: five", "1 (I), 3 (I, Q, U) or 4 (V too)"),
     ("parameters: 2", "1 (I), 3 (I, Q, U) or 4 (V too)"), ("zero_flux V: bright", "a flux above 0"), ("zero_flux V: -1e-11", "a flux above 0"),
-    ("cloud_time_s: long", "a number of seconds")])
+    ("cloud_time_s: long", "a number of seconds"), ("cloud_time_s:long", "a number of seconds"), ("cloud_time_s = long", "a number of seconds"),
+    ("site_lat_deg: abc", "a latitude"), ("site_lat_deg: 99", "a latitude"), ("site_lon_deg: 500", "a longitude"),
+    ("site_alt_m: 1e9", "a height"), ("pol_frame:galactic", "pol_frame of the header")])
 def test_headers_that_say_nothing_are_refused(umov, tmp_path, line, told):
     (tmp_path / "c.csv").write_text(f"# {line}\n" + COUNTS)
     done = umov("reduce", "c.csv")
@@ -270,6 +272,13 @@ def test_zero_fluxes_of_no_band_are_told(umov, tmp_path, line):
     (tmp_path / "c.csv").write_text(f"# {line}\n" + COUNTS)
     done = umov("reduce", "c.csv")
     assert done.code == 0 and "is of no band of the counts" in done.err, done.err
+
+
+@pytest.mark.parametrize("line", ["Cloud_Time_s: 60", "Pol_frame: altaz"])
+def test_keys_of_the_header_in_other_letters_are_told(umov, tmp_path, line):
+    (tmp_path / "c.csv").write_text(f"# {line}\n" + COUNTS)
+    done = umov("reduce", "c.csv")
+    assert done.code == 0 and "of the header says nothing" in done.err, done.err
 
 
 def test_zero_fluxes_of_bands_that_were_taken_out_are_not_told(umov, tmp_path):
@@ -289,7 +298,7 @@ def changed(column, value):
 
 
 @pytest.mark.parametrize("column, value, told", [
-    ("airmass", "-1.2", "airmass = -1.2; 1 or more was expected"), ("w1", "0.6", "less than no counts"), ("w3", "-0.7", "less than no counts")])
+    ("airmass", "-1.2", "airmass = -1.2; 1 or more was expected"), ("dec", "95", "dec = 95"), ("range", "-5", "range = -5"), ("w1", "0.6", "less than no counts"), ("w3", "-0.7", "less than no counts")])
 def test_rows_that_no_telescope_has(umov, tmp_path, column, value, told):
     (tmp_path / "c.csv").write_text(changed(column, value))
     done = umov("reduce", "c.csv")

@@ -72,8 +72,8 @@ const std::vector<std::string> &polarimeter_names();
 struct ModulationQuality {
   double condition = 0; ///< largest over smallest singular value; infinite where one is missing
   double weighted_variance = 0; ///< tr (W^T W)^-1 (Sabatke et al. 2000)
-  /// Mean of it over all parameters but I: variance of Q, U (and V) in that of a row.
-  double polarized_variance = 0;
+  /// Mean of it over Q and U, of which p is made: their variance in that of a row.
+  double linear_variance = 0;
   std::string missing; ///< "Q", "U" or "V", of what cannot be told; else empty
 };
 /// Of `parameters` columns of the rows.

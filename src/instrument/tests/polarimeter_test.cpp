@@ -201,7 +201,8 @@ TEST(Modulation, RetarderSchemes) {
   const auto balanced = at(131.8, {-51.69, -15.12, 15.12, 51.69});
   EXPECT_NEAR(balanced.condition, of("balanced_condition"), 1e-8);
   EXPECT_NEAR(balanced.weighted_variance, of("balanced_variance"), 1e-7);
-  EXPECT_NEAR(balanced.polarized_variance, 3, 1e-4); // sd(q, u, v) = sqrt(3/N), angles to .01 deg
+  // sd(q, u) = sqrt(3/N); of q and u alone it goes with the retardance, told to .05 deg (.0009 rad).
+  EXPECT_NEAR(balanced.linear_variance, 3, 1e-3);
   const auto rounded = at(132, {-51.7, -15.1, 15.1, 51.7});
   EXPECT_NEAR(rounded.condition, of("rounded_condition"), 1e-8);
   EXPECT_NEAR(rounded.weighted_variance, of("rounded_variance"), 1e-7);
@@ -212,13 +213,24 @@ TEST(Modulation, RetarderSchemes) {
   EXPECT_TRUE(std::isinf(at(90, {0, 45, 90, 135}).condition));
 }
 
+TEST(Modulation, PolarizationIsOfQAndUAlone) {
+  // Six rows (1, a, 0, 0), (1, 0, a, 0), (1, 0, 0, b) of both signs: W^T W is diag(6, 2 a^2, 2 a^2,
+  // 2 b^2), so that V is known a quarter as well and does not count.
+  const double a = 0.8, b = 0.2;
+  const std::vector<StokesRow> rows{{1, a, 0, 0},  {1, -a, 0, 0}, {1, 0, a, 0},
+                                    {1, 0, -a, 0}, {1, 0, 0, b},  {1, 0, 0, -b}};
+  const ModulationQuality found = modulation_quality(rows, 4);
+  EXPECT_NEAR(found.linear_variance, 1 / (2 * a * a), 1e-12);
+  EXPECT_NEAR(found.weighted_variance, 1. / 6 + 1 / (a * a) + 1 / (2 * b * b), 1e-12);
+}
+
 TEST(Modulation, FourAnalysersAreAsGoodAsThree) {
   Polarimeter p;
   p.type = PolarimeterType::Mosaic;
   p.angles_deg = {90, 45, 135, 0};
   EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).condition, std::sqrt(2.), 1e-12);
   // W^T W of n rows (1, cos, sin)/(2 n): diag(1, 1/2, 1/2)/(4 n).
-  EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).polarized_variance, 8 * 4, 1e-9);
+  EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).linear_variance, 8 * 4, 1e-9);
   EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).weighted_variance, 20 * 4, 1e-9);
   p.angles_deg = {0, 60, 120};
   EXPECT_NEAR(modulation_quality(rows_of(p, {{}}), 3).condition, std::sqrt(2.), 1e-12);

@@ -165,8 +165,14 @@ void Node::add_problems_below(Problems &problems) const {
 
 bool Problems::went(const Result<void> &result) {
   if (!result)
-    found_.push_back(result.error());
+    add(result.error());
   return result.has_value();
+}
+
+void Problems::add(Error problem) {
+  const auto is_told = [&](const Error &one) { return one.text() == problem.text(); };
+  if (std::ranges::none_of(found_, is_told)) // front and back of a face have one material
+    found_.push_back(std::move(problem));
 }
 
 Result<void> Problems::told() const {

@@ -15,7 +15,7 @@ class Problems {
 public:
   /// Whether that went well; else keeps why.
   bool went(const Result<void> &result);
-  void add(Error problem) { found_.push_back(std::move(problem)); }
+  void add(Error problem); ///< once, however often it is met
   /// The first problem, with the others in lines of their own.
   [[nodiscard]] Result<void> told() const;
 

@@ -83,7 +83,31 @@ const char *expected_of(const std::string &key, const std::string &value) {
     return number && *number > 0 ? nullptr : "a flux above 0 [W m-2 nm-1]";
   if (key == "cloud_time_s")
     return number && *number >= 0 ? nullptr : "a number of seconds";
+  const auto lies = [&](double low, double high) {
+    return number && *number >= low && *number <= high;
+  };
+  if (key == "site_lat_deg")
+    return lies(-90, 90) ? nullptr : "a latitude from -90 to 90";
+  if (key == "site_lon_deg")
+    return lies(-360, 360) ? nullptr : "a longitude from -360 to 360, to the east";
+  if (key == "site_alt_m") // from the Dead Sea to a balloon
+    return lies(-500, 1e5) ? nullptr : "a height of -500 to 100000 m";
   return nullptr;
+}
+
+/// The key that a reduction knows and that differs from this one by small and capital letters
+/// alone; null for others.
+const char *known_as(std::string_view key) {
+  constexpr std::array known{"pol_frame",    "POLCCONV",     "mag_system",
+                             "pupils",       "parameters",   "cloud_time_s",
+                             "site_lat_deg", "site_lon_deg", "site_alt_m"};
+  const auto is_like = [key](std::string_view one) {
+    return key != one && std::ranges::equal(key, one, [](unsigned char a, unsigned char b) {
+             return std::tolower(a) == std::tolower(b);
+           });
+  };
+  const auto found = std::ranges::find_if(known, is_like);
+  return found == known.end() ? nullptr : *found;
 }
 
 /// What the header says of the frame, which the fit takes for granted.
@@ -111,9 +135,14 @@ Result<void> check_notes(const TextTable &table, const std::string &file) {
   return check_polcconv(table, file);
 }
 
-/// Lines of the header that speak of no band of the rows, where a band of them has none: others
-/// are of a table from which bands were taken out.
+/// Lines of the header that say nothing: keys in other letters, and zeros of no band of the rows
+/// where a band of them has none (others are of a table from which bands were taken out).
 void warn_of_notes(const CountsFile &counts, const std::string &file, Diagnostics &diagnostics) {
+  for (const auto &note : counts.notes)
+    if (const char *known = known_as(note.first))
+      diagnostics.warn(fmt::format("\"{}\" of the header says nothing; \"{}\" would",
+                                   printable(note.first), known),
+                       {file});
   const std::string start = "zero_flux";
   const auto bare = std::ranges::find_if(counts.rows, [&](const CountRow &row) {
     return !counts.notes.contains(start + " " + row.band);
@@ -236,6 +265,13 @@ Result<void> check_row(const CountRow &row, const Where &where) {
                 fmt::format("counts = {}, sky = {}; counts of electrons were expected", row.counts,
                             row.sky),
                 where);
+  if (std::abs(row.dec_deg) > 90 || std::abs(row.ra_deg) > 360 || row.range_km < 0)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("ra = {}, dec = {}, range = {}; degrees up to 360 and 90 and a distance "
+                    "in km were expected, or empty cells",
+                    row.ra_deg, row.dec_deg, row.range_km),
+        where);
   if (row.airmass < 0)
     return fail(ErrorCode::BadInput,
                 fmt::format("airmass = {}; 1 or more was expected, or an empty cell", row.airmass),

@@ -77,6 +77,20 @@ std::optional<std::pair<std::string, std::string>> yaml_pair(std::string_view te
 
 /// A line of the header: `# - {name: ..., unit: ...}` or `# - {"key": "value"}` of ECSV, the same
 /// with YAML's quotes, or `# key: value`.
+/// A line "key: value" of people, who leave the space out or write "key = value": where the key
+/// ends; npos for other words.
+std::size_t end_of_key(std::string_view text) {
+  if (const std::size_t colon = text.find(": "); colon != std::string_view::npos)
+    return colon;
+  const std::size_t mark = text.find_first_of(":=");
+  const std::string_view key = trimmed(text.substr(0, std::min(mark, text.size())));
+  const auto belongs = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+  };
+  const bool is_key = !key.empty() && std::ranges::all_of(key, belongs);
+  return is_key ? mark : std::string_view::npos;
+}
+
 void read_note(std::string_view line, TextTable &table) {
   std::string_view text = trimmed(line.substr(1));
   auto &notes = table.notes;
@@ -95,8 +109,8 @@ void read_note(std::string_view line, TextTable &table) {
       notes.insert_or_assign(std::move(pair->first), std::move(pair->second));
     return;
   }
-  if (const std::size_t colon = text.find(": "); colon != std::string_view::npos)
-    notes[std::string(text.substr(0, colon))] = trimmed(text.substr(colon + 2));
+  if (const std::size_t end = end_of_key(text); end != std::string_view::npos)
+    notes[std::string(trimmed(text.substr(0, end)))] = trimmed(text.substr(end + 1));
 }
 
 Result<void> add_header(TextTable &out, const std::vector<CsvCell> &cells, const Where &where) {
