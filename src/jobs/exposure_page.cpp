@@ -54,6 +54,7 @@ Result<std::vector<PlotFigure>> frames(const ExposureSetup &s, const std::vector
   PlotFigure signal = figure("Signal to noise", x, "S/N of I, scintillation in it", true);
   std::size_t number = 0;
   std::vector<ExposureSetup> of_length;
+  of_length.reserve(seconds.size());
   for (const double t : seconds)
     of_length.push_back(of_frames(s, t));
   for (const double step : {-4., -2., 0., 2., 4.}) {

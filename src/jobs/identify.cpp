@@ -115,9 +115,9 @@ public:
   Result<void> assign(const Library &library);
   Result<std::optional<OwnAnswer>> answer(const Library &library, std::size_t k,
                                           const ObservedCurve &curve, const SearchOptions &search);
-  /// What light from surface to surface is of that of a candidate that has answered, turned so.
-  Result<std::optional<double>> between(std::size_t k, const ObservedCurve &curve,
-                                        const Turning &at);
+  /// What light from surface to surface makes of a verdict on a candidate that has answered.
+  Result<void> doubt(std::size_t k, const ObservedCurve &curve, const PoseAnswer &pose,
+                     IdentityWords &words);
   /// Light of a candidate that has answered.
   [[nodiscard]] const SearchedLight *light(std::size_t k) const {
     const auto at = lights_.find(k);
@@ -190,10 +190,16 @@ Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::
       OwnAnswer{std::move(found), CurveLikelihood(curve, search.errors).log_variance()});
 }
 
-Result<std::optional<double>> OwnLights::between(std::size_t k, const ObservedCurve &curve,
-                                                 const Turning &at) {
+Result<void> OwnLights::doubt(std::size_t k, const ObservedCurve &curve, const PoseAnswer &pose,
+                              IdentityWords &words) {
+  if (pose.modes.empty() || words.verdict == Verdict::NoFit)
+    return {};
   UMOV_ASSIGN(scenario, ready_.scenario(scenarios_.at(k)));
-  return share_between(*scenario, *lights_.at(k), curve, at, options_, monitor_);
+  UMOV_ASSIGN(share, share_between(*scenario, *lights_.at(k), curve, pose.modes.front().turning,
+                                   options_, monitor_));
+  words.light_between = share;
+  doubt_direct_light(share, request_.observed.errors.floor, words.verdict, words.notes);
+  return {};
 }
 
 } // namespace
@@ -266,11 +272,7 @@ Result<Inversion> identity_answer(const Scenario &scenario, const IdentifyReques
                            own.columns(best));
     fit = fit_table(observed, model, pose);
     out.light = own.used(best);
-    if (!pose.modes.empty() && words.verdict != Verdict::NoFit) {
-      UMOV_ASSIGN(share, own.between(best, curve, pose.modes.front().turning));
-      words.light_between = share;
-      doubt_direct_light(share, errors.floor, words.verdict, words.notes);
-    }
+    UMOV_TRY(own.doubt(best, curve, pose, words));
   } else {
     UMOV_TRY(library.lend(best, curve, [&](const Signature &s, std::span<const std::size_t> c) {
       const CurveModel model(curve, lighting_of(s, options.threads), {c.begin(), c.end()});

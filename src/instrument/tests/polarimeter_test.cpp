@@ -201,7 +201,8 @@ TEST(Modulation, RetarderSchemes) {
   const auto balanced = at(131.8, {-51.69, -15.12, 15.12, 51.69});
   EXPECT_NEAR(balanced.condition, of("balanced_condition"), 1e-8);
   EXPECT_NEAR(balanced.weighted_variance, of("balanced_variance"), 1e-7);
-  // sd(q, u) = sqrt(3/N); of q and u alone it goes with the retardance, told to .05 deg (.0009 rad).
+  // sd(q, u) = sqrt(3/N); of q and u alone it goes with the retardance, told to .05 deg (.0009
+  // rad).
   EXPECT_NEAR(balanced.linear_variance, 3, 1e-3);
   const auto rounded = at(132, {-51.7, -15.1, 15.1, 51.7});
   EXPECT_NEAR(rounded.condition, of("rounded_condition"), 1e-8);
