@@ -1,7 +1,6 @@
 """TOML from dictionaries; the standard library only reads it."""
 from __future__ import annotations
 
-import datetime
 import json
 import math
 import os
@@ -11,6 +10,7 @@ from typing import Any
 
 from ._numbers import plain, text, utf8
 from .errors import InputError, UsageError
+from .times import is_moment, utc
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
 
@@ -47,8 +47,7 @@ def value_text(value: Any, name: str = "value") -> str:
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
     if isinstance(value, os.PathLike):
         return value_text(os.fspath(value), name)
-    if isinstance(value, datetime.datetime) or hasattr(type(value), "sidereal_time") or hasattr(value, "utc_iso"):  # of astropy, skyfield
-        from .times import utc
+    if is_moment(value):
         return utc(value)
     if isinstance(value, Mapping):
         inside = (f"{_key(str(k))} = {value_text(v, str(k))}" for k, v in value.items() if v is not None)

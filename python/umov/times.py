@@ -28,6 +28,11 @@ def _is_skyfield(time: Any) -> bool:
     return hasattr(time, "utc_iso") and hasattr(time, "tai")
 
 
+def is_moment(value: Any) -> bool:
+    """Something that `utc` takes for a time and that is no text."""
+    return isinstance(value, datetime.datetime) or _is_astropy(value) or _is_skyfield(value)
+
+
 def _exact(time: Time) -> Time:
     """In UTC to a nanosecond."""
     if np.any(time.mask):

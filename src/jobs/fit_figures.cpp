@@ -6,9 +6,11 @@
 #include <initializer_list>
 #include <optional>
 #include <umov/core/constants.h>
+#include <umov/core/median.h>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
 #include <umov/time/epoch.h>
+#include <utility>
 
 namespace umov::jobs {
 namespace {
@@ -30,8 +32,7 @@ double gap_s(const Numbers &at) {
       steps.push_back(at[k] - at[k - 1]);
   if (steps.empty())
     return 600;
-  std::ranges::nth_element(steps, steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2));
-  return std::max(600.0, 10 * steps[steps.size() / 2]);
+  return std::max(600.0, 10 * median_of(std::move(steps)));
 }
 
 TimeAxis time_axis(const std::vector<std::string> &utc) {

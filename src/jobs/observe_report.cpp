@@ -8,11 +8,13 @@
 #include <fmt/format.h>
 #include <limits>
 #include <map>
+#include <umov/core/median.h>
 #include <umov/core/quantity.h>
 #include <umov/core/text.h>
 #include <umov/io/plot_page.h>
 #include <umov/jobs/reduce.h>
 #include <umov/time/epoch.h>
+#include <utility>
 
 namespace umov::jobs {
 namespace {
@@ -100,11 +102,10 @@ public:
     std::vector<double> errors;
     for (const Value &v : values_)
       errors.push_back(v.error);
-    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-    std::nth_element(errors.begin(), middle, errors.end());
+    const double middle = median_of(std::move(errors));
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Value &v : values_)
-      if (v.error <= *middle)
+      if (v.error <= middle)
         low = std::min(low, v.value - v.error), high = std::max(high, v.value + v.error);
     const double reach = high - low, first = low, last = high;
     for (const Value &v : values_)
@@ -356,9 +357,7 @@ double median_error(const Table &stokes) {
       out.push_back(sd);
   if (out.empty())
     return INFINITY;
-  const auto middle = out.begin() + static_cast<std::ptrdiff_t>(out.size() / 2);
-  std::nth_element(out.begin(), middle, out.end());
-  return *middle;
+  return median_of(std::move(out));
 }
 
 /// Points, and lines of the same colours behind them.

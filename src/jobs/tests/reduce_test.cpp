@@ -299,10 +299,16 @@ CountsFile series(bool has_two_beams) {
   return out;
 }
 
+/// How `series` is fitted.
+ReduceOptions of_the_series() {
+  ReduceOptions out;
+  out.period_s = 20;
+  out.harmonics = 1;
+  return out;
+}
+
 TEST(Reduce, ASeriesKnowsWhatIsNotKnownOfTheInstrument) {
-  ReduceOptions options;
-  options.period_s = 20;
-  options.harmonics = 1;
+  ReduceOptions options = of_the_series();
   const Table known = reduced(series(false), options);
   EXPECT_NEAR(known.number("q", 0), .3, 1e-9);
   options.priors.instrumental = .002;
@@ -317,9 +323,7 @@ TEST(Reduce, ASeriesKnowsWhatIsNotKnownOfTheInstrument) {
 
 TEST(Reduce, BeamsOfOneExposureFlickerTogetherInASeries) {
   CountsFile file = series(true);
-  ReduceOptions options;
-  options.period_s = 20;
-  options.harmonics = 1;
+  ReduceOptions options = of_the_series();
   const double still = reduced(file, options).number("cov_qq", 0);
   for (CountRow &row : file.rows)
     row.scintillation = .05;
@@ -359,9 +363,7 @@ ReduceOptions set_under(double cloud_time_s) {
 /// One beam through a cloud that stays: a factor of all light, which q does not know and I is not
 /// known better than; through clouds of their own exposures are so many uncertain counts.
 TEST(Reduce, ASeriesKnowsHowLongACloudStays) {
-  ReduceOptions options;
-  options.period_s = 20;
-  options.harmonics = 1;
+  ReduceOptions options = of_the_series();
   const Table clear = reduced(series(false), options);
   options.transparency_sd = .05;
   const Table each = reduced(series(false), options);
