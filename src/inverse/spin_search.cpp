@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <umov/core/median.h>
 #include <umov/inverse/attitude_grid.h>
 
 namespace umov {
@@ -63,10 +65,45 @@ void keep_best(std::vector<Candidate> &all, std::size_t count) {
   all.resize(std::min(all.size(), count));
 }
 
-/// The same attitude and the same spin, nearly.
-bool is_near(const Turning &a, const Turning &b, double angle) {
+/// The same attitude and the same spin, nearly: over `reach_s` the bodies do not part by more.
+bool is_near(const Turning &a, const Turning &b, double angle, double reach_s) {
   const Vec3<Body> u = normalized(a.rate_rad_s), v = normalized(b.rate_rad_s);
-  return angle_between(a.attitude, b.attitude) < angle && dot(u, v) > std::cos(angle);
+  return angle_between(a.attitude, b.attitude) < angle && dot(u, v) > std::cos(angle) &&
+         std::abs(norm(a.rate_rad_s) - norm(b.rate_rad_s)) * reach_s < angle;
+}
+
+/// How far a fit lets the body turn further or less over one span of its epochs [rad].
+double phase_sd(const TurningFit &fit, std::size_t measurements) {
+  const Eigen::MatrixXd covariance = algebra::pseudo_inverse(fit.information);
+  const Vec3<Body> axis = normalized(fit.turning.rate_rad_s);
+  const Eigen::Vector3d u(axis.x, axis.y, axis.z);
+  const double worse = std::max(1.0, fit.at.chi2 / static_cast<double>(measurements));
+  return std::sqrt(std::max(0.0, u.dot(covariance.bottomRightCorner(3, 3) * u) * worse));
+}
+
+/// A pause between passes, rather than a step between exposures [s].
+double pause_of(const ObservedCurve &curve, const SpinRequest &request) {
+  std::vector<double> steps;
+  for (std::size_t e = 1; e < curve.epochs.size(); ++e)
+    steps.push_back(curve.epochs[e].seconds - curve.epochs[e - 1].seconds);
+  return std::max(2.5 * *std::ranges::max_element(request.periods_s),
+                  steps.empty() ? 0.0 : 10 * median_of(steps));
+}
+
+/// The second in the middle of the longest stretch without a pause: where an attitude and a rate
+/// are first found, there should be light on both sides.
+double middle_of_longest(const std::vector<ObservedEpoch> &epochs, double pause_s) {
+  std::size_t best_begin = 0, best_end = 0, begin = 0;
+  for (std::size_t e = 1; e <= epochs.size(); ++e) {
+    if (e < epochs.size() && epochs[e].seconds - epochs[e - 1].seconds <= pause_s)
+      continue;
+    if (e - begin > best_end - best_begin) {
+      best_begin = begin;
+      best_end = e;
+    }
+    begin = e;
+  }
+  return epochs[(best_begin + best_end) / 2].seconds;
 }
 
 /// Search of one period, on a curve whose second 0 is its middle.
@@ -82,6 +119,9 @@ public:
 private:
   bool look_at_grid(std::vector<Candidate> &found);
   bool lengthen(std::vector<Candidate> &found);
+  [[nodiscard]] double next_reach(double reach_s) const;
+  void fan_out(std::span<const TurningFit> fits, double reach_s, double next_s,
+               std::size_t measurements, std::vector<Candidate> &found) const;
 
   const CurveModel &coarse_;
   const SpinRequest &request_;
@@ -112,20 +152,48 @@ bool PeriodSearch::look_at_grid(std::vector<Candidate> &found) {
   return true;
 }
 
+/// As far as the next stretch goes: twice as far, or, over a pause, one turn into what follows it.
+double PeriodSearch::next_reach(double reach_s) const {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const ObservedEpoch &epoch : coarse_.curve().epochs)
+    if (const double away = std::abs(epoch.seconds); away > reach_s)
+      nearest = std::min(nearest, away);
+  return nearest <= 2 * reach_s ? 2 * reach_s : nearest + 2.5 * period_s_;
+}
+
+/// The fits, and where a pause leaves open how often the body turned in it, each number of turns
+/// and part of one: a fit comes to rest in the nearest of the valleys only.
+void PeriodSearch::fan_out(std::span<const TurningFit> fits, double reach_s, double next_s,
+                           std::size_t measurements, std::vector<Candidate> &found) const {
+  constexpr double step_rad = 0.25, widest = 4; // of a turn: valleys are wider; standard deviations
+  constexpr int most = 60;
+  for (const TurningFit &fit : fits) {
+    const double rate = norm(fit.turning.rate_rad_s);
+    const double open_rad = widest * phase_sd(fit, measurements) * next_s / reach_s;
+    const int each = std::min(most, static_cast<int>(open_rad / step_rad));
+    for (int k = -each; k <= each; ++k) {
+      const double scale = 1 + k * step_rad / (next_s * rate);
+      found.push_back({{fit.turning.attitude, fit.turning.rate_rad_s * scale}, fit.at.chi2});
+    }
+  }
+}
+
 /// Fits in six unknowns on stretches that double until they are the whole curve.
 bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
   const auto &curve = coarse_.curve();
-  const double whole = std::max(-curve.epochs.front().seconds, curve.epochs.back().seconds);
+  const double whole = inverse::span_of(curve);
   std::size_t kept = 300;
   constexpr std::size_t epochs_max = 120, last = 10;
-  for (double reach_s = 1.25 * period_s_;; reach_s *= 2) {
+  double before_s = 0;
+  for (double reach_s = 1.25 * period_s_;;) {
     const auto epochs = within(curve, reach_s, epochs_max);
     const CurveLikelihood rough(curve, tempered(options_.errors, 0.15), epochs);
+    const bool is_fanned = before_s > 0 && reach_s > 2.001 * before_s;
     std::vector<Turning> starts;
     for (const Candidate &c : found)
-      if (starts.size() < kept && std::ranges::none_of(starts, [&](const Turning &o) {
-            return is_near(o, c.turning, 1 * degree);
-          }))
+      if ((is_fanned || starts.size() < kept) &&
+          std::ranges::none_of(
+              starts, [&](const Turning &o) { return is_near(o, c.turning, 1 * degree, reach_s); }))
         starts.push_back(c.turning);
     const auto fits =
         inverse::fit_turnings(coarse_, rough, starts, epochs,
@@ -133,10 +201,17 @@ bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
     if (fits.empty())
       return false;
     found.clear();
-    for (const TurningFit &fit : fits)
-      found.push_back({fit.turning, fit.at.chi2});
+    const double next_s = next_reach(reach_s);
+    if (reach_s < whole && next_s > 2.001 * reach_s)
+      fan_out(std::span(fits).first(std::min(last, fits.size())), reach_s, next_s,
+              rough.measurements(), found);
+    else
+      for (const TurningFit &fit : fits)
+        found.push_back({fit.turning, fit.at.chi2});
     if (reach_s >= whole)
       return true;
+    before_s = reach_s;
+    reach_s = next_s;
     kept = std::max(last, kept / 3);
   }
 }
@@ -149,7 +224,7 @@ std::vector<Turning> PeriodSearch::run() {
   constexpr std::size_t most = 8;
   for (const Candidate &c : found)
     if (out.size() < most && std::ranges::none_of(out, [&](const Turning &o) {
-          return is_near(o, c.turning, 2 * degree);
+          return is_near(o, c.turning, 2 * degree, inverse::span_of(coarse_.curve()));
         }))
       out.push_back(c.turning);
   return out;
@@ -210,7 +285,7 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
   if (request.periods_s.empty() || curve.epochs.empty())
     return fail(ErrorCode::BadInput, "no period to be tried, or no epoch");
   ObservedCurve middle = curve;
-  const double shift = curve.epochs[curve.epochs.size() / 2].seconds;
+  const double shift = middle_of_longest(curve.epochs, pause_of(curve, request));
   for (ObservedEpoch &epoch : middle.epochs)
     epoch.seconds -= shift;
   const CurveModel model(middle, light, column, request.parts);

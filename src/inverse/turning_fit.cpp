@@ -36,7 +36,7 @@ bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
                    const FitPlan &plan) {
   std::erase_if(fits, [](const Running *one) { return !one->has_moved; });
   const auto free = static_cast<Eigen::Index>(plan.freedom);
-  const double span = span_of(model.curve()), h = plan.difference_rad;
+  const double span = span_of(model.curve(), epochs), h = plan.difference_rad;
   std::vector<Turning> near;
   for (const Running *one : fits)
     for (Eigen::Index p = 0; p < free; ++p)
@@ -115,8 +115,14 @@ void keep_best(std::vector<Running> &fits, std::size_t count, double span_s) {
 
 } // namespace
 
-double span_of(const ObservedCurve &curve) {
-  return curve.epochs.empty() ? 1.0 : std::max(1.0, curve.epochs.back().seconds);
+double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) {
+  double out = 1;
+  if (epochs.empty())
+    for (const ObservedEpoch &epoch : curve.epochs)
+      out = std::max(out, std::abs(epoch.seconds));
+  for (const std::size_t e : epochs)
+    out = std::max(out, std::abs(curve.epochs[e].seconds));
+  return out;
 }
 
 Turning stepped(const Turning &from, const Step &step, double span_s) {
@@ -144,7 +150,7 @@ std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikeliho
 std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelihood &likelihood,
                                      std::vector<Turning> starts,
                                      std::span<const std::size_t> epochs, const FitPlan &plan) {
-  const double span = span_of(model.curve());
+  const double span = span_of(model.curve(), epochs);
   const auto first = compare_all(model, likelihood, starts, epochs, plan.threads, true);
   std::vector<Running> fits(first.size());
   for (std::size_t k = 0; k < first.size(); ++k) {

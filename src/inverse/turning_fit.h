@@ -21,11 +21,13 @@ inline Error stopped() {
 enum class Freedom { Attitude = 3, AttitudeAndRate = 6 };
 
 /// Steps in the unknowns: rotation vector in body axes [rad], then the change of the rate in units
-/// that turn the body by one radian over the span of the curve.
+/// that turn the body by one radian over the span of the epochs.
 using Step = Eigen::Matrix<double, Eigen::Dynamic, 1>;
 
-/// From the first epoch to the last, at least 1 [s].
-double span_of(const ObservedCurve &curve);
+/// From second 0, at which the attitude is told, to the farthest of the epochs (empty: all), before
+/// or after it; at least 1 [s]. A rate is asked in steps of it: in steps of a longer one they would
+/// turn the body by less than what derivatives by differences can see.
+double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs = {});
 
 /// A turning after a step.
 Turning stepped(const Turning &from, const Step &step, double span_s);

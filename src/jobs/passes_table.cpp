@@ -124,10 +124,12 @@ void PassColumns::add_light() {
   number("mag_max", unit.c_str(),
          fmt::format("faintest while sunlit; {:g} stands for fainter", faintest_magnitude).c_str(),
          [](L l) { return l.magnitude_max; });
+  table.add("mag_max_limit", "", "mag_max is a limit: at times it is fainter",
+            values<bool>([](L l) { return l.has_limit; }));
   if (result_.has_air) {
     number("mag_obs_min", unit.c_str(), "brightest while sunlit, behind the air",
            [](L l) { return l.magnitude_obs_min; });
-    number("mag_obs_max", unit.c_str(), "faintest while sunlit, behind the air",
+    number("mag_obs_max", unit.c_str(), "faintest while sunlit, behind the air; a limit as mag_max",
            [](L l) { return l.magnitude_obs_max; });
   }
   number("p_max", "", "largest degree of linear polarization while sunlit",

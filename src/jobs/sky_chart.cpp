@@ -46,7 +46,6 @@ SkyTrack track_of(const Trajectory &orbit, const ObjectPass &found, const Passes
   out.altitude_max = pass.culmination.altitude.degrees();
   out.visible_altitude = pass.visible_s > 0 ? pass.visible_altitude_max.degrees() : none;
   out.magnitude_min = found.light.magnitude_min;
-  out.magnitude_max = found.light.magnitude_max;
   out.phase_min = is_lit ? pass.phase_min.degrees() : none;
   out.phase_max = is_lit ? pass.phase_max.degrees() : none;
   out.visible_s = pass.visible_s;

@@ -6,6 +6,7 @@
 #include <set>
 #include <umov/core/stop.h>
 #include <umov/light/light_model.h>
+#include <umov/lightcurve/shown_magnitude.h>
 #include <umov/observation/track.h>
 #include <umov/photometry/radiometry.h>
 #include <umov/shape/primitives.h>
@@ -98,22 +99,26 @@ namespace {
 
 /// Takes one sample of light into the pass's ranges, as far as it is known. `share`: of it that the
 /// air lets through; NaN: not asked for.
-void take(const BandResult &light, const ObservingGeometry &g, const PhotometricBand &band,
-          double share, PassBrightness &pass) {
-  const auto &[s, half_width] = light;
-  const ObservedLight observed =
-      observed_light(s.i, band, {g.sun_distance_km, g.range_km, g.sunlit});
-  if (!(observed.irradiance > 0) || !is_known(s.i, half_width))
+void take(const PassSample &sample, const PhotometricBand &band, double share,
+          PassBrightness &pass) {
+  if (sample.is_dark)
     return;
-  const double magnitude = std::min(observed.magnitude, faintest_magnitude);
+  const ObservingGeometry &g = sample.geometry;
+  const auto &[s, half_width] = sample.light;
+  const auto [magnitude, is_limit] =
+      shown_magnitude(sample.light, band, {g.sun_distance_km, g.range_km, g.sunlit});
+  // fmin and fmax take the number where one of the two is none.
+  const double behind = std::min(magnitude - 2.5 * std::log10(share), faintest_magnitude);
+  pass.magnitude_max = std::fmax(pass.magnitude_max, magnitude);
+  pass.magnitude_obs_max = std::fmax(pass.magnitude_obs_max, behind);
+  if (is_limit) {
+    pass.has_limit = true;
+    return;
+  }
   if (!pass.brightest || magnitude < pass.magnitude_min)
     pass.brightest = g.time;
-  // fmin and fmax take the number where one of the two is none.
   pass.magnitude_min = std::fmin(pass.magnitude_min, magnitude);
-  pass.magnitude_max = std::fmax(pass.magnitude_max, magnitude);
-  const double behind = std::min(observed.magnitude - 2.5 * std::log10(share), faintest_magnitude);
   pass.magnitude_obs_min = std::fmin(pass.magnitude_obs_min, behind);
-  pass.magnitude_obs_max = std::fmax(pass.magnitude_obs_max, behind);
   if (is_p_known(s.i, half_width))
     pass.p_max = std::fmax(pass.p_max, std::hypot(s.q, s.u) / s.i);
 }
@@ -184,7 +189,7 @@ Result<std::vector<PassSample>> PassLight::light_of(const State &state, const Tr
     return fail(ErrorCode::Interrupted, stopped);
   std::vector<PassSample> out;
   for (std::size_t k = 0; k < poses.size(); ++k)
-    out.push_back({at[k], table.at(k, band)});
+    out.push_back({at[k], table.at(k, band), table.is_dark[k] != 0});
   return out;
 }
 
@@ -261,7 +266,7 @@ Result<PassBrightness> PassLight::describe(const Trajectory &orbit, const Site &
       const double share = at - static_cast<double>(k);
       const auto &a = state.by_phase[k * state.bands.size() + band],
                  &b = state.by_phase[(k + 1) * state.bands.size() + band];
-      take({a * (1 - share) + b * share, {}}, g, state.bands[band],
+      take({g, {a * (1 - share) + b * share, {}}}, state.bands[band],
            std::numeric_limits<double>::quiet_NaN(), pass);
     }
     return pass;
@@ -281,7 +286,7 @@ Result<PassBrightness> PassLight::describe(const Trajectory &orbit, const Site &
     std::ranges::stable_sort(seen, is_earlier, &PassSample::geometry);
   }
   for (const PassSample &sample : seen)
-    take(sample.light, sample.geometry, state.bands[band],
+    take(sample, state.bands[band],
          state.air ? band_transmission(state.light->scene().grid, band, air_over(*state.air, site),
                                        sample.geometry.altitude)
                    : std::numeric_limits<double>::quiet_NaN(),

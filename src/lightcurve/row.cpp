@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <umov/core/constants.h>
+#include <umov/lightcurve/shown_magnitude.h>
 #include <umov/photometry/refracted_shadow.h>
 
 namespace umov {
@@ -58,6 +59,17 @@ bool has_magnitude_limit(const LightCurveSample &sample) {
          (!std::isnan(sample.magnitude) && !is_known(sample.intensity, sample.half_width));
 }
 
+ShownMagnitude shown_magnitude(const BandResult &light, const PhotometricBand &colour,
+                               const LightPath &path) {
+  if (!(path.sunlit > 0))
+    return {observed_light(light.stokes.i, colour, path).magnitude, false};
+  const bool is_told = is_known(light.stokes.i, light.half_width);
+  const double told = light.stokes.i + (is_told ? 0 : light.half_width.i);
+  const double magnitude = observed_light(told, colour, path).magnitude;
+  // fmin takes the limit for the NaN of tails that underflow, too.
+  return {std::fmin(magnitude, faintest_magnitude), !is_told || !(magnitude < faintest_magnitude)};
+}
+
 LightCurveSample sample_from(const BandResult &band, const PhotometricBand &colour,
                              const ObservingGeometry &geometry, const LightCurveRequest &request,
                              bool is_dark) {
@@ -69,12 +81,7 @@ LightCurveSample sample_from(const BandResult &band, const PhotometricBand &colo
                        sunlight(request, geometry, colour.band)};
   const ObservedLight observed = observed_light(band.stokes.i, colour, path);
   out.irradiance = observed.irradiance;
-  out.magnitude = observed.magnitude;
-  if (!is_dark && path.sunlit > 0) {
-    if (!is_known(out.intensity, out.half_width))
-      out.magnitude = observed_light(out.intensity + out.half_width.i, colour, path).magnitude;
-    out.magnitude = std::fmin(out.magnitude, faintest_magnitude); // of tails that underflow, too
-  }
+  out.magnitude = is_dark ? observed.magnitude : shown_magnitude(band, colour, path).magnitude;
   if (is_dark || !(band.stokes.i > 0)) {
     out.sky = {nan, nan, nan, nan};
     out.scattering = {nan, nan, nan, nan};

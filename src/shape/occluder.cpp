@@ -1,9 +1,10 @@
 #include <umov/shape/occluder.h>
 
+#include "shape/embree.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <limits>
 #include <type_traits>
@@ -20,7 +21,7 @@ struct Occluder::State {
   Vec3<Body> centre{};
   double scale = 1; ///< model units per metre
   /// Of packets: rays of one point into a grid's directions part soon (measured: a third faster).
-  RTCIntersectContextFlags order = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  embree::Order order = embree::coherent;
 
   ~State() {
     if (scene != nullptr)
@@ -134,7 +135,7 @@ void Occluder::build(const Mesh &mesh, Rays rays, const std::atomic<bool> *cance
   if (rays == Rays::Each)
     rtcSetSceneFlags(state_->scene, RTC_SCENE_FLAG_ROBUST);
   else
-    state_->order = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    state_->order = embree::incoherent;
   if (!mesh.triangles.empty()) {
     const auto geometry = new_geometry(state_->device, mesh);
     auto *vertices = static_cast<float *>(
@@ -179,8 +180,6 @@ Vec3<Body> Occluder::from_point(Point p) const {
 bool Occluder::is_one_free(Point origin, Point direction) const {
   if (!is_finite(origin) || !is_finite(direction))
     return false;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   RTCRay ray{};
   ray.org_x = origin.x;
   ray.org_y = origin.y;
@@ -190,7 +189,7 @@ bool Occluder::is_one_free(Point origin, Point direction) const {
   ray.dir_z = direction.z;
   ray.tfar = std::numeric_limits<float>::infinity();
   ray.mask = ~0u;
-  rtcOccluded1(state_->scene, &context, &ray);
+  embree::occluded(state_->scene, ray);
   return ray.tfar > 0;
 }
 
@@ -218,9 +217,6 @@ void Occluder::is_free(std::span<const Point> origins, std::span<const Point> di
     free[0] = is_one_free(origins[0], directions[0]) ? 1 : 0;
     return;
   }
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = state_->order;
   for (std::size_t begin = 0; begin < origins.size(); begin += ray_packet) {
     const std::size_t count = std::min(ray_packet, origins.size() - begin);
     alignas(64) RTCRay16 ray{};
@@ -239,7 +235,7 @@ void Occluder::is_free(std::span<const Point> origins, std::span<const Point> di
       ray.tfar[i] = std::numeric_limits<float>::infinity();
       ray.mask[i] = ~0u;
     }
-    rtcOccluded16(valid, state_->scene, &context, &ray);
+    embree::occluded(state_->scene, valid, ray, state_->order);
     for (std::size_t i = 0; i < count; ++i) // Embree sets tfar to -inf where something was hit
       free[begin + i] = valid[i] != 0 && ray.tfar[i] > 0 ? 1 : 0;
   }
@@ -248,8 +244,6 @@ void Occluder::is_free(std::span<const Point> origins, std::span<const Point> di
 Occluder::Hit Occluder::nearest(Vec3<Body> origin, Vec3<Body> direction) const {
   if (!is_finite(origin) || !is_finite(direction))
     return {};
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   const Vec3<Body> p = state_->to_model(origin);
   RTCRayHit ray{};
   ray.ray.org_x = static_cast<float>(p.x);
@@ -261,7 +255,7 @@ Occluder::Hit Occluder::nearest(Vec3<Body> origin, Vec3<Body> direction) const {
   ray.ray.tfar = std::numeric_limits<float>::infinity();
   ray.ray.mask = ~0u;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(state_->scene, &context, &ray);
+  embree::intersect(state_->scene, ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
     return {};
   return {ray.hit.primID, ray.hit.u, ray.hit.v, static_cast<double>(ray.ray.tfar) / state_->scale};

@@ -281,3 +281,16 @@ def test_the_ephemeris_takes_sites_as_passes_do(umov):
     assert by_name.out == by_numbers.out
     for where in ((), ("--lat-deg", 20.7083), ("-s", SITE, "--alt-m", 0)):
         assert umov(*ask, *where).code == 2
+
+
+def test_the_faint_end_of_a_pass_is_a_limit_where_its_light_is_not_known(umov):
+    """HST dims to slivers of 16.4 in this pass (by rays), which the defaults do not resolve: 13.1 stood there, the faintest of
+    what was resolved, as if it were the faintest of all. A magnitude fainter than the limit must be marked as possible."""
+    def last(method):
+        done = umov("passes", "--orbit", HST, "-s", "maui", "--start", "2018-01-21T05:00:00Z", "--stop", "2018-01-21T06:00:00Z",
+                    "--scene", ROOT / "examples/hst_maui.toml", "--set", f"render.method={method}", "--json")
+        assert done.code == 0, done.err
+        return json.loads(done.out)[0]
+    limit, exact = last("masks"), last("rays")
+    assert limit["mag_max_limit"] is True and exact["mag_max_limit"] is False
+    assert exact["mag_max"] > limit["mag_max"] - 0.02  # 2 % of I: the accuracy of passes

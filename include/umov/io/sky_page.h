@@ -10,11 +10,11 @@ namespace umov {
 /// A pass, as a line in the sky and a row of the table. NaN: not known.
 struct SkyTrack {
   std::string id, name;
-  std::string rise, culmination, set; ///< UTC, "" where the span cuts the pass
-  std::string brightest;              ///< UTC; "" where no magnitude is known
-  double altitude_max = 0;            ///< of the whole pass [deg]
-  double visible_altitude = 0;        ///< the highest while visible [deg]
-  double magnitude_min = 0, magnitude_max = 0;
+  std::string rise, culmination, set;    ///< UTC, "" where the span cuts the pass
+  std::string brightest;                 ///< UTC; "" where no magnitude is known
+  double altitude_max = 0;               ///< of the whole pass [deg]
+  double visible_altitude = 0;           ///< the highest while visible [deg]
+  double magnitude_min = 0;              ///< the brightest
   double phase_min = 0, phase_max = 0;   ///< while sunlit [deg]
   double visible_s = 0;                  ///< sunlit in a dark sky
   std::vector<double> azimuth, altitude; ///< [deg], in equal steps from rise to set

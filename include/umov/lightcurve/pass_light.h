@@ -37,11 +37,13 @@ struct PassGlint {
 /// The light of a pass while it is sunlit; NaN and none where nothing is known of it.
 struct PassBrightness {
   double magnitude_min = std::numeric_limits<double>::quiet_NaN(), ///< the brightest
-      magnitude_max = std::numeric_limits<double>::quiet_NaN(),
-         /// The same behind the air, where there is one.
+      magnitude_max =
+          std::numeric_limits<double>::quiet_NaN(), ///< the faintest, or a limit
+                                                    /// The same behind the air, where there is one.
       magnitude_obs_min = std::numeric_limits<double>::quiet_NaN(),
          magnitude_obs_max = std::numeric_limits<double>::quiet_NaN(),
          p_max = std::numeric_limits<double>::quiet_NaN(); ///< largest degree of polarization
+  bool has_limit = false; ///< at times it is fainter than can be told: `magnitude_max` is a limit
   std::optional<Epoch<Utc>> brightest = {}; ///< when the magnitude is the least, above the air
   std::vector<PassGlint> glints;            ///< in order
 };
@@ -50,6 +52,7 @@ struct PassBrightness {
 struct PassSample {
   ObservingGeometry geometry;
   BandResult light;
+  bool is_dark = false; ///< nothing is both lit and seen
 };
 
 /// What an object is made of and how it moves; ready for many passes.
@@ -65,9 +68,10 @@ public:
   /// Magnitudes, largest p and glints of a pass from its samples (those with sunlight), in one
   /// band; of a body also from times between the brightest of them and their neighbours, down to a
   /// fortieth of the step: what flashes and fades between two samples without a glint is not seen.
-  /// Samples whose I is not three times its half-width count for neither magnitude, those
-  /// whose p is not known to 0.1 not for p. Glints: candidates of flats, of parts that turn too,
-  /// that give more than half of the light at their time. Interrupted if `cancel` became true.
+  /// Samples whose I is not three times its half-width count as limits (shown_magnitude), for the
+  /// faintest alone; those whose p is not known to 0.1 not for p. Glints: candidates of flats, of
+  /// parts that turn too, that give more than half of the light at their time. Interrupted if
+  /// `cancel` became true.
   Result<PassBrightness> describe(const Trajectory &orbit, const Site &site, ShadowModel shadow,
                                   std::size_t band, std::span<const ObservingGeometry> samples,
                                   const std::atomic<bool> *cancel = nullptr) const;

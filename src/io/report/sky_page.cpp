@@ -35,7 +35,6 @@ Json track_json(const SkyTrack &track) {
           {"alt", number(track.altitude_max, 0.01)},
           {"alt_visible", number(track.visible_altitude, 0.01)},
           {"mag", number(track.magnitude_min, 0.001)},
-          {"mag_faint", number(track.magnitude_max, 0.001)},
           {"phase", {number(track.phase_min, 0.1), number(track.phase_max, 0.1)}},
           {"visible", number(track.visible_s, 0.1)},
           {"az100", azimuth},
