@@ -1,6 +1,7 @@
 #include "cache_folder.h"
 
 #include <cstdlib>
+#include <unistd.h>
 
 namespace umov::cli {
 
@@ -11,6 +12,14 @@ std::filesystem::path cache_folder() {
   if (const char *home = std::getenv("HOME"); home != nullptr && home[0] == '/')
     return std::filesystem::path(home) / ".cache" / "umov";
   return {};
+}
+
+bool can_be_kept(std::filesystem::path folder) {
+  std::error_code unknown;
+  while (!std::filesystem::exists(folder, unknown) && folder.has_relative_path())
+    folder = folder.parent_path();
+  return std::filesystem::is_directory(folder, unknown) &&
+         ::access(folder.c_str(), W_OK | X_OK) == 0;
 }
 
 FolderFacts cache_facts(const std::filesystem::path &folder) {

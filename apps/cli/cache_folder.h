@@ -8,6 +8,9 @@ namespace umov::cli {
 /// is neither.
 std::filesystem::path cache_folder();
 
+/// It is there and can be written, or could be made.
+bool can_be_kept(std::filesystem::path folder);
+
 /// What lies in a folder and below it; nothing where there is none.
 struct FolderFacts {
   std::size_t files = 0;

@@ -31,13 +31,17 @@ struct Finding {
 
 std::string day_of(Epoch<Utc> time) { return to_iso(time).substr(0, 10); }
 
-std::string cache_text() {
+Finding cache_finding() {
   const std::filesystem::path folder = cache_folder();
   if (folder.empty())
-    return "none: neither XDG_CACHE_HOME nor HOME is set";
+    return {true, "cache folder", "none: neither XDG_CACHE_HOME nor HOME is set"};
+  if (!can_be_kept(folder))
+    return {false, "cache folder",
+            folder.string() + ": cannot be written, masks are made anew by every command"};
   const FolderFacts facts = cache_facts(folder);
-  return fmt::format("{}: {}, {:.1f} MB", folder.string(), counted(facts.files, "file"),
-                     static_cast<double>(facts.bytes) / 1e6);
+  return {true, "cache folder",
+          fmt::format("{}: {}, {:.1f} MB", folder.string(), counted(facts.files, "file"),
+                      static_cast<double>(facts.bytes) / 1e6)};
 }
 
 void add_machine(std::vector<Finding> &out) {
@@ -48,7 +52,7 @@ void add_machine(std::vector<Finding> &out) {
   out.push_back({true, "instruction set", machine.instruction_set});
   const auto cards = describe_cards(cuda_folders());
   out.push_back({true, "cuda", cards ? *cards : "not used: " + cards.error().message});
-  out.push_back({true, "cache folder", cache_text()});
+  out.push_back(cache_finding());
 }
 
 void add_library(std::vector<Finding> &out) {

@@ -170,10 +170,11 @@ Eigen::VectorXd normal_vector(std::uint64_t seed, std::uint32_t stream, std::uin
 
 namespace {
 
-/// The likelihood of draws around modes. Of a long curve a twelfth of the epochs is looked at first:
-/// a draw that these rule out by e^20 and more beside the best of them has no weight whatever the
-/// others say, and what they say of it stands for all. Where a valley is narrow and bent that is
-/// nearly all draws. Not of counts, whose variances are the model's. Empty if it was stopped.
+/// The likelihood of draws around modes. Of a long curve a twelfth of the epochs is looked at
+/// first: a draw that these rule out by e^20 and more beside the best of them has no weight
+/// whatever the others say, and what they say of it stands for all. Where a valley is narrow and
+/// bent that is nearly all draws. Not of counts, whose variances are the model's. Empty if it was
+/// stopped.
 std::vector<Comparison> compare_draws(const CurveModel &model, const CurveLikelihood &likelihood,
                                       std::span<const Turning> drawn, unsigned threads) {
   constexpr std::size_t share = 12, few = 8;

@@ -132,6 +132,14 @@ def test_doctor_measures_the_cache_folder(umov, tmp_path):
     assert said["cache folder"] == f"{tmp_path}/cache/umov: 2 files, 1.6 MB"
 
 
+def test_doctor_tells_a_cache_folder_that_cannot_be_made(tmp_path):
+    (tmp_path / "cache").write_text("a file\n")
+    done = subprocess.run([UMOV, "doctor", "--json"], text=True, capture_output=True,
+                          env=dict(os.environ, XDG_CACHE_HOME=str(tmp_path / "cache")))
+    said = {line["what"]: line for line in json.loads(done.stdout)}["cache folder"]
+    assert not said["ok"] and "cannot be written" in said["found"], said
+
+
 def test_doctor_knows_how_far_the_tables_reach(umov):
     said = found_by_doctor(umov)
     first, last = said["Earth orientation"].split(", measured")[0].split(" to ")

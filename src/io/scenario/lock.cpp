@@ -113,7 +113,9 @@ std::string object(const ScenarioObject &o, const Scenario &s) {
 std::string toml_text(const std::string &text) { return quoted(text); }
 
 std::string locked_scenario(const Scenario &s) {
-  std::string out = "# Every default filled in; running this file repeats the run.\n";
+  std::string out =
+      "# Every default filled in; running this file repeats the run, of all rows: a --range or\n"
+      "# --shard stands in the command line that manifest.json has.\n";
   out += fmt::format("umov = 1\ntitle = {}\nseed = {}\n", quoted(s.title), s.seed);
   if (s.observation)
     if (const auto names = instrument_names();

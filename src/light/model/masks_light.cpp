@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <umov/core/files.h>
 #include <umov/light/instruction_set.h>
 
@@ -17,8 +18,11 @@ std::string in_words(const LightFacts &facts, const MaskQuality &masks) {
   const auto directions = [](std::size_t cells) { return (cells + 1) * (cells + 1); };
   std::string out = fmt::format("direction masks, {} points, {} and {} directions", masks.points,
                                 directions(masks.narrow_cells), directions(masks.wide_cells));
-  if (masks.refine_above > 0)
+  if (masks.refine_above > 0) {
     out += fmt::format("; rays where the half-width of I exceeds {:g} of it", masks.refine_above);
+    if (!facts.floor_i.empty())
+      out += fmt::format(", or, where I is less, of {:.3g} m2/sr", fmt::join(facts.floor_i, ", "));
+  }
   return out;
 }
 
