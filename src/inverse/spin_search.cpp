@@ -114,7 +114,7 @@ public:
       : coarse_(coarse), request_(request), options_(options), period_s_(period_s) {}
 
   /// A few starts for the last fits; none if it was stopped.
-  std::vector<Turning> run();
+  std::vector<Candidate> run();
 
 private:
   bool look_at_grid(std::vector<Candidate> &found);
@@ -216,17 +216,17 @@ bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
   }
 }
 
-std::vector<Turning> PeriodSearch::run() {
+std::vector<Candidate> PeriodSearch::run() {
   std::vector<Candidate> found;
   if (!look_at_grid(found) || !lengthen(found))
     return {};
-  std::vector<Turning> out;
+  std::vector<Candidate> out;
   constexpr std::size_t most = 8;
   for (const Candidate &c : found)
-    if (out.size() < most && std::ranges::none_of(out, [&](const Turning &o) {
-          return is_near(o, c.turning, 2 * degree, inverse::span_of(coarse_.curve()));
+    if (out.size() < most && std::ranges::none_of(out, [&](const Candidate &o) {
+          return is_near(o.turning, c.turning, 2 * degree, inverse::span_of(coarse_.curve()));
         }))
-      out.push_back(c.turning);
+      out.push_back(c);
   return out;
 }
 
@@ -290,15 +290,21 @@ Result<SpinAnswer> search_spin(const ObservedCurve &curve, const PoseLighting &l
     epoch.seconds -= shift;
   const CurveModel model(middle, light, column, request.parts);
   const CurveModel coarse(middle, request.coarse ? request.coarse : light, column);
-  std::vector<Turning> starts;
+  std::vector<Candidate> found_of_all;
   for (std::size_t k = 0; k < request.periods_s.size(); ++k) {
     if (options.progress)
       options.progress("spin", k, request.periods_s.size() + 1);
     const auto found = PeriodSearch(coarse, request, options, request.periods_s[k]).run();
     if (found.empty())
       return tl::unexpected(stopped());
-    starts.insert(starts.end(), found.begin(), found.end());
+    found_of_all.insert(found_of_all.end(), found.begin(), found.end());
   }
+  // All were compared at the same epochs: the last fits, by the light itself, are for the best.
+  constexpr std::size_t most = 12;
+  keep_best(found_of_all, most);
+  std::vector<Turning> starts;
+  for (const Candidate &c : found_of_all)
+    starts.push_back(c.turning);
   UMOV_ASSIGN(answer, refine_spin(model, starts, options));
   for (PoseMode &mode : answer.modes)
     move(mode, -shift);
