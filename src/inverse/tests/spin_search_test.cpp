@@ -61,6 +61,34 @@ TEST(SpinSearch, PeriodAxisAndAttitudeComeBack) {
   EXPECT_EQ(found, trials);
 }
 
+TEST(SpinSearch, TurnsInAPauseBetweenPassesAreCounted) {
+  // 400 s, and 400 s again after eleven hours of 660 turns: the first pass leaves their number
+  // open.
+  const Box box;
+  const double period = 60;
+  const Turning truth{attitude_grid(1009)[77],
+                      normalized(Vec3<Body>{0.3, -0.8, 0.4}) * (2 * pi / period)};
+  ObservedCurve curve = pass(40);
+  ObservedCurve later = pass(38);
+  for (ObservedEpoch &epoch : later.epochs) {
+    epoch.seconds += 40'000;
+    epoch.to_observer = normalized(epoch.to_observer + Vec3<Gcrs>{0, 0, 0.8});
+    curve.epochs.push_back(epoch);
+  }
+  observe(curve, box, truth, 50, 3);
+  SpinRequest request;
+  request.periods_s = {period * 1.01};
+  request.coarse = DirectionTable::lighting(DirectionTable::make(box, 24, 0, 0), 0);
+  request.attitudes = 2000;
+  request.axes = 100;
+  const auto answer = search_spin(curve, box, {0, 1}, request, small());
+  ASSERT_TRUE(answer) << answer.error().text();
+  const PoseMode &best = answer->pose.modes.front();
+  // S/N 50 and 156 rows tell phases to a degree: a turn more or less would be 1.5e-3 of the rate.
+  EXPECT_LT(angle_between(best.turning.attitude, truth.attitude), 3 * pi / 180);
+  EXPECT_NEAR(norm(best.turning.rate_rad_s) / norm(truth.rate_rad_s), 1, 2e-5);
+}
+
 TEST(SpinSearch, WithoutAPeriodThereIsNone) {
   const auto answer = search_spin(pass(4), Box(), {0, 1}, SpinRequest(), SearchOptions());
   ASSERT_FALSE(answer);
