@@ -100,7 +100,7 @@ void add_reduce(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand("reduce", "Stokes parameters with errors from counts");
   auto o = std::make_shared<ReduceVerb>();
   auto common = std::make_shared<Common>();
-  verb->add_option("counts", o->counts, "Counts of umov observe (ECSV or CSV), or your own")
+  verb->add_option("counts", o->counts, "Counts of umov observe, or your own (ECSV, CSV, FITS)")
       ->required();
   verb->add_option("--calibration", o->calibration,
                    "Of umov calibrate: taken out of q and u, or of I");

@@ -240,7 +240,7 @@ class Calibration(Made):
 
 def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[str] | None = None,
            period_s: float | None = None, harmonics: int = 3, knot_s: float | None = None, q0_sd: float = 0.0, gain_sd: float = 0.0,
-           angle_sd_deg: float = 0.0, efficiency_sd: float = 0.0, sky_sd: float = 0.0, transparency_sd: float = 0.0,
+           angle_sd_deg: float = 0.0, efficiency_sd: float = 0.0, sky_sd: float = 0.0, sky_p_sd: float = 0.0, transparency_sd: float = 0.0,
            transparency_time_s: float = 0.0, crosstalk_sd: float = 0.0, plate_sd_deg: float = 0.0, retardance_sd_deg: float = 0.0, time_sd_s: float = 0.0,
            aperture_sd: float = 0.0, zero_sd_mag: float = 0.0, colour: float | None = None, threads: int = 0,
            progress: Progress = None) -> Table:
@@ -270,6 +270,8 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
         How well the efficiency is known.
     sky_sd
         How well the whole sky is known, relative.
+    sky_p_sd
+        How well the sky's polarization along the normal of the scattering plane is known: counts with `pa_scat`.
     transparency_sd
         How much the air lets through changes from exposure to exposure, relative, beside scintillation: thin cloud.
     transparency_time_s
@@ -316,7 +318,7 @@ def reduce(counts: AnyCounts, *, calibration: Calibration | str | os.PathLike[st
     if knot and period:
         raise UsageError("period_s and knot_s were both given; one of them was expected")
     given = {"q0_sd": q0_sd, "gain_sd": gain_sd, "angle_sd_deg": angle_sd_deg, "efficiency_sd": efficiency_sd,
-             "sky_sd": sky_sd, "transparency_sd": transparency_sd, "transparency_time_s": transparency_time_s,
+             "sky_sd": sky_sd, "sky_p_sd": sky_p_sd, "transparency_sd": transparency_sd, "transparency_time_s": transparency_time_s,
              "crosstalk_sd": crosstalk_sd, "plate_sd_deg": plate_sd_deg, "retardance_sd_deg": retardance_sd_deg, "time_sd_s": time_sd_s,
              "aperture_sd": aperture_sd, "zero_sd_mag": zero_sd_mag}
     errors = {name: number(value, name) for name, value in given.items()}

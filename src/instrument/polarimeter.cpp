@@ -185,6 +185,8 @@ ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::si
   if (!(smallest > blind * largest)) {
     out.condition = out.weighted_variance = out.linear_variance =
         std::numeric_limits<double>::infinity();
+    if (constexpr double rounding = 1e-13; smallest > rounding * largest)
+      out.condition = std::sqrt(largest / smallest);
     out.missing = blind_to(squares, blind * largest);
     return out;
   }

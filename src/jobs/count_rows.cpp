@@ -45,7 +45,8 @@ ModelledDatum modelled(const CountRow &row, const ChannelDatum &datum,
           gain,
           row.plate_deg * degree,
           row.retardance_deg * degree,
-          row.turn_deg_s * degree};
+          row.turn_deg_s * degree,
+          row.pa_scat_deg * degree};
 }
 
 std::vector<std::size_t> gains_of(Rows rows) {

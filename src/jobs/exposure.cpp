@@ -73,24 +73,31 @@ Result<void> check(const ExposureRequest &r) {
   for (const Bound &b : {Bound{"--mag", r.mag, -30, 40},
                          {"--alt", r.altitude_deg, 3, 90},
                          {"--height-m", r.height_m, -500, 9000},
-                         {"--sky-mag", r.sky_mag, -5, 40},
+                         {"--sky-mag", r.sky_mag, sky_mag_range[0], sky_mag_range[1]},
                          {"--change-per-s", r.change_per_s, 0, 100},
                          {"--sd-p", r.sd_p, 1e-7, 1},
                          {"--nm", r.nm, 300, 1200},
                          {"--width-nm", r.width_nm, 1e-3, 1000},
                          {"--seeing", r.seeing_arcsec, 1e-3, 100},
-                         {"--aperture-fwhm", r.aperture_fwhm, 0.1, 20},
                          {"--exposure-s", r.exposure_s, 0, 1e6}})
     if (!(b.value >= b.low && b.value <= b.high))
       return fail(ErrorCode::Usage,
                   fmt::format("{} {}: {} to {} was expected", b.name, b.value, b.low, b.high));
+  if (const auto fits = check_aperture("--aperture-fwhm", r.aperture_fwhm); !fits)
+    return fail(ErrorCode::Usage, fits.error().message);
   return {};
+}
+
+/// How many frames tell p to the wanted error, scintillation between them counted.
+double frames_for(const StarFrame &frame, double sd_p) {
+  const double reached = std::hypot(frame.sd_p, frame.flicker_p);
+  return std::ceil(std::pow(reached / sd_p, 2) - 1e-9);
 }
 
 /// What a frame reaches, what it fails at, and what helps, in a sentence.
 std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, const char *of) {
   const double reached = std::hypot(frame.sd_p, frame.flicker_p);
-  const double frames = std::ceil(std::pow(reached / sd_p, 2) - 1e-9);
+  const double frames = frames_for(frame, sd_p);
   std::string out = fmt::format(
       "One exposure of {:.3g} s{}: S/N {:.3g}, error of p {:.2g}{}; ", frame.seconds, of, frame.snr,
       frame.sd_p,
@@ -175,7 +182,7 @@ Result<void> put_states(ExposureSetup &s, const std::vector<PolarimeterState> &s
     for (const ChannelCounts &channel : channels)
       rows.push_back(channel.row * (1 / whole));
   }
-  UMOV_ASSIGN(quality, told_by(rows, p.type, "polarimeter", s.observer.band().name));
+  UMOV_ASSIGN(quality, told_by(rows, p, "polarimeter", s.observer.band()));
   s.states = static_cast<double>(states.size());
   if (parameters_of(p.type) < 3) {
     s.factor = std::numeric_limits<double>::infinity();
@@ -366,6 +373,26 @@ std::string exposure_terms(const ExposureSetup &s) {
 
 namespace {
 
+/// The exposure that a frame has, where that is told; 0: as long as p needs.
+double told_frame(const ExposureSetup &s) {
+  return s.request.exposure_s > 0 ? s.request.exposure_s : s.frame_s;
+}
+
+/// In whole sets of frames, where those have a length: an instrument takes no part of one, reads
+/// each, and meets scintillation between them.
+void add_time_of_frames(const ExposureSetup &s, const StarRates &rates, Sheet &out) {
+  const double seconds = told_frame(s);
+  if (!(seconds > 0))
+    return;
+  const ExposureSetup of_told = of_frames(s, seconds);
+  const double sets = frames_for(star_frame(of_told, rates, seconds), s.request.sd_p);
+  out.add("time_of_frames", sets * of_told.states * seconds, "s",
+          fmt::format("the same in whole exposures of {:g} s{}", seconds,
+                      of_told.states > 1
+                          ? fmt::format(", {:.0f} of them a set of all states", of_told.states)
+                          : std::string()));
+}
+
 /// What the row of scintillation is.
 const char *flicker_words(const Polarimeter &p) {
   switch (flicker_of(p)) {
@@ -398,9 +425,11 @@ Result<Table> exposure(const ExposureRequest &r) {
   out.add("rate", rates.star, "electron / s",
           fmt::format("detected in all channels, within {:g} of a star's width", r.aperture_fwhm));
   out.add("time", t, "s",
-          parameters_of(polarimeter.type) == 4
-              ? "of a whole sequence, until q and u are known to sd_p"
-              : "of all states together, until p is known to sd_p");
+          std::string(parameters_of(polarimeter.type) == 4
+                          ? "of a whole sequence, until q and u are known to sd_p"
+                          : "of all states together, until p is known to sd_p") +
+              ", by the electrons alone: of exposures as long as that takes");
+  add_time_of_frames(setup, rates, out);
   out.add("electrons", rates.star * t, "electron", "detected in that time");
   out.add("saturation", rates.fills_s, "s", "exposure that fills the brightest pixel");
   out.add("share_star", f2 * rates.star * t / all, "", "of the variance: the object's own photons");

@@ -52,28 +52,49 @@ double PlateTurn::frames() const {
 
 namespace {
 
-/// What helps where rows do not tell a Stokes parameter.
-const char *mend_of(PolarimeterType type) {
-  if (type == PolarimeterType::SpinningHwpDualBeam)
+/// The share of Q and U that the plate's turning makes other light of, sin^2 of half its
+/// retardance: 1 of a half-wave plate; 1 where there is no plate that turns.
+double modulated_by_plate(const Polarimeter &p, double nm) {
+  const bool has_plate =
+      p.type == PolarimeterType::HwpDualBeam || p.type == PolarimeterType::SpinningHwpDualBeam ||
+      p.type == PolarimeterType::RotatingRetarder || p.type == PolarimeterType::Flc;
+  const auto retardance =
+      value_at(p.retardance_deg, Wavelength::nm(nm), "polarimeter.retardance_deg");
+  return has_plate && retardance ? std::pow(std::sin(*retardance * pi / 360), 2) : 1;
+}
+
+/// What is wrong and what helps where rows do not tell a Stokes parameter.
+std::string mend_of(const Polarimeter &p, double nm) {
+  if (constexpr double hardly = 0.01; modulated_by_plate(p, nm) < hardly) {
+    const auto retardance =
+        value_at(p.retardance_deg, Wavelength::nm(nm), "polarimeter.retardance_deg");
+    return fmt::format("a plate of polarimeter.retardance_deg = {:g} there hardly changes Q and U "
+                       "as it turns; {} was expected",
+                       *retardance,
+                       p.type == PolarimeterType::RotatingRetarder
+                           ? "some 90 to 150 (131.8 tells all alike)"
+                           : "some 180");
+  }
+  if (p.type == PolarimeterType::SpinningHwpDualBeam)
     return "shorten the exposures, or check polarimeter.period_s, retardance_deg and extinction";
   return "give other angles, or check polarimeter.extinction and retardance_deg";
 }
 
 } // namespace
 
-Result<ModulationQuality> told_by(const std::vector<StokesRow> &rows, PolarimeterType type,
-                                  const std::string &key, const std::string &band) {
-  const std::size_t parameters = parameters_of(type);
+Result<ModulationQuality> told_by(const std::vector<StokesRow> &rows, const Polarimeter &p,
+                                  const std::string &key, const BandResponse &band) {
+  const std::size_t parameters = parameters_of(p.type);
   const ModulationQuality quality = modulation_quality(rows, parameters);
-  if (parameters < 3 || std::isfinite(quality.condition))
+  if (parameters < 3 || std::isfinite(quality.weighted_variance))
     return quality;
   return fail(
       ErrorCode::BadInput,
       fmt::format("{} with {} in band \"{}\" cannot tell {}{} (condition number {:.3g}); {}", key,
-                  counted(rows.size(), "row"), band, quality.missing,
+                  counted(rows.size(), "row"), band.name, quality.missing,
                   quality.missing.size() > 1 ? " apart" : "", quality.condition,
                   rows.size() < parameters ? fmt::format("{} or more are needed", parameters)
-                                           : mend_of(type)));
+                                           : mend_of(p, band.pivot_nm)));
 }
 
 namespace {
@@ -110,6 +131,13 @@ void warn_of_idle_angles(PolarimeterType type, const std::vector<SequenceStep> &
   const bool has_plate = type == PolarimeterType::HwpDualBeam ||
                          type == PolarimeterType::SpinningHwpDualBeam ||
                          type == PolarimeterType::RotatingRetarder || type == PolarimeterType::Flc;
+  if (is_simultaneous(type) && !sequence.empty() &&
+      std::ranges::all_of(sequence, [](const auto &step) { return step.band.empty(); })) {
+    diagnostics.warn(fmt::format("observation.sequence says nothing to a polarimeter of type "
+                                 "\"{}\", which takes everything at once",
+                                 name_of(type)));
+    return;
+  }
   const auto warn = [&](const char *key, bool has_it, auto angle) {
     if (!has_it &&
         std::ranges::any_of(sequence, [&](const auto &step) { return angle(step) != 0; }))
@@ -240,7 +268,7 @@ Result<void> Programme::check(const Scenario &scenario, const std::vector<BandRe
                               "it out of observation.bands",
                               bands[b].name),
                   scenario.place("observation.sequence"));
-    const auto quality = told_by(rows, p.type, key, bands[b].name);
+    const auto quality = told_by(rows, p, key, bands[b]);
     if (!quality)
       return fail(quality.error().code, quality.error().message, scenario.place(key));
     if (constexpr double poor = 10; parameters_of(p.type) >= 3 && quality->condition > poor)

@@ -24,8 +24,8 @@ PlateTurn turn_of(const Polarimeter &polarimeter, double exposure_s, double cade
 
 /// How well the rows of a set in a band tell what the polarimeter is made for. BadInput, in words
 /// that begin with `key`, where they do not.
-Result<ModulationQuality> told_by(const std::vector<StokesRow> &rows, PolarimeterType type,
-                                  const std::string &key, const std::string &band);
+Result<ModulationQuality> told_by(const std::vector<StokesRow> &rows, const Polarimeter &p,
+                                  const std::string &key, const BandResponse &band);
 
 /// Bands, and what the instrument makes of each.
 struct ObservedBands {

@@ -64,13 +64,20 @@ void put_turns(CountsFile &file) {
 
 bool is_prepared(const ReduceOptions &o) {
   return o.aperture_sd > 0 || o.photometry || o.priors.time_s > 0 || o.priors.plate_rad > 0 ||
-         o.priors.retardance_rad > 0;
+         o.priors.retardance_rad > 0 || o.priors.sky_p > 0;
 }
 
 Result<CountsFile> prepare(CountsFile file, const ReduceOptions &options) {
   if ((options.priors.plate_rad > 0 || options.priors.retardance_rad > 0) && !has_plate(file))
     return fail(ErrorCode::BadInput, "an error of the plate was given, and these counts know none: "
                                      "their plate_deg is one and the same");
+  if (options.priors.sky_p > 0 && std::ranges::any_of(file.rows, [](const CountRow &row) {
+        return std::isnan(row.pa_scat_deg);
+      }))
+    return fail(ErrorCode::BadInput,
+                "an error of the sky's polarization (sky_p_sd) was given, and these counts do not "
+                "tell its axis: a column pa_scat was expected, the position angle of the normal of "
+                "the plane of Sun, object and observer [deg]");
   for (CountRow &row : file.rows)
     row.scintillation = std::hypot(row.scintillation, options.aperture_sd);
   if (options.priors.time_s > 0)

@@ -30,6 +30,10 @@ std::span<const ReducePrior> reduce_priors() {
                   [](O &o) -> double & { return o.priors.crosstalk; }},
       ReducePrior{"sky_sd", "How well the whole sky is known, relative", 1,
                   [](O &o) -> double & { return o.priors.sky; }},
+      ReducePrior{"sky_p_sd",
+                  "How well the sky's polarization along the normal of the scattering plane is "
+                  "known",
+                  1, [](O &o) -> double & { return o.priors.sky_p; }},
       ReducePrior{"transparency_sd",
                   "How much the air lets through changes from exposure to exposure, relative: thin "
                   "cloud",

@@ -1,5 +1,6 @@
 #include "reduction/count_covariance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,11 +12,21 @@ using Vector = algebra::VectorXd;
 
 } // namespace
 
-Matrix effects_of(std::span<const CommonError> common, Eigen::Index rows) {
-  Matrix out(rows, static_cast<Eigen::Index>(common.size()));
-  for (std::size_t c = 0; c < common.size(); ++c)
-    out.col(static_cast<Eigen::Index>(c)) =
-        Eigen::Map<const Vector>(common[c].effect.data(), rows) * common[c].sd;
+CommonEffects effects_of(std::span<const CommonError> common, Eigen::Index rows) {
+  const auto is_own = [](const CommonError &one) { return one.effect.size() == 1; };
+  const auto shared =
+      static_cast<Eigen::Index>(common.size()) - std::ranges::count_if(common, is_own);
+  CommonEffects out{Vector::Zero(rows), Matrix::Zero(rows, shared)};
+  Eigen::Index column = 0;
+  for (const CommonError &one : common) {
+    const auto first = static_cast<Eigen::Index>(one.first),
+               size = static_cast<Eigen::Index>(one.effect.size());
+    const Vector effect = Eigen::Map<const Vector>(one.effect.data(), size) * one.sd;
+    if (is_own(one))
+      out.own(first) += effect(0) * effect(0);
+    else
+      out.shared.col(column++).segment(first, size) = effect;
+  }
   return out;
 }
 

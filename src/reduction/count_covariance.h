@@ -16,8 +16,13 @@ struct AirOfCounts {
 };
 AirOfCounts air_of(const OpenAir &air);
 
-/// J sqrt(Sigma), one column for each.
-algebra::MatrixXd effects_of(std::span<const CommonError> common, Eigen::Index rows);
+/// Common errors of counts: variances of those that concern one count by itself (gains of channels
+/// without names are as many as counts), and the others as J sqrt(Sigma), one column for each.
+struct CommonEffects {
+  algebra::VectorXd own;
+  algebra::MatrixXd shared;
+};
+CommonEffects effects_of(std::span<const CommonError> common, Eigen::Index rows);
 
 /// D + the air + J J^T: variances of counts, flicker and cloud in proportion to their light, and
 /// `effects` J. Its work is that of the counts, times the square of the effects' number.

@@ -1,6 +1,8 @@
 #include <umov/reduction/likelihood.h>
 
 #include "algebra/whitener.h"
+#include "reduction/count_covariance.h"
+
 #include <algorithm>
 #include <boost/math/special_functions/bessel.hpp>
 #include <boost/math/special_functions/erf.hpp>
@@ -76,15 +78,16 @@ double log_likelihood(std::span<const PredictedCounts> counts) {
 double log_likelihood(std::span<const PredictedCounts> counts,
                       std::span<const CommonError> common) {
   std::vector<double> variance, residual, effects;
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    const PredictedCounts &one = counts[k];
-    variance.push_back(one.datum.excess2 * one.mean + one.datum.fixed_variance);
+  const CommonEffects found = effects_of(common, static_cast<Eigen::Index>(counts.size()));
+  for (Eigen::Index k = 0; k < found.own.size(); ++k) {
+    const PredictedCounts &one = counts[static_cast<std::size_t>(k)];
+    variance.push_back(one.datum.excess2 * one.mean + one.datum.fixed_variance + found.own(k));
     residual.push_back(one.datum.counts - one.mean);
-    for (const CommonError &error : common)
-      effects.push_back(error.effect[k] * error.sd);
+    for (Eigen::Index c = 0; c < found.shared.cols(); ++c)
+      effects.push_back(found.shared(k, c));
   }
   algebra::Whitener whitener;
-  whitener.reset(variance, effects, common.size());
+  whitener.reset(variance, effects, static_cast<std::size_t>(found.shared.cols()));
   whitener.whiten(residual);
   double chi2 = 0;
   for (const double x : residual)

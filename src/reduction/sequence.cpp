@@ -168,15 +168,15 @@ public:
 
   /// Gauss-Newton with the variance of the model, and of what is common to several counts.
   Result<SequenceFit> solve(State state, std::span<const CommonError> common) const {
-    const Matrix effects = effects_of(common, counts_.size());
+    const CommonEffects effects = effects_of(common, counts_.size());
     Matrix covariance;
     SequenceFit out;
     constexpr int rounds = 15;
     for (int k = 0; k < rounds; ++k) {
       const Linearised now = linearise(data_, basis_, state, scale_);
       const Vector residual = counts_ - now.mean;
-      const CountCovariance c(now.mean.cwiseMax(1).cwiseProduct(excess_) + fixed_, now.mean - sky_,
-                              &air_, effects);
+      const CountCovariance c(now.mean.cwiseMax(1).cwiseProduct(excess_) + fixed_ + effects.own,
+                              now.mean - sky_, &air_, effects.shared);
       const Matrix weighted = c.inverse_times(now.jacobian).transpose();
       const Matrix normal = algebra::product(weighted, now.jacobian);
       if (!tells_apart(normal))

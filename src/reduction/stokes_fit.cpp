@@ -6,7 +6,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <set>
+#include <map>
 #include <umov/instrument/polarimeter.h>
 
 namespace umov {
@@ -84,7 +84,7 @@ Result<void> check_rows(std::span<const ChannelDatum> data, std::size_t paramete
   for (const ChannelDatum &one : data)
     rows.push_back(one.row * (1 / scale));
   const ModulationQuality quality = modulation_quality(rows, parameters);
-  if (data.size() >= parameters && std::isfinite(quality.condition))
+  if (data.size() >= parameters && std::isfinite(quality.weighted_variance))
     return {};
   return fail(ErrorCode::BadInput,
               fmt::format("{} channels of a set cannot tell {} (condition number {:.3g}); a "
@@ -115,7 +115,8 @@ Result<StokesFit> fit_under(std::span<const ChannelDatum> data, std::size_t para
   }
   if (common.empty() && air == nullptr)
     return put(s, solution, plain(), scale);
-  const CountCovariance c(variance, light, air, effects_of(common, s.n.size()));
+  const CommonEffects effects = effects_of(common, s.n.size());
+  const CountCovariance c(variance + effects.own, light, air, effects.shared);
   return put(s, solve(s, c), c, scale);
 }
 
@@ -192,11 +193,17 @@ std::vector<CommonError> common_errors(const ErrorPriors &priors,
   };
   add(priors.instrumental, [&](const auto &m) { return own_axes(m)[1] * m.stokes[0]; });
   add(priors.instrumental, [&](const auto &m) { return own_axes(m)[2] * m.stokes[0]; });
-  std::set<std::size_t> channels;
-  for (const ModelledDatum &m : data)
-    channels.insert(m.channel);
-  for (const std::size_t channel : channels)
-    add(priors.gain, [&](const auto &m) { return m.channel == channel ? star(m) : 0; });
+  std::map<std::size_t, std::vector<std::size_t>> channels;
+  if (priors.gain > 0)
+    for (std::size_t k = 0; k < data.size(); ++k)
+      channels[data[k].channel].push_back(k);
+  for (const auto &[channel, rows] : channels) {
+    const std::size_t first = rows.front();
+    CommonError one{std::vector<double>(rows.back() - first + 1, 0), priors.gain, first};
+    for (const std::size_t k : rows)
+      one.effect[k - first] = star(data[k]);
+    out.push_back(std::move(one));
+  }
   add(priors.transparency, star);
   const auto turn = [](const ModelledDatum &m) { // of the x axis, per radian
     return 2 * (m.datum.row[2] * m.stokes[1] - m.datum.row[1] * m.stokes[2]);
@@ -206,6 +213,11 @@ std::vector<CommonError> common_errors(const ErrorPriors &priors,
     return m.datum.row[1] * m.stokes[1] + m.datum.row[2] * m.stokes[2];
   });
   add(priors.sky, [](const ModelledDatum &m) { return m.datum.sky; });
+  add(priors.sky_p, [](const ModelledDatum &m) { // sunlit skies are polarized along it
+    const StokesRow &row = m.datum.row;
+    return m.datum.sky / row[0] *
+           (row[1] * std::cos(2 * m.scatter_rad) + row[2] * std::sin(2 * m.scatter_rad));
+  });
   add(priors.crosstalk, [](const ModelledDatum &m) { return retardance_effect(m, 0); });
   add(priors.crosstalk, [](const ModelledDatum &m) { return retardance_effect(m, pi / 4); });
   add(priors.plate_rad, plate_effect);

@@ -330,3 +330,30 @@ def test_hopeless_and_too_brief_exposures_are_called_so(umov):
     done = umov("exposure", "--instrument", "c11_imx250", "--exposure-s", 1e-9)
     told = done.err + done.out
     assert "expose longer" in told and "more aperture" not in told, told
+
+
+def test_one_bound_for_the_radius_that_is_summed(umov):
+    """umov observe refuses 4 widths and more, where the ring of the sky begins."""
+    at = ("exposure", "--instrument", "c11_imx250", "--aperture-fwhm")
+    assert umov(*at, "3.9").code == 0
+    for width in ("4", "6", "0.001"):
+        done = umov(*at, width)
+        assert done.code == 2 and f"--aperture-fwhm {width}: 0.01 to less than 4 was expected" in done.err, done.err
+
+
+@pytest.mark.parametrize("instrument, states", [("c11_imx250", 1), ("usafa16", 4), ("hwp_wollaston_1m", 4), ("moptop_2m", 4)])
+def test_time_in_whole_exposures(umov, tmp_path, instrument, states):
+    """Exposures far longer than p needs: one set of them; far shorter: as many sets as the verdict says."""
+    at = ("--instrument", instrument, "--sd-p", "0.01")
+    seconds = 0.8 if instrument == "moptop_2m" else 30  # of 6.4 s: a quarter turn is two of .8 s
+    rows, _ = rows_of(umov, tmp_path, *at, "--exposure-s", seconds)
+    sets = 2 if instrument == "moptop_2m" else states
+    assert rows["time"] < rows["time_of_frames"] == pytest.approx(sets * seconds)
+    rows, done = rows_of(umov, tmp_path, *at, "--exposure-s", "1e-4", "--mag", "12")
+    frames = re.search(r"(\d+) of them", done.err + done.out)
+    sets = rows["time_of_frames"] / 1e-4 / int(frames[1])
+    assert sets == pytest.approx(states if instrument != "moptop_2m" else 16000, rel=1e-6)
+    assert rows["time_of_frames"] > rows["time"]
+    if instrument != "moptop_2m":
+        rows, _ = rows_of(umov, tmp_path, *at)
+        assert "time_of_frames" not in rows

@@ -52,6 +52,11 @@ REFUSED = [
     ("exposure_s = 1\n[telescope]\nthroughput = 0", "no light comes through"),
     ("exposure_s = 1\n[telescope]\nthroughput = { wavelength_nm = [400, 700], value = [0, 0] }", "no light comes through"),
     ('exposure_s = 1\nlevel = "image"\nframe_px = [256, 256]\n[detector]\nsize_px = [128, 512]', "size_px = [128, 512]"),
+    ("exposure_s = 1\n[atmosphere.cloud]\nsd_mag = 50", "nothing is seen behind a cloud"),
+    ("exposure_s = 1\n[atmosphere.cloud]\ntime_s = 60", "without sd_mag"),
+    ("exposure_s = 1\n[atmosphere.sky]\nmag = 90", "-5 to 40 mag a square second of arc"),
+    ("exposure_s = 1\n[polarimeter]\ntype = \"hwp_dual_beam\"\nretardance_deg = 1", "retardance_deg = 1 there hardly changes Q and U"),
+    ("exposure_s = 1\n[polarimeter]\ntype = \"rotating_retarder\"\nretardance_deg = 1", "some 90 to 150 (131.8 tells all alike) was expected"),
     ('exposure_s = 1\nbands = ["nm:5500"]', "what air takes is known from 250 to 4000 nm"),
 ]
 
@@ -129,6 +134,7 @@ WARNED = [
     ('exposure_s = 1\nwidth_nm = 40\nbands = ["Bessell.V"]', {}, "says nothing to bands with a curve"),
     ("exposure_s = 1", {"air": "sky = { mag = 9 }"}, "more than ten times"),
     ("exposure_s = 1\nsequence = [{ analyser_deg = 45 }]", {}, "says nothing to a polarimeter"),
+    ("exposure_s = 1\nsequence = [{ analyser_deg = 0 }]", {}, "which takes everything at once"),
     ("exposure_s = 0.5\nsequence = [{ analyser_deg = 0 }, { analyser_deg = 4 }, { analyser_deg = 8 }]\n"
      '[polarimeter]\ntype = "polarizer_wheel"', {}, "condition number"),
     ("exposure_s = 1", {"start": "2018-01-21T05:09:30Z", "stop": "2018-01-21T05:09:40Z"}, "40 deg from the zenith"),
@@ -392,3 +398,10 @@ def test_stamps_of_fast_exposures_differ(scene, umov, tmp_path):
     assert done.code == 0, done.err
     counts = Table.read(tmp_path / "out/counts.ecsv")
     assert len(set(counts["time_utc"])) == len(set(counts["exposure"])) > 10
+
+
+def test_how_badly_a_weak_plate_tells_is_a_number(scene, umov):
+    """cos 2a sin^2(d/2) of d = 1 deg: V is told by sin d, U by 7.6e-5: a condition number of thousands, not of infinity."""
+    done = umov("observe", scene('exposure_s = 1\n[polarimeter]\ntype = "rotating_retarder"\nretardance_deg = 1'))
+    number = re.search(r"condition number (\S+?)\)", done.err)[1]
+    assert done.code == 3 and 1e3 < float(number) < 1e6, done.err

@@ -1,6 +1,7 @@
 """What umov reduce and calibrate refuse or warn of: every line tried."""
 import math
 import re
+import warnings
 
 import pytest
 from astropy.table import Table
@@ -366,3 +367,72 @@ def test_times_keep_their_microseconds(umov, tmp_path):
     (tmp_path / "c.csv").write_text(named_counts("ball", "2018-01-21T05:12:00.000250Z"))
     assert umov("reduce", "c.csv", "-o", "s.csv").code == 0
     assert read_csv(tmp_path / "s.csv")[0]["time_utc"] == "2018-01-21T05:12:00.000250Z"
+
+
+def test_a_set_that_comes_again(umov, tmp_path):
+    """Tables of two nights that were put together, each with its sets from 0: light of both would be one set."""
+    head, *rows = COUNTS.splitlines()
+    names = head.split(",")
+
+    def with_set(row, number, day):
+        cells = row.split(",")
+        cells[names.index("set_id")] = str(number)
+        cells[names.index("time_utc")] = cells[names.index("time_utc")].replace("2018-01-21", f"2018-01-{day}")
+        return ",".join(cells)
+
+    night = [[with_set(row, number, day) for row in rows] for number, day in ((0, 21), (1, 22), (0, 23), (2, 23))]
+    (tmp_path / "c.csv").write_text("\n".join([head, *night[0], *night[1], *night[2]]) + "\n")
+    done = umov("reduce", "c.csv")
+    line = 2 + len(rows) * 2
+    assert done.code == 3 and f"c.csv:{line}" in done.err and "set_id = 0 again after rows of set 1" in done.err, done.err
+    assert "number the sets of each on" in done.err
+    (tmp_path / "c.csv").write_text("\n".join([head, *night[0], *night[1], *night[3]]) + "\n")
+    assert umov("reduce", "c.csv", "-o", "s.csv").code == 0 and len(read_csv(tmp_path / "s.csv")) == 3
+
+
+@pytest.mark.parametrize("how", ["COMMENT pol_frame:altaz", "COMMENT pol_frame = altaz", "COMMENT pol_frame: altaz", "HISTORY pol_frame:altaz", "meta"])
+def test_headers_of_fits_as_people_write_them(umov, tmp_path, how):
+    """Of FITS as of text; astropy puts what Table.meta holds into keywords of its own."""
+    (tmp_path / "c.csv").write_text(COUNTS)
+    table = Table.read(tmp_path / "c.csv", format="ascii.csv")
+    if how == "meta":
+        table.meta = {"pol_frame": "altaz", "pupils": "neither"}
+    else:
+        table.meta = {how[:7].strip() if how.startswith("HISTORY") else "comments": [how[8:]]}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # astropy tells of each long keyword
+        table.write(tmp_path / "c.fits")
+    done = umov("reduce", "c.fits", "-o", "s.ecsv")
+    if how == "meta":
+        assert done.code == 3 and 'pupils of the header is "neither"' in done.err, done.err
+        table.meta = {"pol_frame": "altaz", "pupils": "separate"}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            table.write(tmp_path / "c.fits", overwrite=True)
+        done = umov("reduce", "c.fits", "-o", "s.ecsv")
+    assert done.code == 0 and Table.read(tmp_path / "s.ecsv").meta["pol_frame"] == "altaz", done.err
+
+
+def test_the_axis_of_the_sky_must_be_known(umov, tmp_path):
+    """An error of the sky's polarization widens q and u along the normal of the scattering plane, which counts must tell; q_scat of
+    counts that do not is no number (it was q)."""
+    (tmp_path / "c.csv").write_text(COUNTS)
+    done = umov("reduce", "c.csv", "--sky-p-sd", ".02")
+    assert done.code == 3 and "pa_scat" in done.err and "sky_p_sd" in done.err, done.err
+    assert umov("reduce", "c.csv", "-o", "s.csv").code == 0
+    assert read_csv(tmp_path / "s.csv")[0]["q_scat"] in ("", "nan")
+
+    def errors(axis, sd):
+        head, *rows = COUNTS.splitlines()
+        (tmp_path / "c.csv").write_text("\n".join([head + ",pa_scat", *(f"{row},{axis}" for row in rows)]) + "\n")
+        assert umov("reduce", "c.csv", "--sky-p-sd", sd, "-o", "s.csv").code == 0
+        row = read_csv(tmp_path / "s.csv")[0]
+        return float(row["cov_qq"]), float(row["cov_uu"])
+
+    plain = errors(0, 0)
+    # b = 120 e in each of four channels of w0 about .5: a sky of 240 e against I = 5100 e (worked set): .02 x 240/5100.
+    along, across = errors(0, .02), errors(45, .02)
+    added = (.02 * 240 / 5100) ** 2
+    for found, index in ((along, 0), (across, 1)):
+        assert found[index] - plain[index] == pytest.approx(added, rel=.05)  # channels' gains differ by 2 %
+        assert abs(found[1 - index] - plain[1 - index]) < .05 * added

@@ -70,11 +70,13 @@ const std::vector<std::string> &polarimeter_names();
 
 /// How well a set of rows tells the first 3 or all 4 parameters.
 struct ModulationQuality {
-  double condition = 0; ///< largest over smallest singular value; infinite where one is missing
+  double condition = 0;         ///< largest over smallest singular value; infinite where that is 0
   double weighted_variance = 0; ///< tr (W^T W)^-1 (Sabatke et al. 2000)
   /// Mean of it over Q and U, of which p is made: their variance in that of a row.
   double linear_variance = 0;
-  std::string missing; ///< "Q", "U" or "V", of what cannot be told; else empty
+  /// "Q", "U" or "V", of what cannot be told (a condition number above 1000); else empty. The
+  /// variances are infinite where something is.
+  std::string missing;
 };
 /// Of `parameters` columns of the rows.
 ModulationQuality modulation_quality(const std::vector<StokesRow> &rows, std::size_t parameters);

@@ -1,6 +1,7 @@
 #pragma once
 // Instruments as files, and what a scenario says of an observation.
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -47,6 +48,13 @@ struct ScenarioObservation {
   FramePhotometry photometry = FramePhotometry::Aperture;
   bool cuts_trail = false; ///< each trail is cut into a light curve of its own
 };
+
+/// Brightness that a fixed sky may have, AB [mag / arcsec2]: from daylight to below any night.
+inline constexpr std::array<double, 2> sky_mag_range{-5, 40};
+
+/// BadInput for a radius that is summed [widths of a star] which reaches into the ring of the sky,
+/// or is none. `name`: as the message begins.
+Result<void> check_aperture(const std::string &name, double fwhm);
 
 /// BadInput for a band at which nothing is known of what air takes.
 Result<void> check_air_reaches(const std::vector<Band> &bands, const Where &where);

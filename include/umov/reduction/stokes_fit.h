@@ -21,8 +21,11 @@ struct ChannelDatum {
 
 /// Something that is not known and moves several channels together.
 struct CommonError {
-  std::vector<double> effect; ///< on each channel [e] per unit
-  double sd = 0;              ///< of its prior
+  /// On each channel from `first` on [e] per unit; on the others it has none. That of one channel
+  /// by itself costs a fit no more than the channel does.
+  std::vector<double> effect;
+  double sd = 0; ///< of its prior
+  std::size_t first = 0;
 };
 
 /// Stokes parameters of a set.
@@ -51,6 +54,7 @@ struct ErrorPriors {
   double angle_rad = 0;    ///< of the instrument's x axis
   double efficiency = 0;   ///< of q, u
   double sky = 0;          ///< of the whole sky, relative
+  double sky_p = 0;        ///< of the sky's polarization along the normal of the scattering plane
   /// Of two retardances before the polarimeter, along its x axis and at 45 deg to it [rad]: what
   /// mirrors make of U, and of Q, in V and back.
   double crosstalk = 0;
@@ -67,6 +71,7 @@ struct ModelledDatum {
   double plate_rad = 0;           ///< angle of a plate behind the telescope, from that x axis
   double retardance_rad = pi;     ///< of the plate
   double turn_rad_s = 0;          ///< of the x axis
+  double scatter_rad = 0;         ///< position angle of the normal of the scattering plane
 };
 /// Effects of the priors on channels of one exposure or of many.
 std::vector<CommonError> common_errors(const ErrorPriors &priors,

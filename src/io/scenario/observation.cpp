@@ -97,6 +97,13 @@ Result<void> read_sky(const Node &air, SkyOptions &out) {
                                 name),
                     node.where(name));
     out.mag = node.number("mag", 0);
+    const auto &[bright, dark] = sky_mag_range;
+    if (!(*out.mag >= bright && *out.mag <= dark))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("mag = {}: {} to {} mag a square second of arc was expected; the "
+                              "darkest skies have 22, twilight 10",
+                              *out.mag, bright, dark),
+                  node.where("mag"));
   } else if (out.p != usual.p) {
     return fail(ErrorCode::BadInput,
                 "p without mag: the polarization of dark sky, twilight and moonlight is computed "
@@ -153,7 +160,20 @@ Result<void> read_atmosphere(const Node &top, ScenarioObservation &out) {
   if (air.has("cloud")) {
     UMOV_ASSIGN(cloud, air.child("cloud"));
     UMOV_TRY(read_at_least(cloud, "sd_mag", 0, out.cloud_sd_mag));
+    if (constexpr double most = 3; out.cloud_sd_mag > most)
+      return fail(
+          ErrorCode::BadInput,
+          fmt::format("sd_mag = {}: nothing is seen behind a cloud that changes by so much; "
+                      "0 to {} mag was expected, .05 of thin cloud",
+                      out.cloud_sd_mag, most),
+          cloud.where("sd_mag"));
     UMOV_TRY(read_at_least(cloud, "time_s", 1e-6, out.cloud_time_s));
+    if (cloud.has("time_s") && !cloud.has("sd_mag"))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("time_s = {} without sd_mag, which says how much the cloud changes: "
+                              "there is none. Add sd_mag, as 0.05, or leave cloud out",
+                              out.cloud_time_s),
+                  cloud.where("time_s"));
   }
   return {};
 }
@@ -238,14 +258,9 @@ Result<void> read_exposures(const Node &node, const std::string &folder, Scenari
                             out.cadence_s, out.exposure_s),
                 node.where("cadence_s"));
   UMOV_TRY(read_sequence(node, out));
-  UMOV_TRY(read_at_least(node, "aperture_fwhm", 0.01, out.aperture_fwhm));
-  if (constexpr double ring = 4; out.aperture_fwhm >= ring)
-    return fail(
-        ErrorCode::BadInput,
-        fmt::format("aperture_fwhm = {}: the sky is taken from {} to 6 widths, and would hold "
-                    "the star; less than {} was expected",
-                    out.aperture_fwhm, ring, ring),
-        node.where("aperture_fwhm"));
+  out.aperture_fwhm = node.number("aperture_fwhm", out.aperture_fwhm);
+  if (const auto fits = check_aperture("aperture_fwhm =", out.aperture_fwhm); !fits)
+    return fail(fits.error().code, fits.error().message, node.where("aperture_fwhm"));
   UMOV_TRY(read_at_least(node, "clock_error_s", 0, out.clock_error_s));
   return read_frames(node, folder, out);
 }
@@ -255,6 +270,19 @@ Result<void> read_exposures(const Node &node, const std::string &folder, Scenari
 } // namespace umov::scenario
 
 namespace umov {
+
+Result<void> check_aperture(const std::string &name, double fwhm) {
+  constexpr ObservingConditions usual;
+  constexpr double least = 0.01;
+  if (fwhm >= least && fwhm < usual.sky_inner_fwhm)
+    return {};
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("{} {}: {:g} to less than {:g} was expected; the sky is taken from {:g} to "
+                  "{:g} widths, and would hold the star",
+                  name, fwhm, least, usual.sky_inner_fwhm, usual.sky_inner_fwhm,
+                  usual.sky_outer_fwhm));
+}
 
 Result<void> check_air_reaches(const std::vector<Band> &bands, const Where &where) {
   for (const Band &band : bands)

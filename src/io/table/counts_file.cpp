@@ -1,6 +1,7 @@
 #include <umov/io/counts_file.h>
 
 #include "io/table/analyser_axes.h"
+#include "io/table/fits_read.h"
 #include "io/table/text_table.h"
 
 #include <algorithm>
@@ -329,6 +330,27 @@ private:
   std::map<std::pair<std::string, std::string>, Epoch<Utc>> latest_; ///< by name and band
 };
 
+/// Sets of an object in a band, each of which is one piece of the table: tables that were put
+/// together begin their numbers again, and light of two nights would be one set.
+class SetsInARow {
+public:
+  /// The set after which this row's comes a second time.
+  std::optional<std::int64_t> broken_by(const CountRow &row) {
+    Sets &sets = sets_[{row.name, row.band}];
+    if (!sets.seen.empty() && sets.last == row.set)
+      return std::nullopt;
+    const std::int64_t before = std::exchange(sets.last, row.set);
+    return sets.seen.insert(row.set).second ? std::nullopt : std::optional(before);
+  }
+
+private:
+  struct Sets {
+    std::set<std::int64_t> seen;
+    std::int64_t last = 0;
+  };
+  std::map<std::pair<std::string, std::string>, Sets> sets_; ///< by name and band
+};
+
 /// Numbers of exposures where a table has none: rows of one time are one, unless a channel comes
 /// again. Sequences of analysers at times of their own are several, each with its own scintillation
 /// and cloud.
@@ -378,7 +400,7 @@ void warn_of_rows(std::size_t dropped, std::size_t negative, std::size_t all,
 
 Result<CountsFile> read_counts_text(std::string_view text, const std::string &file,
                                     Diagnostics &diagnostics) {
-  UMOV_ASSIGN(table, read_text_table(text, file));
+  UMOV_ASSIGN(table, is_fits(text) ? read_fits_table(text, file) : read_text_table(text, file));
   if (table.columns.empty())
     return fail(ErrorCode::BadInput, "holds no table: names of columns and rows were expected",
                 {file});
@@ -390,6 +412,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   std::size_t dropped = 0, negative = 0;
   RowsOfATime rows_of_time;
   RisingTimes rising;
+  SetsInARow sets;
   ExposureNumbers exposures;
   const bool has_exposures = cells.has("exposure");
   std::vector<std::size_t> lines;
@@ -423,6 +446,14 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
       return fail(ErrorCode::BadInput,
                   fmt::format("times go back, from {} to {}; sort the rows by time",
                               to_iso(*before), to_iso(row.time)),
+                  cells.where(k));
+    if (const auto between = sets.broken_by(row))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("set_id = {} again after rows of set {}{}: rows of a set follow each "
+                              "other. Where tables were put together, number the sets of each on "
+                              "from the last of the one before",
+                              row.set, *between,
+                              row.name.empty() ? "" : " of " + printable(row.name)),
                   cells.where(k));
     if (rows_of_time.has_twice(row, has_exposures))
       return fail(

@@ -31,6 +31,7 @@ private:
   Result<void> read_columns(TextTable &out);
   Result<void> add_column(int column, TextTable &out);
   Result<void> read_cell(std::size_t column, std::size_t row, TextTable &out);
+  void read_card(int number, TextTable &out);
   void read_notes(TextTable &out);
   [[nodiscard]] std::string key(const std::string &name);
   [[nodiscard]] tl::unexpected<Error> refuse(const std::string &what) const {
@@ -61,7 +62,25 @@ std::string FitsReader::key(const std::string &name) {
   return status == 0 ? value : "";
 }
 
-/// "COMMENT pol_frame: altaz" of the part of the file that is current.
+/// A card of its own, as astropy writes the notes of a table: "PUPILS  = 'separate'", or "HIERARCH
+/// pol_frame = 'altaz'". Keywords of eight letters are capitals in all FITS files, whatever a
+/// writer meant.
+void FitsReader::read_card(int number, TextTable &out) {
+  char name[FLEN_KEYWORD] = {}, value[FLEN_VALUE] = {}, card[FLEN_CARD] = {};
+  int status = 0;
+  fits_read_record(file_.get(), number, card, &status);
+  fits_read_keyn(file_.get(), number, name, value, nullptr, &status);
+  std::string_view text = trimmed(std::string_view(value));
+  if (status != 0 || fits_get_keyclass(card) != TYP_USER_KEY || text.empty())
+    return;
+  if (text.size() > 1 && text.starts_with('\'') && text.ends_with('\''))
+    text = trimmed(text.substr(1, text.size() - 2));
+  const std::string key(name);
+  const bool is_long = std::string_view(card).starts_with("HIERARCH");
+  out.notes.try_emplace(is_long || key == "POLCCONV" ? key : lower_case(key), text);
+}
+
+/// "COMMENT pol_frame: altaz", or a card of its own, of the part of the file that is current.
 void FitsReader::read_notes(TextTable &out) {
   int cards = 0, status = 0;
   fits_get_hdrspace(file_.get(), &cards, nullptr, &status);
@@ -69,11 +88,10 @@ void FitsReader::read_notes(TextTable &out) {
     char card[FLEN_CARD] = {};
     fits_read_record(file_.get(), k, card, &status);
     const std::string_view text(card);
-    if (!text.starts_with("COMMENT ") && !text.starts_with("HISTORY "))
-      continue;
-    const std::string_view words = trimmed(text.substr(8));
-    if (const std::size_t colon = words.find(": "); colon != std::string_view::npos)
-      out.notes[std::string(words.substr(0, colon))] = trimmed(words.substr(colon + 2));
+    if (text.starts_with("COMMENT ") || text.starts_with("HISTORY "))
+      put_note(trimmed(text.substr(8)), out.notes);
+    else
+      read_card(k, out);
   }
   fits_clear_errmsg();
 }

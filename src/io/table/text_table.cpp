@@ -75,8 +75,6 @@ std::optional<std::pair<std::string, std::string>> yaml_pair(std::string_view te
   return std::pair(std::string(trimmed(text.substr(0, colon))), value);
 }
 
-/// A line of the header: `# - {name: ..., unit: ...}` or `# - {"key": "value"}` of ECSV, the same
-/// with YAML's quotes, or `# key: value`.
 /// A line "key: value" of people, who leave the space out or write "key = value": where the key
 /// ends; npos for other words.
 std::size_t end_of_key(std::string_view text) {
@@ -91,6 +89,17 @@ std::size_t end_of_key(std::string_view text) {
   return is_key ? mark : std::string_view::npos;
 }
 
+} // namespace
+
+void put_note(std::string_view words, std::map<std::string, std::string> &notes) {
+  if (const std::size_t end = end_of_key(words); end != std::string_view::npos)
+    notes[std::string(trimmed(words.substr(0, end)))] = trimmed(words.substr(end + 1));
+}
+
+namespace {
+
+/// A line of the header: `# - {name: ..., unit: ...}` or `# - {"key": "value"}` of ECSV, the same
+/// with YAML's quotes, or `# key: value`.
 void read_note(std::string_view line, TextTable &table) {
   std::string_view text = trimmed(line.substr(1));
   auto &notes = table.notes;
@@ -109,8 +118,7 @@ void read_note(std::string_view line, TextTable &table) {
       notes.insert_or_assign(std::move(pair->first), std::move(pair->second));
     return;
   }
-  if (const std::size_t end = end_of_key(text); end != std::string_view::npos)
-    notes[std::string(trimmed(text.substr(0, end)))] = trimmed(text.substr(end + 1));
+  put_note(text, notes);
 }
 
 Result<void> add_header(TextTable &out, const std::vector<CsvCell> &cells, const Where &where) {

@@ -41,6 +41,10 @@ private:
 /// row or a column that stands twice.
 Result<TextTable> read_text_table(std::string_view text, const std::string &file);
 
+/// Words of a header as people write them, "key: value", "key:value" or "key = value"; nothing
+/// where they are other words.
+void put_note(std::string_view words, std::map<std::string, std::string> &notes);
+
 /// Angles of polarization that the header says to be other than from north through east: BadInput.
 Result<void> check_polcconv(const TextTable &table, const std::string &file);
 

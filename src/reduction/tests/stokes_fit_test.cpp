@@ -1,5 +1,6 @@
 #include "reduction/tests/anchor.h"
 
+#include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
 #include <umov/instrument/draws.h>
@@ -98,6 +99,53 @@ TEST(StokesFit, ErrorsOfPlatesMirrorsAndClocksWidenIt) { // seven digits; differ
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_NEAR(std::sqrt(f.covariance[k][k]) / of(name + "_sd_" + "quv"[k]), 1, 1e-6)
           << name << k;
+  }
+}
+
+TEST(StokesFit, GainsOfSingleCountsAreAsManyNumbersAsCounts) {
+  // A matrix of all counts by all would be 9e6 numbers, and its inverse 2.7e10 products.
+  constexpr std::size_t many = 3000;
+  std::vector<ModelledDatum> states;
+  for (std::size_t k = 0; k < many; ++k) {
+    states.push_back(four_retarder_states()[k % 4]);
+    states.back().channel = k;
+  }
+  ErrorPriors priors;
+  priors.gain = .005;
+  std::size_t numbers = 0;
+  for (const CommonError &one : common_errors(priors, states))
+    numbers += one.effect.size();
+  EXPECT_EQ(numbers, many);
+}
+
+TEST(StokesFit, GainsOfSingleCountsAreThoseOfTheWholeMatrix) { // the same sums in another order
+  auto states = four_retarder_states();
+  for (const ModelledDatum &state : four_retarder_states())
+    states.push_back(state), states.back().channel = states.size();
+  states[7].channel = states[2].channel; // one gain is common to two counts
+  std::vector<ChannelDatum> data;
+  for (const ModelledDatum &state : states)
+    data.push_back(state.datum);
+  data[1].counts *= 1.004;
+  ErrorPriors priors;
+  priors.gain = .005;
+  priors.sky_p = .02; // and something that concerns all
+  for (std::size_t k = 0; k < data.size(); ++k)
+    data[k].sky = states[k].datum.sky = 1e4, data[k].counts += 1e4;
+  const auto common = common_errors(priors, states);
+  std::vector<CommonError> whole;
+  for (const CommonError &one : common) {
+    whole.push_back({std::vector<double>(data.size(), 0), one.sd});
+    std::ranges::copy(one.effect, whole.back().effect.begin() + static_cast<long>(one.first));
+  }
+  EXPECT_EQ(common.size(), data.size()); // seven gains and the sky
+  const auto a = fit_stokes(data, 4, common), b = fit_stokes(data, 4, whole);
+  ASSERT_TRUE(a && b);
+  EXPECT_NEAR(a->chi2 / b->chi2, 1, 1e-9);
+  EXPECT_NEAR(a->minus_2_log_likelihood / b->minus_2_log_likelihood, 1, 1e-12);
+  for (std::size_t p = 0; p < 4; ++p) {
+    EXPECT_NEAR(a->stokes[p] / b->stokes[p], 1, 1e-10);
+    EXPECT_NEAR(a->covariance[p][p] / b->covariance[p][p], 1, 1e-10);
   }
 }
 
