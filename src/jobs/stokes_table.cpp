@@ -13,15 +13,6 @@ namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Standard deviation of q and u that the interval of p is made with. The construction takes both
-/// as known alike; where one is known twice as well (in variance) the larger stands for both: where
-/// p lies along the other the interval is too wide then, and nowhere too narrow.
-double sd_of_interval(const LinearCovariance &c) {
-  const double mean = (c[0][0] + c[1][1]) / 2, half = std::hypot((c[0][0] - c[1][1]) / 2, c[0][1]);
-  constexpr double unlike = 2;
-  return std::sqrt(mean + half > unlike * (mean - half) ? mean + half : mean);
-}
-
 /// Columns of the result.
 class StokesTableWriter {
 public:
@@ -137,7 +128,7 @@ private:
       out[9] = c[2][2];
     }
     const auto p = polarization_of(q, u, {{{c[0][0], c[0][1]}, {c[1][0], c[1][1]}}});
-    const double sd = sd_of_interval({{{c[0][0], c[0][1]}, {c[1][0], c[1][1]}}});
+    const double sd = interval_sd({{{c[0][0], c[0][1]}, {c[1][0], c[1][1]}}});
     const auto interval = degree_interval(p.p / sd);
     out[10] = p.p;
     out[11] = p.debiased;

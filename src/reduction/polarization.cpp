@@ -108,6 +108,12 @@ PolarizationInterval degree_interval(double x, double level) {
   return out;
 }
 
+double interval_sd(const LinearCovariance &c) {
+  const double mean = (c[0][0] + c[1][1]) / 2, half = std::hypot((c[0][0] - c[1][1]) / 2, c[0][1]);
+  constexpr double unlike = 2;
+  return std::sqrt(mean + half > unlike * (mean - half) ? mean + half : mean);
+}
+
 double angle_half_width(double x) {
   constexpr double level = 0.682689492137086;
   constexpr double normal_from = 20; // there the density is that of a normal angle to 1e-3
