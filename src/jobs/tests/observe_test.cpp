@@ -63,7 +63,7 @@ TEST(Programme, WarnsOfWhatHelpsLittle) {
   mosaic.instrument.polarimeter.angles_deg = {90, 45, 135, 0};
   ASSERT_TRUE(make(mosaic, bands, diagnostics));
   ASSERT_EQ(diagnostics.warnings().size(), 2u);
-  EXPECT_NE(diagnostics.warnings()[1].text().find("analyser_deg"), std::string::npos);
+  EXPECT_NE(diagnostics.warnings()[1].text().find("takes everything at once"), std::string::npos);
 }
 
 /// A place under the full Moon at midnight, away from it.
