@@ -351,6 +351,41 @@ private:
   std::map<std::pair<std::string, std::string>, Sets> sets_; ///< by name and band
 };
 
+/// What rows of a table are to each other: times rise, sets stand together, nothing comes twice.
+class RowOrder {
+public:
+  Result<void> check(const CountRow &row, bool has_exposures, const Where &where) {
+    if (const auto before = rising_.later_than(row))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("times go back, from {} to {}; sort the rows by time",
+                              to_iso(*before), to_iso(row.time)),
+                  where);
+    if (const auto between = sets_.broken_by(row))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("set_id = {} again after rows of set {}{}: rows of a set follow each "
+                              "other. Where tables were put together, number the sets of each on "
+                              "from the last of the one before",
+                              row.set, *between,
+                              row.name.empty() ? "" : " of " + printable(row.name)),
+                  where);
+    if (rows_of_time_.has_twice(row, has_exposures))
+      return fail(
+          ErrorCode::BadInput,
+          row.channel.empty() || !has_exposures
+              ? std::string("the same row a second time; take one of them out")
+              : fmt::format("channel \"{}\" a second time in this exposure; take one of them "
+                            "out",
+                            printable(row.channel)),
+          where);
+    return {};
+  }
+
+private:
+  RowsOfATime rows_of_time_;
+  RisingTimes rising_;
+  SetsInARow sets_;
+};
+
 /// Numbers of exposures where a table has none: rows of one time are one, unless a channel comes
 /// again. Sequences of analysers at times of their own are several, each with its own scintillation
 /// and cloud.
@@ -410,9 +445,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   CountsFile out;
   out.notes = table.notes;
   std::size_t dropped = 0, negative = 0;
-  RowsOfATime rows_of_time;
-  RisingTimes rising;
-  SetsInARow sets;
+  RowOrder order;
   ExposureNumbers exposures;
   const bool has_exposures = cells.has("exposure");
   std::vector<std::size_t> lines;
@@ -442,28 +475,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
       continue;
     }
     UMOV_TRY(check_row(row, cells.where(k)));
-    if (const auto before = rising.later_than(row))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("times go back, from {} to {}; sort the rows by time",
-                              to_iso(*before), to_iso(row.time)),
-                  cells.where(k));
-    if (const auto between = sets.broken_by(row))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("set_id = {} again after rows of set {}{}: rows of a set follow each "
-                              "other. Where tables were put together, number the sets of each on "
-                              "from the last of the one before",
-                              row.set, *between,
-                              row.name.empty() ? "" : " of " + printable(row.name)),
-                  cells.where(k));
-    if (rows_of_time.has_twice(row, has_exposures))
-      return fail(
-          ErrorCode::BadInput,
-          row.channel.empty() || !has_exposures
-              ? std::string("the same row a second time; take one of them out")
-              : fmt::format("channel \"{}\" a second time in this exposure; take one of them "
-                            "out",
-                            printable(row.channel)),
-          cells.where(k));
+    UMOV_TRY(order.check(row, has_exposures, cells.where(k)));
     negative += is_below_nothing(row) ? 1u : 0u;
     out.rows.push_back(std::move(row));
     lines.push_back(table.lines[k]);
