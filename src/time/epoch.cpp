@@ -146,7 +146,14 @@ Result<Epoch<Utc>> utc_from_iso(std::string_view text) {
 }
 
 Result<Epoch<Utc>> utc_from_iso_or_day(std::string_view text) {
-  return is_date(text) ? utc_from_iso(std::string(text) + "T00:00:00Z") : utc_from_iso(text);
+  if (!is_date(text))
+    return utc_from_iso(text);
+  auto begin = utc_from_iso(std::string(text) + "T00:00:00Z");
+  if (!begin) { // the day is quoted as it was typed
+    std::string &said = begin.error().message;
+    said.erase(said.find("T00:00:00Z"), std::string_view("T00:00:00Z").size());
+  }
+  return begin;
 }
 
 std::string to_iso(Epoch<Utc> time, int digits) {

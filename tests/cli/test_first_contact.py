@@ -97,10 +97,29 @@ def test_a_slip_of_the_unit_is_noticed(umov, scenario, tmp_path):
      ["lat_deg = ", "step_s = -20", "nm:x"]),
     ([('default = "paper_al"', 'default = "solar_cell"\nother = "gildd"'), ('attitude = { mode = "nadir" }', 'attitude = { mode = "nadirr" }'), ('set = "paper_rgb"', 'set = "nm:x"')],
      ['"cell_', "gildd", "nadirr", "nm:x"]),
+    # Keys and values of one table:
+    ([("lat_deg = 20.7083", "lat_dg = 120"), ("lon_deg = -156.2578", "lon_deg = -956"), ("alt_m = 3058", "alt_m = 3e9")],
+     ['"lat_dg" in [observer]. Did you mean "lat_deg"?', "lat_deg = 120;", "lon_deg = -956;", "alt_m = 3"]),
+    ([("step_s = 20", "step_s = -20\nfoo = 3"), ("alt_min_deg = 10", "alt_min_deg = 100"), ("sun_alt_max_deg = -6", "sun_alt_max_deg = -600"),
+      ("start = 2018-01-21T05:08:00Z", 'start = "2018-02-30"')],
+     ['"foo"', "step_s = -20;", "alt_min_deg = 100;", "sun_alt_max_deg = -600;", '"2018-02-30" is not in the calendar']),
+    ([('unit = "m", up = "+Z", normals = "flat"', 'unit = "m", up = "+Z", normals = "flatt", crease_deg = 300'),
+      ('attitude = { mode = "nadir" }', 'attitude = { mode = "spin", axis = "Z", period_s = 0, point = "+X" }'),
+      ("norad = 20580", "norad = -1")],
+     ['normals = "flatt"', "crease_deg = 300;", "axis: a body axis", "period_s = 0;", 'point has no meaning with mode = "spin"', "norad = -1;"]),
+    ([('set = "paper_rgb"', 'set = ["nm:x", "Besell.V"]\nmag_system = "ABB"'), ('formats = ["ecsv", "csv", "html"]', 'formats = ["csvv", "htm"]\npol_frame = "equatoreal"'),
+      ('default = "paper_al"', 'default = "mine"\n[material.mine]\nindex = "nosuch.yml"\ndistribution = { model = "ggx", alpha = -3 }\nshadowing = "smth"')],
+     ['"nm:x"', '"Besell.V"', 'mag_system = "ABB"', '"csvv"', '"htm"', 'pol_frame = "equatoreal"', "nosuch.yml", "alpha = -3;", 'shadowing = "smth"']),
+    # Files that are not there, of all tables:
+    ([("/hst.tle", "/nosuch.tle"), ("cube.obj", "nosuch.obj")], ["nosuch.tle: no such file", "nosuch.obj: no such file"]),
+    ([("/hst.tle", "/nosuch.tle"), ("cube.obj", "nosuch.obj"), ('default = "paper_al"', 'default = "mine"\n[material.mine]\ntable = "nosuch.csv"')],
+     ["nosuch.tle: no such file", "nosuch.obj: no such file", "nosuch.csv: no such file"]),
 ])
 def test_hints_by_meaning_and_all_slips_at_once(umov, scenario, changes, words):
     done = umov("run", scenario(*[c for c in changes if c != ("pol", "pol")]), "--dry-run")
     assert done.code == 3 and all(word in done.err for word in words), done.err
+    told = done.err.removeprefix("error: ").split("\n  and ")
+    assert len(told) == len(set(told)) and "T00:00:00Z" not in done.err  # each once, as it was written
 
 
 def test_a_spin_starts_with_the_scenario(umov, scenario, tmp_path):

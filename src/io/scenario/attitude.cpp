@@ -74,26 +74,29 @@ Result<Direction> read_direction(const Node &node, const char *name, Target fall
 
 Result<void> forbid(const Node &node, const std::string &mode,
                     std::initializer_list<const char *> names) {
+  Problems problems;
   for (const char *name : names)
     if (node.has(name))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} has no meaning with {}; leave it out", name, mode),
-                  node.where(name));
-  return {};
+      problems.add({ErrorCode::BadInput,
+                    fmt::format("{} has no meaning with {}; leave it out", name, mode),
+                    node.where(name)});
+  return problems.told();
 }
 
 Result<TwoAxisLaw> read_two_axis(const Node &node) {
   TwoAxisLaw law;
   const bool is_nadir = node.text("mode", "") == "nadir";
-  UMOV_TRY(forbid(node, is_nadir ? "mode = \"nadir\"" : "two axes (point, at, then, toward)",
-                  {"quaternion", "axis", "rate_deg_s", "period_s", "epoch", "start", "inertia",
-                   "file", "pieces"}));
+  Problems problems;
+  problems.went(forbid(node, is_nadir ? "mode = \"nadir\"" : "two axes (point, at, then, toward)",
+                       {"quaternion", "axis", "rate_deg_s", "period_s", "epoch", "start", "inertia",
+                        "file", "pieces"}));
   if (is_nadir)
-    UMOV_TRY(forbid(node, "mode = \"nadir\"", {"point", "at", "then", "toward"}));
-  UMOV_ASSIGN(point, read_axis(node, "point", law.point));
-  UMOV_ASSIGN(at, read_direction(node, "at", Target::Nadir));
-  UMOV_ASSIGN(then, read_axis(node, "then", law.then));
-  UMOV_ASSIGN(toward, read_direction(node, "toward", Target::Velocity));
+    problems.went(forbid(node, "mode = \"nadir\"", {"point", "at", "then", "toward"}));
+  const auto point = problems.taken(read_axis(node, "point", law.point), law.point);
+  const auto at = problems.taken(read_direction(node, "at", Target::Nadir), Direction{});
+  const auto then = problems.taken(read_axis(node, "then", law.then), law.then);
+  const auto toward = problems.taken(read_direction(node, "toward", Target::Velocity), Direction{});
+  UMOV_TRY(problems.told());
   const auto radians = [&](const char *name) {
     return Angle::degrees(node.number(name, 0)).radians();
   };
@@ -136,27 +139,25 @@ Result<Epoch<Utc>> epoch_of(const Node &node, const std::optional<Epoch<Utc>> &b
 }
 
 Result<SpinLaw> read_spin(const Node &node, const std::optional<Epoch<Utc>> &begin) {
-  UMOV_TRY(forbid(node, "mode = \"spin\"", pointing_keys));
-  UMOV_TRY(forbid(node, "mode = \"spin\"", {"inertia", "file", "pieces"}));
+  Problems problems;
+  problems.went(forbid(node, "mode = \"spin\"", pointing_keys));
+  problems.went(forbid(node, "mode = \"spin\"", {"inertia", "file", "pieces"}));
   SpinLaw law;
-  UMOV_ASSIGN(axis, read_axis(node, "axis", law.axis));
-  law.axis = axis;
+  law.axis = problems.taken(read_axis(node, "axis", law.axis), law.axis);
   if (node.has("rate_deg_s") == node.has("period_s"))
-    return fail(ErrorCode::BadInput, "mode = \"spin\" needs rate_deg_s or period_s, one of them",
-                node.where("mode"));
+    problems.add({ErrorCode::BadInput, "mode = \"spin\" needs rate_deg_s or period_s, one of them",
+                  node.where("mode")});
   if (node.has("rate_deg_s") && !node.get("rate_deg_s")->is_number())
-    return fail(ErrorCode::BadInput, "rate_deg_s: a number was expected with mode = \"spin\"",
-                node.where("rate_deg_s"));
+    problems.add({ErrorCode::BadInput, "rate_deg_s: a number was expected with mode = \"spin\"",
+                  node.where("rate_deg_s")});
   const double period = node.number("period_s", 1);
   if (period == 0)
-    return fail(ErrorCode::BadInput, "period_s = 0; another number was expected",
-                node.where("period_s"));
+    problems.add(wrong_value(node, "period_s", 0, "another number"));
+  law.epoch = problems.taken(epoch_of(node, begin), Epoch<Utc>{});
+  law.start = problems.taken(read_start(node), StartLaw{});
+  UMOV_TRY(problems.told());
   law.rate_rad_s = node.has("rate_deg_s") ? Angle::degrees(node.number("rate_deg_s", 0)).radians()
                                           : 2 * pi / period;
-  UMOV_ASSIGN(epoch, epoch_of(node, begin));
-  law.epoch = epoch;
-  UMOV_ASSIGN(start, read_start(node));
-  law.start = start;
   return law;
 }
 
@@ -179,11 +180,7 @@ Result<void> read_inertia(const Node &node, TumbleLaw &law) {
   return {};
 }
 
-Result<TumbleLaw> read_tumble(const Node &node, const std::optional<Epoch<Utc>> &begin) {
-  UMOV_TRY(forbid(node, "mode = \"tumble\"", pointing_keys));
-  UMOV_TRY(forbid(node, "mode = \"tumble\"", {"axis", "period_s", "file", "pieces"}));
-  TumbleLaw law;
-  UMOV_TRY(read_inertia(node, law));
+Result<Vec3<Body>> read_rates(const Node &node) {
   UMOV_ASSIGN(rate, node.numbers("rate_deg_s"));
   if (rate.size() != 3)
     return fail(ErrorCode::BadInput,
@@ -191,11 +188,19 @@ Result<TumbleLaw> read_tumble(const Node &node, const std::optional<Epoch<Utc>> 
                             "[x, y, z] in body axes",
                             rate.size()),
                 node.where("rate_deg_s"));
-  law.rate_rad_s = Vec3<Body>{rate[0], rate[1], rate[2]} * (pi / 180);
-  UMOV_ASSIGN(epoch, epoch_of(node, begin));
-  law.epoch = epoch;
-  UMOV_ASSIGN(start, read_start(node));
-  law.start = start;
+  return Vec3<Body>{rate[0], rate[1], rate[2]} * (pi / 180);
+}
+
+Result<TumbleLaw> read_tumble(const Node &node, const std::optional<Epoch<Utc>> &begin) {
+  Problems problems;
+  problems.went(forbid(node, "mode = \"tumble\"", pointing_keys));
+  problems.went(forbid(node, "mode = \"tumble\"", {"axis", "period_s", "file", "pieces"}));
+  TumbleLaw law;
+  problems.went(read_inertia(node, law));
+  law.rate_rad_s = problems.taken(read_rates(node), Vec3<Body>{});
+  law.epoch = problems.taken(epoch_of(node, begin), Epoch<Utc>{});
+  law.start = problems.taken(read_start(node), StartLaw{});
+  UMOV_TRY(problems.told());
   return law;
 }
 
@@ -347,34 +352,15 @@ std::string attitude_toml(const AttitudeLaw &law) {
   return std::visit([](const auto &one) { return law_toml(one); }, law);
 }
 
-Result<MovingJoint> read_part(const Node &node) {
-  MovingJoint out;
-  out.joint.name = node.text("name", "");
-  out.joint.on = node.text("on", "");
-  if (!node.has("nodes"))
-    UMOV_TRY(node.require("groups"));
-  for (const auto &[key, list] :
-       {std::pair{"groups", &out.joint.groups}, {"nodes", &out.joint.nodes}})
-    if (node.has(key)) {
-      UMOV_ASSIGN(names, node.strings(key));
-      *list = names;
-    }
-  UMOV_ASSIGN(axis, read_axis(node, "axis", out.joint.axis));
-  UMOV_ASSIGN(face, read_axis(node, "face", out.joint.face));
-  out.joint.axis = axis;
-  out.joint.face = face;
-  if (node.has("pivot_m")) {
-    UMOV_ASSIGN(v, node.numbers("pivot_m"));
-    if (v.size() != 3)
-      return fail(ErrorCode::BadInput, "pivot_m: 3 numbers were expected, [x, y, z]",
-                  node.where("pivot_m"));
-    out.joint.pivot_m = {v[0], v[1], v[2]};
-  }
+namespace {
+
+using Motion = decltype(MovingJoint::motion);
+
+Result<Motion> read_motion(const Node &node) {
   if (!node.has("angle_deg")) {
     UMOV_TRY(forbid(node, "toward", {"time"}));
     UMOV_ASSIGN(toward, read_direction(node, "toward", Target::Sun));
-    out.motion = toward;
-    return out;
+    return Motion{toward};
   }
   UMOV_TRY(forbid(node, "angle_deg", {"toward"}));
   UMOV_ASSIGN(angles, node.numbers("angle_deg"));
@@ -382,8 +368,7 @@ Result<MovingJoint> read_part(const Node &node) {
     if (angles.size() != 1)
       return fail(ErrorCode::BadInput, "a list of angles needs `time`, a list as long",
                   node.where("angle_deg"));
-    out.motion = angles[0] * (pi / 180);
-    return out;
+    return Motion{angles[0] * (pi / 180)};
   }
   AngleTable table;
   for (const toml::node &item : *node.get("time")->as_array()) {
@@ -399,7 +384,34 @@ Result<MovingJoint> read_part(const Node &node) {
                 fmt::format("{} times and {} angles; as many of each were expected",
                             table.time.size(), table.angle_rad.size()),
                 node.where("time"));
-  out.motion = table;
+  return Motion{table};
+}
+
+} // namespace
+
+Result<MovingJoint> read_part(const Node &node) {
+  MovingJoint out;
+  out.joint.name = node.text("name", "");
+  out.joint.on = node.text("on", "");
+  Problems problems;
+  if (!node.has("nodes"))
+    problems.went(node.require("groups"));
+  for (const auto &[key, list] :
+       {std::pair{"groups", &out.joint.groups}, {"nodes", &out.joint.nodes}})
+    if (node.has(key))
+      *list = problems.taken(node.strings(key), std::vector<std::string>{});
+  out.joint.axis = problems.taken(read_axis(node, "axis", out.joint.axis), out.joint.axis);
+  out.joint.face = problems.taken(read_axis(node, "face", out.joint.face), out.joint.face);
+  if (node.has("pivot_m")) {
+    auto v = problems.taken(node.numbers("pivot_m"), {0, 0, 0});
+    if (v.size() != 3)
+      problems.add({ErrorCode::BadInput, "pivot_m: 3 numbers were expected, [x, y, z]",
+                    node.where("pivot_m")});
+    v.resize(3);
+    out.joint.pivot_m = {v[0], v[1], v[2]};
+  }
+  out.motion = problems.taken(read_motion(node), {});
+  UMOV_TRY(problems.told());
   return out;
 }
 

@@ -47,16 +47,14 @@ Result<BandEntry> read_entry(const Node &bands, const toml::node &item) {
 
 Result<std::vector<BandEntry>> read_set(const Node &bands, const fs::path &folder) {
   std::vector<BandEntry> out;
+  Problems problems;
   const toml::node &set = *bands.get("set");
-  if (const toml::array *list = set.as_array()) {
-    for (const toml::node &item : *list) {
-      UMOV_ASSIGN(entry, read_entry(bands, item));
-      out.push_back(std::move(entry));
-    }
-  } else {
-    UMOV_ASSIGN(entry, read_entry(bands, set));
-    out.push_back(std::move(entry));
-  }
+  if (const toml::array *list = set.as_array())
+    for (const toml::node &item : *list)
+      out.push_back(problems.taken(read_entry(bands, item), BandEntry{}));
+  else
+    out.push_back(problems.taken(read_entry(bands, set), BandEntry{}));
+  UMOV_TRY(problems.told());
   for (BandEntry &entry : out)
     if (entry.name.starts_with("file:"))
       entry.name = "file:" + tidy_path(folder / entry.name.substr(5)).string();
@@ -70,28 +68,43 @@ Result<MagnitudeSystem> read_system(const Node &bands) {
                           : MagnitudeSystem::AB;
 }
 
+/// What is wrong with each band by itself; `of_all`, where nothing is.
+void add_band_problems(const std::vector<BandEntry> &set, const Error &of_all, const Where &set_at,
+                       Problems &problems) {
+  const auto add = [&](const Error &error) {
+    problems.add(error.where.file.empty() ? Error{error.code, error.message, set_at}
+                                          : named(error, set_at));
+  };
+  bool has_one = false;
+  for (const BandEntry &entry : set)
+    if (const auto one = umov::read_bands({entry}, {}, nullptr); !one) {
+      add(one.error());
+      has_one = true;
+    }
+  if (!has_one)
+    add(of_all);
+}
+
 } // namespace
 
 Result<void> read_bands(const Node &top, const fs::path &folder, Scenario &out) {
   Where set_at = top.where("bands"), system_at = set_at;
+  Problems problems;
   if (top.has("bands")) {
     UMOV_ASSIGN(node, top.child("bands"));
     if (node.has("set")) {
-      UMOV_ASSIGN(set, read_set(node, folder));
-      out.band_set = std::move(set);
+      out.band_set = problems.taken(read_set(node, folder), std::move(out.band_set));
       set_at = node.where("set");
     }
-    UMOV_ASSIGN(system, read_system(node));
-    out.magnitudes = system;
+    out.magnitudes = problems.taken(read_system(node), out.magnitudes);
     if (node.has("mag_system"))
       system_at = node.where("mag_system");
   }
   std::vector<BandFile> files;
   auto bands = umov::read_bands(out.band_set, {}, &files);
-  if (!bands && !bands.error().where.file.empty())
-    return tl::unexpected(named(bands.error(), set_at));
   if (!bands)
-    return fail(bands.error().code, bands.error().message, set_at);
+    add_band_problems(out.band_set, bands.error(), set_at, problems);
+  UMOV_TRY(problems.told());
   out.bands = std::move(*bands);
   for (const BandFile &file : files)
     out.band_files.push_back({file.path, sha256_hex(file.bytes)});
@@ -101,8 +114,8 @@ Result<void> read_bands(const Node &top, const fs::path &folder, Scenario &out) 
     return {};
   for (const Band &band : out.bands)
     if (const auto zero = zero_irradiance(band, out.magnitudes); !zero)
-      return fail(ErrorCode::BadInput, zero.error().message, system_at);
-  return {};
+      problems.add({ErrorCode::BadInput, zero.error().message, system_at});
+  return problems.told();
 }
 
 std::string bands_toml(const Scenario &of) {

@@ -41,6 +41,12 @@ struct Named {
   }
 };
 
+/// The file of an attitude table, "" if there is none.
+std::string attitude_file(const AttitudeLaw &law) {
+  const auto *table = std::get_if<TableLaw>(&law);
+  return table != nullptr ? table->file : std::string();
+}
+
 /// For the whole process, as Earth orientation is.
 Result<void> load_earth(const Scenario &scenario, LoadedObject &out) {
   if (scenario.earth_orientation.empty())
@@ -306,6 +312,9 @@ Result<LoadedObject> load(const Scenario &scenario, std::size_t which, const Loa
     UMOV_TRY(load_earth(scenario, out));
     out.inputs.insert(out.inputs.end(), scenario.band_files.begin(), scenario.band_files.end());
   }
+  scenario::Problems missing;
+  scenario::add_missing_files(scenario, which, options.reads_shape, missing);
+  UMOV_TRY(missing.told());
   UMOV_TRY(load_orbit(of, options, diagnostics, out));
   if (!options.reads_shape)
     return out;
@@ -368,6 +377,24 @@ Result<LoadedObject> load(const Scenario &scenario, std::size_t which, const Loa
 }
 
 } // namespace
+
+void scenario::add_missing_files(const Scenario &scenario, std::size_t which, bool with_shape,
+                                 Problems &problems) {
+  const Named of{scenario, scenario.objects[which], which};
+  const auto add = [&](const std::filesystem::path &file, const char *key) {
+    std::error_code code;
+    if (file.empty() || std::filesystem::exists(file, code))
+      return;
+    if (const auto text = read_file(file); !text)
+      problems.add(named(text.error(), of.place(key)));
+  };
+  if (of.object.orbit && !of.object.orbit->state)
+    add(of.object.orbit->file, "orbit");
+  if (!with_shape)
+    return;
+  add(of.object.mesh.file, "mesh");
+  add(attitude_file(of.object.attitude), "attitude");
+}
 
 Result<LoadedObject> load_object(const Scenario &scenario, std::size_t which,
                                  const LoadOptions &options, Diagnostics &diagnostics) {

@@ -46,7 +46,7 @@ Result<IndexTable> read_index(const Node &node) {
   if (node.get("index")->is_string()) {
     const std::string name = node.text("index", "");
     if (is_index_file_name(name))
-      return read_index_file(beside(node, name));
+      return named_in(read_index_file(beside(node, name)), node.where("index"));
     auto found = find_index(name);
     if (!found)
       return fail(ErrorCode::BadInput, found.error().message, node.where("index"));
@@ -59,7 +59,7 @@ Result<IndexTable> read_index(const Node &node) {
     if (below.has(name))
       return fail(ErrorCode::BadInput, fmt::format("{} has no meaning beside file", name),
                   below.where(name));
-  return read_index_file(beside(node, below.text("file", "")));
+  return named_in(read_index_file(beside(node, below.text("file", ""))), below.where("file"));
 }
 
 Result<std::vector<Layer>> read_layers(const Node &node) {
@@ -93,6 +93,12 @@ Result<Tabulated> read_reflectance(const Node &below) {
   return Tabulated{nm, values};
 }
 
+Result<BodyLobe> read_body(const Node &node) {
+  UMOV_ASSIGN(below, node.child("body"));
+  UMOV_ASSIGN(reflectance, read_reflectance(below));
+  return BodyLobe{reflectance, below.boolean("polarized", false)};
+}
+
 Result<std::optional<Haze>> read_haze(const Node &node) {
   if (!node.has("haze"))
     return std::optional<Haze>{};
@@ -123,7 +129,7 @@ Result<DistributionChoice> read_distribution(const Node &node) {
       out.parameters[std::string(key.str())] = below.number(std::string(key.str()).c_str(), 0);
   if (below.has("file")) {
     const fs::path path = beside(node, below.text("file", ""));
-    UMOV_ASSIGN(normals, read_normals_file(path));
+    UMOV_ASSIGN(normals, named_in(read_normals_file(path), below.where("file")));
     out.angle_deg = normals.angle_deg;
     out.density = normals.density;
     out.file = path.string();
@@ -147,48 +153,47 @@ Result<std::optional<ApparentRoughness>> read_apparent_roughness(const Node &nod
 }
 
 Result<Material> read_measured(const Node &node, Material out) {
+  Problems problems;
   for (const char *name : {"index", "layers", "distribution", "shadowing", "body", "haze",
                            "interreflection", "apparent_roughness", "direction"})
     if (node.has(name))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} has no meaning beside a measured table; leave it out", name),
-                  node.where(name));
+      problems.add({ErrorCode::BadInput,
+                    fmt::format("{} has no meaning beside a measured table; leave it out", name),
+                    node.where(name)});
   const fs::path path = beside(node, node.text("table", ""));
-  UMOV_ASSIGN(measured, read_measured_file(path, node.boolean("accept", false), out.remarks));
+  MeasuredBrdf measured =
+      problems.taken(named_in(read_measured_file(path, node.boolean("accept", false), out.remarks),
+                              node.where("table")),
+                     MeasuredBrdf{});
+  UMOV_TRY(problems.told());
   out.measured = std::make_shared<MeasuredBrdf>(std::move(measured));
   out.measured_file = path.string();
   return out;
 }
 
 Result<void> read_scattering(const Node &node, Material &out) {
-  UMOV_ASSIGN(index, read_index(node));
-  UMOV_ASSIGN(layers, read_layers(node));
-  UMOV_ASSIGN(distribution, read_distribution(node));
-  UMOV_ASSIGN(apparent, read_apparent_roughness(node));
-  out.index = index;
-  out.layers = layers;
-  out.distribution = distribution;
-  out.apparent_roughness = apparent;
-  if (node.has("direction") && node.text("direction", "") != "uv") {
-    UMOV_ASSIGN(axis, read_axis(node, "direction", {1, 0, 0}));
-    out.direction = axis;
-  }
-  UMOV_ASSIGN(shadowing, node.choice("shadowing", "ashikhmin", shadowing_names));
-  UMOV_ASSIGN(between, node.choice("interreflection", "none", interreflection_names));
+  Problems problems;
+  out.index = problems.taken(read_index(node), IndexTable{});
+  out.layers = problems.taken(read_layers(node), std::vector<Layer>{});
+  out.distribution = problems.taken(read_distribution(node), DistributionChoice{});
+  out.apparent_roughness =
+      problems.taken(read_apparent_roughness(node), std::optional<ApparentRoughness>{});
+  if (node.has("direction") && node.text("direction", "") != "uv")
+    out.direction = problems.taken(read_axis(node, "direction", {1, 0, 0}), Vec3<Body>{});
+  const std::string shadowing =
+      problems.taken(node.choice("shadowing", "ashikhmin", shadowing_names), std::string());
+  const std::string between =
+      problems.taken(node.choice("interreflection", "none", interreflection_names), std::string());
   for (std::size_t i = 0; i < shadowing_names.size(); ++i)
     if (shadowing == shadowing_names[i])
       out.shadowing = static_cast<Shadowing>(i);
   for (std::size_t i = 0; i < interreflection_names.size(); ++i)
     if (between == interreflection_names[i])
       out.interreflection = static_cast<Interreflection>(i);
-  if (node.has("body")) {
-    UMOV_ASSIGN(below, node.child("body"));
-    UMOV_ASSIGN(reflectance, read_reflectance(below));
-    out.body = BodyLobe{reflectance, below.boolean("polarized", false)};
-  }
-  UMOV_ASSIGN(haze, read_haze(node));
-  out.haze = haze;
-  return {};
+  if (node.has("body"))
+    out.body = problems.taken(read_body(node), BodyLobe{});
+  out.haze = problems.taken(read_haze(node), std::optional<Haze>{});
+  return problems.told();
 }
 
 } // namespace
@@ -207,21 +212,23 @@ Result<Material> read_material_table(const Node &node, const std::string &name) 
   return out;
 }
 
-Result<std::map<std::string, Material>> read_material_tables(const Node &top) {
+std::map<std::string, Material> read_material_tables(const Node &top, Problems &problems) {
   std::map<std::string, Material> out;
   const toml::table *all = top.table().get_as<toml::table>("material");
   if (all == nullptr)
     return out;
   for (const auto &[key, value] : *all) {
     const std::string name(key.str());
-    const toml::table *table = value.as_table();
-    if (table == nullptr)
-      return fail(ErrorCode::BadInput, "a table [material." + name + "] was expected",
-                  place_of(key.source(), top.file()));
-    const Node node(*table, "material", "material." + name, top.file());
-    UMOV_TRY(node.check());
-    UMOV_ASSIGN(material, read_material_table(node, name));
-    out.emplace(name, material);
+    Material material;
+    if (const toml::table *table = value.as_table()) {
+      const Node node(*table, "material", "material." + name, top.file());
+      if (problems.went(node.check()))
+        material = problems.taken(read_material_table(node, name), std::move(material));
+    } else {
+      problems.add({ErrorCode::BadInput, "a table [material." + name + "] was expected",
+                    place_of(key.source(), top.file())});
+    }
+    out.emplace(name, std::move(material));
   }
   return out;
 }
@@ -242,7 +249,9 @@ Result<Material> read_material_text(const std::string &text, const std::string &
   UMOV_ASSIGN(document, scenario::parse_toml(text, file));
   const Node top(document, "", "", file);
   UMOV_TRY(top.check());
-  UMOV_ASSIGN(all, read_material_tables(top));
+  Problems problems;
+  const auto all = read_material_tables(top, problems);
+  UMOV_TRY(problems.told());
   if (all.size() != 1)
     return fail(
         ErrorCode::BadInput,

@@ -142,60 +142,126 @@ void Node::add_problems(Problems &problems) const {
       problems.add(std::move(*problem));
 }
 
-void Node::add_problems_below(Problems &problems) const {
-  add_problems(problems);
-  const auto look_into = [&](const toml::node &value, const std::string &schema) {
-    const toml::table *table = value.as_table();
-    if (table != nullptr && !names_in(schema).empty())
-      Node(*table, schema, schema, file_).add_problems_below(problems);
-  };
-  for (const auto &[key, value] : *table_) {
-    const std::string below =
-        schema_.empty() ? std::string(key.str()) : schema_ + "." + std::string(key.str());
-    if (below == "material" && value.is_table())
-      for (const auto &[name, material] : *value.as_table())
-        look_into(material, below);
-    else if (const toml::array *list = value.as_array())
-      for (const toml::node &item : *list)
-        look_into(item, below);
+namespace {
+
+/// Takes the value of a key to another key, in whose place it stands from now on.
+void rename(toml::table &table, const std::string &from, const std::string &to) {
+  const auto at = table.find(from);
+  toml::key key(to, toml::source_region(at->first.source()));
+  at->second.visit([&](auto &value) { table.insert(std::move(key), std::move(value)); });
+  table.erase(from);
+}
+
+/// Unknown keys: read as the known ones that they are near to, or taken away.
+void settle_unknown(toml::table &table, const std::string &schema) {
+  const std::vector<std::string> known = names_in(schema);
+  std::vector<std::string> unknown;
+  for (const auto &[key, value] : table)
+    if (find_key(schema, key.str()) == nullptr)
+      unknown.emplace_back(key.str());
+  for (const std::string &name : unknown) {
+    const auto near = nearest_name(name, known);
+    if (near && !table.contains(*near) && is_of(*table.get(name), find_key(schema, *near)->kind))
+      rename(table, name, *near);
     else
-      look_into(value, below);
+      table.erase(name);
   }
 }
 
-bool Problems::went(const Result<void> &result) {
-  if (!result)
-    add(result.error());
-  return result.has_value();
+/// What stands in place of a table or a list: without it the rest can be read.
+void take_away_mistyped(toml::table &table, const std::string &schema) {
+  std::vector<std::string> wrong;
+  for (const auto &[key, value] : table)
+    if (const Key *spec = find_key(schema, key.str());
+        (spec->kind == Kind::Table || spec->kind == Kind::List) && !is_of(value, spec->kind))
+      wrong.emplace_back(key.str());
+  for (const std::string &name : wrong)
+    table.erase(name);
 }
 
-void Problems::add(Error problem) {
-  const auto is_told = [&](const Error &one) { return one.text() == problem.text(); };
-  if (std::ranges::none_of(found_, is_told)) // front and back of a face have one material
-    found_.push_back(std::move(problem));
+void settle(toml::table &table, const std::string &schema, const std::string &label,
+            const std::string &file, Problems &problems) {
+  if (names_in(schema).empty())
+    return;
+  const Node node(table, schema, label, file);
+  node.add_problems(problems);
+  settle_unknown(table, schema);
+  if (schema.empty() || schema == "object")
+    take_away_mistyped(table, schema);
+  else if (const auto left = node.check(); !left) // and so says whoever reads the table
+    problems.leave_out(left.error());
+  for (auto &&[key, value] : table) {
+    const std::string name(key.str()), below = schema.empty() ? name : schema + "." + name;
+    if (toml::table *one = value.as_table(); one != nullptr && below != "material")
+      settle(*one, below, below, file, problems);
+    else if (one != nullptr)
+      for (auto &&[own, material] : *one)
+        if (toml::table *keys = material.as_table())
+          settle(*keys, below, below + "." + std::string(own.str()), file, problems);
+    if (toml::array *list = value.as_array())
+      for (toml::node &item : *list)
+        if (toml::table *one = item.as_table())
+          settle(*one, below, below, file, problems);
+  }
+}
+
+} // namespace
+
+void settle_keys(toml::table &document, const std::string &file, Problems &problems) {
+  settle(document, "", "", file, problems);
+}
+
+namespace {
+
+/// Between problems of one message.
+constexpr std::string_view next_problem = "\n  and ";
+
+/// The problems that a message tells, one by one; the first has the place.
+std::vector<Error> one_by_one(const Error &told) {
+  std::vector<Error> out;
+  for (std::string_view rest = told.message;;) {
+    const std::size_t end = std::min(rest.find(next_problem), rest.size());
+    out.push_back(
+        {told.code, std::string(rest.substr(0, end)), out.empty() ? told.where : Where{}});
+    if (end == rest.size())
+      return out;
+    rest.remove_prefix(end + next_problem.size());
+  }
+}
+
+} // namespace
+
+void Problems::add(const Error &problem) {
+  for (Error &one : one_by_one(problem)) {
+    const std::string text = one.text();
+    const auto is_told = [&](const Error &other) { return other.text() == text; };
+    // Front and back of a face have one material.
+    if (std::ranges::none_of(found_, is_told) &&
+        std::ranges::find(left_out_, text) == left_out_.end())
+      found_.push_back(std::move(one));
+  }
+}
+
+void Problems::leave_out(const Error &told) {
+  for (const Error &one : one_by_one(told))
+    left_out_.push_back(one.text());
 }
 
 Result<void> Problems::told() const {
   if (found_.empty())
     return {};
   Error out = found_.front();
-  constexpr std::size_t most = 10;
+  constexpr std::size_t most = 40;
   for (std::size_t i = 1; i < std::min(found_.size(), most); ++i)
-    out.message += "\n  and " + found_[i].text();
+    out.message += std::string(next_problem) + found_[i].text();
   if (found_.size() > most)
-    out.message += fmt::format("\n  and {} more", found_.size() - most);
+    out.message += fmt::format("{}{} more", next_problem, found_.size() - most);
   return tl::unexpected(out);
 }
 
 Result<void> Node::check() const {
   Problems problems;
   add_problems(problems);
-  return problems.told();
-}
-
-Result<void> Node::check_with_all_below() const {
-  Problems problems;
-  add_problems_below(problems);
   return problems.told();
 }
 

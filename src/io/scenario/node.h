@@ -1,11 +1,13 @@
 #pragma once
 // Private: a TOML table whose keys have been checked, with messages that name the place.
 
+#include <fmt/format.h>
 #include <optional>
 #include <string>
 #include <toml++/toml.h>
 #include <umov/core/result.h>
 #include <umov/time/epoch.h>
+#include <utility>
 #include <vector>
 
 namespace umov::scenario {
@@ -14,13 +16,24 @@ namespace umov::scenario {
 class Problems {
 public:
   /// Whether that went well; else keeps why.
-  bool went(const Result<void> &result);
-  void add(Error problem); ///< once, however often it is met
+  template <class T> bool went(const Result<T> &result) {
+    if (!result)
+      add(result.error());
+    return result.has_value();
+  }
+  /// What was read; `instead` where it was not, and why is kept.
+  template <class T> T taken(const Result<T> &result, T instead) {
+    return went(result) ? *result : std::move(instead);
+  }
+  void add(const Error &problem);    ///< once, however often it is met
+  void leave_out(const Error &told); ///< it is told in other words
   /// The first problem, with the others in lines of their own.
   [[nodiscard]] Result<void> told() const;
+  [[nodiscard]] bool has_some() const { return !found_.empty(); }
 
 private:
   std::vector<Error> found_;
+  std::vector<std::string> left_out_;
 };
 
 /// What a reader needs to know besides the node: the file for messages.
@@ -33,8 +46,8 @@ public:
 
   /// BadInput at the first key that is unknown or of the wrong type; the message has the others.
   [[nodiscard]] Result<void> check() const;
-  /// The same for all tables below too, as far as they have a list of keys.
-  [[nodiscard]] Result<void> check_with_all_below() const;
+  /// The same, one by one.
+  void add_problems(Problems &problems) const;
 
   [[nodiscard]] bool has(const char *name) const { return table_->contains(name); }
   [[nodiscard]] Where where(const char *name) const;
@@ -64,17 +77,32 @@ public:
 private:
   [[nodiscard]] std::optional<Error> problem_of(const toml::key &key,
                                                 const toml::node &value) const;
-  void add_problems(Problems &problems) const;
-  void add_problems_below(Problems &problems) const;
   const toml::table *table_;
   std::string schema_, label_, file_;
 };
+
+/// Tells what is wrong with the keys of a document and of all tables below that have a list of
+/// keys, and leaves what can be read of it: an unknown key near to a known one is taken for that,
+/// so that its value is looked at too; others, and what is no table where one was expected, are
+/// taken away.
+void settle_keys(toml::table &document, const std::string &file, Problems &problems);
+
+/// A value that its key does not take: "step_s = -5; a positive number was expected".
+template <class T>
+Error wrong_value(const Node &node, const char *name, const T &value, const char *expected) {
+  return {ErrorCode::BadInput, fmt::format("{} = {}; {} was expected", name, value, expected),
+          node.where(name)};
+}
 
 /// A time that stands in a list of `node`.
 Result<Epoch<Utc>> time_of(const Node &node, const toml::node &item);
 
 /// The error of a file, with the place that names the file.
 Error named(Error error, const Where &at);
+/// What was read of a file; what is wrong with it, with the place that names it.
+template <class T> Result<T> named_in(Result<T> read, const Where &at) {
+  return read ? std::move(read) : tl::unexpected(named(read.error(), at));
+}
 
 /// Place of a node or key; values of --set carry their own source name.
 Where place_of(const toml::source_region &source, const std::string &file);

@@ -30,8 +30,12 @@ Result<MovingJoint> read_part(const Node &node);
 std::string part_toml(const MovingJoint &part);
 /// One [material.NAME] table.
 Result<Material> read_material_table(const Node &node, const std::string &name);
-/// All [material.NAME] tables of a document.
-Result<std::map<std::string, Material>> read_material_tables(const Node &top);
+/// All [material.NAME] tables of a document; one that cannot be read is told, and has its name
+/// there: objects name it.
+std::map<std::string, Material> read_material_tables(const Node &top, Problems &problems);
+/// Files of an object's orbit and, if `with_shape`, mesh and attitude that are not there.
+void add_missing_files(const Scenario &scenario, std::size_t which, bool with_shape,
+                       Problems &problems);
 /// A material that a scenario names: its own, a built-in one or a TOML file.
 Result<Material> find_material(const std::string &name, const Scenario &scenario);
 /// The name is that of a file; and where it is, beside the scenario.

@@ -13,7 +13,7 @@
 namespace umov {
 namespace {
 
-using scenario::Node, scenario::Problems;
+using scenario::Node, scenario::Problems, scenario::wrong_value;
 namespace fs = std::filesystem;
 
 /// Puts one "dotted.key=value" into the document; "object.x" means its first object, "object.1.x"
@@ -81,13 +81,17 @@ Result<void> read_observer(const Node &top, Scenario &out) {
   Problems problems;
   for (const char *name : {"lat_deg", "lon_deg", "alt_m"})
     problems.went(node.require(name));
+  const double lat_deg = node.number("lat_deg", 0), lon_deg = node.number("lon_deg", 0),
+               alt_m = node.number("alt_m", 0);
+  for (const auto &[name, site] :
+       {std::pair{"lat_deg", make_site("", lat_deg, 0, 0)},
+        {"lon_deg", make_site("", 0, lon_deg, 0)},
+        {"alt_m", make_site("", 0, 0, alt_m)}}) // of one number each: all are told
+    if (!site)
+      problems.add({ErrorCode::BadInput, site.error().message, node.where(name)});
   UMOV_TRY(problems.told());
-  auto site = make_site(node.text("name", ""), node.number("lat_deg", 0), node.number("lon_deg", 0),
-                        node.number("alt_m", 0));
-  if (!site) // the message begins with the name of the key
-    return fail(ErrorCode::BadInput, site.error().message,
-                node.where(site.error().message.substr(0, site.error().message.find(' ')).c_str()));
-  out.observer = *site;
+  UMOV_ASSIGN(site, make_site(node.text("name", ""), lat_deg, lon_deg, alt_m));
+  out.observer = site;
   return {};
 }
 
@@ -102,34 +106,41 @@ Result<void> read_earth(const Node &top, const fs::path &folder, Scenario &out) 
   return {};
 }
 
+Result<void> read_only(const Node &node, EpochFilter &out) {
+  UMOV_ASSIGN(only, node.child("only"));
+  Problems problems;
+  const double lowest = only.number("alt_min_deg", 0), sun = only.number("sun_alt_max_deg", 90);
+  for (const auto &[name, value] : {std::pair{"alt_min_deg", lowest}, {"sun_alt_max_deg", sun}})
+    if (std::abs(value) > 90)
+      problems.add(wrong_value(only, name, value, "-90 to 90"));
+  out.altitude_min = Angle::degrees(lowest);
+  if (only.has("sun_alt_max_deg"))
+    out.sun_altitude_max = Angle::degrees(sun);
+  out.sunlit = only.boolean("sunlit", true);
+  return problems.told();
+}
+
 Result<void> read_time(const Node &top, Scenario &out) {
   if (!top.has("time"))
     return {};
   UMOV_ASSIGN(node, top.child("time"));
   ScenarioTime time;
-  UMOV_ASSIGN(start, node.time("start"));
-  UMOV_ASSIGN(stop, node.time("stop"));
-  time.start = start;
-  time.stop = stop;
+  Problems problems;
+  const auto start = node.time("start"), stop = node.time("stop");
+  const bool has_start = problems.went(start), has_stop = problems.went(stop);
   time.step_s = node.number("step_s", 1);
-  if (!(time.step_s > 0))
-    return fail(ErrorCode::BadInput,
-                fmt::format("step_s = {}; a positive number was expected", time.step_s),
-                node.where("step_s"));
-  if (auto count = epoch_count({start, stop, time.step_s}); !count)
-    return fail(ErrorCode::BadInput, count.error().message, node.where("stop"));
-  if (node.has("only")) {
-    UMOV_ASSIGN(only, node.child("only"));
-    const double lowest = only.number("alt_min_deg", 0), sun = only.number("sun_alt_max_deg", 90);
-    for (const auto &[name, value] : {std::pair{"alt_min_deg", lowest}, {"sun_alt_max_deg", sun}})
-      if (std::abs(value) > 90)
-        return fail(ErrorCode::BadInput,
-                    fmt::format("{} = {}; -90 to 90 was expected", name, value), only.where(name));
-    time.only.altitude_min = Angle::degrees(lowest);
-    if (only.has("sun_alt_max_deg"))
-      time.only.sun_altitude_max = Angle::degrees(sun);
-    time.only.sunlit = only.boolean("sunlit", true);
+  const bool has_step = time.step_s > 0;
+  if (!has_step)
+    problems.add(wrong_value(node, "step_s", time.step_s, "a positive number"));
+  if (has_start && has_stop) {
+    time.start = *start;
+    time.stop = *stop;
+    if (const auto count = epoch_count({*start, *stop, time.step_s}); has_step && !count)
+      problems.add({ErrorCode::BadInput, count.error().message, node.where("stop")});
   }
+  if (node.has("only"))
+    problems.went(read_only(node, time.only));
+  UMOV_TRY(problems.told());
   out.time = time;
   return {};
 }
@@ -163,14 +174,16 @@ Result<void> read_materials(const Node &object, Scenario &out) {
     if (value.is_string()) {
       sides.front = sides.back = value.value_or(std::string());
     } else if (value.is_table()) {
-      UMOV_ASSIGN(below, node.child(name.c_str(), "sides"));
-      UMOV_TRY(below.require("front"));
-      UMOV_TRY(below.require("back"));
-      sides = {below.text("front", ""), below.text("back", "")};
+      const auto below = node.child(name.c_str(), "sides");
+      if (!problems.went(below) || !problems.went(below->require("front")) ||
+          !problems.went(below->require("back")))
+        continue;
+      sides = {below->text("front", ""), below->text("back", "")};
     } else {
-      return fail(ErrorCode::BadInput,
-                  name + ": the name of a material or { front = ..., back = ... } was expected",
-                  scenario::place_of(key, value, out.file));
+      problems.add({ErrorCode::BadInput,
+                    name + ": the name of a material or { front = ..., back = ... } was expected",
+                    scenario::place_of(key, value, out.file)});
+      continue;
     }
     const Where where = scenario::place_of(key, value, out.file);
     for (const std::string &side : {sides.front, sides.back})
@@ -184,11 +197,11 @@ Result<void> read_materials(const Node &object, Scenario &out) {
 
 Result<void> read_mesh(const Node &object, const fs::path &folder, Scenario &out) {
   UMOV_ASSIGN(node, object.child("mesh"));
-  UMOV_TRY(node.require("file"));
-  UMOV_ASSIGN(normals, node.choice("normals", "flat", {"flat", "smooth"}));
-  if (node.text("file", "").empty())
-    return fail(ErrorCode::BadInput, "file = \"\"; the name of a mesh was expected",
-                node.where("file"));
+  Problems problems;
+  if (problems.went(node.require("file")) && node.text("file", "").empty())
+    problems.add(wrong_value(node, "file", "\"\"", "the name of a mesh"));
+  const std::string normals =
+      problems.taken(node.choice("normals", "flat", {"flat", "smooth"}), std::string("flat"));
   ScenarioMesh &mesh = out.objects.back().mesh;
   mesh.file = tidy_path(folder / node.text("file", ""));
   mesh.unit = node.text("unit", "");
@@ -196,11 +209,9 @@ Result<void> read_mesh(const Node &object, const fs::path &folder, Scenario &out
   mesh.normals = normals == "smooth" ? NormalMode::Smooth : NormalMode::Flat;
   mesh.crease_deg = node.number("crease_deg", 35);
   if (!(mesh.crease_deg >= 0 && mesh.crease_deg <= 180))
-    return fail(ErrorCode::BadInput,
-                fmt::format("crease_deg = {}; 0 to 180 was expected", mesh.crease_deg),
-                node.where("crease_deg"));
+    problems.add(wrong_value(node, "crease_deg", mesh.crease_deg, "0 to 180"));
   out.places[key_of(out, "mesh")] = node.where("file");
-  return {};
+  return problems.told();
 }
 
 Result<std::array<double, 3>> three_numbers(const Node &node, const char *name) {
@@ -214,14 +225,18 @@ Result<std::array<double, 3>> three_numbers(const Node &node, const char *name) 
 
 Result<StateVector> read_state(const Node &orbit) {
   StateVector out;
-  UMOV_ASSIGN(frame, orbit.choice("frame", "gcrs", {"gcrs", "eme2000", "teme", "itrs"}));
+  Problems problems;
+  const std::string frame = problems.taken(
+      orbit.choice("frame", "gcrs", {"gcrs", "eme2000", "teme", "itrs"}), std::string("gcrs"));
   out.frame = frame == "gcrs"      ? OrbitFrame::Gcrs
               : frame == "eme2000" ? OrbitFrame::Eme2000
               : frame == "teme"    ? OrbitFrame::Teme
                                    : OrbitFrame::Itrs;
-  UMOV_ASSIGN(epoch, orbit.time("epoch"));
-  UMOV_ASSIGN(position, three_numbers(orbit, "position_km"));
-  UMOV_ASSIGN(velocity, three_numbers(orbit, "velocity_km_s"));
+  const std::array<double, 3> none{};
+  const auto epoch = problems.taken(orbit.time("epoch"), Epoch<Utc>{});
+  const auto position = problems.taken(three_numbers(orbit, "position_km"), none);
+  const auto velocity = problems.taken(three_numbers(orbit, "velocity_km_s"), none);
+  UMOV_TRY(problems.told());
   out.state = {epoch, position, velocity};
   return out;
 }
@@ -230,28 +245,25 @@ Result<void> read_orbit(const Node &object, const fs::path &folder, Scenario &ou
   if (!object.has("orbit"))
     return {};
   UMOV_ASSIGN(orbit, object.child("orbit"));
+  Problems problems;
   const auto norad = orbit.integer("norad", 0);
   if (norad < 0 || norad > 999'999'999)
-    return fail(ErrorCode::BadInput,
-                fmt::format("norad = {}; a catalogue number was expected", norad),
-                orbit.where("norad"));
+    problems.add(wrong_value(orbit, "norad", norad, "a catalogue number"));
   ScenarioOrbit one;
   one.norad = static_cast<int>(norad);
   out.places[key_of(out, "orbit")] = orbit.where(orbit.has("file") ? "file" : "epoch");
   if (!orbit.has("file") && orbit.has("position_km")) {
-    UMOV_ASSIGN(state, read_state(orbit));
-    one.state = state;
-  } else {
-    UMOV_TRY(orbit.require("file"));
+    one.state = problems.taken(read_state(orbit), StateVector{});
+  } else if (problems.went(orbit.require("file"))) {
     for (const char *name : {"epoch", "frame", "position_km", "velocity_km_s"})
       if (orbit.has(name))
-        return fail(ErrorCode::BadInput,
-                    fmt::format("{} has no meaning with file; leave one of them out", name),
-                    orbit.where(name));
+        problems.add({ErrorCode::BadInput,
+                      fmt::format("{} has no meaning with file; leave one of them out", name),
+                      orbit.where(name)});
     one.file = tidy_path(folder / orbit.text("file", ""));
   }
   out.objects.back().orbit = one;
-  return {};
+  return problems.told();
 }
 
 Result<void> read_parts(const Node &object, Scenario &out) {
@@ -259,18 +271,20 @@ Result<void> read_parts(const Node &object, Scenario &out) {
   if (list == nullptr)
     return {};
   out.places[key_of(out, "part")] = object.where("part");
+  Problems problems;
   for (const toml::node &item : *list) {
     if (!item.is_table())
       return fail(ErrorCode::BadInput, "part: a table [[object.part]] was expected",
                   object.where("part"));
     const Node node(*item.as_table(), "object.part", "object.part", out.file);
-    UMOV_TRY(node.check());
-    UMOV_ASSIGN(part, scenario::read_part(node));
+    if (!problems.went(node.check()))
+      continue;
+    MovingJoint part = problems.taken(scenario::read_part(node), MovingJoint{});
     if (part.joint.name.empty()) // messages and columns call it by its place in the list
       part.joint.name = fmt::format("{}", out.objects.back().parts.size() + 1);
     out.objects.back().parts.push_back(part);
   }
-  return {};
+  return problems.told();
 }
 
 Result<void> read_attitude_of(const Node &object, const fs::path &folder, Scenario &out) {
@@ -288,7 +302,6 @@ Result<void> read_attitude_of(const Node &object, const fs::path &folder, Scenar
 }
 
 Result<void> read_object(const Node &object, const fs::path &folder, Scenario &out) {
-  UMOV_TRY(object.check());
   out.objects.emplace_back().name = object.text("name", "");
   Problems problems;
   problems.went(read_orbit(object, folder, out));
@@ -321,69 +334,68 @@ Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out
 }
 
 Result<void> read_method(const Node &render, LightOptions &out) {
-  UMOV_ASSIGN(method, render.choice("method", name_of(out.method), {"auto", "rays", "masks"}));
+  Problems problems;
+  const std::string method = problems.taken(
+      render.choice("method", name_of(out.method), {"auto", "rays", "masks"}), std::string());
   out.method = method == "rays"    ? LightMethod::Rays
                : method == "masks" ? LightMethod::Masks
                                    : LightMethod::Auto;
   out.accuracy = render.number("accuracy", out.accuracy);
   if (!(out.accuracy >= 1e-6 && out.accuracy <= 1))
-    return fail(ErrorCode::BadInput,
-                fmt::format("accuracy = {}; 1e-6 to 1 was expected", out.accuracy),
-                render.where("accuracy"));
+    problems.add(wrong_value(render, "accuracy", out.accuracy, "1e-6 to 1"));
   if (!render.has("accuracy_floor"))
-    return {};
+    return problems.told();
   out.accuracy_floor = render.number("accuracy_floor", 0);
   if (!(*out.accuracy_floor >= 0 && *out.accuracy_floor <= 10))
-    return fail(ErrorCode::BadInput,
-                fmt::format("accuracy_floor = {}; 0 to 10 was expected", *out.accuracy_floor),
-                render.where("accuracy_floor"));
-  return {};
+    problems.add(wrong_value(render, "accuracy_floor", *out.accuracy_floor, "0 to 10"));
+  return problems.told();
+}
+
+Result<void> read_earthshine(const Node &render, Scenario &out) {
+  UMOV_ASSIGN(earth, render.child("earthshine"));
+  Problems problems;
+  EarthshineOptions options;
+  options.albedo = earth.number("albedo", options.albedo);
+  const auto patches = earth.integer("patches", static_cast<std::int64_t>(options.patches));
+  if (!(options.albedo >= 0 && options.albedo <= 1))
+    problems.add(wrong_value(earth, "albedo", options.albedo, "0 to 1"));
+  if (patches < 10 || patches > 100'000)
+    problems.add(wrong_value(earth, "patches", patches, "10 to 100000"));
+  options.patches = static_cast<std::size_t>(patches);
+  options.accuracy = earth.number("accuracy", options.accuracy);
+  if (!(options.accuracy >= 1e-4 && options.accuracy <= 1))
+    problems.add(wrong_value(earth, "accuracy", options.accuracy, "1e-4 to 1"));
+  out.earthshine = options;
+  return problems.told();
 }
 
 Result<void> read_render(const Node &top, Scenario &out) {
-  if (top.has("render")) {
-    UMOV_ASSIGN(node, top.child("render"));
-    const auto bounces = node.integer("bounces", 1);
-    if (bounces < 1 || bounces > 64)
-      return fail(ErrorCode::BadInput, fmt::format("bounces = {}; 1 to 64 was expected", bounces),
-                  node.where("bounces"));
-    out.light.bounces = static_cast<std::size_t>(bounces);
-    UMOV_ASSIGN(between,
-                node.choice("between", name_of(out.light.between), {"auto", "paths", "chains"}));
-    out.light.between = between == "paths"    ? BetweenMethod::Paths
-                        : between == "chains" ? BetweenMethod::Chains
-                                              : BetweenMethod::Auto;
-    UMOV_TRY(read_method(node, out.light));
-    if (node.has("accuracy"))
-      out.places["render.accuracy"] = node.where("accuracy");
-    out.has_moonlight = node.boolean("moonlight", false);
-    UMOV_ASSIGN(edge, node.choice("shadow_edge", "geometric", {"geometric", "refracted"}));
-    out.has_refracted_shadow = edge == "refracted";
-    if (node.has("earthshine")) {
-      UMOV_ASSIGN(earth, node.child("earthshine"));
-      EarthshineOptions options;
-      options.albedo = earth.number("albedo", options.albedo);
-      const auto patches = earth.integer("patches", static_cast<std::int64_t>(options.patches));
-      if (!(options.albedo >= 0 && options.albedo <= 1))
-        return fail(ErrorCode::BadInput,
-                    fmt::format("albedo = {}; 0 to 1 was expected", options.albedo),
-                    earth.where("albedo"));
-      if (patches < 10 || patches > 100'000)
-        return fail(ErrorCode::BadInput,
-                    fmt::format("patches = {}; 10 to 100000 was expected", patches),
-                    earth.where("patches"));
-      options.patches = static_cast<std::size_t>(patches);
-      options.accuracy = earth.number("accuracy", options.accuracy);
-      if (!(options.accuracy >= 1e-4 && options.accuracy <= 1))
-        return fail(ErrorCode::BadInput,
-                    fmt::format("accuracy = {}; 1e-4 to 1 was expected", options.accuracy),
-                    earth.where("accuracy"));
-      out.earthshine = options;
-    }
-    UMOV_ASSIGN(sun, node.choice("sun", "disk", {"disk", "point"}));
-    out.has_solar_disk = sun == "disk";
-  }
-  return {};
+  if (!top.has("render"))
+    return {};
+  UMOV_ASSIGN(node, top.child("render"));
+  Problems problems;
+  const auto word = [&](const char *name, const char *usual, std::vector<std::string> known) {
+    return problems.taken(node.choice(name, usual, known), std::string());
+  };
+  const auto bounces = node.integer("bounces", 1);
+  if (bounces < 1 || bounces > 64)
+    problems.add(wrong_value(node, "bounces", bounces, "1 to 64"));
+  out.light.bounces = static_cast<std::size_t>(bounces);
+  const std::string between =
+      word("between", name_of(out.light.between), {"auto", "paths", "chains"});
+  out.light.between = between == "paths"    ? BetweenMethod::Paths
+                      : between == "chains" ? BetweenMethod::Chains
+                                            : BetweenMethod::Auto;
+  problems.went(read_method(node, out.light));
+  if (node.has("accuracy"))
+    out.places["render.accuracy"] = node.where("accuracy");
+  out.has_moonlight = node.boolean("moonlight", false);
+  out.has_refracted_shadow =
+      word("shadow_edge", "geometric", {"geometric", "refracted"}) == "refracted";
+  if (node.has("earthshine"))
+    problems.went(read_earthshine(node, out));
+  out.has_solar_disk = word("sun", "disk", {"disk", "point"}) == "disk";
+  return problems.told();
 }
 
 /// [materials]: what holds for all of them; those of an object are in [object.materials].
@@ -394,51 +406,64 @@ Result<void> read_vary(const Node &top, Scenario &out) {
   if (!node.has("vary"))
     return {};
   UMOV_ASSIGN(names, node.strings("vary"));
+  Problems problems;
   for (const std::string &name : names)
     if (name != "haze")
-      return fail(ErrorCode::BadInput,
-                  fmt::format("vary: \"{}\" has no stated range; \"haze\" was expected", name),
-                  node.where("vary"));
+      problems.add({ErrorCode::BadInput,
+                    fmt::format("vary: \"{}\" has no stated range; \"haze\" was expected", name),
+                    node.where("vary")});
+  UMOV_TRY(problems.told());
   out.varies_haze = !names.empty();
   out.places["materials.vary"] = node.where("vary");
   return {};
+}
+
+Result<void> read_formats(const Node &node, Scenario &out) {
+  UMOV_ASSIGN(formats, node.strings("formats"));
+  if (formats.empty())
+    return fail(ErrorCode::BadInput, "formats is empty; ecsv, csv, fits or html was expected",
+                node.where("formats"));
+  Problems problems;
+  for (const std::string &format : formats)
+    if (format != "ecsv" && format != "csv" && format != "fits" && format != "html")
+      problems.add(
+          {ErrorCode::BadInput,
+           fmt::format("formats: \"{}\" is unknown; ecsv, csv, fits and html were expected",
+                       format),
+           node.where("formats")});
+  out.formats = formats;
+  return problems.told();
 }
 
 Result<void> read_output(const Node &top, Scenario &out) {
   if (!top.has("output"))
     return {};
   UMOV_ASSIGN(node, top.child("output"));
+  Problems problems;
+  const auto word = [&](const char *name, const char *usual, std::vector<std::string> known) {
+    return problems.taken(node.choice(name, usual, known), std::string());
+  };
   out.output_dir = node.text("dir", "out");
   if (out.output_dir.empty())
-    return fail(ErrorCode::BadInput, "dir = \"\"; a folder was expected", node.where("dir"));
-  UMOV_ASSIGN(frame, node.choice("pol_frame", "equatorial", {"equatorial", "altaz", "scattering"}));
+    problems.add(wrong_value(node, "dir", "\"\"", "a folder"));
+  const std::string frame = word("pol_frame", "equatorial", {"equatorial", "altaz", "scattering"});
   out.frame = frame == "altaz"        ? PolarizationFrame::AltAz
               : frame == "scattering" ? PolarizationFrame::Scattering
                                       : PolarizationFrame::Equatorial;
-  UMOV_ASSIGN(digits, node.choice("csv_digits", "error", {"error", "all"}));
+  out.has_all_csv_digits = word("csv_digits", "error", {"error", "all"}) == "all";
   out.keeps_inputs = node.boolean("keep_inputs", false);
-  out.has_all_csv_digits = digits == "all";
-  if (node.has("formats")) {
-    UMOV_ASSIGN(formats, node.strings("formats"));
-    if (formats.empty())
-      return fail(ErrorCode::BadInput, "formats is empty; ecsv, csv, fits or html was expected",
-                  node.where("formats"));
-    for (const std::string &format : formats)
-      if (format != "ecsv" && format != "csv" && format != "fits" && format != "html")
-        return fail(
-            ErrorCode::BadInput,
-            fmt::format("formats: \"{}\" is unknown; ecsv, csv, fits and html were expected",
-                        format),
-            node.where("formats"));
-    out.formats = formats;
-  }
-  return {};
+  if (node.has("formats"))
+    problems.went(read_formats(node, out));
+  return problems.told();
 }
 
 Result<void> read_air(const Node &top, const fs::path &folder, Scenario &out) {
-  UMOV_ASSIGN(air, scenario::read_site_air(top));
+  Problems problems;
+  const auto air = problems.taken(scenario::read_site_air(top), decltype(out.air){});
+  const auto observation = problems.taken(scenario::read_observation(top, air, folder.string()),
+                                          decltype(out.observation){});
+  UMOV_TRY(problems.told());
   out.air = air;
-  UMOV_ASSIGN(observation, scenario::read_observation(top, air, folder.string()));
   out.observation = observation;
   const bool has_bands_of_its_own = observation && !observation->bands.empty();
   if (air && !has_bands_of_its_own)
@@ -446,41 +471,43 @@ Result<void> read_air(const Node &top, const fs::path &folder, Scenario &out) {
   return {};
 }
 
-Result<void> read_own_materials(const Node &top, Scenario &out) {
-  UMOV_ASSIGN(own, scenario::read_material_tables(top));
-  UMOV_TRY(scenario::check_own_names(top, own));
-  out.own_materials = own;
-  return {};
+void read_own_materials(const Node &top, Scenario &out, Problems &problems) {
+  out.own_materials = scenario::read_material_tables(top, problems);
+  problems.went(scenario::check_own_names(top, out.own_materials));
 }
 
 Result<Scenario> read_document(toml::table &document, const fs::path &path) {
   Scenario out;
   out.file = path.string();
   const Node top(document, "", "", out.file);
-  UMOV_TRY(top.check_with_all_below());
-  UMOV_TRY(top.require("umov"));
+  Problems problems;
+  const bool has_objects = top.has("object"); // else it is told what stands there
+  scenario::settle_keys(document, out.file, problems);
+  problems.went(top.require("umov"));
   if (const auto form = top.integer("umov", 1); form != 1)
     return fail(ErrorCode::BadInput, fmt::format("umov = {}; this version reads 1", form),
                 top.where("umov"));
   const auto seed = top.integer("seed", 0);
   if (seed < 0)
-    return fail(ErrorCode::BadInput, fmt::format("seed = {}; 0 or more was expected", seed),
-                top.where("seed"));
+    problems.add(wrong_value(top, "seed", seed, "0 or more"));
   out.seed = static_cast<std::uint64_t>(seed);
   out.title = top.text("title", "");
-  Problems problems;
   problems.went(read_observer(top, out));
   problems.went(read_earth(top, path.parent_path(), out));
-  const bool has_time = problems.went(read_time(top, out));
+  if (!problems.went(read_time(top, out)))
+    out.time.emplace(); // attitudes may turn from its start
   problems.went(scenario::read_bands(top, path.parent_path(), out));
   problems.went(read_render(top, out));
   problems.went(read_vary(top, out));
   problems.went(read_output(top, out));
   problems.went(read_air(top, path.parent_path(), out));
   note_places(top, out);
-  // An attitude turns from the start of the time, and objects are made of the materials.
-  if (problems.went(read_own_materials(top, out)) && has_time)
+  read_own_materials(top, out, problems);
+  if (top.has("object") || !has_objects)
     problems.went(read_objects(top, path.parent_path(), out));
+  // Whoever loads the objects would tell of these; where all is told, they are too.
+  for (std::size_t k = 0; problems.has_some() && k < out.objects.size(); ++k)
+    scenario::add_missing_files(out, k, true, problems);
   UMOV_TRY(problems.told());
   return out;
 }
