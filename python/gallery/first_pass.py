@@ -17,7 +17,7 @@ hst = umov.Satellite(mesh=umov.example("hst.obj"), unit="m", up="+Z", normals="s
 
 # %%
 table = umov.passes(hst, "maui", "2018-01-21T04:00Z", "2018-01-21T07:00Z")
-print(table["rise_utc", "culmination_alt", "set_utc", "mag_min", "p_max"])
+table["rise_utc", "culmination_alt", "set_utc", "mag_min", "p_max"].pprint(max_width=-1)
 
 # %% [markdown]
 # The light of the first one, every five seconds, in the three bands of the paper.

@@ -1,5 +1,7 @@
 #include "jobs/fit_figures.h"
 
+#include "jobs/band_colours.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -87,8 +89,12 @@ std::vector<BandRows> fitted_bands(const Table &fit) {
     found->rows.push_back(k);
   }
   std::ranges::sort(out, {}, &BandRows::name);
+  std::vector<std::string> names;
+  for (const BandRows &one : out)
+    names.push_back(one.name);
+  const std::vector<std::size_t> colours = band_colours(names);
   for (std::size_t b = 0; b < out.size(); ++b)
-    out[b].colour = b;
+    out[b].colour = colours[b];
   return out;
 }
 

@@ -143,19 +143,29 @@ private:
 
 Result<void> OwnLights::assign(const Library &library) {
   const auto names = library.names();
+  std::string unknown;
   for (const std::string &path : request_.objects) {
     const std::string name = fs::path(path).stem().string();
     const auto at = std::ranges::find(names, name);
-    if (at == names.end()) {
-      const auto near = nearest_name(name, names);
-      return fail(ErrorCode::Usage,
-                  fmt::format("--objects {}: the library has no object of that name{}",
-                              printable(path),
-                              near ? fmt::format("; did you mean \"{}\"?", printable(*near)) : ""));
+    if (at != names.end()) {
+      scenarios_[static_cast<std::size_t>(at - names.begin())] = path;
+      continue;
     }
-    scenarios_[static_cast<std::size_t>(at - names.begin())] = path;
+    const auto near = nearest_name(name, names);
+    unknown += fmt::format("{}\"{}\" ({}){}", unknown.empty() ? "" : " and no ", printable(name),
+                           printable(path),
+                           near ? fmt::format(", did you mean \"{}\"?", printable(*near)) : "");
   }
-  return {};
+  if (unknown.empty())
+    return {};
+  constexpr std::size_t most = 20; // libraries may have thousands
+  const std::vector<std::string> shown(
+      names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(most, names.size())));
+  return fail(
+      ErrorCode::Usage,
+      fmt::format("--objects: the library has no object of the name {}. It has {}{}", unknown,
+                  printable(fmt::format("{}", fmt::join(shown, ", "))),
+                  names.size() > most ? fmt::format(" and {} more", names.size() - most) : ""));
 }
 
 Result<std::optional<OwnAnswer>> OwnLights::answer(const Library &library, std::size_t k,

@@ -135,6 +135,14 @@ std::string summary_of(const IdentityWords &words) {
   return out;
 }
 
+/// What an object was judged by, as people say it.
+static std::string words_of(const std::string &by) {
+  return by == "model"   ? "judged by its own light"
+         : by == "table" ? "judged by the library's table"
+         : by == "kin"   ? "judged by what is like an object of the library"
+                         : "by a quick look alone";
+}
+
 std::string odds_of(const IdentityWords &words) {
   constexpr std::size_t most = 10;
   const Table table = identity_table(words);
@@ -142,9 +150,9 @@ std::string odds_of(const IdentityWords &words) {
   const auto &by = std::get<std::vector<std::string>>(table.find("by")->cells);
   std::string out;
   for (std::size_t row = 0; row < std::min(most, name.size()); ++row)
-    out +=
-        fmt::format("{}: probability {:.2g}, ln evidence {:.1f} (by {})\n", printable(name[row]),
-                    table.number("probability", row), table.number("log_evidence", row), by[row]);
+    out += fmt::format("{}: {}, ln evidence {:.1f}, {}\n", printable(name[row]),
+                       chance(table.number("probability", row)), table.number("log_evidence", row),
+                       words_of(by[row]));
   if (name.size() > most)
     out += fmt::format("and {} less probable: identity.ecsv has all\n",
                        counted(name.size() - most, "object"));

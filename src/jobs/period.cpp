@@ -9,22 +9,33 @@
 namespace umov::jobs {
 namespace {
 
-/// What a row says of brightness; NaN where it says nothing.
-double magnitude_of(const ObservedRow &row) {
+/// The file has magnitudes beside its fluxes: those are what people know.
+bool has_magnitudes_beside(const ObservationsFile &file) {
+  return std::ranges::any_of(file.rows,
+                             [](const ObservedRow &row) { return std::isfinite(row.mag_beside); });
+}
+
+/// What a row says of brightness; NaN where it says nothing, or only that it is less.
+double magnitude_of(const ObservedRow &row, bool is_beside) {
+  if (row.is_limit)
+    return std::nan("");
+  if (is_beside && std::isfinite(row.flux))
+    return row.mag_beside;
   return row.flux > 0 ? -2.5 * std::log10(row.flux) : row.mag;
 }
 
 void add_stretches(const ObservationsFile &file, const std::string &band, double gap_s,
                    std::vector<Stretch> &out) {
   const std::size_t before = out.size();
+  const bool is_beside = has_magnitudes_beside(file);
   for (const ObservedRow &row : file.rows) {
-    const double magnitude = magnitude_of(row);
+    const double magnitude = magnitude_of(row, is_beside);
     if (row.band != band || !std::isfinite(magnitude))
       continue;
     const bool is_first = out.size() == before;
     const double seconds = is_first ? 0 : seconds_between(row.time, out.back().begin);
     if (is_first || seconds - out.back().seconds.back() > gap_s) {
-      out.push_back({band, row.time, {0}, {magnitude}, row.flux > 0});
+      out.push_back({band, row.time, {0}, {magnitude}, row.flux > 0 && !is_beside});
     } else {
       out.back().seconds.push_back(seconds);
       out.back().magnitudes.push_back(magnitude);

@@ -1,5 +1,6 @@
 // The page of umov period: the brightness, its periodogram, and the curve folded.
 
+#include "jobs/band_colours.h"
 #include "jobs/period_search.h"
 
 #include <algorithm>
@@ -23,9 +24,20 @@ void turn_over(PlotFigure &figure) {
   figure.y_span = {high + margin, low - margin};
 }
 
+/// Stretches of one time and their colours, a line for each.
+struct Bands {
+  std::vector<const Stretch *> of;
+  std::vector<std::size_t> colours;
+
+  [[nodiscard]] PlotLine line(std::size_t number, std::vector<double> y) const {
+    return {of[number]->band, {}, std::move(y), colours[number], plot_dash(number)};
+  }
+};
+
 /// Brightnesses; `is_level`: less the parabola that the periodogram takes off.
-PlotLine points(const Stretch &of, std::size_t number, bool is_level) {
-  PlotLine out{of.band, {}, of.magnitudes, number, plot_dash(number)};
+PlotLine points(const Bands &bands, std::size_t number, bool is_level) {
+  const Stretch &of = *bands.of[number];
+  PlotLine out = bands.line(number, of.magnitudes);
   out.has_markers = true;
   const auto trend = periodogram(of.seconds, of.magnitudes).trend;
   for (std::size_t k = 0; k < out.y.size(); ++k) {
@@ -35,17 +47,14 @@ PlotLine points(const Stretch &of, std::size_t number, bool is_level) {
   return out;
 }
 
-/// Stretches of one time, a line for each.
-using Bands = std::vector<const Stretch *>;
-
 PlotFigure curve(const Bands &bands) {
   PlotFigure out{"Brightness",
-                 "seconds after " + to_iso(bands.front()->begin),
-                 bands.front()->is_flux ? "-2.5 log of the flux" : "magnitude",
+                 "seconds after " + to_iso(bands.of.front()->begin),
+                 bands.of.front()->is_flux ? "-2.5 log of the flux" : "magnitude",
                  {}};
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    out.lines.push_back(points(*bands[b], b, false));
-    out.lines.back().x = bands[b]->seconds;
+  for (std::size_t b = 0; b < bands.of.size(); ++b) {
+    out.lines.push_back(points(bands, b, false));
+    out.lines.back().x = bands.of[b]->seconds;
   }
   turn_over(out);
   return out;
@@ -58,10 +67,11 @@ PlotFigure powers(const Bands &bands) {
                  {}};
   out.has_log_x = true;
   constexpr std::size_t drawn = 2000;
-  for (std::size_t b = 0; b < bands.size(); ++b) {
+  for (std::size_t b = 0; b < bands.of.size(); ++b) {
     const Periodogram found =
-        with_fewer_values(periodogram(bands[b]->seconds, bands[b]->magnitudes), drawn);
-    out.lines.push_back({bands[b]->band, found.period_s, found.power, b, plot_dash(b)});
+        with_fewer_values(periodogram(bands.of[b]->seconds, bands.of[b]->magnitudes), drawn);
+    out.lines.push_back(bands.line(b, found.power));
+    out.lines.back().x = found.period_s;
   }
   out.y_span = {0, 1};
   return out;
@@ -70,9 +80,9 @@ PlotFigure powers(const Bands &bands) {
 PlotFigure folded(const Bands &bands, double period_s, const char *what) {
   PlotFigure out{
       fmt::format("Folded at {:.5g} s{}", period_s, what), "turn", "magnitude less its trend", {}};
-  for (std::size_t b = 0; b < bands.size(); ++b) {
-    out.lines.push_back(points(*bands[b], b, true));
-    for (const double t : bands[b]->seconds)
+  for (std::size_t b = 0; b < bands.of.size(); ++b) {
+    out.lines.push_back(points(bands, b, true));
+    for (const double t : bands.of[b]->seconds)
       out.lines.back().x.push_back(std::fmod(t / period_s, 1.0));
   }
   turn_over(out);
@@ -88,9 +98,13 @@ Result<std::string> period_page(const ObservationsFile &observations,
   Bands bands;
   constexpr std::size_t bands_max = 6; // more are a tangle
   for (const Stretch &one : stretches)
-    if (bands.size() < bands_max &&
+    if (bands.of.size() < bands_max &&
         std::abs(seconds_between(one.begin, best.stretch->begin)) < request.gap_s)
-      bands.push_back(&one);
+      bands.of.push_back(&one);
+  std::vector<std::string> names;
+  for (const Stretch *one : bands.of)
+    names.push_back(one->band);
+  bands.colours = band_colours(names);
   const Repetition repetition = repetition_of(*best.stretch, best.period_s, request.false_alarm);
   const double period_s = repetition.period_s;
   const std::vector<PlotFigure> figures{
@@ -103,7 +117,8 @@ Result<std::string> period_page(const ObservationsFile &observations,
       {said + ".",
        "Brightness is taken in magnitudes less a parabola in time; all count alike, whatever "
        "errors "
-       "stand beside them. Periods are of the light as the observer saw it (synodic).",
+       "stand beside them; limits are left out. Periods are of the light as the observer saw it "
+       "(synodic).",
        "Shown is the stretch with the surest peak; umov period lists those of all."});
 }
 

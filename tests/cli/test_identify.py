@@ -110,6 +110,7 @@ def test_what_is_wrong_has_its_place(umov, scene, library, tmp_path):
             (("nowhere",), 3, "nowhere"),
             (("empty",), 3, "umov library build"),
             (("lib", "--objects", "whit.toml"), 2, 'did you mean "white"'),
+            (("lib", "--objects", "whit.toml", "nosuch.toml"), 2, 'no "nosuch" (nosuch.toml). It has dark, metal, plain, white'),
             (("lib", "--none-prior", "2"), 2, "none-prior")):
         done = umov(*ask, *words)
         assert done.code == code and text in done.err, (words, done.err)

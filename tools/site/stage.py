@@ -9,6 +9,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import textwrap
 
 import equations
 import gallery
@@ -75,6 +76,15 @@ def _help_of(umov: str, verb: list[str]) -> str:
     return subprocess.run([umov, *verb, "--help"], capture_output=True, text=True, check=True).stdout
 
 
+def _wrapped(told: str, width: int = 88) -> str:
+    """Help whose lines fit a page; what goes on stands below where its meaning begins."""
+    out = []
+    for line in told.splitlines():
+        head = re.match(r" {20,}|\s*\S.*?  +|", line).group()
+        out += textwrap.wrap(line, width, subsequent_indent=" " * len(head), break_long_words=False) if len(line) > width else [line]
+    return "\n".join(out)
+
+
 def put_command_line(pages: Pages, umov: str) -> None:
     """Every verb with what it says of itself."""
     text = ("# The command line\nWhat `umov VERB --help` says; `umov man` has all of it as a manual page, `umov completion`\n"
@@ -86,7 +96,7 @@ def put_command_line(pages: Pages, umov: str) -> None:
         told = _help_of(umov, verb)
         if verb:
             text += f"{'#' * (1 + len(verb))} umov {' '.join(verb)}\n"
-        text += f"```text\n{told.strip()}\n```\n\n"
+        text += f"```text\n{_wrapped(told.strip())}\n```\n\n"
         _, _, below = told.partition("\nSubcommands:\n")
         for name in re.findall(r"^  (\w+) {2,}", below, re.MULTILINE):
             add([*verb, name])

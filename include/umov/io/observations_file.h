@@ -22,6 +22,8 @@ struct ObservedRow {
   double flux_err = std::numeric_limits<double>::quiet_NaN();
   double mag = std::numeric_limits<double>::quiet_NaN(); ///< where there is no flux
   double mag_err = std::numeric_limits<double>::quiet_NaN();
+  double mag_beside = std::numeric_limits<double>::quiet_NaN(); ///< where there is a flux too
+  bool is_limit = false; ///< of brightness: the object is fainter, and what `flux` holds is less
   double q = std::numeric_limits<double>::quiet_NaN(); ///< fractions of I, in the file's frame
   double u = std::numeric_limits<double>::quiet_NaN();
   double cov_qq = std::numeric_limits<double>::quiet_NaN();

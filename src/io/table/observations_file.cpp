@@ -263,7 +263,10 @@ Result<std::optional<ObservedRow>> ObservationReader::row(const ObservationColum
     UMOV_ASSIGN(mag_err, error(c.mag_err, k));
     out.mag = mag;
     out.mag_err = mag_err;
+  } else if (!is_limit) { // not what is fitted: what is no number is passed over
+    out.mag_beside = parse_number(text(c.mag, k)).value_or(out.mag_beside);
   }
+  out.is_limit = is_limit;
   UMOV_TRY(read_polarization(c, k, out));
   if (std::isnan(out.flux) && std::isnan(out.mag) && std::isnan(out.q))
     return std::optional<ObservedRow>();

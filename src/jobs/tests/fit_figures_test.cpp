@@ -1,10 +1,12 @@
 // Figures of a fit: what they draw and how far their axes go.
 
+#include "jobs/band_colours.h"
 #include "jobs/fit_figures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <umov/picture/colours.h>
 
 namespace umov::jobs {
 namespace {
@@ -27,6 +29,18 @@ PlotFigure polarization_of(const Table &fit) {
   std::vector<PlotFigure> figures;
   add_data_figures(figures, fit);
   return *std::ranges::find(figures, std::string("q (scattering plane)"), &PlotFigure::y_title);
+}
+
+// As in reports, by wavelength and not by name: "nm:1100" stands before "nm:425" in an alphabet.
+TEST(BandColours, GoFromBlueToRed) {
+  constexpr std::size_t blue = 4, green = 2, red = 5; // of plot_colour: Okabe & Ito (2008)
+  EXPECT_EQ(plot_colour(blue), "#0072b2");
+  EXPECT_EQ(plot_colour(green), "#009e73");
+  EXPECT_EQ(plot_colour(red), "#d55e00");
+  using Colours = std::vector<std::size_t>;
+  EXPECT_EQ(band_colours({"nm:1100", "nm:425", "nm:550"}), (Colours{red, blue, green}));
+  EXPECT_EQ(band_colours({"Bessell.R", "Bessell.B"}), (Colours{green, blue}));
+  EXPECT_EQ(band_colours({"mine", "other"}), (Colours{blue, green}));
 }
 
 // Polarization of 1e-12 is what is left of two numbers that are alike: drawn as none, on an axis of

@@ -51,6 +51,30 @@ TEST(Period, RangeAndBandAreKeptTo) {
   EXPECT_NE(unknown.error().message.find("it has V"), std::string::npos);
 }
 
+// A table of ours has both: its magnitudes are shown, and a limit, which is no brightness, would
+// be the faintest of all.
+TEST(Period, MagnitudesBesideFluxesAreTakenAndLimitsAreNot) {
+  std::string text = "time_utc,band,I,mag,mag_limit\n";
+  for (int k = 0; k < 120; ++k) {
+    const double mag = 6 + 0.4 * std::sin(2 * pi * 2 * k / first_s);
+    const bool is_limit = k % 10 == 3;
+    text += fmt::format("2018-01-21T05:{:02}:{:02}Z,V,{:.8g},{:.5f},{}\n", 2 * k / 60, 2 * k % 60,
+                        is_limit ? 1e-300 : std::pow(10, -0.4 * mag) * 4e-11, mag,
+                        is_limit ? "True" : "False");
+  }
+  Diagnostics diagnostics;
+  const auto file = read_observations_text(text, "ours.ecsv.csv", diagnostics);
+  ASSERT_TRUE(file) << file.error().text();
+  const auto found = period(*file, {"", 1}, diagnostics);
+  ASSERT_TRUE(found) << found.error().text();
+  EXPECT_NEAR(found->number("period", 0), first_s, 0.01 * first_s * first_s / 240);
+  EXPECT_GT(found->number("power", 0), 0.95);
+  const auto page = period_page(*file, {"", 1});
+  ASSERT_TRUE(page) << page.error().text();
+  EXPECT_NE(page->find("\"y\":\"magnitude\""), std::string::npos);
+  EXPECT_EQ(page->find("log of the flux"), std::string::npos);
+}
+
 /// The note "spin" of a table of two maxima in 40 s, of which every second is higher by `uneven`.
 std::string said_of(double uneven) {
   std::string text = "mjd_utc,mag\n";

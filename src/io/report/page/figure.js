@@ -66,11 +66,13 @@ const umovFigure = (() => {
   };
   const drawPlane = (plot, figure) => {
     const most = Math.max(...figure.lines.map((line) => line.faint || !line.markers ? 0 : line.x.length));
-    const lines = figure.lines.map((line, index) => ({
+    // Marks follow the points alone: the same band has the same one in each figure, whatever bars and lines stand between.
+    let marked = 0;
+    const lines = figure.lines.map((line) => ({
       type: line.x.length > 2000 ? "scattergl" : "scatter", mode: line.markers ? "markers" : "lines",
       name: safe(line.name), x: line.x, y: line.y, opacity: paleness(line), showlegend: line.name !== "" && !figure.ynames && paleness(line) > 0.1,
       line: { color: line.colour, dash: line.dash, width: line.faint ? 1 : 2 },
-      marker: { color: line.colour, size: dot(most), symbol: symbols[index % symbols.length] },
+      marker: { color: line.colour, size: dot(most), symbol: symbols[(line.markers ? marked++ : 0) % symbols.length] },
     }));
     // Points too small for a legend are shown larger there, by marks of no point: larger signs as such would cost lines their dashes.
     const legendMarks = lines.filter((line) => line.showlegend && line.mode === "markers").map((line) => {
