@@ -22,8 +22,8 @@ std::vector<std::size_t> band_colours(const std::vector<std::string> &names) {
   if (nm.size() == names.size())
     std::ranges::stable_sort(order, {}, [&](std::size_t k) { return nm[k]; });
   for (std::size_t rank = 0; rank < order.size(); ++rank)
-    out[order[rank]] = names.size() <= of_three.size() ? of_three[rank]
-                                                       : of_many[rank % of_many.size()];
+    out[order[rank]] =
+        names.size() <= of_three.size() ? of_three[rank] : of_many[rank % of_many.size()];
   return out;
 }
 

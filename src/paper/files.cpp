@@ -83,7 +83,8 @@ StorySection speed_section(const std::vector<PaperFigure> &figures) {
     return out;
   }
   out.verdict = "agrees";
-  out.summary = fmt::format("up to {:.2g} realizations per second on this processor", fastest);
+  out.summary = fmt::format("up to {:.3g} thousand realizations per second on this processor",
+                            fastest / 1000);
   out.found = {
       "Times are of this run on this machine, whatever else it was doing. Figures 18, 20 and 23 "
       "and most claims use prepared masks; passes and the light between surfaces use rays; "

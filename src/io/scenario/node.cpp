@@ -232,19 +232,14 @@ std::vector<Error> one_by_one(const Error &told) {
 } // namespace
 
 void Problems::add(const Error &problem) {
-  for (Error &one : one_by_one(problem)) {
-    const std::string text = one.text();
-    const auto is_told = [&](const Error &other) { return other.text() == text; };
-    // Front and back of a face have one material.
-    if (std::ranges::none_of(found_, is_told) &&
-        std::ranges::find(left_out_, text) == left_out_.end())
+  for (Error &one : one_by_one(problem))
+    if (known_.insert(one.text()).second) // front and back of a face have one material
       found_.push_back(std::move(one));
-  }
 }
 
 void Problems::leave_out(const Error &told) {
   for (const Error &one : one_by_one(told))
-    left_out_.push_back(one.text());
+    known_.insert(one.text());
 }
 
 Result<void> Problems::told() const {

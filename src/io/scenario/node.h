@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <optional>
+#include <set>
 #include <string>
 #include <toml++/toml.h>
 #include <umov/core/result.h>
@@ -33,7 +34,7 @@ public:
 
 private:
   std::vector<Error> found_;
-  std::vector<std::string> left_out_;
+  std::set<std::string> known_; ///< texts of those that are found, or left out
 };
 
 /// What a reader needs to know besides the node: the file for messages.

@@ -35,14 +35,15 @@ const secondsText = (value) => value.toPrecision(4).replace(/\.?0+$/, "") + " s"
 
 function periodMarks(one, plan, reach) {
   const theme = themeColours();
-  turning.periods.forEach((period, k) => [[1, ""], [0.5, "½ "]].forEach(([share, prefix]) => {
+  const called = (period, share) => share === 1 ? plain(period.name) + ", " : turning.periods.length > 1 ? "½: " : "½ " + plain(period.name) + (isNarrow() ? ",<br>" : ", ");
+  turning.periods.forEach((period, k) => [1, 0.5].forEach((share) => {
     const at = Math.log10(share * period.seconds);
     if (at < Math.log10(reach[0]) || at > Math.log10(reach[1])) return;
     // Light peaks a little beside half the spin: what half it is stands on the side of shorter periods, away from the line of the whole.
     const along = (at - Math.log10(reach[0])) / Math.log10(reach[1] / reach[0]);
     const side = along > (share === 1 ? 0.5 : 0.3) ? "right" : "left";
     plan.shapes.push({ type: "line", xref: "x", yref: "y domain", x0: share * period.seconds, x1: share * period.seconds, y0: 0, y1: 1, line: { color: theme.soft, width: 1, dash: share === 1 ? "dash" : "dot" } });
-    plan.annotations.push({ x: at, y: 1 - 0.13 * (2 * k + (share === 1 ? 0 : 1)), xref: "x", yref: "y domain", text: prefix + plain(period.name) + (share === 1 || !isNarrow() ? ", " : ",<br>") + secondsText(share * period.seconds),
+    plan.annotations.push({ x: at, y: 1 - 0.13 * (2 * k + (share === 1 ? 0 : 1)), xref: "x", yref: "y domain", text: called(period, share) + secondsText(share * period.seconds),
       showarrow: false, xanchor: side, xshift: side === "right" ? -6 : 6, yanchor: "top", align: side, font: { size: isNarrow() ? 10 : 11, color: theme.text }, bgcolor: theme.card, borderpad: 1 });
   }));
 }
