@@ -14,6 +14,7 @@ from conftest import BUILD, DATA, EXAMPLES, ROOT
 sys.path.insert(0, str(ROOT / "tools/site"))
 import equations  # noqa: E402
 import gallery as pages  # noqa: E402
+import stage  # noqa: E402
 
 PUBLIC = sorted(name for name in umov.__all__ if callable(getattr(umov, name)))
 MODULES = ["engines", "errors", "light_curves", "materials", "orbits", "plot", "runs", "satellites", "scenarios",
@@ -135,6 +136,14 @@ def test_lines_of_the_pages_run(name, tmp_path):
     done = subprocess.run([sys.executable, "-c", "\n".join(blocks)], cwd=tmp_path, capture_output=True, text=True,
                           timeout=300)
     assert done.returncode == 0, done.stderr
+
+
+def test_help_is_folded_below_its_meaning():
+    told = "Which object\n  --none-prior FLOAT=0.05     " + "word " * 30 + "\n" + " " * 30 + "other " * 20
+    lines = stage.wrapped(told).splitlines()
+    assert " ".join(lines).split() == told.split()
+    assert max(map(len, lines)) <= 88 and len(lines) > 4
+    assert all(line.startswith(" " * 30) and line[30] != " " for line in lines[2:])
 
 
 @pytest.mark.parametrize(("text", "expected"), [

@@ -76,7 +76,7 @@ def _help_of(umov: str, verb: list[str]) -> str:
     return subprocess.run([umov, *verb, "--help"], capture_output=True, text=True, check=True).stdout
 
 
-def _wrapped(told: str, width: int = 88) -> str:
+def wrapped(told: str, width: int = 88) -> str:
     """Help whose lines fit a page; what goes on stands below where its meaning begins."""
     out = []
     for line in told.splitlines():
@@ -96,7 +96,7 @@ def put_command_line(pages: Pages, umov: str) -> None:
         told = _help_of(umov, verb)
         if verb:
             text += f"{'#' * (1 + len(verb))} umov {' '.join(verb)}\n"
-        text += f"```text\n{_wrapped(told.strip())}\n```\n\n"
+        text += f"```text\n{wrapped(told.strip())}\n```\n\n"
         _, _, below = told.partition("\nSubcommands:\n")
         for name in re.findall(r"^  (\w+) {2,}", below, re.MULTILINE):
             add([*verb, name])
