@@ -138,8 +138,8 @@ std::optional<Error> Node::problem_of(const toml::key &key, const toml::node &va
 
 void Node::add_problems(Problems &problems) const {
   for (const auto &[key, value] : *table_)
-    if (auto problem = problem_of(key, value))
-      problems.add(std::move(*problem));
+    if (const auto problem = problem_of(key, value))
+      problems.add(*problem);
 }
 
 namespace {
@@ -191,7 +191,8 @@ void settle(toml::table &table, const std::string &schema, const std::string &la
   else if (const auto left = node.check(); !left) // and so says whoever reads the table
     problems.leave_out(left.error());
   for (auto &&[key, value] : table) {
-    const std::string name(key.str()), below = schema.empty() ? name : schema + "." + name;
+    const std::string name(key.str()),
+        below = schema.empty() ? name : fmt::format("{}.{}", schema, name);
     if (toml::table *one = value.as_table(); one != nullptr && below != "material")
       settle(*one, below, below, file, problems);
     else if (one != nullptr)
