@@ -142,6 +142,7 @@
 #include <umov/light/light_model.h>
 #include <umov/light/light_sums.h>
 #include <umov/light/light_task.h>
+#include <umov/light/point_budget.h>
 #include <umov/light/poses.h>
 #include <umov/light/stokes_table.h>
 #include <umov/light/thermal.h>

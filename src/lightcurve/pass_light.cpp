@@ -6,6 +6,7 @@
 #include <set>
 #include <umov/core/stop.h>
 #include <umov/light/light_model.h>
+#include <umov/light/point_budget.h>
 #include <umov/lightcurve/shown_magnitude.h>
 #include <umov/observation/track.h>
 #include <umov/photometry/radiometry.h>
@@ -38,7 +39,7 @@ LightOptions pass_light_options(LightMethod method) {
   LightOptions out;
   out.method = method;
   out.accuracy = 0.02;
-  out.max_points = 1u << 17;
+  out.max_points = most_points::over_a_pass;
   return out;
 }
 

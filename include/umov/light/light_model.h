@@ -48,7 +48,7 @@ struct LightOptions {
   /// (which takes rays).
   Stokes<ScatteringPlane> source{1, 0, 0, 0};
   /// Ray-tested points per pose, past which the error is reported as it is; 0: as the light needs
-  /// (2^22 for rays, 2^20 for what Auto leaves to them, 2^19 paths with bounces, which cost more).
+  /// (point_budget.h: for rays, for what Auto leaves to them, for paths with bounces).
   std::size_t max_points = 0;
   /// File to keep the masks in: read if it exists (BadInput unless it fits), made if not.
   std::filesystem::path mask_file = {};

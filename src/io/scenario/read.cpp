@@ -377,7 +377,7 @@ Result<void> read_render(const Node &top, Scenario &out) {
   const auto word = [&](const char *name, const char *usual, std::vector<std::string> known) {
     return problems.taken(node.choice(name, usual, known), std::string());
   };
-  const auto bounces = node.integer("bounces", 1);
+  const auto bounces = node.integer("bounces", static_cast<std::int64_t>(out.light.bounces));
   if (bounces < 1 || bounces > 64)
     problems.add(wrong_value(node, "bounces", bounces, "1 to 64"));
   out.light.bounces = static_cast<std::size_t>(bounces);

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 #include <umov/core/files.h>
 #include <umov/light/instruction_set.h>
+#include <umov/light/point_budget.h>
 
 namespace umov {
 namespace {
@@ -82,10 +83,8 @@ Result<void> MasksLight::prepare(const std::atomic<bool> *cancel) {
   if (options_.bounces > 1 && !facts_.is_convex)
     between_.emplace(scene(), joints(), rays, materials());
   rays.bounces = 1;
-  // What masks and rays by class could not settle is slivers: four times the points would halve
-  // their half-width at best, and most would miss the accuracy all the same.
   if (options_.max_points == 0)
-    rays.max_points = 1u << 20;
+    rays.max_points = most_points::beside_masks;
   if (is_auto)
     direct_.emplace(scene(), joints(), rays, materials());
   facts_.setup_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <umov/core/parallel.h>
 #include <umov/core/stop.h>
+#include <umov/light/point_budget.h>
 
 namespace umov {
 
@@ -19,8 +20,8 @@ IntegrationOptions integration_of(const LightOptions &options, std::vector<doubl
   out.floor_i = std::move(floor_i);
   if (options.max_points > 0)
     out.max_points = options.max_points;
-  else if (options.bounces > 1) // a sampled path costs more than a point
-    out.max_points = 1u << 19;
+  else if (options.bounces > 1)
+    out.max_points = most_points::of_paths;
   return out;
 }
 

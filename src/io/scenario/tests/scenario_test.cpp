@@ -247,6 +247,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Schema, IsJsonWithEveryTable) {
   const auto schema = nlohmann::json::parse(scenario_schema_json());
   EXPECT_EQ(schema["properties"]["render"]["properties"]["accuracy"]["default"], 0.005);
+  EXPECT_EQ(schema["properties"]["render"]["properties"]["bounces"]["default"],
+            LightOptions().bounces);
   EXPECT_TRUE(schema["properties"]["object"]["items"]["properties"].contains("attitude"));
   EXPECT_TRUE(
       schema["properties"]["material"]["additionalProperties"]["properties"].contains("body"));
