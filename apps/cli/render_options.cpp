@@ -1,5 +1,8 @@
 #include "render_options.h"
 
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
 namespace umov::cli {
 namespace {
 
@@ -21,15 +24,17 @@ void add_what(CLI::App &verb, RenderOptions &o) {
                   "Pictures of the first pass, as an animated PNG or in files of their own")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  verb.add_option("--fps", o.request.frames_per_s, "Frames per second of the animation")
+  verb.add_option("--fps", o.frames_per_s, "Frames per second of the animation, with --frames")
       ->check(CLI::Range(0.1, 60.0))
-      ->capture_default_str();
+      ->default_str(shortest(o.request.frames_per_s));
   verb.add_option("--sun", o.sun, "Direction in the body frame, instead of an orbit: X Y Z")
       ->expected(3);
-  verb.add_option("--observer", o.observer, "The same for the observer")->expected(3);
+  auto *observer =
+      verb.add_option("--observer", o.observer, "The same for the observer")->expected(3);
   verb.add_option("--up", o.up, "What is up in the picture, with --observer")
       ->expected(3)
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(observer);
   verb.add_option("--object", o.object, "Which [[object]], from 1")->capture_default_str();
   verb.add_option("--set", o.overrides, "KEY=VALUE over a key of the scenario");
   add_part(verb, o.part, "frames");
@@ -43,10 +48,10 @@ void add_picture(CLI::App &verb, RenderOptions &o) {
   verb.add_option("--samples", o.request.samples, "Rays per pixel and axis")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
-  verb.add_option("--paths", o.request.paths,
+  verb.add_option("--paths", o.paths,
                   "Per ray, of light that touched several surfaces (render.bounces > 1)")
       ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
+      ->default_str(fmt::format("{}", o.request.paths));
   verb.add_option("--half-width", o.request.half_width_m,
                   "Half the picture's side [m]; default: the whole object")
       ->check(CLI::Range(1e-6, 1e6));

@@ -4,7 +4,10 @@
 #include "doubtful_elements.h"
 #include "part_options.h"
 
+#include <optional>
+#include <string>
 #include <umov/jobs/render.h>
+#include <vector>
 
 namespace umov::cli {
 
@@ -14,6 +17,8 @@ struct RenderOptions {
   std::string scene, output, shade = "I", time;
   std::vector<std::string> overrides;
   std::vector<double> sun, observer, up{0, 0, 1};
+  std::optional<double> frames_per_s;
+  std::optional<std::size_t> paths;
   std::size_t object = 1;
   DoubtfulElements elements;
   PartOptions part;

@@ -40,6 +40,20 @@ Result<KeyFrameView> view_of(const RenderOptions &o) {
   return KeyFrameView{{sun, observer}, up};
 }
 
+/// Options that would change nothing, which the user should not take for what is seen.
+Result<void> check_used(const RenderOptions &o, const Scenario &scenario) {
+  const bool is_movie =
+      o.request.frames > 1 && o.output.ends_with(".png") && o.output.find('#') == std::string::npos;
+  if (o.frames_per_s && !is_movie)
+    return fail(ErrorCode::Usage, "--fps is the speed of an animation: --frames N, and -o a .png "
+                                  "without # were expected");
+  if (o.paths && scenario.light.bounces == 1)
+    return fail(ErrorCode::Usage,
+                "--paths counts those of light that touched several surfaces, and render.bounces "
+                "is 1. Pass --set render.bounces=N (N > 1) or leave --paths out");
+  return {};
+}
+
 Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
   using Shade = jobs::RenderRequest::Shade;
   jobs::RenderRequest out = o.request;
@@ -62,6 +76,8 @@ Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
     UMOV_ASSIGN(time, time_of("--time", o.time));
     out.time = time;
   }
+  out.frames_per_s = o.frames_per_s.value_or(out.frames_per_s);
+  out.paths = o.paths.value_or(out.paths);
   out.object = o.object - 1;
   out.has_file_each = o.output.find('#') != std::string::npos;
   UMOV_ASSIGN(part, part_of(o.part));
@@ -72,6 +88,7 @@ Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
 Result<void> run_render(const RenderOptions &o, const Common &common, Diagnostics &diagnostics) {
   UMOV_ASSIGN(request, request_of(o));
   UMOV_ASSIGN(scenario, read_scenario(o.scene, o.overrides));
+  UMOV_TRY(check_used(o, scenario));
   const jobs::JobOptions options = with_elements(job_options(common), o.elements);
   JobConsole console(common, tracing_masks);
   const auto keep = [&](std::size_t frame, const std::string &bytes) {

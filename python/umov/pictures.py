@@ -57,11 +57,13 @@ class Picture(Made):
 
 def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: ArrayLike | None = None,
            observer: ArrayLike | None = None, up: ArrayLike = (0, 0, 1), time: AnyTime | None = None,
-           side: int = 512, samples: int = 3, threads: int = 0, progress: Progress = None) -> Picture:
+           side: int = 512, samples: int = 3, threads: int = 0, progress: Progress = None,
+           allow_bad_checksum: bool = False, allow_old_elements: bool = False) -> Picture:
     """The object as the observer sees it, north up: the picture of `umov render`.
 
     With `sun` and `observer`, directions (3) in the body frame, from there, with `up` upwards; else on the
-    scenario's orbit at `time`, or where the first pass is brightest. `UsageError` for what does not go together, `NoResult` if nothing of the span is lit.
+    scenario's orbit at `time`, or where the first pass is brightest. An object that is in shadow or below the horizon
+    at `time` is drawn in full sunlight all the same, with a warning. `UsageError` for what does not go together, `NoResult` if nothing of the span is lit.
 
     Parameters
     ----------
@@ -89,6 +91,10 @@ def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: 
     progress
         True for a bar, or a callable (what, done, total), called about 20 times a second in the thread that called;
         what it raises comes through.
+    allow_bad_checksum
+        Elements whose checksum is wrong are taken.
+    allow_old_elements
+        Elements over 30 days from `time` or the span are taken.
 
     Examples
     --------
@@ -106,7 +112,7 @@ def render(scene: AnyScenario, *, shade: str = "material", band: str = "", sun: 
     directions = [] if sun is None else [_three(value, name) for value, name in
                                          ((sun, "sun"), (observer, "observer"), (up, "up"))]
     png = _umov.render(Scenario(scene)._scenario, shade, text(band, "band"), directions, None if time is None else utc(time),
-                       side, samples, job_options(threads, False), Watch(progress))
+                       side, samples, job_options(threads, False, allow_bad_checksum, allow_old_elements), Watch(progress))
     return Picture(png, shade)
 
 

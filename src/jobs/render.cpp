@@ -10,6 +10,7 @@
 #include <umov/io/exr.h>
 #include <umov/io/png.h>
 #include <umov/io/report_frames.h>
+#include <umov/light/point_budget.h>
 
 namespace umov::jobs {
 namespace {
@@ -42,10 +43,26 @@ std::vector<std::size_t> epochs_to_show(const RenderRequest &request, const Ligh
   return out;
 }
 
+/// A picture at a time that the user chose is drawn in full sunlight whatever stands between: what
+/// nobody would see is told.
+void tell_of_unseen(const ObservingGeometry &at, Diagnostics &diagnostics) {
+  const bool is_below = at.altitude.radians() < 0;
+  if (at.sunlit >= 1 && !is_below)
+    return;
+  std::string why = at.sunlit >= 1  ? ""
+                    : at.sunlit > 0 ? "partly in the Earth's or the Moon's shadow"
+                                    : "in the Earth's shadow";
+  if (is_below)
+    why += why.empty() ? "below the horizon" : " and below the horizon";
+  diagnostics.warn(fmt::format("at {} the object is {} (sunlit share {:.3g}, altitude {:.1f} deg): "
+                               "it is drawn as if in full sunlight and in sight",
+                               to_iso(at.time), why, at.sunlit, at.altitude.degrees()));
+}
+
 /// Epochs of the scenario's orbit, celestial north up.
 Result<std::vector<Shot>> shots_from_orbit(const RenderRequest &request, const Scenario &scenario,
                                            const LoadedObject &object, const JobOptions &options,
-                                           const Monitor &monitor) {
+                                           const Monitor &monitor, Diagnostics &diagnostics) {
   UMOV_TRY(check_complete_for_run(scenario));
   UMOV_TRY(check_magnitudes(scenario));
   LightCurveRequest wanted =
@@ -54,7 +71,7 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderRequest &request, const S
   wanted.has_moonlight = false;
   // Enough to find the brightest moment; the pictures do not use it.
   wanted.light.accuracy = 0.05;
-  wanted.light.max_points = 1u << 14;
+  wanted.light.max_points = most_points::to_find_the_brightest;
   wanted.light.bounces = 1;
   if (request.time) {
     wanted.span.start = wanted.span.stop = *request.time;
@@ -68,6 +85,8 @@ Result<std::vector<Shot>> shots_from_orbit(const RenderRequest &request, const S
   std::vector<Shot> out;
   for (const std::size_t i : epochs_to_show(request, outcome.curve)) {
     const LightCurveEpoch &at = outcome.curve.epochs[i];
+    if (request.time)
+      tell_of_unseen(at.geometry, diagnostics);
     out.push_back({{at.pose, celestial_north(at)}, at.joint_angles_rad, to_iso(at.geometry.time)});
   }
   if (out.empty())
@@ -111,6 +130,9 @@ Result<void> check(const RenderRequest &request, const Scenario &scenario) {
   if (request.view && (request.frames > 1 || request.time))
     return fail(ErrorCode::Usage, "--time and --frames need a scenario with an orbit; leave --sun "
                                   "and --observer out");
+  if (request.time && request.frames > 1)
+    return fail(ErrorCode::Usage, "--time shows one moment, --frames those of a pass; leave one of "
+                                  "them out");
   if (request.view && norm(cross(request.view->up, request.view->pose.observer)) < 1e-6)
     return fail(ErrorCode::Usage, "--up lies along the line of sight; give another direction");
   return {};
@@ -242,7 +264,8 @@ Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
   UMOV_ASSIGN(object, load_object(scenario, request.object,
                                   {.allow_bad_checksum = options.allow_bad_checksum,
                                    .allow_old_elements = options.allow_old_elements,
-                                   .cancel = monitor.cancel},
+                                   .cancel = monitor.cancel,
+                                   .at = request.time},
                                   diagnostics));
   const std::vector<Band> &bands = object.scene.bands;
   UMOV_ASSIGN(band, band_index(request.band, bands));
@@ -253,7 +276,8 @@ Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
                            diagnostics);
     subject.shots.push_back({*request.view, parts.of({&request.view->pose, 1}), {}});
   } else {
-    UMOV_ASSIGN(shots, shots_from_orbit(request, scenario, subject.object, options, monitor));
+    UMOV_ASSIGN(shots,
+                shots_from_orbit(request, scenario, subject.object, options, monitor, diagnostics));
     subject.shots = std::move(shots);
   }
   const KeyFrameOptions how{request.side,         request.samples, band,

@@ -172,6 +172,59 @@ def test_what_cannot_be_drawn_is_told(umov, tmp_path):
     assert not list(tmp_path.glob("x.*"))
 
 
+def test_elements_are_judged_at_the_time_that_is_asked_for(umov, tmp_path):
+    """As `umov run` judges its span. The elements of the example are of 2018-01-20T10:33:30Z: 4383 days to 2030-01-20,
+    less 19.44."""
+    example = ROOT / "examples/hst_maui.toml"
+    asked = ["render", example, "--time", "2030-01-01T00:00:00Z", "--size", 16, "--samples", 1, "-o", "y.png"]
+    done = umov(*asked)
+    assert done.code == 3 and "4363.6 d from the span" in done.err and "--allow-old-elements" in done.err, done.err
+    assert not (tmp_path / "y.png").exists()
+    assert umov(*asked, "--allow-old-elements").code == 0
+    # The span of the scenario is not asked for: it may lie where the elements are of no use.
+    far = ["--set", "time.start=2030-01-01T00:00:00Z", "--set", "time.stop=2030-01-01T01:00:00Z"]
+    done = umov("render", example, "--time", "2018-01-21T05:11:00Z", *far, "--size", 16, "--samples", 1, "-o", "near.png")
+    assert done.code == 0 and "warning" not in done.err, done.err
+    done = umov("render", example, "--time", "2018-01-21T05:11:00Z", "--size", 16, "--samples", 1, "-o", "same.png")
+    assert done.code == 0 and (tmp_path / "near.png").read_bytes() == (tmp_path / "same.png").read_bytes()
+
+
+def test_what_nobody_would_see_at_the_time_is_told(umov, tmp_path):
+    """Sunlit share and altitude are those of `umov orbit ephemeris`."""
+    from conftest import read_csv
+    told = {}
+    for time in ("2018-01-21T05:11:00Z", "2018-01-21T12:00:00Z", "2018-01-21T12:10:00Z", "2018-01-21T13:50:00Z"):
+        done = umov("orbit", "ephemeris", "--orbit", ROOT / "data/tle/hst.tle", "--norad", 20580, "--lat-deg", 20.7083,
+                    "--lon-deg", -156.2578, "--alt-m", 3058, "--start", time, "--stop", time, "--step-s", 1, "-o", "e.csv")
+        assert done.code == 0, done.err
+        row, = read_csv(tmp_path / "e.csv")
+        done = umov("render", ROOT / "examples/hst_maui.toml", "--time", time, "--size", 16, "--samples", 1, "-o", "x.png")
+        assert done.code == 0, done.err
+        share, altitude = float(row["sunlit"]), float(row["alt"])
+        told[time] = (share < 1, altitude < 0)
+        assert ("in the Earth's shadow" in done.err) == (share == 0), done.err
+        assert ("below the horizon" in done.err) == (altitude < 0), done.err
+        assert (f"(sunlit share {share:.3g}, altitude {altitude:.1f} deg)" in done.err) == any(told[time]), done.err
+        assert ("warning" in done.err) == any(told[time]), done.err
+    assert {(False, False), (True, True), (False, True)} <= set(told.values()), told
+
+
+def test_options_that_would_change_nothing_are_refused(umov, scenario, tmp_path):
+    time, pair = ("--time", "2018-01-21T05:11:00Z"), ("--sun", 1, 0, 0, "--observer", 0, 1, 0)
+    for options, why in (((*time, "--frames", 3), "--frames"), ((*time, "--up", 0, 1, 0), "--observer"),
+                         (("--up", 0, 1, 0), "--observer"), ((*time, "--fps", 5), "--frames N"),
+                         ((*pair, "--fps", 5), "--frames N"), ((*pair, "--paths", 4), "render.bounces")):
+        done = umov("render", scenario(), *options, "--size", 16, "--samples", 1, "-o", "x.png")
+        assert done.code == 2 and why in done.err, (options, done.err)
+    done = umov("render", scenario(), "--frames", 2, "--fps", 5, "--size", 16, "-o", "f_#.png")
+    assert done.code == 2 and "without #" in done.err, done.err
+    assert not list(tmp_path.glob("*.png"))
+    for options in ((*pair, "--up", 0, 0, 1), (*pair, "--paths", 4, "--set", "render.bounces=2"),
+                    ("--frames", 2, "--fps", 5)):
+        done = umov("render", scenario(), *options, "--size", 16, "--samples", 1, "-o", "x.png")
+        assert done.code == 0, done.err
+
+
 def cpu_of(umov, material, tmp_path):
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     (tmp_path / "s.toml").write_text(SCENE.replace("paper_al", material).replace('"paper_rgb"', '["Bessell.V"]'))

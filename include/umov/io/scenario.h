@@ -143,6 +143,9 @@ struct LoadOptions {
   bool source_is_sun = true; ///< false: a laser, for which a mirror is no matter of the disk
   bool reads_shape = true;   ///< false: the orbit alone; attitude and scene stay empty
   const std::atomic<bool> *cancel = nullptr; ///< ends the reading where it comes true
+  /// The orbit is asked for at this time alone, be it in [time] or not: it judges the elements'
+  /// age.
+  std::optional<Epoch<Utc>> at = {};
 };
 
 /// Reads the files that an object of a scenario names and compiles its scene. Interrupted where

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <tuple>
 #include <umov/core/files.h>
 #include <umov/core/stop.h>
 #include <umov/core/text.h>
@@ -11,6 +12,7 @@
 #include <umov/io/trajectory_file.h>
 #include <umov/shape/topology.h>
 #include <umov/time/earth_orientation.h>
+#include <utility>
 
 namespace umov {
 namespace {
@@ -61,6 +63,15 @@ Result<void> load_earth(const Scenario &scenario, LoadedObject &out) {
   return use_earth_orientation(text, scenario.earth_orientation.string());
 }
 
+/// From when to when the orbit is asked for. A moment of the span is seen with the span's elements:
+/// a file of several sets gives it the same orbit as a run.
+std::pair<Epoch<Utc>, Epoch<Utc>> span_of_orbit(const ScenarioTime &span,
+                                                const std::optional<Epoch<Utc>> &at) {
+  if (!at || (seconds_between(*at, span.start) >= 0 && seconds_between(span.stop, *at) >= 0))
+    return {span.start, span.stop};
+  return {*at, *at};
+}
+
 Result<void> load_orbit(const Named &of, const LoadOptions &options, Diagnostics &diagnostics,
                         LoadedObject &out) {
   const Scenario &scenario = of.scenario;
@@ -69,10 +80,11 @@ Result<void> load_orbit(const Named &of, const LoadOptions &options, Diagnostics
   if (of.object.orbit->state) {
     if (!scenario.time)
       return {};
+    const auto [first, last] = span_of_orbit(*scenario.time, options.at);
     StateVector state = *of.object.orbit->state;
     state.name = of.object.name;
     state.norad_cat_id = of.object.orbit->norad;
-    auto orbit = integrate_orbit(state, scenario.time->start, scenario.time->stop);
+    auto orbit = integrate_orbit(state, first, last);
     if (!orbit)
       return fail(orbit.error().code, orbit.error().message, of.place("orbit"));
     out.orbit = Trajectory(*orbit);
@@ -84,8 +96,7 @@ Result<void> load_orbit(const Named &of, const LoadOptions &options, Diagnostics
     return {}; // a scene: its orbit is not asked for
   TrajectoryRequest request;
   request.norad = of.object.orbit->norad;
-  request.first = scenario.time->start;
-  request.last = scenario.time->stop;
+  std::tie(request.first, request.last) = span_of_orbit(*scenario.time, options.at);
   request.allow_bad_checksum = options.allow_bad_checksum;
   request.allow_old_elements = options.allow_old_elements;
   UMOV_ASSIGN(orbit, read_trajectory(text, file, request, diagnostics));
