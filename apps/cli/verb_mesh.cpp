@@ -11,7 +11,7 @@ namespace umov::cli {
 namespace {
 
 struct ReadOptions {
-  std::string file;
+  std::string file, output;
   MeshFileOptions frame;
   bool require_closed = false;
 };
@@ -32,11 +32,22 @@ void print(const jobs::MeshDescription &mesh) {
              m.opposite_pairs);
 }
 
+/// To a file: all of it as JSON, else the table of materials.
+Result<void> keep(const std::string &path, const jobs::MeshDescription &mesh) {
+  return path.ends_with(".json") ? put(path, jobs::to_json(mesh))
+                                 : write_table(path, jobs::group_table(mesh));
+}
+
 Result<void> describe_file(const ReadOptions &options, const Common &common, bool check,
                            Diagnostics &diagnostics) {
+  UMOV_TRY(check_output(options.output));
+  UMOV_TRY(check_apart({options.file}, {options.output}));
+  const bool has_file = !options.output.empty() && options.output != "-";
   const auto how = check ? jobs::MeshLook::Cleaned : jobs::MeshLook::AsRead;
   UMOV_ASSIGN(mesh, jobs::describe_mesh(options.file, options.frame, how, diagnostics));
-  if (common.json) {
+  if (has_file) {
+    UMOV_TRY(keep(options.output, mesh));
+  } else if (common.json) {
     UMOV_TRY(put("", jobs::to_json(mesh)));
   } else {
     print(mesh);
@@ -104,6 +115,9 @@ void add_look(CLI::App &mesh, const Exit &exit_with, bool check) {
   add_input(*verb, *options);
   if (check)
     verb->add_flag("--require-closed", options->require_closed, "Fail if the mesh is not closed");
+  verb->add_option("-o,--output", options->output,
+                   "File, instead of stdout: .json has all, a table (.csv, .ecsv, .fits) the "
+                   "materials");
   add_common(*verb, *common, true);
   verb->callback(
       finishing(exit_with, [options, common, check] { return look(*options, *common, check); }));

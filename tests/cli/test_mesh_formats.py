@@ -295,6 +295,35 @@ def test_gltf_says_unit_and_axis_itself(umov, tmp_path):
     assert info["upper_m"][1] == pytest.approx(own["upper_m"][2] / 1000)
 
 
+@pytest.mark.parametrize("verb", ["info", "check"])
+def test_what_a_mesh_holds_goes_to_a_file(umov, tmp_path, verb):
+    assert umov("mesh", "make", "agena", "-o", "a.obj").code == 0
+    for name in ("m.json", "m.csv"):
+        done = umov("mesh", verb, "a.obj", *FRAME, "-o", name)
+        assert done.code == 0 and not done.out, done.err
+    whole = json.loads((tmp_path / "m.json").read_text())
+    assert whole == json.loads(umov("mesh", verb, "a.obj", *FRAME, "--json").out)
+    assert {row["material"]: int(row["triangles"]) for row in read_csv(tmp_path / "m.csv")} == {
+        one["name"]: one["triangles"] for one in whole["materials"]}
+    assert umov("mesh", verb, "a.obj", *FRAME, "-o", "a.obj").code == 2
+    assert umov("mesh", verb, "a.obj", *FRAME, "-o", "m.txt").code == 2
+
+
+@pytest.mark.parametrize("scale, told", [([0, 0, 0], "all corners are one point"), ([0, 0, 1], "lie on a line")])
+def test_a_mesh_without_area_is_told(umov, tmp_path, scale, told):
+    """The scale of a node is the file's: no other unit gives it an area."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1]], np.float32).tobytes()
+    (tmp_path / "z.gltf").write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "scale": scale}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 0, 1]}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(corners)}],
+        "buffers": [{"byteLength": len(corners), "uri": "data:application/octet-stream;base64," + base64.b64encode(corners).decode()}]}))
+    done = umov("mesh", "info", "z.gltf")
+    assert done.code == 0 and "the mesh has no area" in done.err and told in done.err, done.err
+    assert "it is 0 m" not in done.err
+
+
 def turned(points, angle, axis=2):
     c, s = np.cos(angle), np.sin(angle)
     turn = np.eye(3)

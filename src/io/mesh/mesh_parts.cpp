@@ -256,6 +256,13 @@ void PolygonMaker::finish() {
     mesh_.tangents.clear();
 }
 
+bool has_area(const Mesh &mesh) {
+  return std::ranges::any_of(mesh.triangles, [&](const Triangle &t) {
+    const Vec3<Body> a = mesh.positions[t.vertex[0]];
+    return norm(cross(mesh.positions[t.vertex[1]] - a, mesh.positions[t.vertex[2]] - a)) > 0;
+  });
+}
+
 /// Warns of sizes that no satellite has: the largest, a space station, is 109 m long.
 void warn_of_size(const Mesh &mesh, const MeshFileOptions &options, const std::string &file,
                   Diagnostics &diagnostics) {
@@ -266,6 +273,14 @@ void warn_of_size(const Mesh &mesh, const MeshFileOptions &options, const std::s
   }
   const Vec3<Body> size = high - low;
   const double longest = std::max({size.x, size.y, size.z});
+  if (!has_area(mesh)) {
+    diagnostics.warn(longest > 0 ? "the mesh has no area: the corners of each face lie on a line"
+                                 : "the mesh has no area: all corners are one point. Is a scale in "
+                                   "the file 0?",
+                     {file});
+    if (!(longest > 0))
+      return; // in whatever unit
+  }
   if (longest >= 0.01 && longest <= 120)
     return;
   const bool is_long = longest > 120;
