@@ -6,9 +6,9 @@
 #include "tables.h"
 #include "verbs.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 #include <umov/bench/bench.h>
 #include <umov/core/parallel.h>
 #include <umov/core/text.h>
@@ -104,18 +104,30 @@ std::vector<Finding> examine() {
   return out;
 }
 
-int run_doctor(const Common &common) {
-  bool fine = true;
-  auto json = nlohmann::ordered_json::array();
-  for (const Finding &finding : examine()) {
-    json.push_back({{"what", finding.what}, {"found", finding.found}, {"ok", finding.is_fine}});
-    if (!common.json)
-      fmt::print("{:4} {:18} {}\n", finding.is_fine ? "ok" : "BAD", finding.what, finding.found);
-    fine = fine && finding.is_fine;
+Table table_of(const std::vector<Finding> &findings) {
+  std::vector<std::string> what, found;
+  std::vector<bool> is_fine;
+  for (const Finding &finding : findings) {
+    what.push_back(finding.what);
+    found.push_back(finding.found);
+    is_fine.push_back(finding.is_fine);
   }
-  if (common.json)
-    fmt::print("{}\n", json.dump(2));
-  return fine ? 0 : static_cast<int>(ErrorCode::Device);
+  Table out;
+  out.add("what", "", "what was looked at", std::move(what));
+  out.add("found", "", "what it is", std::move(found));
+  out.add("ok", "", "false where something does not work", std::move(is_fine));
+  return out;
+}
+
+Result<int> run_doctor(const std::string &output, const Common &common) {
+  UMOV_TRY(check_output(output));
+  const std::vector<Finding> findings = examine();
+  if (common.json || (!output.empty() && output != "-"))
+    UMOV_TRY(put_table(output, table_of(findings), common));
+  else
+    for (const Finding &finding : findings)
+      fmt::print("{:4} {:18} {}\n", finding.is_fine ? "ok" : "BAD", finding.what, finding.found);
+  return std::ranges::all_of(findings, &Finding::is_fine) ? 0 : static_cast<int>(ErrorCode::Device);
 }
 
 } // namespace
@@ -123,8 +135,13 @@ int run_doctor(const Common &common) {
 void add_doctor(CLI::App &app, const Exit &exit_with) {
   auto *verb = app.add_subcommand("doctor", "Say what this build and machine can do");
   auto common = std::make_shared<Common>();
+  auto output = std::make_shared<std::string>();
+  add_table_output(*verb, *output);
   add_common(*verb, *common, true);
-  verb->callback([common, exit_with] { exit_with(run_doctor(*common)); });
+  verb->callback([common, output, exit_with] {
+    const auto done = run_doctor(*output, *common);
+    exit_with(done ? *done : report(done.error()));
+  });
 }
 
 } // namespace umov::cli

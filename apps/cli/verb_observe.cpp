@@ -7,6 +7,7 @@
 #include "verbs.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <umov/core/text.h>
 #include <umov/jobs/observe.h>
 
@@ -19,6 +20,31 @@ struct ObserveOptions {
   DoubtfulElements elements;
   PartOptions part;
 };
+
+/// The folder and what is in it, for programs.
+void print_json(const jobs::Observation &made, const RunFolder &folder) {
+  const nlohmann::ordered_json out{{"folder", folder.path().string()},
+                                   {"exposures", made.exposures},
+                                   {"saturated", made.saturated},
+                                   {"rows", made.counts.rows()},
+                                   {"frames", made.frames},
+                                   {"left_out", made.left_out},
+                                   {"light_s", made.light_s},
+                                   {"counts_s", made.counts_s}};
+  fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void tell_of(const jobs::Observation &made, const RunFolder &folder, const Common &common) {
+  note(common, fmt::format("{}, {} rows of counts; light {:.1f} s, counts {:.1f} s",
+                           counted(made.exposures, "exposure"), made.counts.rows(), made.light_s,
+                           made.counts_s));
+  for (const std::string &words : made.left_out)
+    note(common, words);
+  if (made.frames > 0)
+    note(common, fmt::format("{} in frames/", counted(made.frames, "frame")));
+  if (!common.quiet)
+    fmt::print("written to {}\n", printable(folder.path().string()));
+}
 
 Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnostics &diagnostics) {
   const auto started = std::chrono::system_clock::now();
@@ -40,15 +66,10 @@ Result<void> run_observe(const ObserveOptions &o, const Common &common, Diagnost
                                     take_frame));
   UMOV_TRY(jobs::write_observation(result, scenario, manifest_of_command(common, started),
                                    diagnostics, folder));
-  note(common, fmt::format("{}, {} rows of counts; light {:.1f} s, counts {:.1f} s",
-                           counted(result.exposures, "exposure"), result.counts.rows(),
-                           result.light_s, result.counts_s));
-  for (const std::string &words : result.left_out)
-    note(common, words);
-  if (result.frames > 0)
-    note(common, fmt::format("{} in frames/", counted(result.frames, "frame")));
-  if (!common.quiet)
-    fmt::print("written to {}\n", printable(folder.path().string()));
+  if (common.json)
+    print_json(result, folder);
+  else
+    tell_of(result, folder, common);
   return {};
 }
 
@@ -64,7 +85,7 @@ void add_observe_options(CLI::App &verb, ObserveOptions &o, Common &common) {
   add_device(verb, common);
   add_threads(verb, common);
   add_cache(verb, common);
-  add_common(verb, common, false);
+  add_common(verb, common, true);
 }
 
 } // namespace

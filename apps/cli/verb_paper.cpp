@@ -6,6 +6,7 @@
 #include "verbs.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <umov/core/text.h>
 #include <umov/core/version.h>
 #include <umov/paper/paper.h>
@@ -19,7 +20,7 @@ struct PaperVerb {
 };
 
 void print_figure(const PaperFigure &figure, const Common &common) {
-  if (common.quiet)
+  if (common.quiet || common.json)
     return;
   std::size_t failed = 0;
   for (const PaperCheck &check : figure.checks)
@@ -28,6 +29,28 @@ void print_figure(const PaperFigure &figure, const Common &common) {
              failed > 0 ? fmt::format("  [{} of {} checks FAIL]", failed, figure.checks.size())
                         : "");
   std::fflush(stdout);
+}
+
+/// All figures with their checks, for programs.
+void print_json(const std::vector<PaperFigure> &figures, const RunFolder &folder) {
+  using Json = nlohmann::ordered_json;
+  Json list = Json::array();
+  for (const PaperFigure &figure : figures) {
+    Json checks = Json::array();
+    for (const PaperCheck &check : figure.checks)
+      checks.push_back({{"what", check.what},
+                        {"found", check.found},
+                        {"expected", check.expected},
+                        {"tolerance", check.tolerance},
+                        {"source", check.source},
+                        {"holds", check.holds()}});
+    list.push_back({{"id", figure.id},
+                    {"title", figure.title},
+                    {"summary", figure.summary},
+                    {"checks", std::move(checks)}});
+  }
+  const Json out{{"folder", folder.path().string()}, {"figures", std::move(list)}};
+  fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
 /// A number that is not what it should be is an error, and says which.
@@ -74,7 +97,9 @@ Result<void> make(const PaperVerb &o, const Common &common) {
   }
   folder.add("manifest.json", make_manifest(manifest));
   UMOV_TRY(folder.commit());
-  if (!common.quiet)
+  if (common.json)
+    print_json(figures, folder);
+  else if (!common.quiet)
     fmt::print("written to {} in {:.0f} s: index.html has it all\n",
                printable(folder.path().string()), elapsed_s());
   return judge(figures);
@@ -92,7 +117,7 @@ void add_paper(CLI::App &app, const Exit &exit_with) {
   verb->add_option("-o,--output", o->output, "Folder")->capture_default_str();
   verb->add_flag("--force", common->force, "Write into a folder that umov did not make");
   add_threads(*verb, *common);
-  add_common(*verb, *common, false);
+  add_common(*verb, *common, true);
   verb->callback(
       stoppable(exit_with, common, [o, common](Diagnostics &) { return make(*o, *common); }));
 }

@@ -8,6 +8,7 @@
 
 #include <umov/jobs/ranged_job.h>
 #include <umov/jobs/run.h>
+#include <umov/jobs/run_plan.h>
 
 namespace umov::cli {
 namespace {
@@ -15,14 +16,19 @@ namespace {
 /// Reads and checks everything; the output folder last, as nothing is written.
 Result<void> check_alone(const RunOptions &o, const Scenario &scenario, const Common &common,
                          Diagnostics &diagnostics) {
-  UMOV_TRY(part_of(o.part));
-  const jobs::JobOptions options = with_elements(job_options(common), o.elements);
+  UMOV_ASSIGN(part, part_of(o.part));
+  jobs::JobOptions options = with_elements(job_options(common), o.elements);
+  options.part = part;
   JobConsole console(common, tracing_masks);
-  UMOV_ASSIGN(objects,
-              jobs::load_run(scenario, options, console.monitor(common.verbose), diagnostics));
-  tell_of_objects(o.scenario, objects, common);
+  const jobs::Monitor monitor = console.monitor(common.verbose);
+  UMOV_ASSIGN(objects, jobs::load_run(scenario, options, monitor, diagnostics));
+  if (!common.json)
+    tell_of_objects(o.scenario, objects, common);
   UMOV_TRY(RunFolder::open(scenario.output_dir, common.force));
-  return {};
+  if (!common.json)
+    return {};
+  UMOV_ASSIGN(plan, jobs::run_plan_json(std::move(objects), scenario, options, monitor));
+  return put("", plan + "\n");
 }
 
 Result<void> run(const RunOptions &o, const Common &common, Diagnostics &diagnostics) {

@@ -126,6 +126,7 @@
 #include <umov/jobs/render.h>
 #include <umov/jobs/requests.h>
 #include <umov/jobs/run.h>
+#include <umov/jobs/run_plan.h>
 #include <umov/jobs/signature.h>
 #include <umov/jobs/tallies.h>
 #include <umov/kernel/lobe.h>

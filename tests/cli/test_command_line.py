@@ -87,12 +87,11 @@ def test_groff_reads_the_manual_page(umov, tmp_path):
 def test_every_verb_has_the_same_habits(umov):
     found = leaves(umov)
     no_table = {"mesh make", "mesh convert", "material plot", "material import", "orbit convert",
-                "paper", "render", "schema", "completion", "man", "observe", "instrument show"}
+                "render", "schema", "completion", "man", "instrument show"}
     # Jobs in parts: what they make is a folder, or the table of another verb.
     no_table |= {f"scale {verb}" for verb in ("run", "merge", "verify", "repair", "script", "worker", "hold")}
     assert {path[5:] for path, words in found.items() if "--json" not in words} == no_table
-    only_prints = {"mesh info", "mesh check", "doctor"}
-    only_prints |= {f"scale {verb}" for verb in ("plan", "lock", "run", "status", "verify", "repair", "worker", "hold")}
+    only_prints = {f"scale {verb}" for verb in ("plan", "lock", "run", "status", "verify", "repair", "worker", "hold")}
     assert {path[5:] for path, words in found.items() if "--output" not in words} == only_prints
     for path, words in found.items():
         assert ("-o" in words) == ("--output" in words) and "--help" in words, path
@@ -111,6 +110,14 @@ def test_doctor_counts_what_the_verbs_list(umov):
     for suffix in said["tables"].split(", "):
         assert umov("material", "list", "-o", "t" + suffix).code == 0, suffix
     assert umov("material", "list", "-o", "t.xyz").code == 2
+
+
+def test_doctor_writes_its_table(umov, tmp_path):
+    assert umov("doctor", "-o", "d.json").code == 0
+    assert {line["what"]: line["found"] for line in json.loads((tmp_path / "d.json").read_text())} == found_by_doctor(umov)
+    assert umov("doctor", "-o", "d.csv").code == 0
+    assert {row["ok"] for row in read_csv(tmp_path / "d.csv")} == {"True"}
+    assert umov("doctor", "-o", "d.txt").code == 2
 
 
 def test_doctor_and_bench_name_the_same_machine(umov, tmp_path):

@@ -215,6 +215,22 @@ def test_a_run_tells_programs_what_it_found(umov, scenario, tmp_path):
     assert re.search(r"550 nm: mag \d", umov("run", scenario(), "-o", "other").out)
 
 
+def test_a_dry_run_as_json_says_what_the_run_will_do(umov, scenario, tmp_path):
+    done = umov("run", scenario(), "--dry-run", "--json")
+    assert done.code == 0, done.err
+    plan = json.loads(done.out)
+    assert not (tmp_path / "out").exists()
+    made = json.loads(umov("run", scenario(), "--json").out)
+    planned, found = plan["objects"], made["objects"]
+    assert [one["epochs"] for one in planned] == [one["epochs"] for one in found]
+    assert [[p["pass_id"] for p in one["passes"]] for one in planned] == [[p["pass_id"] for p in one["passes"]] for one in found]
+    assert plan["bands"] == found[0]["bands"] and plan["folder"] == made["folder"] and plan["method"] == "auto"
+    # 05:08 to 05:12 in steps of 20 s, both ends included; a row for each epoch and band
+    assert plan["cost"] == {"epochs_searched": 13, "epochs_lit": found[0]["epochs"], "rows": 3 * found[0]["epochs"]}
+    part = json.loads(umov("run", scenario(), "--dry-run", "--json", "--shard", "0/1").out)
+    assert part["objects"] == planned
+
+
 def test_a_dry_run_looks_at_the_folder_last(umov, scenario, tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine/thesis.txt").write_text("x")

@@ -1,4 +1,5 @@
 """umov observe and reduce: from a scenario to counts and back, through every instrument."""
+import json
 import math
 import re
 import statistics
@@ -99,6 +100,15 @@ def test_frames_of_the_sky_tell_the_same(scene, umov, tmp_path):
         assert max(abs(stokes["q_scat"] - tables[other][1]["q_scat"])) < 1e-12
         assert max(abs(stokes["p"] - tables[other][1]["p"])) < 1e-12
     assert max(abs(tables["scattering"][1]["q_scat"] - tables["scattering"][1]["q"])) < 1e-12
+
+
+def test_what_was_recorded_is_told_to_programs(scene, umov, tmp_path):
+    done = umov("observe", scene("c11_imx250", "exposure_s = 1\n"), "--json")
+    assert done.code == 0, done.err
+    told = json.loads(done.out)
+    counts, truth = (Table.read(tmp_path / f"out/{name}.ecsv") for name in ("counts", "truth"))
+    assert (told["rows"], told["exposures"], told["frames"]) == (len(counts), len(truth), 0)
+    assert (tmp_path / told["folder"]).samefile(tmp_path / "out")
 
 
 def test_the_same_seed_gives_the_same_bytes(scene, umov, tmp_path):

@@ -248,6 +248,15 @@ def test_an_unknown_figure_is_told(umov):
     assert 'did you mean "claim_roll"?' in done.err
 
 
+def test_checks_are_told_to_programs(umov):
+    done = umov("paper", "--json", "--only", "table1", "-o", "out")
+    assert done.code == 0, done.err
+    figure, = json.loads(done.out)["figures"]
+    assert figure["id"] == "table1" and figure["checks"]
+    for check in figure["checks"]:
+        assert check["holds"] == (abs(check["found"] - check["expected"]) <= check["tolerance"]), check
+
+
 def test_the_folder_is_replaced_but_not_a_stranger(umov, tmp_path):
     assert umov("paper", "-q", "--only", "fig2", "-o", "out").code == 0
     assert umov("paper", "-q", "--only", "fig12", "-o", "out").code == 0
