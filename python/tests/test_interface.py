@@ -229,6 +229,17 @@ def test_pictures_and_triangles(hst, plate):
             umov.render(plate, **wrong)
 
 
+def test_a_picture_at_a_time_takes_elements_of_that_time():
+    """The elements of the example are of 2018-01-20; at 12 h they have HST in the Earth's shadow (`umov orbit ephemeris`)."""
+    example, small = EXAMPLES / "hst_maui.toml", {"side": 16, "samples": 1}
+    with pytest.raises(umov.InputError, match="allow_old_elements=True"):
+        umov.render(example, time="2030-01-01T00:00:00Z", **small)
+    with pytest.warns(umov.UmovWarning, match="kilometres"):
+        umov.render(example, time="2030-01-01T00:00:00Z", allow_old_elements=True, **small)
+    with pytest.warns(umov.UmovWarning, match="in the Earth's shadow .sunlit share 0, altitude"):
+        umov.render(example, time="2018-01-21T12:00:00Z", **small)
+
+
 @pytest.mark.parametrize("material", ["paint_white", "aluminium_anodized", "film_silvered"])
 def test_sums_serve_other_materials_and_bands(hst, material):
     """What is applied to sums is what an engine of those materials gives: to rounding, but where it mends what
