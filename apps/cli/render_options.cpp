@@ -13,9 +13,9 @@ void add_what(CLI::App &verb, RenderOptions &o) {
           "File: .png, or .exr with I, Q, U, V of every band; pass_###.exr: a file for each frame")
       ->required();
   verb.add_option("--shade", o.shade,
-                  "I, p, pa, material, or colour (three bands as blue, green, red)")
+                  "Of a .png: I, p, pa, material, or colour (three bands as blue, green, red)")
       ->check(CLI::IsMember({"I", "p", "pa", "material", "colour"}))
-      ->capture_default_str();
+      ->default_str("I");
   verb.add_option("--band", o.request.band,
                   "Of the picture, as the scene spells it; default: the middle one");
   verb.add_option("--time", o.time,

@@ -14,7 +14,8 @@ namespace umov::cli {
 /// The options as they were given.
 struct RenderOptions {
   jobs::RenderRequest request;
-  std::string scene, output, shade = "I", time;
+  std::string scene, output, time;
+  std::optional<std::string> shade;
   std::vector<std::string> overrides;
   std::vector<double> sun, observer, up{0, 0, 1};
   std::optional<double> frames_per_s;

@@ -42,6 +42,12 @@ Result<KeyFrameView> view_of(const RenderOptions &o) {
 
 /// Options that would change nothing, which the user should not take for what is seen.
 Result<void> check_used(const RenderOptions &o, const Scenario &scenario) {
+  const bool is_exr = o.output.ends_with(".exr");
+  if (is_exr && o.shade)
+    return fail(ErrorCode::Usage, "--shade is of a .png; an .exr has I, Q, U, V as they are");
+  if (!o.request.band.empty() && (is_exr || o.shade == "colour"))
+    return fail(ErrorCode::Usage, "--band chooses one, and --shade colour takes three and an .exr "
+                                  "all of the scene; leave --band out or --set bands.set");
   const bool is_movie =
       o.request.frames > 1 && o.output.ends_with(".png") && o.output.find('#') == std::string::npos;
   if (o.frames_per_s && !is_movie)
@@ -54,8 +60,16 @@ Result<void> check_used(const RenderOptions &o, const Scenario &scenario) {
   return {};
 }
 
-Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
+jobs::RenderRequest::Shade shade_of(const std::string &word) {
   using Shade = jobs::RenderRequest::Shade;
+  return word == "p"          ? Shade::Polarization
+         : word == "pa"       ? Shade::PositionAngle
+         : word == "material" ? Shade::Material
+         : word == "colour"   ? Shade::Colour
+                              : Shade::Intensity;
+}
+
+Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
   jobs::RenderRequest out = o.request;
   out.is_exr = o.output.ends_with(".exr");
   if (!out.is_exr && !o.output.ends_with(".png"))
@@ -63,11 +77,7 @@ Result<jobs::RenderRequest> request_of(const RenderOptions &o) {
                 "-o " + o.output + ": a name that ends in .png or .exr was expected");
   if (o.object < 1)
     return fail(ErrorCode::Usage, "--object 0: a number from 1 was expected");
-  out.shade = o.shade == "p"          ? Shade::Polarization
-              : o.shade == "pa"       ? Shade::PositionAngle
-              : o.shade == "material" ? Shade::Material
-              : o.shade == "colour"   ? Shade::Colour
-                                      : Shade::Intensity;
+  out.shade = shade_of(o.shade.value_or("I"));
   if (!o.sun.empty() || !o.observer.empty()) {
     UMOV_ASSIGN(view, view_of(o));
     out.view = view;

@@ -234,7 +234,7 @@ def test_a_picture_at_a_time_takes_elements_of_that_time():
     example, small = EXAMPLES / "hst_maui.toml", {"side": 16, "samples": 1}
     with pytest.raises(umov.InputError, match="allow_old_elements=True"):
         umov.render(example, time="2030-01-01T00:00:00Z", **small)
-    with pytest.warns(umov.UmovWarning, match="kilometres"):
+    with pytest.warns(umov.UmovWarning, match="below the horizon"), pytest.warns(umov.UmovWarning, match="kilometres"):
         umov.render(example, time="2030-01-01T00:00:00Z", allow_old_elements=True, **small)
     with pytest.warns(umov.UmovWarning, match="in the Earth's shadow .sunlit share 0, altitude"):
         umov.render(example, time="2018-01-21T12:00:00Z", **small)

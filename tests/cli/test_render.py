@@ -218,7 +218,11 @@ def test_options_that_would_change_nothing_are_refused(umov, scenario, tmp_path)
         assert done.code == 2 and why in done.err, (options, done.err)
     done = umov("render", scenario(), "--frames", 2, "--fps", 5, "--size", 16, "-o", "f_#.png")
     assert done.code == 2 and "without #" in done.err, done.err
-    assert not list(tmp_path.glob("*.png"))
+    for options, name, why in ((("--shade", "p"), "x.exr", "--shade"), (("--band", "nm:550"), "x.exr", "--band"),
+                               (("--shade", "colour", "--band", "nm:550"), "x.png", "--band")):
+        done = umov("render", scenario(), *pair, *options, "--size", 16, "-o", name)
+        assert done.code == 2 and why in done.err, (options, done.err)
+    assert not [*tmp_path.glob("*.png"), *tmp_path.glob("*.exr")]
     for options in ((*pair, "--up", 0, 0, 1), (*pair, "--paths", 4, "--set", "render.bounces=2"),
                     ("--frames", 2, "--fps", 5)):
         done = umov("render", scenario(), *options, "--size", 16, "--samples", 1, "-o", "x.png")
