@@ -5,6 +5,7 @@
 #include "tables.h"
 #include <fmt/format.h>
 #include <umov/io/mesh_file.h>
+#include <umov/io/table_sink.h>
 #include <umov/jobs/mesh_description.h>
 
 namespace umov::cli {
