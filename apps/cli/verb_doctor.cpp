@@ -36,8 +36,9 @@ Finding cache_finding() {
   if (folder.empty())
     return {true, "cache folder", "none: neither XDG_CACHE_HOME nor HOME is set"};
   if (!can_be_kept(folder))
-    return {false, "cache folder",
-            folder.string() + ": cannot be written, masks are made anew by every command"};
+    return {true, "cache folder",
+            "none: " + folder.string() +
+                " cannot be written, masks are made by every command anew"};
   const FolderFacts facts = cache_facts(folder);
   return {true, "cache folder",
           fmt::format("{}: {}, {:.1f} MB", folder.string(), counted(facts.files, "file"),

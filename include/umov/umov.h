@@ -155,6 +155,7 @@
 #include <umov/lightcurve/pass_light.h>
 #include <umov/lightcurve/periodogram.h>
 #include <umov/lightcurve/repetition.h>
+#include <umov/lightcurve/shown_magnitude.h>
 #include <umov/observation/epochs.h>
 #include <umov/observation/moving_joints.h>
 #include <umov/observation/track.h>

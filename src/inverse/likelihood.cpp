@@ -30,7 +30,7 @@ CurveLikelihood::CurveLikelihood(const ObservedCurve &curve, const CurveErrors &
     return;
   }
   for (const ObservedSample &s : curve.samples) {
-    if (!epochs.empty() && std::ranges::find(epochs, s.epoch) == epochs.end())
+    if (!epochs.empty() && !std::ranges::binary_search(epochs, s.epoch))
       continue;
     Row row;
     row.at = s.epoch * curve.bands.size() + s.band;

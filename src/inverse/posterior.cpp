@@ -189,23 +189,26 @@ std::vector<Comparison> compare_draws(const CurveModel &model, const CurveLikeli
   for (const Comparison &one : out)
     least = std::min(least, one.minus_2_log);
   std::vector<Turning> likely;
+  std::vector<std::size_t> places;
   for (std::size_t k = 0; k < out.size(); ++k)
-    if (out[k].minus_2_log < least + nothing)
+    if (out[k].minus_2_log - least < nothing) {
       likely.push_back(drawn[k]);
+      places.push_back(k);
+    }
+  if (likely.empty()) // none of them has a number there
+    return out.empty() ? out : compare_all(model, likelihood, drawn, {}, threads);
   const auto exact = compare_all(model, likelihood, likely, {}, threads);
   if (exact.empty())
     return {};
   const Comparison &best = *std::ranges::min_element(exact, {}, &Comparison::minus_2_log);
   const double times = static_cast<double>(count) / static_cast<double>(epochs.size());
-  for (std::size_t k = 0, next = 0; k < out.size(); ++k) {
-    const double worse = out[k].minus_2_log - least;
-    if (worse < nothing) {
-      out[k] = exact[next++];
-    } else {
-      out[k].minus_2_log = best.minus_2_log + worse * times;
-      out[k].chi2 = best.chi2 + worse * times;
-    }
+  for (Comparison &one : out) {
+    const double worse = (one.minus_2_log - least) * times;
+    one.minus_2_log = best.minus_2_log + worse;
+    one.chi2 = best.chi2 + worse;
   }
+  for (std::size_t j = 0; j < places.size(); ++j)
+    out[places[j]] = exact[j];
   return out;
 }
 

@@ -46,6 +46,14 @@ std::vector<std::size_t> within(const ObservedCurve &curve, double half_s, std::
   return out;
 }
 
+/// From second 0 to the farthest of some epochs [s].
+double farthest(const ObservedCurve &curve, std::span<const std::size_t> epochs) {
+  double out = 0;
+  for (const std::size_t e : epochs)
+    out = std::max(out, std::abs(curve.epochs[e].seconds));
+  return out;
+}
+
 CurveErrors tempered(CurveErrors errors, double floor) {
   errors.floor_q = std::hypot(errors.of_q(), floor / 2);
   errors.floor = std::hypot(errors.floor, floor);
@@ -119,8 +127,9 @@ public:
 private:
   bool look_at_grid(std::vector<Candidate> &found);
   bool lengthen(std::vector<Candidate> &found);
-  [[nodiscard]] double next_reach(double reach_s) const;
-  void fan_out(std::span<const TurningFit> fits, double reach_s, double next_s,
+  [[nodiscard]] std::optional<double> next_reach(double told_s) const;
+  [[nodiscard]] bool is_pause(double told_s, double next_s) const;
+  void fan_out(std::span<const TurningFit> fits, double span_s, double next_s,
                std::size_t measurements, std::vector<Candidate> &found) const;
 
   const CurveModel &coarse_;
@@ -152,68 +161,79 @@ bool PeriodSearch::look_at_grid(std::vector<Candidate> &found) {
   return true;
 }
 
-/// As far as the next stretch goes: twice as far, or, over a pause, one turn into what follows it.
-double PeriodSearch::next_reach(double reach_s) const {
+/// As far as the next stretch goes: twice as far, or, over a pause, two and a half turns into what
+/// follows it. Nothing after the last epoch.
+std::optional<double> PeriodSearch::next_reach(double told_s) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (const ObservedEpoch &epoch : coarse_.curve().epochs)
-    if (const double away = std::abs(epoch.seconds); away > reach_s)
+    if (const double away = std::abs(epoch.seconds); away > told_s)
       nearest = std::min(nearest, away);
-  return nearest <= 2 * reach_s ? 2 * reach_s : nearest + 2.5 * period_s_;
+  if (!std::isfinite(nearest))
+    return std::nullopt;
+  return is_pause(told_s, nearest) ? nearest + 2.5 * period_s_
+                                   : 2 * std::max(told_s, 1.25 * period_s_);
+}
+
+/// Between the farthest epoch that was fitted and the next.
+bool PeriodSearch::is_pause(double told_s, double next_s) const {
+  return next_s > 2 * std::max(told_s, 1.25 * period_s_);
 }
 
 /// The fits, and where a pause leaves open how often the body turned in it, each number of turns
 /// and part of one: a fit comes to rest in the nearest of the valleys only.
-void PeriodSearch::fan_out(std::span<const TurningFit> fits, double reach_s, double next_s,
+void PeriodSearch::fan_out(std::span<const TurningFit> fits, double span_s, double next_s,
                            std::size_t measurements, std::vector<Candidate> &found) const {
   constexpr double step_rad = 0.25, widest = 4; // of a turn: valleys are wider; standard deviations
-  constexpr int most = 60;
+  constexpr double most = 60;
   for (const TurningFit &fit : fits) {
+    found.push_back({fit.turning, fit.at.chi2});
     const double rate = norm(fit.turning.rate_rad_s);
-    const double open_rad = widest * phase_sd(fit, measurements) * next_s / reach_s;
-    const int each = std::min(most, static_cast<int>(open_rad / step_rad));
-    for (int k = -each; k <= each; ++k) {
-      const double scale = 1 + k * step_rad / (next_s * rate);
-      found.push_back({{fit.turning.attitude, fit.turning.rate_rad_s * scale}, fit.at.chi2});
-    }
+    const double open_rad = widest * phase_sd(fit, measurements) * next_s / span_s;
+    if (!(rate > 0) || !(open_rad > step_rad))
+      continue;
+    const int each = static_cast<int>(std::min(most, open_rad / step_rad));
+    for (int k = -each; k <= each; ++k)
+      if (k != 0)
+        found.push_back(
+            {{fit.turning.attitude, fit.turning.rate_rad_s * (1 + k * step_rad / (next_s * rate))},
+             fit.at.chi2});
   }
 }
 
 /// Fits in six unknowns on stretches that double until they are the whole curve.
 bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
   const auto &curve = coarse_.curve();
-  const double whole = inverse::span_of(curve);
   std::size_t kept = 300;
   constexpr std::size_t epochs_max = 120, last = 10;
-  double before_s = 0;
-  for (double reach_s = 1.25 * period_s_;;) {
-    const auto epochs = within(curve, reach_s, epochs_max);
+  bool is_fanned = false;
+  for (std::optional<double> reach_s = 1.25 * period_s_; reach_s;) {
+    const auto epochs = within(curve, *reach_s, epochs_max);
     const CurveLikelihood rough(curve, tempered(options_.errors, 0.15), epochs);
-    const bool is_fanned = before_s > 0 && reach_s > 2.001 * before_s;
     std::vector<Turning> starts;
     for (const Candidate &c : found)
       if ((is_fanned || starts.size() < kept) &&
-          std::ranges::none_of(
-              starts, [&](const Turning &o) { return is_near(o, c.turning, 1 * degree, reach_s); }))
+          std::ranges::none_of(starts, [&](const Turning &o) {
+            return is_near(o, c.turning, 1 * degree, *reach_s);
+          }))
         starts.push_back(c.turning);
     const auto fits =
         inverse::fit_turnings(coarse_, rough, starts, epochs,
                               {Freedom::AttitudeAndRate, 6, 2, kept / 2, 5e-3, options_.threads});
     if (fits.empty())
       return false;
+    const double told_s = farthest(curve, epochs);
+    reach_s = next_reach(told_s);
+    is_fanned = reach_s && is_pause(told_s, *reach_s);
     found.clear();
-    const double next_s = next_reach(reach_s);
-    if (reach_s < whole && next_s > 2.001 * reach_s)
-      fan_out(std::span(fits).first(std::min(last, fits.size())), reach_s, next_s,
-              rough.measurements(), found);
+    if (is_fanned)
+      fan_out(std::span(fits).first(std::min(last, fits.size())), inverse::span_of(curve, epochs),
+              *reach_s, rough.measurements(), found);
     else
       for (const TurningFit &fit : fits)
         found.push_back({fit.turning, fit.at.chi2});
-    if (reach_s >= whole)
-      return true;
-    before_s = reach_s;
-    reach_s = next_s;
     kept = std::max(last, kept / 3);
   }
+  return true;
 }
 
 std::vector<Candidate> PeriodSearch::run() {

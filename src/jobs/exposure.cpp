@@ -91,7 +91,7 @@ Result<void> check(const ExposureRequest &r) {
 /// How many frames tell p to the wanted error, scintillation between them counted.
 double frames_for(const StarFrame &frame, double sd_p) {
   const double reached = std::hypot(frame.sd_p, frame.flicker_p);
-  return std::ceil(std::pow(reached / sd_p, 2) - 1e-9);
+  return std::max(1.0, std::ceil(std::pow(reached / sd_p, 2) - 1e-9));
 }
 
 /// What a frame reaches, what it fails at, and what helps, in a sentence.

@@ -9,10 +9,11 @@
 namespace umov::jobs {
 namespace {
 
-/// The file has magnitudes beside its fluxes: those are what people know.
-bool has_magnitudes_beside(const ObservationsFile &file) {
-  return std::ranges::any_of(file.rows,
-                             [](const ObservedRow &row) { return std::isfinite(row.mag_beside); });
+/// A band has magnitudes beside its fluxes: those are what people know.
+bool has_magnitudes_beside(const ObservationsFile &file, const std::string &band) {
+  return std::ranges::any_of(file.rows, [&](const ObservedRow &row) {
+    return row.band == band && std::isfinite(row.mag_beside);
+  });
 }
 
 /// What a row says of brightness; NaN where it says nothing, or only that it is less.
@@ -27,7 +28,7 @@ double magnitude_of(const ObservedRow &row, bool is_beside) {
 void add_stretches(const ObservationsFile &file, const std::string &band, double gap_s,
                    std::vector<Stretch> &out) {
   const std::size_t before = out.size();
-  const bool is_beside = has_magnitudes_beside(file);
+  const bool is_beside = has_magnitudes_beside(file, band);
   for (const ObservedRow &row : file.rows) {
     const double magnitude = magnitude_of(row, is_beside);
     if (row.band != band || !std::isfinite(magnitude))

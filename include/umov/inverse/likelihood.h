@@ -79,7 +79,7 @@ struct Comparison {
 /// compared with many models. Thread safe.
 class CurveLikelihood {
 public:
-  /// Of the samples of `epochs` alone, if there are any.
+  /// Of the samples of `epochs`, which rise, alone, if there are any.
   CurveLikelihood(const ObservedCurve &curve, const CurveErrors &errors,
                   std::span<const std::size_t> epochs = {});
 

@@ -143,8 +143,8 @@ struct LoadOptions {
   bool source_is_sun = true; ///< false: a laser, for which a mirror is no matter of the disk
   bool reads_shape = true;   ///< false: the orbit alone; attitude and scene stay empty
   const std::atomic<bool> *cancel = nullptr; ///< ends the reading where it comes true
-  /// The orbit is asked for at this time alone, be it in [time] or not: it judges the elements'
-  /// age.
+  /// The moment that is shown. Within [time] the elements are the span's, chosen and judged by it;
+  /// outside they are chosen, and their age is judged, at this moment.
   std::optional<Epoch<Utc>> at = {};
 };
 

@@ -36,13 +36,12 @@ struct PassGlint {
 
 /// The light of a pass while it is sunlit; NaN and none where nothing is known of it.
 struct PassBrightness {
-  double magnitude_min = std::numeric_limits<double>::quiet_NaN(), ///< the brightest
-      magnitude_max =
-          std::numeric_limits<double>::quiet_NaN(), ///< the faintest, or a limit
-                                                    /// The same behind the air, where there is one.
-      magnitude_obs_min = std::numeric_limits<double>::quiet_NaN(),
-         magnitude_obs_max = std::numeric_limits<double>::quiet_NaN(),
-         p_max = std::numeric_limits<double>::quiet_NaN(); ///< largest degree of polarization
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double magnitude_min = unknown;     ///< the brightest
+  double magnitude_max = unknown;     ///< the faintest, or a limit
+  double magnitude_obs_min = unknown; ///< the brightest behind the air, where there is one
+  double magnitude_obs_max = unknown; ///< the faintest behind the air, or a limit
+  double p_max = unknown;             ///< largest degree of polarization
   bool has_limit = false; ///< at times it is fainter than can be told: `magnitude_max` is a limit
   std::optional<Epoch<Utc>> brightest = {}; ///< when the magnitude is the least, above the air
   std::vector<PassGlint> glints;            ///< in order

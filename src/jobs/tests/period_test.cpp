@@ -61,15 +61,20 @@ TEST(Period, MagnitudesBesideFluxesAreTakenAndLimitsAreNot) {
     text += fmt::format("2018-01-21T05:{:02}:{:02}Z,V,{:.8g},{:.5f},{}\n", 2 * k / 60, 2 * k % 60,
                         is_limit ? 1e-300 : std::pow(10, -0.4 * mag) * 4e-11, mag,
                         is_limit ? "True" : "False");
+    // A band that has fluxes alone.
+    text += fmt::format("2018-01-21T05:{:02}:{:02}Z,R,{:.8g},,False\n", 2 * k / 60, 2 * k % 60,
+                        std::pow(10, -0.4 * mag) * 4e-11);
   }
   Diagnostics diagnostics;
   const auto file = read_observations_text(text, "ours.ecsv.csv", diagnostics);
   ASSERT_TRUE(file) << file.error().text();
-  const auto found = period(*file, {"", 1}, diagnostics);
-  ASSERT_TRUE(found) << found.error().text();
-  EXPECT_NEAR(found->number("period", 0), first_s, 0.01 * first_s * first_s / 240);
-  EXPECT_GT(found->number("power", 0), 0.95);
-  const auto page = period_page(*file, {"", 1});
+  for (const char *band : {"V", "R"}) {
+    const auto found = period(*file, {band, 1}, diagnostics);
+    ASSERT_TRUE(found) << found.error().text();
+    EXPECT_NEAR(found->number("period", 0), first_s, 0.01 * first_s * first_s / 240);
+    EXPECT_GT(found->number("power", 0), 0.95);
+  }
+  const auto page = period_page(*file, {"V", 1});
   ASSERT_TRUE(page) << page.error().text();
   EXPECT_NE(page->find("\"y\":\"magnitude\""), std::string::npos);
   EXPECT_EQ(page->find("log of the flux"), std::string::npos);
