@@ -90,6 +90,7 @@ std::vector<BandRows> fitted_bands(const Table &fit) {
   }
   std::ranges::sort(out, {}, &BandRows::name);
   std::vector<std::string> names;
+  names.reserve(out.size());
   for (const BandRows &one : out)
     names.push_back(one.name);
   const std::vector<std::size_t> colours = band_colours(names);
