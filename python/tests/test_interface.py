@@ -496,3 +496,28 @@ def test_a_tumbling_body_has_its_period():
     found = float(umov.plot.periodogram(curve).get_title().split()[0])
     # It looks alike twice a turn, and the bisector turns a few percent with the pass (a synodic period).
     assert min(abs(found * turns / spin - 1) for turns in (1, 2)) < 0.05
+
+
+def test_materials_of_one_name_are_kept_apart(tmp_path):
+    """[material.NAME] is one thing in a scenario: the last of a name stood for all, and for the library's."""
+    def paint(n, name):
+        return umov.Material.from_dict(name, {"index": {"n": n, "k": 0.0}, "distribution": {"model": "ggx", "alpha": 0.3}})
+
+    def light(front, back, **more):
+        plate = umov.Satellite(umov.example("hst.obj"), unit="m", up="+Z", materials={"array_front": front, "default": back, **more})
+        engine = umov.Engine(plate, bands=["nm:550"])
+        return engine.evaluate([[1, 0, 0], [0, 0, 1]], [[1, 0.1, 0], [0, 0.1, 1]])[:, 0, 0], plate
+
+    apart, _ = light(paint(1.5, "a"), paint(2.5, "b"))
+    alike, plate = light(paint(1.5, "paint"), paint(2.5, "paint"))
+    assert np.array_equal(apart, alike) and sorted(plate.to_dict()["material"]) == ["paint", "paint_2"]
+    again, _ = light(paint(1.5, "paint"), paint(2.5, "paint"))
+    assert np.array_equal(alike, again) and umov.Satellite.from_toml(plate.to_toml()) == plate
+    other, _ = light(paint(1.5, "x"), "gold")
+    for gold in ("gold", umov.Material("gold")):  # before and after the one that takes its name
+        own, _ = light(paint(1.5, "gold"), gold)
+        assert np.array_equal(own, other)
+        own, _ = light(gold, paint(1.5, "gold"))
+        assert not np.array_equal(own, other)
+    one = paint(1.5, "paint")
+    assert list(light(one, one)[1].to_dict()["material"]) == ["paint"]

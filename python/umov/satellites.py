@@ -128,7 +128,7 @@ class Satellite(Made):
             raise UsageError(f"name is {name!r}; a text was expected")
         self.name = name
         self._texts: adapters.Texts = {}
-        self._own: dict[str, str] = {}
+        self._own: dict[str, dict[str, Any]] = {}
         self._table: dict[str, Any] = {
             "name": name, "orbit": self._orbit(orbit, norad), "mesh": self._mesh(mesh, unit, up, normals),
             "attitude": None if attitude is None else {key: _direction(value) for key, value in _table(
@@ -163,22 +163,32 @@ class Satellite(Made):
 
     def _materials(self, materials: Any) -> dict[str, Any]:
         table = materials if isinstance(materials, Mapping) else {"default": materials}
+        each = [of for one in table.values() for of in (one.values() if isinstance(one, Mapping) else (one,))]
+        known = {str(getattr(of, "name", of)) for of in each if isinstance(of, str) or getattr(of, "is_named", False)}
         out: dict[str, Any] = {}
         for group, one in table.items():
             if isinstance(one, Mapping):
-                out[group] = {side: self._material_name(of) for side, of in one.items()}
+                out[group] = {side: self._material_name(of, known) for side, of in one.items()}
             else:
-                out[group] = self._material_name(one)
+                out[group] = self._material_name(one, known)
         return out
 
-    def _material_name(self, material: Any) -> str:
+    def _material_name(self, material: Any, known: set[str]) -> str:
         if isinstance(material, str):
             return _absolute(material) if material.endswith(".toml") else material
         if hasattr(material, "to_toml") and hasattr(material, "is_named"):
-            if not material.is_named:
-                self._own[material.name] = material.to_toml()
-            return str(material.name)
+            return str(material.name) if material.is_named else self._own_name(material, known)
         raise UsageError(f"a material is a {type(material).__name__}; a name or a Material was expected")
+
+    def _own_name(self, material: Material, known: set[str]) -> str:
+        """The name of a material of one's own: with a number where another of that name, or one of the library, is meant
+        besides. [material.NAME] of a scenario is one thing, and hides what the library has of that name."""
+        table, name, count = material.to_dict(), material.name, 1
+        while name in known or self._own.get(name, table) != table:
+            count += 1
+            name = f"{material.name}_{count}"
+        self._own[name] = table
+        return name
 
     def _set_files(self) -> None:
         """Files that adapters made stand in a folder that is another one in every process."""
@@ -229,11 +239,8 @@ class Satellite(Made):
     def to_dict(self) -> dict[str, Any]:
         """The [[object]] table of a scenario, with `material` tables of its own besides. Files that were made of arrays or
         lines are there as long as this object is."""
-        import tomllib
-        own: dict[str, Any] = {}
-        for text in self._own.values():
-            own.update(tomllib.loads(text)["material"])
-        return {**_toml.copied(self._table), **({"material": own} if own else {})}
+        own = {"material": _toml.copied(self._own)} if self._own else {}
+        return {**_toml.copied(self._table), **own}
 
     def to_toml(self, folder: str | os.PathLike[str] | None = None) -> str:
         """The same as text.
