@@ -1,4 +1,5 @@
 """Light behind the air in umov run and umov passes: [observer] atmosphere."""
+import re
 import math
 
 from astropy.table import Table
@@ -43,6 +44,9 @@ def test_numbers_of_the_air_and_what_is_refused(umov, scenario, tmp_path):
     assert all(abs(row["I_obs"] - row["I"]) < 1e-12 * row["I"] for row in table if row["I"] > 0)
     assert umov("run", "out/scenario.lock.toml", "-o", "again", "--quiet").code == 0
     assert list(Table.read(tmp_path / "again/lightcurve.ecsv")["I_obs"]) == list(table["I_obs"])
+    for what in ("0.118", "true", "[0.1, 0.2]", "[]"):  # there was no air then, and no word
+        done = umov("run", scenario(("alt_m = 3058", f"alt_m = 3058\natmosphere = {what}")))
+        assert done.code == 3 and "neither a name nor a table" in done.err and re.search(r"toml:\d+:\d+", done.err), done.err
     done = umov("run", scenario(("alt_m = 3058", 'alt_m = 3058\natmosphere = "hazy"')))
     assert done.code == 3 and "clear" in done.err
     done = umov("run", scenario(("alt_m = 3058", 'alt_m = 3058\natmosphere = "clear"'),

@@ -318,6 +318,9 @@ def test_options_of_reduce_and_calibrate_that_say_nothing(umov, calibrated):
     assert done.code == 2 and "without a calibration of brightness" in done.err, done.err
     done = umov("reduce", "stars.csv", "--transparency-time-s", "60")
     assert done.code == 2 and "without --transparency-sd" in done.err, done.err
+    # In per cent: magnitudes were 17 too bright and errors of q a thousandth.
+    done = umov("reduce", "stars.csv", "--transparency-sd", "10")
+    assert done.code == 2 and "10 % is 0.1" in done.err, done.err
     done = umov("calibrate", "stars.csv", "--polarizer", "--second-order")
     assert done.code == 2, done.err
     (calibrated / "known.csv").write_text("name,mag,color\nnone,8,0.5\n")

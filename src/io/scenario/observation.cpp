@@ -315,6 +315,11 @@ Result<std::optional<SiteAir>> read_site_air(const Node &top) {
         UMOV_ASSIGN(node, observer.child("atmosphere"));
         return read_clear_air(node);
       }
+      if (!value->is_string())
+        return fail(ErrorCode::BadInput,
+                    "atmosphere is neither a name nor a table; \"none\", \"clear\" or a table as { "
+                    "aerosol = { tau_550 = 0.1, exponent = 1.3 }, ozone_du = 300 } was expected",
+                    observer.where("atmosphere"));
       UMOV_ASSIGN(name, observer.choice("atmosphere", "none", {"none", "clear"}));
       return name == "none" ? std::optional<SiteAir>() : SiteAir();
     }
