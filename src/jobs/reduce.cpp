@@ -276,10 +276,11 @@ void warn_of_rows(const std::vector<Reduced> &reduced, Diagnostics &diagnostics)
 Result<ReduceOptions> with_clouds_of(const CountsFile &file, ReduceOptions options) {
   // Beyond it the mean of a lognormal is made by rows that nobody has seen.
   if (constexpr double most = 1; options.transparency_sd > most)
-    return fail(ErrorCode::Usage,
-                fmt::format("--transparency-sd {:g}: at most {:g} was expected, in parts of what the "
-                            "air lets through; 10 % is 0.1",
-                            options.transparency_sd, most));
+    return fail(
+        ErrorCode::Usage,
+        fmt::format("--transparency-sd {:g}: at most {:g} was expected, in parts of what the "
+                    "air lets through; 10 % is 0.1",
+                    options.transparency_sd, most));
   if (options.transparency_time_s > 0 && !(options.transparency_sd > 0))
     return fail(ErrorCode::Usage, "--transparency-time-s without --transparency-sd: how much the "
                                   "air changes is not told. Give both, or neither");
