@@ -114,8 +114,8 @@ std::string toml_text(const std::string &text) { return quoted(text); }
 
 std::string locked_scenario(const Scenario &s) {
   std::string out =
-      "# Every default filled in; running this file repeats the run, of all rows: a --range or\n"
-      "# --shard stands in the command line that manifest.json has.\n";
+      "# Every default filled in; running this file repeats the run, of all rows: a range or a\n"
+      "# shard of it stands in manifest.json.\n";
   out += fmt::format("umov = 1\ntitle = {}\nseed = {}\n", quoted(s.title), s.seed);
   if (s.observation)
     if (const auto names = instrument_names();
