@@ -127,6 +127,11 @@ bool is_simultaneous(PolarimeterType type) {
 
 double pixel_parts(const Polarimeter &p) { return p.type == PolarimeterType::Mosaic ? 4 : 1; }
 
+bool has_plate(PolarimeterType type) {
+  return type == PolarimeterType::HwpDualBeam || type == PolarimeterType::SpinningHwpDualBeam ||
+         type == PolarimeterType::RotatingRetarder || type == PolarimeterType::Flc;
+}
+
 std::size_t parameters_of(PolarimeterType type) {
   if (type == PolarimeterType::None)
     return 1;

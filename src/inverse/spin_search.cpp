@@ -46,14 +46,6 @@ std::vector<std::size_t> within(const ObservedCurve &curve, double half_s, std::
   return out;
 }
 
-/// From second 0 to the farthest of some epochs [s].
-double farthest(const ObservedCurve &curve, std::span<const std::size_t> epochs) {
-  double out = 0;
-  for (const std::size_t e : epochs)
-    out = std::max(out, std::abs(curve.epochs[e].seconds));
-  return out;
-}
-
 CurveErrors tempered(CurveErrors errors, double floor) {
   errors.floor_q = std::hypot(errors.of_q(), floor / 2);
   errors.floor = std::hypot(errors.floor, floor);
@@ -221,7 +213,7 @@ bool PeriodSearch::lengthen(std::vector<Candidate> &found) {
                               {Freedom::AttitudeAndRate, 6, 2, kept / 2, 5e-3, options_.threads});
     if (fits.empty())
       return false;
-    const double told_s = farthest(curve, epochs);
+    const double told_s = inverse::farthest_of(curve, epochs);
     reach_s = next_reach(told_s);
     is_fanned = reach_s && is_pause(told_s, *reach_s);
     found.clear();

@@ -115,14 +115,18 @@ void keep_best(std::vector<Running> &fits, std::size_t count, double span_s) {
 
 } // namespace
 
-double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) {
-  double out = 1;
+double farthest_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) {
+  double out = 0;
   if (epochs.empty())
     for (const ObservedEpoch &epoch : curve.epochs)
       out = std::max(out, std::abs(epoch.seconds));
   for (const std::size_t e : epochs)
     out = std::max(out, std::abs(curve.epochs[e].seconds));
   return out;
+}
+
+double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) {
+  return std::max(1.0, farthest_of(curve, epochs));
 }
 
 Turning stepped(const Turning &from, const Step &step, double span_s) {

@@ -25,7 +25,9 @@ enum class Freedom { Attitude = 3, AttitudeAndRate = 6 };
 using Step = Eigen::Matrix<double, Eigen::Dynamic, 1>;
 
 /// From second 0, at which the attitude is told, to the farthest of the epochs (empty: all), before
-/// or after it; at least 1 [s]. A rate is asked in steps of it: in steps of a longer one they would
+/// or after it [s].
+double farthest_of(const ObservedCurve &curve, std::span<const std::size_t> epochs = {});
+/// The same, at least 1 [s]. A rate is asked in steps of it: in steps of a longer one they would
 /// turn the body by less than what derivatives by differences can see.
 double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs = {});
 

@@ -88,16 +88,17 @@ Result<void> check(const ExposureRequest &r) {
   return {};
 }
 
-/// How many frames tell p to the wanted error, scintillation between them counted.
+/// Error of p of a frame, scintillation between frames counted.
+double reached_by(const StarFrame &frame) { return std::hypot(frame.sd_p, frame.flicker_p); }
+
+/// How many frames tell p to the wanted error.
 double frames_for(const StarFrame &frame, double sd_p) {
-  const double reached = std::hypot(frame.sd_p, frame.flicker_p);
-  return std::max(1.0, std::ceil(std::pow(reached / sd_p, 2) - 1e-9));
+  return std::max(1.0, std::ceil(std::pow(reached_by(frame) / sd_p, 2) - 1e-9));
 }
 
 /// What a frame reaches, what it fails at, and what helps, in a sentence.
 std::string verdict_of(const StarFrame &frame, double sd_p, double fills_s, const char *of) {
-  const double reached = std::hypot(frame.sd_p, frame.flicker_p);
-  const double frames = frames_for(frame, sd_p);
+  const double reached = reached_by(frame), frames = frames_for(frame, sd_p);
   std::string out = fmt::format(
       "One exposure of {:.3g} s{}: S/N {:.3g}, error of p {:.2g}{}; ", frame.seconds, of, frame.snr,
       frame.sd_p,

@@ -52,29 +52,19 @@ double PlateTurn::frames() const {
 
 namespace {
 
-/// The share of Q and U that the plate's turning makes other light of, sin^2 of half its
-/// retardance: 1 of a half-wave plate; 1 where there is no plate that turns.
-double modulated_by_plate(const Polarimeter &p, double nm) {
-  const bool has_plate =
-      p.type == PolarimeterType::HwpDualBeam || p.type == PolarimeterType::SpinningHwpDualBeam ||
-      p.type == PolarimeterType::RotatingRetarder || p.type == PolarimeterType::Flc;
-  const auto retardance =
-      value_at(p.retardance_deg, Wavelength::nm(nm), "polarimeter.retardance_deg");
-  return has_plate && retardance ? std::pow(std::sin(*retardance * pi / 360), 2) : 1;
-}
-
 /// What is wrong and what helps where rows do not tell a Stokes parameter.
 std::string mend_of(const Polarimeter &p, double nm) {
-  if (constexpr double hardly = 0.01; modulated_by_plate(p, nm) < hardly) {
-    const auto retardance =
-        value_at(p.retardance_deg, Wavelength::nm(nm), "polarimeter.retardance_deg");
+  const auto retardance =
+      value_at(p.retardance_deg, Wavelength::nm(nm), "polarimeter.retardance_deg");
+  // Of Q and U a turning plate makes sin^2 of half its retardance other light: all, by half a wave.
+  constexpr double hardly = 0.01;
+  if (has_plate(p.type) && retardance && std::pow(std::sin(*retardance * pi / 360), 2) < hardly)
     return fmt::format("a plate of polarimeter.retardance_deg = {:g} there hardly changes Q and U "
                        "as it turns; {} was expected",
                        *retardance,
                        p.type == PolarimeterType::RotatingRetarder
                            ? "some 90 to 150 (131.8 tells all alike)"
                            : "some 180");
-  }
   if (p.type == PolarimeterType::SpinningHwpDualBeam)
     return "shorten the exposures, or check polarimeter.period_s, retardance_deg and extinction";
   return "give other angles, or check polarimeter.extinction and retardance_deg";
@@ -128,9 +118,6 @@ void warn_of_idle_angles(PolarimeterType type, const std::vector<SequenceStep> &
   const bool has_analyser = type == PolarimeterType::PolarizerWheel ||
                             type == PolarimeterType::RotatingRetarder ||
                             type == PolarimeterType::Pem;
-  const bool has_plate = type == PolarimeterType::HwpDualBeam ||
-                         type == PolarimeterType::SpinningHwpDualBeam ||
-                         type == PolarimeterType::RotatingRetarder || type == PolarimeterType::Flc;
   if (is_simultaneous(type) && !sequence.empty() &&
       std::ranges::all_of(sequence, [](const auto &step) { return step.band.empty(); })) {
     diagnostics.warn(fmt::format("observation.sequence says nothing to a polarimeter of type "
@@ -146,7 +133,7 @@ void warn_of_idle_angles(PolarimeterType type, const std::vector<SequenceStep> &
                                    key, name_of(type)));
   };
   warn("analyser_deg", has_analyser, [](const auto &step) { return step.state.analyser_deg; });
-  warn("plate_deg", has_plate, [](const auto &step) { return step.state.plate_deg; });
+  warn("plate_deg", has_plate(type), [](const auto &step) { return step.state.plate_deg; });
   if (type == PolarimeterType::SpinningHwpDualBeam && sequence.size() > 1)
     diagnostics.warn("observation.sequence: the plate turns by itself; of the steps only the first "
                      "counts, as the angle at the start");

@@ -167,15 +167,6 @@ Table TruthTable::table() && {
   return out;
 }
 
-namespace {
-
-bool has_plate(PolarimeterType type) {
-  return type == PolarimeterType::HwpDualBeam || type == PolarimeterType::SpinningHwpDualBeam ||
-         type == PolarimeterType::RotatingRetarder || type == PolarimeterType::Flc;
-}
-
-} // namespace
-
 void note_observation(Table &table, const Scenario &scenario, const ObservedBands &bands) {
   const ScenarioObservation &o = *scenario.observation;
   note_conventions(table);

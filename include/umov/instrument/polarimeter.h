@@ -59,6 +59,8 @@ polarimeter_channels(const Polarimeter &polarimeter, const PolarimeterState &sta
 /// All of a set must be measured before Stokes parameters can be told apart: a sequence, or every
 /// exposure by itself.
 bool is_simultaneous(PolarimeterType type);
+/// A plate or cell that retards and stands at angles of its own is before the analyser.
+bool has_plate(PolarimeterType type);
 /// How many Stokes parameters it can tell: 1, 3 or 4.
 std::size_t parameters_of(PolarimeterType type);
 /// Orientations that share the pixels of one detector: each has as small a part of them.

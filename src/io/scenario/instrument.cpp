@@ -260,15 +260,12 @@ Result<void> check_polarimeter(const Node &node, const Polarimeter &p, bool has_
 
 /// Keys of [polarimeter] that say something to a type.
 bool says_something(const std::string &key, PolarimeterType type) {
-  const bool has_plate = type == PolarimeterType::HwpDualBeam ||
-                         type == PolarimeterType::SpinningHwpDualBeam ||
-                         type == PolarimeterType::RotatingRetarder || type == PolarimeterType::Flc;
   if (key == "layout")
     return type == PolarimeterType::Mosaic;
   if (key == "angles_deg" || key == "pupils")
     return type == PolarimeterType::FourCamera;
   if (key == "retardance_deg" || key == "plate_zero_deg")
-    return has_plate;
+    return has_plate(type);
   if (key == "period_s")
     return type == PolarimeterType::SpinningHwpDualBeam;
   return type != PolarimeterType::None;

@@ -333,10 +333,16 @@ Result<void> read_objects(const Node &top, const fs::path &folder, Scenario &out
   return problems.told();
 }
 
+/// One of the words of a key; "" where it is none of them, which is told.
+std::string word_of(const Node &node, Problems &problems, const char *name, const char *usual,
+                    const std::vector<std::string> &known) {
+  return problems.taken(node.choice(name, usual, known), std::string());
+}
+
 Result<void> read_method(const Node &render, LightOptions &out) {
   Problems problems;
-  const std::string method = problems.taken(
-      render.choice("method", name_of(out.method), {"auto", "rays", "masks"}), std::string());
+  const std::string method =
+      word_of(render, problems, "method", name_of(out.method), {"auto", "rays", "masks"});
   out.method = method == "rays"    ? LightMethod::Rays
                : method == "masks" ? LightMethod::Masks
                                    : LightMethod::Auto;
@@ -374,15 +380,12 @@ Result<void> read_render(const Node &top, Scenario &out) {
     return {};
   UMOV_ASSIGN(node, top.child("render"));
   Problems problems;
-  const auto word = [&](const char *name, const char *usual, std::vector<std::string> known) {
-    return problems.taken(node.choice(name, usual, known), std::string());
-  };
   const auto bounces = node.integer("bounces", static_cast<std::int64_t>(out.light.bounces));
   if (bounces < 1 || bounces > 64)
     problems.add(wrong_value(node, "bounces", bounces, "1 to 64"));
   out.light.bounces = static_cast<std::size_t>(bounces);
   const std::string between =
-      word("between", name_of(out.light.between), {"auto", "paths", "chains"});
+      word_of(node, problems, "between", name_of(out.light.between), {"auto", "paths", "chains"});
   out.light.between = between == "paths"    ? BetweenMethod::Paths
                       : between == "chains" ? BetweenMethod::Chains
                                             : BetweenMethod::Auto;
@@ -390,11 +393,11 @@ Result<void> read_render(const Node &top, Scenario &out) {
   if (node.has("accuracy"))
     out.places["render.accuracy"] = node.where("accuracy");
   out.has_moonlight = node.boolean("moonlight", false);
-  out.has_refracted_shadow =
-      word("shadow_edge", "geometric", {"geometric", "refracted"}) == "refracted";
+  out.has_refracted_shadow = word_of(node, problems, "shadow_edge", "geometric",
+                                     {"geometric", "refracted"}) == "refracted";
   if (node.has("earthshine"))
     problems.went(read_earthshine(node, out));
-  out.has_solar_disk = word("sun", "disk", {"disk", "point"}) == "disk";
+  out.has_solar_disk = word_of(node, problems, "sun", "disk", {"disk", "point"}) == "disk";
   return problems.told();
 }
 
@@ -440,17 +443,16 @@ Result<void> read_output(const Node &top, Scenario &out) {
     return {};
   UMOV_ASSIGN(node, top.child("output"));
   Problems problems;
-  const auto word = [&](const char *name, const char *usual, std::vector<std::string> known) {
-    return problems.taken(node.choice(name, usual, known), std::string());
-  };
   out.output_dir = node.text("dir", "out");
   if (out.output_dir.empty())
     problems.add(wrong_value(node, "dir", "\"\"", "a folder"));
-  const std::string frame = word("pol_frame", "equatorial", {"equatorial", "altaz", "scattering"});
+  const std::string frame =
+      word_of(node, problems, "pol_frame", "equatorial", {"equatorial", "altaz", "scattering"});
   out.frame = frame == "altaz"        ? PolarizationFrame::AltAz
               : frame == "scattering" ? PolarizationFrame::Scattering
                                       : PolarizationFrame::Equatorial;
-  out.has_all_csv_digits = word("csv_digits", "error", {"error", "all"}) == "all";
+  out.has_all_csv_digits =
+      word_of(node, problems, "csv_digits", "error", {"error", "all"}) == "all";
   out.keeps_inputs = node.boolean("keep_inputs", false);
   if (node.has("formats"))
     problems.went(read_formats(node, out));
