@@ -4,7 +4,12 @@
 
 namespace umov::algebra {
 
-MatrixXd gram(const MatrixXd &a) { return a.transpose() * a; }
+MatrixXd gram(const MatrixXd &a) { // half of it, which is half the work
+  MatrixXd out = MatrixXd::Zero(a.cols(), a.cols());
+  out.selfadjointView<Eigen::Lower>().rankUpdate(a.transpose());
+  out.triangularView<Eigen::StrictlyUpper>() = out.transpose();
+  return out;
+}
 MatrixXd product(const MatrixXd &a, const MatrixXd &b) { return a * b; }
 VectorXd times(const MatrixView &a, const VectorXd &b) { return a * b; }
 MatrixXd transposed_product(const MatrixXd &a, const MatrixXd &b) { return a.transpose() * b; }

@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 class PartFit {
 public:
   PartFit(const CurveLikelihood &likelihood, const ModelLight &model);
-  CurveLikelihood::FittedLight run();
+  CurveLikelihood::FittedLight run(std::span<const double> near);
 
 private:
   /// Part and whether it is its slope.
@@ -278,8 +278,10 @@ bool PartFit::step(VectorXd &off) {
   return length < smallest;
 }
 
-CurveLikelihood::FittedLight PartFit::run() {
+CurveLikelihood::FittedLight PartFit::run(std::span<const double> near) {
   VectorXd off = VectorXd::Zero(static_cast<Index>(unknowns_.size()));
+  if (near.size() == unknowns_.size())
+    std::ranges::copy(near, off.begin());
   VectorXd best = off;
   double least = 1e300;
   constexpr int rounds = 8;
@@ -309,8 +311,9 @@ CurveLikelihood::FittedLight PartFit::run() {
 
 namespace umov {
 
-CurveLikelihood::FittedLight CurveLikelihood::fit_parts(const ModelLight &model) const {
-  return inverse::PartFit(*this, model).run();
+CurveLikelihood::FittedLight CurveLikelihood::fit_parts(const ModelLight &model,
+                                                        std::span<const double> near) const {
+  return inverse::PartFit(*this, model).run(near);
 }
 
 } // namespace umov

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <umov/inverse/attitude_grid.h>
 
@@ -100,18 +101,14 @@ std::vector<Turning> spread_out(const std::vector<Turning> &sorted, std::size_t 
   return out;
 }
 
-std::vector<double> covariance_of(const Eigen::MatrixXd &information, double span_s) {
+std::vector<double> covariance_of(const TurningFit &fit, double span_s) {
   // No unknown is less certain than "anything", 0.8 rad either way.
   constexpr double widest = 0.8;
-  const algebra::SymmetricEigen eigen = algebra::symmetric_eigen(information);
+  const algebra::SymmetricEigen eigen = algebra::symmetric_eigen(fit.information);
   const Eigen::VectorXd values = eigen.values.cwiseMax(1 / (widest * widest));
-  Eigen::MatrixXd out = algebra::product(eigen.vectors * values.cwiseInverse().asDiagonal(),
-                                         eigen.vectors.transpose());
-  for (Eigen::Index k = 3; k < out.rows(); ++k) {
-    out.row(k) /= span_s;
-    out.col(k) /= span_s;
-  }
-  return {out.data(), out.data() + out.size()};
+  return inverse::out_of_steps(algebra::product(eigen.vectors * values.cwiseInverse().asDiagonal(),
+                                                eigen.vectors.transpose()),
+                               fit.turning, span_s);
 }
 
 double log_det(const PoseMode &mode) {
@@ -133,15 +130,13 @@ std::vector<PoseMode> modes_of(const std::vector<TurningFit> &fits, double span_
   for (const TurningFit &fit : fits) {
     if (!(fit.at.minus_2_log <= best + 30)) // nor what is no number
       continue;
-    PoseMode mode{
-        fit.turning,     covariance_of(fit.information, span_s), 0, fit.at.chi2, fit.at.scale,
-        fit.is_converged};
+    PoseMode mode{fit.turning,     covariance_of(fit, span_s), 0, fit.at.chi2, fit.at.scale,
+                  fit.is_converged};
     const bool is_known = std::ranges::any_of(out, [&](const PoseMode &other) {
-      const double apart = angle_between(other.turning.attitude, mode.turning.attitude);
+      const inverse::Step apart = inverse::step_between(other.turning, mode.turning, 6, span_s);
+      const double sd = std::min(other.sd_rad(), mode.sd_rad());
       // Another spin with the same attitude at second 0 is another mode.
-      const double turned_apart = norm(other.turning.rate_rad_s - mode.turning.rate_rad_s) * span_s;
-      return apart < std::max(1 * degree, 3 * std::min(other.sd_rad(), mode.sd_rad())) &&
-             turned_apart < 0.2;
+      return apart.head(3).norm() < std::max(1 * degree, 3 * sd) && apart.tail(3).norm() < 0.2;
     });
     if (is_known)
       continue;
@@ -172,7 +167,7 @@ bool is_described(const std::vector<PoseMode> &modes, const Samples &samples) {
 /// How the last fits are run. Glints hold two directions a hundred times better than the third:
 /// along such a valley, which bends, a dozen steps reach nothing.
 inverse::FitPlan last_steps(Freedom freedom, const SearchOptions &options) {
-  return {freedom, 200, 12, 24, 1e-3, options.threads};
+  return {freedom, 200, 12, 24, 1e-3, options.threads, true};
 }
 
 /// Peaks, and samples drawn from them.
@@ -423,9 +418,19 @@ Result<std::vector<TurningFit>> settled_fits(const CurveModel &model, std::vecto
 
 } // namespace
 
-Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options) {
+namespace {
+
+/// Fits of fixed attitudes that have come to rest, and the grid that they were found on.
+struct FoundPoses {
+  std::vector<Turning> judged;  ///< best of the grid first
+  std::vector<TurningFit> fits; ///< best first
+};
+
+/// `hopeless`: chi-square from which on the first fits are left as they are.
+Result<FoundPoses> find_poses(const SearchModels &models, FoundErrors &errors,
+                              const SearchOptions &options,
+                              double hopeless = std::numeric_limits<double>::infinity()) {
   const auto &[model, first, quick] = models;
-  FoundErrors errors(model, options);
   if (errors.likelihood().measurements() == 0)
     return fail(ErrorCode::BadInput,
                 "nothing was measured: no row has light with an error or above 0, nor q and u");
@@ -453,15 +458,35 @@ Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &
   from = best_of(fits, after_first);
   if (fits.empty() || !errors.ask(from, has_changed))
     return tl::unexpected(stopped());
+  if (fits.front().at.chi2 > hopeless)
+    return FoundPoses{std::move(left), std::move(fits)};
   tell(2);
   UMOV_ASSIGN(last, settled_fits(model, from, Freedom::Attitude, errors, options));
-  UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), last, Freedom::Attitude,
-                             {left, options.grid}, options));
+  return FoundPoses{std::move(left), std::move(last)};
+}
+
+} // namespace
+
+Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options) {
+  const auto &[model, first, quick] = models;
+  FoundErrors errors(model, options);
+  UMOV_ASSIGN(found, find_poses(models, errors, options));
+  UMOV_ASSIGN(out, answer_of(model, first, errors.likelihood(), found.fits, Freedom::Attitude,
+                             {found.judged, options.grid}, options));
   errors.tell(out);
   if (&quick != &first && &quick != &model)
     out.poses_lit += quick.poses_lit();
   out.unknowns = 4; // attitude and scale
   return out;
+}
+
+Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options) {
+  // Ten times the measurements: no last step makes an explanation of that.
+  constexpr double far = 10;
+  FoundErrors errors(models.last, options);
+  UMOV_ASSIGN(found, find_poses(models, errors, options,
+                                far * static_cast<double>(errors.likelihood().measurements())));
+  return found.fits.front().at.chi2;
 }
 
 Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,

@@ -23,14 +23,17 @@ struct Proposal {
   double log_norm = 0, weight = 0;
 };
 
-/// Steps have rates in radians per span.
-Eigen::MatrixXd in_steps(const std::vector<double> &covariance, double span_s) {
-  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(covariance.size())));
-  Eigen::MatrixXd out = Eigen::Map<const Eigen::MatrixXd>(covariance.data(), n, n);
-  for (Eigen::Index k = 3; k < n; ++k) {
-    out.row(k) *= span_s;
-    out.col(k) *= span_s;
-  }
+/// The covariance of a mode in steps about it.
+Eigen::MatrixXd in_steps(const PoseMode &mode, double span_s) {
+  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(mode.covariance.size())));
+  Eigen::MatrixXd out = Eigen::Map<const Eigen::MatrixXd>(mode.covariance.data(), n, n);
+  if (n < 6)
+    return out;
+  const Eigen::Matrix3d by_rate = step_by_rate(mode.turning, span_s);
+  out.topRightCorner(3, 3) = (out.topRightCorner(3, 3) * by_rate.transpose()).eval();
+  out.bottomLeftCorner(3, 3) = out.topRightCorner(3, 3).transpose().eval();
+  out.bottomRightCorner(3, 3) =
+      (by_rate * out.bottomRightCorner(3, 3) * by_rate.transpose()).eval();
   return out;
 }
 
@@ -38,7 +41,7 @@ Proposal proposal_of(const PoseMode &mode, double span_s) {
   Proposal out;
   out.centre = mode.turning;
   constexpr double wider = 1.3; // tails that are too short cost more than ones too long
-  const Eigen::MatrixXd covariance = in_steps(mode.covariance, span_s) * wider;
+  const Eigen::MatrixXd covariance = in_steps(mode, span_s) * wider;
   out.root = algebra::cholesky_root(covariance);
   out.inverse_root = algebra::inverse_of(out.root);
   const auto n = static_cast<double>(covariance.rows());
@@ -47,18 +50,8 @@ Proposal proposal_of(const PoseMode &mode, double span_s) {
   return out;
 }
 
-Step step_between(const Turning &from, const Turning &to, Eigen::Index size, double span_s) {
-  Step out(size);
-  const Vec3<Body> turn = turn_between(from.attitude, to.attitude);
-  out.head(3) << turn.x, turn.y, turn.z;
-  if (size > 3) {
-    const Vec3<Body> rate = (to.rate_rad_s - from.rate_rad_s) * span_s;
-    out.tail(3) << rate.x, rate.y, rate.z;
-  }
-  return out;
-}
-
-/// ln density of a mixture in the measure in which all attitudes are alike.
+/// ln density of a mixture in the measure in which all attitudes are alike, and all rates, in
+/// radians per span.
 double log_density(const std::vector<Proposal> &mixture, const Turning &at, double span_s) {
   double sum = 0;
   for (const Proposal &p : mixture) {
@@ -67,7 +60,9 @@ double log_density(const std::vector<Proposal> &mixture, const Turning &at, doub
     const double bend = angle > 1e-6 ? std::sin(angle / 2) / (angle / 2) : 1; // of rotation vectors
     const double x2 = (p.inverse_root * step).squaredNorm();
     const auto n = static_cast<double>(step.size());
-    sum += p.weight * std::exp(p.log_norm - (tail + n) / 2 * std::log1p(x2 / tail)) /
+    const double volume = // of rates, beside that of steps
+        n > 3 ? log_rate_volume(p.centre, at, span_s) + 3 * std::log(span_s) : 0;
+    sum += p.weight * std::exp(p.log_norm - volume - (tail + n) / 2 * std::log1p(x2 / tail)) /
            std::max(bend * bend, 1e-6);
   }
   return std::log(sum + 1e-300);
@@ -110,30 +105,56 @@ std::size_t nearest(const std::vector<Proposal> &mixture, const Turning &at, dou
   return best;
 }
 
+/// Weights to the power that leaves them worth `wanted` samples; all alike where they are too few
+/// for it. Where a proposal misses the shape of a peak a few draws hold all of the weight, and say
+/// nothing of a covariance; what lies between proposal and peak leads from one to the other.
+std::vector<double> evened(const std::vector<double> &weights, double wanted) {
+  std::vector<double> out;
+  const double highest = *std::ranges::max_element(weights);
+  const auto effective = [&](double power) {
+    double sum = 0, squares = 0;
+    out.clear();
+    for (const double w : weights) {
+      out.push_back(std::pow(w / highest, power));
+      sum += out.back();
+      squares += out.back() * out.back();
+    }
+    return sum * sum / squares;
+  };
+  if (!(highest > 0) || effective(1) >= wanted)
+    return weights;
+  double low = 0, high = 1;
+  constexpr int halvings = 20;
+  for (int k = 0; k < halvings; ++k) {
+    const double middle = (low + high) / 2;
+    (effective(middle) >= wanted ? low : high) = middle;
+  }
+  effective(low);
+  return out;
+}
+
 /// Weights and covariances of modes from their samples.
 void update(std::vector<PoseMode> &modes, const std::vector<Proposal> &mixture,
             const std::vector<PoseSample> &draws, double span_s) {
   const Eigen::Index n = mixture.front().root.rows();
-  std::vector<Eigen::MatrixXd> second(modes.size(), Eigen::MatrixXd::Zero(n, n));
-  std::vector<double> total(modes.size(), 0), squares(modes.size(), 0);
+  const double wanted = 10 * static_cast<double>(n); // that tell a covariance
+  std::vector<std::vector<double>> weights(modes.size());
+  std::vector<std::vector<Step>> steps(modes.size());
   for (const PoseSample &s : draws) {
     const std::size_t m = nearest(mixture, s.turning, span_s);
-    const Step step = step_between(mixture[m].centre, s.turning, n, span_s);
-    second[m] += s.weight * step * step.transpose();
-    total[m] += s.weight;
-    squares[m] += s.weight * s.weight;
+    weights[m].push_back(s.weight);
+    steps[m].push_back(step_between(mixture[m].centre, s.turning, n, span_s));
   }
   for (std::size_t m = 0; m < modes.size(); ++m) {
-    modes[m].weight = total[m];
-    const double samples = squares[m] > 0 ? total[m] * total[m] / squares[m] : 0;
-    if (samples < 10 * static_cast<double>(n))
-      continue; // too few to tell a covariance
-    Eigen::MatrixXd covariance = second[m] / total[m];
-    for (Eigen::Index k = 3; k < n; ++k) {
-      covariance.row(k) /= span_s;
-      covariance.col(k) /= span_s;
-    }
-    std::copy_n(covariance.data(), n * n, modes[m].covariance.begin());
+    modes[m].weight = std::accumulate(weights[m].begin(), weights[m].end(), 0.0);
+    if (!(modes[m].weight > 0) || static_cast<double>(weights[m].size()) < wanted)
+      continue;
+    const std::vector<double> even = evened(weights[m], wanted);
+    Eigen::MatrixXd second = Eigen::MatrixXd::Zero(n, n);
+    for (std::size_t k = 0; k < even.size(); ++k)
+      second += even[k] * steps[m][k] * steps[m][k].transpose();
+    second /= std::accumulate(even.begin(), even.end(), 0.0);
+    modes[m].covariance = out_of_steps(second, mixture[m].centre, span_s);
   }
 }
 

@@ -254,8 +254,13 @@ void move(PoseMode &mode, double seconds) {
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Identity(6, 6);
   for (int k = 0; k < 6; ++k) {
     const double h = k < 3 ? 1e-5 : 1e-5 / std::max(1.0, std::abs(seconds));
-    const Eigen::VectorXd step = Eigen::VectorXd::Unit(6, k) * h;
-    const Turning near = moved(inverse::stepped(mode.turning, step, 1), seconds);
+    Turning near = mode.turning;
+    const Eigen::Vector3d step = Eigen::Vector3d::Unit(k % 3) * h;
+    if (k < 3)
+      near.attitude = turned(near.attitude, {step[0], step[1], step[2]});
+    else
+      near.rate_rad_s = near.rate_rad_s + Vec3<Body>{step[0], step[1], step[2]};
+    near = moved(near, seconds);
     const Vec3<Body> turn = turn_between(end.attitude, near.attitude) * (1 / h);
     jacobian.col(k).head(3) << turn.x, turn.y, turn.z;
   }

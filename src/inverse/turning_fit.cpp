@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <umov/inverse/attitude_grid.h>
 
 namespace umov::inverse {
@@ -19,6 +20,7 @@ struct Running {
   double damping = 1e-2;
   int idle = 0;          ///< iterations in a row that gained next to nothing
   bool has_moved = true; ///< since its derivatives were taken
+  double chi2_at_cut = std::numeric_limits<double>::infinity(); ///< the last
 };
 
 /// Those that still move.
@@ -38,10 +40,13 @@ bool differentiate(const CurveModel &model, const CurveLikelihood &likelihood,
   const auto free = static_cast<Eigen::Index>(plan.freedom);
   const double span = span_of(model.curve(), epochs), h = plan.difference_rad;
   std::vector<Turning> near;
+  std::vector<std::span<const double>> parts;
   for (const Running *one : fits)
-    for (Eigen::Index p = 0; p < free; ++p)
+    for (Eigen::Index p = 0; p < free; ++p) {
       near.push_back(stepped(one->fit.turning, Step::Unit(free, p) * h, span));
-  const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true);
+      parts.emplace_back(one->fit.at.off);
+    }
+  const auto compared = compare_all(model, likelihood, near, epochs, plan.threads, true, parts);
   if (compared.empty() && !near.empty())
     return false;
   for (std::size_t k = 0; k < fits.size(); ++k) {
@@ -94,8 +99,8 @@ void take(Running &one, const Turning &tried, const Comparison &compared) {
 /// The same turning, as far as a fit on its way tells.
 bool is_same(const Turning &a, const Turning &b, double span_s) {
   constexpr double near = 5e-3; // [rad]
-  return angle_between(a.attitude, b.attitude) < near &&
-         norm(a.rate_rad_s - b.rate_rad_s) * span_s < near;
+  const Step step = step_between(a, b, 6, span_s);
+  return step.head(3).norm() < near && step.tail(3).norm() < near;
 }
 
 /// The best, sorted, of those that came together one each: a wide basin would crowd out the rest.
@@ -111,6 +116,21 @@ void keep_best(std::vector<Running> &fits, std::size_t count, double span_s) {
       out.push_back(std::move(one));
   }
   fits = std::move(out);
+}
+
+/// Takes away fits that would not reach the best even if they went on to gain twice as fast as
+/// since the last cut; a peak that far below holds less than e^-15 of the probability.
+void drop_hopeless(std::vector<Running> &fits, int cuts_left) {
+  constexpr double far = 60, hope = 2; // chi-square; beside the gain seen
+  double best = std::numeric_limits<double>::infinity();
+  for (const Running &one : fits)
+    best = std::min(best, one.fit.at.chi2);
+  std::erase_if(fits, [&](const Running &one) {
+    const double gain = one.chi2_at_cut - one.fit.at.chi2;
+    return one.fit.at.chi2 - best - far > hope * gain * cuts_left;
+  });
+  for (Running &one : fits)
+    one.chi2_at_cut = one.fit.at.chi2;
 }
 
 } // namespace
@@ -129,22 +149,112 @@ double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) 
   return std::max(1.0, farthest_of(curve, epochs));
 }
 
+namespace {
+
+/// Its axis can be told: it turns by more than a radian over the span.
+bool has_axis(const Turning &turning, double span_s) {
+  return norm(turning.rate_rad_s) * span_s > 1;
+}
+
+/// sin x / x
+double sinc(double x) { return std::abs(x) > 1e-6 ? std::sin(x) / x : 1; }
+
+Eigen::Vector3d eigen_of(const Vec3<Body> &v) { return {v.x, v.y, v.z}; }
+
+} // namespace
+
 Turning stepped(const Turning &from, const Step &step, double span_s) {
   Turning out = from;
   out.attitude = turned(from.attitude, {step[0], step[1], step[2]});
-  if (step.size() >= 6)
-    out.rate_rad_s = out.rate_rad_s + Vec3<Body>{step[3], step[4], step[5]} * (1 / span_s);
+  if (step.size() < 6)
+    return out;
+  const Vec3<Body> change{step[3], step[4], step[5]};
+  if (!has_axis(from, span_s)) {
+    out.rate_rad_s = from.rate_rad_s + change * (1 / span_s);
+    return out;
+  }
+  const double rate = norm(from.rate_rad_s);
+  const Vec3<Body> axis = from.rate_rad_s * (1 / rate);
+  const double along = dot(change, axis);
+  const Vec3<Body> across = change - axis * along;
+  const double tilt = norm(across);
+  out.rate_rad_s = (axis * std::cos(tilt) + across * sinc(tilt)) * (rate + along / span_s);
   return out;
+}
+
+Step step_between(const Turning &from, const Turning &to, Eigen::Index size, double span_s) {
+  Step out(size);
+  out.head(3) = eigen_of(turn_between(from.attitude, to.attitude));
+  if (size < 6)
+    return out;
+  if (!has_axis(from, span_s)) {
+    out.tail(3) = eigen_of((to.rate_rad_s - from.rate_rad_s) * span_s);
+    return out;
+  }
+  const double rate = norm(from.rate_rad_s), other = norm(to.rate_rad_s);
+  const Vec3<Body> axis = from.rate_rad_s * (1 / rate);
+  const double tilt = other > 0 ? angle_between(axis, to.rate_rad_s * (1 / other)) : 0;
+  const Vec3<Body> across = to.rate_rad_s - axis * dot(to.rate_rad_s, axis);
+  const double length = norm(across);
+  out.tail(3) =
+      eigen_of(axis * ((other - rate) * span_s) + across * (length > 0 ? tilt / length : 0));
+  return out;
+}
+
+namespace {
+
+/// What is along the spin times the one, what is across it times the other.
+Eigen::Matrix3d by_axis(const Turning &of, double along, double across) {
+  const Eigen::Vector3d axis = eigen_of(of.rate_rad_s).normalized();
+  const Eigen::Matrix3d on_axis = axis * axis.transpose();
+  return on_axis * along + (Eigen::Matrix3d::Identity() - on_axis) * across;
+}
+
+} // namespace
+
+Eigen::Matrix3d rate_by_step(const Turning &from, double span_s) {
+  if (!has_axis(from, span_s))
+    return Eigen::Matrix3d::Identity() / span_s;
+  return by_axis(from, 1 / span_s, norm(from.rate_rad_s));
+}
+
+Eigen::Matrix3d step_by_rate(const Turning &from, double span_s) {
+  if (!has_axis(from, span_s))
+    return Eigen::Matrix3d::Identity() * span_s;
+  return by_axis(from, span_s, 1 / norm(from.rate_rad_s));
+}
+
+std::vector<double> out_of_steps(const Eigen::MatrixXd &covariance, const Turning &about,
+                                 double span_s) {
+  Eigen::MatrixXd out = covariance;
+  if (out.rows() >= 6) {
+    const Eigen::Matrix3d by_step = rate_by_step(about, span_s);
+    out.topRightCorner(3, 3) = (out.topRightCorner(3, 3) * by_step.transpose()).eval();
+    out.bottomLeftCorner(3, 3) = out.topRightCorner(3, 3).transpose().eval();
+    out.bottomRightCorner(3, 3) =
+        (by_step * out.bottomRightCorner(3, 3) * by_step.transpose()).eval();
+  }
+  return {out.data(), out.data() + out.size()};
+}
+
+double log_rate_volume(const Turning &from, const Turning &to, double span_s) {
+  if (!has_axis(from, span_s))
+    return -3 * std::log(span_s);
+  // Of polar coordinates about the axis.
+  const double rate = norm(to.rate_rad_s);
+  const double tilt = angle_between(normalized(from.rate_rad_s), normalized(to.rate_rad_s));
+  return 2 * std::log(rate) + std::log(std::max(sinc(tilt), 1e-6)) - std::log(span_s);
 }
 
 std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,
                                     std::span<const Turning> turnings,
                                     std::span<const std::size_t> epochs, unsigned threads,
-                                    bool keeps_residuals) {
+                                    bool keeps_residuals,
+                                    std::span<const std::span<const double>> near) {
   std::vector<Comparison> out(turnings.size());
   const bool is_whole =
       model.for_each(turnings, epochs, threads, [&](std::size_t k, const ModelLight &light) {
-        out[k] = likelihood.compare(light);
+        out[k] = likelihood.compare(light, near.empty() ? std::span<const double>() : near[k]);
         if (!keeps_residuals)
           out[k].residuals = {};
       });
@@ -163,17 +273,23 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
     fits[k].residuals = first[k].residuals;
   }
   for (int iteration = 0; iteration < plan.iterations; ++iteration) {
-    if (plan.cut_after > 0 && iteration > 0 && iteration % plan.cut_after == 0)
+    if (plan.cut_after > 0 && iteration > 0 && iteration % plan.cut_after == 0) {
       keep_best(fits, plan.kept, span);
+      if (plan.drops_hopeless)
+        drop_hopeless(fits, (plan.iterations - iteration) / plan.cut_after);
+    }
     const auto active = moving(fits);
     if (active.empty())
       break;
     if (!differentiate(model, likelihood, active, epochs, plan))
       return {};
     std::vector<Turning> tried;
-    for (const Running *one : active)
+    std::vector<std::span<const double>> parts;
+    for (const Running *one : active) {
       tried.push_back(stepped(one->fit.turning, step_of(*one), span));
-    const auto compared = compare_all(model, likelihood, tried, epochs, plan.threads, true);
+      parts.emplace_back(one->fit.at.off);
+    }
+    const auto compared = compare_all(model, likelihood, tried, epochs, plan.threads, true, parts);
     if (compared.empty())
       return {};
     for (std::size_t k = 0; k < active.size(); ++k)

@@ -20,8 +20,12 @@ inline Error stopped() {
 /// What is free: the attitude alone, or the rate too.
 enum class Freedom { Attitude = 3, AttitudeAndRate = 6 };
 
-/// Steps in the unknowns: rotation vector in body axes [rad], then the change of the rate in units
-/// that turn the body by one radian over the span of the epochs.
+/// Steps in the unknowns: rotation vector in body axes [rad], then the change of the rate. Of that
+/// the part along the spin counts in units that turn the body by one radian more over the span of
+/// the epochs; the part across it tilts the axis, in radians, and leaves the number of turns: a
+/// tilt never shows by more than twice itself, however long the span. (In units of the span a tilt
+/// of a degree would be a step of a hundred radians after a thousand turns, along a path that
+/// bends.) Of a body that turns by less than a radian over the span both count as the first.
 using Step = Eigen::Matrix<double, Eigen::Dynamic, 1>;
 
 /// From second 0, at which the attitude is told, to the farthest of the epochs (empty: all), before
@@ -33,6 +37,16 @@ double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs =
 
 /// A turning after a step.
 Turning stepped(const Turning &from, const Step &step, double span_s);
+/// The step, of 3 or 6 numbers, that leads from one to the other.
+Step step_between(const Turning &from, const Turning &to, Eigen::Index size, double span_s);
+/// Change of the rate [rad/s] with the last three numbers of a step, about no step; its inverse.
+Eigen::Matrix3d rate_by_step(const Turning &from, double span_s);
+Eigen::Matrix3d step_by_rate(const Turning &from, double span_s);
+/// A covariance of steps about a turning as one of its rotation vector and rate, row-major.
+std::vector<double> out_of_steps(const Eigen::MatrixXd &covariance, const Turning &about,
+                                 double span_s);
+/// ln of the volume of rates that a volume of steps has where a step has led to [rad^3 / s^3].
+double log_rate_volume(const Turning &from, const Turning &to, double span_s);
 
 /// One fit.
 struct TurningFit {
@@ -50,6 +64,7 @@ struct FitPlan {
   std::size_t kept = 0;
   double difference_rad = 2e-3; ///< of the derivatives: masks are steps on a finer scale
   unsigned threads = 0;
+  bool drops_hopeless = false; ///< at each cut: fits that would not come near the best by the end
 };
 
 /// Levenberg-Marquardt (Marquardt 1963) of all starts side by side, scale and zero points
@@ -59,10 +74,12 @@ std::vector<TurningFit> fit_turnings(const CurveModel &model, const CurveLikelih
                                      std::vector<Turning> starts,
                                      std::span<const std::size_t> epochs, const FitPlan &plan);
 
-/// -2 ln likelihood of each turning; empty if it was stopped.
+/// -2 ln likelihood of each turning; empty if it was stopped. `near`: of each, the parts of one
+/// like it (`CurveLikelihood::compare`), if there are any.
 std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,
                                     std::span<const Turning> turnings,
                                     std::span<const std::size_t> epochs, unsigned threads,
-                                    bool keeps_residuals = false);
+                                    bool keeps_residuals = false,
+                                    std::span<const std::span<const double>> near = {});
 
 } // namespace umov::inverse

@@ -111,8 +111,7 @@ Result<double> chi2_at_rest(const SearchModels &models, const CurveErrors &error
   options.grid = std::min(options.grid, enough);
   options.errors = errors;
   options.largest_floor = 0;
-  UMOV_ASSIGN(answer, search_pose(models, options));
-  return answer.chi2;
+  return least_chi2_at_rest(models, options);
 }
 
 /// What makes a period less than an answer, however narrow its peak; false if nothing does.

@@ -86,7 +86,13 @@ struct SearchModels {
 /// The same with quicker models where they will do.
 Result<PoseAnswer> search_pose(const SearchModels &models, const SearchOptions &options);
 
-/// The same around given turnings with their rate free too: the last step of a search for a spin.
+/// Chi-square of the best fixed attitude: what a search for spins asks a body that does not turn,
+/// without the posterior around it, and without the last steps where ten times the measurements say
+/// that there is nothing to find. Errors as `search_pose`.
+Result<double> least_chi2_at_rest(const SearchModels &models, const SearchOptions &options);
+
+/// `search_pose` around given turnings with their rate free too: the last step of a search for a
+/// spin.
 Result<PoseAnswer> refine_spin(const CurveModel &model, std::span<const Turning> starts,
                                const SearchOptions &options);
 
