@@ -23,25 +23,11 @@ struct Proposal {
   double log_norm = 0, weight = 0;
 };
 
-/// The covariance of a mode in steps about it.
-Eigen::MatrixXd in_steps(const PoseMode &mode, double span_s) {
-  const auto n = static_cast<Eigen::Index>(std::lround(std::sqrt(mode.covariance.size())));
-  Eigen::MatrixXd out = Eigen::Map<const Eigen::MatrixXd>(mode.covariance.data(), n, n);
-  if (n < 6)
-    return out;
-  const Eigen::Matrix3d by_rate = step_by_rate(mode.turning, span_s);
-  out.topRightCorner(3, 3) = (out.topRightCorner(3, 3) * by_rate.transpose()).eval();
-  out.bottomLeftCorner(3, 3) = out.topRightCorner(3, 3).transpose().eval();
-  out.bottomRightCorner(3, 3) =
-      (by_rate * out.bottomRightCorner(3, 3) * by_rate.transpose()).eval();
-  return out;
-}
-
 Proposal proposal_of(const PoseMode &mode, double span_s) {
   Proposal out;
   out.centre = mode.turning;
   constexpr double wider = 1.3; // tails that are too short cost more than ones too long
-  const Eigen::MatrixXd covariance = in_steps(mode, span_s) * wider;
+  const Eigen::MatrixXd covariance = in_steps(mode.covariance, mode.turning, span_s) * wider;
   out.root = algebra::cholesky_root(covariance);
   out.inverse_root = algebra::inverse_of(out.root);
   const auto n = static_cast<double>(covariance.rows());
@@ -56,14 +42,10 @@ double log_density(const std::vector<Proposal> &mixture, const Turning &at, doub
   double sum = 0;
   for (const Proposal &p : mixture) {
     const Step step = step_between(p.centre, at, p.root.rows(), span_s);
-    const double angle = step.head(3).norm();
-    const double bend = angle > 1e-6 ? std::sin(angle / 2) / (angle / 2) : 1; // of rotation vectors
     const double x2 = (p.inverse_root * step).squaredNorm();
     const auto n = static_cast<double>(step.size());
-    const double volume = // of rates, beside that of steps
-        n > 3 ? log_rate_volume(p.centre, at, span_s) + 3 * std::log(span_s) : 0;
-    sum += p.weight * std::exp(p.log_norm - volume - (tail + n) / 2 * std::log1p(x2 / tail)) /
-           std::max(bend * bend, 1e-6);
+    sum += p.weight * std::exp(p.log_norm - (tail + n) / 2 * std::log1p(x2 / tail) -
+                               log_volume(p.centre, step, span_s));
   }
   return std::log(sum + 1e-300);
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <umov/inverse/attitude_grid.h>
 
 namespace umov::inverse {
 namespace {
@@ -147,103 +146,6 @@ double farthest_of(const ObservedCurve &curve, std::span<const std::size_t> epoc
 
 double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs) {
   return std::max(1.0, farthest_of(curve, epochs));
-}
-
-namespace {
-
-/// Its axis can be told: it turns by more than a radian over the span.
-bool has_axis(const Turning &turning, double span_s) {
-  return norm(turning.rate_rad_s) * span_s > 1;
-}
-
-/// sin x / x
-double sinc(double x) { return std::abs(x) > 1e-6 ? std::sin(x) / x : 1; }
-
-Eigen::Vector3d eigen_of(const Vec3<Body> &v) { return {v.x, v.y, v.z}; }
-
-} // namespace
-
-Turning stepped(const Turning &from, const Step &step, double span_s) {
-  Turning out = from;
-  out.attitude = turned(from.attitude, {step[0], step[1], step[2]});
-  if (step.size() < 6)
-    return out;
-  const Vec3<Body> change{step[3], step[4], step[5]};
-  if (!has_axis(from, span_s)) {
-    out.rate_rad_s = from.rate_rad_s + change * (1 / span_s);
-    return out;
-  }
-  const double rate = norm(from.rate_rad_s);
-  const Vec3<Body> axis = from.rate_rad_s * (1 / rate);
-  const double along = dot(change, axis);
-  const Vec3<Body> across = change - axis * along;
-  const double tilt = norm(across);
-  out.rate_rad_s = (axis * std::cos(tilt) + across * sinc(tilt)) * (rate + along / span_s);
-  return out;
-}
-
-Step step_between(const Turning &from, const Turning &to, Eigen::Index size, double span_s) {
-  Step out(size);
-  out.head(3) = eigen_of(turn_between(from.attitude, to.attitude));
-  if (size < 6)
-    return out;
-  if (!has_axis(from, span_s)) {
-    out.tail(3) = eigen_of((to.rate_rad_s - from.rate_rad_s) * span_s);
-    return out;
-  }
-  const double rate = norm(from.rate_rad_s), other = norm(to.rate_rad_s);
-  const Vec3<Body> axis = from.rate_rad_s * (1 / rate);
-  const double tilt = other > 0 ? angle_between(axis, to.rate_rad_s * (1 / other)) : 0;
-  const Vec3<Body> across = to.rate_rad_s - axis * dot(to.rate_rad_s, axis);
-  const double length = norm(across);
-  out.tail(3) =
-      eigen_of(axis * ((other - rate) * span_s) + across * (length > 0 ? tilt / length : 0));
-  return out;
-}
-
-namespace {
-
-/// What is along the spin times the one, what is across it times the other.
-Eigen::Matrix3d by_axis(const Turning &of, double along, double across) {
-  const Eigen::Vector3d axis = eigen_of(of.rate_rad_s).normalized();
-  const Eigen::Matrix3d on_axis = axis * axis.transpose();
-  return on_axis * along + (Eigen::Matrix3d::Identity() - on_axis) * across;
-}
-
-} // namespace
-
-Eigen::Matrix3d rate_by_step(const Turning &from, double span_s) {
-  if (!has_axis(from, span_s))
-    return Eigen::Matrix3d::Identity() / span_s;
-  return by_axis(from, 1 / span_s, norm(from.rate_rad_s));
-}
-
-Eigen::Matrix3d step_by_rate(const Turning &from, double span_s) {
-  if (!has_axis(from, span_s))
-    return Eigen::Matrix3d::Identity() * span_s;
-  return by_axis(from, span_s, 1 / norm(from.rate_rad_s));
-}
-
-std::vector<double> out_of_steps(const Eigen::MatrixXd &covariance, const Turning &about,
-                                 double span_s) {
-  Eigen::MatrixXd out = covariance;
-  if (out.rows() >= 6) {
-    const Eigen::Matrix3d by_step = rate_by_step(about, span_s);
-    out.topRightCorner(3, 3) = (out.topRightCorner(3, 3) * by_step.transpose()).eval();
-    out.bottomLeftCorner(3, 3) = out.topRightCorner(3, 3).transpose().eval();
-    out.bottomRightCorner(3, 3) =
-        (by_step * out.bottomRightCorner(3, 3) * by_step.transpose()).eval();
-  }
-  return {out.data(), out.data() + out.size()};
-}
-
-double log_rate_volume(const Turning &from, const Turning &to, double span_s) {
-  if (!has_axis(from, span_s))
-    return -3 * std::log(span_s);
-  // Of polar coordinates about the axis.
-  const double rate = norm(to.rate_rad_s);
-  const double tilt = angle_between(normalized(from.rate_rad_s), normalized(to.rate_rad_s));
-  return 2 * std::log(rate) + std::log(std::max(sinc(tilt), 1e-6)) - std::log(span_s);
 }
 
 std::vector<Comparison> compare_all(const CurveModel &model, const CurveLikelihood &likelihood,

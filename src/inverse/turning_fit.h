@@ -1,7 +1,8 @@
 #pragma once
 // Private: many least-squares fits of turnings at once.
 
-#include <Eigen/Core>
+#include "inverse/turning_step.h"
+
 #include <umov/core/quantity.h>
 #include <umov/core/result.h>
 #include <umov/inverse/curve_model.h>
@@ -20,33 +21,12 @@ inline Error stopped() {
 /// What is free: the attitude alone, or the rate too.
 enum class Freedom { Attitude = 3, AttitudeAndRate = 6 };
 
-/// Steps in the unknowns: rotation vector in body axes [rad], then the change of the rate. Of that
-/// the part along the spin counts in units that turn the body by one radian more over the span of
-/// the epochs; the part across it tilts the axis, in radians, and leaves the number of turns: a
-/// tilt never shows by more than twice itself, however long the span. (In units of the span a tilt
-/// of a degree would be a step of a hundred radians after a thousand turns, along a path that
-/// bends.) Of a body that turns by less than a radian over the span both count as the first.
-using Step = Eigen::Matrix<double, Eigen::Dynamic, 1>;
-
 /// From second 0, at which the attitude is told, to the farthest of the epochs (empty: all), before
 /// or after it [s].
 double farthest_of(const ObservedCurve &curve, std::span<const std::size_t> epochs = {});
 /// The same, at least 1 [s]. A rate is asked in steps of it: in steps of a longer one they would
 /// turn the body by less than what derivatives by differences can see.
 double span_of(const ObservedCurve &curve, std::span<const std::size_t> epochs = {});
-
-/// A turning after a step.
-Turning stepped(const Turning &from, const Step &step, double span_s);
-/// The step, of 3 or 6 numbers, that leads from one to the other.
-Step step_between(const Turning &from, const Turning &to, Eigen::Index size, double span_s);
-/// Change of the rate [rad/s] with the last three numbers of a step, about no step; its inverse.
-Eigen::Matrix3d rate_by_step(const Turning &from, double span_s);
-Eigen::Matrix3d step_by_rate(const Turning &from, double span_s);
-/// A covariance of steps about a turning as one of its rotation vector and rate, row-major.
-std::vector<double> out_of_steps(const Eigen::MatrixXd &covariance, const Turning &about,
-                                 double span_s);
-/// ln of the volume of rates that a volume of steps has where a step has led to [rad^3 / s^3].
-double log_rate_volume(const Turning &from, const Turning &to, double span_s);
 
 /// One fit.
 struct TurningFit {
