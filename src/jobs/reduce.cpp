@@ -147,9 +147,9 @@ Reduced solve(const Set &set, std::size_t parameters, bool has_separate_pupils,
   for (const ChannelDatum &d : data)
     sky += d.sky, counts += d.counts;
   out.sky_share = counts - sky > 0 ? sky / (counts - sky) : nan;
-  // Nothing was seen: fractions of it say nothing. Cloud hides how bright, not that something is.
-  const StokesFit &noise = options.transparency_sd > 0 ? plain : *fit;
-  if (!(noise.stokes[0] > 3 * std::sqrt(noise.covariance[0][0])))
+  // Nothing was seen: fractions of it say nothing. Air that flickers or clouds over, and gains that
+  // are not known, hide how bright something is, not that it is there: noise alone judges.
+  if (!(plain.stokes[0] > 3 * std::sqrt(plain.covariance[0][0])))
     add_flag(out.flags, "faint");
   else
     out.is_solved = parameters >= 3;
