@@ -139,11 +139,9 @@ double BandObserver::port_transmission(Angle altitude, Angle azimuth) const {
 double BandObserver::scintillation_sd(double exposure_s, double airmass, double rate_rad_s) const {
   if (!conditions_.scintillation)
     return 0;
-  const double sd = umov::scintillation_sd(*conditions_.scintillation,
-                                           instrument_.telescope.aperture_m, exposure_s, airmass);
-  return conditions_.has_slewing_factor
-             ? sd * std::sqrt(slewing_variance_factor(rate_rad_s, airmass))
-             : sd;
+  return slewing_scintillation_sd(*conditions_.scintillation, instrument_.telescope.aperture_m,
+                                  exposure_s, airmass,
+                                  conditions_.has_slewing_factor ? rate_rad_s : 0);
 }
 
 double BandObserver::peak_share(double airmass) const {

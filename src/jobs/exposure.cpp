@@ -288,7 +288,6 @@ Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
   const double sky_of_pixel = sky_arcsec2 * std::pow(s.observer.pixel_arcsec(), 2);
   out.peak = (out.whole * s.observer.peak_share(x) + sky_of_pixel) * largest * lattice +
              s.instrument.detector.dark_e_s;
-  out.scintillation = s.observer.scintillation_sd(1, x, 0);
   out.fills_s = saturation_e(s.instrument.detector) / out.peak;
   return out;
 }
@@ -298,7 +297,7 @@ StarFrame star_frame(const ExposureSetup &s, const StarRates &r, double seconds)
   const double variance = s.excess2 * (r.star + r.sky + r.dark) * seconds + r.fixed;
   const Polarimeter &p = s.instrument.polarimeter;
   const auto lenses = static_cast<double>(lenses_of(p));
-  const double flicker2 = r.scintillation * r.scintillation / seconds;
+  const double flicker2 = std::pow(s.observer.scintillation_sd(seconds, s.airmass, 0), 2);
   // Of one state against the others it acts as the noise of so many counts does.
   const double of_p = flicker_of(p) == Flicker::InI ? 0 : s.factor / std::max(s.states, lenses);
   return {seconds, 1 / std::sqrt(variance / (star * star) + flicker2 / lenses),
@@ -439,7 +438,8 @@ Result<Table> exposure(const ExposureRequest &r) {
   out.add("share_read", read / all, "",
           setup.frame_s > 0 ? fmt::format("reading and rounding, every {:g} s", setup.frame_s)
                             : "reading and rounding, once of each state");
-  out.add("scintillation", rates.scintillation / std::sqrt(t), "", flicker_words(polarimeter));
+  out.add("scintillation", setup.observer.scintillation_sd(t, setup.airmass, 0), "",
+          flicker_words(polarimeter));
   if (mistakes_changes(polarimeter) && r.change_per_s > 0) {
     const bool is_full = parameters_of(polarimeter.type) == 4;
     out.add("false_p", false_p(setup, t), "",

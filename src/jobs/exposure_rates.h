@@ -42,7 +42,6 @@ struct StarRates {
   double whole = 0;                    ///< before polarizers, all of the image
   double sky = 0, dark = 0, fixed = 0; ///< fixed: variance of each exposure
   double peak = 0;                     ///< on the brightest pixel of the brightest channel
-  double scintillation = 0;            ///< relative sd of 1 s
   double fills_s = 0;                  ///< exposure that fills the brightest pixel
 };
 /// Of a star of magnitude `mag` in the request's system.

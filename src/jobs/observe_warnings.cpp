@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <umov/atmosphere/scintillation.h>
 #include <umov/instrument/mosaic.h>
 #include <umov/instrument/pixel_image.h>
 
@@ -16,6 +17,12 @@ bool is_glaring(const Recorded &r) {
   for (const ChannelCounts &c : r.channels)
     star += c.mean_star, sky += c.mean_sky;
   return sky > 10 * star;
+}
+
+/// The air changes the light by more than what the formula is made for, small changes.
+bool is_flickering(const Recorded &r) {
+  constexpr double weak = 0.5;
+  return std::ranges::any_of(r.channels, [](const auto &c) { return c.scintillation > weak; });
 }
 
 bool has_full_channel(const Recorded &r) {
@@ -75,6 +82,13 @@ void warn_of_setup(const Setup &s, Diagnostics &diagnostics) {
     diagnostics.warn(fmt::format("observation.width_nm = {:g} says nothing to bands with a curve, "
                                  "which have their own width; it is of nm:550 and the like",
                                  s.observation.width_nm));
+  if (const double crossing_s = wind_crossing_s(s.observation.instrument.telescope.aperture_m);
+      s.observation.scintillation_c_y && s.observation.exposure_s < crossing_s)
+    diagnostics.warn(fmt::format(
+        "observation.exposure_s = {:g}: the air's pattern takes {:.2g} s to cross the aperture. "
+        "Scintillation is taken as that of {:.2g} s, and drawn for each exposure by itself, though "
+        "exposures that are closer than that flicker together",
+        s.observation.exposure_s, crossing_s, crossing_s));
   const double site_height_m = s.scenario.observer->altitude_m;
   if (constexpr double highest = 9000; site_height_m > highest)
     diagnostics.warn(fmt::format("observer.alt_m = {:g}: higher than any mountain. It is in metres",
@@ -106,6 +120,10 @@ std::vector<Tally> ObservationTally::words(const Scenario &scenario, std::size_t
                  "by more than a thousandth longer or shorter than exposure_s, and I is as much "
                  "too large or too small",
                  ""};
+  out[Flickering] = {"exposure",
+                     "in which light flickers by more than half of itself (scint_sd): the formula "
+                     "is of weak scintillation, and may give some times too much here",
+                     ""};
   out[Saturated] = {"", "exposures are saturated",
                     fmt::format("every exposure of {} is saturated. Shorten observation.exposure_s "
                                 "= {}, or defocus (atmosphere.seeing.arcsec)",
@@ -117,6 +135,7 @@ void ObservationTally::add(const Recorded &r) {
   const auto count = [this](Kind kind, bool is_such) { counts_[kind] += is_such ? 1u : 0u; };
   count(Glaring, is_glaring(r));
   count(Rolled, r.is_rolled);
+  count(Flickering, is_flickering(r));
   count(Saturated, has_full_channel(r));
   if (!r.frames)
     return;

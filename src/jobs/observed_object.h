@@ -36,7 +36,17 @@ public:
   [[nodiscard]] std::size_t saturated() const { return counts_[Saturated]; }
 
 private:
-  enum Kind : std::uint8_t { Cut, Roomless, Crowded, Lost, Glaring, Rolled, Saturated, Kinds };
+  enum Kind : std::uint8_t {
+    Cut,
+    Roomless,
+    Crowded,
+    Lost,
+    Glaring,
+    Rolled,
+    Flickering,
+    Saturated,
+    Kinds
+  };
   std::array<std::size_t, Kinds> counts_{};
 };
 

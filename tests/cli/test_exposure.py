@@ -145,7 +145,10 @@ def test_three_lenses_are_told_from_one(umov, tmp_path):
 def test_flicker_of_three_lenses_averages(umov, tmp_path):
     """Of a star so bright that photons do not matter S/N is that of the air: each lens' own, over the square root of three."""
     rows, done = rows_of(umov, tmp_path, "--instrument", "mmt9_channel", "--band", "Bessell.V", "--mag", "-5", "--exposure-s", "0.1")
-    flicker = rows["scintillation"] * math.sqrt(rows["time"] / 0.1)
+    # Osborn et al. 2015, Eq. 7, at 45 deg by Kasten & Young 1989: of .1 s, and of the .6142 D/V below which the air stands still.
+    mass = 1 / (math.sin(math.radians(45)) + 0.50572 * (45 + 6.07995) ** -1.6364)
+    flicker, still = (math.sqrt(1e-5 * 1.5 ** 2 * 0.0708 ** (-4 / 3) / t * mass ** 3) for t in (0.1, 0.6142005 * 0.0708 / 20))
+    assert rows["time"] < 0.6142 * 0.0708 / 20 and rows["scintillation"] == pytest.approx(still, rel=1e-6)
     assert float(re.search(r"S/N ([0-9.]+)", done.out + done.err)[1]) == pytest.approx(math.sqrt(3) / flicker, rel=0.02)
 
 

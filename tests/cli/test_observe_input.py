@@ -154,6 +154,24 @@ CURVES = [("500 0.5\n550 -1\n600 0.5\n", "band.csv:4: response -1"), ("500 0.5\n
           ("500 0.5\n", "one point"), (".5 0.5\n.55 1\n.6 .5\n", "micrometres"), ("105 0.5\n118 1\n125 0.5\n", "solar spectrum")]
 
 
+def test_short_exposures_see_the_air_stand_still(scene, umov, tmp_path):
+    short = "exposure_s = 1e-4\ncadence_s = 1"
+    done = umov("observe", scene(short), "-o", "short")
+    assert done.code == 0 and "the air's pattern takes 0.0086 s to cross the aperture" in done.err, done.err
+    done = umov("observe", scene("exposure_s = 0.0085803785\ncadence_s = 1"), "-o", "limit")  # .6142005 x .2794 m/(20 m/s)
+    assert done.code == 0, done.err
+    sd = [Table.read(tmp_path / f"{name}/counts.ecsv")["scint_sd"][0] for name in ("short", "limit")]
+    assert abs(sd[0] / sd[1] - 1) < 1e-3, sd  # the air mass changes by less within half of so short an exposure
+    assert "cross the aperture" not in umov("observe", scene("exposure_s = 1"), "-o", "long").err
+    air = 'scintillation = "none"\n'
+    assert "cross the aperture" not in umov("observe", scene(short, air=air), "-o", "still").err
+
+
+def test_light_that_flickers_much_is_told(scene, umov):
+    done = umov("observe", scene("exposure_s = 0.01\ncadence_s = 1", air="scintillation = { c_y = 8 }\n"))
+    assert done.code == 0 and "flickers by more than half of itself" in done.err, done.err
+
+
 @pytest.mark.parametrize("points, told", CURVES)
 def test_curves_that_are_refused(scene, umov, tmp_path, points, told):
     (tmp_path / "band.csv").write_text("# unit: nm\n# detector: photon\n" + points)

@@ -1,6 +1,7 @@
 """Air, sky and stars that twinkle (docs/theory/observing.md 2), from the published formulas."""
 
 import pathlib
+from math import gamma
 
 import numpy as np
 
@@ -92,6 +93,16 @@ def scintillation(diameter, seconds, mass, height, c_y):
     return np.sqrt(1e-5 * c_y ** 2 * diameter ** (-4 / 3) / seconds * mass ** 3 * np.exp(-height / 4000))
 
 
+def wind_crossing(diameter, wind=20):
+    """Exposure at which the variance of long exposures reaches that of short ones behind a round pupil, of one layer of
+    Kolmogorov's turbulence: the irradiance's spectrum goes with f^(1/3), the pupil filters by (2 J1(x)/x)^2, x = pi D f, and a
+    long exposure takes its section across the wind. Integrals of J1(x)^2 x^-l by Weber and Schafheitlin (DLMF 10.22.57)."""
+    squared = lambda l: gamma(l) * gamma((3 - l) / 2) / (2 ** l * gamma((1 + l) / 2) ** 2 * gamma((3 + l) / 2))  # noqa: E731
+    short = 2 * np.pi * (np.pi * diameter) ** (-7 / 3) * squared(2 / 3)
+    long = 2 / wind * (np.pi * diameter) ** (-4 / 3) * squared(5 / 3)
+    return long / short
+
+
 def band_extinction(name, hpa, water_cm, mass):
     """Magnitudes of sunlight in a band, summed over all points of curve and sunlight."""
     nm, response, sun = passbands.points(name)
@@ -137,4 +148,7 @@ def rows():
     for name, case in (("c11", (.2794, 1, 1.5, 3058, 1.5)), ("metre", (1, .1, 1, 3058, 1.63)),
                        ("lens", (.071, .1, 1, 2030, 1.5))):
         yield f"scintillation_{name}", "observing.md 2", (scintillation(*case), "9g")
+    yield "wind_crossing_c11", "observing.md 2", (wind_crossing(.2794), "9g")
+    still = scintillation(.2794, wind_crossing(.2794), 1.5, 3058, 1.5)
+    yield "scintillation_still", "observing.md 2", (still, "9g")
     yield "slewing_factor", "observing.md 2", (20 / np.hypot(20, .5 * DEGREE * 1.5e4), "9g")
