@@ -97,22 +97,23 @@ double BandObserver::fwhm_arcsec(double airmass) const {
   return seeing_fwhm_arcsec(conditions_.seeing, band_.pivot_nm, airmass);
 }
 
-double BandObserver::pixels_of_circle(double radius_fwhm, double airmass) const {
+double BandObserver::pixels_within(double radius_fwhm, double airmass, double trail_px) const {
   const double radius = radius_fwhm * fwhm_arcsec(airmass) / pixel_arcsec_;
   const double parts = pixel_parts(instrument_.polarimeter);
   // No less than a pixel is read of each channel: of lenses whose pixels are wider than stars, sky
   // and reading are those of a whole one, and the ring about it is as much wider.
   const double ratio = radius_fwhm / conditions_.aperture_fwhm;
-  return std::max(pi * radius * radius / parts, ratio * ratio);
+  const double beside_trail = 2 * std::max(radius, ratio * std::sqrt(parts / pi)) * trail_px;
+  return std::max(pi * radius * radius / parts, ratio * ratio) + beside_trail / parts;
 }
 
-double BandObserver::aperture_pixels(double airmass) const {
-  return pixels_of_circle(conditions_.aperture_fwhm, airmass);
+double BandObserver::aperture_pixels(double airmass, double trail_px) const {
+  return pixels_within(conditions_.aperture_fwhm, airmass, trail_px);
 }
 
-double BandObserver::sky_pixels(double airmass) const {
-  return pixels_of_circle(conditions_.sky_outer_fwhm, airmass) -
-         pixels_of_circle(conditions_.sky_inner_fwhm, airmass);
+double BandObserver::sky_pixels(double airmass, double trail_px) const {
+  return pixels_within(conditions_.sky_outer_fwhm, airmass, trail_px) -
+         pixels_within(conditions_.sky_inner_fwhm, airmass, trail_px);
 }
 
 double BandObserver::rate_per_flux() const {
@@ -144,17 +145,15 @@ double BandObserver::scintillation_sd(double exposure_s, double airmass, double 
                                   conditions_.has_slewing_factor ? rate_rad_s : 0);
 }
 
-double BandObserver::peak_share(double airmass) const {
+double BandObserver::peak_share(double airmass, double trail_px) const {
   const double width = fwhm_arcsec(airmass) / pixel_arcsec_;
-  constexpr double beta = 4.765;
-  const double sharp = conditions_.seeing.profile == ImageProfile::Gauss
-                           ? 4 * std::log(2.) / pi
-                           : 4 * (std::exp2(1 / beta) - 1) * (beta - 1) / pi;
-  return std::min(1.0, sharp / (width * width));
+  const double sharp = peak_along(conditions_.seeing.profile, trail_px / width);
+  // No pixel has more of a trail than the time for which it passes over it.
+  return std::min(1 / std::max(1.0, trail_px), sharp / (width * width));
 }
 
 void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, std::size_t channel,
-                        double factor, ChannelCounts &out) const {
+                        double factor, double share, ChannelCounts &out) const {
   const Detector &d = instrument_.detector;
   const DrawKey key{conditions_.seed, conditions_.object, plan.index,
                     static_cast<std::uint32_t>(channel), Stream::Light};
@@ -165,7 +164,7 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   out.counts = corrected.electrons;
   out.excess2 = corrected.excess2;
   out.var_read = out.pixels * fixed_variance(d);
-  const double ring = sky_pixels(light.airmass);
+  const double ring = sky_pixels(light.airmass, light.trail_px);
   const double per_pixel = out.excess2 * out.mean_sky / out.pixels + fixed_variance(d);
   out.sky_err = out.pixels * std::sqrt(per_pixel / ring);
   DrawKey of_sky = key;
@@ -173,9 +172,8 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   Draws sky_draws(of_sky);
   out.sky = out.mean_sky + out.sky_err * sky_draws.normal();
   const double lattice = pixel_parts(instrument_.polarimeter);
-  const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
-  const double peak =
-      star * lattice / share * peak_share(light.airmass) + out.mean_sky / out.pixels;
+  const double peak = star * lattice / share * peak_share(light.airmass, light.trail_px) +
+                      out.mean_sky / out.pixels;
   const double rate = (star + out.mean_sky) / plan.exposure_s;
   out.is_saturated = corrected.is_saturated || peak > saturation_e(d) || is_paralysed(d, rate);
 }
@@ -224,15 +222,17 @@ double BandObserver::transparency(const ExposurePlan &plan, const ExposureLight 
 
 Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &plan,
                                                          const ExposureLight &light) const {
-  const double radius = conditions_.aperture_fwhm * fwhm_arcsec(light.airmass);
-  const double share = share_inside(conditions_.seeing.profile, conditions_.aperture_fwhm);
-  const double pixel2 = pixel_parts(instrument_.polarimeter) * pixel_arcsec_ * pixel_arcsec_;
-  UMOV_ASSIGN(out, expected(plan, light, share, std::max(pi * radius * radius, pixel2)));
-  const double pixels = aperture_pixels(light.airmass);
+  const double width = fwhm_arcsec(light.airmass) / pixel_arcsec_;
+  const double share =
+      share_along(conditions_.seeing.profile, conditions_.aperture_fwhm, light.trail_px / width);
+  const double pixels = aperture_pixels(light.airmass, light.trail_px);
+  const double arcsec2 =
+      pixels * pixel_parts(instrument_.polarimeter) * pixel_arcsec_ * pixel_arcsec_;
+  UMOV_ASSIGN(out, expected(plan, light, share, arcsec2));
   for (std::size_t c = 0; c < out.size(); ++c) {
     out[c].pixels = pixels;
     out[c].mean_sky += instrument_.detector.dark_e_s * plan.exposure_s * pixels;
-    draw(plan, light, c, transparency(plan, light, c), out[c]);
+    draw(plan, light, c, transparency(plan, light, c), share, out[c]);
   }
   return out;
 }

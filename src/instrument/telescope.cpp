@@ -2,12 +2,43 @@
 #include <umov/instrument/telescope.h>
 
 #include <algorithm>
+#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
 namespace umov {
 namespace {
 
 constexpr double arcsec = pi / 180 / 3600;
+constexpr double moffat_beta = 4.765; // Trujillo et al. 2001
+
+/// The profile's square is this many times that of its width where it falls to half: 1 at half a
+/// width, for both profiles.
+double moffat_scale() { return std::exp2(1 / moffat_beta) - 1; }
+
+/// Radius [full widths] that holds a share of the light.
+double radius_of(ImageProfile profile, double share) {
+  const double square = profile == ImageProfile::Gauss
+                            ? -std::log2(1 - share)
+                            : (std::pow(1 - share, 1 / (1 - moffat_beta)) - 1) / moffat_scale();
+  return std::sqrt(square) / 2;
+}
+
+using Quadrature = boost::math::quadrature::gauss<double, 20>;
+
+/// Light at the distance rho beyond the radius r from a point that runs along L: its share, over
+/// that circle and the run, that is within r of the path. Where it lies at (rho cos a, rho sin a)
+/// from the point, the path's neighbourhood takes it until it is cos a rho - sqrt(r^2 - rho^2
+/// sin^2 a) from an end.
+double taken_by_path(double rho, double r, double length) {
+  const double cosine = (rho * rho - length * length - r * r) / (2 * length * r);
+  const double at_end = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  const double widest = std::asin(std::min(1.0, r / rho * (cosine > 0 ? at_end : 1)));
+  const auto taken = [&](double angle) {
+    const double across = rho * std::sin(angle);
+    return 1 - (rho * std::cos(angle) - std::sqrt(std::max(0.0, r * r - across * across))) / length;
+  };
+  return 2 / pi * Quadrature::integrate(taken, 0., widest);
+}
 
 } // namespace
 
@@ -60,9 +91,39 @@ double share_inside(ImageProfile profile, double radius_fwhm) {
   const double diameters = 2 * radius_fwhm;
   if (profile == ImageProfile::Gauss)
     return 1 - std::exp2(-diameters * diameters);
-  constexpr double beta = 4.765;
-  const double scale = std::exp2(1 / beta) - 1;
-  return 1 - std::pow(1 + scale * diameters * diameters, 1 - beta);
+  return 1 - std::pow(1 + moffat_scale() * diameters * diameters, 1 - moffat_beta);
+}
+
+double share_along(ImageProfile profile, double r, double length) {
+  double out = share_inside(profile, r);
+  if (!(length > 0))
+    return out;
+  // Beyond a right angle's distance the far end of the path begins to lose it too.
+  double from = out;
+  for (const double reach : {std::hypot(r, length), r + length}) {
+    const double to = share_inside(profile, reach);
+    if (to > from)
+      out += Quadrature::integrate(
+          [&](double share) { return taken_by_path(radius_of(profile, share), r, length); }, from,
+          to);
+    from = to;
+  }
+  return out;
+}
+
+double peak_along(ImageProfile profile, double length) {
+  const bool is_gauss = profile == ImageProfile::Gauss;
+  const double point =
+      is_gauss ? 4 * std::log(2.) / pi : 4 * moffat_scale() * (moffat_beta - 1) / pi;
+  if (!(length > 0))
+    return point;
+  constexpr double edge = 4; // widths: a hundred-thousandth of the light is farther away
+  const double half = length / 2;
+  const auto along = [&](double x) {
+    return is_gauss ? std::exp2(-4 * x * x)
+                    : std::pow(1 + moffat_scale() * 4 * x * x, -moffat_beta);
+  };
+  return point * Quadrature::integrate(along, 0., std::min(half, edge)) / half;
 }
 
 double seeing_fwhm_arcsec(const Seeing &seeing, double nm, double airmass) {

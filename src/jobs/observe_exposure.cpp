@@ -138,6 +138,10 @@ Recorded record(const Setup &s, const Exposure &e, std::size_t number, const Lit
   const double stretch = stretch_of(s, e, points);
   for (Stokes<InstrumentAxes> &flux : light.flux)
     flux = flux * stretch;
+  light.trail_px =
+      stretch * trail_length_px(rate_over_detector(s.observation.instrument.telescope.tracking,
+                                                   points.front().geometry, points.back().geometry),
+                                e.planned.plan.exposure_s, observer.pixel_arcsec());
   const Angle on_sky = axis_on_sky(s.observation.instrument.telescope, light.axis_zenith,
                                    e.middle.altitude, e.middle.azimuth);
   out.axis = Angle::radians(on_sky.radians() + light.zenith.radians());

@@ -60,6 +60,16 @@ double trail_feature_s(const ScenarioObservation &o, const Track &track,
   return fwhm_arcsec * arcsec / 2 / (fastest + earth_rad_s);
 }
 
+double rate_over_detector(Tracking tracking, const ObservingGeometry &first,
+                          const ObservingGeometry &last) {
+  const double seconds = seconds_between(last.time, first.time);
+  if (tracking == Tracking::Satellite || !(seconds > 0))
+    return 0;
+  // Of a telescope that stands the later direction is where it was before the Earth turned.
+  const double turned_s = tracking == Tracking::Fixed ? -seconds : 0;
+  return angle_between(first.to_observer, turned_with_earth(last.to_observer, turned_s)) / seconds;
+}
+
 FrameView::FrameView(const Setup &setup, const Exposure &exposure)
     : s_(setup), e_(exposure), is_mirrored_(is_mirrored(setup.observation.instrument.telescope)) {
   const ScenarioObservation &o = s_.observation;

@@ -16,6 +16,10 @@ Result<std::vector<FieldStar>> field_of(const ScenarioObservation &observation,
 double trail_feature_s(const ScenarioObservation &observation, const Track &track,
                        std::span<const Exposure> exposures, double fwhm_arcsec);
 
+/// How fast the object moves over the detector [rad/s]: against what the telescope follows.
+double rate_over_detector(Tracking tracking, const ObservingGeometry &first,
+                          const ObservingGeometry &last);
+
 /// Where things fall on the frames of one exposure.
 class FrameView {
 public:

@@ -58,6 +58,35 @@ def test_frames_tell_what_apertures_tell(scene, umov, tmp_path, instrument, obse
         assert abs(statistics.stdev(values) - 1) < 0.05, name
 
 
+@pytest.mark.parametrize("tracking", ["sidereal", "fixed"])
+def test_apertures_know_trails(scene, umov, tmp_path, tracking):
+    """Of some 70 px of a trail frames and apertures hold the same light, pixels and sky."""
+    observation = 'exposure_s = 0.01\ncadence_s = 0.1\nframe_px = [160, 160]\nlevel = "image"\n[detector]\nbits = 24\nwell_e = 0\ndark_e_s = 100'
+    path = scene(observation, f'tracking = "{tracking}"', stop="01")
+    make_sphere(umov, 20, 24)
+    found = {}
+    for level, changes in (("image", ()), ("aperture", ("--set", 'observation.level="aperture"'))):
+        text = path.read_text() if level == "image" else path.read_text().replace('level = "image"', "").replace("frame_px = [160, 160]\n", "")
+        (tmp_path / "now.toml").write_text(text)
+        done = umov("observe", "now.toml", "-o", level)
+        assert done.code == 0, done.err
+        found[level] = Table.read(tmp_path / level / "counts.ecsv")
+    image, aperture = found["image"], found["aperture"]
+    mean = {level: {name: statistics.mean(table[name]) for name in ("n_pixel", "sky", "sky_err", "var_read")} for level, table in found.items()}
+    assert mean["image"]["n_pixel"] > 300  # 70 px by two widths of 3 px on either side, a quarter of them
+    # Whole pixels whose centres lie within: a part of a pixel at the edge of each.
+    for name in ("n_pixel", "var_read"):
+        assert abs(mean["aperture"][name] / mean["image"][name] - 1) < 0.02, (name, mean)
+    # Four standard errors of the difference.
+    sky_err = mean["image"]["sky_err"] * math.sqrt(2 / len(image))
+    assert abs(mean["aperture"]["sky"] - mean["image"]["sky"]) < 4 * sky_err + 0.02 * mean["image"]["sky"], mean
+    assert abs(mean["aperture"]["sky_err"] / mean["image"]["sky_err"] - 1) < 0.1, mean  # what a ring of some thousand pixels tells of its own scatter
+    light = [sum(table["counts"] - table["sky"]) for table in (image, aperture)]
+    # Square pixels widen images, so that a thousandth more is beyond two widths.
+    assert abs(light[0] / light[1] - 1) < 2e-3, light
+    assert max(abs(image["w0"] / aperture["w0"] - 1)) < 2e-3
+
+
 @pytest.mark.parametrize("tracking", ["sidereal", "satellite"])
 def test_bright_frames_have_the_light_of_the_aperture(scene, umov, tmp_path, tracking):
     """The same to 1e-4, for trails and for what is followed: a camera without limits, 3e9 electrons in all."""

@@ -179,6 +179,36 @@ def trail_box(length=11, around=2):
     return along * share(-around, around)
 
 
+def trail_share(profile, radius, length):
+    """Light of an image that runs evenly along a length, within a radius of its path, in full widths: sums over the run, across it
+    and along it, by Gauss' rule."""
+    x, w = np.polynomial.legendre.leggauss(120)
+    total = 0
+    for y, wy in zip(x * radius, w * radius):
+        half = np.sqrt(radius ** 2 - y ** 2)
+        for s, ws in zip((x + 1) / 2 * length, w / 2):  # the mean over the run
+            # Light beside the point, on both sides apart: it is sharp there.
+            for reach in (s + half, length + half - s):
+                u, wu = (x + 1) / 2 * reach, w / 2 * reach
+                total += wy * ws * np.sum(wu * profile(np.hypot(u, y)))
+    return total
+
+
+def gauss_profile(r):
+    return 4 * np.log(2) / np.pi * np.exp(-4 * np.log(2) * r ** 2)
+
+
+def moffat_profile(r, beta=4.765):
+    scale = 4 * (2 ** (1 / beta) - 1)
+    return scale * (beta - 1) / np.pi * (1 + scale * r ** 2) ** -beta
+
+
+def trail_peak(profile, length):
+    """Light in a small square on the middle of a trail, over its area in square widths."""
+    x, w = np.polynomial.legendre.leggauss(300)
+    return np.sum(w / 2 * profile(np.abs(x) * length / 2))
+
+
 def zero_points():
     """AB magnitude of one electron a second in V, without air and polarizers, of each instrument's file."""
     nm, response, _ = points("Bessell.V")
@@ -268,6 +298,11 @@ def rows():
     yield "bent", three, (9000 * (1 - .02 * 9000 / 10500), "9g")
     yield "bent_q", three, (bent_polarization(), "9g")
     yield "trail_box", three, (trail_box(), "7g")
+    for name, profile in (("gauss", gauss_profile), ("moffat", moffat_profile)):
+        for radius, length in ((.5, 1), (1, 3), (2, 10)):
+            yield f"trail_{name}_{radius:g}_{length}", three, (trail_share(profile, radius, length), "7g")
+        for length in (1, 10):
+            yield f"trail_{name}_peak_{length}", three, (trail_peak(profile, length), "9g")
     for name, zero in zero_points():
         yield f"zero_point_{name}", three, (zero, "9g")
     yield "dead_time", three, (1e6 / 1.05, "9g")

@@ -77,7 +77,8 @@ struct ExposureLight {
   Angle zenith;          ///< position angle of the zenith in the sky frame of the files
   double rate_rad_s = 0; ///< of the object over the sky
   double transparency = 1;
-  Angle azimuth; ///< of the object
+  Angle azimuth;       ///< of the object
+  double trail_px = 0; ///< length of its trail on the detector, 0 where it is followed
 };
 
 /// One channel of one exposure, as a reduction gets it.
@@ -138,8 +139,8 @@ public:
   [[nodiscard]] double fwhm_arcsec(double airmass) const;
   /// As above.
   [[nodiscard]] double pixel_arcsec() const { return pixel_arcsec_; }
-  /// Pixels in the aperture, of one channel.
-  [[nodiscard]] double aperture_pixels(double airmass) const;
+  /// Pixels in the aperture, of one channel; about a trail of that length.
+  [[nodiscard]] double aperture_pixels(double airmass, double trail_px = 0) const;
   /// Electrons per second of a flux of 1 W m-2 nm-1, no air, no polarizer, all of the image.
   [[nodiscard]] double rate_per_flux() const;
   /// Mean transmission of the air in the band, photon-weighted.
@@ -148,8 +149,8 @@ public:
   [[nodiscard]] double port_transmission(Angle altitude, Angle azimuth) const;
   /// Standard deviation of the transparency by scintillation.
   [[nodiscard]] double scintillation_sd(double exposure_s, double airmass, double rate_rad_s) const;
-  /// Share of a star's light that falls on the brightest pixel.
-  [[nodiscard]] double peak_share(double airmass) const;
+  /// Share of a star's light that falls on the brightest pixel; of a trail of that length.
+  [[nodiscard]] double peak_share(double airmass, double trail_px = 0) const;
 
 private:
   using StateKey = std::tuple<double, double, double>;
@@ -158,9 +159,9 @@ private:
   [[nodiscard]] const Channels *channels_of(const PolarimeterState &state) const;
   [[nodiscard]] InstrumentMueller port(std::size_t node, Angle altitude, Angle azimuth) const;
   void draw(const ExposurePlan &plan, const ExposureLight &light, std::size_t channel,
-            double factor, ChannelCounts &out) const;
-  [[nodiscard]] double sky_pixels(double airmass) const;
-  [[nodiscard]] double pixels_of_circle(double radius_fwhm, double airmass) const;
+            double factor, double share, ChannelCounts &out) const;
+  [[nodiscard]] double sky_pixels(double airmass, double trail_px) const;
+  [[nodiscard]] double pixels_within(double radius_fwhm, double airmass, double trail_px) const;
 
   Instrument instrument_;
   BandResponse band_;

@@ -65,6 +65,11 @@ enum class ImageProfile { Gauss, Moffat }; ///< Moffat with exponent 4.765 (Truj
 
 /// Share of the light within a radius, in full widths at half maximum.
 double share_inside(ImageProfile profile, double radius_fwhm);
+/// The same within a radius of the path of an image that runs evenly along `length_fwhm`.
+double share_along(ImageProfile profile, double radius_fwhm, double length_fwhm);
+/// Share of the light that falls on a square full width where it is brightest, per square width, of
+/// an image that runs evenly along `length_fwhm`; a point where that is 0.
+double peak_along(ImageProfile profile, double length_fwhm);
 
 /// The seeing at the zenith.
 struct Seeing {
@@ -77,7 +82,8 @@ struct Seeing {
 /// outer scale (Tokovinin 2002, PASP 114, 1156, Eq. 19).
 double seeing_fwhm_arcsec(const Seeing &seeing, double nm, double airmass);
 
-/// Length of a trail [px] of an object that moves by `rate_rad_s` over the detector.
+/// Length of a trail [px] of an object that moves by `rate_rad_s` over the detector: against the
+/// stars where those are followed, against the horizon where nothing is.
 double trail_length_px(double rate_rad_s, double exposure_s, double arcsec_per_px);
 
 } // namespace umov

@@ -1,6 +1,8 @@
 #include "instrument/tests/anchor.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
+#include <tuple>
 #include <umov/instrument/telescope.h>
 
 namespace umov {
@@ -21,6 +23,23 @@ TEST(Telescope, SharesAreThoseOfTheProfiles) {
   for (const char *radius : {"0.5", "1", "1.5"})
     EXPECT_NEAR(share_inside(ImageProfile::Moffat, AnchorRow::number(radius)),
                 of(std::string("moffat_") + radius), 1e-6);
+}
+
+TEST(Telescope, TrailsHaveTheLightOfTheirNeighbourhood) {
+  for (const auto &[profile, name] :
+       {std::pair{ImageProfile::Gauss, "trail_gauss_"}, {ImageProfile::Moffat, "trail_moffat_"}}) {
+    for (const auto &[radius, length, key] :
+         {std::tuple{.5, 1., "0.5_1"}, {1., 3., "1_3"}, {2., 10., "2_10"}})
+      // Square roots at the edge of the path's neighbourhood: 2e-6 by Gauss' rule of 20 points.
+      EXPECT_NEAR(share_along(profile, radius, length), of(std::string(name) + key), 5e-6) << key;
+    for (const auto &[length, key] :
+         {std::pair{1., "peak_1"}, {10., "peak_10"}}) // tails beyond 4 widths
+      EXPECT_NEAR(peak_along(profile, length), of(std::string(name) + key), 1e-6) << key;
+    EXPECT_EQ(share_along(profile, 1, 0), share_inside(profile, 1));
+    // A run of nothing changes nothing, one without an end leaves a strip: of Gauss' erf.
+    EXPECT_NEAR(share_along(profile, 1, 1e-6), share_inside(profile, 1), 1e-6);
+  }
+  EXPECT_NEAR(share_along(ImageProfile::Gauss, .5, 1e6), std::erf(std::sqrt(std::log(2.))), 5e-6);
 }
 
 TEST(Telescope, SeeingGoesWithAirAndColour) { // nine digits

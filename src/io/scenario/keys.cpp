@@ -235,7 +235,7 @@ const std::vector<Key> &keys() {
       {"telescope", "mount", String, "\"altaz\"", "altaz or equatorial"},
       {"telescope", "derotator", Boolean, "false", "the instrument turns with the sky"},
       {"telescope", "tracking", String, "\"satellite\"",
-       "frames: what is followed, satellite, sidereal or fixed"},
+       "what is followed, satellite, sidereal or fixed: the rest trails"},
       {"telescope", "tracking_error_arcsec", Number, "1.0",
        "frames: of the place of each, standard deviation [arcsec]"},
       {"detector", "model", String, "\"ideal\"", "ideal, ccd, cmos, emccd or counter"},
