@@ -86,7 +86,7 @@ def test_axes_and_motion_of_the_pass(umov, tmp_path):
 
 
 EXAMPLES = [("wheel", [], []), ("wollaston", [], ["--transparency-sd", 0.1]), ("spinning_plate", [], []), ("lenses", [], []),
-            ("full_stokes", ["--set", "time.stop=2018-01-21T05:10:50Z"], [])]
+            ("full_stokes", ["--set", "time.stop=2018-01-21T05:11:00Z"], [])]
 
 
 @pytest.mark.parametrize("name, shorter, told", EXAMPLES)
