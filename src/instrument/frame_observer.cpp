@@ -72,9 +72,8 @@ Result<void> Exposing::expect() {
     for (const ChannelCounts &c : unit)
       of_unit_.push_back(c.mean_star);
   }
-  const double dark = o_.instrument().detector.dark_e_s * plan_.exposure_s;
   for (std::size_t c = 0; c < whole_.size(); ++c) {
-    whole_[c].mean_sky += dark;
+    whole_[c].mean_sky += o_.instrument().detector.dark_e_s * whole_[c].seconds;
     transparency_.push_back(o_.transparency(plan_, light_, c));
   }
   return {};
@@ -162,7 +161,7 @@ void Exposing::put(ChannelCounts &c, double share) const {
 void Exposing::take(const FrameSum &sum, ChannelCounts &c) const {
   const Detector &d = o_.instrument().detector;
   c.counts = sum.electrons;
-  c.recorded = sum.adu * d.gain_e_adu;
+  c.recorded = sum.adu / adu_per_electron(d);
   c.sky = sum.sky;
   c.sky_err = sum.sky_sd;
   c.pixels = sum.pixels;
@@ -288,7 +287,8 @@ Result<FramedExposure> Exposing::make() {
       background[p] = whole_[is_mosaic_ ? p : plane].mean_sky;
     const DrawKey key{conditions.seed, conditions.object, plan_.index,
                       static_cast<std::uint32_t>(plane), 0};
-    RawFrame raw = draw_frame(o_.instrument().detector, light, background, plan_.exposure_s, key);
+    RawFrame raw =
+        draw_frame(o_.instrument().detector, light, background, whole_[plane].seconds, key);
     const bool is_fitted = scene_.photometry == FramePhotometry::Image && aperture.path.size() == 1;
     if (is_fitted)
       fit(plane, raw, out);

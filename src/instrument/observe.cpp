@@ -159,8 +159,8 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
                     static_cast<std::uint32_t>(channel), Stream::Light};
   Draws draws(key);
   const double star = out.mean_star * factor;
-  out.recorded = draw_aperture(d, star + out.mean_sky, out.pixels, plan.exposure_s, draws);
-  const CorrectedCount corrected = corrected_count(d, out.recorded, plan.exposure_s);
+  out.recorded = draw_aperture(d, star + out.mean_sky, out.pixels, out.seconds, draws);
+  const CorrectedCount corrected = corrected_count(d, out.recorded, out.seconds);
   out.counts = corrected.electrons;
   out.excess2 = corrected.excess2;
   out.var_read = out.pixels * fixed_variance(d);
@@ -174,7 +174,7 @@ void BandObserver::draw(const ExposurePlan &plan, const ExposureLight &light, st
   const double lattice = pixel_parts(instrument_.polarimeter);
   const double peak = star * lattice / share * peak_share(light.airmass, light.trail_px) +
                       out.mean_sky / out.pixels;
-  const double rate = (star + out.mean_sky) / plan.exposure_s;
+  const double rate = (star + out.mean_sky) / out.seconds;
   out.is_saturated = corrected.is_saturated || peak > saturation_e(d) || is_paralysed(d, rate);
 }
 
@@ -207,6 +207,7 @@ Result<std::vector<ChannelCounts>> BandObserver::expected(const ExposurePlan &pl
     out[c].channel = (*channels)[0][c].name;
     out[c].analyser_deg = (*channels)[0][c].analyser_deg;
     out[c].scintillation = sd;
+    out[c].seconds = plan.exposure_s * (*channels)[0][c].time_share;
   }
   return out;
 }
@@ -231,7 +232,7 @@ Result<std::vector<ChannelCounts>> BandObserver::observe(const ExposurePlan &pla
   UMOV_ASSIGN(out, expected(plan, light, share, arcsec2));
   for (std::size_t c = 0; c < out.size(); ++c) {
     out[c].pixels = pixels;
-    out[c].mean_sky += instrument_.detector.dark_e_s * plan.exposure_s * pixels;
+    out[c].mean_sky += instrument_.detector.dark_e_s * out[c].seconds * pixels;
     draw(plan, light, c, transparency(plan, light, c), share, out[c]);
   }
   return out;

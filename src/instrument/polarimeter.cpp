@@ -55,8 +55,8 @@ std::vector<PolarimeterChannel> pem_channels(const Polarimeter &p, double extinc
         row = row +
               first_row(behind(analyser, retarder(d, Angle::degrees(45)))) * (w / pieces / bins);
       }
-    out.push_back(
-        {fmt::format("phase{}", b), analyser_deg, row_on_sky(row, Angle::degrees(analyser_deg))});
+    out.push_back({fmt::format("phase{}", b), analyser_deg,
+                   row_on_sky(row, Angle::degrees(analyser_deg)), 1. / bins});
   }
   return out;
 }
@@ -78,7 +78,8 @@ void add_beams(std::vector<PolarimeterChannel> &out, const std::string &suffix, 
   for (const auto &[name, angle] : {std::pair{"o", 0.}, {"x", 90.}})
     out.push_back(
         {name + suffix, angle,
-         plate_row(polarizer(extinction, Angle::degrees(angle)), retardance, plate, turn) * share});
+         plate_row(polarizer(extinction, Angle::degrees(angle)), retardance, plate, turn) * share,
+         share});
 }
 
 } // namespace

@@ -21,7 +21,7 @@ Result<Band> named_band(const ExposureRequest &r) {
   if (bands.size() != 1)
     return fail(ErrorCode::Usage, fmt::format("--band {} is a group of {} bands; name one, as {}",
                                               r.band, bands.size(), bands.front().name));
-  UMOV_TRY(check_air_reaches(bands, {}));
+  UMOV_TRY(check_air_reaches(bands, {}, {}));
   return bands.front();
 }
 
@@ -283,11 +283,14 @@ Result<StarRates> star_rates(const ExposureSetup &s, double mag) {
   const double sky_arcsec2 = zero * std::pow(10, -0.4 * s.request.sky_mag);
   out.sky = sky_arcsec2 * arcsec2 * s.through;
   const double pixels = s.observer.aperture_pixels(x) * static_cast<double>(channels.size());
-  out.dark = s.instrument.detector.dark_e_s * pixels;
+  double collecting = 0; // times the exposure, of all channels
+  for (const PolarimeterChannel &channel : channels)
+    collecting += channel.time_share;
+  out.dark = s.instrument.detector.dark_e_s * s.observer.aperture_pixels(x) * collecting;
   out.fixed = pixels * fixed_variance(s.instrument.detector);
   const double sky_of_pixel = sky_arcsec2 * std::pow(s.observer.pixel_arcsec(), 2);
   out.peak = (out.whole * s.observer.peak_share(x) + sky_of_pixel) * largest * lattice +
-             s.instrument.detector.dark_e_s;
+             s.instrument.detector.dark_e_s * channels.front().time_share;
   out.fills_s = saturation_e(s.instrument.detector) / out.peak;
   return out;
 }

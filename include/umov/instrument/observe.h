@@ -95,6 +95,7 @@ struct ChannelCounts {
   bool is_saturated = false;
   StokesRow row{}; ///< counts - sky = row . S, S in the sky frame of the files [e W-1 m2 nm]
   double mean_star = 0, mean_sky = 0; ///< truth of the simulation
+  double seconds = 0;                 ///< for which it collects: its part of the exposure
 };
 
 /// An instrument in one band under given conditions.

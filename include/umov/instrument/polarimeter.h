@@ -49,7 +49,8 @@ struct PolarimeterState {
 struct PolarimeterChannel {
   std::string name;
   double analyser_deg = 0;
-  StokesRow row{}; ///< in the instrument's axes; its share of the light is in it
+  StokesRow row{};       ///< in the instrument's axes; its share of the light is in it
+  double time_share = 1; ///< part of the exposure in which it collects
 };
 
 /// The channels of one exposure at a wavelength. BadInput where a table does not reach it.

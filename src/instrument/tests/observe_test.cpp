@@ -1,6 +1,7 @@
 #include "instrument/tests/anchor.h"
 
 #include <gtest/gtest.h>
+#include <tuple>
 #include <umov/instrument/observe.h>
 
 namespace umov {
@@ -104,6 +105,36 @@ TEST(BandObserver, CountersAreCorrectedForDeadTime) {
   EXPECT_NEAR(sum, mean, 4 * se + 1);
   EXPECT_NEAR(excess, 1.2, 1e-3);
   EXPECT_NEAR((squares - sum * sum) / (1.2 * mean), 1, 4 * std::sqrt(2. / trials));
+}
+
+/// Phases of a modulator and states of a cell that flips have their part of the time: of dark
+/// current, of sky, and of the seconds in which a counter is dead.
+TEST(BandObserver, PhasesCollectForTheirPartOfTheExposure) {
+  Instrument instrument = camera();
+  instrument.detector.dark_e_s = 50;
+  instrument.polarimeter.angles_deg.clear();
+  for (const auto &[type, channels, share] :
+       {std::tuple{PolarimeterType::Pem, 8u, 1. / 8}, {PolarimeterType::Flc, 4u, 1. / 2}}) {
+    instrument.polarimeter.type = type;
+    const auto found = observer(instrument, no_air()).observe({0, 2, {}}, star(0, 0, 0));
+    ASSERT_EQ(found->size(), channels);
+    for (const ChannelCounts &c : *found) {
+      EXPECT_NEAR(c.seconds, 2 * share, 1e-15);
+      EXPECT_NEAR(c.mean_sky, 50 * 2 * share * c.pixels, 1e-9); // no light of a sky
+    }
+  }
+  // Through each of two states for half of the time light is as dense as through one for all of it.
+  instrument.detector = {};
+  instrument.detector.pixel_um = 3.45;
+  instrument.detector.model = DetectorModel::Counter;
+  const auto excess_of = [&](PolarimeterType type) {
+    instrument.polarimeter.type = type;
+    return observer(instrument, no_air()).observe({0, 1, {}}, star(1e-9, 0, 0))->at(0).excess2;
+  };
+  instrument.detector.dead_time_s = 1e-8;
+  const double plate = excess_of(PolarimeterType::HwpDualBeam);
+  EXPECT_GT(plate, 1.05);
+  EXPECT_NEAR(excess_of(PolarimeterType::Flc) - 1, plate - 1, .01 * (plate - 1)); // drawn: 1e-3
 }
 
 /// Light along +Q of the sky, carried through the port to the instrument's x axis as it stands.
