@@ -48,6 +48,25 @@ const char *name_of(DetectorModel model) {
   return detector_names()[static_cast<std::size_t>(model)].c_str();
 }
 
+bool has_converter(const Detector &d) {
+  return d.model != DetectorModel::Ideal && d.model != DetectorModel::Counter;
+}
+
+double adu_per_electron(const Detector &d) {
+  return has_converter(d) ? register_gain(d) / d.gain_e_adu : 1;
+}
+
+double zero_adu(const Detector &d) { return has_converter(d) ? d.bias_adu : 0; }
+
+double last_adu(const Detector &d) {
+  constexpr double largest = 2147483647; // of a 32-bit whole number
+  return has_converter(d) ? std::min(std::exp2(d.bits) - 1, largest) : largest;
+}
+
+double number_of(const Detector &d, double electrons) {
+  return has_converter(d) ? bent(d, electrons) * adu_per_electron(d) + d.bias_adu : electrons;
+}
+
 double excess_variance(const Detector &d) {
   const double g = register_gain(d);
   if (!(g > 1))
@@ -57,16 +76,16 @@ double excess_variance(const Detector &d) {
 }
 
 double fixed_variance(const Detector &d) {
-  if (d.model == DetectorModel::Ideal || d.model == DetectorModel::Counter)
+  if (!has_converter(d))
     return 0;
   const double g = register_gain(d);
   return (d.read_e * d.read_e + d.gain_e_adu * d.gain_e_adu / 12) / (g * g);
 }
 
 double saturation_e(const Detector &d) {
-  if (d.model == DetectorModel::Ideal || d.model == DetectorModel::Counter)
+  if (!has_converter(d))
     return std::numeric_limits<double>::infinity();
-  const double numbers = (std::exp2(d.bits) - 1 - d.bias_adu) * d.gain_e_adu / register_gain(d);
+  const double numbers = (std::exp2(d.bits) - 1 - d.bias_adu) / adu_per_electron(d);
   return d.well_e > 0 ? std::min(d.well_e, numbers) : numbers;
 }
 
@@ -120,22 +139,20 @@ CorrectedCount corrected_count(const Detector &d, double told, double exposure_s
 PixelReading read_pixel(const Detector &d, double mean, double exposure_s, Draws &draws) {
   double electrons = draw_electrons(d, mean, exposure_s, draws);
   PixelReading out;
-  const bool is_full = d.well_e > 0 && electrons > d.well_e;
+  const bool is_full = has_converter(d) && d.well_e > 0 && electrons > d.well_e;
   if (is_full)
     electrons = d.well_e;
-  const bool is_counted = d.model == DetectorModel::Ideal || d.model == DetectorModel::Counter;
-  const double g = register_gain(d);
-  const double x = bent(d, electrons) * g + (is_counted ? 0 : d.read_e * draws.normal());
-  const double last = std::min(std::exp2(d.bits), 2147483648.) - 1; // of a 32-bit whole number
-  const double number = std::floor(x / d.gain_e_adu + d.bias_adu + 0.5);
+  const double noise = has_converter(d) ? d.read_e * draws.normal() / d.gain_e_adu : 0;
+  const double last = last_adu(d);
+  const double number = std::floor(number_of(d, electrons) + noise + 0.5);
   out.is_saturated = is_full || number >= last;
   out.adu = static_cast<int>(std::clamp(number, 0.0, last));
   return out;
 }
 
 double electrons_of(const Detector &d, const PixelReading &reading) {
-  const double x = (reading.adu - d.bias_adu) * d.gain_e_adu / register_gain(d);
-  return straightened(d, x);
+  const double x = (reading.adu - zero_adu(d)) / adu_per_electron(d);
+  return has_converter(d) ? straightened(d, x) : x;
 }
 
 double draw_aperture(const Detector &d, double mean, double pixels, double exposure_s,

@@ -66,7 +66,7 @@ std::array<FrameSum, 4> sum_frame(const Detector &d, const RawFrame &frame,
                const double e = electrons_of(d, {frame.adu[at], false});
                if (d2 <= r2) {
                  out[p].electrons += e;
-                 out[p].adu += frame.adu[at] - d.bias_adu;
+                 out[p].adu += frame.adu[at] - zero_adu(d);
                  ++out[p].pixels;
                  out[p].is_saturated = out[p].is_saturated || is_full(frame, at);
                } else if (d2 >= inner2 && (masked.value.empty() || masked.value[at] == 0)) {

@@ -47,13 +47,14 @@ std::optional<PixelTable> PixelTable::make(const Detector &d, double mean) {
   const double spread = far * std::sqrt(mean) + far * far; // the tail of few electrons is long
   const int least = static_cast<int>(std::max(0., std::floor(mean - spread)));
   const int largest = mean > 0 ? static_cast<int>(std::ceil(mean + spread)) : 0;
-  const double sd = d.model == DetectorModel::Ideal ? 0 : d.read_e / d.gain_e_adu;
-  const auto centre = [&](int n) { return bent(d, n) / d.gain_e_adu + d.bias_adu + .5; };
+  const double sd = has_converter(d) ? d.read_e / d.gain_e_adu : 0;
+  const auto centre = [&](int n) { return number_of(d, n) + .5; };
   const double low = std::floor(centre(least) - far * sd) - 1;
   const double high = std::floor(centre(largest) + far * sd) + 1;
-  const double last = std::min(std::exp2(d.bits) - 1, 2e9);
+  const double last = std::min(last_adu(d), 2e9);
   constexpr double widest = 4096;
-  if ((d.well_e > 0 && largest > d.well_e) || low < 0 || high >= last || high - low >= widest)
+  const bool may_fill = has_converter(d) && d.well_e > 0 && largest > d.well_e;
+  if (may_fill || low < (has_converter(d) ? 0 : -1) || high >= last || high - low >= widest)
     return std::nullopt;
   PixelTable out;
   out.first_ = static_cast<int>(low);

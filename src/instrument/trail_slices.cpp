@@ -75,7 +75,7 @@ std::vector<std::array<FrameSum, 4>> sum_slices(const Detector &d, const RawFram
       FrameSum &sum = out[static_cast<std::size_t>(slices.of_pixel[at])]
                          [is_mosaic ? lattice_place(column, row) : 0];
       sum.electrons += electrons_of(d, {frame.adu[at], false});
-      sum.adu += frame.adu[at] - d.bias_adu;
+      sum.adu += frame.adu[at] - zero_adu(d);
       ++sum.pixels;
       sum.is_saturated = sum.is_saturated || std::ranges::binary_search(
                                                  frame.saturated, static_cast<std::uint32_t>(at));

@@ -119,9 +119,7 @@ std::optional<FramePoint> FrameView::image(const Axes &axes, Vec3<Gcrs> directio
 /// Row y begins y line times after the first, so what moves by v rows a second meets its rows'
 /// shutters 1/(1 - v line time) times as far apart as if it stood.
 double FrameView::stretch(Speed speed) const {
-  const double lines = rolling_change(s_.observation.instrument.detector, speed.y);
-  constexpr double fastest = 0.5; // half as fast as the read-out: no shutter is meant for it
-  return 1 / (1 - std::clamp(lines, -fastest, fastest));
+  return 1 / (1 - rolling_change(s_.observation.instrument.detector, speed.y));
 }
 
 double FrameView::stretch(std::span<const TrackPoint> points) const {
@@ -236,7 +234,7 @@ FitsImage fits_of(const Setup &s, const Exposure &e, const Recorded &r) {
   const FramedExposure &framed = *r.frames;
   out.columns = framed.planes.front().frame.columns;
   out.rows = framed.planes.front().frame.rows;
-  out.is_16_bit = i.detector.bits <= 16;
+  out.is_16_bit = has_converter(i.detector) && i.detector.bits <= 16;
   for (const FramePlane &plane : framed.planes)
     out.planes.emplace_back(plane.frame.adu);
   out.cards = {
@@ -248,9 +246,9 @@ FitsImage fits_of(const Setup &s, const Exposure &e, const Recorded &r) {
       {"INSTRUME", i.name.empty() ? std::string("in the scenario") : i.name, ""},
       {"FILTER", observer.band().name, ""},
       {"BUNIT", std::string("adu"), ""},
-      {"GAIN", i.detector.gain_e_adu, "[electron/adu]"},
-      {"RDNOISE", i.detector.read_e, "[electron]"},
-      {"BIASLVL", i.detector.bias_adu, "[adu]"},
+      {"GAIN", has_converter(i.detector) ? i.detector.gain_e_adu : 1, "[electron/adu]"},
+      {"RDNOISE", has_converter(i.detector) ? i.detector.read_e : 0, "[electron]"},
+      {"BIASLVL", zero_adu(i.detector), "[adu]"},
       {"AIRMASS", r.airmass, ""},
       {"PIXSCALE", observer.pixel_arcsec(), "[arcsec]"},
       {"FWHM", observer.fwhm_arcsec(r.airmass), "[arcsec] of a star, before pixels"},

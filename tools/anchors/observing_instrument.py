@@ -292,12 +292,19 @@ def rows():
         yield f"excess_{gain}", three, (excess(gain), "9g")
     yield "ccd", three, (ccd(1e4, 50, 20, .5, 2.3, 2.6, 500), "9g")
     yield "emccd", three, (ccd(1e4, 50, 20, .5, 60, 10, 500, excess(300), 300), "9g")
+    doubled = ccd(1e4, 50, 20, .5, 60, 10, 500, 2, 300)  # of an endless register of an endless gain
+    yield "emccd_doubled", three, (doubled, "9g")
+    yield "emccd_doubled_snr", three, (1e4 / np.sqrt(doubled), "9g")
+    yield "faint_emccd_doubled", three, (40 / np.sqrt(ccd(40, 9, .1, .01, 60, 10, f2=2, gain=300)), "9g")
     for name, read, step, register in (("cmos", 1.4, .45, 1), ("emccd", 60, 10, 300), ("ccd", 7, 1, 1)):
         noise = np.sqrt(ccd(40, 9, .1, .01, read, step, f2=excess(register), gain=register))
         yield f"faint_{name}", three, (40 / noise, "9g")
     yield "bent", three, (9000 * (1 - .02 * 9000 / 10500), "9g")
     yield "bent_q", three, (bent_polarization(), "9g")
     yield "trail_box", three, (trail_box(), "7g")
+    # .5 deg/s over 16 arcsec a pixel in .1 s.
+    yield "trail_lens_px", three, (.5 * 3600 * .1 / 16, "9g")
+    yield "trail_lens_box", three, (trail_box(.5 * 3600 * .1 / 16), "7g")
     for name, profile in (("gauss", gauss_profile), ("moffat", moffat_profile)):
         for radius, length in ((.5, 1), (1, 3), (2, 10)):
             yield f"trail_{name}_{radius:g}_{length}", three, (trail_share(profile, radius, length), "7g")

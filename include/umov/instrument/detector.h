@@ -42,6 +42,19 @@ const char *name_of(DetectorModel model);
 /// All names, in the order of the enumeration.
 const std::vector<std::string> &detector_names();
 
+/// A converter makes numbers of charge. Of the others, ideal detectors and counters, a photon that
+/// is told is a number of 1: gain_e_adu, bits, bias_adu, well_e, read_e and nonlinearity say
+/// nothing.
+bool has_converter(const Detector &detector);
+/// Numbers for an electron, before any multiplication.
+double adu_per_electron(const Detector &detector);
+/// The number that stands for none, and the largest.
+double zero_adu(const Detector &detector);
+/// As above.
+double last_adu(const Detector &detector);
+/// What electrons read as without noise, before it is rounded.
+double number_of(const Detector &detector, double electrons);
+
 /// Variance of the electrons over their Poisson variance: a multiplying register adds its own
 /// (Robbins & Hadwen 2003, IEEE Trans. Electron Devices 50, 1227); 1 without one.
 double excess_variance(const Detector &detector);

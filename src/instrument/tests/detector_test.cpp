@@ -33,6 +33,23 @@ TEST(Detector, CcdEquation) { // nine digits
   EXPECT_NEAR(aperture_variance(d, {1e4, 20, .5, 50, 500}), of("emccd"), 1e-4);
 }
 
+/// With the excess of 2 of an endless register, as a detector with a finite one can be asked for:
+/// the variance is linear in it, and what it multiplies is that of an ideal detector.
+double doubled_variance(const Detector &d, const ApertureCounts &counts) {
+  const double multiplied = aperture_variance(Detector{}, counts);
+  return aperture_variance(d, counts) + (2 - excess_variance(d)) * multiplied;
+}
+
+TEST(Detector, CcdEquationBehindAnEndlessRegister) { // nine digits
+  Detector d = camera(DetectorModel::Emccd);
+  d.em_gain = 300, d.read_e = 60, d.gain_e_adu = 10;
+  const double variance = doubled_variance(d, {1e4, 20, .5, 50, 500});
+  EXPECT_NEAR(variance, of("emccd_doubled"), 1e-4);
+  EXPECT_NEAR(1e4 / std::sqrt(variance), of("emccd_doubled_snr"), 1e-6);
+  EXPECT_NEAR(40 / std::sqrt(doubled_variance(d, {40, .1, .01, 9, 0})), of("faint_emccd_doubled"),
+              1e-8);
+}
+
 /// 40 electrons on nine pixels: what is read quietly beats what is multiplied, and both a CCD.
 TEST(Detector, FaintStarsInThreeCameras) { // nine digits
   struct Case {
@@ -197,6 +214,37 @@ TEST(Detector, RoundingHasNoBias) { // of a camera without noise of its own
     sum += read_pixel(d, 20, 1, draws).adu - d.bias_adu - 20 / d.gain_e_adu;
   }
   EXPECT_LT(std::abs(sum / trials), .02); // ADU
+}
+
+TEST(Detector, WhatCountsPhotonsRoundsNothing) {
+  for (const auto model : {DetectorModel::Ideal, DetectorModel::Counter}) {
+    Detector d = camera(model); // with a gain, a bias, bits and a well that are of converters
+    d.well_e = 50;
+    d.bits = 6;
+    constexpr int trials = 20'000;
+    double sum = 0, squares = 0;
+    for (std::uint32_t k = 0; k < trials; ++k) {
+      Draws draws({5, 0, k, 1, 0});
+      const PixelReading reading = read_pixel(d, 200, 1, draws);
+      EXPECT_FALSE(reading.is_saturated);
+      const double n = electrons_of(d, reading);
+      EXPECT_EQ(n, reading.adu); // a photon is a number of 1
+      sum += n / trials, squares += n * n / trials;
+    }
+    // Four standard errors; rounding by 2.6 e would add .3 % to the variance, and steps of it.
+    EXPECT_NEAR(sum, 200, 4 * std::sqrt(200. / trials));
+    EXPECT_NEAR((squares - sum * sum) / 200, 1, 4 * std::sqrt(2. / trials));
+    EXPECT_EQ(adu_per_electron(d), 1);
+    EXPECT_EQ(fixed_variance(d), 0);
+  }
+}
+
+TEST(Detector, NumbersOfARegisterAreThoseBehindIt) {
+  Detector d = camera(DetectorModel::Emccd);
+  d.em_gain = 300, d.gain_e_adu = 10;
+  EXPECT_NEAR(adu_per_electron(d), 30, 1e-12);
+  d.model = DetectorModel::Ccd; // whose gain of a register says nothing
+  EXPECT_NEAR(adu_per_electron(d), .1, 1e-15);
 }
 
 TEST(Detector, AFullWellSaysSo) {

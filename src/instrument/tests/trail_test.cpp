@@ -65,6 +65,27 @@ TEST(Trail, BoxAroundIt) {
   EXPECT_NEAR(inside, of("trail_box"), 1e-4); // cubics of the image's table
 }
 
+/// A lens of 16 arcsec a pixel, .5 deg/s, .1 s, in pixels of a quarter of one, whose corners the
+/// box of two whole ones around the trail then meets.
+TEST(Trail, BoxAroundThatOfALens) {
+  constexpr int fine = 4;
+  const double length = fine * trail_length_px(.5 * pi / 180, .1, 16);
+  EXPECT_NEAR(length, fine * of("trail_lens_px"), 1e-9);
+  const double width = fine * std::sqrt(8 * std::log(2.));
+  const PixelImage image(ImageProfile::Gauss, width);
+  PixelFrame frame = PixelFrame::blank(160, 112);
+  constexpr double x0 = 50.5, y0 = 50.5; // corners of pixels
+  for (const ExposureNode &node : exposure_nodes(1, width / 2 / length)) {
+    const double light = node.weight;
+    image.add(frame, x0 + length * (.5 + node.offset_s), y0, {light, light, light, light});
+  }
+  double inside = 0;
+  for (int row = 43; row <= 58; ++row) // from 42.5 to 58.5
+    for (int column = 43; column <= 103; ++column)
+      inside += frame.value[frame.index(column, row)];
+  EXPECT_NEAR(inside, of("trail_lens_box"), 1e-4); // cubics of the image's table
+}
+
 TEST(Trail, IsThatOfSatsim) {
   const auto theirs = trail_by_satsim();
   ASSERT_GT(theirs.size(), 200U);
