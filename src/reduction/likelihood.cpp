@@ -1,8 +1,5 @@
 #include <umov/reduction/likelihood.h>
 
-#include "algebra/whitener.h"
-#include "reduction/count_covariance.h"
-
 #include <algorithm>
 #include <boost/math/special_functions/bessel.hpp>
 #include <boost/math/special_functions/erf.hpp>
@@ -56,43 +53,6 @@ double log_saturated(double limit, double mean, double variance) {
   const double x = (limit - mean) / std::sqrt(2 * (mean + variance));
   constexpr double far = 25; // erfc underflows a little later
   return x < far ? std::log(std::erfc(x) / 2) : -x * x - std::log(2 * x * std::sqrt(pi));
-}
-
-double log_likelihood(std::span<const PredictedCounts> counts) {
-  constexpr double few = 30, little = 4; // electrons, and variance of reading
-  double out = 0;
-  for (const PredictedCounts &one : counts) {
-    const ChannelDatum &d = one.datum;
-    if (one.is_saturated)
-      out += log_saturated(one.saturation, one.mean, d.fixed_variance);
-    else if (d.excess2 != 1)
-      out += log_normal_counts(d.counts, one.mean, d.fixed_variance, d.excess2);
-    else if (one.mean < few && d.fixed_variance < little && d.fixed_variance > 0)
-      out += log_poisson_gauss(d.counts, one.mean, std::sqrt(d.fixed_variance));
-    else
-      out += log_shifted_poisson(d.counts, one.mean, d.fixed_variance);
-  }
-  return out;
-}
-
-double log_likelihood(std::span<const PredictedCounts> counts,
-                      std::span<const CommonError> common) {
-  std::vector<double> variance, residual, effects;
-  const CommonEffects found = effects_of(common, static_cast<Eigen::Index>(counts.size()));
-  for (Eigen::Index k = 0; k < found.own.size(); ++k) {
-    const PredictedCounts &one = counts[static_cast<std::size_t>(k)];
-    variance.push_back(one.datum.excess2 * one.mean + one.datum.fixed_variance + found.own(k));
-    residual.push_back(one.datum.counts - one.mean);
-    for (Eigen::Index c = 0; c < found.shared.cols(); ++c)
-      effects.push_back(found.shared(k, c));
-  }
-  algebra::Whitener whitener;
-  whitener.reset(variance, effects, static_cast<std::size_t>(found.shared.cols()));
-  whitener.whiten(residual);
-  double chi2 = 0;
-  for (const double x : residual)
-    chi2 += x * x;
-  return -(chi2 + whitener.log_determinant()) / 2;
 }
 
 } // namespace umov

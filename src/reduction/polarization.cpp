@@ -115,7 +115,7 @@ double interval_sd(const LinearCovariance &c) {
 }
 
 double angle_half_width(double x) {
-  constexpr double level = 0.682689492137086;
+  constexpr double level = 0.6827;
   constexpr double normal_from = 20; // there the density is that of a normal angle to 1e-3
   if (x > normal_from)
     return 1 / (2 * x);

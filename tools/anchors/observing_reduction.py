@@ -110,7 +110,7 @@ def angle_half(x):
     g = (1 / np.sqrt(np.pi) + eta * np.exp(eta ** 2) * (1 + np.array([erf(e) for e in eta])))
     g *= np.exp(-x * x / 2) / np.sqrt(np.pi)
     sums = np.concatenate([[0], np.cumsum((g[1:] + g[:-1]) / 2 * np.diff(t))]) * 2
-    return np.interp(.682689492137086, sums, t) / DEGREE
+    return np.interp(.6827, sums, t) / DEGREE
 
 
 def counts_likelihood(n, mu, read):
@@ -242,6 +242,16 @@ def rows():
         yield f"fit_{name}", six, (s[k], "10g")
         yield f"fit_{name}{name}", six, (covariance[k, k], "9g")
     value, spread = fractions(s, covariance)
+    for name, a, b in (("IQ", 0, 1), ("IU", 0, 2), ("QU", 1, 2)):
+        yield f"fit_{name}", six, (covariance[a, b], "9g")
+    p = np.hypot(*value)
+    radial, across = value / p, np.array([-value[1], value[0]]) / p
+    along2, across2 = radial @ spread @ radial, across @ spread @ across
+    yield "fit_p", six, (p, "9g")
+    yield "fit_debiased", six, (p - across2 * (1 - np.exp(-p * p / across2)) / 2 / p, "9g")
+    yield "fit_sd_p", six, (np.sqrt(along2), "9g")
+    yield "fit_angle_deg", six, (np.arctan2(value[1], value[0]) / 2 / DEGREE, "9g")
+    yield "fit_angle_sd_deg", six, (np.sqrt(across2) / 2 / p / DEGREE, "9g")
     yield "fit_q", six, (value[0], "9g")
     yield "fit_u", six, (value[1], "9g")
     yield "fit_sd_q", six, (np.sqrt(spread[0, 0]), "9g")
@@ -249,7 +259,7 @@ def rows():
     yield "fit_chi2", six, (np.sum((COUNTS - SKY - ROWS @ s) ** 2 / variance), "9g")
     for x in (.5, 1, 2, 3, 5):
         yield f"debiased_{x:g}", six, (x - (1 - np.exp(-x * x)) / 2 / x, "9g")
-    for x in (1, 2, 3):
+    for x in (1, 2, 3, 5):
         yield f"angle_{x}", six, (angle_half(x), "7g")
     for x in (.25, .5, 1, 1.5, 2, 2.5, 3, 4, 5):
         for end, limit in zip(("low", "high"), limits_of(x)):
@@ -267,6 +277,8 @@ def rows():
     five = "observing.md 5"
     for name, number in zip(("factor", "factor_sd", "offset_sd"), standards()):
         yield f"standards_{name}", five, (number, "9g")
+    factor, factor_sd, _ = standards()
+    yield "standards_phi0_sd_deg", five, (factor_sd / factor / 2 / DEGREE, "9g")
     for name, number in zip(("factor_sd", "offset_sd"), uncertain_standards()):
         yield f"uncertain_{name}", five, (number, "9g")
     found, sds, residual, c = photometry()

@@ -1,8 +1,7 @@
 #pragma once
-// How likely counts are: what an inversion compares its light with.
-
-#include <span>
-#include <umov/reduction/stokes_fit.h>
+// How likely single counts are, down to no electrons at all. Fits and inversions take sets of them
+// as normal with the variance of their model, and what moves channels together as a matrix of that:
+// `fit_stokes`, `CurveLikelihood`.
 
 namespace umov {
 
@@ -19,18 +18,5 @@ double log_normal_counts(double counts, double mean, double variance, double exc
 double log_multiplied(double output, double mean, double gain);
 /// At least `limit` electrons: a saturated pixel tells no more.
 double log_saturated(double limit, double mean, double variance);
-
-/// One channel with the mean that a model gives it.
-struct PredictedCounts {
-  ChannelDatum datum;
-  double mean = 0; ///< sky included
-  bool is_saturated = false;
-  double saturation = 0; ///< [e], of those
-};
-/// Logarithm of the likelihood of independent channels: the exact sum where few electrons meet
-/// little reading noise, else the shifted Poisson number; normal behind a register.
-double log_likelihood(std::span<const PredictedCounts> counts);
-/// Of a set whose channels share errors: normal with C = C_n + J Sigma J^T, without n/2 ln 2 pi.
-double log_likelihood(std::span<const PredictedCounts> counts, std::span<const CommonError> common);
 
 } // namespace umov

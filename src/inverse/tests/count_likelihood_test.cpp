@@ -1,3 +1,6 @@
+#include "core/tests/anchors.h"
+#include "inverse/count_likelihood.h"
+
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -158,6 +161,41 @@ TEST(CountLikelihood, CoversWhereThereIsLittleLight) {
   EXPECT_NEAR(pull, 0, 4 / std::sqrt(trials));
   // Variances of what was counted, and no q and u of what is faint, pull: .15 +- .06 here.
   EXPECT_LT(std::abs(pull), std::abs(reduced_pull));
+}
+
+/// -2 ln L = r^T C^-1 r + ln det C of docs/theory/observing.md, 7: four analysers of extinction 300
+/// and unequal gains, 40 pixels of 2.3 e and 2.6 e/ADU, sky of 120 e from 400 pixels, whose light
+/// flickers together.
+TEST(CountLikelihood, OfASetThatFlickersIsThatOfItsMatrix) {
+  const Anchors table("observing_reduction");
+  const auto of = [&](const char *name) { return table.row({name})["value"]; };
+  const double counts[] = {3120, 2705, 2210, 2650}, gains[] = {.98, 1, 1.02, 1.01};
+  constexpr double sky = 120, diattenuation = 299. / 301;
+  ObservedCurve curve;
+  curve.bands = {"a"};
+  curve.epochs.emplace_back();
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double twice = static_cast<double>(k) * pi / 2;
+    ObservedCount one;
+    one.by_i = gains[k] / 2;
+    one.by_q = one.by_i * diattenuation * std::cos(twice);
+    one.by_u = one.by_i * diattenuation * std::sin(twice);
+    one.sky = sky;
+    one.net = counts[k] - sky;
+    one.fixed_variance = 40 * 2.3 * 2.3 + sky * 40 / 400 + 40 * 2.6 * 2.6 / 12;
+    one.scintillation = .0139;
+    curve.counts.push_back(one);
+  }
+  CurveErrors errors;
+  errors.floor = errors.floor_median = 0;
+  // What all channels share along the light leaves the light where it was.
+  const std::vector<double> i{of("fit_I")}, q{of("fit_Q")}, u{of("fit_U")};
+  const auto seen = inverse::CountLikelihood(curve, errors, i.front(), {}).whitened({i, q, u}, 1);
+  double found = seen.log_det;
+  for (std::size_t k = 0; k < seen.net.size(); ++k)
+    found += std::pow(seen.net[k] - seen.light[k], 2);
+  // No model is taken for better than 1e-4 of itself: 1e-4 of the variance.
+  EXPECT_NEAR(found, of("scintillation_likelihood"), 5e-4);
 }
 
 } // namespace

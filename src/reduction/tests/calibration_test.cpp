@@ -32,6 +32,9 @@ TEST(PolarimeterCalibration, IsRecoveredWithItsErrors) { // nine digits
   EXPECT_NEAR(std::abs(found->offset - offset), 0, 1e-15);
   EXPECT_NEAR(found->factor_sd, of("standards_factor_sd"), 1e-11);
   EXPECT_NEAR(found->offset_sd, of("standards_offset_sd"), 1e-12);
+  // Of phi0, half the angle of the factor.
+  EXPECT_NEAR(found->factor_sd / std::abs(found->factor) / 2 / degree, of("standards_phi0_sd_deg"),
+              1e-9);
   const Complex target{.25, -.11};
   const auto back = apply(*found, factor * target * std::polar(1., -.7) + offset, .35, 1e-8);
   EXPECT_NEAR(std::abs(back.value - target), 0, 1e-14);

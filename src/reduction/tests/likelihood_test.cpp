@@ -40,23 +40,6 @@ TEST(Likelihood, OfASaturatedPixel) {
   EXPECT_TRUE(std::isfinite(log_saturated(1000, 10, 0)));
 }
 
-TEST(Likelihood, SetsWithCommonErrorsAreTheFullMatrix) {
-  // Woodbury's small matrix against the fit's full one (nine digits in the anchors).
-  const auto data = worked_set();
-  const auto first = fit_stokes(data, 3);
-  const auto common = common_errors({.002, .005, .0139, 0, 0, 0}, data, *first, 0);
-  const auto fit = fit_stokes(data, 3, common);
-  std::vector<PredictedCounts> predicted;
-  for (const ChannelDatum &one : data)
-    predicted.push_back({one,
-                         one.sky + one.row[0] * first->stokes[0] + one.row[1] * first->stokes[1] +
-                             one.row[2] * first->stokes[2],
-                         false, 0});
-  // At the first fit's means; the second's residual differs to second order.
-  EXPECT_NEAR(-2 * log_likelihood(predicted, common), fit->minus_2_log_likelihood, 1e-3);
-  EXPECT_NEAR(fit->minus_2_log_likelihood, of("all_likelihood"), .02); // D in q0's column
-}
-
 /// Where a function of one hill has its top.
 double top_of(const std::function<double(double)> &f, double a, double b) {
   const double golden = (std::sqrt(5.) - 1) / 2;

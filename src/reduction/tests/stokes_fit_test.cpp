@@ -4,6 +4,7 @@
 #include <array>
 #include <gtest/gtest.h>
 #include <umov/instrument/draws.h>
+#include <umov/reduction/polarization.h>
 
 namespace umov {
 namespace {
@@ -15,6 +16,9 @@ TEST(StokesFit, WorkedSet) { // nine and ten digits
   EXPECT_NEAR(fit->stokes[1], of("fit_Q"), 1e-5);
   EXPECT_NEAR(fit->stokes[2], of("fit_U"), 1e-5);
   EXPECT_NEAR(fit->covariance[0][0], of("fit_II"), 1e-4);
+  EXPECT_NEAR(fit->covariance[0][1], of("fit_IQ"), 1e-4);
+  EXPECT_NEAR(fit->covariance[0][2], of("fit_IU"), 1e-4);
+  EXPECT_NEAR(fit->covariance[1][2], of("fit_QU"), 1e-4);
   EXPECT_NEAR(fit->covariance[1][1], of("fit_QQ"), 1e-4);
   EXPECT_NEAR(fit->covariance[2][2], of("fit_UU"), 1e-4);
   EXPECT_NEAR(fit->chi2, of("fit_chi2"), 1e-8);
@@ -24,6 +28,14 @@ TEST(StokesFit, WorkedSet) { // nine and ten digits
   EXPECT_NEAR(f.value[1], of("fit_u"), 1e-9);
   EXPECT_NEAR(std::sqrt(f.covariance[0][0]), of("fit_sd_q"), 1e-10);
   EXPECT_NEAR(std::sqrt(f.covariance[1][1]), of("fit_sd_u"), 1e-10);
+  const auto p = polarization_of(
+      f.value[0], f.value[1],
+      {{{f.covariance[0][0], f.covariance[0][1]}, {f.covariance[1][0], f.covariance[1][1]}}});
+  EXPECT_NEAR(p.p, of("fit_p"), 1e-9);
+  EXPECT_NEAR(p.debiased, of("fit_debiased"), 1e-9);
+  EXPECT_NEAR(p.sd, of("fit_sd_p"), 1e-10);
+  EXPECT_NEAR(p.angle_rad * 180 / pi, of("fit_angle_deg"), 1e-7);
+  EXPECT_NEAR(p.angle_sd_rad * 180 / pi, of("fit_angle_sd_deg"), 1e-7);
 }
 
 TEST(StokesFit, CommonErrorsWidenIt) { // nine digits
