@@ -70,6 +70,7 @@
 #include <umov/io/counts_file.h>
 #include <umov/io/elements_file.h>
 #include <umov/io/exr.h>
+#include <umov/io/extinction_file.h>
 #include <umov/io/fits_image.h>
 #include <umov/io/index_file.h>
 #include <umov/io/light_curve_table.h>

@@ -46,6 +46,18 @@ double at(double nm, std::vector<double> Gases::*column) {
   return y[k - 1] + (y[k] - y[k - 1]) * (nm - x[k - 1]) / (x[k] - x[k - 1]);
 }
 
+/// Linear between the points of a table.
+double at(double nm, const MeasuredExtinction &table) {
+  if (nm <= table.nm.front())
+    return table.mag.front();
+  if (nm >= table.nm.back())
+    return table.mag.back();
+  const auto k = static_cast<std::size_t>(std::upper_bound(table.nm.begin(), table.nm.end(), nm) -
+                                          table.nm.begin());
+  return std::lerp(table.mag[k - 1], table.mag[k],
+                   (nm - table.nm[k - 1]) / (table.nm[k] - table.nm[k - 1]));
+}
+
 constexpr double sea_level_hpa = 1013.25;
 
 } // namespace
@@ -79,14 +91,18 @@ double mixed_gas_transmission(double nm, double pressure_hpa, double airmass) {
 }
 
 double extinction_mag(double nm, const Air &air) {
+  if (air.measured)
+    return at(nm, *air.measured);
   const double depth =
       rayleigh_depth(nm, air.pressure_hpa) + aerosol_depth(nm, air) + ozone_depth(nm, air.ozone_du);
   return 2.5 / std::log(10.) * depth;
 }
 
 double transmission(double nm, const Air &air, double airmass) {
-  return std::pow(10, -0.4 * extinction_mag(nm, air) * airmass) *
-         water_transmission(nm, air.water_cm, airmass) *
+  const double smooth = std::pow(10, -0.4 * extinction_mag(nm, air) * airmass);
+  if (air.measured)
+    return smooth;
+  return smooth * water_transmission(nm, air.water_cm, airmass) *
          mixed_gas_transmission(nm, air.pressure_hpa, airmass);
 }
 

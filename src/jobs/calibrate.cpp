@@ -129,12 +129,30 @@ Result<PhotometricCalibration> photometry_of(const std::vector<PhotometricStanda
   return calibrate_photometry(stars, has_second_order ? 4 : 3);
 }
 
+/// No instrument makes more of polarization than there is, nor all but nothing of it: degrees of
+/// another unit.
+Result<void> check_efficiency(const PolarimeterCalibration &found) {
+  const double efficiency = std::abs(found.factor);
+  constexpr double most = 1.2, surely = 2, least = .02, deviations = 3;
+  const bool is_more = efficiency > surely || efficiency - deviations * found.factor_sd > most;
+  if (!is_more && efficiency + deviations * found.factor_sd > least)
+    return {};
+  return fail(
+      ErrorCode::BadInput,
+      fmt::format("efficiency = {:.3g} +- {:.2g}: the counts are polarized by {:.3g} times "
+                  "what p_percent says; {:g} to {:g} was expected. Are the standards in per "
+                  "cent (4.893, not 0.04893 nor 489.3), and the names those of the stars?",
+                  efficiency, found.factor_sd, efficiency, least, most));
+}
+
 /// Both fits; where one of them works, what hinders the other is a warning.
 Result<void> fit(const Measured &data, bool has_second_order, CalibrationFile &out,
                  Diagnostics &diagnostics) {
   std::vector<std::string> hindered;
   if (!data.polarized.empty()) {
     const auto found = calibrate_polarimeter(data.polarized);
+    if (found)
+      UMOV_TRY(check_efficiency(*found));
     if (found) {
       out.calibration = *found;
       warn_of_standards(data.polarized, *found, diagnostics);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <umov/core/parallel.h>
 #include <umov/frames/sky.h>
 #include <umov/photometry/radiometry.h>
@@ -126,6 +127,25 @@ double stretch_of(const Setup &s, const Exposure &e, std::span<const TrackPoint>
   return may_roll ? FrameView(s, e).stretch(points) : 1;
 }
 
+/// BadInput for what runs over a rolling shutter's rows nearly as fast as they are read: its
+/// exposure has no length, and its trail no light of one moment.
+Result<void> check_shutter(const Setup &s, const BandObserver &observer, double rate_rad_s) {
+  const Instrument &instrument = s.observation.instrument;
+  const bool trails = instrument.telescope.tracking != Tracking::Satellite || !s.stars.empty();
+  const double rows_per_s = trail_length_px(rate_rad_s, 1, observer.pixel_arcsec());
+  const double of_readout = rolling_change(instrument.detector, rows_per_s);
+  constexpr double most = 0.5;
+  if (!trails || of_readout <= most)
+    return {};
+  return fail(ErrorCode::BadInput,
+              fmt::format("trails run over {:.3g} rows a second, {:.2g} of what a rolling shutter "
+                          "with detector.line_time_s = {:g} reads: up to {:g} was expected. Give "
+                          "telescope.tracking = \"satellite\" without stars, or shutter = "
+                          "\"global\"",
+                          rows_per_s, of_readout, instrument.detector.line_time_s, most),
+              s.scenario.place("detector.line_time_s"));
+}
+
 } // namespace
 
 Recorded record(const Setup &s, const Exposure &e, std::size_t number, const LitBlock &lit) {
@@ -135,6 +155,10 @@ Recorded record(const Setup &s, const Exposure &e, std::size_t number, const Lit
   Truths truths;
   ExposureLight light = arriving(s, e, number, lit, out, moments, truths);
   const std::span<const TrackPoint> points(&lit.points[number * s.nodes.size()], s.nodes.size());
+  if (const auto fits = check_shutter(s, observer, light.rate_rad_s); !fits) {
+    out.error = fits.error();
+    return out;
+  }
   const double stretch = stretch_of(s, e, points);
   for (Stokes<InstrumentAxes> &flux : light.flux)
     flux = flux * stretch;

@@ -59,15 +59,14 @@ void warn_of_setup(const Setup &s, Diagnostics &diagnostics) {
   const Detector &d = s.observation.instrument.detector;
   // The bias takes a little of it; a well that is a few per cent over is every maker's choice.
   const double numbers = std::exp2(d.bits) * d.gain_e_adu;
-  const bool has_numbers = d.model != DetectorModel::Ideal && d.model != DetectorModel::Counter;
-  if (has_numbers && d.em_gain <= 1 && d.well_e > numbers)
+  if (has_converter(d) && d.em_gain <= 1 && d.well_e > numbers)
     diagnostics.warn(
         fmt::format("detector: a well of {:g} e is more than bits = {} with {:g} e/ADU "
                     "tell ({:g} e): numbers fill first",
                     d.well_e, d.bits, d.gain_e_adu, numbers));
   // Noise of half a step makes a mean of steps that of the light; of a third it does not.
   if (constexpr double coarse = 3;
-      has_numbers && d.em_gain <= 1 && d.gain_e_adu > coarse * std::hypot(d.read_e, 1.0))
+      has_converter(d) && d.em_gain <= 1 && d.gain_e_adu > coarse * std::hypot(d.read_e, 1.0))
     diagnostics.warn(fmt::format("detector: gain_e_adu = {:g} with read_e = {:g}: dark pixels fall "
                                  "on one number, and their mean is off by up to half of it. A "
                                  "step of {:.2g} e or less was expected",
@@ -82,6 +81,11 @@ void warn_of_setup(const Setup &s, Diagnostics &diagnostics) {
     diagnostics.warn(fmt::format("observation.width_nm = {:g} says nothing to bands with a curve, "
                                  "which have their own width; it is of nm:550 and the like",
                                  s.observation.width_nm));
+  const Telescope &telescope = s.observation.instrument.telescope;
+  if (telescope.port == TelescopePort::Cassegrain && telescope.mirror != Telescope{}.mirror)
+    diagnostics.warn(fmt::format("telescope.mirror = \"{}\" says nothing at a Cassegrain focus, "
+                                 "before which no flat mirror stands",
+                                 telescope.mirror));
   if (const double crossing_s = wind_crossing_s(s.observation.instrument.telescope.aperture_m);
       s.observation.scintillation_c_y && s.observation.exposure_s < crossing_s)
     diagnostics.warn(fmt::format(

@@ -17,9 +17,7 @@ namespace {
 ObservingConditions conditions_of(const Scenario &scenario, std::uint32_t object) {
   const ScenarioObservation &o = *scenario.observation;
   ObservingConditions out;
-  out.air = o.air;
-  if (!o.has_own_pressure)
-    out.air.pressure_hpa = standard_pressure_hpa(scenario.observer->altitude_m);
+  out.air = air_over(o.air, *scenario.observer);
   out.seeing = o.seeing;
   if (o.scintillation_c_y)
     out.scintillation = ScintillationSite{scenario.observer->altitude_m, *o.scintillation_c_y};

@@ -1,7 +1,8 @@
 """Light behind the air in umov run and umov passes: [observer] atmosphere."""
-import re
 import math
+import re
 
+import pytest
 from astropy.table import Table
 
 from conftest import ROOT
@@ -52,6 +53,52 @@ def test_numbers_of_the_air_and_what_is_refused(umov, scenario, tmp_path):
     done = umov("run", scenario(("alt_m = 3058", 'alt_m = 3058\natmosphere = "clear"'),
                                 ("[bands]", "[atmosphere]\nozone_du = 300\n[bands]")))
     assert done.code == 3 and "leave one out" in done.err
+
+
+TABLE = "wavelength_nm,k_mag\n340,0.6\n500,0.2\n600,0.1\n1100,0.05\n"
+
+
+def test_extinction_as_a_site_has_measured_it(umov, scenario, tmp_path):
+    """At 550 nm half way between .2 and .1 mag, by the air mass; nothing else is taken."""
+    (tmp_path / "k.csv").write_text(TABLE)
+    own = ("alt_m = 3058", 'alt_m = 3058\natmosphere = { file = "k.csv" }')
+    table, _ = run(umov, scenario, tmp_path, own)
+    for row in table:
+        if row["I"] > 0 and row["band"] == "nm:550":
+            h = row["alt"] + 40 / 3600 / math.tan(math.radians(row["alt"]))
+            x = 1 / (math.sin(math.radians(h)) + 0.50572 * (h + 6.07995) ** -1.6364)
+            assert abs(-2.5 * math.log10(row["I_obs"] / row["I"]) / x - 0.15) < 2e-5
+    assert "k.csv" in (tmp_path / "out/manifest.json").read_text()
+    lock = (tmp_path / "out/scenario.lock.toml").read_text()
+    assert f'file = "{tmp_path}/k.csv"' in lock and "aerosol" not in lock
+    assert umov("run", "out/scenario.lock.toml", "-o", "again", "--quiet").code == 0
+    assert list(Table.read(tmp_path / "again/lightcurve.ecsv")["I_obs"]) == list(table["I_obs"])
+    # ECSV tells the same.
+    lines = ["# %ECSV 1.0", "# ---", "# datatype:", "# - {name: wavelength_nm, datatype: float64}", "# - {name: k_mag, datatype: float64}",
+             *TABLE.replace(",", " ").splitlines()]
+    (tmp_path / "k.csv").write_text("\n".join(lines) + "\n")
+    assert list(run(umov, scenario, tmp_path, own)[0]["I_obs"]) == list(table["I_obs"])
+
+
+@pytest.mark.parametrize("table, told", [
+    ("340 0.6\n500 0.2\n", 'without the column "wavelength_nm"'), ("wavelength_nm,mag\n340,0.6\n", 'without the column "k_mag"'),
+    ("wavelength_nm,k_mag\n340,0.6\n", "two wavelengths or more"), ("wavelength_nm,k_mag\n0.34,0.6\n0.5,.2\n", "is it in um"),
+    ("wavelength_nm,k_mag\n340,0.6\n500,\n", 'k_mag = ""'), ("wavelength_nm,k_mag\n340,0.6\n330,0.7\n", "rising wavelengths"),
+    ("wavelength_nm,k_mag\n340,-0.6\n500,.2\n", "0 to 10 magnitudes per air mass"), ("wavelength_nm,k_mag\n340,.6\n500,.2\n", "reaches from 550"),
+    ("wavelength_nm,k_mag\n500,.6\n600,.2\n", 'band "Bessell.B" reaches from'), ("wavelength_nm,k_mag\n340,nan\n500,.2\n", 'k_mag = "nan"')])
+def test_extinctions_that_are_refused(umov, scenario, tmp_path, table, told):
+    (tmp_path / "k.csv").write_text(table)
+    done = umov("run", scenario(("alt_m = 3058", 'alt_m = 3058\natmosphere = { file = "k.csv" }'),
+                                ('set = "paper_rgb"', 'set = ["nm:550"]' if "550" in told else 'set = ["Bessell.B"]')))
+    assert done.code == 3 and told in done.err and ("k.csv" in done.err or "scenario.toml:" in done.err), done.err
+
+
+def test_a_table_of_extinction_is_all_of_it(umov, scenario, tmp_path):
+    (tmp_path / "k.csv").write_text(TABLE)
+    done = umov("run", scenario(("alt_m = 3058", 'alt_m = 3058\natmosphere = { file = "k.csv", ozone_du = 300, water_cm = 1 }')))
+    assert done.code == 3 and "ozone_du beside file" in done.err and "water_cm beside file" in done.err, done.err
+    done = umov("run", scenario(("alt_m = 3058", 'alt_m = 3058\natmosphere = { file = "none.csv" }')))
+    assert done.code in (2, 3, 5) and "none.csv" in done.err and "scenario.toml:" in done.err, done.err
 
 
 def test_passes_behind_the_air(umov, scenario, tmp_path):

@@ -163,7 +163,7 @@ BAD = [("exposure_s = 0", "exposure_s = 0"), ("exposure_s = 1\ncadence_s = 0.5",
        ("exposure_s = 1\n[telescope]\nfocal_length_m = 0", "above 0"),
        ("exposure_s = 1\n[detector]\ngain_e_adu = 0", "above 0"),
        ("exposure_s = 1\n[detector]\nbits = 33", "1 to 32"),
-       ("exposure_s = 1\n[detector]\nread_e = -1", "0 or more"),
+       ("exposure_s = 1\n[detector]\nread_e = -1", "0 to 10000 electrons"),
        ('exposure_s = 1\n[detector]\nmodel = "ccd"\nem_gain = 300', "only an emccd"),
        ('exposure_s = 1\n[detector]\nshutter = "rolling"', "line_time_s"),
        ("exposure_s = 1\n[polarimeter]\nlayout = [[90, 45], [135, 90]]", "[[90, 45], [135, 0]]"),
@@ -367,6 +367,16 @@ def test_calibrations_that_are_refused(umov, tmp_path):
         (tmp_path / "wrong.toml").write_text(text)
         done = umov("reduce", "stars.csv", "--calibration", "wrong.toml")
         assert done.code == 3 and "another" in done.err
+
+
+@pytest.mark.parametrize("unit, told", [(0.01, "efficiency = 98.5"), (20, "efficiency = 0.0493")])
+def test_standards_in_another_unit_are_refused(umov, tmp_path, unit, told):
+    standards(tmp_path / "stars.csv", efficiency=0.985 if unit < 1 else 0.00985)
+    p = 4.893 * unit if unit < 1 else 4.893
+    (tmp_path / "known.csv").write_text(f"name,p_percent,pa_deg\nnone,0,0\nHD 204827,{p},59.10\n")
+    done = umov("calibrate", "stars.csv", "--standards", "known.csv", "-o", "own.toml")
+    assert done.code == 3 and "in per cent" in done.err and not (tmp_path / "own.toml").exists(), done.err
+    assert told in done.err or unit > 1
 
 
 def test_how_long_to_expose(umov, tmp_path):

@@ -52,6 +52,13 @@ REFUSED = [
     ("exposure_s = 1\n[telescope]\nthroughput = 0", "no light comes through"),
     ("exposure_s = 1\n[telescope]\nthroughput = { wavelength_nm = [400, 700], value = [0, 0] }", "no light comes through"),
     ('exposure_s = 1\nlevel = "image"\nframe_px = [256, 256]\n[detector]\nsize_px = [128, 512]', "size_px = [128, 512]"),
+    ("exposure_s = 1\n[atmosphere.scintillation]\nc_y = 100", "sites have 1.3 to 1.67"),
+    ("exposure_s = 1\n[atmosphere.sky]\ndark_mag = { V = 90 }", "V = 90; -5 to 40"),
+    ("exposure_s = 1\nclock_error_s = 86400", "0 to 600 s"),
+    ("exposure_s = 1\n[detector]\nread_e = 1e6", "cameras have 1 to 100"),
+    ("exposure_s = 1\n[detector]\nsize_px = [10.5, 3]", "size_px = [10.5, 3]; [columns, rows], two whole numbers"),
+    ('exposure_s = 1\n[telescope]\nmount = "equatorial"\nderotator = true', "on which no field turns"),
+    ('exposure_s = 0.01\n[telescope]\ntracking = "sidereal"\n[detector]\nshutter = "rolling"\nline_time_s = 1e-4', "of what a rolling shutter"),
     ("exposure_s = 1\n[atmosphere.cloud]\nsd_mag = 50", "nothing is seen behind a cloud"),
     ("exposure_s = 1\n[atmosphere.cloud]\ntime_s = 60", "without sd_mag"),
     ("exposure_s = 1\n[atmosphere.sky]\nmag = 90", "-5 to 40 mag a square second of arc"),
@@ -66,6 +73,34 @@ def test_what_is_refused(scene, umov, observation, told):
     done = umov("observe", scene(observation))
     assert done.code == 3, done.err
     assert told in done.err and "observe.toml:" in done.err
+
+
+@pytest.mark.parametrize("air, told", [
+    ("pressure_hpa = 0.7", "pressure_hpa = 0.7; 100 to 1200 hPa"), ("pressure_hpa = 101325", "100 to 1200 hPa"),
+    ("ozone_du = 5000", "0 to 1000 Dobson units"), ("water_cm = 30", "is it in mm")])
+def test_air_that_the_earth_has_not_is_refused(scene, umov, air, told):
+    done = umov("observe", scene("exposure_s = 1", air=air + "\n"))
+    assert done.code == 3 and told in done.err and re.search(r"observe.toml:\d+", done.err), done.err
+
+
+def test_all_slips_of_a_table_are_told_at_once(scene, umov):
+    observation = ("exposure_s = -1\nclock_error_s = 1e5\naperture_fwhm = 9\n[telescope]\nobstruction = 2\nthroughput = 3\nmount = \"pillar\"\n"
+                   "[detector]\nread_e = -1\nbits = 99\nsize_px = [1]\n[polarimeter]\nq0 = 2\nx_axis_deg = 999\nperiod_s = 1")
+    done = umov("observe", scene(observation, air="ozone_du = -1\nwater_cm = 99\ncloud = { time_s = 3 }\nsky = { mag = 99 }\n"))
+    assert done.code == 3
+    for told in ("exposure_s = -1", "clock_error_s = 100000", "aperture_fwhm = 9", "obstruction = 2", "throughput holds 3", "pillar", "read_e = -1",
+                 "bits = 99", "size_px = [1]", "q0 = 2", "x_axis_deg = 999", "period_s says nothing", "ozone_du = -1", "water_cm = 99",
+                 "without sd_mag", "mag = 99"):
+        assert done.err.count(told) == 1, (told, done.err)
+
+
+def test_numbers_of_an_emccd_are_those_behind_its_register(scene, umov, tmp_path):
+    detector = '[detector]\nmodel = "emccd"\nem_gain = 200\ngain_e_adu = 10\nread_e = 40\nbits = 16\nwell_e = 1e6\n'
+    for level in ("aperture", "image"):
+        done = umov("observe", scene(f'exposure_s = 0.1\nlevel = "{level}"\n' + detector), "-o", level)
+        assert done.code == 0, done.err
+        counts = Table.read(tmp_path / level / "counts.ecsv")
+        assert max(abs(counts["counts_adu"] * 10 / 200 / counts["counts"] - 1)) < 1e-9, level
 
 
 @pytest.mark.parametrize("sky, told", [
@@ -129,6 +164,7 @@ WARNED = [
     ("exposure_s = 0.1", {"air": "seeing = { arcsec = 0.5 }"}, "under 3 px"),
     ("exposure_s = 0.1\naperture_fwhm = 1", {}, "cuts the four orientations unevenly"),
     ("exposure_s = 1", {"alt_m": 10033}, "is in metres"),
+    ('exposure_s = 1\n[telescope]\nmirror = "Ag_Johnson"', {}, "says nothing at a Cassegrain focus"),
     ("exposure_s = 1\n[detector]\ngain_e_adu = 12\nread_e = 2", {}, "dark pixels fall on one number"),
     ("exposure_s = 1\n[detector]\nnonlinearity = 0.02", {}, 'says nothing to level = "aperture"'),
     ('exposure_s = 1\nwidth_nm = 40\nbands = ["Bessell.V"]', {}, "says nothing to bands with a curve"),

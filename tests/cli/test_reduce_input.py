@@ -299,11 +299,24 @@ def changed(column, value):
 
 
 @pytest.mark.parametrize("column, value, told", [
-    ("airmass", "-1.2", "airmass = -1.2; 1 or more was expected"), ("dec", "95", "dec = 95"), ("range", "-5", "range = -5"), ("w1", "0.6", "less than no counts"), ("w3", "-0.7", "less than no counts")])
+    ("airmass", "-1.2", "airmass = -1.2; 1 or more was expected"), ("k_mag", "12", "k_mag = 12"), ("phase_angle", "500", "phase_angle = 500"), ("dec", "95", "dec = 95"), ("range", "-5", "range = -5"), ("w1", "0.6", "less than no counts"), ("w3", "-0.7", "less than no counts")])
 def test_rows_that_no_telescope_has(umov, tmp_path, column, value, told):
     (tmp_path / "c.csv").write_text(changed(column, value))
     done = umov("reduce", "c.csv")
     assert done.code == 3 and told in done.err and "c.csv:2" in done.err, done.err
+
+
+def test_counts_without_sky_say_so(umov, tmp_path):
+    (tmp_path / "c.csv").write_text(changed("sky", ""))
+    done = umov("reduce", "c.csv")
+    assert "without sky" in done.err and "without counts" not in done.err, done.err
+
+
+def test_angles_that_no_instrument_has(umov, calibrated):
+    text = re.sub("phi0_deg = .*", "phi0_deg = 900", (calibrated / "own.toml").read_text(), count=1)
+    (calibrated / "wrong.toml").write_text(text)
+    done = umov("reduce", "stars.csv", "--calibration", "wrong.toml")
+    assert done.code == 3 and "phi0_deg = 900; an angle of -360 to 360" in done.err, done.err
 
 
 def test_offsets_that_no_instrument_has(umov, calibrated):

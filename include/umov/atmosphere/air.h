@@ -1,7 +1,15 @@
 #pragma once
 // Clear air between the object and a telescope: what it takes away.
 
+#include <memory>
+#include <vector>
+
 namespace umov {
+
+/// Extinction as a site has measured it.
+struct MeasuredExtinction {
+  std::vector<double> nm, mag; ///< at increasing wavelengths, per air mass; linear in between
+};
 
 /// The air over a site.
 struct Air {
@@ -10,6 +18,8 @@ struct Air {
   double aerosol_exponent = 1.3; ///< depth goes with wavelength^-exponent (Angstrom 1929)
   double ozone_du = 260;         ///< column [Dobson units]
   double water_cm = 0.3;         ///< precipitable water [cm]
+  /// Instead of all that takes light away; the pressure still refracts.
+  std::shared_ptr<const MeasuredExtinction> measured = nullptr;
 };
 
 /// Wavelengths between which something is known of it [nm]: where the fit of the molecules begins
@@ -35,7 +45,8 @@ double water_transmission(double nm, double water_cm, double airmass);
 /// As above.
 double mixed_gas_transmission(double nm, double pressure_hpa, double airmass);
 
-/// Extinction without the saturating gases [mag per air mass]: molecules, aerosol, ozone.
+/// Extinction without the saturating gases [mag per air mass]: molecules, aerosol, ozone. Of a
+/// measured one, which has the gases in it, that; beyond its table that at its end.
 double extinction_mag(double nm, const Air &air);
 /// Part of the light that arrives: all of the above. 1 at air mass 0.
 double transmission(double nm, const Air &air, double airmass);

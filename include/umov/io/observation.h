@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <umov/instrument/frame_observer.h>
+#include <umov/lightcurve/extinction.h>
 #include <umov/optics/band.h>
 #include <vector>
 
@@ -29,8 +30,7 @@ struct SequenceStep {
 /// [atmosphere], [telescope], [detector], [polarimeter] and [observation] of a scenario.
 struct ScenarioObservation {
   Instrument instrument;
-  Air air;
-  bool has_own_pressure = false; ///< else that of the site's height
+  SiteAir air;
   Seeing seeing;
   std::optional<double> scintillation_c_y = 1.5; ///< absent: none
   bool has_slewing_factor = false;
@@ -56,8 +56,9 @@ inline constexpr std::array<double, 2> sky_mag_range{-5, 40};
 /// or is none. `name`: as the message begins.
 Result<void> check_aperture(const std::string &name, double fwhm);
 
-/// BadInput for a band at which nothing is known of what air takes.
-Result<void> check_air_reaches(const std::vector<Band> &bands, const Where &where);
+/// BadInput for a band at which nothing is known of what air takes: at all, or by its table.
+Result<void> check_air_reaches(const std::vector<Band> &bands, const SiteAir &air,
+                               const Where &where);
 
 /// Names of the instruments that are compiled in.
 std::vector<std::string> instrument_names();

@@ -77,7 +77,7 @@ struct Scenario {
       false; ///< [materials] vary: `umov run` shows the spread over the ranges of haze
   std::vector<BandEntry> band_set{{"paper_rgb", {}}}; ///< as [bands] names them
   std::vector<Band> bands;
-  std::vector<InputFile> band_files; ///< curves that were read
+  std::vector<InputFile> band_files; ///< curves of bands and air that were read
   MagnitudeSystem magnitudes = MagnitudeSystem::AB;
   LightOptions light; ///< method, accuracy and its floor, bounces
   std::optional<EarthshineOptions> earthshine;

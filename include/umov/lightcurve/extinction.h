@@ -1,6 +1,7 @@
 #pragma once
 // What the air over a site takes of the light in a band.
 
+#include <string>
 #include <umov/atmosphere/air.h>
 #include <umov/frames/site.h>
 #include <umov/optics/band_grid.h>
@@ -11,6 +12,7 @@ namespace umov {
 struct SiteAir {
   Air air;
   bool has_own_pressure = false; ///< else that of the site's height
+  std::string file;              ///< of a measured extinction, empty: none
 };
 /// That over a site.
 Air air_over(const SiteAir &air, const Site &site);

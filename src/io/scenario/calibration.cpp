@@ -24,7 +24,11 @@ Result<PolarimeterCalibration> read_polarimeter(const Node &top) {
         ErrorCode::BadInput,
         fmt::format("efficiency = {}; a number above 0, at most 2, was expected", efficiency),
         top.where("efficiency"));
-  c.factor = std::polar(efficiency, 2 * top.number("phi0_deg", 0) * pi / 180);
+  const double phi0_deg = top.number("phi0_deg", 0);
+  if (!(std::abs(phi0_deg) <= 360))
+    return tl::unexpected(
+        scenario::wrong_value(top, "phi0_deg", phi0_deg, "an angle of -360 to 360 degrees"));
+  c.factor = std::polar(efficiency, 2 * phi0_deg * pi / 180);
   c.offset = {top.number("q0", 0), top.number("u0", 0)};
   if (!(std::abs(c.offset) <= 1))
     return fail(ErrorCode::BadInput,

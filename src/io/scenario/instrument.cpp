@@ -17,25 +17,19 @@ namespace umov {
 const std::vector<EmbeddedFile> &instrument_files();
 
 namespace scenario {
-namespace {
-
-/// A key's number in a range; `what` ends "a number ... was expected".
-struct Bounds {
-  double low, high;
-  const char *what;
-};
 
 Result<void> read_number(const Node &node, const char *name, const Bounds &bounds, double &out) {
   if (!node.has(name))
     return {};
-  out = node.number(name, out);
-  if (out >= bounds.low && out <= bounds.high)
-    return {};
-  return fail(ErrorCode::BadInput, fmt::format("{} = {}; {} was expected", name, out, bounds.what),
-              node.where(name));
+  const double value = node.number(name, out);
+  if (!(value >= bounds.low && value <= bounds.high))
+    return tl::unexpected(wrong_value(node, name, value, bounds.what));
+  out = value;
+  return {};
 }
 
-constexpr Bounds not_negative{0, 1e12, "0 or more"};
+namespace {
+
 constexpr Bounds positive{1e-12, 1e12, "a number above 0"};
 
 /// A number, or { wavelength_nm = [...], value = [...] }.
@@ -43,6 +37,7 @@ Result<void> read_curve(const Node &node, const char *name, const Bounds &bounds
   if (!node.has(name))
     return {};
   const toml::node &value = *node.get(name);
+  Tabulated found;
   if (const toml::table *table = value.as_table()) {
     const Node below(*table, "curve", node.label() + "." + name, node.file());
     UMOV_TRY(below.check());
@@ -50,11 +45,11 @@ Result<void> read_curve(const Node &node, const char *name, const Bounds &bounds
     UMOV_TRY(below.require("value"));
     UMOV_ASSIGN(nm, below.numbers("wavelength_nm"));
     UMOV_ASSIGN(values, below.numbers("value"));
-    out = {nm, values};
-    if (auto fine = check_tabulated(out, name); !fine)
+    found = {nm, values};
+    if (auto fine = check_tabulated(found, name); !fine)
       return fail(ErrorCode::BadInput, fine.error().message, node.where(name));
   } else if (value.is_number()) {
-    out = {{}, {node.number(name, 0)}};
+    found = {{}, {node.number(name, 0)}};
   } else {
     return fail(ErrorCode::BadInput,
                 fmt::format("{}: a number or {{ wavelength_nm = [...], value = [...] }} was "
@@ -62,11 +57,12 @@ Result<void> read_curve(const Node &node, const char *name, const Bounds &bounds
                             name),
                 node.where(name));
   }
-  for (const double one : out.value)
+  for (const double one : found.value)
     if (!(one >= bounds.low && one <= bounds.high))
       return fail(ErrorCode::BadInput,
                   fmt::format("{} holds {}; {} was expected", name, one, bounds.what),
                   node.where(name));
+  out = std::move(found);
   return {};
 }
 
@@ -92,36 +88,58 @@ Result<void> read_tracking(const Node &node, Telescope &out) {
   UMOV_ASSIGN(tracking, node.choice("tracking", names[static_cast<int>(out.tracking)],
                                     {names[0], names[1], names[2]}));
   out.tracking = static_cast<Tracking>(std::find(names, names + 3, tracking) - names);
-  return read_number(node, "tracking_error_arcsec", not_negative, out.tracking_error_arcsec);
+  return read_number(node, "tracking_error_arcsec", {0, 1e5, "0 to 100000 seconds of arc"},
+                     out.tracking_error_arcsec);
 }
 
-Result<void> read_telescope(const Node &node, Telescope &out) {
-  UMOV_TRY(read_number(node, "aperture_m",
-                       {1e-12, 60, "a number above 0, up to 60 m (is it in mm?)"}, out.aperture_m));
-  UMOV_TRY(read_number(node, "obstruction", {0, .999999, "0 to below 1"}, out.obstruction));
-  UMOV_TRY(read_number(node, "focal_length_m",
-                       {1e-12, 1000, "a number above 0, up to 1000 m (is it in mm?)"},
-                       out.focal_length_m));
-  UMOV_TRY(check_focal_ratio(node, out));
+Result<void> read_throughput(const Node &node, Telescope &out) {
   UMOV_TRY(read_curve(node, "throughput", {0, 1, "0 to 1"}, out.throughput));
-  if (!(std::ranges::max(out.throughput.value) > 0))
-    return fail(ErrorCode::BadInput,
-                "throughput is 0: no light comes through; a share above 0, up to 1, was expected",
-                node.where("throughput"));
-  UMOV_TRY(read_port(node, out));
-  UMOV_TRY(read_metal(node, "mirror", out.mirror));
+  if (std::ranges::max(out.throughput.value) > 0)
+    return {};
+  return fail(ErrorCode::BadInput,
+              "throughput is 0: no light comes through; a share above 0, up to 1, was expected",
+              node.where("throughput"));
+}
+
+/// What turns with what.
+Result<void> read_mount(const Node &node, Telescope &out) {
   UMOV_ASSIGN(mount, node.choice("mount", out.mount == Mount::AltAz ? "altaz" : "equatorial",
                                  {"altaz", "equatorial"}));
   out.mount = mount == "altaz" ? Mount::AltAz : Mount::Equatorial;
   out.has_derotator = node.boolean("derotator", out.has_derotator);
-  UMOV_TRY(read_tracking(node, out));
+  Problems problems;
+  if (out.mount == Mount::Equatorial && out.has_derotator)
+    problems.add({ErrorCode::BadInput,
+                  "derotator = true on an equatorial mount, on which no field turns: leave it out, "
+                  "or give mount = \"altaz\"",
+                  node.where(node.has("derotator") ? "derotator" : "mount")});
   if (out.mount == Mount::Equatorial && out.port != TelescopePort::Cassegrain)
-    return fail(ErrorCode::BadInput,
-                fmt::format("port = {} on an equatorial mount: a Nasmyth port lies on the "
-                            "altitude axis of an altaz one, and so do the mirrors of a train",
-                            port_toml(out)),
-                node.where(node.has("port") ? "port" : "mount"));
-  return {};
+    problems.add({ErrorCode::BadInput,
+                  fmt::format("port = {} on an equatorial mount: a Nasmyth port lies on the "
+                              "altitude axis of an altaz one, and so do the mirrors of a train",
+                              port_toml(out)),
+                  node.where(node.has("port") ? "port" : "mount")});
+  return problems.told();
+}
+
+Result<void> read_telescope(const Node &node, Telescope &out) {
+  Problems problems;
+  const bool has_sizes =
+      problems.went(read_number(node, "aperture_m",
+                                {1e-12, 60, "a number above 0, up to 60 m (is it in mm?)"},
+                                out.aperture_m)) &
+      problems.went(read_number(node, "focal_length_m",
+                                {1e-12, 1000, "a number above 0, up to 1000 m (is it in mm?)"},
+                                out.focal_length_m));
+  if (has_sizes)
+    problems.went(check_focal_ratio(node, out));
+  problems.went(read_number(node, "obstruction", {0, .999999, "0 to below 1"}, out.obstruction));
+  problems.went(read_throughput(node, out));
+  problems.went(read_port(node, out));
+  problems.went(read_metal(node, "mirror", out.mirror));
+  problems.went(read_mount(node, out));
+  problems.went(read_tracking(node, out));
+  return problems.told();
 }
 
 Result<void> read_shutter(const Node &node, Detector &out) {
@@ -142,68 +160,79 @@ Result<void> read_shutter(const Node &node, Detector &out) {
   return {};
 }
 
-/// A converter makes numbers of the electrons.
-bool has_numbers(DetectorModel model) {
-  return model != DetectorModel::Ideal && model != DetectorModel::Counter;
+/// Keys of one model alone.
+void check_model(const Node &node, const Detector &d, Problems &problems) {
+  const auto add = [&](const std::string &text, const char *name) {
+    problems.add({ErrorCode::BadInput, text, node.where(name)});
+  };
+  if (d.model == DetectorModel::Emccd && !(d.em_gain > 1))
+    add("an emccd needs em_gain above 1, that of its register; without one it is a ccd",
+        node.has("em_gain") ? "em_gain" : "model");
+  if (node.has("em_gain") && d.model != DetectorModel::Emccd && d.em_gain != 1)
+    add(fmt::format("em_gain = {} with model = \"{}\"; only an emccd multiplies", d.em_gain,
+                    name_of(d.model)),
+        "em_gain");
+  if (node.has("dead_time_s") && d.model != DetectorModel::Counter && d.dead_time_s != 0)
+    add(fmt::format("dead_time_s = {} with model = \"{}\"; only a counter is dead after a photon",
+                    d.dead_time_s, name_of(d.model)),
+        "dead_time_s");
+  if (d.is_paralyzable && !(d.dead_time_s > 0))
+    add("paralyzable = true without a dead time; a counter with dead_time_s was expected",
+        "paralyzable");
+  if (const double last = std::exp2(d.bits) - 1; has_converter(d) && d.bias_adu >= last)
+    add(fmt::format("bias_adu = {} with bits = {}: the largest number is {:g}, which leaves "
+                    "nothing for light",
+                    d.bias_adu, d.bits, last),
+        node.has("bias_adu") ? "bias_adu"
+        : node.has("bits")   ? "bits"
+                             : "model");
+}
+
+Result<void> read_size(const Node &node, Detector &out) {
+  if (!node.has("size_px"))
+    return {};
+  UMOV_ASSIGN(size, node.numbers("size_px"));
+  const auto fits = [](double x) { return x >= 1 && x <= 1e5 && x == std::floor(x); };
+  if (size.size() != 2 || !fits(size[0]) || !fits(size[1]))
+    return fail(ErrorCode::BadInput,
+                fmt::format("size_px = {}; [columns, rows], two whole numbers of 1 to 100000, was "
+                            "expected",
+                            list_toml(size)),
+                node.where("size_px"));
+  out.size_px = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+  return {};
 }
 
 Result<void> read_detector(const Node &node, Detector &out) {
-  UMOV_ASSIGN(model, node.choice("model", name_of(out.model), detector_names()));
+  Problems problems;
   const auto &names = detector_names();
-  out.model =
-      static_cast<DetectorModel>(std::find(names.begin(), names.end(), model) - names.begin());
-  UMOV_TRY(read_number(node, "pixel_um", {0.1, 1e4, "0.1 to 10000 um (is it in mm or m?)"},
-                       out.pixel_um));
-  UMOV_TRY(read_number(node, "read_e", not_negative, out.read_e));
-  UMOV_TRY(read_number(node, "dark_e_s", not_negative, out.dark_e_s));
-  UMOV_TRY(read_number(node, "gain_e_adu", positive, out.gain_e_adu));
-  UMOV_TRY(read_number(node, "bias_adu", not_negative, out.bias_adu));
-  UMOV_TRY(read_number(node, "well_e", not_negative, out.well_e));
-  UMOV_TRY(read_number(node, "nonlinearity", {0, .25, "0 to 0.25"}, out.nonlinearity));
-  UMOV_TRY(read_number(node, "em_gain", {1, 1e5, "1 to 100000"}, out.em_gain));
-  UMOV_TRY(read_number(node, "dead_time_s", {0, 1, "0 to 1"}, out.dead_time_s));
-  if (out.model == DetectorModel::Emccd && !(out.em_gain > 1))
-    return fail(ErrorCode::BadInput,
-                "an emccd needs em_gain above 1, that of its register; without one it is a ccd",
-                node.where(node.has("em_gain") ? "em_gain" : "model"));
-  if (node.has("em_gain") && out.model != DetectorModel::Emccd && out.em_gain != 1)
-    return fail(ErrorCode::BadInput,
-                fmt::format("em_gain = {} with model = \"{}\"; only an emccd multiplies",
-                            out.em_gain, name_of(out.model)),
-                node.where("em_gain"));
-  if (node.has("dead_time_s") && out.model != DetectorModel::Counter && out.dead_time_s != 0)
-    return fail(ErrorCode::BadInput,
-                fmt::format("dead_time_s = {} with model = \"{}\"; only a counter is dead after "
-                            "a photon",
-                            out.dead_time_s, name_of(out.model)),
-                node.where("dead_time_s"));
+  const auto model = problems.taken(node.choice("model", name_of(out.model), names), std::string());
+  const auto known = std::find(names.begin(), names.end(), model);
+  if (known != names.end())
+    out.model = static_cast<DetectorModel>(known - names.begin());
+  const auto number = [&](const char *name, const Bounds &bounds, double &value) {
+    problems.went(read_number(node, name, bounds, value));
+  };
+  number("pixel_um", {0.1, 1e4, "0.1 to 10000 um (is it in mm or m?)"}, out.pixel_um);
+  number("read_e", {0, 1e4, "0 to 10000 electrons of a pixel (cameras have 1 to 100)"}, out.read_e);
+  number("dark_e_s", {0, 1e7, "0 to 10000000 electrons a second"}, out.dark_e_s);
+  number("gain_e_adu", {1e-12, 1e6, "a number above 0, up to 1000000"}, out.gain_e_adu);
+  number("bias_adu", {0, 1e9, "0 to 1000000000"}, out.bias_adu);
+  number("well_e", {0, 1e12, "0 or more"}, out.well_e);
+  number("nonlinearity", {0, .25, "0 to 0.25"}, out.nonlinearity);
+  number("em_gain", {1, 1e5, "1 to 100000"}, out.em_gain);
+  number("dead_time_s", {0, 1, "0 to 1"}, out.dead_time_s);
   out.is_paralyzable = node.boolean("paralyzable", out.is_paralyzable);
-  if (out.is_paralyzable && !(out.dead_time_s > 0))
-    return fail(ErrorCode::BadInput,
-                "paralyzable = true without a dead time; a counter with dead_time_s was expected",
-                node.where("paralyzable"));
   const auto bits = node.integer("bits", out.bits);
   if (bits < 1 || bits > 32)
-    return fail(ErrorCode::BadInput, fmt::format("bits = {}; 1 to 32 was expected", bits),
-                node.where("bits"));
-  out.bits = static_cast<int>(bits);
-  if (const double last = std::exp2(out.bits) - 1; has_numbers(out.model) && out.bias_adu >= last)
-    return fail(
-        ErrorCode::BadInput,
-        fmt::format("bias_adu = {} with bits = {}: the largest number is {:g}, which leaves "
-                    "nothing for light",
-                    out.bias_adu, out.bits, last),
-        node.where(node.has("bias_adu") ? "bias_adu"
-                   : node.has("bits")   ? "bits"
-                                        : "model"));
-  if (node.has("size_px")) {
-    UMOV_ASSIGN(size, node.numbers("size_px"));
-    if (size.size() != 2 || !(size[0] >= 1 && size[1] >= 1 && size[0] <= 1e5 && size[1] <= 1e5))
-      return fail(ErrorCode::BadInput, "size_px: [columns, rows] was expected",
-                  node.where("size_px"));
-    out.size_px = {static_cast<int>(size[0]), static_cast<int>(size[1])};
-  }
-  return read_shutter(node, out);
+    problems.add(wrong_value(node, "bits", bits, "1 to 32"));
+  else
+    out.bits = static_cast<int>(bits);
+  if (!problems.has_some()) // of values that are good each by itself
+    check_model(node, out, problems);
+  problems.went(read_size(node, out));
+  problems.went(read_shutter(node, out));
+  return problems.told();
 }
 
 Result<void> read_layout(const Node &node, Polarimeter &out) {
@@ -272,16 +301,29 @@ bool says_something(const std::string &key, PolarimeterType type) {
 }
 
 /// What is given and not used is a slip: of the key, or of the type.
-Result<void> refuse_idle_keys(const Node &node, PolarimeterType type) {
+void add_idle_keys(const Node &node, PolarimeterType type, Problems &problems) {
   for (const char *key : {"layout", "angles_deg", "pupils", "retardance_deg", "plate_zero_deg",
                           "period_s", "extinction", "q0", "u0"})
     if (node.has(key) && !says_something(key, type))
-      return fail(ErrorCode::BadInput,
-                  fmt::format("{} says nothing to a polarimeter of type \"{}\"; leave it out, or "
-                              "give the type that has it",
-                              key, name_of(type)),
-                  node.where(key));
-  return {};
+      problems.add({ErrorCode::BadInput,
+                    fmt::format("{} says nothing to a polarimeter of type \"{}\"; leave it out, or "
+                                "give the type that has it",
+                                key, name_of(type)),
+                    node.where(key)});
+}
+
+/// Own polarization of the instrument.
+Result<void> read_own(const Node &node, Polarimeter &out) {
+  Problems problems;
+  problems.went(read_number(node, "q0", {-1, 1, "-1 to 1"}, out.q0));
+  problems.went(read_number(node, "u0", {-1, 1, "-1 to 1"}, out.u0));
+  if (std::hypot(out.q0, out.u0) > 1)
+    problems.add({ErrorCode::BadInput,
+                  fmt::format("q0 = {}, u0 = {}: together they polarize by {:.3g}; at most 1 was "
+                              "expected",
+                              out.q0, out.u0, std::hypot(out.q0, out.u0)),
+                  node.where(node.has("q0") ? "q0" : "u0")});
+  return problems.told();
 }
 
 Result<void> read_polarimeter(const Node &node, bool is_whole, Polarimeter &out) {
@@ -289,25 +331,26 @@ Result<void> read_polarimeter(const Node &node, bool is_whole, Polarimeter &out)
   UMOV_ASSIGN(type, node.choice("type", name_of(out.type), names));
   out.type =
       static_cast<PolarimeterType>(std::find(names.begin(), names.end(), type) - names.begin());
-  UMOV_TRY(refuse_idle_keys(node, out.type));
-  UMOV_TRY(read_layout(node, out));
-  UMOV_TRY(read_curve(node, "extinction", {1, 1e12, "more than 1"}, out.extinction));
-  UMOV_TRY(read_curve(node, "retardance_deg", {-720, 720, "-720 to 720"}, out.retardance_deg));
-  UMOV_TRY(read_number(node, "plate_zero_deg", {-360, 360, "-360 to 360"}, out.plate_zero_deg));
-  UMOV_TRY(read_number(node, "period_s", positive, out.period_s));
-  UMOV_TRY(read_number(node, "x_axis_deg", {-360, 360, "-360 to 360"}, out.x_axis_deg));
-  UMOV_TRY(read_number(node, "q0", {-1, 1, "-1 to 1"}, out.q0));
-  UMOV_TRY(read_number(node, "u0", {-1, 1, "-1 to 1"}, out.u0));
-  if (std::hypot(out.q0, out.u0) > 1)
-    return fail(ErrorCode::BadInput,
-                fmt::format("q0 = {}, u0 = {}: together they polarize by {:.3g}; at most 1 was "
-                            "expected",
-                            out.q0, out.u0, std::hypot(out.q0, out.u0)),
-                node.where(node.has("q0") ? "q0" : "u0"));
-  UMOV_ASSIGN(pupils, node.choice("pupils", out.has_separate_pupils ? "separate" : "common",
-                                  {"common", "separate"}));
+  Problems problems;
+  const auto number = [&](const char *name, const Bounds &bounds, double &value) {
+    problems.went(read_number(node, name, bounds, value));
+  };
+  add_idle_keys(node, out.type, problems);
+  problems.went(read_layout(node, out));
+  problems.went(read_curve(node, "extinction", {1, 1e12, "more than 1"}, out.extinction));
+  problems.went(read_curve(node, "retardance_deg", {-720, 720, "-720 to 720"}, out.retardance_deg));
+  number("plate_zero_deg", {-360, 360, "-360 to 360"}, out.plate_zero_deg);
+  number("period_s", positive, out.period_s);
+  number("x_axis_deg", {-360, 360, "-360 to 360"}, out.x_axis_deg);
+  problems.went(read_own(node, out));
+  const auto pupils =
+      problems.taken(node.choice("pupils", out.has_separate_pupils ? "separate" : "common",
+                                 {"common", "separate"}),
+                     std::string());
   out.has_separate_pupils = pupils == "separate";
-  return check_polarimeter(node, out, is_whole || node.has("x_axis_deg"));
+  if (!problems.has_some())
+    problems.went(check_polarimeter(node, out, is_whole || node.has("x_axis_deg")));
+  return problems.told();
 }
 
 std::string curve_toml(const Tabulated &curve) {
@@ -344,19 +387,20 @@ std::string polarimeter_toml(const Polarimeter &p) {
 
 Result<void> read_instrument_tables(const Node &top, Instrument &out) {
   const bool is_whole = !out.name.empty();
+  Problems problems;
   if (top.has("telescope")) {
     UMOV_ASSIGN(node, top.child("telescope"));
-    UMOV_TRY(read_telescope(node, out.telescope));
+    problems.went(read_telescope(node, out.telescope));
   }
   if (top.has("detector")) {
     UMOV_ASSIGN(node, top.child("detector"));
-    UMOV_TRY(read_detector(node, out.detector));
+    problems.went(read_detector(node, out.detector));
   }
   if (top.has("polarimeter")) {
     UMOV_ASSIGN(node, top.child("polarimeter"));
-    UMOV_TRY(read_polarimeter(node, is_whole, out.polarimeter));
+    problems.went(read_polarimeter(node, is_whole, out.polarimeter));
   }
-  return {};
+  return problems.told();
 }
 
 std::string instrument_tables_toml(const Instrument &i) {

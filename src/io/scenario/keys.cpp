@@ -62,6 +62,9 @@ const std::vector<Key> &keys() {
       {"observer", "atmosphere", Any, "\"none\"",
        "\"clear\", or the numbers of clear air: columns I_obs and mag_obs; [atmosphere] says it "
        "instead. Beside [observation] \"clear\" unless told; \"none\" observes without air"},
+      {"observer.atmosphere", "file", String, "",
+       "measured extinction instead of the numbers: a table of wavelength_nm and k_mag [mag per "
+       "air mass]"},
       {"observer.atmosphere", "pressure_hpa", Number, "", "default: of the site's height"},
       {"observer.atmosphere", "aerosol", Table, "", "dust and haze, as in [atmosphere]"},
       {"observer.atmosphere", "ozone_du", Number, "260.0", "ozone [Dobson units]"},
@@ -179,6 +182,9 @@ const std::vector<Key> &keys() {
        "sources that the Earth's disk is cut into to begin with; 100 times as many at most"},
       {"render.earthshine", "accuracy", Number, "0.02",
        "relative 95 % half-width asked of earth_I"},
+      {"atmosphere", "file", String, "",
+       "measured extinction instead of the numbers: a table of wavelength_nm and k_mag [mag per "
+       "air mass]"},
       {"atmosphere", "pressure_hpa", Number, "", "default: of the site's height"},
       {"atmosphere", "aerosol", Table, "", "dust and haze"},
       {"atmosphere", "ozone_du", Number, "260.0", "ozone [Dobson units]"},

@@ -461,7 +461,8 @@ Result<void> read_output(const Node &top, Scenario &out) {
 
 Result<void> read_air(const Node &top, const fs::path &folder, Scenario &out) {
   Problems problems;
-  const auto air = problems.taken(scenario::read_site_air(top), decltype(out.air){});
+  const auto air =
+      problems.taken(scenario::read_site_air(top, folder, out.band_files), decltype(out.air){});
   const auto observation = problems.taken(scenario::read_observation(top, air, folder.string()),
                                           decltype(out.observation){});
   UMOV_TRY(problems.told());
@@ -469,7 +470,7 @@ Result<void> read_air(const Node &top, const fs::path &folder, Scenario &out) {
   out.observation = observation;
   const bool has_bands_of_its_own = observation && !observation->bands.empty();
   if (air && !has_bands_of_its_own)
-    return check_air_reaches(out.bands, top.where("bands"));
+    return check_air_reaches(out.bands, *air, top.where("bands"));
   return {};
 }
 

@@ -277,6 +277,19 @@ Result<void> check_row(const CountRow &row, const Where &where) {
     return fail(ErrorCode::BadInput,
                 fmt::format("airmass = {}; 1 or more was expected, or an empty cell", row.airmass),
                 where);
+  if (row.phase_angle_deg < 0 || row.phase_angle_deg > 180)
+    return fail(ErrorCode::BadInput,
+                fmt::format("phase_angle = {}; 0 to 180 degrees were expected, or an empty cell",
+                            row.phase_angle_deg),
+                where);
+  // At the Earth's surface light of 300 nm loses four, and a fit may find a little less than none.
+  if (row.k_mag < -1 || row.k_mag > 10)
+    return fail(
+        ErrorCode::BadInput,
+        fmt::format("k_mag = {}; -1 to 10 magnitudes per air mass were expected (0.1 to 0.5 "
+                    "as a rule), or an empty cell",
+                    row.k_mag),
+        where);
   return check_response(row.row, where);
 }
 
@@ -419,11 +432,18 @@ bool is_below_nothing(const CountRow &row) {
   return row.counts < -deviations * std::sqrt(row.var_read + 1);
 }
 
-void warn_of_rows(std::size_t dropped, std::size_t negative, std::size_t all,
+/// Rows that are left out: for want of counts, or of the sky beside them.
+struct Dropped {
+  std::size_t without_counts = 0, without_sky = 0;
+};
+
+void warn_of_rows(const Dropped &dropped, std::size_t negative, std::size_t all,
                   const std::string &file, Diagnostics &diagnostics) {
-  if (dropped > 0)
-    diagnostics.warn(fmt::format("{} of {} left out: without counts", dropped, counted(all, "row")),
-                     {file});
+  for (const auto &[number, what] : {std::pair{dropped.without_counts, "counts"},
+                                     {dropped.without_sky, "sky (0 where none was taken off)"}})
+    if (number > 0)
+      diagnostics.warn(
+          fmt::format("{} of {} left out: without {}", number, counted(all, "row"), what), {file});
   if (negative > 0)
     diagnostics.warn(fmt::format("{} of {} below 0 by more than reading does: counts hold the sky, "
                                  "and no bias; was one of them taken off twice?",
@@ -444,7 +464,8 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   UMOV_TRY(check_notes(table, file));
   CountsFile out;
   out.notes = table.notes;
-  std::size_t dropped = 0, negative = 0;
+  Dropped dropped;
+  std::size_t negative = 0;
   RowOrder order;
   ExposureNumbers exposures;
   const bool has_exposures = cells.has("exposure");
@@ -471,7 +492,7 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
       row.exposure = exposures.next(row);
     row.retardance_deg = retardance_in(out.notes, row.band);
     if (!std::isfinite(row.counts) || !std::isfinite(row.sky)) {
-      ++dropped;
+      ++(std::isfinite(row.counts) ? dropped.without_sky : dropped.without_counts);
       continue;
     }
     UMOV_TRY(check_row(row, cells.where(k)));
@@ -482,7 +503,10 @@ Result<CountsFile> read_counts_text(std::string_view text, const std::string &fi
   }
   warn_of_rows(dropped, negative, table.rows(), file, diagnostics);
   if (out.rows.empty())
-    return fail(ErrorCode::BadInput, "no row of counts; some were expected below the names",
+    return fail(ErrorCode::BadInput,
+                dropped.without_sky > 0
+                    ? "no row with sky; beside each count it was expected, 0 where there is none"
+                    : "no row of counts; some were expected below the names",
                 {file});
   warn_of_notes(out, file, diagnostics);
   warn_of_analysers(out, lines, cells.has("x_axis_pa"), file, diagnostics);

@@ -176,7 +176,7 @@ TEST(Scenario, TheLockSaysTheAirOnceAndReadsBackToItself) {
     EXPECT_EQ(locked_scenario(*again), lock);
     EXPECT_EQ(again->air.has_value(), s->air.has_value());
     if (one.has_observation)
-      EXPECT_EQ(again->observation->air.ozone_du, s->observation->air.ozone_du);
+      EXPECT_EQ(again->observation->air.air.ozone_du, s->observation->air.air.ozone_du);
   }
 }
 
@@ -191,13 +191,13 @@ TEST(Scenario, AirOfTheObserverIsThatOfTheObservation) {
   };
   const auto hazy = read("atmosphere = { aerosol = { tau_550 = 0.3 } }\n");
   ASSERT_TRUE(hazy) << hazy.error().text();
-  EXPECT_EQ(hazy->observation->air.aerosol_550, 0.3);
+  EXPECT_EQ(hazy->observation->air.air.aerosol_550, 0.3);
   EXPECT_TRUE(hazy->observation->scintillation_c_y);
   const auto airless = read("atmosphere = \"none\"\n");
   ASSERT_TRUE(airless) << airless.error().text();
   EXPECT_FALSE(airless->air);
   for (const double nm : {350., 550., 940.}) // Rayleigh, ozone, water
-    EXPECT_EQ(transmission(nm, airless->observation->air, 2), 1) << nm;
+    EXPECT_EQ(transmission(nm, airless->observation->air.air, 2), 1) << nm;
   EXPECT_FALSE(airless->observation->scintillation_c_y);
   EXPECT_FALSE(airless->observation->sky.has_twilight || airless->observation->sky.has_moon);
 }

@@ -1,0 +1,68 @@
+#include <umov/io/extinction_file.h>
+
+#include "io/table/text_table.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <umov/core/text.h>
+
+namespace umov {
+namespace {
+
+struct ExtinctionColumn {
+  const char *name;
+  double low, high;
+  const char *hint;
+  std::vector<double> MeasuredExtinction::*values;
+};
+// From where ozone lets light through to thermal light; nothing is seen behind ten magnitudes.
+constexpr ExtinctionColumn extinction_columns[] = {
+    {"wavelength_nm", 200, 5000, " (is it in um or Angstrom?)", &MeasuredExtinction::nm},
+    {"k_mag", 0, 10, " magnitudes per air mass", &MeasuredExtinction::mag}};
+
+Result<void> read_column(const TextTable &table, const ExtinctionColumn &one, const std::string &file,
+                         MeasuredExtinction &out) {
+  const auto found = std::ranges::find(table.columns, one.name);
+  if (found == table.columns.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("extinction without the column \"{}\"; a line of the names "
+                            "wavelength_nm and k_mag above the numbers was expected",
+                            one.name),
+                {file});
+  const auto column = static_cast<std::size_t>(found - table.columns.begin());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::string_view cell = table.cell(row, column);
+    const auto value = parse_number(cell);
+    if (!value || !(*value >= one.low && *value <= one.high))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{} = \"{}\"; {} to {}{} was expected", one.name, printable(cell),
+                              one.low, one.high, one.hint),
+                  {file, table.lines[row]});
+    (out.*one.values).push_back(*value);
+  }
+  return {};
+}
+
+} // namespace
+
+Result<MeasuredExtinction> read_extinction_text(std::string_view text, const std::string &file) {
+  UMOV_ASSIGN(table, read_text_table(text, file));
+  MeasuredExtinction out;
+  for (const ExtinctionColumn &one : extinction_columns)
+    UMOV_TRY(read_column(table, one, file, out));
+  if (out.nm.size() < 2)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} of extinction; two wavelengths or more were expected",
+                            counted(out.nm.size(), "row")),
+                {file});
+  for (std::size_t k = 1; k < out.nm.size(); ++k)
+    if (!(out.nm[k] > out.nm[k - 1]))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("wavelength_nm = {} after {}: rising wavelengths were expected; sort "
+                              "the rows",
+                              out.nm[k], out.nm[k - 1]),
+                  {file, table.lines[k]});
+  return out;
+}
+
+} // namespace umov
