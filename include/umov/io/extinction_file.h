@@ -8,8 +8,8 @@
 
 namespace umov {
 
-/// Reads CSV or ECSV with the columns wavelength_nm and k_mag [mag per air mass]. BadInput with line
-/// for what is missing, no number, beyond what air does, or does not increase in wavelength.
+/// Reads CSV or ECSV with the columns wavelength_nm and k_mag [mag per air mass]. BadInput with
+/// line for what is missing, no number, beyond what air does, or does not increase in wavelength.
 Result<MeasuredExtinction> read_extinction_text(std::string_view text, const std::string &file);
 
 } // namespace umov

@@ -20,8 +20,8 @@ constexpr ExtinctionColumn extinction_columns[] = {
     {"wavelength_nm", 200, 5000, " (is it in um or Angstrom?)", &MeasuredExtinction::nm},
     {"k_mag", 0, 10, " magnitudes per air mass", &MeasuredExtinction::mag}};
 
-Result<void> read_column(const TextTable &table, const ExtinctionColumn &one, const std::string &file,
-                         MeasuredExtinction &out) {
+Result<void> read_column(const TextTable &table, const ExtinctionColumn &one,
+                         const std::string &file, MeasuredExtinction &out) {
   const auto found = std::ranges::find(table.columns, one.name);
   if (found == table.columns.end())
     return fail(ErrorCode::BadInput,
