@@ -7,25 +7,53 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._units import ARGUMENTS, KEYS
 from .errors import UsageError
 
+def plain(value: Any, name: str, system: str = "AB") -> Any:
+    """A Quantity in the unit of the argument `name`, a list of them too; all else as it is. `system`: of magnitudes."""
+    return _in_unit_of(value, name, ARGUMENTS.get(name), system)
 
-#: Ends of names that are not units as astropy spells them.
-_UNITS = {"_deg_s": "deg/s", "_km_s": "km/s", "_e_s": "electron/s", "_hpa": "hPa"}
+
+def plain_key(value: Any, key: str) -> Any:
+    """The same of a key of a scenario, such as "observation.exposure_s"."""
+    return _in_unit_of(value, key, KEYS.get(key.rpartition(".")[2]), "AB")
 
 
-def plain(value: Any, name: str) -> Any:
-    """A Quantity in the unit that the name ends with, a list of them too; all else as it is."""
+def _in_unit_of(value: Any, name: str, unit: str | None, system: str) -> Any:
     value = joined(value, name)
-    if not hasattr(value, "to_value"):
+    if not hasattr(value, "to_value") or not hasattr(value, "unit"):  # a length of time or a Time is none: whoever reads numbers says so
         return value
-    if "_" not in name and name != "mag":
-        raise UsageError(f"{name} has a unit; plain numbers were expected")
-    unit = next((unit for end, unit in _UNITS.items() if name.endswith(end)), name.rsplit("_", 1)[-1])
-    try:
-        return value.to_value(unit)
-    except Exception as error:
-        raise UsageError(f"{name} is {value!r}; it does not go into that unit ({error})") from error
+    if unit is None:
+        raise UsageError(f"{name} is {_short(value)}, with a unit; a plain number was expected")
+    if hasattr(value, "physical"):  # magnitudes and the like of a known zero
+        return _of_system(value, name, unit, system)
+    return in_unit(value, name, *((unit, "mag") if unit == "mag / arcsec2" else (unit,)))
+
+
+def in_unit(value: Any, name: str, *units: str) -> Any:
+    """A Quantity in the first unit that it goes into; `UsageError` where it goes into none."""
+    for unit in units:
+        if value.unit.is_equivalent(unit):
+            return value.to_value(unit)
+    raise UsageError(f"{name} is {_short(value)}; {_UNIT_WORDS.get(units[0], units[0])} was expected, or a plain number in that unit")
+
+
+_UNIT_WORDS = {"": "a number without a unit (or per cent)", "mag": "a magnitude"}
+
+
+def _of_system(value: Any, name: str, unit: str, system: str) -> Any:
+    """A magnitude with its zero, as astropy and our own tables have it: AB is no other system's."""
+    from astropy import units
+    zero = {"AB": units.AB, "ST": units.ST}.get(system)
+    flux = value.unit.physical_unit
+    wanted = None if zero is None else [zero, zero / units.arcsec**2] if unit == "mag / arcsec2" else [zero]
+    if unit not in ("mag", "mag / arcsec2") or not isinstance(value.unit, units.MagUnit):
+        raise UsageError(f"{name} is {_short(value)}; {_UNIT_WORDS.get(unit, unit)} was expected")
+    if flux != units.dimensionless_unscaled and not any(flux.is_equivalent(one) for one in wanted or []):
+        raise UsageError(f"{name} is {_short(value)}; a magnitude of {system} was expected, which is the system asked for")
+    into = next((one for one in wanted or [] if flux.is_equivalent(one)), flux)
+    return value.to_value(units.mag(into))
 
 
 def joined(value: Any, name: str) -> Any:
@@ -79,20 +107,20 @@ def _short(value: Any) -> str:
     return text if len(text) <= 200 else f"{text[:200]} ... ({type(value).__name__})"
 
 
-def number_array(value: ArrayLike, name: str) -> NDArray[np.float64]:
-    """Finite numbers as float64."""
-    out = real_array(plain(value, name), name)
+def number_array(value: ArrayLike, name: str, system: str = "AB") -> NDArray[np.float64]:
+    """Finite numbers as float64, a Quantity in the unit that _units.py has for that argument."""
+    out = real_array(plain(value, name, system), name)
     if not np.isfinite(out).all():
         raise UsageError(f"{name} is {_short(value)}; a finite number was expected" if out.ndim == 0 else
                          f"{name} has values that are not finite; finite numbers were expected")
     return out
 
 
-def number(value: Any, name: str) -> float:
+def number(value: Any, name: str, system: str = "AB") -> float:
     """One finite number. Texts are none, although float() would take them."""
     if isinstance(value, (str, bytes)):
         raise UsageError(f"{name} is {value!r}; a number was expected")
-    out = number_array(value, name)
+    out = number_array(value, name, system)
     if out.ndim:
         raise UsageError(f"{name} has shape {out.shape}; a single number was expected")
     return float(out)

@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._numbers import plain, text, utf8
+from ._numbers import plain_key, text, utf8
 from .errors import InputError, UsageError
 from .times import is_moment, utc
 
@@ -52,9 +52,9 @@ def value_text(value: Any, name: str = "value") -> str:
     if isinstance(value, Mapping):
         inside = (f"{_key(str(k))} = {value_text(v, str(k))}" for k, v in value.items() if v is not None)
         return "{ " + ", ".join(inside) + " }"
-    if hasattr(value, "to_value") and not hasattr(value, "scale") and "_" in name:  # into the unit that the key ends with
-        return value_text(plain(value, name), name)
-    if hasattr(value, "to_value") or hasattr(value, "scale"):  # a unit or a length of time, of which a scenario has its own forms
+    if hasattr(value, "to_value") and hasattr(value, "unit") and not hasattr(value, "scale"):  # into the unit that the key has
+        return value_text(plain_key(value, name), name)
+    if hasattr(value, "to_value") or hasattr(value, "scale"):  # a length of time, of which a scenario has its own forms
         raise UsageError(f"{name} is {value!r}; a plain number or a text was expected, in the unit that the key says")
     if hasattr(value, "tolist"):  # numpy arrays and numbers
         return value_text(value.tolist(), name)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ._numbers import number_array, path_text, utf8
+from ._numbers import in_unit, joined, number_array, path_text, utf8
 from .errors import DeviceError, UsageError
 
 Texts = dict[str, str]
@@ -149,7 +149,8 @@ def mesh_text(mesh: Any, unit: str = "m") -> str | None:
     else:
         raise UsageError(f"mesh is a {type(mesh).__name__}; a file, a table of the scenario, a trimesh mesh or "
                          "(vertices, faces) was expected")
-    points = number_array(vertices, f"vertices_{unit}" if hasattr(vertices, "to_value") else "vertices")
+    vertices = joined(vertices, "vertices")
+    points = number_array(in_unit(vertices, "vertices", unit) if hasattr(vertices, "to_value") else vertices, "vertices")
     try:
         if np.ma.is_masked(faces):
             raise ValueError("some of them are masked")

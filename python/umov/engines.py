@@ -213,7 +213,7 @@ def kelvins(temperatures: Any) -> list[str]:
     """Temperatures as the command takes them."""
     if isinstance(temperatures, (str, bytes)) or not hasattr(temperatures, "__iter__") or getattr(temperatures, "ndim", 1) != 1:
         raise UsageError(f"temperatures is {temperatures!r}; a list was expected, such as [300, \"wing=350\"]")
-    return [one if isinstance(one, str) else f"{between(one, 'temperatures_K', 0, 1e6):.17g}" for one in temperatures]
+    return [one if isinstance(one, str) else f"{between(one, 'temperatures', 0, 1e6):.17g}" for one in temperatures]
 
 
 def directions(sun: ArrayLike, observer: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:

@@ -454,16 +454,16 @@ def exposure(instrument: str | os.PathLike[str], *, mag: float = 8.0, alt_deg: f
     >>> "time" in " ".join(table["quantity"])
     True
     """
+    if mag_system not in ("AB", "ST", "Vega"):
+        raise UsageError(f"mag_system is {mag_system!r}; AB, ST or Vega was expected")
     request = _umov.ExposureRequest()
     request.instrument = path_text(instrument, "instrument")
-    request.mag, request.altitude_deg = number(mag, "mag"), between(alt_deg, "alt_deg", 3, 90)
+    request.mag, request.altitude_deg = number(mag, "mag", mag_system), between(alt_deg, "alt_deg", 3, 90)
     request.height_m, request.sd_p = number(height_m, "height_m"), number(sd_p, "sd_p")
     request.nm, request.width_nm = number(wavelength_nm, "wavelength_nm"), number(width_nm, "width_nm")
     request.sky_mag, request.seeing_arcsec = number(sky_mag, "sky_mag"), number(seeing_arcsec, "seeing_arcsec")
     request.change_per_s = number(change_per_s, "change_per_s")
     request.exposure_s, request.band = number(exposure_s, "exposure_s"), text_of(band, "band")
-    if mag_system not in ("AB", "ST", "Vega"):
-        raise UsageError(f"mag_system is {mag_system!r}; AB, ST or Vega was expected")
     request.magnitudes, request.aperture_fwhm = mag_system, number(aperture_fwhm, "aperture_fwhm")
     found = Table(_umov.exposure(request))
     if "warning" in found.notes:

@@ -12,6 +12,7 @@ from . import _umov, adapters
 from ._jobs import Progress, Watch, job_options
 from ._numbers import number, path_text, text, truth, whole
 from .errors import Stopped, UsageError, raise_stopped
+from .passbands import Bands
 from .satellites import AnyBands, Satellite
 from .scenarios import Scenario
 from .sites import AnySite, Site
@@ -136,7 +137,7 @@ def passes(orbit: AnyOrbit, site: AnySite, start: AnyTime, stop: AnyTime, *, nor
     _make_ready()
     rows = _umov.passes(file, _numbers(norad, orbit), Site(site)._tuple(), utc(start), utc(stop),
                         number(alt_min_deg, "alt_min_deg"), number(sun_alt_max_deg, "sun_alt_max_deg"), shadow, truth(visible_only, "visible_only"),
-                        None if mag_max is None else number(mag_max, "mag_max"), sort, scene, text(band, "band"),
+                        None if mag_max is None else number(mag_max, "mag_max", bands.mag_system if isinstance(bands, Bands) else "AB"), sort, scene, text(band, "band"),
                         job_options(threads, cache, allow_bad_checksum, allow_old_elements), Watch(progress))
     del kept
     return _table(rows)

@@ -20,7 +20,7 @@ from . import _scale_store
 from ._scale_command import call, call_for_rows, find_program
 from ._scale_driver import Cluster, Driver, Hold
 from ._scale_store import Store, StoreLease, is_url
-from ._numbers import path_text
+from ._numbers import number, path_text
 from .errors import Error, InputError, Interrupted, UsageError
 from .rows import Rows
 
@@ -321,6 +321,7 @@ def run(job: Job | None, output: str | os.PathLike[str], *, cluster: Any = None,
     if job is not None and not isinstance(job, Job):
         raise UsageError(f"job is a {type(job).__name__}; a umov.scale.Job was expected, or None for that of the folder")
     words = job.words if job else []
+    timeout_s = None if timeout_s is None else number(timeout_s, "timeout_s")
     if is_url(output) and cluster is None:
         raise UsageError(f"output is {output}; an object store takes a cluster: cluster=\"local:{os.cpu_count()}\" is this machine")
     more = (["--per-shard", per_shard] if per_shard else []) + (["--yes"] if yes else [])

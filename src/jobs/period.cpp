@@ -207,6 +207,37 @@ void warn_of_search(const Findings &found, const PeriodRequest &request, const s
                      {path});
 }
 
+/// Rows that say something of brightness of which no magnitude can be made: without them the
+/// faintest part of the curve is missing, and that changes which period is seen.
+void warn_of_rows_without_magnitude(const ObservationsFile &file,
+                                    const std::vector<std::string> &bands,
+                                    Diagnostics &diagnostics) {
+  std::size_t no_light = 0, limits = 0, line = 0;
+  for (const std::string &band : bands) {
+    const bool is_beside = has_magnitudes_beside(file, band);
+    for (const ObservedRow &row : file.rows) {
+      if (row.band != band || std::isfinite(magnitude_of(row, is_beside)))
+        continue;
+      if (row.is_limit)
+        ++limits;
+      else if (std::isfinite(row.flux) && ++no_light == 1)
+        line = row.line;
+    }
+  }
+  if (no_light > 0)
+    diagnostics.warn(fmt::format("{} left out: a flux of 0 or less, or none in magnitudes where "
+                                 "others have one. The search is of magnitudes, and the faintest "
+                                 "part of the curve has no share in it; means of several rows "
+                                 "above 0 would",
+                                 counted(no_light, "row", "rows")),
+                     {file.path, line});
+  if (limits > 0)
+    diagnostics.warn(fmt::format("{} left out: limits of brightness (mag_limit), fainter than "
+                                 "told",
+                                 counted(limits, "row", "rows")),
+                     {file.path});
+}
+
 void warn_of_left_out(const Findings &found, const std::string &path, Diagnostics &diagnostics) {
   if (found.noisy > 0)
     diagnostics.warn(fmt::format("{} whose peaks do not stand out of noise, left out",
@@ -268,7 +299,9 @@ Result<SurestPeak> surest_peak(const std::vector<Stretch> &stretches, const Peri
 Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
                      Diagnostics &diagnostics) {
   const std::string &path = observations.path;
+  UMOV_ASSIGN(bands, wanted_bands(observations, request.band));
   UMOV_ASSIGN(stretches, stretches_of(observations, request));
+  warn_of_rows_without_magnitude(observations, bands, diagnostics);
   UMOV_ASSIGN(found, search(stretches, request, path, &diagnostics));
   return table_of(std::move(found.rows), request, path);
 }

@@ -51,6 +51,38 @@ TEST(Period, RangeAndBandAreKeptTo) {
   EXPECT_NE(unknown.error().message.find("it has V"), std::string::npos);
 }
 
+/// What a table of fluxes makes period warn of, one line each.
+std::string warned(const std::string &text) {
+  Diagnostics diagnostics;
+  const auto file = read_observations_text(text, "faint.csv", diagnostics);
+  if (!file)
+    return file.error().text();
+  (void)period(*file, {"", 1}, diagnostics);
+  std::string out;
+  for (const Warning &one : diagnostics.warnings())
+    out += one.message + "\n";
+  return out;
+}
+
+// Faint light in noise is often below 0, and has no magnitude.
+TEST(Period, FluxesThatHaveNoMagnitudeAreCountedInAWarning) {
+  std::string text = "time_utc,flux\n", bright = text;
+  for (int k = 0; k < 120; ++k) {
+    const double flux = 1 + 1.2 * std::sin(2 * pi * 2 * k / first_s);
+    for (auto &[to, value] :
+         {std::pair<std::string &, double>{text, k == 7 ? 0 : flux}, {bright, std::max(flux, 0.1)}})
+      to += fmt::format("2018-01-21T05:{:02}:{:02}Z,{:.5f}\n", 2 * k / 60, 2 * k % 60, value);
+  }
+  // Rows whose sine is below -1/1.2, and row 7, counted apart from umov.
+  int expected = 0;
+  for (int k = 0; k < 120; ++k)
+    expected += k == 7 || std::sin(2 * pi * 2 * k / first_s) <= -1 / 1.2 ? 1 : 0;
+  EXPECT_NE(warned(text).find(fmt::format("{} rows left out: a flux of 0 or less", expected)),
+            std::string::npos)
+      << warned(text);
+  EXPECT_EQ(warned(bright).find("left out: a flux"), std::string::npos) << warned(bright);
+}
+
 // A table of ours has both: its magnitudes are shown, and a limit, which is no brightness, would
 // be the faintest of all.
 TEST(Period, MagnitudesBesideFluxesAreTakenAndLimitsAreNot) {
