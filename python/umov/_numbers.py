@@ -36,10 +36,11 @@ def in_unit(value: Any, name: str, *units: str) -> Any:
     for unit in units:
         if value.unit.is_equivalent(unit):
             return value.to_value(unit)
-    raise UsageError(f"{name} is {_short(value)}; {_UNIT_WORDS.get(units[0], units[0])} was expected, or a plain number in that unit")
+    told = _UNIT_WORDS.get(units[0], units[0])
+    raise UsageError(f"{name} is {_short(value)}, which does not go into {told}; that was expected, or a plain number in it")
 
 
-_UNIT_WORDS = {"": "a number without a unit (or per cent)", "mag": "a magnitude"}
+_UNIT_WORDS = {"": "a number without a unit (per cent is one)", "mag": "a magnitude"}
 
 
 def _of_system(value: Any, name: str, unit: str, system: str) -> Any:
