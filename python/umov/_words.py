@@ -30,8 +30,8 @@ _VERBS = {"bands list": "bands()", "calibrate": "calibrate", "exposure": "exposu
 _OF_A_SHELL = ("doctor", "material index", "mesh check")
 _VERB = re.compile(rf"(?<![\w./-])umov ({'|'.join([*_VERBS, *_OF_A_SHELL])})\b(?! -)")
 #: A file that adapters made of what was given.
-_MADE = re.compile(r"[^\s\"']*/umov-[a-z0-9_]{8}/(mesh\.obj|orbit\.tle)")
-_GIVEN = {"mesh.obj": "mesh of arrays", "orbit.tle": "orbit"}
+_MADE = re.compile(r"[^\s\"']*/umov-[a-z0-9_]{8}/(mesh\.obj|orbit\.tle|orbit\.json)")
+_GIVEN = {"mesh.obj": "mesh of arrays", "orbit.tle": "orbit", "orbit.json": "orbit"}
 
 
 def _argument(option: str) -> str | None:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from . import satrecs
 from ._numbers import in_unit, joined, number_array, path_text, utf8
 from .errors import DeviceError, UsageError
 
@@ -68,19 +69,31 @@ def _remove(folder: str, names: list[str], owner: int) -> None:
         pathlib.Path(folder).rmdir()
 
 
-def orbit_text(orbit: Any) -> str | None:
-    """TLE lines of an sgp4 Satrec, a skyfield EarthSatellite or a list of them, or a text of two or three lines; None
-    for what is a file or a table already."""
+def orbit_texts(orbit: Any) -> Texts | None:
+    """The file of an sgp4 Satrec, a skyfield EarthSatellite or a list of them, or of a text of two or three lines: its name and what
+    it holds; None for what is a file or a table already."""
     if isinstance(orbit, str):
-        return orbit if "\n" in orbit.strip() else None
+        return {"orbit.tle": orbit} if "\n" in orbit.strip() else None
     if isinstance(orbit, (os.PathLike, Mapping)):
         return None
     if not _is_iterable(orbit) or isinstance(orbit, (bytes, Set)) or hasattr(orbit, "columns"):  # a table gives its names
-        return _lines(orbit)
-    texts = [one.rstrip("\r\n") + "\n" if isinstance(one, str) else _lines(one) for one in orbit]
-    if not texts:
+        orbit = [orbit]
+    listed = list(orbit)
+    if not listed:
         raise _no_orbit(f"an empty {type(orbit).__name__}")
-    return "".join(texts)
+    if all(isinstance(one, str) for one in listed):
+        return {"orbit.tle": "".join(one.rstrip("\r\n") + "\n" for one in listed)}
+    if any(isinstance(one, str) for one in listed):
+        raise _no_orbit("a list of lines and of objects; one kind")
+    return satrecs.texts_of([_satrec(one) for one in listed])
+
+
+def _satrec(orbit: Any) -> tuple[str, Any]:
+    """Name and Satrec of one object of another package."""
+    model = getattr(orbit, "model", orbit)  # skyfield keeps its Satrec there
+    if not hasattr(model, "satnum") or not hasattr(model, "jdsatepoch"):
+        raise _no_orbit(f"a {type(orbit).__name__}")
+    return " ".join(str(getattr(orbit, "name", None) or "").split()), model
 
 
 def _is_iterable(value: Any) -> bool:
@@ -100,23 +113,6 @@ def out_of_array(value: Any) -> Any:
 def _no_orbit(what: str) -> UsageError:
     return UsageError(f"orbit is {what}; a file, the lines of a TLE, a table of the scenario, an sgp4 Satrec or a skyfield "
                       "EarthSatellite was expected")
-
-
-def _lines(orbit: Any) -> str:
-    """TLE lines of one object of another package, under its name."""
-    name = " ".join(str(getattr(orbit, "name", None) or "").split())
-    model = getattr(orbit, "model", orbit)  # skyfield keeps its Satrec there
-    if hasattr(model, "satnum") and hasattr(model, "jdsatepoch"):
-        try:
-            from sgp4.exporter import export_tle
-        except ImportError as error:
-            raise UsageError("an sgp4 Satrec needs the package sgp4: pip install sgp4") from error
-        try:
-            return "\n".join([*([name] if name else []), *export_tle(model)]) + "\n"
-        except Exception as error:
-            raise UsageError(f"{orbit!r} cannot be written as lines of a TLE ({error}); elements that can were expected, or a file "
-                             "of them (OMM)") from error
-    raise _no_orbit(f"a {type(orbit).__name__}")
 
 
 #: Units of a mesh by the names that trimesh has for them.

@@ -35,14 +35,14 @@ def _orbit(orbit: AnyOrbit) -> tuple[str, adapters.Files | None]:
             raise UsageError("the satellite has no file of an orbit; give it one")
         return orbit.orbit_file, orbit._files
     orbit = adapters.out_of_array(orbit)
-    lines = adapters.orbit_text(orbit)
-    if lines is None:
+    made = adapters.orbit_texts(orbit)
+    if made is None:
         if not isinstance(orbit, (str, os.PathLike)):
             raise UsageError(f"orbit is a {type(orbit).__name__}; a file, TLE lines, a Satellite, a Satrec or an EarthSatellite "
                              "was expected")
         return path_text(orbit, "orbit"), None
-    files = adapters.Files({"orbit.tle": lines})
-    return str(files.folder / "orbit.tle"), files
+    files = adapters.Files(made)
+    return str(files.folder / next(iter(made))), files
 
 
 def _numbers(norad: Numbers, orbit: AnyOrbit) -> list[int]:

@@ -143,10 +143,10 @@ class Satellite(Made):
         if orbit is None:
             return None
         orbit = adapters.out_of_array(orbit)
-        text = adapters.orbit_text(orbit)
-        if text is not None:
-            self._texts["orbit.tle"] = text
-            return {"file": "orbit.tle", "norad": norad}
+        made = adapters.orbit_texts(orbit)
+        if made is not None:
+            self._texts.update(made)
+            return {"file": next(iter(made)), "norad": norad}
         table = dict(orbit) if isinstance(orbit, Mapping) else {"file": orbit, "norad": norad}
         return {**table, "file": _absolute(table["file"])} if "file" in table else table
 
@@ -193,7 +193,7 @@ class Satellite(Made):
     def _set_files(self) -> None:
         """Files that adapters made stand in a folder that is another one in every process."""
         if self._files is not None:
-            for key, name in (("orbit", "orbit.tle"), ("mesh", "mesh.obj")):
+            for key, name in (("orbit", "orbit.tle"), ("orbit", "orbit.json"), ("mesh", "mesh.obj")):
                 if name in self._files.texts:
                     self._table[key] = {**self._table[key], "file": str(self._files.folder / name)}
 
@@ -248,7 +248,7 @@ class Satellite(Made):
         Parameters
         ----------
         folder
-            Where a mesh of arrays and an orbit of lines are put, as mesh.obj and orbit.tle: no file holds them. `UsageError` if
+            Where a mesh of arrays and an orbit of lines are put, as mesh.obj and orbit.tle or orbit.json: no file holds them. `UsageError` if
             there are some and no folder is given.
         """
         return adapters.put_down(self._text(), self._files, folder)

@@ -109,7 +109,7 @@ class Scenario(Made):
         Parameters
         ----------
         folder
-            Where a mesh of arrays and an orbit of lines are put, as mesh.obj and orbit.tle: no file holds them. `UsageError` if
+            Where a mesh of arrays and an orbit of lines are put, as mesh.obj and orbit.tle or orbit.json: no file holds them. `UsageError` if
             there are some and no folder is given.
         """
         return adapters.put_down(self._scenario.locked, _files_of(self), folder)
