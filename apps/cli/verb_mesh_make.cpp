@@ -35,9 +35,13 @@ void add_spacecraft(CLI::App &verb, ShapeOptions &o) {
   verb.add_option("--panels", o.panels, "cubesat: deployed panels, to +x, -x, +y, -y")
       ->check(CLI::Range(0, 4))
       ->capture_default_str();
-  verb.add_option("--bus", o.bus, "box-wing: x y z [m]")->expected(3)->check(length);
+  verb.add_option("--bus", o.bus, "box-wing: x y z [m]")
+      ->expected(3)
+      ->delimiter(',')
+      ->check(length);
   verb.add_option("--wing", o.wing, "box-wing: length along y and width of a wing [m]")
       ->expected(2)
+      ->delimiter(',')
       ->check(length);
   verb.add_option("--yoke", o.yoke, "box-wing: from bus to wing [m]")
       ->check(CLI::Range(0.01, 100.0))
@@ -47,6 +51,7 @@ void add_spacecraft(CLI::App &verb, ShapeOptions &o) {
       ->capture_default_str();
   verb.add_option("--nozzle", o.nozzle, "rocket-body: length and diameter of its nozzle [m]")
       ->expected(2)
+      ->delimiter(',')
       ->check(length)
       ->capture_default_str();
   verb.add_option("--focus", o.focus, "dish: focal length [m]")
@@ -112,6 +117,7 @@ void add_mesh_make(CLI::App &mesh, const Exit &exit_with) {
       ->capture_default_str();
   verb->add_option("--semi-axes", options->semi_axes, "a b c [m]")
       ->expected(3)
+      ->delimiter(',')
       ->check(length)
       ->capture_default_str();
   verb->add_option("--facets", options->facets, "At least so many triangles")

@@ -44,7 +44,7 @@ private:
   static Result<std::unique_ptr<LightSums>>
   make(const Scenario &scenario, const std::vector<Scenario> &others,
        const jobs::JobOptions &options, const jobs::Monitor &monitor, Diagnostics &diagnostics) {
-    const LoadOptions stoppable{.cancel = monitor.cancel};
+    const LoadOptions stoppable{.turns_in_time = false, .cancel = monitor.cancel};
     UMOV_ASSIGN(object, load_object(scenario, 0, stoppable, diagnostics));
     SumsOptions how;
     how.mask_cache = options.mask_cache;
@@ -198,7 +198,9 @@ nb::tuple applied(const Sums &sums, const Abundances &abundances, const Scenario
   Attention attention(watch);
   auto made = attend(
       attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) -> Result<double> {
-        UMOV_ASSIGN(object, load_object(scenario, 0, {.cancel = monitor.cancel}, diagnostics));
+        UMOV_ASSIGN(object,
+                    load_object(scenario, 0, {.turns_in_time = false, .cancel = monitor.cancel},
+                                diagnostics));
         UMOV_ASSIGN(tables, sums.light().tables_for(object.scene));
         if (tables.band_count() != bands)
           return fail(ErrorCode::Internal, "a scene has other bands than its scenario");

@@ -71,7 +71,8 @@ nb::bytes render(const Scenario &scenario, const std::string &shade, const std::
 nb::tuple mesh_of(const Scenario &scenario, std::size_t object, nb::handle watch) {
   Attention attention(watch);
   auto made = attend(attention, [&](const jobs::Monitor &monitor, Diagnostics &diagnostics) {
-    return load_object(scenario, object, {.cancel = monitor.cancel}, diagnostics);
+    return load_object(scenario, object, {.turns_in_time = false, .cancel = monitor.cancel},
+                       diagnostics);
   });
   attention.settle(was_interrupted(made));
   const Mesh mesh = take(std::move(made)).scene.mesh;

@@ -104,7 +104,10 @@ def real_array(value: Any, name: str, expected: str = "numbers") -> NDArray[np.f
 
 
 def _short(value: Any) -> str:
-    text = repr(value.item() if isinstance(value, np.generic) else value)
+    try:
+        text = repr(value.item() if isinstance(value, np.generic) else value)
+    except RecursionError:  # lists in lists without number
+        text = "[" * 201
     return text if len(text) <= 200 else f"{text[:200]} ... ({type(value).__name__})"
 
 

@@ -28,17 +28,35 @@ def _number(value: float) -> str:
     return repr(float(value))
 
 
+def _with_an_end() -> UsageError:
+    return UsageError("a table or list holds itself, or lists within lists without number; tables within tables, with an end, were expected")
+
+
 def copied(value: Any) -> Any:
     """Tables, lists and arrays that nobody else holds; what cannot change is itself."""
+    try:
+        return _copied(value)
+    except RecursionError:
+        raise _with_an_end() from None  # its trace has a thousand lines
+
+
+def _copied(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {key: copied(one) for key, one in value.items()}
+        return {key: _copied(one) for key, one in value.items()}
     if isinstance(value, (list, tuple)):
-        return [copied(one) for one in value]
+        return [_copied(one) for one in value]
     return value.copy() if hasattr(value, "tolist") and hasattr(value, "copy") else value
 
 
 def value_text(value: Any, name: str = "value") -> str:
     """A value in place, tables too."""
+    try:
+        return _value_text(value, name)
+    except RecursionError:
+        raise _with_an_end() from None
+
+
+def _value_text(value: Any, name: str) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -46,24 +64,24 @@ def value_text(value: Any, name: str = "value") -> str:
             raise UsageError(f"{name} is {value!r}; a text without the character 0 was expected")
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
     if isinstance(value, os.PathLike):
-        return value_text(os.fspath(value), name)
+        return _value_text(os.fspath(value), name)
     if is_moment(value):
         return utc(value)
     if isinstance(value, Mapping):
-        inside = (f"{_key(str(k))} = {value_text(v, str(k))}" for k, v in value.items() if v is not None)
+        inside = (f"{_key(str(k))} = {_value_text(v, str(k))}" for k, v in value.items() if v is not None)
         return "{ " + ", ".join(inside) + " }"
     if hasattr(value, "to_value") and hasattr(value, "unit") and not hasattr(value, "scale"):  # into the unit that the key has
         return value_text(plain_key(value, name), name)
     if hasattr(value, "to_value") or hasattr(value, "scale"):  # a length of time, of which a scenario has its own forms
         raise UsageError(f"{name} is {value!r}; a plain number or a text was expected, in the unit that the key says")
     if hasattr(value, "tolist"):  # numpy arrays and numbers
-        return value_text(value.tolist(), name)
+        return _value_text(value.tolist(), name)
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
         return _number(value)
     if isinstance(value, Sequence):
-        return "[" + ", ".join(value_text(one, name) for one in value) + "]"
+        return "[" + ", ".join(_value_text(one, name) for one in value) + "]"
     raise UsageError(f"{name} is a {type(value).__name__}; a number, text, truth value, time, list "
                      "or table was expected")
 
@@ -75,6 +93,8 @@ def tables_of(source: Any, name: str) -> dict[str, Any]:
         return tomllib.loads(text(source, "text"))
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{name} is no TOML: {error}") from error
+    except RecursionError:
+        raise InputError(f"{name} has lists or tables within each other hundreds deep; a scenario was expected") from None
 
 
 def _is_tables(value: Any) -> bool:
@@ -86,8 +106,8 @@ def text_of(document: Mapping[str, Any]) -> str:
     """A document: plain keys first, then a section for each table of the top."""
     try:
         return _text_of(document)
-    except RecursionError as error:
-        raise UsageError("a table holds itself; tables within tables, with an end, were expected") from error
+    except RecursionError:
+        raise _with_an_end() from None
 
 
 def _text_of(document: Mapping[str, Any]) -> str:

@@ -30,8 +30,14 @@ _VERBS = {"bands list": "bands()", "calibrate": "calibrate", "exposure": "exposu
 _OF_A_SHELL = ("doctor", "material index", "mesh check")
 _VERB = re.compile(rf"(?<![\w./-])umov ({'|'.join([*_VERBS, *_OF_A_SHELL])})\b(?! -)")
 #: A file that adapters made of what was given.
-_MADE = re.compile(r"[^\s\"']*/umov-[a-z0-9_]{8}/(mesh\.obj|orbit\.tle|orbit\.json)")
+_MADE = re.compile(r"[^\s\"']*/umov-[a-z0-9_]{8}/(mesh\.obj|orbit\.tle|orbit\.json|(?:light|baseline)(?:_\d+)?\.ecsv)")
 _GIVEN = {"mesh.obj": "mesh of arrays", "orbit.tle": "orbit", "orbit.json": "orbit"}
+
+
+def _curve(file: str) -> str:
+    """light.ecsv is the argument `light`, light_2.ecsv its third."""
+    name, _, number = file.removesuffix(".ecsv").partition("_")
+    return f"{name}[{number}]" if number else name
 
 
 def _argument(option: str) -> str | None:
@@ -48,7 +54,7 @@ def in_python(text: str) -> str:
     "Known: umov material list" is "Known: umov.materials()"."""
     text = text.removeprefix("-o ")  # that option is a path here
     if "/umov-" in text:  # the pattern takes the square of the length of a word
-        text = _MADE.sub(lambda m: _GIVEN[m[1]], text)
+        text = _MADE.sub(lambda m: _GIVEN.get(m[1]) or _curve(m[1]), text)
     text = _VERB.sub(_function, text)
     if "--" not in text:
         return text

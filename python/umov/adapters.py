@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from . import satrecs
+from . import _toml, satrecs
 from ._numbers import in_unit, joined, number_array, path_text, utf8
 from .errors import DeviceError, UsageError
 
@@ -46,7 +46,8 @@ class Files:
                 (into / name).write_text(content, encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
             raise DeviceError(f"{into}: {names} cannot be written ({error}); a folder for them was expected") from error
-        return text.replace(str(self.folder), str(into))
+        # Within the quotes of a TOML text: a quote or backslash of the folder's name is none of its own.
+        return text.replace(str(self.folder), _toml.value_text(str(into))[1:-1])
 
 
 def put_down(text: str, files: Files | None, folder: Any) -> str:

@@ -121,11 +121,12 @@ class Inversion(NamedTuple):
 @contextmanager
 def _files_of(*curves: AnyCurves) -> Iterator[list[list[str]]]:
     """Each as names of files: those of memory are written for as long as the job runs."""
-    with tempfile.TemporaryDirectory(prefix="umov_") as folder:
+    with tempfile.TemporaryDirectory(prefix="umov-") as folder:
         out: list[list[str]] = []
-        for group in curves:
-            several = list(group) if isinstance(group, (list, tuple)) else [group]
-            out.append([_file_of(one, pathlib.Path(folder) / f"light_{len(out)}_{k}.ecsv") for k, one in enumerate(several)])
+        for name, group in zip(("light", "baseline"), curves):
+            several = list(group) if isinstance(group, (list, tuple)) else None
+            named = [(f"{name}_{k}", one) for k, one in enumerate(several)] if several is not None else [(name, group)]
+            out.append([_file_of(one, pathlib.Path(folder) / f"{file}.ecsv") for file, one in named])
         yield out
 
 

@@ -6,6 +6,8 @@ import pathlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, Union
 
+import numpy as np
+
 from . import _toml, _umov
 from ._jobs import Progress, Watch, job_options
 from ._made import Made
@@ -13,7 +15,7 @@ from ._numbers import between, in_units, number, path_text, text as text_of, tru
 from .errors import DeviceError, InputError, UsageError
 from .scenarios import AnyScenario, Scenario
 from .tables import Table
-from .times import utc, utc_list
+from .times import plain_column, utc, utc_list
 
 if TYPE_CHECKING:
     from astropy.table import QTable
@@ -125,16 +127,18 @@ def _text_of(table: Any, what: str) -> tuple[str, str]:
         if not table.columns.is_unique:
             raise UsageError(f"{what} has two columns {table.columns[table.columns.duplicated()][0]}; a name for each was expected")
         notes = table.attrs.get("notes")
-        table = {str(name): _of_pandas(table[name]) for name in table.columns}
+        table = {str(name): _of_pandas(table[name]) for name in table.columns} | _time_of_index(table)
     if isinstance(table, Mapping):
         from astropy.table import Table as Columns
+        columns = {name: plain_column(one, str(name), what) for name, one in table.items()}
         try:
-            table = Columns(dict(table), meta=notes)
+            table = Columns(columns, meta=notes)
         except (TypeError, ValueError) as error:
             raise UsageError(f"{what} is a table of columns that are none ({error}); arrays of one length were expected") from error
     if hasattr(table, "colnames") and hasattr(table, "write"):
         import io
         out = io.StringIO()
+        table = _without_objects(table, what)
         in_units(_with_time_utc(table, what), what).write(out, format="ascii.ecsv")
         try:
             out.getvalue().encode("utf-8")
@@ -146,11 +150,29 @@ def _text_of(table: Any, what: str) -> tuple[str, str]:
 
 
 def _of_pandas(column: Any) -> Any:
-    """A column of pandas as astropy writes it: times with a zone in UTC, texts as such and no objects."""
+    """A column of pandas as numpy has it; times with a zone in UTC."""
     if getattr(column.dtype, "tz", None) is not None:
         return [utc(one.to_pydatetime()) if one == one else "" for one in column]
-    values = column.to_numpy()
-    return values.astype(str) if values.dtype == object and all(isinstance(one, str) for one in values) else values
+    return column.to_numpy()
+
+
+def _time_of_index(table: Any) -> dict[str, Any]:
+    """Times that a DataFrame has for its index, where no column has them."""
+    if not hasattr(table.index, "tz") or {"time_utc", "mjd_utc", "mjd"} & {str(name) for name in table.columns}:
+        return {}
+    return {"time_utc": _of_pandas(table.index.to_series())}
+
+
+def _without_objects(table: Any, what: str) -> Any:
+    """A table of astropy whose columns of objects can be written."""
+    held = [name for name in table.colnames if getattr(table[name], "dtype", None) == object and len(table[name].shape) == 1]
+    if not held:
+        return table
+    from astropy.table import Column
+    out = table.copy()
+    for name in held:
+        out.replace_column(name, Column(plain_column(np.asarray(table[name]), name, what)))
+    return out
 
 
 def _with_time_utc(table: Any, what: str) -> Any:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _toml, _umov
 from ._made import Made
-from ._numbers import number, text
+from ._numbers import _short, number, text
 from .errors import UsageError
 from .tables import Table
 
@@ -27,7 +27,12 @@ def names_of(given: Any) -> Any:
         given = _wave(given) if given.isscalar else list(given)
     if not isinstance(given, str) and (isinstance(given, (bytes, Mapping)) or not hasattr(given, "__iter__")):
         raise UsageError(f"bands is {given!r}; names were expected, such as [\"nm:550\", \"Bessell.V\"]")
-    return given if isinstance(given, str) else [_wave(one) for one in given]
+    if isinstance(given, str):
+        return given
+    listed = [_wave(one) for one in given]
+    if strange := [one for one in listed if isinstance(one, (bytes, Mapping, list, tuple)) or one is None]:
+        raise UsageError(f"bands has {_short(strange[0])}; names were expected, such as [\"nm:550\", \"Bessell.V\"]")
+    return listed
 
 
 class Bands(Made):

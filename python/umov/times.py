@@ -109,6 +109,37 @@ def utc_list(times: AnyTime | Sequence[AnyTime]) -> tuple[list[str], bool]:
     return [utc(one) for one in listed], False
 
 
+def _is_gap(one: Any) -> bool:
+    """None, or NaT and NaN of numpy and pandas."""
+    return one is None or type(one).__name__ in ("NaTType", "NAType") or (isinstance(one, (float, np.floating, np.datetime64)) and one != one)
+
+
+def plain_column(column: Any, name: str, what: str) -> Any:
+    """A column of objects as it can be written: moments as texts in UTC, gaps (None, NaT, NA) as empty cells; all else as it is."""
+    if isinstance(column, np.ndarray) or (isinstance(column, (list, tuple)) and any(one is None or is_moment(one) or isinstance(
+            one, (datetime.date, np.datetime64)) for one in column)):
+        return _of_objects(list(column), name, what) if getattr(column, "dtype", object) == object else column
+    return column
+
+
+def _of_objects(cells: list[Any], name: str, what: str) -> Any:
+    known = [one for one in cells if not _is_gap(one)]
+    if all(isinstance(one, str) for one in known):
+        return ["" if _is_gap(one) else str(one) for one in cells]
+    if all(isinstance(one, (int, float, np.number)) for one in known):
+        return np.array([np.nan if _is_gap(one) else float(one) for one in cells])
+    out = []
+    for row, one in enumerate(cells):
+        place = f"{what}'s column {name}, row {row}"
+        if not (_is_gap(one) or isinstance(one, (str, datetime.date, np.datetime64)) or is_moment(one)):
+            raise UsageError(f"{place} is {str(one)[:60]!r}, of type {type(one).__name__}; numbers, texts or times were expected, one kind in a column")
+        try:
+            out.append("" if _is_gap(one) else utc(one))
+        except UsageError as error:
+            raise UsageError(f"{place}: {error}") from error
+    return out
+
+
 def seconds(step: Any, name: str = "step") -> float:
     """A length of time in seconds: a Quantity, a timedelta, or a plain number if it is named so."""
     if isinstance(step, datetime.timedelta):

@@ -53,15 +53,18 @@ Result<std::vector<Trajectory>> choose(const PassesRequest &request, std::vector
   UMOV_ASSIGN(chosen, best_sets(request, std::move(sets)));
   std::vector<Trajectory> out;
   std::size_t doubtful = 0;
+  double oldest = 0; // of those that are taken
   std::vector<std::string> old;
   for (const ElementSet &set : chosen) {
     const double age = std::max(std::abs(clock_days_between(request.start, set.epoch)),
                                 std::abs(clock_days_between(request.stop, set.epoch)));
     doubtful += age > doubtful_days ? 1u : 0u;
-    if (age > old_days && !allow_old)
+    if (age > old_days && !allow_old) {
       old.push_back(set.name.empty() ? fmt::format("{}", set.norad_cat_id) : printable(set.name));
-    else
-      out.emplace_back(set);
+      continue;
+    }
+    oldest = std::max(oldest, age);
+    out.emplace_back(set);
   }
   if (out.empty())
     return fail(ErrorCode::BadInput,
@@ -75,9 +78,13 @@ Result<std::vector<Trajectory>> choose(const PassesRequest &request, std::vector
                                  counted(old.size(), "object"), old_days, listed(old, 5)),
                      {request.orbit});
   if (doubtful > old.size())
-    diagnostics.warn(fmt::format("elements of {} are more than {:g} d from the span; passes may be "
-                                 "seconds off",
-                                 counted(doubtful - old.size(), "object"), doubtful_days),
+    diagnostics.warn(fmt::format("elements of {} are more than {:g} d from the span, the farthest "
+                                 "{:.0f} d; {}",
+                                 counted(doubtful - old.size(), "object"), doubtful_days, oldest,
+                                 oldest > old_days
+                                     ? "passes may be minutes off, and after months others than "
+                                       "there were: the air decides where a satellite is by then"
+                                     : "passes may be seconds off"),
                      {request.orbit});
   return out;
 }

@@ -109,10 +109,12 @@ Result<PoseLight> PoseLight::make(const Scenario &scenario, const SignatureReque
   const LightOptions light = light_asked_for(scenario, request, source, options);
   UMOV_TRY(check_request(scenario, request));
   const bool is_sun = request.source == Source::Sun;
-  UMOV_ASSIGN(object,
-              load_object(scenario, 0,
-                          {.allow_old_elements = true, .source_is_sun = is_sun, .cancel = cancel},
-                          diagnostics));
+  UMOV_ASSIGN(object, load_object(scenario, 0,
+                                  {.allow_old_elements = true,
+                                   .source_is_sun = is_sun,
+                                   .turns_in_time = false,
+                                   .cancel = cancel},
+                                  diagnostics));
   auto state = std::make_unique<State>();
   state->options = light;
   state->inputs = std::move(object.inputs);

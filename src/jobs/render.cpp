@@ -264,6 +264,7 @@ Result<Rendered> render(const Scenario &scenario, const RenderRequest &request,
   UMOV_ASSIGN(object, load_object(scenario, request.object,
                                   {.allow_bad_checksum = options.allow_bad_checksum,
                                    .allow_old_elements = options.allow_old_elements,
+                                   .turns_in_time = !request.view,
                                    .cancel = monitor.cancel,
                                    .at = request.time},
                                   diagnostics));

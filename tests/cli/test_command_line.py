@@ -183,3 +183,14 @@ def test_a_file_without_its_option_is_told_which_one(umov, arguments):
 def test_who_gives_no_verb_is_told_which_there_are(umov, arguments, verb):
     done = umov(*arguments)
     assert done.code == 2 and re.search(rf"no verb was given; there are .*\b{verb}\b", done.err), done.err
+
+
+def test_sizes_are_taken_with_commas_as_the_help_shows_them(umov, tmp_path):
+    for shape, option, values in (("box-wing", "--bus", ("5", "5", "45")), ("cigar", "--semi-axes", ("0.5", "0.5", "2"))):
+        assert umov("mesh", "make", shape, option, *values, "-o", "words.obj").code == 0
+        done = umov("mesh", "make", shape, option, ",".join(values), "-o", "commas.obj")
+        assert done.code == 0, done.err
+        same = [(tmp_path / f"{name}.obj").read_text().replace("commas", "words") for name in ("words", "commas")]
+        assert same[0] == same[1]
+    done = umov("mesh", "make", "box-wing", "--bus", "5,5", "-o", "a.obj")
+    assert done.code == 2 and "--bus" in done.err and "3" in done.err, done.err

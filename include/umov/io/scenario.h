@@ -52,7 +52,9 @@ struct ScenarioObject {
   ScenarioMesh mesh;
   AttitudeLaw attitude = TwoAxisLaw{};
   bool has_assumed_epoch =
-      false; ///< a spin or tumble that begins at time.start for want of `epoch`
+      false;                ///< a spin or tumble that begins at time.start for want of `epoch`
+  bool lacks_epoch = false; ///< of a scene: nor is there a time.start. Its attitude is known at no
+                            ///< time, and its light from any direction all the same
   std::map<std::string, MaterialNames> materials; ///< mesh material, or "default"
   std::vector<MovingJoint> parts;
 };
@@ -142,6 +144,7 @@ struct LoadOptions {
   bool allow_bad_checksum = false, allow_old_elements = false;
   bool source_is_sun = true; ///< false: a laser, for which a mirror is no matter of the disk
   bool reads_shape = true;   ///< false: the orbit alone; attitude and scene stay empty
+  bool turns_in_time = true; ///< false: its attitude is asked for at no time, and needs no epoch
   const std::atomic<bool> *cancel = nullptr; ///< ends the reading where it comes true
   /// The moment that is shown. Within [time] the elements are the span's, chosen and judged by it;
   /// outside they are chosen, and their age is judged, at this moment.

@@ -133,12 +133,20 @@ Result<StartLaw> read_start(const Node &node) {
 constexpr std::initializer_list<const char *> pointing_keys{
     "point", "at", "then", "toward", "quaternion", "roll_deg", "pitch_deg", "yaw_deg"};
 
-/// When the start holds: as given, else where the scenario begins.
-Result<Epoch<Utc>> epoch_of(const Node &node, const std::optional<Epoch<Utc>> &begin) {
-  return node.has("epoch") || !begin ? node.time("epoch") : Result<Epoch<Utc>>(*begin);
+/// When the start holds: as given, else where the scenario begins. A scene has no time: there it is
+/// `Epoch{}` (`ScenarioObject::lacks_epoch`), but for a piece, which begins somewhere.
+Result<Epoch<Utc>> epoch_of(const Node &node, const AttitudeContext &context) {
+  if (node.has("epoch") || (!context.begin && context.is_piece))
+    return node.time("epoch");
+  return context.begin.value_or(Epoch<Utc>{});
 }
 
-Result<SpinLaw> read_spin(const Node &node, const std::optional<Epoch<Utc>> &begin) {
+/// The key, where there is an epoch at all.
+std::string epoch_toml(Epoch<Utc> epoch) {
+  return epoch.jd1 == 0 ? std::string() : fmt::format("epoch = {}, ", to_iso_exact(epoch));
+}
+
+Result<SpinLaw> read_spin(const Node &node, const AttitudeContext &context) {
   Problems problems;
   problems.went(forbid(node, "mode = \"spin\"", pointing_keys));
   problems.went(forbid(node, "mode = \"spin\"", {"inertia", "file", "pieces"}));
@@ -153,7 +161,7 @@ Result<SpinLaw> read_spin(const Node &node, const std::optional<Epoch<Utc>> &beg
   const double period = node.number("period_s", 1);
   if (period == 0)
     problems.add(wrong_value(node, "period_s", 0, "another number"));
-  law.epoch = problems.taken(epoch_of(node, begin), Epoch<Utc>{});
+  law.epoch = problems.taken(epoch_of(node, context), Epoch<Utc>{});
   law.start = problems.taken(read_start(node), StartLaw{});
   UMOV_TRY(problems.told());
   law.rate_rad_s = node.has("rate_deg_s") ? Angle::degrees(node.number("rate_deg_s", 0)).radians()
@@ -191,14 +199,14 @@ Result<Vec3<Body>> read_rates(const Node &node) {
   return Vec3<Body>{rate[0], rate[1], rate[2]} * (pi / 180);
 }
 
-Result<TumbleLaw> read_tumble(const Node &node, const std::optional<Epoch<Utc>> &begin) {
+Result<TumbleLaw> read_tumble(const Node &node, const AttitudeContext &context) {
   Problems problems;
   problems.went(forbid(node, "mode = \"tumble\"", pointing_keys));
   problems.went(forbid(node, "mode = \"tumble\"", {"axis", "period_s", "file", "pieces"}));
   TumbleLaw law;
   problems.went(read_inertia(node, law));
   law.rate_rad_s = problems.taken(read_rates(node), Vec3<Body>{});
-  law.epoch = problems.taken(epoch_of(node, begin), Epoch<Utc>{});
+  law.epoch = problems.taken(epoch_of(node, context), Epoch<Utc>{});
   law.start = problems.taken(read_start(node), StartLaw{});
   UMOV_TRY(problems.told());
   return law;
@@ -226,7 +234,7 @@ Result<PiecewiseLaw> read_pieces(const Node &node, const std::filesystem::path &
     const Node piece(*item.as_table(), "object.attitude", "object.attitude.pieces", node.file());
     UMOV_TRY(piece.check());
     UMOV_ASSIGN(from, piece.time("from"));
-    UMOV_ASSIGN(one, read_attitude(piece, folder, context));
+    UMOV_ASSIGN(one, read_attitude(piece, folder, {context.seed, context.begin, true}));
     law.pieces.push_back({from, std::make_shared<AttitudeLaw>(one)});
   }
   return law;
@@ -275,9 +283,9 @@ std::string law_toml(const InertialLaw &law) {
 
 std::string law_toml(const SpinLaw &law) {
   const std::string start = std::visit([](const auto &s) { return law_toml(s); }, law.start);
-  return fmt::format("{{ mode = \"spin\", axis = {}, rate_deg_s = {}, epoch = {}, start = {} }}",
+  return fmt::format("{{ mode = \"spin\", axis = {}, rate_deg_s = {}, {}start = {} }}",
                      axis_toml(law.axis), degrees_text(Angle::radians(law.rate_rad_s)),
-                     to_iso_exact(law.epoch), start);
+                     epoch_toml(law.epoch), start);
 }
 
 std::string law_toml(const TumbleLaw &law) {
@@ -288,10 +296,10 @@ std::string law_toml(const TumbleLaw &law) {
                     : fmt::format("[{}, {}, {}, {}, {}, {}]", shortest(i.xx), shortest(i.yy),
                                   shortest(i.zz), shortest(i.xy), shortest(i.xz), shortest(i.yz));
   const auto degrees = [](double x) { return degrees_text(Angle::radians(x)); };
-  return fmt::format("{{ mode = \"tumble\", inertia = {}, rate_deg_s = [{}, {}, {}], epoch = {}, "
-                     "start = {} }}",
-                     inertia, degrees(law.rate_rad_s.x), degrees(law.rate_rad_s.y),
-                     degrees(law.rate_rad_s.z), to_iso_exact(law.epoch), start);
+  return fmt::format(
+      "{{ mode = \"tumble\", inertia = {}, rate_deg_s = [{}, {}, {}], {}start = {} }}", inertia,
+      degrees(law.rate_rad_s.x), degrees(law.rate_rad_s.y), degrees(law.rate_rad_s.z),
+      epoch_toml(law.epoch), start);
 }
 
 std::string law_toml(const TableLaw &law) {
@@ -332,9 +340,9 @@ Result<AttitudeLaw> read_attitude(const Node &node, const std::filesystem::path 
     if (mode == "inertial")
       return read_inertial(node).map(as_law);
     if (mode == "spin")
-      return read_spin(node, context.begin).map(as_law);
+      return read_spin(node, context).map(as_law);
     if (mode == "tumble")
-      return read_tumble(node, context.begin).map(as_law);
+      return read_tumble(node, context).map(as_law);
     if (mode == "aem")
       return read_table(node, folder).map(as_law);
     if (mode == "pieces")

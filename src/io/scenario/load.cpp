@@ -104,8 +104,9 @@ Result<void> load_orbit(const Named &of, const LoadOptions &options, Diagnostics
   return {};
 }
 
-Result<void> load_attitude(const Named &of, const Mesh &mesh, const std::atomic<bool> *cancel,
+Result<void> load_attitude(const Named &of, const Mesh &mesh, const LoadOptions &options,
                            Diagnostics &diagnostics, LoadedObject &out) {
+  const std::atomic<bool> *cancel = options.cancel;
   auto law = completed(
       of.object.attitude, mesh,
       [&](const std::string &file) -> Result<std::shared_ptr<const AttitudeTable>> {
@@ -120,6 +121,11 @@ Result<void> load_attitude(const Named &of, const Mesh &mesh, const std::atomic<
                 law.error().where.file.empty() ? of.place("attitude") : law.error().where);
   if (auto checked = check_attitude(*law); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("attitude"));
+  if (of.object.lacks_epoch && options.turns_in_time)
+    return fail(ErrorCode::BadInput,
+                "[object.attitude] has no \"epoch\", and there is no time.start, which it would be "
+                "else; when it has the attitude of `start` was expected. Add it.",
+                of.place("attitude"));
   if (of.object.has_assumed_epoch)
     diagnostics.warn(
         fmt::format("attitude has no epoch: it turns from its start at time.start, {}, "
@@ -334,7 +340,7 @@ Result<LoadedObject> load(const Scenario &scenario, std::size_t which, const Loa
   UMOV_ASSIGN(read, load_mesh(of, options.cancel, diagnostics, out));
   UMOV_TRY(check_mtl(of, read));
   UMOV_TRY(check_material_keys(of, read.mesh));
-  UMOV_TRY(load_attitude(of, read.mesh, options.cancel, diagnostics, out));
+  UMOV_TRY(load_attitude(of, read.mesh, options, diagnostics, out));
   const std::vector<Joint> joints = joints_of(of.object.parts);
   if (auto checked = check_joints(joints, read.mesh); !checked)
     return fail(ErrorCode::BadInput, checked.error().message, of.place("part"));

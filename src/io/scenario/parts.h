@@ -18,6 +18,7 @@ inline const std::vector<std::string> interreflection_names{"none", "unpolarized
 struct AttitudeContext {
   std::uint64_t seed = 0;               ///< of libration
   std::optional<Epoch<Utc>> begin = {}; ///< of the scenario: where a spin starts unless it says so
+  bool is_piece = false;                ///< of a law of pieces
 };
 /// `folder`: of relative paths.
 Result<AttitudeLaw> read_attitude(const Node &node, const std::filesystem::path &folder,

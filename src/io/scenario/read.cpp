@@ -297,7 +297,9 @@ Result<void> read_attitude_of(const Node &object, const fs::path &folder, Scenar
   UMOV_ASSIGN(law, scenario::read_attitude(node, folder, {out.seed, begin}));
   one.attitude = law;
   const std::string mode = node.text("mode", "");
-  one.has_assumed_epoch = begin && (mode == "spin" || mode == "tumble") && !node.has("epoch");
+  const bool has_none = (mode == "spin" || mode == "tumble") && !node.has("epoch");
+  one.has_assumed_epoch = begin && has_none;
+  one.lacks_epoch = !begin && has_none;
   return {};
 }
 
