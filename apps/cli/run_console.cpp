@@ -32,7 +32,7 @@ void tell_of_objects(const std::string &scenario, const std::vector<jobs::Object
 
 void tell_of_search(const Scenario &scenario, const Common &common) {
   const ScenarioTime &span = *scenario.time;
-  const double count = std::floor(seconds_between(span.stop, span.start) / span.step_s) + 1;
+  const double count = static_cast<double>(epoch_count(span.span()).value_or(0));
   constexpr double many = 200'000; // about a second
   if (count >= many)
     note(common, fmt::format("looking for passes among {:.0f} epochs", count));

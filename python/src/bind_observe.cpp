@@ -76,6 +76,22 @@ Table period(const std::string &text, const std::string &path, const std::string
   return take(std::move(made));
 }
 
+/// The magnitudes that `period` looks at.
+Table brightness(const std::string &text, const std::string &path, const std::string &band,
+                 double gap_s, nb::handle watch) {
+  Attention attention(watch);
+  auto made =
+      attend(attention, [&](const jobs::Monitor &, Diagnostics &diagnostics) -> Result<Table> {
+        UMOV_ASSIGN(rows, read_observations_text(text, path, diagnostics));
+        jobs::PeriodRequest request;
+        request.band = band;
+        request.gap_s = gap_s;
+        return jobs::brightness(rows, request, diagnostics);
+      });
+  attention.settle(false);
+  return take(std::move(made));
+}
+
 /// The text of a file in which others take the magnitudes of `stokes`; `counts` as for reduce.
 std::string measurements(const Table &stokes, const std::string &counts,
                          const std::string &counts_path, const std::string &form,
@@ -192,6 +208,7 @@ void bind_observe(nb::module_ &m) {
       "name"_a);
   m.def("period", &period, "text"_a, "path"_a, "band"_a, "peaks"_a, "reach_s"_a, "gap_s"_a,
         "watch"_a.none());
+  m.def("brightness", &brightness, "text"_a, "path"_a, "band"_a, "gap_s"_a, "watch"_a.none());
   m.def("measurements", &measurements, "stokes"_a, "counts"_a, "counts_path"_a, "form"_a, "ecsv"_a,
         "created_utc"_a, "watch"_a.none());
   m.def("exposure",

@@ -15,6 +15,12 @@ if TYPE_CHECKING:
 
     from .light_curves import LightCurve
 
+# Okabe & Ito (2008); the first three follow the wavelength from blue to red, as in the report.
+THREE = ("#0072b2", "#009e73", "#d55e00")
+MANY = ("#0072b2", "#56b4e9", "#009e73", "#e69f00", "#d55e00", "#cc79a7", "#000000")
+MARKERS = ("o", "s", "^", "D", "P", "X", "*")
+PHASE_MAP = "cividis"
+
 _Draw = TypeVar("_Draw", bound=Callable[..., Any])
 
 
@@ -29,6 +35,22 @@ def of_a_curve(draw: _Draw) -> _Draw:
         return draw(curve, *args, **more)
 
     return cast(_Draw, checked)
+
+
+def band_title(name: str) -> str:
+    """A band's name for people: that of a filter as it is, a wavelength with its unit behind it.
+
+    Parameters
+    ----------
+    name
+        As scenarios spell it.
+
+    Examples
+    --------
+    >>> plot.band_title("nm:550"), plot.band_title("Bessell.V")
+    ('550 nm', 'Bessell.V')
+    """
+    return f"{name[3:]} nm" if name.startswith("nm:") else name
 
 
 def axes_or_new(axes: Axes | None, projection: str | None = None) -> Axes:

@@ -125,7 +125,8 @@ _MESH_UNITS = {name: unit for unit, names in {
 
 def mesh_unit(mesh: Any) -> str | None:
     """What a trimesh mesh says of its unit; None where it says nothing, and for a file, a table or bare arrays."""
-    told = getattr(mesh, "units", None) if hasattr(mesh, "vertices") and hasattr(mesh, "faces") else None
+    is_of_trimesh = _is_mesh(mesh) or (hasattr(mesh, "geometry") and hasattr(mesh, "graph"))
+    told = getattr(mesh, "units", None) if is_of_trimesh else None
     if told is None:
         return None
     unit = _MESH_UNITS.get(str(told).strip().lower())
@@ -136,16 +137,76 @@ def mesh_unit(mesh: Any) -> str | None:
 
 
 def mesh_text(mesh: Any, unit: str = "m") -> str | None:
-    """An OBJ file of a trimesh mesh or of (vertices, faces), a Quantity among them in `unit`; None for a file or a table."""
-    if isinstance(mesh, (str, os.PathLike, Mapping)):
+    """An OBJ file of a trimesh mesh or scene, of (vertices, faces) or (vertices, faces, groups), or of several of these by name, a
+    Quantity among them in `unit`; None for a file or a table."""
+    if isinstance(mesh, (str, os.PathLike)) or (isinstance(mesh, Mapping) and not _is_parts(mesh)):
         return None
-    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
-        vertices, faces = mesh.vertices, mesh.faces
-    elif isinstance(mesh, Sequence) and len(mesh) == 2:
-        vertices, faces = mesh
-    else:
-        raise UsageError(f"mesh is a {type(mesh).__name__}; a file, a table of the scenario, a trimesh mesh or "
-                         "(vertices, faces) was expected")
+    lines, before = [], 0
+    for group, part in _parts(mesh):
+        points, corners, names = _triangles(part, unit, group)
+        lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in points.tolist()]
+        faces = (corners.astype(np.int64) + 1 + before).tolist()
+        for name in dict.fromkeys(names):
+            lines.append(f"usemtl {name}")
+            lines += [f"f {a} {b} {c}" for (a, b, c), one in zip(faces, names) if one == name]
+        before += len(points)
+    return "\n".join(lines) + "\n"
+
+
+def _is_mesh(value: Any) -> bool:
+    return hasattr(value, "vertices") and hasattr(value, "faces")
+
+
+def _is_parts(mesh: Mapping[Any, Any]) -> bool:
+    """Meshes by the names of their groups, no table of a scenario."""
+    return bool(mesh) and all(_is_mesh(one) or (isinstance(one, (list, tuple)) and len(one) == 2) for one in mesh.values())
+
+
+def _parts(mesh: Any) -> list[tuple[str, Any]]:
+    """Names and meshes of what is given; "": its own name for its groups."""
+    if isinstance(mesh, Mapping):
+        return [(str(name), part) for name, part in mesh.items()]
+    if hasattr(mesh, "geometry") and hasattr(mesh, "graph"):  # a scene of trimesh: each geometry where its node puts it
+        out = []
+        for node in mesh.graph.nodes_geometry:
+            transform, name = mesh.graph[node]
+            part = mesh.geometry[name].copy()
+            if _is_mesh(part):
+                part.apply_transform(transform)
+                out.append((_material_of(part) or str(name), part))
+        if not out:
+            raise UsageError("the scene of trimesh has no mesh; one with triangles was expected")
+        return out
+    if _is_mesh(mesh) or (isinstance(mesh, Sequence) and len(mesh) in (2, 3)):
+        return [("", mesh)]
+    raise UsageError(f"mesh is a {type(mesh).__name__}; a file, a table of the scenario, a trimesh mesh or scene, (vertices, faces) or "
+                     "(vertices, faces, groups), or several of these by name was expected")
+
+
+def _material_of(mesh: Any) -> str:
+    """The name of the one material that a trimesh mesh has; "" where it has none."""
+    name = getattr(getattr(getattr(mesh, "visual", None), "material", None), "name", None)
+    return name if isinstance(name, str) else ""
+
+
+def _groups_of(mesh: Any, group: str, faces: int) -> list[str]:
+    """The group of each triangle of a trimesh mesh. Colours have no name to be mapped by."""
+    visual: Any = getattr(mesh, "visual", None)
+    several = getattr(getattr(visual, "material", None), "materials", None)
+    if not group and several and getattr(visual, "face_materials", None) is not None:
+        named = [getattr(one, "name", None) or f"material_{k}" for k, one in enumerate(several)]
+        return [str(named[int(k)]) for k in visual.face_materials]
+    colours = np.unique(np.asarray(visual.face_colors), axis=0) if getattr(visual, "kind", None) == "face" else ()
+    if not group and len(colours) > 1:
+        from ._jobs import Watch
+        Watch(None).warn(f"the trimesh mesh has faces of {len(colours)} colours and no names of materials: all are one group. For "
+                         "several give meshes by name, {\"bus\": box, \"wing\": plate}, or (vertices, faces, groups)")
+    return [group or _material_of(mesh) or "default"] * faces
+
+
+def _triangles(part: Any, unit: str, group: str) -> tuple[Any, Any, list[str]]:
+    """Vertices, triangles and the group of each."""
+    vertices, faces, *more = (part.vertices, part.faces) if _is_mesh(part) else part
     vertices = joined(vertices, "vertices")
     points = number_array(in_unit(vertices, "vertices", unit) if hasattr(vertices, "to_value") else vertices, "vertices")
     try:
@@ -162,7 +223,17 @@ def mesh_text(mesh: Any, unit: str = "m") -> str | None:
     if corners.size and (corners.min() < 0 or corners.max() >= len(points)):
         raise UsageError(f"faces name vertices {corners.min()} to {corners.max()}; there are {len(points)}, "
                          "counted from 0")
-    lines = ["usemtl default"]
-    lines += [f"v {x!r} {y!r} {z!r}" for x, y, z in points.tolist()]
-    lines += [f"f {a} {b} {c}" for a, b, c in (corners.astype(np.int64) + 1).tolist()]
-    return "\n".join(lines) + "\n"
+    if not more:
+        return points, corners, _checked(_groups_of(part, group, len(corners)))
+    names = [str(one) for one in np.ravel(np.asarray(more[0]))]
+    if len(names) != len(corners):
+        raise UsageError(f"groups are {len(names)}; a name for each of {len(corners)} faces was expected")
+    return points, corners, _checked(names)
+
+
+def _checked(names: list[str]) -> list[str]:
+    """As an OBJ file can hold them."""
+    for name in dict.fromkeys(names):
+        if not name.strip() or name != name.strip() or any(ord(one) < 32 for one in name):
+            raise UsageError(f"a group is named {name!r}; a name without spaces at its ends was expected")
+    return names

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from ._jobs import Watch
 from ._numbers import in_units, path_text, text, truth
 from .errors import InputError, UsageError
+from .times import utc_list
 
 if TYPE_CHECKING:
     from astropy.table import Table as AstropyTable
@@ -23,8 +25,8 @@ def flux_table(light: Any, band: str, *, flux: str = "flux", is_barycentric: boo
     Parameters
     ----------
     light
-        A lightkurve LightCurve, an astropy TimeSeries or Table, or a FITS file of TESS or Kepler (TIME, SAP_FLUX,
-        PDCSAP_FLUX). Names of columns may have either case.
+        A lightkurve LightCurve, an astropy TimeSeries or Table, a DataFrame (times in a column time or as its index), or a FITS
+        file of TESS or Kepler (TIME, SAP_FLUX, PDCSAP_FLUX). Names of columns may have either case.
     band
         Name of the band, as in the scenario's bands.set.
     flux
@@ -56,9 +58,11 @@ def flux_table(light: Any, band: str, *, flux: str = "flux", is_barycentric: boo
     band, flux = text(band, "band"), text(flux, "flux")
     if isinstance(light, (str, os.PathLike)):
         light = _read(path_text(light, "light"))
+    elif isinstance(light, Mapping) or (hasattr(light, "to_dict") and hasattr(light, "columns")):
+        light = _of_columns(light)
     names = {name.lower(): name for name in getattr(light, "colnames", ())}
     if not names:
-        raise UsageError(f"light is a {type(light).__name__}; a lightkurve LightCurve, an astropy TimeSeries or Table, or a FITS "
+        raise UsageError(f"light is a {type(light).__name__}; a lightkurve LightCurve, an astropy TimeSeries or Table, a DataFrame or a FITS "
                          "file with time, flux and flux_err was expected")
     for wanted in ("time", flux.lower()):
         if wanted not in names:
@@ -85,6 +89,21 @@ def flux_table(light: Any, band: str, *, flux: str = "flux", is_barycentric: boo
     exact.precision = 6
     return Table({"time_utc": [f"{one}Z" for one in exact.value], "band": [band] * int(kept.sum()), "flux": values[kept],
                   "flux_err": errors[kept]})
+
+
+def _of_columns(light: Any) -> AstropyTable:
+    """A DataFrame or a dictionary of columns; moments and texts of its column of time as Times."""
+    from astropy.table import Table
+    from astropy.time import Time
+    columns = {str(name): np.asarray(light[name]) for name in (light if isinstance(light, Mapping) else light.columns)}
+    index: Any = getattr(light, "index", None)
+    if hasattr(index, "tz") and "time" not in {name.lower() for name in columns}:
+        columns = {"time": np.asarray(index.astype(object)), **columns}
+    for name, column in columns.items():
+        is_time = column.dtype.kind in "UM" or (column.dtype.kind == "O" and not all(isinstance(one, (int, float)) for one in column))
+        if name.lower() == "time" and is_time:
+            columns[name] = Time([one.removesuffix("Z") for one in utc_list(list(column))[0]], scale="utc")
+    return Table(columns)
 
 
 def _read(path: str) -> AstropyTable:

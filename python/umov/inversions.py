@@ -16,6 +16,7 @@ from ._numbers import between, path_text, whole_between
 from ._words import in_python, told_in_python
 from .errors import UsageError
 from .light_curves import LightCurve
+from .materials import Material
 from .observing import _text_of
 from .periods import AnyLight
 from .scenarios import AnyScenario, Scenario
@@ -261,7 +262,7 @@ def invert_spin(light: AnyCurves, scenario: AnyScenario, *, period_s: float | No
                                             "" if axis == "any" else axis, job_options(threads, cache, device=device), Watch(progress)))
 
 
-def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, candidates: Sequence[str],
+def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, candidates: Sequence[str | Material],
                     set: Mapping[str, Any] | None = None, fit: Fit | None = None, threads: int = 0,
                     cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
                     progress: Progress = None) -> Inversion:
@@ -276,7 +277,7 @@ def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, cand
     group
         Of the mesh; `InputError` for what is none.
     candidates
-        Materials by name, of the scenario or the library.
+        Materials by name, of the scenario or the library, or Materials.
     set
         Changes of the scenario's keys.
     fit
@@ -303,14 +304,15 @@ def invert_material(light: AnyCurves, scenario: AnyScenario, *, group: str, cand
     >>> found.tables["materials"]["material"].tolist()  # a dozen epochs tell neither from the other
     ['cell_silicon|paint_white']
     """
-    words = _names(candidates, "candidates", "names of materials")
-    asked = Scenario(scenario, set)
+    if isinstance(candidates, (str, Material)) or not isinstance(candidates, Sequence) or not candidates:
+        raise UsageError(f"candidates is {candidates!r}; a list of names of materials, or of Materials, was expected")
+    asked, words = _with_materials(Scenario(scenario, set), candidates, "candidates")
     with _files_of(light) as (files,):
         return _inversion(_umov.invert_material(asked._scenario, _request(files, fit), str(group), words,
                                                 job_options(threads, cache, device=device), Watch(progress)))
 
 
-def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str, str], baseline: AnyCurves = (),
+def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str, str | Material], baseline: AnyCurves = (),
                   attitude_sd_deg: float = 0.1, set: Mapping[str, Any] | None = None, fit: Fit | None = None, threads: int = 0,
                   cache: bool | str | os.PathLike[str] = True, device: str = "cpu",
                   progress: Progress = None) -> Inversion:
@@ -323,7 +325,7 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
     scenario
         Object, materials, orbit, site and bands; its attitude is taken as known.
     drift
-        By group of the mesh, the material that it may be turning into; several groups are asked at once.
+        By group of the mesh, the material that it may be turning into, a name or a Material; several groups are asked at once.
     baseline
         Light of before, one or several: changes are counted from it. Without it from the scenario's materials.
     attitude_sd_deg
@@ -356,8 +358,8 @@ def invert_health(light: AnyCurves, scenario: AnyScenario, *, drift: Mapping[str
     """
     if not isinstance(drift, Mapping) or not drift:
         raise UsageError(f"drift is {drift!r}; {{group: material}} was expected, such as {{\"array_front\": \"paint_white\"}}")
-    drifts = [f"{group}={material}" for group, material in drift.items()]
-    asked = Scenario(scenario, set)
+    asked, names = _with_materials(Scenario(scenario, set), list(drift.values()), "drift")
+    drifts = [f"{group}={material}" for group, material in zip(drift, names)]
     sd = between(attitude_sd_deg, "attitude_sd_deg", 0, 30)
     with _files_of(light, baseline) as (files, before):
         return _inversion(_umov.invert_health(asked._scenario, _request(files, fit), drifts, before, sd,
@@ -495,6 +497,24 @@ def identify(light: AnyCurves, scenario: AnyScenario, library: str | os.PathLike
         return _inversion(_umov.identify(asked._scenario, _request(files, fit), path_text(library, "library"),
                                          [path_text(one, "objects") for one in objects], prior, job_options(threads, cache, device=device),
                                          Watch(progress)))
+
+
+def _with_materials(scenario: Scenario, given: Sequence[Any], what: str) -> tuple[Scenario, list[str]]:
+    """The scenario with the Materials that are given, under their names, and the names of all."""
+    own, names = {}, []
+    there = scenario.to_dict().get("material", {})
+    for one in given:
+        if isinstance(one, Material):
+            if not one.is_named:
+                own[f"material.{one.name}"] = one.to_dict()
+            names.append(one.name)
+        elif isinstance(one, str):
+            names.append(one)
+        else:
+            raise UsageError(f"{what} has a {type(one).__name__}; names of materials, or Materials, were expected")
+        if isinstance(one, Material) and one.name in there and Material.from_dict(one.name, there[one.name]) != one:
+            raise UsageError(f"the scenario has another material of the name {one.name}; a name of its own was expected")
+    return (Scenario(scenario, own) if own else scenario), names
 
 
 def _names(given: Any, name: str, what: str) -> list[str]:

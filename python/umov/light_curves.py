@@ -12,7 +12,7 @@ from . import _umov
 from ._made import Made
 from .errors import UsageError
 from .scenarios import Scenario
-from .tables import Table
+from .tables import Table, same
 
 if TYPE_CHECKING:
     import pandas
@@ -336,6 +336,20 @@ class LightCurve(Made):
             lines.append(text)
         return lines
 
+    def _all(self) -> tuple[Any, ...]:
+        """All that it is but arrays that are compared value by value."""
+        return self.table, self.passes, self._epochs, self._bands, self.scenario, self.is_partial, list(self.contributions)
+
+    def __eq__(self, other: Any) -> bool:
+        """The same rows of the same scenario, as a pickled curve has them; NaN is as NaN."""
+        if not isinstance(other, LightCurve) or type(self) is not type(other):
+            return NotImplemented
+        return self is other or (self._all() == other._all() and all(same(one, two) for one, two in zip(self._jd, other._jd))
+                                 and all(same(rows, other.contributions[name]) for name, rows in self.contributions.items()))
+
+    def __hash__(self) -> int:
+        return hash((self.table, tuple(self._epochs), tuple(self._bands)))
+
     def __repr__(self) -> str:
         return "<umov.LightCurve " + "\n  ".join(self._summary()) + ">"
 
@@ -413,6 +427,9 @@ class _Part(LightCurve):
     def write(self, path: str | os.PathLike[str]) -> None:
         raise UsageError("a part of a light curve has no file of the command's; write the whole, or "
                          "to_qtable().write(path)")
+
+    def _all(self) -> tuple[Any, ...]:
+        return (*super()._all(), self._slice.start, self._slice.stop)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _Part, (self._whole, self._slice)

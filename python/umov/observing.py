@@ -137,8 +137,10 @@ def _text_of(table: Any, what: str) -> tuple[str, str]:
             raise UsageError(f"{what} is a table of columns that are none ({error}); arrays of one length were expected") from error
     if hasattr(table, "colnames") and hasattr(table, "write"):
         import io
+
+        from ._shown import with_all_digits
         out = io.StringIO()
-        table = _without_objects(table, what)
+        table = with_all_digits(_without_objects(table, what))
         in_units(_with_time_utc(table, what), what).write(out, format="ascii.ecsv")
         try:
             out.getvalue().encode("utf-8")

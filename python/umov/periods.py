@@ -75,3 +75,23 @@ def period(light: AnyLight, *, band: str = "", peaks: int = 5, shortest_s: float
         raise UsageError(f"shortest_s is {shortest_s!r} and longest_s {longest_s!r}; a longest above the shortest was expected")
     text, path = _text_of(light, "light")
     return Table(_umov.period(text, path, checked_text(band, "band"), int(peaks), reach, (gap, chance), Watch(None)))
+
+
+def brightness(light: Any, band: str | int, gap_s: float) -> Table:
+    """The magnitudes that `period` looks at, of one band: by name, or by its number among the names in order."""
+    gap = number(gap_s, "gap_s")
+    if not gap >= 1:
+        raise UsageError(f"gap_s is {gap_s!r}; 1 s or more was expected")
+    text, path = _text_of(light, "curve")
+    name = band
+    if not isinstance(name, str):
+        names = sorted(set(_umov.brightness(text, path, "", gap, None).column("band")))
+        if not 0 <= whole(band, "band") < max(len(names), 1):
+            raise UsageError(f"there is no band {band!r}; there are {', '.join(names)}")
+        if not names:
+            raise UsageError("curve has no row with a magnitude; some were expected")
+        name = names[name]
+    found = Table(_umov.brightness(text, path, name, gap, Watch(None)))
+    if not len(found):
+        raise UsageError("curve has no row with a magnitude; some were expected")
+    return found

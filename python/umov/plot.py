@@ -8,16 +8,15 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _umov
-from ._axes import axes_or_new as _axes, every as _every, interfaces_of as _interfaces, of_a_curve as _of_a_curve, passes_of as _passes, \
-    time_axis as _time_axis
-from ._numbers import number
+from ._axes import MANY, MARKERS, PHASE_MAP, THREE, axes_or_new as _axes, band_title, every as _every, interfaces_of as _interfaces, \
+    of_a_curve as _of_a_curve, passes_of as _passes, time_axis as _time_axis
+from ._clouds import q_rgb, three_bands
+from ._turns import folded, periodogram
 from .errors import UsageError
 
 if TYPE_CHECKING:
@@ -31,30 +30,9 @@ __all__ = ["band_styles", "band_title", "colour_index", "contributions", "degree
            "periodogram", "picture", "position_angle", "pure_materials", "q_phase", "q_rgb",
            "qu_plane", "qu_time", "sky_track", "three_bands"]
 
-# Okabe & Ito (2008); the first three follow the wavelength from blue to red, as in the report.
-THREE = ("#0072b2", "#009e73", "#d55e00")
-MANY = ("#0072b2", "#56b4e9", "#009e73", "#e69f00", "#d55e00", "#cc79a7", "#000000")
-MARKERS = ("o", "s", "^", "D", "P", "X", "*")
-PHASE_MAP = "cividis"
 CYCLIC_MAP = "twilight"
 _NORTH = {"equatorial": "celestial north", "altaz": "the local zenith",
           "scattering": "the normal of the scattering plane"}
-
-
-def band_title(name: str) -> str:
-    """A band's name for people: that of a filter as it is, a wavelength with its unit behind it.
-
-    Parameters
-    ----------
-    name
-        As scenarios spell it.
-
-    Examples
-    --------
-    >>> plot.band_title("nm:550"), plot.band_title("Bessell.V")
-    ('550 nm', 'Bessell.V')
-    """
-    return f"{name[3:]} nm" if name.startswith("nm:") else name
 
 
 @_of_a_curve
@@ -92,9 +70,16 @@ def _over_time(curve: LightCurve, axes: Axes | None, rows: NDArray[np.float64], 
     axes.set_ylabel(label)
     _time_axis(axes)
     axes.grid(alpha=0.3)
-    if len(bands or curve.bands) > 1:
-        axes.legend(fontsize="small")
+    _name_bands(axes, bands or [band_title(one) for one in curve.bands])
     return axes
+
+
+def _name_bands(axes: Axes, names: list[str]) -> None:
+    """A legend of several; one stands over the figure."""
+    if len(names) > 1:
+        axes.legend(fontsize="small")
+    elif names:
+        axes.set_title(names[0], loc="right", fontsize="small")
 
 
 @_of_a_curve
@@ -230,8 +215,7 @@ def q_phase(curve: LightCurve, axes: Axes | None = None) -> Axes:
     axes.axhline(0, color="0.5", linewidth=0.8)
     axes.set(xlabel="phase angle [°]", ylabel="q_scat [%]")
     axes.grid(alpha=0.3)
-    if len(curve.bands) > 1:
-        axes.legend(fontsize="small")
+    _name_bands(axes, [band_title(one) for one in curve.bands])
     return axes
 
 
@@ -303,95 +287,6 @@ def contributions(curve: LightCurve, axes: Axes | None = None, *, band: str | in
     return axes
 
 
-def _periodic(curve: LightCurve, band: str | int,
-              part: NDArray[np.intp] | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Seconds and magnitudes without range and eclipse, where there is light that is no mere limit."""
-    which = curve.band(band)
-    intensity = curve.intensity[:, which]
-    lit = (intensity > 0) & ~curve["mag_limit"][:, which]
-    if part is not None:
-        lit[np.setdiff1d(np.arange(len(lit)), part)] = False
-    whole, rest = (jd - jd[0] for jd in curve._jd)
-    return (whole[lit] + rest[lit]) * 86400.0, -2.5 * np.log10(intensity[lit])
-
-
-@_of_a_curve
-def periodogram(curve: LightCurve, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
-    """Lomb-Scargle power of the magnitude against period, as the report has it: a line for each pass, a parabola taken
-    off (range and phase angle change slowly), a floating mean (Zechmeister & Kuerster 2009). A body that looks alike
-    twice a turn peaks at half its period as well. The highest peak of all stands in the title.
-
-    Parameters
-    ----------
-    curve
-        A light curve.
-    axes
-        To draw into; None: a new figure.
-    band
-        Its name, or its number along the second axis.
-
-    Examples
-    --------
-    >>> tumbling = umov.run(EXAMPLES / "agena_maui.toml", set={
-    ...     "time.step_s": 2, "object.attitude": {"mode": "spin", "axis": "+X", "period_s": 23.7}})
-    >>> plot.periodogram(tumbling).get_xlabel()
-    'period [s]'
-    """
-    axes = _axes(axes)
-    best = (0.0, 0.0)  # power, period
-    for number, part in enumerate(_passes(curve)):
-        seconds, values = _periodic(curve, band, part)
-        period, power, peak = _umov.periodogram(seconds, values)
-        if not len(power):
-            continue
-        axes.plot(period, power, color=MANY[number % len(MANY)], linewidth=1, label=str(curve.pass_id[part[0]]))
-        best = max(best, (float(power.max()), peak))
-    if not best[1]:
-        raise UsageError("no pass has twelve epochs with light that varies; a longer one or shorter steps were expected")
-    axes.set(xlabel="period [s]", ylabel="power", xscale="log", ylim=(0, 1), title=f"{best[1]:.4g} s")
-    axes.grid(alpha=0.3)
-    if len(axes.lines) > 1:
-        axes.legend(fontsize="small")
-    return axes
-
-
-@_of_a_curve
-def folded(curve: LightCurve, period_s: float, axes: Axes | None = None, *, band: str | int = 0) -> Axes:
-    """Magnitude without range and eclipse against the part of a turn, coloured by time.
-
-    Parameters
-    ----------
-    curve
-        A light curve.
-    period_s
-        Of the turn [s], above 0.
-    axes
-        To draw into; None: a new figure.
-    band
-        Its name, or its number along the second axis.
-
-    Examples
-    --------
-    >>> plot.folded(curve, period_s=41).get_xlabel()
-    'turn of 41 s'
-    """
-    period_s = number(period_s, "period_s")
-    if not period_s > 0:
-        raise UsageError(f"period_s is {period_s!r}; a number above 0 was expected")
-    axes = _axes(axes)
-    seconds, values = _periodic(curve, band)
-    if not len(seconds):
-        raise UsageError("no epoch has light; a curve with some was expected")
-    drawn = axes.scatter(seconds / period_s % 1, values, c=seconds, cmap=PHASE_MAP, s=8)
-    if not axes.yaxis_inverted():
-        axes.invert_yaxis()
-    axes.set(xlabel=f"turn of {period_s:g} s", ylabel="magnitude, −2.5 lg intensity", xlim=(0, 1))
-    axes.grid(alpha=0.3)
-    if axes.figure is not None:
-        axes.figure.colorbar(drawn, ax=axes, label="time [s]")
-    return axes
-
-
 def picture(image: Picture, axes: Axes | None = None) -> Axes:
     """A picture of `umov.render`, up as it was asked for.
 
@@ -446,54 +341,6 @@ def qu_plane(curve: LightCurve, axes: Axes | None = None) -> Axes:
     if drawn is not None and axes.figure is not None:
         axes.figure.colorbar(drawn, ax=axes, label="phase angle [°]")
     axes.legend(fontsize="small")
-    return axes
-
-
-@_of_a_curve
-def three_bands(curve: LightCurve) -> list[int]:
-    """Numbers of the shortest, the middle and the longest band. `UsageError` if there are fewer than three.
-
-    Parameters
-    ----------
-    curve
-        A light curve.
-
-    Examples
-    --------
-    >>> plot.three_bands(curve)
-    [0, 1, 2]
-    """
-    if len(curve.bands) < 3:
-        raise UsageError(f"the curve has {len(curve.bands)} bands; three or more were expected")
-    order = np.argsort(curve["lambda_eff"][0], kind="stable")
-    return [int(order[0]), int(order[len(order) // 2]), int(order[-1])]
-
-
-@_of_a_curve
-def q_rgb(curve: LightCurve, axes: Any = None) -> Any:
-    """Q/I of short, middle and long wavelength as a cloud in three dimensions, coloured by phase angle.
-
-    Parameters
-    ----------
-    curve
-        A light curve.
-    axes
-        To draw into; None: a new figure.
-
-    Examples
-    --------
-    >>> plot.q_rgb(curve).get_zlabel()
-    '650 nm [%]'
-    """
-    three = three_bands(curve)
-    axes = _axes(axes, "3d")
-    cloud: Callable[..., Any] = axes.scatter
-    drawn = cloud(*(100 * curve.q_scat[:, b] for b in three), c=curve.phase_angle, cmap=PHASE_MAP, s=8, vmin=0,
-                  vmax=180)
-    for name, b in zip("xyz", three):
-        getattr(axes, f"set_{name}label")(f"{band_title(curve.bands[b])} [%]")
-    if axes.figure is not None:
-        axes.figure.colorbar(drawn, ax=axes, label="phase angle [°]", shrink=0.7)
     return axes
 
 
@@ -594,6 +441,15 @@ def overview(curve: LightCurve, figure: Figure | None = None) -> Figure:
         one.tick_params("x", labelbottom=False)
         one.set_xlabel("")
         one.xaxis.offsetText.set_visible(False)
-    if curve.scenario is not None and curve.scenario.title:
-        figure.suptitle(curve.scenario.title)
+    if title := _heading(curve):
+        figure.suptitle(title)
     return figure
+
+
+def _heading(curve: LightCurve) -> str:
+    """What the scenario is called, and the site where that does not say it."""
+    if curve.scenario is None:
+        return ""
+    title = curve.scenario.title or ", ".join(curve.objects)
+    site = str(curve.scenario.to_dict().get("observer", {}).get("name", ""))
+    return title if not site or site.lower() in title.lower() else f"{title} from {site}"

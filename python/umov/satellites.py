@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 import pathlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _toml, adapters
@@ -13,7 +13,7 @@ from ._numbers import number, path_text
 from .errors import UsageError
 from .passbands import Bands, names_of
 from .sites import AnySite, Site
-from .times import AnyTime, seconds, utc
+from .times import AnyTime, seconds, utc, utc_list
 
 if TYPE_CHECKING:
     from astropy.units import Quantity, UnitBase
@@ -83,12 +83,16 @@ class Satellite(Made):
     Parameters
     ----------
     mesh
-        A file (OBJ, glTF, PLY, STL), a trimesh mesh or (vertices (N, 3), faces (M, 3) counted from 0).
+        A file (OBJ, glTF, PLY, STL), a trimesh mesh or scene, (vertices (N, 3), faces (M, 3) counted from 0) or these with
+        (M) names of groups; or several of these by the names of their groups: {"bus": box, "wing": plate}. A trimesh scene
+        and a mesh with named materials have a group for each; colours of faces are none.
     unit
         Of the mesh: m, mm, cm, in or ft, as text or of astropy; None: that of the format or of a trimesh mesh, asked
         for where a file has none, m for arrays.
     up
-        Axis of the file that becomes +Z of the body, such as "+Y"; asked for where the format has none.
+        Axis of the file that becomes +Z of the body, such as "+Y"; asked for where the format has none. glTF (.glb) is +Y up by
+        its specification, and read so unless it is said here: trimesh writes its axes as they are, so take "+Z" for what
+        stood upright along z there.
     orbit
         A file, TLE lines, an sgp4 Satrec, a skyfield EarthSatellite or a table; None where no orbit is needed.
     norad
@@ -277,8 +281,8 @@ class Satellite(Made):
                     alt_min_deg: float = 0.0, sun_alt_max_deg: float = 90.0, sunlit: bool = True,
                     seed: int = 0, pol_frame: str = "equatorial", render: Mapping[str, Any] | None = None,
                     **options: Any) -> LightCurve:
-        """The light of this object over time as seen from a site, between two times or during a pass
-        (a row of `umov.passes`). `options` are those of `umov.run`.
+        """The light of this object over time as seen from a site, between two times, during a pass
+        (a row of `umov.passes`) or at times of your own. `options` are those of `umov.run`.
 
         Parameters
         ----------
@@ -287,7 +291,8 @@ class Satellite(Made):
             lat_deg, lon_deg and alt_m.
         start
             ISO 8601 with an offset or Z, an aware datetime, an astropy Time; or a row of `umov.passes`, without
-            `stop`.
+            `stop`; or, without `stop` and a step, the epochs themselves in order: an array of Times, a list, a column of times
+            of pandas.
         stop
             The same; it is included.
         step
@@ -313,7 +318,8 @@ class Satellite(Made):
 
         Notes
         -----
-        Arrays (epoch, band), see `LightCurve`. `NoResult` if the object is never up, `NumericsError` where the orbit
+        Arrays (epoch, band), see `LightCurve`. Epochs without light from the Sun or below the horizon have no row, unless
+        `sunlit=False` and `alt_min_deg` keep them. `NoResult` if the object is never up, `NumericsError` where the orbit
         ends.
 
         Examples
@@ -322,22 +328,32 @@ class Satellite(Made):
         ...                         bands=["nm:550"])
         >>> curve.I.shape
         (3, 1)
+        >>> mine = ["2018-01-21T05:10:00.25Z", "2018-01-21T05:10:03Z"]
+        >>> hst.light_curve("maui", mine, bands=["nm:550"]).time.isot.tolist()
+        ['2018-01-21T05:10:00.250', '2018-01-21T05:10:03.000']
         """
         from .runs import run
         from .scenarios import Scenario
         if "orbit" not in self._table:
             raise UsageError("the satellite has no orbit; light over time needs one: umov.Satellite(..., orbit=...). "
                              "Without one umov.Engine lights it from any direction.")
-        if stop is None:
-            start, stop = _span_of_pass(start)
         if step is not None and step_s is not None:
             raise UsageError("step and step_s; one of them was expected")
-        length = seconds(step) if step is not None else number(1.0 if step_s is None else step_s, "step_s")
+        span: dict[str, Any]
+        if _are_epochs(start):
+            if stop is not None or step is not None or step_s is not None:
+                raise UsageError("start holds several times; they alone, without stop and step, or one start were expected")
+            span = {"epochs": utc_list(start)[0]}
+        else:
+            if stop is None:
+                start, stop = _span_of_pass(start)
+            length = seconds(step) if step is not None else number(1.0 if step_s is None else step_s, "step_s")
+            span = {"start": utc(start), "stop": utc(stop), "step_s": length}
         only = {"alt_min_deg": number(alt_min_deg, "alt_min_deg"),
                 "sun_alt_max_deg": number(sun_alt_max_deg, "sun_alt_max_deg"), "sunlit": sunlit}
         scenario = Scenario(self.to_scenario_dict(
             bands, title=self.name, seed=seed, observer=Site(site).to_dict(),
-            time={"start": utc(start), "stop": utc(stop), "step_s": length, "only": only},
+            time={**span, "only": only},
             render=_table(render, "render", '{"bounces": 2}') if render is not None else None, output={"pol_frame": pol_frame}))
         scenario._keep = self
         return run(scenario, **options)
@@ -397,6 +413,15 @@ class Satellite(Made):
         self.__dict__.update(state)
         self._files = adapters.Files(self._texts) if self._texts else None
         self._set_files()
+
+
+def _are_epochs(start: Any) -> bool:
+    """Several times: an array of Times or a sequence; a row of passes has names, and a text is one time."""
+    if hasattr(start, "utc_iso") or hasattr(start, "sidereal_time"):  # skyfield's Time is no sequence, astropy's always
+        return bool(getattr(start, "shape", ()))
+    is_row = isinstance(start, (str, bytes, Mapping)) or hasattr(start, "colnames") or (hasattr(start, "index") and "rise_utc" in start.index
+                                                                                        if hasattr(start, "iloc") else False)
+    return not is_row and isinstance(start, Iterable) and getattr(start, "shape", (1,)) != ()
 
 
 def _span_of_pass(row: Any) -> tuple[str, str]:

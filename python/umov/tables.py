@@ -40,6 +40,20 @@ def _unpack(columns: list[_Column], notes: list[tuple[str, str]]) -> _umov.Table
     return out
 
 
+def same(one: NDArray[Any], other: NDArray[Any]) -> bool:
+    """Equal in shape and in every value; NaN is as NaN."""
+    return one.shape == other.shape and bool(np.array_equal(one, other, equal_nan=one.dtype.kind == "f" and other.dtype.kind == "f"))
+
+
+def _format(name: str, unit: str, precision: tuple[str, int, int]) -> str:
+    """How a notebook shows a number: angles to .4 deg, times of day as they are; all digits stay beneath."""
+    if unit == "deg" or unit.startswith("mag"):
+        return ".4f"
+    if name.startswith(("mjd", "jd")):
+        return ".8f"
+    return f".{precision[2] or 7}g"
+
+
 class Table(Made):
     """Rows of a job, column by column. Numbers are read-only numpy views of the library's memory.
 
@@ -112,11 +126,14 @@ class Table(Made):
         return self._table.rows
 
     def to_qtable(self) -> QTable:
-        """The same as an astropy QTable: every column of floats has a unit, the notes are in `meta`."""
+        """The same as an astropy QTable: every column of floats has a unit, the notes are in `meta`. It is shown with a few
+        digits (`info.format` of a column), and has and writes all."""
         from astropy import units
-        from astropy.table import Column, QTable
+        from astropy.table import Column
+
+        from ._shown import QTable
         out = QTable(meta=self.notes)
-        for name, unit in zip(self.names, self._table.units):
+        for name, unit, precision in zip(self.names, self._table.units, self._table.precisions):
             values = self._values(name)
             if unit.startswith("mag("):
                 out[name] = units.Magnitude(values, unit=units.Unit(unit), copy=False)
@@ -125,6 +142,8 @@ class Table(Made):
             else:  # what was made for this table need not be copied
                 out.add_column(Column(values, copy=False), name=name, copy=values.dtype.kind != "U")
             out[name].info.description = self.description(name)
+            if values.dtype.kind == "f":
+                out[name].info.format = _format(name, unit, precision)
         return out
 
     def to_pandas(self) -> pandas.DataFrame:
@@ -168,6 +187,17 @@ class Table(Made):
             return self.names.index(name)
         except ValueError:
             raise UsageError(f"there is no column \"{name}\"; there are {', '.join(self.names)}") from None
+
+    def __eq__(self, other: object) -> bool:
+        """The same rows, columns, units and notes; NaN is as NaN."""
+        if not isinstance(other, Table):
+            return NotImplemented
+        return self._table is other._table or (
+            self.names == other.names and self._table.units == other._table.units and self.notes == other.notes
+            and all(same(self[name], other[name]) for name in self.names))
+
+    def __hash__(self) -> int:
+        return hash((tuple(self.names), tuple(self._table.units), len(self)))
 
     def _repr_html_(self) -> str:
         return str(self.to_qtable()[:8]._repr_html_()) + f"<p>{len(self)} rows</p>"

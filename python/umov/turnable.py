@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._axes import MANY, band_title
+from ._clouds import three_bands
 from .errors import UsageError
 from .pictures import mesh as triangles_of
-from .plot import MANY, band_title, three_bands
 from .scenarios import AnyScenario
 
 if TYPE_CHECKING:

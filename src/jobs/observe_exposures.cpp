@@ -34,6 +34,11 @@ private:
 /// The grid of middles; BadInput with the key that asks for too much.
 Result<EpochSpan> grid_of(const Scenario &scenario, const LightCurveRequest &request) {
   const ScenarioObservation &o = *scenario.observation;
+  if (!request.span.own.empty())
+    return fail(ErrorCode::BadInput,
+                "[time] has epochs; start and stop were expected, between which exposures begin "
+                "every observation.cadence_s",
+                scenario.place("time.epochs"));
   const double half = o.exposure_s / 2;
   EpochSpan span{plus_seconds(request.span.start, half), plus_seconds(request.span.stop, -half),
                  o.cadence_s};

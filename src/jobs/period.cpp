@@ -296,6 +296,31 @@ Result<SurestPeak> surest_peak(const std::vector<Stretch> &stretches, const Peri
   return found.rows.surest_peak();
 }
 
+Result<Table> brightness(const ObservationsFile &observations, const PeriodRequest &request,
+                         Diagnostics &diagnostics) {
+  UMOV_ASSIGN(bands, wanted_bands(observations, request.band));
+  UMOV_ASSIGN(stretches, stretches_of(observations, request));
+  warn_of_rows_without_magnitude(observations, bands, diagnostics);
+  std::vector<std::int64_t> number;
+  std::vector<std::string> band, begin;
+  std::vector<double> seconds, magnitudes;
+  for (const Stretch &one : stretches) {
+    const std::size_t count = one.seconds.size();
+    number.insert(number.end(), count, &one - stretches.data() + 1);
+    band.insert(band.end(), count, one.band);
+    begin.insert(begin.end(), count, to_iso(one.begin));
+    seconds.insert(seconds.end(), one.seconds.begin(), one.seconds.end());
+    magnitudes.insert(magnitudes.end(), one.magnitudes.begin(), one.magnitudes.end());
+  }
+  Table out;
+  out.add("stretch", "", "without a long gap, from 1", std::move(number));
+  out.add("band", "", "band", std::move(band));
+  out.add("begin_utc", "", "begin of the stretch", std::move(begin));
+  out.add("seconds", "s", "since then", std::move(seconds));
+  out.add("mag", "mag", "magnitude; of fluxes -2.5 lg", std::move(magnitudes));
+  return out;
+}
+
 Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
                      Diagnostics &diagnostics) {
   const std::string &path = observations.path;

@@ -75,8 +75,7 @@ Result<KeptEpochs> epochs_of(const Scenario &scenario, const Trajectory &orbit, 
                                   InertialLaw{},
                                   {},
                                   scenario.has_solar_disk}));
-  UMOV_ASSIGN(kept, keep_epochs(track, {time.start, time.stop, time.step_s}, time.only, threads,
-                                monitor.cancel_flag()));
+  UMOV_ASSIGN(kept, keep_epochs(track, time.span(), time.only, threads, monitor.cancel_flag()));
   if (!kept.geometry.empty())
     return std::move(kept);
   constexpr double days = 14; // beyond it the elements say little

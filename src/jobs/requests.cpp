@@ -19,7 +19,7 @@ LightCurveRequest light_curve_request(const Scenario &scenario, const ScenarioOb
   out.object = named.name.empty() ? object.orbit->name() : named.name;
   out.track = {*object.orbit,   *scenario.observer, ShadowModel::Ellipsoid,
                object.attitude, named.parts,        scenario.has_solar_disk};
-  out.span = {scenario.time->start, scenario.time->stop, scenario.time->step_s};
+  out.span = scenario.time->span();
   out.only = scenario.time->only;
   out.frame = scenario.frame;
   out.magnitudes = scenario.magnitudes;

@@ -23,10 +23,14 @@ Result<Error> nothing_found(const LightCurveRequest &request) {
   if (const auto missed = find_next_pass(track, request.only, span.start, span_days))
     return Error{
         ErrorCode::Nothing,
-        fmt::format("no epoch of the grid falls in a pass, but there is one near {}Z, max alt "
-                    "{:.0f}: step_s = {:g} is longer than the pass. Take a shorter step.",
-                    to_iso(missed->first_row).substr(0, 16), missed->altitude_max.degrees(),
-                    span.step_s),
+        fmt::format(
+            "no epoch {} falls in a pass, but there is one near {}Z, max alt {:.0f}{}",
+            span.own.empty() ? "of the grid" : "of [time] epochs",
+            to_iso(missed->first_row).substr(0, 16), missed->altitude_max.degrees(),
+            span.own.empty()
+                ? fmt::format(": step_s = {:g} is longer than the pass. Take a shorter step.",
+                              span.step_s)
+                : ". Give epochs within it."),
         {}};
   std::string text = fmt::format(
       "no {}pass of {} above {:g} deg{} from {} in that span.",
@@ -193,9 +197,11 @@ Result<std::vector<ObjectRun>> load_run(const Scenario &scenario, const JobOptio
     for (const InputFile &input : object.inputs)
       monitor.tell(fmt::format("read {} (SHA-256 {})", input.path, input.sha256));
     out.push_back({std::move(object), std::move(request), {}, {}});
-    warn_of_step(out.back(), scenario.time->step_s, diagnostics);
+    if (scenario.time->epochs.empty()) // whoever has times of their own did not choose them here
+      warn_of_step(out.back(), scenario.time->step_s, diagnostics);
   }
-  if (constexpr double long_step_s = 300; scenario.time->step_s > long_step_s)
+  if (constexpr double long_step_s = 300;
+      scenario.time->epochs.empty() && scenario.time->step_s > long_step_s)
     diagnostics.warn(
         fmt::format("step_s = {:g} is long against a pass: passes between two epochs are left out",
                     scenario.time->step_s));

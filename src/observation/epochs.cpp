@@ -147,6 +147,22 @@ void add_pass(KeptEpochs &out, const Track &track, const GridPass &pass,
   described.rows = out.geometry.size() - before;
 }
 
+/// Epochs of one's own stand in order, each once: what lies between two of them is looked up.
+Result<std::size_t> count_of_own(const std::vector<Epoch<Utc>> &own) {
+  if (own.size() > max_epochs)
+    return fail(ErrorCode::BadInput,
+                fmt::format("{} epochs; the limit is {}", own.size(), max_epochs));
+  const auto back = std::ranges::adjacent_find(
+      own, [](Epoch<Utc> a, Epoch<Utc> b) { return !(seconds_between(b, a) > 0); });
+  if (back != own.end())
+    return fail(ErrorCode::BadInput,
+                fmt::format("epoch {} is {}, and the one before it {}; epochs in order of time, "
+                            "each once, were expected",
+                            back - own.begin() + 2, to_iso_exact(*(back + 1)),
+                            to_iso_exact(*back)));
+  return own.size();
+}
+
 } // namespace
 
 std::string pass_id(const Trajectory &orbit, Epoch<Utc> culmination) {
@@ -156,7 +172,10 @@ std::string pass_id(const Trajectory &orbit, Epoch<Utc> culmination) {
 }
 
 Result<std::size_t> epoch_count(const EpochSpan &of) {
-  const auto &[start, stop, step_s] = of;
+  if (!of.own.empty())
+    return count_of_own(of.own);
+  const auto &start = of.start, &stop = of.stop;
+  const double step_s = of.step_s;
   if (!(step_s > 0) || !std::isfinite(step_s))
     return fail(ErrorCode::BadInput,
                 fmt::format("the step is {} s; a positive number was expected", step_s));
@@ -175,6 +194,8 @@ Result<std::size_t> epoch_count(const EpochSpan &of) {
 }
 
 Epoch<Utc> epoch_of(const EpochSpan &span, std::size_t index) {
+  if (!span.own.empty())
+    return span.own[index];
   return plus_seconds(span.start, static_cast<double>(index) * span.step_s);
 }
 

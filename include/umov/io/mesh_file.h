@@ -19,6 +19,7 @@ struct MeshFileOptions {
   std::size_t max_triangles = 5'000'000; ///< refused before the mesh is built
   bool is_of_command = false; ///< hints name options of a command, not keys of a scenario
   const std::atomic<bool> *cancel = nullptr; ///< ends the reading where it comes true
+  bool asks_for_mtl = true; ///< false: nothing of an MTL file is needed, and none is missed
 };
 
 /// A node of the file's tree that has faces.
@@ -41,7 +42,6 @@ struct MeshFile {
   std::string format;               ///< "OBJ", "STL", "PLY", "glTF" or the name of another one
   std::vector<MeshNode> nodes;      ///< empty where the format has no tree
   std::vector<std::string> defined; ///< OBJ: materials that the MTL files define
-  bool lacks_mtl = false;           ///< OBJ: a named MTL file could not be read
   std::vector<MeshPart> files;      ///< further files that were read (MTL, glTF buffers)
 };
 

@@ -21,8 +21,11 @@ namespace umov {
 /// [time]: the span and which of its epochs are kept.
 struct ScenarioTime {
   Epoch<Utc> start{}, stop{};
-  double step_s = 1;
+  double step_s = 1;              ///< of own epochs: the shortest between two
+  std::vector<Epoch<Utc>> epochs; ///< of one's own, in place of even steps; empty: none
   EpochFilter only;
+
+  [[nodiscard]] EpochSpan span() const { return {start, stop, step_s, epochs}; }
 };
 
 /// A file, or a state written in place.

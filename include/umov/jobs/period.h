@@ -24,6 +24,12 @@ struct PeriodRequest {
 Result<Table> period(const ObservationsFile &observations, const PeriodRequest &request,
                      Diagnostics &diagnostics);
 
+/// What the search looks at: each brightness that has a magnitude, by stretch and band: number of
+/// the stretch, band, time, seconds since its begin, magnitude. Errors as of `period`, but for
+/// stretches too short for a search.
+Result<Table> brightness(const ObservationsFile &observations, const PeriodRequest &request,
+                         Diagnostics &diagnostics);
+
 /// A page of figures of the stretch with the surest peak: its brightness, its periodogram, and the
 /// curve folded at the period and at twice that. Errors as of `period`.
 Result<std::string> period_page(const ObservationsFile &observations, const PeriodRequest &request);

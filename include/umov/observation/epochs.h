@@ -24,10 +24,12 @@ struct Pass {
   std::size_t rows = 0;                                  ///< epochs kept by the filter
 };
 
-/// A stretch of time in even steps.
+/// A stretch of time in even steps, or epochs of one's own.
 struct EpochSpan {
   Epoch<Utc> start{}, stop{};
   double step_s = 1; ///< > 0; `stop` is included and may equal `start`
+  /// Instead of the steps, in order of time; `start` and `stop` are the first and the last.
+  std::vector<Epoch<Utc>> own = {};
 };
 
 /// The epochs of a span that pass a filter, in order, with their passes.
@@ -43,7 +45,8 @@ struct KeptEpochs {
   std::size_t before_end = 0;     ///< epochs of the grid that the orbit reaches, where it ends
 };
 
-/// How many epochs a span has; BadInput if step <= 0, stop < start or more than 10 million.
+/// How many epochs a span has; BadInput if step <= 0, stop < start, own ones are not in order, or
+/// more than 10 million.
 Result<std::size_t> epoch_count(const EpochSpan &span);
 /// One of them, by its number from 0.
 Epoch<Utc> epoch_of(const EpochSpan &span, std::size_t index);

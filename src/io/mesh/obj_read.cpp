@@ -204,10 +204,10 @@ Result<void> Reader::read_mtl(const std::string &name, const Word &statement) {
   UMOV_ASSIGN(is_there, takes_mtl(name, statement));
   if (is_there)
     return {};
-  out_.lacks_mtl = true;
-  diagnostics_.warn(
-      fmt::format("mtllib \"{}\" cannot be read; its materials are names alone", printable(name)),
-      lines_.where(statement));
+  if (options_.asks_for_mtl)
+    diagnostics_.warn(
+        fmt::format("mtllib \"{}\" cannot be read; its materials are names alone", printable(name)),
+        lines_.where(statement));
   return {};
 }
 

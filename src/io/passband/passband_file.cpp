@@ -2,7 +2,9 @@
 
 #include "io/passband/curve_text.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <umov/core/constants.h>
 #include <umov/core/files.h>
 #include <umov/core/text.h>
@@ -108,10 +110,46 @@ Result<Passband> read_passband_text(const std::string &text, const std::string &
   return out;
 }
 
+namespace {
+
+/// The last `count` names of a path: "b1/my.dat".
+std::string end_of(const std::filesystem::path &path, std::size_t count) {
+  std::filesystem::path out = path.filename(), folder = path.parent_path();
+  for (std::size_t k = 1; k < count && folder.has_filename(); ++k, folder = folder.parent_path())
+    out = folder.filename() / out;
+  return out.generic_string();
+}
+
+/// Files of one name in several folders: as much of their paths as tells them apart. The same file
+/// twice stays the same.
+void tell_apart(std::vector<Band> &bands, const std::map<std::size_t, std::string> &paths) {
+  for (const auto &[k, path] : paths) {
+    std::vector<std::filesystem::path> others;
+    for (const auto &[j, other] : paths)
+      if (j != k && end_of(other, 1) == end_of(path, 1) && other != path)
+        others.emplace_back(other);
+    std::size_t count = 1;
+    const auto is_like = [&](const auto &other) {
+      return end_of(other, count) == end_of(path, count);
+    };
+    constexpr std::size_t deepest = 100;
+    while (count < deepest && std::ranges::any_of(others, is_like))
+      ++count;
+    if (count == 1)
+      continue;
+    auto curve = std::make_shared<Passband>(*bands[k].curve);
+    bands[k].name = curve->name = "file:" + end_of(path, count);
+    bands[k].curve = std::move(curve);
+  }
+}
+
+} // namespace
+
 Result<std::vector<Band>> read_bands(const std::vector<BandEntry> &entries,
                                      const std::filesystem::path &folder,
                                      std::vector<BandFile> *files) {
   std::vector<Band> out;
+  std::map<std::size_t, std::string> paths; // of those that are files
   const auto add = [&out](Passband curve) -> Result<void> {
     UMOV_ASSIGN(band, band_of(std::move(curve)));
     out.push_back(std::move(band));
@@ -123,6 +161,7 @@ Result<std::vector<Band>> read_bands(const std::vector<BandEntry> &entries,
       const std::string path = (folder / name.substr(5)).string();
       UMOV_ASSIGN(text, read_file(path, 16u << 20));
       UMOV_ASSIGN(curve, read_passband_text(text, path, entry.form));
+      paths[out.size()] = path;
       UMOV_TRY(add(std::move(curve)));
       if (files != nullptr)
         files->push_back({path, std::move(text)});
@@ -139,6 +178,7 @@ Result<std::vector<Band>> read_bands(const std::vector<BandEntry> &entries,
       }
     }
   }
+  tell_apart(out, paths);
   UMOV_TRY(check_band_set(out));
   return out;
 }

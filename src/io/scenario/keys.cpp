@@ -75,6 +75,7 @@ const std::vector<Key> &keys() {
       {"time", "start", Time, "", "first epoch, with Z or an offset; a day alone is its 0 h UTC"},
       {"time", "stop", Time, "", "last epoch, included"},
       {"time", "step_s", Number, "1.0", "step [s]"},
+      {"time", "epochs", List, "", "instead of these three: times of one's own, in order"},
       {"time", "only", Table, "", "which epochs are kept"},
       {"time.only", "alt_min_deg", Number, "0.0", "lowest altitude of the object [deg]"},
       {"time.only", "sun_alt_max_deg", Number, "90.0", "highest altitude of the Sun [deg]"},

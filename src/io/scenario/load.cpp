@@ -142,8 +142,9 @@ Result<MeshFile> load_mesh(const Named &of, const std::atomic<bool> *cancel,
                            Diagnostics &diagnostics, LoadedObject &out) {
   const ScenarioMesh &mesh = of.object.mesh;
   UMOV_ASSIGN(bytes, read_input(mesh.file, of.place("mesh"), out));
-  auto read = read_mesh_bytes(bytes, mesh.file,
-                              {.unit = mesh.unit, .up = mesh.up, .cancel = cancel}, diagnostics);
+  auto read = read_mesh_bytes(
+      bytes, mesh.file, {.unit = mesh.unit, .up = mesh.up, .cancel = cancel, .asks_for_mtl = false},
+      diagnostics);
   leave_if_stopped(cancel);
   if (!read && read.error().where.line == 0) // such as no unit, which the scenario has to give
     return tl::unexpected(scenario::named(read.error(), of.place("mesh")));
@@ -184,22 +185,6 @@ Result<MaterialNames> names_of(const Named &of, const Mesh &mesh, const MeshRepo
                   mesh.groups[group], report.group_triangles[group], report.group_area_m2[group],
                   of.scenario.file),
       {of.object.mesh.file.string()});
-}
-
-/// A material that the mesh uses but no MTL file defines is only a name: an error where the
-/// scenario does not map every material by name.
-Result<void> check_mtl(const Named &of, const MeshFile &read) {
-  if (!read.lacks_mtl)
-    return {};
-  for (const std::string &group : read.mesh.groups)
-    if (!of.object.materials.contains(group) &&
-        std::find(read.defined.begin(), read.defined.end(), group) == read.defined.end())
-      return fail(ErrorCode::BadInput,
-                  fmt::format("the MTL file is missing and material \"{}\" has no entry of its own "
-                              "in [object.materials] of {}. Add the file or the entry.",
-                              group, of.scenario.file),
-                  {of.object.mesh.file.string()});
-  return {};
 }
 
 /// Wavelengths that a band asks a material for.
@@ -338,7 +323,6 @@ Result<LoadedObject> load(const Scenario &scenario, std::size_t which, const Loa
   if (of.object.mesh.file.empty())
     return fail(ErrorCode::BadInput, "[object] has no \"mesh\" (shape). Add it.", of.place("mesh"));
   UMOV_ASSIGN(read, load_mesh(of, options.cancel, diagnostics, out));
-  UMOV_TRY(check_mtl(of, read));
   UMOV_TRY(check_material_keys(of, read.mesh));
   UMOV_TRY(load_attitude(of, read.mesh, options, diagnostics, out));
   const std::vector<Joint> joints = joints_of(of.object.parts);

@@ -56,11 +56,16 @@ std::string observer_and_time(const Scenario &s) {
     out += scenario::clear_air_toml(*s.air);
   if (s.time) {
     const EpochFilter &only = s.time->only;
+    std::vector<std::string> own;
+    for (const Epoch<Utc> time : s.time->epochs)
+      own.push_back(to_iso_exact(time));
+    out += own.empty() ? fmt::format("\n[time]\nstart = {}\nstop = {}\nstep_s = {}\n",
+                                     to_iso_exact(s.time->start), to_iso_exact(s.time->stop),
+                                     shortest(s.time->step_s))
+                       : fmt::format("\n[time]\nepochs = [{}]\n", fmt::join(own, ", "));
     out +=
-        fmt::format("\n[time]\nstart = {}\nstop = {}\nstep_s = {}\nonly = {{ alt_min_deg = {}, "
-                    "sun_alt_max_deg = {}, sunlit = {} }}\n",
-                    to_iso_exact(s.time->start), to_iso_exact(s.time->stop),
-                    shortest(s.time->step_s), degrees_text(only.altitude_min),
+        fmt::format("only = {{ alt_min_deg = {}, sun_alt_max_deg = {}, sunlit = {} }}\n",
+                    degrees_text(only.altitude_min),
                     degrees_text(only.sun_altitude_max.value_or(Angle::degrees(90))), only.sunlit);
   }
   return out;

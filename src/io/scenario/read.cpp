@@ -120,12 +120,47 @@ Result<void> read_only(const Node &node, EpochFilter &out) {
   return problems.told();
 }
 
+/// Epochs of one's own.
+Result<void> read_epochs(const Node &node, ScenarioTime &out) {
+  for (const char *name : {"start", "stop", "step_s"})
+    if (node.has(name))
+      return fail(ErrorCode::BadInput,
+                  fmt::format("{}: epochs stand in place of start, stop and step_s; one way of "
+                              "saying it was expected",
+                              name),
+                  node.where(name));
+  for (const toml::node &item : *node.get("epochs")->as_array()) {
+    UMOV_ASSIGN(time, time_of(node, item));
+    out.epochs.push_back(time);
+  }
+  if (out.epochs.empty())
+    return fail(ErrorCode::BadInput, "epochs has none; one or more were expected",
+                node.where("epochs"));
+  out.start = out.epochs.front();
+  out.stop = out.epochs.back();
+  for (std::size_t k = 1; k < out.epochs.size(); ++k) {
+    const double step = seconds_between(out.epochs[k], out.epochs[k - 1]);
+    out.step_s = k == 1 ? step : std::min(out.step_s, step);
+  }
+  if (const auto count = epoch_count(out.span()); !count)
+    return fail(ErrorCode::BadInput, count.error().message, node.where("epochs"));
+  return {};
+}
+
 Result<void> read_time(const Node &top, Scenario &out) {
   if (!top.has("time"))
     return {};
   UMOV_ASSIGN(node, top.child("time"));
   ScenarioTime time;
   Problems problems;
+  if (node.has("epochs")) {
+    problems.went(read_epochs(node, time));
+    if (node.has("only"))
+      problems.went(read_only(node, time.only));
+    UMOV_TRY(problems.told());
+    out.time = time;
+    return {};
+  }
   const auto start = node.time("start"), stop = node.time("stop");
   const bool has_start = problems.went(start), has_stop = problems.went(stop);
   time.step_s = node.number("step_s", 1);
