@@ -19,6 +19,8 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 
 EXAMPLES, DATA = ROOT / "examples", ROOT / "data"
 UMOV = BUILD / "apps/cli/umov"
+#: Elements of HST, the two lines alone.
+LINES = [line for line in (DATA / "tle/hst.tle").read_text().splitlines() if line[:2] in ("1 ", "2 ")][:2]
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -7,10 +7,9 @@ import pytest
 from astropy.time import Time
 
 import umov
-from conftest import DATA
+from conftest import DATA, LINES
 
 sgp4 = pytest.importorskip("sgp4.api")
-LINES = [line for line in (DATA / "tle/hst.tle").read_text().splitlines() if line[:2] in ("1 ", "2 ")][:2]
 TIMES = Time("2018-01-21T00:00:00") + np.array([0.0, 0.3, 2.0, 4.0])
 
 

@@ -17,8 +17,8 @@ from umov._units import ARGUMENTS, KEYS
 MODULES = (umov, umov.plot, umov.scale, umov.turnable)
 #: What only umov fills: its numbers are results.
 RESULTS = {"umov.scale.Plan", "umov.Column"}
-#: Directions, of which only the way counts, and what takes names of bands or the unit itself besides.
-WITHOUT_UNIT = {"sun", "observer", "up", "set", "vertices"}
+#: Directions, of which only the way counts, light of poses, and what takes names of bands or the unit itself besides.
+WITHOUT_UNIT = {"sun", "observer", "up", "set", "vertices", "curve"}
 
 
 def _public():
