@@ -48,6 +48,15 @@ def test_other_objects_are_told_with_their_row(light, told):
             umov.period(one)
 
 
+def test_times_without_a_zone_are_told_with_the_way_on():
+    frame = pd.DataFrame({"time_utc": pd.to_datetime([one[:-1] for one in TEXTS]), "mag": MAG})
+    for light in (frame, {name: frame[name].to_numpy() for name in frame}):
+        with pytest.raises(umov.UsageError, match=r'column time_utc has times without a zone.*df\["time_utc"\].dt.tz_localize\("UTC"\)'):
+            umov.period(light)
+    frame["time_utc"] = frame["time_utc"].dt.tz_localize("UTC")
+    assert _period(frame) == _period({"time_utc": TEXTS, "mag": MAG})
+
+
 def test_messages_call_a_table_by_its_argument():
     """Files that are made of tables are nobody's."""
     good, bad = (pd.DataFrame({"time_utc": TEXTS, name: MAG}) for name in ("mag", "brightness"))

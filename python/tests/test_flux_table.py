@@ -75,7 +75,7 @@ def test_an_inversion_takes_it():
                                  "bands.set": ["nm:550"]})
     light = np.asarray(curve["I"]).ravel()
     series = TimeSeries({"flux": light, "flux_err": 0.01 * light}, time=curve.time)
-    options = {"set": {"bands.set": ["nm:550"]}, "fit": umov.Fit(grid=1000)}
+    options = {"set": {"bands.set": ["nm:550"]}, "fit": umov.Fit(grid=1000, slope_sd=0, reflectance_sd=0, haze_sd=0)}
     found = umov.invert_pose(umov.flux_table(series, "nm:550"), scene, **options)
     assert found.verdict in ("determined", "ambiguous", "undetermined")
     assert len(found.tables["fit"]) == len(series)

@@ -42,6 +42,11 @@ def test_meshes_by_name_are_groups():
     assert umov.mesh(scaled).vertices.max() == 1
 
 
+def test_a_list_of_meshes_has_no_names():
+    with pytest.raises(umov.UsageError, match='mesh is a list of meshes.*"bus": box'):
+        umov.Satellite([trimesh.creation.box(), trimesh.creation.box()], materials="gold")
+
+
 def test_arrays_with_groups():
     made = umov.Satellite((SQUARE, HALVES, ["left", "right"]), materials={"left": "gold", "right": "aluminium_anodized"})
     assert _groups(made) == {"left": 1, "right": 1}

@@ -177,6 +177,9 @@ def _parts(mesh: Any) -> list[tuple[str, Any]]:
         if not out:
             raise UsageError("the scene of trimesh has no mesh; one with triangles was expected")
         return out
+    if isinstance(mesh, Sequence) and any(_is_mesh(one) for one in mesh):
+        raise UsageError("mesh is a list of meshes, of which nobody knows the materials; meshes by the names of their groups were expected: "
+                         '{"bus": box, "wing": plate}')
     if _is_mesh(mesh) or (isinstance(mesh, Sequence) and len(mesh) in (2, 3)):
         return [("", mesh)]
     raise UsageError(f"mesh is a {type(mesh).__name__}; a file, a table of the scenario, a trimesh mesh or scene, (vertices, faces) or "

@@ -116,6 +116,9 @@ def _is_gap(one: Any) -> bool:
 
 def plain_column(column: Any, name: str, what: str) -> Any:
     """A column of objects as it can be written: moments as texts in UTC, gaps (None, NaT, NA) as empty cells; all else as it is."""
+    if getattr(getattr(column, "dtype", None), "kind", "") == "M":
+        raise UsageError(f"{what}'s column {name} has times without a zone, so they could be local times or UTC; aware times were expected. In UTC "
+                         f'that is df["{name}"].dt.tz_localize("UTC") in pandas, and astropy.time.Time({name}, scale="utc")')
     if isinstance(column, np.ndarray) or (isinstance(column, (list, tuple)) and any(one is None or is_moment(one) or isinstance(
             one, (datetime.date, np.datetime64)) for one in column)):
         return _of_objects(list(column), name, what) if getattr(column, "dtype", object) == object else column
